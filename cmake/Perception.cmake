@@ -1,0 +1,61 @@
+# Build helpers: warnings and sanitizers of our own code, one static library a module, one program an app folder.
+
+find_package(Eigen3 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(octomap REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs)
+find_package(TBB REQUIRED)
+find_package(ZLIB REQUIRED)
+foreach(part obs maps bayes random io opengl img config system)
+  find_package(mrpt-${part} REQUIRED)
+endforeach()
+
+add_library(perception_options INTERFACE)
+target_compile_options(perception_options INTERFACE -Wall -Wextra -Wconversion $<$<BOOL:${PERCEPTION_WERROR}>:-Werror>)
+target_include_directories(perception_options INTERFACE ${CMAKE_SOURCE_DIR})
+if(PERCEPTION_SANITIZE)
+  # Debian's MRPT hands out OpenGL objects that are not aligned as its headers say: no alignment check.
+  target_compile_options(perception_options INTERFACE -fsanitize=${PERCEPTION_SANITIZE} -fno-sanitize=alignment
+                         -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(perception_options INTERFACE -fsanitize=${PERCEPTION_SANITIZE})
+endif()
+
+# perception_module(NAME [FOLDER dir] LINK libs...): all of libperception/NAME/*.cpp as perception::NAME.
+function(perception_module NAME)
+  cmake_parse_arguments(ARG "" "FOLDER" "LINK" ${ARGN})
+  if(NOT ARG_FOLDER)
+    set(ARG_FOLDER libperception/${NAME})
+  endif()
+  list(REMOVE_ITEM ARG_LINK MRPT)
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${ARG_FOLDER}/*.cpp)
+  if(SOURCES)
+    add_library(perception_${NAME} STATIC ${SOURCES})
+    target_link_libraries(perception_${NAME} PUBLIC perception_options ${ARG_LINK})
+  else()
+    add_library(perception_${NAME} INTERFACE)
+    target_link_libraries(perception_${NAME} INTERFACE perception_options ${ARG_LINK})
+  endif()
+  add_library(perception::${NAME} ALIAS perception_${NAME})
+endfunction()
+
+# Every folder apps/X holds X_main.cpp and becomes the program build/bin/X.
+function(perception_apps)
+  file(GLOB MAINS CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/apps/*/*_main.cpp)
+  foreach(MAIN ${MAINS})
+    get_filename_component(DIR ${MAIN} DIRECTORY)
+    get_filename_component(APP ${DIR} NAME)
+    add_executable(${APP} ${MAIN})
+    target_link_libraries(${APP} PRIVATE perception::app)
+  endforeach()
+endfunction()
+
+# The observation classes as a plugin for stock MRPT tools (rawlog-edit -p, RawLogViewer -l, rawlog-grabber -p).
+function(perception_plugin)
+  if(EXISTS ${CMAKE_SOURCE_DIR}/libperception/sensors/plugin/Plugin.cpp)
+    add_library(perception_mrpt_plugin MODULE ${CMAKE_SOURCE_DIR}/libperception/sensors/plugin/Plugin.cpp)
+    target_link_libraries(perception_mrpt_plugin PRIVATE perception::sensors)
+  endif()
+endfunction()

@@ -1,0 +1,52 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace perception {
+
+/// What a program of ours says to the shell when it ends (sysexits; 3 is our own). Only 75 is worth another try.
+enum class ExitCode : int {
+  kOk = 0,
+  kDataWarnings = 3,   ///< finished; part of the data was missing or bad, and the result says so
+  kUsage = 64,         ///< wrong command line
+  kBadInput = 65,      ///< an input file that cannot be used
+  kNoInput = 66,       ///< an input file that is not there
+  kUnavailable = 69,   ///< something of the machine is missing (no OpenGL, no device)
+  kInternal = 70,      ///< a fault of ours
+  kCannotCreate = 73,  ///< the output cannot be created
+  kIoError = 74,       ///< reading or writing failed midway (disk full)
+  kTryAgain = 75,      ///< stopped by a signal or busy
+  kBadConfig = 78      ///< a configuration file or value that is wrong
+};
+
+/// Base of all errors that end a run with a message and an exit code; only app/runApp catches them.
+class Error : public std::runtime_error {
+ public:
+  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  ExitCode code() const { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+/// A configuration that is wrong; the message holds every fault found, one a line, with file and line.
+class ConfigError : public Error {
+ public:
+  explicit ConfigError(const std::string& message) : Error(ExitCode::kBadConfig, message) {}
+};
+
+/// An input that is missing (kNoInput) or cannot be used (kBadInput); the message names path and position.
+class DataError : public Error {
+ public:
+  explicit DataError(const std::string& message, ExitCode code = ExitCode::kBadInput)
+      : Error(code, message) {}
+};
+
+/// An output that cannot be created (kCannotCreate) or written (kIoError); the message names the path.
+class OutputError : public Error {
+ public:
+  explicit OutputError(const std::string& message, ExitCode code = ExitCode::kCannotCreate)
+      : Error(code, message) {}
+};
+
+}  // namespace perception

@@ -1,0 +1,14 @@
+#pragma once
+#include "libperception/measurement/Measurement.h"
+
+namespace perception {
+
+/// A rib: turns one sensor's frame into measurements. Const and without state, so ribs may run in parallel.
+class FrontEnd {
+ public:
+  virtual ~FrontEnd() = default;
+  /// `frame.data` must hold the kind of data that this rib reads; bad points and boxes are dropped and counted.
+  virtual MeasurementScan extract(const SensorFrame& frame) const = 0;
+};
+
+}  // namespace perception
