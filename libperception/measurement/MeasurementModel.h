@@ -47,6 +47,8 @@ class MeasurementModel {
                                       const SensorState& sensor, double visibility) const = 0;
   /// log P(label | class, detected).
   virtual double logLabelLikelihood(int label, ClassId c) const = 0;
+  /// Exponent in (0, 1] of the label in the class update: labels of one object are not independent (SPEC 5.6).
+  virtual double labelExponent() const { return 1; }
   /// log P(label | clutter).
   virtual double logLabelClutter(int label) const = 0;
   /// Log of the expected number of false measurements per scan and unit of the axes seen at z.

@@ -1,0 +1,179 @@
+#include "libperception/filter/LikelihoodTable.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <tbb/parallel_for.h>
+
+#include "libperception/core/Chi2.h"
+#include "libperception/core/LogMath.h"
+#include "libperception/filter/MotionModels.h"
+
+namespace perception {
+namespace {
+
+constexpr double kMaxDetection = 0.999;  // P_D = 1 would make one miss a proof
+/// Before any matrix: pairs farther apart than this many standard deviations (plus 2 m of size) cannot pass the gate.
+constexpr double kCoarseGate = 6;
+constexpr double kCoarseMargin = 2;  // [m]
+
+struct Gates {
+  explicit Gates(double probability) {
+    for (int n = 1; n <= kMaxAxes; ++n) quantile[static_cast<std::size_t>(n)] = chi2Quantile(probability, n);
+  }
+  std::array<double, kMaxAxes + 1> quantile{};
+};
+
+bool coarselyNear(const Track& track, const Measurement& m) {
+  double reach = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& f : track.bank) {
+    const double sigma = std::sqrt(std::max(f.P(0, 0), f.P(1, 1))) + m.position_sigma;
+    const double size = 0.5 * std::max(f.extent.length, f.extent.width);
+    reach = std::max(reach, kCoarseGate * sigma + size + kCoarseMargin);
+    nearest = std::min(nearest, (f.x.head<2>() - m.position).norm());
+  }
+  return nearest <= reach;
+}
+
+/// Share of the track's directions that nothing nearer hides.
+double visibilityOf(const Track& track, const MeasurementScan& scan, const FilterModel& model) {
+  if (!scan.horizon) return 1;
+  const auto c = static_cast<std::size_t>(track.likeliestClass());
+  const Vector2 d = track.bank[c].x.head<2>() - scan.state.T_world_sensor.translation().head<2>();
+  const double range = d.norm();
+  const double radius = 0.25 * (track.bank[c].extent.length + track.bank[c].extent.width);
+  if (range <= radius) return 1;
+  const double bearing = std::atan2(d.y(), d.x()), half = std::asin(radius / range);
+  return scan.horizon->visibility(bearing - half, bearing + half, range - radius, model.params.hidden_tolerance);
+}
+
+PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row, const std::vector<Kinematics>& kinematics,
+                              std::size_t k, const MeasurementScan& scan, const FilterModel& model, double& min_excess,
+                              const Gates& gates) {
+  const Measurement& m = scan.measurements[k];
+  const std::size_t classes = track.bank.size();
+  PairLikelihood pair;
+  pair.measurement = k;
+  pair.log_by_class.assign(classes, kMinusInfinity);
+  pair.log_class_evidence.assign(classes, kMinusInfinity);
+  pair.nis.assign(classes, std::numeric_limits<double>::infinity());
+  min_excess = std::numeric_limits<double>::infinity();
+  std::vector<double> mixture(classes, kMinusInfinity);
+  const double label_exponent = scan.model->labelExponent();
+  for (std::size_t j = 0; j < classes; ++j) {
+    const double detection = row.detection_by_class[j];
+    if (!row.predictions[j].defined || detection <= 0) continue;
+    const auto innovation = innovationOf(track.bank[j], kinematics[j], row.predictions[j], m, *scan.model);
+    const Eigen::LLT<AxisMatrix> llt(innovation.S);
+    if (llt.info() != Eigen::Success) continue;
+    const auto n = innovation.y.size();
+    const double nis = llt.matrixL().solve(innovation.y).squaredNorm();
+    double log_det = 0;
+    for (Eigen::Index i = 0; i < n; ++i) log_det += 2 * std::log(llt.matrixLLT()(i, i));
+    const double log_density = -0.5 * (nis + log_det + static_cast<double>(n) * std::log(kTwoPi));
+    const double label = scan.model->logLabelLikelihood(m.label, static_cast<ClassId>(j));
+    const double rest = std::log(detection) + m.log_score_ratio;
+    pair.nis[j] = nis;
+    pair.log_by_class[j] = log_density + label + rest;
+    pair.log_class_evidence[j] = model.params.kinematic_exponent * log_density + label_exponent * label + rest;
+    mixture[j] = track.log_class[j] + pair.log_by_class[j];
+    min_excess = std::min(min_excess, nis - gates.quantile[static_cast<std::size_t>(n)]);
+  }
+  pair.log_likelihood = logSumExp(mixture);
+  return pair;
+}
+
+TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& scan, const FilterModel& model,
+                                  const Gates& gates) {
+  const std::size_t classes = track.bank.size();
+  TrackLikelihoods row;
+  std::vector<Kinematics> kinematics(classes);
+  std::vector<Extent> extents(classes);
+  for (std::size_t j = 0; j < classes; ++j) {
+    kinematics[j] = kinematicsOf(model.classes[static_cast<ClassId>(j)], track.bank[j]);
+    extents[j] = track.bank[j].extent;
+  }
+  row.predictions.resize(classes);
+  scan.model->predict(kinematics.data(), extents.data(), classes, scan.state, row.predictions.data());
+  const double visibility = visibilityOf(track, scan, model);
+  row.detection_by_class.resize(classes);
+  for (std::size_t j = 0; j < classes; ++j) {
+    const auto detection = [&](double visible) {
+      return std::min(kMaxDetection, scan.model->detectionProbability(static_cast<ClassId>(j), kinematics[j], extents[j],
+                                                                      scan.state, visible));
+    };
+    row.detection_by_class[j] = detection(visibility);
+    row.detection += std::exp(track.log_class[j]) * row.detection_by_class[j];
+    row.in_view = row.in_view || detection(1) > 0;
+  }
+  for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
+    if (!coarselyNear(track, scan.measurements[k])) continue;
+    double excess = 0;
+    auto pair = pairLikelihood(track, row, kinematics, k, scan, model, excess, gates);
+    if (excess <= 0 && pair.log_likelihood > kMinusInfinity) row.pairs.push_back(std::move(pair));
+  }
+  return row;
+}
+
+NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan, const FilterModel& model) {
+  const int classes = model.classes.size();
+  NewLikelihood result;
+  result.log_class.assign(static_cast<std::size_t>(classes), kMinusInfinity);
+  for (ClassId j = 0; j < classes; ++j) {
+    result.log_class[static_cast<std::size_t>(j)] = std::log(model.classes[j].prior) +
+                                                    scan.model->logLabelLikelihood(m.label, j) +
+                                                    scan.model->logBirthDensity(m, j, scan.state);
+  }
+  const double log_birth = logNormalise(result.log_class) + m.log_score_ratio;
+  const double log_clutter = scan.model->logClutterDensity(m, scan.state) + scan.model->logLabelClutter(m.label);
+  result.log_new = logAddExp(log_birth, log_clutter);
+  result.existence = result.log_new > kMinusInfinity ? std::exp(log_birth - result.log_new) : 0;
+  return result;
+}
+
+}  // namespace
+
+Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics, const AxisPrediction& prediction,
+                        const Measurement& m, const MeasurementModel& model) {
+  Innovation out;
+  out.y = residual(model, m, prediction.h);
+  const auto n = out.y.size();
+  out.H.resize(n, 4);
+  out.R.resize(n, n);
+  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2> H_extent(n, 2);
+  std::array<Eigen::Index, kMaxAxes> axis{};
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < model.axes().size(); ++i) {
+    if (m.seen >> i & 1) axis[static_cast<std::size_t>(row++)] = static_cast<Eigen::Index>(i);
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto a = axis[static_cast<std::size_t>(i)];
+    out.H.row(i) = prediction.H_q.row(a) * kinematics.J;
+    H_extent.row(i) = prediction.H_extent.row(a);
+    for (Eigen::Index k = 0; k < n; ++k) out.R(i, k) = m.R(a, axis[static_cast<std::size_t>(k)]);
+  }
+  const Vector2 extent_variance(filter.extent.var_length, filter.extent.var_width);
+  out.R += H_extent * extent_variance.asDiagonal() * H_extent.transpose();
+  out.S = out.H * filter.P * out.H.transpose() + out.R;
+  out.S.diagonal().array() += 1e-9;
+  return out;
+}
+
+LikelihoodTable likelihoodTable(const std::vector<Track>& predicted, const MeasurementScan& scan,
+                                const FilterModel& model) {
+  const Gates gates(model.params.gate_probability);
+  LikelihoodTable table;
+  table.tracks.resize(predicted.size());
+  table.news.resize(scan.measurements.size());
+  tbb::parallel_for(std::size_t{0}, predicted.size(), [&](std::size_t i) {
+    table.tracks[i] = trackLikelihoods(predicted[i], scan, model, gates);
+  });
+  tbb::parallel_for(std::size_t{0}, scan.measurements.size(), [&](std::size_t k) {
+    table.news[k] = newLikelihood(scan.measurements[k], scan, model);
+  });
+  return table;
+}
+
+}  // namespace perception

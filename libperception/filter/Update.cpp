@@ -1,0 +1,209 @@
+#include "libperception/filter/Update.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "libperception/core/Chi2.h"
+#include "libperception/core/LogMath.h"
+#include "libperception/filter/MotionModels.h"
+#include "libperception/measurement/ExtentUpdate.h"
+
+namespace perception {
+namespace {
+
+/// A class filter this surprised by its own object's measurement (one true pair in 10^5) starts anew from it: an
+/// extended filter that has lost its object would never come back, and its class could never win again.
+constexpr double kLostProbability = 1 - 1e-5;
+
+double lostNis(Eigen::Index axes) {
+  static const auto quantiles = [] {
+    std::array<double, kMaxAxes + 1> q{};
+    for (int n = 1; n <= kMaxAxes; ++n) q[static_cast<std::size_t>(n)] = chi2Quantile(kLostProbability, n);
+    return q;
+  }();
+  return quantiles[static_cast<std::size_t>(axes)];
+}
+
+constexpr double kYawGate = 6.635;  // chi-square .99, one degree of freedom
+
+void scalarUpdate(const ScalarEstimate& z, ScalarEstimate& x) {
+  const double gain = x.variance / (x.variance + z.variance);
+  x.mean += gain * (z.mean - x.mean);
+  x.variance *= 1 - gain;
+}
+
+/// Floor and renormalisation of the class posterior (SPEC 5.6).
+void clampClasses(double epsilon, std::vector<double>& log_class) {
+  logNormalise(log_class);
+  if (epsilon <= 0) return;
+  const double floor = std::log(epsilon);
+  for (double& lp : log_class) lp = std::max(lp, floor);
+  logNormalise(log_class);
+}
+
+double speedSigma(const ObjectClass& c, const FilterModel& model) {
+  return std::min(model.params.start_speed_sigma, std::max(0.5 * c.max_speed, 0.1));
+}
+
+/// The class's filter from one measurement. Wheeled objects start without heading unless the box shows it.
+ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const FilterModel& model) {
+  ClassFilter f;
+  f.x.head<2>() = birth.position;
+  f.P.topLeftCorner<2, 2>() = birth.covariance;
+  f.extent = birth.extent;
+  if (c.motion == Motion::kStatic) return f;
+  const double sigma = speedSigma(c, model);
+  f.P(2, 2) = f.P(3, 3) = sigma * sigma;
+  if (c.motion == Motion::kWheeled && birth.yaw) {
+    const double extra = model.params.shape_yaw_sigma;
+    orientByAxis(birth.yaw->mean, birth.yaw->variance + extra * extra, f);
+    if (birth.speed) {
+      f.x[2] = birth.speed->mean;
+      f.P(2, 2) = birth.speed->variance;
+    }
+  }
+  return f;
+}
+
+/// Kalman update in Joseph form (SPEC 4).
+void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
+  using Gain = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kMaxAxes>;
+  const Gain PHt = f.P * innovation.H.transpose();
+  const Gain K = innovation.S.llt().solve(PHt.transpose()).transpose();
+  const Matrix4 I_KH = Matrix4::Identity() - K * innovation.H;
+  f.x += K * innovation.y;
+  f.P = (I_KH * f.P * I_KH.transpose() + K * innovation.R * K.transpose()).eval();
+  f.P = (0.5 * (f.P + f.P.transpose())).eval();
+  if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
+}
+
+/// A wheeled filter takes its heading from what is known by now: the box seen, else its own motion (SPEC 3.4, with a
+/// constant-velocity start in place of the two-point start). An oriented one that clearly drives backwards is reversed.
+void findHeading(const std::optional<BirthState>& birth, const FilterModel& model, ClassFilter& f) {
+  const auto& p = model.params;
+  const double box_extra = p.shape_yaw_sigma * p.shape_yaw_sigma;
+  if (!f.oriented) {
+    const double v = f.x.tail<2>().norm();
+    const double sigma_v = std::sqrt(0.5 * (f.P(2, 2) + f.P(3, 3)));
+    if (v >= p.orient_min_speed && sigma_v <= p.orient_max_sigma * v) {
+      orientByVelocity(f);
+    } else if (birth && birth->yaw) {
+      orientByAxis(birth->yaw->mean, birth->yaw->variance + box_extra, f);
+    }
+    return;
+  }
+  if (birth && birth->yaw) {  // the box's long axis as a measurement of theta, front and back alike
+    const double y = wrapAxis(birth->yaw->mean - f.x[3]);
+    const double S = f.P(3, 3) + birth->yaw->variance + box_extra;
+    if (y * y < kYawGate * S) {
+      const Vector4 K = f.P.col(3) / S;
+      f.x += K * y;
+      f.P = (f.P - K * f.P.row(3)).eval();
+      f.P = (0.5 * (f.P + f.P.transpose())).eval();
+      f.x[3] = wrapAngle(f.x[3]);
+    }
+  }
+  if (f.x[2] < -p.orient_min_speed && f.x[2] * f.x[2] > 4 * f.P(2, 2)) reverse(f);
+}
+
+/// A filter that lost the object: from the measurement, with the velocity of the class that explains it best.
+ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best, const FilterModel& model) {
+  ClassFilter f = startFilter(c, birth, model);
+  if (c.motion != Motion::kStatic && !f.oriented) f.x.tail<2>() = best.q.segment<2>(2);
+  return f;
+}
+
+void updateHeights(const Measurement& m, Track& track) {
+  if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
+  if (m.height) scalarUpdate(*m.height, track.height);
+}
+
+}  // namespace
+
+Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLikelihood& pair,
+               const MeasurementScan& scan, std::uint64_t scan_index, const FilterModel& model) {
+  const Measurement& m = scan.measurements[pair.measurement];
+  Track track = predicted;
+  track.history = extendHistory(predicted.history, scan_index, pair.measurement);
+  track.existence = model.params.existence_max;
+  track.last_in_view = scan.state.stamp;
+  track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
+  ++track.hits[modalityIndex(scan.modality)];
+
+  const auto best = static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
+  const Kinematics best_kinematics = kinematicsOf(model.classes[best], predicted.bank[static_cast<std::size_t>(best)]);
+  const auto axes_seen = residual(*scan.model, m, m.z).size();
+  const double lost = lostNis(axes_seen);
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const ObjectClass& c = model.classes[j];
+    const auto i = static_cast<std::size_t>(j);
+    ClassFilter& f = track.bank[i];
+    const auto birth = scan.model->birth(m, j, scan.state);
+    if (pair.nis[i] < lost) {
+      const Kinematics k = kinematicsOf(c, f);
+      kalmanUpdate(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
+    } else if (birth) {
+      f = restartFilter(c, *birth, best_kinematics, model);
+    }
+    if (c.motion == Motion::kWheeled) findHeading(birth, model, f);
+    if (m.sides && (f.oriented || c.motion == Motion::kStatic)) {
+      const double yaw = f.oriented ? f.x[3] : m.sides->yaw;
+      f.extent = updateExtent(f.extent, *m.sides, yaw, model.params.side_sigma);
+    }
+    track.log_class[i] += pair.log_class_evidence[i];
+  }
+  clampClasses(model.params.class_epsilon, track.log_class);
+  updateHeights(m, track);
+  return track;
+}
+
+Track missTrack(const Track& predicted, const TrackLikelihoods& row, const MeasurementScan& scan,
+                const FilterModel& model) {
+  Track track = predicted;
+  if (row.in_view) track.last_in_view = scan.state.stamp;
+  if (row.detection <= 0) return track;
+  const double r = predicted.existence;
+  track.existence = r * (1 - row.detection) / (1 - r * row.detection);
+  for (std::size_t j = 0; j < track.log_class.size(); ++j) {
+    track.log_class[j] += std::log1p(-row.detection_by_class[j]);
+  }
+  clampClasses(model.params.class_epsilon, track.log_class);
+  return track;
+}
+
+Track newTrack(const NewLikelihood& news, std::size_t measurement, const MeasurementScan& scan,
+               std::uint64_t scan_index, const FilterModel& model) {
+  const Measurement& m = scan.measurements[measurement];
+  Track track;
+  track.id = birthId(scan_index, measurement);
+  track.history = extendHistory(0, scan_index, measurement);
+  track.birth = track.stamp = track.last_in_view = scan.state.stamp;
+  track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
+  track.hits[modalityIndex(scan.modality)] = 1;
+  track.existence = std::min(news.existence, model.params.existence_max);
+  track.log_class = news.log_class;
+  double height = 0, height_variance = 0;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const ObjectClass& c = model.classes[j];
+    const auto birth = scan.model->birth(m, j, scan.state);
+    if (birth) {
+      track.bank.push_back(startFilter(c, *birth, model));
+    } else {
+      track.bank.emplace_back();
+      track.log_class[static_cast<std::size_t>(j)] = kMinusInfinity;
+      track.existence = 0;  // no state: cannot be tracked
+    }
+    height += c.prior * c.height;
+    height_variance += c.prior * c.height_sigma * c.height_sigma;
+  }
+  clampClasses(model.params.class_epsilon, track.log_class);
+  track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
+  track.height = {height, height_variance + 0.25};
+  updateHeights(m, track);
+  return track;
+}
+
+}  // namespace perception

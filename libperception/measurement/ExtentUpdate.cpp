@@ -1,0 +1,35 @@
+#include "libperception/measurement/ExtentUpdate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace perception {
+namespace {
+
+constexpr double kFloor = 0.1 * 0.1;  // [m^2]
+
+void updateSide(double seen, bool complete, double variance, double& mean, double& var) {
+  if (!complete) {
+    mean = std::max(mean, seen);
+    return;
+  }
+  const double gain = var / (var + variance);
+  mean += gain * (seen - mean);
+  var = std::max(std::min(var, kFloor), var * (1 - gain));
+}
+
+}  // namespace
+
+Extent updateExtent(const Extent& extent, const SidesSeen& sides, double yaw, double sigma) {
+  const double angle = std::abs(wrapAxis(sides.yaw - yaw));  // of side a to the length axis, [0, pi/2]
+  if (angle > radians(30) && angle < radians(60)) return extent;
+  const bool a_is_length = angle < radians(45);
+  Extent out = extent;
+  updateSide(sides.a, sides.a_complete, sigma * sigma, a_is_length ? out.length : out.width,
+             a_is_length ? out.var_length : out.var_width);
+  updateSide(sides.b, sides.b_complete, sigma * sigma, a_is_length ? out.width : out.length,
+             a_is_length ? out.var_width : out.var_length);
+  return out;
+}
+
+}  // namespace perception
