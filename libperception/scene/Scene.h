@@ -11,27 +11,27 @@ namespace perception {
 
 /// One tracked, classified object: the product. World frame, SI units.
 struct SceneObject {
-  std::uint64_t id = 0;                  ///< 1, 2, 3 ... in order of first output; stays with the object
-  ClassId class_id = 0;                  ///< most probable class
-  bool classified = false;               ///< its probability is at least .95
-  std::vector<double> class_probability; ///< in the order of the class table; sums to 1
-  double existence = 0;                  ///< probability that the track is a real object
-  Vector3 position = Vector3::Zero();    ///< [m] centre of the footprint, z = base of the object
-  double yaw = 0;                        ///< [rad] direction of the length axis, front first
-  bool has_yaw = false;                  ///< false: yaw is the direction of motion or 0
-  Vector2 velocity = Vector2::Zero();    ///< [m/s]
-  double speed = 0;                      ///< [m/s] along yaw; negative: reversing
-  double length = 0, width = 0, height = 0;  ///< [m]
+  std::uint64_t id = 0;     ///< 1, 2, 3 ... in order of first output; stays with the object
+  ClassId class_id = 0;     ///< most probable class
+  bool classified = false;  ///< its probability is at least .95
+  std::vector<double> class_probability;  ///< in the order of the class table; sums to 1
+  double existence = 0;                   ///< probability that the track is a real object
+  Vector3 position = Vector3::Zero();     ///< [m] centre of the footprint, z = base of the object
+  double yaw = 0;                         ///< [rad] direction of the length axis, front first
+  bool has_yaw = false;                   ///< false: yaw is the direction of motion or 0
+  Vector2 velocity = Vector2::Zero();     ///< [m/s]
+  double speed = 0;                       ///< [m/s] along yaw; negative: reversing
+  double length = 0, width = 0, height = 0;             ///< [m]
   double sd_x = 0, sd_y = 0, sd_yaw = 0, sd_speed = 0;  ///< [m, m, rad, m/s] standard deviations
-  std::map<Modality, Stamp> last_hit;    ///< last measurement of each modality
+  std::map<Modality, Stamp> last_hit;                   ///< last measurement of each modality
 };
 
 /// Everything around the vehicle at one instant.
 struct Scene {
   Stamp stamp;
-  std::int64_t frame = -1;               ///< the log's frame number; -1 = none
+  std::int64_t frame = -1;  ///< the log's frame number; -1 = none
   EgoState ego;
-  std::vector<SceneObject> objects;      ///< by id
+  std::vector<SceneObject> objects;  ///< by id
 };
 
 }  // namespace perception

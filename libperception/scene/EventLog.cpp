@@ -1,0 +1,65 @@
+#include "libperception/scene/EventLog.h"
+
+#include <utility>
+
+#include "libperception/scene/NumberFormat.h"
+#include "libperception/scene/OutputFile.h"
+
+namespace perception {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// One line. Text that is not UTF-8 (a sensor label of a damaged log) must not end the run: it is
+// replaced.
+std::string lineOf(const Json& event) {
+  return event.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace
+
+void EventLog::add(std::optional<Stamp> stamp, const std::string& kind, const std::string& message,
+                   Fields fields, Severity severity) {
+  if (severity == Severity::kWarning) ++warnings_;
+  if (++counts_[kind] > kept_per_kind_) return;
+  if (fields.is_null()) fields = Fields::object();
+  events_.push_back({stamp, kind, message, std::move(fields), severity});
+}
+
+void EventLog::warn(std::optional<Stamp> stamp, const std::string& kind, const std::string& message,
+                    Fields fields) {
+  add(stamp, kind, message, std::move(fields), Severity::kWarning);
+}
+
+std::string EventLog::text(Stamp first_stamp) const {
+  std::string lines;
+  for (const Event& event : events_) {
+    Json line;
+    // Divided, not multiplied by 1e-9: the nearest double, which prints as the short number that it
+    // is.
+    line["t"] =
+        event.stamp ? Json(static_cast<double>(event.stamp->ns - first_stamp.ns) / 1e9) : Json();
+    line["stamp"] = event.stamp ? Json(decimalSeconds(event.stamp->ns)) : Json();
+    line["kind"] = event.kind;
+    line["severity"] = event.severity == Severity::kWarning ? "warning" : "info";
+    line["message"] = event.message;
+    line["fields"] = event.fields;
+    lines += lineOf(line);
+  }
+  for (const auto& [kind, count] : counts_) {
+    if (count <= kept_per_kind_) continue;
+    lines += lineOf({{"t", nullptr},
+                     {"stamp", nullptr},
+                     {"kind", "events_not_written"},
+                     {"severity", "info"},
+                     {"message", "more events of this kind were counted only"},
+                     {"fields", {{"kind", kind}, {"events", count - kept_per_kind_}}}});
+  }
+  return lines;
+}
+
+void EventLog::write(const std::string& path, Stamp first_stamp) const {
+  writeFile(path, text(first_stamp));
+}
+
+}  // namespace perception

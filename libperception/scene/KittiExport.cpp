@@ -1,0 +1,120 @@
+#include "libperception/scene/KittiExport.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libperception/core/LogMath.h"
+#include "libperception/scene/NumberFormat.h"
+
+namespace perception {
+namespace {
+
+constexpr double kNearPlane =
+    0.1;                         // [m] before the camera; what is nearer has no place in the image
+constexpr int kPixelPlaces = 2;  // as in KITTI's own files
+constexpr double kSurest =
+    1e-6;  // existence beyond which the score grows no more: places in tracks.csv
+
+// Corners of the box in the reference frame; bit 0: front, bit 1: right, bit 2: top. The frame's y
+// axis points down.
+std::array<Vector3, 8> corners(const KittiObject& o) {
+  const Vector3 forward(std::cos(o.rotation_y), 0, -std::sin(o.rotation_y));
+  const Vector3 right(std::sin(o.rotation_y), 0, std::cos(o.rotation_y));
+  std::array<Vector3, 8> result;
+  for (std::size_t i = 0; i < 8; ++i) {
+    result[i] = o.bottom_centre + ((i & 1) ? 0.5 : -0.5) * o.length * forward +
+                ((i & 2) ? 0.5 : -0.5) * o.width * right -
+                ((i & 4) ? o.height : 0) * Vector3::UnitY();
+  }
+  return result;
+}
+
+// The image region that is being covered by the points added to it.
+struct Outline {
+  double x1 = 1e9, y1 = 1e9, x2 = -1e9, y2 = -1e9;  // [px]
+  void add(const Vector3& p, const CameraModel& camera) {
+    const double u = camera.fx * p.x() / p.z() + camera.cx,
+                 v = camera.fy * p.y() / p.z() + camera.cy;
+    x1 = std::min(x1, u), x2 = std::max(x2, u);
+    y1 = std::min(y1, v), y2 = std::max(y2, v);
+  }
+};
+
+// Image box of the 3D box, given in the camera's frame: its edges are cut at the near plane, the
+// result at the image.
+std::optional<ObjectDetection::ImageBox> project(const std::array<Vector3, 8>& corner,
+                                                 const CameraModel& camera) {
+  Outline outline;
+  for (std::size_t i = 0; i < 8; ++i) {
+    if (corner[i].z() >= kNearPlane) outline.add(corner[i], camera);
+    for (const std::size_t bit : {1u, 2u, 4u}) {
+      const Vector3 &a = corner[i], &b = corner[i | bit];
+      if ((i & bit) == 0 && (a.z() < kNearPlane) != (b.z() < kNearPlane)) {
+        outline.add(a + (kNearPlane - a.z()) / (b.z() - a.z()) * (b - a), camera);
+      }
+    }
+  }
+  ObjectDetection::ImageBox box;
+  box.x1 = std::max(outline.x1, 0.0), box.x2 = std::min(outline.x2, camera.width - 1.0);
+  box.y1 = std::max(outline.y1, 0.0), box.y2 = std::min(outline.y2, camera.height - 1.0);
+  if (!(box.x1 < box.x2 && box.y1 < box.y2)) return std::nullopt;
+  return box;
+}
+
+}  // namespace
+
+std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& scene,
+                                       const ClassTable& classes, const KittiCamera& camera) {
+  const Pose3 T_world_camera = scene.ego.T_world_ego * camera.T_ego_camera;
+  const Pose3 T_reference_world =
+      (T_world_camera * Eigen::Translation3d(camera.reference_in_camera)).inverse();
+  KittiObject result;
+  result.frame = scene.frame;
+  result.id = object.id;
+  result.type = classes[object.class_id].kitti_type;
+  result.length = object.length, result.width = object.width, result.height = object.height;
+  result.bottom_centre = T_reference_world * object.position;
+  const Vector3 front =
+      T_reference_world.linear() * Vector3(std::cos(object.yaw), std::sin(object.yaw), 0);
+  result.rotation_y = std::atan2(-front.z(), front.x());
+  result.alpha =
+      wrapAngle(result.rotation_y - std::atan2(result.bottom_centre.x(), result.bottom_centre.z()));
+  result.score = logit(std::clamp(object.existence, kSurest, 1 - kSurest));
+
+  std::array<Vector3, 8> in_camera = corners(result);
+  for (Vector3& corner : in_camera) corner += camera.reference_in_camera;
+  const auto box = project(in_camera, camera.camera);
+  if (!box) return std::nullopt;
+  result.box = *box;
+  return result;
+}
+
+std::string kittiLine(const KittiObject& o) {
+  std::string line =
+      fmt::format("{} {} {} 0 0 {}", o.frame, o.id, o.type, fixedPlaces(o.alpha, kRadianPlaces));
+  for (const double v : {o.box.x1, o.box.y1, o.box.x2, o.box.y2})
+    line += ' ' + fixedPlaces(v, kPixelPlaces);
+  for (const double v : {o.height, o.width, o.length}) line += ' ' + fixedPlaces(v, kMetrePlaces);
+  for (const double v : o.bottom_centre) line += ' ' + fixedPlaces(v, kMetrePlaces);
+  line += ' ' + fixedPlaces(o.rotation_y, kRadianPlaces);
+  return line + ' ' + fixedPlaces(o.score, kProbabilityPlaces) + '\n';
+}
+
+KittiExport::KittiExport(const std::string& path, const ClassTable& classes,
+                         const KittiCamera& camera)
+    : file_(path), classes_(classes), camera_(camera) {}
+
+void KittiExport::write(const Scene& scene) {
+  if (scene.frame < 0) return;
+  for (const SceneObject& object : scene.objects) {
+    if (const auto seen = kittiObject(object, scene, classes_, camera_))
+      file_.write(kittiLine(*seen));
+  }
+}
+
+void KittiExport::close() { file_.close(); }
+
+}  // namespace perception

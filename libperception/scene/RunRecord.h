@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "libperception/core/Time.h"
+
+namespace perception {
+
+/// What one sensor contributed to a run.
+struct SensorRecord {
+  std::string label;
+  std::string modality;      ///< "C", "L", "R"
+  std::uint64_t frames = 0;  ///< processed
+  std::uint64_t measurements = 0;
+  std::uint64_t dropped_points = 0;        ///< not finite, out of range
+  std::uint64_t dropped_measurements = 0;  ///< covariance that is none
+  std::uint64_t dropped_frames = 0;  ///< no stamp, cannot be decoded, older than the reorder window
+};
+
+/// done.json: what a run was made of and how it ended. The last file to be written: a folder with
+/// it is whole. A function of (rawlog, INI, seed) like all results: no time of day, no durations of
+/// work, no folder names.
+struct RunRecord {
+  std::string program;  ///< "perception-track"
+  std::string version;
+  std::string input;  ///< file name of the log; folders are cut off when written
+  std::uint64_t input_bytes = 0;
+  std::uint64_t input_entries = 0;  ///< objects read from the log
+  std::string input_end =
+      "clean";  ///< how the log ended: clean, torn, unknown class, newer version, damaged
+  std::string input_end_detail;  ///< where and why; empty when clean
+  bool simulated = false;        ///< the log says that a simulator wrote it
+  std::string config;            ///< file name of the INI
+  std::uint64_t seed = 0;
+  std::string sensors_used;  ///< as given with --sensors
+  std::string association;
+  int particles = 0;
+  Stamp first_stamp, last_stamp;  ///< of the log
+  std::uint64_t scenes = 0;
+  std::uint64_t tracks = 0;                     ///< different ids in tracks.csv
+  std::vector<SensorRecord> sensors;            ///< in the order of the INI
+  std::map<std::string, std::uint64_t> events;  ///< EventLog::counts()
+  std::vector<std::string> warnings;            ///< in order of appearance
+};
+
+/// The text of done.json: keys in the order above, the same bytes for the same record.
+std::string toJson(const RunRecord& record);
+/// Throws OutputError.
+void writeRunRecord(const std::string& path, const RunRecord& record);
+/// Throws DataError with path and what is missing or wrong (kNoInput when there is no such file).
+RunRecord readRunRecord(const std::string& path);
+
+}  // namespace perception

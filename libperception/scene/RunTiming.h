@@ -1,0 +1,63 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace perception {
+
+/// How long a run took and where: timing.json. Never part of the results, which do not depend on
+/// the clock.
+class RunTiming {
+ public:
+  /// What one stage of the pipeline took, summed over its calls (and over threads, when it ran in
+  /// several).
+  struct Stage {
+    std::string name;
+    std::uint64_t calls = 0;
+    double seconds = 0;  ///< [s] wall
+    double longest = 0;  ///< [s] of one call
+  };
+  /// Measures from its making to its end.
+  class Scope {
+   public:
+    Scope(RunTiming& timing, const char* name) : timing_(timing), name_(name) {}
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    ~Scope() { timing_.add(name_, secondsSince(start_)); }
+
+   private:
+    RunTiming& timing_;
+    const char* name_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  };
+
+  /// Starts the clocks of the whole run.
+  RunTiming();
+  /// `const auto scope = timing.stage("lidar");` Any thread.
+  Scope stage(const char* name) { return Scope(*this, name); }
+  void add(const std::string& name, double seconds);
+
+  double wallSeconds() const { return secondsSince(start_); }
+  double cpuSeconds() const;               ///< [s] of all threads, since the construction
+  static std::uint64_t peakMemoryBytes();  ///< largest resident size of the process so far
+  std::vector<Stage> stages() const;       ///< in order of first use
+
+  /// The text of timing.json; `log_seconds` of recording were processed with `threads`.
+  std::string toJson(double log_seconds, int threads) const;
+  /// Throws OutputError.
+  void write(const std::string& path, double log_seconds, int threads) const;
+
+ private:
+  static double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  std::chrono::steady_clock::time_point start_;
+  double cpu_start_;
+  mutable std::mutex mutex_;
+  std::vector<Stage> stages_;
+};
+
+}  // namespace perception
