@@ -1,0 +1,167 @@
+#!/usr/bin/env bash
+# Everything from a bare Debian 12 on: packages, build, a first result, all tests.
+#   ./setup.sh build   installs what is needed and builds the programs into build/bin
+#   ./setup.sh demo    the same, then tracks, evaluates and draws the simulated log rawlogs/demo.rawlog
+#   ./setup.sh test    the same with the tests, and runs them: all of them, and the core ones once more with sanitizers
+# As root or with sudo that asks nothing; a second run installs nothing. JOBS=N sets the number of compilers at once.
+set -euo pipefail
+cd "$(dirname "$(readlink -f "$0")")"
+
+readonly usage="usage: ./setup.sh build | demo | test"
+readonly exit_warnings=3 exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
+
+packages=(
+  # to build
+  g++ cmake make
+  libmrpt-obs-dev        # observations, rawlogs
+  libmrpt-maps-dev       # point clouds, occupancy grids
+  libmrpt-bayes-dev      # the particle-filter framework
+  libmrpt-random-dev     # its resampling draws from MRPT's generator
+  libmrpt-io-dev         # (compressed) files
+  libmrpt-opengl-dev     # pictures without a display
+  libmrpt-img-dev        # images of observations
+  libmrpt-config-dev     # the options of MRPT's particle filter
+  libmrpt-system-dev     # time stamps, file names
+  libeigen3-dev          # linear algebra
+  libfmt-dev             # numbers as text, whatever the locale
+  nlohmann-json3-dev     # events, run records, reports
+  libcli11-dev           # command lines
+  librandom123-dev       # random numbers by counter
+  libtbb-dev             # threads
+  zlib1g-dev             # rawlogs are gzip files; check sums
+  liboctomap-dev         # safety grid
+  libembree-dev          # ray casting of the simulator
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG
+  # to run
+  libgl1-mesa-dri        # draws without a graphics card
+  gnuplot-nox            # plots of the evaluation
+)
+test_packages=(
+  libgtest-dev           # tests
+  mrpt-apps              # rawlog-edit: stock MRPT must read our logs
+  locales                # definition of a locale with decimal comma: it must not change a byte
+)
+
+say() { printf '\n== %s\n' "$*"; }
+die() { printf 'setup.sh: error: %s\n' "$2" >&2; exit "$1"; }
+
+# Memory decides, too: MRPT's and Eigen's templates take up to 2 GB a compiler.
+jobs() {
+  local cores memory_gb
+  cores=$(nproc)
+  memory_gb=$(awk '/^MemTotal/ {print int($2 / 2^20 + 0.5)}' /proc/meminfo)
+  local by_memory=$(( memory_gb / 2 > 1 ? memory_gb / 2 : 1 ))
+  echo "${JOBS:-$(( cores < by_memory ? cores : by_memory ))}"
+}
+
+installPackages() {
+  local missing=() name
+  for name in "$@"; do
+    [[ $(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) == installed ]] || missing+=("$name")
+  done
+  (( ${#missing[@]} )) || return 0
+  say "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600 -o Acquire::Retries=3)
+  if (( EUID != 0 )); then
+    sudo -n true 2>/dev/null ||
+      die $exit_unavailable "packages are missing and sudo would ask. As root: apt-get install --no-install-recommends ${missing[*]}"
+    apt=(sudo -n "${apt[@]}")
+  fi
+  "${apt[@]}" update
+  "${apt[@]}" install --no-install-recommends "${missing[@]}"
+}
+
+# build PRESET TESTS(ON|OFF) [cmake --build arguments]
+build() {
+  local preset=$1 tests=$2
+  shift 2
+  if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
+  say "Building ($preset, $(jobs) compilers at once)"
+  cmake --preset "$preset" -DPERCEPTION_TESTS="$tests" >"$scratch" || { cat "$scratch" >&2; exit 1; }
+  cmake --build --preset "$preset" -j "$(jobs)" "$@"
+}
+
+# run PROGRAM ARGUMENTS...: shown, and a finish with data warnings is a finish
+run() {
+  local program=$1 code=0
+  shift
+  printf '\n$ %s %s\n' "$program" "$*"
+  "build/bin/$program" "$@" || code=$?
+  (( code == 0 || code == exit_warnings )) || exit "$code"
+}
+
+# number FILE KEY: the first number behind "KEY" in a JSON file
+number() { sed -n 's/.*"'"$2"'": *\(-\{0,1\}[0-9][0-9.e+-]*\).*/\1/p' "$1" | head -n 1; }
+
+demo() {
+  installPackages "${packages[@]}"
+  build release OFF
+  local dir=out/demo log=rawlogs/demo.rawlog truth=rawlogs/demo.truth.csv
+  say "Tracking the simulated log $log"
+  run perception-track -c ini/demo.ini -i "$log" -o "$dir"
+  run perception-evaluate -r "$dir" -t "$truth" -o "$dir/evaluation"
+  run perception-snapshot -r "$dir" -i "$log" -t "$truth" --time 8 --view both -o "$dir/scene.png"
+  run perception-snapshot -r "$dir" -i "$log" -t "$truth" --contact 9 --view top -o "$dir/contact.png"
+  demoSummary "$dir"
+}
+
+demoSummary() {
+  local dir=$1 report=$1/evaluation/evaluation.json
+  say "Result (simulated log)"
+  printf '%-22s %s\n' \
+    "objects tracked" "$(number "$dir/done.json" tracks)" \
+    "tracked fraction" "$(number "$report" tracked)" \
+    "correct class" "$(number "$report" correct_class)" \
+    "id switches" "$(number "$report" id_switches)" \
+    "real-time factor" "$(number "$dir/timing.json" real_time_factor)"
+  printf '\npictures: %s\n          %s\n' "$dir/scene.png" "$dir/contact.png"
+}
+
+# A locale with decimal comma for the tests, in the build folder and not in the system.
+makeCommaLocale() {
+  export LOCPATH=$PWD/build/locale
+  mkdir -p "$LOCPATH"
+  [[ -d $LOCPATH/de_DE.UTF-8 ]] || localedef -i de_DE -f UTF-8 "$LOCPATH/de_DE.UTF-8" || true
+}
+
+# runTests PRESET [ctest arguments]: remembers the closing lines and skipped tests; false when a test failed
+runTests() {
+  local preset=$1 folder=$2 code=0
+  shift 2
+  say "Testing ($preset)"
+  ctest --preset "$preset" -j "$(jobs)" "$@" | tee "$scratch" || code=$?
+  closing+="$preset: $(grep -E 'tests? (passed|failed)' "$scratch" || true)"$'\n'
+  closing+="$(grep -E '^Total Test time' "$scratch" || true)"$'\n'
+  # GoogleTest says "file:line: Skipped" and the reason in the next line.
+  skipped+=$(grep -hA1 ': Skipped$' "$folder/Testing/Temporary/LastTest.log" | grep -v '^--$' |
+    sed "s|^$PWD/||" | paste -d ' ' - - | sed "s/^/  /" || true)$'\n'
+  return "$code"
+}
+
+tests() {
+  installPackages "${packages[@]}" "${test_packages[@]}"
+  makeCommaLocale
+  closing="" skipped=""
+  local failed=0
+  build release ON
+  runTests release build || failed=1
+  local checked=(core measurement filter sensors)
+  build asan ON --target "${checked[@]/%/_tests}"
+  runTests asan build-asan -R "^($(IFS='|'; echo "${checked[*]}"))\$" || failed=1
+  say "Skipped tests and why"
+  printf '%s' "$skipped" | sort -u | sed '/^ *$/d'
+  say "Closing lines"
+  printf '%s' "$closing"
+  return "$failed"
+}
+
+[[ $# == 1 ]] || { echo "$usage" >&2; exit $exit_usage; }
+scratch=$(mktemp)
+readonly scratch
+trap 'rm -f "$scratch"' EXIT
+case $1 in
+  build) installPackages "${packages[@]}"; build release OFF ;;
+  demo) demo ;;
+  test) tests ;;
+  *) echo "$usage" >&2; exit $exit_usage ;;
+esac
