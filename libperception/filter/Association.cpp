@@ -8,14 +8,16 @@
 
 namespace perception {
 
-AssociationIndex::AssociationIndex(const std::vector<Track>& predicted, const LikelihoodTable& table)
+AssociationIndex::AssociationIndex(const std::vector<Track>& predicted,
+                                   const LikelihoodTable& table)
     : by_measurement_(table.news.size()) {
   log_miss_.reserve(predicted.size());
   for (std::size_t i = 0; i < predicted.size(); ++i) {
     const double r = predicted[i].existence;
     log_miss_.push_back(std::log1p(-r * table.tracks[i].detection));
     for (const auto& pair : table.tracks[i].pairs) {
-      by_measurement_[pair.measurement].push_back({i, std::log(r) + pair.log_likelihood - log_miss_.back()});
+      by_measurement_[pair.measurement].push_back(
+          {i, std::log(r) + pair.log_likelihood - log_miss_.back()});
     }
   }
   for (const auto& n : table.news) log_new_.push_back(n.log_new);
@@ -25,7 +27,8 @@ Association associate(const std::vector<std::size_t>& tracks, const AssociationI
                       const std::vector<std::size_t>& order, Rng rng) {
   Association result;
   result.cause.assign(index.measurements(), Association::kNew);
-  std::vector<int> place(index.tracks(), -1);  // of a distinct track in this hypothesis; -1: absent or used
+  std::vector<int> place(index.tracks(),
+                         -1);  // of a distinct track in this hypothesis; -1: absent or used
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     place[tracks[i]] = static_cast<int>(i);
     result.log_weight += index.logMiss(tracks[i]);  // all provisionally missed
@@ -41,7 +44,8 @@ Association associate(const std::vector<std::size_t>& tracks, const AssociationI
       owner.push_back(c.track);
     }
     const double total = logSumExp(log_odds);
-    if (total == kMinusInfinity) continue;  // impossible under every cause: clutter of an unmodelled kind, no evidence
+    if (total == kMinusInfinity)
+      continue;  // impossible under every cause: clutter of an unmodelled kind, no evidence
     result.log_weight += total;
     double u = rng.uniform();
     std::size_t chosen = 0;
@@ -58,7 +62,8 @@ Association associate(const std::vector<std::size_t>& tracks, const AssociationI
 std::vector<std::size_t> randomOrder(std::size_t n, Rng rng) {
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[rng.below(static_cast<std::uint32_t>(i))]);
+  for (std::size_t i = n; i > 1; --i)
+    std::swap(order[i - 1], order[rng.below(static_cast<std::uint32_t>(i))]);
   return order;
 }
 

@@ -16,12 +16,13 @@ enum Purpose : std::uint32_t { kResampling = 0x5703 };
 }  // namespace
 
 void ParticleFilterParams::visit(ParamVisitor& v) {
-  v.choice("PF_algorithm", pf_algorithm,
-           {"pfStandardProposal", "pfAuxiliaryPFStandard", "pfOptimalProposal", "pfAuxiliaryPFOptimal"},
-           "MRPT's name; pfOptimalProposal is the one that this filter implements");
+  v.choice(
+      "PF_algorithm", pf_algorithm,
+      {"pfStandardProposal", "pfAuxiliaryPFStandard", "pfOptimalProposal", "pfAuxiliaryPFOptimal"},
+      "MRPT's name; pfOptimalProposal is the one that this filter implements");
   v.require(pf_algorithm == 2, "PF_algorithm: this filter implements pfOptimalProposal only");
-  v.choice("resamplingMethod", resampling_method, {"prMultinomial", "prResidual", "prStratified", "prSystematic"},
-           "MRPT's name");
+  v.choice("resamplingMethod", resampling_method,
+           {"prMultinomial", "prResidual", "prStratified", "prSystematic"}, "MRPT's name");
   v.real("BETA", beta, {0, 1}, "", "resample when the effective share of particles falls below it");
   v.integer("sampleSize", sample_size, {1, 65536}, "number of particles");
 }
@@ -49,7 +50,8 @@ CRbpfTracker::CRbpfTracker(FilterModel model, const Options& options, std::uint6
 
 bool CRbpfTracker::process(const MeasurementScan& scan) {
   if (scans_ > 0 && scan.state.stamp < stamp_) return false;
-  // MRPT resamples with this thread's generator; assignment also clears what randomize() would leave behind.
+  // MRPT resamples with this thread's generator; assignment also clears what randomize() would
+  // leave behind.
   Rng seeds({seed_, scans_, 0, kResampling});
   mrpt::random::getRandomGenerator() = mrpt::random::CRandomGenerator(seeds());
   scan_ = &scan;
@@ -64,8 +66,10 @@ bool CRbpfTracker::process(const MeasurementScan& scan) {
 }
 
 void CRbpfTracker::prediction_and_update_pfOptimalProposal(const mrpt::obs::CActionCollection*,
-                                                           const mrpt::obs::CSensoryFrame*, const Options&) {
-  if (!scan_) throw Error(ExitCode::kInternal, "CRbpfTracker: executed without a scan; use process()");
+                                                           const mrpt::obs::CSensoryFrame*,
+                                                           const Options&) {
+  if (!scan_)
+    throw Error(ExitCode::kInternal, "CRbpfTracker: executed without a scan; use process()");
   std::vector<Hypothesis> before;
   before.reserve(m_particles.size());
   for (auto& p : m_particles) before.push_back(std::move(p.d));
@@ -76,7 +80,8 @@ void CRbpfTracker::prediction_and_update_pfOptimalProposal(const mrpt::obs::CAct
     auto& p = m_particles[i];
     p.d = std::move(result.hypotheses[i]);
     p.log_w += result.log_weights[i];
-    if (!std::isfinite(p.log_w)) p.log_w = -1e300;  // MRPT turns a NaN into silence (no resampling, no error)
+    if (!std::isfinite(p.log_w))
+      p.log_w = -1e300;  // MRPT turns a NaN into silence (no resampling, no error)
     after.push_back(&p.d);
     log_weights.push_back(p.log_w);
   }

@@ -9,10 +9,11 @@ namespace perception {
 
 /// [particle_filter]: MRPT's TParticleFilterOptions by their own names.
 struct ParticleFilterParams {
-  int pf_algorithm = 2;                  ///< index into names(): only pfOptimalProposal is implemented
-  int resampling_method = 3;             ///< MRPT's order: prMultinomial, prResidual, prStratified, prSystematic
-  double beta = 0.5;                     ///< resample when the effective share of particles falls below it (SPEC 5.10)
-  int sample_size = 8;                   ///< number of particles; 8 as in the paper
+  int pf_algorithm = 2;  ///< index into names(): only pfOptimalProposal is implemented
+  int resampling_method =
+      3;              ///< MRPT's order: prMultinomial, prResidual, prStratified, prSystematic
+  double beta = 0.5;  ///< resample when the effective share of particles falls below it (SPEC 5.10)
+  int sample_size = 8;  ///< number of particles; 8 as in the paper
 
   void visit(ParamVisitor& v);
   mrpt::bayes::CParticleFilter::TParticleFilterOptions toMrpt() const;
@@ -20,24 +21,27 @@ struct ParticleFilterParams {
 
 /// What one scan did to the particle set.
 struct ScanStats : StepStats {
-  double ess = 1;                        ///< effective share of particles before resampling, in (0, 1]
+  double ess = 1;  ///< effective share of particles before resampling, in (0, 1]
   bool resampled = false;
-  double map_probability = 0;            ///< of the hypothesis that is put out
+  double map_probability = 0;  ///< of the hypothesis that is put out
 };
 
-/// The joint association, tracking and classification filter as an MRPT particle-filter algorithm: particles are
-/// hypotheses, the proposal is the optimal one, executed and resampled by mrpt::bayes::CParticleFilter.
+/// The joint association, tracking and classification filter as an MRPT particle-filter algorithm:
+/// particles are hypotheses, the proposal is the optimal one, executed and resampled by
+/// mrpt::bayes::CParticleFilter.
 class CRbpfTracker final
-    : public mrpt::bayes::CParticleFilterData<Hypothesis, mrpt::bayes::particle_storage_mode::VALUE>,
+    : public mrpt::bayes::CParticleFilterData<Hypothesis,
+                                              mrpt::bayes::particle_storage_mode::VALUE>,
       public mrpt::bayes::CParticleFilterDataImpl<
-          CRbpfTracker,
-          mrpt::bayes::CParticleFilterData<Hypothesis, mrpt::bayes::particle_storage_mode::VALUE>::CParticleList> {
+          CRbpfTracker, mrpt::bayes::CParticleFilterData<
+                            Hypothesis, mrpt::bayes::particle_storage_mode::VALUE>::CParticleList> {
  public:
   using Options = mrpt::bayes::CParticleFilter::TParticleFilterOptions;
 
   CRbpfTracker(FilterModel model, const Options& options, std::uint64_t seed);
 
-  /// One scan through CParticleFilter::executeOn(). Scans must come in order of time; an older one is refused (false).
+  /// One scan through CParticleFilter::executeOn(). Scans must come in order of time; an older one
+  /// is refused (false).
   bool process(const MeasurementScan& scan);
 
   const FilterModel& model() const { return model_; }

@@ -3,22 +3,29 @@
 namespace perception {
 
 void FilterParams::visit(ParamVisitor& v) {
-  v.real("gate_probability", gate_probability, {0.5, 1 - 1e-12}, "", "share of true track-measurement pairs in the gate");
+  v.real("gate_probability", gate_probability, {0.5, 1 - 1e-12}, "",
+         "share of true track-measurement pairs in the gate");
   v.real("survival_in_view", survival_in_view, {0.1, 1e6}, "s", "mean life of an object in view");
-  v.real("survival_out_of_view", survival_out_of_view, {0.1, 1e6}, "s", "mean life of an object out of every view");
+  v.real("survival_out_of_view", survival_out_of_view, {0.1, 1e6}, "s",
+         "mean life of an object out of every view");
   v.real("existence_min", existence_min, {1e-9, 0.5}, "", "tracks below are dropped");
   v.real("existence_max", existence_max, {0.5, 1}, "", "existence after a hit");
   v.real("class_epsilon", class_epsilon, {0, 0.1}, "", "floor of a class probability");
   v.real("class_forgetting", class_forgetting, {0.1, 1e9}, "s", "time constant of the class chain");
-  v.real("kinematic_exponent", kinematic_exponent, {0, 1}, "", "tempers innovations in the class update");
+  v.real("kinematic_exponent", kinematic_exponent, {0, 1}, "",
+         "tempers innovations in the class update");
   v.real("start_speed_sigma", start_speed_sigma, {0.1, 50}, "m/s", "speed of newborn objects");
-  v.real("orient_min_speed", orient_min_speed, {0.1, 20}, "m/s", "motion from which a heading is taken");
+  v.real("orient_min_speed", orient_min_speed, {0.1, 20}, "m/s",
+         "motion from which a heading is taken");
   v.real("orient_max_sigma", orient_max_sigma, {0.05, 1}, "rad", "... when it is this certain");
-  v.real("shape_yaw_sigma", shape_yaw_sigma, {0.01, 1}, "rad", "added to what a box says of the heading");
+  v.real("shape_yaw_sigma", shape_yaw_sigma, {0.01, 1}, "rad",
+         "added to what a box says of the heading");
   v.real("side_sigma", side_sigma, {0.01, 5}, "m", "a seen side as a measurement of the extent");
   v.real("base_walk", base_walk, {0, 10}, "m^2/s", "random walk of the base height");
-  v.real("hidden_tolerance", hidden_tolerance, {0, 20}, "m", "how far behind the horizon a track still counts as visible");
-  v.real("max_distance", max_distance, {1, 1e4}, "m", "tracks farther from the vehicle are dropped");
+  v.real("hidden_tolerance", hidden_tolerance, {0, 20}, "m",
+         "how far behind the horizon a track still counts as visible");
+  v.real("max_distance", max_distance, {1, 1e4}, "m",
+         "tracks farther from the vehicle are dropped");
 }
 
 }  // namespace perception

@@ -3,24 +3,28 @@
 
 namespace perception {
 
-/// [filter]: everything of the recursion that is not a property of a class or a sensor. Sources: SPEC 3-5.
+/// [filter]: everything of the recursion that is not a property of a class or a sensor. Sources:
+/// SPEC 3-5.
 struct FilterParams {
-  double gate_probability = 0.999;       ///< share of true pairs that pass the gate (SPEC 5.2)
-  double survival_in_view = 60;          ///< [s] mean life of an object in some sensor's view (SPEC 5.1)
-  double survival_out_of_view = 6;       ///< [s] the same when no sensor could have seen it for a second
-  double existence_min = 0.002;          ///< below it a track is dropped; must be << the existence of a newborn
-  double existence_max = 0.999;          ///< existence after a hit (SPEC 5.5)
-  double class_epsilon = 1e-3;           ///< floor of every class probability (SPEC 5.6)
-  double class_forgetting = 1000;        ///< [s] time constant of the class chain (SPEC 5.7)
-  double kinematic_exponent = 0.5;       ///< tempers the innovations' evidence in the class update only (SPEC 5.6)
-  double start_speed_sigma = 5;          ///< [m/s] of newborn wheeled objects (SPEC 3.4); at most the class's max_speed
-  double orient_min_speed = 1;           ///< [m/s] from which motion gives a wheeled object its heading ...
-  double orient_max_sigma = 0.5;         ///< [rad] ... when the heading would be this certain
-  double shape_yaw_sigma = 0.15;         ///< [rad] added to what a box says of the heading
-  double side_sigma = 0.3;               ///< [m] of a seen side as a measurement of the extent (SPEC 2)
-  double base_walk = 0.05;               ///< [m^2/s] random walk of the base height (SPEC 2)
-  double hidden_tolerance = 1.0;         ///< [m] a track this much behind the horizon is still visible
-  double max_distance = 150;             ///< [m] from the vehicle; tracks beyond are dropped (SPEC 5.9)
+  double gate_probability = 0.999;  ///< share of true pairs that pass the gate (SPEC 5.2)
+  double survival_in_view = 60;     ///< [s] mean life of an object in some sensor's view (SPEC 5.1)
+  double survival_out_of_view = 6;  ///< [s] the same when no sensor could have seen it for a second
+  double existence_min =
+      0.002;  ///< below it a track is dropped; must be << the existence of a newborn
+  double existence_max = 0.999;    ///< existence after a hit (SPEC 5.5)
+  double class_epsilon = 1e-3;     ///< floor of every class probability (SPEC 5.6)
+  double class_forgetting = 1000;  ///< [s] time constant of the class chain (SPEC 5.7)
+  double kinematic_exponent =
+      0.5;  ///< tempers the innovations' evidence in the class update only (SPEC 5.6)
+  double start_speed_sigma =
+      5;  ///< [m/s] of newborn wheeled objects (SPEC 3.4); at most the class's max_speed
+  double orient_min_speed = 1;  ///< [m/s] from which motion gives a wheeled object its heading ...
+  double orient_max_sigma = 0.5;  ///< [rad] ... when the heading would be this certain
+  double shape_yaw_sigma = 0.15;  ///< [rad] added to what a box says of the heading
+  double side_sigma = 0.3;        ///< [m] of a seen side as a measurement of the extent (SPEC 2)
+  double base_walk = 0.05;        ///< [m^2/s] random walk of the base height (SPEC 2)
+  double hidden_tolerance = 1.0;  ///< [m] a track this much behind the horizon is still visible
+  double max_distance = 150;      ///< [m] from the vehicle; tracks beyond are dropped (SPEC 5.9)
 
   void visit(ParamVisitor& v);
 };

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <tbb/parallel_for.h>
+#include <Eigen/Cholesky>
 
 #include "libperception/core/Chi2.h"
 #include "libperception/core/LogMath.h"
@@ -14,13 +14,15 @@ namespace perception {
 namespace {
 
 constexpr double kMaxDetection = 0.999;  // P_D = 1 would make one miss a proof
-/// Before any matrix: pairs farther apart than this many standard deviations (plus 2 m of size) cannot pass the gate.
+/// Before any matrix: pairs farther apart than this many standard deviations (plus 2 m of size)
+/// cannot pass the gate.
 constexpr double kCoarseGate = 6;
 constexpr double kCoarseMargin = 2;  // [m]
 
 struct Gates {
   explicit Gates(double probability) {
-    for (int n = 1; n <= kMaxAxes; ++n) quantile[static_cast<std::size_t>(n)] = chi2Quantile(probability, n);
+    for (int n = 1; n <= kMaxAxes; ++n)
+      quantile[static_cast<std::size_t>(n)] = chi2Quantile(probability, n);
   }
   std::array<double, kMaxAxes + 1> quantile{};
 };
@@ -46,12 +48,14 @@ double visibilityOf(const Track& track, const MeasurementScan& scan, const Filte
   const double radius = 0.25 * (track.bank[c].extent.length + track.bank[c].extent.width);
   if (range <= radius) return 1;
   const double bearing = std::atan2(d.y(), d.x()), half = std::asin(radius / range);
-  return scan.horizon->visibility(bearing - half, bearing + half, range - radius, model.params.hidden_tolerance);
+  return scan.horizon->visibility(bearing - half, bearing + half, range - radius,
+                                  model.params.hidden_tolerance);
 }
 
-PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row, const std::vector<Kinematics>& kinematics,
-                              std::size_t k, const MeasurementScan& scan, const FilterModel& model, double& min_excess,
-                              const Gates& gates) {
+PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
+                              const std::vector<Kinematics>& kinematics, std::size_t k,
+                              const MeasurementScan& scan, const FilterModel& model,
+                              double& min_excess, const Gates& gates) {
   const Measurement& m = scan.measurements[k];
   const std::size_t classes = track.bank.size();
   PairLikelihood pair;
@@ -65,7 +69,8 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row, c
   for (std::size_t j = 0; j < classes; ++j) {
     const double detection = row.detection_by_class[j];
     if (!row.predictions[j].defined || detection <= 0) continue;
-    const auto innovation = innovationOf(track.bank[j], kinematics[j], row.predictions[j], m, *scan.model);
+    const auto innovation =
+        innovationOf(track.bank[j], kinematics[j], row.predictions[j], m, *scan.model);
     const Eigen::LLT<AxisMatrix> llt(innovation.S);
     if (llt.info() != Eigen::Success) continue;
     const auto n = innovation.y.size();
@@ -77,7 +82,8 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row, c
     const double rest = std::log(detection) + m.log_score_ratio;
     pair.nis[j] = nis;
     pair.log_by_class[j] = log_density + label + rest;
-    pair.log_class_evidence[j] = model.params.kinematic_exponent * log_density + label_exponent * label + rest;
+    pair.log_class_evidence[j] =
+        model.params.kinematic_exponent * log_density + label_exponent * label + rest;
     mixture[j] = track.log_class[j] + pair.log_by_class[j];
     min_excess = std::min(min_excess, nis - gates.quantile[static_cast<std::size_t>(n)]);
   }
@@ -85,8 +91,8 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row, c
   return pair;
 }
 
-TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& scan, const FilterModel& model,
-                                  const Gates& gates) {
+TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& scan,
+                                  const FilterModel& model, const Gates& gates) {
   const std::size_t classes = track.bank.size();
   TrackLikelihoods row;
   std::vector<Kinematics> kinematics(classes);
@@ -96,13 +102,15 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
     extents[j] = track.bank[j].extent;
   }
   row.predictions.resize(classes);
-  scan.model->predict(kinematics.data(), extents.data(), classes, scan.state, row.predictions.data());
+  scan.model->predict(kinematics.data(), extents.data(), classes, scan.state,
+                      row.predictions.data());
   const double visibility = visibilityOf(track, scan, model);
   row.detection_by_class.resize(classes);
   for (std::size_t j = 0; j < classes; ++j) {
     const auto detection = [&](double visible) {
-      return std::min(kMaxDetection, scan.model->detectionProbability(static_cast<ClassId>(j), kinematics[j], extents[j],
-                                                                      scan.state, visible));
+      return std::min(kMaxDetection,
+                      scan.model->detectionProbability(static_cast<ClassId>(j), kinematics[j],
+                                                       extents[j], scan.state, visible));
     };
     row.detection_by_class[j] = detection(visibility);
     row.detection += std::exp(track.log_class[j]) * row.detection_by_class[j];
@@ -117,7 +125,8 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
   return row;
 }
 
-NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan, const FilterModel& model) {
+NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan,
+                            const FilterModel& model) {
   const int classes = model.classes.size();
   NewLikelihood result;
   result.log_class.assign(static_cast<std::size_t>(classes), kMinusInfinity);
@@ -127,7 +136,8 @@ NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan, c
                                                     scan.model->logBirthDensity(m, j, scan.state);
   }
   const double log_birth = logNormalise(result.log_class) + m.log_score_ratio;
-  const double log_clutter = scan.model->logClutterDensity(m, scan.state) + scan.model->logLabelClutter(m.label);
+  const double log_clutter =
+      scan.model->logClutterDensity(m, scan.state) + scan.model->logLabelClutter(m.label);
   result.log_new = logAddExp(log_birth, log_clutter);
   result.existence = result.log_new > kMinusInfinity ? std::exp(log_birth - result.log_new) : 0;
   return result;
@@ -135,8 +145,9 @@ NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan, c
 
 }  // namespace
 
-Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics, const AxisPrediction& prediction,
-                        const Measurement& m, const MeasurementModel& model) {
+Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
+                        const AxisPrediction& prediction, const Measurement& m,
+                        const MeasurementModel& model) {
   Innovation out;
   out.y = residual(model, m, prediction.h);
   const auto n = out.y.size();
@@ -152,7 +163,10 @@ Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
     const auto a = axis[static_cast<std::size_t>(i)];
     out.H.row(i) = prediction.H_q.row(a) * kinematics.J;
     H_extent.row(i) = prediction.H_extent.row(a);
-    for (Eigen::Index k = 0; k < n; ++k) out.R(i, k) = m.R(a, axis[static_cast<std::size_t>(k)]);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto b = axis[static_cast<std::size_t>(k)];
+      out.R(i, k) = m.R(a, b) + (prediction.R_model.size() > 0 ? prediction.R_model(a, b) : 0);
+    }
   }
   const Vector2 extent_variance(filter.extent.var_length, filter.extent.var_width);
   out.R += H_extent * extent_variance.asDiagonal() * H_extent.transpose();

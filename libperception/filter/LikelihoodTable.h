@@ -10,26 +10,27 @@ namespace perception {
 /// One gated pair of track and measurement: its likelihood and what the update will need again.
 struct PairLikelihood {
   std::size_t measurement = 0;
-  double log_likelihood = 0;             ///< lhat: log sum_j p(class j) p(z, label, score, detected | class j)
-  std::vector<double> log_by_class;      ///< l_j, the summands without the class probability
-  std::vector<double> log_class_evidence;  ///< l_j with label and innovations tempered: for the class update only
-  std::vector<double> nis;               ///< normalised innovation squared of each class filter
+  double log_likelihood = 0;  ///< lhat: log sum_j p(class j) p(z, label, score, detected | class j)
+  std::vector<double> log_by_class;  ///< l_j, the summands without the class probability
+  std::vector<double>
+      log_class_evidence;   ///< l_j with label and innovations tempered: for the class update only
+  std::vector<double> nis;  ///< normalised innovation squared of each class filter
 };
 
 /// One predicted track against a scan.
 struct TrackLikelihoods {
-  double detection = 0;                  ///< P_D = sum_j p(class j) P_D(class j)
+  double detection = 0;  ///< P_D = sum_j p(class j) P_D(class j)
   std::vector<double> detection_by_class;
-  bool in_view = false;                  ///< some class could have been detected were it not hidden
+  bool in_view = false;  ///< some class could have been detected were it not hidden
   std::vector<AxisPrediction> predictions;  ///< by class
-  std::vector<PairLikelihood> pairs;     ///< in order of measurement
+  std::vector<PairLikelihood> pairs;        ///< in order of measurement
 };
 
 /// One measurement as the first of a new object or as clutter.
 struct NewLikelihood {
-  double log_new = 0;                    ///< log(birth + clutter), per scan and unit of the axes seen
-  double existence = 0;                  ///< birth / (birth + clutter)
-  std::vector<double> log_class;         ///< class posterior of the newborn
+  double log_new = 0;             ///< log(birth + clutter), per scan and unit of the axes seen
+  double existence = 0;           ///< birth / (birth + clutter)
+  std::vector<double> log_class;  ///< class posterior of the newborn
 };
 
 /// Pass 2: every distinct track against every gated measurement, once (SPEC 5.2, 5.3).
@@ -46,9 +47,10 @@ struct Innovation {
   AxisVector y;
   AxisMatrix S;
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, kMaxAxes, 4> H;
-  AxisMatrix R;                          ///< measurement noise, extent uncertainty included
+  AxisMatrix R;  ///< measurement noise, extent uncertainty included
 };
-Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics, const AxisPrediction& prediction,
-                        const Measurement& m, const MeasurementModel& model);
+Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
+                        const AxisPrediction& prediction, const Measurement& m,
+                        const MeasurementModel& model);
 
 }  // namespace perception

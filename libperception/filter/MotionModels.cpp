@@ -25,7 +25,8 @@ void predictConstantVelocity(const ObjectClass& c, double dt, ClassFilter& f) {
   f.P = F * f.P * F.transpose() + Q;
 }
 
-/// SPEC 3.2: speed v along theta, both random walks; Q to first order, valid for any dt and composing consistently.
+/// SPEC 3.2: speed v along theta, both random walks; Q to first order, valid for any dt and
+/// composing consistently.
 void predictWheeled(const ObjectClass& object_class, double dt, ClassFilter& f) {
   const double c = std::cos(f.x[3]), s = std::sin(f.x[3]), v = f.x[2];
   Matrix4 F = Matrix4::Identity();

@@ -4,17 +4,18 @@
 
 namespace perception {
 
-/// Moves a class filter by dt >= 0 [s]: SPEC 3.1 (constant velocity), 3.2 (wheeled), static. Long steps and uncertain
-/// headings are taken in sub-steps of at most 0.1 s.
+/// Moves a class filter by dt >= 0 [s]: SPEC 3.1 (constant velocity), 3.2 (wheeled), static. Long
+/// steps and uncertain headings are taken in sub-steps of at most 0.1 s.
 void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter& filter);
 
 /// What sensors can see of it: q(state) and its Jacobian.
 Kinematics kinematicsOf(const ObjectClass& object_class, const ClassFilter& filter);
 
-/// Gives an unoriented wheeled filter its heading along its velocity: [x, y, vx, vy] -> [x, y, v, theta], with the
-/// covariance carried by the Jacobian.
+/// Gives an unoriented wheeled filter its heading along its velocity: [x, y, vx, vy] -> [x, y, v,
+/// theta], with the covariance carried by the Jacobian.
 void orientByVelocity(ClassFilter& filter);
-/// The same along a known axis: theta is `yaw` or its opposite, whichever the velocity prefers; v is the velocity along.
+/// The same along a known axis: theta is `yaw` or its opposite, whichever the velocity prefers; v
+/// is the velocity along.
 void orientByAxis(double yaw, double yaw_variance, ClassFilter& filter);
 /// The exact symmetry (v, theta) -> (-v, theta + pi) of an oriented filter (SPEC 7).
 void reverse(ClassFilter& filter);

@@ -6,7 +6,8 @@
 namespace perception {
 
 ClassId Track::likeliestClass() const {
-  return static_cast<ClassId>(std::max_element(log_class.begin(), log_class.end()) - log_class.begin());
+  return static_cast<ClassId>(std::max_element(log_class.begin(), log_class.end()) -
+                              log_class.begin());
 }
 
 std::uint64_t extendHistory(std::uint64_t history, std::uint64_t scan, std::size_t measurement) {
@@ -19,7 +20,8 @@ std::uint64_t extendHistory(std::uint64_t history, std::uint64_t scan, std::size
 
 std::vector<double> classProbabilities(const Track& track) {
   std::vector<double> p(track.log_class.size());
-  std::transform(track.log_class.begin(), track.log_class.end(), p.begin(), [](double lp) { return std::exp(lp); });
+  std::transform(track.log_class.begin(), track.log_class.end(), p.begin(),
+                 [](double lp) { return std::exp(lp); });
   return p;
 }
 

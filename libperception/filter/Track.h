@@ -11,28 +11,29 @@
 
 namespace perception {
 
-/// The Gaussian of one class in a track's bank. The meaning of the state depends on the class's motion:
-/// constant velocity [x, y, vx, vy]; wheeled [x, y, v, theta] once `oriented`, before that as constant velocity;
-/// static [x, y, 0, 0] with zero covariance in the last two. World, SI units.
+/// The Gaussian of one class in a track's bank. The meaning of the state depends on the class's
+/// motion: constant velocity [x, y, vx, vy]; wheeled [x, y, v, theta] once `oriented`, before that
+/// as constant velocity; static [x, y, 0, 0] with zero covariance in the last two. World, SI units.
 struct ClassFilter {
   Vector4 x = Vector4::Zero();
   Matrix4 P = Matrix4::Zero();
   Extent extent;
-  bool oriented = false;             ///< wheeled only: the heading is known
+  bool oriented = false;  ///< wheeled only: the heading is known
 };
 
 /// One object inside a hypothesis. Immutable once made: hypotheses share it.
 struct Track {
-  std::uint64_t id = 0;              ///< of its birth: (scan index << 16) + measurement; shared by all hypotheses
-  std::uint64_t history = 0;         ///< hash of its association history: equal histories, equal tracks
-  Stamp birth, stamp;                ///< of its first measurement; of its state
-  Stamp last_in_view;                ///< last time that a sensor could have seen it
-  double existence = 0;              ///< probability that it is a real object
-  std::vector<ClassFilter> bank;     ///< one filter a class
-  std::vector<double> log_class;     ///< log class probabilities, given existence; sum of exp is 1
-  ScalarEstimate base_z, height;     ///< [m] lowest point, world; lowest to highest point
-  std::array<Stamp, 3> last_hit{};   ///< by modality (modalityIndex); 0 = never
-  std::array<int, 3> hits{};         ///< by modality
+  std::uint64_t id =
+      0;  ///< of its birth: (scan index << 16) + measurement; shared by all hypotheses
+  std::uint64_t history = 0;  ///< hash of its association history: equal histories, equal tracks
+  Stamp birth, stamp;         ///< of its first measurement; of its state
+  Stamp last_in_view;         ///< last time that a sensor could have seen it
+  double existence = 0;       ///< probability that it is a real object
+  std::vector<ClassFilter> bank;    ///< one filter a class
+  std::vector<double> log_class;    ///< log class probabilities, given existence; sum of exp is 1
+  ScalarEstimate base_z, height;    ///< [m] lowest point, world; lowest to highest point
+  std::array<Stamp, 3> last_hit{};  ///< by modality (modalityIndex); 0 = never
+  std::array<int, 3> hits{};        ///< by modality
 
   /// Index of the most probable class.
   ClassId likeliestClass() const;
@@ -45,11 +46,16 @@ struct Hypothesis {
   std::vector<TrackHandle> tracks;
 };
 
-inline std::size_t modalityIndex(Modality m) { return m == Modality::kLidar ? 0 : m == Modality::kCamera ? 1 : 2; }
+inline std::size_t modalityIndex(Modality m) {
+  return m == Modality::kLidar ? 0 : m == Modality::kCamera ? 1 : 2;
+}
 
-/// The history after one more association; `scan` counts scans, `measurement` is its index in that scan.
+/// The history after one more association; `scan` counts scans, `measurement` is its index in that
+/// scan.
 std::uint64_t extendHistory(std::uint64_t history, std::uint64_t scan, std::size_t measurement);
-inline std::uint64_t birthId(std::uint64_t scan, std::size_t measurement) { return (scan << 16) + measurement; }
+inline std::uint64_t birthId(std::uint64_t scan, std::size_t measurement) {
+  return (scan << 16) + measurement;
+}
 
 /// Posterior class probabilities as numbers (exp of log_class).
 std::vector<double> classProbabilities(const Track& track);

@@ -14,14 +14,16 @@
 namespace perception {
 namespace {
 
-/// A class filter this surprised by its own object's measurement (one true pair in 10^5) starts anew from it: an
-/// extended filter that has lost its object would never come back, and its class could never win again.
+/// A class filter this surprised by its own object's measurement (one true pair in 10^5) starts
+/// anew from it: an extended filter that has lost its object would never come back, and its class
+/// could never win again.
 constexpr double kLostProbability = 1 - 1e-5;
 
 double lostNis(Eigen::Index axes) {
   static const auto quantiles = [] {
     std::array<double, kMaxAxes + 1> q{};
-    for (int n = 1; n <= kMaxAxes; ++n) q[static_cast<std::size_t>(n)] = chi2Quantile(kLostProbability, n);
+    for (int n = 1; n <= kMaxAxes; ++n)
+      q[static_cast<std::size_t>(n)] = chi2Quantile(kLostProbability, n);
     return q;
   }();
   return quantiles[static_cast<std::size_t>(axes)];
@@ -48,7 +50,8 @@ double speedSigma(const ObjectClass& c, const FilterModel& model) {
   return std::min(model.params.start_speed_sigma, std::max(0.5 * c.max_speed, 0.1));
 }
 
-/// The class's filter from one measurement. Wheeled objects start without heading unless the box shows it.
+/// The class's filter from one measurement. Wheeled objects start without heading unless the box
+/// shows it.
 ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const FilterModel& model) {
   ClassFilter f;
   f.x.head<2>() = birth.position;
@@ -80,8 +83,9 @@ void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
   if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
 }
 
-/// A wheeled filter takes its heading from what is known by now: the box seen, else its own motion (SPEC 3.4, with a
-/// constant-velocity start in place of the two-point start). An oriented one that clearly drives backwards is reversed.
+/// A wheeled filter takes its heading from what is known by now: the box seen, else its own motion
+/// (SPEC 3.4, with a constant-velocity start in place of the two-point start). An oriented one that
+/// clearly drives backwards is reversed.
 void findHeading(const std::optional<BirthState>& birth, const FilterModel& model, ClassFilter& f) {
   const auto& p = model.params;
   const double box_extra = p.shape_yaw_sigma * p.shape_yaw_sigma;
@@ -109,8 +113,10 @@ void findHeading(const std::optional<BirthState>& birth, const FilterModel& mode
   if (f.x[2] < -p.orient_min_speed && f.x[2] * f.x[2] > 4 * f.P(2, 2)) reverse(f);
 }
 
-/// A filter that lost the object: from the measurement, with the velocity of the class that explains it best.
-ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best, const FilterModel& model) {
+/// A filter that lost the object: from the measurement, with the velocity of the class that
+/// explains it best.
+ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best,
+                          const FilterModel& model) {
   ClassFilter f = startFilter(c, birth, model);
   if (c.motion != Motion::kStatic && !f.oriented) f.x.tail<2>() = best.q.segment<2>(2);
   return f;
@@ -133,8 +139,10 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
   track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
   ++track.hits[modalityIndex(scan.modality)];
 
-  const auto best = static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
-  const Kinematics best_kinematics = kinematicsOf(model.classes[best], predicted.bank[static_cast<std::size_t>(best)]);
+  const auto best =
+      static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
+  const Kinematics best_kinematics =
+      kinematicsOf(model.classes[best], predicted.bank[static_cast<std::size_t>(best)]);
   const auto axes_seen = residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
   for (ClassId j = 0; j < model.classes.size(); ++j) {

@@ -21,7 +21,8 @@ void updateSide(double seen, bool complete, double variance, double& mean, doubl
 }  // namespace
 
 Extent updateExtent(const Extent& extent, const SidesSeen& sides, double yaw, double sigma) {
-  const double angle = std::abs(wrapAxis(sides.yaw - yaw));  // of side a to the length axis, [0, pi/2]
+  const double angle =
+      std::abs(wrapAxis(sides.yaw - yaw));  // of side a to the length axis, [0, pi/2]
   if (angle > radians(30) && angle < radians(60)) return extent;
   const bool a_is_length = angle < radians(45);
   Extent out = extent;

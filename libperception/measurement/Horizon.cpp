@@ -11,7 +11,8 @@ Horizon::Horizon(const Vector2& origin, std::size_t bins)
 
 std::size_t Horizon::binOf(double bearing) const {
   const double turns = bearing / kTwoPi - std::floor(bearing / kTwoPi);
-  return std::min(static_cast<std::size_t>(turns * static_cast<double>(nearest_.size())), nearest_.size() - 1);
+  return std::min(static_cast<std::size_t>(turns * static_cast<double>(nearest_.size())),
+                  nearest_.size() - 1);
 }
 
 void Horizon::add(const Vector2& point) {
@@ -20,11 +21,15 @@ void Horizon::add(const Vector2& point) {
   nearest = std::min(nearest, static_cast<float>(d.norm()));
 }
 
-double Horizon::nearest(double bearing) const { return static_cast<double>(nearest_[binOf(bearing)]); }
+double Horizon::nearest(double bearing) const {
+  return static_cast<double>(nearest_[binOf(bearing)]);
+}
 
-double Horizon::visibility(double bearing_cw, double bearing_ccw, double range, double tolerance) const {
+double Horizon::visibility(double bearing_cw, double bearing_ccw, double range,
+                           double tolerance) const {
   const double step = kTwoPi / static_cast<double>(nearest_.size());
-  const double span = bearing_ccw - bearing_cw - kTwoPi * std::floor((bearing_ccw - bearing_cw) / kTwoPi);
+  const double span =
+      bearing_ccw - bearing_cw - kTwoPi * std::floor((bearing_ccw - bearing_cw) / kTwoPi);
   const int directions = 1 + static_cast<int>(span / step);
   int open = 0;
   for (int i = 0; i < directions; ++i) {

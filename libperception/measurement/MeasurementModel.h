@@ -15,48 +15,59 @@ enum class AxisKind {
   kAngle  ///< [rad], wrapped to (-pi, pi]
 };
 
-/// What one object would look like: h and its derivatives. Not `defined`: the model cannot say (object at the sensor).
+/// What one object would look like: h and its derivatives. Not `defined`: the model cannot say
+/// (object at the sensor).
 struct AxisPrediction {
   AxisVector h;
-  Eigen::Matrix<double, Eigen::Dynamic, 5, Eigen::ColMajor, kMaxAxes, 5> H_q;       ///< dh/d(x, y, vx, vy, yaw)
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2> H_extent;  ///< dh/d(length, width)
+  Eigen::Matrix<double, Eigen::Dynamic, 5, Eigen::ColMajor, kMaxAxes, 5>
+      H_q;  ///< dh/d(x, y, vx, vy, yaw)
+  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2>
+      H_extent;  ///< dh/d(length, width)
+  AxisMatrix
+      R_model;  ///< what the model itself is unsure of for this class, added to R; empty: nothing
   bool defined = false;
 };
 
 /// Where a newborn object of one class stands, from one measurement.
 struct BirthState {
-  Vector2 position = Vector2::Zero();    ///< [m] centre, world
+  Vector2 position = Vector2::Zero();        ///< [m] centre, world
   Matrix2 covariance = Matrix2::Identity();  ///< [m^2]
-  std::optional<ScalarEstimate> yaw;     ///< [rad, rad^2] world; its direction or its opposite
-  std::optional<ScalarEstimate> speed;   ///< [m/s] along yaw
+  std::optional<ScalarEstimate> yaw;         ///< [rad, rad^2] world; its direction or its opposite
+  std::optional<ScalarEstimate> speed;       ///< [m/s] along yaw
   Extent extent;
 };
 
-/// How one kind of sensor sees one kind of object. Batched, so that no virtual call stands in the inner loop. Labels,
-/// detection and clutter are per class and per scan as in [sensor.LABEL]; all densities are per unit of the axes seen.
+/// How one kind of sensor sees one kind of object. Batched, so that no virtual call stands in the
+/// inner loop. Labels, detection and clutter are per class and per scan as in [sensor.LABEL]; all
+/// densities are per unit of the axes seen.
 class MeasurementModel {
  public:
   virtual ~MeasurementModel() = default;
 
   virtual const std::vector<AxisKind>& axes() const = 0;
-  /// h, dh/dq, dh/dextent of `count` objects into out[0..count).
-  virtual void predict(const Kinematics* objects, const Extent* extents, std::size_t count, const SensorState& sensor,
-                       AxisPrediction* out) const = 0;
-  /// P(detected | class, state), in [0, 1]: 0 outside the field of view; `visibility` in [0, 1] is the share not hidden.
+  /// h, dh/dq, dh/dextent into out[0..count) of `count` objects, object i taken as one of class i %
+  /// classes: batches hold whole banks.
+  virtual void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
+                       const SensorState& sensor, AxisPrediction* out) const = 0;
+  /// P(detected | class, state), in [0, 1]: 0 outside the field of view; `visibility` in [0, 1] is
+  /// the share not hidden.
   virtual double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                                       const SensorState& sensor, double visibility) const = 0;
   /// log P(label | class, detected).
   virtual double logLabelLikelihood(int label, ClassId c) const = 0;
-  /// Exponent in (0, 1] of the label in the class update: labels of one object are not independent (SPEC 5.6).
+  /// Exponent in (0, 1] of the label in the class update: labels of one object are not independent
+  /// (SPEC 5.6).
   virtual double labelExponent() const { return 1; }
   /// log P(label | clutter).
   virtual double logLabelClutter(int label) const = 0;
   /// Log of the expected number of false measurements per scan and unit of the axes seen at z.
   virtual double logClutterDensity(const Measurement& m, const SensorState& sensor) const = 0;
   /// The same for first measurements of newborn objects of class c (the class prior not included).
-  virtual double logBirthDensity(const Measurement& m, ClassId c, const SensorState& sensor) const = 0;
+  virtual double logBirthDensity(const Measurement& m, ClassId c,
+                                 const SensorState& sensor) const = 0;
   /// The newborn object of class c; empty when this measurement cannot start one.
-  virtual std::optional<BirthState> birth(const Measurement& m, ClassId c, const SensorState& sensor) const = 0;
+  virtual std::optional<BirthState> birth(const Measurement& m, ClassId c,
+                                          const SensorState& sensor) const = 0;
 };
 
 /// z - h of the axes seen, angles wrapped, packed in axis order.

@@ -1,0 +1,63 @@
+#include "libperception/measurement/PositionModel.h"
+
+#include <cmath>
+
+namespace perception {
+
+const std::vector<AxisKind>& PositionModel::axes() const {
+  static const std::vector<AxisKind> kinds{AxisKind::kLinear, AxisKind::kLinear};
+  return kinds;
+}
+
+void PositionModel::predict(const Kinematics* objects, const Extent*, std::size_t count,
+                            const SensorState&, AxisPrediction* out) const {
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i].h = objects[i].q.head<2>();
+    out[i].H_q.setZero(2, 5);
+    out[i].H_q(0, 0) = out[i].H_q(1, 1) = 1;
+    out[i].H_extent.setZero(2, 2);
+    out[i].R_model = params_.classes[i % params_.classes.size()].noise;
+    out[i].defined = true;
+  }
+}
+
+bool PositionModel::inView(const Vector2& position, const SensorState& sensor) const {
+  const Vector2 d = position - sensor.T_world_sensor.translation().head<2>();
+  if (d.norm() > params_.range) return false;
+  return params_.fov >= kTwoPi ||
+         std::abs(wrapAngle(std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor))) <=
+             0.5 * params_.fov;
+}
+
+double PositionModel::detectionProbability(ClassId c, const Kinematics& object, const Extent&,
+                                           const SensorState& sensor, double visibility) const {
+  if (!inView(object.q.head<2>(), sensor)) return 0;
+  return params_.classes[static_cast<std::size_t>(c)].detection * visibility;
+}
+
+double PositionModel::logLabelLikelihood(int label, ClassId c) const {
+  return std::log(
+      params_.classes[static_cast<std::size_t>(c)].labels[static_cast<std::size_t>(label)]);
+}
+
+double PositionModel::logLabelClutter(int label) const {
+  return std::log(params_.clutter_labels[static_cast<std::size_t>(label)]);
+}
+
+double PositionModel::logClutterDensity(const Measurement&, const SensorState&) const {
+  return std::log(params_.clutter_per_scan / area());
+}
+
+double PositionModel::logBirthDensity(const Measurement&, ClassId, const SensorState&) const {
+  return std::log(params_.births_per_scan / area());
+}
+
+std::optional<BirthState> PositionModel::birth(const Measurement& m, ClassId c,
+                                               const SensorState&) const {
+  BirthState birth;
+  birth.position = m.z;
+  birth.covariance = m.R + params_.classes[static_cast<std::size_t>(c)].noise;
+  return birth;
+}
+
+}  // namespace perception

@@ -1,0 +1,51 @@
+#pragma once
+#include "libperception/measurement/MeasurementModel.h"
+
+namespace perception {
+
+/// A sensor that sees an object's centre: z = (x, y) [m, world]. GPS receivers on the object, box
+/// centres, and the position-level scenes that the filter's association is studied on.
+class PositionModel : public MeasurementModel {
+ public:
+  struct ClassRow {
+    double detection = 0.9;      ///< P(detected | in view)
+    std::vector<double> labels;  ///< P(label | class, detected); sums to 1
+    Matrix2 noise =
+        Matrix2::Identity();  ///< [m^2] covariance of z about the centre; Measurement::R is added
+  };
+  struct Params {
+    std::vector<ClassRow> classes;       ///< in the order of the class table
+    std::vector<double> clutter_labels;  ///< P(label | clutter); sums to 1
+    double clutter_per_scan = 0.6;       ///< kappa
+    double births_per_scan = 0.03;       ///< beta
+    double range = 20;  ///< [m] of the field of view, a sector about the sensor's forward axis
+    double fov = kPi;   ///< [rad] its full angle; 2 pi or more: a full disc
+    double label_exponent = 1;  ///< SPEC 5.6
+  };
+
+  explicit PositionModel(Params params) : params_(std::move(params)) {}
+
+  const std::vector<AxisKind>& axes() const override;
+  void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
+               const SensorState& sensor, AxisPrediction* out) const override;
+  double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
+                              const SensorState& sensor, double visibility) const override;
+  double logLabelLikelihood(int label, ClassId c) const override;
+  double labelExponent() const override { return params_.label_exponent; }
+  double logLabelClutter(int label) const override;
+  double logClutterDensity(const Measurement& m, const SensorState& sensor) const override;
+  double logBirthDensity(const Measurement& m, ClassId c, const SensorState& sensor) const override;
+  std::optional<BirthState> birth(const Measurement& m, ClassId c,
+                                  const SensorState& sensor) const override;
+
+  const Params& params() const { return params_; }
+  bool inView(const Vector2& position, const SensorState& sensor) const;
+  double area() const {
+    return 0.5 * std::min(params_.fov, kTwoPi) * params_.range * params_.range;
+  }  ///< [m^2]
+
+ private:
+  Params params_;
+};
+
+}  // namespace perception
