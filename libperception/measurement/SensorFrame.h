@@ -82,6 +82,7 @@ struct ObjectDetection {
 struct ObjectDetections {
   CameraModel camera;
   std::vector<ObjectDetection> objects;
+  std::optional<Pose3> T_ego_camera;     ///< optical frame of the image boxes; empty: it is the sensor frame itself
 };
 
 /// One decoded observation of one sensor, with the pose of vehicle and sensor and the ground at that time.

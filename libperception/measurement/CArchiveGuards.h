@@ -1,0 +1,70 @@
+#pragma once
+#include <mrpt/serialization/CArchive.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace perception::archive {
+
+// Reading of our observation classes from files that nobody has checked: no count is believed
+// before it is compared with what is plausible, no memory is taken before the bytes for it have
+// been read, and no short read is accepted (mrpt::serialization::CArchive::ReadBuffer accepts one
+// in silence).
+
+/// Largest block of memory taken in advance [bytes].
+inline constexpr std::size_t kBlockBytes = 1U << 20;
+
+inline void readExactly(mrpt::serialization::CArchive& in, void* to, std::size_t bytes) {
+  if (bytes != 0 && in.ReadBuffer(to, bytes) != bytes) {
+    throw std::runtime_error("the data ends inside an array");
+  }
+}
+
+inline std::uint32_t readCount(mrpt::serialization::CArchive& in, std::uint32_t most,
+                               const char* what) {
+  const auto count = in.ReadAs<std::uint32_t>();
+  if (count > most) {
+    throw std::runtime_error("implausible count of " + std::string(what) + ": " +
+                             std::to_string(count) + ", at most " + std::to_string(most));
+  }
+  return count;
+}
+
+/// A truth value; bytes other than 0 and 1 are no bool.
+inline bool readFlag(mrpt::serialization::CArchive& in) {
+  const auto byte = in.ReadAs<std::uint8_t>();
+  if (byte > 1) throw std::runtime_error("a truth value that is neither 0 nor 1");
+  return byte == 1;
+}
+
+/// An array of plain numbers, little-endian, without a count of its own.
+template <class Number>
+void readBlock(mrpt::serialization::CArchive& in, std::vector<Number>& values, std::size_t count) {
+  values.clear();
+  while (values.size() < count) {
+    const std::size_t begin = values.size();
+    const std::size_t part = std::min(count - begin, kBlockBytes / sizeof(Number));
+    values.resize(begin + part);
+    if (in.ReadBufferFixEndianness(values.data() + begin, part) != part * sizeof(Number)) {
+      throw std::runtime_error("the data ends inside an array");
+    }
+  }
+}
+
+template <class Number>
+void writeBlock(mrpt::serialization::CArchive& out, const std::vector<Number>& values) {
+  if (!values.empty()) out.WriteBufferFixEndianness(values.data(), values.size());
+}
+
+/// A text as CArchive writes std::string (32-bit length, bytes), with a bound on the length.
+inline std::string readText(mrpt::serialization::CArchive& in, std::uint32_t most = 4096) {
+  std::string text(readCount(in, most, "characters"), '\0');
+  readExactly(in, text.data(), text.size());
+  return text;
+}
+
+}  // namespace perception::archive

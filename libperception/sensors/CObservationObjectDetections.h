@@ -1,0 +1,27 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+#include <mrpt/poses/CPose3D.h>
+
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// What somebody's detector found at one instant: boxes in the image, boxes in space, or both, with
+/// scores. No MRPT class holds labelled boxes.
+class CObservationObjectDetections : public mrpt::obs::CObservation {
+  DEFINE_SERIALIZABLE(CObservationObjectDetections, perception)
+ public:
+  ObjectDetections detections;
+  /// On the vehicle: of the frame of the space boxes (x forward, y left, z up); with image boxes
+  /// alone, of the camera's optical frame (x right, y down, z forward).
+  mrpt::poses::CPose3D sensor_pose;
+
+  void getSensorPose(mrpt::poses::CPose3D& pose) const override { pose = sensor_pose; }
+  void setSensorPose(const mrpt::poses::CPose3D& pose) override { sensor_pose = pose; }
+  void getDescriptionAsText(std::ostream& out) const override;
+  bool exportTxtSupported() const override { return true; }
+  std::string exportTxtHeader() const override;
+  std::string exportTxtDataRow() const override;
+};
+
+}  // namespace perception

@@ -1,0 +1,192 @@
+#include "libperception/sensors/EgoPose.h"
+
+#include <mrpt/obs/CObservationRobotPose.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/ToObservation.h"  // kEgoPoseLabel
+
+namespace perception {
+
+namespace {
+
+/// After so many poses in a row that contradict the old place but not each other the vehicle is
+/// there: a receiver that found its fix again. Tuned so that one second of a 10 Hz log is believed.
+constexpr std::size_t kRelocation = 10;
+/// [s] Velocities are differences over about this time: poses at 100 Hz would otherwise give their
+/// noise.
+constexpr double kDifference = 0.1;
+/// Bound of the memory whatever the rate of the poses.
+constexpr std::size_t kMostPoses = 20000;
+
+bool before(const EgoState& pose, Stamp stamp) { return pose.stamp < stamp; }
+
+/// Standard deviation of a variance from a log, not below `minimum`.
+double sigmaOf(double variance, double minimum) {
+  return std::isfinite(variance) && variance > 0 ? std::max(minimum, std::sqrt(variance)) : minimum;
+}
+
+EgoState between(const EgoState& a, const EgoState& b, Stamp stamp) {
+  const double s = (stamp - a.stamp) / (b.stamp - a.stamp);
+  EgoState state = s < 0.5 ? a : b;
+  state.stamp = stamp;
+  state.T_world_ego = Pose3::Identity();
+  state.T_world_ego.translation() =
+      (1 - s) * a.T_world_ego.translation() + s * b.T_world_ego.translation();
+  const Eigen::Quaterniond qa(a.T_world_ego.linear()), qb(b.T_world_ego.linear());
+  state.T_world_ego.linear() = qa.slerp(s, qb).toRotationMatrix();
+  return state;
+}
+
+}  // namespace
+
+void EgoPoseParams::visit(ParamVisitor& v) {
+  v.text("label", label,
+         "label of the pose observations; empty: EGO_POSE, or the first pose label of the log");
+  v.real("sigma_xy", minimum.sigma_xy, {0, 10}, "m",
+         "least standard deviation of the position (SPEC 1)");
+  v.angle("sigma_yaw_deg", minimum.sigma_yaw, {0, 45},
+          "least standard deviation of the heading (SPEC 1)");
+  v.angle("sigma_pitch_deg", minimum.sigma_pitch, {0, 45},
+          "least standard deviation of the pitch (SPEC 1)");
+  v.real("extrapolation", extrapolation, {0, 5}, "s",
+         "time beyond the last pose for which it is continued");
+  v.real("max_speed", max_speed, {1, 1000}, "m/s",
+         "a pose that implies more is rejected as a jump");
+  v.real("history", history, {1, 600}, "s", "poses kept, at least the longest delay of any sensor");
+}
+
+EgoPose::EgoPose(EgoPoseParams params) : params_(std::move(params)), label_(params_.label) {}
+
+EgoState EgoPose::parked(Stamp stamp, const PoseUncertainty& uncertainty) {
+  EgoState state;
+  state.stamp = stamp;
+  state.uncertainty = uncertainty;
+  return state;
+}
+
+void EgoPose::clear() {
+  poses_.clear();
+  relocated_.clear();
+}
+
+bool EgoPose::wants(const std::string& label) {
+  if (!params_.label.empty()) return label == params_.label;
+  if (label == kEgoPoseLabel &&
+      label_ != kEgoPoseLabel) {  // the real one came late: forget the substitute
+    clear();
+    label_ = label;
+  }
+  if (label_.empty()) label_ = label.empty() ? "(none)" : label;
+  return label == label_ || (label.empty() && label_ == "(none)");
+}
+
+void EgoPose::add(const mrpt::obs::CObservation& observation) {
+  const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation);
+  if (pose == nullptr || !wants(pose->sensorLabel)) return;
+  const auto stamp = toStamp(pose->timestamp);
+  if (!stamp) {
+    ++rejected_other_;
+    return;
+  }
+  EgoState state;
+  state.stamp = *stamp;
+  state.T_world_ego = toPose3(pose->pose.mean);
+  const auto& cov = pose->pose.cov;  // order of MRPT: x y z yaw pitch roll
+  state.uncertainty.sigma_xy = sigmaOf((cov(0, 0) + cov(1, 1)) / 2, params_.minimum.sigma_xy);
+  state.uncertainty.sigma_yaw = sigmaOf(cov(3, 3), params_.minimum.sigma_yaw);
+  state.uncertainty.sigma_pitch = sigmaOf(cov(4, 4), params_.minimum.sigma_pitch);
+  add(state);
+}
+
+bool EgoPose::isJump(const EgoState& pose) {
+  const auto after = std::lower_bound(poses_.begin(), poses_.end(), pose.stamp, before);
+  const EgoState& neighbour = after == poses_.begin() ? *after : *std::prev(after);
+  const auto tooFast = [this](const EgoState& a, const EgoState& b) {
+    const double distance = (a.T_world_ego.translation() - b.T_world_ego.translation()).norm();
+    // Two poses of nearly the same instant may differ by their noise.
+    return distance > params_.max_speed * std::max(std::abs(a.stamp - b.stamp), 0.01);
+  };
+  if (!tooFast(neighbour, pose)) {
+    relocated_.clear();
+    return false;
+  }
+  if (!relocated_.empty() &&
+      (pose.stamp <= relocated_.back().stamp || tooFast(relocated_.back(), pose))) {
+    relocated_.clear();
+  }
+  relocated_.push_back(pose);
+  return true;
+}
+
+void EgoPose::add(const EgoState& pose) {
+  if (!pose.T_world_ego.matrix().allFinite()) {
+    ++rejected_other_;
+    return;
+  }
+  if (!poses_.empty()) {
+    const auto place = std::lower_bound(poses_.begin(), poses_.end(), pose.stamp, before);
+    const bool same_instant = place != poses_.end() && place->stamp == pose.stamp;
+    if (same_instant || latest() - pose.stamp > params_.history) {
+      ++rejected_other_;
+      return;
+    }
+    if (isJump(pose)) {
+      ++rejected_jumps_;
+      if (relocated_.size() < kRelocation) return;
+      poses_.swap(relocated_);
+      relocated_.clear();
+      return;
+    }
+  }
+  poses_.insert(std::lower_bound(poses_.begin(), poses_.end(), pose.stamp, before), pose);
+  ++accepted_;
+  while (poses_.size() > kMostPoses || latest() - poses_.front().stamp > params_.history)
+    poses_.pop_front();
+}
+
+void EgoPose::setMotion(EgoState& state) const {
+  state.velocity = Vector2::Zero();
+  state.yaw_rate = 0;
+  if (poses_.size() < 2) return;
+  // The two poses about the instant, and more on both sides until they are kDifference apart.
+  auto last = std::lower_bound(poses_.begin(), poses_.end(), state.stamp, before);
+  if (last == poses_.end()) --last;
+  if (last == poses_.begin()) ++last;
+  auto first = std::prev(last);
+  while (last->stamp - first->stamp < kDifference) {
+    const bool has_next = std::next(last) != poses_.end(), has_previous = first != poses_.begin();
+    if (!has_next && !has_previous) break;
+    if (has_previous) --first;
+    if (has_next) ++last;
+  }
+  const double dt = last->stamp - first->stamp;
+  const Vector3 step = last->T_world_ego.translation() - first->T_world_ego.translation();
+  state.velocity = step.head<2>() / dt;
+  state.yaw_rate = wrapAngle(yawOf(last->T_world_ego) - yawOf(first->T_world_ego)) / dt;
+}
+
+std::optional<EgoState> EgoPose::at(Stamp stamp) const {
+  if (poses_.empty()) return {};
+  const auto after = std::lower_bound(poses_.begin(), poses_.end(), stamp, before);
+  if (after != poses_.end() && (after->stamp == stamp || after != poses_.begin())) {
+    EgoState state = after->stamp == stamp ? *after : between(*std::prev(after), *after, stamp);
+    setMotion(state);
+    return state;
+  }
+  EgoState state = after == poses_.end() ? poses_.back() : poses_.front();
+  const double dt = stamp - state.stamp;
+  if (std::abs(dt) > params_.extrapolation) return {};
+  setMotion(state);
+  state.stamp = stamp;
+  state.T_world_ego.translation().head<2>() += dt * state.velocity;
+  state.T_world_ego.linear() =
+      Eigen::AngleAxisd(dt * state.yaw_rate, Vector3::UnitZ()).toRotationMatrix() *
+      state.T_world_ego.linear();
+  return state;
+}
+
+}  // namespace perception

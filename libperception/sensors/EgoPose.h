@@ -1,0 +1,68 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "libperception/core/ParamSet.h"
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// How the vehicle's pose is taken from the log: [ego].
+struct EgoPoseParams {
+  std::string
+      label;  ///< of the pose observations; empty: EGO_POSE, or the first label if there is none
+  PoseUncertainty minimum;     ///< SPEC 1; a log that claims less (or nothing) gets this
+  double extrapolation = 0.2;  ///< [s] at most beyond the last pose
+  double max_speed = 100;      ///< [m/s] a step that implies more is a jump
+  double history = 10;         ///< [s] of poses that are kept
+
+  void visit(ParamVisitor& v);
+};
+
+/// Where the vehicle was at any instant of the recent past: positions in between linearly,
+/// attitudes by slerp, beyond the newest pose for a moment with the last velocity. Poses may come
+/// in any order within the history.
+///
+/// A log without any pose: empty() stays true and at() gives nothing; callers then use parked(),
+/// the documented fallback: the vehicle stands at the world's origin.
+class EgoPose {
+ public:
+  explicit EgoPose(EgoPoseParams params = {});
+
+  /// Takes a CObservationRobotPose of the wanted label; every other observation is ignored.
+  void add(const mrpt::obs::CObservation& observation);
+  /// The same for a pose from elsewhere (velocity and yaw rate are ignored).
+  void add(const EgoState& pose);
+  /// The vehicle at `stamp`; empty when no pose is near enough in time.
+  std::optional<EgoState> at(Stamp stamp) const;
+
+  bool empty() const { return poses_.empty(); }
+  /// Of the newest pose; only when not empty().
+  Stamp latest() const { return poses_.back().stamp; }
+  /// Forgets everything, as after a jump of the clock.
+  void clear();
+  static EgoState parked(Stamp stamp, const PoseUncertainty& uncertainty = {});
+
+  std::uint64_t accepted() const { return accepted_; }
+  std::uint64_t rejectedJumps() const { return rejected_jumps_; }  ///< faster than max_speed
+  std::uint64_t rejectedOther() const {
+    return rejected_other_;
+  }  ///< bad stamp or numbers, too old, same instant
+
+ private:
+  bool wants(const std::string& label);
+  bool isJump(const EgoState& pose);
+  void setMotion(EgoState& state) const;
+
+  EgoPoseParams params_;
+  std::string label_;               ///< in use
+  std::deque<EgoState> poses_;      ///< by stamp; velocities are not set
+  std::deque<EgoState> relocated_;  ///< a run of rejected poses that agree with each other
+  std::uint64_t accepted_ = 0, rejected_jumps_ = 0, rejected_other_ = 0;
+};
+
+}  // namespace perception

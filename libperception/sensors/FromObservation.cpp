@@ -1,0 +1,210 @@
+#include "libperception/sensors/FromObservation.h"
+
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/CObservationComment.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "libperception/sensors/CObservationLidarScan.h"
+#include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/Conversions.h"
+
+namespace perception {
+
+namespace {
+
+using mrpt::obs::CObservation;
+using Data = decltype(SensorFrame::data);
+
+/// Intensities of MRPT clouds come as [0, 1] or as the sensor's byte; ours are [0, 1]. A cloud with
+/// a value above 1 is taken to be in bytes as a whole.
+void scaleIntensity(std::vector<float>& intensity) {
+  float highest = 0;
+  for (float& value : intensity) {
+    if (!std::isfinite(value) || value < 0) value = 0;
+    highest = std::max(highest, value);
+  }
+  const float scale = highest > 1 ? 1.F / 255 : 1.F;
+  for (float& value : intensity) value = std::min(1.F, value * scale);
+}
+
+/// One array after bad points went: those whose `keep` is set, in their order.
+template <class Number>
+void filterArray(std::vector<Number>& values, const std::vector<char>& keep) {
+  if (values.empty()) return;
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    if (keep[i]) values[to++] = values[i];
+  }
+  values.resize(to);
+}
+
+bool arraysAgree(const LidarCloud& c) {
+  const auto fits = [n = c.size()](const auto& values) {
+    return values.empty() || values.size() == n;
+  };
+  return c.y.size() == c.size() && c.z.size() == c.size() && fits(c.intensity) && fits(c.ring) &&
+         fits(c.time_offset) && fits(c.echo) && fits(c.pulse_width) && fits(c.label);
+}
+
+std::optional<Data> decode(const CObservationLidarScan& scan, DecodeCounts& counts) {
+  if (!arraysAgree(scan.cloud)) {
+    ++counts.rejected;
+    return {};
+  }
+  LidarCloud cloud = scan.cloud;
+  scaleIntensity(cloud.intensity);
+  dropBadPoints(cloud, counts);
+  return cloud;
+}
+
+std::optional<Data> decode(const mrpt::obs::CObservationPointCloud& observation,
+                           DecodeCounts& counts) {
+  if (!observation.pointcloud) {
+    ++counts.rejected;
+    return {};
+  }
+  const mrpt::maps::CPointsMap& points = *observation.pointcloud;
+  const auto& x = points.getPointsBufferRef_x();
+  const auto& y = points.getPointsBufferRef_y();
+  const auto& z = points.getPointsBufferRef_z();
+  LidarCloud cloud;
+  cloud.x.assign(x.begin(), x.end());
+  cloud.y.assign(y.begin(), y.end());
+  cloud.z.assign(z.begin(), z.end());
+  if (const auto* with_intensity = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(&points)) {
+    cloud.intensity.resize(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      cloud.intensity[i] = with_intensity->getPointIntensity_fast(i);
+    scaleIntensity(cloud.intensity);
+  }
+  dropBadPoints(cloud, counts);
+  return cloud;
+}
+
+bool usable(const ObjectDetection& d) {
+  if (!std::isfinite(d.score)) return false;
+  if (d.image_box) {
+    const auto& b = *d.image_box;
+    if (!std::isfinite(b.x1 + b.y1 + b.x2 + b.y2) || !(b.x2 > b.x1) || !(b.y2 > b.y1)) return false;
+  }
+  if (d.space_box) {
+    const auto& b = *d.space_box;
+    if (!b.bottom_centre.allFinite() || !std::isfinite(b.yaw + b.length + b.width + b.height))
+      return false;
+    if (!(b.length > 0) || !(b.width > 0) || !(b.height > 0)) return false;
+  }
+  return !d.heading || std::isfinite(*d.heading);
+}
+
+std::optional<Data> decode(const CObservationObjectDetections& observation, DecodeCounts& counts) {
+  ObjectDetections detections = observation.detections;
+  auto& objects = detections.objects;
+  const auto bad =
+      std::remove_if(objects.begin(), objects.end(), [](const auto& d) { return !usable(d); });
+  counts.bad_boxes += static_cast<std::uint64_t>(objects.end() - bad);
+  objects.erase(bad, objects.end());
+  return detections;
+}
+
+/// One class of observation that holds data for a front end: to decode another class, add its
+/// decode() and a row.
+struct Decoder {
+  bool (*knows)(const CObservation&);
+  std::optional<Data> (*decode)(const CObservation&, DecodeCounts&);
+};
+
+template <class Class>
+constexpr Decoder decoderOf() {
+  return {[](const CObservation& o) { return dynamic_cast<const Class*>(&o) != nullptr; },
+          [](const CObservation& o, DecodeCounts& counts) {
+            return perception::decode(dynamic_cast<const Class&>(o), counts);
+          }};
+}
+
+constexpr Decoder kDecoders[] = {
+    decoderOf<CObservationLidarScan>(),
+    decoderOf<mrpt::obs::CObservationPointCloud>(),
+    decoderOf<CObservationObjectDetections>(),
+};
+
+const Decoder* decoderFor(const CObservation& observation) {
+  for (const Decoder& decoder : kDecoders) {
+    if (decoder.knows(observation)) return &decoder;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void dropBadPoints(LidarCloud& cloud, DecodeCounts& counts) {
+  std::vector<char> keep(cloud.size());
+  const std::uint64_t dropped_before = counts.dropped();
+  counts.points += cloud.size();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double x = cloud.x[i], y = cloud.y[i], z = cloud.z[i];
+    const double range2 = x * x + y * y + z * z;
+    if (!std::isfinite(range2)) {
+      ++counts.not_finite;
+    } else if (!(range2 > 0)) {
+      ++counts.no_range;
+    } else if (cloud.max_range > 0 &&
+               range2 > static_cast<double>(cloud.max_range) * cloud.max_range) {
+      ++counts.beyond_range;
+    } else {
+      keep[i] = 1;
+    }
+  }
+  if (counts.dropped() == dropped_before) return;
+  filterArray(cloud.x, keep);
+  filterArray(cloud.y, keep);
+  filterArray(cloud.z, keep);
+  filterArray(cloud.intensity, keep);
+  filterArray(cloud.ring, keep);
+  filterArray(cloud.time_offset, keep);
+  filterArray(cloud.echo, keep);
+  filterArray(cloud.pulse_width, keep);
+  filterArray(cloud.label, keep);
+}
+
+bool isSensorData(const CObservation& observation) { return decoderFor(observation) != nullptr; }
+
+std::optional<SensorFrame> frameFromObservation(const CObservation& observation,
+                                                DecodeCounts* counts) {
+  DecodeCounts local;
+  DecodeCounts& c = counts != nullptr ? *counts : local;
+  const Decoder* decoder = decoderFor(observation);
+  if (decoder == nullptr) return {};
+  const auto stamp = toStamp(observation.timestamp);
+  if (!stamp) {
+    ++c.rejected_stamps;
+    return {};
+  }
+  auto data = decoder->decode(observation, c);
+  if (!data) return {};
+  SensorFrame frame;
+  frame.sensor = observation.sensorLabel;
+  frame.stamp = *stamp;
+  mrpt::poses::CPose3D pose;
+  observation.getSensorPose(pose);
+  frame.T_ego_sensor = toPose3(pose);
+  frame.data = std::move(*data);
+  return frame;
+}
+
+std::optional<std::int64_t> frameNumber(const CObservation& observation) {
+  const auto* comment = dynamic_cast<const mrpt::obs::CObservationComment*>(&observation);
+  constexpr std::string_view kWord = "frame ";
+  if (comment == nullptr || comment->text.compare(0, kWord.size(), kWord) != 0) return {};
+  std::int64_t number = 0;
+  const char* end = comment->text.data() + comment->text.size();
+  const auto result = std::from_chars(comment->text.data() + kWord.size(), end, number);
+  if (result.ec != std::errc() || result.ptr != end) return {};
+  return number;
+}
+
+}  // namespace perception

@@ -1,0 +1,236 @@
+#include "libperception/sensors/RawlogReader.h"
+
+#include <fmt/format.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/rtti/CObject.h>
+
+#include <algorithm>
+
+#include "libperception/core/Error.h"
+#include "libperception/sensors/CRawlogInput.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/registerClasses.h"
+
+namespace perception {
+
+namespace {
+
+/// How an entry begins: length of the class's name (bit 7 set since MRPT 0.5.5, four bytes before),
+/// name, version.
+struct EntryHeader {
+  std::string class_name;
+};
+
+constexpr std::size_t kHeaderBytes = 4 + 127;
+
+bool isNameCharacter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == ':' || c == '<' || c == '>' || c == ',' || c == ' ';
+}
+
+/// Empty when the bytes cannot begin an entry. `complete` is false when they end too early to tell.
+std::optional<EntryHeader> parseHeader(const std::string& bytes, bool& complete) {
+  complete = true;
+  if (bytes.empty()) return {};
+  const auto first = static_cast<unsigned char>(bytes[0]);
+  std::size_t begin = 1;
+  if ((first & 0x80) == 0) {
+    begin = 4;
+    if (std::any_of(bytes.begin() + 1,
+                    bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), begin)),
+                    [](char c) { return c != 0; })) {
+      return {};
+    }
+  }
+  const std::size_t length = first & 0x7f;
+  const std::string name = bytes.size() > begin ? bytes.substr(begin, length) : "";
+  if (length < 2 || !std::all_of(name.begin(), name.end(), isNameCharacter)) return {};
+  complete = name.size() == length;
+  return EntryHeader{name};
+}
+
+/// What the beginning of a file looks like, for a person who took the wrong one.
+std::string describe(const std::string& bytes) {
+  const bool text = std::all_of(bytes.begin(), bytes.end(), [](char c) {
+    const auto u = static_cast<unsigned char>(c);
+    return (u >= 0x20 && u != 0x7f) || u == '\n' || u == '\r' || u == '\t';
+  });
+  if (text) {
+    std::string line = bytes.substr(0, bytes.find_first_of("\r\n"));
+    if (line.size() > 40) line = line.substr(0, 40) + "...";
+    return fmt::format("text that begins with \"{}\"", line);
+  }
+  std::string hex;
+  for (std::size_t i = 0; i < std::min<std::size_t>(bytes.size(), 8); ++i) {
+    hex += fmt::format(" {:02x}", static_cast<unsigned char>(bytes[i]));
+  }
+  return "data that begins with" + hex;
+}
+
+/// The useful line of an exception of MRPT, whose texts hold source places and a call stack.
+std::string firstLine(const std::string& text) {
+  const std::string marker = "Message:";
+  const auto last = text.rfind(marker);
+  std::string line = last == std::string::npos ? text : text.substr(last + marker.size());
+  line.erase(0, line.find_first_not_of(" \t\r\n"));
+  line = line.substr(0, line.find_first_of("\r\n"));
+  return line.size() > 200 ? line.substr(0, 200) + "..." : line;
+}
+
+std::string unknownClassMessage(const std::string& name) {
+  return fmt::format(
+      "entry of the unknown class '{}': link or load the library that registers it (plugin)", name);
+}
+
+/// The class named in MRPT's "Stored object has class 'X' which is not registered!" (inside a
+/// sensory frame).
+std::string unknownClassIn(const std::string& text) {
+  if (text.find("is not registered") == std::string::npos) return "";
+  const auto begin = text.find("has class '");
+  if (begin == std::string::npos) return "";
+  const auto name = begin + 11;
+  return text.substr(name, text.find('\'', name) - name);
+}
+
+}  // namespace
+
+const char* nameOf(RawlogReader::End end) {
+  static constexpr const char* kNames[] = {"not_yet",       "clean",         "torn",
+                                           "unknown_class", "newer_version", "damaged"};
+  return kNames[static_cast<std::size_t>(end)];
+}
+
+RawlogReader::RawlogReader(const std::string& path) : path_(path) {
+  registerPerceptionClasses();
+  input_ = std::make_unique<CRawlogInput>(path);
+  const std::string begin = input_->peek(kHeaderBytes);
+  if (input_->state() == CRawlogInput::State::kFailed) {
+    throw DataError(fmt::format("{}: {}", path, input_->reason()));
+  }
+  if (begin.empty() && input_->state() == CRawlogInput::State::kEnd) {
+    throw DataError(fmt::format("{}: a gzip container without a single entry in it", path));
+  }
+  bool complete = false;
+  if (!begin.empty() && !parseHeader(begin, complete)) {
+    throw DataError(fmt::format("{}: not a rawlog but {}{}", path, describe(begin),
+                                input_->compressed() ? " inside a gzip container" : ""));
+  }
+}
+
+RawlogReader::~RawlogReader() = default;
+
+std::uint64_t RawlogReader::bytesRead() const { return input_->fileBytesRead(); }
+std::uint64_t RawlogReader::fileBytes() const { return input_->fileBytes(); }
+
+std::shared_ptr<mrpt::obs::CObservation> RawlogReader::next() {
+  while (ready_.empty() && end_ == End::kNotYet && readEntry()) {
+  }
+  if (ready_.empty()) return nullptr;
+  auto observation = std::move(ready_.front());
+  ready_.pop_front();
+  if (const auto stamp = toStamp(observation->timestamp)) last_stamp_ = stamp;
+  return observation;
+}
+
+void RawlogReader::finish(End end, const std::string& what) {
+  end_ = end;
+  if (end == End::kClean) {
+    end_message_ = fmt::format("{}: whole, {} entries", path_, entries_);
+    return;
+  }
+  // Observations of earlier entries may still wait in ready_: their stamps are the last ones of the
+  // log.
+  for (const auto& observation : ready_) {
+    if (const auto stamp = toStamp(observation->timestamp)) last_stamp_ = stamp;
+  }
+  end_message_ = fmt::format("{}: {}; entry {} at byte {}{}, after {} whole entries, last stamp {}",
+                             path_, what, entries_, entry_offset_,
+                             input_->compressed() ? " of the inflated data" : "", entries_,
+                             last_stamp_ ? fmt::format("{:.6f}", last_stamp_->seconds()) : "none");
+}
+
+bool RawlogReader::readEntry() {
+  using State = CRawlogInput::State;
+  entry_offset_ = input_->position();
+  if (input_->atEnd()) {
+    const State state = input_->state();
+    finish(state == State::kEnd    ? End::kClean
+           : state == State::kTorn ? End::kTorn
+                                   : End::kDamaged,
+           input_->reason());
+    return false;
+  }
+  bool complete = false;
+  const auto header = parseHeader(input_->peek(kHeaderBytes), complete);
+  if (!header) {
+    finish(End::kDamaged, "bytes that begin no entry");
+    return false;
+  }
+  if (complete && header->class_name != "nullptr" &&
+      mrpt::rtti::findRegisteredClass(header->class_name) == nullptr) {
+    finish(End::kUnknownClass, unknownClassMessage(header->class_name));
+    return false;
+  }
+  mrpt::serialization::CSerializable::Ptr object;
+  try {
+    object = input_->ReadObject();
+  } catch (const std::exception& e) {
+    const std::string text = e.what();
+    const std::string unknown = unknownClassIn(text);
+    if (input_->state() == State::kTorn) {
+      finish(End::kTorn, input_->reason());
+    } else if (input_->state() != State::kGood && input_->state() != State::kEnd) {
+      finish(End::kDamaged, input_->reason());
+    } else if (!unknown.empty()) {
+      finish(End::kUnknownClass, unknownClassMessage(unknown));
+    } else if (text.find("unknown serialization version") != std::string::npos) {
+      finish(End::kNewerVersion,
+             fmt::format("entry of class '{}' was written by a newer version of it: {}",
+                         header->class_name, firstLine(text)));
+    } else {
+      finish(End::kDamaged, fmt::format("entry of class '{}' cannot be read: {}",
+                                        header->class_name, firstLine(text)));
+    }
+    return false;
+  }
+  ++entries_;
+  if (!object) {
+    ++skipped_["nullptr"];
+  } else if (auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)) {
+    ready_.push_back(std::move(observation));
+  } else if (const auto* frame = dynamic_cast<const mrpt::obs::CSensoryFrame*>(object.get())) {
+    for (const auto& inside : *frame) {
+      if (inside) ready_.push_back(inside);
+    }
+  } else if (const auto* actions =
+                 dynamic_cast<const mrpt::obs::CActionCollection*>(object.get())) {
+    addActions(*actions);
+  } else {
+    ++skipped_[object->GetRuntimeClass()->className];
+  }
+  return true;
+}
+
+void RawlogReader::addActions(const mrpt::obs::CActionCollection& actions) {
+  for (const auto& action : actions) {
+    const auto* movement = dynamic_cast<const mrpt::obs::CActionRobotMovement2D*>(action.get());
+    if (movement == nullptr ||
+        movement->estimationMethod != mrpt::obs::CActionRobotMovement2D::emOdometry) {
+      ++skipped_[action->GetRuntimeClass()->className];
+      continue;
+    }
+    odometry_ = odometry_ + movement->rawOdometryIncrementReading;
+    auto observation = std::make_shared<mrpt::obs::CObservationOdometry>();
+    observation->timestamp = movement->timestamp;
+    observation->sensorLabel = "ODOMETRY";
+    observation->odometry = odometry_;
+    observation->hasVelocities = movement->hasVelocities;
+    observation->velocityLocal = movement->velocityLocal;
+    ready_.push_back(std::move(observation));
+  }
+}
+
+}  // namespace perception

@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace mrpt::serialization {
+class CSerializable;
+}
+
+namespace perception {
+
+class CRawlogOutput;
+
+/// Writes observations to a gzip rawlog under a temporary name beside the final one; close() reads
+/// the file back, checks it and renames it, so that a file of the final name is always whole.
+class RawlogWriter {
+ public:
+  /// Throws OutputError (kCannotCreate).
+  explicit RawlogWriter(const std::string& path, int gzip_level = 1);
+  /// Without close() nothing remains.
+  ~RawlogWriter();
+  RawlogWriter(const RawlogWriter&) = delete;
+  RawlogWriter& operator=(const RawlogWriter&) = delete;
+
+  /// Throws OutputError (kIoError) when the disk is full or fails.
+  void write(const mrpt::serialization::CSerializable& entry);
+  /// Throws OutputError (kIoError) when the file is not whole.
+  void close();
+
+  std::uint64_t entries() const { return entries_; }
+  std::uint64_t bytes() const;  ///< of the file so far
+  std::uint64_t bytesInflated() const;
+
+ private:
+  std::string path_, temporary_;
+  std::unique_ptr<CRawlogOutput> output_;
+  std::uint64_t entries_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace perception

@@ -1,0 +1,69 @@
+#include "libperception/sensors/ToObservation.h"
+
+#include <fmt/format.h>
+#include <mrpt/obs/CObservationComment.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+
+#include "libperception/measurement/CObservationMeasurements.h"
+#include "libperception/sensors/CObservationLidarScan.h"
+#include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/Conversions.h"
+
+namespace perception {
+
+std::shared_ptr<mrpt::obs::CObservation> observationFromFrame(const SensorFrame& frame) {
+  std::shared_ptr<mrpt::obs::CObservation> result;
+  if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
+    auto scan = std::make_shared<CObservationLidarScan>();
+    scan->cloud = *cloud;
+    result = scan;
+  } else {
+    auto detections = std::make_shared<CObservationObjectDetections>();
+    detections->detections = std::get<ObjectDetections>(frame.data);
+    result = detections;
+  }
+  result->timestamp = fromStamp(frame.stamp);
+  result->sensorLabel = frame.sensor;
+  result->setSensorPose(toMrpt(frame.T_ego_sensor));
+  return result;
+}
+
+std::shared_ptr<mrpt::obs::CObservation> poseObservation(const EgoState& ego,
+                                                         const std::string& label) {
+  auto result = std::make_shared<mrpt::obs::CObservationRobotPose>();
+  result->timestamp = fromStamp(ego.stamp);
+  result->sensorLabel = label;
+  result->pose.mean = toMrpt(ego.T_world_ego);
+  result->pose.cov.setZero();  // order of MRPT: x y z yaw pitch roll
+  const auto& u = ego.uncertainty;
+  result->pose.cov(0, 0) = result->pose.cov(1, 1) = u.sigma_xy * u.sigma_xy;
+  result->pose.cov(3, 3) = u.sigma_yaw * u.sigma_yaw;
+  result->pose.cov(4, 4) = u.sigma_pitch * u.sigma_pitch;
+  return result;
+}
+
+std::shared_ptr<mrpt::obs::CObservation> frameComment(Stamp stamp, std::int64_t number) {
+  auto result = std::make_shared<mrpt::obs::CObservationComment>();
+  result->timestamp = fromStamp(stamp);
+  result->sensorLabel = kFrameLabel;
+  result->text = fmt::format("frame {}", number);
+  return result;
+}
+
+std::shared_ptr<mrpt::obs::CObservation> measurementsObservation(
+    const MeasurementScan& scan, const std::string& model, const std::vector<std::string>& axes,
+    const std::vector<std::string>& labels) {
+  auto result = std::make_shared<CObservationMeasurements>();
+  result->timestamp = fromStamp(scan.state.stamp);
+  result->sensorLabel = scan.sensor;
+  result->sensor_pose = toMrpt(scan.state.ego.T_world_ego.inverse() * scan.state.T_world_sensor);
+  result->model = model;
+  result->modality = scan.modality;
+  result->frame = scan.frame;
+  result->axes = axes;
+  result->labels = labels;
+  result->measurements = scan.measurements;
+  return result;
+}
+
+}  // namespace perception
