@@ -1,0 +1,224 @@
+#include "libperception/lidar/BoxFit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace perception {
+
+void BoxParams::visit(ParamVisitor& v) {
+  v.angle("step_deg", step, {0.1, 15}, "of the search for the box's direction");
+  v.real("min_distance", min_distance, {0.001, 1}, "m", "d0 of the closeness criterion");
+  v.integer("max_points", max_points, {10, 100000}, "of a cluster used in the search");
+  v.real("corner_sigma", corner_sigma, {0.001, 1}, "m", "by which a side's end may be off");
+  v.angle("yaw_sigma_min_deg", yaw_sigma_min, {0.1, 45}, "of the longest, clearest side");
+  v.angle("grazing_deg", grazing, {0, 60},
+          "a side seen at less than that shows no reliable length");
+}
+
+namespace {
+
+double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Points that cannot lie on the hull go: those strictly inside the octagon of eight extremes.
+void dropInner(std::vector<Vector2>& points) {
+  static const std::array<Vector2, 8> kDirections = {
+      Vector2(1, 0),  Vector2(1, 1),   Vector2(0, 1),  Vector2(-1, 1),
+      Vector2(-1, 0), Vector2(-1, -1), Vector2(0, -1), Vector2(1, -1)};
+  std::array<Vector2, 8> corner;
+  for (std::size_t k = 0; k < 8; ++k) {
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Vector2& p : points)
+      if (const double along = kDirections[k].dot(p); along > best) best = along, corner[k] = p;
+  }
+  const auto inside = [&](const Vector2& p) {
+    for (std::size_t k = 0; k < 8; ++k) {
+      const Vector2& a = corner[k];
+      const Vector2& b = corner[(k + 1) % 8];
+      if (a != b && cross(b - a, p - a) <= 0) return false;
+    }
+    return true;
+  };
+  points.erase(std::remove_if(points.begin(), points.end(), inside), points.end());
+}
+
+/// Sum over the points of 1 / distance to the nearer of the two rectangle sides that the points lie
+/// along.
+double closeness(const std::vector<Vector2>& points, double yaw, double min_distance) {
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  double a0 = 1e30, a1 = -1e30, b0 = 1e30, b1 = -1e30;
+  for (const Vector2& p : points) {
+    const double a = c * p.x() + s * p.y(), b = c * p.y() - s * p.x();
+    a0 = std::min(a0, a), a1 = std::max(a1, a), b0 = std::min(b0, b), b1 = std::max(b1, b);
+  }
+  double low_a = 0, high_a = 0, low_b = 0, high_b = 0;
+  for (const Vector2& p : points) {
+    const double a = c * p.x() + s * p.y(), b = c * p.y() - s * p.x();
+    low_a += (a - a0) * (a - a0), high_a += (a1 - a) * (a1 - a);
+    low_b += (b - b0) * (b - b0), high_b += (b1 - b) * (b1 - b);
+  }
+  const double edge_a = low_a < high_a ? a0 : a1, edge_b = low_b < high_b ? b0 : b1;
+  double sum = 0;
+  for (const Vector2& p : points) {
+    const double a = c * p.x() + s * p.y(), b = c * p.y() - s * p.x();
+    sum += 1 / std::max(std::min(std::abs(a - edge_a), std::abs(b - edge_b)), min_distance);
+  }
+  return sum;
+}
+
+struct Direction {
+  double yaw = 0;       ///< [rad] in [0, pi/2)
+  double contrast = 0;  ///< [0, 1] how much better than the mean direction: 0 for a round cluster
+};
+
+Direction bestDirection(const std::vector<Vector2>& points, const BoxParams& params) {
+  const int steps = std::max(2, static_cast<int>(std::lround(kPi / 2 / params.step)));
+  const double step = kPi / 2 / steps;
+  std::vector<double> score(static_cast<std::size_t>(steps));
+  double mean = 0;
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < score.size(); ++k) {
+    score[k] = closeness(points, static_cast<double>(k) * step, params.min_distance);
+    mean += score[k] / steps;
+    if (score[k] > score[best]) best = k;
+  }
+  double yaw = static_cast<double>(best) * step, high = score[best];
+  for (const double finer : {step / 2, step / 4, step / 8}) {
+    const double left = closeness(points, yaw + finer, params.min_distance);
+    const double right = closeness(points, yaw - finer, params.min_distance);
+    if (left > high && left >= right) {
+      yaw += finer, high = left;
+    } else if (right > high) {
+      yaw -= finer, high = right;
+    }
+  }
+  return {yaw, high > 0 ? 1 - mean / high : 0};
+}
+
+/// A rectangle as (centre, yaw, lengths along and across).
+struct Rectangle {
+  double yaw, a0, a1, b0, b1;
+};
+
+Rectangle rectangleAlong(const std::vector<Vector2>& points, double yaw) {
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  Rectangle r{yaw, 1e30, -1e30, 1e30, -1e30};
+  for (const Vector2& p : points) {
+    const double a = c * p.x() + s * p.y(), b = c * p.y() - s * p.x();
+    r.a0 = std::min(r.a0, a), r.a1 = std::max(r.a1, a), r.b0 = std::min(r.b0, b),
+    r.b1 = std::max(r.b1, b);
+  }
+  return r;
+}
+
+/// Whether both ends of the rectangle's side along a (its face towards the sensor) were seen.
+bool sideComplete(const Rectangle& r, double sensor_a, double sensor_b, bool low_open,
+                  bool high_open, double grazing) {
+  const double off = sensor_b < r.b0 ? r.b0 - sensor_b : sensor_b > r.b1 ? sensor_b - r.b1 : 0;
+  if (off <= 0)
+    return false;  // the sensor stands in its extension: the side is seen from its end only
+  const double farther_end = std::max(std::abs(r.a0 - sensor_a), std::abs(r.a1 - sensor_a));
+  if (std::atan2(off, farther_end) < grazing) return false;
+  // An end is the outline's edge unless the face around the corner is seen, too: then it is the
+  // corner between.
+  const bool low_is_edge = sensor_a >= r.a0, high_is_edge = sensor_a <= r.a1;
+  return (low_open || !low_is_edge) && (high_open || !high_is_edge);
+}
+
+}  // namespace
+
+std::vector<Vector2> convexHull(std::vector<Vector2> points) {
+  if (points.size() > 32) dropInner(points);
+  std::sort(points.begin(), points.end(), [](const Vector2& a, const Vector2& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  const std::size_t count = points.size();
+  if (count < 3) return points;
+  // Andrew's monotone chain: the lower half forward, the upper half back.
+  std::vector<Vector2> hull;
+  hull.reserve(2 * count);
+  const auto append = [&hull](const Vector2& p, std::size_t floor) {
+    while (hull.size() > floor && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
+      hull.pop_back();
+    hull.push_back(p);
+  };
+  for (std::size_t i = 0; i < count; ++i) append(points[i], 1);
+  const std::size_t lower = hull.size();
+  for (std::size_t i = count - 1; i-- > 0;) append(points[i], lower);
+  hull.pop_back();
+  return hull;
+}
+
+double distanceToHull(const std::vector<Vector2>& hull, const Vector2& place) {
+  if (hull.empty()) return std::numeric_limits<double>::infinity();
+  double nearest2 = std::numeric_limits<double>::infinity();
+  bool inside = hull.size() > 2;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vector2& a = hull[i];
+    const Vector2 side = hull[(i + 1) % hull.size()] - a, d = place - a;
+    const double length2 = side.squaredNorm();
+    const double along = length2 > 0 ? std::clamp(d.dot(side) / length2, 0.0, 1.0) : 0;
+    nearest2 = std::min(nearest2, (d - along * side).squaredNorm());
+    inside = inside && cross(side, d) >= 0;
+  }
+  return inside ? 0 : std::sqrt(nearest2);
+}
+
+HullSize sizeOf(const std::vector<Vector2>& hull) {
+  HullSize size;
+  if (hull.size() < 2) return size;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < hull.size();
+       ++i) {  // a smallest rectangle lies along a side of the hull
+    const Vector2 side = hull[(i + 1) % hull.size()] - hull[i];
+    const Rectangle r = rectangleAlong(hull, std::atan2(side.y(), side.x()));
+    const double area = (r.a1 - r.a0) * (r.b1 - r.b0);
+    if (area < smallest) smallest = area, size = {std::max(r.a1 - r.a0, r.b1 - r.b0), area};
+  }
+  return size;
+}
+
+std::optional<SidesSeen> fitBox(const std::vector<Vector2>& points, const Vector2& sensor,
+                                bool left_open, bool right_open, const BoxParams& params) {
+  if (points.size() < 2) return std::nullopt;
+  std::vector<Vector2> used;
+  const std::size_t stride = 1 + (points.size() - 1) / static_cast<std::size_t>(params.max_points);
+  for (std::size_t i = 0; i < points.size(); i += stride) used.push_back(points[i]);
+  const Direction direction = bestDirection(used, params);
+  Rectangle r = rectangleAlong(points, direction.yaw);
+  if (r.a1 - r.a0 < r.b1 - r.b0) r = rectangleAlong(points, direction.yaw + kPi / 2);
+  const double a = r.a1 - r.a0, b = r.b1 - r.b0;
+  if (a <= 0) return std::nullopt;
+
+  SidesSeen sides;
+  sides.yaw = wrapAxis(r.yaw);
+  sides.a = a, sides.b = b;
+  const double c = std::cos(r.yaw), s = std::sin(r.yaw);
+  const double centre_a = (r.a0 + r.a1) / 2, centre_b = (r.b0 + r.b1) / 2;
+  sides.centre = {c * centre_a - s * centre_b, s * centre_a + c * centre_b};
+
+  // Direction known to an error at its end over half its length; a round cluster's is any in 90
+  // degrees.
+  constexpr double kAnyDirection =
+      kPi / 2 / 3.4641016151377544;  // [rad] sigma of a uniform quarter turn
+  const double from_length = std::atan2(2 * params.corner_sigma, a);
+  const double clarity = std::clamp(direction.contrast / 0.25, 0.0, 1.0);
+  const double sigma = std::hypot(params.yaw_sigma_min, from_length) / std::max(clarity, 0.01);
+  sides.yaw_sigma = std::min(sigma, kAnyDirection);
+
+  // Which end is the left edge: seen from the sensor, left is counter-clockwise.
+  const double sensor_a = c * sensor.x() + s * sensor.y(),
+               sensor_b = c * sensor.y() - s * sensor.x();
+  const bool below = sensor_b < centre_b;  // looking towards +b, left is -a
+  sides.a_complete = sideComplete(r, sensor_a, sensor_b, below ? left_open : right_open,
+                                  below ? right_open : left_open, params.grazing);
+  const bool behind = sensor_a < centre_a;  // looking towards +a, left is +b
+  const Rectangle across{r.yaw, r.b0, r.b1, r.a0, r.a1};
+  sides.b_complete = sideComplete(across, sensor_b, sensor_a, behind ? right_open : left_open,
+                                  behind ? left_open : right_open, params.grazing);
+  return sides;
+}
+
+}  // namespace perception

@@ -1,0 +1,44 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+#include "libperception/core/ParamSet.h"
+#include "libperception/measurement/Measurement.h"
+
+namespace perception {
+
+/// How boxes are laid about clusters: [sensor.LABEL.boxes].
+struct BoxParams {
+  double step = radians(2);  ///< [rad] of the search over 90 degrees (SPEC 8.2)
+  double min_distance =
+      0.05;  ///< [m] d0 of the closeness criterion: range noise (own choice; Zhang: 0.01)
+  int max_points = 400;        ///< of a cluster used in the search, evenly taken
+  double corner_sigma = 0.10;  ///< [m] by which a side's end may be off: rounded corners, bumpers
+  double yaw_sigma_min = radians(3);  ///< [rad] of the longest, clearest side
+  double grazing = radians(15);  ///< [rad] a side seen at less than that shows no reliable length
+
+  void visit(ParamVisitor& v);
+};
+
+/// Convex hull, counter-clockwise from the leftmost lowest point, without points on its sides.
+std::vector<Vector2> convexHull(std::vector<Vector2> points);
+
+/// Distance [m] from `place` to the hull (a polygon, a segment or a point); 0 inside.
+double distanceToHull(const std::vector<Vector2>& hull, const Vector2& place);
+
+/// Longest side [m] of the smallest enclosing rectangle and its area [m^2].
+struct HullSize {
+  double longest = 0, area = 0;
+};
+HullSize sizeOf(const std::vector<Vector2>& hull);
+
+/// L-shape fit by the closeness criterion (Zhang et al., IV 2017). Side a is the longer one; yaw is
+/// that of a line, in
+/// (-pi/2, pi/2]. `left_open`, `right_open`: nothing hides what continues beyond the outline's left
+/// and right edge as seen from `sensor`. All in one frame. Empty for fewer than two distinct
+/// points.
+std::optional<SidesSeen> fitBox(const std::vector<Vector2>& points, const Vector2& sensor,
+                                bool left_open, bool right_open, const BoxParams& params);
+
+}  // namespace perception

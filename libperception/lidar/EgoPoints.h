@@ -1,0 +1,51 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "libperception/core/ParamSet.h"
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// Which returns of a scan are worth looking at: [sensor.LABEL.points].
+struct PointParams {
+  double range_min = 0.5;  ///< [m] horizontal, from the sensor: nearer is the instrument itself
+  double range_max = 80;   ///< [m] horizontal, from the sensor (SPEC 4.1: clusters to about 70 m)
+  double vehicle_front =
+      3.8;  ///< [m] own body ahead of the ego origin (below KITTI's lidar), mirrors' margin in it
+  double vehicle_rear = 2.0;  ///< [m] behind it
+  double vehicle_side = 1.3;  ///< [m] to each side of it
+  double vehicle_top = 2.2;   ///< [m] above the ground
+
+  void visit(ParamVisitor& v);
+};
+
+/// Returns of one scan in the ego frame, in the scan's order, and where each came from.
+struct EgoPoints {
+  std::vector<float> x, y, z;         ///< [m] ego frame
+  std::vector<std::uint32_t> source;  ///< index in the frame's cloud
+  std::size_t dropped = 0;  ///< returns that are not finite or beyond every instrument's range
+  Vector3 sensor = Vector3::Zero();  ///< [m] the sensor's place, ego frame
+
+  std::size_t size() const { return x.size(); }
+};
+
+/// The finite returns outside the own vehicle, without those that the sensor itself calls rain or
+/// dirt. A frame that holds no point cloud gives none.
+EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params);
+
+/// atan2(y, x) within 3e-4 rad [rad], without a call per point: for choosing sectors, not for
+/// measuring. Abramowitz and Stegun 4.4.49, four terms.
+inline float roughBearing(float x, float y) {
+  const float ax = std::abs(x), ay = std::abs(y);
+  const float high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
+  const float t = low / (high + 1e-30f), s = t * t;
+  float angle =
+      t * (0.9998660f + s * (-0.3302995f + s * (0.1801410f + s * (-0.0851330f + s * 0.0208351f))));
+  angle = ay > ax ? 1.57079633f - angle : angle;
+  angle = x < 0 ? 3.14159265f - angle : angle;
+  return y < 0 ? -angle : angle;
+}
+
+}  // namespace perception

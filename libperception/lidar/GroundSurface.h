@@ -1,0 +1,49 @@
+#pragma once
+#include <vector>
+
+#include "libperception/core/ParamSet.h"
+#include "libperception/lidar/EgoPoints.h"
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// How far the ground may leave its plane: [sensor.LABEL.surface]. Own choices; real roads have
+/// crowns, kerbs, ramps.
+struct SurfaceParams {
+  bool local = true;  ///< false: the plane alone, as in the paper
+  int sectors = 120;
+  double ring = 2;            ///< [m] depth of a cell
+  int cell_points = 3;        ///< returns below which a cell tells nothing
+  double quantile = 0.05;     ///< height of a cell's ground among its low returns
+  double step = 0.15;         ///< [m] a kerb: change from one cell to the next outward
+  double slope = 0.05;        ///< [-] further change per metre since the last cell with ground
+  double max_step = 0.25;     ///< [m] whatever the gap: below the underside of cars
+  double bound_near = 0.2;    ///< [m] largest distance from the plane at the vehicle
+  double bound_slope = 0.03;  ///< [-] growth of that bound with range
+
+  void visit(ParamVisitor& v);
+};
+
+/// Height of the ground of one scan: the plane and, in each polar cell about the sensor, a bounded
+/// departure from it that is followed outward along the beams.
+class GroundSurface {
+ public:
+  GroundSurface(const GroundPlane& plane, const EgoPoints& points, const SurfaceParams& params);
+
+  /// [m] of the ground below a place of the ego frame.
+  double heightAt(double x, double y) const;
+  /// [m] of every point above the ground; mirrored returns are negative.
+  std::vector<float> heightsAbove(const EgoPoints& points) const;
+
+ private:
+  std::size_t cellOf(float dx, float dy) const;
+  void follow(std::vector<float> lowest, const SurfaceParams& params);
+
+  GroundPlane plane_;
+  float sensor_x_, sensor_y_;  ///< [m] centre of the cells, ego frame
+  std::size_t sectors_ = 1, rings_ = 1;
+  float inverse_ring_ = 0, inverse_sector_ = 0;
+  std::vector<float> departure_;  ///< [m] above the plane; [sector][ring]
+};
+
+}  // namespace perception

@@ -1,0 +1,95 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libperception/core/Config.h"
+#include "libperception/lidar/BoxFit.h"
+#include "libperception/lidar/Clusters.h"
+#include "libperception/lidar/EgoPoints.h"
+#include "libperception/lidar/GroundSurface.h"
+#include "libperception/lidar/PersonPeaks.h"
+#include "libperception/measurement/FootprintModel.h"
+#include "libperception/measurement/FrontEnd.h"
+
+namespace perception {
+
+/// Which returns are obstacles and which of them hide what lies behind: [sensor.LABEL.obstacles].
+struct ObstacleParams {
+  double height_min = 0.30;  ///< [m] above ground (paper)
+  double height_max = 3.0;   ///< [m] above ground (SPEC 8.1): beyond are bridges and crowns
+  double hiding_min = 1.0;   ///< [m] above ground that a hiding column reaches
+  double hiding_max = 2.2;   ///< [m] above ground; higher returns leave the view below them free
+  double hiding_bin = radians(0.4);  ///< [rad] of the horizon
+  double hiding_margin = 0.5;        ///< [m] by which a hiding return is nearer than what it hides
+
+  void visit(ParamVisitor& v);
+};
+
+/// Noise of one kind of detection about FootprintModel's outline: [sensor.LABEL.noise.NAME]. An
+/// edge's bearing has sigma_bearing (+) sigma_edge / range, the nearest point's range sigma_range +
+/// range_share * range.
+struct OutlineNoise {
+  double sigma_edge = 0.25;             ///< [m] across the line of sight
+  double sigma_bearing = radians(0.3);  ///< [rad]
+  double sigma_range = 0.25;            ///< [m]
+  double range_share = 0;               ///< [-]
+
+  void visit(ParamVisitor& v);
+};
+
+/// All constants of the lidar front end.
+struct LidarParams {
+  PointParams points;
+  SurfaceParams surface;
+  ObstacleParams obstacles;
+  ClusterParams clusters;
+  PersonParams persons;
+  BoxParams boxes;
+  OutlineNoise car_noise, person_noise, unstable_noise;
+
+  /// The values for this world (tuned on KITTI 0000, see OutlineNoise's places).
+  LidarParams();
+};
+
+/// What the front end found in one scan, in the ego frame: for the tracker, for pictures and for
+/// the safety grid.
+struct LidarDetections {
+  EgoPoints points;                      ///< usable returns
+  std::vector<float> height;             ///< [m] of each above the local ground
+  std::vector<std::uint32_t> obstacles;  ///< indices into points, in the scan's order
+  std::vector<float> x, y, above;        ///< [m] the obstacles' place and height above ground
+  std::vector<Cluster> clusters;         ///< car-sized; their indices run over the obstacles
+  std::vector<PersonPeak>
+      persons;  ///< outside of the clusters' hulls; their indices run over the obstacles
+  std::vector<std::uint8_t> ground;  ///< per return of the frame's cloud: 1 = ground
+  GroundSurface surface;             ///< the local ground
+};
+
+/// The lidar rib: obstacle points, car-sized and person-sized groups among them, and their outlines
+/// as measurements. Labels: car_sized, person_sized and, where clusters.accept_unstable, unstable.
+class LidarFrontEnd final : public FrontEnd {
+ public:
+  LidarFrontEnd(const LidarParams& params, const ClassTable& classes, const Sensing& sensing);
+
+  MeasurementScan extract(const SensorFrame& frame) const override;
+  /// A frame without a point cloud gives empty detections.
+  LidarDetections detect(const SensorFrame& frame) const;
+  /// Obstacle returns [m], ego frame.
+  std::vector<Vector3> obstaclePoints(const SensorFrame& frame) const;
+
+  const LidarParams& params() const { return params_; }
+  static std::vector<std::string> labels(const ClusterParams& clusters);
+
+ private:
+  LidarParams params_;
+  double fov_;  ///< [rad]
+  std::shared_ptr<const FootprintModel> model_;
+};
+
+/// Reads [sensor.LABEL], [sensor.LABEL.class.NAME], [sensor.LABEL.points], .surface, .obstacles,
+/// .clusters, .persons, .boxes and .noise.{car_sized, person_sized, unstable}.
+std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& sensor_label,
+                                            const ClassTable& classes);
+
+}  // namespace perception

@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+#include "libperception/core/ParamSet.h"
+
+namespace perception {
+
+/// The person filter of the paper, a Laplacian of Gaussians over the returns:
+/// [sensor.LABEL.persons]. SPEC 8.3.
+struct PersonParams {
+  enum class Kernel {
+    kConsistent,  ///< second term r^4/(2 sigma^4): negative in the mean, as the text says
+    kPrinted      ///< r^4/(2 sigma^2), as the formula says
+  };
+
+  double cell = 0.25;     ///< [m] (paper)
+  double sigma = 0.45;    ///< [m] (paper)
+  double support = 2.25;  ///< [m] radius beyond which the kernel is below 4e-4
+  Kernel kernel = Kernel::kConsistent;
+  double threshold =
+      0.9;  ///< response per return within `radius`; an isolated person has 1.45, a wall below .5
+  double radius = 0.45;                   ///< [m] about the peak: the person's returns
+  int min_points = 4;                     ///< returns within radius
+  double min_span = 0.8, max_span = 2.2;  ///< [m] lowest to highest return
+  double separation = 0.75;               ///< [m] radius of non-maximum suppression
+  double hull_margin = 0.3;               ///< [m] about accepted clusters in which no peak counts
+
+  void visit(ParamVisitor& v);
+};
+
+/// A person-sized group of returns, isolated from its neighbours. Indices are those of the arrays
+/// given.
+struct PersonPeak {
+  std::vector<std::uint32_t> points;  ///< within `radius` of the peak, in the scan's order
+  Vector2 centre = Vector2::Zero();   ///< [m] mean of those
+  double response = 0;                ///< of the filter, sum over returns
+  double normalised = 0;              ///< response per return within radius
+  float lowest = 0, highest = 0;      ///< [m] above ground
+};
+
+/// The kernel L(r) [1/m^2].
+double personKernel(double r, const PersonParams& params);
+
+/// Peaks among obstacle points (x, y, height above ground; [m]), strongest first.
+std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vector<float>& y,
+                                    const std::vector<float>& height, const PersonParams& params);
+
+}  // namespace perception
