@@ -49,7 +49,7 @@ CRbpfTracker::CRbpfTracker(FilterModel model, const Options& options, std::uint6
 }
 
 bool CRbpfTracker::process(const MeasurementScan& scan) {
-  if (scans_ > 0 && scan.state.stamp < stamp_) return false;
+  if (started_ && scan.state.stamp < stamp_) return false;
   // MRPT resamples with this thread's generator; assignment also clears what randomize() would
   // leave behind.
   Rng seeds({seed_, scans_, 0, kResampling});
@@ -62,7 +62,17 @@ bool CRbpfTracker::process(const MeasurementScan& scan) {
   stats_.resampled = pf_stats.ESS_beforeResample < executor_.m_options.BETA;
   stamp_ = scan.state.stamp;
   ++scans_;
+  started_ = true;
   return true;
+}
+
+void CRbpfTracker::reset() {
+  for (auto& p : m_particles) {
+    p.d.tracks.clear();
+    p.log_w = 0;
+  }
+  map_.tracks.clear();
+  started_ = false;
 }
 
 void CRbpfTracker::prediction_and_update_pfOptimalProposal(const mrpt::obs::CActionCollection*,

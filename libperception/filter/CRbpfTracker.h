@@ -43,6 +43,8 @@ class CRbpfTracker final
   /// One scan through CParticleFilter::executeOn(). Scans must come in order of time; an older one
   /// is refused (false).
   bool process(const MeasurementScan& scan);
+  /// Forgets every track, as after a jump of the clock; new tracks get new identities.
+  void reset();
 
   const FilterModel& model() const { return model_; }
   const ScanStats& stats() const { return stats_; }
@@ -64,6 +66,7 @@ class CRbpfTracker final
   mrpt::bayes::CParticleFilter executor_;
   std::uint64_t seed_;
   std::uint64_t scans_ = 0;
+  bool started_ = false;  ///< stamp_ is that of a scan since the last reset
   Stamp stamp_;
   const MeasurementScan* scan_ = nullptr;  ///< the scan that executeOn() is to use
   Hypothesis map_;

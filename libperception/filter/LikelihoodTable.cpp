@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tbb/parallel_for.h>
 #include <Eigen/Cholesky>
+#include "libperception/filter/Parallel.h"
 
 #include "libperception/core/Chi2.h"
 #include "libperception/core/LogMath.h"
@@ -181,10 +181,10 @@ LikelihoodTable likelihoodTable(const std::vector<Track>& predicted, const Measu
   LikelihoodTable table;
   table.tracks.resize(predicted.size());
   table.news.resize(scan.measurements.size());
-  tbb::parallel_for(std::size_t{0}, predicted.size(), [&](std::size_t i) {
+  parallelFor(predicted.size(), [&](std::size_t i) {
     table.tracks[i] = trackLikelihoods(predicted[i], scan, model, gates);
   });
-  tbb::parallel_for(std::size_t{0}, scan.measurements.size(), [&](std::size_t k) {
+  parallelFor(scan.measurements.size(), [&](std::size_t k) {
     table.news[k] = newLikelihood(scan.measurements[k], scan, model);
   });
   return table;

@@ -5,7 +5,7 @@
 #include <map>
 #include <unordered_map>
 
-#include <tbb/parallel_for.h>
+#include "libperception/filter/Parallel.h"
 
 #include "libperception/core/LogMath.h"
 #include "libperception/filter/LikelihoodTable.h"
@@ -80,7 +80,7 @@ class Updates {
   std::size_t make(const std::vector<Track>& predicted, const LikelihoodTable& table,
                    const MeasurementScan& scan, std::uint64_t scan_index,
                    const FilterModel& model) {
-    tbb::parallel_for(std::size_t{0}, predicted.size(), [&](std::size_t t) {
+    parallelFor(predicted.size(), [&](std::size_t t) {
       const auto& row = table.tracks[t];
       for (const auto& pair : row.pairs) {
         if (!wanted_[hitCell(t, pair.measurement)]) continue;
@@ -90,7 +90,7 @@ class Updates {
       if (wanted_[missCell(t)])
         store(made_[missCell(t)], missTrack(predicted[t], row, scan, model), scan, model);
     });
-    tbb::parallel_for(std::size_t{0}, measurements_, [&](std::size_t k) {
+    parallelFor(measurements_, [&](std::size_t k) {
       if (new_wanted_[k])
         store(new_made_[k], newTrack(table.news[k], k, scan, scan_index, model), scan, model);
     });
@@ -144,7 +144,7 @@ StepResult step(const std::vector<Hypothesis>& hypotheses, const MeasurementScan
                 const FilterModel& model, const RngKey& key) {
   const Distinct distinct = distinctTracks(hypotheses);
   std::vector<Track> predicted(distinct.tracks.size());
-  tbb::parallel_for(std::size_t{0}, predicted.size(), [&](std::size_t i) {
+  parallelFor(predicted.size(), [&](std::size_t i) {
     predicted[i] = predictTrack(*distinct.tracks[i], scan.state.stamp, model);
   });
 
@@ -153,7 +153,7 @@ StepResult step(const std::vector<Hypothesis>& hypotheses, const MeasurementScan
   const AssociationIndex index(predicted, table);
   const auto order = randomOrder(scan.measurements.size(), Rng(key.withPurpose(kOrder)));
   std::vector<Association> associations(hypotheses.size());
-  tbb::parallel_for(std::size_t{0}, hypotheses.size(), [&](std::size_t i) {
+  parallelFor(hypotheses.size(), [&](std::size_t i) {
     const Rng rng(key.withPurpose(kSample).withSlot(static_cast<std::uint32_t>(i)));
     associations[i] = associate(distinct.of_hypothesis[i], index, order, rng);
   });

@@ -1,0 +1,366 @@
+#include "libperception/app/Pipeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "libperception/lidar/LidarFrontEnd.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/vision/VisionFrontEnd.h"
+
+namespace perception {
+namespace {
+
+/// A row per kind of front end: [sensor.LABEL] kind.
+struct FrontEndRow {
+  const char* kind;
+  std::unique_ptr<FrontEnd> (*make)(Config&, const std::string& label, const ClassTable&);
+};
+constexpr FrontEndRow kFrontEnds[] = {
+    {"lidar", &makeLidarFrontEnd},
+    {"boxes", &makeVisionFrontEnd},
+};
+
+constexpr double kSameInstant =
+    1e-3;                            // [s] a frame number holds for frames this near to its comment
+constexpr double kHorizonAge = 0.2;  // [s] a lidar's horizon serves the other sensors for so long
+constexpr double kEgoGapDrift =
+    1.0;  // [m/s] growth of the position's deviation while no pose comes
+
+std::shared_ptr<const FrontEnd> makeFrontEnd(Config& config, const std::string& section,
+                                             const std::string& label, const std::string& kind,
+                                             const ClassTable& classes) {
+  std::string known;
+  for (const auto& row : kFrontEnds) {
+    if (kind == row.kind) return row.make(config, label, classes);
+    known += (known.empty() ? "" : ", ") + std::string(row.kind);
+  }
+  config.fault(section, "kind", "unknown front end '" + kind + "', known are: " + known);
+  return nullptr;
+}
+
+/// "C+L" -> does it hold that modality; anything but C, L, R joined by + is a fault.
+bool readModalities(const std::string& text, std::string& letters) {
+  letters.clear();
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (i % 2 == 1 ? text[i] != '+' : std::string("CLR").find(text[i]) == std::string::npos)
+      return false;
+    if (i % 2 == 0) letters += text[i];
+  }
+  return text.size() % 2 == 1;
+}
+
+}  // namespace
+
+void RunParams::visit(ParamVisitor& v) {
+  v.unsigned64("seed", seed, "of all random numbers; --seed wins");
+  v.text("sensors", sensors, "modalities in use, letters C, L, R joined by +; --sensors wins");
+  v.choiceOf("association", association, {"sampled"},
+             "how a hypothesis chooses the causes of measurements");
+  v.text("output_sensor", output_sensor,
+         "scenes at its scans; empty: the first lidar in use, else the first sensor");
+  v.real("output_rate", output_rate, {0, 1000}, "Hz",
+         "scenes at a fixed rate instead; 0: at scans; --rate wins");
+  v.real("reorder_window", reorder_window, {0, 10}, "s", "how late an observation may come");
+  v.real("sensor_timeout", sensor_timeout, {0.01, 1e4}, "s",
+         "silence after which a sensor counts as lost");
+  v.real("clock_jump", clock_jump, {0.1, 1e6}, "s",
+         "step of the clock that starts anew (back) or is reported (forward)");
+}
+
+PipelineSetup PipelineSetup::read(Config& config, const std::string& sensors,
+                                  std::optional<std::uint64_t> seed, double rate) {
+  PipelineSetup s;
+  s.run = config.read<RunParams>("run");
+  if (!sensors.empty()) s.run.sensors = sensors;
+  if (seed) s.run.seed = *seed;
+  if (rate > 0) s.run.output_rate = rate;
+  s.model.classes = readClassTable(config);
+  s.model.params = config.read<FilterParams>("filter");
+  s.particles = config.read<ParticleFilterParams>("particle_filter");
+  s.scene = config.read<SceneParams>("scene");
+  s.ego = config.read<EgoPoseParams>("ego");
+  s.ground = config.read<GroundParams>("ground");
+  std::string letters;
+  if (!readModalities(s.run.sensors, letters)) {
+    config.fault("run", "sensors",
+                 "'" + s.run.sensors + "' is not a list of C, L, R joined by + (as C+L)");
+  }
+  const std::string prefix = "sensor.";
+  for (const auto& section : config.sectionsWithPrefix(prefix)) {
+    Sensor sensor;
+    sensor.label = section.substr(prefix.size());
+    if (sensor.label.find('.') != std::string::npos) continue;  // a table of that sensor
+    sensor.params = config.read<SensingParams>(section);
+    sensor.front_end =
+        makeFrontEnd(config, section, sensor.label, sensor.params.kind, s.model.classes);
+    sensor.active = letters.find(static_cast<char>(sensor.params.modality)) != std::string::npos;
+    s.sensors.push_back(std::move(sensor));
+  }
+  const auto active = [](const Sensor& sensor) { return sensor.active; };
+  if (std::none_of(s.sensors.begin(), s.sensors.end(), active)) {
+    config.fault("run", "sensors",
+                 "no [sensor.LABEL] section has a modality of '" + s.run.sensors + "'");
+  }
+  const auto named = [&](const Sensor& sensor) {
+    return sensor.label == s.run.output_sensor && sensor.active;
+  };
+  if (!s.run.output_sensor.empty() && std::none_of(s.sensors.begin(), s.sensors.end(), named)) {
+    config.fault("run", "output_sensor", "'" + s.run.output_sensor + "' is not a sensor in use");
+  }
+  return s;
+}
+
+Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
+    : setup_(std::move(setup)),
+      events_(events),
+      timing_(timing),
+      tracker_(setup_.model, setup_.particles.toMrpt(), setup_.run.seed),
+      scenes_(setup_.model, setup_.scene),
+      ego_(setup_.ego),
+      queue_({setup_.run.reorder_window, 70}) {
+  for (const auto& sensor : setup_.sensors) {
+    SensorState state;
+    state.record.label = sensor.label;
+    state.record.modality = std::string(1, static_cast<char>(sensor.params.modality));
+    if (sensor.params.modality == Modality::kLidar) {
+      state.ground = std::make_unique<GroundEstimator>(setup_.ground, setup_.run.seed);
+    }
+    states_.push_back(std::move(state));
+  }
+  // Scenes come at the named sensor's scans, else at the first lidar's, else at the first sensor's
+  // in use.
+  const auto rank = [&](const PipelineSetup::Sensor& s) {
+    if (!s.active) return 0;
+    return s.label == setup_.run.output_sensor ? 3 : s.params.modality == Modality::kLidar ? 2 : 1;
+  };
+  for (std::size_t i = 1; i < setup_.sensors.size(); ++i) {
+    if (rank(setup_.sensors[i]) > rank(setup_.sensors[output_sensor_])) output_sensor_ = i;
+  }
+}
+
+int Pipeline::sensorIndex(const std::string& label) const {
+  for (std::size_t i = 0; i < setup_.sensors.size(); ++i) {
+    if (setup_.sensors[i].label == label) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void Pipeline::add(const mrpt::obs::CObservation& observation) {
+  const auto stamp = toStamp(observation.timestamp);
+  if (stamp) addTime(*stamp);
+  if (const auto number = frameNumber(observation)) {
+    if (stamp) frame_numbers_.emplace_back(*stamp, *number);
+    if (frame_numbers_.size() > 200) frame_numbers_.pop_front();
+    return;
+  }
+  if (isSensorData(observation)) {
+    addFrame(observation);
+  } else {
+    ego_.add(observation);
+  }
+}
+
+void Pipeline::addTime(Stamp stamp) {
+  if (!first_stamp_) first_stamp_ = stamp;
+  if (last_stamp_.ns != 0 && last_stamp_ - stamp > setup_.run.clock_jump)
+    startEpoch(stamp, last_stamp_ - stamp);
+  if (last_stamp_.ns != 0 && stamp - last_stamp_ > setup_.run.clock_jump) {
+    events_.add(stamp, event_kind::kClockJump,
+                fmt::format("nothing for {:.3f} s", stamp - last_stamp_));
+  }
+  last_stamp_ = std::max(last_stamp_, stamp);
+  queue_.advance(stamp);
+}
+
+void Pipeline::startEpoch(Stamp stamp, double back) {
+  while (!queue_.empty()) processInstant(queue_.pop(true));
+  events_.warn(stamp, event_kind::kClockJump,
+               fmt::format("the clock went back by {:.3f} s: tracks start anew", back));
+  tracker_.reset();
+  ego_.clear();
+  queue_.clear();
+  frame_numbers_.clear();
+  horizon_.reset();
+  next_output_.reset();
+  last_instant_.reset();
+  for (auto& s : states_) s.last.reset();
+  last_stamp_ = stamp;
+}
+
+void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
+  const int index = sensorIndex(observation.sensorLabel);
+  if (index < 0) {
+    ++ignored_[observation.sensorLabel];
+    return;
+  }
+  const auto& sensor = setup_.sensors[static_cast<std::size_t>(index)];
+  if (!sensor.active) return;
+  const auto scope = timing_.stage("decode");
+  SensorRecord& record = states_[static_cast<std::size_t>(index)].record;
+  DecodeCounts counts;
+  auto frame = frameFromObservation(observation, &counts);
+  record.dropped_points += counts.dropped();
+  if (!frame) {
+    ++record.dropped_frames;
+    events_.warn(toStamp(observation.timestamp), event_kind::kDroppedFrame,
+                 fmt::format("{}: an observation that cannot be used", sensor.label));
+    return;
+  }
+  if (sensor.params.pose) frame->T_ego_sensor = *sensor.params.pose;
+  const Stamp stamp = frame->stamp;
+  switch (queue_.push(std::move(*frame))) {
+    case FrameQueue::Verdict::kTaken:
+      break;
+    case FrameQueue::Verdict::kDuplicate:
+      ++record.dropped_frames;
+      events_.add(stamp, event_kind::kDroppedFrame,
+                  sensor.label + ": a second frame of the same instant");
+      break;
+    case FrameQueue::Verdict::kTooLate:
+      ++record.dropped_frames;
+      events_.warn(stamp, event_kind::kOutOfOrder,
+                   sensor.label + ": older than the reorder window");
+      break;
+  }
+}
+
+std::optional<Scene> Pipeline::next(bool flush) {
+  while (ready_.empty()) {
+    auto frames = queue_.pop(flush);
+    if (frames.empty()) return std::nullopt;
+    processInstant(std::move(frames));
+  }
+  Scene scene = std::move(ready_.front());
+  ready_.pop_front();
+  return scene;
+}
+
+EgoState Pipeline::egoAt(Stamp stamp) {
+  if (ego_.empty()) {
+    if (!parked_said_)
+      events_.warn(stamp, event_kind::kEgoGap,
+                   "no ego pose yet: the vehicle is taken to stand still");
+    parked_said_ = true;
+    return EgoPose::parked(stamp, setup_.ego.minimum);
+  }
+  if (const auto state = ego_.at(stamp)) {
+    ego_gap_ = false;
+    return *state;
+  }
+  EgoState state = ego_.at(ego_.latest()).value_or(EgoPose::parked(stamp, setup_.ego.minimum));
+  const double gap = stamp - state.stamp;
+  if (!ego_gap_) {
+    events_.warn(stamp, event_kind::kEgoGap,
+                 fmt::format("no ego pose for {:.3f} s: extrapolated", gap));
+  }
+  ego_gap_ = true;
+  state.T_world_ego.translation().head<2>() += gap * state.velocity;
+  state.uncertainty.sigma_xy += kEgoGapDrift * std::abs(gap);
+  state.stamp = stamp;
+  return state;
+}
+
+std::int64_t Pipeline::frameNumberAt(Stamp stamp) const {
+  for (auto it = frame_numbers_.rbegin(); it != frame_numbers_.rend(); ++it) {
+    if (std::abs(stamp - it->first) <= kSameInstant) return it->second;
+  }
+  return -1;
+}
+
+void Pipeline::processInstant(std::vector<SensorFrame> frames) {
+  if (frames.empty()) return;
+  const Stamp stamp = frames.front().stamp;
+  emitUntil(stamp);
+  const EgoState ego = egoAt(stamp);
+  const std::int64_t number = frameNumberAt(stamp);
+  bool output = false;
+  for (auto& frame : frames) {
+    const auto index = static_cast<std::size_t>(sensorIndex(frame.sensor));
+    frame.ego = ego;
+    frame.frame = number;
+    if (const auto scan = measure(frame, index)) update(*scan);
+    SensorState& state = states_[index];
+    if (state.lost) events_.add(stamp, event_kind::kSensorBack, frame.sensor + " is back");
+    state.lost = false;
+    state.last = stamp;
+    output = output || index == output_sensor_;
+  }
+  watchSensors(stamp);
+  last_instant_ = stamp;
+  if (setup_.run.output_rate > 0) {
+    if (!next_output_) next_output_ = stamp;
+  } else if (output) {
+    emit(ego, number);
+  }
+}
+
+std::optional<MeasurementScan> Pipeline::measure(SensorFrame& frame, std::size_t sensor) {
+  SensorState& state = states_[sensor];
+  if (state.ground && std::holds_alternative<LidarCloud>(frame.data)) {
+    const auto scope = timing_.stage("ground");
+    ground_ = state.ground->update(frame);
+  }
+  frame.ground = ground_;
+  const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
+  MeasurementScan scan = setup_.sensors[sensor].front_end->extract(frame);
+  if (scan.horizon) {
+    horizon_ = scan.horizon;
+    horizon_stamp_ = frame.stamp;
+  } else if (horizon_ && std::abs(frame.stamp - horizon_stamp_) <= kHorizonAge) {
+    scan.horizon = horizon_;
+  }
+  ++state.record.frames;
+  state.record.measurements += scan.measurements.size();
+  return scan;
+}
+
+void Pipeline::update(const MeasurementScan& scan) {
+  const auto scope = timing_.stage("filter");
+  tracker_.process(scan);
+}
+
+void Pipeline::watchSensors(Stamp now) {
+  for (auto& s : states_) {
+    if (s.lost || !s.last || now - *s.last <= setup_.run.sensor_timeout) continue;
+    s.lost = true;
+    events_.warn(now, event_kind::kSensorLost,
+                 fmt::format("{}: nothing for {:.3f} s", s.record.label, now - *s.last));
+  }
+}
+
+void Pipeline::emit(const EgoState& ego, std::int64_t frame) {
+  const auto scope = timing_.stage("scene");
+  ready_.push_back(scenes_.make(tracker_.mapHypothesis(), ego, frame));
+}
+
+void Pipeline::emitUntil(Stamp stamp) {
+  while (next_output_ && last_instant_ && *next_output_ < stamp) {
+    emit(egoAt(*next_output_), frameNumberAt(*next_output_));
+    next_output_ = *next_output_ + 1 / setup_.run.output_rate;
+  }
+}
+
+void Pipeline::finish() {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (setup_.sensors[i].active && states_[i].record.frames == 0) {
+      events_.warn(
+          std::nullopt, event_kind::kSensorMissing,
+          setup_.sensors[i].label + ": in use by the configuration, but nothing of it in the log");
+    }
+  }
+  for (const auto& [label, frames] : ignored_) {
+    events_.add(std::nullopt, event_kind::kSensorIgnored,
+                label + ": in the log, but not in the configuration", {{"frames", frames}});
+  }
+}
+
+std::vector<SensorRecord> Pipeline::sensorRecords() const {
+  std::vector<SensorRecord> records;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (setup_.sensors[i].active) records.push_back(states_[i].record);
+  }
+  return records;
+}
+
+}  // namespace perception

@@ -1,0 +1,124 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/app/FrameQueue.h"
+#include "libperception/filter/CRbpfTracker.h"
+#include "libperception/lidar/GroundPlane.h"
+#include "libperception/measurement/FrontEnd.h"
+#include "libperception/measurement/Sensing.h"
+#include "libperception/scene/EventLog.h"
+#include "libperception/scene/RunRecord.h"
+#include "libperception/scene/RunTiming.h"
+#include "libperception/scene/SceneFromPosterior.h"
+#include "libperception/sensors/EgoPose.h"
+#include "libperception/sensors/FromObservation.h"
+
+namespace perception {
+
+/// [run]: what is run on a log, and when scenes are put out.
+struct RunParams {
+  unsigned long long seed = 1;
+  std::string sensors = "C+L+R";  ///< modalities in use: letters joined by +
+  Proposal association = Proposal::kSampled;
+  std::string
+      output_sensor;  ///< scenes at its scans; empty: the first lidar in use, else the first sensor
+  double output_rate = 0;       ///< [Hz] instead: scenes at a fixed rate; 0 = at scans
+  double reorder_window = 0.2;  ///< [s] how late an observation may come (SPEC 1)
+  double sensor_timeout = 1;    ///< [s] of silence after which a sensor counts as lost
+  double clock_jump = 5;        ///< [s] back: a new epoch; forward: a gap worth an event
+
+  void visit(ParamVisitor& v);
+};
+
+/// All that a run reads from its INI.
+struct PipelineSetup {
+  /// One [sensor.LABEL].
+  struct Sensor {
+    std::string label;
+    SensingParams params;
+    std::shared_ptr<const FrontEnd> front_end;
+    bool active = false;  ///< its modality is in use
+  };
+  RunParams run;
+  FilterModel model;
+  ParticleFilterParams particles;
+  SceneParams scene;
+  EgoPoseParams ego;
+  GroundParams ground;
+  std::vector<Sensor> sensors;  ///< in the order of the INI
+
+  /// Reads every section; faults go to the configuration (throw them with Config::finish()).
+  /// `sensors`, when not empty, wins over [run] sensors, and `seed`, when given, over [run] seed;
+  /// `rate` > 0 over [run] output_rate.
+  static PipelineSetup read(Config& config, const std::string& sensors = "",
+                            std::optional<std::uint64_t> seed = std::nullopt, double rate = 0);
+};
+
+/// From observations to scenes: the one place where sensors, ribs, filter and scene meet. Feed a
+/// log's observations with add(), take scenes with next() until it gives none, and at the end of
+/// the log again with `flush`.
+class Pipeline {
+ public:
+  Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing);
+
+  void add(const mrpt::obs::CObservation& observation);
+  std::optional<Scene> next(bool flush = false);
+  /// Reports what is only known at the end: sensors that never spoke, labels that nobody asked for.
+  void finish();
+
+  const CRbpfTracker& tracker() const { return tracker_; }
+  const PipelineSetup& setup() const { return setup_; }
+  std::optional<Stamp> firstStamp() const { return first_stamp_; }  ///< of the log; t = 0
+  Stamp lastStamp() const { return last_stamp_; }
+  std::vector<SensorRecord> sensorRecords() const;
+  std::uint64_t objects() const { return scenes_.objectsSoFar(); }
+
+ private:
+  struct SensorState {
+    SensorRecord record;
+    std::optional<Stamp> last;
+    bool lost = false;
+    std::unique_ptr<GroundEstimator> ground;  ///< lidars only
+  };
+
+  void addTime(Stamp stamp);
+  void addFrame(const mrpt::obs::CObservation& observation);
+  int sensorIndex(const std::string& label) const;
+  void processInstant(std::vector<SensorFrame> frames);
+  EgoState egoAt(Stamp stamp);
+  std::int64_t frameNumberAt(Stamp stamp) const;
+  std::optional<MeasurementScan> measure(SensorFrame& frame, std::size_t sensor);
+  void update(const MeasurementScan& scan);
+  void watchSensors(Stamp now);
+  void emit(const EgoState& ego, std::int64_t frame);
+  void emitUntil(Stamp stamp);
+  void startEpoch(Stamp stamp, double back);
+
+  PipelineSetup setup_;
+  EventLog& events_;
+  RunTiming& timing_;
+  CRbpfTracker tracker_;
+  SceneFromPosterior scenes_;
+  EgoPose ego_;
+  FrameQueue queue_;
+  std::vector<SensorState> states_;  ///< as setup_.sensors
+  std::deque<Scene> ready_;
+  std::deque<std::pair<Stamp, std::int64_t>> frame_numbers_;  ///< recent
+  std::map<std::string, std::uint64_t> ignored_;  ///< frames by label that no section asks for
+  GroundPlane ground_;                            ///< newest, ego frame
+  std::shared_ptr<const Horizon> horizon_;
+  Stamp horizon_stamp_;
+  std::size_t output_sensor_ = 0;
+  std::optional<Stamp> first_stamp_, next_output_, last_instant_;
+  Stamp last_stamp_;
+  bool parked_said_ = false, ego_gap_ = false;
+};
+
+}  // namespace perception

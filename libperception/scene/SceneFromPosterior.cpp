@@ -1,0 +1,108 @@
+#include "libperception/scene/SceneFromPosterior.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/filter/MotionModels.h"
+#include "libperception/filter/Prediction.h"
+
+namespace perception {
+namespace {
+
+/// [m/s] an object without a heading of its own points where it goes once it goes this fast.
+constexpr double kHeadingFromSpeed = 0.5;
+
+/// Mean and covariance of (x, y, vx, vy) over the classes (moment matching).
+struct Mixture {
+  Vector4 mean = Vector4::Zero();
+  Matrix4 covariance = Matrix4::Zero();
+};
+
+Mixture mixtureOf(const Track& track, const FilterModel& model, const std::vector<double>& p) {
+  Mixture out;
+  std::vector<Kinematics> kinematics;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    kinematics.push_back(kinematicsOf(model.classes[j], track.bank[static_cast<std::size_t>(j)]));
+    out.mean += p[static_cast<std::size_t>(j)] * kinematics.back().q.head<4>();
+  }
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    const Vector4 d = kinematics[j].q.head<4>() - out.mean;
+    const Matrix4 J = kinematics[j].J.topRows<4>();
+    out.covariance += p[j] * (J * track.bank[j].P * J.transpose() + d * d.transpose());
+  }
+  return out;
+}
+
+}  // namespace
+
+void SceneParams::visit(ParamVisitor& v) {
+  v.real("min_existence", min_existence, {0, 1}, "", "objects below are not put out");
+  v.real("classified_at", classified_at, {0.5, 1}, "",
+         "class probability from which an object is classified");
+}
+
+std::uint64_t SceneFromPosterior::numberOf(std::uint64_t track_id) {
+  return numbers_.try_emplace(track_id, numbers_.size() + 1).first->second;
+}
+
+SceneObject SceneFromPosterior::objectOf(const Track& track) {
+  SceneObject o;
+  o.id = numberOf(track.id);
+  o.class_probability = classProbabilities(track);
+  o.class_id = track.likeliestClass();
+  const auto best = static_cast<std::size_t>(o.class_id);
+  o.classified = o.class_probability[best] >= params_.classified_at;
+  o.existence = track.existence;
+
+  const Mixture mixture = mixtureOf(track, model_, o.class_probability);
+  o.position << mixture.mean[0], mixture.mean[1], track.base_z.mean;
+  o.velocity = mixture.mean.tail<2>();
+  o.sd_x = std::sqrt(mixture.covariance(0, 0));
+  o.sd_y = std::sqrt(mixture.covariance(1, 1));
+
+  const ClassFilter& f = track.bank[best];
+  const double speed = o.velocity.norm();
+  const Vector2 along = speed > 1e-9 ? Vector2(o.velocity / speed) : Vector2(1, 0);
+  const Matrix2 velocity_covariance = mixture.covariance.bottomRightCorner<2, 2>();
+  o.has_yaw = f.oriented;
+  if (f.oriented) {
+    o.yaw = f.x[3];
+    o.sd_yaw = std::sqrt(f.P(3, 3));
+    o.speed = f.x[2];
+    o.sd_speed = std::sqrt(f.P(2, 2));
+  } else {
+    o.speed = speed;
+    o.sd_speed = std::sqrt(along.dot(velocity_covariance * along));
+    const bool moves = speed >= kHeadingFromSpeed;
+    const Vector2 across(-along.y(), along.x());
+    o.yaw = moves ? std::atan2(along.y(), along.x()) : 0;
+    o.sd_yaw =
+        moves ? std::min(kPi, std::sqrt(across.dot(velocity_covariance * across)) / speed) : kPi;
+  }
+  o.length = f.extent.length;
+  o.width = f.extent.width;
+  o.height = track.height.mean;
+  for (const auto modality : {Modality::kCamera, Modality::kLidar, Modality::kRadar}) {
+    const Stamp hit = track.last_hit[modalityIndex(modality)];
+    if (hit.ns != 0) o.last_hit[modality] = hit;
+  }
+  return o;
+}
+
+Scene SceneFromPosterior::make(const Hypothesis& hypothesis, const EgoState& ego,
+                               std::int64_t frame) {
+  Scene scene;
+  scene.stamp = ego.stamp;
+  scene.frame = frame;
+  scene.ego = ego;
+  for (const auto& handle : hypothesis.tracks) {
+    if (handle->existence < params_.min_existence) continue;
+    scene.objects.push_back(
+        objectOf(ego.stamp > handle->stamp ? predictTrack(*handle, ego.stamp, model_) : *handle));
+  }
+  std::sort(scene.objects.begin(), scene.objects.end(),
+            [](const SceneObject& a, const SceneObject& b) { return a.id < b.id; });
+  return scene;
+}
+
+}  // namespace perception

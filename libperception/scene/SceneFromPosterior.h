@@ -1,0 +1,42 @@
+#pragma once
+#include <unordered_map>
+
+#include "libperception/core/ParamSet.h"
+#include "libperception/filter/FilterModel.h"
+#include "libperception/filter/Track.h"
+#include "libperception/scene/Scene.h"
+
+namespace perception {
+
+/// [scene]: what of the posterior becomes the output.
+struct SceneParams {
+  double min_existence = 0.5;  ///< objects below are not put out (SPEC 5.11)
+  double classified_at =
+      0.95;  ///< class probability from which an object counts as classified (the paper's)
+
+  void visit(ParamVisitor& v);
+};
+
+/// Reduces the most probable hypothesis to a list of objects. Gives every track a small number at
+/// its first output, and keeps it; that is its only state.
+class SceneFromPosterior {
+ public:
+  SceneFromPosterior(FilterModel model, SceneParams params)
+      : model_(std::move(model)), params_(params) {}
+
+  /// The objects at `ego.stamp`: a prediction of a copy when that is later than the tracks. The
+  /// mean over classes of position and velocity, size and heading of the most probable class.
+  Scene make(const Hypothesis& hypothesis, const EgoState& ego, std::int64_t frame);
+
+  std::uint64_t objectsSoFar() const { return numbers_.size(); }
+
+ private:
+  SceneObject objectOf(const Track& track);
+  std::uint64_t numberOf(std::uint64_t track_id);
+
+  FilterModel model_;
+  SceneParams params_;
+  std::unordered_map<std::uint64_t, std::uint64_t> numbers_;
+};
+
+}  // namespace perception

@@ -1,0 +1,50 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libperception/core/ObjectClass.h"
+#include "libperception/core/Random.h"
+#include "libperception/measurement/PositionModel.h"
+
+namespace perception {
+
+/// Simulated encounters on the level of positions, to study association alone: a vehicle at rest at
+/// the origin, a field of view of 20 m to the front, a lidar at 10 Hz and a camera at 5 Hz that see
+/// (x, y) and a label.
+struct EncounterScene {
+  struct Object {
+    bool car = false;           ///< else a pedestrian
+    std::vector<Vector2> path;  ///< [m] at 10 Hz
+  };
+  std::vector<Object> objects;
+  double step = 0.1;  ///< [s]
+  std::size_t instants() const { return objects.empty() ? 0 : objects.front().path.size(); }
+};
+
+/// By name: A (an oncoming car stops and passes), B (a crossing car), Cd (two pedestrians cross at
+/// d metres), D (four pedestrians in a crowd, two parked cars), Es_p (two meet at s metres, pause p
+/// seconds, pass or turn back). Throws Error(kUsage) for a name that is none.
+EncounterScene encounterScene(const std::string& name, Rng& rng);
+
+/// What makes a scene hard.
+struct EncounterConditions {
+  double detection_factor = 1;  ///< times P_D
+  double clutter_factor = 1;    ///< times kappa
+  double merge_distance = 0;  ///< [m] objects of a class nearer than this merge with probability .8
+};
+
+/// Pedestrian and car with the noise values of that study; `pedestrian_psd` [m^2/s^3].
+ClassTable encounterClasses(double pedestrian_psd = 0.25);
+/// The two sensors; P_D, kappa and label tables after the paper's recall and precision.
+std::shared_ptr<const PositionModel> encounterLidar(const EncounterConditions& conditions);
+std::shared_ptr<const PositionModel> encounterCamera(const EncounterConditions& conditions);
+
+/// All scans of the scene in order of time; scan.frame is the instant.
+std::vector<MeasurementScan> simulateEncounter(const EncounterScene& scene,
+                                               const EncounterConditions& conditions, Rng& rng);
+
+/// Whether an object at `p` is in the field of view.
+inline bool encounterInView(const Vector2& p) { return p.x() > 0 && p.norm() < 20; }
+
+}  // namespace perception
