@@ -1,0 +1,153 @@
+#include "libperception/filter/MotionModels.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "libperception/core/Random.h"
+#include "tests/support/FilterWorld.h"
+
+namespace perception {
+namespace {
+
+ObjectClass wheeled() {
+  ObjectClass c;
+  c.name = "car";
+  c.motion = Motion::kWheeled;
+  c.accel_psd = 1.0;
+  c.yaw_rate_psd = 0.0685;
+  c.position_psd = 0.01;
+  return c;
+}
+
+ClassFilter orientedFilter(double x, double y, double v, double theta) {
+  ClassFilter f;
+  f.x << x, y, v, theta;
+  f.P.diagonal() << 0.2, 0.3, 0.5, 0.04;
+  f.P(0, 2) = f.P(2, 0) = 0.05;
+  f.P(1, 3) = f.P(3, 1) = -0.02;
+  f.oriented = true;
+  return f;
+}
+
+TEST(ConstantVelocity, StepsCompose) {
+  const auto c = test::linearClasses()[0];
+  ClassFilter once;
+  once.x << 1, 2, 0.5, -0.3;
+  once.P = 0.1 * Matrix4::Identity();
+  ClassFilter twice = once;
+  predictClassFilter(c, 0.7, once);
+  predictClassFilter(c, 0.3, twice);
+  predictClassFilter(c, 0.4, twice);
+  EXPECT_LT((once.x - twice.x).norm(), 1e-12);
+  EXPECT_LT((once.P - twice.P).norm(), 1e-12);
+}
+
+TEST(Wheeled, NoiseIsTheIntegralOfItsLinearisation) {
+  // Van Loan by fine steps of the linear system at fixed v, theta: d/dt Q = A Q + Q A' + G.
+  const double v = 8, theta = 0.7, dt = 0.2;
+  const ObjectClass c = wheeled();
+  Matrix4 A = Matrix4::Zero();
+  A(0, 2) = std::cos(theta);
+  A(1, 2) = std::sin(theta);
+  A(0, 3) = -v * std::sin(theta);
+  A(1, 3) = v * std::cos(theta);
+  Matrix4 G = Matrix4::Zero();
+  G.diagonal() << c.position_psd, c.position_psd, c.accel_psd, c.yaw_rate_psd;
+  Matrix4 Q = Matrix4::Zero();
+  const int steps = 200000;
+  const double h = dt / steps;
+  for (int i = 0; i < steps; ++i) Q += h * (A * Q + Q * A.transpose() + G);
+  ClassFilter f;
+  f.x << 0, 0, v, theta;
+  f.oriented = true;
+  predictClassFilter(c, dt, f);
+  EXPECT_LT((f.P - Q).cwiseAbs().maxCoeff(), 1e-5 * Q.cwiseAbs().maxCoeff());
+}
+
+TEST(Wheeled, DrivesAlongItsHeading) {
+  ClassFilter f = orientedFilter(1, 1, 10, radians(30));
+  f.P *= 1e-6;
+  predictClassFilter(wheeled(), 0.1, f);
+  EXPECT_NEAR(f.x[0], 1 + std::cos(radians(30)), 1e-12);
+  EXPECT_NEAR(f.x[1], 1 + 0.5, 1e-12);
+}
+
+TEST(Wheeled, ReversalIsAnExactSymmetry) {
+  ClassFilter forward = orientedFilter(3, -2, 4, 2.8);
+  ClassFilter backward = forward;
+  reverse(backward);
+  const auto kf = kinematicsOf(wheeled(), forward), kb = kinematicsOf(wheeled(), backward);
+  EXPECT_LT((kf.q.head<4>() - kb.q.head<4>()).norm(), 1e-12);
+  predictClassFilter(wheeled(), 0.15, forward);
+  predictClassFilter(wheeled(), 0.15, backward);
+  reverse(backward);
+  EXPECT_LT((forward.x.head<3>() - backward.x.head<3>()).norm(), 1e-12);
+  EXPECT_NEAR(wrapAngle(forward.x[3] - backward.x[3]), 0, 1e-12);
+  EXPECT_LT((forward.P - backward.P).norm(), 1e-12);
+}
+
+TEST(Wheeled, OrientingByVelocityKeepsWhatIsKnown) {
+  ClassFilter f;
+  f.x << 5, 6, 3, 4;
+  f.P.diagonal() << 0.1, 0.1, 0.2, 0.2;
+  f.P(0, 2) = f.P(2, 0) = 0.05;
+  ClassFilter g = f;
+  orientByVelocity(g);
+  EXPECT_TRUE(g.oriented);
+  EXPECT_NEAR(g.x[2], 5, 1e-12);
+  EXPECT_NEAR(g.x[3], std::atan2(4, 3), 1e-12);
+  // Back through the kinematics' Jacobian: the same velocity covariance.
+  const auto k = kinematicsOf(wheeled(), g);
+  const Matrix4 back = (k.J.topRows<4>() * g.P * k.J.topRows<4>().transpose());
+  EXPECT_LT((back - f.P).norm(), 1e-12);
+}
+
+TEST(Wheeled, OrientingByAxisPointsWhereItMoves) {
+  ClassFilter f;
+  f.x << 0, 0, -2, 0.1;
+  f.P = 0.3 * Matrix4::Identity();
+  orientByAxis(0.05, 0.01, f);
+  EXPECT_NEAR(std::abs(wrapAngle(f.x[3] - (0.05 + kPi))), 0, 1e-12);
+  EXPECT_GT(f.x[2], 0);
+}
+
+TEST(MotionModels, KinematicsJacobianIsTheDerivative) {
+  Rng rng({3, 0, 0, 0});
+  for (int trial = 0; trial < 1000; ++trial) {
+    ClassFilter f = orientedFilter(rng.normal(0, 10), rng.normal(0, 10), rng.normal(0, 8), rng.uniform(-3, 3));
+    const auto k = kinematicsOf(wheeled(), f);
+    for (int i = 0; i < 4; ++i) {
+      const double h = 1e-6;
+      ClassFilter up = f, down = f;
+      up.x[i] += h;
+      down.x[i] -= h;
+      const Vector5 numeric = (kinematicsOf(wheeled(), up).q - kinematicsOf(wheeled(), down).q) / (2 * h);
+      ASSERT_LT((numeric - k.J.col(i)).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(MotionModels, CovariancesStayPositiveOverTenThousandSteps) {
+  Rng rng({4, 0, 0, 0});
+  for (const auto& c : {wheeled(), test::linearClasses()[0], test::linearClasses()[1]}) {
+    ClassFilter f = orientedFilter(0, 0, 3, 1);
+    if (c.motion != Motion::kWheeled) f.oriented = false;
+    if (c.motion == Motion::kStatic) f.P.bottomRightCorner<2, 4>().setZero(), f.P.rightCols<2>().setZero();
+    for (int i = 0; i < 10000; ++i) {
+      predictClassFilter(c, rng.uniform(0.01, 0.4), f);
+      // A position fix, so that the covariance does not just grow.
+      const Eigen::Matrix<double, 4, 2> K =
+          f.P.leftCols<2>() * (f.P.topLeftCorner<2, 2>() + 0.04 * Matrix2::Identity()).inverse();
+      f.x += K * Vector2(rng.normal(0, 0.2), rng.normal(0, 0.2));
+      f.P -= (K * f.P.topRows<2>()).eval();
+      f.P = (0.5 * (f.P + f.P.transpose())).eval();
+      const double smallest = Eigen::SelfAdjointEigenSolver<Matrix4>(f.P).eigenvalues().minCoeff();
+      ASSERT_GE(smallest, -1e-9) << c.name << " at step " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace perception
