@@ -1,0 +1,254 @@
+#include "libperception/evaluation/Evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace perception {
+namespace {
+
+// Ranges of the paper's camera (SPEC 11, paper table on camera resolution, 2k images) [m].
+constexpr double kCameraCarRange = 15, kCameraPersonRange = 10;
+
+// [m] Rounding of a point of the rectangle itself.
+constexpr double kOnFootprint = 1e-6;
+
+// A truth object at a scene, with what the vehicle sees of it.
+struct SeenTruth {
+  const TruthObject* object;
+  ClassId class_id;
+  Footprint footprint;
+  GroundView view;
+  TruthUse use;
+};
+
+// An estimate likewise.
+struct SeenEstimate {
+  const SceneObject* object;
+  Footprint footprint;
+  GroundView view;
+};
+
+std::string sensorSet(const TrackedRun& run) {
+  std::set<char> letters;
+  for (const Scene& scene : run.scenes) {
+    for (const SceneObject& object : scene.objects) {
+      for (const auto& hit : object.last_hit) letters.insert(static_cast<char>(hit.first));
+    }
+  }
+  return {letters.begin(), letters.end()};
+}
+
+std::vector<Vector2> centres(const std::vector<SeenTruth>& truth) {
+  std::vector<Vector2> result;
+  for (const SeenTruth& t : truth) result.push_back(t.footprint.centre);
+  return result;
+}
+
+std::vector<Vector2> centres(const std::vector<SeenEstimate>& estimates) {
+  std::vector<Vector2> result;
+  for (const SeenEstimate& e : estimates) result.push_back(e.footprint.centre);
+  return result;
+}
+
+// Near an object of the truth: within `exclusion` of its centre or on its footprint (a tram is
+// longer than that).
+bool isNear(const SeenTruth& truth, const Vector2& point, double exclusion) {
+  return (truth.footprint.centre - point).norm() <= exclusion ||
+         (closestPoint(truth.footprint, point) - point).norm() <= kOnFootprint;
+}
+
+Match makeMatch(const SeenTruth& truth, const SeenEstimate& estimate) {
+  const SceneObject& e = *estimate.object;
+  const TruthObject& t = *truth.object;
+  Match match;
+  match.id = e.id;
+  match.class_id = e.class_id;
+  match.classified = e.classified;
+  match.probability = e.class_probability[static_cast<std::size_t>(e.class_id)];
+  match.distance = (estimate.footprint.centre - truth.footprint.centre).norm();
+  match.view = estimate.view;
+  if (std::isfinite(t.vx) && std::isfinite(t.vy)) {
+    match.speed_error = e.velocity.norm() - std::hypot(t.vx, t.vy);
+    match.velocity_error = (e.velocity - Vector2(t.vx, t.vy)).norm();
+  }
+  if (e.has_yaw && std::isfinite(t.yaw)) match.heading_error = wrapAngle(e.yaw - t.yaw);
+  return match;
+}
+
+// All steps for one run.
+class Evaluator {
+ public:
+  Evaluator(const TrackedRun& run, const EvaluationOptions& options)
+      : run_(run), options_(options) {
+    result_.class_names = run.class_names;
+    for (const std::string& name : run.class_names) {
+      result_.named.push_back(std::find(options.unnamed.begin(), options.unnamed.end(), name) ==
+                              options.unnamed.end());
+    }
+    result_.sensors = options.sensors.empty() ? sensorSet(run) : options.sensors;
+  }
+
+  void add(const TruthAtScene& instant) {
+    const Scene& scene = run_.scenes[instant.scene];
+    const std::vector<SeenEstimate> estimates = see(scene);
+    std::vector<SeenTruth> counted, others;
+    for (const TruthObject& object : instant.objects) {
+      SeenTruth seen = see(object, scene);
+      ++result_.truth_use[static_cast<std::size_t>(seen.use)];
+      (seen.use == TruthUse::kCounts ? counted : others).push_back(seen);
+    }
+    InstantFigures figures;
+    figures.frame = scene.frame;
+    figures.t = scene.stamp - run_.first_stamp;
+    figures.truth = counted.size();
+    countOutputs(estimates, counted, others, figures);
+    setDistances(estimates, counted, others, figures);
+    addSamples(estimates, counted, figures.t);
+    result_.instants.push_back(std::move(figures));
+  }
+
+  Evaluation take() { return std::move(result_); }
+
+ private:
+  SeenTruth see(const TruthObject& object, const Scene& scene) const {
+    SeenTruth seen{&object,
+                   classOfTruth(object.type, run_.class_names),
+                   makeFootprint(object.position, object.yaw, object.length, object.width),
+                   {},
+                   {}};
+    seen.view = viewFrom(scene.ego.T_world_ego, seen.footprint);
+    seen.use = useOf(object, seen.view, seen.class_id, options_.selection);
+    // A truth object may be of a class that is not named: it is no more counted than such an
+    // output.
+    if (seen.use == TruthUse::kCounts && !isNamed(seen.class_id)) seen.use = TruthUse::kNoClass;
+    return seen;
+  }
+
+  std::vector<SeenEstimate> see(const Scene& scene) const {
+    std::vector<SeenEstimate> seen;
+    for (const SceneObject& o : scene.objects) {
+      const Footprint footprint = makeFootprint(o.position, o.yaw, o.length, o.width);
+      seen.push_back({&o, footprint, viewFrom(scene.ego.T_world_ego, footprint)});
+    }
+    return seen;
+  }
+
+  bool isNamed(ClassId c) const { return result_.named[static_cast<std::size_t>(c)]; }
+  bool isNamedInSector(const SeenEstimate& e) const {
+    return isNamed(e.object->class_id) &&
+           inSector(e.view, options_.selection.range, options_.selection.fov);
+  }
+  bool anyNear(const std::vector<SeenTruth>& truth, const SeenEstimate& e) const {
+    return std::any_of(truth.begin(), truth.end(), [&](const SeenTruth& t) {
+      return isNear(t, e.footprint.centre, options_.exclusion);
+    });
+  }
+
+  void countOutputs(const std::vector<SeenEstimate>& estimates,
+                    const std::vector<SeenTruth>& counted, const std::vector<SeenTruth>& others,
+                    InstantFigures& figures) const {
+    figures.outputs.resize(result_.class_names.size());
+    for (const SeenEstimate& e : estimates) {
+      if (!isNamedInSector(e)) continue;
+      const bool is_false = !anyNear(counted, e) && !anyNear(others, e);
+      OutputCounts& counts = figures.outputs[static_cast<std::size_t>(e.object->class_id)];
+      ++counts.named;
+      if (is_false) ++counts.false_;
+      if (!e.object->classified) continue;
+      ++counts.classified_named;
+      if (is_false) ++counts.classified_false;
+    }
+  }
+
+  // The truth set is the counted one. Its estimates: of named classes, those that pair with it
+  // one-to-one wherever they stand, and of the rest those inside the sector but not near a truth
+  // that does not count (it may well be theirs).
+  void setDistances(const std::vector<SeenEstimate>& estimates,
+                    const std::vector<SeenTruth>& counted, const std::vector<SeenTruth>& others,
+                    InstantFigures& figures) const {
+    std::vector<SeenEstimate> named;
+    for (const SeenEstimate& e : estimates) {
+      if (isNamed(e.object->class_id)) named.push_back(e);
+    }
+    std::vector<bool> paired(named.size(), false);
+    for (const int e :
+         match(centres(counted), centres(named), options_.cutoff, Pairing::kOneToOne)) {
+      if (e >= 0) paired[static_cast<std::size_t>(e)] = true;
+    }
+    std::vector<Vector2> set;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      if (paired[i] || (isNamedInSector(named[i]) && !anyNear(others, named[i]))) {
+        set.push_back(named[i].footprint.centre);
+      }
+    }
+    figures.estimates = set.size();
+    figures.gospa = gospa(centres(counted), set, options_.cutoff);
+    figures.ospa = ospa(centres(counted), set, options_.cutoff);
+  }
+
+  // Denominator B: the part of the sector that the sensor set can see. A lidar sees all of it;
+  // without lidar the camera's range holds (SPEC 11), also where radar helps.
+  bool inSensorRange(const SeenTruth& truth) const {
+    const std::string& sensors = result_.sensors;
+    if (sensors.empty() || sensors.find('L') != std::string::npos) return true;
+    const std::string& name = result_.class_names[static_cast<std::size_t>(truth.class_id)];
+    const bool person = name == "pedestrian" || name == "cyclist";
+    return truth.view.range <= (person ? kCameraPersonRange : kCameraCarRange);
+  }
+
+  void addSamples(const std::vector<SeenEstimate>& estimates, const std::vector<SeenTruth>& counted,
+                  double t) {
+    std::array<std::vector<int>, kPairings> pairs;
+    for (int p = 0; p < kPairings; ++p) {
+      pairs[static_cast<std::size_t>(p)] =
+          match(centres(counted), centres(estimates), options_.tolerance, static_cast<Pairing>(p));
+    }
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+      const SeenTruth& truth = counted[i];
+      TruthSample sample;
+      sample.instant = result_.instants.size();
+      sample.t = t;
+      sample.id = truth.object->id;
+      sample.type = truth.object->type;
+      sample.class_id = truth.class_id;
+      sample.view = truth.view;
+      sample.in_sensor_range = inSensorRange(truth);
+      for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const int e = pairs[p][i];
+        if (e >= 0) sample.match[p] = makeMatch(truth, estimates[static_cast<std::size_t>(e)]);
+      }
+      result_.samples.push_back(std::move(sample));
+    }
+  }
+
+  const TrackedRun& run_;
+  const EvaluationOptions& options_;
+  Evaluation result_;
+};
+
+}  // namespace
+
+OutputCounts InstantFigures::allOutputs() const {
+  OutputCounts sum;
+  for (const OutputCounts& counts : outputs) {
+    sum.named += counts.named;
+    sum.false_ += counts.false_;
+    sum.classified_named += counts.classified_named;
+    sum.classified_false += counts.classified_false;
+  }
+  return sum;
+}
+
+Evaluation evaluate(const TrackedRun& run, const GroundTruth& truth,
+                    const EvaluationOptions& options) {
+  TruthAlignment alignment = alignTruth(run, truth, options.alignment);
+  Evaluator evaluator(run, options);
+  for (const TruthAtScene& instant : alignment.instants) evaluator.add(instant);
+  alignment.instants.clear();
+  Evaluation evaluation = evaluator.take();
+  evaluation.alignment = std::move(alignment);
+  return evaluation;
+}
+
+}  // namespace perception

@@ -1,0 +1,111 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/evaluation/Evaluation.h"
+
+namespace perception {
+
+/// A figure; nothing where nothing can be said ("n/a": no truth, no match), never 0 or NaN instead.
+using Figure = std::optional<double>;
+
+/// The paper's table and its relatives for a class or all of them, one pairing.
+struct TrackingFigures {
+  std::size_t active = 0;  ///< counted truth objects over all instants (denominator A)
+  std::size_t in_sensor_range = 0, returns_in_sensor_range = 0;  ///< of these (denominator B)
+  std::size_t first_to_last =
+      0;  ///< active from each object's first to its last tracked instant (denominator C)
+  std::size_t returns = 0;                 ///< instants tracked: "Number of Returns"
+  Figure tracked_a, tracked_b, tracked_c;  ///< returns over A, B, C
+  Figure range_rms;                   ///< [m] to the closest point of the footprint (the paper's)
+  Figure centre_range_rms;            ///< [m] to the centre
+  Figure bearing_rms;                 ///< [rad] of the centre
+  Figure position_rms;                ///< [m] between the centres
+  Figure speed_rms;                   ///< [m/s] magnitudes
+  Figure velocity_rms;                ///< [m/s] vectors
+  Figure heading_rms;                 ///< [rad]
+  Figure heading_reversed;            ///< share of headings more than 90 deg off
+  Figure correct, mis, unclassified;  ///< shares of the returns; they sum to 1
+  std::size_t id_switches =
+      0;  ///< the matched id is another one than at the object's last tracked instant
+  std::size_t fragmentations = 0;  ///< gaps: active but not tracked between two tracked instants
+};
+
+/// Figures over all classes (`class_id` < 0) or one.
+TrackingFigures trackingFigures(const Evaluation& evaluation, Pairing pairing,
+                                ClassId class_id = -1);
+
+/// How one truth object fared.
+struct ObjectTimeline {
+  std::int64_t id = -1;
+  std::string type;
+  ClassId class_id = 0;
+  double first_active = 0, last_active = 0;  ///< [s]
+  std::size_t active = 0, returns = 0;
+  Figure first_tracked;            ///< [s]
+  Figure time_to_first_track;      ///< [s] from first_active
+  Figure tracked;                  ///< share of the active instants
+  std::vector<std::uint64_t> ids;  ///< that tracked it, in order of first use
+  std::size_t id_switches = 0, fragmentations = 0;
+  std::size_t first_to_last = 0;  ///< active instants from the first to the last tracked one
+};
+
+/// One for each truth object (with an id) that was ever counted, by first_active, then id.
+std::vector<ObjectTimeline> objectTimelines(const Evaluation& evaluation, Pairing pairing);
+
+/// Truth type against estimated class over all counted truth objects.
+struct Confusion {
+  struct Row {
+    std::vector<std::size_t> classified;  ///< by class: probability >= .95
+    std::size_t unclassified = 0, missed = 0;
+  };
+  std::map<std::string, Row> by_type;
+};
+Confusion confusion(const Evaluation& evaluation, Pairing pairing);
+
+/// False objects: outputs as a named class inside the sector without truth of any type near.
+struct FalseObjectFigures {
+  std::size_t instants = 0;
+  OutputCounts counts;
+  Figure per_instant, share;                        ///< share: of all such outputs
+  Figure classified_per_instant, classified_share;  ///< the same of outputs with probability >= .95
+};
+/// Over all classes (`class_id` < 0) or one.
+FalseObjectFigures falseObjectFigures(const Evaluation& evaluation, ClassId class_id = -1);
+
+/// GOSPA and OSPA over the instants that have a truth object or an estimate.
+struct SetFigures {
+  std::size_t instants = 0;
+  Figure gospa_mean, gospa_rms;          ///< [m] mean; root of the mean square
+  Figure localisation, missed, false_;   ///< [m^2] mean parts; they sum to gospa_rms^2
+  Figure missed_objects, false_objects;  ///< mean number an instant
+  Figure localisation_rms;               ///< [m] of the pairs
+  Figure ospa_mean;                      ///< [m]
+};
+SetFigures setFigures(const Evaluation& evaluation, double cutoff);
+
+/// How far the class probability can be believed: matched outputs by the probability of their most
+/// probable class.
+struct ReliabilityBin {
+  double low = 0, high = 0;
+  std::size_t count = 0;
+  Figure mean_probability, correct;  ///< stated; share whose class is the truth's
+};
+struct Reliability {
+  std::vector<ReliabilityBin> bins;  ///< equal width over [0, 1]
+  Figure calibration_error;          ///< mean of |stated - correct|, weighted by count
+};
+Reliability reliability(const Evaluation& evaluation, Pairing pairing);
+
+/// RMS difference in the number of objects between two runs (paper: against a run of 50 particles),
+/// at the instants that both have; nothing when there are none.
+struct CountDifference {
+  std::size_t instants = 0;
+  Figure all, classified;
+};
+CountDifference countDifference(const TrackedRun& run, const TrackedRun& reference);
+
+}  // namespace perception

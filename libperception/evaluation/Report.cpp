@@ -1,0 +1,93 @@
+#include "libperception/evaluation/Report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace perception {
+namespace {
+
+// Width on the screen: UTF-8 continuation bytes take no place.
+std::size_t widthOf(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
+  }));
+}
+
+std::string padded(const std::string& text, std::size_t width, bool left) {
+  const std::string space(width - std::min(width, widthOf(text)), ' ');
+  return left ? text + space : space + text;
+}
+
+std::string textTable(const ReportTable& table) {
+  std::vector<std::size_t> widths;
+  for (const std::string& cell : table.header) widths.push_back(widthOf(cell));
+  for (const auto& row : table.rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], widthOf(row[c]));
+  }
+  const auto line = [&](const std::vector<std::string>& cells) {
+    std::string text = " ";
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      text += " " + padded(cells[c], widths[c], c < table.labels) + " ";
+    return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+  };
+  std::size_t total = 0;
+  for (const std::size_t width : widths) total += width + 2;
+  std::string text =
+      table.title + "\n" + line(table.header) + "  " + std::string(total - 2, '-') + "\n";
+  for (const auto& row : table.rows) text += line(row);
+  for (const std::string& note : table.notes) text += "  * " + note + "\n";
+  return text;
+}
+
+// Markdown takes a bar for the end of a cell.
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
+    text.insert(at, "\\");
+  return text;
+}
+
+std::string markdownTable(const ReportTable& table) {
+  std::string text = "## " + table.title + "\n\n|";
+  for (const std::string& name : table.header) text += " " + cell(name) + " |";
+  text += "\n|";
+  for (std::size_t c = 0; c < table.header.size(); ++c) text += c < table.labels ? "---|" : "---:|";
+  text += "\n";
+  for (const auto& row : table.rows) {
+    text += "|";
+    for (const std::string& value : row) text += " " + cell(value) + " |";
+    text += "\n";
+  }
+  text += "\n";
+  for (const std::string& note : table.notes) text += "- " + note + "\n";
+  return text + "\n";
+}
+
+std::string scope(const EvaluationOptions& o) {
+  return fmt::format(
+      "Truth counts when its centre is within {:g} m of the vehicle and {:g} deg ahead (whole "
+      "angle), occluded <= "
+      "{}, lidar points >= {} (where counted), and it is not marked as to be ignored.",
+      o.selection.range, degrees(o.selection.fov), o.selection.max_occluded,
+      o.selection.min_points);
+}
+
+}  // namespace
+
+std::string textReport(const EvaluationReport& report) {
+  std::string text = report.command + "\n" + scope(report.options) + "\n\n";
+  for (const ReportTable& table : reportTables(report)) text += textTable(table) + "\n";
+  return text;
+}
+
+std::string markdownReport(const EvaluationReport& report) {
+  std::string text =
+      "# Evaluation\n\n```\n" + report.command + "\n```\n\n" + scope(report.options) + "\n\n";
+  for (const ReportTable& table : reportTables(report)) text += markdownTable(table);
+  if (!report.plots.empty()) text += "## Plots\n\n";
+  for (const std::string& plot : report.plots) text += fmt::format("![{0}](<{0}>)\n\n", plot);
+  return text;
+}
+
+}  // namespace perception

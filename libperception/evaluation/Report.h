@@ -1,0 +1,45 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/evaluation/Metrics.h"
+
+namespace perception {
+
+/// One run held against the truth.
+struct EvaluatedRun {
+  std::string name;  ///< as it stands in the tables
+  std::string dir;
+  Evaluation evaluation;
+  std::optional<CountDifference> count_difference;  ///< against EvaluationReport::reference
+};
+
+/// All that a report tells.
+struct EvaluationReport {
+  std::string command;    ///< the command line with every option that a figure depends on
+  std::string truth;      ///< path of the truth
+  std::string reference;  ///< path of the run that object counts are compared with; may be empty
+  EvaluationOptions options;
+  std::vector<EvaluatedRun> runs;
+  std::vector<std::string> plots;  ///< file names beside the report, for Markdown
+};
+
+/// A table of a report; the first `labels` columns are words, the others numbers.
+struct ReportTable {
+  std::string title;
+  std::vector<std::string> notes;  ///< definitions, one line each
+  std::vector<std::string> header;
+  std::size_t labels = 1;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// The tables of the report; the paper's table, its columns in its order, comes first.
+std::vector<ReportTable> reportTables(const EvaluationReport& report);
+
+std::string textReport(const EvaluationReport& report);
+std::string markdownReport(const EvaluationReport& report);
+/// Every figure of the tables, both pairings, by run; null where a table says n/a.
+std::string jsonReport(const EvaluationReport& report);
+
+}  // namespace perception
