@@ -1,0 +1,175 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "tests/architecture/SourceTree.h"
+
+namespace perception::test {
+namespace {
+
+// What a module may include besides itself. The spine is core -> measurement -> filter -> scene.
+const std::map<std::string, std::set<std::string>> kMayInclude = {
+    {"core", {}},
+    {"measurement", {"core"}},
+    {"filter", {"measurement", "core"}},
+    {"lidar", {"measurement", "core"}},
+    {"radar", {"measurement", "core"}},
+    {"vision", {"measurement", "core"}},
+    {"weather", {"measurement", "core"}},
+    {"scene", {"filter", "measurement", "core"}},
+    {"sensors", {"measurement", "core"}},
+    {"grid", {"core"}},
+    {"evaluation", {"scene", "measurement", "core"}},
+    {"simulation", {"sensors", "measurement", "core"}},
+    {"batch", {"scene", "evaluation", "core"}},
+    {"capture", {"sensors", "measurement", "core"}},
+    {"gui-offscreen", {"scene", "grid", "measurement", "core"}},
+    {"app",
+     {"core", "measurement", "filter", "lidar", "radar", "vision", "weather", "scene", "sensors",
+      "grid", "evaluation", "simulation", "batch", "gui-offscreen"}},
+    {"apps", {"app"}},
+};
+
+// Where only classes of MRPT's own kind (files CXxx) may know MRPT.
+const std::set<std::string> kWithoutMrpt = {"core", "measurement", "filter", "scene",
+                                            "grid", "lidar",       "radar",  "vision"};
+
+// Libraries that stay behind our own headers.
+const std::vector<std::string> kOnlyInSources = {"octomap/", "opencv2/", "GL/",     "GLES",
+                                                 "EGL/",     "embree3/", "embree4/"};
+
+// What core may know besides the standard library.
+const std::vector<std::string> kLibrariesOfCore = {"Eigen/", "unsupported/Eigen/", "fmt/",
+                                                   "Random123/"};
+
+bool beginsWith(const std::string& text, const std::string& start) {
+  return text.rfind(start, 0) == 0;
+}
+
+bool beginsWithAny(const std::string& text, const std::vector<std::string>& starts) {
+  return std::any_of(starts.begin(), starts.end(),
+                     [&](const std::string& s) { return beginsWith(text, s); });
+}
+
+std::string moduleOf(const std::string& path) {
+  if (beginsWith(path, "libperception/")) return firstFolders(path, 2).substr(14);
+  return firstFolders(path, 1);
+}
+
+// A class CXxx derives from one of MRPT's: CRbpfTracker.cpp.
+bool isMrptClassFile(const SourceFile& file) {
+  const std::string name = file.name();
+  return name.size() > 2 && name[0] == 'C' && std::isupper(static_cast<unsigned char>(name[1]));
+}
+
+// Why the include breaks a rule, or nothing.
+std::string faultOf(const SourceFile& file, const Include& include) {
+  const std::string module = moduleOf(file.path);
+  const auto allowed = kMayInclude.find(module);
+  if (allowed == kMayInclude.end()) return "the module is not in the table of layers";
+  if (include.quoted) {
+    const std::string other = moduleOf(include.path);
+    if (!std::filesystem::exists(std::filesystem::path(PERCEPTION_SOURCE_DIR) / include.path)) {
+      return "is no path from the root of the repository";
+    }
+    if (other != module && !allowed->second.count(other))
+      return module + " must not include " + other;
+    return "";
+  }
+  if (beginsWith(include.path, "mrpt/")) {
+    if (std::count(include.path.begin(), include.path.end(), '/') == 1 &&
+        include.path != "mrpt/version.h") {
+      return "is an umbrella header: name what is used";
+    }
+    if (kWithoutMrpt.count(module) && !isMrptClassFile(file) &&
+        !beginsWith(include.path, "mrpt/config/")) {
+      return "only files CXxx of " + module + " may include MRPT";
+    }
+  }
+  if (!file.isSource() && beginsWithAny(include.path, kOnlyInSources))
+    return "belongs into a source file";
+  if (module == "core" && include.path.find('/') != std::string::npos &&
+      !beginsWithAny(include.path, kLibrariesOfCore) && !beginsWith(include.path, "sys/")) {
+    return "core knows Eigen, fmt, Random123 and the standard library";
+  }
+  return "";
+}
+
+std::vector<SourceFile> ourSources() {
+  std::vector<SourceFile> sources;
+  for (const char* folder : {"libperception", "gui-offscreen", "apps"}) {
+    for (SourceFile& file : filesBelow(folder)) {
+      if (file.isHeader() || file.isSource()) sources.push_back(std::move(file));
+    }
+  }
+  return sources;
+}
+
+TEST(Layers, EveryIncludeKeepsTheRule) {
+  const auto sources = ourSources();
+  ASSERT_GT(sources.size(), 20u);
+  for (const SourceFile& file : sources) {
+    for (const Include& include : includesOf(file)) {
+      const std::string fault = faultOf(file, include);
+      EXPECT_EQ(fault, "") << file.path << ":" << include.line << ": " << include.path;
+    }
+  }
+}
+
+std::string faultOfLine(const std::string& path, const std::string& line) {
+  const SourceFile file{path, line + "\n"};
+  const auto includes = includesOf(file);
+  return includes.size() == 1 ? faultOf(file, includes[0]) : "(no include)";
+}
+
+TEST(Layers, TheCheckerFindsWhatIsForbidden) {
+  EXPECT_EQ(
+      faultOfLine("libperception/core/A.h", "#include \"libperception/measurement/Measurement.h\""),
+      "core must not include measurement");
+  EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "# include \"libperception/scene/Scene.h\""),
+            "filter must not include scene");
+  EXPECT_EQ(faultOfLine("libperception/scene/A.cpp", "#include \"Scene.h\""),
+            "is no path from the root of the repository");
+  EXPECT_EQ(faultOfLine("libperception/app/A.cpp", "#include <mrpt/obs.h>"),
+            "is an umbrella header: name what is used");
+  EXPECT_EQ(faultOfLine("libperception/filter/Step.cpp", "#include <mrpt/poses/CPose3D.h>"),
+            "only files CXxx of filter may include MRPT");
+  EXPECT_EQ(faultOfLine("libperception/filter/Chi.cpp", "#include <mrpt/poses/CPose3D.h>"),
+            "only files CXxx of filter may include MRPT");
+  EXPECT_EQ(faultOfLine("gui-offscreen/Labels.h", "#include <opencv2/core.hpp>"),
+            "belongs into a source file");
+  EXPECT_EQ(faultOfLine("libperception/core/A.cpp", "#include <nlohmann/json.hpp>"),
+            "core knows Eigen, fmt, Random123 and the standard library");
+  EXPECT_EQ(faultOfLine("libperception/newcomer/A.h", "#include <vector>"),
+            "the module is not in the table of layers");
+}
+
+TEST(Layers, TheCheckerAllowsWhatIsAllowed) {
+  EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "#include \"libperception/core/Angle.h\""),
+            "");
+  EXPECT_EQ(
+      faultOfLine("libperception/filter/CRbpfTracker.h", "#include <mrpt/bayes/CParticleFilter.h>"),
+      "");
+  EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "#include <mrpt/config/CConfigFile.h>"), "");
+  EXPECT_EQ(faultOfLine("libperception/sensors/A.h", "#include <mrpt/obs/CObservation.h>"), "");
+  EXPECT_EQ(faultOfLine("gui-offscreen/Labels.cpp", "#include <opencv2/core.hpp>"), "");
+  EXPECT_EQ(faultOfLine("libperception/core/Random.cpp", "#include <Random123/philox.h>"), "");
+}
+
+TEST(Layers, TheTableHasNoCycle) {
+  // Each module may be removed once all that it includes are removed.
+  std::set<std::string> done;
+  for (std::size_t before = 1; before != done.size();) {
+    before = done.size();
+    for (const auto& [module, needs] : kMayInclude) {
+      if (std::includes(done.begin(), done.end(), needs.begin(), needs.end())) done.insert(module);
+    }
+    if (done.size() == kMayInclude.size()) break;
+  }
+  EXPECT_EQ(done.size(), kMayInclude.size());
+}
+
+}  // namespace
+}  // namespace perception::test

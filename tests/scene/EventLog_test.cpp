@@ -1,0 +1,77 @@
+#include "libperception/scene/EventLog.h"
+
+#include <gtest/gtest.h>
+
+#include "libperception/core/Error.h"
+#include "tests/scene/SceneFixture.h"
+
+namespace perception {
+namespace {
+
+using namespace test;
+
+TEST(EventLog, WritesOneObjectALineInTheOrderOfAdd) {
+  EventLog log;
+  log.warn(Stamp{kFirstStamp.ns + 300000000}, event_kind::kDroppedPoints, "points out of range",
+           {{"sensor", "LIDAR_TOP"}, {"points", 12}, {"range", 0.1}});
+  log.add(kFirstStamp, event_kind::kTrackBorn, "first time in a scene", {{"id", 7}});
+  log.add(std::nullopt, event_kind::kSensorIgnored, "not configured");
+  EXPECT_EQ(
+      log.text(kFirstStamp),
+      R"({"t":0.3,"stamp":"1700000000.423456789","kind":"dropped_points","severity":"warning",)"
+      R"("message":"points out of range","fields":{"sensor":"LIDAR_TOP","points":12,"range":0.1}})"
+      "\n"
+      R"({"t":0.0,"stamp":"1700000000.123456789","kind":"track_born","severity":"info",)"
+      R"("message":"first time in a scene","fields":{"id":7}})"
+      "\n"
+      R"({"t":null,"stamp":null,"kind":"sensor_ignored","severity":"info","message":"not configured",)"
+      R"("fields":{}})"
+      "\n");
+}
+
+TEST(EventLog, ASingleFieldIsAnObjectToo) {
+  EventLog log;
+  log.warn(kFirstStamp, "x", "m", {{"sensor", "CAMERA"}});
+  EXPECT_NE(log.text(kFirstStamp).find(R"("fields":{"sensor":"CAMERA"})"), std::string::npos);
+}
+
+TEST(EventLog, CountsByKindAndWarnings) {
+  EventLog log;
+  log.add(kFirstStamp, event_kind::kTrackBorn, "");
+  log.add(kFirstStamp, event_kind::kTrackBorn, "");
+  log.warn(kFirstStamp, event_kind::kEgoGap, "");
+  EXPECT_EQ(log.counts(),
+            (std::map<std::string, std::uint64_t>{{"ego_gap", 1}, {"track_born", 2}}));
+  EXPECT_EQ(log.warnings(), 1u);
+}
+
+TEST(EventLog, KeepsABoundedNumberOfLinesAndSaysSo) {
+  EventLog log(3);
+  for (int i = 0; i < 10; ++i) log.add(kFirstStamp, "often", "again", {{"i", i}});
+  const std::string text = log.text(kFirstStamp);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
+  EXPECT_NE(text.find(R"("kind":"events_not_written")"), std::string::npos);
+  EXPECT_NE(text.find(R"("fields":{"kind":"often","events":7})"), std::string::npos);
+  EXPECT_EQ(log.counts().at("often"), 10u);
+}
+
+TEST(EventLog, TextThatIsNotUtf8DoesNotEndTheRun) {
+  EventLog log;
+  log.add(kFirstStamp, "x", "label \xff\xfe", {{"sensor", "\xc3"}});
+  const auto line = nlohmann::json::parse(log.text(kFirstStamp));
+  EXPECT_EQ(line["kind"], "x");
+}
+
+TEST(EventLog, AFullDiskIsAnError) {
+  EventLog log;
+  log.add(kFirstStamp, "x", "m");
+  try {
+    log.write("/dev/full", kFirstStamp);
+    FAIL() << "a full disk was not noticed";
+  } catch (const OutputError& e) {
+    EXPECT_EQ(e.code(), ExitCode::kIoError);
+  }
+}
+
+}  // namespace
+}  // namespace perception

@@ -1,0 +1,63 @@
+#include "libperception/scene/RunTiming.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace perception {
+namespace {
+
+TEST(RunTiming, SumsTheCallsOfAStage) {
+  RunTiming timing;
+  timing.add("lidar", 0.25);
+  timing.add("filter", 1);
+  timing.add("lidar", 0.5);
+  const auto stages = timing.stages();
+  ASSERT_EQ(stages.size(), 2u);
+  EXPECT_EQ(stages[0].name, "lidar");
+  EXPECT_EQ(stages[0].calls, 2u);
+  EXPECT_DOUBLE_EQ(stages[0].seconds, 0.75);
+  EXPECT_DOUBLE_EQ(stages[0].longest, 0.5);
+}
+
+TEST(RunTiming, AScopeMeasuresItsLifeAndThreadsMayShareAStage) {
+  RunTiming timing;
+  const auto sleep = [&] {
+    const auto scope = timing.stage("sleep");
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  };
+  std::thread other(sleep);
+  sleep();
+  other.join();
+  ASSERT_EQ(timing.stages().size(), 1u);
+  EXPECT_EQ(timing.stages()[0].calls, 2u);
+  EXPECT_GE(timing.stages()[0].seconds, 0.04);
+  EXPECT_GE(timing.wallSeconds(), timing.stages()[0].longest);
+}
+
+TEST(RunTiming, CountsWorkAsCpuTimeAndNotSleep) {
+  RunTiming timing;
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  const double asleep = timing.cpuSeconds();
+  EXPECT_LT(asleep, 0.025);
+  while (timing.cpuSeconds() < asleep + 0.02) {
+  }
+  EXPECT_GE(timing.cpuSeconds(), 0.02);
+}
+
+TEST(RunTiming, ReportsTheRealTimeFactorAndMemory) {
+  RunTiming timing;
+  timing.add("lidar", 0.5);
+  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto report = nlohmann::json::parse(timing.toJson(10, 4));
+  EXPECT_EQ(report["threads"], 4);
+  EXPECT_EQ(report["log_seconds"], 10.0);
+  EXPECT_GT(report["real_time_factor"], 1.0);
+  EXPECT_LE(report["real_time_factor"], 1000.0);
+  EXPECT_GT(report["peak_memory_bytes"], 1000000);
+  EXPECT_EQ(report["stages"][0]["name"], "lidar");
+}
+
+}  // namespace
+}  // namespace perception
