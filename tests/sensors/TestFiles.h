@@ -1,0 +1,144 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include "libperception/measurement/CObservationMeasurements.h"
+#include "libperception/sensors/CObservationLidarScan.h"
+#include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/RawlogReader.h"
+#include "libperception/sensors/RawlogWriter.h"
+#include "libperception/sensors/ToObservation.h"
+
+namespace perception::testing {
+
+/// A folder of its own for a test; gone afterwards.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "perception-XXXXXX").string();
+    if (::mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string readBytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline void writeBytes(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+inline constexpr Stamp kStart{1'317'038'400'000'000'000};
+
+/// A scan of `n` points on a circle, every optional array filled.
+inline std::shared_ptr<CObservationLidarScan> fullScan(std::size_t n, Stamp stamp = kStart) {
+  SensorFrame frame;
+  frame.sensor = "LIDAR_TOP";
+  frame.stamp = stamp;
+  frame.T_ego_sensor = makePose(0.5, -0.25, 1.73, 0.1, 0.02, -0.01);
+  LidarCloud c;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float a = 0.01F * static_cast<float>(i);
+    c.x.push_back(10 * std::cos(a));
+    c.y.push_back(10 * std::sin(a));
+    c.z.push_back(-1 + 0.001F * static_cast<float>(i));
+    c.intensity.push_back(static_cast<float>(i % 64) / 64);
+    c.ring.push_back(static_cast<std::uint16_t>(i % 64));
+    c.time_offset.push_back(1e-5F * static_cast<float>(i));
+    c.echo.push_back(static_cast<std::uint8_t>(i % 3));
+    c.pulse_width.push_back(0.3F);
+    c.label.push_back(static_cast<std::uint8_t>(i % 5));
+  }
+  c.max_range = 120;
+  frame.data = c;
+  return std::dynamic_pointer_cast<CObservationLidarScan>(observationFromFrame(frame));
+}
+
+inline std::shared_ptr<CObservationObjectDetections> someDetections(Stamp stamp = kStart) {
+  auto o = std::make_shared<CObservationObjectDetections>();
+  o->sensorLabel = "pointrcnn";
+  o->timestamp = std::dynamic_pointer_cast<CObservationLidarScan>(fullScan(1, stamp))->timestamp;
+  o->sensor_pose = mrpt::poses::CPose3D(0, 0, 1.73, 0, 0, 0);
+  o->detections.camera = {1242, 375, 721.5, 722.5, 609.5, 172.75};
+  o->detections.T_ego_camera = makePose(0.27, 0.06, 1.66, -kPi / 2, 0, -kPi / 2);
+  ObjectDetection both;
+  both.label = "Car";
+  both.score = 8.25;
+  both.class_scores = {{"Car", 0.75}, {"Van", 0.25}};
+  both.image_box = ObjectDetection::ImageBox{10, 20, 110, 90};
+  both.space_box = ObjectDetection::SpaceBox{{12, 3, -1.7}, 0.5, 4.5, 1.8, 1.5};
+  both.heading = -1.5;
+  ObjectDetection plain;
+  plain.label = "Pedestrian";
+  plain.score = -0.5;
+  plain.image_box = ObjectDetection::ImageBox{200, 100, 220, 160};
+  o->detections.objects = {both, plain};
+  return o;
+}
+
+inline std::shared_ptr<CObservationMeasurements> someMeasurements(Stamp stamp = kStart) {
+  MeasurementScan scan;
+  scan.sensor = "LIDAR_TOP";
+  scan.frame = 17;
+  scan.state.stamp = stamp;
+  scan.state.ego.T_world_ego = makePose(100, 50, 0, 1);
+  scan.state.T_world_sensor = scan.state.ego.T_world_ego * makePose(0, 0, 1.73, 0);
+  Measurement m;
+  m.z.resize(3);
+  m.z << 0.1, -0.1, 12;
+  m.R = AxisMatrix::Identity(3, 3) * 0.01;
+  m.R(0, 1) = m.R(1, 0) = 0.002;
+  m.seen = 7;
+  m.label = 1;
+  m.log_score_ratio = 1.25;
+  m.position = {11, 5};
+  m.base_z = ScalarEstimate{-1.7, 0.04};
+  m.sides = SidesSeen{0.3, 0.1, 4.2, 1.7, true, false, {11.5, 5.5}};
+  m.detection = 3;
+  scan.measurements = {m, m};
+  scan.measurements[1].label = 0;
+  scan.measurements[1].seen = 4;
+  scan.measurements[1].sides.reset();
+  scan.measurements[1].height = ScalarEstimate{1.6, 0.01};
+  return std::dynamic_pointer_cast<CObservationMeasurements>(measurementsObservation(
+      scan, "FootprintModel", {"left", "right", "range"}, {"person_sized", "car_sized"}));
+}
+
+/// A log of `frames` frames: pose, frame number, scan, detections, measurements.
+inline void writeLog(const std::string& path, int frames, int gzip_level = 1,
+                     std::size_t points = 200) {
+  RawlogWriter log(path, gzip_level);
+  for (int k = 0; k < frames; ++k) {
+    EgoState ego;
+    ego.stamp = kStart + 0.1 * k;
+    ego.T_world_ego = makePose(k, 0, 0, 0);
+    log.write(*poseObservation(ego));
+    log.write(*frameComment(ego.stamp, k));
+    log.write(*fullScan(points, ego.stamp));
+    log.write(*someDetections(ego.stamp));
+    log.write(*someMeasurements(ego.stamp));
+  }
+  log.close();
+}
+
+/// Reads to the end and gives the number of observations.
+inline std::size_t drain(RawlogReader& reader) {
+  std::size_t count = 0;
+  while (reader.next()) ++count;
+  return count;
+}
+
+}  // namespace perception::testing
