@@ -120,9 +120,10 @@ bool sideComplete(const Rectangle& r, double sensor_a, double sensor_b, bool low
     return false;  // the sensor stands in its extension: the side is seen from its end only
   const double farther_end = std::max(std::abs(r.a0 - sensor_a), std::abs(r.a1 - sensor_a));
   if (std::atan2(off, farther_end) < grazing) return false;
-  // An end is the outline's edge unless the face around the corner is seen, too: then it is the
-  // corner between.
-  const bool low_is_edge = sensor_a >= r.a0, high_is_edge = sensor_a <= r.a1;
+  // An end is the outline's edge unless the face around the corner is well seen, too: then it is
+  // the corner between them.
+  const double depth = off + (r.b1 - r.b0), clear = depth * std::tan(grazing);
+  const bool low_is_edge = sensor_a >= r.a0 - clear, high_is_edge = sensor_a <= r.a1 + clear;
   return (low_open || !low_is_edge) && (high_open || !high_is_edge);
 }
 

@@ -23,7 +23,8 @@ namespace {
 
 constexpr float kNoGround = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLowReturns =
-    1.0f;  // [m] above the plane: higher returns say nothing of the ground
+    1.0f;                           // [m] above the plane: higher returns say nothing of the ground
+constexpr float kSteepest = 0.10f;  // [-] slope of a ramp against the plane
 constexpr float kMirrorMargin =
     0.30f;  // [m] below the lowest possible ground: mirrored in a wet road (SPEC 8.1)
 
@@ -101,17 +102,19 @@ void GroundSurface::follow(std::vector<float> lowest, const SurfaceParams& param
              max_step = static_cast<float>(params.max_step);
   std::vector<float> along(lowest.size(), 0);
   for (std::size_t s = 0; s < sectors_; ++s) {
-    float ground = 0, gap = 0;
+    float ground = 0, trend = 0, gap = ring;  // trend: slope against the plane, of a ramp
     for (std::size_t k = 0; k < rings_; ++k) {
       const float low = lowest[s * rings_ + k];
       const float range = (static_cast<float>(k) + 0.5f) * ring;
       const auto bound =
           static_cast<float>(params.bound_near) + static_cast<float>(params.bound_slope) * range;
       const float reach = std::min(step + slope * gap, max_step);
-      if (std::abs(low) <= bound &&
-          std::abs(low - ground) <= reach) {  // false where nothing was seen
+      const bool reached =
+          std::abs(low - ground) <= reach || std::abs(low - ground - trend * gap) <= reach;
+      if (std::abs(low) <= bound && reached) {  // false where nothing was seen
+        trend = 0.5f * (trend + std::clamp((low - ground) / gap, -kSteepest, kSteepest));
         ground = low;
-        gap = 0;
+        gap = ring;
       } else {
         gap += ring;
       }

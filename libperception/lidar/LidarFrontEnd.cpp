@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "libperception/lidar/Outline.h"
@@ -32,8 +33,8 @@ void OutlineNoise::visit(ParamVisitor& v) {
 
 LidarParams::LidarParams() {
   car_noise = {0.25, radians(0.3), 0.25, 0};
-  person_noise = {0.15, radians(0.3), 0.15, 0};
-  unstable_noise = {0.50, radians(0.3), 0.40, 0};
+  person_noise = {0.20, radians(0.3), 0.20, 0};
+  unstable_noise = {0.25, radians(0.3), 0.40, 0};
 }
 
 namespace {
@@ -132,6 +133,37 @@ void fillVertical(const ScanContext& scan, const Vector2& place, double lowest, 
   const double top_sigma =
       cut ? kCutSigma : std::hypot(partly_hidden ? 0.3 : kTopSigma, 0.5 * kBeamSpacing * range);
   m.height = ScalarEstimate{highest - base, top_sigma * top_sigma + base_sigma * base_sigma};
+}
+
+/// One object, one detection: where a peak lies in a cluster's hull, one of the two goes. A peak
+/// that explains most of the cluster is a person with legs apart; else the cluster is something
+/// larger and the peak its corner (SPEC 8.3), but a clear peak beside something unstable is a
+/// person standing close to it.
+void settleOverlaps(LidarDetections& found, const PersonParams& params, double car_side) {
+  std::vector<std::uint8_t> drop_cluster(found.clusters.size(), 0),
+      drop_peak(found.persons.size(), 0);
+  for (std::size_t p = 0; p < found.persons.size(); ++p) {
+    const PersonPeak& peak = found.persons[p];
+    for (std::size_t c = 0; c < found.clusters.size(); ++c) {
+      const Cluster& cluster = found.clusters[c];
+      if (distanceToHull(cluster.hull, peak.centre) >= params.hull_margin) continue;
+      const bool short_enough = sizeOf(cluster.hull).longest < car_side;
+      std::vector<std::uint32_t> shared;
+      std::set_intersection(peak.points.begin(), peak.points.end(), cluster.points.begin(),
+                            cluster.points.end(), std::back_inserter(shared));
+      if (short_enough && static_cast<double>(shared.size()) >=
+                              params.whole_share * static_cast<double>(cluster.points.size())) {
+        drop_cluster[c] = 1;
+      } else if (cluster.stable || peak.normalised < params.crowd_threshold) {
+        drop_peak[p] = 1;
+      }
+    }
+  }
+  for (std::size_t c = found.clusters.size(); c-- > 0;)
+    if (drop_cluster[c])
+      found.clusters.erase(found.clusters.begin() + static_cast<std::ptrdiff_t>(c));
+  for (std::size_t p = found.persons.size(); p-- > 0;)
+    if (drop_peak[p]) found.persons.erase(found.persons.begin() + static_cast<std::ptrdiff_t>(p));
 }
 
 Outline outlineInWorld(const ScanContext& scan, const std::vector<Vector2>& hull, double above) {
@@ -239,14 +271,7 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   }
   found.clusters = findClusters(found.x, found.y, found.above, params_.clusters);
   found.persons = findPersons(found.x, found.y, found.above, params_.persons);
-  const auto inCluster = [&](const PersonPeak& peak) {
-    return std::any_of(found.clusters.begin(), found.clusters.end(), [&](const Cluster& cluster) {
-      return cluster.stable &&
-             distanceToHull(cluster.hull, peak.centre) < params_.persons.hull_margin;
-    });
-  };
-  found.persons.erase(std::remove_if(found.persons.begin(), found.persons.end(), inCluster),
-                      found.persons.end());
+  settleOverlaps(found, params_.persons, params_.clusters.min_side);
   return found;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace perception {
 
@@ -18,7 +19,11 @@ void PersonParams::visit(ParamVisitor& v) {
   v.real("max_span", max_span, {0.5, 5}, "m", "largest height from lowest to highest return");
   v.real("separation", separation, {0, 5}, "m", "radius of non-maximum suppression");
   v.real("hull_margin", hull_margin, {0, 3}, "m",
-         "about accepted clusters in which no peak counts");
+         "about accepted clusters in which peaks compete with them");
+  v.real("whole_share", whole_share, {0, 1}, "",
+         "of a cluster's returns in a peak: the cluster is a person");
+  v.real("crowd_threshold", crowd_threshold, {0, 10}, "1/m^2",
+         "normalised response that counts beside something unstable");
 }
 
 double personKernel(double r, const PersonParams& params) {
@@ -182,15 +187,14 @@ bool isLocalMaximum(const ResponseGrid& grid, std::size_t column, std::size_t ro
 std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vector<float>& y,
                                     const std::vector<float>& height, const PersonParams& params) {
   const ResponseGrid grid(x, y, params);
-  // A positive maximum lies in a cell with returns or beside one: look at those and their
-  // neighbours, once each.
+  // A positive maximum lies in a cell with returns or beside one.
+  std::vector<std::uint8_t> looked_at(grid.columns() * grid.rows(), 0);
   std::vector<std::uint32_t> cells;
   const auto columns = static_cast<std::uint32_t>(grid.columns());
   for (const std::uint32_t k : grid.occupied())
     for (const std::uint32_t row : {k - columns, k, k + columns})
-      for (const std::uint32_t near : {row - 1, row, row + 1}) cells.push_back(near);
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+      for (const std::uint32_t near : {row - 1, row, row + 1})
+        if (!std::exchange(looked_at[near], std::uint8_t{1})) cells.push_back(near);
 
   std::vector<PersonPeak> candidates;
   for (const std::uint32_t k : cells) {

@@ -1,0 +1,192 @@
+#include "libperception/lidar/LidarFrontEnd.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <limits>
+
+#include "libperception/core/Error.h"
+#include "tests/support/SyntheticCloud.h"
+
+namespace perception {
+namespace {
+
+using test::castScan;
+using test::SolidScene;
+using test::SpinningLidar;
+
+LidarFrontEnd frontEnd(const LidarParams& params = {}) {
+  ClassTable classes;
+  classes.classes.resize(1);
+  return LidarFrontEnd(
+      params, classes,
+      Sensing(SensingParams{}, {ClassSensing{}}, LidarFrontEnd::labels(params.clusters)));
+}
+
+/// A car ahead to the left, a person ahead to the right, both alone.
+SolidScene carAndPerson() {
+  SolidScene scene;
+  scene.boxes = {{{14, 4}, 0.5, 4.4, 1.8, 0.25, 1.5}};
+  scene.cylinders = {{{10, -3}, 0.25, 0, 1.75}};
+  return scene;
+}
+
+const Measurement* withLabel(const MeasurementScan& scan, int label) {
+  for (const Measurement& m : scan.measurements)
+    if (m.label == label) return &m;
+  return nullptr;
+}
+
+std::vector<Vector2> corners(const test::SolidBox& box) {
+  std::vector<Vector2> result;
+  for (const Vector2& sign : {Vector2(1, 1), Vector2(-1, 1), Vector2(-1, -1), Vector2(1, -1)})
+    result.push_back(box.centre +
+                     rotate2(box.yaw, {sign.x() * box.length / 2, sign.y() * box.width / 2}));
+  return result;
+}
+
+TEST(LidarFrontEnd, SeesACarAndAPersonAndNothingElse) {
+  const MeasurementScan scan = frontEnd().extract(castScan(carAndPerson(), SpinningLidar()));
+  ASSERT_EQ(scan.measurements.size(), 2u);
+  const Measurement *car = withLabel(scan, 0), *person = withLabel(scan, 1);
+  ASSERT_TRUE(car && person);
+  EXPECT_LT((car->position - Vector2(14, 4)).norm(), 0.5);
+  EXPECT_LT((person->position - Vector2(10, -3)).norm(), 0.4);
+  EXPECT_EQ(scan.modality, Modality::kLidar);
+  EXPECT_TRUE(scan.model && scan.horizon);
+}
+
+TEST(LidarFrontEnd, MeasuresTheOutlineWithinItsNoise) {
+  const SolidScene scene = carAndPerson();
+  const SensorFrame frame = castScan(scene, SpinningLidar());
+  const MeasurementScan scan = frontEnd().extract(frame);
+  const Measurement* car = withLabel(scan, 0);
+  ASSERT_TRUE(car);
+  double left = -kPi, right = kPi;
+  for (const Vector2& corner : corners(scene.boxes[0])) {
+    left = std::max(left, std::atan2(corner.y(), corner.x()));
+    right = std::min(right, std::atan2(corner.y(), corner.x()));
+  }
+  ASSERT_EQ(car->seen, FootprintModel::kAll);
+  EXPECT_NEAR(car->z[FootprintModel::kLeft], left, 2 * std::sqrt(car->R(0, 0)));
+  EXPECT_NEAR(car->z[FootprintModel::kRight], right, 2 * std::sqrt(car->R(1, 1)));
+  const double nearest = distanceToHull(corners(scene.boxes[0]), Vector2::Zero());
+  EXPECT_NEAR(car->z[FootprintModel::kRange], nearest, 2 * std::sqrt(car->R(2, 2)));
+  const Eigen::Matrix3d R = car->R;
+  EXPECT_EQ(Eigen::LLT<Eigen::Matrix3d>(R).info(), Eigen::Success);
+}
+
+TEST(LidarFrontEnd, GivesSizeDirectionBaseAndHeight) {
+  const MeasurementScan scan = frontEnd().extract(castScan(carAndPerson(), SpinningLidar()));
+  const Measurement *car = withLabel(scan, 0), *person = withLabel(scan, 1);
+  ASSERT_TRUE(car && person && car->sides && car->base_z && car->height && person->height);
+  EXPECT_NEAR(wrapAxis(car->sides->yaw - 0.5), 0, 2 * car->sides->yaw_sigma);
+  EXPECT_NEAR(car->sides->a, 4.4, 0.3);
+  EXPECT_NEAR(car->base_z->mean, 0, 0.1);
+  EXPECT_NEAR(car->height->mean, 1.5, 2 * std::sqrt(car->height->variance));
+  EXPECT_NEAR(person->height->mean, 1.75, 2 * std::sqrt(person->height->variance));
+}
+
+TEST(LidarFrontEnd, MovesWithTheVehicle) {
+  SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
+  const MeasurementScan here = frontEnd().extract(frame);
+  frame.ego.T_world_ego = makePose(120, -40, 5, radians(100));
+  const MeasurementScan there = frontEnd().extract(frame);
+  ASSERT_EQ(here.measurements.size(), there.measurements.size());
+  for (std::size_t i = 0; i < here.measurements.size(); ++i) {
+    const Measurement &a = here.measurements[i], &b = there.measurements[i];
+    EXPECT_LT((a.z - b.z).cwiseAbs().maxCoeff(), 1e-6);
+    EXPECT_LT((a.R - b.R).cwiseAbs().maxCoeff(), 1e-9);
+    const Vector3 moved = frame.ego.T_world_ego * Vector3(a.position.x(), a.position.y(), 0);
+    EXPECT_LT((moved.head<2>() - b.position).norm(), 1e-6);
+    EXPECT_NEAR(b.base_z->mean, a.base_z->mean + 5, 1e-6);
+  }
+}
+
+TEST(LidarFrontEnd, AnEdgeBehindATallerObjectIsNotSeen) {
+  SolidScene scene;
+  scene.boxes = {{{20, 0}, kPi / 2, 4.4, 1.8, 0.25, 1.5},  // across the line of sight
+                 {{10, 1.5}, 0, 1.5, 1.5, 0.25, 2.5}};     // hides its left end
+  const MeasurementScan scan = frontEnd().extract(castScan(scene, SpinningLidar()));
+  const Measurement* car = nullptr;
+  for (const Measurement& m : scan.measurements)
+    if (m.position.x() > 15) car = &m;
+  ASSERT_TRUE(car && car->sides);
+  EXPECT_FALSE(car->seen >> FootprintModel::kLeft & 1);
+  EXPECT_TRUE(car->seen >> FootprintModel::kRight & 1);
+  EXPECT_FALSE(car->sides->a_complete);
+  // And the horizon says so: what stands behind the box is hidden, what stands beside it is not.
+  const double bearing = std::atan2(1.5, 10);
+  EXPECT_LT(scan.horizon->visibility(bearing - 0.03, bearing + 0.03, 25, 1), 0.05);
+  EXPECT_GT(scan.horizon->visibility(-0.5, -0.4, 25, 1), 0.95);
+}
+
+TEST(LidarFrontEnd, ObjectsCloseTogetherAreUnstableOrLeftOut) {
+  SolidScene scene;
+  scene.boxes = {{{14, 4}, 0, 4.4, 1.8, 0.25, 1.5},
+                 {{14, 1.5}, 0, 4.4, 1.8, 0.25, 1.5}};  // .7 m apart
+  const SensorFrame frame = castScan(scene, SpinningLidar());
+  const MeasurementScan both = frontEnd().extract(frame);
+  ASSERT_GE(both.measurements.size(), 2u);
+  EXPECT_FALSE(withLabel(both, 0));
+  EXPECT_TRUE(withLabel(both, 2));
+  LidarParams paper;
+  paper.clusters.accept_unstable = false;
+  EXPECT_FALSE(withLabel(frontEnd(paper).extract(frame), 0));
+}
+
+TEST(LidarFrontEnd, BadPointsChangeNothing) {
+  SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
+  const MeasurementScan clean = frontEnd().extract(frame);
+  auto& cloud = std::get<LidarCloud>(frame.data);
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+        -std::numeric_limits<float>::infinity(), 3e38f})
+    cloud.x.push_back(bad), cloud.y.push_back(bad), cloud.z.push_back(1);
+  const MeasurementScan dirty = frontEnd().extract(frame);
+  EXPECT_EQ(frontEnd().detect(frame).points.dropped, 4u);
+  ASSERT_EQ(dirty.measurements.size(), clean.measurements.size());
+  for (std::size_t i = 0; i < clean.measurements.size(); ++i)
+    EXPECT_EQ(dirty.measurements[i].z, clean.measurements[i].z);
+}
+
+TEST(LidarFrontEnd, FramesWithoutPointsGiveNothing) {
+  SensorFrame frame;
+  frame.data = LidarCloud{};
+  EXPECT_TRUE(frontEnd().extract(frame).measurements.empty());
+  frame.data = ObjectDetections{};
+  EXPECT_TRUE(frontEnd().extract(frame).measurements.empty());
+}
+
+TEST(LidarFrontEnd, GroundAndObstaclesAreDisjoint) {
+  const SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
+  const LidarFrontEnd lidar = frontEnd();
+  const LidarDetections found = lidar.detect(frame);
+  ASSERT_EQ(found.ground.size(), std::get<LidarCloud>(frame.data).size());
+  for (const std::uint32_t i : found.obstacles) ASSERT_EQ(found.ground[found.points.source[i]], 0);
+  EXPECT_EQ(lidar.obstaclePoints(frame).size(), found.obstacles.size());
+  for (const Vector3& p : lidar.obstaclePoints(frame)) {
+    ASSERT_GT(p.z(), 0.3);
+    ASSERT_LT(p.z(), 3.0);
+  }
+}
+
+TEST(LidarFrontEnd, ReadsItsSectionsAndReportsBadOnes) {
+  const std::string text =
+      "[class.car]\nprior = 1\n[sensor.TOP]\nkind = lidar\nlabel.x = "
+      "1\n[sensor.TOP.clusters]\nnear_threshold = 2\n";
+  Config config = Config::fromText(text);
+  const ClassTable classes = readClassTable(config);
+  makeLidarFrontEnd(config, "TOP", classes);
+  EXPECT_THROW(config.finish(), ConfigError);  // near above far, and an unknown key
+
+  Config good =
+      Config::fromText("[class.car]\nprior = 1\n[sensor.TOP.clusters]\naccept_unstable = false\n");
+  const ClassTable cars = readClassTable(good);
+  const auto lidar = makeLidarFrontEnd(good, "TOP", cars);
+  EXPECT_NO_THROW(good.finish());
+  EXPECT_EQ(lidar->extract(castScan(carAndPerson(), SpinningLidar())).measurements.size(), 2u);
+}
+
+}  // namespace
+}  // namespace perception
