@@ -53,6 +53,7 @@ class App {
   void warn(const std::string& message);
 
  private:
+  friend int runApp(App& app, int argc, const char* const* argv);
   int warnings_ = 0;
 };
 
