@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,21 +11,25 @@ namespace perception {
 
 /// What every sensor has: [sensor.LABEL]. Rates are per scan over the whole field of view.
 struct SensingParams {
-  std::string kind = "lidar";       ///< front end by name
+  std::string kind = "lidar";  ///< front end by name
   Modality modality = Modality::kLidar;
-  double clutter_per_scan = 0.6;    ///< kappa: false measurements
-  double births_per_scan = 0.03;    ///< beta: first measurements of new objects
+  double clutter_per_scan = 0.6;         ///< kappa: false measurements
+  double births_per_scan = 0.03;         ///< beta: first measurements of new objects
   double range_min = 0, range_max = 70;  ///< [m] of the objects' nearest points
-  double fov = kTwoPi;              ///< [rad] full horizontal angle about the sensor's forward axis
-  std::vector<std::pair<std::string, double>> clutter_labels;  ///< P(label | clutter); the rest shares evenly
+  double fov = kTwoPi;          ///< [rad] full horizontal angle about the sensor's forward axis
+  double label_exponent = 0.3;  ///< (0, 1] tempers labels in the class update (SPEC 5.6)
+  std::optional<Pose3> pose;    ///< on the vehicle; when given it wins over the log's
+  std::vector<std::pair<std::string, double>>
+      clutter_labels;  ///< P(label | clutter); the rest shares evenly
 
   void visit(ParamVisitor& v);
 };
 
 /// How the sensor sees one class: [sensor.LABEL.class.NAME].
 struct ClassSensing {
-  double detection = 0.9;           ///< P(detected | in view, not hidden, near)
-  double full_range = 1e3;          ///< [m] up to which that holds; from there it falls linearly to 0 at range_max
+  double detection = 0.9;  ///< P(detected | in view, not hidden, near)
+  double full_range =
+      1e3;  ///< [m] up to which that holds; from there it falls linearly to 0 at range_max
   std::vector<std::pair<std::string, double>> labels;  ///< P(label | class, detected), normalised
 
   void visit(ParamVisitor& v);
@@ -33,7 +38,8 @@ struct ClassSensing {
 /// The tables of one sensor, checked against the class table and the front end's labels.
 class Sensing {
  public:
-  /// `defaults` gives each class's row where the INI has no section for it (may be shorter than the table).
+  /// `defaults` gives each class's row where the INI has no section for it (may be shorter than the
+  /// table).
   static Sensing read(Config& config, const std::string& section, const ClassTable& classes,
                       const std::vector<std::string>& labels, const SensingParams& defaults);
   Sensing(SensingParams params, std::vector<ClassSensing> classes, std::vector<std::string> labels);
@@ -43,10 +49,12 @@ class Sensing {
   /// Index of a label name or -1.
   int labelIndex(const std::string& name) const;
   double logLabel(int label, ClassId c) const;
-  double logLabelClutter(int label) const { return log_clutter_labels_[static_cast<std::size_t>(label)]; }
+  double logLabelClutter(int label) const {
+    return log_clutter_labels_[static_cast<std::size_t>(label)];
+  }
   /// P_D of a class at a range from the sensor [m] and a bearing off its forward axis [rad].
   double detection(ClassId c, double range, double bearing, double visibility) const;
-  double area() const;              ///< [m^2] of the field of view
+  double area() const;  ///< [m^2] of the field of view
 
  private:
   SensingParams params_;

@@ -1,0 +1,300 @@
+#include "libperception/measurement/FootprintModel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libperception/core/LogMath.h"
+#include "libperception/measurement/ExtentUpdate.h"
+
+namespace perception {
+namespace {
+
+constexpr double kWidestClutter =
+    10;                               // [m] false measurements have any width up to this (SPEC 5.3)
+constexpr double kWidestAngle = 0.5;  // [rad] the same where the range is not seen
+constexpr double kClearance = 0.05;   // [m] nearer than this the sensor is at the object
+constexpr double kSideSigma = 0.3;    // [m] a complete side as a measurement of the extent (SPEC 2)
+constexpr double kBoxSigma = 0.2;     // [m] of a seen box's faces
+constexpr double kSureYaw =
+    0.35;  // [rad] a box whose direction is less certain says nothing of the heading
+constexpr int kAngles = 8;  // of the average over unknown headings
+
+Vector2 perpendicular(const Vector2& v) { return {-v.y(), v.x()}; }
+
+/// h and derivatives of a bearing to a point of the object that moves with dpoint.
+void setBearing(const Vector2& d, double forward, const Eigen::Matrix<double, 2, 5>& dpoint_dq,
+                const Matrix2& dpoint_dextent, Eigen::Index row, AxisPrediction& out) {
+  out.h[row] = wrapAngle(std::atan2(d.y(), d.x()) - forward);
+  const Eigen::RowVector2d dbearing = perpendicular(d).transpose() / d.squaredNorm();
+  out.H_q.row(row) = dbearing * dpoint_dq;
+  out.H_extent.row(row) = dbearing * dpoint_dextent;
+}
+
+void resize(AxisPrediction& out) {
+  out.h.resize(FootprintModel::kAxes);
+  out.H_q.setZero(FootprintModel::kAxes, 5);
+  out.H_extent.setZero(FootprintModel::kAxes, 2);
+}
+
+/// A disc of diameter (length + width) / 2.
+void predictDisc(const Vector2& d, const Extent& extent, double forward, AxisPrediction& out) {
+  const double rho = d.norm(), radius = 0.25 * (extent.length + extent.width);
+  out.defined = rho > radius + kClearance;
+  if (!out.defined) return;
+  resize(out);
+  const double bearing = wrapAngle(std::atan2(d.y(), d.x()) - forward);
+  const double ratio = radius / rho, half = std::asin(ratio), root = std::sqrt(1 - ratio * ratio);
+  const Eigen::RowVector2d away = d.transpose() / rho,
+                           across = perpendicular(d).transpose() / (rho * rho);
+  const double sign[2] = {1, -1};
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    out.h[i] = wrapAngle(bearing + sign[i] * half);
+    out.H_q.row(i).head<2>() = across - sign[i] * ratio / (rho * root) * away;
+    out.H_extent.row(i).setConstant(sign[i] * 0.25 / (rho * root));
+  }
+  out.h[FootprintModel::kRange] = rho - radius;
+  out.H_q.row(FootprintModel::kRange).head<2>() = away;
+  out.H_extent.row(FootprintModel::kRange).setConstant(-0.25);
+}
+
+/// The oriented rectangle: extreme corners and exact nearest point (SPEC 4.1).
+void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double forward,
+                      AxisPrediction& out) {
+  const Vector2 u(std::cos(yaw), std::sin(yaw)), n = perpendicular(u);
+  const Vector2 half(0.5 * extent.length, 0.5 * extent.width);
+  const Vector2 sensor(-u.dot(d), -n.dot(d));  // in the object's own frame
+  const Vector2 nearest(std::clamp(sensor.x(), -half.x(), half.x()),
+                        std::clamp(sensor.y(), -half.y(), half.y()));
+  const double range = (sensor - nearest).norm();
+  out.defined = range > kClearance;
+  if (!out.defined) return;
+  resize(out);
+
+  const auto point = [&](const Vector2& own) { return Vector2(d + own.x() * u + own.y() * n); };
+  // Derivatives of a point that is fixed in the object's frame up to its size: own = (ex L/2, ey
+  // W/2) where e = +-1.
+  const auto derivatives = [&](const Vector2& own, const Vector2& e,
+                               Eigen::Matrix<double, 2, 5>& dq, Matrix2& dextent) {
+    dq.setZero();
+    dq.leftCols<2>().setIdentity();
+    dq.col(4) = own.x() * n - own.y() * u;
+    dextent.col(0) = 0.5 * e.x() * u;
+    dextent.col(1) = 0.5 * e.y() * n;
+  };
+  Eigen::Matrix<double, 2, 5> dq;
+  Matrix2 dextent;
+  const double middle = std::atan2(d.y(), d.x());
+  Vector2 left_corner, right_corner;
+  double left = -10, right = 10;
+  for (const double ex : {-1.0, 1.0}) {
+    for (const double ey : {-1.0, 1.0}) {
+      const Vector2 c = point({ex * half.x(), ey * half.y()});
+      const double offset = wrapAngle(std::atan2(c.y(), c.x()) - middle);
+      if (offset > left) left = offset, left_corner = {ex, ey};
+      if (offset < right) right = offset, right_corner = {ex, ey};
+    }
+  }
+  for (const auto& [e, row] : {std::pair{left_corner, FootprintModel::kLeft},
+                               std::pair{right_corner, FootprintModel::kRight}}) {
+    const Vector2 own = e.cwiseProduct(half);
+    derivatives(own, e, dq, dextent);
+    setBearing(point(own), forward, dq, dextent, row, out);
+  }
+  // Nearest point: along an edge it slides, but then the distance does not change to first order
+  // (envelope theorem).
+  const Vector2 e(std::abs(sensor.x()) > half.x() ? (sensor.x() > 0 ? 1 : -1) : 0,
+                  std::abs(sensor.y()) > half.y() ? (sensor.y() > 0 ? 1 : -1) : 0);
+  derivatives(nearest, e, dq, dextent);
+  const Eigen::RowVector2d away = point(nearest).transpose() / range;
+  out.h[FootprintModel::kRange] = range;
+  out.H_q.row(FootprintModel::kRange) = away * dq;
+  out.H_extent.row(FootprintModel::kRange) = away * dextent;
+}
+
+bool seen(const Measurement& m, FootprintModel::Axis axis) { return m.seen >> axis & 1; }
+
+Vector2 sensorPosition(const SensorState& s) { return s.T_world_sensor.translation().head<2>(); }
+
+double rangeOf(const Measurement& m, const SensorState& s) {
+  return seen(m, FootprintModel::kRange)
+             ? std::max(m.z[FootprintModel::kRange], kClearance)
+             : std::max((m.position - sensorPosition(s)).norm(), kClearance);
+}
+
+double normalDensity(double x, double variance) {
+  return std::exp(-0.5 * x * x / variance) / std::sqrt(kTwoPi * variance);
+}
+
+/// Density [1/m] of the seen width of a class's objects, headings uniform, seen with variance
+/// `noise` [m^2].
+double widthDensity(const ObjectClass& c, double width, double noise) {
+  const double l2 = c.length_sigma * c.length_sigma, w2 = c.width_sigma * c.width_sigma;
+  double sum = 0;
+  for (int i = 0; i < kAngles; ++i) {
+    const double angle = (i + 0.5) * (kPi / 2) / kAngles;
+    const double s = std::sin(angle), k = std::cos(angle);
+    const double mean =
+        c.motion == Motion::kWheeled ? c.length * s + c.width * k : 0.5 * (c.length + c.width);
+    const double spread = c.motion == Motion::kWheeled ? l2 * s * s + w2 * k * k : 0.25 * (l2 + w2);
+    sum += normalDensity(width - mean, spread + noise);
+  }
+  return sum / kAngles;
+}
+
+/// Log density per unit of the axes seen of a position that is uniform over the field of view,
+/// times that of the width `per_metre` [1/m] where both edges are seen (SPEC 5.3).
+double logUniform(const Measurement& m, const Sensing& sensing, const SensorState& s,
+                  double per_metre) {
+  const double range = rangeOf(m, s), area = sensing.area(), fov = sensing.params().fov;
+  const bool edges = seen(m, FootprintModel::kLeft) || seen(m, FootprintModel::kRight);
+  const bool both = seen(m, FootprintModel::kLeft) && seen(m, FootprintModel::kRight);
+  double density = 1;
+  if (seen(m, FootprintModel::kRange)) {
+    density = edges ? range / area : range * fov / area;
+    if (both) density *= range * per_metre;  // d(width) = range d(angle)
+  } else {
+    density = edges ? 1 / fov : 1;
+    if (both) density /= kWidestAngle;
+  }
+  return std::log(density);
+}
+
+/// The heading (an axis) that a seen box gives an object of a wheeled class, when it is beyond
+/// doubt: a side longer than the class is wide lies along it; a complete side of the class's width
+/// with nothing longer is its front or rear.
+std::optional<ScalarEstimate> headingFromBox(const SidesSeen& box, const ObjectClass& c) {
+  if (box.yaw_sigma > kSureYaw) return std::nullopt;
+  const bool a_longer = box.a >= box.b;
+  const double longer = a_longer ? box.a : box.b;
+  const double along = a_longer ? box.yaw : box.yaw + kPi / 2;
+  const double variance = box.yaw_sigma * box.yaw_sigma;
+  if (longer > c.width + 3 * c.width_sigma) return ScalarEstimate{wrapAngle(along), variance};
+  const bool complete = a_longer ? box.a_complete : box.b_complete;
+  const bool is_width = std::abs(longer - c.width) < 1.5 * c.width_sigma;
+  const bool tells =
+      c.length >
+      1.5 * (c.width + 3 * c.width_sigma);  // a short class is as broad as long to a lidar
+  if (complete && is_width && tells) return ScalarEstimate{wrapAngle(along + kPi / 2), variance};
+  return std::nullopt;
+}
+
+/// Centre and covariance of an object of known heading and size from the part of its box that was
+/// seen: a complete side keeps its middle, an incomplete one is continued away from the sensor.
+void placeByBox(const SidesSeen& box, double yaw, const Extent& extent, const Vector2& sensor,
+                BirthState& birth) {
+  const bool a_is_length = std::abs(wrapAxis(box.yaw - yaw)) < kPi / 4;
+  const double side[2] = {a_is_length ? box.a : box.b, a_is_length ? box.b : box.a};
+  const bool complete[2] = {a_is_length ? box.a_complete : box.b_complete,
+                            a_is_length ? box.b_complete : box.a_complete};
+  const double size[2] = {extent.length, extent.width};
+  const double variance[2] = {extent.var_length, extent.var_width};
+  const Vector2 u(std::cos(yaw), std::sin(yaw));
+  const Vector2 axis[2] = {u, perpendicular(u)};
+  birth.position = box.centre;
+  birth.covariance.setZero();
+  for (int i = 0; i < 2; ++i) {
+    double sigma2 = kBoxSigma * kBoxSigma;
+    if (!complete[i]) {
+      const double away = axis[i].dot(box.centre - sensor) >= 0 ? 1 : -1;
+      birth.position += away * 0.5 * std::max(0.0, size[i] - side[i]) * axis[i];
+      sigma2 += 0.25 * variance[i];
+    }
+    birth.covariance += sigma2 * axis[i] * axis[i].transpose();
+  }
+}
+
+}  // namespace
+
+FootprintModel::FootprintModel(ClassTable classes, Sensing sensing)
+    : classes_(std::move(classes)), sensing_(std::move(sensing)) {}
+
+const std::vector<AxisKind>& FootprintModel::axes() const {
+  static const std::vector<AxisKind> kinds{AxisKind::kAngle, AxisKind::kAngle, AxisKind::kLinear};
+  return kinds;
+}
+
+void FootprintModel::predict(const Kinematics* objects, const Extent* extents, std::size_t count,
+                             const SensorState& sensor, AxisPrediction* out) const {
+  const Vector2 origin = sensorPosition(sensor);
+  const double forward = yawOf(sensor.T_world_sensor);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector2 d = objects[i].q.head<2>() - origin;
+    if (objects[i].has_yaw) {
+      predictRectangle(d, objects[i].q[Kinematics::kYaw], extents[i], forward, out[i]);
+    } else {
+      predictDisc(d, extents[i], forward, out[i]);
+    }
+  }
+}
+
+double FootprintModel::detectionProbability(ClassId c, const Kinematics& object,
+                                            const Extent& extent, const SensorState& sensor,
+                                            double visibility) const {
+  const Vector2 d = object.q.head<2>() - sensorPosition(sensor);
+  const double range = std::max(0.0, d.norm() - 0.25 * (extent.length + extent.width));
+  return sensing_.detection(c, range, std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor),
+                            visibility);
+}
+
+double FootprintModel::logClutterDensity(const Measurement& m, const SensorState& sensor) const {
+  return std::log(sensing_.params().clutter_per_scan) +
+         logUniform(m, sensing_, sensor, 1 / kWidestClutter);
+}
+
+double FootprintModel::logBirthDensity(const Measurement& m, ClassId c,
+                                       const SensorState& sensor) const {
+  double per_metre = 1;
+  if (seen(m, kLeft) && seen(m, kRight)) {
+    const double range = rangeOf(m, sensor);
+    const double width = range * wrapAngle(m.z[kLeft] - m.z[kRight]);
+    const double noise = range * range * (m.R(kLeft, kLeft) + m.R(kRight, kRight));
+    // No class is ruled out by a size alone: a thousandth of its objects have any width.
+    per_metre = 0.999 * widthDensity(classes_[c], width, noise) + 0.001 / kWidestClutter;
+  }
+  return std::log(sensing_.params().births_per_scan) + logUniform(m, sensing_, sensor, per_metre);
+}
+
+std::optional<BirthState> FootprintModel::birth(const Measurement& m, ClassId c,
+                                                const SensorState& sensor) const {
+  const ObjectClass& object_class = classes_[c];
+  BirthState birth;
+  birth.extent = {object_class.length, object_class.width,
+                  object_class.length_sigma * object_class.length_sigma,
+                  object_class.width_sigma * object_class.width_sigma};
+  const Vector2 origin = sensorPosition(sensor);
+  if (m.sides && object_class.motion == Motion::kWheeled) {
+    birth.yaw = headingFromBox(*m.sides, object_class);
+    if (birth.yaw) {
+      birth.extent = updateExtent(birth.extent, *m.sides, birth.yaw->mean, kSideSigma);
+      placeByBox(*m.sides, birth.yaw->mean, birth.extent, origin, birth);
+      return birth;
+    }
+  }
+  if (m.sides && object_class.motion == Motion::kStatic) {
+    birth.extent = updateExtent(birth.extent, *m.sides, m.sides->yaw, kSideSigma);
+  }
+  // Without a heading: a disc behind its nearest point, as far off as half of length or width may
+  // be.
+  const double forward = yawOf(sensor.T_world_sensor);
+  const bool both = seen(m, kLeft) && seen(m, kRight);
+  const Vector2 d = m.position - origin;
+  const double bearing = both ? forward + m.z[kRight] + 0.5 * wrapAngle(m.z[kLeft] - m.z[kRight])
+                              : std::atan2(d.y(), d.x());
+  const Extent& e = birth.extent;
+  const double radius = 0.25 * (e.length + e.width);
+  const double rho = seen(m, kRange) ? m.z[kRange] + radius : d.norm();
+  const Vector2 away(std::cos(bearing), std::sin(bearing)), across = perpendicular(away);
+  const double range_variance =
+      (seen(m, kRange) ? m.R(kRange, kRange) : m.position_sigma * m.position_sigma) +
+      0.0625 * (e.var_length + e.var_width) + std::pow(0.25 * (e.length - e.width), 2);
+  const double across_variance =
+      both ? rho * rho * 0.25 * (m.R(kLeft, kLeft) + m.R(kRight, kRight)) + 0.01
+           : m.position_sigma * m.position_sigma + radius * radius;
+  birth.position = origin + rho * away;
+  birth.covariance =
+      range_variance * away * away.transpose() + across_variance * across * across.transpose();
+  return birth;
+}
+
+}  // namespace perception

@@ -1,0 +1,213 @@
+#include "libperception/measurement/Sensing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/LogMath.h"
+
+namespace perception {
+namespace {
+
+/// What a class looks like to a kind of sensor when the INI says nothing: the table of SPEC 2.
+struct DefaultRow {
+  const char* class_name;
+  Modality modality;
+  double detection;
+  const char* label_a;
+  double a;
+  const char* label_b;
+  double b;
+};
+constexpr const char* kCarSized = "car_sized";
+constexpr const char* kPersonSized = "person_sized";
+constexpr DefaultRow kDefaults[] = {
+    {"pedestrian", Modality::kLidar, 0.88, kCarSized, 0.10, kPersonSized, 0.90},
+    {"cyclist", Modality::kLidar, 0.88, kCarSized, 0.45, kPersonSized, 0.55},
+    {"car", Modality::kLidar, 0.91, kCarSized, 0.94, kPersonSized, 0.06},
+    {"bus", Modality::kLidar, 0.95, kCarSized, 0.97, kPersonSized, 0.03},
+    {"static-other", Modality::kLidar, 0.85, kCarSized, 0.49, kPersonSized, 0.51},
+    {"pedestrian", Modality::kCamera, 0.70, "car", 0.02, "person", 0.98},
+    {"cyclist", Modality::kCamera, 0.60, "car", 0.20, "person", 0.80},
+    {"car", Modality::kCamera, 0.85, "car", 0.98, "person", 0.02},
+    {"bus", Modality::kCamera, 0.60, "car", 0.97, "person", 0.03},
+    {"static-other", Modality::kCamera, 0.03, "car", 0.33, "person", 0.67},
+};
+
+ClassSensing defaultSensing(const std::string& class_name, Modality modality) {
+  ClassSensing row;
+  for (const auto& d : kDefaults) {
+    if (class_name == d.class_name && modality == d.modality) {
+      row.detection = d.detection;
+      row.labels = {{d.label_a, d.a}, {d.label_b, d.b}};
+    }
+  }
+  return row;
+}
+
+/// A label that no row mentions still happens now and then.
+constexpr double kLeastLabel = 0.005;
+
+/// Probabilities in the order of `labels`: the given ones, the others sharing what is left; sums
+/// to 1.
+std::vector<double> completeRow(const std::vector<std::pair<std::string, double>>& given,
+                                const std::vector<std::string>& labels) {
+  std::vector<double> row(labels.size(), -1);
+  double sum = 0;
+  std::size_t missing = labels.size();
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    for (const auto& [name, p] : given) {
+      if (name != labels[i]) continue;
+      row[i] = p;
+      sum += p;
+      --missing;
+    }
+  }
+  const double share = missing > 0 ? std::max(0.0, 1 - sum) / static_cast<double>(missing) : 0;
+  double total = 0;
+  for (double& p : row) {
+    p = std::max(p < 0 ? share : p, kLeastLabel);
+    total += p;
+  }
+  for (double& p : row) p /= total;
+  return row;
+}
+
+void checkRow(Config& config, const std::string& section,
+              const std::vector<std::pair<std::string, double>>& row, const std::string& prefix,
+              const std::vector<std::string>& labels) {
+  double sum = 0;
+  std::string known;
+  for (const auto& l : labels) known += (known.empty() ? "" : ", ") + l;
+  for (const auto& [name, p] : row) {
+    if (std::find(labels.begin(), labels.end(), name) == labels.end()) {
+      config.fault(section, prefix + name, "no label of this sensor; its labels are: " + known);
+    }
+    sum += p;
+  }
+  const bool complete = row.size() == labels.size();
+  if (sum > 1.02 || (complete && sum < 0.98)) {
+    config.fault(section, "", "the " + prefix + "* probabilities must sum to 1 (within .02)");
+  }
+}
+
+}  // namespace
+
+void SensingParams::visit(ParamVisitor& v) {
+  v.text("kind", kind, "front end by name: lidar, boxes");
+  static constexpr char kLetters[] = {'C', 'L', 'R'};
+  int index = 0;
+  for (int i = 0; i < 3; ++i) index = kLetters[i] == static_cast<char>(modality) ? i : index;
+  v.choice("modality", index, {"C", "L", "R"}, "camera, lidar, radar");
+  modality = static_cast<Modality>(kLetters[index]);
+  v.real("clutter_per_scan", clutter_per_scan, {1e-9, 1e4}, "",
+         "expected number of false measurements a scan (kappa)");
+  v.real("births_per_scan", births_per_scan, {1e-9, 1e4}, "",
+         "expected number of new objects a scan (beta)");
+  v.real("range_min", range_min, {0, 1000}, "m", "nearest objects that it sees");
+  v.real("range_max", range_max, {1, 1000}, "m", "farthest objects that it sees");
+  v.require(range_min < range_max, "range_min must lie below range_max");
+  v.angle("fov_deg", fov, {1, 360},
+          "full horizontal field of view about the sensor's forward axis");
+  v.real("label_exponent", label_exponent, {0.001, 1}, "",
+         "tempers labels in the class update: 1 = independent labels");
+  std::vector<double> numbers;
+  if (pose) {
+    const Vector3 t = pose->translation();
+    numbers = {t.x(),
+               t.y(),
+               t.z(),
+               degrees(yawOf(*pose)),
+               degrees(pitchOf(*pose)),
+               degrees(rollOf(*pose))};
+  }
+  v.reals("pose", numbers, -1, {-1000, 1000}, "m, deg",
+          "x, y, z, yaw, pitch, roll on the vehicle; wins over the log's");
+  v.require(numbers.empty() || numbers.size() == 6,
+            "pose: expected six numbers x, y, z [m], yaw, pitch, roll [deg]");
+  if (numbers.size() == 6) {
+    pose = makePose(numbers[0], numbers[1], numbers[2], radians(numbers[3]), radians(numbers[4]),
+                    radians(numbers[5]));
+  }
+  v.table("clutter_label.", clutter_labels, {0, 1}, "",
+          "P(label | clutter); labels not named share the rest");
+}
+
+void ClassSensing::visit(ParamVisitor& v) {
+  v.real("detection", detection, {0, 1}, "", "P(detected) in view, near, not hidden");
+  v.real("full_range", full_range, {0.1, 1e4}, "m",
+         "up to which that holds; falls to 0 at range_max");
+  v.table("label.", labels, {0, 1}, "",
+          "P(label | this class, detected); labels not named share the rest");
+}
+
+Sensing Sensing::read(Config& config, const std::string& section, const ClassTable& classes,
+                      const std::vector<std::string>& labels, const SensingParams& defaults) {
+  const auto params = config.read<SensingParams>(section, defaults);
+  checkRow(config, section, params.clutter_labels, "clutter_label.", labels);
+  const std::string prefix = section + ".class.";
+  for (const auto& s : config.sectionsWithPrefix(prefix)) {
+    if (classes.find(s.substr(prefix.size())) < 0)
+      config.fault(s, "", "no such class in the class table");
+  }
+  std::vector<ClassSensing> rows;
+  for (const auto& c : classes.classes) {
+    const std::string row_section = prefix + c.name;
+    ClassSensing row = defaultSensing(c.name, params.modality);
+    if (config.has(row_section)) row = config.read<ClassSensing>(row_section, row);
+    // A default row of another detector's labels says nothing here.
+    row.labels.erase(std::remove_if(row.labels.begin(), row.labels.end(),
+                                    [&](const auto& l) {
+                                      return !config.has(row_section) &&
+                                             std::find(labels.begin(), labels.end(), l.first) ==
+                                                 labels.end();
+                                    }),
+                     row.labels.end());
+    checkRow(config, row_section, row.labels, "label.", labels);
+    rows.push_back(std::move(row));
+  }
+  return Sensing(params, std::move(rows), labels);
+}
+
+Sensing::Sensing(SensingParams params, std::vector<ClassSensing> classes,
+                 std::vector<std::string> labels)
+    : params_(std::move(params)), classes_(std::move(classes)), labels_(std::move(labels)) {
+  for (const auto& c : classes_) {
+    std::vector<double> row = completeRow(c.labels, labels_);
+    for (double& p : row) p = std::log(p);
+    log_labels_.push_back(std::move(row));
+  }
+  log_clutter_labels_ = completeRow(params_.clutter_labels, labels_);
+  for (double& p : log_clutter_labels_) p = std::log(p);
+}
+
+int Sensing::labelIndex(const std::string& name) const {
+  const auto it = std::find(labels_.begin(), labels_.end(), name);
+  return it == labels_.end() ? -1 : static_cast<int>(it - labels_.begin());
+}
+
+double Sensing::logLabel(int label, ClassId c) const {
+  return log_labels_[static_cast<std::size_t>(c)][static_cast<std::size_t>(label)];
+}
+
+double Sensing::detection(ClassId c, double range, double bearing, double visibility) const {
+  const auto& row = classes_[static_cast<std::size_t>(c)];
+  if (range < params_.range_min || range >= params_.range_max) return 0;
+  // At the borders of the view detections fade out instead of ending: over the last 5 % of range,
+  // the last 2 degrees.
+  const double full = std::min(row.full_range, 0.95 * params_.range_max);
+  const double by_range =
+      std::clamp((params_.range_max - range) / (params_.range_max - full), 0.0, 1.0);
+  double by_angle = 1;
+  if (params_.fov < kTwoPi) {
+    by_angle =
+        std::clamp((0.5 * params_.fov - std::abs(wrapAngle(bearing))) / radians(2), 0.0, 1.0);
+  }
+  return row.detection * by_range * by_angle * std::clamp(visibility, 0.0, 1.0);
+}
+
+double Sensing::area() const {
+  return 0.5 * params_.fov *
+         (params_.range_max * params_.range_max - params_.range_min * params_.range_min);
+}
+
+}  // namespace perception
