@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace perception {
 
@@ -11,6 +12,9 @@ void BoxParams::visit(ParamVisitor& v) {
   v.angle("step_deg", step, {0.1, 15}, "of the search for the box's direction");
   v.real("min_distance", min_distance, {0.001, 1}, "m", "d0 of the closeness criterion");
   v.integer("max_points", max_points, {10, 100000}, "of a cluster used in the search");
+  v.real("straggler_share", straggler_share, {0, 0.2}, "",
+         "of the returns at each end that may stand off the others");
+  v.real("straggler_gap", straggler_gap, {0, 2}, "m", "that parts them from the rest");
   v.real("corner_sigma", corner_sigma, {0.001, 1}, "m", "by which a side's end may be off");
   v.angle("yaw_sigma_min_deg", yaw_sigma_min, {0.1, 45}, "of the longest, clearest side");
   v.angle("grazing_deg", grazing, {0, 60},
@@ -112,6 +116,45 @@ Rectangle rectangleAlong(const std::vector<Vector2>& points, double yaw) {
   return r;
 }
 
+/// Every `stride`th point, at most `limit`.
+std::vector<Vector2> evenly(const std::vector<Vector2>& points, int limit) {
+  std::vector<Vector2> used;
+  const std::size_t stride = 1 + (points.size() - 1) / static_cast<std::size_t>(limit);
+  for (std::size_t i = 0; i < points.size(); i += stride) used.push_back(points[i]);
+  return used;
+}
+
+/// Without the few points that stand off the others along or across yaw: a bollard beside a car, a
+/// mirror's tip.
+std::vector<Vector2> withoutStragglers(const std::vector<Vector2>& points, double yaw,
+                                       const BoxParams& params) {
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  std::vector<double> along, across;
+  for (const Vector2& p : points)
+    along.push_back(c * p.x() + s * p.y()), across.push_back(c * p.y() - s * p.x());
+  // Without the few lowest and highest values that a gap parts from the rest.
+  const auto bounds = [&params](std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const auto few =
+        static_cast<std::size_t>(params.straggler_share * static_cast<double>(values.size()));
+    const std::size_t last = values.size() - 1;
+    double low = values.front(), high = values.back();
+    for (std::size_t i = 0; i < few; ++i) {
+      if (values[i + 1] - values[i] > params.straggler_gap) low = values[i + 1];
+      if (values[last - i] - values[last - i - 1] > params.straggler_gap)
+        high = values[last - i - 1];
+    }
+    return std::make_pair(low, high);
+  };
+  const auto [a0, a1] = bounds(along);
+  const auto [b0, b1] = bounds(across);
+  std::vector<Vector2> kept;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (along[i] >= a0 && along[i] <= a1 && across[i] >= b0 && across[i] <= b1)
+      kept.push_back(points[i]);
+  return kept;
+}
+
 /// Whether both ends of the rectangle's side along a (its face towards the sensor) were seen.
 bool sideComplete(const Rectangle& r, double sensor_a, double sensor_b, bool low_open,
                   bool high_open, double grazing) {
@@ -184,12 +227,12 @@ HullSize sizeOf(const std::vector<Vector2>& hull) {
 std::optional<SidesSeen> fitBox(const std::vector<Vector2>& points, const Vector2& sensor,
                                 bool left_open, bool right_open, const BoxParams& params) {
   if (points.size() < 2) return std::nullopt;
-  std::vector<Vector2> used;
-  const std::size_t stride = 1 + (points.size() - 1) / static_cast<std::size_t>(params.max_points);
-  for (std::size_t i = 0; i < points.size(); i += stride) used.push_back(points[i]);
-  const Direction direction = bestDirection(used, params);
-  Rectangle r = rectangleAlong(points, direction.yaw);
-  if (r.a1 - r.a0 < r.b1 - r.b0) r = rectangleAlong(points, direction.yaw + kPi / 2);
+  Direction direction = bestDirection(evenly(points, params.max_points), params);
+  const std::vector<Vector2> kept = withoutStragglers(points, direction.yaw, params);
+  if (kept.size() < points.size())
+    direction = bestDirection(evenly(kept, params.max_points), params);
+  Rectangle r = rectangleAlong(kept, direction.yaw);
+  if (r.a1 - r.a0 < r.b1 - r.b0) r = rectangleAlong(kept, direction.yaw + kPi / 2);
   const double a = r.a1 - r.a0, b = r.b1 - r.b0;
   if (a <= 0) return std::nullopt;
 

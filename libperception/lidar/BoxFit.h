@@ -10,13 +10,14 @@ namespace perception {
 
 /// How boxes are laid about clusters: [sensor.LABEL.boxes].
 struct BoxParams {
-  double step = radians(2);  ///< [rad] of the search over 90 degrees (SPEC 8.2)
-  double min_distance =
-      0.05;  ///< [m] d0 of the closeness criterion: range noise (own choice; Zhang: 0.01)
-  int max_points = 400;        ///< of a cluster used in the search, evenly taken
-  double corner_sigma = 0.10;  ///< [m] by which a side's end may be off: rounded corners, bumpers
+  double step = radians(2);           ///< [rad] of the search over 90 degrees (SPEC 8.2)
+  double min_distance = 0.05;         ///< [m] d0 of the closeness criterion (Zhang: 0.01)
+  int max_points = 400;               ///< of a cluster used in the search, evenly taken
+  double straggler_share = 0.015;     ///< of the returns at each end, left out when ...
+  double straggler_gap = 0.25;        ///< [m] ... that parts them from the rest (own choice)
+  double corner_sigma = 0.20;         ///< [m] by which a side's end may be off (KITTI 0000)
   double yaw_sigma_min = radians(3);  ///< [rad] of the longest, clearest side
-  double grazing = radians(15);  ///< [rad] a side seen at less than that shows no reliable length
+  double grazing = radians(15);       ///< [rad] a side seen at less shows no reliable length
 
   void visit(ParamVisitor& v);
 };

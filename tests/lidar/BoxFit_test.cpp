@@ -115,7 +115,16 @@ TEST(BoxFit, ARoundGroupHasNoDirection) {
       fitBox(facingSides({12, 5}, radians(60), 4.4, 1.8), Vector2::Zero(), true, true, {});
   ASSERT_TRUE(round && car);
   EXPECT_GT(degrees(round->yaw_sigma), 15);
-  EXPECT_LT(degrees(car->yaw_sigma), 6);
+  EXPECT_LT(degrees(car->yaw_sigma), 8);
+}
+
+TEST(BoxFit, ABollardBesideACarDoesNotWidenIt) {
+  auto points = facingSides({12, 5}, radians(60), 4.4, 1.8);
+  points.push_back(Vector2(12, 5) + rotate2(radians(60), {-2, 1.4}));
+  const auto sides = fitBox(points, Vector2::Zero(), true, true, {});
+  ASSERT_TRUE(sides);
+  EXPECT_NEAR(sides->b, 1.8, 0.15);
+  EXPECT_NEAR(degrees(sides->yaw), 60, 1.5);
 }
 
 TEST(BoxFit, OnePlaceHasNoBox) {
