@@ -106,12 +106,12 @@ demo() {
 }
 
 demoSummary() {
-  local dir=$1 report=$1/evaluation/evaluation.json
+  local dir=$1 report=$1/evaluation/report.json
   say "Result (simulated log)"
   printf '%-22s %s\n' \
     "objects tracked" "$(number "$dir/done.json" tracks)" \
-    "tracked fraction" "$(number "$report" tracked)" \
-    "correct class" "$(number "$report" correct_class)" \
+    "tracked fraction" "$(number "$report" object_tracked_a)" \
+    "correct class" "$(number "$report" correct)" \
     "id switches" "$(number "$report" id_switches)" \
     "real-time factor" "$(number "$dir/timing.json" real_time_factor)"
   printf '\npictures: %s\n          %s\n' "$dir/scene.png" "$dir/contact.png"
