@@ -29,6 +29,11 @@ constexpr const char* kGrey = "#BBBBBB";
 constexpr const char* kIdColours[kMaxNamedIds] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                   "#E69F00", "#56B4E9", "#8B4513", "#F0E442"};
 
+// How every picture begins.
+constexpr const char* kPreamble =
+    "set encoding utf8\nset datafile missing 'nan'\nset key noenhanced\nset grid lc rgb "
+    "'#E0E0E0'\n";
+
 std::string objectName(const ObjectTimeline& o) { return fmt::format("{} {}", o.type, o.id); }
 
 // The files of one folder of plots and the script that draws them.
@@ -39,8 +44,7 @@ class PlotWriter {
         options_(options),
         dir_(std::move(dir)),
         timelines_(objectTimelines(run.evaluation, Pairing::kOneToOne)) {
-    script_ =
-        kPreamble;
+    script_ = kPreamble;
   }
 
   void overview() {
@@ -103,8 +107,7 @@ class PlotWriter {
         " '' using 1:4 with steps lw 2 lc rgb '{}' title 'false objects'\nunset multiplot\nunset "
         "output\nreset session\n",
         kOrange, kBlue);
-    script_ +=
-        kPreamble;
+    script_ += kPreamble;
   }
 
   void reliabilityPlot() {
