@@ -14,20 +14,22 @@ namespace perception {
 /// perception-track: rawlogs in, tracked and classified objects out.
 class TrackApp : public App {
  public:
-  std::string sensors;                   ///< --sensors: wins over [run] sensors
-  std::optional<std::uint64_t> seed;     ///< --seed: wins over [run] seed
-  double rate = 0;                       ///< --rate [Hz]: scenes at a fixed rate instead of at scans
-  std::vector<std::string> exports;      ///< --export FORMAT:FILE
-  bool keep_scenes = false;              ///< keep all scenes in out_scenes (tests)
+  std::string sensors;                ///< --sensors: wins over [run] sensors
+  std::optional<std::uint64_t> seed;  ///< --seed: wins over [run] seed
+  double rate = 0;                    ///< --rate [Hz]: scenes at a fixed rate instead of at scans
+  std::vector<std::string> exports;   ///< --export FORMAT:FILE
+  bool keep_scenes = false;           ///< keep all scenes in out_scenes (tests)
 
   std::string name() const override { return "perception-track"; }
-  std::string description() const override { return "Tracks and classifies the objects around a vehicle in rawlogs"; }
+  std::string description() const override {
+    return "Tracks and classifies the objects around a vehicle in rawlogs";
+  }
   void declare(CLI::App& cli) override;
   void run() override;
 
-  std::vector<Scene> out_scenes;         ///< of the last log, with keep_scenes
-  RunRecord out_record;                  ///< of the last log
-  double out_real_time_factor = 0;       ///< seconds of log per second of work, last log
+  std::vector<Scene> out_scenes;    ///< of the last log, with keep_scenes
+  RunRecord out_record;             ///< of the last log
+  double out_real_time_factor = 0;  ///< seconds of log per second of work, last log
 
  private:
   void trackLog(const std::string& log, const std::string& dir, const std::string& export_file);

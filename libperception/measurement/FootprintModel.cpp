@@ -14,7 +14,7 @@ constexpr double kWidestClutter =
     10;                               // [m] false measurements have any width up to this (SPEC 5.3)
 constexpr double kWidestAngle = 0.5;  // [rad] the same where the range is not seen
 constexpr double kClearance = 0.05;   // [m] nearer than this the sensor is at the object
-constexpr double kSideSigma = 0.3;    // [m] a complete side as a measurement of the extent (SPEC 2)
+constexpr double kSideSigma = 0.5;    // [m] a complete side as a measurement of the extent (SPEC 2)
 constexpr double kBoxSigma = 0.2;     // [m] of a seen box's faces
 constexpr double kSureYaw =
     0.35;  // [rad] a box whose direction is less certain says nothing of the heading

@@ -1,0 +1,48 @@
+#pragma once
+#include <optional>
+
+#include "libperception/core/ParamSet.h"
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// [sensor.LABEL.geometry]: how well an image box says where its object stands (SPEC 4.2,
+/// VISION_NOTES 3).
+struct BoxGeometryParams {
+  double edge_sigma = 6;    ///< [px] of the left and right edge ("tuned on KITTI's RRC boxes")
+  double bottom_sigma = 4;  ///< [px] of the lower edge
+  double pitch_sigma =
+      radians(0.5);  ///< [rad] of the line of sight against the ground, beside the pose's own
+  double range_floor = 0.2;  ///< [m] added to the range's deviation
+  double border = 3;         ///< [px] an edge this near to the image's border is cut off by it
+  double max_range = 60;     ///< [m] beyond it the ground says nothing
+
+  void visit(ParamVisitor& v);
+};
+
+/// What an image box says of an object that stands on the ground, seen from the camera in a level
+/// frame (x forward).
+struct BoxOnGround {
+  double left = 0, right = 0;  ///< [rad] bearings of its edges, counter-clockwise off forward
+  bool left_seen = false, right_seen = false;  ///< false: cut off by the image's border
+  double left_sigma = 0, right_sigma = 0;      ///< [rad]
+  std::optional<double> range;  ///< [m] on the ground, to the object's nearest point; empty: cut
+                                ///< off, above the horizon
+  double range_sigma = 0;       ///< [m]
+  double height = 0, height_sigma = 0;  ///< [m] of the object, with a range only
+};
+
+/// The level frame of a camera: x forward along its optical axis, z up, at its optical centre, in
+/// the ego frame.
+Pose3 levelFrame(const Pose3& T_ego_camera);
+
+/// `T_ego_camera` is optical (x right, y down, z forward). The ground holds in the ego frame, so
+/// the camera's pitch and roll against it are part of the geometry. Empty when the box is none or
+/// lies behind the camera's horizon.
+std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
+                                       const CameraModel& camera, const Pose3& T_ego_camera,
+                                       const GroundPlane& ground,
+                                       const PoseUncertainty& uncertainty,
+                                       const BoxGeometryParams& params);
+
+}  // namespace perception

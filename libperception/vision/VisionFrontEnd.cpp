@@ -1,0 +1,123 @@
+#include "libperception/vision/VisionFrontEnd.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace perception {
+namespace {
+
+/// "Car=car" -> {"Car", "car"}; empty when it is not of that form.
+std::optional<std::pair<std::string, std::string>> splitName(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) return std::nullopt;
+  return std::pair{text.substr(0, equals), text.substr(equals + 1)};
+}
+
+SensingParams cameraDefaults() {
+  SensingParams p;
+  p.kind = "boxes";
+  p.modality = Modality::kCamera;
+  p.clutter_per_scan = 0.15;  // SPEC 5.3
+  p.births_per_scan = 0.01;
+  p.label_exponent = 0.6;  // SPEC 5.6
+  p.fov = radians(90);
+  p.range_min = 1;
+  return p;
+}
+
+}  // namespace
+
+void DetectorParams::visit(ParamVisitor& v) {
+  v.words("labels", labels, "our labels: the columns of the class tables");
+  v.words("names", names,
+          "the detector's class names and their labels: Car=car, Pedestrian=person ...");
+  for (const auto& n : names) {
+    const auto pair = splitName(n);
+    v.require(pair && std::find(labels.begin(), labels.end(), pair->second) != labels.end(),
+              "names: '" + n + "' is not NAME=LABEL with one of the labels");
+  }
+  v.require(!labels.empty(), "labels: at least one");
+  v.real("min_score", min_score, {-1e9, 1e9}, "", "boxes below are dropped");
+  v.real("score_offset", score_offset, {-1e9, 1e9}, "",
+         "score that is no evidence for or against an object");
+  v.real("score_slope", score_slope, {0, 1e3}, "1/score",
+         "log-odds of an object per unit of score; 0: no evidence");
+  v.real("score_limit", score_limit, {0, 50}, "", "bound of these log-odds");
+}
+
+VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry,
+                               const ClassTable& classes, const Sensing& sensing)
+    : detector_(std::move(detector)),
+      geometry_(geometry),
+      model_(std::make_shared<const FootprintModel>(classes, sensing)) {
+  for (const auto& n : detector_.names) {
+    if (const auto pair = splitName(n)) label_of_[pair->first] = sensing.labelIndex(pair->second);
+  }
+}
+
+std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object,
+                                                   const SensorFrame& frame,
+                                                   const CameraModel& camera,
+                                                   const SensorState& state) const {
+  const auto label = label_of_.find(object.label);
+  if (!object.image_box || label == label_of_.end() || label->second < 0 ||
+      object.score < detector_.min_score) {
+    return std::nullopt;
+  }
+  const auto& u = frame.ego.uncertainty;
+  const auto box =
+      boxOnGround(*object.image_box, camera, frame.T_ego_sensor, frame.ground, u, geometry_);
+  if (!box || (!box->left_seen && !box->right_seen && !box->range)) return std::nullopt;
+
+  Measurement m;
+  m.label = label->second;
+  m.log_score_ratio = std::clamp(detector_.score_slope * (object.score - detector_.score_offset),
+                                 -detector_.score_limit, detector_.score_limit);
+  m.z = Vector3(box->left, box->right, box->range.value_or(0));
+  m.R = AxisMatrix::Zero(FootprintModel::kAxes, FootprintModel::kAxes);
+  m.seen = static_cast<AxisMask>((box->left_seen ? 1 << FootprintModel::kLeft : 0) |
+                                 (box->right_seen ? 1 << FootprintModel::kRight : 0) |
+                                 (box->range ? 1 << FootprintModel::kRange : 0));
+  const double range = box->range.value_or(0.5 * geometry_.max_range);
+  const double pose = u.sigma_yaw * u.sigma_yaw + std::pow(u.sigma_xy / range, 2);
+  m.R(FootprintModel::kLeft, FootprintModel::kLeft) = box->left_sigma * box->left_sigma + pose;
+  m.R(FootprintModel::kRight, FootprintModel::kRight) = box->right_sigma * box->right_sigma + pose;
+  m.R(FootprintModel::kRange, FootprintModel::kRange) =
+      box->range_sigma * box->range_sigma + u.sigma_xy * u.sigma_xy;
+  const double bearing = yawOf(state.T_world_sensor) + 0.5 * (box->left + box->right);
+  m.position = state.T_world_sensor.translation().head<2>() +
+               range * Vector2(std::cos(bearing), std::sin(bearing));
+  m.position_sigma = box->range ? box->range_sigma : 0.5 * geometry_.max_range;
+  if (box->range) m.height = ScalarEstimate{box->height, box->height_sigma * box->height_sigma};
+  return m;
+}
+
+MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
+  MeasurementScan scan;
+  scan.sensor = frame.sensor;
+  scan.modality = Modality::kCamera;
+  scan.frame = frame.frame;
+  scan.state = {frame.stamp, frame.ego.T_world_ego * levelFrame(frame.T_ego_sensor), frame.ego};
+  scan.model = model_;
+  const auto* detections = std::get_if<ObjectDetections>(&frame.data);
+  if (!detections) return scan;
+  for (std::size_t i = 0; i < detections->objects.size(); ++i) {
+    auto m = measure(detections->objects[i], frame, detections->camera, scan.state);
+    if (!m) continue;
+    m->detection = static_cast<int>(i);
+    scan.measurements.push_back(std::move(*m));
+  }
+  return scan;
+}
+
+std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& sensor_label,
+                                             const ClassTable& classes) {
+  const std::string section = "sensor." + sensor_label;
+  const auto detector = config.read<DetectorParams>(section + ".detector");
+  const auto geometry = config.read<BoxGeometryParams>(section + ".geometry");
+  const Sensing sensing =
+      Sensing::read(config, section, classes, detector.labels, cameraDefaults());
+  return std::make_unique<VisionFrontEnd>(detector, geometry, classes, sensing);
+}
+
+}  // namespace perception

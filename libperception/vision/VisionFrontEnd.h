@@ -1,0 +1,56 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libperception/measurement/FootprintModel.h"
+#include "libperception/measurement/FrontEnd.h"
+#include "libperception/vision/BoxGeometry.h"
+
+namespace perception {
+
+/// [sensor.LABEL.detector]: what the detector calls things, and what its scores are worth.
+struct DetectorParams {
+  std::vector<std::string> labels{"car",
+                                  "person"};  ///< our labels, the columns of the class tables
+  /// The detector's class name = one of the labels; names that stand nowhere are dropped and
+  /// counted.
+  std::vector<std::string> names{
+      "Car=car",   "Van=car",           "Truck=car",      "car=car",       "bus=car",
+      "truck=car", "Pedestrian=person", "Cyclist=person", "person=person", "bicycle=person"};
+  double min_score = -1e9;  ///< boxes below are not looked at
+  double score_offset =
+      0;  ///< log p(score | object) / p(score | clutter) = slope (score - offset), clamped
+  double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
+  double score_limit = 4;  ///< of that logarithm
+
+  void visit(ParamVisitor& v);
+};
+
+/// The camera rib for image boxes of any detector: bearings of the edges, range on the ground,
+/// height, label.
+class VisionFrontEnd final : public FrontEnd {
+ public:
+  VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry, const ClassTable& classes,
+                 const Sensing& sensing);
+
+  /// Measurements under a FootprintModel whose sensor frame is the camera's level frame.
+  MeasurementScan extract(const SensorFrame& frame) const override;
+
+ private:
+  std::optional<Measurement> measure(const ObjectDetection& object, const SensorFrame& frame,
+                                     const CameraModel& camera, const SensorState& state) const;
+
+  DetectorParams detector_;
+  BoxGeometryParams geometry_;
+  std::map<std::string, int> label_of_;
+  std::shared_ptr<const FootprintModel> model_;
+};
+
+/// Reads [sensor.LABEL], [sensor.LABEL.class.NAME], [sensor.LABEL.detector] and
+/// [sensor.LABEL.geometry].
+std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& sensor_label,
+                                             const ClassTable& classes);
+
+}  // namespace perception
