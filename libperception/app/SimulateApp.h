@@ -1,0 +1,28 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "libperception/app/App.h"
+
+namespace perception {
+
+/// perception-simulate: a scenario INI becomes a rawlog with ground truth.
+class SimulateApp : public App {
+ public:
+  std::uint64_t seed = 1;  ///< --seed
+  int gzip_level = 6;      ///< --gzip
+
+  std::string out_truth_file;
+  std::int64_t out_frames = 0;
+  std::uint64_t out_entries = 0, out_bytes = 0, out_points = 0, out_boxes = 0, out_beams = 0;
+
+  std::string name() const override { return "perception-simulate"; }
+  std::string description() const override;
+  void declare(CLI::App& cli) override;
+  void run() override;
+};
+
+/// FILE.truth.csv beside FILE.rawlog.
+std::string truthFileOf(const std::string& rawlog);
+
+}  // namespace perception

@@ -1,0 +1,46 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+#include "libperception/simulation/Shape.h"
+
+namespace perception {
+
+class World;
+
+/// The first surface on a beam's way.
+struct BeamHit {
+  static constexpr int kNothing = -2, kRoad = -1;
+  float range = 0;          ///< [m]
+  float cos_incidence = 0;  ///< [0, 1] between beam and surface normal
+  int object = kNothing;    ///< index into the scenario's objects
+  Material material = Material::kRoad;
+};
+
+/// Sends beams through a world (Embree). The result depends on nothing but the arguments, whatever
+/// the number of threads.
+class LidarCaster {
+ public:
+  /// `threads` 0 = as many as the machine has. The world must outlive it.
+  explicit LidarCaster(const World& world, int threads = 1);
+  ~LidarCaster();
+  LidarCaster(const LidarCaster&) = delete;
+  LidarCaster& operator=(const LidarCaster&) = delete;
+
+  /// Moves everything to time t [s].
+  void setTime(double t);
+  /// One hit for each direction (unit vectors, world) from `origin` [m], up to `range_max` [m].
+  std::vector<BeamHit> cast(const Vector3& origin, const std::vector<Vector3>& directions,
+                            double range_max) const;
+  /// Share of the object that nothing else hides from `eye` [m, world], by solid angle.
+  double visibleShare(const Vector3& eye, std::size_t object) const;
+
+  const World& world() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace perception

@@ -1,0 +1,175 @@
+#include "libperception/simulation/LidarSensor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/World.h"
+
+namespace perception {
+namespace {
+
+/// How a material returns light. Reflectivities at 905 nm: usual figures of lidar data sheets; the
+/// road's grazing exponent is tuned so that dry asphalt is seen to 45-50 m, as in KITTI's scans.
+struct Surface {
+  double reflectivity;  ///< [0, 1] at normal incidence
+  double grazing;       ///< exponent of the cosine: 1 = Lambert, less = rough
+  double lost;          ///< share of pulses that pass through or are mirrored away
+};
+constexpr std::array<Surface, 9> kSurfaces = {{{.17, .3, 0},    // road
+                                               {.45, 1, .05},   // paint
+                                               {.10, 1, .75},   // glass
+                                               {.06, .6, 0},    // tyre
+                                               {.35, .6, 0},    // cloth
+                                               {.50, .8, 0},    // skin
+                                               {.50, 1, .05},   // metal
+                                               {.40, .8, 0},    // wall
+                                               {.35, .5, 0}}};  // leaf
+
+constexpr double kRangeUnit = 0.09;  // [m] dR of SPEC 9: sigma = dR / sqrt(2 SNR)
+constexpr double kSpeckle = 0.12;    // relative spread of the echo's power, rough surfaces
+constexpr double kCoordinateUnit =
+    1.0 / 512;                           // [m] HDL-64E: 2 mm; a power of two, as it packs well
+constexpr double kIntensityUnit = 0.01;  // as in KITTI's files
+constexpr int kSlices = 36;              // of a sweep: 10 deg of a turn each
+
+double quantised(double value, double unit) { return std::round(value / unit) * unit; }
+
+/// The echo of one pulse; nothing when it stays below the threshold.
+struct Echo {
+  bool received = false;
+  double range = 0;      ///< [m]
+  double intensity = 0;  ///< [0, 1] corrected for range, as the instrument reports it
+};
+
+// Hard target: P0 = rho_t / R^2 against P_min = 0.9 / R_max^2 (SPEC 9; no extinction: clear air).
+Echo echoOf(const BeamHit& hit, double reflectivity_factor, const LidarParams& p, Rng& rng) {
+  Echo echo;
+  if (hit.object == BeamHit::kNothing || hit.range < p.range_min) return echo;
+  const Surface& surface = kSurfaces[static_cast<std::size_t>(hit.material)];
+  if (rng.uniform() < surface.lost + p.loss) return echo;
+  const double rho = surface.reflectivity * reflectivity_factor *
+                     std::pow(static_cast<double>(hit.cos_incidence), surface.grazing);
+  const double returned = rho * std::max(0.0, 1 + kSpeckle * rng.normal());
+  const double far = p.reference_range / hit.range;
+  const double snr = returned / 0.9 * far * far;
+  if (snr < 1) return echo;
+  echo.received = true;
+  echo.range =
+      hit.range + rng.normal() * std::hypot(p.range_noise, kRangeUnit / std::sqrt(2 * snr));
+  echo.intensity = std::min(1.0, returned);
+  return echo;
+}
+
+}  // namespace
+
+LidarParams LidarParams::fourLayer() {
+  LidarParams p;
+  p.layout = Layout::kFourLayer;
+  p.azimuth_from = radians(-55), p.azimuth_to = radians(55);
+  p.azimuth_step = radians(0.25);
+  p.range_min = 0.3;
+  p.range_max = 200;
+  p.range_noise = 0.04;
+  p.label_error = 0.01;
+  return p;
+}
+
+void LidarParams::visit(ParamVisitor& v) {
+  v.angle("azimuth_from_deg", azimuth_from, {-180, 180}, "right end of the view");
+  v.angle("azimuth_to_deg", azimuth_to, {-180, 180}, "left end of the view");
+  v.angle("azimuth_step_deg", azimuth_step, {0.02, 10}, "between neighbouring beams");
+  v.integer("ring_step", ring_step, {1, 64}, "keeps every n-th ring");
+  v.real("range_min", range_min, {0, 100}, "m", "nothing nearer");
+  v.real("range_max", range_max, {1, 500}, "m", "nothing farther");
+  v.real("reference_range", reference_range, {1, 2000}, "m",
+         "a 90 % surface is just seen (SPEC 9)");
+  v.real("range_noise", range_noise, {0, 1}, "m", "at the strongest echo");
+  v.real("loss", loss, {0, 1}, "-", "share of pulses lost whatever they meet");
+  v.real("label_error", label_error, {0, 1}, "-", "share of wrong point labels (lidar4)");
+  v.boolean("sweep", sweep, "beams at their own times while everything moves");
+  v.require(azimuth_from < azimuth_to, "azimuth_from_deg: expected less than azimuth_to_deg");
+  v.require(range_min < range_max, "range_min: expected less than range_max");
+}
+
+// HDL-64E: 32 upper lasers from +2 to -8.33 deg at 1/3 deg, 32 lower ones from -8.83 at 1/2 deg.
+std::vector<double> LidarParams::elevations() const {
+  std::vector<double> result;
+  if (layout == Layout::kFourLayer) return {radians(-1.2), radians(-.4), radians(.4), radians(1.2)};
+  for (int i = 31; i >= 0; --i) result.push_back(radians(-8.83 - .5 * i));
+  for (int i = 31; i >= 0; --i) result.push_back(radians(2 - i / 3.0));
+  return result;
+}
+
+LidarSensor::LidarSensor(const LidarParams& params, double rate)
+    : params_(params), slices_(params.sweep ? kSlices : 1) {
+  const std::vector<double> elevations = params.elevations();
+  const double width = params.azimuth_to - params.azimuth_from;
+  // A whole turn has no beam twice; a part of one has a beam at both ends.
+  const bool whole = width > kTwoPi - 1e-9;
+  const auto columns =
+      static_cast<std::uint32_t>(width / params.azimuth_step + (whole ? 0.5 : 1 + 1e-9));
+  slice_time_ = width / kTwoPi / rate / static_cast<double>(slices_.size());
+  for (std::uint32_t ring = 0; ring < elevations.size(); ++ring) {
+    if (ring % static_cast<std::uint32_t>(params.ring_step) != 0) continue;
+    const double up = elevations[ring];
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const double azimuth = params.azimuth_from + i * params.azimuth_step;
+      const std::size_t slice = i * slices_.size() / columns;
+      slices_[slice].push_back(
+          {{std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth), std::sin(up)},
+           static_cast<std::uint16_t>(ring),
+           ring * columns + i});
+    }
+  }
+}
+
+std::size_t LidarSensor::beams() const {
+  std::size_t count = 0;
+  for (const auto& slice : slices_) count += slice.size();
+  return count;
+}
+
+LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt& T_world_sensor,
+                                    const RngKey& key) const {
+  const auto& objects = caster.world().scenario().objects;
+  Scan result;
+  LidarCloud& cloud = result.cloud;
+  result.points_on.assign(objects.size(), 0);
+  cloud.max_range = params_.range_max;
+  std::vector<Vector3> directions;
+  for (std::size_t s = 0; s < slices_.size(); ++s) {
+    const double offset = params_.sweep ? (static_cast<double>(s) + .5) * slice_time_ : 0;
+    caster.setTime(t + offset);
+    const Pose3 pose = T_world_sensor(t + offset);
+    directions.clear();
+    for (const Beam& beam : slices_[s]) directions.push_back(pose.linear() * beam.direction);
+    const std::vector<BeamHit> hits =
+        caster.cast(pose.translation(), directions, params_.range_max);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const Beam& beam = slices_[s][i];
+      const auto object = static_cast<std::size_t>(std::max(0, hits[i].object));
+      const bool on_object = hits[i].object >= 0;
+      Rng rng(key.withSlot(beam.slot));
+      const Echo echo = echoOf(hits[i], on_object ? objects[object].reflectivity : 1, params_, rng);
+      if (!echo.received) continue;
+      const Vector3 point = beam.direction * echo.range;
+      cloud.x.push_back(static_cast<float>(quantised(point.x(), kCoordinateUnit)));
+      cloud.y.push_back(static_cast<float>(quantised(point.y(), kCoordinateUnit)));
+      cloud.z.push_back(static_cast<float>(quantised(point.z(), kCoordinateUnit)));
+      cloud.intensity.push_back(static_cast<float>(quantised(echo.intensity, kIntensityUnit)));
+      cloud.ring.push_back(beam.ring);
+      if (params_.sweep) cloud.time_offset.push_back(static_cast<float>(offset));
+      if (params_.layout == LidarParams::Layout::kFourLayer) {
+        const bool object_label = on_object != (rng.uniform() < params_.label_error);
+        cloud.label.push_back(
+            static_cast<std::uint8_t>(object_label ? PointLabel::kObject : PointLabel::kGround));
+      }
+      if (on_object) ++result.points_on[object];
+    }
+  }
+  return result;
+}
+
+}  // namespace perception

@@ -1,0 +1,121 @@
+#include "libperception/simulation/Scenario.h"
+
+#include <array>
+
+#include "libperception/core/ParamSet.h"
+
+namespace perception {
+namespace {
+
+/// What a kind is when the file does not say otherwise.
+struct KindRow {
+  const char* name;
+  const char* truth_type;
+  bool road_user;
+  double length, width, height;  ///< [m] classes.ini (SPEC 2); van, pole, box, bush: usual ones
+};
+constexpr std::array<KindRow, 8> kKinds = {{{"car", "Car", true, 4.5, 1.8, 1.5},
+                                            {"van", "Van", true, 5.2, 2.0, 2.1},
+                                            {"bus", "Truck", true, 11, 2.55, 3.2},
+                                            {"cyclist", "Cyclist", true, 1.8, 0.6, 1.7},
+                                            {"pedestrian", "Pedestrian", true, 0.5, 0.5, 1.7},
+                                            {"pole", "Misc", false, 0.15, 0.15, 4},
+                                            {"box", "Misc", false, 10, 1, 4},
+                                            {"bush", "Misc", false, 1.2, 1.2, 1.2}}};
+
+const KindRow& row(ObjectKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
+
+std::vector<std::string> kindNames() {
+  std::vector<std::string> names;
+  for (const KindRow& kind : kKinds) names.emplace_back(kind.name);
+  return names;
+}
+
+constexpr Bounds kPlace = {-1000, 1000};  // [m] single floats of the ray caster stay below 0.1 mm
+constexpr Bounds kTime = {-3600, 3600};   // [s]
+
+}  // namespace
+
+bool isRoadUser(ObjectKind kind) { return row(kind).road_user; }
+const char* truthType(ObjectKind kind) { return row(kind).truth_type; }
+
+void ScenarioParams::visit(ParamVisitor& v) {
+  v.text("description", description, "one line for the log's first comment");
+  v.real("duration", duration, {0.1, 3600}, "s", "length of the log");
+  v.real("rate", rate, {0.1, 100}, "1/s", "frame numbers and instants of the truth");
+  v.integer("start_utc", start_utc, {1, 2147483647}, "stamp of t = 0 in seconds since 1970");
+  v.real("ground_roughness", ground_roughness, {0, 0.2}, "m", "spread of the road's height");
+}
+
+void WaypointParams::visit(ParamVisitor& v) {
+  v.reals("t", t, -1, kTime, "s", "times of the waypoints; the same place twice is a pause");
+  v.reals("x", x, -1, kPlace, "m", "their places, world");
+  v.reals("y", y, -1, kPlace, "m", "their places, world");
+  v.angle("heading_deg", heading, {-360, 360}, "of what never moves; else along the way");
+  const std::string fault = Trajectory::fault(t, x, y);
+  v.require(fault.empty(), fault);
+}
+
+void EgoParams::visit(ParamVisitor& v) {
+  waypoints.visit(v);
+  v.real("pose_rate", pose_rate, {1, 1000}, "1/s", "of the pose estimator (paper: 100 Hz)");
+  v.real("pose_sigma_xy", pose_sigma_xy, {0, 10}, "m", "slow error of the reported pose");
+  v.angle("pose_sigma_yaw_deg", pose_sigma_yaw, {0, 10}, "slow error of the reported heading");
+  v.real("pose_correlation", pose_correlation, {0.01, 1000}, "s", "time constant of that error");
+}
+
+void ObjectParams::visit(ParamVisitor& v) {
+  const ObjectKind before = kind;
+  v.choiceOf("kind", kind, kindNames(), "shape, usual size and truth type");
+  if (kind != before) {  // loading: the usual size of that kind
+    length = row(kind).length, width = row(kind).width, height = row(kind).height;
+  }
+  v.real("length", length, {0.02, 500}, "m", "along the heading");
+  v.real("width", width, {0.02, 500}, "m", "across");
+  v.real("height", height, {0.02, 100}, "m", "bottom to top");
+  v.real("base", base, {-5, 50}, "m", "height of the bottom above the road");
+  v.real("reflectivity", reflectivity, {0.01, 3}, "-", "times the usual one of its materials");
+  waypoints.visit(v);
+}
+
+void SensorParams::visit(ParamVisitor& v) {
+  const SensorKind before = kind;
+  v.choiceOf("kind", kind, {"lidar64", "lidar4", "camera_boxes"}, "what it is");
+  if (kind != before && kind == SensorKind::kLidar4) lidar = LidarParams::fourLayer();
+  v.real("x", x, {-20, 20}, "m", "place on the vehicle: forward of the rear axle");
+  v.real("y", y, {-20, 20}, "m", "left");
+  v.real("z", z, {0, 20}, "m", "above the road");
+  v.angle("yaw_deg", yaw, {-360, 360}, "of its forward axis, to the left");
+  v.angle("pitch_deg", pitch, {-90, 90}, "down");
+  v.angle("roll_deg", roll, {-180, 180}, "about its forward axis");
+  v.real("rate", rate, {0.1, 100}, "1/s", "scans or images");
+  v.real("phase", phase, {0, 10}, "s", "time of the first one");
+  if (isLidar()) {
+    lidar.visit(v);
+  } else {
+    camera.visit(v);
+  }
+}
+
+Scenario readScenario(Config& config) {
+  Scenario scenario;
+  scenario.params = config.read<ScenarioParams>("scenario", {}, true);
+  scenario.ego = config.read<EgoParams>("ego", {}, true);
+  const std::string object_prefix = "object.", sensor_prefix = "sensor.";
+  for (const std::string& section : config.sectionsWithPrefix(object_prefix)) {
+    ObjectParams object;
+    object.name = section.substr(object_prefix.size());
+    scenario.objects.push_back(config.read(section, object));
+  }
+  for (const std::string& section : config.sectionsWithPrefix(sensor_prefix)) {
+    SensorParams sensor;
+    sensor.label = section.substr(sensor_prefix.size());
+    scenario.sensors.push_back(config.read(section, sensor));
+  }
+  if (scenario.sensors.empty()) {
+    config.fault("scenario", "", "no [sensor.LABEL] section: expected at least one sensor");
+  }
+  return scenario;
+}
+
+}  // namespace perception

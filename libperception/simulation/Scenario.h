@@ -1,0 +1,95 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "libperception/core/Config.h"
+#include "libperception/core/Frames.h"
+#include "libperception/simulation/CameraBoxes.h"
+#include "libperception/simulation/LidarSensor.h"
+#include "libperception/simulation/Trajectory.h"
+
+namespace perception {
+
+/// What an object is; gives its shape, its usual size and its type in the truth.
+enum class ObjectKind { kCar, kVan, kBus, kCyclist, kPedestrian, kPole, kBox, kBush };
+
+/// True for road users; poles, walls and bushes are surroundings.
+bool isRoadUser(ObjectKind kind);
+/// KITTI's word: Car, Van, Truck (a bus), Cyclist, Pedestrian, Misc.
+const char* truthType(ObjectKind kind);
+
+/// [scenario]: what holds for the whole log.
+struct ScenarioParams {
+  std::string description;
+  double duration = 20;            ///< [s]
+  double rate = 10;                ///< [1/s] frames: numbers in the log and instants of the truth
+  int start_utc = 1577836800;      ///< [s] since 1970, stamp of t = 0: 2020-01-01T00:00:00Z
+  double ground_roughness = 0.01;  ///< [m] standard deviation of the road's height
+
+  void visit(ParamVisitor& v);
+};
+
+/// Timed waypoints, as lists of one length. World, z up.
+struct WaypointParams {
+  std::vector<double> t;     ///< [s] since the log's first stamp
+  std::vector<double> x, y;  ///< [m]
+  double heading = 0;        ///< [rad] of what never moves
+
+  void visit(ParamVisitor& v);
+  Trajectory trajectory() const { return {t, x, y, heading}; }
+};
+
+/// [ego]: the vehicle with the sensors and what its pose estimator says.
+struct EgoParams {
+  WaypointParams waypoints;      ///< of the ego origin: rear axle, on the ground
+  double pose_rate = 100;        ///< [1/s] (paper: 100 Hz)
+  double pose_sigma_xy = 0;      ///< [m] error of the reported pose: slowly varying
+  double pose_sigma_yaw = 0;     ///< [rad]
+  double pose_correlation = 10;  ///< [s] time constant of that error
+
+  void visit(ParamVisitor& v);
+};
+
+/// [object.NAME]: one thing of the scene.
+struct ObjectParams {
+  std::string name;  ///< from the section's title
+  ObjectKind kind = ObjectKind::kCar;
+  double length = 4.5, width = 1.8, height = 1.5;  ///< [m]
+  double base = 0;                                 ///< [m] height of its bottom above the road
+  double reflectivity = 1;   ///< times the usual one of its materials: below 1 a dark car
+  WaypointParams waypoints;  ///< of the footprint's centre
+
+  void visit(ParamVisitor& v);
+};
+
+enum class SensorKind { kLidar64, kLidar4, kCameraBoxes };
+
+/// [sensor.LABEL]: one sensor of the vehicle.
+struct SensorParams {
+  std::string label;  ///< from the section's title
+  SensorKind kind = SensorKind::kLidar64;
+  double x = 0, y = 0, z = 1.73;  ///< [m] on the vehicle (KITTI's Velodyne: 1.73 m above the road)
+  double yaw = 0, pitch = 0, roll = 0;  ///< [rad] of its forward axis; pitch > 0 looks down
+  double rate = 10;                     ///< [1/s]
+  double phase = 0;                     ///< [s] of its first scan
+  LidarParams lidar;
+  CameraParams camera;
+
+  bool isLidar() const { return kind != SensorKind::kCameraBoxes; }
+  /// Sensor frame (x forward, y left, z up; a camera's too) on the vehicle.
+  Pose3 T_ego_sensor() const { return makePose(x, y, z, yaw, pitch, roll); }
+  void visit(ParamVisitor& v);
+};
+
+/// A scene, its vehicle and its sensors as data: the scenario INI.
+struct Scenario {
+  ScenarioParams params;
+  EgoParams ego;
+  std::vector<ObjectParams> objects;  ///< in the order of the file
+  std::vector<SensorParams> sensors;
+};
+
+/// Reads all sections; faults go to `config`, whose finish() throws them.
+Scenario readScenario(Config& config);
+
+}  // namespace perception

@@ -1,0 +1,325 @@
+#include "libperception/simulation/Shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libperception/core/Random.h"
+
+namespace perception {
+namespace {
+
+constexpr std::uint32_t kLeafStream = 0x51A01, kRoadStream = 0x51A02;  // purposes of random numbers
+
+std::uint32_t addVertex(Mesh& mesh, const Vector3& v) {
+  mesh.vertices.push_back(
+      {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
+  return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+}
+
+void addTriangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, Material material) {
+  mesh.triangles.push_back({a, b, c});
+  mesh.materials.push_back(material);
+}
+
+void addQuad(Mesh& mesh, const std::array<Vector3, 4>& corners, Material material) {
+  std::array<std::uint32_t, 4> i{};
+  for (std::size_t k = 0; k < 4; ++k) i[k] = addVertex(mesh, corners[k]);
+  addTriangle(mesh, i[0], i[1], i[2], material);
+  addTriangle(mesh, i[0], i[2], i[3], material);
+}
+
+/// A rectangle at height z: x from x0 to x1 [m], half width [m].
+struct Level {
+  double z, x0, x1, half_width;
+};
+
+// The solid between two rectangles, as a cabin between belt line and roof.
+void addFrustum(Mesh& mesh, const Level& low, const Level& high, Material side, Material top) {
+  const auto corners = [](const Level& l) {
+    return std::array<Vector3, 4>{
+        Vector3(l.x0, -l.half_width, l.z), Vector3(l.x1, -l.half_width, l.z),
+        Vector3(l.x1, l.half_width, l.z), Vector3(l.x0, l.half_width, l.z)};
+  };
+  const auto a = corners(low), b = corners(high);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t next = (k + 1) % 4;
+    addQuad(mesh, {a[k], a[next], b[next], b[k]}, side);
+  }
+  addQuad(mesh, b, top);
+  addQuad(mesh, {a[3], a[2], a[1], a[0]}, top);
+}
+
+// A side view (x, z) drawn across the whole width; star-shaped about the mean of its corners.
+void addExtruded(Mesh& mesh, const std::vector<Vector2>& outline, double half_width,
+                 Material material) {
+  Vector2 middle = Vector2::Zero();
+  for (const Vector2& p : outline) middle += p / static_cast<double>(outline.size());
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vector2 &p = outline[k], &q = outline[(k + 1) % outline.size()];
+    addQuad(mesh,
+            {Vector3(p.x(), -half_width, p.y()), Vector3(q.x(), -half_width, q.y()),
+             Vector3(q.x(), half_width, q.y()), Vector3(p.x(), half_width, p.y())},
+            material);
+    for (const double side : {-half_width, half_width}) {
+      addTriangle(mesh, addVertex(mesh, {p.x(), side, p.y()}),
+                  addVertex(mesh, {q.x(), side, q.y()}),
+                  addVertex(mesh, {middle.x(), side, middle.y()}), material);
+    }
+  }
+}
+
+// A closed cylinder from a to b with elliptic section; `aspect` is its depth (x) over its width (y)
+// for upright ones.
+void addCylinder(Mesh& mesh, const Vector3& a, const Vector3& b, double radius, Material material,
+                 double aspect = 1, int sides = 10) {
+  const Vector3 axis = (b - a).normalized();
+  const Vector3 across = std::abs(axis.y()) < 0.9 ? Vector3::UnitY() : Vector3::UnitZ();
+  const Vector3 u = (across - axis * axis.dot(across)).normalized(), w = u.cross(axis);
+  const auto rim = [&](const Vector3& centre, int k) -> Vector3 {
+    const double angle = kTwoPi * k / sides;
+    return centre + radius * (u * std::cos(angle) + aspect * w * std::sin(angle));
+  };
+  for (int k = 0; k < sides; ++k) {
+    addQuad(mesh, {rim(a, k), rim(a, k + 1), rim(b, k + 1), rim(b, k)}, material);
+    for (const Vector3& end : {a, b}) {
+      addTriangle(mesh, addVertex(mesh, end), addVertex(mesh, rim(end, k)),
+                  addVertex(mesh, rim(end, k + 1)), material);
+    }
+  }
+}
+
+void addEllipsoid(Mesh& mesh, const Vector3& centre, const Vector3& half_axes, Material material) {
+  constexpr int kAround = 10, kUp = 6;
+  const auto point = [&](int i, int j) -> Vector3 {
+    const double around = kTwoPi * i / kAround, up = kPi * j / kUp - kPi / 2;
+    return centre + half_axes.cwiseProduct(Vector3(std::cos(up) * std::cos(around),
+                                                   std::cos(up) * std::sin(around), std::sin(up)));
+  };
+  for (int i = 0; i < kAround; ++i) {
+    for (int j = 0; j < kUp; ++j) {
+      addQuad(mesh, {point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)}, material);
+    }
+  }
+}
+
+void addWheels(Mesh& mesh, double front, double rear, double half_width, double radius) {
+  constexpr double kTyreWidth = 0.22;  // [m]
+  for (const double x : {front, rear}) {
+    for (const double side : {-1.0, 1.0}) {
+      addCylinder(mesh, {x, side * half_width, radius},
+                  {x, side * (half_width - kTyreWidth), radius}, radius, Material::kTyre, 1, 14);
+    }
+  }
+}
+
+// A saloon: body with bonnet and boot, glass all around the cabin.
+Mesh carMesh(double l, double w, double h) {
+  Mesh mesh;
+  const double belt = 0.60 * h;
+  addExtruded(mesh,
+              {{-.5 * l, .15 * h},
+               {.5 * l, .15 * h},
+               {.5 * l, .40 * h},
+               {.47 * l, .48 * h},
+               {.20 * l, belt},
+               {-.40 * l, belt},
+               {-.5 * l, .55 * h}},
+              .5 * w, Material::kPaint);
+  addFrustum(mesh, {belt, -.42 * l, .20 * l, .48 * w}, {h, -.28 * l, .06 * l, .38 * w},
+             Material::kGlass, Material::kPaint);
+  addWheels(mesh, .31 * l, -.30 * l, .5 * w, .21 * h);
+  return mesh;
+}
+
+// A panel van: glass in the front third only.
+Mesh vanMesh(double l, double w, double h) {
+  Mesh mesh;
+  const double belt = 0.50 * h;
+  addExtruded(
+      mesh,
+      {{-.5 * l, .12 * h}, {.5 * l, .12 * h}, {.5 * l, .36 * h}, {.40 * l, belt}, {-.5 * l, belt}},
+      .5 * w, Material::kPaint);
+  addFrustum(mesh, {belt, .10 * l, .40 * l, .5 * w}, {h, .10 * l, .26 * l, .44 * w},
+             Material::kGlass, Material::kPaint);
+  addFrustum(mesh, {belt, -.5 * l, .10 * l, .5 * w}, {h, -.49 * l, .10 * l, .46 * w},
+             Material::kPaint, Material::kPaint);
+  addWheels(mesh, .32 * l, -.30 * l, .5 * w, .16 * h);
+  return mesh;
+}
+
+Mesh busMesh(double l, double w, double h) {
+  Mesh mesh;
+  const auto level = [&](double share) { return Level{share * h, -.5 * l, .5 * l, .5 * w}; };
+  addFrustum(mesh, level(.10), level(.36), Material::kPaint, Material::kPaint);
+  addFrustum(mesh, level(.36), level(.76), Material::kGlass, Material::kPaint);
+  addFrustum(mesh, level(.76), level(1), Material::kPaint, Material::kPaint);
+  addWheels(mesh, .28 * l, -.27 * l, .5 * w, .15 * h);
+  return mesh;
+}
+
+Part limb(const Vector3& from, const Vector3& to, double radius, double swing, Material material) {
+  Part part;
+  addCylinder(part.mesh, from, to, radius, material, 1, 8);
+  part.pivot = from;
+  part.swing = swing;
+  return part;
+}
+
+// Proportions of the standing body (Drillis and Contini 1966): hip .53, shoulder .82, chin .87 of
+// the height.
+Shape pedestrianShape(double w, double h) {
+  Shape shape;
+  Part trunk;
+  addCylinder(trunk.mesh, {0, 0, .50 * h}, {0, 0, .84 * h}, .40 * w, Material::kCloth, .6);
+  addEllipsoid(trunk.mesh, {0, 0, .93 * h}, {.065 * h, .052 * h, .07 * h}, Material::kSkin);
+  shape.parts.push_back(std::move(trunk));
+  for (const double side : {-1.0, 1.0}) {
+    constexpr double kLegSwing = 0.42, kArmSwing = 0.35;  // [rad] normal walking
+    shape.parts.push_back(limb({0, side * .17 * w, .53 * h}, {0, side * .17 * w, 0}, .075,
+                               side * kLegSwing, Material::kCloth));
+    shape.parts.push_back(limb({0, side * .45 * w, .82 * h}, {0, side * .45 * w, .42 * h}, .045,
+                               -side * kArmSwing, Material::kCloth));
+  }
+  shape.cycle = 1.45;  // [m] two steps of a walk at 1.4 m/s
+  shape.full_pace = 1.2;
+  return shape;
+}
+
+void addTyre(Mesh& mesh, double x, double radius) {
+  constexpr int kPieces = 12;
+  const auto rim = [&](int k) {
+    const double angle = kTwoPi * k / kPieces;
+    return Vector3(x + radius * std::cos(angle), 0, radius * (1 + std::sin(angle)));
+  };
+  for (int k = 0; k < kPieces; ++k) {
+    addCylinder(mesh, rim(k), rim(k + 1), .025, Material::kTyre, 1, 5);
+  }
+}
+
+// A rider on a bicycle: wheels as rims (spokes let the light through), frame, rider bent forward.
+Shape cyclistShape(double l, double w, double h) {
+  Shape shape;
+  Part body;
+  Mesh& mesh = body.mesh;
+  const double radius = .19 * l, front = .5 * l - radius, rear = -front;
+  addTyre(mesh, front, radius);
+  addTyre(mesh, rear, radius);
+  const Vector3 crank(-.05 * l, 0, .16 * h), seat(-.14 * l, 0, .52 * h), head(.24 * l, 0, .52 * h);
+  for (const auto& [a, b] : {std::pair(crank, seat), std::pair(crank, head), std::pair(seat, head),
+                             std::pair(Vector3(rear, 0, radius), crank),
+                             std::pair(Vector3(front, 0, radius), Vector3(.22 * l, 0, .62 * h))}) {
+    addCylinder(mesh, a, b, .02, Material::kMetal, 1, 6);
+  }
+  const Vector3 bar(.20 * l, 0, .62 * h), shoulder(.06 * l, 0, .84 * h);
+  addCylinder(mesh, bar - Vector3(0, .45 * w, 0), bar + Vector3(0, .45 * w, 0), .02,
+              Material::kMetal, 1, 6);
+  addCylinder(mesh, seat + Vector3(0, 0, .02), shoulder, .17, Material::kCloth, .65);
+  addEllipsoid(mesh, {.12 * l, 0, .93 * h}, {.11, .09, .07 * h}, Material::kSkin);
+  for (const double side : {-1.0, 1.0}) {
+    addCylinder(mesh, shoulder + Vector3(0, side * .18, 0), bar + Vector3(0, side * .4 * w, 0),
+                .045, Material::kCloth, 1, 6);
+  }
+  shape.parts.push_back(std::move(body));
+  for (const double side : {-1.0, 1.0}) {
+    shape.parts.push_back(limb(seat + Vector3(0, side * .1, 0),
+                               crank + Vector3(.08 * l, side * .1, -.05 * h), .07, side * .3,
+                               Material::kCloth));
+  }
+  shape.cycle = 5;  // [m] one turn of the pedals in a middle gear
+  shape.full_pace = 0.5;
+  return shape;
+}
+
+// Leaves in an ellipsoid; beams pass between them.
+Mesh bushMesh(const ObjectParams& o) {
+  Mesh mesh;
+  constexpr double kLeafSide = 0.12;  // [m] a tuft rather than one leaf
+  const double per_area = 2.5;        // tufts' area over the ellipsoid's mean section
+  const auto count = static_cast<std::uint32_t>(per_area * kPi / 4 * std::max(o.length, o.width) *
+                                                o.height / (kLeafSide * kLeafSide));
+  std::uint64_t seed = 1469598103934665603ull;  // FNV-1a: the name picks the bush, not the run
+  for (const char c : o.name) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  for (std::uint32_t i = 0; i < std::min(count, 4000u); ++i) {
+    Rng rng({seed, 0, i, kLeafStream});
+    Vector3 place(rng.normal(), rng.normal(), rng.normal());
+    place *= std::cbrt(rng.uniform()) / place.norm();
+    const Vector3 centre = place.cwiseProduct(Vector3(.5 * o.length, .5 * o.width, .5 * o.height)) +
+                           Vector3(0, 0, .5 * o.height);
+    const Eigen::Matrix3d turn =
+        makePose(0, 0, 0, rng.uniform(0, kTwoPi), std::asin(rng.uniform(-1, 1))).linear();
+    const Vector3 u = turn.col(1) * (.5 * kLeafSide), v = turn.col(2) * (.5 * kLeafSide);
+    addQuad(mesh, {centre - u - v, centre + u - v, centre + u + v, centre - u + v},
+            Material::kLeaf);
+  }
+  return mesh;
+}
+
+Shape rigid(Mesh mesh) {
+  Shape shape;
+  shape.parts.resize(1);
+  shape.parts[0].mesh = std::move(mesh);
+  return shape;
+}
+
+}  // namespace
+
+Shape makeShape(const ObjectParams& o) {
+  const double l = o.length, w = o.width, h = o.height;
+  Mesh mesh;
+  switch (o.kind) {
+    case ObjectKind::kCar:
+      return rigid(carMesh(l, w, h));
+    case ObjectKind::kVan:
+      return rigid(vanMesh(l, w, h));
+    case ObjectKind::kBus:
+      return rigid(busMesh(l, w, h));
+    case ObjectKind::kCyclist:
+      return cyclistShape(l, w, h);
+    case ObjectKind::kPedestrian:
+      return pedestrianShape(w, h);
+    case ObjectKind::kPole:
+      addCylinder(mesh, {0, 0, 0}, {0, 0, h}, .5 * w, Material::kMetal, l / w);
+      return rigid(std::move(mesh));
+    case ObjectKind::kBox:
+      addFrustum(mesh, {0, -.5 * l, .5 * l, .5 * w}, {h, -.5 * l, .5 * l, .5 * w}, Material::kWall,
+                 Material::kWall);
+      return rigid(std::move(mesh));
+    case ObjectKind::kBush:
+      return rigid(bushMesh(o));
+  }
+  return {};
+}
+
+Pose3 partPose(const Shape& shape, const Part& part, double travelled, double speed) {
+  if (part.swing == 0) return Pose3::Identity();
+  const double pace = std::min(1.0, speed / shape.full_pace);
+  const double angle = part.swing * pace * std::sin(kTwoPi * travelled / shape.cycle);
+  Pose3 pose = Pose3::Identity();
+  pose.linear() = Eigen::AngleAxisd(angle, Vector3::UnitY()).toRotationMatrix();
+  pose.translation() = part.pivot - pose.linear() * part.pivot;
+  return pose;
+}
+
+Mesh makeRoad(const Vector2& centre, double half_side, double roughness) {
+  constexpr double kCell = 1;  // [m] bumps of the size of a patch of road
+  Mesh mesh;
+  const auto n = static_cast<std::uint32_t>(2 * std::ceil(half_side / kCell)) + 1;
+  const Vector2 corner = centre - Vector2::Constant(kCell * (n - 1) / 2);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t j = 0; j < n; ++j) {
+      Rng rng({0, i, j, kRoadStream});
+      addVertex(mesh, {corner.x() + kCell * i, corner.y() + kCell * j, roughness * rng.normal()});
+    }
+  }
+  for (std::uint32_t i = 0; i + 1 < n; ++i) {
+    for (std::uint32_t j = 0; j + 1 < n; ++j) {
+      const std::uint32_t a = i * n + j, b = a + n;
+      addTriangle(mesh, a, b, b + 1, Material::kRoad);
+      addTriangle(mesh, a, b + 1, a + 1, Material::kRoad);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace perception

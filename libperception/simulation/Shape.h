@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+#include "libperception/simulation/Scenario.h"
+
+namespace perception {
+
+/// What a surface is made of, as a lidar sees it.
+enum class Material : std::uint8_t {
+  kRoad,
+  kPaint,
+  kGlass,
+  kTyre,
+  kCloth,
+  kSkin,
+  kMetal,
+  kWall,
+  kLeaf
+};
+
+/// A rigid surface of triangles. Single precision: the ray caster's.
+struct Mesh {
+  std::vector<std::array<float, 3>> vertices;           ///< [m]
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices
+  std::vector<Material> materials;                      ///< one a triangle
+};
+
+/// One rigid part of an object; legs and arms swing about an axis across the object.
+struct Part {
+  Mesh mesh;                        ///< object frame: x along heading, z = 0 bottom, centred
+  Vector3 pivot = Vector3::Zero();  ///< [m] a point of the axis, object frame
+  double swing = 0;  ///< [rad] amplitude at full pace; the sign tells left from right
+};
+
+/// An object's parts and how fast they swing.
+struct Shape {
+  std::vector<Part> parts;
+  double cycle = 1;      ///< [m] way of one whole swing
+  double full_pace = 1;  ///< [m/s] from this speed on the swing is full
+};
+
+Shape makeShape(const ObjectParams& object);
+
+/// Pose of a part in the object's frame after `travelled` [m] at `speed` [m/s].
+Pose3 partPose(const Shape& shape, const Part& part, double travelled, double speed);
+
+/// A square of road about `centre` with heights that vary smoothly; world frame, z = 0 on average.
+Mesh makeRoad(const Vector2& centre, double half_side, double roughness);
+
+}  // namespace perception

@@ -1,0 +1,188 @@
+#include "libperception/simulation/Simulator.h"
+
+#include <fmt/format.h>
+#include <mrpt/obs/CObservationComment.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/ToObservation.h"
+
+namespace perception {
+namespace {
+
+// Purposes of random numbers; a sensor adds its index.
+constexpr std::uint32_t kPoseStream = 0x51B00, kSensorStream = 0x51C00;
+
+// KITTI's levels of occlusion from the visible share; 3 ("unknown") when next to nothing is seen.
+int occlusionLevel(double visible) {
+  if (visible >= 0.75) return 0;
+  if (visible >= 0.35) return 1;
+  return visible >= 0.05 ? 2 : 3;
+}
+
+std::int64_t ticksOf(double t) { return std::llround(t * 1e7); }
+
+}  // namespace
+
+Simulator::Simulator(Scenario scenario, const std::string& name, std::uint64_t seed, int threads)
+    : world_(std::move(scenario)),
+      caster_(world_, threads),
+      name_(name),
+      seed_(seed),
+      pose_rng_({seed, 0, 0, kPoseStream}) {
+  const Scenario& s = world_.scenario();
+  schedule(Event::kComment, 0, 1 / (2 * s.params.duration), 0);
+  schedule(Event::kPose, 0, s.ego.pose_rate, 0);
+  schedule(Event::kFrame, 0, s.params.rate, 0);
+  for (std::size_t i = 0; i < s.sensors.size(); ++i) {
+    schedule(Event::kSensor, i, s.sensors[i].rate, s.sensors[i].phase);
+    lidars_.emplace_back(s.sensors[i].lidar, s.sensors[i].rate);
+  }
+  std::sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) {
+    return std::tie(a.ticks, a.kind, a.sensor) < std::tie(b.ticks, b.kind, b.sensor);
+  });
+  points_on_.assign(s.sensors.size(), std::vector<int>(world_.objects(), 0));
+  scanned_.assign(s.sensors.size(), false);
+}
+
+void Simulator::schedule(Event::Kind kind, std::size_t sensor, double rate, double phase) {
+  const double duration = world_.scenario().params.duration;
+  for (std::uint64_t k = 0;; ++k) {
+    const double t = phase + static_cast<double>(k) / rate;
+    if (t > duration + 1e-9) return;
+    events_.push_back({kind, t, ticksOf(t), sensor, k});
+  }
+}
+
+std::shared_ptr<mrpt::obs::CObservation> Simulator::next() {
+  if (next_ == events_.size()) {
+    endFrame();
+    return nullptr;
+  }
+  const Event& event = events_[next_++];
+  switch (event.kind) {
+    case Event::kComment: {
+      auto comment = std::make_shared<mrpt::obs::CObservationComment>();
+      comment->timestamp = fromStamp(world_.stamp(event.t));
+      comment->sensorLabel = kSimulatedLabel;
+      comment->text = fmt::format("simulated log: scenario {}, seed {}", name_, seed_);
+      const std::string& description = world_.scenario().params.description;
+      if (!description.empty()) comment->text += ": " + description;
+      return comment;
+    }
+    case Event::kPose:
+      return poseObservation(reportedEgo(event.t));
+    case Event::kFrame:
+      beginFrame(event);
+      return frameComment(world_.stamp(event.t), static_cast<std::int64_t>(event.count));
+    case Event::kSensor:
+      break;
+  }
+  return sense(event);
+}
+
+// The truth of a frame waits for the scans of that frame: their returns are counted in it.
+void Simulator::beginFrame(const Event& event) {
+  endFrame();
+  ++frames_;
+  open_ = world_.truth(static_cast<std::int64_t>(event.count), event.t);
+  setVisibility(open_, event.t);
+  std::fill(scanned_.begin(), scanned_.end(), false);
+}
+
+void Simulator::endFrame() {
+  const auto& sensors = world_.scenario().sensors;
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    if (!sensors[s].isLidar()) continue;
+    for (TruthObject& row : open_) {
+      row.lidar_points =
+          std::max(0, row.lidar_points) + points_on_[s][static_cast<std::size_t>(row.id) - 1];
+    }
+  }
+  truth_.insert(truth_.end(), open_.begin(), open_.end());
+  open_.clear();
+}
+
+// Occlusion as seen from the first lidar (else the first camera); truncation by the cameras'
+// images.
+void Simulator::setVisibility(std::vector<TruthObject>& rows, double t) {
+  caster_.setTime(t);
+  const auto& sensors = world_.scenario().sensors;
+  const Pose3 T_world_ego = world_.ego(t).T_world_ego;
+  const auto lidar = std::find_if(sensors.begin(), sensors.end(),
+                                  [](const SensorParams& s) { return s.isLidar(); });
+  const SensorParams& eye = lidar != sensors.end() ? *lidar : sensors.front();
+  for (TruthObject& row : rows) {
+    const auto object = static_cast<std::size_t>(row.id) - 1;
+    const Vector3 from = (T_world_ego * eye.T_ego_sensor()).translation();
+    row.occluded = occlusionLevel(caster_.visibleShare(from, object));
+    bool has_camera = false;
+    double truncated = 1;
+    for (const SensorParams& sensor : sensors) {
+      if (sensor.isLidar()) continue;
+      has_camera = true;
+      const auto outline = imageOutline(world_, object, t, sensor.camera.model(),
+                                        T_world_ego * sensor.T_ego_sensor() * opticalAxes());
+      if (outline) truncated = std::min(truncated, outline->truncated);
+    }
+    row.truncated = has_camera ? truncated : 0;
+  }
+}
+
+// The pose estimator's error: first-order Gauss-Markov, as a filter's error varies slowly.
+EgoState Simulator::reportedEgo(double t) {
+  const EgoParams& p = world_.scenario().ego;
+  const Vector3 sigma(p.pose_sigma_xy, p.pose_sigma_xy, p.pose_sigma_yaw);
+  const double keep =
+      pose_error_drawn_ ? std::exp(-(t - pose_error_time_) / p.pose_correlation) : 0;
+  for (int i = 0; i < 3; ++i) {
+    pose_error_(i) =
+        keep * pose_error_(i) + std::sqrt(1 - keep * keep) * sigma(i) * pose_rng_.normal();
+  }
+  pose_error_time_ = t;
+  pose_error_drawn_ = true;
+  EgoState ego = world_.ego(t);
+  const Vector3 place = ego.T_world_ego.translation();
+  ego.T_world_ego = makePose(place.x() + pose_error_.x(), place.y() + pose_error_.y(), place.z(),
+                             yawOf(ego.T_world_ego) + pose_error_.z());
+  return ego;
+}
+
+std::shared_ptr<mrpt::obs::CObservation> Simulator::sense(const Event& event) {
+  const SensorParams& sensor = world_.scenario().sensors[event.sensor];
+  const RngKey key{seed_, event.count, 0, kSensorStream + static_cast<std::uint32_t>(event.sensor)};
+  SensorFrame frame;
+  frame.sensor = sensor.label;
+  frame.stamp = world_.stamp(event.t);
+  frame.T_ego_sensor = sensor.T_ego_sensor();
+  if (sensor.isLidar()) {
+    frame.data = scanLidar(event, key);
+  } else {
+    frame.T_ego_sensor = frame.T_ego_sensor * opticalAxes();
+    caster_.setTime(event.t);
+    auto boxes = detectBoxes(caster_, event.t, sensor.camera,
+                             world_.ego(event.t).T_world_ego * frame.T_ego_sensor, key);
+    boxes_ += boxes.objects.size();
+    frame.data = std::move(boxes);
+  }
+  return observationFromFrame(frame);
+}
+
+LidarCloud Simulator::scanLidar(const Event& event, const RngKey& key) {
+  const Pose3 T_ego_sensor = world_.scenario().sensors[event.sensor].T_ego_sensor();
+  const auto pose_at = [&](double t) -> Pose3 { return world_.ego(t).T_world_ego * T_ego_sensor; };
+  const LidarSensor& lidar = lidars_[event.sensor];
+  LidarSensor::Scan scan = lidar.scan(caster_, event.t, pose_at, key);
+  if (!scanned_[event.sensor]) points_on_[event.sensor] = std::move(scan.points_on);
+  scanned_[event.sensor] = true;
+  ++scans_;
+  points_ += scan.cloud.size();
+  beams_ += lidar.beams();
+  return std::move(scan.cloud);
+}
+
+}  // namespace perception

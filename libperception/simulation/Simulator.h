@@ -1,0 +1,75 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libperception/core/GroundTruth.h"
+#include "libperception/core/Random.h"
+#include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/World.h"
+
+namespace perception {
+
+/// Label of the first observation of a simulated log: a comment that says so.
+inline constexpr const char* kSimulatedLabel = "SIMULATED";
+
+/// Plays a scenario as a rawlog: a comment that calls it simulated, then in order of time ego
+/// poses, frame numbers and the sensors' observations. A function of scenario and seed alone.
+class Simulator {
+ public:
+  /// `name` of the scenario goes into the first comment; `threads` 0 = as many as the machine has.
+  Simulator(Scenario scenario, const std::string& name, std::uint64_t seed, int threads = 1);
+
+  /// The next observation; null at the end.
+  std::shared_ptr<mrpt::obs::CObservation> next();
+
+  /// What was there, for all frames that have been played to their end (all of them at the end).
+  const std::vector<TruthObject>& truth() const { return truth_; }
+
+  double time() const { return next_ > 0 ? events_[next_ - 1].t : 0; }  ///< [s] of the last one
+  std::int64_t frames() const { return frames_; }
+  std::uint64_t scans() const { return scans_; }    ///< of lidars
+  std::uint64_t points() const { return points_; }  ///< of lidars
+  std::uint64_t beams() const { return beams_; }    ///< cast by lidars
+  std::uint64_t boxes() const { return boxes_; }    ///< of detectors
+  const World& world() const { return world_; }
+
+ private:
+  /// What happens when. The order of the kinds is the order at one instant.
+  struct Event {
+    enum Kind { kComment, kPose, kFrame, kSensor } kind;
+    double t;             // [s]
+    std::int64_t ticks;   // 100 ns: the order
+    std::size_t sensor;   // kSensor
+    std::uint64_t count;  // how many of this kind (and sensor) came before
+  };
+  void schedule(Event::Kind kind, std::size_t sensor, double rate, double phase);
+  void beginFrame(const Event& event);
+  void endFrame();
+  EgoState reportedEgo(double t);
+  std::shared_ptr<mrpt::obs::CObservation> sense(const Event& event);
+  LidarCloud scanLidar(const Event& event, const RngKey& key);
+  void setVisibility(std::vector<TruthObject>& rows, double t);
+
+  World world_;
+  LidarCaster caster_;
+  std::string name_;
+  std::uint64_t seed_;
+  std::vector<LidarSensor> lidars_;  // one a sensor; cameras have an idle one
+  std::vector<Event> events_;
+  std::size_t next_ = 0;
+  std::vector<TruthObject> open_, truth_;    // rows of the frame being played, of all before
+  std::vector<std::vector<int>> points_on_;  // [sensor][object] of the sensor's last scan
+  std::vector<bool> scanned_;                // [sensor] since the frame began
+  Rng pose_rng_;
+  Vector3 pose_error_ = Vector3::Zero();  // x, y [m], yaw [rad] of the reported pose
+  double pose_error_time_ = 0;            // [s]
+  bool pose_error_drawn_ = false;
+  std::int64_t frames_ = 0;
+  std::uint64_t scans_ = 0, points_ = 0, beams_ = 0, boxes_ = 0;
+};
+
+}  // namespace perception

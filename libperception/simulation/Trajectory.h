@@ -1,0 +1,47 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+
+namespace perception {
+
+/// Where and how fast something moves on the ground at one instant, world.
+struct Motion2 {
+  Vector2 position = Vector2::Zero();  ///< [m]
+  Vector2 velocity = Vector2::Zero();  ///< [m/s] exact derivative of the position
+  double heading = 0;                  ///< [rad] of the velocity; at rest the last (or first) one
+  double yaw_rate = 0;                 ///< [rad/s] 0 at rest
+  double travelled = 0;                ///< [m] way since the first waypoint
+};
+
+/// A smooth way through timed waypoints. Each coordinate is a monotone cubic of time (Fritsch and
+/// Butland 1984), so nothing overshoots: two waypoints at one place are a pause, waypoints on a
+/// line are driven on the line. Before the first and after the last waypoint it stands still.
+class Trajectory {
+ public:
+  /// `heading` [rad] holds as long as nothing has moved. The lists have passed fault().
+  Trajectory(std::vector<double> t, std::vector<double> x, std::vector<double> y, double heading);
+
+  /// What is wrong with the lists, for a person; empty when nothing is.
+  static std::string fault(const std::vector<double>& t, const std::vector<double>& x,
+                           const std::vector<double>& y);
+
+  Motion2 at(double t) const;  ///< t [s]
+  double duration() const { return t_.back() - t_.front(); }
+
+ private:
+  /// Position and its first two derivatives of one coordinate.
+  struct Cubic {
+    double value, first, second;
+  };
+  Cubic evaluate(const std::vector<double>& values, const std::vector<double>& slopes,
+                 double t) const;
+  void tabulate(double heading);
+
+  std::vector<double> t_, x_, y_;            ///< [s, m, m] waypoints
+  std::vector<double> slope_x_, slope_y_;    ///< [m/s] at the waypoints
+  std::vector<double> heading_, travelled_;  ///< [rad, m] every kTableStep from t_.front()
+};
+
+}  // namespace perception

@@ -1,0 +1,87 @@
+#include "libperception/simulation/World.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace perception {
+namespace {
+
+constexpr double kRoadMargin =
+    120;  // [m] around the ego's way: beyond it no ground return is strong
+
+Mesh roadAround(const WaypointParams& way, double roughness) {
+  const auto [x0, x1] = std::minmax_element(way.x.begin(), way.x.end());
+  const auto [y0, y1] = std::minmax_element(way.y.begin(), way.y.end());
+  // Centred on whole metres: the bumps stay where they are when a waypoint moves a little.
+  const Vector2 centre(std::round(.5 * (*x0 + *x1)), std::round(.5 * (*y0 + *y1)));
+  return makeRoad(centre, kRoadMargin + .5 * std::max(*x1 - *x0, *y1 - *y0), roughness);
+}
+
+}  // namespace
+
+World::World(Scenario scenario)
+    : scenario_(std::move(scenario)),
+      ego_(scenario_.ego.waypoints.trajectory()),
+      road_(roadAround(scenario_.ego.waypoints, scenario_.params.ground_roughness)) {
+  for (const ObjectParams& object : scenario_.objects) {
+    trajectories_.push_back(object.waypoints.trajectory());
+    shapes_.push_back(makeShape(object));
+  }
+}
+
+Stamp World::stamp(double t) const {
+  constexpr std::int64_t kSecond = 1000000000, kTick = 100;  // [ns]
+  return {scenario_.params.start_utc * kSecond +
+          static_cast<std::int64_t>(std::llround(t * 1e7)) * kTick};
+}
+
+EgoState World::ego(double t) const {
+  const Motion2 m = ego_.at(t);
+  EgoState ego;
+  ego.stamp = stamp(t);
+  ego.T_world_ego = makePose(m.position.x(), m.position.y(), 0, m.heading);
+  ego.velocity = m.velocity;
+  ego.yaw_rate = m.yaw_rate;
+  ego.uncertainty = {scenario_.ego.pose_sigma_xy, scenario_.ego.pose_sigma_yaw, 0};
+  return ego;
+}
+
+ObjectState World::object(std::size_t object, double t) const {
+  const Motion2 m = trajectories_[object].at(t);
+  const double base = scenario_.objects[object].base;
+  return {makePose(m.position.x(), m.position.y(), base, m.heading), m.velocity, m.travelled};
+}
+
+std::vector<Pose3> World::parts(std::size_t index, double t) const {
+  const ObjectState state = object(index, t);
+  std::vector<Pose3> poses;
+  for (const Part& part : shapes_[index].parts) {
+    poses.push_back(state.T_world_object *
+                    partPose(shapes_[index], part, state.travelled, state.velocity.norm()));
+  }
+  return poses;
+}
+
+std::vector<TruthObject> World::truth(std::int64_t frame, double t) const {
+  std::vector<TruthObject> rows;
+  for (std::size_t i = 0; i < objects(); ++i) {
+    const ObjectParams& params = scenario_.objects[i];
+    if (params.kind == ObjectKind::kBox) continue;
+    const ObjectState state = object(i, t);
+    TruthObject row;
+    row.frame = frame;
+    row.t = stamp(t) - stamp(0);
+    row.id = static_cast<std::int64_t>(i) + 1;
+    row.type = truthType(params.kind);
+    row.position = state.T_world_object.translation();
+    row.yaw = yawOf(state.T_world_object);
+    row.length = params.length, row.width = params.width, row.height = params.height;
+    row.vx = state.velocity.x(), row.vy = state.velocity.y();
+    row.ignore = !isRoadUser(params.kind);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace perception

@@ -1,0 +1,48 @@
+#pragma once
+#include <vector>
+
+#include "libperception/core/GroundTruth.h"
+#include "libperception/measurement/SensorFrame.h"
+#include "libperception/simulation/Scenario.h"
+#include "libperception/simulation/Shape.h"
+
+namespace perception {
+
+/// One object at one instant.
+struct ObjectState {
+  Pose3 T_world_object = Pose3::Identity();  ///< centre of the footprint, bottom, x along heading
+  Vector2 velocity = Vector2::Zero();        ///< [m/s] world
+  double travelled = 0;                      ///< [m]
+};
+
+/// Where everything of a scenario is at any time t [s] since the log's first stamp: a pure
+/// function.
+class World {
+ public:
+  explicit World(Scenario scenario);
+
+  const Scenario& scenario() const { return scenario_; }
+  std::size_t objects() const { return shapes_.size(); }
+  const Shape& shape(std::size_t object) const { return shapes_[object]; }
+  const Mesh& road() const { return road_; }
+
+  /// Stamp of t, a whole multiple of MRPT's 100 ns.
+  Stamp stamp(double t) const;
+  EgoState ego(double t) const;
+  ObjectState object(std::size_t object, double t) const;
+  /// Poses of the object's parts, world.
+  std::vector<Pose3> parts(std::size_t object, double t) const;
+
+  /// The geometric columns of the truth: all objects but walls (kind box); ids are 1 + index. What
+  /// is seen (occluded, truncated, lidar_points) is left for the sensors.
+  std::vector<TruthObject> truth(std::int64_t frame, double t) const;
+
+ private:
+  Scenario scenario_;
+  Trajectory ego_;
+  std::vector<Trajectory> trajectories_;
+  std::vector<Shape> shapes_;
+  Mesh road_;
+};
+
+}  // namespace perception
