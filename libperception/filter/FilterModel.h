@@ -21,8 +21,9 @@ struct FilterParams {
   double orient_min_speed = 1;  ///< [m/s] from which motion gives a wheeled object its heading ...
   double orient_max_sigma = 0.5;  ///< [rad] ... when the heading would be this certain
   double shape_yaw_sigma = 0.15;  ///< [rad] added to what a box says of the heading
-  double side_sigma = 0.5;        ///< [m] of a seen side as a measurement of the extent (SPEC 2: .3; measured on KITTI: .5)
-  double base_walk = 0.05;        ///< [m^2/s] random walk of the base height (SPEC 2)
+  double side_sigma = 0.5;  ///< [m] of a seen side as a measurement of the extent (SPEC 2: .3;
+                            ///< measured on KITTI: .5)
+  double base_walk = 0.05;  ///< [m^2/s] random walk of the base height (SPEC 2)
   double hidden_tolerance = 1.0;  ///< [m] a track this much behind the horizon is still visible
   double max_distance = 150;      ///< [m] from the vehicle; tracks beyond are dropped (SPEC 5.9)
 

@@ -153,7 +153,8 @@ Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
   const auto n = out.y.size();
   out.H.resize(n, 4);
   out.R.resize(n, n);
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2> H_extent(n, 2);
+  auto& H_extent = out.H_extent;
+  H_extent.resize(n, 2);
   std::array<Eigen::Index, kMaxAxes> axis{};
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < model.axes().size(); ++i) {

@@ -47,6 +47,8 @@ struct Innovation {
   AxisVector y;
   AxisMatrix S;
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, kMaxAxes, 4> H;
+  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2>
+      H_extent;  ///< dh/d(length, width)
   AxisMatrix R;  ///< measurement noise, extent uncertainty included
 };
 Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,

@@ -71,16 +71,35 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   return f;
 }
 
+/// The extent is a static part of the state whose correlation with the rest is left out: seen edges
+/// measure it, too. The floor of its variance keeps systematic errors (rounded corners, mirrors)
+/// from making it certain.
+void updateExtentBy(const Innovation& innovation, Extent& e) {
+  constexpr double kFloor = 0.1 * 0.1;  // [m^2]
+  const Vector2 variance(e.var_length, e.var_width);
+  const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2> HV =
+      innovation.H_extent * variance.asDiagonal();
+  const auto llt = innovation.S.llt();
+  const Vector2 change = HV.transpose() * llt.solve(innovation.y);
+  const Matrix2 gain = HV.transpose() * llt.solve(HV);
+  e.length = std::max(0.1, e.length + change.x());
+  e.width = std::max(0.1, e.width + change.y());
+  e.var_length = std::max(std::min(kFloor, e.var_length), e.var_length - gain(0, 0));
+  e.var_width = std::max(std::min(kFloor, e.var_width), e.var_width - gain(1, 1));
+}
+
 /// Kalman update in Joseph form (SPEC 4).
 void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
   using Gain = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kMaxAxes>;
   const Gain PHt = f.P * innovation.H.transpose();
-  const Gain K = innovation.S.llt().solve(PHt.transpose()).transpose();
+  const auto llt = innovation.S.llt();
+  const Gain K = llt.solve(PHt.transpose()).transpose();
   const Matrix4 I_KH = Matrix4::Identity() - K * innovation.H;
   f.x += K * innovation.y;
   f.P = (I_KH * f.P * I_KH.transpose() + K * innovation.R * K.transpose()).eval();
   f.P = (0.5 * (f.P + f.P.transpose())).eval();
   if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
+  updateExtentBy(innovation, f.extent);
 }
 
 /// A wheeled filter takes its heading from what is known by now: the box seen, else its own motion

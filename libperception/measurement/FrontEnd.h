@@ -3,11 +3,13 @@
 
 namespace perception {
 
-/// A rib: turns one sensor's frame into measurements. Const and without state, so ribs may run in parallel.
+/// A rib: turns one sensor's frame into measurements. Const and without state, so ribs may run in
+/// parallel.
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
-  /// `frame.data` must hold the kind of data that this rib reads; bad points and boxes are dropped and counted.
+  /// `frame.data` must hold the kind of data that this rib reads; bad points and boxes are dropped
+  /// and counted.
   virtual MeasurementScan extract(const SensorFrame& frame) const = 0;
 };
 

@@ -17,7 +17,8 @@ class MeasurementModel;
 
 inline constexpr int kMaxAxes = 5;
 using AxisVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxAxes, 1>;
-using AxisMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxAxes, kMaxAxes>;
+using AxisMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxAxes, kMaxAxes>;
 using AxisMask = std::uint8_t;  ///< bit i: axis i was seen
 
 /// A scalar with its variance.
@@ -25,28 +26,31 @@ struct ScalarEstimate {
   double mean = 0, variance = 1;
 };
 
-/// Sides of a box about the returns: what was seen of the object's size and orientation. Not every side is complete.
+/// Sides of a box about the returns: what was seen of the object's size and orientation. Not every
+/// side is complete.
 struct SidesSeen {
-  double yaw = 0;                        ///< [rad] direction of side a, world
-  double yaw_sigma = 0.2;                ///< [rad]
-  double a = 0, b = 0;                   ///< [m] seen length along and across yaw
+  double yaw = 0;                               ///< [rad] direction of side a, world
+  double yaw_sigma = 0.2;                       ///< [rad]
+  double a = 0, b = 0;                          ///< [m] seen length along and across yaw
   bool a_complete = false, b_complete = false;  ///< both ends of that side were seen
-  Vector2 centre = Vector2::Zero();      ///< [m] of the box, world
+  Vector2 centre = Vector2::Zero();             ///< [m] of the box, world
 };
 
-/// z with covariance R under the scan's MeasurementModel, and what else the detection says of its object.
+/// z with covariance R under the scan's MeasurementModel, and what else the detection says of its
+/// object.
 struct Measurement {
-  AxisVector z;                          ///< one value an axis of the model; hidden axes hold 0
-  AxisMatrix R;                          ///< covariance of z, pose uncertainty included; hidden rows hold 0
-  AxisMask seen = 0;                     ///< which axes count, in likelihood, clutter and birth density alike
-  int label = 0;                         ///< index into the model's labels
-  double log_score_ratio = 0;            ///< log p(score | object) / p(score | clutter)
-  Vector2 position = Vector2::Zero();    ///< [m] rough place of the object, world: for gating by distance and pictures
+  AxisVector z;                ///< one value an axis of the model; hidden axes hold 0
+  AxisMatrix R;                ///< covariance of z, pose uncertainty included; hidden rows hold 0
+  AxisMask seen = 0;           ///< which axes count, in likelihood, clutter and birth density alike
+  int label = 0;               ///< index into the model's labels
+  double log_score_ratio = 0;  ///< log p(score | object) / p(score | clutter)
+  Vector2 position = Vector2::Zero();    ///< [m] rough place of the object, world: for gating by
+                                         ///< distance and pictures
   double position_sigma = 1;             ///< [m] how rough
   std::optional<ScalarEstimate> base_z;  ///< [m] lowest point of the object, world
   std::optional<ScalarEstimate> height;  ///< [m] lowest to highest point
   std::optional<SidesSeen> sides;
-  int detection = -1;                    ///< index of the detection in its frame
+  int detection = -1;  ///< index of the detection in its frame
 };
 
 /// Sensor and vehicle at the time of a scan.
@@ -58,9 +62,9 @@ struct SensorState {
 
 /// All measurements from one sensor at one instant. Never mixes sensors.
 struct MeasurementScan {
-  std::string sensor;                    ///< label
+  std::string sensor;  ///< label
   Modality modality = Modality::kLidar;
-  std::int64_t frame = -1;               ///< the log's frame number
+  std::int64_t frame = -1;  ///< the log's frame number
   SensorState state;
   std::shared_ptr<const MeasurementModel> model;
   std::shared_ptr<const Horizon> horizon;  ///< what hides what; null: nothing is hidden

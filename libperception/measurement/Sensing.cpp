@@ -8,9 +8,10 @@
 namespace perception {
 namespace {
 
-/// What a class looks like to a kind of sensor when the INI says nothing: the table of SPEC 2. A lidar that also reports
-/// clusters that are not stable (closer than 1 m to something) divides its rows further; the shares of these are tuned
-/// on KITTI's streets. Labels that a sensor does not have drop out, and the rest is normalised.
+/// What a class looks like to a kind of sensor when the INI says nothing: the table of SPEC 2. A
+/// lidar that also reports clusters that are not stable (closer than 1 m to something) divides its
+/// rows further; the shares of these are tuned on KITTI's streets. Labels that a sensor does not
+/// have drop out, and the rest is normalised.
 struct DefaultRow {
   const char* class_name;
   Modality modality;
@@ -20,11 +21,26 @@ struct DefaultRow {
 
 const std::vector<DefaultRow>& defaultRows() {
   static const std::vector<DefaultRow> rows = {
-      {"pedestrian", Modality::kLidar, 0.88, {{"car_sized", 0.10}, {"person_sized", 0.85}, {"unstable", 0.05}}},
-      {"cyclist", Modality::kLidar, 0.88, {{"car_sized", 0.60}, {"person_sized", 0.20}, {"unstable", 0.20}}},
-      {"car", Modality::kLidar, 0.91, {{"car_sized", 0.45}, {"person_sized", 0.03}, {"unstable", 0.52}}},
-      {"bus", Modality::kLidar, 0.95, {{"car_sized", 0.45}, {"person_sized", 0.03}, {"unstable", 0.52}}},
-      {"static-other", Modality::kLidar, 0.85, {{"car_sized", 0.20}, {"person_sized", 0.50}, {"unstable", 0.30}}},
+      {"pedestrian",
+       Modality::kLidar,
+       0.88,
+       {{"car_sized", 0.10}, {"person_sized", 0.85}, {"unstable", 0.05}}},
+      {"cyclist",
+       Modality::kLidar,
+       0.88,
+       {{"car_sized", 0.60}, {"person_sized", 0.20}, {"unstable", 0.20}}},
+      {"car",
+       Modality::kLidar,
+       0.91,
+       {{"car_sized", 0.45}, {"person_sized", 0.03}, {"unstable", 0.52}}},
+      {"bus",
+       Modality::kLidar,
+       0.95,
+       {{"car_sized", 0.45}, {"person_sized", 0.03}, {"unstable", 0.52}}},
+      {"static-other",
+       Modality::kLidar,
+       0.85,
+       {{"car_sized", 0.20}, {"person_sized", 0.50}, {"unstable", 0.30}}},
       {"pedestrian", Modality::kCamera, 0.70, {{"car", 0.02}, {"person", 0.98}}},
       {"cyclist", Modality::kCamera, 0.60, {{"car", 0.20}, {"person", 0.80}}},
       {"car", Modality::kCamera, 0.85, {{"car", 0.98}, {"person", 0.02}}},
@@ -34,7 +50,8 @@ const std::vector<DefaultRow>& defaultRows() {
   return rows;
 }
 
-ClassSensing defaultSensing(const std::string& class_name, Modality modality, const std::vector<std::string>& labels) {
+ClassSensing defaultSensing(const std::string& class_name, Modality modality,
+                            const std::vector<std::string>& labels) {
   ClassSensing row;
   for (const auto& d : defaultRows()) {
     if (class_name != d.class_name || modality != d.modality) continue;

@@ -13,51 +13,59 @@ namespace perception {
 
 enum class Modality : char { kCamera = 'C', kLidar = 'L', kRadar = 'R' };
 
-/// Standard deviations of the ego pose at one instant; they enlarge R of every measurement (SPEC 1).
+/// Standard deviations of the ego pose at one instant; they enlarge R of every measurement (SPEC
+/// 1).
 struct PoseUncertainty {
-  double sigma_xy = 0.05;                ///< [m]
-  double sigma_yaw = radians(0.2);       ///< [rad]
-  double sigma_pitch = radians(0.3);     ///< [rad]
+  double sigma_xy = 0.05;             ///< [m]
+  double sigma_yaw = radians(0.2);    ///< [rad]
+  double sigma_pitch = radians(0.3);  ///< [rad]
 };
 
 /// The vehicle at one instant.
 struct EgoState {
   Stamp stamp;
   Pose3 T_world_ego = Pose3::Identity();
-  Vector2 velocity = Vector2::Zero();    ///< [m/s] of the ego origin, world
-  double yaw_rate = 0;                   ///< [rad/s]
+  Vector2 velocity = Vector2::Zero();  ///< [m/s] of the ego origin, world
+  double yaw_rate = 0;                 ///< [rad/s]
   PoseUncertainty uncertainty;
 };
 
 /// The ground around the vehicle as height over the ego frame's x and y: z = a x + b y + c.
 struct GroundPlane {
-  double a = 0, b = 0, c = 0;            ///< slope [-], slope [-], height [m], ego frame
-  double sigma = 0.1;                    ///< [m] spread of ground returns about it
-  bool measured = false;                 ///< false: the flat default z = 0
+  double a = 0, b = 0, c = 0;  ///< slope [-], slope [-], height [m], ego frame
+  double sigma = 0.1;          ///< [m] spread of ground returns about it
+  bool measured = false;       ///< false: the flat default z = 0
   double heightAt(double x, double y) const { return a * x + b * y + c; }
 };
 
 /// Per-point verdict of the sensor's own processing (Ibeo), when it gives one.
-enum class PointLabel : std::uint8_t { kUnknown = 0, kObject = 1, kRain = 2, kGround = 3, kDirt = 4 };
+enum class PointLabel : std::uint8_t {
+  kUnknown = 0,
+  kObject = 1,
+  kRain = 2,
+  kGround = 3,
+  kDirt = 4
+};
 
-/// One lidar scan, points in the sensor frame. x, y, z have the same size; the rest is empty or has that size, too.
+/// One lidar scan, points in the sensor frame. x, y, z have the same size; the rest is empty or has
+/// that size, too.
 struct LidarCloud {
-  std::vector<float> x, y, z;            ///< [m]
-  std::vector<float> intensity;          ///< [0, 1]
-  std::vector<std::uint16_t> ring;       ///< beam number, 0 = lowest
-  std::vector<float> time_offset;        ///< [s] after the frame's stamp
-  std::vector<std::uint8_t> echo;        ///< 0 = first return of its pulse
-  std::vector<float> pulse_width;        ///< [m]
-  std::vector<std::uint8_t> label;       ///< PointLabel
-  double max_range = 0;                  ///< [m] of the instrument; 0 = unknown
+  std::vector<float> x, y, z;       ///< [m]
+  std::vector<float> intensity;     ///< [0, 1]
+  std::vector<std::uint16_t> ring;  ///< beam number, 0 = lowest
+  std::vector<float> time_offset;   ///< [s] after the frame's stamp
+  std::vector<std::uint8_t> echo;   ///< 0 = first return of its pulse
+  std::vector<float> pulse_width;   ///< [m]
+  std::vector<std::uint8_t> label;  ///< PointLabel
+  double max_range = 0;             ///< [m] of the instrument; 0 = unknown
 
   std::size_t size() const { return x.size(); }
 };
 
 /// A pinhole camera without distortion. Its sensor frame is optical: x right, y down, z forward.
 struct CameraModel {
-  int width = 0, height = 0;             ///< [px]
-  double fx = 0, fy = 0, cx = 0, cy = 0; ///< [px]
+  int width = 0, height = 0;              ///< [px]
+  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
 };
 
 /// One object found by somebody's detector: a box in the image, a box in space, or both.
@@ -66,30 +74,34 @@ struct ObjectDetection {
     double x1 = 0, y1 = 0, x2 = 0, y2 = 0;  ///< [px] left, top, right, bottom
   };
   struct SpaceBox {
-    Vector3 bottom_centre = Vector3::Zero();    ///< [m] sensor frame (x forward, y left, z up)
-    double yaw = 0;                             ///< [rad] of the length axis, sensor frame
-    double length = 0, width = 0, height = 0;   ///< [m]
+    Vector3 bottom_centre = Vector3::Zero();   ///< [m] sensor frame (x forward, y left, z up)
+    double yaw = 0;                            ///< [rad] of the length axis, sensor frame
+    double length = 0, width = 0, height = 0;  ///< [m]
   };
-  std::string label;                     ///< the detector's class name
-  double score = 0;                      ///< in the detector's own unit
-  std::vector<std::pair<std::string, double>> class_scores;  ///< when the detector scores several classes
+  std::string label;  ///< the detector's class name
+  double score = 0;   ///< in the detector's own unit
+  std::vector<std::pair<std::string, double>>
+      class_scores;  ///< when the detector scores several classes
   std::optional<ImageBox> image_box;
   std::optional<SpaceBox> space_box;
-  std::optional<double> heading;         ///< [rad] KITTI's alpha: observation angle of the object, in (-pi, pi]
+  std::optional<double>
+      heading;  ///< [rad] KITTI's alpha: observation angle of the object, in (-pi, pi]
 };
 
 /// All detections of one detector at one instant. `camera` holds for image boxes.
 struct ObjectDetections {
   CameraModel camera;
   std::vector<ObjectDetection> objects;
-  std::optional<Pose3> T_ego_camera;     ///< optical frame of the image boxes; empty: it is the sensor frame itself
+  std::optional<Pose3>
+      T_ego_camera;  ///< optical frame of the image boxes; empty: it is the sensor frame itself
 };
 
-/// One decoded observation of one sensor, with the pose of vehicle and sensor and the ground at that time.
+/// One decoded observation of one sensor, with the pose of vehicle and sensor and the ground at
+/// that time.
 struct SensorFrame {
-  std::string sensor;                    ///< label, as in [sensor.LABEL]
+  std::string sensor;  ///< label, as in [sensor.LABEL]
   Stamp stamp;
-  std::int64_t frame = -1;               ///< the log's own frame number; -1 = none
+  std::int64_t frame = -1;  ///< the log's own frame number; -1 = none
   EgoState ego;
   Pose3 T_ego_sensor = Pose3::Identity();
   GroundPlane ground;
