@@ -1,30 +1,48 @@
 #pragma once
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace perception {
 
-/// A result folder whose files are whole or absent: they are written in a temporary folder inside
-/// it and moved to their names by commit(), done.json last. An earlier result in the folder is
-/// replaced then, file by file; without commit() nothing of it changes and nothing is left behind.
+/// A folder of results whose files are whole or absent: they are written into a hidden folder
+/// inside it and renamed into place by commit(). Until then results of an earlier run stay as they
+/// are; without commit() nothing is left, the folder itself included when it was made here. One run
+/// at a time writes into a folder (lock of the same host).
 class OutputFolder {
  public:
-  /// Creates the folder and the temporary one. Throws OutputError (kCannotCreate) with path and
-  /// reason.
+  /// Creates the folder. Throws OutputError (kCannotCreate) with path and reason, Error (kTryAgain)
+  /// when another run writes into it.
   explicit OutputFolder(const std::string& path);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Where the files are to be written.
-  const std::string& temporary() const { return temporary_; }
-  std::string pathFor(const std::string& file) const { return temporary_ + "/" + file; }
   const std::string& path() const { return path_; }
-
-  /// Moves every file to its place. Throws OutputError (kIoError).
-  void commit();
+  /// Where to write the file that will be `name` (relative; may hold folders, which are made).
+  std::string pathFor(const std::string& name);
+  /// Throws OutputError (kIoError) with path and free bytes when the disk has fewer than `bytes`
+  /// [bytes] left.
+  void requireSpace(std::uint64_t bytes) const;
+  /// Hands all files to the disk and renames them into place, `last` as the last; an earlier `last`
+  /// is removed first, so that it never stands beside files of two runs. Throws OutputError
+  /// (kIoError) also for a file that was never written.
+  void commit(const std::string& last = "done.json");
 
  private:
+  void create();
+  void lock();
+  void removeLeftovers() const;
+  void removeTemporaries() noexcept;
+  [[noreturn]] void failWriting(const std::string& path, int reason) const;
+  void handToDisk(const std::string& path) const;
+  void moveIntoPlace(const std::string& name) const;
+
   std::string path_, temporary_;
+  std::vector<std::string> made_;   ///< folders made here, outermost first
+  std::vector<std::string> names_;  ///< files promised, in the order of pathFor()
+  int lock_ = -1;                   ///< the folder's descriptor, locked
+  bool committed_ = false;
 };
 
 }  // namespace perception
