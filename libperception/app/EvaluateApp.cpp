@@ -63,6 +63,11 @@ void EvaluateApp::declare(CLI::App& cli) {
   cli.add_option("--fov-deg", fov_deg, "whole angle ahead in which truth counts [deg]")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 360.0));
+  cli.add_option("--complete-fov-deg", complete_fov_deg,
+                 "whole angle ahead in which the truth knows every object (KITTI: 80); no output "
+                 "beyond is false [deg]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 360.0));
   cli.add_option("--min-points", params.selection.min_points,
                  "truth counts from this many lidar returns on, where counted")
       ->capture_default_str()
@@ -113,6 +118,7 @@ std::string EvaluateApp::command() const {
       params.tolerance, params.exclusion);
   text += fmt::format(" --cutoff {:g} --time-limit {:g} --unnamed {}", params.cutoff,
                       params.alignment.time_limit, fmt::join(params.unnamed, ","));
+  text += fmt::format(" --complete-fov-deg {:g}", complete_fov_deg);
   if (params.alignment.empty_frames) text += " --empty-frames";
   if (!params.sensors.empty()) text += " --sensors " + params.sensors;
   if (!reference.empty()) text += " --reference " + reference;
@@ -200,6 +206,7 @@ void EvaluateApp::writeReports() {
 
 void EvaluateApp::run() {
   params.selection.fov = radians(fov_deg);
+  params.selection.complete_fov = radians(complete_fov_deg);
   out_report = emptyReport();
   evaluateRuns();
   writeReports();

@@ -16,7 +16,7 @@ class EvaluateApp : public App {
   std::string
       reference;  ///< --reference: a run whose number of objects the others are compared with
   EvaluationOptions params;
-  double fov_deg = 180;
+  double fov_deg = 180, complete_fov_deg = 360;
   std::size_t max_plots =
       40;             ///< --max-plots: truth objects with a picture of their own, for each run
   bool plots = true;  ///< --no-plots clears it

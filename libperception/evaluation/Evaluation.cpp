@@ -135,9 +135,11 @@ class Evaluator {
   }
 
   bool isNamed(ClassId c) const { return result_.named[static_cast<std::size_t>(c)]; }
+  // Where an output can be found false: in the sector, and where the truth knows all objects.
   bool isNamedInSector(const SeenEstimate& e) const {
+    const SelectionOptions& o = options_.selection;
     return isNamed(e.object->class_id) &&
-           inSector(e.view, options_.selection.range, options_.selection.fov);
+           inSector(e.view, o.range, std::min(o.fov, o.complete_fov));
   }
   bool anyNear(const std::vector<SeenTruth>& truth, const SeenEstimate& e) const {
     return std::any_of(truth.begin(), truth.end(), [&](const SeenTruth& t) {

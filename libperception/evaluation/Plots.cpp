@@ -23,16 +23,93 @@ constexpr std::size_t kMaxNamedIds = 8;       // ids with a colour and a line in
 // Colours that people with colour-blindness can tell apart (Okabe and Ito).
 constexpr const char* kGreen = "#009E73";
 constexpr const char* kOrange = "#E69F00";
-constexpr const char* kRed = "#D55E00";
+constexpr const char* kRed = "#C00000";
 constexpr const char* kBlue = "#0072B2";
 constexpr const char* kGrey = "#BBBBBB";
 constexpr const char* kIdColours[kMaxNamedIds] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                   "#E69F00", "#56B4E9", "#8B4513", "#F0E442"};
 
-// How every picture begins.
-constexpr const char* kPreamble =
-    "set encoding utf8\nset datafile missing 'nan'\nset key noenhanced\nset grid lc rgb "
-    "'#E0E0E0'\n";
+// How every picture begins: nothing of the one before is left.
+constexpr const char* kPicture = R"(
+reset
+set encoding utf8
+set datafile missing 'nan'
+set terminal pngcairo size {width},{height} font 'sans,10' background rgb 'white'
+set output '{file}'
+set grid xtics ytics lt 1 lw 1 lc rgb '#DDDDDD'
+set key noenhanced outside right top vertical Left reverse
+)";
+
+constexpr const char* kOverviewHead = R"(
+set multiplot title {title} noenhanced font ',14'
+set xrange [{from:.3f}:{to:.3f}]
+set lmargin 16
+set rmargin 30
+)";
+
+constexpr const char* kOverviewObjects = R"(
+set size 1,{size:.4f}
+set origin 0,{bottom:.4f}
+set tmargin 2
+set bmargin 1
+set title {title} noenhanced
+set format x ''
+set ytics noenhanced ({names})
+set yrange [{rows}:-1]
+plot 'overview_objects.dat' using 1:($3==0?$2:1/0) with points pt 5 ps 0.9 lc rgb '{grey}' title 'not tracked', \
+ '' using 1:($3==1?$2:1/0) with points pt 5 ps 0.9 lc rgb '{green}' title 'tracked, class correct', \
+ '' using 1:($3==2?$2:1/0) with points pt 5 ps 0.9 lc rgb '{orange}' title 'tracked, not classified', \
+ '' using 1:($3==3?$2:1/0) with points pt 5 ps 0.9 lc rgb '{red}' title 'tracked, class wrong', \
+ '' using 1:($4==1?$2:1/0) with points pt 2 ps 1.3 lw 2 lc rgb 'black' title 'id switch'
+)";
+
+constexpr const char* kOverviewInstants = R"(
+set size 1,{size:.4f}
+set origin 0,0
+set tmargin 2
+set bmargin 4
+set title 'Number of objects at each instant'
+set format x '%g'
+set xlabel 'time since the log''s first stamp (s)'
+set ylabel 'number'
+set ytics autofreq
+set yrange [0:*]
+plot 'overview_instants.dat' using 1:2 with steps lw 2 lc rgb 'black' title 'truth objects', \
+ '' using 1:3 with steps lw 2 lc rgb '{orange}' title 'of these not tracked', \
+ '' using 1:4 with steps lw 2 lc rgb '{blue}' title 'false objects'
+unset multiplot
+unset output
+)";
+
+constexpr const char* kReliability = R"(
+set title {title} noenhanced font ',12'
+set size square
+set key inside bottom right
+set xrange [0:1.05]
+set yrange [0:1.05]
+set xlabel 'stated probability of the most probable class'
+set ylabel 'share of instants at which that class is right'
+plot x with lines dt 2 lw 2 lc rgb 'black' title 'right as often as stated', \
+ 'reliability.dat' using 1:2 with linespoints pt 7 ps 1.5 lw 2 lc rgb '{blue}' title 'this run, with number of instants', \
+ '' using 1:2:(sprintf('%d', $3)) with labels offset -1,-1.2 notitle
+unset output
+)";
+
+constexpr const char* kObject = R"(
+set multiplot layout 2,1 title {title} noenhanced font ',14'
+set lmargin 10
+set rmargin 24
+set xrange [{from:.3f}:{to:.3f}]
+set ylabel 'range to closest point (m)'
+set yrange [0:*]
+plot {range}
+set xlabel 'time since the log''s first stamp (s)'
+set ylabel 'bearing of centre (deg, left is +)'
+set yrange [*:*]
+plot {bearing}
+unset multiplot
+unset output
+)";
 
 std::string objectName(const ObjectTimeline& o) { return fmt::format("{} {}", o.type, o.id); }
 
@@ -43,12 +120,11 @@ class PlotWriter {
       : run_(run),
         options_(options),
         dir_(std::move(dir)),
-        timelines_(objectTimelines(run.evaluation, Pairing::kOneToOne)) {
-    script_ = kPreamble;
-  }
+        timelines_(objectTimelines(run.evaluation, Pairing::kOneToOne)) {}
 
   void overview() {
-    if (run_.evaluation.instants.empty()) return;
+    const auto& instants = run_.evaluation.instants;
+    if (instants.empty()) return;
     const std::vector<const ObjectTimeline*> rows = longest(kMaxOverviewRows);
     std::map<std::int64_t, std::size_t> row_of;
     std::string names;
@@ -58,56 +134,23 @@ class PlotWriter {
     }
     data("overview_objects.dat", objectRows(row_of));
     data("overview_instants.dat", instantRows());
-    const std::size_t height = 420 + 22 * rows.size();
+    const std::size_t height = 400 + 22 * std::max<std::size_t>(rows.size(), 3);
+    const double pixel = 1 / static_cast<double>(height);
+    const double split = 250 * pixel;  // the lower panel keeps its height
     begin("overview.png", 1200, height);
-    const double split = 250.0 / static_cast<double>(height);  // the lower panel keeps its height
-    const std::string objects =
-        rows.size() < timelines_.size()
-            ? fmt::format(" (the longest {} of {})", rows.size(), timelines_.size())
-            : "";
-    script_ += fmt::format("set multiplot title {} noenhanced font ',14'\n",
-                           gnuplotString("Tracking of every truth object: " + run_.name));
-    script_ += timeRange() + "set lmargin 16\nset rmargin 3\n";
-    if (!rows.empty()) {
-      script_ +=
-          fmt::format("set size 1,{0:.4f}\nset origin 0,{1:.4f}\nset tmargin 5\nset bmargin 1.5\n",
-                      1 - split - 25.0 / static_cast<double>(height), split);
-      script_ += fmt::format(
-          "set title {} noenhanced\nset key outside top center horizontal\nset format x ''\nunset "
-          "xlabel\n",
-          gnuplotString(
-              fmt::format("within {:g} m and {:g} deg ahead, one-to-one matching within {:g} m{}",
-                          options_.selection.range, degrees(options_.selection.fov),
-                          options_.tolerance, objects)));
-      script_ +=
-          fmt::format("set ytics noenhanced ({})\nset yrange [{}:-1] \n", names, rows.size());
-      script_ += fmt::format(
-          "plot 'overview_objects.dat' using 1:($3==0?$2:1/0) with points pt 5 ps 0.6 lc rgb '{}' "
-          "title 'not tracked', \\\n"
-          " '' using 1:($3==1?$2:1/0) with points pt 5 ps 0.9 lc rgb '{}' title 'tracked, class "
-          "correct', \\\n"
-          " '' using 1:($3==2?$2:1/0) with points pt 5 ps 0.9 lc rgb '{}' title 'tracked, not "
-          "classified', \\\n"
-          " '' using 1:($3==3?$2:1/0) with points pt 5 ps 0.9 lc rgb '{}' title 'tracked, class "
-          "wrong', \\\n"
-          " '' using 1:($4==1?$2:1/0) with points pt 2 ps 1.3 lw 2 lc rgb 'black' title 'id "
-          "switch'\n",
-          kGrey, kGreen, kOrange, kRed);
-    }
-    script_ +=
-        fmt::format("set size 1,{:.4f}\nset origin 0,0\nset tmargin 3\nset bmargin 4\n", split);
-    script_ +=
-        "set title 'Objects at each instant'\nset key outside top right horizontal\nset format x "
-        "'%g'\nset xlabel 'time since the log''s first stamp (s)'\n"
-        "set ylabel 'number'\nset ytics autofreq\nset yrange [0:*]\n";
     script_ += fmt::format(
-        "plot 'overview_instants.dat' using 1:2 with steps lw 2 lc rgb 'black' title 'truth "
-        "objects that count', \\\n"
-        " '' using 1:3 with steps lw 2 lc rgb '{}' title 'of these not tracked', \\\n"
-        " '' using 1:4 with steps lw 2 lc rgb '{}' title 'false objects'\nunset multiplot\nunset "
-        "output\nreset session\n",
-        kOrange, kBlue);
-    script_ += kPreamble;
+        kOverviewHead,
+        fmt::arg("title", gnuplotString("Tracking of every truth object, " + run_.name)),
+        fmt::arg("from", instants.front().t - 0.2), fmt::arg("to", instants.back().t + 0.2));
+    if (!rows.empty()) {
+      script_ += fmt::format(
+          kOverviewObjects, fmt::arg("size", 1 - split - 30 * pixel), fmt::arg("bottom", split),
+          fmt::arg("title", gnuplotString(overviewScope(rows.size()))), fmt::arg("names", names),
+          fmt::arg("rows", rows.size()), fmt::arg("grey", kGrey), fmt::arg("green", kGreen),
+          fmt::arg("orange", kOrange), fmt::arg("red", kRed));
+    }
+    script_ += fmt::format(kOverviewInstants, fmt::arg("size", split), fmt::arg("orange", kOrange),
+                           fmt::arg("blue", kBlue));
   }
 
   void reliabilityPlot() {
@@ -115,59 +158,28 @@ class PlotWriter {
     if (!r.calibration_error) return;
     std::string rows = "# mean stated probability, share correct, instants\n";
     for (const ReliabilityBin& bin : r.bins) {
-      if (bin.count)
-        rows += fmt::format("{:.6f} {:.6f} {}\n", *bin.mean_probability, *bin.correct, bin.count);
+      if (bin.count == 0) continue;
+      rows += fmt::format("{:.6f} {:.6f} {}\n", *bin.mean_probability, *bin.correct, bin.count);
     }
     data("reliability.dat", rows);
     begin("reliability.png", 760, 760);
-    script_ += fmt::format(
-        "set title {} noenhanced font ',13'\n",
-        gnuplotString(fmt::format(
-            "Can the class probability be believed? {}\nmean |stated - correct| = {:.3f}",
-            run_.name, *r.calibration_error)));
-    script_ += fmt::format(
-        "set size square\nset key top left\nset xrange [0:1.05]\nset yrange [0:1.05]\nset xlabel "
-        "'stated probability of the most probable class'\n"
-        "set ylabel 'share of instants at which that class is right'\n"
-        "plot x with lines dt 2 lw 2 lc rgb 'black' title 'stated = right', \\\n"
-        " 'reliability.dat' using 1:2 with linespoints pt 7 ps 1.5 lw 2 lc rgb '{}' title 'this "
-        "run (number of instants)', \\\n"
-        " '' using 1:2:(sprintf('%d', $3)) with labels offset -1,-1.2 notitle\nunset output\n",
-        kBlue);
+    const std::string title =
+        fmt::format("Reliability of the class probability, {} (mean |stated - right| {:.3f})",
+                    run_.name, *r.calibration_error);
+    script_ +=
+        fmt::format(kReliability, fmt::arg("title", gnuplotString(title)), fmt::arg("blue", kBlue));
   }
 
   void object(const ObjectTimeline& o) {
     const std::string name = fmt::format("object_{}", o.id);
-    std::map<std::uint64_t, std::string> estimates;
-    std::string truth = "# t [s], range to the closest point [m], bearing [deg]\n";
-    std::size_t last_instant = 0;
-    for (const TruthSample& s : run_.evaluation.samples) {
-      if (s.id != o.id) continue;
-      // A blank line lifts the pen where the object does not count.
-      if (s.instant > last_instant + 1) truth += "\n";
-      last_instant = s.instant;
-      truth += polar(s.t, s.view);
-      if (const auto& m = s.matched(Pairing::kOneToOne)) estimates[m->id] += polar(s.t, m->view);
-    }
-    std::string blocks = truth;
-    for (const std::uint64_t id : o.ids) {
-      blocks += fmt::format("\n\n# estimate with id {}\n{}", id, estimates[id]);
-    }
-    data(name + ".dat", blocks);
+    data(name + ".dat", objectCurves(o));
     begin(name + ".png", 1000, 700);
+    const std::string title = fmt::format("{}, {}: tracked at {} of {} instants", objectName(o),
+                                          run_.name, o.returns, o.active);
     script_ +=
-        fmt::format("set multiplot layout 2,1 title {} noenhanced font ',14'\n",
-                    gnuplotString(fmt::format("{}, {}: tracked at {} of {} instants", objectName(o),
-                                              run_.name, o.returns, o.active)));
-    script_ += "set lmargin 10\nset rmargin 3\nset key outside top right horizontal\n";
-    script_ +=
-        fmt::format("set xrange [{:.3f}:{:.3f}]\n", o.first_active - 0.2, o.last_active + 0.2);
-    script_ += "unset xlabel\nset ylabel 'range to closest point (m)'\nset yrange [0:*]\n" +
-               curves(name, 2, o);
-    script_ +=
-        "set xlabel 'time since the log''s first stamp (s)'\nset ylabel 'bearing of centre (deg, "
-        "left +)'\nset yrange [*:*]\n" +
-        curves(name, 3, o) + "unset multiplot\nset xrange [*:*]\nunset output\n";
+        fmt::format(kObject, fmt::arg("title", gnuplotString(title)),
+                    fmt::arg("from", o.first_active - 0.2), fmt::arg("to", o.last_active + 0.2),
+                    fmt::arg("range", curves(name, 2, o)), fmt::arg("bearing", curves(name, 3, o)));
   }
 
   std::vector<const ObjectTimeline*> longest(std::size_t count) const {
@@ -199,9 +211,36 @@ class PlotWriter {
 
   void begin(const std::string& file, std::size_t width, std::size_t height) {
     files_.push_back(file);
-    script_ += fmt::format(
-        "set terminal pngcairo size {},{} font 'sans,10' background rgb 'white'\nset output '{}'\n",
-        width, height, file);
+    script_ += fmt::format(kPicture, fmt::arg("width", width), fmt::arg("height", height),
+                           fmt::arg("file", file));
+  }
+
+  std::string overviewScope(std::size_t rows) const {
+    const std::string some = rows < timelines_.size()
+                                 ? fmt::format(", the longest {} of {}", rows, timelines_.size())
+                                 : "";
+    return fmt::format("within {:g} m and {:g} deg ahead, one-to-one matching within {:g} m{}",
+                       options_.selection.range, degrees(options_.selection.fov),
+                       options_.tolerance, some);
+  }
+
+  // The truth as the first block, then one block for each id that tracked it.
+  std::string objectCurves(const ObjectTimeline& o) const {
+    std::map<std::uint64_t, std::string> estimates;
+    std::string text = "# t [s], range to the closest point [m], bearing [deg]\n";
+    std::size_t last_instant = 0;
+    for (const TruthSample& s : run_.evaluation.samples) {
+      if (s.id != o.id) continue;
+      // A blank line lifts the pen where the object does not count.
+      if (s.instant > last_instant + 1) text += "\n";
+      last_instant = s.instant;
+      text += polar(s.t, s.view);
+      if (const auto& m = s.matched(Pairing::kOneToOne)) estimates[m->id] += polar(s.t, m->view);
+    }
+    for (const std::uint64_t id : o.ids) {
+      text += fmt::format("\n\n# estimate with id {}\n{}", id, estimates[id]);
+    }
+    return text;
   }
 
   static std::string polar(double t, const GroundView& view) {
@@ -209,9 +248,8 @@ class PlotWriter {
   }
 
   std::string curves(const std::string& name, int column, const ObjectTimeline& o) const {
-    std::string plot =
-        fmt::format("plot '{}.dat' index 0 using 1:{} with lines lw 3 lc rgb 'black' title 'truth'",
-                    name, column);
+    std::string plot = fmt::format(
+        "'{}.dat' index 0 using 1:{} with lines lw 3 lc rgb 'black' title 'truth'", name, column);
     for (std::size_t i = 0; i < o.ids.size(); ++i) {
       plot += fmt::format(", \\\n '' index {} using 1:{} with points pt 7 ps 0.8 lc rgb '{}' ",
                           i + 1, column, i < kMaxNamedIds ? kIdColours[i] : kGrey);
@@ -221,7 +259,7 @@ class PlotWriter {
         plot += i == kMaxNamedIds ? "title 'further ids'" : "notitle";
       }
     }
-    return plot + "\n";
+    return plot;
   }
 
   // t, row, state (0 not tracked, 1 correct, 2 not classified, 3 wrong), id switch
@@ -258,12 +296,6 @@ class PlotWriter {
                           instant.allOutputs().false_);
     }
     return text;
-  }
-
-  std::string timeRange() const {
-    const auto& instants = run_.evaluation.instants;
-    return fmt::format("set xrange [{:.3f}:{:.3f}]\n", instants.front().t - 0.2,
-                       instants.back().t + 0.2);
   }
 
   const EvaluatedRun& run_;

@@ -160,6 +160,7 @@ Json coverageJson(const Evaluation& evaluation) {
 Json optionsJson(const EvaluationOptions& o) {
   return {{"range_m", o.selection.range},
           {"fov_deg", degrees(o.selection.fov)},
+          {"complete_fov_deg", degrees(o.selection.complete_fov)},
           {"min_points", o.selection.min_points},
           {"max_occluded", o.selection.max_occluded},
           {"tolerance_m", o.tolerance},

@@ -190,6 +190,12 @@ ReportTable falseObjectTable(const EvaluationReport& report) {
                   "truth of any type within "
                   "{:g} m of its centre or under it, areas marked DontCare with a place included.",
                   fmt::join(report.options.unnamed, ", "), report.options.exclusion),
+      fmt::format(
+          "Only within {:g} deg ahead: a truth that covers less (KITTI labels the camera's view, "
+          "about 80 deg) needs "
+          "--complete-fov-deg.",
+          degrees(std::min(report.options.selection.fov, report.options.selection.complete_fov))),
+      "An area without a place (KITTI's DontCare are areas of the image) excuses no output.",
       "classified: of these, the ones whose class has probability >= .95."};
   for (const EvaluatedRun& run : report.runs) {
     const Evaluation& evaluation = run.evaluation;

@@ -56,9 +56,10 @@ bool isArea(const TruthObject& object) { return lowerCase(object.type) == "dontc
 
 TruthUse useOf(const TruthObject& object, const GroundView& view, ClassId class_id,
                const SelectionOptions& options) {
-  // Written so that an unknown place (NaN) is outside.
+  if (isArea(object))
+    return TruthUse::kIgnored;  // it may lack a place (KITTI: an area of the image)
   if (!inSector(view, options.range, options.fov)) return TruthUse::kOutside;
-  if (object.ignore || isArea(object)) return TruthUse::kIgnored;
+  if (object.ignore) return TruthUse::kIgnored;
   if (class_id < 0) return TruthUse::kNoClass;
   if (object.occluded > options.max_occluded) return TruthUse::kOccluded;
   if (object.lidar_points >= 0 && object.lidar_points < options.min_points)

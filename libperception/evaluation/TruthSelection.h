@@ -10,8 +10,10 @@ namespace perception {
 
 /// Which truth objects count, ego frame.
 struct SelectionOptions {
-  double range = 20;     ///< [m] of the centre (paper: "20m semi-circle in front")
-  double fov = kPi;      ///< [rad] whole opening angle of the sector ahead
+  double range = 20;  ///< [m] of the centre (paper: "20m semi-circle in front")
+  double fov = kPi;   ///< [rad] whole opening angle of the sector ahead
+  double complete_fov =
+      kTwoPi;            ///< [rad] beyond it the truth lacks objects: no output there is false
   int min_points = 20;   ///< lidar returns on the object, where the truth counts them
   int max_occluded = 2;  ///< KITTI: 3 = unknown
 };

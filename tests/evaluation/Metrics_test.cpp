@@ -246,6 +246,15 @@ TEST(FalseObjects, AnOutputOnALongVehicleIsNone) {
   EXPECT_EQ(falseObjectFigures(compare({{makeObject(1, 17, 2)}}, {tram})).counts.false_, 1u);
 }
 
+TEST(FalseObjects, AreOnlyWhereTheTruthKnowsEveryObject) {
+  EvaluationOptions options;
+  options.selection.complete_fov = radians(80);  // labels of a camera's view
+  const Evaluation e =
+      compare({{makeObject(1, 5, 8), makeObject(2, 12, -2)}}, {makeTruth(0, 1, 15, 6)}, options);
+  EXPECT_EQ(falseObjectFigures(e).counts.false_, 1u);
+  EXPECT_EQ(e.instants.at(0).estimates, 1u);
+}
+
 TEST(FalseObjects, InAnEmptyStreetCountWhenTheTruthIsSaidToBeComplete) {
   EvaluationOptions options;
   EXPECT_FALSE(falseObjectFigures(compare({{makeObject(1, 5, 0)}}, {}, options)).per_instant);
