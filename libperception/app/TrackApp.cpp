@@ -143,6 +143,8 @@ void TrackApp::trackLog(const std::string& log, const std::string& dir,
   config.finish();
   RawlogReader reader(log);
   OutputFolder folder(dir);
+  const std::string written_to = fs::path(folder.pathFor("tracks.csv")).parent_path().string();
+  folder.pathFor("scenes.csv");  // TrackedRunWriter writes both
   EventLog events;
   RunTiming timing;
   Pipeline pipeline(setup, events, timing);
@@ -157,7 +159,7 @@ void TrackApp::trackLog(const std::string& log, const std::string& dir,
   const std::string export_temporary = export_file.empty() ? "" : export_file + ".partial";
 
   const auto put = [&](const Scene& scene) {
-    if (!writer) writer.emplace(folder.temporary(), setup.model.classes, *pipeline.firstStamp());
+    if (!writer) writer.emplace(written_to, setup.model.classes, *pipeline.firstStamp());
     writer->write(scene);
     object_events.add(scene);
     for (const auto& o : scene.objects) ids.insert(o.id);

@@ -29,6 +29,8 @@ struct Candidate {
   float highest = 0;
 };
 
+}  // namespace
+
 bool hasCarSize(const Cluster& cluster, const ClusterParams& params) {
   const HullSize size = sizeOf(cluster.hull);
   if (cluster.stable)
@@ -37,7 +39,21 @@ bool hasCarSize(const Cluster& cluster, const ClusterParams& params) {
   return size.longest < params.unstable_max_size && size.longest >= params.unstable_min_side;
 }
 
-}  // namespace
+void describeCluster(const std::vector<float>& x, const std::vector<float>& y,
+                     const std::vector<float>& height, Cluster& cluster) {
+  std::vector<Vector2> places;
+  places.reserve(cluster.points.size());
+  cluster.centroid.setZero();
+  cluster.lowest = cluster.highest = height[cluster.points.front()];
+  for (const std::uint32_t i : cluster.points) {
+    places.emplace_back(static_cast<double>(x[i]), static_cast<double>(y[i]));
+    cluster.centroid += places.back();
+    cluster.lowest = std::min(cluster.lowest, height[i]),
+    cluster.highest = std::max(cluster.highest, height[i]);
+  }
+  cluster.centroid /= static_cast<double>(cluster.points.size());
+  cluster.hull = convexHull(std::move(places));
+}
 
 std::vector<Cluster> findClusters(const std::vector<float>& x, const std::vector<float>& y,
                                   const std::vector<float>& height, const ClusterParams& params) {
@@ -68,19 +84,7 @@ std::vector<Cluster> findClusters(const std::vector<float>& x, const std::vector
       clusters[static_cast<std::size_t>(number[group[i]])].points.push_back(
           static_cast<std::uint32_t>(i));
 
-  for (Cluster& cluster : clusters) {
-    std::vector<Vector2> places;
-    places.reserve(cluster.points.size());
-    cluster.lowest = cluster.highest = height[cluster.points.front()];
-    for (const std::uint32_t i : cluster.points) {
-      places.emplace_back(static_cast<double>(x[i]), static_cast<double>(y[i]));
-      cluster.centroid += places.back();
-      cluster.lowest = std::min(cluster.lowest, height[i]),
-      cluster.highest = std::max(cluster.highest, height[i]);
-    }
-    cluster.centroid /= static_cast<double>(cluster.points.size());
-    cluster.hull = convexHull(std::move(places));
-  }
+  for (Cluster& cluster : clusters) describeCluster(x, y, height, cluster);
   clusters.erase(
       std::remove_if(clusters.begin(), clusters.end(),
                      [&](const Cluster& cluster) { return !hasCarSize(cluster, params); }),

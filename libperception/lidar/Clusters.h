@@ -39,4 +39,11 @@ struct Cluster {
 std::vector<Cluster> findClusters(const std::vector<float>& x, const std::vector<float>& y,
                                   const std::vector<float>& height, const ClusterParams& params);
 
+/// Fills hull, centroid, lowest and highest of a cluster from its points (at least one).
+void describeCluster(const std::vector<float>& x, const std::vector<float>& y,
+                     const std::vector<float>& height, Cluster& cluster);
+
+/// Whether the size of a cluster's hull is that of a car-sized (or unstable) detection.
+bool hasCarSize(const Cluster& cluster, const ClusterParams& params);
+
 }  // namespace perception

@@ -135,27 +135,42 @@ void fillVertical(const ScanContext& scan, const Vector2& place, double lowest, 
   m.height = ScalarEstimate{highest - base, top_sigma * top_sigma + base_sigma * base_sigma};
 }
 
-/// One object, one detection: where a peak lies in a cluster's hull, one of the two goes. A peak
-/// that explains most of the cluster is a person with legs apart; else the cluster is something
-/// larger and the peak its corner (SPEC 8.3), but a clear peak beside something unstable is a
-/// person standing close to it.
-void settleOverlaps(LidarDetections& found, const PersonParams& params, double car_side) {
+/// One object, one detection, and no return in two: where a peak lies in a cluster's hull, one of
+/// the two goes or they are parted. A peak that explains most of a short cluster is a person with
+/// legs apart; one that is the middle of something rider-sized belongs to it; else the cluster is
+/// something larger and the peak its corner (SPEC 8.3). A clear peak beside something unstable is a
+/// person standing close to it: its returns leave the cluster.
+void settleOverlaps(LidarDetections& found, const PersonParams& params,
+                    const ClusterParams& cluster_params) {
   std::vector<std::uint8_t> drop_cluster(found.clusters.size(), 0),
       drop_peak(found.persons.size(), 0);
   for (std::size_t p = 0; p < found.persons.size(); ++p) {
     const PersonPeak& peak = found.persons[p];
     for (std::size_t c = 0; c < found.clusters.size(); ++c) {
-      const Cluster& cluster = found.clusters[c];
-      if (distanceToHull(cluster.hull, peak.centre) >= params.hull_margin) continue;
-      const bool short_enough = sizeOf(cluster.hull).longest < car_side;
+      Cluster& cluster = found.clusters[c];
+      if (drop_cluster[c] || distanceToHull(cluster.hull, peak.centre) >= params.hull_margin)
+        continue;
+      const double longest = sizeOf(cluster.hull).longest;
       std::vector<std::uint32_t> shared;
       std::set_intersection(peak.points.begin(), peak.points.end(), cluster.points.begin(),
                             cluster.points.end(), std::back_inserter(shared));
-      if (short_enough && static_cast<double>(shared.size()) >=
-                              params.whole_share * static_cast<double>(cluster.points.size())) {
+      const double share =
+          static_cast<double>(shared.size()) / static_cast<double>(cluster.points.size());
+      if (longest < cluster_params.min_side && share >= params.whole_share) {
         drop_cluster[c] = 1;
-      } else if (cluster.stable || peak.normalised < params.crowd_threshold) {
+      } else if (cluster.stable || peak.normalised < params.crowd_threshold ||
+                 (longest < params.rider_size && share >= params.part_share)) {
         drop_peak[p] = 1;
+      } else if (!shared.empty()) {
+        std::vector<std::uint32_t> rest;
+        std::set_difference(cluster.points.begin(), cluster.points.end(), shared.begin(),
+                            shared.end(), std::back_inserter(rest));
+        cluster.points = std::move(rest);
+        drop_cluster[c] =
+            cluster.points.size() < static_cast<std::size_t>(cluster_params.min_points);
+        if (drop_cluster[c]) continue;
+        describeCluster(found.x, found.y, found.above, cluster);
+        drop_cluster[c] = !hasCarSize(cluster, cluster_params);
       }
     }
   }
@@ -271,7 +286,7 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   }
   found.clusters = findClusters(found.x, found.y, found.above, params_.clusters);
   found.persons = findPersons(found.x, found.y, found.above, params_.persons);
-  settleOverlaps(found, params_.persons, params_.clusters.min_side);
+  settleOverlaps(found, params_.persons, params_.clusters);
   return found;
 }
 

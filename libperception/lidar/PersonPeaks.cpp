@@ -22,6 +22,9 @@ void PersonParams::visit(ParamVisitor& v) {
          "about accepted clusters in which peaks compete with them");
   v.real("whole_share", whole_share, {0, 1}, "",
          "of a cluster's returns in a peak: the cluster is a person");
+  v.real("part_share", part_share, {0, 1}, "",
+         "of a rider-sized cluster's returns in a peak: the peak is the middle of one object");
+  v.real("rider_size", rider_size, {0, 10}, "m", "longest side of a rider-sized cluster");
   v.real("crowd_threshold", crowd_threshold, {0, 10}, "1/m^2",
          "normalised response that counts beside something unstable");
 }

@@ -19,14 +19,17 @@ struct PersonParams {
   double sigma = 0.45;    ///< [m] (paper)
   double support = 2.25;  ///< [m] radius; the kernel is below 4e-4 beyond
   Kernel kernel = Kernel::kConsistent;
-  double threshold = 0.9;        ///< [1/m^2] normalised; a lone person has 1.45, a wall below .5
-  double radius = 0.45;          ///< [m] about the peak: the person's returns
-  int min_points = 4;            ///< returns within radius
-  double min_span = 0.8;         ///< [m] lowest to highest return
-  double max_span = 2.2;         ///< [m]
-  double separation = 0.75;      ///< [m] radius of non-maximum suppression
-  double hull_margin = 0.3;      ///< [m] about clusters in which peaks compete with them
-  double whole_share = 0.7;      ///< of a short cluster's returns in a peak: it is a person
+  double threshold = 0.9;    ///< [1/m^2] normalised; a lone person has 1.45, a wall below .5
+  double radius = 0.45;      ///< [m] about the peak: the person's returns
+  int min_points = 4;        ///< returns within radius
+  double min_span = 0.8;     ///< [m] lowest to highest return
+  double max_span = 2.2;     ///< [m]
+  double separation = 0.75;  ///< [m] radius of non-maximum suppression
+  double hull_margin = 0.3;  ///< [m] about clusters in which peaks compete with them
+  double whole_share = 0.7;  ///< of a short cluster's returns in a peak: it is a person
+  double part_share =
+      0.4;  ///< of a rider-sized cluster's returns in a peak: its middle, not a person
+  double rider_size = 2.5;       ///< [m] longest side of what a rider and a cycle make
   double crowd_threshold = 1.2;  ///< [1/m^2] normalised; of a person close to something unstable
 
   void visit(ParamVisitor& v);
