@@ -1,0 +1,178 @@
+#include "libperception/app/EvaluateApp.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "libperception/core/GroundTruth.h"
+#include "libperception/scene/TrackedRun.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrames = 20;
+
+// A folder with the truth of a car that comes near, a run that tracks it from the third frame on,
+// and a perfect run.
+class EvaluateAppTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = testing::TempDir() + "evaluate app " +
+           testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(dir_);
+    std::vector<TruthObject> truth;
+    for (int k = 0; k < kFrames; ++k) truth.push_back(truthAt(k));
+    fs::create_directories(dir_);
+    writeGroundTruth(dir_ + "/log.truth.csv", truth);
+    writeRun("late", 2, 0.5);
+    writeRun("perfect", 0, 0);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  static TruthObject truthAt(int k) {
+    TruthObject car;
+    car.frame = k;
+    car.t = 0.1 * k;
+    car.id = 7;
+    car.type = "Van";
+    car.position = {18 - 0.5 * k, 1, 0};
+    car.length = 4;
+    car.width = 2;
+    car.height = 1.5;
+    car.vx = -5;
+    car.vy = 0;
+    return car;
+  }
+
+  void writeRun(const std::string& name, int first, double shift) {
+    ClassTable classes;
+    for (const char* c : {"pedestrian", "car"}) {
+      classes.classes.emplace_back();
+      classes.classes.back().name = c;
+    }
+    fs::create_directories(dir_ + "/" + name);
+    const Stamp start = Stamp::fromSeconds(1.6e9);
+    TrackedRunWriter writer(dir_ + "/" + name, classes, start);
+    for (int k = 0; k < kFrames; ++k) {
+      const TruthObject truth = truthAt(k);
+      Scene scene;
+      scene.frame = k;
+      scene.stamp = start + truth.t;
+      if (k >= first) {
+        SceneObject car;
+        car.id = 1;
+        car.class_id = 1;
+        car.classified = true;
+        car.class_probability = {0.01, 0.99};
+        car.existence = 0.9;
+        car.position = truth.position + Vector3(shift, 0, 0);
+        car.has_yaw = true;
+        car.velocity = {-5, 0};
+        car.length = 4;
+        car.width = 2;
+        scene.objects.push_back(car);
+      }
+      writer.write(scene);
+    }
+    writer.close();
+  }
+
+  int run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "perception-evaluate");
+    std::vector<const char*> argv;
+    for (const std::string& a : arguments) argv.push_back(a.c_str());
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int code = runApp(app_, static_cast<int>(argv.size()), argv.data());
+    out_ = testing::internal::GetCapturedStdout();
+    err_ = testing::internal::GetCapturedStderr();
+    return code;
+  }
+  nlohmann::json report(const std::string& dir) const {
+    return nlohmann::json::parse(std::ifstream(dir + "/report.json"));
+  }
+  std::string truth() const { return dir_ + "/log.truth.csv"; }
+
+  EvaluateApp app_;
+  std::string dir_, out_, err_;
+};
+
+TEST_F(EvaluateAppTest, WritesTheReportBesideTheRun) {
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
+  for (const char* file : {"report.txt", "report.md", "report.json"}) {
+    EXPECT_TRUE(fs::exists(dir_ + "/late/evaluation/" + file)) << file;
+  }
+  std::ostringstream text;
+  text << std::ifstream(dir_ + "/late/evaluation/report.txt").rdbuf();
+  EXPECT_EQ(out_, text.str());
+  const auto figures = report(dir_ + "/late/evaluation")["runs"][0]["closest"]["all"];
+  EXPECT_NEAR(figures["object_tracked_a"].get<double>(), 18.0 / 20, 1e-12);
+  EXPECT_NEAR(figures["range_rms_m"].get<double>(), 0.5, 1e-9);
+  EXPECT_EQ(figures["correct"], 1);
+  EXPECT_EQ(figures["returns"], 18);
+}
+
+TEST_F(EvaluateAppTest, SeveralRunsMakeOneTable) {
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-r", dir_ + "/perfect", "-t", truth(), "-o", dir_ + "/out",
+                 "--no-plots", "--reference", dir_ + "/perfect"}),
+            0)
+      << err_;
+  const auto runs = report(dir_ + "/out")["runs"];
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[0]["name"], "late");
+  EXPECT_EQ(runs[1]["closest"]["all"]["object_tracked_a"], 1);
+  EXPECT_EQ(runs[1]["closest"]["all"]["range_rms_m"], 0);
+  EXPECT_NEAR(runs[0]["count_rms"]["all"].get<double>(), std::sqrt(2.0 / 20), 1e-12);
+  EXPECT_EQ(runs[1]["count_rms"]["all"], 0);
+  EXPECT_TRUE(fs::exists(dir_ + "/out/perfect/report.md"));
+}
+
+TEST_F(EvaluateAppTest, TheSameRunGivesTheSameBytes) {
+  ASSERT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
+  const auto read = [&] {
+    std::ostringstream text;
+    text << std::ifstream(dir_ + "/late/evaluation/report.json").rdbuf();
+    return text.str();
+  };
+  const std::string first = read();
+  app_ = EvaluateApp();
+  ASSERT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
+  EXPECT_EQ(read(), first);
+}
+
+TEST_F(EvaluateAppTest, WithoutOverlapItSaysNotAvailableAndEndsWithAWarning) {
+  std::vector<TruthObject> other = {truthAt(0)};
+  other[0].frame = 5000;
+  other[0].t = 500;
+  writeGroundTruth(dir_ + "/other.truth.csv", other);
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", dir_ + "/other.truth.csv", "--no-plots"}),
+            static_cast<int>(ExitCode::kDataWarnings));
+  EXPECT_NE(err_.find("no scene has a truth"), std::string::npos) << err_;
+  EXPECT_NE(out_.find("n/a"), std::string::npos);
+  EXPECT_TRUE(
+      report(dir_ + "/late/evaluation")["runs"][0]["closest"]["all"]["object_tracked_a"].is_null());
+}
+
+TEST_F(EvaluateAppTest, FaultsOfTheInputHaveTheirExitCodes) {
+  EXPECT_EQ(run({"-r", dir_ + "/late"}), static_cast<int>(ExitCode::kUsage));
+  app_ = EvaluateApp();
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", dir_ + "/none.csv"}),
+            static_cast<int>(ExitCode::kNoInput));
+  std::ofstream(dir_ + "/bad.csv") << "frame,t\n1,2\n";
+  app_ = EvaluateApp();
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", dir_ + "/bad.csv"}),
+            static_cast<int>(ExitCode::kBadInput));
+  EXPECT_NE(err_.find("bad.csv:1: found no column 'id'"), std::string::npos) << err_;
+  app_ = EvaluateApp();
+  EXPECT_EQ(run({"-r", dir_ + "/nowhere", "-t", truth()}), static_cast<int>(ExitCode::kNoInput))
+      << err_;
+}
+
+}  // namespace
+}  // namespace perception
