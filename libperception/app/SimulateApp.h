@@ -10,7 +10,7 @@ namespace perception {
 class SimulateApp : public App {
  public:
   std::uint64_t seed = 1;  ///< --seed
-  int gzip_level = 6;      ///< --gzip
+  int gzip_level = 1;      ///< --gzip
 
   std::string out_truth_file;
   std::int64_t out_frames = 0;

@@ -80,19 +80,22 @@ struct LidarCaster::Impl {
     std::size_t part = 0;
     RTCGeometry geometry = nullptr;  // owned by `top`; its id is the place in `instances`
     Pose3 T_world_part = Pose3::Identity();
+    Pose3 T_part_world = Pose3::Identity();
   };
 
   Impl(const World& w, int threads)
       : world(w),
-        device(rtcNewDevice("threads=1,set_affinity=0")),
+        device(rtcNewDevice(nullptr)),
         arena(threads > 0 ? threads : tbb::task_arena::automatic) {
     if (!device) throw std::runtime_error("Embree: no device");
     top = newScene(device.get());
-    add(w.road(), BeamHit::kRoad, 0);
-    for (std::size_t i = 0; i < w.objects(); ++i) {
-      const auto& parts = w.shape(i).parts;
-      for (std::size_t k = 0; k < parts.size(); ++k) add(parts[k].mesh, static_cast<int>(i), k);
-    }
+    one_thread.execute([&] {
+      add(w.road(), BeamHit::kRoad, 0);
+      for (std::size_t i = 0; i < w.objects(); ++i) {
+        const auto& parts = w.shape(i).parts;
+        for (std::size_t k = 0; k < parts.size(); ++k) add(parts[k].mesh, static_cast<int>(i), k);
+      }
+    });
   }
 
   void add(const Mesh& mesh, int object, std::size_t part) {
@@ -110,6 +113,7 @@ struct LidarCaster::Impl {
 
   void place(Instance& instance, const Pose3& pose) const {
     instance.T_world_part = pose;
+    instance.T_part_world = pose.inverse();
     const Eigen::Matrix<float, 3, 4> m = pose.matrix().topRows<3>().cast<float>();  // column-major
     rtcSetGeometryTransform(instance.geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m.data());
     rtcCommitGeometry(instance.geometry);
@@ -135,9 +139,9 @@ struct LidarCaster::Impl {
   bool meets(const Vector3& origin, const Vector3& direction, int object) const {
     for (const Instance& instance : instances) {
       if (instance.object != object) continue;
-      const Pose3 T_part_world = instance.T_world_part.inverse();
-      RTCRayHit r = makeRay(T_part_world * origin, T_part_world.linear() * direction,
-                            std::numeric_limits<double>::infinity());
+      RTCRayHit r =
+          makeRay(instance.T_part_world * origin, instance.T_part_world.linear() * direction,
+                  std::numeric_limits<double>::infinity());
       intersect(instance.scene.get(), r);
       if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) return true;
     }
@@ -149,6 +153,7 @@ struct LidarCaster::Impl {
   Scene top;
   std::vector<Instance> instances;
   mutable tbb::task_arena arena;
+  tbb::task_arena one_thread{1};  // trees built by one thread are the same every time
 };
 
 LidarCaster::LidarCaster(const World& world, int threads)
@@ -170,7 +175,7 @@ void LidarCaster::setTime(double t) {
     if (instance.part == 0) poses = world().parts(static_cast<std::size_t>(instance.object), t);
     impl_->place(instance, poses[instance.part]);
   }
-  rtcCommitScene(impl_->top.get());
+  impl_->one_thread.execute([&] { rtcCommitScene(impl_->top.get()); });
   if (rtcGetDeviceError(impl_->device.get()) != RTC_ERROR_NONE) {
     throw std::runtime_error(fmt::format("Embree: the scene at t = {} s cannot be built", t));
   }
@@ -194,7 +199,7 @@ std::vector<BeamHit> LidarCaster::cast(const Vector3& origin,
 
 // A grid of beams over the directions in which the object's box lies.
 double LidarCaster::visibleShare(const Vector3& eye, std::size_t object) const {
-  constexpr int kColumns = 24, kRows = 24;
+  constexpr int kColumns = 16, kRows = 16;
   const int index = static_cast<int>(object);
   // Frame with x towards the middle of the object, so that directions to it are far from any wrap.
   std::vector<Vector3> corners;

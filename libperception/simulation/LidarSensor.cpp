@@ -80,6 +80,8 @@ void LidarParams::visit(ParamVisitor& v) {
   v.angle("azimuth_from_deg", azimuth_from, {-180, 180}, "right end of the view");
   v.angle("azimuth_to_deg", azimuth_to, {-180, 180}, "left end of the view");
   v.angle("azimuth_step_deg", azimuth_step, {0.02, 10}, "between neighbouring beams");
+  v.angle("elevation_from_deg", elevation_from, {-90, 90}, "leaves lower rings out");
+  v.angle("elevation_to_deg", elevation_to, {-90, 90}, "leaves higher rings out");
   v.integer("ring_step", ring_step, {1, 64}, "keeps every n-th ring");
   v.real("range_min", range_min, {0, 100}, "m", "nothing nearer");
   v.real("range_max", range_max, {1, 500}, "m", "nothing farther");
@@ -112,8 +114,9 @@ LidarSensor::LidarSensor(const LidarParams& params, double rate)
       static_cast<std::uint32_t>(width / params.azimuth_step + (whole ? 0.5 : 1 + 1e-9));
   slice_time_ = width / kTwoPi / rate / static_cast<double>(slices_.size());
   for (std::uint32_t ring = 0; ring < elevations.size(); ++ring) {
-    if (ring % static_cast<std::uint32_t>(params.ring_step) != 0) continue;
     const double up = elevations[ring];
+    if (ring % static_cast<std::uint32_t>(params.ring_step) != 0) continue;
+    if (up < params.elevation_from || up > params.elevation_to) continue;
     for (std::uint32_t i = 0; i < columns; ++i) {
       const double azimuth = params.azimuth_from + i * params.azimuth_step;
       const std::size_t slice = i * slices_.size() / columns;

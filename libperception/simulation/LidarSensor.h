@@ -18,9 +18,10 @@ struct LidarParams {
   double azimuth_from = -kPi,
          azimuth_to = kPi;              ///< [rad] of the sensor's forward axis, to the left
   double azimuth_step = radians(0.18);  ///< [rad] 0.16 to 0.2 deg at 10 turns a second
-  int ring_step = 1;                    ///< keeps every n-th ring, to thin a log
-  double range_min = 0.9;               ///< [m]
-  double range_max = 120;               ///< [m]
+  double elevation_from = -kPi / 2, elevation_to = kPi / 2;  ///< [rad] rings beyond are left out
+  int ring_step = 1;             ///< keeps every n-th ring, to thin a log
+  double range_min = 0.9;        ///< [m]
+  double range_max = 120;        ///< [m]
   double reference_range = 200;  ///< [m] R_max of SPEC 9: a surface of 90 % is just seen there
   double range_noise = 0.01;     ///< [m] at the strongest echo
   double loss = 0.003;           ///< share of pulses that are lost whatever they meet
