@@ -61,6 +61,15 @@ TEST(Metrics, TheThreeDenominatorsDiffer) {
   EXPECT_EQ(trackingFigures(with_lidar, Pairing::kClosest).tracked_b, 0);
 }
 
+TEST(Metrics, ReturnsBeyondTheSensorSetsRangeAreNoneOfItsShare) {
+  EvaluationOptions options;
+  options.sensors = "C+R";
+  const Evaluation e =
+      compare({{makeObject(1, 18, 0)}}, {makeTruth(0, 1, 18, 0), makeTruth(0, 2, 8, 3)}, options);
+  EXPECT_EQ(trackingFigures(e, Pairing::kClosest).tracked_a, 0.5);
+  EXPECT_EQ(trackingFigures(e, Pairing::kClosest).tracked_b, 0);
+}
+
 TEST(Metrics, TheSensorSetIsWhatHitAnObject) {
   SceneObject object = makeObject(1, 5, 0);
   object.last_hit = {{Modality::kRadar, {}}, {Modality::kCamera, {}}};
