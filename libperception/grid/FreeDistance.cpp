@@ -1,0 +1,59 @@
+#include "libperception/grid/FreeDistance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace perception {
+namespace {
+
+constexpr double kStraight = 1e-6;  // [1/m] below it the arc is a line
+constexpr double kGap = 1;          // [m] of unknown ground that is taken for a gap between beams
+
+// Point of the ego frame at `s` along the arc.
+Vector3 placeAt(const Corridor& corridor, double s, double z) {
+  const double k = corridor.curvature;
+  if (std::abs(k) < kStraight) return {s, 0, z};
+  return {std::sin(k * s) / k, (1 - std::cos(k * s)) / k, z};
+}
+
+// A column counts as seen when a beam went through any of a few heights of it.
+bool isKnown(const Corridor& corridor, double s,
+             const std::function<double(const Vector3&)>& log_odds_at) {
+  constexpr double kHeights[] = {0.5, 0.9, 1.3, 1.7};  // [m] below and up to a roof's lidar
+  return std::any_of(std::begin(kHeights), std::end(kHeights), [&](double z) {
+    return log_odds_at(corridor.T_world_ego * placeAt(corridor, s, z)) != 0;
+  });
+}
+
+}  // namespace
+
+ArcPlace arcPlace(const Corridor& corridor, double x, double y) {
+  if (std::abs(corridor.curvature) < kStraight) return {x, y};
+  const double side = corridor.curvature > 0 ? 1 : -1;  // a right turn is a mirrored left turn
+  const double radius = 1 / std::abs(corridor.curvature);
+  const double to_centre = radius - side * y;
+  return {radius * std::atan2(x, to_centre), side * (radius - std::hypot(x, to_centre))};
+}
+
+FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>& occupied,
+                          double step, const std::function<double(const Vector3&)>& log_odds_at) {
+  FreeDistance result;
+  result.distance = corridor.max;
+  const Pose3 T_ego_world = corridor.T_world_ego.inverse();
+  for (const GridCell& cell : occupied) {
+    const Vector3 p = T_ego_world * cell.centre;
+    const double half = cell.size.x() / 2;
+    const ArcPlace place = arcPlace(corridor, p.x(), p.y());
+    if (std::abs(place.d) > corridor.width / 2 + half) continue;
+    if (place.s + half < corridor.from || place.s - half > result.distance) continue;
+    result.distance = std::max(place.s - half, corridor.from);
+    result.blocked = true;
+  }
+  result.seen = corridor.from;
+  for (double s = corridor.from; s <= result.distance && s - result.seen <= kGap; s += step) {
+    if (isKnown(corridor, s, log_odds_at)) result.seen = s;
+  }
+  return result;
+}
+
+}  // namespace perception

@@ -1,0 +1,31 @@
+#include "libperception/grid/SafetyGrid.h"
+
+#include "libperception/grid/CGridMrpt2d.h"
+#include "libperception/grid/GridOctomap.h"
+
+namespace perception {
+namespace {
+
+struct BackEndRow {
+  GridParams::BackEnd back_end;
+  std::unique_ptr<SafetyGrid> (*make)(const GridParams&);
+};
+
+constexpr BackEndRow kBackEnds[] = {{GridParams::BackEnd::kOctomap, &makeGridOctomap},
+                                    {GridParams::BackEnd::kMrpt2d, &makeGridMrpt2d}};
+
+}  // namespace
+
+FreeDistance SafetyGrid::freeDistance(const Corridor& corridor) const {
+  return perception::freeDistance(corridor, occupiedCells(), params_.resolution,
+                                  [this](const Vector3& place) { return logOdds(place); });
+}
+
+std::unique_ptr<SafetyGrid> makeSafetyGrid(const GridParams& params) {
+  for (const BackEndRow& row : kBackEnds) {
+    if (row.back_end == params.back_end) return row.make(params);
+  }
+  return nullptr;  // not reached: the parameter is a choice among the rows
+}
+
+}  // namespace perception

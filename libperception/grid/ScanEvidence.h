@@ -1,0 +1,77 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "libperception/grid/SafetyGrid.h"
+
+namespace perception {
+
+/// Integer place of a cell in the world.
+struct CellIndex {
+  std::int64_t x = 0, y = 0, z = 0;
+};
+
+/// Evidence of one scan about one cell.
+struct CellEvidence {
+  CellIndex cell;
+  double weight = 0;     ///< [0, 1] the greatest of the cell's hits
+  bool crossed = false;  ///< a clearing ray went through
+  bool relevant = true;  ///< within the slab itself, not only where it has been widened
+
+  /// [log-odds] w hit + (1 - w) miss, the miss only where a beam went through.
+  double logOdds(const GridParams& params) const {
+    return weight * params.hit + (crossed ? (1 - weight) * params.miss : 0);
+  }
+};
+
+/// Turns a scan into at most one piece of evidence per cell of the window, in flat arrays: a hash
+/// set of cells costs more than everything else together. Rays are thinned, hits are not. `flat`
+/// lays all heights into one layer of cells.
+class ScanEvidence {
+ public:
+  ScanEvidence(const GridParams& params, bool flat);
+
+  /// The evidence lives until the next call; its order depends on the scan alone.
+  const std::vector<CellEvidence>& collect(const GridScan& scan, GridStats& stats);
+  std::size_t memoryBytes() const;
+
+  std::int64_t indexOf(double coordinate) const {
+    return static_cast<std::int64_t>(std::floor(coordinate / params_.resolution));
+  }
+  double centreOf(std::int64_t index) const {
+    return (static_cast<double>(index) + 0.5) * params_.resolution;
+  }
+
+ private:
+  /// Chosen return of one direction.
+  struct Ray {
+    float range = 0;          ///< [m] 0: none
+    std::uint32_t point = 0;  ///< place in the scan's hits, then its clear points
+    bool stopped = false;     ///< by a hit that is trusted
+  };
+
+  void placeWindow(const GridScan& scan);
+  void markHits(const GridScan& scan, GridStats& stats);
+  void chooseRays(const GridScan& scan, GridStats& stats);
+  void offerRay(const GridScan& scan, std::size_t point, bool stops);
+  void castRay(const Vector3& origin, const Vector3& end);
+  bool isRelevant(const CellIndex& cell) const;
+  bool inSlab(const Vector3& place) const;
+  void touch(std::size_t cell, std::uint8_t mark);
+  CellIndex cellAt(std::size_t cell) const;
+
+  GridParams params_;
+  bool flat_;
+  std::int64_t cells_;  ///< along an edge of the window
+  std::int64_t layers_ = 1;
+  CellIndex first_;  ///< corner of the window
+  Pose3 T_ground_world_ = Pose3::Identity();
+  std::vector<std::uint8_t> marks_;     ///< bit 7: crossed; the rest: weight * 127
+  std::vector<std::uint32_t> touched_;  ///< places in marks_
+  std::size_t bearings_, elevations_;   ///< directions of clearing rays
+  std::vector<Ray> rays_;               ///< [bearing][elevation]
+  std::vector<CellEvidence> evidence_;
+};
+
+}  // namespace perception

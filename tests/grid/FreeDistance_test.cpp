@@ -1,0 +1,72 @@
+#include "libperception/grid/FreeDistance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libperception/core/Angle.h"
+
+namespace perception {
+namespace {
+
+const auto kAllKnown = [](const Vector3&) { return -1.0; };
+
+GridCell cellAt(double x, double y) { return {{x, y, 1}, Vector3::Constant(0.2), 3}; }
+
+TEST(ArcPlace, QuarterTurnLeftEndsBesideTheCentre) {
+  Corridor corridor;
+  corridor.curvature = 0.1;
+  const ArcPlace place = arcPlace(corridor, 10, 10);
+  EXPECT_NEAR(place.s, 10 * kPi / 2, 1e-12);
+  EXPECT_NEAR(place.d, 0, 1e-12);
+}
+
+TEST(ArcPlace, RightTurnIsTheMirrorImageOfALeftTurn) {
+  Corridor left, right;
+  left.curvature = 0.05;
+  right.curvature = -0.05;
+  const ArcPlace a = arcPlace(left, 7, 3), b = arcPlace(right, 7, -3);
+  EXPECT_NEAR(a.s, b.s, 1e-12);
+  EXPECT_NEAR(a.d, -b.d, 1e-12);
+}
+
+TEST(ArcPlace, AlmostStraightAgreesWithStraight) {
+  Corridor straight, bent;
+  bent.curvature = 2e-6;
+  const ArcPlace a = arcPlace(straight, 30, 1), b = arcPlace(bent, 30, 1);
+  EXPECT_NEAR(a.s, b.s, 1e-3);
+  EXPECT_NEAR(a.d, b.d, 1e-3);
+}
+
+TEST(FreeDistance, CountsTheNearSideOfTheFirstCellInTheCorridor) {
+  const std::vector<GridCell> cells = {cellAt(30, 0), cellAt(12, 0.9), cellAt(8, 1.3)};
+  const FreeDistance ahead = freeDistance({}, cells, 0.2, kAllKnown);
+  EXPECT_TRUE(ahead.blocked);
+  EXPECT_NEAR(ahead.distance, 11.9, 1e-9);
+}
+
+TEST(FreeDistance, TurnsWithTheVehicle) {
+  Corridor corridor;
+  corridor.T_world_ego = makePose(5, 5, 0, kPi / 2);
+  EXPECT_NEAR(freeDistance(corridor, {cellAt(5, 15)}, 0.2, kAllKnown).distance, 9.9, 1e-9);
+}
+
+TEST(FreeDistance, IgnoresWhatLiesBehindAndUnderTheVehicle) {
+  const std::vector<GridCell> cells = {cellAt(-10, 0), cellAt(1, 0)};
+  const FreeDistance ahead = freeDistance({}, cells, 0.2, kAllKnown);
+  EXPECT_FALSE(ahead.blocked);
+  EXPECT_DOUBLE_EQ(ahead.distance, Corridor{}.max);
+}
+
+TEST(FreeDistance, SeenEndsWhereTheLidarHasNotLooked) {
+  const auto known_to_20 = [](const Vector3& p) { return p.x() < 20 ? -1.0 : 0.0; };
+  EXPECT_NEAR(freeDistance({}, {}, 0.2, known_to_20).seen, 20, 0.21);
+}
+
+TEST(FreeDistance, SmallGapsBetweenBeamsDoNotEndWhatWasSeen) {
+  const auto striped = [](const Vector3& p) { return std::fmod(p.x(), 0.9) < 0.3 ? -1.0 : 0.0; };
+  EXPECT_GT(freeDistance({}, {}, 0.1, striped).seen, Corridor{}.max - 1);
+}
+
+}  // namespace
+}  // namespace perception

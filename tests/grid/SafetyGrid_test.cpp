@@ -1,0 +1,271 @@
+#include "libperception/grid/SafetyGrid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+#include "libperception/core/Config.h"
+#include "libperception/core/Error.h"
+#include "libperception/core/Random.h"
+
+namespace perception {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPeriod = 0.1;  // [s] of a lidar
+
+/// A scan from a roof lidar at (x, y) that sees flat ground out to 35 m.
+GridScan scanAt(double t, double x = 0, double y = 0) {
+  GridScan scan;
+  scan.stamp = Stamp::fromSeconds(1000 + t);
+  scan.T_world_ground = makePose(x, y, 0, 0);
+  scan.origin = Vector3(x, y, 1.73);
+  return scan;
+}
+
+/// The lidar's beams against a wall across the road `wall` metres ahead (none: infinity), 8 m wide
+/// and 2 m high, and the ground.
+GridScan sceneWithWall(double t, double wall, double x = 0, double step_deg = 0.2) {
+  GridScan scan = scanAt(t, x);
+  for (double azimuth = -180; azimuth < 180; azimuth += step_deg) {
+    for (int beam = 0; beam < 40; ++beam) {
+      const double a = radians(azimuth), e = radians(-24.8 + beam * 0.7);
+      const Vector3 d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      const double to_ground = d.z() < 0 ? -1.73 / d.z() : 1e9;
+      const double to_wall = d.x() > 0 ? wall / d.x() : 1e9;
+      const Vector3 at_wall = scan.origin + to_wall * d;
+      const bool hit = to_wall < to_ground && std::abs(at_wall.y()) < 4 && at_wall.z() < 2;
+      if (hit) {
+        (at_wall.z() > 0.3 ? scan.hits : scan.clear).push_back(at_wall);
+      } else {
+        scan.clear.push_back(scan.origin + std::min(to_ground, 50.0) * d);
+      }
+    }
+  }
+  return scan;
+}
+
+class SafetyGridContract : public testing::TestWithParam<GridParams::BackEnd> {
+ protected:
+  std::unique_ptr<SafetyGrid> grid(GridParams params = {}) const {
+    params.back_end = GetParam();
+    return makeSafetyGrid(params);
+  }
+};
+
+TEST_P(SafetyGridContract, WallStopsTheFreeDistanceAtItsRange) {
+  const auto g = grid();
+  for (int i = 0; i < 3; ++i) g->insert(sceneWithWall(i * kPeriod, 20));
+  const FreeDistance ahead = g->freeDistance({});
+  EXPECT_TRUE(ahead.blocked);
+  EXPECT_NEAR(ahead.distance, 20, g->params().resolution + 1e-9);
+  EXPECT_GT(ahead.seen, 17);
+  Corridor beside;
+  beside.T_world_ego = makePose(0, 8, 0, 0);
+  EXPECT_FALSE(g->freeDistance(beside).blocked);
+}
+
+TEST_P(SafetyGridContract, OneScanDoesNotMakeAnObstacle) {
+  const auto g = grid();
+  g->insert(sceneWithWall(0, 20));
+  EXPECT_TRUE(g->occupiedCells().empty());
+}
+
+TEST_P(SafetyGridContract, SteeringLeadsPastAnObstacleAhead) {
+  const auto g = grid();
+  for (int i = 0; i < 3; ++i) g->insert(sceneWithWall(i * kPeriod, 20));
+  Corridor turn;
+  turn.curvature = 1.0 / 12;  // left, out of the wall's way: at most 12 m ahead
+  turn.max = 18;
+  EXPECT_FALSE(g->freeDistance(turn).blocked);
+  EXPECT_DOUBLE_EQ(g->freeDistance(turn).distance, 18);
+}
+
+TEST_P(SafetyGridContract, CellsOfAnObjectThatHasLeftAreCleared) {
+  const auto g = grid();
+  for (int i = 0; i < 10; ++i) g->insert(sceneWithWall(i * kPeriod, 12));
+  ASSERT_TRUE(g->freeDistance({}).blocked);
+  for (int i = 10; i < 18; ++i) g->insert(sceneWithWall(i * kPeriod, 25));
+  const FreeDistance ahead = g->freeDistance({});
+  EXPECT_NEAR(ahead.distance, 25, g->params().resolution + 1e-9)
+      << "0.8 s are far below the 4.2 s in which the cells would decay by themselves";
+}
+
+TEST_P(SafetyGridContract, CellsDecayWithTau) {
+  const auto g = grid();
+  for (int i = 0; i < 10; ++i) g->insert(sceneWithWall(i * kPeriod, 20));
+  const Vector3 place(20.05, 0.05, 1.05);
+  const double before = g->logOdds(place);
+  ASSERT_NEAR(before, g->params().high, 0.1);
+  // Scans that see nothing: only time passes.
+  for (int i = 1; i <= 10; ++i) g->insert(scanAt(0.9 + i * 0.5));
+  EXPECT_NEAR(g->logOdds(place), before * std::exp(-1), 0.15);
+  EXPECT_FALSE(g->isOccupied(place));
+}
+
+TEST_P(SafetyGridContract, ThinPhantomsOfLowWeightDoNotBlock) {
+  const auto g = grid();
+  Rng random({1, 0, 0, 0});
+  for (int i = 0; i < 30; ++i) {
+    GridScan scan = sceneWithWall(i * kPeriod, 30, 0, 0.5);
+    scan.weights.assign(scan.hits.size(), 1.0F);
+    for (int flake = 0; flake < 400; ++flake) {  // snow around the vehicle
+      scan.hits.emplace_back(random.uniform(2, 15), random.uniform(-5, 5), random.uniform(0.3, 2));
+      scan.weights.push_back(0.1F);
+    }
+    g->insert(scan);
+  }
+  EXPECT_NEAR(g->freeDistance({}).distance, 30, g->params().resolution + 1e-9);
+}
+
+TEST_P(SafetyGridContract, TheSameReturnsWithFullWeightBlock) {
+  const auto g = grid();
+  GridScan scan = sceneWithWall(0, 30);
+  for (int i = 0; i < 3; ++i) {
+    scan.stamp = scan.stamp + kPeriod;
+    scan.hits.emplace_back(8, 0, 1);
+    g->insert(scan);
+  }
+  EXPECT_NEAR(g->freeDistance({}).distance, 8, g->params().resolution + 1e-9);
+}
+
+TEST_P(SafetyGridContract, EmptyScansAreHarmless) {
+  const auto g = grid();
+  EXPECT_TRUE(g->occupiedCells().empty());
+  const GridStats stats = g->insert(scanAt(0));
+  EXPECT_EQ(stats.hits + stats.rays + stats.not_finite, 0U);
+  const FreeDistance ahead = g->freeDistance({});
+  EXPECT_FALSE(ahead.blocked);
+  EXPECT_DOUBLE_EQ(ahead.seen, Corridor{}.from)
+      << "nothing was seen, so nothing is known to be free";
+}
+
+TEST_P(SafetyGridContract, PointsThatAreNoNumbersAreCountedAndIgnored) {
+  const auto clean = grid(), dirty = grid();
+  for (int i = 0; i < 3; ++i) {
+    GridScan scan = sceneWithWall(i * kPeriod, 20);
+    clean->insert(scan);
+    scan.hits.emplace_back(kNan, 1, 1);
+    scan.hits.emplace_back(1, std::numeric_limits<double>::infinity(), 1);
+    scan.clear.emplace_back(1, 2, kNan);
+    EXPECT_EQ(dirty->insert(scan).not_finite, 3U);
+  }
+  const auto a = clean->occupiedCells(), b = dirty->occupiedCells();
+  ASSERT_EQ(a.size(), b.size());
+  ASSERT_FALSE(a.empty());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].centre, b[i].centre);
+}
+
+TEST_P(SafetyGridContract, ALateScanIsReportedAndTakenAtTheLastTime) {
+  const auto g = grid();
+  for (int i = 0; i < 3; ++i) g->insert(sceneWithWall(i * kPeriod, 20));
+  EXPECT_TRUE(g->insert(sceneWithWall(-5, 20)).late);
+  EXPECT_TRUE(g->isOccupied({20.05, 0.05, 1.05}));
+}
+
+TEST_P(SafetyGridContract, WorldFarFromItsOriginChangesNothing) {
+  const auto g = grid();
+  const Vector3 far(512000, 5402000, 300);  // UTM
+  for (int i = 0; i < 3; ++i) {
+    GridScan scan = sceneWithWall(i * kPeriod, 20);
+    for (auto* points : {&scan.hits, &scan.clear}) {
+      for (Vector3& p : *points) p += far;
+    }
+    scan.origin += far;
+    scan.T_world_ground.translation() += far;
+    g->insert(scan);
+  }
+  Corridor corridor;
+  corridor.T_world_ego.translation() = far;
+  EXPECT_NEAR(g->freeDistance(corridor).distance, 20, g->params().resolution + 1e-6);
+}
+
+TEST_P(SafetyGridContract, WindowMovesWithTheVehicleAndForgetsWhatIsOutside) {
+  const auto g = grid();
+  for (int i = 0; i < 5; ++i) g->insert(sceneWithWall(i * kPeriod, 20));
+  const Vector3 wall(20.05, 0.05, 1.05);
+  g->insert(scanAt(0.5, 10));
+  EXPECT_TRUE(g->isOccupied(wall)) << "inside the window, at its place in the world";
+  g->insert(scanAt(0.6, 70));
+  EXPECT_FALSE(g->isOccupied(wall));
+  EXPECT_TRUE(g->occupiedCells().empty());
+}
+
+TEST_P(SafetyGridContract, MemoryStaysFlatWhileTheVehicleDrives) {
+  GridParams params;
+  params.resolution = 0.5;
+  const auto g = grid(params);
+  const auto drive = [&](int begin, int end) {
+    std::size_t most = 0;
+    for (int i = begin; i < end; ++i) {
+      // 30 m/s: a wall, the ground, and 33 km in the end, beyond the keys of one octree.
+      g->insert(sceneWithWall(i * 1.0, 15, i * 30.0, 2));
+      most = std::max(most, g->memoryBytes());
+    }
+    return most;
+  };
+  const std::size_t early = drive(0, 50);
+  const std::size_t late = drive(50, 1100);
+  EXPECT_LE(static_cast<double>(late), 1.1 * static_cast<double>(early));
+}
+
+TEST_P(SafetyGridContract, KittiSizedScanTakesLessThanItsPeriod) {
+  const auto g = grid();
+  GridScan scan = scanAt(0);
+  Rng random({2, 0, 0, 0});
+  for (int azimuth = 0; azimuth < 1875; ++azimuth) {  // 120 000 points, a street 16 m wide
+    for (int beam = 0; beam < 64; ++beam) {
+      const double a = azimuth * kTwoPi / 1875, e = radians(2 - beam * 0.42);
+      const Vector3 d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      const double to_ground = d.z() < 0 ? -1.73 / d.z() : 80;
+      const double to_side = std::min(8 / std::max(1e-3, std::abs(d.y())), random.uniform(20, 80));
+      (to_side < to_ground ? scan.hits : scan.clear)
+          .push_back(scan.origin + std::min(to_side, to_ground) * d);
+    }
+  }
+  std::vector<double> seconds;
+  for (int i = 0; i < 12; ++i) {
+    scan.stamp = scan.stamp + kPeriod;
+    const std::clock_t begin = std::clock();
+    g->insert(scan);
+    seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  std::sort(seconds.begin(), seconds.end());
+  RecordProperty("milliseconds_per_scan", static_cast<int>(seconds[6] * 1000));
+#ifdef NDEBUG
+  EXPECT_LT(seconds[6], kPeriod) << "median processor time";
+#else
+  EXPECT_LT(seconds[6], 20 * kPeriod) << "median processor time, without optimisation";
+#endif
+}
+
+INSTANTIATE_TEST_SUITE_P(BackEnds, SafetyGridContract,
+                         testing::Values(GridParams::BackEnd::kOctomap,
+                                         GridParams::BackEnd::kMrpt2d),
+                         [](const auto& info) {
+                           return info.param == GridParams::BackEnd::kOctomap ? "octomap"
+                                                                              : "mrpt2d";
+                         });
+
+TEST(GridOctomap, BridgeDoesNotBlockTheRoadBelow) {
+  GridParams params;
+  const auto g = makeSafetyGrid(params);
+  for (int i = 0; i < 5; ++i) {
+    GridScan scan = sceneWithWall(i * kPeriod, 30);
+    for (double y = -5; y < 5; y += 0.1) scan.hits.emplace_back(15, y, 4.5);
+    g->insert(scan);
+  }
+  EXPECT_NEAR(g->freeDistance({}).distance, 30, params.resolution + 1e-9);
+}
+
+TEST(GridParams, UnknownBackEndIsAConfigurationFault) {
+  Config config = Config::fromText("[grid]\nback_end = balltree\n");
+  config.read<GridParams>("grid");
+  EXPECT_THROW(config.finish(), ConfigError);
+}
+
+}  // namespace
+}  // namespace perception
