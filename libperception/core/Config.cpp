@@ -28,8 +28,12 @@ std::string joinedWords(const std::vector<std::string>& words) {
 }
 
 void appendKey(const ConfigKey& key, std::string& text) {
-  std::string line = key.active ? fmt::format("{} = {}", key.name, key.value)
-                                : fmt::format("; {} is not set", key.name);
+  std::string line = fmt::format("{} = {}", key.name, key.value);
+  if (!key.active) {
+    line = key.value.empty()
+               ? fmt::format("; {} is not set", key.name)
+               : fmt::format("; {} cannot be written: {}", key.name, escaped(key.value));
+  }
   if (line.size() < kCommentColumn) line.resize(kCommentColumn, ' ');
   text += line + "  ; " + key.comment;
   if (key.active && key.usual != key.value) {
@@ -134,6 +138,7 @@ const std::string& Config::name() const { return impl_->document.name(); }
 
 bool Config::has(const std::string& section) const {
   impl_->asked.push_back(section);
+  impl_->document.claim(section);
   return impl_->document.find(section) != nullptr;
 }
 
@@ -158,6 +163,7 @@ void Config::fault(const std::string& section, const std::string& key, const std
 }
 
 std::unique_ptr<ParamVisitor> Config::reader(const std::string& section, bool required) {
+  impl_->document.claim(section);
   const IniSection* found = impl_->document.find(section);
   if (required && !found && !contains(impl_->missing, section)) {
     impl_->missing.push_back(section);

@@ -150,10 +150,10 @@ void IniDocument::readLine(int source, int number, std::string_view line, std::s
     return addFault(place,
                     fmt::format("[{}] {}: found no value, expected one after '='", section, key));
   }
-  if (!survivesWriting(value)) {
-    return addFault(place,
-                    fmt::format("[{}] {}: found {}, expected a value without control characters",
-                                section, key, inQuotes(value)));
+  if (!survivesWriting(value) || !survivesWriting(key)) {
+    return addFault(
+        place, fmt::format("[{}] {}: found {}, expected a line without control characters", section,
+                           escaped(key), inQuotes(value)));
   }
   lines_.push_back({section, key, value, place});
 }
@@ -262,7 +262,7 @@ void IniDocument::mergeKey(const std::vector<const Line*>& lines) {
 }
 
 void IniDocument::set(const std::string& assignment) {
-  const int source = addSource("--set " + assignment);
+  const int source = addSource("--set " + escaped(assignment));
   const IniPlace place{source, 0};
   const std::size_t equals = assignment.find('=');
   const std::string name(trimmed(std::string_view(assignment).substr(0, equals)));
@@ -294,6 +294,39 @@ void IniDocument::set(const std::string& assignment) {
     target.entries.push_back({key, value, place});
   } else {
     *entry = {key, value, place};
+  }
+}
+
+void IniDocument::claim(const std::string& name) {
+  std::vector<IniEntry> moved;
+  for (auto& s : sections_) {
+    if (name.size() <= s.name.size() + 1 || name.compare(0, s.name.size(), s.name) != 0 ||
+        name[s.name.size()] != '.') {
+      continue;
+    }
+    const std::string prefix = name.substr(s.name.size() + 1) + '.';
+    const auto begin =
+        std::stable_partition(s.entries.begin(), s.entries.end(), [&](const IniEntry& e) {
+          const bool by_option = e.place.source >= 0 && e.place.line == 0;
+          return !by_option || e.key.size() <= prefix.size() ||
+                 e.key.compare(0, prefix.size(), prefix) != 0;
+        });
+    for (auto e = begin; e != s.entries.end(); ++e) {
+      moved.push_back({e->key.substr(prefix.size()), e->value, e->place});
+    }
+    s.entries.erase(begin, s.entries.end());
+  }
+  for (const auto& e : moved) {
+    const bool is_new = !find(name);
+    IniSection& target = section(name, e.place);
+    if (is_new) target.in_file = false;
+    const auto same = std::find_if(target.entries.begin(), target.entries.end(),
+                                   [&](const IniEntry& t) { return t.key == e.key; });
+    if (same == target.entries.end()) {
+      target.entries.push_back(e);
+    } else {
+      *same = e;
+    }
   }
 }
 

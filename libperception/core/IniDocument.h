@@ -44,6 +44,11 @@ class IniDocument {
   /// `section.key=value`, after reading; a later one wins.
   void set(const std::string& assignment);
 
+  /// The program knows a section of that title: a --set that was taken for a dotted key of a
+  /// shorter title
+  /// ([sensor.A] class.car.detection) moves there.
+  void claim(const std::string& section);
+
   const std::vector<IniSection>& sections() const { return sections_; }
   const IniSection* find(const std::string& section) const;
   const std::vector<IniFault>& faults() const { return faults_; }

@@ -26,7 +26,9 @@ std::optional<Vector3> onGround(const Vector3& direction, const Vector3& origin,
 
 void BoxGeometryParams::visit(ParamVisitor& v) {
   v.real("edge_sigma", edge_sigma, {0.1, 200}, "px", "of the left and right edge");
+  v.real("edge_share", edge_share, {0, 1}, "", "of the box's width, added to edge_sigma");
   v.real("bottom_sigma", bottom_sigma, {0.1, 200}, "px", "of the lower edge");
+  v.real("bottom_share", bottom_share, {0, 1}, "", "of the box's height, added to bottom_sigma");
   v.angle("pitch_sigma_deg", pitch_sigma, {0, 10},
           "of the line of sight against the ground, beside the pose's own");
   v.real("range_floor", range_floor, {0, 20}, "m", "added to the range's deviation");
@@ -61,8 +63,9 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
   out.left_seen = box.x1 > params.border;
   out.right_seen = box.x2 < camera.width - params.border;
   // d(bearing)/d(pixel) = cos^2(bearing) / fx.
-  out.left_sigma = params.edge_sigma * std::pow(std::cos(out.left), 2) / camera.fx;
-  out.right_sigma = params.edge_sigma * std::pow(std::cos(out.right), 2) / camera.fx;
+  const double edge_sigma = params.edge_sigma + params.edge_share * (box.x2 - box.x1);
+  out.left_sigma = edge_sigma * std::pow(std::cos(out.left), 2) / camera.fx;
+  out.right_sigma = edge_sigma * std::pow(std::cos(out.right), 2) / camera.fx;
   if (box.y2 >= camera.height - params.border) return out;
 
   const Vector3 origin = T_ego_camera.translation();
@@ -72,9 +75,9 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
   if (range > params.max_range) return out;
   const double h = origin.z() - ground.heightAt(foot->x(), foot->y());
   // sigma_r = (r^2 + h^2) / h * sigma_phi; phi: pixel, own pitch, pose pitch (VISION_NOTES 3).
-  const double sigma_phi = std::sqrt(std::pow(params.bottom_sigma / camera.fy, 2) +
-                                     params.pitch_sigma * params.pitch_sigma +
-                                     uncertainty.sigma_pitch * uncertainty.sigma_pitch);
+  const double sigma_phi = std::sqrt(
+      std::pow((params.bottom_sigma + params.bottom_share * (box.y2 - box.y1)) / camera.fy, 2) +
+      params.pitch_sigma * params.pitch_sigma + uncertainty.sigma_pitch * uncertainty.sigma_pitch);
   out.range = range;
   out.range_sigma = (range * range + h * h) / h * sigma_phi + params.range_floor;
   // Height of the upper edge over the foot at that range.

@@ -9,12 +9,16 @@ namespace perception {
 /// [sensor.LABEL.geometry]: how well an image box says where its object stands (SPEC 4.2,
 /// VISION_NOTES 3).
 struct BoxGeometryParams {
-  double edge_sigma = 6;    ///< [px] of the left and right edge ("tuned on KITTI's RRC boxes")
+  double edge_sigma = 3;  ///< [px] of the left and right edge ...
+  double edge_share =
+      0.08;                 ///< ... and of the box's width: detectors err in proportion to the size
   double bottom_sigma = 4;  ///< [px] of the lower edge
+  double bottom_share =
+      0.05;  ///< of the box's height, added to it: detectors of people stop above a cycle's wheels
   double pitch_sigma =
       radians(0.5);  ///< [rad] of the line of sight against the ground, beside the pose's own
   double range_floor = 0.2;  ///< [m] added to the range's deviation
-  double border = 3;         ///< [px] an edge this near to the image's border is cut off by it
+  double border = 10;        ///< [px] an edge this near to the image's border is cut off by it
   double max_range = 60;     ///< [m] beyond it the ground says nothing
 
   void visit(ParamVisitor& v);
