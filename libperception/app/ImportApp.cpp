@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 
 namespace perception {
 
@@ -59,13 +60,13 @@ void ImportApp::parseDetections() {
 void ImportApp::run() {
   parseDetections();
   kitti.output = output;
-  {
-    Progress progress("import", 0);
-    out_result = importKitti(kitti, [&progress](std::int64_t done, std::int64_t) {
-      stopIfAsked();
-      progress.update(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(done));
-    });
-  }
+  std::optional<Progress> progress;
+  out_result = importKitti(kitti, [&progress](std::int64_t done, std::int64_t total) {
+    stopIfAsked();
+    if (!progress) progress.emplace("import", static_cast<std::uint64_t>(total));
+    progress->update(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(done));
+  });
+  progress.reset();
   for (const std::string& warning : out_result.warnings) warn(warning);
   report();
 }
