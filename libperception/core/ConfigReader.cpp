@@ -173,7 +173,8 @@ class ConfigReader final : public ParamVisitor {
     const std::string usual = listText(values, sameWord);
     if (const IniEntry* entry = take(key)) {
       const auto parts = splitList(entry->value);
-      if (std::any_of(parts.begin(), parts.end(), [](auto part) { return part.empty(); })) {
+      // A word as ";x" would begin a comment where the list is written with blanks.
+      if (!std::all_of(parts.begin(), parts.end(), survivesWriting)) {
         reject(*entry, "words parted by commas");
       } else {
         values.assign(parts.begin(), parts.end());

@@ -128,17 +128,21 @@ std::string rangeText(Bounds allowed) {
   return above ? fmt::format("<= {}", formatReal(allowed.high)) : "";
 }
 
-std::string inQuotes(std::string_view text) {
-  constexpr std::size_t kLongest = 80;
-  std::string shown = "'";
-  for (const char c : text.substr(0, kLongest)) {
+std::string escaped(std::string_view text) {
+  std::string shown;
+  for (const char c : text) {
     if (isControl(c)) {
       shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
     } else {
       shown += c;
     }
   }
-  return shown + (text.size() > kLongest ? "...'" : "'");
+  return shown;
+}
+
+std::string inQuotes(std::string_view text) {
+  constexpr std::size_t kLongest = 80;
+  return "'" + escaped(text.substr(0, kLongest)) + (text.size() > kLongest ? "...'" : "'");
 }
 
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {

@@ -37,6 +37,8 @@ inline bool isWithin(Bounds allowed, double value) {
 
 /// "0.05 .. 5", ">= 0", "" when everything is allowed.
 std::string rangeText(Bounds allowed);
+/// The text on one line: control characters as \x1b.
+std::string escaped(std::string_view text);
 /// The text in quotes for a message: control characters escaped, cut when long.
 std::string inQuotes(std::string_view text);
 /// The candidate most like `word`, "" when none is near (edit distance up to a third of its
