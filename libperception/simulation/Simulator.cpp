@@ -68,8 +68,8 @@ std::shared_ptr<mrpt::obs::CObservation> Simulator::next() {
     case Event::kComment: {
       auto comment = std::make_shared<mrpt::obs::CObservationComment>();
       comment->timestamp = fromStamp(world_.stamp(event.t));
-      comment->sensorLabel = kSimulatedLabel;
-      comment->text = fmt::format("simulated log: scenario {}, seed {}", name_, seed_);
+      comment->sensorLabel = "SIMULATED";
+      comment->text = fmt::format("{}scenario {}, seed {}", kSimulatedText, name_, seed_);
       const std::string& description = world_.scenario().params.description;
       if (!description.empty()) comment->text += ": " + description;
       return comment;

@@ -13,8 +13,9 @@
 
 namespace perception {
 
-/// Label of the first observation of a simulated log: a comment that says so.
-inline constexpr const char* kSimulatedLabel = "SIMULATED";
+/// How the text of a simulated log's first observation, a comment, begins. Comments are known by
+/// their text: MRPT does not store their label.
+inline constexpr const char* kSimulatedText = "simulated log: ";
 
 /// Plays a scenario as a rawlog: a comment that calls it simulated, then in order of time ego
 /// poses, frame numbers and the sensors' observations. A function of scenario and seed alone.
