@@ -72,7 +72,8 @@ void OutputFolder::create() {
     if (::mkdir(folder.c_str(), 0777) == 0) {
       made_.push_back(folder.string());
     } else if (const int reason = errno; !fs::is_directory(folder, error)) {
-      failCreating(path_, std::strerror(reason));
+      failCreating(path_, reason == EEXIST ? folder.string() + " is not a folder"
+                                           : std::string(std::strerror(reason)));
     }
   }
 }
