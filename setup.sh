@@ -105,13 +105,16 @@ demo() {
   demoSummary "$dir"
 }
 
+# share VALUE: a fraction as a percentage
+share() { LC_ALL=C awk -v v="$1" 'BEGIN { if (v == "") print "n/a"; else printf "%.1f %%\n", 100 * v }'; }
+
 demoSummary() {
   local dir=$1 report=$1/evaluation/report.json
-  say "Result (simulated log)"
-  printf '%-22s %s\n' \
-    "objects tracked" "$(number "$dir/done.json" tracks)" \
-    "tracked fraction" "$(number "$report" object_tracked_a)" \
-    "correct class" "$(number "$report" correct)" \
+  say "Result (simulated log, truth within 20 m ahead)"
+  printf '%-18s %s\n' \
+    "objects" "$(number "$dir/done.json" tracks) (poles, walls and bushes included)" \
+    "tracked fraction" "$(share "$(number "$report" object_tracked_a)")" \
+    "correct class" "$(share "$(number "$report" correct)")" \
     "id switches" "$(number "$report" id_switches)" \
     "real-time factor" "$(number "$dir/timing.json" real_time_factor)"
   printf '\npictures: %s\n          %s\n' "$dir/scene.png" "$dir/contact.png"
