@@ -24,6 +24,10 @@ class CRawlogInput;
 /// observations alone, and sensory frames with actions (wheel odometry inside an action becomes a
 /// CObservationOdometry that is labelled ODOMETRY).
 ///
+/// A bit error inside gzip data shows at once where the data stop to make sense, at the latest with
+/// the check sum at the end of the file: observations given before that may be wrong, end() says
+/// so.
+///
 /// Not detectable: a log without compression that was cut exactly between two entries. Hostile
 /// sizes inside MRPT's own classes can take gigabytes before they fail; a program that reads
 /// unknown logs sets a limit (setrlimit RLIMIT_AS).

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <random>
 
 #include "libperception/core/Error.h"
@@ -133,21 +134,36 @@ TEST_F(RawlogReaderTest, EveryCutOfAGzipLogIsTorn) {
 }
 
 TEST_F(RawlogReaderTest, EveryCutOfAPlainLogIsTornUnlessBetweenEntries) {
-  writeLog(log_, 1, 1, 10);
+  std::vector<std::size_t> boundaries;
+  {
+    RawlogWriter log(log_);
+    const std::shared_ptr<mrpt::obs::CObservation> entries[] = {
+        frameComment(kStart, 0), fullScan(3), someDetections(), someMeasurements()};
+    for (const auto& entry : entries) {
+      log.write(*entry);
+      boundaries.push_back(log.bytesInflated());
+    }
+    log.close();
+  }
   const std::string whole = inflated(log_);
-  std::size_t clean = 0;
-  for (std::size_t size = 1; size < whole.size(); ++size) {
+  ASSERT_EQ(whole.size(), boundaries.back());
+  const auto endOfCut = [&](std::size_t size, std::size_t entries) {
     writeBytes(folder_.file("cut"), whole.substr(0, size));
     RawlogReader reader(folder_.file("cut"));
-    const std::size_t count = drain(reader);
-    if (reader.end() == End::kClean) {
-      ++clean;
-      EXPECT_EQ(count, clean);
-    } else {
-      EXPECT_EQ(reader.end(), End::kTorn) << size << ": " << reader.endMessage();
+    EXPECT_EQ(drain(reader), entries) << size;
+    return reader.end();
+  };
+  // MRPT's exceptions carry a call stack and take milliseconds: not every single byte.
+  for (std::size_t size = 1; size < whole.size(); size += 5) {
+    const auto next = std::lower_bound(boundaries.begin(), boundaries.end(), size);
+    if (*next != size) {
+      EXPECT_EQ(endOfCut(size, static_cast<std::size_t>(next - boundaries.begin())), End::kTorn);
     }
   }
-  EXPECT_EQ(clean, 4U);  // the boundaries between the five entries
+  for (std::size_t k = 0; k < boundaries.size(); ++k) {
+    EXPECT_EQ(endOfCut(boundaries[k] - 1, k), End::kTorn);
+    EXPECT_EQ(endOfCut(boundaries[k], k + 1), End::kClean);
+  }
 }
 
 TEST_F(RawlogReaderTest, TornMessageNamesPlaceEntryAndStamp) {
@@ -272,7 +288,7 @@ TEST_F(RawlogReaderTest, RandomMutationsOfAPlainLogEndWithAReason) {
   writeLog(log_, 2, 1, 40);
   const std::string whole = inflated(log_);
   std::mt19937 random(11);
-  for (int round = 0; round < 300; ++round) {
+  for (int round = 0; round < 200; ++round) {
     std::string bytes = whole;
     for (unsigned changes = 1 + random() % 4; changes > 0; --changes) {
       bytes[random() % bytes.size()] = static_cast<char>(random());
