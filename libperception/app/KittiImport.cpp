@@ -25,6 +25,8 @@ namespace {
 
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
+/// [%] of embedded images: no visible loss.
+constexpr int kJpegQuality = 95;
 /// [m] Height of the Velodyne on KITTI's car (Geiger et al., IJRR 2013, figure 3).
 constexpr double kVelodyneHeight = 1.73;
 /// Frame 0 of every sequence: the files carry no date. 2011-09-26 12:00:00 UTC, the day of most
@@ -270,6 +272,8 @@ void Import::writeImage(std::int64_t frame, RawlogWriter& log) {
   const CameraModel& c = calibration_.camera;
   camera.setIntrinsicParamsFromValues(c.fx, c.fy, c.cx, c.cy);
   if (params_.embed_images) {
+    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(false);  // MRPT's default is raw pixels
+    mrpt::img::CImage::SERIALIZATION_JPEG_QUALITY(kJpegQuality);
     image.image = mrpt::img::CImage(pixels, mrpt::img::DEEP_COPY);
   } else {
     // Beside the log in the folder that MRPT's programs look into; the name alone stands in the

@@ -262,7 +262,7 @@ TEST_F(ImportTest, DetectionsOfOneNameMergeAndEmptyFramesAreSaid) {
 }
 
 TEST_F(ImportTest, ImagesAreEmbeddedOrStandBesideTheLog) {
-  const cv::Mat grey(40, 60, CV_8UC3, cv::Scalar(10, 20, 30));
+  const cv::Mat grey(400, 600, CV_8UC3, cv::Scalar(10, 20, 30));
   fs::create_directories(folder_ / "images");
   for (int k = 0; k < 4; ++k) cv::imwrite(file("images/00000" + std::to_string(k) + ".png"), grey);
   for (const bool embedded : {false, true}) {
@@ -270,14 +270,15 @@ TEST_F(ImportTest, ImagesAreEmbeddedOrStandBesideTheLog) {
     if (embedded) more.push_back("--embed-images");
     ASSERT_EQ(import(more), 0) << error_;
     EXPECT_EQ(result_.images, 4);
+    EXPECT_LT(result_.bytes_inflated, 4 * 400 * 600U);  // JPEG, not three bytes a pixel
     for (const auto& o : readLog()) {
       const auto image = std::dynamic_pointer_cast<mrpt::obs::CObservationImage>(o);
       if (!image) continue;
-      EXPECT_EQ(image->cameraParams.ncols, 60U);
+      EXPECT_EQ(image->cameraParams.ncols, 600U);
       EXPECT_EQ(image->cameraParams.fx(), 700);
       EXPECT_EQ(image->image.isExternallyStored(), !embedded);
       if (embedded) {
-        EXPECT_EQ(image->image.getWidth(), 60U);
+        EXPECT_EQ(image->image.getWidth(), 600U);
       } else {
         EXPECT_TRUE(fs::exists(folder_ / "out_Images" / image->image.getExternalStorageFile()));
       }
