@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 #include <utility>
 
 namespace perception {
@@ -81,6 +82,11 @@ int parse(App& app, CLI::App& cli, int argc, const char* const* argv) {
   return -1;
 }
 
+bool isOfTheDisk(const std::error_code& code) {
+  return code == std::errc::no_space_on_device || code == std::errc::io_error ||
+         code == std::errc::read_only_file_system || code == std::errc::file_too_large;
+}
+
 ExitCode runGuarded(App& app) {
   try {
     app.run();
@@ -91,6 +97,12 @@ ExitCode runGuarded(App& app) {
   } catch (const Error& error) {
     printError(app, error.what());
     return error.code();
+  } catch (const std::system_error& error) {  // of fmt::print and std::filesystem
+    if (isOfTheDisk(error.code())) {
+      printError(app, error.what());
+      return ExitCode::kIoError;
+    }
+    printError(app, fmt::format("internal: {}", error.what()));
   } catch (const std::bad_alloc&) {
     printError(app, "internal: out of memory");
   } catch (const std::exception& error) {

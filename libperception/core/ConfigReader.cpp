@@ -35,11 +35,11 @@ std::string hint(std::string_view text) {
   return text.find("//") != std::string_view::npos ? " (comments start with ; or #)" : "";
 }
 
-std::string comment(const std::string& unit, const std::string& range, const char* doc) {
-  std::string text;
-  for (const std::string& part : {unit.empty() ? "" : "[" + unit + "]", range, std::string(doc)}) {
-    if (!part.empty()) text += (text.empty() ? "" : " ") + part;
-  }
+// "[m] 0.05 .. 5: what it is": unit, what is allowed, purpose.
+std::string comment(const std::string& unit, const std::string& allowed, const char* doc) {
+  std::string text = unit.empty() ? "" : "[" + unit + "]";
+  if (!allowed.empty()) text += (text.empty() ? "" : " ") + allowed + ":";
+  text += (text.empty() ? "" : " ") + std::string(doc);
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
@@ -133,7 +133,7 @@ class ConfigReader final : public ParamVisitor {
         reject(*entry, "true or false");
       }
     }
-    note(key, value ? "true" : "false", usual, comment("", "true | false:", doc));
+    note(key, value ? "true" : "false", usual, comment("", "true | false", doc));
   }
 
   void text(const char* key, std::string& value, const char* doc) override {
@@ -145,7 +145,7 @@ class ConfigReader final : public ParamVisitor {
   void path(const char* key, std::string& value, const char* doc) override {
     const std::string usual = value;
     if (const IniEntry* entry = take(key)) value = document_.resolved(entry->value, entry->place);
-    note(key, value, usual, comment("", "path:", doc));
+    note(key, value, usual, comment("", "path", doc));
   }
 
   void reals(const char* key, std::vector<double>& values, int count, Bounds allowed,
@@ -180,7 +180,7 @@ class ConfigReader final : public ParamVisitor {
         values.assign(parts.begin(), parts.end());
       }
     }
-    note(key, listText(values, sameWord), usual, comment("", "words:", doc));
+    note(key, listText(values, sameWord), usual, comment("", "words", doc));
   }
 
   void choice(const char* key, int& index, const std::vector<std::string>& names,
@@ -198,7 +198,7 @@ class ConfigReader final : public ParamVisitor {
       }
     }
     note(key, nameAt(names, index), usual,
-         comment("", fmt::format("{}:", fmt::join(names, " | ")), doc));
+         comment("", fmt::format("{}", fmt::join(names, " | ")), doc));
   }
 
   void table(const char* prefix, std::vector<std::pair<std::string, double>>& rows, Bounds allowed,

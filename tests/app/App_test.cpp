@@ -1,9 +1,12 @@
 #include "libperception/app/App.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <new>
 #include <stdexcept>
@@ -221,6 +224,21 @@ TEST(AppSignal, TheSecondOneKills) {
         runApp(app, 1, argv);
       },
       testing::KilledBySignal(SIGINT), "");
+}
+
+TEST(App, AFullDiskBehindStandardOutputIsAnIoError) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  for (const std::size_t bytes : {10u, 1'000'000u}) {  // seen at the end, seen while printing
+    EXPECT_EXIT(
+        {
+          SmallApp app;
+          app.body = [&](SmallApp&) { fmt::print("{}", std::string(bytes, 'x')); };
+          if (!std::freopen("/dev/full", "w", stdout)) std::exit(1);
+          const char* argv[] = {"small"};
+          std::exit(runApp(app, 1, argv));
+        },
+        testing::ExitedWithCode(74), "cannot (be written|write)");
+  }
 }
 
 TEST(Progress, IsSilentWhereNoTerminalIs) {

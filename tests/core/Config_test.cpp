@@ -136,17 +136,17 @@ TEST(EffectiveText, IsThisOne) {
 relative_paths = working-folder
 
 [a]
-gain = 0.5                                ; [m] 0.05 .. 5 single linkage; default 0.4
-opening_deg = 90                          ; [deg] 0 .. 360 of the view; default 15
-beams = 64                                ; 1 .. 128 of the lidar
+gain = 0.5                                ; [m] 0.05 .. 5: single linkage; default 0.4
+opening_deg = 90                          ; [deg] 0 .. 360: of the view; default 15
+beams = 64                                ; 1 .. 128: of the lidar
 seed = 0                                  ; of all random numbers
 active = true                             ; true | false: in use
 label = front                             ; its name
 ; model is not set                        ; path: weights
-corners = 0, 1.5                          ; [m] -10 .. 10 of the field
+corners = 0, 1.5                          ; [m] -10 .. 10: of the field
 names = a, b                              ; words: of the objects
 colour = green                            ; red | green | blue: of the box
-share.car = 0.1                           ; 0 .. 1 by name; default not set
+share.car = 0.1                           ; 0 .. 1: by name; default not set
 )");
 }
 
