@@ -9,19 +9,13 @@ namespace {
 constexpr double kStraight = 1e-6;  // [1/m] below it the arc is a line
 constexpr double kGap = 1;          // [m] of unknown ground that is taken for a gap between beams
 
-// Point of the ego frame at `s` along the arc.
-Vector3 placeAt(const Corridor& corridor, double s, double z) {
-  const double k = corridor.curvature;
-  if (std::abs(k) < kStraight) return {s, 0, z};
-  return {std::sin(k * s) / k, (1 - std::cos(k * s)) / k, z};
-}
-
 // A column counts as seen when a beam went through any of a few heights of it.
 bool isKnown(const Corridor& corridor, double s,
              const std::function<double(const Vector3&)>& log_odds_at) {
   constexpr double kHeights[] = {0.5, 0.9, 1.3, 1.7};  // [m] below and up to a roof's lidar
+  const Vector2 p = onArc(corridor, {s, 0});
   return std::any_of(std::begin(kHeights), std::end(kHeights), [&](double z) {
-    return log_odds_at(corridor.T_world_ego * placeAt(corridor, s, z)) != 0;
+    return log_odds_at(corridor.T_world_ego * Vector3(p.x(), p.y(), z)) != 0;
   });
 }
 
@@ -33,6 +27,13 @@ ArcPlace arcPlace(const Corridor& corridor, double x, double y) {
   const double radius = 1 / std::abs(corridor.curvature);
   const double to_centre = radius - side * y;
   return {radius * std::atan2(x, to_centre), side * (radius - std::hypot(x, to_centre))};
+}
+
+Vector2 onArc(const Corridor& corridor, const ArcPlace& place) {
+  const double k = corridor.curvature;
+  if (std::abs(k) < kStraight) return {place.s, place.d};
+  const double radius = 1 / k - place.d;
+  return {radius * std::sin(k * place.s), 1 / k - radius * std::cos(k * place.s)};
 }
 
 FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>& occupied,

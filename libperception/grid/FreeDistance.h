@@ -36,6 +36,8 @@ struct ArcPlace {
   double s = 0, d = 0;  ///< [m]
 };
 ArcPlace arcPlace(const Corridor& corridor, double x, double y);
+/// The other way round: x and y of the ego frame.
+Vector2 onArc(const Corridor& corridor, const ArcPlace& place);
 
 /// `log_odds_at`: of any place of the world, 0 = unknown.
 FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>& occupied,

@@ -30,6 +30,16 @@ TEST(ArcPlace, RightTurnIsTheMirrorImageOfALeftTurn) {
   EXPECT_NEAR(a.d, -b.d, 1e-12);
 }
 
+TEST(ArcPlace, OnArcIsItsInverse) {
+  for (const double k : {-0.1, 0.0, 0.04}) {
+    Corridor corridor;
+    corridor.curvature = k;
+    const Vector2 p = onArc(corridor, arcPlace(corridor, 9, 2.5));
+    EXPECT_NEAR(p.x(), 9, 1e-9);
+    EXPECT_NEAR(p.y(), 2.5, 1e-9);
+  }
+}
+
 TEST(ArcPlace, AlmostStraightAgreesWithStraight) {
   Corridor straight, bent;
   bent.curvature = 2e-6;

@@ -197,6 +197,7 @@ TEST_P(SafetyGridContract, WindowMovesWithTheVehicleAndForgetsWhatIsOutside) {
 TEST_P(SafetyGridContract, MemoryStaysFlatWhileTheVehicleDrives) {
   GridParams params;
   params.resolution = 0.5;
+  params.size = 30;
   const auto g = grid(params);
   const auto drive = [&](int begin, int end) {
     std::size_t most = 0;

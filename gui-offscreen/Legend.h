@@ -1,0 +1,10 @@
+#pragma once
+#include "gui-offscreen/Canvas.h"
+#include "gui-offscreen/SceneView.h"
+
+namespace perception {
+
+/// Explains every symbol that pictures of this view may hold. Draws into `at`, from the top.
+void drawLegend(Canvas& canvas, const SceneView& view, const Rect& at);
+
+}  // namespace perception

@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace perception {
+
+/// A colour picture in memory: rows from the top, three bytes a pixel.
+struct Picture {
+  int width = 0, height = 0;      ///< [px]
+  std::vector<std::uint8_t> rgb;  ///< red, green, blue
+
+  const std::uint8_t* at(int x, int y) const {
+    return &rgb[static_cast<std::size_t>(y * width + x) * 3];
+  }
+};
+
+/// Number of different colours; 1 = blank.
+std::size_t coloursOf(const Picture& picture);
+
+/// Writes a PNG. Throws OutputError naming the path.
+void writePng(const std::string& path, const Picture& picture);
+
+}  // namespace perception
