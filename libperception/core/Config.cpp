@@ -36,7 +36,7 @@ void appendKey(const ConfigKey& key, std::string& text) {
   }
   if (line.size() < kCommentColumn) line.resize(kCommentColumn, ' ');
   text += line + "  ; " + key.comment;
-  if (key.active && key.usual != key.value) {
+  if (key.usual != key.value) {
     text += "; default " + (key.usual.empty() ? std::string("not set") : key.usual);
   }
   text += '\n';

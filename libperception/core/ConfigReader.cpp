@@ -264,18 +264,41 @@ class ConfigReader final : public ParamVisitor {
 
   void note(const std::string& key, const std::string& value, const std::string& usual,
             const std::string& comment) {
-    const bool noted = std::any_of(section_.keys.begin(), section_.keys.end(),
-                                   [&](const ConfigKey& k) { return k.name == key; });
-    if (!noted) section_.keys.push_back({key, value, usual, comment, survivesWriting(value)});
+    const auto noted = std::find_if(section_.keys.begin(), section_.keys.end(),
+                                    [&](const ConfigKey& k) { return k.name == key; });
+    if (noted == section_.keys.end()) {
+      section_.keys.push_back({key, value, usual, comment, survivesWriting(value)});
+    } else if (noted->value != value && !isGiven(key)) {
+      addDefault(*noted, usual);
+    }
+  }
+
+  bool isGiven(const std::string& key) const { return given_ && given_->find(key); }
+
+  static void addDefault(ConfigKey& key, const std::string& usual) {
+    const std::string also = " or " + (usual.empty() ? "not set" : usual);
+    if (key.active) key.value.clear();
+    key.active = false;
+    if ((" or " + key.usual + " or ").find(also + " or ") == std::string::npos) key.usual += also;
   }
 
   void noteRows(const std::string& prefix, const Rows& rows, const Rows& usual, Bounds allowed,
                 const std::string& comment) {
-    if (rows.empty()) note(prefix + "NAME", "", "", comment);
+    const bool again = std::count(section_.prefixes.begin(), section_.prefixes.end(), prefix) > 1;
+    if (rows.empty() && !again) note(prefix + "NAME", "", "", comment);
+    const std::size_t before_all = section_.keys.size();
     for (const auto& [name, value] : rows) {
       const auto before = findRow(usual, name);
       note(prefix + name, isWithin(allowed, value) ? formatReal(value) : "",
            before == usual.end() ? "" : formatReal(before->second), comment);
+    }
+    if (!again) return;
+    // Rows that only one of several readers has by default: they stay its own.
+    for (std::size_t i = 0; i < section_.keys.size(); ++i) {
+      ConfigKey& key = section_.keys[i];
+      if (key.name.compare(0, prefix.size(), prefix) != 0 || isGiven(key.name)) continue;
+      const bool here = findRow(rows, key.name.substr(prefix.size())) != rows.end();
+      if (i >= before_all || (!here && key.active)) addDefault(key, "");
     }
   }
 

@@ -150,6 +150,35 @@ share.car = 0.1                           ; 0 .. 1: by name; default not set
 )");
 }
 
+TEST(EffectiveText, KeepsTheDifferentDefaultsOfTwoReaders) {
+  AllKinds other;
+  other.gain = 0.7;
+  other.opening = radians(20);
+  other.shares = {{"car", 0.5}, {"bus", 0.1}};
+  AllKinds third = other;
+  third.shares = {{"car", 0.5}, {"tram", 0.1}};
+  const auto read = [&](const std::string& text) {
+    Config config = Config::fromText(text);
+    EXPECT_EQ(config.read<AllKinds>("a").gain, AllKinds{}.gain);
+    const auto second = config.read("a", other);
+    EXPECT_EQ(second.gain, other.gain);
+    EXPECT_EQ(second.opening, other.opening);
+    EXPECT_EQ(second.beams, 7);
+    EXPECT_EQ(second.shares, other.shares);
+    EXPECT_EQ(config.read("a", third).shares, third.shares);
+    EXPECT_TRUE(config.read<AllKinds>("a").shares.empty());
+    EXPECT_EQ(config.read<AllKinds>("a").gain, AllKinds{}.gain);
+    EXPECT_EQ(faultsOf(config), "");
+    return config.effectiveText();
+  };
+  const std::string effective = read("[a]\nbeams = 7\n");
+  EXPECT_EQ(read(effective), effective);
+  EXPECT_NE(effective.find("\nbeams = 7 "), std::string::npos);
+  EXPECT_NE(effective.find("[m] 0.05 .. 5: single linkage; default 0.4 or 0.7\n"),
+            std::string::npos)
+      << effective;
+}
+
 TEST(EffectiveText, ReadsBackToTheBit) {
   // Values without a short decimal, and angles: degrees in the file, radians inside.
   for (int i = 0; i < 300; ++i) {
