@@ -45,8 +45,7 @@ class IniDocument {
   void set(const std::string& assignment);
 
   /// The program knows a section of that title: a --set that was taken for a dotted key of a
-  /// shorter title
-  /// ([sensor.A] class.car.detection) moves there.
+  /// shorter title ([sensor.A] class.car.detection) moves there.
   void claim(const std::string& section);
 
   const std::vector<IniSection>& sections() const { return sections_; }

@@ -230,6 +230,17 @@ TEST(ConfigSet, TheLongestSectionOfTheFileTakesTheKey) {
   EXPECT_EQ(faultsOf(config), "");
 }
 
+TEST(ConfigSet, ReachesASectionThatNoFileHasOnceItIsRead) {
+  Config config = Config::fromText("[s.A]\nshare.part.gain = 0.3\n", "t.ini");
+  config.set("s.A.part.gain=2");
+  config.set("s.A.share.part.gain=0.4");
+  const auto above = config.read<AllKinds>("s.A");
+  EXPECT_EQ(config.read<AllKinds>("s.A.part").gain, 2);
+  EXPECT_EQ(above.gain, AllKinds{}.gain);
+  EXPECT_EQ(above.shares, (std::vector<std::pair<std::string, double>>{{"part.gain", 0.4}}));
+  EXPECT_EQ(faultsOf(config), "");
+}
+
 TEST(ConfigSet, CannotMakeAnotherMemberOfAList) {
   Config config = Config::fromText("[class.car]\n", "t.ini");
   config.set("class.cra.gain=1");
