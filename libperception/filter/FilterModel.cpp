@@ -26,6 +26,8 @@ void FilterParams::visit(ParamVisitor& v) {
   v.real("base_walk", base_walk, {0, 10}, "m^2/s", "random walk of the base height");
   v.real("hidden_tolerance", hidden_tolerance, {0, 20}, "m",
          "how far behind the horizon a track still counts as visible");
+  v.real("merge_area", merge_area, {0, 100}, "m^2",
+         "footprints from this size on swallow tracks inside them; 0: never");
   v.real("max_distance", max_distance, {1, 1e4}, "m",
          "tracks farther from the vehicle are dropped");
 }

@@ -8,6 +8,7 @@
 #include "libperception/filter/Parallel.h"
 
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/Duplicates.h"
 #include "libperception/filter/LikelihoodTable.h"
 #include "libperception/filter/Prediction.h"
 #include "libperception/filter/Update.h"
@@ -163,10 +164,13 @@ StepResult step(const std::vector<Hypothesis>& hypotheses, const MeasurementScan
     updates.want(distinct.of_hypothesis[i], associations[i]);
   StepResult result;
   result.stats.updates = updates.make(predicted, table, scan, key.counter, model);
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    result.hypotheses.push_back(assemble(distinct.of_hypothesis[i], associations[i], updates));
-    result.log_weights.push_back(associations[i].log_weight);
-  }
+  result.hypotheses.resize(hypotheses.size());
+  result.log_weights.resize(hypotheses.size());
+  parallelFor(hypotheses.size(), [&](std::size_t i) {
+    result.hypotheses[i] = assemble(distinct.of_hypothesis[i], associations[i], updates);
+    mergeDuplicates(model, scan.state.stamp, result.hypotheses[i]);
+    result.log_weights[i] = associations[i].log_weight;
+  });
   result.stats.distinct_tracks = predicted.size();
   result.stats.measurements = scan.measurements.size();
   for (const auto& row : table.tracks) result.stats.pairs += row.pairs.size();
