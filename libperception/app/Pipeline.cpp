@@ -68,13 +68,9 @@ void RunParams::visit(ParamVisitor& v) {
          "step of the clock that starts anew (back) or is reported (forward)");
 }
 
-PipelineSetup PipelineSetup::read(Config& config, const std::string& sensors,
-                                  std::optional<std::uint64_t> seed, double rate) {
+PipelineSetup PipelineSetup::read(Config& config) {
   PipelineSetup s;
   s.run = config.read<RunParams>("run");
-  if (!sensors.empty()) s.run.sensors = sensors;
-  if (seed) s.run.seed = *seed;
-  if (rate > 0) s.run.output_rate = rate;
   s.model.classes = readClassTable(config);
   s.model.params = config.read<FilterParams>("filter");
   s.particles = config.read<ParticleFilterParams>("particle_filter");

@@ -55,10 +55,7 @@ struct PipelineSetup {
   std::vector<Sensor> sensors;  ///< in the order of the INI
 
   /// Reads every section; faults go to the configuration (throw them with Config::finish()).
-  /// `sensors`, when not empty, wins over [run] sensors, and `seed`, when given, over [run] seed;
-  /// `rate` > 0 over [run] output_rate.
-  static PipelineSetup read(Config& config, const std::string& sensors = "",
-                            std::optional<std::uint64_t> seed = std::nullopt, double rate = 0);
+  static PipelineSetup read(Config& config);
 };
 
 /// From observations to scenes: the one place where sensors, ribs, filter and scene meet. Feed a

@@ -108,11 +108,20 @@ std::string TrackApp::exportFileFor(const std::string& log) const {
       .string();
 }
 
+Config TrackApp::configWithOptions() const {
+  Config config = loadConfig();
+  // As settings of [run], so that the effective INI says what was run.
+  if (!sensors.empty()) config.set("run.sensors=" + sensors);
+  if (seed) config.set(fmt::format("run.seed={}", *seed));
+  if (rate > 0) config.set(fmt::format("run.output_rate={}", rate));
+  return config;
+}
+
 void TrackApp::run() {
   registerPerceptionClasses();
   {
-    Config config = loadConfig();
-    PipelineSetup::read(config, sensors, seed, rate);
+    Config config = configWithOptions();
+    PipelineSetup::read(config);
     if (configDone(config)) return;
   }
   if (inputs.empty()) throw Error(ExitCode::kUsage, "-i/--input: at least one rawlog is needed");
@@ -138,8 +147,8 @@ void TrackApp::run() {
 
 void TrackApp::trackLog(const std::string& log, const std::string& dir,
                         const std::string& export_file) {
-  Config config = loadConfig();
-  PipelineSetup setup = PipelineSetup::read(config, sensors, seed, rate);
+  Config config = configWithOptions();
+  PipelineSetup setup = PipelineSetup::read(config);
   config.finish();
   RawlogReader reader(log);
   OutputFolder folder(dir);

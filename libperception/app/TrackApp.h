@@ -33,6 +33,7 @@ class TrackApp : public App {
 
  private:
   void trackLog(const std::string& log, const std::string& dir, const std::string& export_file);
+  Config configWithOptions() const;
   std::string exportFileFor(const std::string& log) const;
 };
 

@@ -176,7 +176,7 @@ Sensing Sensing::read(Config& config, const std::string& section, const ClassTab
   for (const auto& c : classes.classes) {
     const std::string row_section = prefix + c.name;
     ClassSensing row = defaultSensing(c.name, params.modality, labels);
-    if (config.has(row_section)) row = config.read<ClassSensing>(row_section, row);
+    row = config.read<ClassSensing>(row_section, row);
     checkRow(config, row_section, row.labels, "label.", labels);
     rows.push_back(std::move(row));
   }
