@@ -35,7 +35,7 @@ int strokeOf(double thickness) {
 double fontScale(double size) { return size * kScale / kCapitals; }
 
 int fontStroke(double size, bool bold) {
-  return std::max(1, static_cast<int>(std::lround(size * kScale * (bold ? 0.17 : 0.11))));
+  return std::max(1, static_cast<int>(std::lround(size * kScale * (bold ? 0.15 : 0.1))));
 }
 
 }  // namespace

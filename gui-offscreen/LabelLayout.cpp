@@ -30,8 +30,8 @@ bool isFree(const Rect& place, const std::vector<Rect>& taken) {
 }
 
 std::optional<Rect> findPlace(const LabelWish& wish, const std::vector<Rect>& taken,
-                              const Rect& area, double reach) {
-  for (double distance = kNarrowest; distance <= reach; distance += kRing) {
+                              const Rect& area) {
+  for (double distance = kNarrowest; distance <= wish.reach; distance += kRing) {
     for (int i = 0; i < kDirections; ++i) {
       // Above first, then to both sides of it in turn.
       const int turn = (i + 1) / 2 * (i % 2 ? 1 : -1);
@@ -45,8 +45,7 @@ std::optional<Rect> findPlace(const LabelWish& wish, const std::vector<Rect>& ta
 }  // namespace
 
 std::vector<std::optional<Rect>> placeLabels(const std::vector<LabelWish>& wishes,
-                                             const std::vector<Rect>& taken, const Rect& area,
-                                             double reach) {
+                                             const std::vector<Rect>& taken, const Rect& area) {
   std::vector<std::size_t> order(wishes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -55,8 +54,8 @@ std::vector<std::optional<Rect>> placeLabels(const std::vector<LabelWish>& wishe
   for (const LabelWish& wish : wishes) labels_and_objects.push_back(wish.object);
   std::vector<std::optional<Rect>> places(wishes.size());
   for (const std::size_t i : order) {
-    places[i] = findPlace(wishes[i], labels_and_objects, area, reach);
-    if (!places[i]) places[i] = findPlace(wishes[i], labels, area, reach);
+    places[i] = findPlace(wishes[i], labels_and_objects, area);
+    if (!places[i]) places[i] = findPlace(wishes[i], labels, area);
     if (!places[i]) continue;
     labels.push_back(*places[i]);
     labels_and_objects.push_back(*places[i]);

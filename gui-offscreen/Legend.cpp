@@ -121,13 +121,14 @@ void drawLegend(Canvas& canvas, const SceneView& view, const Rect& at) {
     std::replace(name.begin(), name.end(), '_', ' ');
     legend.boxRow(colour, 0.45, false, name);
   }
-  const Colour any = kMutedInk;
+  const Colour any = colourOfClass(view.class_names.empty() ? "" : view.class_names[0], 0);
   legend.boxRow(any, 0.45, false, fmt::format("existence >= {:g}", kSureExistence));
   legend.boxRow(any, 0.12, true, "less certain to exist");
   legend.arrowRow("velocity: way of 1 s");
   legend.lineRow(kInk, "path of the last 2 s");
-  legend.text("#id class P(class) speed");
-  legend.more("'?' = P(class) < 0.95");
+  legend.text("id class P(class), speed");
+  legend.more("'?': P(class) < 0.95");
+  legend.more("static-other: id alone");
   if (view.has_truth) {
     legend.head("Truth");
     legend.truthRow("annotated object");

@@ -10,12 +10,13 @@
 namespace perception {
 namespace {
 
-constexpr double kAxisStep = 10;    // [m]
-constexpr double kLabelSize = 8.5;  // [px] height of capitals
-constexpr double kSmallSize = 7.5;  // [px]
-constexpr double kArrowTime = 1;    // [s] the speed arrow shows the way of so long
-constexpr double kStanding = 0.5;   // [m/s] below it there is no arrow
-constexpr double kDash = 4;         // [px]
+constexpr double kReach = 90, kMutedReach = 4;  // [px] from an object to its label
+constexpr double kAxisStep = 10;                // [m]
+constexpr double kLabelSize = 8.5;              // [px] height of capitals
+constexpr double kSmallSize = 7.5;              // [px]
+constexpr double kArrowTime = 1;                // [s] the speed arrow shows the way of so long
+constexpr double kStanding = 0.5;               // [m/s] below it there is no arrow
+constexpr double kDash = 4;                     // [px]
 
 /// Draws what is given in the ego frame.
 class Overlay {
@@ -33,9 +34,9 @@ class Overlay {
     drawAxes();
     drawFreeDistance();
     drawVehicle();
-    for (const TruthObject& object : view_.truth) drawTruth(object);
     for (const SceneObject& object : view_.scene.objects) drawTrail(object);
     for (const SceneObject& object : view_.scene.objects) drawOutline(object);
+    for (const TruthObject& object : view_.truth) drawTruth(object);
     for (const SceneObject& object : view_.scene.objects) drawArrow(object);
     const int left_out = drawLabels();
     canvas_.unclip();
@@ -85,7 +86,8 @@ class Overlay {
   void drawTruth(const TruthObject& o) {
     const auto corners =
         boxCorners(T_ego_world_ * o.position, o.yaw - ego_yaw_, o.length, o.width, o.height);
-    box(corners, kInk, 1, false);
+    box(corners, kPaper, 3, false);  // a rim, so that it stands out on outlines, too
+    box(corners, kInk, 1.2, false);
   }
 
   void drawTrail(const SceneObject& object) {
@@ -156,7 +158,7 @@ void Overlay::drawAxes() {
   drawScale();
   if (camera_.kind == ViewKind::kDriver) {
     for (double x = kAxisStep; x <= 6 * kAxisStep; x += kAxisStep) {
-      axisText({x, 0, 0}, fmt::format("{:.0f} m", x));
+      axisText({x, -3, 0}, fmt::format("{:.0f} m", x));
     }
     return;
   }
@@ -224,16 +226,16 @@ void Overlay::drawVehicle() {
 }
 
 std::string Overlay::labelOf(const SceneObject& object) const {
-  const std::string& name = view_.className(object);
+  std::string name = view_.className(object);
+  if (isMuted(name)) return fmt::format("{}", object.id);
   const auto c = static_cast<std::size_t>(object.class_id);
   const double p = c < object.class_probability.size() ? object.class_probability[c] : 0;
-  std::string shown = name;
-  std::replace(shown.begin(), shown.end(), '_', ' ');
-  const std::string text =
-      fmt::format("#{} {}{} {:.2f}", object.id, shown, object.classified ? "" : "?", p);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  std::string text =
+      fmt::format("{} {}{} {:.2f}", object.id, name, object.classified ? "" : "?", p);
   const double speed = object.velocity.norm();
-  return isMuted(name) || speed < kStanding ? text
-                                            : fmt::format("{} {:.0f} km/h", text, speed * 3.6);
+  if (speed >= kStanding) text += fmt::format(", {:.0f} km/h", speed * 3.6);
+  return text;
 }
 
 // What the object's box covers of the picture; empty when it is out of sight.
@@ -268,7 +270,8 @@ int Overlay::drawLabels() {
     labels.push_back({&object, labelOf(object), muted ? kSmallSize - 0.5 : kLabelSize});
     const Label& label = labels.back();
     wishes.push_back({*frame, Canvas::textWidth(label.text, label.size, !muted) + 6, label.size + 6,
-                      (muted ? 100000 : 0) + static_cast<int>(distance * 10)});
+                      (muted ? 100000 : 0) + static_cast<int>(distance * 10),
+                      muted ? kMutedReach : kReach});
   }
   const auto places = placeLabels(wishes, taken_, at_);
   int left_out = 0;

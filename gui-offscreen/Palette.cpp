@@ -16,7 +16,7 @@ constexpr ClassColour kByName[] = {{"pedestrian", {213, 94, 0}},
                                    {"cyclist", {0, 158, 115}},
                                    {"car", {0, 114, 178}},
                                    {"bus", {204, 121, 167}},
-                                   {"static_other", {115, 115, 115}}};
+                                   {"static-other", {115, 115, 115}}};
 constexpr std::array<Colour, 3> kOthers = {{{230, 159, 0}, {86, 180, 233}, {0, 0, 0}}};
 
 // Five places of matplotlib's viridis, without its yellow end, which vanishes on white.
@@ -36,7 +36,7 @@ Colour colourOfClass(const std::string& name, int place) {
   return kOthers[static_cast<std::size_t>(std::max(0, place)) % kOthers.size()];
 }
 
-bool isMuted(const std::string& class_name) { return class_name == "static_other"; }
+bool isMuted(const std::string& class_name) { return class_name == "static-other"; }
 
 Colour colourOfHeight(double height) {
   const double share = std::clamp((height - kHeightLow) / (kHeightHigh - kHeightLow), 0.0, 1.0);

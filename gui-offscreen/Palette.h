@@ -24,7 +24,7 @@ constexpr Colour kEgo{60, 60, 60};
 
 /// Colour of a class; classes that are not known by name share the rest of the palette by place.
 Colour colourOfClass(const std::string& name, int place);
-/// Classes that are drawn quietly: objects, but nobody waits for them (static_other).
+/// Classes that are drawn quietly: objects, but nobody waits for them (static-other).
 bool isMuted(const std::string& class_name);
 
 /// Colour of a lidar return by its height above the ground [m].

@@ -101,9 +101,10 @@ void addQuad(mrpt::opengl::CSetOfTriangles& triangles, const std::array<Vector3,
 void addOccupied(mrpt::opengl::COpenGLScene& scene, const SceneView& view,
                  const Pose3& T_ego_world) {
   constexpr double kLevel = 0.02;  // [m] above the grid's lines
+  constexpr double kRim = 1.5;     // of a cell's edge: returns would hide the cell below them
   auto triangles = mrpt::opengl::CSetOfTriangles::Create();
   for (const Column& column : columnsOf(view.occupied)) {
-    const double h = column.size / 2;
+    const double h = kRim * column.size / 2;
     std::array<Vector3, 4> square = {
         Vector3(column.x - h, column.y - h, 0), Vector3(column.x + h, column.y - h, 0),
         Vector3(column.x + h, column.y + h, 0), Vector3(column.x - h, column.y + h, 0)};

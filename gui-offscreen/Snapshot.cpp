@@ -95,39 +95,4 @@ Picture Snapshot::tile(const SceneView& view) {
   return canvas.picture();
 }
 
-Picture Snapshot::contactSheet(const std::vector<SceneView>& views) {
-  std::vector<Picture> tiles;
-  int left_out = 0;
-  for (const SceneView& view : views) {
-    tiles.push_back(tile(view));
-    left_out += labels_left_out_;
-  }
-  const Picture sheet = contactSheet(tiles, views.empty() ? SceneView{} : views.back());
-  labels_left_out_ = left_out;
-  return sheet;
-}
-
-Picture Snapshot::contactSheet(const std::vector<Picture>& tiles, const SceneView& last) {
-  const auto n = static_cast<double>(std::max<std::size_t>(1, tiles.size()));
-  const int tile_width = tiles.empty() ? map_width_ : tiles[0].width;
-  const int tile_height = tiles.empty() ? map_height_ : tiles[0].height;
-  const double per_row = params_.views.size() > 1 ? std::sqrt(n / 2) : std::sqrt(n);
-  const int columns = std::max(1, static_cast<int>(std::ceil(per_row - 1e-9)));
-  const int rows = static_cast<int>(std::ceil(n / columns));
-  constexpr int kLegendHeight = 620;  // [px] that a full legend takes
-  Canvas canvas(columns * (tile_width + kMargin) + kLegend + 2 * kMargin,
-                kTitle + std::max(kLegendHeight, rows * (tile_height + kMargin)));
-  for (std::size_t i = 0; i < tiles.size(); ++i) {
-    const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-    canvas.paste(tiles[i], {static_cast<double>(kMargin + column * (tile_width + kMargin)),
-                            static_cast<double>(kTitle + row * (tile_height + kMargin)),
-                            static_cast<double>(tile_width), static_cast<double>(tile_height)});
-  }
-  canvas.text({kMargin, (kTitle + kTitleSize) / 2}, last.run_name, kTitleSize, kInk, true);
-  drawLegend(canvas, last,
-             {static_cast<double>(columns * (tile_width + kMargin) + kMargin), kTitle, kLegend,
-              static_cast<double>(kLegendHeight)});
-  return canvas.picture();
-}
-
 }  // namespace perception

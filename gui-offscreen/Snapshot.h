@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "gui-offscreen/Canvas.h"
 #include "gui-offscreen/Renderer.h"
 
 namespace perception {
@@ -20,17 +21,21 @@ class Snapshot {
   explicit Snapshot(const SnapshotParams& params);
 
   Picture picture(const SceneView& view);
-  /// Several instants on one sheet, in rows, with one legend; each tile has its time and frame.
-  Picture contactSheet(const std::vector<SceneView>& views);
-  /// The tile of one instant, and the sheet of tiles: for many instants, without keeping them.
+  /// The same without title and legend, smaller, with time and frame above: for a contact sheet.
   Picture tile(const SceneView& view);
-  Picture contactSheet(const std::vector<Picture>& tiles, const SceneView& last);
 
+  /// The solid things alone, at the framebuffer's size.
+  Picture render(const SceneView& view, const ViewCamera& camera) {
+    return renderer_.render(view, camera);
+  }
+
+  int viewWidth() const { return map_width_; }    ///< [px] of one view on a picture
+  int viewHeight() const { return map_height_; }  ///< [px]
   /// Labels that found no room on the last picture.
   int labelsLeftOut() const { return labels_left_out_; }
 
  private:
-  void drawView(class Canvas& canvas, const SceneView& view, ViewKind kind, const struct Rect& at);
+  void drawView(Canvas& canvas, const SceneView& view, ViewKind kind, const Rect& at);
 
   SnapshotParams params_;
   int map_width_, map_height_;  ///< [px] of one view

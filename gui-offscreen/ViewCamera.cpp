@@ -8,8 +8,8 @@ namespace {
 constexpr double kTopHeight = 1000;  // [m] of the top view's pinhole
 constexpr double kTopDepth = 60;     // [m] above and below the ground that it shows
 constexpr double kBehind = 0.4;      // of the range that the top view shows behind the vehicle
-constexpr double kDriverBack = 9, kDriverUp = 5.5;  // [m] from the ego origin
-constexpr double kDriverPitch = radians(15);        // down
+constexpr double kDriverBack = 12, kDriverUp = 8;   // [m] from the ego origin
+constexpr double kDriverPitch = radians(20);        // down
 constexpr double kDriverFieldOfView = radians(72);  // horizontal
 
 Vector2 pixelOf(const ViewCamera& camera, const Vector3& optical) {

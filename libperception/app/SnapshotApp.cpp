@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "gui-offscreen/ContactSheet.h"
 #include "libperception/app/Pipeline.h"
 #include "libperception/app/SnapshotLidar.h"
 #include "libperception/scene/RunRecord.h"
@@ -225,7 +226,13 @@ void SnapshotApp::run() {
       lidar->advanceTo(shown.scene.stamp);
       lidar->fill(shown);
     }
-    if (contact == 0) write(fileFor(shown), snapshot.picture(shown));
+    if (contact == 0) {
+      write(fileFor(shown), snapshot.picture(shown));
+      if (snapshot.labelsLeftOut() > 0) {
+        say(1,
+            fmt::format("t = {:.2f} s: no room for {} labels", shown.t, snapshot.labelsLeftOut()));
+      }
+    }
     if (std::binary_search(on_sheet.begin(), on_sheet.end(), chosen[i])) {
       tiles.push_back(snapshot.tile(shown));
     }
@@ -233,7 +240,7 @@ void SnapshotApp::run() {
   }
   if (!tiles.empty()) {
     const std::string path = every > 0 ? (fs::path(output) / "contact.png").string() : output;
-    write(path, snapshot.contactSheet(tiles, shown));
+    write(path, contactSheet(tiles, shown));
   }
   if (!lidar) return;
   const auto end = lidar->reader().end();

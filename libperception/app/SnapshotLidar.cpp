@@ -17,7 +17,7 @@ constexpr double kPoseGap =
     1.5;  // [s] between scenes over which the vehicle's place is interpolated
 constexpr double kLastScan = 0.5;   // [s] after which returns are too old to be drawn
 constexpr double kMirrored = -0.3;  // [m] lower returns are mirror images in a wet road (SPEC 8.1)
-constexpr double kSteers = 1;       // [m/s] below it yaw rate and speed tell no curvature
+constexpr double kSteers = 2;       // [m/s] below it yaw rate and speed tell no curvature
 constexpr double kSharpest = 0.2;   // [1/m] of a car's steering
 
 // The vehicle on the ground plane: z = 0 is the ground.

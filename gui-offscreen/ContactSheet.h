@@ -1,0 +1,13 @@
+#pragma once
+#include <vector>
+
+#include "gui-offscreen/Picture.h"
+#include "gui-offscreen/SceneView.h"
+
+namespace perception {
+
+/// Tiles of Snapshot::tile() on one sheet, in rows from the upper left, about as many rows as
+/// columns of views, with one title and one legend: those of `view`. Tiles have the same size.
+Picture contactSheet(const std::vector<Picture>& tiles, const SceneView& view);
+
+}  // namespace perception

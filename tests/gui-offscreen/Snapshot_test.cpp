@@ -1,0 +1,214 @@
+#include "gui-offscreen/Snapshot.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "gui-offscreen/ContactSheet.h"
+#include "libperception/core/Error.h"
+#include "tests/gui-offscreen/ViewFixture.h"
+
+namespace perception {
+namespace {
+
+using test::emptyView;
+using test::objectAt;
+using test::snapshot;
+
+/// Share of the picture's pixels that differ.
+double difference(const Picture& a, const Picture& b) {
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); i += 3) {
+    different +=
+        a.rgb[i] != b.rgb[i] || a.rgb[i + 1] != b.rgb[i + 1] || a.rgb[i + 2] != b.rgb[i + 2];
+  }
+  return static_cast<double>(different) / static_cast<double>(a.width * a.height);
+}
+
+/// Middle of the pixels that are clearly red [px].
+Vector2 redMiddle(const Picture& picture, std::size_t& count) {
+  Vector2 sum = Vector2::Zero();
+  count = 0;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const std::uint8_t* p = picture.at(x, y);
+      if (p[0] < p[1] + 35 || p[0] < p[2] + 60) continue;
+      sum += Vector2(x + 0.5, y + 0.5);
+      ++count;
+    }
+  }
+  return count ? Vector2(sum / static_cast<double>(count)) : sum;
+}
+
+TEST(ViewCamera, TopViewShowsForwardUpAndLeftLeft) {
+  const ViewCamera camera = ViewCamera::top(40, 1000, 700);
+  const Vector2 ego = *camera.project({0, 0, 0}), ahead = *camera.project({40, 0, 0});
+  const Vector2 left = *camera.project({0, 10, 0});
+  EXPECT_NEAR(ego.x(), 500, 1e-9);
+  EXPECT_NEAR(ahead.y(), 0, 1e-6);
+  EXPECT_NEAR(ego.y() - ahead.y(), 40 * camera.scaleAt({0, 0, 0}), 1e-6);
+  EXPECT_NEAR(ego.x() - left.x(), 10 * camera.scaleAt({0, 0, 0}), 1e-6);
+  EXPECT_NEAR(left.y(), ego.y(), 1e-9);
+}
+
+TEST(ViewCamera, DriverSeesLeftOnTheLeftAndNothingBehind) {
+  const ViewCamera camera = ViewCamera::driver(40, 1000, 700);
+  const Vector2 ahead = *camera.project({20, 0, 0}), left = *camera.project({20, 5, 0});
+  EXPECT_NEAR(ahead.x(), 500, 1e-9);
+  EXPECT_LT(left.x(), ahead.x());
+  EXPECT_LT(camera.project({40, 0, 0})->y(), ahead.y());
+  EXPECT_FALSE(camera.project({-30, 0, 0}));
+}
+
+TEST(ViewCamera, LinesAreCutAtTheNearPlane) {
+  const ViewCamera camera = ViewCamera::driver(40, 1000, 700);
+  const auto line = camera.project(Vector3(-50, 0, 0), Vector3(20, 0, 0));
+  ASSERT_TRUE(line);
+  EXPECT_TRUE(line->first.allFinite());
+  EXPECT_FALSE(camera.project(Vector3(-50, 0, 0), Vector3(-40, 0, 0)));
+}
+
+/// The rendered place of a return against the projected one: text and lines stand where OpenGL
+/// draws. One view after the other with the same framebuffer.
+TEST(Renderer, DrawsAtThePlaceThatTheCameraProjects) {
+  const int width = snapshot().viewWidth(), height = snapshot().viewHeight();
+  for (const ViewKind kind : {ViewKind::kTop, ViewKind::kDriver}) {
+    for (const Vector3& place : {Vector3(25, 12, 0.5), Vector3(8, -4, 1.5)}) {  // ego frame
+      SceneView view = emptyView();
+      SceneObject marker = objectAt(1, 0, 0, 0);  // a pedestrian is red
+      marker.position = view.scene.ego.T_world_ego * place;
+      marker.length = marker.width = marker.height = 0.5;
+      marker.existence = 1;
+      view.scene.objects = {marker};
+      const ViewCamera camera = kind == ViewKind::kTop ? ViewCamera::top(40, width, height)
+                                                       : ViewCamera::driver(40, width, height);
+      std::size_t count = 0;
+      const Picture picture = snapshot().render(view, camera);
+      const double scale = static_cast<double>(picture.width) / camera.width;
+      const Vector2 seen = redMiddle(picture, count) / scale;
+      ASSERT_GT(count, 10U);
+      const Vector2 expected = *camera.project(place + Vector3(0, 0, 0.25));
+      EXPECT_NEAR(seen.x(), expected.x(), 1);
+      EXPECT_NEAR(seen.y(), expected.y(), 1);
+    }
+  }
+}
+
+TEST(Snapshot, IsNotBlankAndHasTheStatedSize) {
+  SceneView view = emptyView();
+  view.scene.objects = {objectAt(1, 1, 100, 70), objectAt(2, 0, 95, 60)};
+  const Picture picture = snapshot().picture(view);
+  EXPECT_EQ(picture.height, 720);
+  EXPECT_GT(picture.width, 2 * 1000);
+  EXPECT_EQ(picture.rgb.size(), static_cast<std::size_t>(picture.width * picture.height) * 3);
+  EXPECT_GT(coloursOf(picture), 100U);
+  EXPECT_EQ(snapshot().labelsLeftOut(), 0);
+}
+
+TEST(Snapshot, EverySymbolChangesThePicture) {
+  SceneView view = emptyView();
+  view.scene.objects = {objectAt(1, 1, 100, 70)};
+  Picture before = snapshot().picture(view);
+  const auto changes = [&](const char* what) {
+    Picture now = snapshot().picture(view);
+    EXPECT_GT(difference(before, now), 1e-5) << what;
+    before = std::move(now);
+  };
+  view.scene.objects[0].velocity = Vector2(0, 8);
+  changes("speed arrow");
+  view.trails[1] = {Vector3(100, 60, 0), Vector3(100, 70, 0)};
+  changes("trail");
+  view.scene.objects[0].existence = 0.6;
+  changes("existence");
+  view.scene.objects[0].classified = true;
+  changes("label");
+  for (int i = 0; i < 200; ++i) view.points.push_back({{95, 60 + 0.05 * i, 1}, 1.0F});
+  changes("returns");
+  view.occupied = {{{104, 65, 1}, Vector3::Constant(0.2), 3}};
+  changes("occupied cell");
+  view.corridor = Corridor{};
+  view.free = {20, true, 15};
+  changes("free lane");
+  TruthObject truth;
+  truth.position = Vector3(101, 70, 0);
+  truth.length = 4;
+  truth.width = 2;
+  truth.height = 1.5;
+  view.truth = {truth};
+  changes("truth");
+}
+
+TEST(Snapshot, SameViewGivesTheSameBytes) {
+  SceneView view = emptyView();
+  view.scene.objects = {objectAt(1, 1, 100, 70), objectAt(2, 0, 95, 60)};
+  const Picture first = snapshot().picture(view);
+  snapshot().tile(emptyView());
+  EXPECT_EQ(first.rgb, snapshot().picture(view).rgb);
+}
+
+TEST(Snapshot, ObjectsAtAbsurdPlacesDoNoHarm) {
+  SceneView view = emptyView();
+  view.scene.objects = {objectAt(1, 1, 1e7, -1e7), objectAt(2, 0, 100, 40),
+                        objectAt(3, 1, 100, 50)};
+  view.scene.objects[1].velocity = Vector2(1e4, 0);
+  EXPECT_GT(coloursOf(snapshot().picture(view)), 100U);
+}
+
+TEST(ContactSheet, HoldsEveryTile) {
+  std::vector<Picture> tiles;
+  for (int i = 0; i < 5; ++i) {
+    SceneView view = emptyView();
+    view.t = i;
+    tiles.push_back(snapshot().tile(view));
+  }
+  const Picture sheet = contactSheet(tiles, emptyView());
+  std::size_t area = 0;
+  for (const Picture& tile : tiles) area += tile.rgb.size();
+  EXPECT_GT(sheet.rgb.size(), area);
+  EXPECT_GT(coloursOf(sheet), 20U);
+  EXPECT_GT(coloursOf(contactSheet({}, emptyView())), 1U) << "a legend alone";
+}
+
+TEST(Trails, HoldTheLastSecondsOfTheSceneShown) {
+  std::vector<Scene> scenes(50);
+  for (int i = 0; i < 50; ++i) {
+    scenes[static_cast<std::size_t>(i)].stamp = Stamp::fromSeconds(1000 + 0.1 * i);
+    if (i >= 25) scenes[static_cast<std::size_t>(i)].objects = {objectAt(4, 1, i, 0)};
+  }
+  EXPECT_EQ(trailsUpTo(scenes, 30, 2).at(4).size(), 6U) << "scenes 25 to 30";
+  const auto trail = trailsUpTo(scenes, 49, 2).at(4);
+  EXPECT_EQ(trail.size(), 21U);
+  EXPECT_DOUBLE_EQ(trail.back().x(), 49);
+  EXPECT_TRUE(trailsUpTo(scenes, 10, 2).empty());
+}
+
+TEST(Picture, UnwritablePathIsAnOutputError) {
+  EXPECT_THROW(writePng("/nonexistent/folder/x.png", snapshot().tile(emptyView())), OutputError);
+}
+
+TEST(Renderer, ASecondOneIsRefused) {
+  snapshot();
+  EXPECT_THROW(Renderer(64, 64), std::logic_error);
+}
+
+/// In a process of its own, since EGL is loaded once.
+TEST(RendererDeathTest, WithoutOpenGlSaysWhichPackageIsMissing) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        setenv("LIBGL_DRIVERS_PATH", "/nonexistent", 1);
+        setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1);
+        try {
+          Renderer renderer(64, 64);
+        } catch (const Error& error) {
+          std::fputs(error.what(), stderr);
+          std::exit(static_cast<int>(error.code()));
+        }
+        std::exit(0);
+      },
+      testing::ExitedWithCode(69), "libgl1-mesa-dri");
+}
+
+}  // namespace
+}  // namespace perception
