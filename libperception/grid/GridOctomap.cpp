@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "libperception/grid/ScanEvidence.h"
 
@@ -16,7 +15,10 @@ namespace {
 // seconds.)
 class StampedNode : public octomap::OcTreeNode {
  public:
-  std::int32_t ms = 0;  // since the grid's first scan
+  std::uint32_t ms : 31;     // since the grid's first scan
+  std::uint32_t listed : 1;  // among GridOctomap::listed_
+
+  StampedNode() : ms(0), listed(0) {}
 
   // OctoMap's deleteNode() leaves the array of deleted children behind and asserts on it later.
   void freeChildren() {
@@ -33,6 +35,8 @@ class StampedTree : public octomap::OccupancyOcTreeBase<StampedNode> {
 };
 
 constexpr octomap::key_type kMiddle = 32768;  // key of the tree's centre: 16 bits per axis
+
+constexpr int kDepth = 16;  // levels of the tree below its root
 
 // Walks the tree along neighbouring keys: only the levels that differ are descended again, since
 // search() from the root for each cell would take the time of several scans.
@@ -66,16 +70,16 @@ class TreeCursor {
            (key[2] ^ key_[2]) >> shift == 0;
   }
 
-  static constexpr int kDepth = 16;
   StampedTree& tree_;
   StampedNode* path_[kDepth + 1] = {};
   int depth_ = 0;  // down to which path_ holds
   octomap::OcTreeKey key_;
 };
 
-constexpr double kForgotten = 0.1;       // [log-odds] of a cell that is as good as unknown
-constexpr std::int64_t kSweepMs = 1000;  // between removals of what is forgotten or outside
-constexpr std::int64_t kReach = 30000;   // cells from the centre at which the tree is moved
+constexpr std::uint32_t kLatestMs = 0x7fffffff;  // that a node can hold: 24 days
+constexpr double kForgotten = 0.1;               // [log-odds] of a cell that is as good as unknown
+constexpr std::int64_t kSweepMs = 1000;          // between removals of what is forgotten or outside
+constexpr std::int64_t kReach = 30000;           // cells from the centre at which the tree is moved
 
 class GridOctomap final : public SafetyGrid {
  public:
@@ -90,8 +94,8 @@ class GridOctomap final : public SafetyGrid {
     for (const CellEvidence& cell : evidence_.collect(scan, stats)) {
       // Beams make free cells only in the slab itself, where they bear on driving.
       const bool create = cell.weight > 0 || cell.relevant;
-      if (StampedNode* node = cursor.at(keyOf(cell.cell), create))
-        add(*node, cell.logOdds(params()));
+      const octomap::OcTreeKey key = keyOf(cell.cell);
+      if (StampedNode* node = cursor.at(key, create)) add(*node, key, cell.logOdds(params()));
     }
     if (now_ms_ - swept_ms_ >= kSweepMs) sweep();
     return stats;
@@ -105,13 +109,14 @@ class GridOctomap final : public SafetyGrid {
     return node ? decayed(*node) : 0;
   }
 
+  // From the list of candidates: the tree holds some hundred thousand free cells.
   std::vector<GridCell> occupiedCells() const override {
     std::vector<GridCell> cells;
-    for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf) {
-      const double log_odds = decayed(*leaf);
-      if (log_odds <= params().occupied) continue;
-      const Vector3 centre = centreOf(leaf.getKey());
-      if (inWindow(centre)) {
+    for (const octomap::OcTreeKey& key : listed_) {
+      const StampedNode* node = tree_->search(key);
+      const double log_odds = node ? decayed(*node) : 0;
+      const Vector3 centre = centreOf(key);
+      if (log_odds > params().occupied && inWindow(centre)) {
         cells.push_back({centre, Vector3::Constant(params().resolution), log_odds});
       }
     }
@@ -119,7 +124,8 @@ class GridOctomap final : public SafetyGrid {
   }
 
   std::size_t memoryBytes() const override {
-    return tree_->memoryUsage() + evidence_.memoryBytes();
+    return tree_->memoryUsage() + evidence_.memoryBytes() +
+           listed_.capacity() * sizeof(octomap::OcTreeKey);
   }
 
  private:
@@ -141,9 +147,8 @@ class GridOctomap final : public SafetyGrid {
     stats.late = ms < now_ms_;
     now_ms_ = std::max(now_ms_, ms);
     centre_ = centre;
-    if (now_ms_ > std::numeric_limits<std::int32_t>::max() ||
-        std::max({std::abs(cell.x - anchor_.x), std::abs(cell.y - anchor_.y),
-                  std::abs(cell.z - anchor_.z)}) > kReach) {
+    if (now_ms_ > kLatestMs || std::max({std::abs(cell.x - anchor_.x), std::abs(cell.y - anchor_.y),
+                                         std::abs(cell.z - anchor_.z)}) > kReach) {
       restartAt(cell, scan.stamp);
     }
   }
@@ -155,6 +160,7 @@ class GridOctomap final : public SafetyGrid {
     for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf) {
       kept.push_back({centreOf(leaf.getKey()), Vector3::Zero(), decayed(*leaf)});
     }
+    listed_.clear();
     tree_ = newTree();
     anchor_ = cell;
     first_ = stamp;
@@ -162,48 +168,53 @@ class GridOctomap final : public SafetyGrid {
     TreeCursor cursor(*tree_);
     for (const GridCell& old : kept) {
       if (!inWindow(old.centre)) continue;
-      add(*cursor.at(keyOf({evidence_.indexOf(old.centre.x()), evidence_.indexOf(old.centre.y()),
-                            evidence_.indexOf(old.centre.z())}),
-                     true),
-          old.log_odds);
+      const octomap::OcTreeKey key =
+          keyOf({evidence_.indexOf(old.centre.x()), evidence_.indexOf(old.centre.y()),
+                 evidence_.indexOf(old.centre.z())});
+      add(*cursor.at(key, true), key, old.log_odds);
     }
   }
 
-  void add(StampedNode& node, double log_odds) const {
+  void add(StampedNode& node, const octomap::OcTreeKey& key, double log_odds) {
     const double after = std::clamp(decayed(node) + log_odds, params().low, params().high);
     node.setLogOdds(static_cast<float>(after));
-    node.ms = static_cast<std::int32_t>(now_ms_);
+    node.ms = static_cast<std::uint32_t>(now_ms_) & kLatestMs;
+    list(node, key);
+  }
+
+  // Decay and misses only take a cell down: what is listed holds all occupied cells.
+  void list(StampedNode& node, const octomap::OcTreeKey& key) {
+    if (node.listed || node.getLogOdds() <= params().occupied) return;
+    node.listed = 1;
+    listed_.push_back(key);
   }
 
   double decayed(const StampedNode& node) const {
-    const double age = static_cast<double>(now_ms_ - node.ms) / 1000;
+    const double age = static_cast<double>(now_ms_ - static_cast<std::int64_t>(node.ms)) / 1000;
     return static_cast<double>(node.getLogOdds()) * std::exp(-age / params().tau);
   }
 
   // Bounds memory: the tree itself has no window and never forgets.
   void sweep() {
     swept_ms_ = now_ms_;
+    listed_.clear();
     if (StampedNode* root = tree_->getRoot(); root && sweep(*root, {0, 0, 0}, 0)) tree_->clear();
   }
 
   // Removes what is forgotten or outside below a node; `corner`: its lowest key. True: nothing is
   // left.
   bool sweep(StampedNode& node, const std::array<int, 3>& corner, int depth) {
-    constexpr int kDepth = 16;
     if (depth == kDepth) {
-      const Vector3 centre = centreOf({static_cast<octomap::key_type>(corner[0]),
-                                       static_cast<octomap::key_type>(corner[1]),
-                                       static_cast<octomap::key_type>(corner[2])});
-      return std::abs(decayed(node)) < kForgotten || !inWindow(centre);
+      const octomap::OcTreeKey key = keyOfCorner(corner);
+      node.listed = 0;
+      if (std::abs(decayed(node)) < kForgotten || !inWindow(centreOf(key))) return true;
+      list(node, key);
+      return false;
     }
     bool empty = true;
-    const int half = 1 << (kDepth - 1 - depth);
     for (unsigned i = 0; i < 8; ++i) {
       if (!tree_->nodeChildExists(&node, i)) continue;
-      const std::array<int, 3> child = {corner[0] + (i & 1 ? half : 0),
-                                        corner[1] + (i & 2 ? half : 0),
-                                        corner[2] + (i & 4 ? half : 0)};
-      if (sweep(*tree_->getNodeChild(&node, i), child, depth + 1)) {
+      if (sweep(*tree_->getNodeChild(&node, i), childCorner(corner, depth, i), depth + 1)) {
         tree_->deleteNodeChild(&node, i);
       } else {
         empty = false;
@@ -211,6 +222,16 @@ class GridOctomap final : public SafetyGrid {
     }
     if (empty) node.freeChildren();
     return empty;
+  }
+
+  static octomap::OcTreeKey keyOfCorner(const std::array<int, 3>& corner) {
+    return {static_cast<octomap::key_type>(corner[0]), static_cast<octomap::key_type>(corner[1]),
+            static_cast<octomap::key_type>(corner[2])};
+  }
+  static std::array<int, 3> childCorner(const std::array<int, 3>& corner, int depth, unsigned i) {
+    const int half = 1 << (kDepth - 1 - depth);
+    return {corner[0] + (i & 1 ? half : 0), corner[1] + (i & 2 ? half : 0),
+            corner[2] + (i & 4 ? half : 0)};
   }
 
   bool inWindow(const Vector3& place) const {
@@ -234,6 +255,7 @@ class GridOctomap final : public SafetyGrid {
 
   ScanEvidence evidence_;
   std::unique_ptr<StampedTree> tree_;
+  std::vector<octomap::OcTreeKey> listed_;  // all occupied cells and some that were
   bool started_ = false;
   Stamp first_;                             // time 0 of the cells
   std::int64_t now_ms_ = 0, swept_ms_ = 0;  // since first_

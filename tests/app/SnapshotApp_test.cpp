@@ -1,0 +1,141 @@
+#include "libperception/app/SnapshotApp.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "libperception/scene/RunRecord.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFirstStamp = 1577836800;  // [s] of rawlogs/demo.rawlog
+constexpr int kScenes = 30;
+const std::string kDemoLog = PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog";
+const std::string kDemoTruth = PERCEPTION_SOURCE_DIR "/rawlogs/demo.truth.csv";
+
+// A run of three seconds of the demo log with one car, that did finish.
+class SnapshotAppTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = testing::TempDir() + "snapshot app " +
+           testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(dir_);
+    fs::create_directories(dir_ + "/run");
+    ClassTable classes;
+    for (const char* c : {"pedestrian", "car"}) {
+      classes.classes.emplace_back();
+      classes.classes.back().name = c;
+    }
+    TrackedRunWriter writer(dir_ + "/run", classes, Stamp::fromSeconds(kFirstStamp));
+    for (int k = 0; k < kScenes; ++k) writer.write(sceneAt(k));
+    writer.close();
+    RunRecord record;
+    record.input = "demo.rawlog";
+    record.simulated = true;
+    writeRunRecord(dir_ + "/run/done.json", record);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  static Scene sceneAt(int k) {
+    Scene scene;
+    scene.stamp = Stamp::fromSeconds(kFirstStamp) + 0.1 * k;
+    scene.ego.stamp = scene.stamp;
+    scene.frame = k;
+    SceneObject car;
+    car.id = 1;
+    car.class_id = 1;
+    car.class_probability = {0.02, 0.98};
+    car.existence = 0.99;
+    car.position = Vector3(15 - 0.1 * k, 2, 0);
+    car.length = 4;
+    car.width = 2;
+    car.height = 1.5;
+    scene.objects = {car};
+    return scene;
+  }
+
+  int run(std::vector<std::string> options) {
+    options.insert(options.begin(), {"perception-snapshot", "-r", dir_ + "/run"});
+    std::vector<const char*> argv;
+    for (const std::string& option : options) argv.push_back(option.c_str());
+    app_ = std::make_unique<SnapshotApp>();
+    return runApp(*app_, static_cast<int>(argv.size()), argv.data());
+  }
+
+  std::string dir_;
+  std::unique_ptr<SnapshotApp> app_;
+};
+
+TEST_F(SnapshotAppTest, DrawsOneInstantWithoutLog) {
+  ASSERT_EQ(run({"--time", "1", "--view", "top", "-o", dir_ + "/new folder/a.png"}), 0);
+  EXPECT_GT(fs::file_size(dir_ + "/new folder/a.png"), 5000U);
+  EXPECT_EQ(app_->out_picture.width, 1280);
+  EXPECT_EQ(app_->out_picture.height, 720);
+  EXPECT_GT(coloursOf(app_->out_picture), 100U);
+}
+
+TEST_F(SnapshotAppTest, LogAndTruthAddToThePicture) {
+  ASSERT_EQ(run({"--frame", "20", "--view", "top", "-o", dir_ + "/a.png"}), 0);
+  const Picture bare = app_->out_picture;
+  ASSERT_EQ(run({"--frame", "20", "--view", "top", "-i", kDemoLog, "-t", kDemoTruth, "-o",
+                 dir_ + "/b.png"}),
+            0);
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < bare.rgb.size(); ++i) {
+    changed += bare.rgb[i] != app_->out_picture.rgb[i];
+  }
+  EXPECT_GT(changed, 5000U);
+}
+
+TEST_F(SnapshotAppTest, BothGridBackEndsDraw) {
+  for (const char* back_end : {"octomap", "mrpt2d"}) {
+    EXPECT_EQ(run({"--time", "2", "-i", kDemoLog, "--set", std::string("grid.back_end=") + back_end,
+                   "-o", dir_ + "/a.png"}),
+              0);
+  }
+}
+
+TEST_F(SnapshotAppTest, EveryMakesAFolderOfPicturesAndASheet) {
+  ASSERT_EQ(run({"--every", "1", "--view", "driver", "-o", dir_ + "/out"}), 0);
+  EXPECT_EQ(app_->out_files.size(), 4U);
+  EXPECT_TRUE(fs::exists(dir_ + "/out/t000000000ms.png"));
+  EXPECT_TRUE(fs::exists(dir_ + "/out/t000002000ms.png"));
+  EXPECT_TRUE(fs::exists(dir_ + "/out/contact.png"));
+}
+
+TEST_F(SnapshotAppTest, ContactMakesOneSheet) {
+  ASSERT_EQ(run({"--contact", "4", "--view", "top", "-o", dir_ + "/sheet.png"}), 0);
+  EXPECT_EQ(app_->out_files, std::vector<std::string>{dir_ + "/sheet.png"});
+  EXPECT_GT(app_->out_picture.width, 1280);
+}
+
+TEST_F(SnapshotAppTest, SaysWhatIsWrongByExitCode) {
+  const std::string out = dir_ + "/a.png";
+  EXPECT_EQ(run({"--time", "100", "-o", out}), 64) << "outside of the run";
+  EXPECT_EQ(run({"--frame", "1000", "-o", out}), 64);
+  EXPECT_EQ(run({"-o", out}), 64) << "no instant";
+  EXPECT_EQ(run({"--time", "1", "--frame", "1", "-o", out}), 64) << "two instants";
+  EXPECT_EQ(run({"--time", "1", "-i", dir_ + "/missing.rawlog", "-o", out}), 66);
+  EXPECT_EQ(run({"--time", "1", "-t", dir_ + "/missing.csv", "-o", out}), 66);
+  EXPECT_EQ(run({"--time", "1", "--set", "grid.back_end=balltree", "-o", out}), 78);
+  EXPECT_EQ(run({"--time", "1", "-o", dir_ + "/run/done.json/a.png"}), 73);
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST_F(SnapshotAppTest, UnfinishedRunIsDrawnWithAWarning) {
+  fs::remove(dir_ + "/run/done.json");
+  EXPECT_EQ(run({"--time", "1", "-o", dir_ + "/a.png"}), 3);
+}
+
+TEST_F(SnapshotAppTest, TornLogIsDrawnWithAWarning) {
+  fs::copy_file(kDemoLog, dir_ + "/torn.rawlog");
+  fs::resize_file(dir_ + "/torn.rawlog", fs::file_size(kDemoLog) / 8);
+  EXPECT_EQ(run({"--time", "2.9", "-i", dir_ + "/torn.rawlog", "-o", dir_ + "/a.png"}), 3);
+}
+
+}  // namespace
+}  // namespace perception
