@@ -9,13 +9,15 @@ namespace perception {
 namespace {
 
 constexpr double kUnseen = 0.25;  // [s] a track not hit for so long gives way to a fresh one
+constexpr double kSureClass =
+    0.95;  // a track of unsure class has no footprint that others must respect
 constexpr double kNeverLarger =
     8;  // [m] half length of the longest footprint: beyond it no test is needed
 
 struct Footprint {
   Vector2 centre, half;  // [m]
   double yaw = 0;        // [rad]
-  double area = 0;       // [m^2]
+  double area = 0;  // [m^2] of a track whose class is sure, else 0
   Stamp last_hit;
 };
 
@@ -26,7 +28,9 @@ Footprint footprintOf(const Track& t) {
   out.half = f.oriented ? Vector2(0.5 * f.extent.length, 0.5 * f.extent.width)
                         : Vector2::Constant(0.25 * (f.extent.length + f.extent.width));
   out.yaw = f.oriented ? f.x[3] : 0;
-  out.area = 4 * out.half.x() * out.half.y();
+  const bool sure =
+      std::exp(t.log_class[static_cast<std::size_t>(t.likeliestClass())]) >= kSureClass;
+  out.area = sure ? 4 * out.half.x() * out.half.y() : 0;
   out.last_hit = *std::max_element(t.last_hit.begin(), t.last_hit.end());
   return out;
 }

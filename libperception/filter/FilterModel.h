@@ -30,7 +30,7 @@ struct FilterParams {
   double base_walk = 0.05;  ///< [m^2/s] random walk of the base height (SPEC 2)
   double hidden_tolerance = 1.0;  ///< [m] a track this much behind the horizon is still visible
   double merge_area =
-      1.0;  ///< [m^2] footprints from this size on swallow tracks inside them (SPEC 5.9); 0: never
+      2.0;  ///< [m^2] footprints from this size on swallow tracks inside them (SPEC 5.9); 0: never
   double max_distance = 150;  ///< [m] from the vehicle; tracks beyond are dropped (SPEC 5.9)
 
   void visit(ParamVisitor& v);
