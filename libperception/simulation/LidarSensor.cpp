@@ -11,7 +11,7 @@ namespace perception {
 namespace {
 
 /// How a material returns light. Reflectivities at 905 nm: usual figures of lidar data sheets; the
-/// road's grazing exponent is tuned so that dry asphalt is seen to 45-50 m, as in KITTI's scans.
+/// road's grazing exponent is set by calculation so that dry asphalt is seen to 45-50 m.
 struct Surface {
   double reflectivity;  ///< [0, 1] at normal incidence
   double grazing;       ///< exponent of the cosine: 1 = Lambert, less = rough
