@@ -28,6 +28,7 @@ Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
 Corridor laneOf(const EgoState& ego) {
   Corridor lane;
   lane.T_world_ego = ego.T_world_ego;
+  lane.from = PointParams{}.vehicle_front;
   const double speed = ego.velocity.norm();
   if (speed > kSteers) lane.curvature = std::clamp(ego.yaw_rate / speed, -kSharpest, kSharpest);
   return lane;
