@@ -1,0 +1,96 @@
+#include "libperception/measurement/Sensing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libperception/core/Error.h"
+
+namespace perception {
+namespace {
+
+ClassTable classes() {
+  ClassTable table;
+  for (const char* name : {"pedestrian", "car", "tram"}) {
+    table.classes.emplace_back();
+    table.classes.back().name = name;
+  }
+  return table;
+}
+
+const std::vector<std::string> kLidarLabels{"car_sized", "person_sized"};
+
+Sensing read(Config& config, const std::vector<std::string>& labels = kLidarLabels) {
+  return Sensing::read(config, "sensor.A", classes(), labels, {});
+}
+
+std::string faultsOf(const std::string& ini) {
+  Config config = Config::fromText(ini, "a.ini");
+  read(config);
+  try {
+    config.finish();
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Sensing, StartsFromTheTableOfTheKindOfSensor) {
+  Config config = Config::fromText("[sensor.A]\nmodality = L\n", "a.ini");
+  const Sensing s = read(config);
+  EXPECT_NEAR(s.detection(0, 10, 0, 1), 0.88, 1e-12);
+  EXPECT_NEAR(s.detection(1, 10, 0, 1), 0.91, 1e-12);
+  // Two labels: the default rows' shares of a third one are spread over these.
+  EXPECT_NEAR(std::exp(s.logLabel(0, 0)), 0.10 / 0.95, 1e-9);
+  // A class without a row: every label alike.
+  EXPECT_NEAR(std::exp(s.logLabel(0, 2)), 0.5, 1e-9);
+}
+
+TEST(Sensing, RowsSumToOne) {
+  Config config =
+      Config::fromText("[sensor.A]\n[sensor.A.class.car]\nlabel.car_sized = 0.7\n", "a.ini");
+  const Sensing s = read(config, {"car_sized", "person_sized", "unstable"});
+  for (ClassId c = 0; c < 3; ++c) {
+    double sum = 0;
+    for (int l = 0; l < 3; ++l) sum += std::exp(s.logLabel(l, c));
+    EXPECT_NEAR(sum, 1, 1e-12);
+  }
+  double clutter = 0;
+  for (int l = 0; l < 3; ++l) clutter += std::exp(s.logLabelClutter(l));
+  EXPECT_NEAR(clutter, 1, 1e-12);
+}
+
+TEST(Sensing, ReportsWhatCannotBe) {
+  EXPECT_NE(faultsOf("[sensor.A]\n[sensor.A.class.car]\nlabel.huge = 0.7\n").find("label.huge"),
+            std::string::npos);
+  EXPECT_NE(
+      faultsOf("[sensor.A]\n[sensor.A.class.bicycle]\ndetection = 0.7\n").find("no such class"),
+      std::string::npos);
+  EXPECT_NE(
+      faultsOf(
+          "[sensor.A]\n[sensor.A.class.tram]\nlabel.car_sized = 0.7\nlabel.person_sized = 0.7\n")
+          .find("sum to 1"),
+      std::string::npos);
+  EXPECT_NE(faultsOf("[sensor.A]\npose = 1, 2, 3, 4, 5\n").find("six numbers"), std::string::npos);
+  EXPECT_NE(faultsOf("[sensor.A]\nrange_min = 80\nrange_max = 70\n").find("range_min"),
+            std::string::npos);
+  EXPECT_EQ(faultsOf("[sensor.A]\npose = 1, 2, 3, 90, 0, 0\n"), "");
+}
+
+TEST(Sensing, FadesAtTheBordersOfItsView) {
+  SensingParams p;
+  p.range_min = 2;
+  p.range_max = 50;
+  p.fov = radians(90);
+  const Sensing s(p, {{}, {}, {}}, kLidarLabels);
+  EXPECT_EQ(s.detection(0, 1, 0, 1), 0);
+  EXPECT_EQ(s.detection(0, 50, 0, 1), 0);
+  EXPECT_NEAR(s.detection(0, 48.75, 0, 1), 0.45, 1e-9);  // half way between 47.5 m and 50 m
+  EXPECT_EQ(s.detection(0, 10, radians(45), 1), 0);
+  EXPECT_NEAR(s.detection(0, 10, radians(44), 1), 0.45, 1e-9);
+  EXPECT_NEAR(s.detection(0, 10, 0, 0.5), 0.45, 1e-9);
+  EXPECT_NEAR(s.area(), 0.5 * radians(90) * (2500 - 4), 1e-9);
+}
+
+}  // namespace
+}  // namespace perception
