@@ -77,6 +77,7 @@ PipelineSetup PipelineSetup::read(Config& config) {
   s.scene = config.read<SceneParams>("scene");
   s.ego = config.read<EgoPoseParams>("ego");
   s.ground = config.read<GroundParams>("ground");
+  s.grid = config.read<GridParams>("grid");
   std::string letters;
   if (!readModalities(s.run.sensors, letters)) {
     config.fault("run", "sensors",

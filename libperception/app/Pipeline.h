@@ -10,6 +10,7 @@
 
 #include "libperception/app/FrameQueue.h"
 #include "libperception/filter/CRbpfTracker.h"
+#include "libperception/grid/GridParams.h"
 #include "libperception/lidar/GroundPlane.h"
 #include "libperception/measurement/FrontEnd.h"
 #include "libperception/measurement/Sensing.h"
@@ -52,6 +53,7 @@ struct PipelineSetup {
   SceneParams scene;
   EgoPoseParams ego;
   GroundParams ground;
+  GridParams grid;  ///< of the safety grid in pictures
   std::vector<Sensor> sensors;  ///< in the order of the INI
 
   /// Reads every section; faults go to the configuration (throw them with Config::finish()).
