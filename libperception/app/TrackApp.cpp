@@ -40,7 +40,8 @@ struct LogFacts {
       if (o.space_box || !o.image_box) return;
     }
     if (detections->objects.empty()) return;
-    camera = KittiCamera{detections->camera, frame->T_ego_sensor, KittiCamera::kittiOffset()};
+    camera = KittiCamera{detections->camera, frame->T_ego_sensor,
+                         simulated ? Vector3(Vector3::Zero()) : KittiCamera::kittiOffset()};
   }
 };
 
