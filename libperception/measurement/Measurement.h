@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -36,6 +37,14 @@ struct SidesSeen {
   Vector2 centre = Vector2::Zero();             ///< [m] of the box, world
 };
 
+/// What a detector says of an object's heading. It may confuse front and back: the axis is measured
+/// with `sigma`, its direction is reversed with `flip_probability` (SPEC 7).
+struct HeadingSeen {
+  double yaw = 0;                 ///< [rad] world
+  double sigma = 0.14;            ///< [rad] of the axis; SPEC 7: 8 deg
+  double flip_probability = 0.2;  ///< in [0, 0.5]: 0.5 tells the axis alone
+};
+
 /// z with covariance R under the scan's MeasurementModel, and what else the detection says of its
 /// object.
 struct Measurement {
@@ -50,7 +59,8 @@ struct Measurement {
   std::optional<ScalarEstimate> base_z;  ///< [m] lowest point of the object, world
   std::optional<ScalarEstimate> height;  ///< [m] lowest to highest point
   std::optional<SidesSeen> sides;
-  int detection = -1;  ///< index of the detection in its frame
+  std::optional<HeadingSeen> heading;  ///< of classes with a heading only
+  int detection = -1;                  ///< index of the detection in its frame
 };
 
 /// Sensor and vehicle at the time of a scan.
@@ -69,6 +79,8 @@ struct MeasurementScan {
   std::shared_ptr<const MeasurementModel> model;
   std::shared_ptr<const Horizon> horizon;  ///< what hides what; null: nothing is hidden
   std::vector<Measurement> measurements;
+  std::size_t dropped =
+      0;  ///< detections that could not be used: no such label, a box that is none
 };
 
 }  // namespace perception

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,15 +58,50 @@ struct LidarCloud {
   std::vector<std::uint8_t> echo;   ///< 0 = first return of its pulse
   std::vector<float> pulse_width;   ///< [m]
   std::vector<std::uint8_t> label;  ///< PointLabel
-  double max_range = 0;             ///< [m] of the instrument; 0 = unknown
+  std::vector<float> trust;  ///< [0, 1] P(the return is of a surface), from weather/PointTrust
+  double max_range = 0;      ///< [m] of the instrument; 0 = unknown
 
   std::size_t size() const { return x.size(); }
 };
 
-/// A pinhole camera without distortion. Its sensor frame is optical: x right, y down, z forward.
+/// A camera without distortion. Its sensor frame is optical: x right, y down, z forward.
+/// Equirectangular (a spherical panorama): column u looks at azimuth (u - cx) / fx to the right of
+/// z, row v at (v - cy) / fy below the horizon [rad]; fx = width / 2 pi for the full circle.
 struct CameraModel {
+  enum class Projection : std::uint8_t { kPinhole, kEquirectangular };
   int width = 0, height = 0;              ///< [px]
-  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
+  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]; equirectangular: fx, fy in [px/rad]
+  Projection projection = Projection::kPinhole;
+};
+
+/// Pixels, rows from the top, interleaved blue, green, red (or grey alone).
+struct Raster {
+  int width = 0, height = 0, channels = 3;
+  std::vector<std::uint8_t> pixels;
+};
+
+/// An image of the log. Loaded when asked for: images lie outside the log more often than not.
+struct CameraImage {
+  CameraModel camera;                           ///< width and height may be 0 until it is loaded
+  std::string source;                           ///< file or "in the log", for messages
+  std::function<std::optional<Raster>()> load;  ///< empty result: the image is not there
+};
+
+/// One target or point of a radar, in the sensor frame (x forward, y left).
+struct RadarReturn {
+  double range = 0;       ///< [m]
+  double bearing = 0;     ///< [rad] counter-clockwise off the forward axis
+  double range_rate = 0;  ///< [m/s] relative to the moving sensor, > 0 moves away; see has_rate
+  bool has_rate = true;
+  double amplitude = 0;             ///< [dB] radar cross section or signal, in the unit's own scale
+  std::optional<double> elevation;  ///< [rad] above the sensor's horizontal plane
+  std::int32_t id = -1;             ///< the unit's own track number; -1 = none
+};
+
+/// What one radar unit reported at one instant.
+struct RadarReturns {
+  std::vector<RadarReturn> returns;
+  double max_range = 0;  ///< [m] of the instrument; 0 = unknown
 };
 
 /// One object found by somebody's detector: a box in the image, a box in space, or both.
@@ -105,7 +141,7 @@ struct SensorFrame {
   EgoState ego;
   Pose3 T_ego_sensor = Pose3::Identity();
   GroundPlane ground;
-  std::variant<LidarCloud, ObjectDetections> data;
+  std::variant<LidarCloud, ObjectDetections, RadarReturns, CameraImage> data;
 
   Pose3 T_world_sensor() const { return ego.T_world_ego * T_ego_sensor; }
 };
