@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/measurement/PoseNoise.h"
+
 namespace perception {
 namespace {
+
+constexpr double kNearest = 0.1;  // [m] an object's foot under the camera itself
 
 /// "Car=car" -> {"Car", "car"}; empty when it is not of that form.
 std::optional<std::pair<std::string, std::string>> splitName(const std::string& text) {
@@ -63,15 +67,12 @@ VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geomet
 std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object,
                                                    const SensorFrame& frame,
                                                    const CameraModel& camera,
+                                                   const Pose3& T_ego_camera,
                                                    const SensorState& state) const {
   const auto label = label_of_.find(object.label);
-  if (!object.image_box || label == label_of_.end() || label->second < 0 ||
-      object.score < detector_.min_score) {
-    return std::nullopt;
-  }
-  const auto& u = frame.ego.uncertainty;
-  const auto box =
-      boxOnGround(*object.image_box, camera, frame.T_ego_sensor, frame.ground, u, geometry_);
+  if (!object.image_box || label == label_of_.end() || label->second < 0) return std::nullopt;
+  const auto box = boxOnGround(*object.image_box, camera, T_ego_camera, frame.ground,
+                               frame.ego.uncertainty, geometry_);
   if (!box || (!box->left_seen && !box->right_seen && !box->range)) return std::nullopt;
 
   Measurement m;
@@ -83,17 +84,21 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
   m.log_score_ratio = std::clamp(detector_.score_slope * (object.score - offset),
                                  -detector_.score_limit, detector_.score_limit);
   m.z = Vector3(box->left, box->right, box->range.value_or(0));
-  m.R = AxisMatrix::Zero(FootprintModel::kAxes, FootprintModel::kAxes);
   m.seen = static_cast<AxisMask>((box->left_seen ? 1 << FootprintModel::kLeft : 0) |
                                  (box->right_seen ? 1 << FootprintModel::kRight : 0) |
                                  (box->range ? 1 << FootprintModel::kRange : 0));
-  const double range = box->range.value_or(0.5 * geometry_.max_range);
-  const double pose = u.sigma_yaw * u.sigma_yaw + std::pow(u.sigma_xy / range, 2);
-  m.R(FootprintModel::kLeft, FootprintModel::kLeft) = box->left_sigma * box->left_sigma + pose;
-  m.R(FootprintModel::kRight, FootprintModel::kRight) = box->right_sigma * box->right_sigma + pose;
-  m.R(FootprintModel::kRange, FootprintModel::kRange) =
-      box->range_sigma * box->range_sigma + u.sigma_xy * u.sigma_xy;
-  const double bearing = yawOf(state.T_world_sensor) + 0.5 * (box->left + box->right);
+  const double range = std::max(box->range.value_or(0.5 * geometry_.max_range), kNearest);
+  const double forward = yawOf(state.T_world_sensor);
+  const double bearing = forward + 0.5 * (box->left + box->right);
+  m.R = poseNoise({forward + box->left, range}, {forward + box->right, range}, {bearing, range},
+                  frame.ego.uncertainty);
+  const double sigma[FootprintModel::kAxes] = {box->left_sigma, box->right_sigma, box->range_sigma};
+  for (int axis = 0; axis < FootprintModel::kAxes; ++axis) {
+    m.R(axis, axis) += sigma[axis] * sigma[axis];
+    if (m.seen >> axis & 1) continue;
+    m.z[axis] = 0;
+    m.R.row(axis).setZero(), m.R.col(axis).setZero();
+  }
   m.position = state.T_world_sensor.translation().head<2>() +
                range * Vector2(std::cos(bearing), std::sin(bearing));
   m.position_sigma = box->range ? box->range_sigma : 0.5 * geometry_.max_range;
@@ -106,13 +111,20 @@ MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
   scan.sensor = frame.sensor;
   scan.modality = Modality::kCamera;
   scan.frame = frame.frame;
-  scan.state = {frame.stamp, frame.ego.T_world_ego * levelFrame(frame.T_ego_sensor), frame.ego};
   scan.model = model_;
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
+  const Pose3 T_ego_camera =
+      detections && detections->T_ego_camera ? *detections->T_ego_camera : frame.T_ego_sensor;
+  scan.state = {frame.stamp, frame.ego.T_world_ego * levelFrame(T_ego_camera), frame.ego};
   if (!detections) return scan;
   for (std::size_t i = 0; i < detections->objects.size(); ++i) {
-    auto m = measure(detections->objects[i], frame, detections->camera, scan.state);
-    if (!m) continue;
+    const ObjectDetection& object = detections->objects[i];
+    if (object.score < detector_.min_score) continue;
+    auto m = measure(object, frame, detections->camera, T_ego_camera, scan.state);
+    if (!m) {
+      ++scan.dropped;
+      continue;
+    }
     m->detection = static_cast<int>(i);
     scan.measurements.push_back(std::move(*m));
   }

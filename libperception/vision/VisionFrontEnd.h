@@ -41,7 +41,8 @@ class VisionFrontEnd final : public FrontEnd {
 
  private:
   std::optional<Measurement> measure(const ObjectDetection& object, const SensorFrame& frame,
-                                     const CameraModel& camera, const SensorState& state) const;
+                                     const CameraModel& camera, const Pose3& T_ego_camera,
+                                     const SensorState& state) const;
 
   DetectorParams detector_;
   BoxGeometryParams geometry_;
