@@ -52,10 +52,15 @@ bool readModalities(const std::string& text, std::string& letters) {
 
 }  // namespace
 
+const std::vector<std::string>& RunParams::associationNames() {
+  static const std::vector<std::string> names = {"sampled", "ranked", "nearest"};
+  return names;
+}
+
 void RunParams::visit(ParamVisitor& v) {
   v.unsigned64("seed", seed, "of all random numbers; --seed wins");
   v.text("sensors", sensors, "modalities in use, letters C, L, R joined by +; --sensors wins");
-  v.choiceOf("association", association, {"sampled"},
+  v.choiceOf("association", association, associationNames(),
              "how a hypothesis chooses the causes of measurements");
   v.text("output_sensor", output_sensor,
          "scenes at its scans; empty: the first lidar in use, else the first sensor");
@@ -73,6 +78,7 @@ PipelineSetup PipelineSetup::read(Config& config) {
   s.run = config.read<RunParams>("run");
   s.model.classes = readClassTable(config);
   s.model.params = config.read<FilterParams>("filter");
+  s.model.proposal = s.run.association;
   s.particles = config.read<ParticleFilterParams>("particle_filter");
   s.scene = config.read<SceneParams>("scene");
   s.ego = config.read<EgoPoseParams>("ego");

@@ -35,6 +35,7 @@ struct RunParams {
   double sensor_timeout = 1;    ///< [s] of silence after which a sensor counts as lost
   double clock_jump = 5;        ///< [s] back: a new epoch; forward: a gap worth an event
 
+  static const std::vector<std::string>& associationNames();  ///< in the order of Proposal
   void visit(ParamVisitor& v);
 };
 
@@ -53,7 +54,7 @@ struct PipelineSetup {
   SceneParams scene;
   EgoPoseParams ego;
   GroundParams ground;
-  GridParams grid;  ///< of the safety grid in pictures
+  GridParams grid;              ///< of the safety grid in pictures
   std::vector<Sensor> sensors;  ///< in the order of the INI
 
   /// Reads every section; faults go to the configuration (throw them with Config::finish()).

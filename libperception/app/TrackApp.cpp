@@ -234,7 +234,8 @@ void TrackApp::trackLog(const std::string& log, const std::string& dir,
   out_record.config = config_file;
   out_record.seed = setup.run.seed;
   out_record.sensors_used = setup.run.sensors;
-  out_record.association = "sampled";
+  out_record.association =
+      RunParams::associationNames()[static_cast<std::size_t>(setup.run.association)];
   out_record.particles = setup.particles.sample_size;
   out_record.first_stamp = first;
   out_record.last_stamp = pipeline.lastStamp();

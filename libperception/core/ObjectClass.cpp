@@ -7,6 +7,12 @@ namespace perception {
 void ObjectClass::visit(ParamVisitor& v) {
   v.choiceOf("motion", motion, {"constant-velocity", "wheeled", "static"}, "how it moves");
   v.real("accel_psd", accel_psd, {0, 100}, "m^2/s^3", "white acceleration, power spectral density");
+  v.reals("mode_accel_psd", mode_accel_psd, -1, {0, 100}, "m^2/s^3",
+          "one a motion mode, in place of accel_psd; empty: a single model");
+  v.reals("mode_damping", mode_damping, -1, {0, 100}, "1/s", "one a mode: at which the speed decays");
+  v.reals("mode_sojourn", mode_sojourn, -1, {0.01, 1e4}, "s", "one a mode: mean time in it");
+  v.require(mode_damping.size() == modes() && mode_sojourn.size() == modes() && modes() != 1,
+            "mode_accel_psd, mode_damping, mode_sojourn: expected one number a mode in each, two modes or more");
   v.real("yaw_rate_psd", yaw_rate_psd, {0, 10}, "rad^2/s", "white yaw rate (wheeled)");
   v.real("position_psd", position_psd, {0, 10}, "m^2/s", "slip and model mismatch; all the noise of a static object");
   v.real("length", length, {0.05, 40}, "m", "mean length");

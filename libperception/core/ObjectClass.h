@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ struct ObjectClass {
   std::string name;                  ///< from the section's title
   Motion motion = Motion::kStatic;
   double accel_psd = 0.5;            ///< [m^2/s^3] white acceleration along the track (q_a or q_v)
+  /// Interacting motion modes in place of `accel_psd` (SPEC 12, U5), one entry a mode; empty: one mode.
+  std::vector<double> mode_accel_psd;  ///< [m^2/s^3]
+  std::vector<double> mode_damping;    ///< [1/s] at which the speed decays; 0 keeps it, 5 stands at once
+  std::vector<double> mode_sojourn;    ///< [s] mean time in the mode
   double yaw_rate_psd = 0.0685;      ///< [rad^2/s] wheeled only
   double position_psd = 1e-4;        ///< [m^2/s] slip and model mismatch; the whole noise of static objects
   double length = 1, width = 1, height = 1.5;  ///< [m] mean size
@@ -25,6 +30,7 @@ struct ObjectClass {
   bool reported = true;              ///< false: an object, but neither true nor false in an evaluation (static-other)
   std::string kitti_type = "Misc";   ///< type written by the KITTI export
 
+  std::size_t modes() const { return mode_accel_psd.size(); }  ///< 0: a single model
   void visit(ParamVisitor& v);
 };
 

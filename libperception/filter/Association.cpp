@@ -1,62 +1,195 @@
 #include "libperception/filter/Association.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/RankedAssignments.h"
 
 namespace perception {
+namespace {
 
-AssociationIndex::AssociationIndex(const std::vector<Track>& predicted,
-                                   const LikelihoodTable& table)
-    : by_measurement_(table.news.size()) {
-  log_miss_.reserve(predicted.size());
-  for (std::size_t i = 0; i < predicted.size(); ++i) {
-    const double r = predicted[i].existence;
-    log_miss_.push_back(std::log1p(-r * table.tracks[i].detection));
-    for (const auto& pair : table.tracks[i].pairs) {
-      by_measurement_[pair.measurement].push_back(
-          {i, std::log(r) + pair.log_likelihood - log_miss_.back()});
-    }
-  }
-  for (const auto& n : table.news) log_new_.push_back(n.log_new);
+/// Where the hypothesis keeps each distinct track; -1: not at all.
+std::vector<int> placesOf(const std::vector<std::size_t>& tracks, const AssociationIndex& index) {
+  std::vector<int> place(index.tracks(), -1);
+  for (std::size_t i = 0; i < tracks.size(); ++i) place[tracks[i]] = static_cast<int>(i);
+  return place;
 }
 
-Association associate(const std::vector<std::size_t>& tracks, const AssociationIndex& index,
-                      const std::vector<std::size_t>& order, Rng rng) {
-  Association result;
-  result.cause.assign(index.measurements(), Association::kNew);
-  std::vector<int> place(index.tracks(),
-                         -1);  // of a distinct track in this hypothesis; -1: absent or used
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    place[tracks[i]] = static_cast<int>(i);
-    result.log_weight += index.logMiss(tracks[i]);  // all provisionally missed
-  }
+double logAllMissed(const std::vector<std::size_t>& tracks, const AssociationIndex& index) {
+  double sum = 0;
+  for (const std::size_t t : tracks) sum += index.logMiss(t);
+  return sum;
+}
+
+/// What a measurement may come from in one hypothesis, with normalised probabilities.
+struct Choices {
+  std::vector<int> cause;
   std::vector<double> log_odds;
-  std::vector<std::size_t> owner;
-  for (const std::size_t k : order) {
-    log_odds.assign(1, index.logNew(k));
-    owner.assign(1, 0);
+  double total = kMinusInfinity;
+
+  void gather(std::size_t k, const AssociationIndex& index, const std::vector<int>& place,
+              const std::vector<int>& taken_by) {
+    cause.clear();
+    log_odds.clear();
+    for (const auto& o : index.others(k))
+      cause.push_back(o.cause), log_odds.push_back(o.log_weight);
     for (const auto& c : index.candidates(k)) {
-      if (place[c.track] < 0) continue;
+      const int p = place[c.track];
+      if (p < 0 || taken_by[static_cast<std::size_t>(p)] >= 0) continue;
+      cause.push_back(p);
       log_odds.push_back(c.log_odds);
-      owner.push_back(c.track);
     }
-    const double total = logSumExp(log_odds);
-    if (total == kMinusInfinity)
-      continue;  // impossible under every cause: clutter of an unmodelled kind, no evidence
-    result.log_weight += total;
+    total = logSumExp(log_odds);
+  }
+
+  std::size_t draw(Rng& rng) const {
     double u = rng.uniform();
     std::size_t chosen = 0;
     for (; chosen + 1 < log_odds.size(); ++chosen) {
       u -= std::exp(log_odds[chosen] - total);
       if (u < 0) break;
     }
-    if (chosen == 0) continue;
-    result.cause[k] = std::exchange(place[owner[chosen]], -1);
+    return chosen;
   }
-  return result;
+};
+
+/// Slots that drew alike so far.
+struct Branch {
+  SampledAssociation sampled;
+  std::vector<int> taken_by;  // by place of a track: its measurement or -1
+
+  void take(std::size_t k, int cause) {
+    sampled.association.cause[k] = cause;
+    if (cause >= 0) taken_by[static_cast<std::size_t>(cause)] = static_cast<int>(k);
+  }
+};
+
+/// The slots of `branch` part by what they draw for measurement k; parts beyond the first go to
+/// `out`.
+void split(std::size_t k, const Choices& choices, std::vector<Rng>& rngs, Branch& branch,
+           std::vector<Branch>& out) {
+  branch.sampled.association.log_weight += choices.total;
+  if (choices.cause.size() == 1) {
+    branch.take(k, choices.cause[0]);
+    return;
+  }
+  std::vector<std::vector<std::uint32_t>> parts(choices.cause.size());
+  for (const std::uint32_t i : branch.sampled.slots) parts[choices.draw(rngs[i])].push_back(i);
+  std::size_t first = 0;
+  while (parts[first].empty()) ++first;
+  for (std::size_t c = first + 1; c < parts.size(); ++c) {
+    if (parts[c].empty()) continue;
+    out.push_back(branch);
+    out.back().sampled.slots = std::move(parts[c]);
+    out.back().take(k, choices.cause[c]);
+  }
+  branch.sampled.slots = std::move(parts[first]);
+  branch.take(k, choices.cause[first]);
+}
+
+}  // namespace
+
+AssociationIndex::AssociationIndex(const std::vector<Track>& predicted,
+                                   const LikelihoodTable& table, const FilterModel& model)
+    : by_measurement_(table.news.size()), others_(table.news.size()) {
+  const bool decays = model.params.existence_decay > 0;
+  log_miss_.reserve(predicted.size());
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    const double r = predicted[i].existence;
+    // With exponential decay (DUC) existence neither weighs nor is weighed by detections.
+    log_miss_.push_back(decays ? 0 : std::log1p(-r * table.tracks[i].detection));
+    for (const auto& pair : table.tracks[i].pairs) {
+      const double log_odds =
+          pair.log_likelihood + pair.log_prior + (decays ? 0 : std::log(r) - log_miss_.back());
+      by_measurement_[pair.measurement].push_back({i, log_odds});
+    }
+  }
+  for (std::size_t k = 0; k < table.news.size(); ++k) {
+    const auto& n = table.news[k];
+    if (model.params.sampled_births) {
+      others_[k] = {{Association::kClutter, n.log_clutter}, {Association::kNew, n.log_birth}};
+    } else {
+      others_[k] = {{Association::kNew, n.log_new}};
+    }
+  }
+}
+
+std::vector<SampledAssociation> sampleAssociations(const std::vector<std::size_t>& tracks,
+                                                   const AssociationIndex& index,
+                                                   const std::vector<std::size_t>& order,
+                                                   std::vector<std::uint32_t> slots,
+                                                   const RngKey& key) {
+  const std::vector<int> place = placesOf(tracks, index);
+  std::vector<std::uint32_t> streams = slots;  // a branch names slots by their index in here
+  std::vector<Rng> rngs;
+  rngs.reserve(streams.size());
+  for (const std::uint32_t s : streams) rngs.emplace_back(key.withSlot(s));
+  std::iota(slots.begin(), slots.end(), 0u);
+
+  std::vector<Branch> branches(1);
+  Branch& root = branches.front();
+  root.sampled.association.cause.assign(index.measurements(), Association::kNew);
+  root.sampled.association.log_weight = logAllMissed(tracks, index);
+  root.sampled.slots = std::move(slots);
+  root.taken_by.assign(tracks.size(), -1);
+  Choices choices;
+  for (const std::size_t k : order) {
+    const std::size_t before = branches.size();
+    for (std::size_t b = 0; b < before; ++b) {
+      choices.gather(k, index, place, branches[b].taken_by);
+      if (choices.total == kMinusInfinity)
+        continue;  // impossible under every cause: clutter of an unmodelled kind, no evidence
+      Branch branch = std::move(branches[b]);
+      split(k, choices, rngs, branch, branches);
+      branches[b] = std::move(branch);
+    }
+  }
+  std::vector<SampledAssociation> out;
+  out.reserve(branches.size());
+  for (Branch& b : branches) {
+    for (std::uint32_t& s : b.sampled.slots) s = streams[s];
+    out.push_back(std::move(b.sampled));
+  }
+  return out;
+}
+
+std::vector<Association> rankAssociations(const std::vector<std::size_t>& tracks,
+                                          const AssociationIndex& index, std::size_t k,
+                                          double span) {
+  const std::vector<int> place = placesOf(tracks, index);
+  AssignmentProblem problem;
+  problem.columns = static_cast<int>(tracks.size());
+  problem.rows.resize(index.measurements());
+  Association base;
+  base.log_weight = logAllMissed(tracks, index);
+  for (std::size_t m = 0; m < index.measurements(); ++m) {
+    // Of the causes that are no track the likeliest stands for all: there is only one unless births
+    // are sampled.
+    const auto& others = index.others(m);
+    const auto other =
+        std::max_element(others.begin(), others.end(),
+                         [](const auto& a, const auto& b) { return a.log_weight < b.log_weight; });
+    base.cause.push_back(other->cause);
+    const bool possible = other->log_weight > kMinusInfinity;
+    if (possible) base.log_weight += other->log_weight;
+    for (const auto& c : index.candidates(m)) {
+      if (place[c.track] < 0 || !possible) continue;
+      problem.rows[m].push_back({place[c.track], c.log_odds - other->log_weight});
+    }
+  }
+  std::vector<Association> out;
+  for (const auto& ranked : rankedAssignments(problem, k, span)) {
+    Association a = base;
+    a.log_weight += ranked.log_weight;
+    for (std::size_t m = 0; m < ranked.column.size(); ++m) {
+      if (ranked.column[m] != RankedAssignment::kNothing) a.cause[m] = ranked.column[m];
+    }
+    out.push_back(std::move(a));
+  }
+  return out;
 }
 
 std::vector<std::size_t> randomOrder(std::size_t n, Rng rng) {

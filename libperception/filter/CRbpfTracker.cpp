@@ -39,13 +39,15 @@ mrpt::bayes::CParticleFilter::TParticleFilterOptions ParticleFilterParams::toMrp
 }
 
 CRbpfTracker::CRbpfTracker(FilterModel model, const Options& options, std::uint64_t seed)
-    : model_(std::move(model)), seed_(seed) {
+    : model_(std::move(model)), slots_(std::max(1u, options.sampleSize)), seed_(seed) {
   if (options.PF_algorithm != mrpt::bayes::CParticleFilter::pfOptimalProposal) {
     throw ConfigError("PF_algorithm: this filter implements pfOptimalProposal only");
   }
+  if (model_.params.sampled_births && model_.proposal != Proposal::kSampled)
+    throw ConfigError("[filter] sampled_births: needs [run] association = sampled");
   executor_.m_options = options;
-  m_particles.resize(std::max(1u, options.sampleSize));
-  for (auto& p : m_particles) p.log_w = 0;
+  if (model_.proposal != Proposal::kSampled) executor_.m_options.BETA = 0;
+  reset();
 }
 
 bool CRbpfTracker::process(const MeasurementScan& scan) {
@@ -67,11 +69,8 @@ bool CRbpfTracker::process(const MeasurementScan& scan) {
 }
 
 void CRbpfTracker::reset() {
-  for (auto& p : m_particles) {
-    p.d.tracks.clear();
-    p.log_w = 0;
-  }
-  map_.tracks.clear();
+  setPosterior(Posterior::empty(model_.proposal == Proposal::kSampled ? slots_ : 1));
+  map_ = std::make_shared<const Hypothesis>();
   started_ = false;
 }
 
@@ -80,26 +79,28 @@ void CRbpfTracker::prediction_and_update_pfOptimalProposal(const mrpt::obs::CAct
                                                            const Options&) {
   if (!scan_)
     throw Error(ExitCode::kInternal, "CRbpfTracker: executed without a scan; use process()");
-  std::vector<Hypothesis> before;
-  before.reserve(m_particles.size());
-  for (auto& p : m_particles) before.push_back(std::move(p.d));
-  StepResult result = step(before, *scan_, model_, {seed_, scans_, 0, 0});
-  std::vector<const Hypothesis*> after;
-  std::vector<double> log_weights;
-  for (std::size_t i = 0; i < m_particles.size(); ++i) {
-    auto& p = m_particles[i];
-    p.d = std::move(result.hypotheses[i]);
-    p.log_w += result.log_weights[i];
-    if (!std::isfinite(p.log_w))
-      p.log_w = -1e300;  // MRPT turns a NaN into silence (no resampling, no error)
-    after.push_back(&p.d);
-    log_weights.push_back(p.log_w);
+  Posterior before;
+  for (auto& p : m_particles) {
+    before.hypotheses.push_back(std::move(p.d));
+    before.log_weights.push_back(p.log_w);
   }
-  const MapHypothesis best = perception::mapHypothesis(after, log_weights);
-  map_ = *after[best.slot];
+  StepResult result = step(before, *scan_, model_, {seed_, scans_, 0, 0}, slots_);
+  const MapHypothesis best = perception::mapHypothesis(result.posterior);
+  map_ = result.posterior.hypotheses[best.slot];
   static_cast<StepStats&>(stats_) = result.stats;
   stats_.hypotheses = best.distinct;
   stats_.map_probability = best.probability;
+  setPosterior(std::move(result.posterior));
+}
+
+void CRbpfTracker::setPosterior(Posterior&& posterior) {
+  m_particles.resize(posterior.hypotheses.size());
+  for (std::size_t i = 0; i < m_particles.size(); ++i) {
+    m_particles[i].d = std::move(posterior.hypotheses[i]);
+    const double w = posterior.log_weights[i];
+    // MRPT turns a NaN into silence (no resampling, no error).
+    m_particles[i].log_w = std::isfinite(w) ? w : -1e300;
+  }
 }
 
 void CRbpfTracker::performSubstitution(const std::vector<size_t>& indices) {

@@ -27,14 +27,16 @@ struct ScanStats : StepStats {
 };
 
 /// The joint association, tracking and classification filter as an MRPT particle-filter algorithm:
-/// particles are hypotheses, the proposal is the optimal one, executed and resampled by
-/// mrpt::bayes::CParticleFilter.
+/// particles are handles of hypotheses, the proposal is the optimal one, executed and resampled by
+/// mrpt::bayes::CParticleFilter. With ranked associations it holds at most sampleSize distinct
+/// hypotheses and is never resampled (BETA = 0): one dominant hypothesis is no degeneracy there.
 class CRbpfTracker final
-    : public mrpt::bayes::CParticleFilterData<Hypothesis,
+    : public mrpt::bayes::CParticleFilterData<HypothesisHandle,
                                               mrpt::bayes::particle_storage_mode::VALUE>,
       public mrpt::bayes::CParticleFilterDataImpl<
-          CRbpfTracker, mrpt::bayes::CParticleFilterData<
-                            Hypothesis, mrpt::bayes::particle_storage_mode::VALUE>::CParticleList> {
+          CRbpfTracker,
+          mrpt::bayes::CParticleFilterData<
+              HypothesisHandle, mrpt::bayes::particle_storage_mode::VALUE>::CParticleList> {
  public:
   using Options = mrpt::bayes::CParticleFilter::TParticleFilterOptions;
 
@@ -49,7 +51,7 @@ class CRbpfTracker final
   const FilterModel& model() const { return model_; }
   const ScanStats& stats() const { return stats_; }
   /// The most probable hypothesis after the last scan, taken before resampling.
-  const Hypothesis& mapHypothesis() const { return map_; }
+  const Hypothesis& mapHypothesis() const { return *map_; }
   Stamp stamp() const { return stamp_; }
   std::uint64_t scans() const { return scans_; }
 
@@ -62,14 +64,17 @@ class CRbpfTracker final
                                                const Options& options) override;
 
  private:
+  void setPosterior(Posterior&& posterior);
+
   FilterModel model_;
   mrpt::bayes::CParticleFilter executor_;
+  std::size_t slots_;  ///< sampleSize
   std::uint64_t seed_;
   std::uint64_t scans_ = 0;
   bool started_ = false;  ///< stamp_ is that of a scan since the last reset
   Stamp stamp_;
   const MeasurementScan* scan_ = nullptr;  ///< the scan that executeOn() is to use
-  Hypothesis map_;
+  HypothesisHandle map_;
   ScanStats stats_;
 };
 

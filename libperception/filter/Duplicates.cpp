@@ -11,13 +11,11 @@ namespace {
 constexpr double kUnseen = 0.25;  // [s] a track not hit for so long gives way to a fresh one
 constexpr double kSureClass =
     0.95;  // a track of unsure class has no footprint that others must respect
-constexpr double kNeverLarger =
-    8;  // [m] half length of the longest footprint: beyond it no test is needed
 
 struct Footprint {
   Vector2 centre, half;  // [m]
   double yaw = 0;        // [rad]
-  double area = 0;  // [m^2] of a track whose class is sure, else 0
+  double area = 0;       // [m^2] of a track whose class is sure, else 0
   Stamp last_hit;
 };
 
@@ -52,33 +50,56 @@ TrackHandle takeOver(const Track& older, const Track& younger) {
 
 }  // namespace
 
-void mergeDuplicates(const FilterModel& model, Stamp now, Hypothesis& hypothesis) {
+DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now,
+                               const std::vector<TrackHandle>& tracks)
+    : cells_(tracks.size()) {
   const double least = model.params.merge_area;
   if (least <= 0) return;
-  auto& tracks = hypothesis.tracks;
-  std::vector<Footprint> feet;
-  feet.reserve(tracks.size());
-  for (const auto& t : tracks) feet.push_back(footprintOf(*t));
-  std::vector<char> gone(tracks.size(), 0);
-  for (std::size_t i = 0; i < tracks.size(); ++i) {  // in order of id: i is older than j
-    for (std::size_t j = i + 1; j < tracks.size() && !gone[i]; ++j) {
-      if (gone[j] || (feet[i].centre - feet[j].centre).squaredNorm() > kNeverLarger * kNeverLarger)
-        continue;
-      const bool swallows = feet[i].area >= least && holds(feet[i], feet[j].centre);
-      const bool swallowed = feet[j].area >= least && holds(feet[j], feet[i].centre);
-      if (!swallows && !swallowed) continue;
-      gone[j] = 1;
-      if (now - feet[i].last_hit > kUnseen && feet[j].last_hit == now) {
-        tracks[i] = takeOver(*tracks[i], *tracks[j]);
-        feet[i] = feet[j];
-      }
+  std::vector<Footprint> feet(tracks.size());
+  std::vector<std::size_t> there, large;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!tracks[i]) continue;
+    feet[i] = footprintOf(*tracks[i]);
+    there.push_back(i);
+    if (feet[i].area >= least) large.push_back(i);
+  }
+  for (const std::size_t i : large) {
+    for (const std::size_t j : there) {
+      if (tracks[i]->id == tracks[j]->id || !holds(feet[i], feet[j].centre)) continue;
+      // Of two large ones that hold each other one entry is enough.
+      if (feet[j].area >= least && j < i && holds(feet[j], feet[i].centre)) continue;
+      const bool first = tracks[i]->id < tracks[j]->id;
+      const std::size_t older = first ? i : j, younger = first ? j : i;
+      Conflict conflict{older, younger, nullptr};
+      if (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now)
+        conflict.replacement = takeOver(*tracks[older], *tracks[younger]);
+      conflicts_.push_back(std::move(conflict));
     }
   }
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (!gone[i]) tracks[kept++] = tracks[i];
+  std::sort(conflicts_.begin(), conflicts_.end(), [&](const Conflict& a, const Conflict& b) {
+    const auto ia = tracks[a.older]->id, ib = tracks[b.older]->id;
+    if (ia != ib) return ia < ib;
+    const auto ja = tracks[a.younger]->id, jb = tracks[b.younger]->id;
+    if (ja != jb) return ja < jb;
+    return a.older != b.older ? a.older < b.older : a.younger < b.younger;
+  });
+}
+
+std::vector<std::size_t> DuplicateTable::merged(std::vector<std::size_t> cells) const {
+  if (conflicts_.empty()) return cells;
+  constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> place(cells_, kAbsent);
+  for (std::size_t i = 0; i < cells.size(); ++i) place[cells[i]] = i;
+  for (std::size_t c = 0; c < conflicts_.size(); ++c) {
+    const Conflict& conflict = conflicts_[c];
+    const std::size_t older = place[conflict.older], younger = place[conflict.younger];
+    if (older == kAbsent || younger == kAbsent) continue;
+    place[conflict.younger] = kAbsent;
+    cells[younger] = kAbsent;
+    if (conflict.replacement) cells[older] = cells_ + c;
   }
-  tracks.resize(kept);
+  cells.erase(std::remove(cells.begin(), cells.end(), kAbsent), cells.end());
+  return cells;
 }
 
 }  // namespace perception

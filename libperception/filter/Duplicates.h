@@ -1,14 +1,38 @@
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "libperception/filter/FilterModel.h"
 #include "libperception/filter/Track.h"
 
 namespace perception {
 
-/// Takes tracks out of a hypothesis that stand inside another track's footprint: two solid objects
-/// cannot (SPEC 5.9 asks for an overlap of half of both; a fragment of a vehicle is smaller than
-/// that). Only footprints larger than `merge_area` swallow others, so people in a crowd stay apart.
-/// The older track keeps its identity; when it has not been seen lately and the younger one has, it
-/// takes over the younger one's state. `merge_area` = 0: nothing is merged.
-void mergeDuplicates(const FilterModel& model, Stamp now, Hypothesis& hypothesis);
+/// Which of a scan's distinct tracks cannot both be in one hypothesis, because one stands inside
+/// the other's footprint: two solid objects cannot (SPEC 5.9 asks for an overlap of half of both; a
+/// fragment of a vehicle is smaller than that). Only footprints larger than `merge_area` swallow
+/// others, so people in a crowd stay apart. The older track keeps its identity; when it has not
+/// been seen lately and the younger one has, it takes over the younger one's state. `merge_area` =
+/// 0: nothing is merged. Found once for all hypotheses.
+class DuplicateTable {
+ public:
+  DuplicateTable() = default;
+  /// `tracks` by cell; null ones are not there.
+  DuplicateTable(const FilterModel& model, Stamp now, const std::vector<TrackHandle>& tracks);
+
+  /// The cells of one hypothesis without its duplicates, in the same order.
+  std::vector<std::size_t> merged(std::vector<std::size_t> cells) const;
+  /// The track of a cell that merged() gave.
+  const TrackHandle& handle(std::size_t cell, const std::vector<TrackHandle>& tracks) const {
+    return cell < tracks.size() ? tracks[cell] : conflicts_[cell - tracks.size()].replacement;
+  }
+
+ private:
+  struct Conflict {
+    std::size_t older, younger;  // cells
+    TrackHandle replacement;     // of the older one; null: it stays
+  };
+  std::size_t cells_ = 0;
+  std::vector<Conflict> conflicts_;
+};
 
 }  // namespace perception

@@ -28,6 +28,14 @@ void FilterParams::visit(ParamVisitor& v) {
          "how far behind the horizon a track still counts as visible");
   v.real("merge_area", merge_area, {0, 100}, "m^2",
          "footprints from this size on swallow tracks inside them; 0: never");
+  v.integer("ranked_children", ranked_children, {1, 1000},
+            "assignments that a hypothesis is continued with (association = ranked)");
+  v.real("ranked_span", ranked_span, {0.1, 1e9}, "",
+         "hypotheses lighter than the best by more in log weight are dropped (ranked)");
+  v.boolean("sampled_births", sampled_births,
+            "birth or clutter is drawn, as in DUC; else a newborn may be either (sampled only)");
+  v.real("existence_decay", existence_decay, {0, 1e4}, "s",
+         "in which an unseen object's existence falls to 5 %, as in DUC (3); 0: by detections");
   v.real("max_distance", max_distance, {1, 1e4}, "m",
          "tracks farther from the vehicle are dropped");
 }

@@ -3,6 +3,14 @@
 
 namespace perception {
 
+/// How a hypothesis chooses the causes of a scan's measurements. [run] association.
+enum class Proposal {
+  kSampled,  ///< drawn measurement by measurement from the exact conditional (the paper's optimal
+             ///< proposal, SPEC 5.4)
+  kRanked,   ///< the likeliest assignments of every hypothesis (SPEC 6)
+  kNearest,  ///< the likeliest assignment of one hypothesis: global nearest neighbour, a baseline
+};
+
 /// [filter]: everything of the recursion that is not a property of a class or a sensor. Sources:
 /// SPEC 3-5.
 struct FilterParams {
@@ -31,6 +39,12 @@ struct FilterParams {
   double hidden_tolerance = 1.0;  ///< [m] a track this much behind the horizon is still visible
   double merge_area =
       2.0;  ///< [m^2] footprints from this size on swallow tracks inside them (SPEC 5.9); 0: never
+  int ranked_children = 4;  ///< assignments that a hypothesis is continued with (SPEC 6: 3 to 5)
+  double ranked_span = 14;  ///< in log weight below the best; lighter hypotheses are dropped (1e-6)
+  bool sampled_births = false;  ///< birth or clutter is drawn as in DUC instead of a Bernoulli
+                                ///< newborn (SPEC 5.3); only with the sampled proposal
+  double existence_decay =
+      0;  ///< [s] in which an unseen object's existence falls to 5 %, as in DUC (3 s); 0: Bernoulli
   double max_distance = 150;  ///< [m] from the vehicle; tracks beyond are dropped (SPEC 5.9)
 
   void visit(ParamVisitor& v);
@@ -40,6 +54,7 @@ struct FilterParams {
 struct FilterModel {
   ClassTable classes;
   FilterParams params;
+  Proposal proposal = Proposal::kSampled;
 };
 
 }  // namespace perception

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include "libperception/filter/Parallel.h"
 
+#include "libperception/core/Angle.h"
 #include "libperception/core/Chi2.h"
 #include "libperception/core/LogMath.h"
 #include "libperception/filter/MotionModels.h"
@@ -52,6 +53,36 @@ double visibilityOf(const Track& track, const MeasurementScan& scan, const Filte
                                   model.params.hidden_tolerance);
 }
 
+/// Log density of an innovation and its normalised square; of modes their mixture and the least.
+struct Density {
+  double log_density = kMinusInfinity;
+  double nis = std::numeric_limits<double>::infinity();
+};
+
+Density gaussian(const AxisVector& y, const AxisMatrix& S) {
+  Density out;
+  const Eigen::LLT<AxisMatrix> llt(S);
+  if (llt.info() != Eigen::Success) return out;
+  const auto n = y.size();
+  out.nis = llt.matrixL().solve(y).squaredNorm();
+  double log_det = 0;
+  for (Eigen::Index i = 0; i < n; ++i) log_det += 2 * std::log(llt.matrixLLT()(i, i));
+  out.log_density = -0.5 * (out.nis + log_det + static_cast<double>(n) * std::log(kTwoPi));
+  return out;
+}
+
+Density densityOf(const Innovation& innovation, const ClassFilter& filter) {
+  if (filter.modes.empty()) return gaussian(innovation.y, innovation.S);
+  Density out;
+  for (const auto& mode : filter.modes) {
+    const Density d =
+        gaussian(innovation.residualOf(mode, filter), innovation.covarianceOf(mode.P));
+    out.log_density = logAddExp(out.log_density, mode.log_probability + d.log_density);
+    out.nis = std::min(out.nis, d.nis);
+  }
+  return out;
+}
+
 PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
                               const std::vector<Kinematics>& kinematics, std::size_t k,
                               const MeasurementScan& scan, const FilterModel& model,
@@ -71,13 +102,10 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
     if (!row.predictions[j].defined || detection <= 0) continue;
     const auto innovation =
         innovationOf(track.bank[j], kinematics[j], row.predictions[j], m, *scan.model);
-    const Eigen::LLT<AxisMatrix> llt(innovation.S);
-    if (llt.info() != Eigen::Success) continue;
     const auto n = innovation.y.size();
-    const double nis = llt.matrixL().solve(innovation.y).squaredNorm();
-    double log_det = 0;
-    for (Eigen::Index i = 0; i < n; ++i) log_det += 2 * std::log(llt.matrixLLT()(i, i));
-    const double log_density = -0.5 * (nis + log_det + static_cast<double>(n) * std::log(kTwoPi));
+    const Density density = densityOf(innovation, track.bank[j]);
+    if (density.log_density == kMinusInfinity) continue;
+    const double nis = density.nis, log_density = density.log_density;
     const double label = scan.model->logLabelLikelihood(m.label, static_cast<ClassId>(j));
     const double rest = std::log(detection) + m.log_score_ratio;
     pair.nis[j] = nis;
@@ -135,11 +163,13 @@ NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan,
                                                     scan.model->logLabelLikelihood(m.label, j) +
                                                     scan.model->logBirthDensity(m, j, scan.state);
   }
-  const double log_birth = logNormalise(result.log_class) + m.log_score_ratio;
-  const double log_clutter =
+  result.log_birth = logNormalise(result.log_class) + m.log_score_ratio;
+  result.log_clutter =
       scan.model->logClutterDensity(m, scan.state) + scan.model->logLabelClutter(m.label);
-  result.log_new = logAddExp(log_birth, log_clutter);
-  result.existence = result.log_new > kMinusInfinity ? std::exp(log_birth - result.log_new) : 0;
+  result.log_new = logAddExp(result.log_birth, result.log_clutter);
+  result.existence =
+      result.log_new > kMinusInfinity ? std::exp(result.log_birth - result.log_new) : 0;
+  if (model.params.sampled_births && result.existence > 0) result.existence = 1;
   return result;
 }
 
@@ -171,24 +201,59 @@ Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
   }
   const Vector2 extent_variance(filter.extent.var_length, filter.extent.var_width);
   out.R += H_extent * extent_variance.asDiagonal() * H_extent.transpose();
-  out.S = out.H * filter.P * out.H.transpose() + out.R;
-  out.S.diagonal().array() += 1e-9;
+  out.R.diagonal().array() += 1e-9;  // S stays invertible whatever the sensor says (SPEC 4)
+  out.S = out.covarianceOf(filter.P);
   return out;
 }
 
-LikelihoodTable likelihoodTable(const std::vector<Track>& predicted, const MeasurementScan& scan,
+AxisVector Innovation::residualOf(const ModeFilter& mode, const ClassFilter& filter) const {
+  Vector4 d = mode.x - filter.x;
+  if (filter.oriented) d[3] = wrapAngle(d[3]);
+  return y - H * d;
+}
+
+AxisMatrix Innovation::covarianceOf(const Matrix4& P) const { return H * P * H.transpose() + R; }
+
+bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel& model) {
+  constexpr double kNeverOlder = 0.1;      // [s]
+  constexpr double kMaxAcceleration = 10;  // [m/s^2] of what may happen meanwhile
+  const double dt = scan.state.stamp - track.stamp;
+  if (dt >= kNeverOlder - 1e-6) return true;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
+    const bool speed_known = model.classes[j].motion == Motion::kWheeled && f.oriented;
+    const double speed = speed_known ? std::abs(f.x[2]) : f.x.tail<2>().norm();
+    const double sigma = std::sqrt(std::max(f.P(0, 0), f.P(1, 1)));
+    const double reach = kCoarseGate * sigma + 0.5 * (f.extent.length + f.extent.width) +
+                         kCoarseMargin + (speed + kMaxAcceleration * dt) * dt;
+    if (scan.model->mayDetect(f.x.head<2>(), reach, scan.state)) return true;
+    for (const auto& m : scan.measurements) {
+      const double far = reach + kCoarseGate * m.position_sigma;
+      if ((m.position - f.x.head<2>()).squaredNorm() <= far * far) return true;
+    }
+  }
+  return false;
+}
+
+LikelihoodTable likelihoodTable(const std::vector<Track>& predicted,
+                                const std::vector<char>& touched, const MeasurementScan& scan,
                                 const FilterModel& model) {
   const Gates gates(model.params.gate_probability);
   LikelihoodTable table;
   table.tracks.resize(predicted.size());
   table.news.resize(scan.measurements.size());
   parallelFor(predicted.size(), [&](std::size_t i) {
-    table.tracks[i] = trackLikelihoods(predicted[i], scan, model, gates);
+    if (touched[i]) table.tracks[i] = trackLikelihoods(predicted[i], scan, model, gates);
   });
   parallelFor(scan.measurements.size(), [&](std::size_t k) {
     table.news[k] = newLikelihood(scan.measurements[k], scan, model);
   });
   return table;
+}
+
+LikelihoodTable likelihoodTable(const std::vector<Track>& predicted, const MeasurementScan& scan,
+                                const FilterModel& model) {
+  return likelihoodTable(predicted, std::vector<char>(predicted.size(), 1), scan, model);
 }
 
 }  // namespace perception

@@ -11,6 +11,7 @@ namespace perception {
 struct PairLikelihood {
   std::size_t measurement = 0;
   double log_likelihood = 0;  ///< lhat: log sum_j p(class j) p(z, label, score, detected | class j)
+  double log_prior = 0;       ///< of this cause against others, beside the likelihood
   std::vector<double> log_by_class;  ///< l_j, the summands without the class probability
   std::vector<double>
       log_class_evidence;   ///< l_j with label and innovations tempered: for the class update only
@@ -28,9 +29,10 @@ struct TrackLikelihoods {
 
 /// One measurement as the first of a new object or as clutter.
 struct NewLikelihood {
-  double log_new = 0;             ///< log(birth + clutter), per scan and unit of the axes seen
-  double existence = 0;           ///< birth / (birth + clutter)
-  std::vector<double> log_class;  ///< class posterior of the newborn
+  double log_birth = 0, log_clutter = 0;  ///< log densities per scan and unit of the axes seen
+  double log_new = 0;                     ///< log(birth + clutter)
+  double existence = 0;                   ///< birth / (birth + clutter)
+  std::vector<double> log_class;          ///< class posterior of the newborn
 };
 
 /// Pass 2: every distinct track against every gated measurement, once (SPEC 5.2, 5.3).
@@ -39,10 +41,21 @@ struct LikelihoodTable {
   std::vector<NewLikelihood> news;
 };
 
+/// `touched`: rows of the other tracks stay empty.
+LikelihoodTable likelihoodTable(const std::vector<Track>& predicted,
+                                const std::vector<char>& touched, const MeasurementScan& scan,
+                                const FilterModel& model);
+
+/// The same with all rows.
 LikelihoodTable likelihoodTable(const std::vector<Track>& predicted, const MeasurementScan& scan,
                                 const FilterModel& model);
 
-/// Innovation and its covariance of one class filter for the axes seen, and H = dh/dstate.
+/// False when the scan can say nothing of the track, whether it was detected or not: it stays as it
+/// is for now. Tracks are never left behind for longer than 0.1 s.
+bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel& model);
+
+/// Innovation and its covariance of one class filter for the axes seen, and H = dh/dstate. Motion
+/// modes share h and H, taken at the class filter's mean.
 struct Innovation {
   AxisVector y;
   AxisMatrix S;
@@ -50,6 +63,9 @@ struct Innovation {
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2>
       H_extent;  ///< dh/d(length, width)
   AxisMatrix R;  ///< measurement noise, extent uncertainty included
+
+  AxisVector residualOf(const ModeFilter& mode, const ClassFilter& filter) const;
+  AxisMatrix covarianceOf(const Matrix4& P) const;  ///< S for another P
 };
 Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
                         const AxisPrediction& prediction, const Measurement& m,

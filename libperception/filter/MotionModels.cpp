@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "libperception/core/Angle.h"
 
@@ -10,47 +12,153 @@ namespace {
 
 void symmetrise(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
-/// SPEC 3.1: F = [I dtI; 0 I], Q of white acceleration; position_psd adds slip.
-void predictConstantVelocity(const ObjectClass& c, double dt, ClassFilter& f) {
-  Matrix4 F = Matrix4::Identity();
-  F(0, 2) = F(1, 3) = dt;
-  Matrix4 Q = Matrix4::Zero();
-  const double q = c.accel_psd;
-  for (int i = 0; i < 2; ++i) {
-    Q(i, i) = q * dt * dt * dt / 3 + c.position_psd * dt;
-    Q(i, i + 2) = Q(i + 2, i) = q * dt * dt / 2;
-    Q(i + 2, i + 2) = q * dt;
+/// White acceleration through a speed that decays: integrals over the step. Without decay SPEC
+/// 3.1's dt^3/3, dt^2/2, dt.
+struct SpeedNoise {
+  double keep = 1, way = 0;       ///< e^(-a dt); integral of it [s]
+  double pp = 0, pv = 0, vv = 0;  ///< [s^3, s^2, s] times the power spectral density
+
+  SpeedNoise(double a, double dt) {
+    const double s = a * dt;
+    if (s < 1e-3) {  // to first order in s: the closed forms cancel
+      keep = 1 - s, way = dt * (1 - s / 2);
+      pp = dt * dt * dt / 3 * (1 - 0.75 * s), pv = dt * dt / 2 * (1 - s), vv = dt * (1 - s);
+      return;
+    }
+    keep = std::exp(-s), way = (1 - keep) / a;
+    vv = (1 - keep * keep) / (2 * a);
+    pv = way * way / 2;
+    pp = (dt - way - a * way * way / 2) / (a * a);
   }
-  f.x = F * f.x;
-  f.P = F * f.P * F.transpose() + Q;
+};
+
+/// SPEC 3.1: F = [I dtI; 0 I], Q of white acceleration; position_psd adds slip.
+void predictConstantVelocity(const ObjectClass& c, double psd, double damping, double dt,
+                             Vector4& x, Matrix4& P) {
+  const SpeedNoise n(damping, dt);
+  Matrix4 F = Matrix4::Identity();
+  F(0, 2) = F(1, 3) = n.way;
+  F(2, 2) = F(3, 3) = n.keep;
+  Matrix4 Q = Matrix4::Zero();
+  for (int i = 0; i < 2; ++i) {
+    Q(i, i) = psd * n.pp + c.position_psd * dt;
+    Q(i, i + 2) = Q(i + 2, i) = psd * n.pv;
+    Q(i + 2, i + 2) = psd * n.vv;
+  }
+  x = F * x;
+  P = F * P * F.transpose() + Q;
 }
 
 /// SPEC 3.2: speed v along theta, both random walks; Q to first order, valid for any dt and
 /// composing consistently.
-void predictWheeled(const ObjectClass& object_class, double dt, ClassFilter& f) {
-  const double c = std::cos(f.x[3]), s = std::sin(f.x[3]), v = f.x[2];
+void predictWheeled(const ObjectClass& object_class, double psd, double damping, double dt,
+                    Vector4& x, Matrix4& P) {
+  const SpeedNoise noise(damping, dt);
+  const double c = std::cos(x[3]), s = std::sin(x[3]), v = x[2];
   Matrix4 F = Matrix4::Identity();
-  F(0, 2) = dt * c;
-  F(0, 3) = -dt * v * s;
-  F(1, 2) = dt * s;
-  F(1, 3) = dt * v * c;
+  F(0, 2) = noise.way * c;
+  F(0, 3) = -noise.way * v * s;
+  F(1, 2) = noise.way * s;
+  F(1, 3) = noise.way * v * c;
+  F(2, 2) = noise.keep;
   const Vector2 u(c, s), n(-v * s, v * c);
-  const double qv = object_class.accel_psd, qw = object_class.yaw_rate_psd;
+  const double qw = object_class.yaw_rate_psd;
   Matrix4 Q = Matrix4::Zero();
-  Q.topLeftCorner<2, 2>() = dt * dt * dt / 3 * (qv * u * u.transpose() + qw * n * n.transpose());
+  Q.topLeftCorner<2, 2>() =
+      psd * noise.pp * u * u.transpose() + dt * dt * dt / 3 * qw * n * n.transpose();
   Q.topLeftCorner<2, 2>().diagonal().array() += object_class.position_psd * dt;
-  Q.block<2, 1>(0, 2) = dt * dt / 2 * qv * u;
+  Q.block<2, 1>(0, 2) = psd * noise.pv * u;
   Q.block<2, 1>(0, 3) = dt * dt / 2 * qw * n;
   Q.block<1, 2>(2, 0) = Q.block<2, 1>(0, 2).transpose();
   Q.block<1, 2>(3, 0) = Q.block<2, 1>(0, 3).transpose();
-  Q(2, 2) = qv * dt;
+  Q(2, 2) = psd * noise.vv;
   Q(3, 3) = qw * dt;
-  f.x[0] += dt * v * c;
-  f.x[1] += dt * v * s;
-  f.P = F * f.P * F.transpose() + Q;
+  x[0] += noise.way * v * c;
+  x[1] += noise.way * v * s;
+  x[2] *= noise.keep;
+  P = F * P * F.transpose() + Q;
+}
+
+/// One Gaussian of a moving class.
+void predictGaussian(const ObjectClass& c, double psd, double damping, double dt, bool oriented,
+                     Vector4& x, Matrix4& P) {
+  if (!oriented) {
+    predictConstantVelocity(c, psd, damping, dt, x, P);
+  } else {
+    const bool fine = dt > 0.25 || P(3, 3) > radians(30) * radians(30);
+    const int steps = fine ? std::max(1, static_cast<int>(std::ceil(dt / 0.1 - 1e-9))) : 1;
+    for (int i = 0; i < steps; ++i) predictWheeled(c, psd, damping, dt / steps, x, P);
+  }
+  symmetrise(P);
+}
+
+/// x - reference, the heading wrapped.
+Vector4 difference(const Vector4& x, const Vector4& reference, bool oriented) {
+  Vector4 d = x - reference;
+  if (oriented) d[3] = wrapAngle(d[3]);
+  return d;
+}
+
+/// Mean and spread of a mixture of Gaussians about a common reference.
+struct Moments {
+  Vector4 x;
+  Matrix4 P;
+};
+Moments momentsOf(const std::vector<ModeFilter>& modes, const std::vector<double>& weights,
+                  bool oriented) {
+  const auto heaviest =
+      static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+  const Vector4& reference = modes[heaviest].x;
+  Vector4 mean = Vector4::Zero();
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    mean += weights[i] * difference(modes[i].x, reference, oriented);
+  Moments out{reference + mean, Matrix4::Zero()};
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const Vector4 d = difference(modes[i].x, out.x, oriented);
+    out.P += weights[i] * (modes[i].P + d * d.transpose());
+  }
+  if (oriented) out.x[3] = wrapAngle(out.x[3]);
+  return out;
+}
+
+/// The interaction of interacting multiple models (Blom and Bar-Shalom 1988): modes as they will
+/// be after dt, each starting from the mixture that could have led there.
+void interact(const ObjectClass& c, double dt, ClassFilter& f) {
+  const std::size_t n = f.modes.size();
+  std::vector<ModeFilter> mixed(n);
+  std::vector<double> weights(n);
+  for (std::size_t to = 0; to < n; ++to) {
+    double total = 0;
+    for (std::size_t from = 0; from < n; ++from) {
+      const double stays = std::exp(-dt / c.mode_sojourn[from]);
+      const double moves = from == to ? stays : (1 - stays) / static_cast<double>(n - 1);
+      total += weights[from] = moves * std::exp(f.modes[from].log_probability);
+    }
+    for (double& w : weights) w /= total;
+    const Moments m = momentsOf(f.modes, weights, f.oriented);
+    mixed[to] = {std::log(total), m.x, m.P};
+  }
+  f.modes = std::move(mixed);
 }
 
 }  // namespace
+
+void startModes(const ObjectClass& c, ClassFilter& f) {
+  f.modes.clear();
+  if (c.motion == Motion::kStatic) return;
+  const double total = std::accumulate(c.mode_sojourn.begin(), c.mode_sojourn.end(), 0.0);
+  for (const double sojourn : c.mode_sojourn)
+    f.modes.push_back({std::log(sojourn / total), f.x, f.P});
+}
+
+void combineModes(ClassFilter& f) {
+  if (f.modes.empty()) return;
+  std::vector<double> weights;
+  for (const auto& m : f.modes) weights.push_back(std::exp(m.log_probability));
+  const Moments m = momentsOf(f.modes, weights, f.oriented);
+  f.x = m.x;
+  f.P = m.P;
+}
 
 void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter& f) {
   if (dt <= 0) return;
@@ -58,14 +166,16 @@ void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter&
     f.P.topLeftCorner<2, 2>().diagonal().array() += object_class.position_psd * dt;
     return;
   }
-  if (object_class.motion == Motion::kConstantVelocity || !f.oriented) {
-    predictConstantVelocity(object_class, dt, f);
-  } else {
-    const bool fine = dt > 0.25 || f.P(3, 3) > radians(30) * radians(30);
-    const int steps = fine ? std::max(1, static_cast<int>(std::ceil(dt / 0.1 - 1e-9))) : 1;
-    for (int i = 0; i < steps; ++i) predictWheeled(object_class, dt / steps, f);
+  if (f.modes.empty()) {
+    predictGaussian(object_class, object_class.accel_psd, 0, dt, f.oriented, f.x, f.P);
+    return;
   }
-  symmetrise(f.P);
+  interact(object_class, dt, f);
+  for (std::size_t i = 0; i < f.modes.size(); ++i) {
+    predictGaussian(object_class, object_class.mode_accel_psd[i], object_class.mode_damping[i], dt,
+                    f.oriented, f.modes[i].x, f.modes[i].P);
+  }
+  combineModes(f);
 }
 
 Kinematics kinematicsOf(const ObjectClass& object_class, const ClassFilter& f) {
@@ -89,38 +199,63 @@ Kinematics kinematicsOf(const ObjectClass& object_class, const ClassFilter& f) {
   return k;
 }
 
-void orientByVelocity(ClassFilter& f) {
-  const double vx = f.x[2], vy = f.x[3];
-  const double v = std::max(std::hypot(vx, vy), 1e-6);
-  Matrix4 J = Matrix4::Identity();
-  J.bottomRightCorner<2, 2>() << vx / v, vy / v, -vy / (v * v), vx / (v * v);
-  f.x.tail<2>() << v, std::atan2(vy, vx);
-  f.P = J * f.P * J.transpose();
-  symmetrise(f.P);
+namespace {
+
+/// [x, y, vx, vy] -> [x, y, v, theta] by a Jacobian of the velocity that all modes share.
+template <class Carry>
+void orientAll(ClassFilter& f, const Matrix4& J, Carry carry) {
+  const auto one = [&](Vector4& x, Matrix4& P) {
+    carry(x);
+    P = J * P * J.transpose();
+    symmetrise(P);
+  };
+  for (auto& m : f.modes) one(m.x, m.P);
+  one(f.x, f.P);
   f.oriented = true;
+}
+
+}  // namespace
+
+void orientByVelocity(ClassFilter& f) {
+  const Vector2 mean = f.x.tail<2>();
+  const double v = std::max(mean.norm(), 1e-6);
+  const Vector2 along = mean / v, across(-along.y(), along.x());
+  const double theta = std::atan2(mean.y(), mean.x());
+  Matrix4 J = Matrix4::Identity();
+  J.bottomRightCorner<2, 2>() << along.transpose(), across.transpose() / v;
+  // A mode's own velocity is taken to first order about the mean.
+  orientAll(f, J, [&](Vector4& x) {
+    const Vector2 own = x.tail<2>();
+    x.tail<2>() << along.dot(own), wrapAngle(theta + across.dot(own) / v);
+  });
 }
 
 void orientByAxis(double yaw, double yaw_variance, ClassFilter& f) {
-  double theta = yaw;
-  double v = std::cos(theta) * f.x[2] + std::sin(theta) * f.x[3];
-  if (v < 0) {
-    theta = wrapAngle(theta + kPi);
-    v = -v;
-  }
+  const double forward = std::cos(yaw) * f.x[2] + std::sin(yaw) * f.x[3];
+  orientAlong(forward < 0 ? wrapAngle(yaw + kPi) : yaw, yaw_variance, f);
+}
+
+void orientAlong(double yaw, double yaw_variance, ClassFilter& f) {
+  const Vector2 along(std::cos(yaw), std::sin(yaw));
   Matrix4 J = Matrix4::Identity();
-  J.bottomRightCorner<2, 2>() << std::cos(theta), std::sin(theta), 0, 0;
-  f.x.tail<2>() << v, theta;
-  f.P = J * f.P * J.transpose();
+  J.bottomRightCorner<2, 2>() << along.transpose(), 0, 0;
+  orientAll(f, J, [&](Vector4& x) {
+    const double v = along.dot(x.tail<2>());
+    x.tail<2>() << v, yaw;
+  });
+  for (auto& m : f.modes) m.P(3, 3) = yaw_variance;
   f.P(3, 3) = yaw_variance;
-  symmetrise(f.P);
-  f.oriented = true;
 }
 
 void reverse(ClassFilter& f) {
-  f.x[2] = -f.x[2];
-  f.x[3] = wrapAngle(f.x[3] + kPi);
-  f.P.row(2) *= -1;
-  f.P.col(2) *= -1;
+  const auto one = [](Vector4& x, Matrix4& P) {
+    x[2] = -x[2];
+    x[3] = wrapAngle(x[3] + kPi);
+    P.row(2) *= -1;
+    P.col(2) *= -1;
+  };
+  for (auto& m : f.modes) one(m.x, m.P);
+  one(f.x, f.P);
 }
 
 }  // namespace perception

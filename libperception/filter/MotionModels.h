@@ -5,11 +5,17 @@
 namespace perception {
 
 /// Moves a class filter by dt >= 0 [s]: SPEC 3.1 (constant velocity), 3.2 (wheeled), static. Long
-/// steps and uncertain headings are taken in sub-steps of at most 0.1 s.
+/// steps and uncertain headings are taken in sub-steps of at most 0.1 s. Motion modes interact
+/// first.
 void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter& filter);
 
 /// What sensors can see of it: q(state) and its Jacobian.
 Kinematics kinematicsOf(const ObjectClass& object_class, const ClassFilter& filter);
+
+/// Gives a new filter the motion modes of its class, at the shares of time that they take.
+void startModes(const ObjectClass& object_class, ClassFilter& filter);
+/// x and P of a filter with modes from them: the mixture's mean and spread.
+void combineModes(ClassFilter& filter);
 
 /// Gives an unoriented wheeled filter its heading along its velocity: [x, y, vx, vy] -> [x, y, v,
 /// theta], with the covariance carried by the Jacobian.
@@ -17,6 +23,8 @@ void orientByVelocity(ClassFilter& filter);
 /// The same along a known axis: theta is `yaw` or its opposite, whichever the velocity prefers; v
 /// is the velocity along.
 void orientByAxis(double yaw, double yaw_variance, ClassFilter& filter);
+/// The same with a known direction: v may be negative.
+void orientAlong(double yaw, double yaw_variance, ClassFilter& filter);
 /// The exact symmetry (v, theta) -> (-v, theta + pi) of an oriented filter (SPEC 7).
 void reverse(ClassFilter& filter);
 

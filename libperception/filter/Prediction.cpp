@@ -22,8 +22,9 @@ Track predictTrack(const Track& track, Stamp to, const FilterModel& model) {
     predictClassFilter(model.classes[j], dt, next.bank[static_cast<std::size_t>(j)]);
   }
   const bool in_view = to - track.last_in_view < kOutOfViewAfter;
-  next.existence *=
-      std::exp(-dt / (in_view ? model.params.survival_in_view : model.params.survival_out_of_view));
+  const double life = in_view ? model.params.survival_in_view : model.params.survival_out_of_view;
+  const double decay = model.params.existence_decay;  // to 5 % = e^-3 in this time
+  next.existence *= std::exp(decay > 0 ? -3 * dt / decay : -dt / life);
   const double forget = -std::expm1(-dt / model.params.class_forgetting);
   const double uniform = std::log(forget / static_cast<double>(model.classes.size()));
   for (double& lp : next.log_class) lp = logAddExp(lp + std::log1p(-forget), uniform);

@@ -2,204 +2,215 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <unordered_map>
-
-#include "libperception/filter/Parallel.h"
+#include <utility>
 
 #include "libperception/core/LogMath.h"
-#include "libperception/filter/Duplicates.h"
+#include "libperception/filter/Association.h"
 #include "libperception/filter/LikelihoodTable.h"
+#include "libperception/filter/Parallel.h"
 #include "libperception/filter/Prediction.h"
-#include "libperception/filter/Update.h"
+#include "libperception/filter/Updates.h"
 
 namespace perception {
 namespace {
 
 enum Purpose : std::uint32_t { kOrder = 0x5701, kSample = 0x5702 };
 
-/// Tracks that hypotheses share, numbered in order of first appearance (so never by address).
-struct Distinct {
-  std::vector<TrackHandle> tracks;
-  std::vector<std::vector<std::size_t>>
-      of_hypothesis;  ///< indices into tracks, in the hypothesis's order
+/// The hypotheses before the scan, each distinct one once.
+struct Groups {
+  std::vector<HypothesisHandle> hypotheses;       // in order of first appearance
+  std::vector<std::vector<std::uint32_t>> slots;  // that hold it, ascending
 };
 
-Distinct distinctTracks(const std::vector<Hypothesis>& hypotheses) {
-  Distinct result;
+Groups groupSlots(const Posterior& before) {
+  Groups groups;
+  std::unordered_map<const Hypothesis*, std::size_t> number;
+  for (std::size_t i = 0; i < before.hypotheses.size(); ++i) {
+    const auto [it, fresh] =
+        number.try_emplace(before.hypotheses[i].get(), groups.hypotheses.size());
+    if (fresh) {
+      groups.hypotheses.push_back(before.hypotheses[i]);
+      groups.slots.emplace_back();
+    }
+    groups.slots[it->second].push_back(static_cast<std::uint32_t>(i));
+  }
+  return groups;
+}
+
+/// Numbers the tracks in order of first appearance (so never by address) and predicts those that
+/// the scan concerns.
+ScanTracks tracksOf(const std::vector<HypothesisHandle>& hypotheses, const MeasurementScan& scan,
+                    const FilterModel& model) {
+  ScanTracks out;
   std::unordered_map<const Track*, std::size_t> number;
-  result.of_hypothesis.reserve(hypotheses.size());
+  out.of_hypothesis.reserve(hypotheses.size());
   for (const auto& h : hypotheses) {
-    auto& indices = result.of_hypothesis.emplace_back();
-    indices.reserve(h.tracks.size());
-    for (const auto& t : h.tracks) {
-      const auto [it, fresh] = number.try_emplace(t.get(), result.tracks.size());
-      if (fresh) result.tracks.push_back(t);
+    auto& indices = out.of_hypothesis.emplace_back();
+    indices.reserve(h->tracks.size());
+    for (const auto& t : h->tracks) {
+      const auto [it, fresh] = number.try_emplace(t.get(), out.before.size());
+      if (fresh) out.before.push_back(t);
       indices.push_back(it->second);
     }
   }
-  return result;
+  out.predicted.resize(out.before.size());
+  out.touched.assign(out.before.size(), 0);
+  parallelFor(out.before.size(), [&](std::size_t i) {
+    if (!concerns(scan, *out.before[i], model)) return;
+    out.touched[i] = 1;
+    out.predicted[i] = predictTrack(*out.before[i], scan.state.stamp, model);
+  });
+  return out;
 }
 
-bool keep(const Track& t, const MeasurementScan& scan, const FilterModel& model) {
-  if (t.existence < model.params.existence_min) return false;
-  const auto& f = t.bank[static_cast<std::size_t>(t.likeliestClass())];
-  const Vector2 ego = scan.state.ego.T_world_ego.translation().head<2>();
-  return f.x.allFinite() && f.P.allFinite() &&
-         (f.x.head<2>() - ego).norm() <= model.params.max_distance;
-}
-
-/// The updated tracks of one scan: made once per distinct (track, cause), handed out as often as
-/// needed.
-class Updates {
- public:
-  Updates(std::size_t tracks, std::size_t measurements)
-      : measurements_(measurements),
-        wanted_(tracks * (measurements + 1)),
-        made_(wanted_.size()),
-        new_wanted_(measurements),
-        new_made_(measurements) {}
-
-  std::size_t hitCell(std::size_t track, std::size_t k) const {
-    return track * (measurements_ + 1) + k;
-  }
-  std::size_t missCell(std::size_t track) const { return hitCell(track, measurements_); }
-
-  void want(const std::vector<std::size_t>& tracks, const Association& association) {
-    for (const std::size_t t : tracks) wanted_[missCell(t)] = 1;
-    for (std::size_t k = 0; k < measurements_; ++k) {
-      const int cause = association.cause[k];
-      if (cause == Association::kNew) {
-        new_wanted_[k] = 1;
-      } else {
-        wanted_[hitCell(tracks[static_cast<std::size_t>(cause)], k)] = 1;
-      }
-    }
-  }
-
-  /// Makes what is wanted; the pairs of a track are found by measurement number.
-  std::size_t make(const std::vector<Track>& predicted, const LikelihoodTable& table,
-                   const MeasurementScan& scan, std::uint64_t scan_index,
-                   const FilterModel& model) {
-    parallelFor(predicted.size(), [&](std::size_t t) {
-      const auto& row = table.tracks[t];
-      for (const auto& pair : row.pairs) {
-        if (!wanted_[hitCell(t, pair.measurement)]) continue;
-        store(made_[hitCell(t, pair.measurement)],
-              hitTrack(predicted[t], row, pair, scan, scan_index, model), scan, model);
-      }
-      if (wanted_[missCell(t)])
-        store(made_[missCell(t)], missTrack(predicted[t], row, scan, model), scan, model);
-    });
-    parallelFor(measurements_, [&](std::size_t k) {
-      if (new_wanted_[k])
-        store(new_made_[k], newTrack(table.news[k], k, scan, scan_index, model), scan, model);
-    });
-    return static_cast<std::size_t>(std::count(wanted_.begin(), wanted_.end(), 1));
-  }
-
-  /// Null when the track was dropped.
-  const TrackHandle& hit(std::size_t track, std::size_t k) const {
-    return made_[hitCell(track, k)];
-  }
-  const TrackHandle& miss(std::size_t track) const { return made_[missCell(track)]; }
-  const TrackHandle& newborn(std::size_t k) const { return new_made_[k]; }
-
- private:
-  static void store(TrackHandle& cell, Track&& track, const MeasurementScan& scan,
-                    const FilterModel& model) {
-    if (keep(track, scan, model)) cell = std::make_shared<const Track>(std::move(track));
-  }
-
-  std::size_t measurements_;
-  std::vector<char> wanted_;
-  std::vector<TrackHandle> made_;
-  std::vector<char> new_wanted_;
-  std::vector<TrackHandle> new_made_;
+/// An association of one distinct hypothesis, the slots that drew it (sampled) and its log weight
+/// (ranked).
+struct Child {
+  std::size_t parent = 0;
+  Association association;
+  std::vector<std::uint32_t> slots;
+  double log_weight = 0;
 };
 
-Hypothesis assemble(const std::vector<std::size_t>& tracks, const Association& association,
-                    const Updates& updates) {
-  std::vector<int> measurement_of(tracks.size(), -1);
-  for (std::size_t k = 0; k < association.cause.size(); ++k) {
-    if (association.cause[k] >= 0)
-      measurement_of[static_cast<std::size_t>(association.cause[k])] = static_cast<int>(k);
+std::vector<Child> sampleChildren(const Groups& groups, const ScanTracks& tracks,
+                                  const AssociationIndex& index, const RngKey& key) {
+  const auto order = randomOrder(index.measurements(), Rng(key.withPurpose(kOrder)));
+  std::vector<std::vector<SampledAssociation>> sampled(groups.hypotheses.size());
+  parallelFor(sampled.size(), [&](std::size_t h) {
+    sampled[h] = sampleAssociations(tracks.of_hypothesis[h], index, order, groups.slots[h],
+                                    key.withPurpose(kSample));
+  });
+  std::vector<Child> children;
+  for (std::size_t h = 0; h < sampled.size(); ++h) {
+    for (auto& s : sampled[h])
+      children.push_back({h, std::move(s.association), std::move(s.slots), 0});
   }
-  Hypothesis h;
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const auto& handle = measurement_of[i] < 0
-                             ? updates.miss(tracks[i])
-                             : updates.hit(tracks[i], static_cast<std::size_t>(measurement_of[i]));
-    if (handle) h.tracks.push_back(handle);
+  return children;
+}
+
+/// The best `slots` children over all hypotheses.
+std::vector<Child> rankChildren(const Groups& groups, const std::vector<double>& log_weights,
+                                const ScanTracks& tracks, const AssociationIndex& index,
+                                const FilterModel& model, std::size_t slots) {
+  const bool nearest = model.proposal == Proposal::kNearest;
+  const auto k = nearest ? 1 : static_cast<std::size_t>(model.params.ranked_children);
+  std::vector<std::vector<Association>> ranked(groups.hypotheses.size());
+  parallelFor(ranked.size(), [&](std::size_t h) {
+    ranked[h] = rankAssociations(tracks.of_hypothesis[h], index, k, model.params.ranked_span);
+  });
+  std::vector<Child> children;
+  for (std::size_t h = 0; h < ranked.size(); ++h) {
+    double weight = kMinusInfinity;
+    for (const std::uint32_t s : groups.slots[h]) weight = logAddExp(weight, log_weights[s]);
+    for (auto& a : ranked[h]) {
+      const double child_weight = weight + a.log_weight;
+      children.push_back({h, std::move(a), {}, child_weight});
+    }
   }
-  for (std::size_t k = 0; k < association.cause.size(); ++k) {
-    if (association.cause[k] == Association::kNew && updates.newborn(k))
-      h.tracks.push_back(updates.newborn(k));
+  std::stable_sort(children.begin(), children.end(),
+                   [](const Child& a, const Child& b) { return a.log_weight > b.log_weight; });
+  std::size_t kept = 0;
+  while (kept < std::min(children.size(), nearest ? 1 : slots) &&
+         children[kept].log_weight >= children.front().log_weight - model.params.ranked_span)
+    ++kept;
+  children.resize(kept);
+  return children;
+}
+
+/// Children of equal history share a handle (sampled: slots stay) or become one (ranked).
+Posterior posteriorOf(std::vector<Child> children, std::vector<HypothesisHandle> handles,
+                      const Posterior& before, bool sampled) {
+  std::unordered_map<std::uint64_t, std::size_t>
+      first;  // by key: the child, or the place in `after`
+  Posterior after;
+  if (sampled) {
+    after.hypotheses.resize(before.hypotheses.size());
+    after.log_weights = before.log_weights;
+    for (std::size_t c = 0; c < children.size(); ++c) {
+      const auto original = first.try_emplace(handles[c]->key, c).first->second;
+      for (const std::uint32_t slot : children[c].slots) {
+        after.hypotheses[slot] = handles[original];
+        after.log_weights[slot] += children[c].association.log_weight;
+      }
+    }
+    return after;
   }
-  return h;
+  for (std::size_t c = 0; c < children.size(); ++c) {
+    const auto [it, fresh] = first.try_emplace(handles[c]->key, after.hypotheses.size());
+    if (fresh) {
+      after.hypotheses.push_back(handles[c]);
+      after.log_weights.push_back(children[c].log_weight);
+    } else {
+      double& w = after.log_weights[it->second];
+      w = logAddExp(w, children[c].log_weight);
+    }
+  }
+  return after;
 }
 
 }  // namespace
 
-StepResult step(const std::vector<Hypothesis>& hypotheses, const MeasurementScan& scan,
-                const FilterModel& model, const RngKey& key) {
-  const Distinct distinct = distinctTracks(hypotheses);
-  std::vector<Track> predicted(distinct.tracks.size());
-  parallelFor(predicted.size(), [&](std::size_t i) {
-    predicted[i] = predictTrack(*distinct.tracks[i], scan.state.stamp, model);
-  });
+Posterior Posterior::empty(std::size_t n) {
+  const auto nothing = std::make_shared<const Hypothesis>();
+  return {std::vector<HypothesisHandle>(n, nothing), std::vector<double>(n, 0.0)};
+}
 
-  const LikelihoodTable table = likelihoodTable(predicted, scan, model);
+StepResult step(const Posterior& before, const MeasurementScan& scan, const FilterModel& model,
+                const RngKey& key, std::size_t slots) {
+  const Groups groups = groupSlots(before);
+  const ScanTracks tracks = tracksOf(groups.hypotheses, scan, model);
+  const LikelihoodTable table = likelihoodTable(tracks.predicted, tracks.touched, scan, model);
+  const AssociationIndex index(tracks.predicted, table, model);
+  const bool sampled = model.proposal == Proposal::kSampled;
+  std::vector<Child> children =
+      sampled ? sampleChildren(groups, tracks, index, key)
+              : rankChildren(groups, before.log_weights, tracks, index, model, slots);
 
-  const AssociationIndex index(predicted, table);
-  const auto order = randomOrder(scan.measurements.size(), Rng(key.withPurpose(kOrder)));
-  std::vector<Association> associations(hypotheses.size());
-  parallelFor(hypotheses.size(), [&](std::size_t i) {
-    const Rng rng(key.withPurpose(kSample).withSlot(static_cast<std::uint32_t>(i)));
-    associations[i] = associate(distinct.of_hypothesis[i], index, order, rng);
-  });
-
-  Updates updates(predicted.size(), scan.measurements.size());
-  for (std::size_t i = 0; i < hypotheses.size(); ++i)
-    updates.want(distinct.of_hypothesis[i], associations[i]);
+  Updates updates(tracks, table, scan, model);
+  for (const Child& c : children) updates.want(c.parent, c.association);
   StepResult result;
-  result.stats.updates = updates.make(predicted, table, scan, key.counter, model);
-  result.hypotheses.resize(hypotheses.size());
-  result.log_weights.resize(hypotheses.size());
-  parallelFor(hypotheses.size(), [&](std::size_t i) {
-    result.hypotheses[i] = assemble(distinct.of_hypothesis[i], associations[i], updates);
-    mergeDuplicates(model, scan.state.stamp, result.hypotheses[i]);
-    result.log_weights[i] = associations[i].log_weight;
+  result.stats.updates = updates.make(key.counter);
+  std::vector<HypothesisHandle> handles(children.size());
+  parallelFor(children.size(), [&](std::size_t c) {
+    handles[c] = updates.assemble(children[c].parent, children[c].association);
   });
-  result.stats.distinct_tracks = predicted.size();
   result.stats.measurements = scan.measurements.size();
-  for (const auto& row : table.tracks) result.stats.pairs += row.pairs.size();
+  result.stats.distinct_tracks = tracks.before.size();
+  for (std::size_t t = 0; t < tracks.before.size(); ++t) {
+    result.stats.predicted += tracks.touched[t] != 0;
+    result.stats.pairs += table.tracks[t].pairs.size();
+  }
+  result.posterior = posteriorOf(std::move(children), std::move(handles), before, sampled);
   return result;
 }
 
-MapHypothesis mapHypothesis(const std::vector<const Hypothesis*>& hypotheses,
-                            const std::vector<double>& log_weights) {
-  std::map<std::vector<std::uint64_t>, std::pair<std::size_t, double>>
-      groups;  // history -> first slot, log weight
-  std::vector<std::uint64_t> history;
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    history.clear();
-    for (const auto& t : hypotheses[i]->tracks) history.push_back(t->history);
-    const auto [it, fresh] = groups.try_emplace(history, i, log_weights[i]);
-    if (!fresh) it->second.second = logAddExp(it->second.second, log_weights[i]);
-  }
-  MapHypothesis best;
-  best.distinct = groups.size();
-  double best_weight = kMinusInfinity;
-  for (const auto& [h, group] : groups) {
-    // Ties go to the earlier slot, so that the answer does not hang on the hash.
-    if (group.second > best_weight || (group.second == best_weight && group.first < best.slot)) {
-      best.slot = group.first;
-      best_weight = group.second;
+MapHypothesis mapHypothesis(const Posterior& posterior) {
+  struct Group {
+    std::size_t first;
+    double log_weight;
+  };
+  std::unordered_map<std::uint64_t, std::size_t> number;  // by key
+  std::vector<Group> groups;                              // in order of first appearance
+  for (std::size_t i = 0; i < posterior.hypotheses.size(); ++i) {
+    const auto [it, fresh] = number.try_emplace(posterior.hypotheses[i]->key, groups.size());
+    if (fresh) {
+      groups.push_back({i, posterior.log_weights[i]});
+    } else {
+      double& w = groups[it->second].log_weight;
+      w = logAddExp(w, posterior.log_weights[i]);
     }
   }
-  best.probability = std::exp(best_weight - logSumExp(log_weights));
-  return best;
+  // Ties go to the earlier slot.
+  const auto best =
+      std::max_element(groups.begin(), groups.end(),
+                       [](const Group& a, const Group& b) { return a.log_weight < b.log_weight; });
+  MapHypothesis out;
+  out.distinct = groups.size();
+  if (best == groups.end()) return out;
+  out.slot = best->first;
+  out.probability = std::exp(best->log_weight - logSumExp(posterior.log_weights));
+  return out;
 }
 
 }  // namespace perception

@@ -11,6 +11,14 @@
 
 namespace perception {
 
+/// One motion mode of a class filter (interacting models): its Gaussian, in the class filter's
+/// coordinates.
+struct ModeFilter {
+  double log_probability = 0;  ///< of the mode, given the class
+  Vector4 x = Vector4::Zero();
+  Matrix4 P = Matrix4::Zero();
+};
+
 /// The Gaussian of one class in a track's bank. The meaning of the state depends on the class's
 /// motion: constant velocity [x, y, vx, vy]; wheeled [x, y, v, theta] once `oriented`, before that
 /// as constant velocity; static [x, y, 0, 0] with zero covariance in the last two. World, SI units.
@@ -19,6 +27,8 @@ struct ClassFilter {
   Matrix4 P = Matrix4::Zero();
   Extent extent;
   bool oriented = false;  ///< wheeled only: the heading is known
+  std::vector<ModeFilter>
+      modes;  ///< of classes with several; x and P are then their mean and spread
 };
 
 /// One object inside a hypothesis. Immutable once made: hypotheses share it.
@@ -41,10 +51,18 @@ struct Track {
 
 using TrackHandle = std::shared_ptr<const Track>;
 
-/// A sampled association history and the tracks that follow from it, in order of id.
+/// A sampled association history and the tracks that follow from it, in order of their birth.
+/// Immutable once made: particles share it.
 struct Hypothesis {
   std::vector<TrackHandle> tracks;
+  std::uint64_t key = 0;  ///< of the tracks' histories, in any order: equal keys, equal hypotheses
+
+  Hypothesis() = default;
+  explicit Hypothesis(std::vector<TrackHandle> t);
 };
+
+/// What a particle holds. Never null.
+using HypothesisHandle = std::shared_ptr<const Hypothesis>;
 
 inline std::size_t modalityIndex(Modality m) {
   return m == Modality::kLidar ? 0 : m == Modality::kCamera ? 1 : 2;

@@ -29,7 +29,8 @@ double lostNis(Eigen::Index axes) {
   return quantiles[static_cast<std::size_t>(axes)];
 }
 
-constexpr double kYawGate = 6.635;  // chi-square .99, one degree of freedom
+constexpr double kLogLeastMode = -14;  // log probability, about 1e-6
+constexpr double kYawGate = 6.635;     // chi-square .99, one degree of freedom
 
 void scalarUpdate(const ScalarEstimate& z, ScalarEstimate& x) {
   const double gain = x.variance / (x.variance + z.variance);
@@ -60,12 +61,14 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   if (c.motion == Motion::kStatic) return f;
   const double sigma = speedSigma(c, model);
   f.P(2, 2) = f.P(3, 3) = sigma * sigma;
+  startModes(c, f);
   if (c.motion == Motion::kWheeled && birth.yaw) {
     const double extra = model.params.shape_yaw_sigma;
     orientByAxis(birth.yaw->mean, birth.yaw->variance + extra * extra, f);
     if (birth.speed) {
       f.x[2] = birth.speed->mean;
       f.P(2, 2) = birth.speed->variance;
+      startModes(c, f);
     }
   }
   return f;
@@ -88,18 +91,60 @@ void updateExtentBy(const Innovation& innovation, Extent& e) {
   e.var_width = std::max(std::min(kFloor, e.var_width), e.var_width - gain(1, 1));
 }
 
-/// Kalman update in Joseph form (SPEC 4).
-void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
+/// Kalman update of one Gaussian in Joseph form (SPEC 4); returns the log density of y up to a
+/// constant.
+double gaussianUpdate(const AxisVector& y, const AxisMatrix& S, const Innovation& innovation,
+                      Vector4& x, Matrix4& P) {
   using Gain = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kMaxAxes>;
-  const Gain PHt = f.P * innovation.H.transpose();
-  const auto llt = innovation.S.llt();
+  const Gain PHt = P * innovation.H.transpose();
+  const auto llt = S.llt();
   const Gain K = llt.solve(PHt.transpose()).transpose();
   const Matrix4 I_KH = Matrix4::Identity() - K * innovation.H;
-  f.x += K * innovation.y;
-  f.P = (I_KH * f.P * I_KH.transpose() + K * innovation.R * K.transpose()).eval();
-  f.P = (0.5 * (f.P + f.P.transpose())).eval();
-  if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
+  x += K * y;
+  P = (I_KH * P * I_KH.transpose() + K * innovation.R * K.transpose()).eval();
+  P = (0.5 * (P + P.transpose())).eval();
+  const double log_det = 2 * llt.matrixLLT().diagonal().array().log().sum();
+  return -0.5 * (llt.matrixL().solve(y).squaredNorm() + log_det);
+}
+
+void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
+  if (f.modes.empty()) {
+    gaussianUpdate(innovation.y, innovation.S, innovation, f.x, f.P);
+    if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
+  } else {
+    std::vector<double> log_mode;
+    for (auto& mode : f.modes) {
+      const AxisVector y = innovation.residualOf(mode, f);
+      const AxisMatrix S = innovation.covarianceOf(mode.P);
+      log_mode.push_back(mode.log_probability + gaussianUpdate(y, S, innovation, mode.x, mode.P));
+      if (f.oriented) mode.x[3] = wrapAngle(mode.x[3]);
+    }
+    logNormalise(log_mode);
+    for (std::size_t i = 0; i < log_mode.size(); ++i) {
+      // A floor keeps a mode able to come back within a few scans.
+      f.modes[i].log_probability = std::max(log_mode[i], kLogLeastMode);
+    }
+    combineModes(f);
+  }
   updateExtentBy(innovation, f.extent);
+}
+
+/// A direct measurement of an oriented filter's axis: `yaw` or its opposite [rad].
+void updateYaw(double yaw, double variance, ClassFilter& f) {
+  const auto one = [&](Vector4& x, Matrix4& P) {
+    const double y = wrapAxis(yaw - x[3]);
+    const Vector4 K = P.col(3) / (P(3, 3) + variance);
+    x += K * y;
+    P = (P - K * P.row(3)).eval();
+    P = (0.5 * (P + P.transpose())).eval();
+    x[3] = wrapAngle(x[3]);
+  };
+  if (f.modes.empty()) {
+    one(f.x, f.P);
+    return;
+  }
+  for (auto& m : f.modes) one(m.x, m.P);
+  combineModes(f);
 }
 
 /// A wheeled filter takes its heading from what is known by now: the box seen, else its own motion
@@ -121,13 +166,7 @@ void findHeading(const std::optional<BirthState>& birth, const FilterModel& mode
   if (birth && birth->yaw) {  // the box's long axis as a measurement of theta, front and back alike
     const double y = wrapAxis(birth->yaw->mean - f.x[3]);
     const double S = f.P(3, 3) + birth->yaw->variance + box_extra;
-    if (y * y < kYawGate * S) {
-      const Vector4 K = f.P.col(3) / S;
-      f.x += K * y;
-      f.P = (f.P - K * f.P.row(3)).eval();
-      f.P = (0.5 * (f.P + f.P.transpose())).eval();
-      f.x[3] = wrapAngle(f.x[3]);
-    }
+    if (y * y < kYawGate * S) updateYaw(birth->yaw->mean, birth->yaw->variance + box_extra, f);
   }
   if (f.x[2] < -p.orient_min_speed && f.x[2] * f.x[2] > 4 * f.P(2, 2)) reverse(f);
 }
@@ -137,7 +176,10 @@ void findHeading(const std::optional<BirthState>& birth, const FilterModel& mode
 ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best,
                           const FilterModel& model) {
   ClassFilter f = startFilter(c, birth, model);
-  if (c.motion != Motion::kStatic && !f.oriented) f.x.tail<2>() = best.q.segment<2>(2);
+  if (c.motion != Motion::kStatic && !f.oriented) {
+    f.x.tail<2>() = best.q.segment<2>(2);
+    startModes(c, f);
+  }
   return f;
 }
 
@@ -202,7 +244,7 @@ Track missTrack(const Track& predicted, const TrackLikelihoods& row, const Measu
                 const FilterModel& model) {
   Track track = predicted;
   if (row.in_view) track.last_in_view = scan.state.stamp;
-  if (row.detection <= 0) return track;
+  if (row.detection <= 0 || model.params.existence_decay > 0) return track;
   const double r = predicted.existence;
   track.existence = r * (1 - row.detection) / (1 - r * row.detection);
   for (std::size_t j = 0; j < track.log_class.size(); ++j) {

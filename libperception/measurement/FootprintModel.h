@@ -25,6 +25,10 @@ class FootprintModel : public MeasurementModel {
                const SensorState& sensor, AxisPrediction* out) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                               const SensorState& sensor, double visibility) const override;
+  bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override {
+    return touchesSector(position, reach, sensing_.params().fov, sensing_.params().range_max,
+                         sensor);
+  }
   double logLabelLikelihood(int label, ClassId c) const override {
     return sensing_.logLabel(label, c);
   }

@@ -1,6 +1,20 @@
 #include "libperception/measurement/MeasurementModel.h"
 
+#include <cmath>
+
+#include "libperception/core/Angle.h"
+
 namespace perception {
+
+bool touchesSector(const Vector2& centre, double reach, double fov, double range,
+                   const SensorState& sensor) {
+  const Vector2 d = centre - sensor.T_world_sensor.translation().head<2>();
+  const double distance = d.norm();
+  if (distance - reach > range) return false;
+  if (fov >= kTwoPi || distance <= reach) return true;
+  const double off = wrapAngle(std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor));
+  return std::abs(off) - std::asin(reach / distance) <= 0.5 * fov;
+}
 
 AxisVector residual(const MeasurementModel& model, const Measurement& m, const AxisVector& h) {
   AxisVector y(kMaxAxes);

@@ -53,6 +53,11 @@ class MeasurementModel {
   /// the share not hidden.
   virtual double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                                       const SensorState& sensor, double visibility) const = 0;
+  /// False when nothing within `reach` [m] of `position` (world) could be detected: a cheap bound.
+  virtual bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const {
+    (void)position, (void)reach, (void)sensor;
+    return true;
+  }
   /// log P(label | class, detected).
   virtual double logLabelLikelihood(int label, ClassId c) const = 0;
   /// Exponent in (0, 1] of the label in the class update: labels of one object are not independent
@@ -69,6 +74,12 @@ class MeasurementModel {
   virtual std::optional<BirthState> birth(const Measurement& m, ClassId c,
                                           const SensorState& sensor) const = 0;
 };
+
+/// Whether a disc of radius `reach` [m] about `centre` (world) touches the sector of full angle
+/// `fov` [rad] and radius `range` [m] about the sensor's forward axis. Near the origin it may say
+/// true too often.
+bool touchesSector(const Vector2& centre, double reach, double fov, double range,
+                   const SensorState& sensor);
 
 /// z - h of the axes seen, angles wrapped, packed in axis order.
 AxisVector residual(const MeasurementModel& model, const Measurement& m, const AxisVector& h);

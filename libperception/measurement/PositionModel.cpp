@@ -35,6 +35,11 @@ double PositionModel::detectionProbability(ClassId c, const Kinematics& object, 
   return params_.classes[static_cast<std::size_t>(c)].detection * visibility;
 }
 
+bool PositionModel::mayDetect(const Vector2& position, double reach,
+                              const SensorState& sensor) const {
+  return touchesSector(position, reach, params_.fov, params_.range, sensor);
+}
+
 double PositionModel::logLabelLikelihood(int label, ClassId c) const {
   return std::log(
       params_.classes[static_cast<std::size_t>(c)].labels[static_cast<std::size_t>(label)]);

@@ -30,6 +30,7 @@ class PositionModel : public MeasurementModel {
                const SensorState& sensor, AxisPrediction* out) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                               const SensorState& sensor, double visibility) const override;
+  bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override;
   double logLabelLikelihood(int label, ClassId c) const override;
   double labelExponent() const override { return params_.label_exponent; }
   double logLabelClutter(int label) const override;

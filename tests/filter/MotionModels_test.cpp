@@ -116,14 +116,16 @@ TEST(Wheeled, OrientingByAxisPointsWhereItMoves) {
 TEST(MotionModels, KinematicsJacobianIsTheDerivative) {
   Rng rng({3, 0, 0, 0});
   for (int trial = 0; trial < 1000; ++trial) {
-    ClassFilter f = orientedFilter(rng.normal(0, 10), rng.normal(0, 10), rng.normal(0, 8), rng.uniform(-3, 3));
+    ClassFilter f =
+        orientedFilter(rng.normal(0, 10), rng.normal(0, 10), rng.normal(0, 8), rng.uniform(-3, 3));
     const auto k = kinematicsOf(wheeled(), f);
     for (int i = 0; i < 4; ++i) {
       const double h = 1e-6;
       ClassFilter up = f, down = f;
       up.x[i] += h;
       down.x[i] -= h;
-      const Vector5 numeric = (kinematicsOf(wheeled(), up).q - kinematicsOf(wheeled(), down).q) / (2 * h);
+      const Vector5 numeric =
+          (kinematicsOf(wheeled(), up).q - kinematicsOf(wheeled(), down).q) / (2 * h);
       ASSERT_LT((numeric - k.J.col(i)).norm(), 1e-6);
     }
   }
@@ -134,7 +136,8 @@ TEST(MotionModels, CovariancesStayPositiveOverTenThousandSteps) {
   for (const auto& c : {wheeled(), test::linearClasses()[0], test::linearClasses()[1]}) {
     ClassFilter f = orientedFilter(0, 0, 3, 1);
     if (c.motion != Motion::kWheeled) f.oriented = false;
-    if (c.motion == Motion::kStatic) f.P.bottomRightCorner<2, 4>().setZero(), f.P.rightCols<2>().setZero();
+    if (c.motion == Motion::kStatic)
+      f.P.bottomRightCorner<2, 4>().setZero(), f.P.rightCols<2>().setZero();
     for (int i = 0; i < 10000; ++i) {
       predictClassFilter(c, rng.uniform(0.01, 0.4), f);
       // A position fix, so that the covariance does not just grow.
@@ -147,6 +150,106 @@ TEST(MotionModels, CovariancesStayPositiveOverTenThousandSteps) {
       ASSERT_GE(smallest, -1e-9) << c.name << " at step " << i;
     }
   }
+}
+
+ObjectClass walkerWithModes() {
+  ObjectClass c = test::linearClasses()[0];
+  c.mode_accel_psd = {0.04, 1.0};
+  c.mode_damping = {0, 2.0};
+  c.mode_sojourn = {4, 1.5};
+  return c;
+}
+
+ClassFilter startedFilter(const ObjectClass& c) {
+  ClassFilter f;
+  f.x << 1, 2, 0.5, -0.3;
+  f.P = 0.1 * Matrix4::Identity();
+  startModes(c, f);
+  return f;
+}
+
+TEST(Modes, StartAtTheirSharesOfTime) {
+  const auto f = startedFilter(walkerWithModes());
+  ASSERT_EQ(f.modes.size(), 2u);
+  EXPECT_NEAR(std::exp(f.modes[0].log_probability), 4 / 5.5, 1e-12);
+  EXPECT_NEAR(std::exp(f.modes[1].log_probability), 1.5 / 5.5, 1e-12);
+}
+
+TEST(Modes, KeepTheirSharesWhileNothingIsSeen) {
+  // Stationary shares are proportional to the sojourns when two modes alternate.
+  const auto c = walkerWithModes();
+  auto f = startedFilter(c);
+  for (int i = 0; i < 50; ++i) predictClassFilter(c, 0.1, f);
+  // The chain in steps of dt stays for dt / (1 - exp(-dt / tau)) on average.
+  const double a = 1 - std::exp(-0.1 / 4), b = 1 - std::exp(-0.1 / 1.5);
+  EXPECT_NEAR(std::exp(f.modes[0].log_probability), b / (a + b), 1e-3);
+}
+
+TEST(Modes, OfEqualNoiseAreOneModel) {
+  ObjectClass c = walkerWithModes();
+  c.mode_accel_psd = {c.accel_psd, c.accel_psd};
+  c.mode_damping = {0, 0};
+  auto f = startedFilter(c);
+  ClassFilter single;
+  single.x = f.x;
+  single.P = f.P;
+  for (int i = 0; i < 10; ++i) {
+    predictClassFilter(c, 0.13, f);
+    predictClassFilter(test::linearClasses()[0], 0.13, single);
+  }
+  EXPECT_LT((f.x - single.x).norm(), 1e-12);
+  EXPECT_LT((f.P - single.P).norm(), 1e-12);
+}
+
+TEST(Modes, DampingIsTheSolutionOfItsEquation) {
+  // dv = -a v dt + noise: small steps of Euler's method against the closed form.
+  ObjectClass c = walkerWithModes();
+  c.mode_accel_psd = {0.7, 0.7};
+  c.mode_damping = {1.3, 1.3};
+  auto f = startedFilter(c);
+  Vector4 x = f.x;
+  Matrix4 P = f.P;
+  const double dt = 0.4, a = 1.3, q = 0.7;
+  const int steps = 40000;
+  Matrix4 A = Matrix4::Zero(), G = Matrix4::Zero();
+  A(0, 2) = A(1, 3) = 1;
+  A(2, 2) = A(3, 3) = -a;
+  G(2, 2) = G(3, 3) = q;
+  for (int i = 0; i < steps; ++i) {
+    const double h = dt / steps;
+    x += h * A * x;
+    P += h * (A * P + P * A.transpose() + G);
+  }
+  predictClassFilter(c, dt, f);
+  EXPECT_LT((f.x - x).norm(), 1e-4);
+  EXPECT_LT((f.P - P).norm(), 1e-4);
+}
+
+TEST(Modes, OfOrientedFiltersMeetAcrossTheWrapOfAngles) {
+  ObjectClass c = wheeled();
+  c.mode_accel_psd = {1, 3};
+  c.mode_damping = {0, 0};
+  c.mode_sojourn = {1, 1};
+  ClassFilter f = orientedFilter(0, 0, 5, kPi - 0.01);
+  startModes(c, f);
+  f.modes[1].x[3] = -kPi + 0.03;
+  combineModes(f);
+  EXPECT_NEAR(std::abs(wrapAngle(f.x[3] - (kPi + 0.01))), 0, 1e-12);
+  EXPECT_LT(f.P(3, 3), 0.05);
+}
+
+TEST(Modes, AreReversedWithTheirFilter) {
+  ObjectClass c = wheeled();
+  c.mode_accel_psd = {1, 3};
+  c.mode_damping = {0, 0};
+  c.mode_sojourn = {1, 1};
+  ClassFilter f = orientedFilter(0, 0, -5, 0.4);
+  startModes(c, f);
+  reverse(f);
+  ClassFilter g = f;
+  combineModes(g);
+  EXPECT_LT((f.x - g.x).norm(), 1e-12);
+  EXPECT_LT((f.P - g.P).norm(), 1e-12);
 }
 
 }  // namespace

@@ -67,11 +67,13 @@ struct Estimate {
   std::map<std::vector<std::uint64_t>, double> probability, variance;
 };
 
-Estimate estimate(const std::vector<Hypothesis>& hypotheses, std::vector<double> log_weights) {
+Estimate estimate(const Posterior& posterior) {
+  const auto& hypotheses = posterior.hypotheses;
+  std::vector<double> log_weights = posterior.log_weights;
   logNormalise(log_weights);
   Estimate e;
   std::vector<std::vector<std::uint64_t>> keys;
-  for (const auto& h : hypotheses) keys.push_back(keyOf(h));
+  for (const auto& h : hypotheses) keys.push_back(keyOf(*h));
   for (std::size_t i = 0; i < keys.size(); ++i) e.probability[keys[i]] += std::exp(log_weights[i]);
   double squares = 0;
   std::map<std::vector<std::uint64_t>, double> own;
@@ -95,17 +97,14 @@ TEST_P(ExactEnumeration, IsWhatTheSampledPosteriorConvergesTo) {
   const auto exact = test::enumerateExactly(scans, *sensor, model);
 
   const std::size_t n = 40000;
-  std::vector<Hypothesis> hypotheses(n);
-  std::vector<double> log_weights(n, 0.0);
-  for (std::size_t s = 0; s < scans.size(); ++s) {
-    auto result = step(hypotheses, scans[s], model, {7, s, 0, 0});
-    hypotheses = std::move(result.hypotheses);
-    for (std::size_t i = 0; i < n; ++i) log_weights[i] += result.log_weights[i];
-  }
+  Posterior posterior = Posterior::empty(n);
+  for (std::size_t s = 0; s < scans.size(); ++s)
+    posterior = step(posterior, scans[s], model, {7, s, 0, 0}, n).posterior;
+  const auto& log_weights = posterior.log_weights;
 
   // 5 standard errors and a few hundred comparisons: a false alarm once in ten thousand runs, and
   // the seed is fixed.
-  const Estimate e = estimate(hypotheses, log_weights);
+  const Estimate e = estimate(posterior);
   double covered = 0;
   for (const auto& [key, history] : exact.histories) {
     const auto found = e.probability.find(key);
@@ -128,9 +127,9 @@ TEST_P(ExactEnumeration, IsWhatTheSampledPosteriorConvergesTo) {
 
   // Given the history everything is exact: existence, class, position.
   std::size_t compared = 0;
-  for (const auto& h : hypotheses) {
-    const auto& history = exact.histories.at(keyOf(h));
-    for (const auto& t : h.tracks) {
+  for (const auto& h : posterior.hypotheses) {
+    const auto& history = exact.histories.at(keyOf(*h));
+    for (const auto& t : h->tracks) {
       const auto& truth = history.tracks.at(t->history);
       ASSERT_NEAR(t->existence, truth.existence, 1e-6);
       const auto p = classProbabilities(*t);
@@ -149,20 +148,76 @@ TEST_P(ExactEnumeration, IsWhatTheSampledPosteriorConvergesTo) {
 
 INSTANTIATE_TEST_SUITE_P(TinyScenes, ExactEnumeration, testing::Range<std::size_t>(0, 3));
 
+Posterior ranked(const std::vector<MeasurementScan>& scans, FilterModel model, int children,
+                 std::size_t slots, Proposal proposal = Proposal::kRanked) {
+  model.proposal = proposal;
+  model.params.ranked_children = children;
+  model.params.ranked_span = 1e6;
+  Posterior p = Posterior::empty(1);
+  for (std::size_t s = 0; s < scans.size(); ++s)
+    p = step(p, scans[s], model, {0, s, 0, 0}, slots).posterior;
+  return p;
+}
+
+TEST_P(ExactEnumeration, IsTheRankedPosteriorWhenAllAssignmentsAreTaken) {
+  const auto sensor = std::make_shared<const PositionModel>(linearSensor());
+  const FilterModel model = exactModel(linearClasses());
+  const auto scans = scansOf(tinyScenes()[GetParam()], sensor);
+  const auto exact = test::enumerateExactly(scans, *sensor, model);
+  const Posterior p = ranked(scans, model, 1000, 1000000);
+  std::map<std::vector<std::uint64_t>, double> found;
+  for (std::size_t i = 0; i < p.hypotheses.size(); ++i)
+    found[keyOf(*p.hypotheses[i])] = std::exp(p.log_weights[i] - exact.log_evidence);
+  ASSERT_EQ(found.size(), p.hypotheses.size());       // no history twice
+  for (const auto& [key, history] : exact.histories)  // those outside the gate have no weight
+    ASSERT_NEAR(found[key], history.probability, 1e-10);
+  EXPECT_NEAR(logSumExp(p.log_weights), exact.log_evidence, 1e-10);
+}
+
+TEST_P(ExactEnumeration, IsMissedByFewRankedHypothesesByTheDroppedMassAtMost) {
+  const auto sensor = std::make_shared<const PositionModel>(linearSensor());
+  const FilterModel model = exactModel(linearClasses());
+  const auto scans = scansOf(tinyScenes()[GetParam()], sensor);
+  const auto exact = test::enumerateExactly(scans, *sensor, model);
+  double dropped_before = 1;
+  for (const std::size_t slots : {1u, 8u, 64u}) {
+    const Posterior p = ranked(scans, model, 4, slots);
+    ASSERT_LE(p.hypotheses.size(), slots);
+    const double total = logSumExp(p.log_weights);
+    const double dropped = 1 - std::exp(total - exact.log_evidence);
+    EXPECT_GE(dropped, -1e-12);
+    EXPECT_LE(dropped, dropped_before);
+    dropped_before = dropped;
+    for (std::size_t i = 0; i < p.hypotheses.size(); ++i) {
+      const double truth = exact.histories.at(keyOf(*p.hypotheses[i])).probability;
+      // Weights are exact before they are normalised.
+      EXPECT_NEAR(std::exp(p.log_weights[i] - exact.log_evidence), truth, 1e-10);
+      EXPECT_LE(std::abs(std::exp(p.log_weights[i] - total) - truth), dropped + 1e-10);
+    }
+  }
+}
+
+TEST(Step, NearestKeepsTheLikeliestAssignmentOfEachScan) {
+  const auto sensor = std::make_shared<const PositionModel>(linearSensor());
+  const FilterModel model = exactModel(linearClasses());
+  const auto scans = scansOf(tinyScenes()[1], sensor);
+  const Posterior nearest = ranked(scans, model, 4, 8, Proposal::kNearest);
+  ASSERT_EQ(nearest.hypotheses.size(), 1u);
+  const Posterior one = ranked(scans, model, 1, 1);
+  EXPECT_EQ(nearest.hypotheses[0]->key, one.hypotheses[0]->key);
+}
+
 TEST(Step, DoesTheWorkOfADistinctTrackOnce) {
   const auto sensor = std::make_shared<const PositionModel>(linearSensor());
   const FilterModel model = exactModel(linearClasses());
-  const auto result = step(std::vector<Hypothesis>(1000),
-                           positionScan(sensor, 0, {{0, 0, 0}, {1, 0, 1}}), model, {1, 0, 0, 0});
-  EXPECT_EQ(result.stats.distinct_tracks, 0u);
-  for (const auto& h : result.hypotheses) {
-    ASSERT_EQ(h.tracks.size(), 2u);
-    EXPECT_EQ(h.tracks[0].get(), result.hypotheses[0].tracks[0].get());
-    EXPECT_EQ(h.tracks[1].get(), result.hypotheses[0].tracks[1].get());
-  }
+  const auto result = step(Posterior::empty(1000), positionScan(sensor, 0, {{0, 0, 0}, {1, 0, 1}}),
+                           model, {1, 0, 0, 0}, 1000)
+                          .posterior;
+  EXPECT_EQ(result.hypotheses[0]->tracks.size(), 2u);
+  for (const auto& h : result.hypotheses) EXPECT_EQ(h.get(), result.hypotheses[0].get());
   const auto next =
-      step(result.hypotheses, positionScan(sensor, 0.1, {{0, 0, 0}}), model, {1, 1, 0, 0});
-  EXPECT_EQ(next.stats.distinct_tracks, 2u);
+      step(result, positionScan(sensor, 0.1, {{0, 0, 0}}), model, {1, 1, 0, 0}, 1000).stats;
+  EXPECT_EQ(next.distinct_tracks, 2u);
 }
 
 TEST(Step, IsAFunctionOfItsArguments) {
@@ -171,12 +226,11 @@ TEST(Step, IsAFunctionOfItsArguments) {
   const auto scans = scansOf(tinyScenes()[0], sensor);
   std::vector<double> first;
   for (int run = 0; run < 2; ++run) {
-    std::vector<Hypothesis> h(64);
+    Posterior p = Posterior::empty(64);
     std::vector<double> weights;
     for (std::size_t s = 0; s < scans.size(); ++s) {
-      auto r = step(h, scans[s], model, {3, s, 0, 0});
-      h = std::move(r.hypotheses);
-      weights.insert(weights.end(), r.log_weights.begin(), r.log_weights.end());
+      p = step(p, scans[s], model, {3, s, 0, 0}, 64).posterior;
+      weights.insert(weights.end(), p.log_weights.begin(), p.log_weights.end());
     }
     if (run == 0) first = weights;
     EXPECT_EQ(first, weights);
@@ -189,11 +243,12 @@ TEST(MapHypothesis, AddsUpSlotsOfEqualHistory) {
     t->history = history;
     return t;
   };
-  Hypothesis a, b;
-  a.tracks = {track(1)};
-  b.tracks = {track(2)};
-  const Hypothesis a2{{track(1)}};  // another copy of the same history
-  const auto best = mapHypothesis({&b, &a, &a2}, {std::log(0.4), std::log(0.3), std::log(0.3)});
+  const auto one = [&](std::uint64_t history) {
+    return std::make_shared<const Hypothesis>(std::vector<TrackHandle>{track(history)});
+  };
+  const Posterior posterior{{one(2), one(1), one(1)},
+                            {std::log(0.4), std::log(0.3), std::log(0.3)}};
+  const auto best = mapHypothesis(posterior);
   EXPECT_EQ(best.slot, 1u);
   EXPECT_NEAR(best.probability, 0.6, 1e-12);
   EXPECT_EQ(best.distinct, 2u);
@@ -218,7 +273,7 @@ TEST(CRbpfTracker, GivesThePosteriorOfExactEnumerationThroughMrpt) {
     double total = 0, squares = 0;
     for (const auto& particle : tracker.m_particles) {
       const double w = std::exp(particle.log_w);
-      p[keyOf(particle.d)] += w;
+      p[keyOf(*particle.d)] += w;
       total += w;
       squares += w * w;
     }

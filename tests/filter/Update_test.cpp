@@ -18,7 +18,8 @@ using test::linearSensor;
 using test::positionScan;
 
 struct Fixture {
-  std::shared_ptr<const PositionModel> sensor = std::make_shared<const PositionModel>(linearSensor());
+  std::shared_ptr<const PositionModel> sensor =
+      std::make_shared<const PositionModel>(linearSensor());
   FilterModel model = exactModel(linearClasses());
 
   Track born() const {
@@ -31,7 +32,8 @@ TEST(NewTrack, IsABernoulliOfBirthAgainstClutter) {
   const Fixture f;
   const Track t = f.born();
   const auto& p = f.sensor->params();
-  const double birth = p.births_per_scan * (0.6 * 0.7 + 0.4 * 0.4), clutter = p.clutter_per_scan * 0.5;
+  const double birth = p.births_per_scan * (0.6 * 0.7 + 0.4 * 0.4),
+               clutter = p.clutter_per_scan * 0.5;
   EXPECT_NEAR(t.existence, birth / (birth + clutter), 1e-12);
   EXPECT_NEAR(std::exp(t.log_class[0]), 0.6 * 0.7 / (0.6 * 0.7 + 0.4 * 0.4), 1e-12);
 }
@@ -44,7 +46,8 @@ TEST(MissTrack, CostsExistenceAndTheClassesThatShouldHaveBeenSeen) {
   const Track after = missTrack(before, table.tracks[0], scan, f.model);
   const auto pc = classProbabilities(before);
   const double detection = pc[0] * 0.8 + pc[1] * 0.6;
-  EXPECT_NEAR(after.existence, before.existence * (1 - detection) / (1 - before.existence * detection), 1e-12);
+  EXPECT_NEAR(after.existence,
+              before.existence * (1 - detection) / (1 - before.existence * detection), 1e-12);
   EXPECT_NEAR(std::exp(after.log_class[0]), pc[0] * 0.2 / (1 - detection), 1e-12);
 }
 
@@ -73,7 +76,8 @@ TEST(HitTrack, NeverLetsAClassDie) {
     const Track predicted = predictTrack(t, scan.state.stamp, f.model);
     const auto table = likelihoodTable({predicted}, scan, f.model);
     ASSERT_EQ(table.tracks[0].pairs.size(), 1u) << i;
-    t = hitTrack(predicted, table.tracks[0], table.tracks[0].pairs[0], scan, static_cast<std::uint64_t>(i), f.model);
+    t = hitTrack(predicted, table.tracks[0], table.tracks[0].pairs[0], scan,
+                 static_cast<std::uint64_t>(i), f.model);
   }
   const auto p = classProbabilities(t);
   EXPECT_GT(p[0], 0.99);
