@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "libperception/lidar/LidarFrontEnd.h"
+#include "libperception/radar/RadarFrontEnd.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/vision/VisionFrontEnd.h"
 
@@ -19,6 +20,7 @@ struct FrontEndRow {
 constexpr FrontEndRow kFrontEnds[] = {
     {"lidar", &makeLidarFrontEnd},
     {"boxes", &makeVisionFrontEnd},
+    {"radar", &makeRadarFrontEnd},
 };
 
 constexpr double kSameInstant =

@@ -51,6 +51,19 @@ double speedSigma(const ObjectClass& c, const FilterModel& model) {
   return std::min(model.params.start_speed_sigma, std::max(0.5 * c.max_speed, 0.1));
 }
 
+/// A newborn's velocity, with what a range rate says of it (SPEC 12, U12).
+void takeRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
+  const auto measure = [&](const Vector2& u, double speed, double variance) {
+    const Vector2 Pu = f.P.bottomRightCorner<2, 2>() * u;
+    const Vector2 K = Pu / (u.dot(Pu) + variance);
+    f.x.tail<2>() += K * (speed - u.dot(f.x.tail<2>()));
+    f.P.bottomRightCorner<2, 2>() -= K * Pu.transpose();
+  };
+  measure(seen.direction, seen.along.mean, seen.along.variance);
+  if (seen.across_sigma)
+    measure({-seen.direction.y(), seen.direction.x()}, 0, *seen.across_sigma * *seen.across_sigma);
+}
+
 /// The class's filter from one measurement. Wheeled objects start without heading unless the box
 /// shows it.
 ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const FilterModel& model) {
@@ -61,6 +74,7 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   if (c.motion == Motion::kStatic) return f;
   const double sigma = speedSigma(c, model);
   f.P(2, 2) = f.P(3, 3) = sigma * sigma;
+  if (birth.radial_speed) takeRadialSpeed(*birth.radial_speed, f);
   startModes(c, f);
   if (c.motion == Motion::kWheeled && birth.yaw) {
     const double extra = model.params.shape_yaw_sigma;

@@ -28,12 +28,21 @@ struct AxisPrediction {
   bool defined = false;
 };
 
+/// What a range rate says of a velocity: its component along one direction, and, where the sensor's
+/// site tells, how large the component across it may be.
+struct RadialSpeed {
+  Vector2 direction = Vector2::UnitX();       ///< unit vector, world
+  ScalarEstimate along;                       ///< [m/s, m^2/s^2]
+  std::optional<double> across_sigma;         ///< [m/s]; empty: whatever the class allows
+};
+
 /// Where a newborn object of one class stands, from one measurement.
 struct BirthState {
   Vector2 position = Vector2::Zero();        ///< [m] centre, world
   Matrix2 covariance = Matrix2::Identity();  ///< [m^2]
   std::optional<ScalarEstimate> yaw;         ///< [rad, rad^2] world; its direction or its opposite
   std::optional<ScalarEstimate> speed;       ///< [m/s] along yaw
+  std::optional<RadialSpeed> radial_speed;   ///< of objects whose yaw is not known
   Extent extent;
 };
 

@@ -46,6 +46,11 @@ const std::vector<DefaultRow>& defaultRows() {
       {"car", Modality::kCamera, 0.85, {{"car", 0.98}, {"person", 0.02}}},
       {"bus", Modality::kCamera, 0.60, {{"car", 0.97}, {"person", 0.03}}},
       {"static-other", Modality::kCamera, 0.03, {{"car", 0.33}, {"person", 0.67}}},
+      {"pedestrian", Modality::kRadar, 0.05, {}},
+      {"cyclist", Modality::kRadar, 0.3, {}},
+      {"car", Modality::kRadar, 0.9, {}},
+      {"bus", Modality::kRadar, 0.95, {}},
+      {"static-other", Modality::kRadar, 0.3, {}},
   };
   return rows;
 }
@@ -116,7 +121,7 @@ void checkRow(Config& config, const std::string& section,
 }  // namespace
 
 void SensingParams::visit(ParamVisitor& v) {
-  v.text("kind", kind, "front end by name: lidar, boxes");
+  v.text("kind", kind, "front end by name: lidar, boxes, radar");
   static constexpr char kLetters[] = {'C', 'L', 'R'};
   int index = 0;
   for (int i = 0; i < 3; ++i) index = kLetters[i] == static_cast<char>(modality) ? i : index;

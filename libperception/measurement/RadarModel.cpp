@@ -1,0 +1,175 @@
+#include "libperception/measurement/RadarModel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/LogMath.h"
+
+namespace perception {
+namespace {
+
+constexpr double kNearest = 0.1;           // [m] nearer than this a bearing means nothing
+constexpr double kShareOfAnySpeed = 1e-3;  // of a class's newborn have any range rate
+
+Vector2 sensorPosition(const SensorState& s) { return s.T_world_sensor.translation().head<2>(); }
+
+Vector2 direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
+Vector2 perpendicular(const Vector2& v) { return {-v.y(), v.x()}; }
+
+bool hasRate(const Measurement& m) { return m.seen >> RadarModel::kRate & 1; }
+
+Vector2 lineOfSight(const Measurement& m, const SensorState& s) {
+  return direction(yawOf(s.T_world_sensor) + m.z[RadarModel::kBearing]);
+}
+
+/// Density [s/m] of speeds that spread evenly over [-max, max], seen with variance `noise`.
+double speedDensity(double speed, double max, double noise) {
+  const double scale = 1 / std::sqrt(2 * noise);
+  if (max < 1e-3) return std::exp(-0.5 * speed * speed / noise) / std::sqrt(kTwoPi * noise);
+  return (std::erf((speed + max) * scale) - std::erf((speed - max) * scale)) / (4 * max);
+}
+
+}  // namespace
+
+Vector2 sensorVelocity(const SensorState& s) {
+  const Vector2 lever = sensorPosition(s) - s.ego.T_world_ego.translation().head<2>();
+  return s.ego.velocity + s.ego.yaw_rate * perpendicular(lever);
+}
+
+ScalarEstimate groundSpeed(const Measurement& m, const SensorState& sensor) {
+  using Model = RadarModel;
+  const Vector2 u = lineOfSight(m, sensor), own = sensorVelocity(sensor);
+  const double turn = perpendicular(u).dot(own);
+  return {m.z[Model::kRate] + u.dot(own), m.R(Model::kRate, Model::kRate) +
+                                              turn * turn * m.R(Model::kBearing, Model::kBearing) +
+                                              2 * turn * m.R(Model::kBearing, Model::kRate)};
+}
+
+void RadarModelParams::visit(ParamVisitor& v) {
+  v.real("rate_span", rate_span, {1, 1000}, "m/s", "over which the range rates of clutter spread");
+  v.real("min_birth_speed", min_birth_speed, {0, 50}, "m/s",
+         "over ground, along the line of sight: returns below it only update; 0: all may start");
+  v.real("min_birth_sigmas", min_birth_sigmas, {0, 10}, "",
+         "and returns so few of its own deviations from standing only update; 0: the plain rule");
+  v.angle("birth_heading_sigma_deg", birth_heading_sigma, {1, 90},
+          "of a newborn's course about the line of sight (DUC: 30); 90: nothing is known");
+  v.real("hidden_detection", hidden_detection, {0, 1}, "",
+         "share of P_D left for objects that a lidar finds hidden");
+  v.real("depth_share", depth_share, {0, 1}, "",
+         "of the object's depth along the line of sight, added to the range's deviation");
+}
+
+RadarModel::RadarModel(ClassTable classes, Sensing sensing, RadarModelParams params)
+    : classes_(classes), footprint_(std::move(classes), std::move(sensing)), params_(params) {}
+
+const std::vector<AxisKind>& RadarModel::axes() const {
+  static const std::vector<AxisKind> kinds{AxisKind::kLinear, AxisKind::kAngle, AxisKind::kLinear};
+  return kinds;
+}
+
+void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::size_t count,
+                         const SensorState& sensor, AxisPrediction* out) const {
+  const Vector2 own_velocity = sensorVelocity(sensor);
+  const double forward = yawOf(sensor.T_world_sensor);
+  footprint_.predict(objects, extents, count, sensor, out);
+  for (std::size_t i = 0; i < count; ++i) {
+    AxisPrediction& p = out[i];
+    if (!p.defined) continue;
+    const AxisPrediction outline = p;
+    const double left = outline.h[FootprintModel::kLeft], right = outline.h[FootprintModel::kRight];
+    const double width = wrapAngle(left - right);
+    const double bearing = wrapAngle(right + 0.5 * width);
+    p.h[kRange] = outline.h[FootprintModel::kRange];
+    p.h[kBearing] = bearing;
+    p.H_q.row(kRange) = outline.H_q.row(FootprintModel::kRange);
+    p.H_extent.row(kRange) = outline.H_extent.row(FootprintModel::kRange);
+    p.H_q.row(kBearing) =
+        0.5 * (outline.H_q.row(FootprintModel::kLeft) + outline.H_q.row(FootprintModel::kRight));
+    p.H_extent.row(kBearing) = 0.5 * (outline.H_extent.row(FootprintModel::kLeft) +
+                                      outline.H_extent.row(FootprintModel::kRight));
+    // rho_dot = u . (V - v_s), where u turns with the bearing: SPEC 4.3's d/dp is the special case
+    // of a point.
+    const Vector2 u = direction(forward + bearing);
+    const Vector2 relative = objects[i].q.segment<2>(Kinematics::kVx) - own_velocity;
+    const double turn = perpendicular(u).dot(relative);  // d(rate) / d(bearing)
+    p.h[kRate] = u.dot(relative);
+    p.H_q.row(kRate) = turn * p.H_q.row(kBearing);
+    p.H_q.row(kRate).segment<2>(Kinematics::kVx) += u.transpose();
+    p.H_extent.row(kRate) = turn * p.H_extent.row(kBearing);
+    // Anywhere on the outline's width with equal probability, and somewhat behind the nearest
+    // point.
+    const Vector2 centre = objects[i].q.head<2>() - sensorPosition(sensor);
+    const double depth = 2 * std::max(0.0, centre.norm() - p.h[kRange]);
+    p.R_model.setZero(kAxes, kAxes);
+    p.R_model(kRange, kRange) = std::pow(params_.depth_share * depth, 2);
+    const double variance = width * width / 12;
+    p.R_model(kBearing, kBearing) = variance;
+    p.R_model(kBearing, kRate) = p.R_model(kRate, kBearing) = variance * turn;
+    p.R_model(kRate, kRate) = variance * turn * turn;
+  }
+}
+
+double RadarModel::detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
+                                        const SensorState& sensor, double visibility) const {
+  const double hidden = 1 - std::clamp(visibility, 0.0, 1.0);
+  return footprint_.detectionProbability(c, object, extent, sensor,
+                                         1 - hidden * (1 - params_.hidden_detection));
+}
+
+double RadarModel::logClutterDensity(const Measurement& m, const SensorState&) const {
+  // Even over the field of view: range / area per metre and radian (SPEC 5.3).
+  const double position = std::max(m.z[kRange], kNearest) / sensing().area();
+  const double rate = hasRate(m) ? 1 / params_.rate_span : 1;
+  return std::log(sensing().params().clutter_per_scan * position * rate);
+}
+
+double RadarModel::logBirthDensity(const Measurement& m, ClassId c,
+                                   const SensorState& sensor) const {
+  const double position = std::max(m.z[kRange], kNearest) / sensing().area();
+  double rate = 1;
+  if (hasRate(m)) {
+    const ScalarEstimate speed = groundSpeed(m, sensor);
+    const double least =
+        std::max(params_.min_birth_speed, params_.min_birth_sigmas * std::sqrt(speed.variance));
+    if (params_.min_birth_speed > 0 && std::abs(speed.mean) < least) return kMinusInfinity;
+    const double max = classes_[c].motion == Motion::kStatic ? 0 : classes_[c].max_speed;
+    rate = (1 - kShareOfAnySpeed) * speedDensity(speed.mean, max, speed.variance) +
+           kShareOfAnySpeed / params_.rate_span;
+  } else if (params_.min_birth_speed > 0) {
+    return kMinusInfinity;  // nobody knows whether it moves
+  }
+  return std::log(sensing().params().births_per_scan * position * rate);
+}
+
+std::optional<BirthState> RadarModel::birth(const Measurement& m, ClassId c,
+                                            const SensorState& sensor) const {
+  const ObjectClass& object_class = classes_[c];
+  BirthState birth;
+  Extent& e = birth.extent;
+  e = {object_class.length, object_class.width,
+       object_class.length_sigma * object_class.length_sigma,
+       object_class.width_sigma * object_class.width_sigma};
+  // A disc behind its nearest point, as far off as half of length or width may be; the reflecting
+  // point lies anywhere on its width.
+  const double radius = 0.25 * (e.length + e.width), rho = m.z[kRange] + radius;
+  const Vector2 away = lineOfSight(m, sensor), across = perpendicular(away);
+  const double along_variance = m.R(kRange, kRange) + 0.0625 * (e.var_length + e.var_width) +
+                                std::pow(0.25 * (e.length - e.width), 2);
+  const double across_variance = rho * rho * m.R(kBearing, kBearing) + radius * radius / 3;
+  birth.position = sensorPosition(sensor) + rho * away;
+  birth.covariance =
+      along_variance * away * away.transpose() + across_variance * across * across.transpose();
+  if (hasRate(m) && object_class.motion != Motion::kStatic) {
+    RadialSpeed speed;
+    speed.direction = away;
+    speed.along = groundSpeed(m, sensor);
+    if (params_.birth_heading_sigma < radians(89)) {
+      speed.across_sigma =
+          std::max(0.5, std::abs(speed.along.mean) * std::tan(params_.birth_heading_sigma));
+    }
+    birth.radial_speed = speed;
+  }
+  return birth;
+}
+
+}  // namespace perception

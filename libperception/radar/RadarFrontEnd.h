@@ -1,0 +1,64 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libperception/measurement/FrontEnd.h"
+#include "libperception/measurement/RadarModel.h"
+
+namespace perception {
+
+/// [sensor.LABEL.radar]: one unit's noise, mounting and clean-up. Defaults are of a modern 77 GHz
+/// unit (SPEC 4.3); DUC's Delphi had 5 m, 5 deg, 1 m/s.
+struct RadarParams {
+  double range_sigma = 0.5;           ///< [m]
+  double bearing_sigma = radians(2);  ///< [rad]
+  double rate_sigma = 0.15;           ///< [m/s]
+  double own_speed_sigma = 0.1;       ///< [m/s] of the vehicle's velocity in any direction
+  bool upside_down = false;  ///< the unit hangs on its head and its pose in the log does not say so
+  // Returns of one object in one scan are one measurement. From the strongest on, each takes those
+  // within these distances (a cell of SPEC 9.9); a row of cars does not chain.
+  double merge_range = 0.75;       ///< [m]
+  double merge_width = 1.0;        ///< [m] across the line of sight, at least bearing_sigma there
+  double merge_rate = 0.5;         ///< [m/s]
+  bool drop_double_bounce = true;  ///< object - own vehicle - object: twice the range and rate
+  RadarModelParams model;
+
+  void visit(ParamVisitor& v);
+};
+
+/// Several returns that are taken as one reflector.
+struct RadarTarget {
+  double range = 0, bearing = 0;  ///< [m] on the ground, [rad] off forward in the level frame
+  double range_rate = 0;          ///< [m/s] on the ground; see has_rate
+  bool has_rate = false;
+  double range_spread = 0, bearing_spread = 0;  ///< [m, rad] standard deviation of its returns
+  int strongest = -1;                           ///< index of its strongest return in the frame
+  int returns = 0;
+};
+
+/// The radar rib: targets of one unit's scan under a RadarModel. Bad returns are dropped and
+/// counted.
+class RadarFrontEnd final : public FrontEnd {
+ public:
+  RadarFrontEnd(RadarParams params, const ClassTable& classes, const Sensing& sensing);
+
+  MeasurementScan extract(const SensorFrame& frame) const override;
+
+  const RadarParams& params() const { return params_; }
+
+ private:
+  RadarParams params_;
+  std::shared_ptr<const RadarModel> model_;
+};
+
+/// The returns in the level frame (x along the unit's forward axis, z up), ghosts left out, those
+/// of one object merged; `dropped` is increased by those that cannot be used.
+std::vector<RadarTarget> radarTargets(const RadarReturns& data, const Pose3& T_level_sensor,
+                                      const RadarParams& params, std::size_t& dropped);
+
+/// Reads [sensor.LABEL], [sensor.LABEL.class.NAME] and [sensor.LABEL.radar].
+std::unique_ptr<FrontEnd> makeRadarFrontEnd(Config& config, const std::string& sensor_label,
+                                            const ClassTable& classes);
+
+}  // namespace perception
