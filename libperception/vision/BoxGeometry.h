@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "libperception/core/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
@@ -42,13 +44,28 @@ struct BoxOnGround {
   double height = 0, height_sigma = 0;  ///< [m] of the object, with a range only
 };
 
+/// [rad, ccw, in (-pi, pi]] middle of a box between the bearings of its edges, also across the
+/// rear.
+inline double middleBearing(double left, double right) {
+  return wrapAngle(right + 0.5 * wrapAngle(left - right));
+}
+
+/// The two halves of objects that a panorama's seam cuts, put together: boxes of one label of which
+/// one ends at the right border, the other begins at the left one, at about the same rows. The
+/// joined box reaches beyond the image's width, has the better score and stands at the place of its
+/// left half in the list; `border` [px]. Other images are left as they are. Returns for each object
+/// the index that it had.
+std::vector<std::size_t> joinSeam(const CameraModel& camera, double border,
+                                  std::vector<ObjectDetection>& objects);
+
 /// The level frame of a camera: x forward along its optical axis, z up, at its optical centre, in
 /// the ego frame.
 Pose3 levelFrame(const Pose3& T_ego_camera);
 
 /// `T_ego_camera` is optical (x right, y down, z forward). The ground holds in the ego frame, so
-/// the camera's pitch and roll against it are part of the geometry. Empty when the box is none or
-/// lies behind the camera's horizon.
+/// the camera's pitch and roll against it are part of the geometry. In a panorama that closes, a
+/// box over the seam reaches beyond the image's width (or begins left of 0): its columns are
+/// angles. Empty when the box is none or lies behind the camera's horizon.
 std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
                                        const CameraModel& camera, const Pose3& T_ego_camera,
                                        const GroundPlane& ground,

@@ -52,6 +52,9 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
          "log-odds of an object per unit of score; 0: no evidence");
   v.real("score_limit", score_limit, {0, 50}, "", "bound of these log-odds");
+  v.angle("heading_sigma_deg", heading_sigma, {0.1, 90}, "of the detector's headings, as axes");
+  v.real("heading_flip", heading_flip, {0, 0.5}, "",
+         "share of its headings that are reversed; 0.5: they tell the axis alone");
 }
 
 VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry,
@@ -89,7 +92,7 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
                                  (box->range ? 1 << FootprintModel::kRange : 0));
   const double range = std::max(box->range.value_or(0.5 * geometry_.max_range), kNearest);
   const double forward = yawOf(state.T_world_sensor);
-  const double bearing = forward + 0.5 * (box->left + box->right);
+  const double bearing = forward + middleBearing(box->left, box->right);
   m.R = poseNoise({forward + box->left, range}, {forward + box->right, range}, {bearing, range},
                   frame.ego.uncertainty);
   const double sigma[FootprintModel::kAxes] = {box->left_sigma, box->right_sigma, box->range_sigma};
@@ -102,6 +105,13 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
   m.position = state.T_world_sensor.translation().head<2>() +
                range * Vector2(std::cos(bearing), std::sin(bearing));
   m.position_sigma = box->range ? box->range_sigma : 0.5 * geometry_.max_range;
+  if (object.heading && std::isfinite(*object.heading)) {
+    // KITTI's alpha is the heading against the line of sight, clockwise from its right
+    // (VISION_NOTES 3).
+    m.heading = HeadingSeen{wrapAngle(bearing - *object.heading - kPi / 2),
+                            std::hypot(detector_.heading_sigma, frame.ego.uncertainty.sigma_yaw),
+                            detector_.heading_flip};
+  }
   if (box->range) m.height = ScalarEstimate{box->height, box->height_sigma * box->height_sigma};
   return m;
 }
@@ -117,15 +127,17 @@ MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
       detections && detections->T_ego_camera ? *detections->T_ego_camera : frame.T_ego_sensor;
   scan.state = {frame.stamp, frame.ego.T_world_ego * levelFrame(T_ego_camera), frame.ego};
   if (!detections) return scan;
-  for (std::size_t i = 0; i < detections->objects.size(); ++i) {
-    const ObjectDetection& object = detections->objects[i];
+  std::vector<ObjectDetection> objects = detections->objects;
+  const auto index = joinSeam(detections->camera, geometry_.border, objects);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const ObjectDetection& object = objects[i];
     if (object.score < detector_.min_score) continue;
     auto m = measure(object, frame, detections->camera, T_ego_camera, scan.state);
     if (!m) {
       ++scan.dropped;
       continue;
     }
-    m->detection = static_cast<int>(i);
+    m->detection = static_cast<int>(index[i]);
     scan.measurements.push_back(std::move(*m));
   }
   return scan;

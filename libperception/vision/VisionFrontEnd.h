@@ -25,6 +25,9 @@ struct DetectorParams {
   double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
   std::vector<std::pair<std::string, double>> label_offsets;  ///< score_offset of single labels
   double score_limit = 4;                                     ///< of that logarithm
+  double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error (SPEC
+                                      ///< 4.2); KITTI's bank: 6.7 deg
+  double heading_flip = 0.2;  ///< share of headings that confuse front and back; 0.5: axis alone
 
   void visit(ParamVisitor& v);
 };

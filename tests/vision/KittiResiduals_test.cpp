@@ -57,9 +57,10 @@ Errors errorsOf(bool person, int axis, double near, double far) {
   return e;
 }
 
-#define SKIP_WITHOUT_KITTI()                                               \
-  if (residuals().empty()) GTEST_SKIP() << "no KITTI tracking recordings " \
-                                           "in " PERCEPTION_SHARED_DATA
+#define SKIP_WITHOUT_KITTI()                      \
+  if (residuals().empty())                        \
+  GTEST_SKIP() << "no KITTI tracking recordings " \
+                  "in " PERCEPTION_SHARED_DATA
 
 TEST(KittiResiduals, NoAxisIsMoreCertainThanItIs) {
   SKIP_WITHOUT_KITTI();
