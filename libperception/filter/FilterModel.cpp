@@ -28,6 +28,8 @@ void FilterParams::visit(ParamVisitor& v) {
          "how far behind the horizon a track still counts as visible");
   v.real("merge_area", merge_area, {0, 100}, "m^2",
          "footprints from this size on swallow tracks inside them; 0: never");
+  v.choiceOf("heading", heading, {"split", "counting", "wide", "ignored"},
+             "use of measured headings that may be reversed");
   v.integer("ranked_children", ranked_children, {1, 1000},
             "assignments that a hypothesis is continued with (association = ranked)");
   v.real("ranked_span", ranked_span, {0.1, 1e9}, "",

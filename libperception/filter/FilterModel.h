@@ -1,5 +1,6 @@
 #pragma once
 #include "libperception/core/ObjectClass.h"
+#include "libperception/filter/Heading.h"
 
 namespace perception {
 
@@ -39,6 +40,7 @@ struct FilterParams {
   double hidden_tolerance = 1.0;  ///< [m] a track this much behind the horizon is still visible
   double merge_area =
       2.0;  ///< [m^2] footprints from this size on swallow tracks inside them (SPEC 5.9); 0: never
+  HeadingMode heading = HeadingMode::kSplit;  ///< use of measured headings (SPEC 7)
   int ranked_children = 4;  ///< assignments that a hypothesis is continued with (SPEC 6: 3 to 5)
   double ranked_span = 14;  ///< in log weight below the best; lighter hypotheses are dropped (1e-6)
   bool sampled_births = false;  ///< birth or clutter is drawn as in DUC instead of a Bernoulli

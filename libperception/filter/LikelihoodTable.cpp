@@ -108,8 +108,13 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
     const double nis = density.nis, log_density = density.log_density;
     const double label = scan.model->logLabelLikelihood(m.label, static_cast<ClassId>(j));
     const double rest = std::log(detection) + m.log_score_ratio;
+    const ClassFilter& f = track.bank[j];
+    const double heading = m.heading && f.oriented ? logHeadingRatio(*m.heading, f.x[3], f.P(3, 3),
+                                                                     model.params.heading)
+                                                   : 0;
     pair.nis[j] = nis;
-    pair.log_by_class[j] = log_density + label + rest;
+    // The heading tells objects apart, but not classes: people have one, too, that no filter keeps.
+    pair.log_by_class[j] = log_density + label + rest + heading;
     pair.log_class_evidence[j] =
         model.params.kinematic_exponent * log_density + label_exponent * label + rest;
     mixture[j] = track.log_class[j] + pair.log_by_class[j];

@@ -256,6 +256,7 @@ void reverse(ClassFilter& f) {
   };
   for (auto& m : f.modes) one(m.x, m.P);
   one(f.x, f.P);
+  f.heading = f.heading.reversed();
 }
 
 }  // namespace perception

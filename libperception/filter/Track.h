@@ -7,6 +7,7 @@
 #include "libperception/core/Kinematics.h"
 #include "libperception/core/ObjectClass.h"
 #include "libperception/core/Time.h"
+#include "libperception/filter/Heading.h"
 #include "libperception/measurement/Measurement.h"
 
 namespace perception {
@@ -26,7 +27,8 @@ struct ClassFilter {
   Vector4 x = Vector4::Zero();
   Matrix4 P = Matrix4::Zero();
   Extent extent;
-  bool oriented = false;  ///< wheeled only: the heading is known
+  bool oriented = false;  ///< wheeled only: the heading is known, up to its direction
+  HeadingBit heading;     ///< of an oriented filter
   std::vector<ModeFilter>
       modes;  ///< of classes with several; x and P are then their mean and spread
 };

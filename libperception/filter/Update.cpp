@@ -143,10 +143,9 @@ void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
   updateExtentBy(innovation, f.extent);
 }
 
-/// A direct measurement of an oriented filter's axis: `yaw` or its opposite [rad].
-void updateYaw(double yaw, double variance, ClassFilter& f) {
+/// A direct measurement of an oriented filter's theta: residual [rad] and variance.
+void updateYaw(double y, double variance, ClassFilter& f) {
   const auto one = [&](Vector4& x, Matrix4& P) {
-    const double y = wrapAxis(yaw - x[3]);
     const Vector4 K = P.col(3) / (P(3, 3) + variance);
     x += K * y;
     P = (P - K * P.row(3)).eval();
@@ -157,14 +156,38 @@ void updateYaw(double yaw, double variance, ClassFilter& f) {
     one(f.x, f.P);
     return;
   }
-  for (auto& m : f.modes) one(m.x, m.P);
+  const double mean = f.x[3];
+  const double target = y + mean;
+  for (auto& m : f.modes) {
+    y = wrapAngle(target - m.x[3]);
+    one(m.x, m.P);
+  }
   combineModes(f);
 }
 
-/// A wheeled filter takes its heading from what is known by now: the box seen, else its own motion
-/// (SPEC 3.4, with a constant-velocity start in place of the two-point start). An oriented one that
-/// clearly drives backwards is reversed.
-void findHeading(const std::optional<BirthState>& birth, const FilterModel& model, ClassFilter& f) {
+/// What a detector says of the heading (SPEC 7): the axis by a scalar update, the direction by the
+/// bit.
+void useHeading(const HeadingSeen& seen, const FilterModel& model, ClassFilter& f) {
+  const HeadingMode mode = model.params.heading;
+  if (mode == HeadingMode::kIgnored) return;
+  const double sigma2 = seen.sigma * seen.sigma;
+  if (!f.oriented) {
+    const bool wide = mode == HeadingMode::kWide;
+    orientAlong(seen.yaw, wide ? headingResidual(seen, seen.yaw, mode).variance : sigma2, f);
+    f.heading = firstHeadingBit(seen);
+    return;
+  }
+  const HeadingResidual r = headingResidual(seen, f.x[3], mode);
+  if (r.y * r.y >= kYawGate * (f.P(3, 3) + r.variance)) return;
+  updateYaw(r.y, r.variance, f);
+  f.heading = nextHeadingBit(f.heading, r.same, seen);
+}
+
+/// A wheeled filter takes its heading from what is known by now: the detector, the box seen, else
+/// its own motion (SPEC 3.4, with a constant-velocity start in place of the two-point start). An
+/// oriented one that drives backwards against what is known of its direction is reversed.
+void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
+                 const FilterModel& model, ClassFilter& f) {
   const auto& p = model.params;
   const double box_extra = p.shape_yaw_sigma * p.shape_yaw_sigma;
   if (!f.oriented) {
@@ -175,14 +198,17 @@ void findHeading(const std::optional<BirthState>& birth, const FilterModel& mode
     } else if (birth && birth->yaw) {
       orientByAxis(birth->yaw->mean, birth->yaw->variance + box_extra, f);
     }
-    return;
-  }
-  if (birth && birth->yaw) {  // the box's long axis as a measurement of theta, front and back alike
+  } else if (birth && birth->yaw) {  // the box's long axis, front and back alike
     const double y = wrapAxis(birth->yaw->mean - f.x[3]);
-    const double S = f.P(3, 3) + birth->yaw->variance + box_extra;
-    if (y * y < kYawGate * S) updateYaw(birth->yaw->mean, birth->yaw->variance + box_extra, f);
+    const double variance = birth->yaw->variance + box_extra;
+    if (y * y < kYawGate * (f.P(3, 3) + variance)) updateYaw(y, variance, f);
   }
-  if (f.x[2] < -p.orient_min_speed && f.x[2] * f.x[2] > 4 * f.P(2, 2)) reverse(f);
+  if (m.heading) useHeading(*m.heading, model, f);
+  if (!f.oriented) return;
+  const bool clearly_back = f.x[2] < -p.orient_min_speed && f.x[2] * f.x[2] > 4 * f.P(2, 2);
+  const bool back = f.heading.measured() ? asksForReversal(f.heading, f.x[2], f.P(2, 2), p.heading)
+                                         : clearly_back;
+  if (back) reverse(f);
 }
 
 /// A filter that lost the object: from the measurement, with the velocity of the class that
@@ -241,7 +267,7 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
     }
-    if (c.motion == Motion::kWheeled) findHeading(birth, model, f);
+    if (c.motion == Motion::kWheeled) findHeading(m, birth, model, f);
     if (m.sides && (f.oriented || c.motion == Motion::kStatic)) {
       const double yaw = f.oriented ? f.x[3] : m.sides->yaw;
       f.extent = updateExtent(f.extent, *m.sides, yaw, model.params.side_sigma);
@@ -290,6 +316,8 @@ Track newTrack(const NewLikelihood& news, std::size_t measurement, const Measure
       track.log_class[static_cast<std::size_t>(j)] = kMinusInfinity;
       track.existence = 0;  // no state: cannot be tracked
     }
+    if (birth && m.heading && c.motion == Motion::kWheeled)
+      useHeading(*m.heading, model, track.bank.back());
     height += c.prior * c.height;
     height_variance += c.prior * c.height_sigma * c.height_sigma;
   }

@@ -1,0 +1,44 @@
+#pragma once
+#include "libperception/measurement/Measurement.h"
+
+namespace perception {
+
+/// How a measured heading that may be reversed is used (SPEC 7). [filter] heading.
+enum class HeadingMode {
+  kSplit,     ///< axis and bit apart, the bit as log-odds with a prior that objects drive forward
+  kCounting,  ///< axis and bit apart, the bit by majority of the detections (the paper)
+  kWide,      ///< one Gaussian wide enough for reversals (the paper's baseline C/H)
+  kIgnored,
+};
+
+/// What is known of an oriented object's direction along its axis: front or back.
+struct HeadingBit {
+  double log_odds = 0;         ///< that theta is the heading and not its opposite; 0: nothing known
+  int same = 0, opposite = 0;  ///< detections that agreed with theta, or not
+
+  bool measured() const { return same + opposite > 0; }
+  HeadingBit reversed() const { return {-log_odds, opposite, same}; }
+};
+
+/// A measured heading against theta.
+struct HeadingResidual {
+  double y = 0;         ///< [rad] to the nearer of heading and opposite; `kWide`: to the heading
+  double variance = 0;  ///< [rad^2] of the measurement
+  bool same = true;     ///< the heading was the nearer one
+};
+HeadingResidual headingResidual(const HeadingSeen& seen, double theta, HeadingMode mode);
+
+/// Log density of the measured heading over the uniform one, given theta with `theta_variance`
+/// [rad^2]: what it says for this object against clutter, births and objects without a heading.
+double logHeadingRatio(const HeadingSeen& seen, double theta, double theta_variance,
+                       HeadingMode mode);
+
+/// The bit of a track that starts from, or is given its orientation by, this measurement.
+HeadingBit firstHeadingBit(const HeadingSeen& seen);
+/// The bit after one more detection.
+HeadingBit nextHeadingBit(const HeadingBit& bit, bool same, const HeadingSeen& seen);
+
+/// Whether speed v [m/s, m^2/s^2] and bit ask for (v, theta) -> (-v, theta + pi).
+bool asksForReversal(const HeadingBit& bit, double v, double v_variance, HeadingMode mode);
+
+}  // namespace perception

@@ -1,0 +1,78 @@
+#include "libperception/filter/Heading.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libperception/core/Angle.h"
+#include "libperception/core/Random.h"
+
+namespace perception {
+namespace {
+
+HeadingSeen seen(double yaw, double flip = 0.2) { return {yaw, 0.14, flip}; }
+
+TEST(HeadingResidual, IsFoldedOntoTheNearerDirection) {
+  const auto same = headingResidual(seen(0.3), 0.1, HeadingMode::kSplit);
+  EXPECT_TRUE(same.same);
+  EXPECT_NEAR(same.y, 0.2, 1e-12);
+  const auto opposite = headingResidual(seen(0.3 + kPi), 0.1, HeadingMode::kSplit);
+  EXPECT_FALSE(opposite.same);
+  EXPECT_NEAR(opposite.y, 0.2, 1e-12);
+}
+
+TEST(HeadingResidual, OfTheWideGaussianIsNotFolded) {
+  const auto r = headingResidual(seen(3.0), 0.1, HeadingMode::kWide);
+  EXPECT_NEAR(r.y, 2.9, 1e-12);
+  EXPECT_NEAR(r.variance, 0.14 * 0.14 + 0.2 * kPi * kPi, 1e-12);
+}
+
+TEST(HeadingRatio, IntegratesToOneOverTheCircle) {
+  for (const auto mode : {HeadingMode::kSplit, HeadingMode::kCounting}) {
+    double integral = 0;
+    const int n = 20000;
+    for (int i = 0; i < n; ++i) {
+      const double z = -kPi + kTwoPi * (i + 0.5) / n;
+      integral += std::exp(logHeadingRatio(seen(z, 0.3), 0.7, 0.02, mode)) / n;
+    }
+    EXPECT_NEAR(integral, 1, 1e-6);
+  }
+}
+
+TEST(HeadingBit, FollowsTheMajorityOfItsDetections) {
+  HeadingBit bit = firstHeadingBit(seen(0));
+  EXPECT_FALSE(asksForReversal(bit, 0, 1, HeadingMode::kCounting));
+  bit = nextHeadingBit(bit, false, seen(0));
+  EXPECT_FALSE(asksForReversal(bit, 0, 1, HeadingMode::kCounting));  // a tie: no reversal
+  bit = nextHeadingBit(bit, false, seen(0));
+  EXPECT_TRUE(asksForReversal(bit, 0, 1, HeadingMode::kCounting));
+  bit = bit.reversed();
+  EXPECT_FALSE(asksForReversal(bit, 0, 1, HeadingMode::kCounting));
+}
+
+TEST(HeadingBit, OfLogOddsIsTheMajorityForConstantAccuracyAndUnknownSpeed) {
+  // Up to the slow forgetting: sequences whose sums are clear.
+  Rng rng({4, 0, 0, 0});
+  for (int trial = 0; trial < 200; ++trial) {
+    HeadingBit bit = firstHeadingBit(seen(0, 0.4));
+    for (int i = 0; i < 8; ++i) bit = nextHeadingBit(bit, rng.uniform() < 0.5, seen(0, 0.4));
+    if (std::abs(bit.same - bit.opposite) < 3) continue;
+    EXPECT_EQ(asksForReversal(bit, 0, 1e6, HeadingMode::kSplit), bit.opposite > bit.same);
+  }
+}
+
+TEST(HeadingBit, GivesWayToAClearSpeed) {
+  const HeadingBit one = firstHeadingBit(seen(0, 0.2));
+  EXPECT_TRUE(asksForReversal(one, -5, 0.25, HeadingMode::kSplit));
+  EXPECT_FALSE(asksForReversal(one, 5, 0.25, HeadingMode::kSplit));
+  EXPECT_FALSE(asksForReversal(one, -0.05, 0.25, HeadingMode::kSplit));
+}
+
+TEST(HeadingBit, OfADetectorWithoutDirectionSaysNothing) {
+  HeadingBit bit;
+  for (int i = 0; i < 10; ++i) bit = nextHeadingBit(bit, i % 3 == 0, seen(0, 0.5));
+  EXPECT_NEAR(bit.log_odds, 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace perception
