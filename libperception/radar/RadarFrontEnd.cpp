@@ -166,6 +166,7 @@ MeasurementScan RadarFrontEnd::extract(const SensorFrame& frame) const {
   const auto* data = std::get_if<RadarReturns>(&frame.data);
   if (data == nullptr) return scan;
 
+  const SensingParams& view = model_->sensing().params();
   const Vector2 velocity = sensorVelocity(scan.state);
   const auto& pose = frame.ego.uncertainty;
   const Vector3 pose_variance(pose.sigma_xy * pose.sigma_xy, pose.sigma_xy * pose.sigma_xy,
@@ -173,6 +174,11 @@ MeasurementScan RadarFrontEnd::extract(const SensorFrame& frame) const {
   const double own2 = params_.own_speed_sigma * params_.own_speed_sigma;
   for (const RadarTarget& t :
        radarTargets(*data, scan.state.T_world_sensor.inverse() * sensor, params_, scan.dropped)) {
+    // Beyond the view of [sensor.LABEL] neither clutter nor objects have a density.
+    if (t.range > view.range_max || std::abs(t.bearing) > 0.5 * view.fov) {
+      ++scan.dropped;
+      continue;
+    }
     const Vector2 u(std::cos(forward + t.bearing), std::sin(forward + t.bearing));
     const Vector2 n(-u.y(), u.x());
     Measurement m;

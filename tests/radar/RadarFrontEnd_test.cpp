@@ -16,6 +16,7 @@ motion = constant-velocity
 [sensor.RADAR]
 kind = radar
 modality = R
+fov_deg = 360
 [sensor.RADAR.radar]
 )";
 
@@ -127,6 +128,12 @@ TEST(RadarFrontEnd, DropsTheEchoThatWentToAndFroTwice) {
                 ->extract(frameOf({target(12, 0.1, 0, 20), target(24, 0.1, 0, 5)}))
                 .measurements.size(),
             2u);
+}
+
+TEST(RadarFrontEnd, DropsAndCountsWhatLiesOutsideTheView) {
+  const auto scan = frontEnd()->extract(frameOf({target(119, 0, 0), target(121, 0, 0)}));
+  EXPECT_EQ(scan.measurements.size(), 1u);  // range_max is 120 m unless the INI says otherwise
+  EXPECT_EQ(scan.dropped, 1u);
 }
 
 TEST(RadarFrontEnd, DropsAndCountsWhatIsNoReturn) {
