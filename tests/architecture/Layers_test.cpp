@@ -23,12 +23,13 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"grid", {"core"}},
     {"evaluation", {"scene", "measurement", "core"}},
     {"simulation", {"sensors", "measurement", "core"}},
+    {"study", {"simulation", "evaluation", "scene", "filter", "sensors", "measurement", "core"}},
     {"batch", {"scene", "evaluation", "core"}},
     {"capture", {"sensors", "measurement", "core"}},
     {"gui-offscreen", {"scene", "grid", "measurement", "core"}},
     {"app",
      {"core", "measurement", "filter", "lidar", "radar", "vision", "weather", "scene", "sensors",
-      "grid", "evaluation", "simulation", "batch", "gui-offscreen"}},
+      "grid", "evaluation", "simulation", "study", "batch", "gui-offscreen"}},
     {"apps", {"app"}},
 };
 

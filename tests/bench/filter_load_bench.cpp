@@ -1,0 +1,226 @@
+// The whole filter under the load of a paper's vehicle in a busy street (simulated measurements):
+// 66 objects, a lidar that sees them all 12 times a second, eight radars with 8 returns 20 times a
+// second, a camera with 10 boxes 10 times a second. One thread; CPU clock.
+//   filter_load_bench [seconds of log, default 5]
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <vector>
+
+#include "libperception/app/Pipeline.h"
+#include "libperception/filter/CRbpfTracker.h"
+
+namespace perception {
+namespace {
+
+constexpr int kObjects = 66;
+
+double cpuSeconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double residentMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+struct Unit {
+  std::string label;
+  std::shared_ptr<const MeasurementModel> model;
+  Modality modality = Modality::kLidar;
+  Pose3 T_ego_sensor = Pose3::Identity();
+  double rate = 10;  // [1/s]
+  int returns = kObjects;
+  std::vector<double> sigma;  // by axis
+  AxisMask seen = 7;
+  int labels = 2;
+};
+
+struct Object {
+  ClassId c = 0;
+  Vector2 start, velocity;
+  Extent extent;
+  Kinematics at(double t) const {
+    Kinematics k;
+    k.q << start.x() + velocity.x() * t, start.y() + velocity.y() * t, velocity.x(), velocity.y(),
+        std::atan2(velocity.y(), velocity.x());
+    k.has_yaw = c != 0;
+    return k;
+  }
+};
+
+/// Objects at least `spacing` metres apart in a disc of 60 m: people and vehicles by turns.
+std::vector<Object> street(const ClassTable& classes, double spacing, Rng& rng) {
+  std::vector<Object> objects;
+  while (objects.size() < kObjects) {
+    Object o;
+    o.start = {rng.uniform(-60, 60), rng.uniform(-60, 60)};
+    if (o.start.norm() > 60 || o.start.norm() < 5) continue;
+    const bool near = std::any_of(objects.begin(), objects.end(), [&](const Object& other) {
+      return (other.start - o.start).norm() < spacing;
+    });
+    if (near) continue;
+    o.c = static_cast<ClassId>(objects.size() % 3);  // pedestrian, cyclist, car
+    const double heading = rng.uniform(-kPi, kPi), speed = o.c == 0 ? 1.2 : 4.0;
+    o.velocity = speed * Vector2(std::cos(heading), std::sin(heading));
+    o.extent.length = classes[o.c].length;
+    o.extent.width = classes[o.c].width;
+    objects.push_back(o);
+  }
+  return objects;
+}
+
+std::vector<Unit> vehicle(const PipelineSetup& setup) {
+  std::vector<Unit> units;
+  int radar = 0;
+  for (const auto& s : setup.sensors) {
+    SensorFrame nothing;
+    if (s.params.modality == Modality::kLidar) {
+      nothing.data = LidarCloud{};
+    } else if (s.params.modality == Modality::kCamera) {
+      nothing.data = ObjectDetections{};
+    } else {
+      nothing.data = RadarReturns{};
+    }
+    Unit u;
+    u.label = s.label;
+    u.model = s.front_end->extract(nothing).model;
+    u.modality = s.params.modality;
+    if (s.params.modality == Modality::kLidar) {
+      u.rate = 12;
+      u.sigma = {radians(0.5), radians(0.5), 0.15};
+    } else if (s.params.modality == Modality::kCamera) {
+      u.rate = 10, u.returns = 10;
+      u.sigma = {radians(1.0), radians(1.0), 1.0};
+    } else {
+      u.rate = 20, u.returns = 8, u.labels = 1;
+      u.sigma = {0.5, radians(2), 0.3};
+      u.T_ego_sensor = makePose(0, 0, 0.5, radians(45.0 * radar++), 0, 0);
+    }
+    units.push_back(u);
+  }
+  return units;
+}
+
+MeasurementScan measure(const Unit& u, const std::vector<Object>& objects, double t, Rng& rng) {
+  MeasurementScan scan;
+  scan.sensor = u.label;
+  scan.modality = u.modality;
+  scan.model = u.model;
+  scan.state.stamp = scan.state.ego.stamp = Stamp::fromSeconds(1000 + t);
+  scan.state.T_world_sensor = u.T_ego_sensor;
+  std::vector<std::size_t> order(objects.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[rng.below(static_cast<std::uint32_t>(i))]);
+  for (const std::size_t i : order) {
+    if (static_cast<int>(scan.measurements.size()) == u.returns) break;
+    const Kinematics k = objects[i].at(t);
+    if (u.model->detectionProbability(objects[i].c, k, objects[i].extent, scan.state, 1) <
+        0.5 * rng.uniform())
+      continue;
+    std::vector<Kinematics> batch(static_cast<std::size_t>(objects[i].c) + 1, k);
+    std::vector<Extent> extents(batch.size(), objects[i].extent);
+    std::vector<AxisPrediction> h(batch.size());
+    u.model->predict(batch.data(), extents.data(), batch.size(), scan.state, h.data());
+    if (!h.back().defined) continue;
+    Measurement m;
+    m.z = h.back().h;
+    const auto axes = static_cast<std::size_t>(m.z.size());
+    m.R = AxisMatrix::Zero(m.z.size(), m.z.size());
+    for (std::size_t a = 0; a < axes; ++a) {
+      const auto row = static_cast<Eigen::Index>(a);
+      m.z[row] += u.sigma[a] * rng.normal();
+      m.R(row, row) = u.sigma[a] * u.sigma[a];
+    }
+    m.seen = u.seen;
+    m.label = u.labels > 1 && objects[i].c == 0 ? 1 : 0;
+    m.position = k.q.head<2>();
+    m.position_sigma = 1;
+    scan.measurements.push_back(std::move(m));
+  }
+  return scan;
+}
+
+struct Event {
+  double t;
+  std::size_t unit;
+};
+
+std::vector<MeasurementScan> logOf(const std::vector<Unit>& units,
+                                   const std::vector<Object>& objects, double seconds) {
+  std::vector<Event> events;
+  for (std::size_t u = 0; u < units.size(); ++u) {
+    for (double t = 0.001 * static_cast<double>(u); t < seconds; t += 1 / units[u].rate)
+      events.push_back({t, u});
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.t < b.t; });
+  Rng rng({3, 0, 0, 0});
+  std::vector<MeasurementScan> scans;
+  for (const Event& e : events) scans.push_back(measure(units[e.unit], objects, e.t, rng));
+  return scans;
+}
+
+void run(const char* street_name, const std::vector<MeasurementScan>& scans,
+         const FilterModel& base, Proposal proposal, int particles, double seconds) {
+  FilterModel model = base;
+  model.proposal = proposal;
+  ParticleFilterParams pf;
+  pf.sample_size = particles;
+  CRbpfTracker tracker(model, pf.toMrpt(), 1);
+  std::vector<double> times;
+  double total = 0, distinct = 0, hypotheses = 0, objects = 0;
+  for (const auto& scan : scans) {
+    const double begin = cpuSeconds();
+    tracker.process(scan);
+    const double cpu = cpuSeconds() - begin;
+    times.push_back(1e3 * cpu);
+    total += cpu;
+    distinct += static_cast<double>(tracker.stats().distinct_tracks);
+    hypotheses += static_cast<double>(tracker.stats().hypotheses);
+    objects = static_cast<double>(tracker.mapHypothesis().tracks.size());
+  }
+  std::sort(times.begin(), times.end());
+  const auto n = static_cast<double>(scans.size());
+  fmt::print(
+      "{:<8} {:<8} {:>5}  {:>7.2f}  {:>7.3f} {:>7.3f} {:>7.3f}  {:>7.1f} {:>7.1f} {:>5.0f} "
+      "{:>7.0f}\n",
+      street_name, proposal == Proposal::kSampled ? "sampled" : "ranked", particles,
+      seconds / total, times[times.size() / 2], times[static_cast<std::size_t>(0.99 * n)],
+      times.back(), distinct / n, hypotheses / n, objects, residentMb());
+}
+
+}  // namespace
+}  // namespace perception
+
+int main(int argc, char** argv) {
+  using namespace perception;
+  const double seconds = argc > 1 ? std::atof(argv[1]) : 5;
+  tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  Config config = Config::fromFile(PERCEPTION_SOURCE_DIR "/ini/skynet.ini");
+  const PipelineSetup setup = PipelineSetup::read(config);
+  config.finish();
+  const auto units = vehicle(setup);
+  fmt::print("{} sensors, {} objects, {} classes, {} s (simulated measurements), one thread\n",
+             units.size(), kObjects, setup.model.classes.size(), seconds);
+  fmt::print(
+      "street   proposal  part.  x real   ms p50     p99     max  distinct hypoth. tracks  MB\n");
+  for (const double spacing : {4.0, 1.0}) {
+    Rng rng({static_cast<std::uint64_t>(spacing), 1, 0, 0});
+    const auto objects = street(setup.model.classes, spacing, rng);
+    const auto scans = logOf(units, objects, seconds);
+    for (const Proposal p : {Proposal::kSampled, Proposal::kRanked}) {
+      for (const int particles : {1, 8, 64, 256, 1000})
+        run(spacing > 2 ? "open" : "crowded", scans, setup.model, p, particles, seconds);
+    }
+  }
+}
