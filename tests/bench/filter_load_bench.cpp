@@ -14,6 +14,7 @@
 
 #include "libperception/app/Pipeline.h"
 #include "libperception/filter/CRbpfTracker.h"
+#include "libperception/measurement/MeasurementModel.h"
 
 namespace perception {
 namespace {
