@@ -9,7 +9,7 @@ struct RadarModelParams {
   double rate_span = 53.6;  ///< [m/s] over which the range rates of clutter spread (DUC's unit)
   double min_birth_speed = 0.5;  ///< [m/s] over ground along the line of sight: returns below it
                                  ///< may be of anything that stands and start no objects (SPEC 4.3)
-  double min_birth_sigmas = 2;  ///< ... nor those within so many of its own deviations of standing:
+  double min_birth_sigmas = 3;  ///< ... nor those within so many of its own deviations of standing:
                                 ///< an uncertain bearing turns own motion into the return's
   double birth_heading_sigma = radians(90);  ///< [rad] of a newborn's course about the line of
                                              ///< sight: DUC 30 deg; 90 deg tells nothing
