@@ -21,6 +21,7 @@ packages=(
   libmrpt-opengl-dev     # pictures without a display
   libmrpt-img-dev        # images of observations
   libmrpt-config-dev     # the options of MRPT's particle filter
+  libmrpt-hwdrivers-dev  # drivers for MRPT's recorder
   libmrpt-system-dev     # time stamps, file names
   libeigen3-dev          # linear algebra
   libfmt-dev             # numbers as text, whatever the locale
@@ -35,10 +36,11 @@ packages=(
   # to run
   libgl1-mesa-dri        # draws without a graphics card
   gnuplot-nox            # plots of the evaluation
+  ffmpeg                 # videos
 )
 test_packages=(
   libgtest-dev           # tests
-  mrpt-apps              # rawlog-edit: stock MRPT must read our logs
+  mrpt-apps              # rawlog-edit, rawlog-grabber: stock MRPT must read and record our logs
   locales                # definition of a locale with decimal comma: it must not change a byte
 )
 

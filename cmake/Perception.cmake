@@ -16,7 +16,7 @@ foreach(part core imgproc imgcodecs)
 endforeach()
 find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
-foreach(part obs maps bayes random io opengl img config system)
+foreach(part obs maps bayes random io opengl img config system hwdrivers)
   find_package(mrpt-${part} REQUIRED)
 endforeach()
 
@@ -59,10 +59,8 @@ function(perception_apps)
   endforeach()
 endfunction()
 
-# The observation classes as a plugin for stock MRPT tools (rawlog-edit -p, RawLogViewer -l, rawlog-grabber -p).
+# The observation classes and drivers as a plugin for stock MRPT tools (rawlog-edit -p, RawLogViewer -l, rawlog-grabber -p).
 function(perception_plugin)
-  if(EXISTS ${CMAKE_SOURCE_DIR}/libperception/sensors/plugin/Plugin.cpp)
-    add_library(perception_mrpt_plugin MODULE ${CMAKE_SOURCE_DIR}/libperception/sensors/plugin/Plugin.cpp)
-    target_link_libraries(perception_mrpt_plugin PRIVATE perception::sensors)
-  endif()
+  add_library(perception_mrpt_plugin MODULE ${CMAKE_SOURCE_DIR}/libperception/capture/plugin/Plugin.cpp)
+  target_link_libraries(perception_mrpt_plugin PRIVATE perception::capture)
 endfunction()

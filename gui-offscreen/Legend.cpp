@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "gui-offscreen/Overlay.h"
+
 namespace perception {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr double kHeadSize = 9;  // [px]
 constexpr double kRow = 22;      // [px]
 constexpr double kSymbol = 34;   // [px] width of the column of symbols
 
-/// Rows of symbol and text, one below the other.
+/// Rows of symbol and text, one below the other. `bottom()` is where they end.
 class Legend {
  public:
   Legend(Canvas& canvas, const Rect& at) : canvas_(canvas), at_(at), y_(at.y) {}
@@ -22,6 +24,7 @@ class Legend {
     canvas_.text({at_.x, y_ + kHeadSize}, text, kHeadSize, kInk, true);
     y_ += kHeadSize + 8;
   }
+  double bottom() const { return y_; }
   void text(const std::string& text) {
     canvas_.text({at_.x + kSymbol + 8, y_ + (kRow + kTextSize) / 2}, text, kTextSize, kInk);
     y_ += kRow;
@@ -54,6 +57,19 @@ class Legend {
     canvas_.dashedLine(middle(2) + Vector2(0, 4), middle(kSymbol - 5) + Vector2(0, 4), kMutedInk, 1,
                        4);
     canvas_.line(middle(kSymbol - 3) - Vector2(0, 5), middle(kSymbol - 3) + Vector2(0, 5), kInk, 3);
+    text(label);
+  }
+  void radarRow(bool moving, const std::string& label) {
+    canvas_.disc(middle(moving ? 6 : kSymbol / 2), 2.4, kRadarReturn);
+    if (moving) canvas_.arrow(middle(6), middle(kSymbol - 3), kRadarReturn, 1.5);
+    text(label);
+  }
+  void markRow(Modality modality, const std::string& label) {
+    drawMeasurementMark(canvas_, middle(kSymbol / 2), modality);
+    text(label);
+  }
+  void dashedBoxRow(const Colour& colour, const std::string& label) {
+    outline({at_.x + 3, y_ + 4, kSymbol - 6, kRow - 8}, colour, true, 1.5);
     text(label);
   }
   void squaresRow(const Colour& colour, const std::string& label) {
@@ -112,7 +128,7 @@ class Legend {
 
 }  // namespace
 
-void drawLegend(Canvas& canvas, const SceneView& view, const Rect& at) {
+double drawLegend(Canvas& canvas, const SceneView& view, const Rect& at) {
   Legend legend(canvas, at);
   legend.head("Tracked objects");
   for (std::size_t i = 0; i < view.class_names.size(); ++i) {
@@ -136,13 +152,30 @@ void drawLegend(Canvas& canvas, const SceneView& view, const Rect& at) {
   legend.head("Vehicle");
   legend.filledRow(kEgo, "own vehicle");
   if (view.corridor) legend.dashedRow("lane free of obstacles");
-  if (view.has_lidar) {
+  if (view.layers.lidar) {
     legend.head("Lidar");
     legend.squaresRow(kOccupied, "safety grid: occupied");
     legend.pointsRow(kGroundPoint, "ground");
+    if (view.layers.trust) legend.pointsRow(kPhantom, "rain, snow or spray");
     legend.pointsRow(colourOfHeight(1), "obstacle, by height:");
     legend.heightBar();
   }
+  if (view.layers.radar) {
+    legend.head("Radar");
+    legend.radarRow(false, "return");
+    legend.radarRow(true, "radial speed: way of 1 s");
+  }
+  if (view.layers.measurements) {
+    legend.head("Measurements");
+    legend.markRow(Modality::kLidar, "lidar: cluster, person");
+    if (view.layers.detector_boxes) legend.markRow(Modality::kCamera, "camera");
+    if (view.layers.radar) legend.markRow(Modality::kRadar, "radar");
+  }
+  if (view.layers.camera && view.layers.detector_boxes) {
+    legend.head("Camera");
+    legend.dashedBoxRow(kDetectorBox, "box of the detector");
+  }
+  return legend.bottom();
 }
 
 }  // namespace perception

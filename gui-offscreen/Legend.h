@@ -4,7 +4,8 @@
 
 namespace perception {
 
-/// Explains every symbol that pictures of this view may hold. Draws into `at`, from the top.
-void drawLegend(Canvas& canvas, const SceneView& view, const Rect& at);
+/// Explains every symbol that pictures of this view may hold. Draws into `at`, from the top;
+/// returns where it ends [px].
+double drawLegend(Canvas& canvas, const SceneView& view, const Rect& at);
 
 }  // namespace perception

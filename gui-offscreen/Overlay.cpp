@@ -17,6 +17,7 @@ constexpr double kSmallSize = 7.5;              // [px]
 constexpr double kArrowTime = 1;                // [s] the speed arrow shows the way of so long
 constexpr double kStanding = 0.5;               // [m/s] below it there is no arrow
 constexpr double kDash = 4;                     // [px]
+constexpr double kImageReach = 1.5;  // of the range: farther objects crowd at the horizon
 
 /// Draws what is given in the ego frame.
 class Overlay {
@@ -31,11 +32,14 @@ class Overlay {
 
   int draw() {
     canvas_.clip(at_);
+    if (camera_.kind == ViewKind::kCamera) return drawOnImage();
     drawAxes();
     drawFreeDistance();
     drawVehicle();
+    for (const ViewRadarReturn& point : view_.radar) drawRadar(point);
     for (const SceneObject& object : view_.scene.objects) drawTrail(object);
     for (const SceneObject& object : view_.scene.objects) drawOutline(object);
+    for (const ViewMeasurement& measurement : view_.measurements) drawMeasurement(measurement);
     for (const TruthObject& object : view_.truth) drawTruth(object);
     for (const SceneObject& object : view_.scene.objects) drawArrow(object);
     const int left_out = drawLabels();
@@ -52,13 +56,13 @@ class Overlay {
 
   void line(const Vector3& a, const Vector3& b, const Colour& colour, double thickness,
             bool dashed = false) {
-    const auto ends = camera_.project(a, b);
-    if (!ends) return;
     const Vector2 corner(at_.x, at_.y);
-    if (dashed) {
-      canvas_.dashedLine(ends->first + corner, ends->second + corner, colour, thickness, kDash);
-    } else {
-      canvas_.line(ends->first + corner, ends->second + corner, colour, thickness);
+    for (const auto& [from, to] : camera_.projectLine(a, b)) {
+      if (dashed) {
+        canvas_.dashedLine(from + corner, to + corner, colour, thickness, kDash);
+      } else {
+        canvas_.line(from + corner, to + corner, colour, thickness);
+      }
     }
   }
 
@@ -88,6 +92,18 @@ class Overlay {
         boxCorners(T_ego_world_ * o.position, o.yaw - ego_yaw_, o.length, o.width, o.height);
     box(corners, kPaper, 3, false);  // a rim, so that it stands out on outlines, too
     box(corners, kInk, 1.2, false);
+  }
+
+  int drawOnImage();
+  void drawImagePoints();
+  void drawDetectorBoxes();
+  void drawRadar(const ViewRadarReturn& point);
+  void drawMeasurement(const ViewMeasurement& measurement);
+  bool inFront(const Vector3& world) const {
+    return camera_.project(T_ego_world_ * world).has_value();
+  }
+  double distanceOf(const SceneObject& object) const {
+    return (T_ego_world_ * object.position).norm();
   }
 
   void drawTrail(const SceneObject& object) {
@@ -225,6 +241,72 @@ void Overlay::drawVehicle() {
   taken_.push_back(frame);
 }
 
+// A camera of the vehicle: its image or, where the log has none, the lidar's returns in its place;
+// boxes from far to near.
+int Overlay::drawOnImage() {
+  if (view_.image->picture.width == 0) drawImagePoints();
+  std::vector<const SceneObject*> objects;
+  for (const SceneObject& object : view_.scene.objects) {
+    if (inFront(object.position) && distanceOf(object) <= kImageReach * camera_.range) {
+      objects.push_back(&object);
+    }
+  }
+  std::stable_sort(objects.begin(), objects.end(),
+                   [&](const auto* a, const auto* b) { return distanceOf(*a) > distanceOf(*b); });
+  for (const TruthObject& object : view_.truth) {
+    if (inFront(object.position)) drawTruth(object);
+  }
+  drawDetectorBoxes();
+  for (const SceneObject* object : objects) drawOutline(*object);
+  const int left_out = drawLabels();
+  canvas_.unclip();
+  return left_out;
+}
+
+void Overlay::drawImagePoints() {
+  for (const ViewPoint& point : view_.points) {
+    const auto at = pixel(T_ego_world_ * point.place);
+    if (!at || !at_.overlaps({at->x(), at->y(), 1, 1})) continue;
+    const bool ground = point.height < kHeightLow;
+    canvas_.disc(*at, ground ? 0.5 : 1, ground ? kGroundPoint : colourOfHeight(point.height));
+  }
+}
+
+void Overlay::drawDetectorBoxes() {
+  const double scale = camera_.focal / view_.image->camera.fx;
+  for (const ViewImage::Box& found : view_.image->boxes) {
+    const auto& b = found.box;
+    const Vector2 corner(at_.x, at_.y);
+    const Vector2 c[] = {{b.x1, b.y1}, {b.x2, b.y1}, {b.x2, b.y2}, {b.x1, b.y2}};
+    for (int i = 0; i < 4; ++i) {
+      canvas_.dashedLine(corner + scale * c[i], corner + scale * c[(i + 1) % 4], kDetectorBox, 1.5,
+                         kDash);
+    }
+  }
+}
+
+void Overlay::drawRadar(const ViewRadarReturn& point) {
+  const Vector3 place = T_ego_world_ * point.place;
+  const auto at = pixel(place);
+  if (!at) return;
+  canvas_.disc(*at, 3.2, kPaper);
+  canvas_.disc(*at, 2.4, kRadarReturn);
+  if (!point.has_rate || point.radial_velocity.norm() < kStanding) return;
+  const Vector2 way = rotate2(-ego_yaw_, point.radial_velocity) * kArrowTime;
+  const auto tip = pixel(place + Vector3(way.x(), way.y(), 0));
+  if (tip) canvas_.arrow(*at, *tip, kRadarReturn, 1.5);
+}
+
+void Overlay::drawMeasurement(const ViewMeasurement& measurement) {
+  const auto& outline = measurement.outline;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    line(T_ego_world_ * outline[i], T_ego_world_ * outline[(i + 1) % outline.size()], kMeasurement,
+         1.2);
+  }
+  const auto at = pixel(T_ego_world_ * measurement.place);
+  if (at) drawMeasurementMark(canvas_, *at, measurement.modality);
+}
+
 std::string Overlay::labelOf(const SceneObject& object) const {
   std::string name = view_.className(object);
   if (isMuted(name)) return fmt::format("{}", object.id);
@@ -251,6 +333,8 @@ std::optional<Rect> Overlay::frameOf(const SceneObject& object) const {
   }
   const Rect frame{low_x, low_y, high_x - low_x, high_y - low_y};
   if (!at_.overlaps(frame)) return std::nullopt;
+  // Across the seam of a panorama.
+  if (camera_.kind == ViewKind::kCamera && frame.width > at_.width / 2) return std::nullopt;
   return frame;
 }
 
@@ -265,7 +349,9 @@ int Overlay::drawLabels() {
   for (const SceneObject& object : view_.scene.objects) {
     const auto frame = frameOf(object);
     const double distance = (T_ego_world_ * object.position).norm();
-    if (!frame || (camera_.kind == ViewKind::kDriver && distance > 1.5 * camera_.range)) continue;
+    if (!frame || (camera_.kind != ViewKind::kTop && distance > kImageReach * camera_.range)) {
+      continue;
+    }
     const bool muted = isMuted(view_.className(object));
     labels.push_back({&object, labelOf(object), muted ? kSmallSize - 0.5 : kLabelSize});
     const Label& label = labels.back();
@@ -297,6 +383,18 @@ int Overlay::drawLabels() {
 }
 
 }  // namespace
+
+void drawMeasurementMark(Canvas& canvas, const Vector2& at, Modality modality) {
+  constexpr double kSize = 4;  // [px] half
+  const auto corner = [&](double angle) -> Vector2 {
+    return at + kSize * Vector2(std::sin(angle), -std::cos(angle));
+  };
+  const int corners = modality == Modality::kCamera ? 3 : modality == Modality::kRadar ? 4 : 12;
+  for (int i = 0; i < corners; ++i) {
+    canvas.line(corner(kTwoPi * i / corners), corner(kTwoPi * (i + 1) / corners), kMeasurement,
+                1.5);
+  }
+}
 
 int drawOverlay(Canvas& canvas, const SceneView& view, const ViewCamera& camera, const Rect& at) {
   return Overlay(canvas, view, camera, at).draw();

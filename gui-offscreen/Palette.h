@@ -21,6 +21,10 @@ constexpr Colour kGridLine{170, 170, 170};
 constexpr Colour kGroundPoint{205, 205, 205};
 constexpr Colour kOccupied{240, 180, 60};
 constexpr Colour kEgo{60, 60, 60};
+constexpr Colour kPhantom{225, 20, 150};      ///< returns that are probably rain, snow, spray
+constexpr Colour kMeasurement{125, 60, 190};  ///< what front ends took from the sensors
+constexpr Colour kRadarReturn{150, 90, 20};
+constexpr Colour kDetectorBox{235, 200, 0};  ///< boxes of an image detector, on images
 
 /// Colour of a class; classes that are not known by name share the rest of the palette by place.
 Colour colourOfClass(const std::string& name, int place);

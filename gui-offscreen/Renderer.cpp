@@ -19,7 +19,7 @@ mrpt::opengl::CCamera cameraOf(const ViewCamera& camera, int width, int height) 
   mrpt::img::TCamera pinhole;
   pinhole.ncols = static_cast<std::uint32_t>(width);
   pinhole.nrows = static_cast<std::uint32_t>(height);
-  pinhole.setIntrinsicParamsFromValues(camera.focal * scale, camera.focal * scale, width / 2.0,
+  pinhole.setIntrinsicParamsFromValues(camera.focal * scale, camera.focal_y * scale, width / 2.0,
                                        height / 2.0);
   mrpt::opengl::CCamera result;
   result.setProjectiveFromPinhole(pinhole);

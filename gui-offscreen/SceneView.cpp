@@ -47,7 +47,9 @@ void addPoints(mrpt::opengl::COpenGLScene& scene, const SceneView& view, const P
   auto obstacles = mrpt::opengl::CPointCloudColoured::Create();
   for (const ViewPoint& point : view.points) {
     const bool low = point.height < kGroundHeight;
-    const Colour c = low ? kGroundPoint : colourOfHeight(point.height);
+    const Colour c = point.trust < kTrusted ? kPhantom
+                     : low                  ? kGroundPoint
+                                            : colourOfHeight(point.height);
     const TPoint3Df p = pointOf(T_ego_world * point.place);
     (low ? ground : obstacles)
         ->push_back(p.x, p.y, p.z, static_cast<float>(c.r) / 255, static_cast<float>(c.g) / 255,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gui-offscreen/Picture.h"
 #include "gui-offscreen/ViewCamera.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/grid/SafetyGrid.h"
@@ -22,6 +23,42 @@ namespace perception {
 struct ViewPoint {
   Vector3 place = Vector3::Zero();  ///< [m] world
   float height = 0;                 ///< [m] above the ground
+  float trust = 1;                  ///< [0, 1] P(it is of a surface)
+};
+
+/// One radar return as it is drawn.
+struct ViewRadarReturn {
+  Vector3 place = Vector3::Zero();  ///< [m] world
+  Vector2 radial_velocity{0, 0};    ///< [m/s] over ground along the line of sight, world
+  bool has_rate = false;            ///< the line above is known
+};
+
+/// What a front end took for one object, before any tracking.
+struct ViewMeasurement {
+  Modality modality = Modality::kLidar;
+  Vector3 place = Vector3::Zero();  ///< [m] world, on the ground; rough
+  std::vector<Vector3> outline;     ///< [m] world, about what was seen; may be empty
+};
+
+/// A camera of the vehicle: its last image and what somebody's detector found in it.
+struct ViewImage {
+  struct Box {
+    ObjectDetection::ImageBox box;  ///< [px]
+    std::string label;
+  };
+  std::string sensor;  ///< label
+  CameraModel camera;
+  Pose3 T_world_camera = Pose3::Identity();  ///< optical, at the image's time
+  double age = 0;                            ///< [s] of the image at the view's time
+  Picture picture;                           ///< empty: the log has boxes, but no image
+  std::vector<Box> boxes;
+};
+
+/// What the log of a run holds. Known before the first picture, so that all pictures of a log have
+/// the same legend and size.
+struct ViewLayers {
+  bool lidar = false, trust = false, radar = false, measurements = false, detector_boxes = false;
+  std::optional<CameraModel> camera;  ///< of the image that is shown
 };
 
 /// All that a picture of one instant shows. World frame.
@@ -31,9 +68,12 @@ struct SceneView {
   Scene scene;
   std::vector<std::string> class_names;  ///< by class_id
   std::map<std::uint64_t, std::vector<Vector3>>
-      trails;              ///< [m] past places by object, oldest first
-  bool has_lidar = false;  ///< points and cells come from a log
+      trails;  ///< [m] past places by object, oldest first
+  ViewLayers layers;
   std::vector<ViewPoint> points;
+  std::vector<ViewRadarReturn> radar;
+  std::vector<ViewMeasurement> measurements;
+  std::optional<ViewImage> image;
   std::vector<GridCell> occupied;
   std::optional<Corridor> corridor;  ///< straight ahead, with what is free of it
   FreeDistance free;
@@ -49,6 +89,9 @@ std::map<std::uint64_t, std::vector<Vector3>> trailsUpTo(const std::vector<Scene
 
 /// Below this existence probability an object is drawn with a dashed outline.
 constexpr double kSureExistence = 0.9;
+
+/// Below this trust a lidar return counts as one of the weather.
+constexpr float kTrusted = 0.5F;
 
 /// [m] ahead of the ego origin to the middle of the drawn vehicle. Where the origin lies in the
 /// body depends on the vehicle; this is a car whose lidar stands on the roof (KITTI's).

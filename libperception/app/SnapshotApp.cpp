@@ -11,8 +11,9 @@
 #include <utility>
 
 #include "gui-offscreen/ContactSheet.h"
+#include "gui-offscreen/SceneFile.h"
+#include "gui-offscreen/VideoFile.h"
 #include "libperception/app/Pipeline.h"
-#include "libperception/app/SnapshotLidar.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -25,6 +26,14 @@ constexpr double kTrail = 2;             // [s]
 constexpr double kNearestScene = 0.51;   // [s] from --time: half the period of a scene a second
 constexpr double kNearestTruth = 0.06;   // [s] half the period of 10 Hz, and rounding
 constexpr std::size_t kSheetTiles = 36;  // on the contact sheet of --every
+constexpr double kSlowestFilm = 1;       // [s] a picture at most
+
+struct ViewRow {
+  const char* name;
+  ViewKind kind;
+};
+constexpr ViewRow kViews[] = {
+    {"top", ViewKind::kTop}, {"driver", ViewKind::kDriver}, {"camera", ViewKind::kCamera}};
 
 void createFolder(const fs::path& dir) {
   std::error_code failed;
@@ -51,13 +60,16 @@ std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t
 }  // namespace
 
 std::string SnapshotApp::description() const {
-  return "Draws instants of a tracked run as PNG: objects, lidar returns, safety grid, truth.";
+  return "Draws tracked runs as PNG or video: objects, sensors' data, safety grid, truth.";
 }
 
 void SnapshotApp::declare(CLI::App& cli) {
-  cli.add_option("-r,--run", run_dir, "folder of a run of perception-track")
+  cli.add_option(
+         "-r,--run", run_dirs,
+         "folder of a run of perception-track; a second one of the same log is drawn beside it")
       ->required()
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->allow_extra_args(false);
   addInputOption(cli, false);
   addConfigOptions(cli, false);
   cli.add_option("-t,--truth", truth_file, "truth of the log, FILE.truth.csv")->type_name("FILE");
@@ -68,29 +80,55 @@ void SnapshotApp::declare(CLI::App& cli) {
       ->check(CLI::Range(1e-3, 1e6));
   when->add_option("--contact", contact, "one sheet of so many instants, evenly over the run")
       ->check(CLI::Range(1, 100));
+  when->add_option("--video", video, "a film of all scenes at the log's rate (needs ffmpeg)")
+      ->type_name("FILE.mp4");
   when->require_option(1);
-  cli.add_option("-o,--output", output, "PNG file; with --every a folder")->required();
-  cli.add_option("--view", view, "from above, from behind the vehicle, or both")
-      ->check(CLI::IsMember({"top", "driver", "both"}))
+  cli.add_option("--from", video_from, "the film begins at this time of the log [s]");
+  cli.add_option("--to", video_to, "and ends at this one [s]");
+  cli.add_option("-o,--output", output, "PNG file; with --every a folder");
+  cli.add_option("--scene", scene_file,
+                 "with --time or --frame: also a file for MRPT's SceneViewer3D")
+      ->type_name("FILE.3Dscene");
+  cli.add_option(
+         "--view", view,
+         "top (from above), driver (from behind the vehicle), camera (its image), joined by "
+         "+; both = top+driver; all = top+driver+camera")
       ->capture_default_str();
+  cli.add_option("--camera", sensors.camera, "label of the camera that is shown")
+      ->type_name("LABEL");
+  cli.add_flag("--no-measurements", no_measurements, "without what the front ends took");
   cli.add_option("--range", params.range, "how far ahead is shown [m]")
       ->check(CLI::Range(5.0, 200.0))
       ->capture_default_str();
-  cli.add_option("--memory", memory, "lidar scans so long before an instant fill the grid [s]")
+  cli.add_option("--memory", sensors.memory,
+                 "lidar scans so long before an instant fill the grid [s]")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
-  cli.add_option("--title", title, "instead of the names of log and run");
+  cli.add_option("--title", titles, "instead of the names of log and run, one a run")
+      ->allow_extra_args(false);
 }
 
-// A site INI holds the sections of tracking, too: they are read, so that they count as known.
+void SnapshotApp::readSite(Config& config) {
+  PipelineSetup site = PipelineSetup::read(config);
+  sensors.ground = site.ground;
+  sensors.grid = site.grid;
+  sensors.sensors = std::move(site.sensors);
+}
+
+// The site INI is that of -c, else the one that the run was made with: returns are drawn and
+// measured as the tracker did.
 bool SnapshotApp::readConfig() {
+  const std::string given = config_file;
+  const std::string own = (fs::path(run_dirs[0]) / "effective.ini").string();
+  if (given.empty() && fs::exists(own)) config_file = own;
   Config config = loadConfig();
   if (!config_file.empty()) {
-    ground = PipelineSetup::read(config).ground;
+    readSite(config);
   } else {
-    ground = config.read<GroundParams>("ground", ground);
+    sensors.ground = config.read<GroundParams>("ground", sensors.ground);
+    sensors.grid = config.read<GridParams>("grid", sensors.grid);
   }
-  grid = config.read<GridParams>("grid", grid);
+  config_file = given;
   return configDone(config);
 }
 
@@ -105,7 +143,7 @@ std::size_t SnapshotApp::sceneAt(const TrackedRun& run, double t) const {
   if (off(best) > kNearestScene) {
     throw Error(ExitCode::kUsage,
                 fmt::format("--time {:g}: {} has scenes from {:.2f} to {:.2f} s, none near", t,
-                            run_dir, run.scenes.front().stamp - run.first_stamp,
+                            run.dir, run.scenes.front().stamp - run.first_stamp,
                             run.scenes.back().stamp - run.first_stamp));
   }
   return best;
@@ -116,7 +154,7 @@ std::size_t SnapshotApp::sceneOf(const TrackedRun& run, std::int64_t number) con
     if (run.scenes[i].frame == number) return i;
   }
   throw Error(ExitCode::kUsage,
-              fmt::format("--frame {}: {} has no scene of it (first {}, last {})", number, run_dir,
+              fmt::format("--frame {}: {} has no scene of it (first {}, last {})", number, run.dir,
                           run.scenes.front().frame, run.scenes.back().frame));
 }
 
@@ -124,6 +162,14 @@ std::vector<std::size_t> SnapshotApp::chooseScenes(const TrackedRun& run) const 
   if (time) return {sceneAt(run, *time)};
   if (frame) return {sceneOf(run, *frame)};
   std::vector<std::size_t> chosen;
+  if (!video.empty()) {
+    for (std::size_t i = 0; i < run.scenes.size(); ++i) {
+      const double t = run.scenes[i].stamp - run.first_stamp;
+      if (t >= video_from && t <= video_to) chosen.push_back(i);
+    }
+    if (chosen.empty()) throw Error(ExitCode::kUsage, "--from, --to: no scene between them");
+    return chosen;
+  }
   Stamp due = run.scenes.front().stamp;
   for (std::size_t i = 0; i < run.scenes.size(); ++i) {
     if (run.scenes[i].stamp < due) continue;
@@ -134,8 +180,9 @@ std::vector<std::size_t> SnapshotApp::chooseScenes(const TrackedRun& run) const 
 }
 
 // Log and run; a simulated result is called simulated.
-std::string SnapshotApp::titleOf(const std::string& dir) {
-  if (!title.empty()) return title;
+std::string SnapshotApp::titleOf(std::size_t index) {
+  if (index < titles.size()) return titles[index];
+  const std::string& dir = run_dirs[index];
   const std::string run = lastPart(dir);
   const fs::path record_file = fs::path(dir) / "done.json";
   if (!fs::exists(record_file)) {
@@ -147,15 +194,43 @@ std::string SnapshotApp::titleOf(const std::string& dir) {
   return fmt::format("{}{}, run {}", log, record.simulated ? " (simulated)" : "", run);
 }
 
-SceneView SnapshotApp::viewOf(const TrackedRun& run, std::size_t index) const {
+SceneView SnapshotApp::viewOf(const Shown& shown, std::size_t index) const {
+  const TrackedRun& run = shown.run;
   SceneView result;
-  result.run_name = run_name_;
+  result.run_name = shown.name;
   result.scene = run.scenes[index];
   result.t = result.scene.stamp - run.first_stamp;
   result.class_names = run.class_names;
   result.trails = trailsUpTo(run.scenes, index, kTrail);
   addTruth(result);
+  if (shown.sensors) {
+    shown.sensors->advanceTo(result.scene.stamp);
+    shown.sensors->fill(result);
+  }
   return result;
+}
+
+// The first run's scene and, of the others, those nearest to its time.
+std::vector<SceneView> SnapshotApp::viewsOf(std::size_t index) {
+  const Stamp stamp = shown_[0].run.scenes[index].stamp;
+  std::vector<SceneView> views;
+  for (const Shown& shown : shown_) {
+    std::size_t nearest = index;
+    if (&shown != &shown_[0]) {
+      const auto& scenes = shown.run.scenes;
+      const auto off = [&](std::size_t i) { return std::abs(scenes[i].stamp - stamp); };
+      nearest = 0;
+      for (std::size_t i = 1; i < scenes.size(); ++i) {
+        if (off(i) < off(nearest)) nearest = i;
+      }
+      if (off(nearest) > kNearestScene) {
+        throw DataError(fmt::format("{}: no scene at the times of {}: not of the same log?",
+                                    shown.run.dir, shown_[0].run.dir));
+      }
+    }
+    views.push_back(viewOf(shown, nearest));
+  }
+  return views;
 }
 
 // By frame number where both have one, else by time.
@@ -192,63 +267,150 @@ void SnapshotApp::write(const std::string& path, Picture picture) {
   say(1, path);
 }
 
+void SnapshotApp::readViews() {
+  const std::string list = view == "both"  ? "top+driver"
+                           : view == "all" ? "top+driver+camera"
+                                           : view;
+  params.views.clear();
+  std::size_t from = 0;
+  while (from <= list.size()) {
+    const std::size_t to = std::min(list.find('+', from), list.size());
+    const std::string name = list.substr(from, to - from);
+    const auto named = std::find_if(std::begin(kViews), std::end(kViews),
+                                    [&](const auto& row) { return name == row.name; });
+    if (named == std::end(kViews)) {
+      throw Error(ExitCode::kUsage, fmt::format("--view {}: expected top, driver, camera joined by "
+                                                "+, both or all",
+                                                view));
+    }
+    params.views.push_back(named->kind);
+    from = to + 1;
+  }
+}
+
+void SnapshotApp::readRuns() {
+  shown_.clear();
+  for (std::size_t i = 0; i < run_dirs.size(); ++i) {
+    Shown shown{readTrackedRun(run_dirs[i]), titleOf(i), nullptr};
+    if (shown.run.scenes.empty()) throw DataError(run_dirs[i] + ": the run holds no scene");
+    shown_.push_back(std::move(shown));
+  }
+  if (inputs.empty()) return;
+  for (Shown& shown : shown_) {
+    shown.sensors = std::make_unique<SnapshotSensors>(inputs[0], shown.run, sensors);
+  }
+}
+
 void SnapshotApp::run() {
   out_files.clear();
   if (readConfig()) return;
-  if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the run");
-  params.views.clear();
-  if (view != "driver") params.views.push_back(ViewKind::kTop);
-  if (view != "top") params.views.push_back(ViewKind::kDriver);
+  if (no_measurements) sensors.no_measurements = true;
+  if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the runs");
+  if (output.empty() && video.empty())
+    throw Error(ExitCode::kUsage, "-o: expected a file or folder");
+  if (!scene_file.empty() && !time && !frame) {
+    throw Error(ExitCode::kUsage, "--scene: of one instant, --time or --frame");
+  }
+  if (contact > 0 && run_dirs.size() > 1) throw Error(ExitCode::kUsage, "--contact: of one run");
+  readViews();
   registerPerceptionClasses();
-  const TrackedRun run = readTrackedRun(run_dir);
-  if (run.scenes.empty()) throw DataError(run_dir + ": the run holds no scene");
-  run_name_ = titleOf(run_dir);
+  readRuns();
+  const auto camera = std::find(params.views.begin(), params.views.end(), ViewKind::kCamera);
+  if (camera != params.views.end() && (!shown_[0].sensors || !shown_[0].sensors->layers().camera)) {
+    // "all" is what there is, a camera that was asked for is not.
+    if (view != "all") {
+      throw Error(
+          ExitCode::kUsage,
+          fmt::format("--view {}: {}", view,
+                      inputs.empty() ? "images come from the log: -i"
+                                     : inputs[0] + " holds no camera" +
+                                           (sensors.camera.empty() ? "" : " of that label")));
+    }
+    params.views.erase(camera);
+  }
   truth_.reset();
   if (!truth_file.empty()) truth_ = readGroundTruth(truth_file);
-  const std::vector<std::size_t> chosen = chooseScenes(run);
-  const std::vector<std::size_t> on_sheet = contact > 0 ? chosen
-                                            : every > 0 ? spread(chosen, kSheetTiles)
-                                                        : std::vector<std::size_t>{};
-  std::unique_ptr<SnapshotLidar> lidar;
-  if (!inputs.empty()) {
-    lidar = std::make_unique<SnapshotLidar>(inputs[0], run, grid, ground, memory);
+  const std::vector<std::size_t> chosen = chooseScenes(shown_[0].run);
+  if (video.empty()) {
+    drawPictures(chosen);
+  } else {
+    drawVideo(chosen);
   }
-  createFolder(every > 0 ? fs::path(output) : fs::path(output).parent_path());
+  reportLog();
+}
 
+void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
+  const bool sheet = contact > 0 || (every > 0 && shown_.size() == 1);
+  const std::vector<std::size_t> on_sheet =
+      !sheet ? std::vector<std::size_t>{}
+             : spread(chosen, contact > 0 ? chosen.size() : kSheetTiles);
+  createFolder(every > 0 ? fs::path(output) : fs::path(output).parent_path());
   Snapshot snapshot(params);
   std::vector<Picture> tiles;
-  SceneView shown;
+  std::vector<SceneView> views;
   Progress progress("drawing", chosen.size());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     stopIfAsked();
-    shown = viewOf(run, chosen[i]);
-    if (lidar) {
-      lidar->advanceTo(shown.scene.stamp);
-      lidar->fill(shown);
-    }
+    views = viewsOf(chosen[i]);
     if (contact == 0) {
-      write(fileFor(shown), snapshot.picture(shown));
+      write(fileFor(views[0]), snapshot.picture(views));
       if (snapshot.labelsLeftOut() > 0) {
-        say(1,
-            fmt::format("t = {:.2f} s: no room for {} labels", shown.t, snapshot.labelsLeftOut()));
+        say(1, fmt::format("t = {:.2f} s: no room for {} labels", views[0].t,
+                           snapshot.labelsLeftOut()));
       }
     }
     if (std::binary_search(on_sheet.begin(), on_sheet.end(), chosen[i])) {
-      tiles.push_back(snapshot.tile(shown));
+      tiles.push_back(snapshot.tile(views[0]));
     }
     progress.update(i + 1, i + 1);
   }
   if (!tiles.empty()) {
     const std::string path = every > 0 ? (fs::path(output) / "contact.png").string() : output;
-    write(path, contactSheet(tiles, shown));
+    write(path, contactSheet(tiles, views[0]));
   }
-  if (!lidar) return;
-  const auto end = lidar->reader().end();
+  if (!scene_file.empty()) {
+    createFolder(fs::path(scene_file).parent_path());
+    writeSceneFile(scene_file, views[0], params.range);
+    out_files.push_back(scene_file);
+  }
+}
+
+// As fast as it happened: the rate is that of most scenes, and a gap in the log stands still.
+void SnapshotApp::drawVideo(const std::vector<std::size_t>& chosen) {
+  const auto& scenes = shown_[0].run.scenes;
+  const auto at = [&](std::size_t i) { return scenes[chosen[i]].stamp - scenes[chosen[0]].stamp; };
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < chosen.size(); ++i) gaps.push_back(at(i) - at(i - 1));
+  std::sort(gaps.begin(), gaps.end());
+  const double gap =
+      gaps.empty() ? kSlowestFilm : std::clamp(gaps[gaps.size() / 2], 1e-2, kSlowestFilm);
+  createFolder(fs::path(video).parent_path());
+  VideoFile film(video, 1 / gap);
+  Snapshot snapshot(params);
+  Progress progress("filming", chosen.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    stopIfAsked();
+    out_picture = snapshot.picture(viewsOf(chosen[i]));
+    const double until = i + 1 < chosen.size() ? at(i + 1) : at(i) + gap;
+    do {
+      film.add(out_picture);
+    } while (static_cast<double>(film.frames()) * gap < until - gap / 2);
+    progress.update(i + 1, i + 1);
+  }
+  film.close();
+  out_files.push_back(video);
+  say(1, fmt::format("{}: {} frames, {:.2f} a second", video, film.frames(), 1 / gap));
+}
+
+void SnapshotApp::reportLog() {
+  const SnapshotSensors* log = shown_[0].sensors.get();
+  if (!log) return;
+  const auto end = log->reader().end();
   if (end != RawlogReader::End::kNotYet && end != RawlogReader::End::kClean) {
-    warn(lidar->reader().endMessage());
+    warn(log->reader().endMessage());
   }
-  if (lidar->scans() == 0) {
-    warn(fmt::format("{}: no lidar scan at the run's times", inputs[0]));
+  if (log->frames() == 0) {
+    warn(fmt::format("{}: no sensor data at the run's times", inputs[0]));
   }
 }
 

@@ -1,35 +1,35 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "gui-offscreen/Snapshot.h"
 #include "libperception/app/App.h"
+#include "libperception/app/SnapshotSensors.h"
 #include "libperception/core/GroundTruth.h"
-#include "libperception/grid/GridParams.h"
-#include "libperception/lidar/GroundPlane.h"
 #include "libperception/scene/TrackedRun.h"
 
 namespace perception {
 
-class SnapshotLidar;
-
-/// perception-snapshot: pictures of a tracked run, without a display.
+/// perception-snapshot: pictures and films of tracked runs, without a display.
 class SnapshotApp : public App {
  public:
-  std::string run_dir;                ///< -r: folder of perception-track
-  std::string truth_file;             ///< -t
-  std::optional<double> time;         ///< --time [s] since the log's first stamp
-  std::optional<std::int64_t> frame;  ///< --frame
-  double every = 0;                   ///< --every [s]: a picture each, and a contact sheet
-  int contact = 0;                    ///< --contact: one sheet of so many instants
-  std::string view = "both";          ///< --view: top, driver or both
-  std::string title;                  ///< --title: instead of the run's name
-  double memory = 5;                  ///< --memory [s] of lidar scans before each instant
+  std::vector<std::string> run_dirs;      ///< -r: folders of perception-track, runs of one log
+  std::string truth_file;                 ///< -t
+  std::optional<double> time;             ///< --time [s] since the log's first stamp
+  std::optional<std::int64_t> frame;      ///< --frame
+  double every = 0;                       ///< --every [s]: a picture each, and a contact sheet
+  int contact = 0;                        ///< --contact: one sheet of so many instants
+  std::string video;                      ///< --video: a film of every scene
+  double video_from = 0, video_to = 1e9;  ///< --from, --to [s]: which part of the log is filmed
+  std::string scene_file;                 ///< --scene: .3Dscene of the instant
+  std::string view = "both";              ///< --view: top, driver, camera joined by +; both; all
+  std::vector<std::string> titles;        ///< --title: instead of the runs' names
+  bool no_measurements = false;           ///< --no-measurements
   SnapshotParams params;
-  GridParams grid;
-  GroundParams ground;
+  SnapshotSensorParams sensors;
 
   std::vector<std::string> out_files;  ///< written
   Picture out_picture;                 ///< the last one
@@ -40,17 +40,30 @@ class SnapshotApp : public App {
   void run() override;
 
  private:
+  /// A run that is drawn.
+  struct Shown {
+    TrackedRun run;
+    std::string name;
+    std::unique_ptr<SnapshotSensors> sensors;  ///< where there is a log
+  };
   bool readConfig();  ///< true: only the configuration was asked for
+  void readSite(Config& config);
+  void readRuns();
+  void readViews();
   std::vector<std::size_t> chooseScenes(const TrackedRun& run) const;
   std::size_t sceneAt(const TrackedRun& run, double t) const;
   std::size_t sceneOf(const TrackedRun& run, std::int64_t number) const;
-  std::string titleOf(const std::string& dir);
-  SceneView viewOf(const TrackedRun& run, std::size_t index) const;
+  std::string titleOf(std::size_t run);
+  std::vector<SceneView> viewsOf(std::size_t index);
+  SceneView viewOf(const Shown& shown, std::size_t index) const;
   void addTruth(SceneView& view) const;
   std::string fileFor(const SceneView& view) const;
+  void drawPictures(const std::vector<std::size_t>& chosen);
+  void drawVideo(const std::vector<std::size_t>& chosen);
   void write(const std::string& path, Picture picture);
+  void reportLog();
 
-  std::string run_name_;
+  std::vector<Shown> shown_;
   std::optional<GroundTruth> truth_;
 };
 

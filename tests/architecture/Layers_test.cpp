@@ -25,7 +25,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"simulation", {"sensors", "measurement", "core"}},
     {"study", {"simulation", "evaluation", "scene", "filter", "sensors", "measurement", "core"}},
     {"batch", {"scene", "evaluation", "core"}},
-    {"capture", {"sensors", "measurement", "core"}},
+    {"capture", {"simulation", "sensors", "measurement", "core"}},
     {"gui-offscreen", {"scene", "grid", "measurement", "core"}},
     {"app",
      {"core", "measurement", "filter", "lidar", "radar", "vision", "weather", "scene", "sensors",

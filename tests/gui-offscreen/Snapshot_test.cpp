@@ -63,10 +63,10 @@ TEST(ViewCamera, DriverSeesLeftOnTheLeftAndNothingBehind) {
 
 TEST(ViewCamera, LinesAreCutAtTheNearPlane) {
   const ViewCamera camera = ViewCamera::driver(40, 1000, 700);
-  const auto line = camera.project(Vector3(-50, 0, 0), Vector3(20, 0, 0));
-  ASSERT_TRUE(line);
-  EXPECT_TRUE(line->first.allFinite());
-  EXPECT_FALSE(camera.project(Vector3(-50, 0, 0), Vector3(-40, 0, 0)));
+  const auto line = camera.projectLine(Vector3(-50, 0, 0), Vector3(20, 0, 0));
+  ASSERT_EQ(line.size(), 1U);
+  EXPECT_TRUE(line[0].first.allFinite());
+  EXPECT_TRUE(camera.projectLine(Vector3(-50, 0, 0), Vector3(-40, 0, 0)).empty());
 }
 
 /// The rendered place of a return against the projected one: text and lines stand where OpenGL
@@ -123,7 +123,7 @@ TEST(Snapshot, EverySymbolChangesThePicture) {
   changes("existence");
   view.scene.objects[0].classified = true;
   changes("label");
-  for (int i = 0; i < 200; ++i) view.points.push_back({{95, 60 + 0.05 * i, 1}, 1.0F});
+  for (int i = 0; i < 200; ++i) view.points.push_back({{95, 60 + 0.05 * i, 1}, 1.0F, 1.0F});
   changes("returns");
   view.occupied = {{{104, 65, 1}, Vector3::Constant(0.2), 3}};
   changes("occupied cell");

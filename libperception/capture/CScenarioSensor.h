@@ -1,0 +1,33 @@
+#pragma once
+#include <mrpt/hwdrivers/CGenericSensor.h>
+
+#include <memory>
+
+#include "libperception/capture/ScenarioPlayer.h"
+
+namespace perception {
+
+/// One sensor of a simulated vehicle as a driver for MRPT's rawlog-grabber: gives in real time what
+/// that sensor would see in a scenario. Which sensor: `sensorLabel`, as in the scenario's
+/// [sensor.LABEL]; EGO_POSE is the vehicle itself (poses and frame numbers). Drivers with the same
+/// scenario, seed and start_delay share one vehicle. Keys: ini/capture.ini.
+class CScenarioSensor : public mrpt::hwdrivers::CGenericSensor {
+  DEFINE_GENERIC_SENSOR(CScenarioSensor)
+
+ public:
+  /// Throws with the labels of the scenario when none is `sensorLabel`, and with the faults of a
+  /// scenario that cannot be read.
+  void initialize() override;
+  void doProcess() override;
+
+ protected:
+  void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
+                                 const std::string& section) override;
+
+ private:
+  ScenarioSource source_;
+  std::shared_ptr<ScenarioPlayer> player_;
+  bool end_said_ = false;
+};
+
+}  // namespace perception

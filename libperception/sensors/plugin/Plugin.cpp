@@ -1,7 +1,0 @@
-// Our observation classes for MRPT's stock programs: rawlog-edit -p, RawLogViewer -l,
-// rawlog-grabber -p.
-#include <mrpt/core/initializer.h>
-
-#include "libperception/sensors/registerClasses.h"
-
-MRPT_INITIALIZER(registerPerceptionPlugin) { perception::registerPerceptionClasses(); }
