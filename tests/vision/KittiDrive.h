@@ -103,6 +103,27 @@ inline void readKittiBoxes(const std::string& path, const std::string& label, Ki
   }
 }
 
+/// Image boxes with observation angles, in KITTI's tracking layout.
+inline std::map<int, std::vector<ObjectDetection>> readKittiOrientedBoxes(const std::string& path) {
+  std::map<int, std::vector<ObjectDetection>> boxes;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    int frame = 0, id = 0;
+    double skip = 0, alpha = 0;
+    ObjectDetection o;
+    ObjectDetection::ImageBox b;
+    words >> frame >> id >> o.label >> skip >> skip >> alpha >> b.x1 >> b.y1 >> b.x2 >> b.y2;
+    for (int i = 0; i < 7; ++i) words >> skip;
+    words >> o.score;
+    if (!words) continue;
+    o.image_box = b;
+    o.heading = alpha;
+    boxes[frame].push_back(o);
+  }
+  return boxes;
+}
+
 /// `folder` is .../kitti_tracking/. Empty truth when the recordings are not there.
 inline KittiDrive readKittiDrive(const std::string& folder, const std::string& sequence) {
   KittiDrive drive;

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "libperception/vision/VisionFrontEnd.h"
 #include "tests/vision/KittiDrive.h"
 
@@ -13,6 +15,8 @@ struct BoxResidual {
   double height_error = 0, height_sigma = 0;  ///< [m]
   double box_angle = 0;                       ///< [rad] between its edges
   AxisMask seen = 0;
+  std::optional<double> heading_error;  ///< [rad] measured less true heading, where there is one
+  double heading_sigma = 0;             ///< [rad] of the axis, as stated
 };
 
 /// The plane ahead (z = a x + c) on which a drive's labelled objects stand: what a measured ground
@@ -76,6 +80,10 @@ inline std::vector<BoxResidual> boxResiduals(const KittiDrive& drive, const Fron
       if (m.height) {
         r.height_error = m.height->mean - best->height;
         r.height_sigma = std::sqrt(m.height->variance);
+      }
+      if (m.heading) {
+        r.heading_error = wrapAngle(m.heading->yaw - best->yaw);
+        r.heading_sigma = m.heading->sigma;
       }
       out.push_back(r);
     }
