@@ -27,6 +27,15 @@ void SimulateApp::declare(CLI::App& cli) {
   addConfigOptions(cli, true);
   cli.add_option("--seed", seed, "Seed of all random numbers: same seed, same bytes")
       ->capture_default_str();
+  cli.add_option(
+         "--trial", trial,
+         "Trial 1, 2, ... of the scenario ([variation]): own ways and own noise, drawn from "
+         "the seed; 0 = as the file stands")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--vehicle", vehicle,
+                 "INI of a vehicle: its sensors instead of those of the scenario")
+      ->check(CLI::ExistingFile);
   addOutputOption(cli, true);
   cli.add_option("--threads", threads, "Threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
@@ -35,14 +44,38 @@ void SimulateApp::declare(CLI::App& cli) {
       ->capture_default_str();
 }
 
-void SimulateApp::run() {
+std::optional<Scenario> SimulateApp::loadScenario() {
   Config config = loadConfig();
   Scenario scenario = readScenario(config);
-  if (configDone(config)) return;
+  if (trial > scenario.variation.trials) {
+    config.fault(
+        "variation", "trials",
+        fmt::format("there are {}, trial {} was asked for", scenario.variation.trials, trial));
+  }
+  if (configDone(config)) return {};
+  if (!vehicle.empty()) {
+    Config other = Config::fromFile(vehicle);
+    if (other.has("ego")) {  // what the vehicle's pose estimator is like; its way is the scene's
+      const WaypointParams way = scenario.ego.waypoints;
+      scenario.ego = other.read("ego", scenario.ego);
+      scenario.ego.waypoints = way;
+    }
+    scenario.sensors = readSensors(other);
+    if (scenario.sensors.empty()) other.fault("", "", "no [sensor.LABEL] section");
+    other.finish();
+  }
+  return trialOf(std::move(scenario), trial, seed);
+}
+
+void SimulateApp::run() {
+  std::optional<Scenario> loaded = loadScenario();
+  if (!loaded) return;
+  Scenario scenario = std::move(*loaded);
   const auto start = std::chrono::steady_clock::now();
   const std::string scene = std::filesystem::path(config_file).stem().string();
+  const std::string name = trial > 0 ? fmt::format("{}, trial {}", scene, trial) : scene;
   const double duration = scenario.params.duration;
-  Simulator simulator(std::move(scenario), scene, seed, threads);
+  Simulator simulator(std::move(scenario), name, trialSeed(seed, trial), threads);
   RawlogWriter log(output, gzip_level);
   {
     Progress progress("simulate", static_cast<std::uint64_t>(duration * 1e3));
@@ -60,11 +93,15 @@ void SimulateApp::run() {
   out_frames = simulator.frames();
   out_entries = log.entries(), out_bytes = log.bytes();
   out_points = simulator.points(), out_boxes = simulator.boxes(), out_beams = simulator.beams();
+  out_targets = simulator.targets();
   fmt::print("{}: simulated, scenario {}, seed {}: {} frames, {} entries, {:.2f} MB\n", output,
-             scene, seed, out_frames, out_entries, static_cast<double>(out_bytes) * 1e-6);
-  fmt::print("  lidar: {} scans, {} points; camera: {} boxes\n", simulator.scans(), out_points,
-             out_boxes);
+             name, seed, out_frames, out_entries, static_cast<double>(out_bytes) * 1e-6);
+  fmt::print("  lidar: {} scans, {} points; camera: {} boxes; radar: {} targets\n",
+             simulator.scans(), out_points, out_boxes, out_targets);
   fmt::print("{}: {} rows\n", out_truth_file, simulator.truth().size());
+  if (simulator.unwritten() > 0) {
+    warn(fmt::format("{} frames left out: no observation class holds them", simulator.unwritten()));
+  }
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   say(1, fmt::format(

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "libperception/app/App.h"
+#include "libperception/simulation/Scenario.h"
 
 namespace perception {
 
@@ -11,15 +13,22 @@ class SimulateApp : public App {
  public:
   std::uint64_t seed = 1;  ///< --seed
   int gzip_level = 1;      ///< --gzip
+  int trial = 0;           ///< --trial; 0 = the scenario as it stands in its file
+  std::string vehicle;     ///< --vehicle: sensors of this INI instead of the scenario's
 
   std::string out_truth_file;
   std::int64_t out_frames = 0;
-  std::uint64_t out_entries = 0, out_bytes = 0, out_points = 0, out_boxes = 0, out_beams = 0;
+  std::uint64_t out_entries = 0, out_bytes = 0, out_points = 0, out_boxes = 0, out_beams = 0,
+                out_targets = 0;
 
   std::string name() const override { return "perception-simulate"; }
   std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
+
+ private:
+  /// The scenario of -c with --vehicle and --trial applied; nothing after --print-config.
+  std::optional<Scenario> loadScenario();
 };
 
 /// FILE.truth.csv beside FILE.rawlog.

@@ -16,7 +16,8 @@ constexpr std::array<const char*, 3> kLabels = {"Car", "Pedestrian", "Cyclist"};
 constexpr double kNearPlane = 0.2;  // [m] what lies nearer to the lens is not projected
 constexpr double kHidden = 0.15,
                  kClear = 0.5;  // visible share: not found below, as good as all above
-constexpr std::uint32_t kFalseSlot = 1u << 20;  // random streams of false boxes
+constexpr std::uint32_t kFalseSlot = 1u << 20;         // random streams of false boxes
+constexpr std::uint32_t kWeatherPurpose = 0x57EA0000;  // of weather
 
 std::size_t labelOf(ObjectKind kind) {
   if (kind == ObjectKind::kPedestrian) return 1;
@@ -39,15 +40,10 @@ ObjectDetection::ImageBox clipped(ObjectDetection::ImageBox b, const CameraModel
   return b;
 }
 
-// KITTI's alpha: rotation about the optical y axis, seen along the line of sight.
-double observationAngle(const Pose3& T_camera_object) {
-  const Vector3 p = T_camera_object.translation(), axis = T_camera_object.linear().col(0);
-  return wrapAngle(std::atan2(-axis.z(), axis.x()) - std::atan2(p.x(), p.z()));
-}
-
 std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t object, double t,
                                          const CameraParams& p, const Pose3& T_world_camera,
-                                         Rng& rng) {
+                                         const RngKey& key, const CameraHook& hook) {
+  Rng rng(key);
   const World& world = caster.world();
   const ObjectKind kind = world.scenario().objects[object].kind;
   const CameraModel camera = p.model();
@@ -55,20 +51,31 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
   if (!outline) return {};
   const double height = outline->box.y2 - outline->box.y1;
   const double visible = caster.visibleShare(T_world_camera.translation(), object);
-  const double chance = p.recall * ramp(height, p.min_pixels, p.full_pixels) *
-                        ramp(visible, kHidden, kClear) * (1 - outline->truncated);
-  if (rng.uniform() >= chance) return {};
+  CameraLook look;
+  look.object = object;
+  const Vector3 sight =
+      world.object(object, t).T_world_object.translation() - T_world_camera.translation();
+  look.range = sight.head<2>().norm();
+  look.azimuth = std::atan2(sight.y(), sight.x());
+  look.edge_noise = p.edge_noise;
+  look.chance = p.recall * ramp(height, p.min_pixels, p.full_pixels) *
+                ramp(visible, kHidden, kClear) * (1 - outline->truncated);
+  if (hook) {
+    Rng weather_rng(key.withPurpose(key.purpose ^ kWeatherPurpose));
+    hook(look, weather_rng);
+  }
+  if (rng.uniform() >= look.chance) return {};
   ObjectDetection d;
   auto box = outline->box;
   for (double* edge : {&box.x1, &box.y1, &box.x2, &box.y2}) {
-    *edge += p.edge_noise * height * rng.normal();
+    *edge += look.edge_noise * height * rng.normal();
   }
   d.image_box = clipped(box, camera);
   if (area(*d.image_box) <= 0) return {};
   std::size_t label = labelOf(kind);
   if (rng.uniform() < p.confusion) label = (label + 1 + rng.below(2)) % kLabels.size();
   d.label = kLabels[label];
-  d.score = std::clamp(0.55 + 0.4 * chance + 0.05 * rng.normal(), 0.05, 1.0);
+  d.score = std::clamp(0.55 + 0.4 * look.chance + 0.05 * rng.normal(), 0.05, 1.0);
   if (p.heading && label == 0) {
     const Pose3 T_camera_object = T_world_camera.inverse() * world.object(object, t).T_world_object;
     const double flip = rng.uniform() < p.heading_flip ? kPi : 0;
@@ -124,15 +131,33 @@ Pose3 opticalAxes() {
   return pose;
 }
 
+double observationAngle(const Pose3& T_camera_object) {
+  const Vector3 p = T_camera_object.translation(), axis = T_camera_object.linear().col(0);
+  return wrapAngle(std::atan2(-axis.z(), axis.x()) - std::atan2(p.x(), p.z()));
+}
+
 std::optional<ImageOutline> imageOutline(const World& world, std::size_t object, double t,
                                          const CameraModel& camera, const Pose3& T_world_camera) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   ObjectDetection::ImageBox whole{kInfinity, kInfinity, -kInfinity, -kInfinity};
   const std::vector<Pose3> poses = world.parts(object, t);
+  const bool panorama = camera.projection == CameraModel::Projection::kEquirectangular;
+  // A panorama's columns are counted from the object's middle: it is whole on the seam, too.
+  const Vector3 centre =
+      T_world_camera.inverse() * world.object(object, t).T_world_object.translation();
+  const double middle = std::atan2(centre.x(), centre.z());
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Pose3 T_camera_part = T_world_camera.inverse() * poses[k];
     for (const auto& vertex : world.shape(object).parts[k].mesh.vertices) {
       const Vector3 p = T_camera_part * Vector3(vertex[0], vertex[1], vertex[2]);
+      if (panorama) {
+        const double azimuth = middle + wrapAngle(std::atan2(p.x(), p.z()) - middle);
+        const double u = camera.cx + camera.fx * azimuth,
+                     v = camera.cy + camera.fy * std::atan2(p.y(), std::hypot(p.x(), p.z()));
+        whole = {std::min(whole.x1, u), std::min(whole.y1, v), std::max(whole.x2, u),
+                 std::max(whole.y2, v)};
+        continue;
+      }
       if (p.z() < kNearPlane) continue;
       const double u = camera.cx + camera.fx * p.x() / p.z(),
                    v = camera.cy + camera.fy * p.y() / p.z();
@@ -142,6 +167,8 @@ std::optional<ImageOutline> imageOutline(const World& world, std::size_t object,
   }
   if (!(whole.x2 > whole.x1)) return {};
   ImageOutline outline;
+  outline.box = whole;
+  if (panorama) return outline;
   outline.box = clipped(whole, camera);
   if (area(outline.box) <= 0) return {};
   outline.truncated = std::clamp(1 - area(outline.box) / area(whole), 0.0, 1.0);
@@ -149,14 +176,17 @@ std::optional<ImageOutline> imageOutline(const World& world, std::size_t object,
 }
 
 ObjectDetections detectBoxes(const LidarCaster& caster, double t, const CameraParams& params,
-                             const Pose3& T_world_camera, const RngKey& key) {
+                             const Pose3& T_world_camera, const RngKey& key,
+                             const CameraHook& hook) {
   ObjectDetections result;
   result.camera = params.model();
   const auto& objects = caster.world().scenario().objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (!isRoadUser(objects[i].kind)) continue;
-    Rng rng(key.withSlot(static_cast<std::uint32_t>(i)));
-    if (auto d = detectOne(caster, i, t, params, T_world_camera, rng)) result.objects.push_back(*d);
+    const RngKey own = key.withSlot(static_cast<std::uint32_t>(i));
+    if (auto d = detectOne(caster, i, t, params, T_world_camera, own, hook)) {
+      result.objects.push_back(*d);
+    }
   }
   Rng rng(key.withSlot(kFalseSlot));
   for (int n = rng.poisson(params.false_per_image); n > 0; --n) {

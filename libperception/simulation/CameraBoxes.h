@@ -1,9 +1,11 @@
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "libperception/core/ParamSet.h"
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
+#include "libperception/simulation/SimulatedWeather.h"
 
 namespace perception {
 
@@ -37,12 +39,20 @@ struct ImageOutline {
 /// Axes of an optical frame (x right, y down, z forward) in a frame with x forward, y left, z up.
 Pose3 opticalAxes();
 
-/// Empty when the object lies outside the image. `T_world_camera`: optical frame.
+/// KITTI's alpha: rotation about the optical y axis, seen along the line of sight.
+double observationAngle(const Pose3& T_camera_object);
+
+/// Changes what a detector has to go by; empty: clear air by day.
+using CameraHook = std::function<void(CameraLook&, Rng&)>;
+
+/// Empty when the object lies outside the image. `T_world_camera`: optical frame. In a panorama
+/// the box of an object on the seam reaches beyond the border and nothing is truncated.
 std::optional<ImageOutline> imageOutline(const World& world, std::size_t object, double t,
                                          const CameraModel& camera, const Pose3& T_world_camera);
 
 /// The detector's answer at t [s]; the caster stands at that time.
 ObjectDetections detectBoxes(const LidarCaster& caster, double t, const CameraParams& params,
-                             const Pose3& T_world_camera, const RngKey& key);
+                             const Pose3& T_world_camera, const RngKey& key,
+                             const CameraHook& hook = {});
 
 }  // namespace perception

@@ -33,33 +33,94 @@ constexpr double kCoordinateUnit =
     1.0 / 512;                           // [m] HDL-64E: 2 mm; a power of two, as it packs well
 constexpr double kIntensityUnit = 0.01;  // as in KITTI's files
 constexpr int kSlices = 36;              // of a sweep: 10 deg of a turn each
+constexpr std::uint32_t kWeatherPurpose = 0x57EA0000;  // its own stream of random numbers
 
 double quantised(double value, double unit) { return std::round(value / unit) * unit; }
 
 /// The echo of one pulse; nothing when it stays below the threshold.
 struct Echo {
   bool received = false;
-  double range = 0;      ///< [m]
-  double intensity = 0;  ///< [0, 1] corrected for range, as the instrument reports it
+  bool on_object = false;  ///< else road or air
+  double range = 0;        ///< [m]
+  double intensity = 0;    ///< [0, 1] corrected for range, as the instrument reports it
 };
 
-// Hard target: P0 = rho_t / R^2 against P_min = 0.9 / R_max^2 (SPEC 9; no extinction: clear air).
-Echo echoOf(const BeamHit& hit, double reflectivity_factor, const LidarParams& p, Rng& rng) {
-  Echo echo;
-  if (hit.object == BeamHit::kNothing || hit.range < p.range_min) return echo;
+LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& direction,
+                   double reflectivity_factor) {
+  LidarPulse pulse;
+  pulse.origin = origin, pulse.direction = direction;
+  pulse.hit = hit;
+  if (hit.object == BeamHit::kNothing) return pulse;
   const Surface& surface = kSurfaces[static_cast<std::size_t>(hit.material)];
-  if (rng.uniform() < surface.lost + p.loss) return echo;
-  const double rho = surface.reflectivity * reflectivity_factor *
-                     std::pow(static_cast<double>(hit.cos_incidence), surface.grazing);
-  const double returned = rho * std::max(0.0, 1 + kSpeckle * rng.normal());
-  const double far = p.reference_range / hit.range;
-  const double snr = returned / 0.9 * far * far;
-  if (snr < 1) return echo;
+  pulse.reflectivity = surface.reflectivity * reflectivity_factor *
+                       std::pow(static_cast<double>(hit.cos_incidence), surface.grazing);
+  pulse.lost = surface.lost;
+  return pulse;
+}
+
+// Hard target: P0 = rho_t exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2 (SPEC 9); the strongest
+// echo of the pulse is received.
+Echo echoOf(const LidarPulse& pulse, const LidarParams& p, Rng& rng) {
+  Echo echo;
+  const bool surface = pulse.hit.object != BeamHit::kNothing && pulse.hit.range >= p.range_min;
+  if (!surface && pulse.scatterers.empty()) return echo;
+  const bool lost = surface && rng.uniform() < pulse.lost + p.loss;
+  double range = pulse.hit.range, returned = 0;
+  if (surface && !lost) {
+    returned = pulse.reflectivity * std::max(0.0, 1 + kSpeckle * rng.normal());
+    if (pulse.optical_depth > 0) returned *= std::exp(-2 * pulse.optical_depth);
+    echo.on_object = pulse.hit.object >= 0;
+  }
+  for (const LidarPulse::Scatterer& s : pulse.scatterers) {
+    if (s.range < p.range_min || s.range > p.range_max) continue;
+    if (returned > 0 && s.power * range * range <= returned) continue;
+    range = s.range, returned = s.power * s.range * s.range;
+    echo.on_object = false;
+  }
+  const double far = p.reference_range / range;
+  const double snr = returned / (0.9 * pulse.threshold) * far * far;
+  if (!(snr >= 1)) return echo;
   echo.received = true;
-  echo.range =
-      hit.range + rng.normal() * std::hypot(p.range_noise, kRangeUnit / std::sqrt(2 * snr));
+  echo.range = range + rng.normal() * std::hypot(p.range_noise, kRangeUnit / std::sqrt(2 * snr));
   echo.intensity = std::min(1.0, returned);
   return echo;
+}
+
+/// Part of a beam's section.
+struct Ray {
+  BeamHit hit;
+  double reflectivity, lost, power;  // power: arbitrary units, of the lidar equation
+};
+
+// A beam whose rays meet several surfaces: those within one pulse's length are one echo at their
+// mean range, and the strongest echo counts with its share of the beam.
+LidarPulse joined(LidarPulse centre, const std::vector<Ray>& rays) {
+  constexpr double kPulseLength = 0.75;  // [m] 5 ns there and back
+  std::size_t best = 0;
+  double best_power = -1;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    double power = 0;
+    for (const Ray& r : rays) {
+      if (std::abs(r.hit.range - rays[i].hit.range) < kPulseLength) power += r.power;
+    }
+    if (power > best_power * (1 + 1e-12)) best = i, best_power = power;
+  }
+  if (!(best_power > 0)) return centre;
+  double range = 0, reflectivity = 0, lost = 0, count = 0, strongest = -1;
+  for (const Ray& r : rays) {
+    if (std::abs(r.hit.range - rays[best].hit.range) >= kPulseLength || r.power <= 0) continue;
+    range += r.power * r.hit.range, reflectivity += r.reflectivity, lost += r.lost, ++count;
+    if (r.power > strongest) strongest = r.power, centre.hit = r.hit;
+  }
+  centre.hit.range = static_cast<float>(range / best_power);
+  centre.reflectivity = reflectivity / static_cast<double>(rays.size());
+  centre.lost = lost / count;
+  return centre;
+}
+
+bool onEdge(const BeamHit& a, const BeamHit& b) {
+  constexpr float kStep = 0.3F;  // [m]
+  return a.object != b.object || (a.object >= 0 && std::abs(a.range - b.range) > kStep);
 }
 
 }  // namespace
@@ -89,6 +150,7 @@ void LidarParams::visit(ParamVisitor& v) {
          "a 90 % surface is just seen (SPEC 9)");
   v.real("range_noise", range_noise, {0, 1}, "m", "at the strongest echo");
   v.real("loss", loss, {0, 1}, "-", "share of pulses lost whatever they meet");
+  v.angle("divergence_deg", divergence, {0, 2}, "width of the beam; 0: a ray without width");
   v.real("label_error", label_error, {0, 1}, "-", "share of wrong point labels (lidar4)");
   v.boolean("sweep", sweep, "beams at their own times while everything moves");
   v.require(azimuth_from < azimuth_to, "azimuth_from_deg: expected less than azimuth_to_deg");
@@ -135,7 +197,7 @@ std::size_t LidarSensor::beams() const {
 }
 
 LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt& T_world_sensor,
-                                    const RngKey& key) const {
+                                    const RngKey& key, const PulseHook& hook) const {
   const auto& objects = caster.world().scenario().objects;
   Scan result;
   LidarCloud& cloud = result.cloud;
@@ -148,14 +210,16 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
     const Pose3 pose = T_world_sensor(t + offset);
     directions.clear();
     for (const Beam& beam : slices_[s]) directions.push_back(pose.linear() * beam.direction);
-    const std::vector<BeamHit> hits =
-        caster.cast(pose.translation(), directions, params_.range_max);
-    for (std::size_t i = 0; i < hits.size(); ++i) {
+    std::vector<LidarPulse> pulses = pulsesOf(caster, s, pose, directions);
+    for (std::size_t i = 0; i < pulses.size(); ++i) {
       const Beam& beam = slices_[s][i];
-      const auto object = static_cast<std::size_t>(std::max(0, hits[i].object));
-      const bool on_object = hits[i].object >= 0;
+      LidarPulse& pulse = pulses[i];
+      if (hook) {
+        Rng weather_rng(key.withSlot(beam.slot).withPurpose(key.purpose ^ kWeatherPurpose));
+        hook(pulse, weather_rng);
+      }
       Rng rng(key.withSlot(beam.slot));
-      const Echo echo = echoOf(hits[i], on_object ? objects[object].reflectivity : 1, params_, rng);
+      const Echo echo = echoOf(pulse, params_, rng);
       if (!echo.received) continue;
       const Vector3 point = beam.direction * echo.range;
       cloud.x.push_back(static_cast<float>(quantised(point.x(), kCoordinateUnit)));
@@ -165,14 +229,66 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
       cloud.ring.push_back(beam.ring);
       if (params_.sweep) cloud.time_offset.push_back(static_cast<float>(offset));
       if (params_.layout == LidarParams::Layout::kFourLayer) {
-        const bool object_label = on_object != (rng.uniform() < params_.label_error);
+        const bool object_label = echo.on_object != (rng.uniform() < params_.label_error);
         cloud.label.push_back(
             static_cast<std::uint8_t>(object_label ? PointLabel::kObject : PointLabel::kGround));
       }
-      if (on_object) ++result.points_on[object];
+      if (echo.on_object) ++result.points_on[static_cast<std::size_t>(pulse.hit.object)];
     }
   }
   return result;
+}
+
+// Rays through the middle of all beams; beams whose neighbours meet something else get four more
+// rays on the rim of their section.
+std::vector<LidarPulse> LidarSensor::pulsesOf(const LidarCaster& caster, std::size_t slice,
+                                              const Pose3& pose,
+                                              const std::vector<Vector3>& directions) const {
+  const auto& objects = caster.world().scenario().objects;
+  const Vector3 origin = pose.translation();
+  const auto factor = [&](const BeamHit& hit) {
+    return hit.object >= 0 ? objects[static_cast<std::size_t>(hit.object)].reflectivity : 1.0;
+  };
+  const std::vector<BeamHit> hits = caster.cast(origin, directions, params_.range_max);
+  std::vector<LidarPulse> pulses;
+  pulses.reserve(hits.size());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    pulses.push_back(pulseOn(hits[i], origin, directions[i], factor(hits[i])));
+  }
+  if (params_.divergence <= 0) return pulses;
+  const auto& beams = slices_[slice];
+  std::vector<std::size_t> wide;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const bool before = i > 0 && beams[i - 1].ring == beams[i].ring && onEdge(hits[i - 1], hits[i]);
+    const bool after =
+        i + 1 < hits.size() && beams[i + 1].ring == beams[i].ring && onEdge(hits[i], hits[i + 1]);
+    if (before || after) wide.push_back(i);
+  }
+  constexpr std::size_t kRim = 4;
+  std::vector<Vector3> rim;
+  const double spread = 0.7 * std::tan(.5 * params_.divergence);  // rim ray: mean of its quarter
+  for (const std::size_t i : wide) {
+    const Vector3& d = directions[i];
+    const Vector3 across = Vector3::UnitZ().cross(d).normalized(), up = d.cross(across);
+    for (const Vector3& aside : {across, up, Vector3(-across), Vector3(-up)}) {
+      rim.push_back((d + spread * aside).normalized());
+    }
+  }
+  const std::vector<BeamHit> rim_hits = caster.cast(origin, rim, params_.range_max);
+  std::vector<Ray> rays;
+  for (std::size_t k = 0; k < wide.size(); ++k) {
+    const auto add = [&](const BeamHit& hit) {
+      const LidarPulse p = pulseOn(hit, origin, directions[wide[k]], factor(hit));
+      const bool something = hit.object != BeamHit::kNothing && hit.range > 0;
+      rays.push_back(
+          {hit, p.reflectivity, p.lost, something ? p.reflectivity / (hit.range * hit.range) : 0});
+    };
+    rays.clear();
+    add(hits[wide[k]]);
+    for (std::size_t r = 0; r < kRim; ++r) add(rim_hits[k * kRim + r]);
+    pulses[wide[k]] = joined(pulses[wide[k]], rays);
+  }
+  return pulses;
 }
 
 }  // namespace perception

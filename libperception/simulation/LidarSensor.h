@@ -6,6 +6,7 @@
 #include "libperception/core/ParamSet.h"
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
+#include "libperception/simulation/SimulatedWeather.h"
 
 namespace perception {
 
@@ -25,8 +26,11 @@ struct LidarParams {
   double reference_range = 200;  ///< [m] R_max of SPEC 9: a surface of 90 % is just seen there
   double range_noise = 0.01;     ///< [m] at the strongest echo
   double loss = 0.003;           ///< share of pulses that are lost whatever they meet
-  double label_error = 0;        ///< share of wrong point labels (four layers: object, ground)
-  bool sweep = false;            ///< beams at their own times while everything moves
+  /// [rad] whole width of the beam (SPEC 9: 3 mrad). A beam on an edge returns the stronger of the
+  /// two surfaces, or their mean when they lie within one pulse. 0: a ray without width.
+  double divergence = 0;
+  double label_error = 0;  ///< share of wrong point labels (four layers: object, ground)
+  bool sweep = false;      ///< beams at their own times while everything moves
 
   /// Ibeo ALASCA XT: four layers 0.8 deg apart, 0.25 deg in azimuth, own labels.
   static LidarParams fourLayer();
@@ -34,6 +38,9 @@ struct LidarParams {
   /// Elevations [rad] of the rings, lowest first.
   std::vector<double> elevations() const;
 };
+
+/// Changes what a pulse meets; empty: clear air.
+using PulseHook = std::function<void(LidarPulse&, Rng&)>;
 
 /// Turns beams' hits into returns: the common lidar equation of SPEC 9, in clear air.
 class LidarSensor {
@@ -47,7 +54,8 @@ class LidarSensor {
   };
   using PoseAt = std::function<Pose3(double t)>;  ///< T_world_sensor at t [s]
   /// The scan that starts at t; leaves the caster at another time when sweeping.
-  Scan scan(LidarCaster& caster, double t, const PoseAt& T_world_sensor, const RngKey& key) const;
+  Scan scan(LidarCaster& caster, double t, const PoseAt& T_world_sensor, const RngKey& key,
+            const PulseHook& hook = {}) const;
   std::size_t beams() const;  ///< of one scan
 
  private:
@@ -56,6 +64,9 @@ class LidarSensor {
     std::uint16_t ring;
     std::uint32_t slot;  // of its random numbers
   };
+  std::vector<LidarPulse> pulsesOf(const LidarCaster& caster, std::size_t slice, const Pose3& pose,
+                                   const std::vector<Vector3>& directions) const;
+
   LidarParams params_;
   std::vector<std::vector<Beam>> slices_;  // by time; one when not sweeping
   double slice_time_ = 0;                  // [s]

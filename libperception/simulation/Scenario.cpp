@@ -1,8 +1,11 @@
 #include "libperception/simulation/Scenario.h"
 
+#include <algorithm>
 #include <array>
+#include <map>
 
 #include "libperception/core/ParamSet.h"
+#include "libperception/core/Random.h"
 
 namespace perception {
 namespace {
@@ -30,6 +33,9 @@ std::vector<std::string> kindNames() {
   for (const KindRow& kind : kKinds) names.emplace_back(kind.name);
   return names;
 }
+
+// Purposes of random numbers.
+constexpr std::uint32_t kVariationStream = 0x51D00, kTrialStream = 0x51D01;
 
 constexpr Bounds kPlace = {-1000, 1000};  // [m] single floats of the ray caster stay below 0.1 mm
 constexpr Bounds kTime = {-3600, 3600};   // [s]
@@ -75,12 +81,14 @@ void ObjectParams::visit(ParamVisitor& v) {
   v.real("height", height, {0.02, 100}, "m", "bottom to top");
   v.real("base", base, {-5, 50}, "m", "height of the bottom above the road");
   v.real("reflectivity", reflectivity, {0.01, 3}, "-", "times the usual one of its materials");
+  v.text("party", party, "objects of one party vary together from trial to trial");
   waypoints.visit(v);
 }
 
 void SensorParams::visit(ParamVisitor& v) {
   const SensorKind before = kind;
-  v.choiceOf("kind", kind, {"lidar64", "lidar4", "camera_boxes"}, "what it is");
+  v.choiceOf("kind", kind, {"lidar64", "lidar4", "camera_boxes", "spherical_camera", "radar"},
+             "what it is");
   if (kind != before && kind == SensorKind::kLidar4) lidar = LidarParams::fourLayer();
   v.real("x", x, {-20, 20}, "m", "place on the vehicle: forward of the rear axle");
   v.real("y", y, {-20, 20}, "m", "left");
@@ -90,32 +98,86 @@ void SensorParams::visit(ParamVisitor& v) {
   v.angle("roll_deg", roll, {-180, 180}, "about its forward axis");
   v.real("rate", rate, {0.1, 100}, "1/s", "scans or images");
   v.real("phase", phase, {0, 10}, "s", "time of the first one");
-  if (isLidar()) {
-    lidar.visit(v);
-  } else {
-    camera.visit(v);
+  switch (kind) {
+    case SensorKind::kLidar64:
+    case SensorKind::kLidar4:
+      return lidar.visit(v);
+    case SensorKind::kCameraBoxes:
+      return camera.visit(v);
+    case SensorKind::kSphericalCamera:
+      return panorama.visit(v);
+    case SensorKind::kRadar:
+      return radar.visit(v);
   }
+}
+
+void VariationParams::visit(ParamVisitor& v) {
+  v.integer("trials", trials, {1, 1000}, "of this scenario; --trial N plays one");
+  v.real("start", start, {0, 60}, "s", "a mover starts up to so much earlier or later");
+  v.real("pace", pace, {0, 0.5}, "-", "a mover is up to this share faster or slower, about t = 0");
+  v.real("place", place, {0, 10}, "m", "a mover's way is shifted up to so much in x and y");
 }
 
 Scenario readScenario(Config& config) {
   Scenario scenario;
   scenario.params = config.read<ScenarioParams>("scenario", {}, true);
   scenario.ego = config.read<EgoParams>("ego", {}, true);
-  const std::string object_prefix = "object.", sensor_prefix = "sensor.";
+  scenario.variation = config.read<VariationParams>("variation");
+  const std::string object_prefix = "object.";
   for (const std::string& section : config.sectionsWithPrefix(object_prefix)) {
     ObjectParams object;
     object.name = section.substr(object_prefix.size());
     scenario.objects.push_back(config.read(section, object));
   }
-  for (const std::string& section : config.sectionsWithPrefix(sensor_prefix)) {
-    SensorParams sensor;
-    sensor.label = section.substr(sensor_prefix.size());
-    scenario.sensors.push_back(config.read(section, sensor));
-  }
+  scenario.sensors = readSensors(config);
   if (scenario.sensors.empty()) {
     config.fault("scenario", "", "no [sensor.LABEL] section: expected at least one sensor");
   }
   return scenario;
+}
+
+std::vector<SensorParams> readSensors(Config& config) {
+  const std::string prefix = "sensor.";
+  std::vector<SensorParams> sensors;
+  for (const std::string& section : config.sectionsWithPrefix(prefix)) {
+    SensorParams sensor;
+    sensor.label = section.substr(prefix.size());
+    sensors.push_back(config.read(section, sensor));
+  }
+  return sensors;
+}
+
+Scenario trialOf(Scenario scenario, int trial, std::uint64_t seed) {
+  if (trial <= 0) return scenario;
+  const VariationParams& vary = scenario.variation;
+  // Slot 0 is the ego's; an object's is its place in the file, a party's that of its first member.
+  const auto apply = [&](WaypointParams& way, std::size_t slot) {
+    if (way.t.size() < 2) return;
+    Rng rng({seed, static_cast<std::uint64_t>(trial), static_cast<std::uint32_t>(slot),
+             kVariationStream});
+    const double shift = vary.start * rng.uniform(-1, 1);
+    const double stretch = 1 / (1 + vary.pace * rng.uniform(-1, 1));
+    const double dx = vary.place * rng.uniform(-1, 1), dy = vary.place * rng.uniform(-1, 1);
+    for (double& t : way.t) t = shift + t * stretch;
+    for (double& x : way.x) x += dx;
+    for (double& y : way.y) y += dy;
+  };
+  apply(scenario.ego.waypoints, 0);
+  std::map<std::string, std::size_t> first;
+  for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
+    ObjectParams& object = scenario.objects[i];
+    std::size_t slot = i + 1;
+    if (!object.party.empty()) slot = first.emplace(object.party, slot).first->second;
+    apply(object.waypoints, slot);
+  }
+  return scenario;
+}
+
+std::uint64_t trialSeed(std::uint64_t seed, int trial) {
+  if (trial <= 0) return seed;
+  Rng rng({seed, static_cast<std::uint64_t>(trial), 0, kTrialStream});
+  const std::uint64_t high = rng();
+  return high << 32 | rng();
 }
 
 }  // namespace perception

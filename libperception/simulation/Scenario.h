@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -6,6 +7,8 @@
 #include "libperception/core/Frames.h"
 #include "libperception/simulation/CameraBoxes.h"
 #include "libperception/simulation/LidarSensor.h"
+#include "libperception/simulation/RadarUnit.h"
+#include "libperception/simulation/SphericalCamera.h"
 #include "libperception/simulation/Trajectory.h"
 
 namespace perception {
@@ -57,12 +60,13 @@ struct ObjectParams {
   double length = 4.5, width = 1.8, height = 1.5;  ///< [m]
   double base = 0;                                 ///< [m] height of its bottom above the road
   double reflectivity = 1;   ///< times the usual one of its materials: below 1 a dark car
+  std::string party;         ///< objects of one name vary together from trial to trial; "": alone
   WaypointParams waypoints;  ///< of the footprint's centre
 
   void visit(ParamVisitor& v);
 };
 
-enum class SensorKind { kLidar64, kLidar4, kCameraBoxes };
+enum class SensorKind { kLidar64, kLidar4, kCameraBoxes, kSphericalCamera, kRadar };
 
 /// [sensor.LABEL]: one sensor of the vehicle.
 struct SensorParams {
@@ -74,10 +78,30 @@ struct SensorParams {
   double phase = 0;                     ///< [s] of its first scan
   LidarParams lidar;
   CameraParams camera;
+  SphericalCameraParams panorama;
+  RadarUnitParams radar;
 
-  bool isLidar() const { return kind != SensorKind::kCameraBoxes; }
+  bool isLidar() const { return kind == SensorKind::kLidar64 || kind == SensorKind::kLidar4; }
+  bool isCamera() const {
+    return kind == SensorKind::kCameraBoxes || kind == SensorKind::kSphericalCamera;
+  }
+  /// Of a camera.
+  CameraModel cameraModel() const {
+    return kind == SensorKind::kSphericalCamera ? panorama.model() : camera.model();
+  }
   /// Sensor frame (x forward, y left, z up; a camera's too) on the vehicle.
   Pose3 T_ego_sensor() const { return makePose(x, y, z, yaw, pitch, roll); }
+  void visit(ParamVisitor& v);
+};
+
+/// [variation]: how the trials of one scenario differ. Each mover draws its own values, uniform
+/// within +- these; what never moves stays.
+struct VariationParams {
+  int trials = 1;    ///< how many there are
+  double start = 0;  ///< [s] earlier or later
+  double pace = 0;   ///< [-] faster or slower, about t = 0
+  double place = 0;  ///< [m] of the whole way, x and y
+
   void visit(ParamVisitor& v);
 };
 
@@ -85,11 +109,19 @@ struct SensorParams {
 struct Scenario {
   ScenarioParams params;
   EgoParams ego;
+  VariationParams variation;
   std::vector<ObjectParams> objects;  ///< in the order of the file
   std::vector<SensorParams> sensors;
 };
 
 /// Reads all sections; faults go to `config`, whose finish() throws them.
 Scenario readScenario(Config& config);
+/// Reads the [sensor.LABEL] sections alone: a vehicle INI.
+std::vector<SensorParams> readSensors(Config& config);
+
+/// Trial 1, 2, ... of the scenario: its movers' ways varied. Trial 0 is the file as it stands.
+Scenario trialOf(Scenario scenario, int trial, std::uint64_t seed);
+/// Seed of a trial's sensors; trial 0 has `seed` itself.
+std::uint64_t trialSeed(std::uint64_t seed, int trial);
 
 }  // namespace perception

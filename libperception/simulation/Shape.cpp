@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libperception/core/Random.h"
+#include "libperception/simulation/Scenario.h"
 
 namespace perception {
 namespace {

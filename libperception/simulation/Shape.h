@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "libperception/core/Frames.h"
-#include "libperception/simulation/Scenario.h"
 
 namespace perception {
+
+struct ObjectParams;
 
 /// What a surface is made of, as a lidar sees it.
 enum class Material : std::uint8_t {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <tuple>
 #include <utility>
+#include <variant>
 
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/ToObservation.h"
@@ -15,7 +16,7 @@ namespace perception {
 namespace {
 
 // Purposes of random numbers; a sensor adds its index.
-constexpr std::uint32_t kPoseStream = 0x51B00, kSensorStream = 0x51C00;
+constexpr std::uint32_t kPoseStream = 0x51B00, kSensorStream = 0x51C00, kFrameStream = 0x51E00;
 
 // KITTI's levels of occlusion from the visible share; 3 ("unknown") when next to nothing is seen.
 int occlusionLevel(double visible) {
@@ -59,11 +60,15 @@ void Simulator::schedule(Event::Kind kind, std::size_t sensor, double rate, doub
 }
 
 std::shared_ptr<mrpt::obs::CObservation> Simulator::next() {
-  if (next_ == events_.size()) {
-    endFrame();
-    return nullptr;
+  while (next_ < events_.size()) {
+    if (auto observation = play(events_[next_++])) return observation;
+    ++unwritten_;
   }
-  const Event& event = events_[next_++];
+  endFrame();
+  return nullptr;
+}
+
+std::shared_ptr<mrpt::obs::CObservation> Simulator::play(const Event& event) {
   switch (event.kind) {
     case Event::kComment: {
       auto comment = std::make_shared<mrpt::obs::CObservationComment>();
@@ -123,9 +128,9 @@ void Simulator::setVisibility(std::vector<TruthObject>& rows, double t) {
     bool has_camera = false;
     double truncated = 1;
     for (const SensorParams& sensor : sensors) {
-      if (sensor.isLidar()) continue;
+      if (!sensor.isCamera()) continue;
       has_camera = true;
-      const auto outline = imageOutline(world_, object, t, sensor.camera.model(),
+      const auto outline = imageOutline(world_, object, t, sensor.cameraModel(),
                                         T_world_ego * sensor.T_ego_sensor() * opticalAxes());
       if (outline) truncated = std::min(truncated, outline->truncated);
     }
@@ -159,24 +164,66 @@ std::shared_ptr<mrpt::obs::CObservation> Simulator::sense(const Event& event) {
   frame.sensor = sensor.label;
   frame.stamp = world_.stamp(event.t);
   frame.T_ego_sensor = sensor.T_ego_sensor();
+  if (weather_) weather_->advance(world_, event.t);
   if (sensor.isLidar()) {
     frame.data = scanLidar(event, key);
-  } else {
+  } else if (sensor.isCamera()) {
     frame.T_ego_sensor = frame.T_ego_sensor * opticalAxes();
-    caster_.setTime(event.t);
-    auto boxes = detectBoxes(caster_, event.t, sensor.camera,
-                             world_.ego(event.t).T_world_ego * frame.T_ego_sensor, key);
-    boxes_ += boxes.objects.size();
-    frame.data = std::move(boxes);
+    frame.data = seeObjects(event, world_.ego(event.t).T_world_ego * frame.T_ego_sensor, key);
+  } else {
+    frame.data = listenRadar(event, key);
   }
-  return observationFromFrame(frame);
+  if (weather_) {
+    Rng rng(key.withPurpose(kFrameStream + static_cast<std::uint32_t>(event.sensor)));
+    weather_->alter(sensor, frame, rng);
+  }
+  try {
+    return observationFromFrame(frame);
+  } catch (const std::bad_variant_access&) {
+    return nullptr;  // no observation class for it
+  }
+}
+
+ObjectDetections Simulator::seeObjects(const Event& event, const Pose3& T_world_camera,
+                                       const RngKey& key) {
+  const SensorParams& sensor = world_.scenario().sensors[event.sensor];
+  CameraHook hook;
+  if (weather_) hook = [&](CameraLook& look, Rng& rng) { weather_->alter(sensor, look, rng); };
+  caster_.setTime(event.t);
+  ObjectDetections boxes =
+      sensor.kind == SensorKind::kSphericalCamera
+          ? detectPanorama(caster_, event.t, sensor.panorama, T_world_camera, key, hook)
+          : detectBoxes(caster_, event.t, sensor.camera, T_world_camera, key, hook);
+  boxes_ += boxes.objects.size();
+  return boxes;
+}
+
+RadarReturns Simulator::listenRadar(const Event& event, const RngKey& key) {
+  const SensorParams& sensor = world_.scenario().sensors[event.sensor];
+  RadarHook hook;
+  if (weather_) hook = [&](RadarReflection& r, Rng& rng) { weather_->alter(sensor, r, rng); };
+  const EgoState ego = world_.ego(event.t);
+  RadarMount mount;
+  mount.T_world_sensor = ego.T_world_ego * sensor.T_ego_sensor();
+  const Vector2 arm =
+      (mount.T_world_sensor.translation() - ego.T_world_ego.translation()).head<2>();
+  mount.velocity = ego.velocity + ego.yaw_rate * Vector2(-arm.y(), arm.x());
+  caster_.setTime(event.t);
+  RadarReturns returns = radarReturns(caster_, event.t, sensor.radar, mount, key, hook);
+  targets_ += returns.returns.size();
+  return returns;
 }
 
 LidarCloud Simulator::scanLidar(const Event& event, const RngKey& key) {
   const Pose3 T_ego_sensor = world_.scenario().sensors[event.sensor].T_ego_sensor();
   const auto pose_at = [&](double t) -> Pose3 { return world_.ego(t).T_world_ego * T_ego_sensor; };
   const LidarSensor& lidar = lidars_[event.sensor];
-  LidarSensor::Scan scan = lidar.scan(caster_, event.t, pose_at, key);
+  PulseHook hook;
+  if (weather_ && weather_->actsOnPulses()) {
+    const SensorParams& sensor = world_.scenario().sensors[event.sensor];
+    hook = [&](LidarPulse& pulse, Rng& rng) { weather_->alter(sensor, pulse, rng); };
+  }
+  LidarSensor::Scan scan = lidar.scan(caster_, event.t, pose_at, key, hook);
   if (!scanned_[event.sensor]) points_on_[event.sensor] = std::move(scan.points_on);
   scanned_[event.sensor] = true;
   ++scans_;

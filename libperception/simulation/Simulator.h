@@ -9,6 +9,7 @@
 #include "libperception/core/GroundTruth.h"
 #include "libperception/core/Random.h"
 #include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/SimulatedWeather.h"
 #include "libperception/simulation/World.h"
 
 namespace perception {
@@ -24,6 +25,9 @@ class Simulator {
   /// `name` of the scenario goes into the first comment; `threads` 0 = as many as the machine has.
   Simulator(Scenario scenario, const std::string& name, std::uint64_t seed, int threads = 1);
 
+  /// Weather to be played from now on; without it the air is clear.
+  void setWeather(std::unique_ptr<SimulatedWeather> weather) { weather_ = std::move(weather); }
+
   /// The next observation; null at the end.
   std::shared_ptr<mrpt::obs::CObservation> next();
 
@@ -32,10 +36,12 @@ class Simulator {
 
   double time() const { return next_ > 0 ? events_[next_ - 1].t : 0; }  ///< [s] of the last one
   std::int64_t frames() const { return frames_; }
-  std::uint64_t scans() const { return scans_; }    ///< of lidars
-  std::uint64_t points() const { return points_; }  ///< of lidars
-  std::uint64_t beams() const { return beams_; }    ///< cast by lidars
-  std::uint64_t boxes() const { return boxes_; }    ///< of detectors
+  std::uint64_t scans() const { return scans_; }          ///< of lidars
+  std::uint64_t points() const { return points_; }        ///< of lidars
+  std::uint64_t beams() const { return beams_; }          ///< cast by lidars
+  std::uint64_t boxes() const { return boxes_; }          ///< of detectors
+  std::uint64_t targets() const { return targets_; }      ///< of radars
+  std::uint64_t unwritten() const { return unwritten_; }  ///< frames that no rawlog class holds
   const World& world() const { return world_; }
 
  private:
@@ -50,13 +56,17 @@ class Simulator {
   void schedule(Event::Kind kind, std::size_t sensor, double rate, double phase);
   void beginFrame(const Event& event);
   void endFrame();
+  std::shared_ptr<mrpt::obs::CObservation> play(const Event& event);
   EgoState reportedEgo(double t);
   std::shared_ptr<mrpt::obs::CObservation> sense(const Event& event);
   LidarCloud scanLidar(const Event& event, const RngKey& key);
+  ObjectDetections seeObjects(const Event& event, const Pose3& T_world_camera, const RngKey& key);
+  RadarReturns listenRadar(const Event& event, const RngKey& key);
   void setVisibility(std::vector<TruthObject>& rows, double t);
 
   World world_;
   LidarCaster caster_;
+  std::unique_ptr<SimulatedWeather> weather_;
   std::string name_;
   std::uint64_t seed_;
   std::vector<LidarSensor> lidars_;  // one a sensor; cameras have an idle one
@@ -70,7 +80,7 @@ class Simulator {
   double pose_error_time_ = 0;            // [s]
   bool pose_error_drawn_ = false;
   std::int64_t frames_ = 0;
-  std::uint64_t scans_ = 0, points_ = 0, beams_ = 0, boxes_ = 0;
+  std::uint64_t scans_ = 0, points_ = 0, beams_ = 0, boxes_ = 0, targets_ = 0, unwritten_ = 0;
 };
 
 }  // namespace perception

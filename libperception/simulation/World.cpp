@@ -50,7 +50,8 @@ EgoState World::ego(double t) const {
 ObjectState World::object(std::size_t object, double t) const {
   const Motion2 m = trajectories_[object].at(t);
   const double base = scenario_.objects[object].base;
-  return {makePose(m.position.x(), m.position.y(), base, m.heading), m.velocity, m.travelled};
+  return {makePose(m.position.x(), m.position.y(), base, m.heading), m.velocity, m.travelled,
+          m.yaw_rate};
 }
 
 std::vector<Pose3> World::parts(std::size_t index, double t) const {

@@ -13,6 +13,7 @@ struct ObjectState {
   Pose3 T_world_object = Pose3::Identity();  ///< centre of the footprint, bottom, x along heading
   Vector2 velocity = Vector2::Zero();        ///< [m/s] world
   double travelled = 0;                      ///< [m]
+  double yaw_rate = 0;                       ///< [rad/s]
 };
 
 /// Where everything of a scenario is at any time t [s] since the log's first stamp: a pure

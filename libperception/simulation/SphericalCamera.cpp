@@ -1,0 +1,219 @@
+#include "libperception/simulation/SphericalCamera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libperception/simulation/CameraBoxes.h"
+#include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/World.h"
+
+namespace perception {
+namespace {
+
+constexpr std::uint32_t kFalseSlot = 1u << 20, kWeatherPurpose = 0x57EA0000;  // random streams
+constexpr double kRangeEdge = 0.1;  // recall falls from all to none within +-10 % of the range
+constexpr double kHidden = 0.15, kClear = 0.5;  // visible share: not found below, all above
+
+/// The paper's table of resolutions. False boxes follow from its detections per image (cars
+/// .46/1.53/4.52/8.12, persons .15/.45/5.98/27.31) and precision (95 and 90 %).
+struct ResolutionRow {
+  const char* name;
+  int width, height;               ///< [px]
+  double car_range, person_range;  ///< [m]
+  double false_per_image;
+};
+constexpr std::array<ResolutionRow, 4> kResolutions = {{{"1k", 1024, 512, 7, 5, 0.04},
+                                                        {"2k", 2048, 1024, 15, 10, 0.12},
+                                                        {"4k", 4096, 2048, 32, 20, 0.82},
+                                                        {"8k", 8000, 4000, 70, 40, 3.1}}};
+
+/// What the detector makes of a kind: two labels (SPEC 2, camera columns).
+struct Answer {
+  double SphericalCameraParams::*recall;
+  double SphericalCameraParams::*range;
+  double as_car;  ///< probability of the label Car, else Pedestrian
+};
+Answer answerTo(ObjectKind kind) {
+  using P = SphericalCameraParams;
+  if (kind == ObjectKind::kPedestrian) return {&P::person_recall, &P::person_range, 0.02};
+  if (kind == ObjectKind::kCyclist) return {&P::cyclist_recall, &P::person_range, 0.20};
+  if (kind == ObjectKind::kBus) return {&P::bus_recall, &P::car_range, 0.97};
+  return {&P::car_recall, &P::car_range, 0.98};
+}
+
+double ramp(double value, double low, double high) {
+  return std::clamp((value - low) / (high - low), 0.0, 1.0);
+}
+
+// Rows inside the image; the left edge in [0, width), the right edge beyond the seam if need be.
+ObjectDetection::ImageBox onPanorama(ObjectDetection::ImageBox b, const CameraModel& camera) {
+  const double shift = std::floor(b.x1 / camera.width) * camera.width;
+  b.x1 -= shift, b.x2 -= shift;
+  b.y1 = std::clamp(b.y1, 0.0, camera.height - 1.0);
+  b.y2 = std::clamp(b.y2, 0.0, camera.height - 1.0);
+  return b;
+}
+
+bool valid(const ObjectDetection::ImageBox& b) { return b.x2 > b.x1 && b.y2 > b.y1; }
+
+void shake(ObjectDetection::ImageBox& box, double noise, Rng& rng) {
+  const double sigma = noise * (box.y2 - box.y1);
+  for (double* edge : {&box.x1, &box.y1, &box.x2, &box.y2}) *edge += sigma * rng.normal();
+}
+
+double binned(double angle, int bins) {
+  if (bins <= 0) return wrapAngle(angle);
+  const double width = kTwoPi / bins;
+  return wrapAngle(std::round(angle / width) * width);
+}
+
+std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t object, double t,
+                                         const SphericalCameraParams& p,
+                                         const Pose3& T_world_camera, const RngKey& key,
+                                         const CameraHook& hook) {
+  const World& world = caster.world();
+  const Answer answer = answerTo(world.scenario().objects[object].kind);
+  const Pose3 T_world_object = world.object(object, t).T_world_object;
+  const Vector3 sight = T_world_object.translation() - T_world_camera.translation();
+  CameraLook look;
+  look.object = object;
+  look.range = sight.head<2>().norm();
+  look.azimuth = std::atan2(sight.y(), sight.x());
+  look.edge_noise = p.edge_noise;
+  const double range = p.*answer.range;
+  look.chance =
+      p.*answer.recall * (1 - ramp(look.range, (1 - kRangeEdge) * range, (1 + kRangeEdge) * range));
+  if (hook) {
+    Rng rng(key.withSlot(static_cast<std::uint32_t>(object))
+                .withPurpose(key.purpose ^ kWeatherPurpose));
+    hook(look, rng);
+  }
+  Rng rng(key.withSlot(static_cast<std::uint32_t>(object)));
+  const double draw = rng.uniform();
+  if (draw >= look.chance) return {};  // before the costly question of what hides it
+  look.chance *= ramp(caster.visibleShare(T_world_camera.translation(), object), kHidden, kClear);
+  if (draw >= look.chance) return {};
+  const CameraModel camera = p.model();
+  const auto outline = imageOutline(world, object, t, camera, T_world_camera);
+  if (!outline) return {};
+  ObjectDetection d;
+  auto box = outline->box;
+  shake(box, look.edge_noise, rng);
+  d.image_box = onPanorama(box, camera);
+  if (!valid(*d.image_box)) return {};
+  const bool as_car = rng.uniform() < answer.as_car;
+  d.label = as_car ? "Car" : "Pedestrian";
+  d.score = std::clamp(0.45 + 0.5 * look.chance + 0.08 * rng.normal(), 0.05, 1.0);
+  if (p.heading && as_car) {
+    const double alpha = observationAngle(T_world_camera.inverse() * T_world_object);
+    const double flip = rng.uniform() < p.heading_flip ? kPi : 0;
+    d.heading = binned(alpha + p.heading_noise * rng.normal(), p.heading_bins);
+    d.heading = wrapAngle(*d.heading + flip);
+  }
+  return d;
+}
+
+// Half of the false boxes lie on things that look alike (a pole like a person, a bush like a car)
+// and come again in the next image, the rest anywhere on the ground within range.
+std::optional<ObjectDetection> falseBox(const LidarCaster& caster, double t,
+                                        const SphericalCameraParams& p, const Pose3& T_world_camera,
+                                        Rng& rng) {
+  constexpr double kOnThings = 0.5, kCars = 0.6;  // shares: on things; labelled Car
+  const CameraModel camera = p.model();
+  ObjectDetection d;
+  d.score = rng.uniform(0.3, 0.7);
+  const bool on_thing = rng.uniform() < kOnThings, as_car = rng.uniform() < kCars;
+  d.label = as_car ? "Car" : "Pedestrian";
+  const double range = as_car ? p.car_range : p.person_range;
+  if (p.heading && as_car) d.heading = rng.uniform(-kPi, kPi);
+  std::vector<std::size_t> alike;
+  const auto& objects = caster.world().scenario().objects;
+  for (std::size_t i = 0; on_thing && i < objects.size(); ++i) {
+    const ObjectKind like = as_car ? ObjectKind::kBush : ObjectKind::kPole;
+    const Vector3 place = caster.world().object(i, t).T_world_object.translation();
+    if (objects[i].kind == like &&
+        (place - T_world_camera.translation()).head<2>().norm() < range) {
+      alike.push_back(i);
+    }
+  }
+  if (!alike.empty()) {
+    const std::size_t thing = alike[rng.below(static_cast<std::uint32_t>(alike.size()))];
+    const auto outline = imageOutline(caster.world(), thing, t, camera, T_world_camera);
+    if (!outline) return {};
+    d.image_box = outline->box;
+    shake(*d.image_box, p.edge_noise, rng);
+  } else {
+    const double far = range * std::sqrt(rng.uniform(0.05, 1));  // uniform over the ground
+    const double height = rng.uniform(1.3, 1.9);                 // [m]
+    const double width = as_car ? rng.uniform(1.7, 4.5) : rng.uniform(0.4, 0.8);  // [m]
+    const double eye = T_world_camera.translation().z();
+    const double u = rng.uniform(0, camera.width), half = .5 * camera.fx * width / far;
+    d.image_box =
+        ObjectDetection::ImageBox{u - half, camera.cy + camera.fy * std::atan2(eye - height, far),
+                                  u + half, camera.cy + camera.fy * std::atan2(eye, far)};
+  }
+  d.image_box = onPanorama(*d.image_box, camera);
+  if (!valid(*d.image_box)) return {};
+  return d;
+}
+
+}  // namespace
+
+void SphericalCameraParams::setResolution(Resolution r) {
+  const ResolutionRow& row = kResolutions[static_cast<std::size_t>(r)];
+  resolution = r;
+  width = row.width, height = row.height;
+  car_range = row.car_range, person_range = row.person_range;
+  false_per_image = row.false_per_image;
+}
+
+void SphericalCameraParams::visit(ParamVisitor& v) {
+  const Resolution before = resolution;
+  std::vector<std::string> names;
+  for (const ResolutionRow& row : kResolutions) names.emplace_back(row.name);
+  v.choiceOf("resolution", resolution, names, "sets size, ranges and false boxes (paper)");
+  if (resolution != before) setResolution(resolution);
+  v.real("car_range", car_range, {1, 300}, "m", "recall of cars and busses holds within");
+  v.real("person_range", person_range, {1, 300}, "m", "recall of persons and cyclists");
+  v.real("false_per_image", false_per_image, {0, 100}, "-", "boxes of no car or person");
+  v.real("car_recall", car_recall, {0, 1}, "-", "paper: .85");
+  v.real("person_recall", person_recall, {0, 1}, "-", "paper: .70");
+  v.real("bus_recall", bus_recall, {0, 1}, "-", "found as a car");
+  v.real("cyclist_recall", cyclist_recall, {0, 1}, "-", "found as a person, mostly");
+  v.real("edge_noise", edge_noise, {0, 1}, "-", "of box edges, share of the box's height");
+  v.boolean("heading", heading, "detector tells the orientation of cars");
+  v.integer("heading_bins", heading_bins, {0, 360}, "of the observation angle; 0: none");
+  v.angle("heading_noise_deg", heading_noise, {0, 180}, "of the orientation, before binning");
+  v.real("heading_flip", heading_flip, {0, 1}, "-", "share reversed by 180 deg");
+}
+
+CameraModel SphericalCameraParams::model() const {
+  CameraModel m;
+  m.projection = CameraModel::Projection::kEquirectangular;
+  m.width = width, m.height = height;
+  m.fx = width / kTwoPi, m.fy = height / kPi;
+  m.cx = .5 * width, m.cy = .5 * height;
+  return m;
+}
+
+ObjectDetections detectPanorama(const LidarCaster& caster, double t,
+                                const SphericalCameraParams& params, const Pose3& T_world_camera,
+                                const RngKey& key, const CameraHook& hook) {
+  ObjectDetections result;
+  result.camera = params.model();
+  const auto& objects = caster.world().scenario().objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (!isRoadUser(objects[i].kind)) continue;
+    if (auto d = detectOne(caster, i, t, params, T_world_camera, key, hook)) {
+      result.objects.push_back(*d);
+    }
+  }
+  Rng rng(key.withSlot(kFalseSlot));
+  for (int n = rng.poisson(params.false_per_image); n > 0; --n) {
+    if (auto d = falseBox(caster, t, params, T_world_camera, rng)) result.objects.push_back(*d);
+  }
+  return result;
+}
+
+}  // namespace perception

@@ -1,0 +1,40 @@
+#pragma once
+#include "libperception/core/ParamSet.h"
+#include "libperception/core/Random.h"
+#include "libperception/measurement/SensorFrame.h"
+#include "libperception/simulation/CameraBoxes.h"
+
+namespace perception {
+
+class LidarCaster;
+
+/// A panoramic camera with the paper's detector of cars and persons behind it, in a [sensor.LABEL]
+/// section: boxes in pixels of the equirectangular panorama. `resolution` sets size, ranges and
+/// false boxes (paper's tables of resolutions and of detections per image).
+struct SphericalCameraParams {
+  enum class Resolution { k1k, k2k, k4k, k8k };
+  Resolution resolution = Resolution::k2k;
+  int width = 2048, height = 1024;                  ///< [px]
+  double car_range = 15, person_range = 10;         ///< [m] recall holds within (paper)
+  double false_per_image = 0.12;                    ///< boxes of no car or person, see .cpp
+  double car_recall = 0.85, person_recall = 0.70;   ///< within range (paper, sunny)
+  double bus_recall = 0.60, cyclist_recall = 0.60;  ///< (SPEC 2)
+  double edge_noise = 0.05;             ///< of a box edge, as a share of the box's height
+  bool heading = true;                  ///< orientation of cars
+  int heading_bins = 16;                ///< of the observation angle (paper: 16 models); 0: none
+  double heading_noise = radians(4.7);  ///< [rad] before binning; with 16 bins 8 deg (SPEC 7)
+  double heading_flip = 0.2;            ///< share reversed by 180 deg (SPEC 4.2: p_f)
+
+  void setResolution(Resolution r);  ///< and all that depends on it
+  void visit(ParamVisitor& v);
+  CameraModel model() const;
+};
+
+/// The detector's answer at t [s]; the caster stands at that time. Labels Car and Pedestrian; a
+/// cyclist is mostly a Pedestrian to it, a bus a Car. A box over the seam begins inside the image
+/// and ends beyond its width.
+ObjectDetections detectPanorama(const LidarCaster& caster, double t,
+                                const SphericalCameraParams& params, const Pose3& T_world_camera,
+                                const RngKey& key, const CameraHook& hook = {});
+
+}  // namespace perception
