@@ -108,29 +108,27 @@ void SnapshotApp::declare(CLI::App& cli) {
       ->allow_extra_args(false);
 }
 
-void SnapshotApp::readSite(Config& config) {
-  PipelineSetup site = PipelineSetup::read(config);
-  sensors.ground = site.ground;
-  sensors.grid = site.grid;
-  sensors.sensors = std::move(site.sensors);
-}
-
 // The site INI is that of -c, else the one that the run was made with: returns are drawn and
 // measured as the tracker did.
-bool SnapshotApp::readConfig() {
+Config SnapshotApp::readSite(const std::string& run_dir) {
   const std::string given = config_file;
-  const std::string own = (fs::path(run_dirs[0]) / "effective.ini").string();
+  const std::string own = (fs::path(run_dir) / "effective.ini").string();
   if (given.empty() && fs::exists(own)) config_file = own;
   Config config = loadConfig();
-  if (!config_file.empty()) {
-    readSite(config);
+  if (config_file.empty()) {
+    sensors.ground = config.read<GroundParams>("ground");
+    sensors.grid = config.read<GridParams>("grid");
   } else {
-    sensors.ground = config.read<GroundParams>("ground", sensors.ground);
-    sensors.grid = config.read<GridParams>("grid", sensors.grid);
+    PipelineSetup site = PipelineSetup::read(config);
+    sensors.ground = site.ground;
+    sensors.grid = site.grid;
+    sensors.sensors = std::move(site.sensors);
   }
   config_file = given;
-  return configDone(config);
+  return config;
 }
+
+bool SnapshotApp::readConfig() { return configDone(readSite(run_dirs[0])); }
 
 std::size_t SnapshotApp::sceneAt(const TrackedRun& run, double t) const {
   const auto off = [&](std::size_t i) {
@@ -206,6 +204,11 @@ SceneView SnapshotApp::viewOf(const Shown& shown, std::size_t index) const {
   if (shown.sensors) {
     shown.sensors->advanceTo(result.scene.stamp);
     shown.sensors->fill(result);
+    // Not in the legend when it is not in the picture.
+    const auto& views = params.views;
+    if (std::find(views.begin(), views.end(), ViewKind::kCamera) == views.end()) {
+      result.layers.camera.reset();
+    }
   }
   return result;
 }
@@ -296,7 +299,9 @@ void SnapshotApp::readRuns() {
     shown_.push_back(std::move(shown));
   }
   if (inputs.empty()) return;
-  for (Shown& shown : shown_) {
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    Shown& shown = shown_[i];
+    if (i > 0) readSite(run_dirs[i]).finish();
     shown.sensors = std::make_unique<SnapshotSensors>(inputs[0], shown.run, sensors);
   }
 }

@@ -47,7 +47,7 @@ class SnapshotApp : public App {
     std::unique_ptr<SnapshotSensors> sensors;  ///< where there is a log
   };
   bool readConfig();  ///< true: only the configuration was asked for
-  void readSite(Config& config);
+  Config readSite(const std::string& run_dir);
   void readRuns();
   void readViews();
   std::vector<std::size_t> chooseScenes(const TrackedRun& run) const;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "libperception/app/SnapshotImage.h"
 #include "libperception/sensors/Conversions.h"
 
 namespace perception {
@@ -82,7 +83,11 @@ std::vector<Vector3> outlineOf(const SidesSeen& sides, double z) {
 
 SnapshotSensors::SnapshotSensors(const std::string& log, const TrackedRun& run,
                                  SnapshotSensorParams params)
-    : reader_(log), run_(run), params_(std::move(params)), grid_(makeSafetyGrid(params_.grid)) {
+    : log_(log),
+      reader_(log),
+      run_(run),
+      params_(std::move(params)),
+      grid_(makeSafetyGrid(params_.grid)) {
   lookAhead(log);
 }
 
@@ -93,7 +98,7 @@ void SnapshotSensors::lookAhead(const std::string& log) {
   bool images = false;
   std::string chosen = params_.camera;
   while (const auto observation = reader.next()) {
-    const auto frame = frameFromObservation(*observation);
+    const auto frame = frameOf(*observation);
     if (!frame) continue;
     if (!first) first = frame->stamp;
     if (frame->stamp - *first > kLookAhead && (images || layers_.camera || layers_.lidar)) break;
@@ -119,16 +124,22 @@ void SnapshotSensors::lookAhead(const std::string& log) {
   layers_.measurements = !params_.sensors.empty() && !params_.no_measurements;
 }
 
+std::optional<SensorFrame> SnapshotSensors::frameOf(
+    const mrpt::obs::CObservation& observation) const {
+  if (auto frame = frameFromObservation(observation)) return frame;
+  return imageFrame(observation, log_);
+}
+
 void SnapshotSensors::advanceTo(Stamp stamp) {
   now_ = stamp;
   while (true) {
     if (!next_) next_ = reader_.next();
     if (!next_) return;
-    if (isSensorData(*next_)) {
+    if (isSensorData(*next_) || imageFrame(*next_, log_)) {
       const auto at = toStamp(next_->timestamp);
       if (at && *at > stamp) return;
       if (at && stamp - *at <= std::max(params_.memory, kLastImage)) {
-        if (auto frame = frameFromObservation(*next_)) take(std::move(*frame));
+        if (auto frame = frameOf(*next_)) take(std::move(*frame));
       }
     }
     next_.reset();

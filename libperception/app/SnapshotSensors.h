@@ -57,6 +57,7 @@ class SnapshotSensors {
   };
 
   void lookAhead(const std::string& log);
+  std::optional<SensorFrame> frameOf(const mrpt::obs::CObservation& observation) const;
   std::optional<EgoState> egoAt(Stamp stamp) const;
   const PipelineSetup::Sensor* sensorOf(const std::string& label) const;
   LidarSettings settingsOf(const std::string& label) const;
@@ -66,6 +67,7 @@ class SnapshotSensors {
   void addMeasurements(const SensorFrame& frame, SceneView& view) const;
   void addImage(SceneView& view) const;
 
+  std::string log_;
   RawlogReader reader_;
   const TrackedRun& run_;
   SnapshotSensorParams params_;
