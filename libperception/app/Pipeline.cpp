@@ -317,6 +317,7 @@ std::optional<MeasurementScan> Pipeline::measure(SensorFrame& frame, std::size_t
   }
   ++state.record.frames;
   state.record.measurements += scan.measurements.size();
+  state.record.dropped_measurements += scan.dropped;
   return scan;
 }
 
