@@ -1,0 +1,31 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libperception/app/Pipeline.h"
+
+namespace perception {
+namespace {
+
+TEST(SiteInis, AllLoadWithoutAFault) {
+  for (const char* name : {"demo.ini", "kitti.ini", "skynet.ini"}) {
+    Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + name);
+    PipelineSetup::read(config);
+    EXPECT_NO_THROW(config.finish()) << name;
+  }
+}
+
+TEST(SiteInis, ThePapersVehicleHasEightRadarsAndAPanorama) {
+  Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/skynet.ini");
+  const PipelineSetup setup = PipelineSetup::read(config);
+  const auto count = [&](Modality m) {
+    return std::count_if(setup.sensors.begin(), setup.sensors.end(),
+                         [&](const auto& s) { return s.active && s.params.modality == m; });
+  };
+  EXPECT_EQ(count(Modality::kRadar), 8);
+  EXPECT_GE(count(Modality::kCamera), 1);
+  EXPECT_GE(count(Modality::kLidar), 1);
+}
+
+}  // namespace
+}  // namespace perception
