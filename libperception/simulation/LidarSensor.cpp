@@ -17,15 +17,16 @@ struct Surface {
   double grazing;       ///< exponent of the cosine: 1 = Lambert, less = rough
   double lost;          ///< share of pulses that pass through or are mirrored away
 };
-constexpr std::array<Surface, 9> kSurfaces = {{{.17, .3, 0},    // road
-                                               {.45, 1, .05},   // paint
-                                               {.10, 1, .75},   // glass
-                                               {.06, .6, 0},    // tyre
-                                               {.35, .6, 0},    // cloth
-                                               {.50, .8, 0},    // skin
-                                               {.50, 1, .05},   // metal
-                                               {.40, .8, 0},    // wall
-                                               {.35, .5, 0}}};  // leaf
+constexpr std::array<Surface, 10> kSurfaces = {{{.17, .3, 0},    // road
+                                                {.45, 1, .05},   // paint
+                                                {.10, 1, .75},   // glass
+                                                {.06, .6, 0},    // tyre
+                                                {.35, .6, 0},    // cloth
+                                                {.50, .8, 0},    // skin
+                                                {.50, 1, .05},   // metal
+                                                {.40, .8, 0},    // wall
+                                                {.35, .5, 0},    // leaf
+                                                {.35, .3, 0}}};  // grass
 
 constexpr double kRangeUnit = 0.09;  // [m] dR of SPEC 9: sigma = dR / sqrt(2 SNR)
 constexpr double kSpeckle = 0.12;    // relative spread of the echo's power, rough surfaces

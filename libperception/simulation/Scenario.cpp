@@ -70,6 +70,13 @@ void EgoParams::visit(ParamVisitor& v) {
   v.real("pose_correlation", pose_correlation, {0.01, 1000}, "s", "time constant of that error");
 }
 
+void RoadParams::visit(ParamVisitor& v) {
+  v.reals("x", x, -1, kPlace, "m", "of the middle line, world");
+  v.reals("y", y, -1, kPlace, "m", "of the middle line, world");
+  v.real("width", width, {0.5, 100}, "m", "of the asphalt");
+  v.require(x.size() == y.size() && x.size() >= 2, "x, y: expected two or more values of each");
+}
+
 void ObjectParams::visit(ParamVisitor& v) {
   const ObjectKind before = kind;
   v.choiceOf("kind", kind, kindNames(), "shape, usual size and truth type");
@@ -123,7 +130,12 @@ Scenario readScenario(Config& config) {
   scenario.params = config.read<ScenarioParams>("scenario", {}, true);
   scenario.ego = config.read<EgoParams>("ego", {}, true);
   scenario.variation = config.read<VariationParams>("variation");
-  const std::string object_prefix = "object.";
+  const std::string object_prefix = "object.", road_prefix = "road.";
+  for (const std::string& section : config.sectionsWithPrefix(road_prefix)) {
+    RoadParams road;
+    road.name = section.substr(road_prefix.size());
+    scenario.roads.push_back(config.read(section, road));
+  }
   for (const std::string& section : config.sectionsWithPrefix(object_prefix)) {
     ObjectParams object;
     object.name = section.substr(object_prefix.size());

@@ -53,6 +53,15 @@ struct EgoParams {
   void visit(ParamVisitor& v);
 };
 
+/// [road.NAME]: asphalt along a line; with roads the rest of the ground is grass and pavement.
+struct RoadParams {
+  std::string name;          ///< from the section's title
+  std::vector<double> x, y;  ///< [m] middle line
+  double width = 7;          ///< [m]
+
+  void visit(ParamVisitor& v);
+};
+
 /// [object.NAME]: one thing of the scene.
 struct ObjectParams {
   std::string name;  ///< from the section's title
@@ -110,6 +119,7 @@ struct Scenario {
   ScenarioParams params;
   EgoParams ego;
   VariationParams variation;
+  std::vector<RoadParams> roads;      ///< none: asphalt everywhere
   std::vector<ObjectParams> objects;  ///< in the order of the file
   std::vector<SensorParams> sensors;
 };

@@ -19,7 +19,8 @@ enum class Material : std::uint8_t {
   kSkin,
   kMetal,
   kWall,
-  kLeaf
+  kLeaf,
+  kGrass
 };
 
 /// A rigid surface of triangles. Single precision: the ray caster's.

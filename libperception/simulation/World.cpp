@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace perception {
@@ -18,12 +19,39 @@ Mesh roadAround(const WaypointParams& way, double roughness) {
   return makeRoad(centre, kRoadMargin + .5 * std::max(*x1 - *x0, *y1 - *y0), roughness);
 }
 
+double distanceToLine(const Vector2& p, const RoadParams& road) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < road.x.size(); ++i) {
+    const Vector2 a(road.x[i], road.y[i]), ab = Vector2(road.x[i + 1], road.y[i + 1]) - a;
+    const double length2 = ab.squaredNorm();
+    const double s = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, (p - a - s * ab).norm());
+  }
+  return nearest;
+}
+
+// Triangles beside all roads become grass.
+void seed(Mesh& ground, const std::vector<RoadParams>& roads) {
+  if (roads.empty()) return;
+  for (std::size_t k = 0; k < ground.triangles.size(); ++k) {
+    Vector2 middle = Vector2::Zero();
+    for (const std::uint32_t i : ground.triangles[k]) {
+      middle += Vector2(ground.vertices[i][0], ground.vertices[i][1]) / 3;
+    }
+    const bool asphalt = std::any_of(roads.begin(), roads.end(), [&](const RoadParams& road) {
+      return distanceToLine(middle, road) <= .5 * road.width;
+    });
+    if (!asphalt) ground.materials[k] = Material::kGrass;
+  }
+}
+
 }  // namespace
 
 World::World(Scenario scenario)
     : scenario_(std::move(scenario)),
       ego_(scenario_.ego.waypoints.trajectory()),
       road_(roadAround(scenario_.ego.waypoints, scenario_.params.ground_roughness)) {
+  seed(road_, scenario_.roads);
   for (const ObjectParams& object : scenario_.objects) {
     trajectories_.push_back(object.waypoints.trajectory());
     shapes_.push_back(makeShape(object));
