@@ -1,0 +1,393 @@
+#include "gui-offscreen/ReportPage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+#include "gui-offscreen/Palette.h"
+#include "gui-offscreen/ReportStyle.h"
+
+namespace perception {
+namespace {
+
+constexpr double kShortest = 0.5;      // [s] objects seen for less have no row
+constexpr std::size_t kMostRows = 80;  // of the timeline; the longest seen stay
+constexpr double kLabelWidth = 130, kChartWidth = 900, kRow = 16, kAxis = 24;  // [px]
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return escaped(name);
+}
+
+std::string css(const Colour& c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
+
+/// One object over the run.
+struct Life {
+  std::uint64_t id = 0;
+  /// A stretch of time with one class.
+  struct Stretch {
+    double from = 0, to = 0;  // [s] of the log
+    ClassId class_id = 0;
+    bool sure = false;
+  };
+  std::vector<Stretch> stretches;
+  ClassId last_class = 0;
+  double probability = 0;               // of that class, at the end
+  double top_speed = 0, nearest = 1e9;  // [m/s], [m] from the ego origin
+  double from() const { return stretches.front().from; }
+  double to() const { return stretches.back().to; }
+};
+
+// Gaps of more than two scene periods part a stretch.
+std::vector<Life> livesOf(const TrackedRun& run) {
+  std::map<std::uint64_t, Life> lives;
+  double period = 0.1;
+  if (run.scenes.size() > 1) {
+    period = (run.scenes.back().stamp - run.scenes.front().stamp) /
+             static_cast<double>(run.scenes.size() - 1);
+  }
+  for (const Scene& scene : run.scenes) {
+    const double t = scene.stamp - run.first_stamp;
+    for (const SceneObject& o : scene.objects) {
+      Life& life = lives[o.id];
+      life.id = o.id;
+      const bool goes_on = !life.stretches.empty() && life.last_class == o.class_id &&
+                           life.stretches.back().sure == o.classified &&
+                           t - life.stretches.back().to < 2.5 * period;
+      if (!goes_on) life.stretches.push_back({t, t, o.class_id, o.classified});
+      life.stretches.back().to = t + period;
+      life.last_class = o.class_id;
+      const auto c = static_cast<std::size_t>(o.class_id);
+      life.probability = c < o.class_probability.size() ? o.class_probability[c] : 0;
+      life.top_speed = std::max(life.top_speed, o.velocity.norm());
+      life.nearest = std::min(life.nearest,
+                              (o.position - scene.ego.T_world_ego.translation()).head<2>().norm());
+    }
+  }
+  std::vector<Life> list;
+  for (auto& [id, life] : lives) list.push_back(std::move(life));
+  return list;
+}
+
+class Page {
+ public:
+  explicit Page(const ReportContent& content) : content_(content), run_(*content.run) {
+    for (Life& life : livesOf(run_)) {
+      if (isMuted(nameOf(life.last_class))) {
+        ++still_;
+      } else if (life.to() - life.from() < kShortest) {
+        ++brief_;
+      } else {
+        lives_.push_back(std::move(life));
+      }
+    }
+    std::stable_sort(lives_.begin(), lives_.end(), [](const Life& a, const Life& b) {
+      return a.to() - a.from() > b.to() - b.from();
+    });
+    if (lives_.size() > kMostRows) {
+      left_out_ = lives_.size() - kMostRows;
+      lives_.resize(kMostRows);
+    }
+    std::stable_sort(lives_.begin(), lives_.end(),
+                     [](const Life& a, const Life& b) { return a.from() < b.from(); });
+    end_ = run_.scenes.empty() ? 1 : run_.scenes.back().stamp - run_.first_stamp + 0.1;
+  }
+
+  std::string html() {
+    out_ = fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width\">\n"
+        "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n",
+        escaped(title()), kReportStyle);
+    head();
+    video();
+    timeline();
+    pictures();
+    evaluation();
+    objects();
+    provenance();
+    out_ += fmt::format("<script>{}</script>\n</body>\n</html>\n", kReportScript);
+    return std::move(out_);
+  }
+
+ private:
+  std::string nameOf(ClassId c) const {
+    const auto i = static_cast<std::size_t>(c);
+    return c >= 0 && i < run_.class_names.size() ? run_.class_names[i] : "?";
+  }
+  std::string title() const {
+    return fmt::format("{}{}", content_.record.input,
+                       content_.record.simulated ? " (simulated)" : "");
+  }
+  void tile(const std::string& value, const std::string& meaning) {
+    out_ += fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", value, meaning);
+  }
+  void head();
+  void video();
+  void timeline();
+  void pictures();
+  void evaluation();
+  void objects();
+  void provenance();
+  void figure(const ReportContent::Figure& f);
+  const nlohmann::json* judged() const;
+
+  const ReportContent& content_;
+  const TrackedRun& run_;
+  std::vector<Life> lives_;  // rows of the timeline, by first sight
+  std::size_t still_ = 0, brief_ = 0, left_out_ = 0;
+  double end_ = 1;  // [s] of the time axis
+  std::string out_;
+};
+
+// The run's figures in the report of perception-evaluate, or null.
+const nlohmann::json* Page::judged() const {
+  const auto runs = content_.evaluation.find("runs");
+  if (runs == content_.evaluation.end() || runs->empty()) return nullptr;
+  return &(*runs)[0];
+}
+
+std::string percent(const nlohmann::json& value) {
+  return value.is_number() ? fmt::format("{:.1f} %", 100 * value.get<double>()) : "n/a";
+}
+
+std::string number(const nlohmann::json& value, int places) {
+  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), places) : "n/a";
+}
+
+nlohmann::json at(const nlohmann::json& from, const std::string& pointer) {
+  return from.value(nlohmann::json::json_pointer(pointer), nlohmann::json());
+}
+
+void Page::head() {
+  const RunRecord& r = content_.record;
+  const double seconds = r.last_stamp - r.first_stamp;
+  std::string sensors;
+  for (const SensorRecord& s : r.sensors) {
+    if (s.frames == 0) continue;
+    sensors += (sensors.empty() ? "" : ", ") + escaped(s.label);
+  }
+  out_ +=
+      fmt::format("<h1>What was around the vehicle: {}</h1>\n<p class=\"lead\">", escaped(title()));
+  if (r.simulated) {
+    out_ += "These are <b>simulated</b> recordings: every figure below is a simulated result. ";
+  }
+  out_ += fmt::format(
+      "In {:.1f} s of log the tracker followed {} road users for half a second or longer with {}. "
+      "{} more objects are things that stand: poles, walls, bushes; {} were seen for a moment "
+      "only.</p>\n<div class=\"tiles\">\n",
+      seconds, lives_.size() + left_out_, sensors.empty() ? "its sensors" : sensors, still_,
+      brief_);
+  if (const auto* figures = judged()) {
+    const auto& e = *figures;
+    tile(percent(at(e, "/closest/all/object_tracked_a")), "of the true objects' time tracked");
+    tile(percent(at(e, "/closest/all/correct")), "of that time named with the right class");
+    tile(percent(at(e, "/closest/all/mis")), "named with a wrong class");
+    tile(number(at(e, "/closest/all/position_rms_m"), 2) + " m", "error of position (rms)");
+    tile(number(at(e, "/closest/all/id_switches"), 0), "times an object changed its number");
+    tile(number(at(e, "/false_objects/all/classified_per_instant"), 2),
+         "false road users per instant, named for sure");
+  }
+  if (content_.real_time_factor > 0) {
+    tile(fmt::format("{:.0f} x", content_.real_time_factor), "faster than it happened");
+  }
+  out_ += "</div>\n";
+}
+
+void Page::figure(const ReportContent::Figure& f) {
+  const std::string data = "data:" + f.media_type + ";base64," + base64(f.bytes);
+  out_ += "<figure>\n";
+  if (f.media_type.rfind("video/", 0) == 0) {
+    out_ += fmt::format(
+        "<video id=\"film\" controls muted loop preload=\"auto\" src=\"{}\"></video>\n", data);
+  } else {
+    out_ += fmt::format("<img alt=\"{}\" src=\"{}\">\n", escaped(f.title), data);
+  }
+  out_ += fmt::format("<figcaption>{}</figcaption>\n</figure>\n", escaped(f.caption));
+}
+
+void Page::video() {
+  if (content_.video.empty()) return;
+  out_ += fmt::format("<h2>{}</h2>\n", escaped(content_.video[0].title));
+  figure(content_.video[0]);
+}
+
+// A row an object, time to the right; pale where its class was not sure.
+void Page::timeline() {
+  if (lives_.empty()) return;
+  out_ +=
+      "<h2>Who was there, and when</h2>\n<p>One row for each road user that was tracked, from "
+      "when it was first seen until it was lost; colour: its class at that time, pale while "
+      "that was less than 95 % sure.";
+  if (!content_.video.empty()) out_ += " A click goes to that time of the film.";
+  if (left_out_ > 0)
+    out_ += fmt::format(" The {} seen longest; {} more are not shown.", kMostRows, left_out_);
+  out_ += "</p>\n<p class=\"legend\">";
+  for (std::size_t c = 0; c < run_.class_names.size(); ++c) {
+    if (isMuted(run_.class_names[c])) continue;
+    out_ += fmt::format("<span><i style=\"background:{}\"></i>{}</span>",
+                        css(colourOfClass(run_.class_names[c], static_cast<int>(c))),
+                        spaced(run_.class_names[c]));
+  }
+  const double height = kAxis + kRow * static_cast<double>(lives_.size()) + 4;
+  const auto x = [&](double t) { return kLabelWidth + kChartWidth * t / end_; };
+  out_ += fmt::format(
+      "</p>\n<svg id=\"timeline\" viewBox=\"0 0 {:.0f} {:.0f}\" data-left=\"{:.0f}\" "
+      "data-width=\"{:.0f}\" data-end=\"{:.3f}\" data-start=\"{:.3f}\">\n",
+      kLabelWidth + kChartWidth + 10, height, kLabelWidth, kChartWidth, end_,
+      run_.scenes.empty() ? 0 : run_.scenes.front().stamp - run_.first_stamp);
+  const double step = end_ > 120 ? 20 : end_ > 40 ? 5 : end_ > 15 ? 2 : 1;  // [s]
+  for (double t = 0; t <= end_; t += step) {
+    out_ += fmt::format(
+        "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" "
+        "y2=\"{2:.0f}\"/><text x=\"{0:.1f}\" y=\"14\" "
+        "text-anchor=\"middle\">{3:g} s</text>\n",
+        x(t), kAxis - 4, height, t);
+  }
+  double y = kAxis;
+  for (const Life& life : lives_) {
+    const std::string name = spaced(nameOf(life.last_class));
+    out_ += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\">{} {}</text>\n",
+                        kLabelWidth - 8, y + 12, life.id, name);
+    for (const Life::Stretch& s : life.stretches) {
+      out_ += fmt::format(
+          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" fill=\"{}\" "
+          "fill-opacity=\"{}\"><title>{}: {}{}, {:.1f} to {:.1f} s</title></rect>\n",
+          x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kRow - 4,
+          css(colourOfClass(nameOf(s.class_id), s.class_id)), s.sure ? "1" : "0.4", life.id,
+          s.sure ? "" : "probably ", spaced(nameOf(s.class_id)), s.from, s.to);
+    }
+    y += kRow;
+  }
+  out_ +=
+      fmt::format("<line id=\"now\" y1=\"{:.0f}\" y2=\"{:.0f}\" x1=\"-9\" x2=\"-9\"/>\n</svg>\n",
+                  kAxis - 6, height);
+}
+
+void Page::pictures() {
+  for (const auto& f : content_.pictures) {
+    out_ += fmt::format("<h2>{}</h2>\n", escaped(f.title));
+    figure(f);
+  }
+}
+
+void Page::evaluation() {
+  const auto* figures = judged();
+  if (!figures) return;
+  const auto& e = *figures;
+  out_ += fmt::format(
+      "<h2>Against the truth</h2>\n<p>Truth counts within {} m of the vehicle and {} degrees "
+      "ahead, "
+      "where the lidar has at least {} returns on the object. An object is tracked at an instant "
+      "when an estimate "
+      "lies within {} m of it.</p>\n<table>\n<tr><th>class</th><th>tracked</th><th>right class</th>"
+      "<th>wrong class</th><th>range error</th><th>position error</th><th>changes of number</th>"
+      "<th>instants</th></tr>\n",
+      number(at(content_.evaluation, "/options/range_m"), 0),
+      number(at(content_.evaluation, "/options/fov_deg"), 0),
+      number(at(content_.evaluation, "/options/min_points"), 0),
+      number(at(content_.evaluation, "/options/tolerance_m"), 0));
+  const auto row = [&](const std::string& name, const nlohmann::json& f) {
+    if (!f.is_object() || f.value("active", 0) == 0) return;
+    out_ += fmt::format(
+        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{} m</td><td>{} m</td>"
+        "<td>{}</td><td>{}</td></tr>\n",
+        spaced(name), percent(at(f, "/object_tracked_a")), percent(at(f, "/correct")),
+        percent(at(f, "/mis")), number(at(f, "/range_rms_m"), 2),
+        number(at(f, "/position_rms_m"), 2), number(at(f, "/id_switches"), 0),
+        number(at(f, "/active"), 0));
+  };
+  row("all", at(e, "/closest/all"));
+  const nlohmann::json classes = at(e, "/closest/classes");
+  for (const auto& [name, f] : classes.items()) row(name, f);
+  out_ += "</table>\n";
+  for (const auto& f : content_.plots) {
+    out_ += fmt::format("<h3>{}</h3>\n", escaped(f.title));
+    figure(f);
+  }
+}
+
+void Page::objects() {
+  if (lives_.empty()) return;
+  out_ +=
+      "<h2>The road users one by one</h2>\n<table>\n<tr><th>number</th><th>class at the end</th>"
+      "<th>its probability</th><th>seen from</th><th>to</th><th>top speed</th><th>nearest</th>"
+      "</tr>\n";
+  for (const Life& life : lives_) {
+    out_ += fmt::format(
+        "<tr><td>{}</td><td style=\"color:{}\">{}</td><td>{:.2f}</td><td>{:.1f} s</td>"
+        "<td>{:.1f} s</td><td>{:.0f} km/h</td><td>{:.1f} m</td></tr>\n",
+        life.id, css(colourOfClass(nameOf(life.last_class), life.last_class)),
+        spaced(nameOf(life.last_class)), life.probability, life.from(), life.to(),
+        life.top_speed * 3.6, life.nearest);
+  }
+  out_ += "</table>\n";
+}
+
+void Page::provenance() {
+  const RunRecord& r = content_.record;
+  out_ += "<h2>How this was made</h2>\n<table>\n";
+  const auto row = [&](const std::string& what, const std::string& value) {
+    out_ += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", what, escaped(value));
+  };
+  row("log", fmt::format("{}, {} entries, {}", r.input, r.input_entries, r.input_end));
+  row("configuration", fmt::format("{}, seed {}, sensors {}, {} particles, {} association",
+                                   r.config, r.seed, r.sensors_used, r.particles, r.association));
+  row("program", r.program + " " + r.version);
+  for (const SensorRecord& s : r.sensors) {
+    row("sensor " + escaped(s.label), fmt::format("{} frames, {} measurements, {} points dropped",
+                                                  s.frames, s.measurements, s.dropped_points));
+  }
+  for (const auto& [kind, count] : r.events) row(spaced(kind), fmt::format("{} times", count));
+  for (const std::string& warning : r.warnings) row("<b>warning</b>", warning);
+  out_ += "</table>\n";
+}
+
+}  // namespace
+
+std::string htmlPage(const ReportContent& content) { return Page(content).html(); }
+
+std::string base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) -> std::uint32_t {
+      return k < bytes.size() ? static_cast<std::uint8_t>(bytes[k]) : 0;
+    };
+    const std::uint32_t bits = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    text += kDigits[bits >> 18];
+    text += kDigits[bits >> 12 & 63];
+    text += i + 1 < bytes.size() ? kDigits[bits >> 6 & 63] : '=';
+    text += i + 2 < bytes.size() ? kDigits[bits & 63] : '=';
+  }
+  return text;
+}
+
+}  // namespace perception

@@ -1,0 +1,54 @@
+#pragma once
+
+namespace perception {
+
+/// Looks of the report page.
+inline constexpr const char* kReportStyle = R"css(
+body { font: 15px/1.45 system-ui, "DejaVu Sans", sans-serif; color: #141414; background: #fff;
+       max-width: 1180px; margin: 24px auto; padding: 0 16px; }
+h1 { font-size: 26px; margin: 0 0 8px; }
+h2 { font-size: 20px; margin: 36px 0 8px; }
+h3 { font-size: 16px; margin: 24px 0 4px; }
+.lead { font-size: 17px; }
+.tiles { display: flex; flex-wrap: wrap; margin: 12px -6px; }
+.tile { margin: 6px; border: 1px solid #ccc; border-radius: 6px; padding: 10px 14px; width: 132px; }
+.tile b { display: block; font-size: 22px; }
+.tile span { color: #555; font-size: 13px; }
+figure { margin: 0; }
+figure img, figure video { width: 100%; border: 1px solid #ddd; }
+figcaption { color: #555; font-size: 14px; }
+table { border-collapse: collapse; }
+td, th { border-bottom: 1px solid #ddd; padding: 3px 12px 3px 0; text-align: left; }
+th { font-weight: 600; }
+svg { width: 100%; cursor: pointer; }
+svg text { font-size: 11px; fill: #333; }
+svg .grid { stroke: #ddd; }
+#now { stroke: #141414; stroke-width: 2; }
+.legend span { margin-right: 18px; }
+.legend i { display: inline-block; width: 14px; height: 12px; margin-right: 5px; }
+)css";
+
+/// Film and timeline go together: a line shows the film's time, a click goes there.
+inline constexpr const char* kReportScript = R"js(
+(function () {
+  var film = document.getElementById('film'), chart = document.getElementById('timeline');
+  if (!film || !chart) return;
+  var left = +chart.dataset.left, width = +chart.dataset.width, end = +chart.dataset.end;
+  var start = +chart.dataset.start, now = document.getElementById('now');
+  function show() {
+    var x = left + width * (film.currentTime + start) / end;
+    now.setAttribute('x1', x);
+    now.setAttribute('x2', x);
+    requestAnimationFrame(show);
+  }
+  show();
+  chart.addEventListener('click', function (event) {
+    var box = chart.getBoundingClientRect();
+    var x = (event.clientX - box.left) / box.width * chart.viewBox.baseVal.width;
+    film.currentTime = Math.max(0, (x - left) / width * end - start);
+    film.scrollIntoView({block: 'nearest'});
+  });
+})();
+)js";
+
+}  // namespace perception

@@ -1,0 +1,115 @@
+#include "libperception/app/ReportApp.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "libperception/scene/OutputFile.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the page shows of a run's folder when it is there.
+struct FigureRow {
+  const char* file;
+  const char* media_type;
+  const char* title;
+  const char* caption;
+};
+constexpr FigureRow kVideos[] = {
+    {"scene.mp4", "video/mp4", "The film",
+     "Left from above, right from behind the vehicle. Boxes are tracked objects, thin black "
+     "outlines the truth, points the lidar's returns; the legend stands at the right."}};
+constexpr FigureRow kPictures[] = {{"scene.png", "image/png", "One instant, large",
+                                    "The same view as in the film. Arrow: the way of the next "
+                                    "second; line: that of the last two."},
+                                   {"contact.png", "image/png", "The run at a glance",
+                                    "Instants evenly over the run, from above."}};
+constexpr FigureRow kPlots[] = {
+    {"plots/timelines.png", "image/png", "True objects over time",
+     "A row a true object: called by its class, missed, renumbered."},
+    {"plots/overview.png", "image/png", "Over time",
+     "True objects, estimates and false objects at each instant."},
+    {"plots/reliability.png", "image/png", "Can the probabilities be believed?",
+     "How often a class was right against how probable it was said to be: on the diagonal, yes."}};
+
+std::string contentsOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  if (!file && !file.eof()) throw DataError(path.string() + ": cannot be read");
+  return bytes;
+}
+
+nlohmann::json jsonOf(const fs::path& path) {
+  try {
+    return nlohmann::json::parse(contentsOf(path));
+  } catch (const nlohmann::json::exception& error) {
+    throw DataError(path.string() + ": no JSON: " + error.what());
+  }
+}
+
+template <std::size_t N>
+std::vector<ReportContent::Figure> figuresIn(const fs::path& dir, const FigureRow (&rows)[N]) {
+  std::vector<ReportContent::Figure> figures;
+  for (const FigureRow& row : rows) {
+    if (!fs::exists(dir / row.file)) continue;
+    figures.push_back({row.title, row.caption, row.media_type, contentsOf(dir / row.file)});
+  }
+  return figures;
+}
+
+}  // namespace
+
+std::string ReportApp::description() const {
+  return "Makes one HTML page about a run: film, pictures, timeline, figures, origin.";
+}
+
+void ReportApp::declare(CLI::App& cli) {
+  cli.add_option("-r,--run", run_dir, "folder of a run of perception-track")
+      ->required()
+      ->type_name("DIR");
+  cli.add_option("--evaluation", evaluation_dir,
+                 "folder of perception-evaluate; default: evaluation/ of the run")
+      ->type_name("DIR");
+  cli.add_option("-o,--output", output, "the page; default: index.html in the run's folder")
+      ->type_name("FILE.html");
+}
+
+void ReportApp::run() {
+  const TrackedRun tracked = readTrackedRun(run_dir);
+  ReportContent content;
+  content.run = &tracked;
+  content.record = readRunRecord((fs::path(run_dir) / "done.json").string());
+  const fs::path timing = fs::path(run_dir) / "timing.json";
+  if (fs::exists(timing)) content.real_time_factor = jsonOf(timing).value("real_time_factor", 0.0);
+  addFigures(content);
+  addEvaluation(content);
+  const std::string path = output.empty() ? (fs::path(run_dir) / "index.html").string() : output;
+  out_page = htmlPage(content);
+  writeFile(path, out_page);
+  say(1, path);
+}
+
+void ReportApp::addFigures(ReportContent& content) const {
+  content.video = figuresIn(run_dir, kVideos);
+  content.pictures = figuresIn(run_dir, kPictures);
+}
+
+void ReportApp::addEvaluation(ReportContent& content) const {
+  const fs::path dir =
+      evaluation_dir.empty() ? fs::path(run_dir) / "evaluation" : fs::path(evaluation_dir);
+  const fs::path report = dir / "report.json";
+  if (!fs::exists(report)) {
+    if (evaluation_dir.empty()) return;
+    throw DataError(report.string() + ": there is no such file", ExitCode::kNoInput);
+  }
+  content.evaluation = jsonOf(report);
+  content.plots = figuresIn(dir, kPlots);
+}
+
+}  // namespace perception

@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+
+#include "gui-offscreen/ReportPage.h"
+#include "libperception/app/App.h"
+
+namespace perception {
+
+/// perception-report: one page about a run, from what the other programs left in its folder.
+class ReportApp : public App {
+ public:
+  std::string run_dir;         ///< -r: folder of perception-track
+  std::string evaluation_dir;  ///< --evaluation; empty: evaluation/ of the run, when it is there
+  std::string out_page;        ///< the page
+
+  std::string name() const override { return "perception-report"; }
+  std::string description() const override;
+  void declare(CLI::App& cli) override;
+  void run() override;
+
+ private:
+  void addFigures(ReportContent& content) const;
+  void addEvaluation(ReportContent& content) const;
+};
+
+}  // namespace perception
