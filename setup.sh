@@ -102,8 +102,11 @@ demo() {
   say "Tracking the simulated log $log"
   run perception-track -c ini/demo.ini -i "$log" -o "$dir"
   run perception-evaluate -r "$dir" -t "$truth" -o "$dir/evaluation"
-  run perception-snapshot -r "$dir" -i "$log" -t "$truth" --time 8 --view both -o "$dir/scene.png"
-  run perception-snapshot -r "$dir" -i "$log" -t "$truth" --contact 9 --view top -o "$dir/contact.png"
+  local drawn=(-r "$dir" -i "$log" -t "$truth")
+  run perception-snapshot "${drawn[@]}" --time 8 --view all -o "$dir/scene.png" --scene "$dir/scene.3Dscene"
+  run perception-snapshot "${drawn[@]}" --contact 9 --view top --no-measurements -o "$dir/contact.png"
+  run perception-snapshot "${drawn[@]}" --video "$dir/scene.mp4" --view both
+  run perception-report -r "$dir"
   demoSummary "$dir"
 }
 
@@ -119,7 +122,7 @@ demoSummary() {
     "correct class" "$(share "$(number "$report" correct)")" \
     "id switches" "$(number "$report" id_switches)" \
     "real-time factor" "$(number "$dir/timing.json" real_time_factor)"
-  printf '\npictures: %s\n          %s\n' "$dir/scene.png" "$dir/contact.png"
+  printf '\nopen in a browser: %s\n' "$dir/index.html"
 }
 
 # A locale with decimal comma for the tests, in the build folder and not in the system.

@@ -199,9 +199,10 @@ void Page::head() {
     out_ += "These are <b>simulated</b> recordings: every figure below is a simulated result. ";
   }
   out_ += fmt::format(
-      "In {:.1f} s of log the tracker followed {} road users for half a second or longer with {}. "
-      "{} more objects are things that stand: poles, walls, bushes; {} were seen for a moment "
-      "only.</p>\n<div class=\"tiles\">\n",
+      "In {:.1f} s of log the tracker took {} objects for road users for half a second or longer, "
+      "with {}; wrong ones among them are counted below where there is truth. {} more are things "
+      "that stand: poles, walls, bushes; {} were seen for a moment only.</p>\n"
+      "<div class=\"tiles\">\n",
       seconds, lives_.size() + left_out_, sensors.empty() ? "its sensors" : sensors, still_,
       brief_);
   if (const auto* figures = judged()) {
@@ -215,7 +216,7 @@ void Page::head() {
          "false road users per instant, named for sure");
   }
   if (content_.real_time_factor > 0) {
-    tile(fmt::format("{:.0f} x", content_.real_time_factor), "faster than it happened");
+    tile(fmt::format("{:.0f} x", content_.real_time_factor), "faster than real time");
   }
   out_ += "</div>\n";
 }
@@ -255,6 +256,8 @@ void Page::timeline() {
                         css(colourOfClass(run_.class_names[c], static_cast<int>(c))),
                         spaced(run_.class_names[c]));
   }
+  out_ += fmt::format("<span><i style=\"background:{}\"></i>something that stands</span>",
+                      css(colourOfClass("static-other", 0)));
   const double height = kAxis + kRow * static_cast<double>(lives_.size()) + 4;
   const auto x = [&](double t) { return kLabelWidth + kChartWidth * t / end_; };
   out_ += fmt::format(

@@ -34,7 +34,8 @@ constexpr FigureRow kPlots[] = {
     {"plots/timelines.png", "image/png", "True objects over time",
      "A row a true object: called by its class, missed, renumbered."},
     {"plots/overview.png", "image/png", "Over time",
-     "True objects, estimates and false objects at each instant."},
+     "Above: each true object, tracked or not, its class right or not. Below: how many objects "
+     "there were, were missed, were false at each instant."},
     {"plots/reliability.png", "image/png", "Can the probabilities be believed?",
      "How often a class was right against how probable it was said to be: on the diagonal, yes."}};
 
