@@ -56,8 +56,9 @@ void BoxGeometryParams::visit(ParamVisitor& v) {
   v.real("range_floor", range_floor, {0, 20}, "m", "added to the range's deviation");
   v.real("border", border, {0, 100}, "px",
          "edges this near to the image's border are cut off by it");
-  v.real("border_share", border_share, {0, 1}, "",
-         "of the box's height: a lower edge this near to the border may be one of a cut-off box");
+  v.real(
+      "border_share", border_share, {0, 1}, "",
+      "of an upright box's height: a lower edge so near to the border may be of a cut-off person");
   v.real("cut_share", cut_share, {0, 5}, "", "of the range, added to its deviation for such a box");
   v.real("max_range", max_range, {1, 500}, "m", "beyond it the ground range is not used");
 }
@@ -144,7 +145,9 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
       params.pitch_sigma * params.pitch_sigma + uncertainty.sigma_pitch * uncertainty.sigma_pitch);
   out.range = range;
   out.range_sigma = (range * range + h * h) / h * sigma_phi + params.range_floor;
-  if (box.y2 >= camera.height - params.border_share * (box.y2 - box.y1))
+  const double box_height = box.y2 - box.y1;
+  const bool upright = box_height > box.x2 - box.x1;
+  if (upright && box.y2 >= camera.height - params.border_share * box_height)
     out.range_sigma += params.cut_share * range;
   // Height of the upper edge over the foot at that range.
   const Vector3 top = ray(middle, box.y1, camera, T_ego_camera);

@@ -23,11 +23,12 @@ struct BoxGeometryParams {
   double range_floor = 0.2;  ///< [m] added to the range's deviation
   double border = 10;        ///< [px] an edge this near to the image's border is cut off by it
   /// Where feet are out of the picture, detectors end the box above its border: a lower edge within
-  /// this share of the box's height of it may be such a one ...
+  /// this share of the height of an upright box (higher than wide) of it may be such a one ...
   double border_share = 0.2;
-  double cut_share = 0.4;  ///< ... and its range is doubted by this share more. KITTI (RRC): people
-                           ///< within 5 m stand .57 of their range too far
-  double max_range = 60;   ///< [m] beyond it the ground says nothing
+  /// ... and its range is doubted by this share more. KITTI (RRC): people within 5 m stand .57 of
+  /// their range too far, cars do not.
+  double cut_share = 0.4;
+  double max_range = 60;  ///< [m] beyond it the ground says nothing
 
   void visit(ParamVisitor& v);
 };
