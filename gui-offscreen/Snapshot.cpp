@@ -57,7 +57,13 @@ Snapshot::Snapshot(const SnapshotParams& params)
       map_width_(params.width - kLegend - 3 * kMargin),
       map_height_(params.height - kTitle - kMargin),
       renderer_(map_width_ * kSupersampling, map_height_ * kSupersampling) {
-  for (const ViewKind kind : params_.views) {
+  setViews(params_.views);
+}
+
+void Snapshot::setViews(const std::vector<ViewKind>& views) {
+  maps_.clear();
+  with_camera_ = false;
+  for (const ViewKind kind : views) {
     if (kind == ViewKind::kCamera) {
       with_camera_ = true;
     } else {

@@ -20,6 +20,7 @@ class Snapshot {
   /// Throws Error(kUnavailable) where the machine has no OpenGL.
   explicit Snapshot(const SnapshotParams& params);
 
+  void setViews(const std::vector<ViewKind>& views);
   Picture picture(const SceneView& view) { return picture(std::vector<SceneView>{view}); }
   /// Several runs at one instant, at least one: side by side, or below each other where each has
   /// more than one view. Same views, same layers: same size.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -135,6 +136,80 @@ TEST_F(SnapshotAppTest, TornLogIsDrawnWithAWarning) {
   fs::copy_file(kDemoLog, dir_ + "/torn.rawlog");
   fs::resize_file(dir_ + "/torn.rawlog", fs::file_size(kDemoLog) / 8);
   EXPECT_EQ(run({"--time", "2.9", "-i", dir_ + "/torn.rawlog", "-o", dir_ + "/a.png"}), 3);
+}
+
+TEST_F(SnapshotAppTest, VideoPlaysAtTheLogsRate) {
+  if (std::system("command -v ffmpeg > /dev/null") != 0) {
+    EXPECT_EQ(run({"--video", dir_ + "/a.mp4", "--view", "top"}), 69);
+    GTEST_SKIP() << "ffmpeg is not here";
+  }
+  ASSERT_EQ(run({"--video", dir_ + "/films/a.mp4", "--view", "top", "--from", "1", "--to", "1.6"}),
+            0);
+  EXPECT_EQ(app_->out_files, std::vector<std::string>{dir_ + "/films/a.mp4"});
+  EXPECT_GT(fs::file_size(dir_ + "/films/a.mp4"), 5000U);
+  EXPECT_FALSE(fs::exists(dir_ + "/films/a.mp4.part"));
+  if (std::system("command -v ffprobe > /dev/null") != 0) GTEST_SKIP() << "ffprobe is not here";
+  const std::string ask =
+      "ffprobe -v error -show_entries stream=r_frame_rate,nb_frames -of csv=p=0 '" + dir_ +
+      "/films/a.mp4' > '" + dir_ + "/said.txt'";
+  ASSERT_EQ(std::system(ask.c_str()), 0);
+  std::string said;
+  std::getline(std::ifstream(dir_ + "/said.txt"), said);
+  EXPECT_EQ(said, "10/1,7");
+}
+
+TEST_F(SnapshotAppTest, WithoutFfmpegSaysWhatIsMissing) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", "/nonexistent", 1);
+  const int code = run({"--video", dir_ + "/a.mp4", "--view", "top"});
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(code, 69);
+  EXPECT_FALSE(fs::exists(dir_ + "/a.mp4"));
+}
+
+TEST_F(SnapshotAppTest, TwoRunsStandSideBySide) {
+  fs::copy(dir_ + "/run", dir_ + "/other");
+  ASSERT_EQ(run({"-r", dir_ + "/other", "--time", "1", "--view", "top", "-o", dir_ + "/a.png"}), 0);
+  const int beside = app_->out_picture.width;
+  ASSERT_EQ(run({"--time", "1", "--view", "top", "-o", dir_ + "/a.png"}), 0);
+  EXPECT_GT(beside, app_->out_picture.width + 900);
+}
+
+TEST_F(SnapshotAppTest, CameraViewShowsTheDetectorsViewOfALogWithoutImages) {
+  ASSERT_EQ(run({"--frame", "20", "--view", "camera", "-i", kDemoLog, "-o", dir_ + "/a.png"}), 0);
+  EXPECT_GT(coloursOf(app_->out_picture), 100U);
+  EXPECT_EQ(run({"--frame", "20", "--view", "camera", "-o", dir_ + "/a.png"}), 64) << "no log";
+  EXPECT_EQ(run({"--frame", "20", "--view", "camera", "--camera", "REAR", "-i", kDemoLog, "-o",
+                 dir_ + "/a.png"}),
+            64);
+  EXPECT_EQ(run({"--frame", "20", "--view", "side", "-o", dir_ + "/a.png"}), 64);
+}
+
+TEST_F(SnapshotAppTest, SiteSettingsDecideWhichReturnsAreDrawn) {
+  // The run's own INI, with a lidar that looks no farther than ten metres.
+  std::ofstream(dir_ + "/near.ini") << "include = " PERCEPTION_SOURCE_DIR
+                                       "/ini/demo.ini\n"
+                                       "[sensor.LIDAR_TOP.points]\nrange_max = 10\n";
+  const std::vector<std::string> how = {
+      "--frame", "20", "--view", "top", "-i", kDemoLog, "--no-measurements", "-o", dir_ + "/a.png"};
+  ASSERT_EQ(run(how), 0);
+  const Picture all = app_->out_picture;
+  std::vector<std::string> near = how;
+  near.insert(near.end(), {"-c", dir_ + "/near.ini"});
+  ASSERT_EQ(run(near), 0);
+  const Picture by_option = app_->out_picture;
+  EXPECT_NE(all.rgb, by_option.rgb);
+  fs::copy_file(dir_ + "/near.ini", dir_ + "/run/effective.ini");
+  ASSERT_EQ(run(how), 0);
+  EXPECT_EQ(app_->out_picture.rgb, by_option.rgb);
+}
+
+TEST_F(SnapshotAppTest, SceneFileIsThatOfOneInstant) {
+  ASSERT_EQ(
+      run({"--time", "1", "--view", "top", "-o", dir_ + "/a.png", "--scene", dir_ + "/a.3Dscene"}),
+      0);
+  EXPECT_GT(fs::file_size(dir_ + "/a.3Dscene"), 1000U);
+  EXPECT_EQ(run({"--every", "1", "-o", dir_ + "/x", "--scene", dir_ + "/a.3Dscene"}), 64);
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include "gui-offscreen/Snapshot.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/opengl/COpenGLScene.h>
 
 #include <cstdlib>
 #include <filesystem>
 
 #include "gui-offscreen/ContactSheet.h"
+#include "gui-offscreen/SceneFile.h"
 #include "libperception/core/Error.h"
 #include "tests/gui-offscreen/ViewFixture.h"
 
@@ -137,6 +139,106 @@ TEST(Snapshot, EverySymbolChangesThePicture) {
   truth.height = 1.5;
   view.truth = {truth};
   changes("truth");
+  view.points[0].trust = 0;
+  for (ViewPoint& point : view.points) point.trust = 0;
+  changes("distrusted returns");
+  view.radar = {{{103, 66, 0.5}, Vector2(0, 5), true}};
+  changes("radar return");
+  view.radar[0].has_rate = false;
+  changes("Doppler arrow");
+  view.measurements = {{Modality::kRadar, {96, 68, 0}, {}}};
+  changes("measurement");
+  view.measurements[0].outline = {{95, 68, 0}, {97, 68, 0}, {97, 71, 0}};
+  changes("outline of a measurement");
+}
+
+CameraModel pinhole() { return {1000, 500, 700, 700, 480, 240}; }
+
+// Looking ahead from 1.5 m above the ego origin.
+Pose3 cameraPose() {
+  Pose3 pose = makePose(0, 0, 1.5, 0);
+  pose.linear().col(0) = Vector3(0, -1, 0);
+  pose.linear().col(1) = Vector3(0, 0, -1);
+  pose.linear().col(2) = Vector3(1, 0, 0);
+  return pose;
+}
+
+TEST(ViewCamera, ImageOfAPinholeIsThatOfItsModel) {
+  const ViewCamera camera = ViewCamera::image(pinhole(), cameraPose(), 0.5);
+  const Vector2 at = *camera.project({10, 2, 0.5});  // 2 m left, 1 m below the camera
+  EXPECT_NEAR(at.x(), 0.5 * (480 - 700 * 0.2), 1e-9);
+  EXPECT_NEAR(at.y(), 0.5 * (240 + 700 * 0.1), 1e-9);
+  EXPECT_FALSE(camera.project({-10, 0, 0}));
+}
+
+TEST(ViewCamera, PanoramaSeesAllRoundAndPartsLinesAtItsSeam) {
+  CameraModel model{2000, 1000, 2000 / kTwoPi, 2000 / kTwoPi, 1000, 500};
+  model.projection = CameraModel::Projection::kEquirectangular;
+  const ViewCamera camera = ViewCamera::image(model, cameraPose(), 1);
+  EXPECT_NEAR(camera.project({0, 5, 1.5})->x(), 500, 1e-9) << "left: a quarter turn";
+  EXPECT_NEAR(camera.project({0, -5, 1.5})->x(), 1500, 1e-9);
+  EXPECT_NEAR(camera.project({5, 0, 1.5 - 5})->y(), 500 + 2000 / kTwoPi * kPi / 4, 1e-9);
+  // Across the rear: no piece runs through the middle of the picture.
+  double total = 0;
+  for (const auto& [a, b] : camera.projectLine({-5, 1, 1.5}, {-5, -1, 1.5})) {
+    EXPECT_GT(std::abs(a.x() - 1000), 900);
+    EXPECT_LT((b - a).norm(), 40);
+    total += (b - a).norm();
+  }
+  EXPECT_NEAR(total, 2000 / kTwoPi * 2 * std::atan(0.2), 40);
+}
+
+/// Boxes lie over the image at the place that the camera gives.
+TEST(Snapshot, CameraViewLaysBoxesOverTheImage) {
+  snapshot().setViews({ViewKind::kCamera});
+  SceneView view = emptyView();
+  ViewImage image;
+  image.sensor = "CAMERA";
+  image.camera = pinhole();
+  image.T_world_camera = view.scene.ego.T_world_ego * cameraPose();
+  image.picture = {1000, 500, std::vector<std::uint8_t>(1000 * 500 * 3, 40)};
+  view.image = image;
+  view.layers.camera = image.camera;
+  const Picture bare = snapshot().picture(view);
+  view.scene.objects = {objectAt(1, 1, 100, 70)};
+  view.image->boxes = {{{400, 200, 560, 320}, "Car"}};
+  const Picture drawn = snapshot().picture(view);
+  snapshot().setViews({ViewKind::kTop, ViewKind::kDriver});
+  ASSERT_EQ(bare.rgb.size(), drawn.rgb.size());
+  EXPECT_GT(difference(bare, drawn), 1e-3);
+  EXPECT_EQ(bare.at(100, 200)[0], 40) << "the image itself";
+}
+
+TEST(Snapshot, TwoRunsAreWiderThanOneAndOfOneSizeForAllInstants) {
+  snapshot().setViews({ViewKind::kTop});
+  SceneView a = emptyView(), b = emptyView();
+  b.run_name = "other";
+  const Picture two = snapshot().picture(std::vector<SceneView>{a, b});
+  const Picture one = snapshot().picture(a);
+  a.scene.objects = {objectAt(1, 1, 100, 70)};
+  const Picture later = snapshot().picture(std::vector<SceneView>{a, b});
+  snapshot().setViews({ViewKind::kTop, ViewKind::kDriver});
+  EXPECT_GT(two.width, one.width + 900);
+  EXPECT_EQ(two.width, later.width);
+  EXPECT_EQ(two.height, later.height);
+  EXPECT_EQ(two.width % 2, 0) << "for video codecs";
+  EXPECT_EQ(two.height % 2, 0);
+}
+
+TEST(SceneFile, IsReadByMrpt) {
+  SceneView view = emptyView();
+  view.scene.objects = {objectAt(5, 1, 100, 70)};
+  view.scene.objects[0].velocity = Vector2(0, 8);
+  view.trails[5] = {Vector3(100, 60, 0), Vector3(100, 70, 0)};
+  const std::string path = testing::TempDir() + "view.3Dscene";
+  writeSceneFile(path, view, 40);
+  mrpt::opengl::COpenGLScene scene;
+  ASSERT_TRUE(scene.loadFromFile(path));
+  for (const char* name : {"label 5", "velocity 5", "path 5", "truth", "measurements"}) {
+    EXPECT_TRUE(scene.getByName(name)) << name;
+  }
+  std::filesystem::remove(path);
+  EXPECT_THROW(writeSceneFile("/nonexistent/view.3Dscene", view, 40), OutputError);
 }
 
 TEST(Snapshot, SameViewGivesTheSameBytes) {

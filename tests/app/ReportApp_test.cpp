@@ -1,0 +1,120 @@
+#include "libperception/app/ReportApp.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "libperception/scene/RunRecord.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Two seconds of a car that is surely one from the second half on, and a post.
+class ReportAppTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = testing::TempDir() + "report app " +
+           testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(dir_);
+    fs::create_directories(dir_ + "/evaluation");
+    ClassTable classes;
+    for (const char* name : {"car", "static-other"}) {
+      classes.classes.emplace_back();
+      classes.classes.back().name = name;
+    }
+    TrackedRunWriter writer(dir_, classes, Stamp::fromSeconds(1000));
+    for (int k = 0; k < 20; ++k) writer.write(sceneAt(k));
+    writer.close();
+    RunRecord record;
+    record.input = "<street> & co.rawlog";
+    record.simulated = true;
+    writeRunRecord(dir_ + "/done.json", record);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  static Scene sceneAt(int k) {
+    Scene scene;
+    scene.stamp = Stamp::fromSeconds(1000) + 0.1 * k;
+    SceneObject car;
+    car.id = 7;
+    car.class_probability = {0.9, 0.1};
+    car.classified = k >= 10;
+    car.position = Vector3(15, 2, 0);
+    car.velocity = Vector2(10, 0);
+    SceneObject post = car;
+    post.id = 8;
+    post.class_id = 1;
+    scene.objects = {car, post};
+    return scene;
+  }
+
+  int run(std::vector<std::string> options = {}) {
+    options.insert(options.begin(), {"perception-report", "-r", dir_});
+    std::vector<const char*> argv;
+    for (const std::string& option : options) argv.push_back(option.c_str());
+    return runApp(app_, static_cast<int>(argv.size()), argv.data());
+  }
+  bool says(const std::string& text) const { return app_.out_page.find(text) != std::string::npos; }
+
+  std::string dir_;
+  ReportApp app_;
+};
+
+TEST_F(ReportAppTest, TellsTheRoadUsersAndCallsASimulatedRunSimulated) {
+  ASSERT_EQ(run(), 0);
+  EXPECT_TRUE(fs::exists(dir_ + "/index.html"));
+  EXPECT_TRUE(says("<b>simulated</b>"));
+  EXPECT_TRUE(says(">7 car</text>"));
+  EXPECT_FALSE(says(">8 static-other</text>")) << "posts are counted, not listed";
+  EXPECT_TRUE(says("7: probably car, 0.0 to 1.0 s"));
+  EXPECT_TRUE(says("7: car, 1.0 to 2.0 s"));
+  EXPECT_TRUE(says("<td>36 km/h</td>"));
+}
+
+TEST_F(ReportAppTest, NamesOfFilesAreNoMarkup) {
+  ASSERT_EQ(run(), 0);
+  EXPECT_TRUE(says("&lt;street&gt; &amp; co.rawlog"));
+  EXPECT_FALSE(says("<street>"));
+}
+
+TEST_F(ReportAppTest, HoldsEveryFileInsideAndNoAddress) {
+  std::ofstream(dir_ + "/scene.png") << "picture";
+  std::ofstream(dir_ + "/scene.mp4") << "film";
+  ASSERT_EQ(run({"-o", dir_ + "/page.html"}), 0);
+  EXPECT_TRUE(says("data:image/png;base64,cGljdHVyZQ=="));
+  EXPECT_TRUE(says("data:video/mp4;base64,ZmlsbQ=="));
+  EXPECT_FALSE(says("http"));
+  EXPECT_TRUE(fs::exists(dir_ + "/page.html"));
+}
+
+TEST_F(ReportAppTest, FiguresOfTheEvaluationStandInTheTable) {
+  std::ofstream(dir_ + "/evaluation/report.json")
+      << R"({"options":{"range_m":20.0},"runs":[{"closest":{"all":{"object_tracked_a":0.75,)"
+      << R"("correct":null,"active":8},"classes":{}}}]})";
+  ASSERT_EQ(run(), 0);
+  EXPECT_TRUE(says("<b>75.0 %</b>"));
+  EXPECT_TRUE(says("<td>n/a</td>"));
+  std::ofstream(dir_ + "/evaluation/report.json") << "{";
+  EXPECT_EQ(run(), 65);
+}
+
+TEST_F(ReportAppTest, MissingFilesAreSaidByExitCode) {
+  EXPECT_EQ(run({"--evaluation", dir_ + "/nowhere"}), 66);
+  fs::remove(dir_ + "/done.json");
+  EXPECT_EQ(run(), 66);
+}
+
+TEST(Base64, IsThatOfRfc4648) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64("\xff\xfe"), "//4=");
+}
+
+}  // namespace
+}  // namespace perception
