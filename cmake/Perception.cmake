@@ -48,6 +48,19 @@ function(perception_module NAME)
   add_library(perception::${NAME} ALIAS perception_${NAME})
 endfunction()
 
+# perception_simd(NAME STEM): STEM{Sse2,Avx2,Avx512}.cpp join module NAME, each for its own kind of processor. They are
+# chosen at run time, so the rest of the module stays at the baseline.
+function(perception_simd NAME STEM)
+  set(MATH -O3 -fno-math-errno -ffp-contract=fast)
+  foreach(LEVEL Sse2 Avx2 Avx512)
+    target_sources(perception_${NAME} PRIVATE ${CMAKE_SOURCE_DIR}/${STEM}${LEVEL}.cpp)
+  endforeach()
+  set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}Sse2.cpp PROPERTIES COMPILE_OPTIONS "${MATH}")
+  set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}Avx2.cpp PROPERTIES COMPILE_OPTIONS "${MATH};-mavx2;-mfma")
+  set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}Avx512.cpp PROPERTIES
+    COMPILE_OPTIONS "${MATH};-mavx512f;-mavx512dq;-mavx512vl;-mfma;-mprefer-vector-width=512")
+endfunction()
+
 # Every folder apps/X holds X_main.cpp and becomes the program build/bin/X.
 function(perception_apps)
   file(GLOB MAINS CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/apps/*/*_main.cpp)

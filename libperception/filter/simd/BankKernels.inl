@@ -1,0 +1,212 @@
+// The arithmetic of BankBatch, compiled once a SIMD level into a namespace of its own. No header may
+// be included here that has inline functions: the linker would take one level's copy for all.
+// Written in vectors of the compiler (vector_size), with log of libmvec. Padding lanes are
+// computed along and ignored.
+//
+// Before inclusion: PERCEPTION_SIMD_NAMESPACE, PERCEPTION_SIMD_LANES, and PERCEPTION_SIMD_MATH(f), the
+// name of libmvec's function f for so many lanes.
+
+namespace perception {
+namespace PERCEPTION_SIMD_NAMESPACE {
+
+using Count = unsigned long;
+constexpr Count kLanes = PERCEPTION_SIMD_LANES;
+using V = double __attribute__((vector_size(PERCEPTION_SIMD_LANES * sizeof(double))));
+
+using I = long long __attribute__((vector_size(PERCEPTION_SIMD_LANES * sizeof(double))));
+
+extern "C" {
+V PERCEPTION_SIMD_MATH(log)(V);
+}
+
+inline const V& at(const double* p) { return *reinterpret_cast<const V*>(p); }
+inline V& at(double* p) { return *reinterpret_cast<V*>(p); }
+
+/// Sine and cosine together, for |x| below 1e5, to 2e-16 or so: reduced by multiples of pi/2, then
+/// the polynomials of fdlibm (k_sin.c, k_cos.c, Sun Microsystems 1993).
+inline void sineAndCosine(const V& x, V& sine, V& cosine) {
+  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
+  const V shifted = x * 0.63661977236758134308 + kShift;
+  const V turns = shifted - kShift;
+  const V r = (x - turns * 1.57079632679489655800) - turns * 6.12323399573676603587e-17;
+  const V z = r * r;
+  const V s = r + r * z *
+                      (-1.66666666666666324348e-01 +
+                       z * (8.33333333332248946124e-03 +
+                            z * (-1.98412698298579493134e-04 +
+                                 z * (2.75573137070700676789e-06 +
+                                      z * (-2.50507602534068634195e-08 +
+                                           z * 1.58969099521155010221e-10)))));
+  const V c = 1 - 0.5 * z +
+              z * z *
+                  (4.16666666666666019037e-02 +
+                   z * (-1.38888888888741095749e-03 +
+                        z * (2.48015872894767294178e-05 +
+                             z * (-2.75573143513906633035e-07 +
+                                  z * (2.08757232129817482790e-09 +
+                                       z * -1.13596475577881948265e-11)))));
+  const I quadrant = reinterpret_cast<I>(shifted);
+  const I odd = (quadrant & 1) != 0;
+  const V sine_size = odd ? c : s, cosine_size = odd ? s : c;
+  sine = (quadrant & 2) != 0 ? -sine_size : sine_size;
+  cosine = ((quadrant + 1) & 2) != 0 ? -cosine_size : cosine_size;
+}
+
+/// The upper triangle of P lies in planes 4 to 13.
+struct Lanes {
+  V x0, x1, x2, x3, p00, p01, p02, p03, p11, p12, p13, p22, p23, p33;
+
+  Lanes(const double* b, Count s)
+      : x0(at(b)), x1(at(b + s)), x2(at(b + 2 * s)), x3(at(b + 3 * s)), p00(at(b + 4 * s)),
+        p01(at(b + 5 * s)), p02(at(b + 6 * s)), p03(at(b + 7 * s)), p11(at(b + 8 * s)),
+        p12(at(b + 9 * s)), p13(at(b + 10 * s)), p22(at(b + 11 * s)), p23(at(b + 12 * s)),
+        p33(at(b + 13 * s)) {}
+
+  void store(double* b, Count s) const {
+    at(b) = x0, at(b + s) = x1, at(b + 2 * s) = x2, at(b + 3 * s) = x3, at(b + 4 * s) = p00;
+    at(b + 5 * s) = p01, at(b + 6 * s) = p02, at(b + 7 * s) = p03, at(b + 8 * s) = p11;
+    at(b + 9 * s) = p12, at(b + 10 * s) = p13, at(b + 11 * s) = p22, at(b + 12 * s) = p23;
+    at(b + 13 * s) = p33;
+  }
+};
+
+void predictConstantVelocity(Count n, Count s, const double* m, double* bank) {
+  for (Count i = 0; i < n; i += kLanes) {
+    Lanes b(bank + i, s);
+    const double* own = m + i;
+    const V keep = at(own), way = at(own + s), pp = at(own + 2 * s) + at(own + 5 * s),
+            pv = at(own + 3 * s), vv = at(own + 4 * s);
+    b.x0 += way * b.x2;
+    b.x1 += way * b.x3;
+    b.x2 *= keep;
+    b.x3 *= keep;
+    const V g02 = b.p02 + way * b.p22, g03 = b.p03 + way * b.p23;
+    const V g12 = b.p12 + way * b.p23, g13 = b.p13 + way * b.p33;
+    b.p00 += way * (b.p02 + g02) + pp;
+    b.p01 += way * (b.p12 + g03);
+    b.p11 += way * (b.p13 + g13) + pp;
+    b.p02 = keep * g02 + pv;
+    b.p03 = keep * g03;
+    b.p12 = keep * g12;
+    b.p13 = keep * g13 + pv;
+    b.p22 = keep * keep * b.p22 + vv;
+    b.p23 *= keep * keep;
+    b.p33 = keep * keep * b.p33 + vv;
+    b.store(bank + i, s);
+  }
+}
+
+void predictWheeled(Count n, Count s, const double* m, double* bank) {
+  for (Count i = 0; i < n; i += kLanes) {
+    Lanes q(bank + i, s);
+    const double* own = m + i;
+    const V keep = at(own), way = at(own + s), pp = at(own + 2 * s), pv = at(own + 3 * s),
+            vv = at(own + 4 * s), slip = at(own + 5 * s), ypp = at(own + 6 * s),
+            ypy = at(own + 7 * s), yyy = at(own + 8 * s);
+    const V v = q.x2;
+    V cs, sn;
+    sineAndCosine(q.x3, sn, cs);
+    const V a = way * cs, b = -way * v * sn, d = way * sn, e = way * v * cs;
+    q.x0 += a * v;
+    q.x1 += d * v;
+    q.x2 = keep * v;
+    const V p22 = q.p22, p23 = q.p23, p33 = q.p33;
+    const V g02 = q.p02 + a * p22 + b * p23, g03 = q.p03 + a * p23 + b * p33;
+    const V g12 = q.p12 + d * p22 + e * p23, g13 = q.p13 + d * p23 + e * p33;
+    const V g00 = q.p00 + a * q.p02 + b * q.p03;
+    const V g01 = q.p01 + a * q.p12 + b * q.p13;
+    const V g11 = q.p11 + d * q.p12 + e * q.p13;
+    const V n0 = -v * sn, n1 = v * cs;
+    q.p00 = g00 + a * g02 + b * g03 + pp * cs * cs + ypp * n0 * n0 + slip;
+    q.p01 = g01 + d * g02 + e * g03 + pp * cs * sn + ypp * n0 * n1;
+    q.p11 = g11 + d * g12 + e * g13 + pp * sn * sn + ypp * n1 * n1 + slip;
+    q.p02 = keep * g02 + pv * cs;
+    q.p12 = keep * g12 + pv * sn;
+    q.p03 = g03 + ypy * n0;
+    q.p13 = g13 + ypy * n1;
+    q.p22 = keep * keep * p22 + vv;
+    q.p23 = keep * p23;
+    q.p33 = p33 + yyy;
+    q.store(bank + i, s);
+  }
+}
+
+constexpr double kLogTwoPi = 1.8378770664093454836;
+
+/// S = H P H' + R by Cholesky factors, the solved innovation, and with kUpdate the new x and P.
+template <int kAxes, bool kUpdate>
+void innovate(Count n, Count s, const double* in, double* bank, double* out) {
+  for (Count i = 0; i < n; i += kLanes) {
+    Lanes q(bank + i, s);
+    V y[kAxes], H[kAxes][4], L[kAxes][kAxes], W[kAxes][4];
+    for (int a = 0; a < kAxes; ++a) {
+      y[a] = at(in + static_cast<Count>(a) * s + i);
+      for (int c = 0; c < 4; ++c) H[a][c] = at(in + static_cast<Count>(kAxes + 4 * a + c) * s + i);
+    }
+    const V P[4][4] = {{q.p00, q.p01, q.p02, q.p03},
+                            {q.p01, q.p11, q.p12, q.p13},
+                            {q.p02, q.p12, q.p22, q.p23},
+                            {q.p03, q.p13, q.p23, q.p33}};
+    for (int a = 0; a < kAxes; ++a)
+      for (int c = 0; c < 4; ++c)
+        W[a][c] = H[a][0] * P[0][c] + H[a][1] * P[1][c] + H[a][2] * P[2][c] + H[a][3] * P[3][c];
+    int r = 5 * kAxes;
+    V det = V{} + 1;
+    for (int a = 0; a < kAxes; ++a)
+      for (int c = a; c < kAxes; ++c, ++r)
+        L[c][a] = W[a][0] * H[c][0] + W[a][1] * H[c][1] + W[a][2] * H[c][2] + W[a][3] * H[c][3] +
+                  at(in + static_cast<Count>(r) * s + i);
+    V nis{};
+    // S = L D L': unit lower triangle, no square roots.
+    V D[kAxes], inverses[kAxes];
+    for (int a = 0; a < kAxes; ++a) {
+      for (int k = 0; k < a; ++k) L[a][a] -= L[a][k] * L[a][k] * D[k];
+      D[a] = L[a][a];
+      const V inverse = inverses[a] = 1 / D[a];
+      for (int c = a + 1; c < kAxes; ++c) {
+        for (int k = 0; k < a; ++k) L[c][a] -= L[c][k] * L[a][k] * D[k];
+        L[c][a] *= inverse;
+      }
+      // y and W through the same elimination.
+      for (int k = 0; k < a; ++k) {
+        y[a] -= L[a][k] * y[k];
+        if (kUpdate)
+          for (int c = 0; c < 4; ++c) W[a][c] -= L[a][k] * W[k][c];
+      }
+      nis += y[a] * y[a] * inverse;
+      det *= D[a];
+    }
+    at(out + i) = -0.5 * (nis + PERCEPTION_SIMD_MATH(log)(det) + kAxes * kLogTwoPi);
+    at(out + s + i) = nis;
+    if constexpr (!kUpdate) continue;
+    V dx[4] = {}, dP[10] = {};
+    for (int a = 0; a < kAxes; ++a) {
+      int k = 0;
+      for (int c = 0; c < 4; ++c) {
+        const V gain = W[a][c] * inverses[a];
+        dx[c] += gain * y[a];
+        for (int d = c; d < 4; ++d, ++k) dP[k] += gain * W[a][d];
+      }
+    }
+    q.x0 += dx[0], q.x1 += dx[1], q.x2 += dx[2], q.x3 += dx[3];
+    q.p00 -= dP[0], q.p01 -= dP[1], q.p02 -= dP[2], q.p03 -= dP[3];
+    q.p11 -= dP[4], q.p12 -= dP[5], q.p13 -= dP[6];
+    q.p22 -= dP[7], q.p23 -= dP[8], q.p33 -= dP[9];
+    q.store(bank + i, s);
+  }
+}
+
+void innovationDensity(int axes, Count n, Count s, const double* in, double* bank, double* out) {
+  if (axes == 1) innovate<1, false>(n, s, in, bank, out);
+  if (axes == 2) innovate<2, false>(n, s, in, bank, out);
+  if (axes == 3) innovate<3, false>(n, s, in, bank, out);
+}
+
+void innovationUpdate(int axes, Count n, Count s, const double* in, double* bank, double* out) {
+  if (axes == 1) innovate<1, true>(n, s, in, bank, out);
+  if (axes == 2) innovate<2, true>(n, s, in, bank, out);
+  if (axes == 3) innovate<3, true>(n, s, in, bank, out);
+}
+
+}  // namespace PERCEPTION_SIMD_NAMESPACE
+}  // namespace perception
