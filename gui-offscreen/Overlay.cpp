@@ -268,7 +268,10 @@ void Overlay::drawImagePoints() {
     const auto at = pixel(T_ego_world_ * point.place);
     if (!at || !at_.overlaps({at->x(), at->y(), 1, 1})) continue;
     const bool ground = point.height < kHeightLow;
-    canvas_.disc(*at, ground ? 0.5 : 1, ground ? kGroundPoint : colourOfHeight(point.height));
+    const Colour c = point.trust < kTrusted ? kPhantom
+                     : ground               ? kGroundPoint
+                                            : colourOfHeight(point.height);
+    canvas_.disc(*at, ground ? 0.5 : 1, c);
   }
 }
 

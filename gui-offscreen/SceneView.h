@@ -51,6 +51,7 @@ struct ViewImage {
   Pose3 T_world_camera = Pose3::Identity();  ///< optical, at the image's time
   double age = 0;                            ///< [s] of the image at the view's time
   Picture picture;                           ///< empty: the log has boxes, but no image
+  bool missing = false;  ///< there should be an image, but it could not be loaded
   std::vector<Box> boxes;
 };
 

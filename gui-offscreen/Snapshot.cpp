@@ -93,7 +93,8 @@ void Snapshot::drawImage(Canvas& canvas, const SceneView& view, const Rect& at) 
     labels_left_out_ += drawOverlay(canvas, view, camera, at);
     text = image.picture.width > 0
                ? fmt::format("{}, {:.0f} ms old", image.sensor, image.age * 1000)
-               : fmt::format("{}: no image in the log; lidar returns in its place", image.sensor);
+               : fmt::format("{}: {}; lidar returns in its place", image.sensor,
+                             image.missing ? "the image is missing" : "no image in the log");
   }
   const double width = Canvas::textWidth(text, kCaptionSize);
   canvas.rectangle({at.x, at.y, width + 12, kCaptionSize + 10}, kPaper.withAlpha(0.8));

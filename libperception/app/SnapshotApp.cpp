@@ -414,6 +414,9 @@ void SnapshotApp::reportLog() {
   if (end != RawlogReader::End::kNotYet && end != RawlogReader::End::kClean) {
     warn(log->reader().endMessage());
   }
+  if (!log->missingImage().empty()) {
+    warn(log->missingImage() + ": an image of the log cannot be loaded");
+  }
   if (log->frames() == 0) {
     warn(fmt::format("{}: no sensor data at the run's times", inputs[0]));
   }

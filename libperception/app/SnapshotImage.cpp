@@ -21,6 +21,7 @@ Raster rasterOf(const cv::Mat& pixels) {
 }
 
 std::optional<Raster> loadFile(const std::string& path) {
+  if (!std::filesystem::exists(path)) return std::nullopt;
   const cv::Mat pixels = cv::imread(path, cv::IMREAD_COLOR);
   if (pixels.empty()) return std::nullopt;
   return rasterOf(pixels);

@@ -101,7 +101,8 @@ void SnapshotSensors::lookAhead(const std::string& log) {
     const auto frame = frameOf(*observation);
     if (!frame) continue;
     if (!first) first = frame->stamp;
-    if (frame->stamp - *first > kLookAhead && (images || layers_.camera || layers_.lidar)) break;
+    const bool late = frame->stamp - *first > kLookAhead;
+    if (late && (params_.camera.empty() || layers_.camera)) break;
     layers_.lidar = layers_.lidar || std::holds_alternative<LidarCloud>(frame->data);
     layers_.radar = layers_.radar || std::holds_alternative<RadarReturns>(frame->data);
     if (const auto* boxes = std::get_if<ObjectDetections>(&frame->data)) {
@@ -258,16 +259,22 @@ void SnapshotSensors::addMeasurements(const SensorFrame& frame, SceneView& view)
   }
 }
 
-void SnapshotSensors::addImage(SceneView& view) const {
+void SnapshotSensors::addImage(SceneView& view) {
   if (!layers_.camera) return;
   const auto shown = last_.find(params_.camera);
   if (shown == last_.end() || now_ - shown->second.stamp > kLastImage) return;
   const SensorFrame& frame = shown->second;
-  ViewImage image{
-      frame.sensor, *layers_.camera, frame.T_world_sensor(), now_ - frame.stamp, {}, {}};
+  ViewImage image;
+  image.sensor = frame.sensor;
+  image.camera = *layers_.camera;
+  image.T_world_camera = frame.T_world_sensor();
+  image.age = now_ - frame.stamp;
   if (const auto* source = std::get_if<CameraImage>(&frame.data)) {
     if (const auto raster = source->load ? source->load() : std::nullopt) {
       image.picture = pictureOf(*raster);
+    } else {
+      image.missing = true;
+      if (missing_image_.empty()) missing_image_ = source->source;
     }
   }
   // Boxes of any detector that worked on images of this size.
@@ -285,7 +292,7 @@ void SnapshotSensors::addImage(SceneView& view) const {
   view.image = std::move(image);
 }
 
-void SnapshotSensors::fill(SceneView& view) const {
+void SnapshotSensors::fill(SceneView& view) {
   view.layers = layers_;
   for (const auto& [label, frame] : last_) {
     if (now_ - frame.stamp > kLastScan) continue;

@@ -38,12 +38,14 @@ class SnapshotSensors {
   /// Reads on to `stamp`, which must not go back.
   void advanceTo(Stamp stamp);
   /// Adds what was seen at the last instant.
-  void fill(SceneView& view) const;
+  void fill(SceneView& view);
 
   const ViewLayers& layers() const { return layers_; }
   const RawlogReader& reader() const { return reader_; }
   std::uint64_t scans() const { return scans_; }    ///< put into the grid so far
   std::uint64_t frames() const { return frames_; }  ///< of any sensor, at the run's times
+  /// Where the first image lay that was to be drawn and could not be loaded; empty: none.
+  const std::string& missingImage() const { return missing_image_; }
 
  private:
   struct Lidar {
@@ -65,7 +67,7 @@ class SnapshotSensors {
   void takeLidar(SensorFrame& frame);
   void addRadar(const SensorFrame& frame, SceneView& view) const;
   void addMeasurements(const SensorFrame& frame, SceneView& view) const;
-  void addImage(SceneView& view) const;
+  void addImage(SceneView& view);
 
   std::string log_;
   RawlogReader reader_;
@@ -78,6 +80,7 @@ class SnapshotSensors {
   GroundPlane ground_;                       ///< newest, ego frame
   std::shared_ptr<mrpt::obs::CObservation> next_;
   std::uint64_t scans_ = 0, frames_ = 0;
+  std::string missing_image_;
   Stamp now_;
 };
 

@@ -1,12 +1,16 @@
 #include "libperception/app/SnapshotApp.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/img/CImage.h>
+#include <mrpt/obs/CObservationImage.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "libperception/scene/RunRecord.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/RawlogWriter.h"
 
 namespace perception {
 namespace {
@@ -210,6 +214,56 @@ TEST_F(SnapshotAppTest, SceneFileIsThatOfOneInstant) {
       0);
   EXPECT_GT(fs::file_size(dir_ + "/a.3Dscene"), 1000U);
   EXPECT_EQ(run({"--every", "1", "-o", dir_ + "/x", "--scene", dir_ + "/a.3Dscene"}), 64);
+}
+
+// One image a second of the run, in the log or beside it; the first is missing.
+void writeImageLog(const std::string& path, bool embedded) {
+  const std::string folder = path.substr(0, path.rfind('.')) + "_Images";
+  fs::create_directories(folder);
+  RawlogWriter log(path, 0);
+  for (int k = 0; k < 3; ++k) {
+    mrpt::obs::CObservationImage image;
+    image.sensorLabel = "CAMERA_LEFT";
+    image.timestamp = fromStamp(Stamp::fromSeconds(kFirstStamp) + k);
+    image.cameraParams.ncols = 200;
+    image.cameraParams.nrows = 100;
+    image.cameraParams.setIntrinsicParamsFromValues(150, 150, 100, 50);
+    // Optical axes: x right, y down, z forward.
+    image.cameraPose = mrpt::poses::CPose3D(0, 0, 1.5, -kPi / 2, 0, -kPi / 2);
+    mrpt::img::CImage pixels(200, 100, mrpt::img::CH_RGB);
+    pixels.filledRectangle(0, 0, 199, 99, mrpt::img::TColor(200, 30, 60));
+    const std::string name = "left" + std::to_string(k) + ".png";
+    if (embedded) {
+      image.image = pixels;
+    } else {
+      if (k > 0) pixels.saveToFile(folder + "/" + name);
+      image.image.setExternalStorage(name);
+    }
+    log.write(image);
+  }
+  log.close();
+}
+
+TEST_F(SnapshotAppTest, ImagesInTheLogAndBesideItLieBelowTheBoxes) {
+  const auto redPixels = [&] {
+    int count = 0;
+    for (int y = 0; y < app_->out_picture.height; ++y) {
+      for (int x = 0; x < app_->out_picture.width; ++x) {
+        const std::uint8_t* p = app_->out_picture.at(x, y);
+        count += p[0] > 180 && p[1] < 50 && p[2] < 80;
+      }
+    }
+    return count;
+  };
+  for (const bool embedded : {true, false}) {
+    const std::string log = dir_ + (embedded ? "/in.rawlog" : "/beside.rawlog");
+    writeImageLog(log, embedded);
+    ASSERT_EQ(run({"--frame", "20", "--view", "camera", "-i", log, "-o", dir_ + "/a.png"}), 0);
+    EXPECT_GT(redPixels(), 100000) << embedded;
+    EXPECT_EQ(run({"--frame", "1", "--view", "camera", "-i", log, "-o", dir_ + "/a.png"}),
+              embedded ? 0 : 3);
+    EXPECT_EQ(redPixels() > 100000, embedded) << "a missing image is a warning";
+  }
 }
 
 }  // namespace
