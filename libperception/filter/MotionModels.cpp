@@ -12,26 +12,6 @@ namespace {
 
 void symmetrise(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
-/// White acceleration through a speed that decays: integrals over the step. Without decay SPEC
-/// 3.1's dt^3/3, dt^2/2, dt.
-struct SpeedNoise {
-  double keep = 1, way = 0;       ///< e^(-a dt); integral of it [s]
-  double pp = 0, pv = 0, vv = 0;  ///< [s^3, s^2, s] times the power spectral density
-
-  SpeedNoise(double a, double dt) {
-    const double s = a * dt;
-    if (s < 1e-3) {  // to first order in s: the closed forms cancel
-      keep = 1 - s, way = dt * (1 - s / 2);
-      pp = dt * dt * dt / 3 * (1 - 0.75 * s), pv = dt * dt / 2 * (1 - s), vv = dt * (1 - s);
-      return;
-    }
-    keep = std::exp(-s), way = (1 - keep) / a;
-    vv = (1 - keep * keep) / (2 * a);
-    pv = way * way / 2;
-    pp = (dt - way - a * way * way / 2) / (a * a);
-  }
-};
-
 /// SPEC 3.1: F = [I dtI; 0 I], Q of white acceleration; position_psd adds slip.
 void predictConstantVelocity(const ObjectClass& c, double psd, double damping, double dt,
                              Vector4& x, Matrix4& P) {
@@ -77,19 +57,6 @@ void predictWheeled(const ObjectClass& object_class, double psd, double damping,
   x[1] += noise.way * v * s;
   x[2] *= noise.keep;
   P = F * P * F.transpose() + Q;
-}
-
-/// One Gaussian of a moving class.
-void predictGaussian(const ObjectClass& c, double psd, double damping, double dt, bool oriented,
-                     Vector4& x, Matrix4& P) {
-  if (!oriented) {
-    predictConstantVelocity(c, psd, damping, dt, x, P);
-  } else {
-    const bool fine = dt > 0.25 || P(3, 3) > radians(30) * radians(30);
-    const int steps = fine ? std::max(1, static_cast<int>(std::ceil(dt / 0.1 - 1e-9))) : 1;
-    for (int i = 0; i < steps; ++i) predictWheeled(c, psd, damping, dt / steps, x, P);
-  }
-  symmetrise(P);
 }
 
 /// x - reference, the heading wrapped.
@@ -143,6 +110,35 @@ void interact(const ObjectClass& c, double dt, ClassFilter& f) {
 
 }  // namespace
 
+SpeedNoise::SpeedNoise(double a, double dt) {
+  const double s = a * dt;
+  if (s < 1e-3) {  // to first order in s: the closed forms cancel
+    keep = 1 - s, way = dt * (1 - s / 2);
+    pp = dt * dt * dt / 3 * (1 - 0.75 * s), pv = dt * dt / 2 * (1 - s), vv = dt * (1 - s);
+    return;
+  }
+  keep = std::exp(-s), way = (1 - keep) / a;
+  vv = (1 - keep * keep) / (2 * a);
+  pv = way * way / 2;
+  pp = (dt - way - a * way * way / 2) / (a * a);
+}
+
+bool needsSubSteps(const GaussianStep& s) {
+  return s.oriented && (s.dt > 0.25 || (*s.P)(3, 3) > radians(30) * radians(30)) && s.dt > 0.1;
+}
+
+void predictGaussian(const GaussianStep& s) {
+  if (!s.oriented) {
+    predictConstantVelocity(*s.object_class, s.psd, s.damping, s.dt, *s.x, *s.P);
+  } else {
+    const int steps =
+        needsSubSteps(s) ? std::max(1, static_cast<int>(std::ceil(s.dt / 0.1 - 1e-9))) : 1;
+    for (int i = 0; i < steps; ++i)
+      predictWheeled(*s.object_class, s.psd, s.damping, s.dt / steps, *s.x, *s.P);
+  }
+  symmetrise(*s.P);
+}
+
 void startModes(const ObjectClass& c, ClassFilter& f) {
   f.modes.clear();
   if (c.motion == Motion::kStatic) return;
@@ -160,21 +156,27 @@ void combineModes(ClassFilter& f) {
   f.P = m.P;
 }
 
-void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter& f) {
+void beginPrediction(const ObjectClass& object_class, double dt, ClassFilter& f,
+                     std::vector<GaussianStep>& out) {
   if (dt <= 0) return;
+  const bool oriented = object_class.motion == Motion::kWheeled && f.oriented;
   if (object_class.motion == Motion::kStatic) {
     f.P.topLeftCorner<2, 2>().diagonal().array() += object_class.position_psd * dt;
-    return;
+  } else if (f.modes.empty()) {
+    out.push_back({&f.x, &f.P, &object_class, object_class.accel_psd, 0, dt, oriented});
+  } else {
+    interact(object_class, dt, f);
+    for (std::size_t i = 0; i < f.modes.size(); ++i) {
+      out.push_back({&f.modes[i].x, &f.modes[i].P, &object_class, object_class.mode_accel_psd[i],
+                     object_class.mode_damping[i], dt, oriented});
+    }
   }
-  if (f.modes.empty()) {
-    predictGaussian(object_class, object_class.accel_psd, 0, dt, f.oriented, f.x, f.P);
-    return;
-  }
-  interact(object_class, dt, f);
-  for (std::size_t i = 0; i < f.modes.size(); ++i) {
-    predictGaussian(object_class, object_class.mode_accel_psd[i], object_class.mode_damping[i], dt,
-                    f.oriented, f.modes[i].x, f.modes[i].P);
-  }
+}
+
+void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter& f) {
+  std::vector<GaussianStep> steps;
+  beginPrediction(object_class, dt, f, steps);
+  for (const auto& step : steps) predictGaussian(step);
   combineModes(f);
 }
 

@@ -9,6 +9,32 @@ namespace perception {
 /// first.
 void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter& filter);
 
+/// One Gaussian of a moving class and the step that it takes.
+struct GaussianStep {
+  Vector4* x;
+  Matrix4* P;
+  const ObjectClass* object_class;
+  double psd, damping;  ///< of its motion mode
+  double dt;            ///< [s]
+  bool oriented;
+};
+/// The parts of predictClassFilter, for batches: makes the modes interact and lists the Gaussians
+/// that are left to move; combineModes() comes after them.
+void beginPrediction(const ObjectClass& object_class, double dt, ClassFilter& filter,
+                     std::vector<GaussianStep>& out);
+/// Moves one Gaussian.
+void predictGaussian(const GaussianStep& step);
+/// Whether it has to be taken in sub-steps.
+bool needsSubSteps(const GaussianStep& step);
+
+/// White acceleration through a speed that decays (rate `damping` [1/s]): integrals over the step.
+/// Without decay SPEC 3.1's dt^3/3, dt^2/2, dt.
+struct SpeedNoise {
+  double keep = 1, way = 0;       ///< e^(-a dt); integral of it [s]
+  double pp = 0, pv = 0, vv = 0;  ///< [s^3, s^2, s] times the power spectral density
+  SpeedNoise(double damping, double dt);
+};
+
 /// What sensors can see of it: q(state) and its Jacobian.
 Kinematics kinematicsOf(const ObjectClass& object_class, const ClassFilter& filter);
 

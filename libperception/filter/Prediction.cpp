@@ -1,27 +1,29 @@
 #include "libperception/filter/Prediction.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/BankBatch.h"
 #include "libperception/filter/MotionModels.h"
+#include "libperception/filter/Parallel.h"
 
 namespace perception {
 namespace {
 
 /// A track that no sensor could have seen for this long counts as out of view.
 constexpr double kOutOfViewAfter = 1.0;  // [s]
+/// Fewer Gaussians than this are not worth a batch.
+constexpr std::size_t kWorthBatch = 8;
 
-}  // namespace
-
-Track predictTrack(const Track& track, Stamp to, const FilterModel& model) {
-  const double dt = to - track.stamp;
-  Track next = track;
-  if (dt <= 0) return next;
+/// All of the prediction but the motion of the Gaussians, which go to `steps`.
+void beginTrack(Stamp to, const FilterModel& model, Track& next, std::vector<GaussianStep>& steps) {
+  const double dt = to - next.stamp;
+  if (dt <= 0) return;
   next.stamp = to;
-  for (ClassId j = 0; j < model.classes.size(); ++j) {
-    predictClassFilter(model.classes[j], dt, next.bank[static_cast<std::size_t>(j)]);
-  }
-  const bool in_view = to - track.last_in_view < kOutOfViewAfter;
+  for (ClassId j = 0; j < model.classes.size(); ++j)
+    beginPrediction(model.classes[j], dt, next.bank[static_cast<std::size_t>(j)], steps);
+  const bool in_view = to - next.last_in_view < kOutOfViewAfter;
   const double life = in_view ? model.params.survival_in_view : model.params.survival_out_of_view;
   const double decay = model.params.existence_decay;  // to 5 % = e^-3 in this time
   next.existence *= std::exp(decay > 0 ? -3 * dt / decay : -dt / life);
@@ -29,7 +31,98 @@ Track predictTrack(const Track& track, Stamp to, const FilterModel& model) {
   const double uniform = std::log(forget / static_cast<double>(model.classes.size()));
   for (double& lp : next.log_class) lp = logAddExp(lp + std::log1p(-forget), uniform);
   next.base_z.variance += model.params.base_walk * dt;
+}
+
+/// What moves one Gaussian, as planes of a MotionBatch.
+void putMotion(const GaussianStep& s, std::size_t i, MotionBatch& motion) {
+  const SpeedNoise n(s.damping, s.dt);
+  motion[MotionBatch::kKeep][i] = n.keep;
+  motion[MotionBatch::kWay][i] = n.way;
+  motion[MotionBatch::kPp][i] = s.psd * n.pp;
+  motion[MotionBatch::kPv][i] = s.psd * n.pv;
+  motion[MotionBatch::kVv][i] = s.psd * n.vv;
+  motion[MotionBatch::kSlip][i] = s.object_class->position_psd * s.dt;
+  const double qw = s.object_class->yaw_rate_psd;
+  motion[MotionBatch::kYawPp][i] = qw * s.dt * s.dt * s.dt / 3;
+  motion[MotionBatch::kYawPy][i] = qw * s.dt * s.dt / 2;
+  motion[MotionBatch::kYawYy][i] = qw * s.dt;
+}
+
+void putGaussian(const GaussianStep& s, std::size_t i, BankBatch& bank) {
+  std::size_t plane = 0;
+  for (int r = 0; r < 4; ++r) bank[plane++][i] = (*s.x)[r];
+  for (int r = 0; r < 4; ++r)
+    for (int c = r; c < 4; ++c) bank[plane++][i] = (*s.P)(r, c);
+}
+
+void takeGaussian(const BankBatch& bank, std::size_t i, const GaussianStep& s) {
+  std::size_t plane = 0;
+  for (int r = 0; r < 4; ++r) (*s.x)[r] = bank[plane++][i];
+  for (int r = 0; r < 4; ++r)
+    for (int c = r; c < 4; ++c) (*s.P)(r, c) = (*s.P)(c, r) = bank[plane++][i];
+}
+
+void moveBatch(const std::vector<GaussianStep>& steps, bool wheeled) {
+  if (steps.size() < kWorthBatch) {
+    for (const auto& s : steps) predictGaussian(s);
+    return;
+  }
+  BankBatch bank(steps.size());
+  MotionBatch motion(steps.size());
+  const std::size_t parts = (steps.size() + BatchPart::kPart - 1) / BatchPart::kPart;
+  parallelFor(parts, [&](std::size_t p) {
+    const BatchPart part{p * BatchPart::kPart, std::min((p + 1) * BatchPart::kPart, steps.size())};
+    for (std::size_t i = part.first; i < part.end; ++i) {
+      putMotion(steps[i], i, motion);
+      putGaussian(steps[i], i, bank);
+    }
+    if (wheeled) {
+      predictWheeled(motion, bank, simdLevel(), part);
+    } else {
+      predictConstantVelocity(motion, bank, simdLevel(), part);
+    }
+    for (std::size_t i = part.first; i < part.end; ++i) takeGaussian(bank, i, steps[i]);
+  });
+}
+
+}  // namespace
+
+Track predictTrack(const Track& track, Stamp to, const FilterModel& model) {
+  Track next = track;
+  std::vector<GaussianStep> steps;
+  beginTrack(to, model, next, steps);
+  for (const auto& s : steps) predictGaussian(s);
+  for (auto& f : next.bank) combineModes(f);
   return next;
+}
+
+std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,
+                                 const std::vector<char>& touched, Stamp to,
+                                 const FilterModel& model) {
+  std::vector<Track> predicted(tracks.size());
+  std::vector<std::vector<GaussianStep>> steps(tracks.size());
+  parallelFor(tracks.size(), [&](std::size_t i) {
+    if (!touched[i]) return;
+    predicted[i] = *tracks[i];
+    beginTrack(to, model, predicted[i], steps[i]);
+  });
+  std::vector<GaussianStep> free, wheeled;
+  for (const auto& own : steps) {
+    for (const auto& s : own) {
+      if (needsSubSteps(s)) {
+        predictGaussian(s);
+      } else {
+        (s.oriented ? wheeled : free).push_back(s);
+      }
+    }
+  }
+  moveBatch(free, false);
+  moveBatch(wheeled, true);
+  parallelFor(tracks.size(), [&](std::size_t i) {
+    if (!touched[i]) return;
+    for (auto& f : predicted[i].bank) combineModes(f);
+  });
+  return predicted;
 }
 
 }  // namespace perception

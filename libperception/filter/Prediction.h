@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "libperception/filter/FilterModel.h"
 #include "libperception/filter/Track.h"
 
@@ -7,5 +9,11 @@ namespace perception {
 /// Pass 1: the track at a later time: every class filter, existence, class chain, base height
 /// (SPEC 5.1, 5.7).
 Track predictTrack(const Track& track, Stamp to, const FilterModel& model);
+
+/// The same for those tracks that are `touched`, their Gaussians in batches (see BankBatch); the
+/// others stay empty. Equal to predictTrack up to rounding.
+std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,
+                                 const std::vector<char>& touched, Stamp to,
+                                 const FilterModel& model);
 
 }  // namespace perception

@@ -54,13 +54,10 @@ ScanTracks tracksOf(const std::vector<HypothesisHandle>& hypotheses, const Measu
       indices.push_back(it->second);
     }
   }
-  out.predicted.resize(out.before.size());
   out.touched.assign(out.before.size(), 0);
-  parallelFor(out.before.size(), [&](std::size_t i) {
-    if (!concerns(scan, *out.before[i], model)) return;
-    out.touched[i] = 1;
-    out.predicted[i] = predictTrack(*out.before[i], scan.state.stamp, model);
-  });
+  parallelFor(out.before.size(),
+              [&](std::size_t i) { out.touched[i] = concerns(scan, *out.before[i], model); });
+  out.predicted = predictTracks(out.before, out.touched, scan.state.stamp, model);
   return out;
 }
 

@@ -7,6 +7,8 @@
 
 #include "libperception/core/Random.h"
 #include "libperception/filter/MotionModels.h"
+#include "libperception/filter/Prediction.h"
+#include "tests/support/FilterWorld.h"
 
 namespace perception {
 namespace {
@@ -122,6 +124,49 @@ TEST(BankBatch, UpdatesAsTheTextbook) {
         EXPECT_NEAR(density[1][i], nis[i], 1e-8 * (1 + nis[i]));
         EXPECT_NEAR(alone[0][i], log_density[i], 1e-8);
       }
+    }
+  }
+}
+
+TEST(PredictTracks, IsPredictTrackInBatches) {
+  FilterModel model;
+  model.classes = test::linearClasses();
+  ObjectClass car = model.classes[0];
+  car.name = "car";
+  car.motion = Motion::kWheeled;
+  car.mode_accel_psd = {0.5, 3};
+  car.mode_damping = {0, 1};
+  car.mode_sojourn = {4, 1};
+  model.classes.classes.push_back(car);
+  Rng rng({9, 0, 0, 0});
+  std::vector<TrackHandle> tracks;
+  std::vector<char> touched;
+  for (int i = 0; i < 30; ++i) {
+    Track t;
+    t.stamp = t.last_in_view = Stamp::fromSeconds(100 + 0.01 * (i % 5));
+    t.existence = 0.9;
+    t.log_class = {std::log(0.2), std::log(0.3), std::log(0.5)};
+    for (const auto& c : model.classes.classes) {
+      t.bank.push_back(randomFilter(rng, c.motion == Motion::kWheeled && i % 3 > 0));
+      startModes(c, t.bank.back());
+    }
+    tracks.push_back(std::make_shared<const Track>(t));
+    touched.push_back(i % 7 != 0);
+  }
+  const Stamp to = Stamp::fromSeconds(100.2);
+  const auto batch = predictTracks(tracks, touched, to, model);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!touched[i]) {
+      EXPECT_TRUE(batch[i].bank.empty());
+      continue;
+    }
+    const Track one = predictTrack(*tracks[i], to, model);
+    EXPECT_EQ(batch[i].existence, one.existence);
+    EXPECT_EQ(batch[i].log_class, one.log_class);
+    for (std::size_t j = 0; j < one.bank.size(); ++j) {
+      EXPECT_LT((batch[i].bank[j].x - one.bank[j].x).norm(), 1e-9);
+      EXPECT_LT((batch[i].bank[j].P - one.bank[j].P).norm(), 1e-9);
+      ASSERT_EQ(batch[i].bank[j].modes.size(), one.bank[j].modes.size());
     }
   }
 }
