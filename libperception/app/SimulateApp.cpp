@@ -6,6 +6,8 @@
 #include <chrono>
 #include <filesystem>
 
+#include "gui-offscreen/Picture.h"
+#include "libperception/app/ScenarioPictures.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/sensors/RawlogWriter.h"
 #include "libperception/simulation/Scenario.h"
@@ -24,7 +26,7 @@ std::string SimulateApp::description() const {
 }
 
 void SimulateApp::declare(CLI::App& cli) {
-  addConfigOptions(cli, true);
+  addConfigOptions(cli, false);
   cli.add_option("--seed", seed, "Seed of all random numbers: same seed, same bytes")
       ->capture_default_str();
   cli.add_option(
@@ -36,7 +38,12 @@ void SimulateApp::declare(CLI::App& cli) {
   cli.add_option("--vehicle", vehicle,
                  "INI of a vehicle: its sensors instead of those of the scenario")
       ->check(CLI::ExistingFile);
-  addOutputOption(cli, true);
+  addOutputOption(cli, false);
+  cli.add_option("--coverage", coverage,
+                 "Picture (PNG) of what the sensors of -c, a vehicle or a scenario, see; no log");
+  cli.add_option("--contact-sheet", contact_sheet, "Picture (PNG) of the scenarios named; no log");
+  cli.add_option("SCENARIO", scenes, "Scenario INIs of the contact sheet")
+      ->check(CLI::ExistingFile);
   cli.add_option("--threads", threads, "Threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
   cli.add_option("--gzip", gzip_level, "Compression of the log")
@@ -55,11 +62,7 @@ std::optional<Scenario> SimulateApp::loadScenario() {
   if (configDone(config)) return {};
   if (!vehicle.empty()) {
     Config other = Config::fromFile(vehicle);
-    if (other.has("ego")) {  // what the vehicle's pose estimator is like; its way is the scene's
-      const WaypointParams way = scenario.ego.waypoints;
-      scenario.ego = other.read("ego", scenario.ego);
-      scenario.ego.waypoints = way;
-    }
+    if (other.has("ego")) scenario.ego.pose = other.read<PoseParams>("ego");
     scenario.sensors = readSensors(other);
     if (scenario.sensors.empty()) other.fault("", "", "no [sensor.LABEL] section");
     other.finish();
@@ -67,7 +70,43 @@ std::optional<Scenario> SimulateApp::loadScenario() {
   return trialOf(std::move(scenario), trial, seed);
 }
 
+void SimulateApp::drawCoverage() {
+  Config config = loadConfig();
+  // A vehicle INI has no scene; a scenario's other sections are none of the picture's.
+  if (config.has("scenario")) {
+    const Scenario scenario = readScenario(config);
+    if (configDone(config)) return;
+    writePng(coverage,
+             coveragePicture(scenario.sensors, "Coverage of the sensors: " + config_file));
+    return;
+  }
+  config.read<PoseParams>("ego");
+  const std::vector<SensorParams> sensors = readSensors(config);
+  if (sensors.empty()) config.fault("", "", "no [sensor.LABEL] section");
+  if (configDone(config)) return;
+  writePng(coverage,
+           coveragePicture(sensors, "Coverage of the sensors: " +
+                                        std::filesystem::path(config_file).stem().string()));
+}
+
+void SimulateApp::drawContactSheet() {
+  std::vector<NamedScenario> scenarios;
+  for (const std::string& scene : scenes) {
+    Config config = Config::fromFile(scene);
+    scenarios.push_back({std::filesystem::path(scene).stem().string(), readScenario(config)});
+    config.finish();
+  }
+  if (scenarios.empty()) throw Error(ExitCode::kUsage, "--contact-sheet: no scenario INI is named");
+  writePng(contact_sheet, scenarioSheet(scenarios));
+}
+
 void SimulateApp::run() {
+  if (!contact_sheet.empty()) return drawContactSheet();
+  if (config_file.empty()) throw Error(ExitCode::kUsage, "-c SCENARIO.ini is required");
+  if (!coverage.empty()) return drawCoverage();
+  if (output.empty() && !print_config) {
+    throw Error(ExitCode::kUsage, "-o FILE.rawlog is required");
+  }
   std::optional<Scenario> loaded = loadScenario();
   if (!loaded) return;
   Scenario scenario = std::move(*loaded);

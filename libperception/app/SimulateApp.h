@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "libperception/app/App.h"
 #include "libperception/simulation/Scenario.h"
@@ -11,10 +12,13 @@ namespace perception {
 /// perception-simulate: a scenario INI becomes a rawlog with ground truth.
 class SimulateApp : public App {
  public:
-  std::uint64_t seed = 1;  ///< --seed
-  int gzip_level = 1;      ///< --gzip
-  int trial = 0;           ///< --trial; 0 = the scenario as it stands in its file
-  std::string vehicle;     ///< --vehicle: sensors of this INI instead of the scenario's
+  std::uint64_t seed = 1;           ///< --seed
+  int gzip_level = 1;               ///< --gzip
+  int trial = 0;                    ///< --trial; 0 = the scenario as it stands in its file
+  std::string coverage;             ///< --coverage: picture of what the sensors of -c see
+  std::string contact_sheet;        ///< --contact-sheet: picture of `scenes`
+  std::vector<std::string> scenes;  ///< scenario INIs of the contact sheet
+  std::string vehicle;              ///< --vehicle: sensors of this INI instead of the scenario's
 
   std::string out_truth_file;
   std::int64_t out_frames = 0;
@@ -29,6 +33,8 @@ class SimulateApp : public App {
  private:
   /// The scenario of -c with --vehicle and --trial applied; nothing after --print-config.
   std::optional<Scenario> loadScenario();
+  void drawCoverage();
+  void drawContactSheet();
 };
 
 /// FILE.truth.csv beside FILE.rawlog.

@@ -62,12 +62,16 @@ void WaypointParams::visit(ParamVisitor& v) {
   v.require(fault.empty(), fault);
 }
 
+void PoseParams::visit(ParamVisitor& v) {
+  v.real("pose_rate", rate, {1, 1000}, "1/s", "of the pose estimator (paper: 100 Hz)");
+  v.real("pose_sigma_xy", sigma_xy, {0, 10}, "m", "slow error of the reported pose");
+  v.angle("pose_sigma_yaw_deg", sigma_yaw, {0, 10}, "slow error of the reported heading");
+  v.real("pose_correlation", correlation, {0.01, 1000}, "s", "time constant of that error");
+}
+
 void EgoParams::visit(ParamVisitor& v) {
   waypoints.visit(v);
-  v.real("pose_rate", pose_rate, {1, 1000}, "1/s", "of the pose estimator (paper: 100 Hz)");
-  v.real("pose_sigma_xy", pose_sigma_xy, {0, 10}, "m", "slow error of the reported pose");
-  v.angle("pose_sigma_yaw_deg", pose_sigma_yaw, {0, 10}, "slow error of the reported heading");
-  v.real("pose_correlation", pose_correlation, {0.01, 1000}, "s", "time constant of that error");
+  pose.visit(v);
 }
 
 void RoadParams::visit(ParamVisitor& v) {

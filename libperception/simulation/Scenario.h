@@ -42,13 +42,20 @@ struct WaypointParams {
   Trajectory trajectory() const { return {t, x, y, heading}; }
 };
 
-/// [ego]: the vehicle with the sensors and what its pose estimator says.
+/// What the vehicle's pose estimator says, in [ego]; the part of [ego] that a vehicle INI may hold.
+struct PoseParams {
+  double rate = 100;        ///< [1/s] (paper: 100 Hz)
+  double sigma_xy = 0;      ///< [m] error of the reported pose: slowly varying
+  double sigma_yaw = 0;     ///< [rad]
+  double correlation = 10;  ///< [s] time constant of that error
+
+  void visit(ParamVisitor& v);
+};
+
+/// [ego]: the vehicle with the sensors.
 struct EgoParams {
-  WaypointParams waypoints;      ///< of the ego origin: rear axle, on the ground
-  double pose_rate = 100;        ///< [1/s] (paper: 100 Hz)
-  double pose_sigma_xy = 0;      ///< [m] error of the reported pose: slowly varying
-  double pose_sigma_yaw = 0;     ///< [rad]
-  double pose_correlation = 10;  ///< [s] time constant of that error
+  WaypointParams waypoints;  ///< of the ego origin: rear axle, on the ground
+  PoseParams pose;
 
   void visit(ParamVisitor& v);
 };

@@ -37,7 +37,7 @@ Simulator::Simulator(Scenario scenario, const std::string& name, std::uint64_t s
       pose_rng_({seed, 0, 0, kPoseStream}) {
   const Scenario& s = world_.scenario();
   schedule(Event::kComment, 0, 1 / (2 * s.params.duration), 0);
-  schedule(Event::kPose, 0, s.ego.pose_rate, 0);
+  schedule(Event::kPose, 0, s.ego.pose.rate, 0);
   schedule(Event::kFrame, 0, s.params.rate, 0);
   for (std::size_t i = 0; i < s.sensors.size(); ++i) {
     schedule(Event::kSensor, i, s.sensors[i].rate, s.sensors[i].phase);
@@ -140,10 +140,10 @@ void Simulator::setVisibility(std::vector<TruthObject>& rows, double t) {
 
 // The pose estimator's error: first-order Gauss-Markov, as a filter's error varies slowly.
 EgoState Simulator::reportedEgo(double t) {
-  const EgoParams& p = world_.scenario().ego;
-  const Vector3 sigma(p.pose_sigma_xy, p.pose_sigma_xy, p.pose_sigma_yaw);
+  const PoseParams& p = world_.scenario().ego.pose;
+  const Vector3 sigma(p.sigma_xy, p.sigma_xy, p.sigma_yaw);
   const double keep =
-      pose_error_drawn_ ? std::exp(-(t - pose_error_time_) / p.pose_correlation) : 0;
+      pose_error_drawn_ ? std::exp(-(t - pose_error_time_) / p.correlation) : 0;
   for (int i = 0; i < 3; ++i) {
     pose_error_(i) =
         keep * pose_error_(i) + std::sqrt(1 - keep * keep) * sigma(i) * pose_rng_.normal();

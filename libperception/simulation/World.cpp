@@ -71,7 +71,7 @@ EgoState World::ego(double t) const {
   ego.T_world_ego = makePose(m.position.x(), m.position.y(), 0, m.heading);
   ego.velocity = m.velocity;
   ego.yaw_rate = m.yaw_rate;
-  ego.uncertainty = {scenario_.ego.pose_sigma_xy, scenario_.ego.pose_sigma_yaw, 0};
+  ego.uncertainty = {scenario_.ego.pose.sigma_xy, scenario_.ego.pose.sigma_yaw, 0};
   return ego;
 }
 

@@ -1,0 +1,421 @@
+#include "libperception/app/ScenarioPictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "gui-offscreen/Canvas.h"
+#include "gui-offscreen/Palette.h"
+#include "libperception/simulation/World.h"
+
+namespace perception {
+namespace {
+
+constexpr Colour kLidarColour{0, 114, 178}, kCameraColour{230, 159, 0}, kRadarColour{0, 158, 115};
+constexpr Colour kAsphalt{214, 214, 218}, kGrassColour{238, 242, 230}, kWallColour{150, 140, 130};
+constexpr Colour kLeafColour{120, 160, 90};
+constexpr double kEgoFront = 4.2, kEgoRear = 1.3, kEgoWidth = 2.0;  // [m] of the rear axle
+
+/// World or vehicle metres to pixels; y points up.
+struct Scale {
+  Vector2 middle = Vector2::Zero();  ///< [m] at the panel's middle
+  Vector2 at = Vector2::Zero();      ///< [px] the panel's middle
+  double pixels = 1;                 ///< [px/m]
+  Vector2 operator()(const Vector2& p) const {
+    return {at.x() + pixels * (p.x() - middle.x()), at.y() - pixels * (p.y() - middle.y())};
+  }
+};
+
+std::vector<Vector2> footprint(const Vector2& centre, double heading, double front, double rear,
+                               double width) {
+  const Vector2 u(std::cos(heading), std::sin(heading)), n(-u.y(), u.x());
+  return {centre + front * u + .5 * width * n, centre + front * u - .5 * width * n,
+          centre - rear * u - .5 * width * n, centre - rear * u + .5 * width * n};
+}
+
+void drawPolygon(Canvas& canvas, const Scale& scale, std::vector<Vector2> corners,
+                 const Colour& fill) {
+  for (Vector2& c : corners) c = scale(c);
+  canvas.polygon(corners, fill);
+}
+
+void drawOutline(Canvas& canvas, const Scale& scale, const std::vector<Vector2>& corners,
+                 const Colour& colour, double thickness) {
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    canvas.line(scale(corners[i]), scale(corners[(i + 1) % corners.size()]), colour, thickness);
+  }
+}
+
+// ---- Coverage of a vehicle's sensors
+
+/// One sector that a sensor sees.
+struct Wedge {
+  double range;       ///< [m]
+  std::string label;  ///< what holds within; "": the sensor's whole view
+};
+
+struct Coverage {
+  const SensorParams* sensor;
+  double fov;                 ///< [rad]
+  std::vector<Wedge> wedges;  ///< the widest first
+};
+
+Coverage coverageOf(const SensorParams& s) {
+  switch (s.kind) {
+    case SensorKind::kRadar:
+      return {&s, s.radar.fov, {{s.radar.range_max, ""}}};
+    case SensorKind::kSphericalCamera:
+      return {&s, kTwoPi, {{s.panorama.car_range, "cars"}, {s.panorama.person_range, "persons"}}};
+    case SensorKind::kCameraBoxes: {
+      const double f = s.camera.model().fy;  // [px] heights of a car and of a person at full recall
+      return {
+          &s,
+          s.camera.fov,
+          {{1.7 * f / s.camera.full_pixels, "persons"}, {1.5 * f / s.camera.full_pixels, "cars"}}};
+    }
+    default:
+      return {&s, s.lidar.azimuth_to - s.lidar.azimuth_from, {{s.lidar.range_max, ""}}};
+  }
+}
+
+std::vector<Vector2> sector(const SensorParams& s, double fov, double range) {
+  const Vector2 apex(s.x, s.y);
+  std::vector<Vector2> corners;
+  const int steps = std::max(2, static_cast<int>(std::ceil(fov / radians(3))));
+  if (fov < kTwoPi - 1e-6) corners.push_back(apex);
+  for (int i = 0; i <= steps; ++i) {
+    const double a = s.yaw - .5 * fov + fov * i / steps;
+    corners.push_back(apex + range * Vector2(std::cos(a), std::sin(a)));
+  }
+  return corners;
+}
+
+std::string detailOf(const Coverage& c) {
+  std::string ranges;
+  for (const Wedge& w : c.wedges) {
+    if (!ranges.empty()) ranges += ", ";
+    ranges += fmt::format("{}{}{:.0f} m", w.label, w.label.empty() ? "" : " to ", w.range);
+  }
+  const std::string view =
+      c.fov > kTwoPi - 1e-6
+          ? "all around"
+          : fmt::format("{:.0f} deg at {:.0f} deg", degrees(c.fov), degrees(c.sensor->yaw));
+  return fmt::format("{}: {}, {}, {:g} Hz", c.sensor->label, view, ranges, c.sensor->rate);
+}
+
+double niceStep(double range) {
+  for (const double step : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
+    if (range / step <= 4.5) return step;
+  }
+  return 200;
+}
+
+void drawCoverage(Canvas& canvas, const Rect& area, const std::vector<Coverage>& sensors,
+                  const Colour& colour) {
+  double reach = 5;
+  for (const Coverage& c : sensors) {
+    for (const Wedge& w : c.wedges) {
+      for (const Vector2& p : sector(*c.sensor, c.fov, w.range)) {
+        reach = std::max({reach, std::abs(p.x()), std::abs(p.y())});
+      }
+    }
+  }
+  Scale scale;
+  scale.at = {area.x + .5 * area.width, area.y + .5 * area.height};
+  scale.pixels = .46 * std::min(area.width, area.height) / reach;
+  canvas.clip(area);
+  for (const Coverage& c : sensors) {
+    for (const Wedge& w : c.wedges) {
+      drawPolygon(canvas, scale, sector(*c.sensor, c.fov, w.range), colour.withAlpha(.22));
+    }
+  }
+  for (const Coverage& c : sensors) {
+    for (const Wedge& w : c.wedges) {
+      drawOutline(canvas, scale, sector(*c.sensor, c.fov, w.range), colour, 1.2);
+    }
+  }
+  const double step = niceStep(reach);
+  for (double r = step; r <= reach; r += step) {
+    SensorParams centre;
+    centre.x = centre.y = 0;
+    const auto ring = sector(centre, kTwoPi, r);
+    for (std::size_t i = 0; i + 1 < ring.size(); i += 2) {
+      canvas.line(scale(ring[i]), scale(ring[i + 1]), kGridLine, 1);
+    }
+    const Vector2 at = scale({0, -r});
+    canvas.text({at.x() + 3, at.y() - 3}, fmt::format("{:g} m", r), 9, kMutedInk);
+  }
+  const Vector2 ego_middle = scale({1.3, 0});
+  if (scale.pixels * 5 > 12) {
+    drawPolygon(canvas, scale, footprint({0, 0}, 0, kEgoFront, kEgoRear, kEgoWidth), kEgo);
+  } else {  // too small to be seen in scale: a sign
+    canvas.polygon({{ego_middle.x() + 9, ego_middle.y()},
+                    {ego_middle.x() - 6, ego_middle.y() - 5},
+                    {ego_middle.x() - 6, ego_middle.y() + 5}},
+                   kEgo);
+  }
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const Coverage& c = sensors[i];
+    const bool whole = c.fov > kTwoPi - 1e-6;
+    for (std::size_t k = 0; k < c.wedges.size(); ++k) {
+      // Whole circles carry their names apart from each other; wedges near their far end.
+      const auto place = static_cast<double>(k);
+      const double middle = .5 * static_cast<double>(c.wedges.size() - 1);
+      const double a =
+          whole ? radians(135 - 30 * place) : c.sensor->yaw + .45 * c.fov * (middle - place);
+      const double r = c.wedges[k].range * (whole ? .86 : .72);
+      const Vector2 p =
+          scale(Vector2(c.sensor->x, c.sensor->y) + r * Vector2(std::cos(a), std::sin(a)));
+      const std::string& name = c.wedges[k].label;
+      const std::string text =
+          fmt::format("{} {:.0f} m", name.empty() ? c.sensor->label : name, c.wedges[k].range);
+      const double width = Canvas::textWidth(text, 10, true);
+      canvas.rectangle({p.x() - .5 * width - 2, p.y() - 9, width + 4, 13}, kPaper.withAlpha(.75));
+      canvas.text({p.x() - .5 * width, p.y() + 1}, text, 10, kInk, true);
+    }
+  }
+  canvas.unclip();
+}
+
+// ---- Top views of scenarios
+
+bool vehicleKind(ObjectKind k) {
+  return k == ObjectKind::kCar || k == ObjectKind::kVan || k == ObjectKind::kBus;
+}
+
+Colour colourOfKind(ObjectKind k) {
+  if (vehicleKind(k)) return colourOfClass(k == ObjectKind::kBus ? "bus" : "car", 0);
+  return colourOfClass(k == ObjectKind::kCyclist ? "cyclist" : "pedestrian", 0);
+}
+
+/// What the view must show [m]: the ways, without what lies far beyond the ego's.
+struct Extent {
+  Vector2 low = Vector2::Constant(1e9), high = Vector2::Constant(-1e9);
+  void add(const Vector2& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
+};
+
+Extent extentOf(const World& world) {
+  const Scenario& s = world.scenario();
+  Extent ego, all;
+  for (std::size_t i = 0; i < s.ego.waypoints.x.size(); ++i) {
+    ego.add({s.ego.waypoints.x[i], s.ego.waypoints.y[i]});
+  }
+  constexpr double kAside = 22, kAhead = 26;  // [m]
+  all = ego;
+  for (const ObjectParams& o : s.objects) {
+    if (!isRoadUser(o.kind)) continue;
+    for (std::size_t i = 0; i < o.waypoints.x.size(); ++i) {
+      all.add(Vector2(o.waypoints.x[i], o.waypoints.y[i])
+                  .cwiseMax(ego.low - Vector2(5, kAside))
+                  .cwiseMin(ego.high + Vector2(kAhead, kAside)));
+    }
+  }
+  all.low -= Vector2::Constant(4), all.high += Vector2::Constant(4);
+  return all;
+}
+
+void drawStanding(Canvas& canvas, const Scale& scale, const World& world) {
+  const Scenario& s = world.scenario();
+  for (const RoadParams& road : s.roads) {
+    for (std::size_t i = 0; i + 1 < road.x.size(); ++i) {
+      const Vector2 a(road.x[i], road.y[i]), b(road.x[i + 1], road.y[i + 1]);
+      const double length = (b - a).norm(), heading = std::atan2(b.y() - a.y(), b.x() - a.x());
+      drawPolygon(canvas, scale, footprint(a, heading, length, 0, road.width), kAsphalt);
+    }
+  }
+  for (std::size_t i = 0; i < world.objects(); ++i) {
+    const ObjectParams& o = s.objects[i];
+    if (isRoadUser(o.kind)) continue;
+    const ObjectState state = world.object(i, 0);
+    const Vector2 p = state.T_world_object.translation().head<2>();
+    const auto corners =
+        footprint(p, yawOf(state.T_world_object), .5 * o.length, .5 * o.length, o.width);
+    if (o.kind == ObjectKind::kBush) {
+      canvas.disc(scale(p), std::max(2.0, .5 * scale.pixels * o.width), kLeafColour);
+    } else if (o.kind == ObjectKind::kPole) {
+      canvas.disc(scale(p), 2, kInk);
+    } else {
+      drawPolygon(canvas, scale, corners, kWallColour);
+    }
+  }
+}
+
+void drawBody(Canvas& canvas, const Scale& scale, const ObjectParams& o, const ObjectState& state,
+              bool filled) {
+  const Colour colour = colourOfKind(o.kind);
+  const Vector2 p = state.T_world_object.translation().head<2>();
+  if (!vehicleKind(o.kind)) {
+    const double radius = std::max(2.2, .5 * scale.pixels * o.width);
+    canvas.disc(scale(p), radius, filled ? colour : colour.withAlpha(.35));
+    return;
+  }
+  const auto corners =
+      footprint(p, yawOf(state.T_world_object), .5 * o.length, .5 * o.length, o.width);
+  drawPolygon(canvas, scale, corners, colour.withAlpha(filled ? .9 : .2));
+  drawOutline(canvas, scale, corners, colour, 1);
+}
+
+void drawWay(Canvas& canvas, const Scale& scale, const std::vector<Vector2>& way,
+             const Colour& colour, double thickness) {
+  for (std::size_t i = 0; i + 2 < way.size(); ++i) {
+    canvas.line(scale(way[i]), scale(way[i + 1]), colour, thickness);
+  }
+  // The arrow needs some length to have a direction.
+  for (std::size_t i = way.size(); i-- > 0;) {
+    if ((way.back() - way[i]).norm() * scale.pixels < 8) continue;
+    canvas.arrow(scale(way[i]), scale(way.back()), colour, thickness);
+    return;
+  }
+}
+
+void drawScaleBar(Canvas& canvas, const Rect& area, const Scale& scale) {
+  double metres = 5;
+  while (metres * scale.pixels < 40) metres *= 2;
+  const Vector2 from(area.x + 10, area.bottom() - 10),
+      to(from.x() + metres * scale.pixels, from.y());
+  canvas.rectangle({from.x() - 5, from.y() - 17, to.x() - from.x() + 10, 24}, kPaper.withAlpha(.8));
+  canvas.line(from, to, kInk, 2);
+  canvas.text({from.x(), from.y() - 5}, fmt::format("{:g} m", metres), 9, kInk);
+}
+
+std::vector<Vector2> wayOf(const World& world, std::optional<std::size_t> object) {
+  constexpr double kStep = 0.25;  // [s] of the lines
+  std::vector<Vector2> way;
+  for (double t = 0; t <= world.scenario().params.duration; t += kStep) {
+    const Pose3 pose = object ? world.object(*object, t).T_world_object : world.ego(t).T_world_ego;
+    way.push_back(pose.translation().head<2>());
+  }
+  return way;
+}
+
+void drawWorld(Canvas& canvas, const Scale& scale, const World& world) {
+  const Scenario& s = world.scenario();
+  const double half_time = .5 * s.params.duration;
+  drawStanding(canvas, scale, world);
+  for (std::size_t i = 0; i < world.objects(); ++i) {
+    const ObjectParams& o = s.objects[i];
+    const bool moves = o.waypoints.t.size() > 1;
+    if (!isRoadUser(o.kind)) continue;
+    if (moves) {
+      drawWay(canvas, scale, wayOf(world, i), colourOfKind(o.kind), 1.3);
+      drawBody(canvas, scale, o, world.object(i, 0), false);
+    }
+    drawBody(canvas, scale, o, world.object(i, half_time), moves);
+  }
+  drawWay(canvas, scale, wayOf(world, {}), kEgo, 2.2);
+  const Pose3 ego = world.ego(half_time).T_world_ego;
+  drawPolygon(canvas, scale,
+              footprint(ego.translation().head<2>(), yawOf(ego), kEgoFront, kEgoRear, kEgoWidth),
+              kEgo);
+}
+
+void drawScenario(Canvas& canvas, const Rect& area, const NamedScenario& named) {
+  const World world(named.scenario);
+  const Scenario& s = world.scenario();
+  const Extent extent = extentOf(world);
+  const Vector2 size = extent.high - extent.low;
+  canvas.text({area.x + 2, area.y + 11}, named.name, 12, kInk, true);
+  canvas.text({area.x + 4 + Canvas::textWidth(named.name + " ", 12, true), area.y + 11},
+              fmt::format("{:g} s", s.params.duration), 10, kMutedInk);
+  std::string text = s.params.description;
+  while (!text.empty() && Canvas::textWidth(text, 9) > area.width - 4) text.pop_back();
+  canvas.text({area.x + 2, area.y + 25}, text, 9, kMutedInk);
+  // A long street is cut into strips, the first one on top.
+  const Rect view{area.x, area.y + 30, area.width, area.height - 34};
+  const int strips = std::clamp(
+      static_cast<int>(std::lround(std::sqrt(size.x() / size.y() * view.height / view.width))), 1,
+      4);
+  constexpr double kBetween = 4;  // [px]
+  const double height = (view.height - kBetween * (strips - 1)) / strips;
+  for (int i = 0; i < strips; ++i) {
+    const Rect strip{view.x, view.y + i * (height + kBetween), view.width, height};
+    Scale scale;
+    scale.middle = {extent.low.x() + size.x() * (i + .5) / strips, extent.low.y() + .5 * size.y()};
+    scale.at = {strip.x + .5 * strip.width, strip.y + .5 * strip.height};
+    scale.pixels = std::min(strip.width / (size.x() / strips), strip.height / size.y());
+    canvas.clip(strip);
+    canvas.rectangle(strip, s.roads.empty() ? kAsphalt : kGrassColour);
+    drawWorld(canvas, scale, world);
+    if (i == strips - 1) drawScaleBar(canvas, strip, scale);
+    canvas.unclip();
+  }
+}
+
+void drawLegend(Canvas& canvas, const Vector2& at) {
+  const std::array<std::pair<const char*, Colour>, 7> entries = {
+      {{"vehicle with the sensors", kEgo},
+       {"car, van", colourOfKind(ObjectKind::kCar)},
+       {"bus", colourOfKind(ObjectKind::kBus)},
+       {"cyclist", colourOfKind(ObjectKind::kCyclist)},
+       {"pedestrian", colourOfKind(ObjectKind::kPedestrian)},
+       {"bush", kLeafColour},
+       {"wall", kWallColour}}};
+  double x = at.x();
+  for (const auto& [name, colour] : entries) {
+    canvas.rectangle({x, at.y() - 9, 14, 9}, colour);
+    canvas.text({x + 18, at.y()}, name, 10, kInk);
+    x += 34 + Canvas::textWidth(name, 10);
+  }
+  canvas.text({at.x(), at.y() + 16},
+              "filled: at half time; pale: at the start; arrow: end of the way; black dots: poles",
+              10, kMutedInk);
+}
+
+}  // namespace
+
+Picture coveragePicture(const std::vector<SensorParams>& sensors, const std::string& title) {
+  struct Panel {
+    const char* name;
+    Colour colour;
+    std::vector<Coverage> sensors;
+  };
+  std::vector<Panel> panels = {
+      {"Lidar", kLidarColour, {}}, {"Camera", kCameraColour, {}}, {"Radar", kRadarColour, {}}};
+  for (const SensorParams& s : sensors) {
+    panels[s.isLidar() ? 0 : s.isCamera() ? 1 : 2].sensors.push_back(coverageOf(s));
+  }
+  panels.erase(std::remove_if(panels.begin(), panels.end(),
+                              [](const Panel& p) { return p.sensors.empty(); }),
+               panels.end());
+  std::size_t lines = 0;
+  for (const Panel& p : panels) lines = std::max(lines, p.sensors.size());
+  constexpr int kSide = 480, kGap = 12, kTop = 64, kLine = 15;
+  const int width = static_cast<int>(panels.size()) * (kSide + kGap) + kGap;
+  Canvas canvas(width, kTop + kSide + 20 + kLine * static_cast<int>(lines));
+  canvas.text({kGap, 24}, title, 15, kInk, true);
+  double x = kGap;
+  for (const Panel& panel : panels) {
+    canvas.text({x, kTop - 8}, panel.name, 13, panel.colour, true);
+    canvas.text({x + 90, kTop - 8}, "seen from above, vehicle faces right", 10, kMutedInk);
+    drawCoverage(canvas, {x, kTop, kSide, kSide}, panel.sensors, panel.colour);
+    double y = kTop + kSide + 16;
+    for (const Coverage& c : panel.sensors) {
+      canvas.text({x, y}, detailOf(c), 10, kInk);
+      y += kLine;
+    }
+    x += kSide + kGap;
+  }
+  return canvas.picture();
+}
+
+Picture scenarioSheet(const std::vector<NamedScenario>& scenarios) {
+  const int count = std::max(1, static_cast<int>(scenarios.size()));
+  const int columns = count <= 2 ? count : count <= 4 ? 2 : 3;
+  const int rows = (count + columns - 1) / columns;
+  constexpr int kWidth = 520, kHeight = 400, kGap = 14, kTop = 40, kBottom = 44;
+  const int width = std::max(1000, columns * (kWidth + kGap) + kGap);
+  Canvas canvas(width, kTop + rows * (kHeight + kGap) + kBottom);
+  canvas.text({kGap, 24}, "Scenarios of the simulator, seen from above", 15, kInk, true);
+  for (int i = 0; i < static_cast<int>(scenarios.size()); ++i) {
+    const Rect area{static_cast<double>(kGap + i % columns * (kWidth + kGap)),
+                    static_cast<double>(kTop + i / columns * (kHeight + kGap)), kWidth, kHeight};
+    drawScenario(canvas, area, scenarios[static_cast<std::size_t>(i)]);
+  }
+  drawLegend(canvas, {kGap, static_cast<double>(kTop + rows * (kHeight + kGap) + 12)});
+  return canvas.picture();
+}
+
+}  // namespace perception
