@@ -9,6 +9,7 @@
 #include "libperception/measurement/RadarModel.h"
 #include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/RadarUnit.h"
+#include "libperception/simulation/SphericalCamera.h"
 #include "libperception/simulation/World.h"
 
 namespace perception {
@@ -43,7 +44,8 @@ Played play(double from, double to) {
     for (const SensorParams& unit : world.scenario().sensors) {
       const auto sensor = std::find_if(setup.sensors.begin(), setup.sensors.end(),
                                        [&](const auto& k) { return k.label == unit.label; });
-      if (unit.label.rfind("RADAR", 0) != 0 || sensor == setup.sensors.end()) continue;
+      if (unit.label.rfind("RADAR", 0) != 0) continue;
+      if (sensor == setup.sensors.end()) continue;
       const double t = from + 0.1 * i + 0.01 * unit_number++;
       caster.setTime(t);
       SensorFrame frame;
@@ -98,6 +100,57 @@ TEST(RadarScenario, EightRadarsAloneTrackTheOncomingSuburban) {
   EXPECT_GE(p.tracked, 0.8 * p.in_view);
   EXPECT_LE(std::sqrt(p.speed2 / p.tracked), 2);
   EXPECT_LE(p.strangers, 0.1 * p.scans);  // "radar has few false positives"
+}
+
+TEST(PanoramaScenario, BoxesOfTheSuburbanLieWhereItIs) {
+  // The same encounter (simulated) in the 2k panorama: every residual against its stated deviation.
+  Config site = Config::fromFile(ini("skynet.ini"));
+  const PipelineSetup setup = PipelineSetup::read(site);
+  Config file = Config::fromFile(ini("scenarios/A.ini"));
+  const World world(readScenario(file));
+  LidarCaster caster(world);
+  const auto named = [](const auto& s) { return s.label == "CAMERA_PANO"; };
+  const auto& sensors = world.scenario().sensors;
+  const auto unit = std::find_if(sensors.begin(), sensors.end(), named);
+  const auto rib = std::find_if(setup.sensors.begin(), setup.sensors.end(), named);
+  ASSERT_TRUE(unit != sensors.end() && rib != setup.sensors.end());
+  int boxes = 0, near = 0, reversed = 0;
+  Vector3 nis = Vector3::Zero();
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const double t = 11 + 0.08 * static_cast<double>(i);
+    caster.setTime(t);
+    SensorFrame frame;
+    frame.ego = world.ego(t);
+    frame.stamp = world.stamp(t);
+    frame.T_ego_sensor = unit->T_ego_sensor() * opticalAxes();
+    frame.data =
+        detectPanorama(caster, t, unit->panorama, frame.T_world_sensor(), RngKey{6, i, 0, 0});
+    const auto scan = rib->front_end->extract(frame);
+    for (const TruthObject& o : world.truth(0, t)) {
+      if (o.type != "Car") continue;
+      Kinematics k;
+      k.q << o.position.x(), o.position.y(), o.vx, o.vy, o.yaw;
+      k.has_yaw = true;
+      const Extent extent{o.length, o.width, 0, 0};
+      AxisPrediction p;
+      scan.model->predict(&k, &extent, 1, scan.state, &p);
+      for (const Measurement& m : scan.measurements) {
+        if (!p.defined || m.label != 0 || p.h[2] > 15 || m.seen != FootprintModel::kAll) continue;
+        const AxisVector y = residual(*scan.model, m, p.h);
+        if (std::abs(y[0]) > radians(30) || std::abs(y[2]) > 6) continue;  // a false box
+        ++boxes;
+        nis += y.cwiseAbs2().cwiseQuotient(m.R.diagonal());
+        if (!m.heading) continue;
+        near += std::abs(wrapAxis(m.heading->yaw - o.yaw)) < 3 * m.heading->sigma;
+        reversed += std::abs(wrapAngle(m.heading->yaw - o.yaw)) > kPi / 2;
+      }
+    }
+  }
+  ASSERT_GT(boxes, 30);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_LT(nis[axis] / boxes, 1.5) << axis;
+  EXPECT_GE(near, 0.95 * boxes);
+  EXPECT_LE(reversed, 0.4 * boxes);  // a fifth, by the simulated detector
+  EXPECT_GE(reversed, 0.05 * boxes);
 }
 
 }  // namespace
