@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
+#include <future>
 
 #include "gui-offscreen/Picture.h"
 #include "libperception/app/ScenarioPictures.h"
@@ -118,12 +119,16 @@ void SimulateApp::run() {
   RawlogWriter log(output, gzip_level);
   {
     Progress progress("simulate", static_cast<std::uint64_t>(duration * 1e3));
+    // One observation is packed while the next one is simulated.
+    std::future<void> packed;
     while (const auto observation = simulator.next()) {
       stopIfAsked();
-      log.write(*observation);
+      if (packed.valid()) packed.get();
+      packed = std::async(std::launch::async, [&log, observation] { log.write(*observation); });
       progress.update(static_cast<std::uint64_t>(simulator.time() * 1e3),
                       static_cast<std::uint64_t>(simulator.frames()));
     }
+    if (packed.valid()) packed.get();
   }
   // The truth first: a log of the final name then never lacks it.
   out_truth_file = truthFileOf(output);

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "libperception/simulation/World.h"
@@ -151,6 +152,7 @@ struct LidarCaster::Impl {
   const World& world;
   Device device;
   Scene top;
+  std::optional<double> time;  // [s] at which the scene stands
   std::vector<Instance> instances;
   mutable tbb::task_arena arena;
   tbb::task_arena one_thread{1};  // trees built by one thread are the same every time
@@ -166,6 +168,8 @@ LidarCaster::~LidarCaster() = default;
 const World& LidarCaster::world() const { return impl_->world; }
 
 void LidarCaster::setTime(double t) {
+  if (impl_->time == t) return;
+  impl_->time = t;
   std::vector<Pose3> poses;
   for (Impl::Instance& instance : impl_->instances) {
     if (instance.object == BeamHit::kRoad) {
@@ -186,15 +190,25 @@ std::vector<BeamHit> LidarCaster::cast(const Vector3& origin,
                                        double range_max) const {
   std::vector<BeamHit> hits(directions.size());
   constexpr std::size_t kGrain = 1024;  // beams a task
-  impl_->arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, directions.size(), kGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                          hits[i] = impl_->hit(origin, directions[i], range_max);
-                        }
-                      });
+  if (directions.size() <= kGrain) {    // no task for a few beams
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      hits[i] = impl_->hit(origin, directions[i], range_max);
+    }
+    return hits;
+  }
+  parallel(directions.size(), kGrain, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) hits[i] = impl_->hit(origin, directions[i], range_max);
   });
   return hits;
+}
+
+void LidarCaster::parallel(std::size_t count, std::size_t grain,
+                           const std::function<void(std::size_t, std::size_t)>& work) const {
+  impl_->arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, grain),
+        [&](const tbb::blocked_range<std::size_t>& range) { work(range.begin(), range.end()); });
+  });
 }
 
 // A grid of beams over the directions in which the object's box lies.

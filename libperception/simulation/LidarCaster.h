@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -33,6 +34,9 @@ class LidarCaster {
   /// One hit for each direction (unit vectors, world) from `origin` [m], up to `range_max` [m].
   std::vector<BeamHit> cast(const Vector3& origin, const std::vector<Vector3>& directions,
                             double range_max) const;
+  /// Calls work(from, to) for pieces of [0, count) of about `grain`, on the caster's threads.
+  void parallel(std::size_t count, std::size_t grain,
+                const std::function<void(std::size_t from, std::size_t to)>& work) const;
   /// Share of the object that nothing else hides from `eye` [m, world], by solid angle.
   double visibleShare(const Vector3& eye, std::size_t object) const;
 

@@ -33,6 +33,7 @@ constexpr double kSpeckle = 0.12;    // relative spread of the echo's power, rou
 constexpr double kCoordinateUnit =
     1.0 / 512;                           // [m] HDL-64E: 2 mm; a power of two, as it packs well
 constexpr double kIntensityUnit = 0.01;  // as in KITTI's files
+constexpr std::size_t kGrain = 2048;     // beams a task
 constexpr int kSlices = 36;              // of a sweep: 10 deg of a turn each
 constexpr std::uint32_t kWeatherPurpose = 0x57EA0000;  // its own stream of random numbers
 
@@ -41,9 +42,10 @@ double quantised(double value, double unit) { return std::round(value / unit) * 
 /// The echo of one pulse; nothing when it stays below the threshold.
 struct Echo {
   bool received = false;
-  bool on_object = false;  ///< else road or air
-  double range = 0;        ///< [m]
-  double intensity = 0;    ///< [0, 1] corrected for range, as the instrument reports it
+  bool on_object = false;     ///< else road or air
+  bool object_label = false;  ///< what the instrument itself says (four layers)
+  double range = 0;           ///< [m]
+  double intensity = 0;       ///< [0, 1] corrected for range, as the instrument reports it
 };
 
 LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& direction,
@@ -212,15 +214,24 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
     directions.clear();
     for (const Beam& beam : slices_[s]) directions.push_back(pose.linear() * beam.direction);
     std::vector<LidarPulse> pulses = pulsesOf(caster, s, pose, directions);
+    std::vector<Echo> echoes(pulses.size());
+    caster.parallel(pulses.size(), kGrain, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) {
+        const std::uint32_t slot = slices_[s][i].slot;
+        if (hook) {
+          Rng weather_rng(key.withSlot(slot).withPurpose(key.purpose ^ kWeatherPurpose));
+          hook(pulses[i], weather_rng);
+        }
+        Rng rng(key.withSlot(slot));
+        echoes[i] = echoOf(pulses[i], params_, rng);
+        if (echoes[i].received && params_.layout == LidarParams::Layout::kFourLayer) {
+          echoes[i].object_label = echoes[i].on_object != (rng.uniform() < params_.label_error);
+        }
+      }
+    });
     for (std::size_t i = 0; i < pulses.size(); ++i) {
       const Beam& beam = slices_[s][i];
-      LidarPulse& pulse = pulses[i];
-      if (hook) {
-        Rng weather_rng(key.withSlot(beam.slot).withPurpose(key.purpose ^ kWeatherPurpose));
-        hook(pulse, weather_rng);
-      }
-      Rng rng(key.withSlot(beam.slot));
-      const Echo echo = echoOf(pulse, params_, rng);
+      const Echo& echo = echoes[i];
       if (!echo.received) continue;
       const Vector3 point = beam.direction * echo.range;
       cloud.x.push_back(static_cast<float>(quantised(point.x(), kCoordinateUnit)));
@@ -230,11 +241,10 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
       cloud.ring.push_back(beam.ring);
       if (params_.sweep) cloud.time_offset.push_back(static_cast<float>(offset));
       if (params_.layout == LidarParams::Layout::kFourLayer) {
-        const bool object_label = echo.on_object != (rng.uniform() < params_.label_error);
-        cloud.label.push_back(
-            static_cast<std::uint8_t>(object_label ? PointLabel::kObject : PointLabel::kGround));
+        cloud.label.push_back(static_cast<std::uint8_t>(echo.object_label ? PointLabel::kObject
+                                                                          : PointLabel::kGround));
       }
-      if (echo.on_object) ++result.points_on[static_cast<std::size_t>(pulse.hit.object)];
+      if (echo.on_object) ++result.points_on[static_cast<std::size_t>(pulses[i].hit.object)];
     }
   }
   return result;
@@ -251,11 +261,12 @@ std::vector<LidarPulse> LidarSensor::pulsesOf(const LidarCaster& caster, std::si
     return hit.object >= 0 ? objects[static_cast<std::size_t>(hit.object)].reflectivity : 1.0;
   };
   const std::vector<BeamHit> hits = caster.cast(origin, directions, params_.range_max);
-  std::vector<LidarPulse> pulses;
-  pulses.reserve(hits.size());
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    pulses.push_back(pulseOn(hits[i], origin, directions[i], factor(hits[i])));
-  }
+  std::vector<LidarPulse> pulses(hits.size());
+  caster.parallel(hits.size(), kGrain, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      pulses[i] = pulseOn(hits[i], origin, directions[i], factor(hits[i]));
+    }
+  });
   if (params_.divergence <= 0) return pulses;
   const auto& beams = slices_[slice];
   std::vector<std::size_t> wide;

@@ -121,29 +121,30 @@ void Simulator::setVisibility(std::vector<TruthObject>& rows, double t) {
   const auto lidar = std::find_if(sensors.begin(), sensors.end(),
                                   [](const SensorParams& s) { return s.isLidar(); });
   const SensorParams& eye = lidar != sensors.end() ? *lidar : sensors.front();
-  for (TruthObject& row : rows) {
+  const Vector3 from = (T_world_ego * eye.T_ego_sensor()).translation();
+  const bool has_camera = std::any_of(sensors.begin(), sensors.end(),
+                                      [](const SensorParams& s) { return s.isCamera(); });
+  const auto see = [&](TruthObject& row) {
     const auto object = static_cast<std::size_t>(row.id) - 1;
-    const Vector3 from = (T_world_ego * eye.T_ego_sensor()).translation();
     row.occluded = occlusionLevel(caster_.visibleShare(from, object));
-    bool has_camera = false;
-    double truncated = 1;
+    row.truncated = has_camera ? 1 : 0;
     for (const SensorParams& sensor : sensors) {
       if (!sensor.isCamera()) continue;
-      has_camera = true;
       const auto outline = imageOutline(world_, object, t, sensor.cameraModel(),
                                         T_world_ego * sensor.T_ego_sensor() * opticalAxes());
-      if (outline) truncated = std::min(truncated, outline->truncated);
+      if (outline) row.truncated = std::min(row.truncated, outline->truncated);
     }
-    row.truncated = has_camera ? truncated : 0;
-  }
+  };
+  caster_.parallel(rows.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) see(rows[i]);
+  });
 }
 
 // The pose estimator's error: first-order Gauss-Markov, as a filter's error varies slowly.
 EgoState Simulator::reportedEgo(double t) {
   const PoseParams& p = world_.scenario().ego.pose;
   const Vector3 sigma(p.sigma_xy, p.sigma_xy, p.sigma_yaw);
-  const double keep =
-      pose_error_drawn_ ? std::exp(-(t - pose_error_time_) / p.correlation) : 0;
+  const double keep = pose_error_drawn_ ? std::exp(-(t - pose_error_time_) / p.correlation) : 0;
   for (int i = 0; i < 3; ++i) {
     pose_error_(i) =
         keep * pose_error_(i) + std::sqrt(1 - keep * keep) * sigma(i) * pose_rng_.normal();
