@@ -1,0 +1,6 @@
+#include "libperception/app/StudyApp.h"
+
+int main(int argc, char** argv) {
+  perception::StudyApp app;
+  return perception::runApp(app, argc, argv);
+}

@@ -1,0 +1,105 @@
+#include "libperception/app/StudyApp.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <optional>
+#include <thread>
+
+#include "libperception/app/OutputFolder.h"
+#include "libperception/evaluation/Gnuplot.h"
+#include "libperception/scene/OutputFile.h"
+#include "libperception/study/AssociationStudy.h"
+#include "libperception/study/HeadingStudy.h"
+#include "libperception/study/MonteCarloStudy.h"
+
+namespace perception {
+namespace {
+
+struct Study {
+  const char* name;
+  const char* description;
+  StudyReport (*run)(const StudyApp& app);
+};
+
+const Study kStudies[] = {
+    {"monte-carlo", "walkers and cyclists told apart by their filters' innovations (simulated)",
+     [](const StudyApp& app) {
+       MonteCarloParams p;
+       p.seed = app.seed;
+       if (app.runs > 0) p.repeats = app.runs;
+       return monteCarloStudy(p);
+     }},
+    {"association", "identities through encounters, by proposal and particles (simulated)",
+     [](const StudyApp& app) {
+       AssociationParams p;
+       if (app.runs > 0) p.seeds = app.runs;
+       return associationStudy(p);
+     }},
+    {"heading", "headings that confuse front and back (simulated)",
+     [](const StudyApp& app) {
+       HeadingParams p;
+       p.seed = app.seed;
+       if (app.runs > 0) p.runs = app.runs;
+       return headingStudy(p);
+     }},
+};
+
+}  // namespace
+
+std::string StudyApp::description() const {
+  return "Experiments about the method: each writes a report with tables and plots.";
+}
+
+void StudyApp::declare(CLI::App& cli) {
+  cli.require_subcommand(1);
+  for (const Study& s : kStudies) {
+    CLI::App* sub = cli.add_subcommand(s.name, s.description);
+    sub->add_option("-o,--output", output, "Folder of the report")->required();
+    sub->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
+    sub->add_option("--runs", runs, "Experiments or simulated runs; 0 = the study's own number")
+        ->check(CLI::Range(0, 1000000));
+    sub->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
+        ->check(CLI::Range(0, 4096));
+    sub->callback([this, name = std::string(s.name)] { study = name; });
+  }
+}
+
+void StudyApp::run() {
+  const auto s = std::find_if(std::begin(kStudies), std::end(kStudies),
+                              [&](const Study& x) { return x.name == study; });
+  if (s == std::end(kStudies)) throw Error(ExitCode::kUsage, "no study '" + study + "'");
+  std::optional<tbb::global_control> limit;
+  if (threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  out_report = s->run(*this);
+  writeReport();
+  fmt::print("{}\nReport: {}/report.md\n", markdownOf(out_report), output);
+}
+
+void StudyApp::writeReport() {
+  OutputFolder folder(output);
+  for (const auto& table : out_report.tables)
+    writeFile(folder.pathFor(table.name + ".csv"), csvOf(table));
+  std::string dir;
+  for (const auto& plot : out_report.plots) {
+    for (const auto& [file, content] : plot.data) writeFile(folder.pathFor(file), content);
+    const std::string script = plot.name + ".gp", path = folder.pathFor(script);
+    writeFile(path, fmt::format("set terminal pngcairo size {},{} font 'Sans,11'\n"
+                                "set output '{}.png'\n{}",
+                                plot.width, plot.height, plot.name, plot.script));
+    dir = path.substr(0, path.size() - script.size());
+    const std::string fault = runGnuplot(dir.empty() ? "." : dir, script);
+    if (fault.empty()) {
+      folder.pathFor(plot.name + ".png");
+    } else {
+      warn(fault);
+    }
+  }
+  writeFile(folder.pathFor("report.md"), markdownOf(out_report));
+  folder.commit("report.md");
+}
+
+}  // namespace perception
