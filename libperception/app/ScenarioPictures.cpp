@@ -393,7 +393,9 @@ Picture coveragePicture(const std::vector<SensorParams>& sensors, const std::str
     drawCoverage(canvas, {x, kTop, kSide, kSide}, panel.sensors, panel.colour);
     double y = kTop + kSide + 16;
     for (const Coverage& c : panel.sensors) {
-      canvas.text({x, y}, detailOf(c), 10, kInk);
+      const std::string text = detailOf(c);
+      const double shrink = std::min(1.0, kSide / Canvas::textWidth(text, 10));
+      canvas.text({x, y}, text, 10 * shrink, kInk);
       y += kLine;
     }
     x += kSide + kGap;
