@@ -16,11 +16,16 @@
 
 namespace perception {
 
-std::string truthFileOf(const std::string& rawlog) {
+namespace {
+
+// FILE.truth.csv beside FILE.rawlog.
+std::string truthBeside(const std::string& rawlog) {
   const std::filesystem::path path(rawlog);
   const bool named = path.extension() == ".rawlog";
   return (named ? path.parent_path() / path.stem() : path).string() + ".truth.csv";
 }
+
+}  // namespace
 
 std::string SimulateApp::description() const {
   return "Simulates a scenario: writes a rawlog and the truth, FILE.truth.csv, beside it.";
@@ -131,7 +136,7 @@ void SimulateApp::run() {
     if (packed.valid()) packed.get();
   }
   // The truth first: a log of the final name then never lacks it.
-  out_truth_file = truthFileOf(output);
+  out_truth_file = truthBeside(output);
   writeGroundTruth(out_truth_file, simulator.truth());
   log.close();
   out_frames = simulator.frames();

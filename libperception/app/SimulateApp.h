@@ -37,7 +37,4 @@ class SimulateApp : public App {
   void drawContactSheet();
 };
 
-/// FILE.truth.csv beside FILE.rawlog.
-std::string truthFileOf(const std::string& rawlog);
-
 }  // namespace perception

@@ -1,0 +1,91 @@
+#include "libperception/app/SimulateApp.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "libperception/core/GroundTruth.h"
+#include "tests/support/TemporaryFolder.h"
+
+namespace perception {
+namespace {
+
+const std::string kIni = PERCEPTION_SOURCE_DIR "/ini/";
+
+int simulate(SimulateApp& app, const std::vector<std::string>& arguments) {
+  std::vector<const char*> argv = {"perception-simulate"};
+  for (const std::string& a : arguments) argv.push_back(a.c_str());
+  return runApp(app, static_cast<int>(argv.size()), argv.data());
+}
+
+std::string bytesOf(const std::string& path) {
+  std::ostringstream bytes;
+  bytes << std::ifstream(path, std::ios::binary).rdbuf();
+  return bytes.str();
+}
+
+/// A second of scenario E with a camera alone.
+std::vector<std::string> shortScene(const std::string& output) {
+  return {"-c",        kIni + "scenarios/E.ini",          "--set", "scenario.duration=1",
+          "--vehicle", kIni + "vehicles/camera_only.ini", "-o",    output};
+}
+
+TEST(SimulateApp, AnotherVehicleReplacesTheSensors) {
+  const test::TemporaryFolder folder;
+  SimulateApp app;
+  ASSERT_EQ(simulate(app, shortScene(folder / "e.rawlog")), 0);
+  EXPECT_EQ(app.out_points, 0u);
+  EXPECT_EQ(app.out_targets, 0u);
+  EXPECT_GT(app.out_boxes, 0u);
+  EXPECT_EQ(app.out_frames, 11);
+  EXPECT_EQ(readGroundTruth(folder / "e.truth.csv").instants.size(), 11u);
+}
+
+TEST(SimulateApp, TrialsDifferAndAreRepeated) {
+  const test::TemporaryFolder folder;
+  for (const auto& [name, trial] :
+       {std::pair("a", "1"), std::pair("b", "1"), std::pair("c", "2")}) {
+    auto arguments = shortScene(folder / (std::string(name) + ".rawlog"));
+    arguments.insert(arguments.end(), {"--trial", trial});
+    SimulateApp app;
+    ASSERT_EQ(simulate(app, arguments), 0);
+  }
+  const std::string a = bytesOf(folder / "a.rawlog");
+  EXPECT_FALSE(a.empty());
+  EXPECT_TRUE(a == bytesOf(folder / "b.rawlog"));
+  EXPECT_FALSE(a == bytesOf(folder / "c.rawlog"));
+  EXPECT_NE(bytesOf(folder / "a.truth.csv"), bytesOf(folder / "c.truth.csv"));
+}
+
+TEST(SimulateApp, TrialThatTheScenarioHasNotIsAConfigurationError) {
+  const test::TemporaryFolder folder;
+  auto arguments = shortScene(folder / "e.rawlog");
+  arguments.insert(arguments.end(), {"--trial", "6"});
+  SimulateApp app;
+  EXPECT_EQ(simulate(app, arguments), static_cast<int>(ExitCode::kBadConfig));
+  EXPECT_FALSE(std::filesystem::exists(folder / "e.rawlog"));
+}
+
+TEST(SimulateApp, DrawsCoverageAndContactSheet) {
+  const test::TemporaryFolder folder;
+  SimulateApp coverage, sheet;
+  EXPECT_EQ(simulate(coverage,
+                     {"--coverage", folder / "coverage.png", "-c", kIni + "vehicles/skynet.ini"}),
+            0);
+  EXPECT_EQ(simulate(sheet, {"--contact-sheet", folder / "sheet.png", kIni + "scenarios/A.ini",
+                             kIni + "scenarios/busy_street.ini"}),
+            0);
+  for (const char* name : {"coverage.png", "sheet.png"}) {
+    EXPECT_GT(std::filesystem::file_size(folder / name), 50000u) << name;  // not blank
+  }
+}
+
+TEST(SimulateApp, NoScenarioIsAUsageError) {
+  SimulateApp app;
+  EXPECT_EQ(simulate(app, {"-o", "nowhere.rawlog"}), static_cast<int>(ExitCode::kUsage));
+}
+
+}  // namespace
+}  // namespace perception
