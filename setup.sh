@@ -29,6 +29,8 @@ packages=(
   libcli11-dev           # command lines
   librandom123-dev       # random numbers by counter
   libtbb-dev             # threads
+  libnlopt-dev           # noise parameters by maximum likelihood
+  libtinyxml2-dev        # GPX files
   zlib1g-dev             # rawlogs are gzip files; check sums
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator

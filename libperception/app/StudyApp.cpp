@@ -12,6 +12,7 @@
 #include "libperception/evaluation/Gnuplot.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/study/AssociationStudy.h"
+#include "libperception/study/GpsStudy.h"
 #include "libperception/study/HeadingStudy.h"
 #include "libperception/study/MonteCarloStudy.h"
 
@@ -22,6 +23,7 @@ struct Study {
   const char* name;
   const char* description;
   StudyReport (*run)(const StudyApp& app);
+  bool recordings = false;  ///< reads a folder of them
 };
 
 const Study kStudies[] = {
@@ -45,6 +47,16 @@ const Study kStudies[] = {
        if (app.runs > 0) p.runs = app.runs;
        return headingStudy(p);
      }},
+    {"gps", "travel modes told apart by positions once a second (recordings)",
+     [](const StudyApp& app) {
+       GpsParams p;
+       p.seed = app.seed;
+       p.folder = app.folder;
+       p.stationary = app.stationary;
+       if (app.runs > 0) p.draws = app.runs;
+       return gpsStudy(p);
+     },
+     true},
 };
 
 }  // namespace
@@ -63,6 +75,15 @@ void StudyApp::declare(CLI::App& cli) {
         ->check(CLI::Range(0, 1000000));
     sub->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
         ->check(CLI::Range(0, 4096));
+    if (s.recordings) {
+      sub->add_option(
+             "-i,--input", folder,
+             "Folder with pedestrian/, cyclist/, car/, bus/, each with CLASS_USER_....nmea, "
+             ".gpx or .csv files")
+          ->required();
+      sub->add_option("--stationary", stationary,
+                      "Recording of a receiver at rest: its covariance is R");
+    }
     sub->callback([this, name = std::string(s.name)] { study = name; });
   }
 }

@@ -13,6 +13,8 @@ class StudyApp : public App {
   std::string study;       ///< the name of the experiment
   std::uint64_t seed = 1;  ///< --seed
   int runs = 0;            ///< --runs; 0 = the study's own number
+  std::string folder;      ///< gps: recordings by class
+  std::string stationary;  ///< gps: recording of a receiver at rest
 
   StudyReport out_report;
 

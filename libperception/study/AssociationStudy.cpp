@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "libperception/evaluation/Gnuplot.h"
+
 namespace perception {
 namespace {
 
@@ -101,8 +103,8 @@ StudyReport associationStudy(const AssociationParams& params) {
       "set style fill solid 0.8\nset grid ytics\nset yrange [0:*]\n"
       "set ylabel 'share of runs with a swap'\nset key top right\nplot ";
   for (std::size_t s = 0; s < associationScenes().size(); ++s) {
-    plot.script += fmt::format("{}'swaps.dat' using {}:xtic(1) title '{}' noenhanced",
-                               s ? ", " : "", s + 2, associationScenes()[s].label);
+    plot.script += fmt::format("{}'swaps.dat' using {}:xtic(1) title {} noenhanced", s ? ", " : "",
+                               s + 2, gnuplotString(associationScenes()[s].label));
   }
   plot.script += '\n';
   report.plots = {plot};

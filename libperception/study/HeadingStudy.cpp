@@ -10,6 +10,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Random.h"
+#include "libperception/evaluation/Gnuplot.h"
 #include "libperception/filter/MotionModels.h"
 
 namespace perception {
@@ -297,7 +298,8 @@ StudyReport headingStudy(const HeadingParams& params) {
     plot.name = std::string("heading_") + t.name;
     plot.caption = t.title + ": mean over simulated runs, by the share of reversed headings.";
     plot.width = 1000, plot.height = 450;
-    plot.script = "set multiplot layout 1,2 title 'simulated car'\nset grid\nset xlabel 'share reversed'\n";
+    plot.script =
+        "set multiplot layout 1,2 title 'simulated car'\nset grid\nset xlabel 'share reversed'\n";
     std::string tracked = "set key off\nset ylabel 'instants tracked'\nset yrange [*:*]\nplot ",
                 way =
                     "set key bottom left\nset ylabel 'heading error below 90 degrees'\n"
@@ -317,7 +319,7 @@ StudyReport headingStudy(const HeadingParams& params) {
       }
       plot.data.push_back({file, data});
       const std::string style =
-          fmt::format("with linespoints lw 2 title '{}' noenhanced", method.label);
+          fmt::format("with linespoints lw 2 title {} noenhanced", gnuplotString(method.label));
       tracked += fmt::format("{}'{}' using 1:2 {}", column ? ", " : "", file, style);
       way += fmt::format("{}'{}' using 1:3 {}", column ? ", " : "", file, style);
       ++column;
