@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <ostream>
+#include <stdexcept>
+#include <string>
 
 #include "libperception/measurement/CArchiveGuards.h"
 #include "libperception/sensors/Conversions.h"
@@ -56,22 +58,34 @@ ObjectDetection readDetection(CArchive& in) {
   return d;
 }
 
+CameraModel::Projection readProjection(CArchive& in) {
+  const auto byte = in.ReadAs<std::uint8_t>();
+  if (byte > static_cast<std::uint8_t>(CameraModel::Projection::kEquirectangular))
+    throw std::runtime_error("an unknown projection of a camera: " + std::to_string(byte));
+  return static_cast<CameraModel::Projection>(byte);
+}
+
 }  // namespace
 
-uint8_t CObservationObjectDetections::serializeGetVersion() const { return 0; }
+uint8_t CObservationObjectDetections::serializeGetVersion() const {
+  // Version 1 adds the projection; pinhole cameras stay readable by older programs.
+  return detections.camera.projection == CameraModel::Projection::kPinhole ? 0 : 1;
+}
 
 void CObservationObjectDetections::serializeTo(CArchive& out) const {
   const CameraModel& c = detections.camera;
   out << timestamp << sensorLabel << sensor_pose;
   out.WriteAs<std::int32_t>(c.width).WriteAs<std::int32_t>(c.height);
-  out << c.fx << c.fy << c.cx << c.cy << detections.T_ego_camera.has_value();
+  out << c.fx << c.fy << c.cx << c.cy;
+  if (serializeGetVersion() > 0) out.WriteAs<std::uint8_t>(static_cast<std::uint8_t>(c.projection));
+  out << detections.T_ego_camera.has_value();
   if (detections.T_ego_camera) out << toMrpt(*detections.T_ego_camera);
   out.WriteAs<std::uint32_t>(detections.objects.size());
   for (const auto& d : detections.objects) writeDetection(out, d);
 }
 
 void CObservationObjectDetections::serializeFrom(CArchive& in, uint8_t version) {
-  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   CameraModel& c = detections.camera;
   in >> timestamp;
   sensorLabel = archive::readText(in);
@@ -79,6 +93,7 @@ void CObservationObjectDetections::serializeFrom(CArchive& in, uint8_t version) 
   c.width = in.ReadAs<std::int32_t>();
   c.height = in.ReadAs<std::int32_t>();
   in >> c.fx >> c.fy >> c.cx >> c.cy;
+  c.projection = version > 0 ? readProjection(in) : CameraModel::Projection::kPinhole;
   detections.T_ego_camera.reset();
   if (archive::readFlag(in)) {
     mrpt::poses::CPose3D pose;
@@ -95,8 +110,9 @@ void CObservationObjectDetections::getDescriptionAsText(std::ostream& out) const
   CObservation::getDescriptionAsText(out);
   const CameraModel& c = detections.camera;
   out << fmt::format(
-      "Detections: {}\nCamera: {} x {} px, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}\n",
-      detections.objects.size(), c.width, c.height, c.fx, c.fy, c.cx, c.cy);
+      "Detections: {}\nCamera: {} x {} px, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}, {}\n",
+      detections.objects.size(), c.width, c.height, c.fx, c.fy, c.cx, c.cy,
+      c.projection == CameraModel::Projection::kPinhole ? "pinhole" : "equirectangular");
   out << "Sensor pose: " << sensor_pose << '\n';
   for (const auto& d : detections.objects) {
     out << fmt::format("  {} score {:.4f}", d.label, d.score);

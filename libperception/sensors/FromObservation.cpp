@@ -11,6 +11,7 @@
 
 #include "libperception/sensors/CObservationLidarScan.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/CObservationRadarScan.h"
 #include "libperception/sensors/Conversions.h"
 
 namespace perception {
@@ -111,6 +112,22 @@ std::optional<Data> decode(const CObservationObjectDetections& observation, Deco
   return detections;
 }
 
+bool usable(const RadarReturn& r) {
+  return std::isfinite(r.range + r.bearing + r.amplitude) && r.range > 0 &&
+         (!r.has_rate || std::isfinite(r.range_rate)) &&
+         (!r.elevation || std::isfinite(*r.elevation));
+}
+
+std::optional<Data> decode(const CObservationRadarScan& observation, DecodeCounts& counts) {
+  RadarReturns scan = observation.scan;
+  auto& returns = scan.returns;
+  const auto bad =
+      std::remove_if(returns.begin(), returns.end(), [](const auto& r) { return !usable(r); });
+  counts.bad_returns += static_cast<std::uint64_t>(returns.end() - bad);
+  returns.erase(bad, returns.end());
+  return scan;
+}
+
 /// One class of observation that holds data for a front end: to decode another class, add its
 /// decode() and a row.
 struct Decoder {
@@ -130,6 +147,7 @@ constexpr Decoder kDecoders[] = {
     decoderOf<CObservationLidarScan>(),
     decoderOf<mrpt::obs::CObservationPointCloud>(),
     decoderOf<CObservationObjectDetections>(),
+    decoderOf<CObservationRadarScan>(),
 };
 
 const Decoder* decoderFor(const CObservation& observation) {

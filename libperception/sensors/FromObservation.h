@@ -18,10 +18,13 @@ struct DecodeCounts {
   std::uint64_t beyond_range = 0;  ///< farther than the instrument can see
   std::uint64_t bad_boxes =
       0;  ///< detections with a size or place that is not a number or not positive
+  std::uint64_t bad_returns = 0;      ///< of radars: with a value that is not a number, or no range
   std::uint64_t rejected_stamps = 0;  ///< observations without a usable stamp
   std::uint64_t rejected = 0;         ///< observations whose arrays contradict each other
 
-  std::uint64_t dropped() const { return not_finite + no_range + beyond_range + bad_boxes; }
+  std::uint64_t dropped() const {
+    return not_finite + no_range + beyond_range + bad_boxes + bad_returns;
+  }
 };
 
 /// The observation as a frame of one sensor: data, pose of the sensor on the vehicle, stamp, label.

@@ -7,6 +7,7 @@
 #include "libperception/measurement/CObservationMeasurements.h"
 #include "libperception/sensors/CObservationLidarScan.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/CObservationRadarScan.h"
 #include "libperception/sensors/Conversions.h"
 
 namespace perception {
@@ -17,6 +18,10 @@ std::shared_ptr<mrpt::obs::CObservation> observationFromFrame(const SensorFrame&
     auto scan = std::make_shared<CObservationLidarScan>();
     scan->cloud = *cloud;
     result = scan;
+  } else if (const auto* returns = std::get_if<RadarReturns>(&frame.data)) {
+    auto radar = std::make_shared<CObservationRadarScan>();
+    radar->scan = *returns;
+    result = radar;
   } else {
     auto detections = std::make_shared<CObservationObjectDetections>();
     detections->detections = std::get<ObjectDetections>(frame.data);

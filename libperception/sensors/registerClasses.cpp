@@ -9,6 +9,7 @@
 #include "libperception/measurement/CObservationMeasurements.h"
 #include "libperception/sensors/CObservationLidarScan.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/CObservationRadarScan.h"
 
 namespace perception {
 
@@ -19,6 +20,7 @@ void registerPerceptionClasses() {
     mrpt::maps::registerAllClasses_mrpt_maps();
     mrpt::rtti::registerClass(CLASS_ID(CObservationLidarScan));
     mrpt::rtti::registerClass(CLASS_ID(CObservationObjectDetections));
+    mrpt::rtti::registerClass(CLASS_ID(CObservationRadarScan));
     mrpt::rtti::registerClass(CLASS_ID(CObservationMeasurements));
   });
 }

@@ -170,5 +170,20 @@ TEST(FrameNumber, IsReadFromTheCommentOnly) {
   EXPECT_FALSE(frameNumber(*fullScan(1)));
 }
 
+TEST(FromObservation, DropsAndCountsRadarReturnsThatAreNone) {
+  const auto o = someReturns();
+  RadarReturn nowhere = o->scan.returns[0], spoilt = o->scan.returns[0];
+  nowhere.range = 0;
+  spoilt.range_rate = std::numeric_limits<double>::quiet_NaN();
+  o->scan.returns.push_back(nowhere);
+  o->scan.returns.push_back(spoilt);
+  DecodeCounts counts;
+  const auto frame = frameFromObservation(*o, &counts);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(std::get<RadarReturns>(frame->data).returns.size(), 2U);
+  EXPECT_EQ(counts.bad_returns, 2U);
+  EXPECT_NEAR(frame->T_ego_sensor.translation().x(), 3.5, 1e-12);
+}
+
 }  // namespace
 }  // namespace perception

@@ -103,6 +103,37 @@ TEST(CObservationObjectDetections, ComesBackBitForBit) {
   EXPECT_EQ(serialised(*back), serialised(*o));
 }
 
+TEST(CObservationObjectDetections, KnowsAPanoramaFromAPinholeCamera) {
+  const auto o = someDetections();
+  const std::size_t pinhole = serialised(*o).size();
+  o->detections.camera.projection = CameraModel::Projection::kEquirectangular;
+  EXPECT_EQ(serialised(*o).size(), pinhole + 1);  // pinhole logs stay as they were
+  const auto back = roundTrip(*o);
+  EXPECT_EQ(back->detections.camera.projection, CameraModel::Projection::kEquirectangular);
+  EXPECT_EQ(back->detections.objects.size(), 2U);
+  EXPECT_NE(back->asString().find("equirectangular"), std::string::npos);
+}
+
+TEST(CObservationRadarScan, ComesBackBitForBit) {
+  const auto o = someReturns();
+  ASSERT_TRUE(o);
+  const auto back = roundTrip(*o);
+  ASSERT_TRUE(back);
+  ASSERT_EQ(back->scan.returns.size(), 2U);
+  const RadarReturn& first = back->scan.returns[0];
+  EXPECT_EQ(first.range, 12.5);
+  EXPECT_EQ(first.bearing, -0.2);
+  EXPECT_EQ(first.range_rate, -3.25);
+  EXPECT_EQ(first.amplitude, 14);
+  EXPECT_EQ(first.elevation, 0.02);
+  EXPECT_EQ(first.id, 7);
+  EXPECT_FALSE(back->scan.returns[1].has_rate);
+  EXPECT_FALSE(back->scan.returns[1].elevation);
+  EXPECT_EQ(back->scan.max_range, 90);
+  EXPECT_EQ(back->sensorLabel, "RADAR_1");
+  EXPECT_EQ(serialised(*back), serialised(*o));
+}
+
 TEST(CObservationMeasurements, ComesBackBitForBit) {
   const auto o = someMeasurements();
   const auto back = roundTrip(*o);
@@ -134,7 +165,8 @@ TEST(Observations, DescriptionAndTextExportNameTheNumbers) {
   EXPECT_NE(someMeasurements()->asString().find("left hidden"), std::string::npos);
   for (const mrpt::obs::CObservation::Ptr& o :
        {mrpt::obs::CObservation::Ptr(fullScan(3)), mrpt::obs::CObservation::Ptr(someDetections()),
-        mrpt::obs::CObservation::Ptr(someMeasurements())}) {
+        mrpt::obs::CObservation::Ptr(someMeasurements()),
+        mrpt::obs::CObservation::Ptr(someReturns())}) {
     EXPECT_TRUE(o->exportTxtSupported());
     EXPECT_EQ(o->exportTxtDataRow().find('\n'), std::string::npos);
     EXPECT_FALSE(o->exportTxtHeader().empty());

@@ -11,6 +11,7 @@
 #include "libperception/measurement/CObservationMeasurements.h"
 #include "libperception/sensors/CObservationLidarScan.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/CObservationRadarScan.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/RawlogWriter.h"
 #include "libperception/sensors/ToObservation.h"
@@ -87,6 +88,23 @@ inline std::shared_ptr<CObservationObjectDetections> someDetections(Stamp stamp 
   plain.image_box = ObjectDetection::ImageBox{200, 100, 220, 160};
   o->detections.objects = {both, plain};
   return o;
+}
+
+inline std::shared_ptr<CObservationRadarScan> someReturns(Stamp stamp = kStart) {
+  SensorFrame frame;
+  frame.sensor = "RADAR_1";
+  frame.stamp = stamp;
+  frame.T_ego_sensor = makePose(3.5, 0.4, 0.6, 0.3);
+  RadarReturns returns;
+  returns.max_range = 90;
+  RadarReturn full;
+  full.range = 12.5, full.bearing = -0.2, full.range_rate = -3.25, full.amplitude = 14;
+  full.elevation = 0.02, full.id = 7;
+  RadarReturn plain;
+  plain.range = 40, plain.bearing = 0.1, plain.has_rate = false;
+  returns.returns = {full, plain};
+  frame.data = returns;
+  return std::dynamic_pointer_cast<CObservationRadarScan>(observationFromFrame(frame));
 }
 
 inline std::shared_ptr<CObservationMeasurements> someMeasurements(Stamp stamp = kStart) {
