@@ -14,6 +14,8 @@ void FilterParams::visit(ParamVisitor& v) {
   v.real("class_forgetting", class_forgetting, {0.1, 1e9}, "s", "time constant of the class chain");
   v.real("kinematic_exponent", kinematic_exponent, {0, 1}, "",
          "tempers innovations in the class update");
+  v.real("height_exponent", height_exponent, {0, 1}, "",
+         "tempers what the estimated height says of the class; 0: nothing");
   v.real("speed_slack", speed_slack, {0, 10}, "",
          "share of max_speed by which faster objects are still plausible; 0: no limit");
   v.real("start_speed_sigma", start_speed_sigma, {0.1, 50}, "m/s", "speed of newborn objects");

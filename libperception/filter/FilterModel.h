@@ -27,6 +27,8 @@ struct FilterParams {
   double class_forgetting = 1000;  ///< [s] time constant of the class chain (SPEC 5.7)
   double kinematic_exponent =
       0.5;  ///< tempers the innovations' evidence in the class update only (SPEC 5.6)
+  double height_exponent =
+      0.5;  ///< tempers what the estimated height says of the class; 0: nothing
   double speed_slack =
       0.2;  ///< share of a class's max_speed by which faster objects are plausible; 0: no limit
   double start_speed_sigma =

@@ -97,6 +97,7 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
   min_excess = std::numeric_limits<double>::infinity();
   std::vector<double> mixture(classes, kMinusInfinity);
   const double label_exponent = scan.model->labelExponent();
+  const double detection_exponent = scan.model->detectionExponent();
   for (std::size_t j = 0; j < classes; ++j) {
     const double detection = row.detection_by_class[j];
     if (!row.predictions[j].defined || detection <= 0) continue;
@@ -115,8 +116,8 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
     pair.nis[j] = nis;
     // The heading tells objects apart, but not classes: people have one, too, that no filter keeps.
     pair.log_by_class[j] = log_density + label + rest + heading;
-    pair.log_class_evidence[j] =
-        model.params.kinematic_exponent * log_density + label_exponent * label + rest;
+    pair.log_class_evidence[j] = model.params.kinematic_exponent * log_density +
+                                 label_exponent * label + detection_exponent * std::log(detection);
     mixture[j] = track.log_class[j] + pair.log_by_class[j];
     min_excess = std::min(min_excess, nis - gates.quantile[static_cast<std::size_t>(n)]);
   }
@@ -206,6 +207,8 @@ Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
   }
   const Vector2 extent_variance(filter.extent.var_length, filter.extent.var_width);
   out.R += H_extent * extent_variance.asDiagonal() * H_extent.transpose();
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (!(model.extentAxes() >> axis[static_cast<std::size_t>(i)] & 1)) H_extent.row(i).setZero();
   out.R.diagonal().array() += 1e-9;  // S stays invertible whatever the sensor says (SPEC 4)
   out.S = out.covarianceOf(filter.P);
   return out;

@@ -61,7 +61,7 @@ struct Innovation {
   AxisMatrix S;
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, kMaxAxes, 4> H;
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2>
-      H_extent;  ///< dh/d(length, width)
+      H_extent;  ///< dh/d(length, width), rows that do not correct the extent zero
   AxisMatrix R;  ///< measurement noise, extent uncertainty included
 
   AxisVector residualOf(const ModeFilter& mode, const ClassFilter& filter) const;

@@ -233,9 +233,27 @@ double logSpeed(const ObjectClass& c, const ClassFilter& f, const FilterModel& m
   return excess <= 0 ? 0 : -0.5 * excess * excess / (slack * slack + variance);
 }
 
-void updateHeights(const Measurement& m, Track& track) {
+/// Evidence of an estimated height for a class: its mean and spread over objects. Returns lie
+/// within the object, so the estimate has a bias of its own.
+double logHeight(const ObjectClass& c, const ScalarEstimate& height) {
+  constexpr double kBias = 0.2;  // [m] between highest return and top
+  const double variance = c.height_sigma * c.height_sigma + kBias * kBias + height.variance;
+  const double d = height.mean - c.height;
+  return -0.5 * (d * d / variance + std::log(variance));
+}
+
+/// Base and height, and what the height's change says of the class: the evidence of the estimate
+/// before is taken back, so that in the end a height counts once.
+void updateHeights(const Measurement& m, const FilterModel& model, Track& track) {
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
-  if (m.height) scalarUpdate(*m.height, track.height);
+  if (!m.height) return;
+  const ScalarEstimate before = track.height;
+  scalarUpdate(*m.height, track.height);
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    track.log_class[static_cast<std::size_t>(j)] +=
+        model.params.height_exponent *
+        (logHeight(model.classes[j], track.height) - logHeight(model.classes[j], before));
+  }
 }
 
 }  // namespace
@@ -275,8 +293,8 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
     track.log_class[i] +=
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
+  updateHeights(m, model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
-  updateHeights(m, track);
   return track;
 }
 
@@ -288,7 +306,8 @@ Track missTrack(const Track& predicted, const TrackLikelihoods& row, const Measu
   const double r = predicted.existence;
   track.existence = r * (1 - row.detection) / (1 - r * row.detection);
   for (std::size_t j = 0; j < track.log_class.size(); ++j) {
-    track.log_class[j] += std::log1p(-row.detection_by_class[j]);
+    // Misses of one object are no more independent than its labels.
+    track.log_class[j] += scan.model->detectionExponent() * std::log1p(-row.detection_by_class[j]);
   }
   clampClasses(model.params.class_epsilon, track.log_class);
   return track;
@@ -321,10 +340,10 @@ Track newTrack(const NewLikelihood& news, std::size_t measurement, const Measure
     height += c.prior * c.height;
     height_variance += c.prior * c.height_sigma * c.height_sigma;
   }
-  clampClasses(model.params.class_epsilon, track.log_class);
   track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
   track.height = {height, height_variance + 0.25};
-  updateHeights(m, track);
+  updateHeights(m, model, track);
+  clampClasses(model.params.class_epsilon, track.log_class);
   return track;
 }
 

@@ -21,6 +21,7 @@ class FootprintModel : public MeasurementModel {
   FootprintModel(ClassTable classes, Sensing sensing);
 
   const std::vector<AxisKind>& axes() const override;
+  AxisMask extentAxes() const override { return 1 << kLeft | 1 << kRight; }
   void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                const SensorState& sensor, AxisPrediction* out) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
@@ -33,6 +34,7 @@ class FootprintModel : public MeasurementModel {
     return sensing_.logLabel(label, c);
   }
   double labelExponent() const override { return sensing_.params().label_exponent; }
+  double detectionExponent() const override { return sensing_.params().detection_exponent; }
   double logLabelClutter(int label) const override { return sensing_.logLabelClutter(label); }
   double logClutterDensity(const Measurement& m, const SensorState& sensor) const override;
   double logBirthDensity(const Measurement& m, ClassId c, const SensorState& sensor) const override;

@@ -31,9 +31,9 @@ struct AxisPrediction {
 /// What a range rate says of a velocity: its component along one direction, and, where the sensor's
 /// site tells, how large the component across it may be.
 struct RadialSpeed {
-  Vector2 direction = Vector2::UnitX();       ///< unit vector, world
-  ScalarEstimate along;                       ///< [m/s, m^2/s^2]
-  std::optional<double> across_sigma;         ///< [m/s]; empty: whatever the class allows
+  Vector2 direction = Vector2::UnitX();  ///< unit vector, world
+  ScalarEstimate along;                  ///< [m/s, m^2/s^2]
+  std::optional<double> across_sigma;    ///< [m/s]; empty: whatever the class allows
 };
 
 /// Where a newborn object of one class stands, from one measurement.
@@ -54,6 +54,9 @@ class MeasurementModel {
   virtual ~MeasurementModel() = default;
 
   virtual const std::vector<AxisKind>& axes() const = 0;
+  /// Axes that correct the extent. A range tells of length only together with the centre's place,
+  /// whose correlation with the extent nobody keeps: it is left out there, but counts in S.
+  virtual AxisMask extentAxes() const { return 0xff; }
   /// h, dh/dq, dh/dextent into out[0..count) of `count` objects, object i taken as one of class i %
   /// classes: batches hold whole banks.
   virtual void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
@@ -72,6 +75,9 @@ class MeasurementModel {
   /// Exponent in (0, 1] of the label in the class update: labels of one object are not independent
   /// (SPEC 5.6).
   virtual double labelExponent() const { return 1; }
+  /// The same of detections and misses; where hundreds of them come, no table knows P_D to the
+  /// percent that they would tell.
+  virtual double detectionExponent() const { return 1; }
   /// log P(label | clutter).
   virtual double logLabelClutter(int label) const = 0;
   /// Log of the expected number of false measurements per scan and unit of the axes seen at z.

@@ -37,6 +37,7 @@ class RadarModel final : public MeasurementModel {
   RadarModel(ClassTable classes, Sensing sensing, RadarModelParams params);
 
   const std::vector<AxisKind>& axes() const override;
+  AxisMask extentAxes() const override { return 0; }  ///< one point says nothing of a size
   void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                const SensorState& sensor, AxisPrediction* out) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
@@ -44,6 +45,7 @@ class RadarModel final : public MeasurementModel {
   bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override {
     return footprint_.mayDetect(position, reach, sensor);
   }
+  double detectionExponent() const override { return sensing().params().detection_exponent; }
   double logLabelLikelihood(int, ClassId) const override { return 0; }  ///< radars give no labels
   double logLabelClutter(int) const override { return 0; }
   double logClutterDensity(const Measurement& m, const SensorState& sensor) const override;

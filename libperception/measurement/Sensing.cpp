@@ -138,6 +138,8 @@ void SensingParams::visit(ParamVisitor& v) {
           "full horizontal field of view about the sensor's forward axis");
   v.real("label_exponent", label_exponent, {0.001, 1}, "",
          "tempers labels in the class update: 1 = independent labels");
+  v.real("detection_exponent", detection_exponent, {1e-3, 1}, "",
+         "tempers detections and misses in the class update");
   std::vector<double> numbers;
   if (pose) {
     const Vector3 t = pose->translation();
@@ -163,7 +165,9 @@ void SensingParams::visit(ParamVisitor& v) {
 void ClassSensing::visit(ParamVisitor& v) {
   v.real("detection", detection, {0, 1}, "", "P(detected) in view, near, not hidden");
   v.real("full_range", full_range, {0.1, 1e4}, "m",
-         "up to which that holds; falls to 0 at range_max");
+         "up to which that holds; falls to 0 at last_range");
+  v.real("last_range", last_range, {0.1, 1e4}, "m",
+         "where it is 0; at most the sensor's range_max");
   v.table("label.", labels, {0, 1}, "",
           "P(label | this class, detected); labels not named share the rest");
 }
@@ -214,9 +218,9 @@ double Sensing::detection(ClassId c, double range, double bearing, double visibi
   if (range < params_.range_min || range >= params_.range_max) return 0;
   // At the borders of the view detections fade out instead of ending: over the last 5 % of range,
   // the last 2 degrees.
-  const double full = std::min(row.full_range, 0.95 * params_.range_max);
-  const double by_range =
-      std::clamp((params_.range_max - range) / (params_.range_max - full), 0.0, 1.0);
+  const double last = std::min(row.last_range, params_.range_max);
+  const double full = std::min(row.full_range, 0.95 * last);
+  const double by_range = std::clamp((last - range) / (last - full), 0.0, 1.0);
   double by_angle = 1;
   if (params_.fov < kTwoPi) {
     by_angle =

@@ -16,9 +16,10 @@ struct SensingParams {
   double clutter_per_scan = 0.6;         ///< kappa: false measurements
   double births_per_scan = 0.03;         ///< beta: first measurements of new objects
   double range_min = 0, range_max = 70;  ///< [m] of the objects' nearest points
-  double fov = kTwoPi;          ///< [rad] full horizontal angle about the sensor's forward axis
-  double label_exponent = 0.3;  ///< (0, 1] tempers labels in the class update (SPEC 5.6)
-  std::optional<Pose3> pose;    ///< on the vehicle; when given it wins over the log's
+  double fov = kTwoPi;              ///< [rad] full horizontal angle about the sensor's forward axis
+  double label_exponent = 0.3;      ///< (0, 1] tempers labels in the class update (SPEC 5.6)
+  double detection_exponent = 0.1;  ///< (0, 1] tempers detections and misses there
+  std::optional<Pose3> pose;        ///< on the vehicle; when given it wins over the log's
   std::vector<std::pair<std::string, double>>
       clutter_labels;  ///< P(label | clutter); the rest shares evenly
 
@@ -29,7 +30,8 @@ struct SensingParams {
 struct ClassSensing {
   double detection = 0.9;  ///< P(detected | in view, not hidden, near)
   double full_range =
-      1e3;  ///< [m] up to which that holds; from there it falls linearly to 0 at range_max
+      1e3;  ///< [m] up to which that holds; from there it falls linearly to 0 at last_range
+  double last_range = 1e4;                             ///< [m] at most the sensor's range_max
   std::vector<std::pair<std::string, double>> labels;  ///< P(label | class, detected), normalised
 
   void visit(ParamVisitor& v);

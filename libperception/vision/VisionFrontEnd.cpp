@@ -23,7 +23,8 @@ SensingParams cameraDefaults() {
   p.modality = Modality::kCamera;
   p.clutter_per_scan = 0.15;  // SPEC 5.3
   p.births_per_scan = 0.01;
-  p.label_exponent = 0.6;  // SPEC 5.6
+  p.label_exponent = 0.6;    // SPEC 5.6
+  p.detection_exponent = 1;  // what no image shows is no road user: walls, bushes
   p.fov = radians(90);
   p.range_min = 1;
   return p;

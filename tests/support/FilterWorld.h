@@ -38,6 +38,7 @@ inline FilterModel exactModel(ClassTable classes) {
   model.params.existence_max = 1;
   model.params.class_epsilon = 0;
   model.params.speed_slack = 0;
+  model.params.height_exponent = 0;
   model.params.merge_area = 0;
   model.params.class_forgetting = 1e18;
   model.params.kinematic_exponent = 1;
