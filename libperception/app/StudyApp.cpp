@@ -15,6 +15,7 @@
 #include "libperception/study/GpsStudy.h"
 #include "libperception/study/HeadingStudy.h"
 #include "libperception/study/MonteCarloStudy.h"
+#include "libperception/study/ParticlesStudy.h"
 
 namespace perception {
 namespace {
@@ -39,6 +40,12 @@ const Study kStudies[] = {
        AssociationParams p;
        if (app.runs > 0) p.seeds = app.runs;
        return associationStudy(p);
+     }},
+    {"particles", "numbers of objects in a busy street, by particles and births (simulated)",
+     [](const StudyApp& app) {
+       ParticlesParams p;
+       if (app.runs > 0) p.scenes = app.runs;
+       return particlesStudy(p);
      }},
     {"heading", "headings that confuse front and back (simulated)",
      [](const StudyApp& app) {

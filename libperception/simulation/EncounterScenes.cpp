@@ -57,13 +57,40 @@ EncounterScene meeting(double separation, double pause, Rng& rng) {
   return scene;
 }
 
+/// Of EXPECTED B2.
+EncounterScene busyStreet(Rng& rng) {
+  constexpr double kDuration = 8;  // [s]
+  const auto instants = static_cast<std::size_t>(kDuration / kStep);
+  EncounterScene scene;
+  for (int i = 0; i < 8; ++i) {
+    const double x = rng.uniform(3, 19), y = rng.uniform(-18, 18);
+    scene.objects.push_back({true, std::vector<Vector2>(instants, Vector2(x, y))});
+  }
+  for (int i = 0; i < 6; ++i) {
+    const double x = rng.uniform(4, 18), side = rng.uniform() < 0.5 ? 1 : -1;
+    const Vector2 to(x + rng.normal(0, 3), 18 * side);
+    auto path = walk({x, -18 * side}, to, rng.uniform(1, 1.7), kDuration, 0.05, rng);
+    path.resize(instants);
+    scene.objects.push_back({false, std::move(path)});
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double y = rng.uniform(-8, 8), speed = rng.uniform(3, 7);
+    auto path = drive({40, y}, {-1, 0}, kDuration, [&](double) { return speed; });
+    path.resize(instants);
+    for (auto& p : path) p.x() = std::max(p.x(), -5.0);
+    scene.objects.push_back({true, std::move(path)});
+  }
+  return scene;
+}
+
 double numberAfter(const std::string& name, std::size_t from,
                    std::size_t count = std::string::npos) {
   try {
     return std::stod(name.substr(from, count));
   } catch (const std::exception&) {
-    throw Error(ExitCode::kUsage,
-                "encounter '" + name + "': expected A, B, C<distance>, D or E<separation>_<pause>");
+    throw Error(
+        ExitCode::kUsage,
+        "encounter '" + name + "': expected A, B, C<distance>, D, E<separation>_<pause> or U");
   }
 }
 
@@ -73,7 +100,8 @@ PositionModel::Params sensorParams(const EncounterConditions& conditions, double
                                    const std::array<std::vector<double>, 2>& labels) {
   PositionModel::Params p;
   for (std::size_t c = 0; c < 2; ++c) {
-    p.classes.push_back({detection[c] * conditions.detection_factor, labels[c], noise[c]});
+    p.classes.push_back({detection[c] * conditions.detection_factor, labels[c],
+                         Matrix2(conditions.noise_factor * noise[c])});
   }
   p.clutter_labels = {0.5, 0.5};
   p.clutter_per_scan = clutter * conditions.clutter_factor;
@@ -174,6 +202,8 @@ EncounterScene encounterScene(const std::string& name, Rng& rng) {
     }
     for (const double y : {3.0, -3.0})
       scene.objects.push_back({true, std::vector<Vector2>(121, Vector2(15, y))});
+  } else if (kind == 'U') {
+    scene = busyStreet(rng);
   } else if (kind == 'E') {
     const auto bar = name.find('_');
     const bool plain = name.size() == 1;
@@ -181,8 +211,9 @@ EncounterScene encounterScene(const std::string& name, Rng& rng) {
     scene = plain ? meeting(0.5, 1.5, rng)
                   : meeting(numberAfter(name, 1, bar - 1), numberAfter(name, bar + 1), rng);
   } else {
-    throw Error(ExitCode::kUsage,
-                "encounter '" + name + "': expected A, B, C<distance>, D or E<separation>_<pause>");
+    throw Error(
+        ExitCode::kUsage,
+        "encounter '" + name + "': expected A, B, C<distance>, D, E<separation>_<pause> or U");
   }
   return scene;
 }

@@ -24,13 +24,15 @@ struct EncounterScene {
 
 /// By name: A (an oncoming car stops and passes), B (a crossing car), Cd (two pedestrians cross at
 /// d metres), D (four pedestrians in a crowd, two parked cars), Es_p (two meet at s metres, pause p
-/// seconds, pass or turn back). Throws Error(kUsage) for a name that is none.
+/// seconds, pass or turn back), U (a busy street: eight parked cars, six pedestrians, three cars
+/// that drive by, 8 s). Throws Error(kUsage) for a name that is none.
 EncounterScene encounterScene(const std::string& name, Rng& rng);
 
 /// What makes a scene hard.
 struct EncounterConditions {
   double detection_factor = 1;  ///< times P_D
   double clutter_factor = 1;    ///< times kappa
+  double noise_factor = 1;      ///< times the sensors' covariances
   double merge_distance = 0;  ///< [m] objects of a class nearer than this merge with probability .8
 };
 

@@ -22,9 +22,11 @@ const std::vector<AssociationMethod>& methods() {
 
 const std::vector<AssociationScene>& associationScenes() {
   static const std::vector<AssociationScene> scenes = {
-      {"D hard", "D", {0.75, 3, 0.7}},       {"E0.8_1.5", "E0.8_1.5", {}},
-      {"E0.7_1.0", "E0.7_1.0", {}},          {"E0.6_0.5", "E0.6_0.5", {}},
-      {"C0.5 hard", "C0.5", {0.75, 3, 0.7}},
+      {"D hard", "D", {0.75, 3, 1, 0.7}},
+      {"E0.8_1.5", "E0.8_1.5", {}},
+      {"E0.7_1.0", "E0.7_1.0", {}},
+      {"E0.6_0.5", "E0.6_0.5", {}},
+      {"C0.5 hard", "C0.5", {0.75, 3, 1, 0.7}},
   };
   return scenes;
 }

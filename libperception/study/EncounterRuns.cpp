@@ -58,9 +58,16 @@ class Scorer {
       truth.push_back(scene_.objects[i].path[k]);
       who.push_back(i);
     }
-    for (const auto& o : estimate.objects) estimates.push_back(o.position.head<2>());
+    // Truth ends at the border of the view, so do the estimates that are compared with it.
+    int classified = 0;
+    for (const auto& o : estimate.objects) {
+      if (!encounterInView(o.position.head<2>())) continue;
+      estimates.push_back(o.position.head<2>());
+      classified += o.classified;
+    }
     squares_ += gospa(truth, estimates, kCutoff).squared();
     score_.count.push_back(static_cast<int>(estimates.size()));
+    score_.classified.push_back(classified);
     score_.truth_count.push_back(static_cast<int>(truth.size()));
     if (k < kWarmUp) return;
     const auto ids = matchIds(truth, estimate);

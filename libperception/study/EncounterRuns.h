@@ -13,7 +13,8 @@ struct EncounterScore {
   bool swapped = false;    ///< some object's dominant id differs before and after the encounter
   double gospa = 0;        ///< [m] root of the mean square over instants, cut-off 2 m
   double tracked = 0;      ///< share of (object, instant) with an estimate within 2 m
-  std::vector<int> count;  ///< objects put out, by instant
+  std::vector<int> count;  ///< objects put out in view, by instant
+  std::vector<int> classified;   ///< of these, with a class of 95 % or more
   std::vector<int> truth_count;  ///< objects in view, by instant
 };
 

@@ -51,8 +51,8 @@ TEST(Encounters, OpenScenesAreTrackedThroughout) {
 
 TEST(Encounters, AreRepeatedToTheBit) {
   const auto model = associationModel(Proposal::kSampled);
-  const auto a = runEncounter("D", {0.75, 3, 0.7}, model, 8, 3, 5);
-  const auto b = runEncounter("D", {0.75, 3, 0.7}, model, 8, 3, 5);
+  const auto a = runEncounter("D", {0.75, 3, 1, 0.7}, model, 8, 3, 5);
+  const auto b = runEncounter("D", {0.75, 3, 1, 0.7}, model, 8, 3, 5);
   EXPECT_EQ(a.gospa, b.gospa);
   EXPECT_EQ(a.count, b.count);
 }
