@@ -2,12 +2,13 @@
 # Everything from a bare Debian 12 on: packages, build, a first result, all tests.
 #   ./setup.sh build   installs what is needed and builds the programs into build/bin
 #   ./setup.sh demo    the same, then tracks, evaluates and draws the simulated log rawlogs/demo.rawlog
+#   ./setup.sh bench   builds the benchmarks against other libraries and runs them one after the other
 #   ./setup.sh test    the same with the tests, and runs them: all of them, and the core ones once more with sanitizers
 # As root or with sudo that asks nothing; a second run installs nothing. JOBS=N sets the number of compilers at once.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-readonly usage="usage: ./setup.sh build | demo | test"
+readonly usage="usage: ./setup.sh build | demo | bench | test"
 readonly exit_warnings=3 exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
 
 packages=(
@@ -44,6 +45,10 @@ test_packages=(
   libgtest-dev           # tests
   mrpt-apps              # rawlog-edit, rawlog-grabber: stock MRPT must read and record our logs
   locales                # definition of a locale with decimal comma: it must not change a byte
+)
+
+bench_packages=(
+  libopencv-video-dev    # cv::KalmanFilter, a peer
 )
 
 say() { printf '\n== %s\n' "$*"; }
@@ -127,6 +132,21 @@ demoSummary() {
   printf '\nopen in a browser: %s\n' "$dir/index.html"
 }
 
+# Every program of tests/bench; quiet machines give steadier figures.
+benches() {
+  installPackages "${packages[@]}" "${bench_packages[@]}"
+  if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
+  say "Building the benchmarks"
+  cmake --preset release -B build-bench -DPERCEPTION_TESTS=OFF -DPERCEPTION_BENCH=ON >"$scratch" ||
+    { cat "$scratch" >&2; exit 1; }
+  cmake --build build-bench -j "$(jobs)"
+  local program
+  for program in build-bench/bin/*_bench; do
+    printf '\n$ %s\n' "$program"
+    "$program"
+  done
+}
+
 # A locale with decimal comma for the tests, in the build folder and not in the system.
 makeCommaLocale() {
   export LOCPATH=$PWD/build/locale
@@ -176,6 +196,7 @@ trap 'rm -f "$scratch"' EXIT
 case $1 in
   build) installPackages "${packages[@]}"; build release OFF ;;
   demo) demo ;;
+  bench) benches ;;
   test) tests ;;
   *) echo "$usage" >&2; exit $exit_usage ;;
 esac
