@@ -142,12 +142,8 @@ std::vector<RankedAssignment> rankPart(const CostMatrix& part, std::size_t k, do
   return out;
 }
 
-/// Rows that compete for columns, directly or through others.
-struct Part {
-  std::vector<int> rows, columns;  // ascending
-};
-
-std::vector<Part> independentParts(const AssignmentProblem& problem) {
+/// Rows that compete for columns, directly or through others: by row the first row of its group.
+std::vector<int> groupsOf(const AssignmentProblem& problem) {
   const std::size_t n = problem.rows.size();
   std::vector<int> parent(n), owner(static_cast<std::size_t>(problem.columns), -1);
   std::iota(parent.begin(), parent.end(), 0);
@@ -163,119 +159,151 @@ std::vector<Part> independentParts(const AssignmentProblem& problem) {
       if (o < 0) {
         o = static_cast<int>(r);
       } else {
-        const int a = find(o), b = find(static_cast<int>(r));
-        parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        const int one = find(o), other = find(static_cast<int>(r));
+        parent[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
       }
     }
   }
-  std::vector<int> number(n, -1);
-  std::vector<Part> parts;
-  for (std::size_t r = 0; r < n; ++r) {
-    const auto root = static_cast<std::size_t>(find(static_cast<int>(r)));
-    if (number[root] < 0) number[root] = static_cast<int>(parts.size()), parts.emplace_back();
-    parts[static_cast<std::size_t>(number[root])].rows.push_back(static_cast<int>(r));
-  }
-  for (Part& part : parts) {
-    for (const int r : part.rows)
-      for (const auto& option : problem.rows[static_cast<std::size_t>(r)])
-        part.columns.push_back(option.column);
-    std::sort(part.columns.begin(), part.columns.end());
-    part.columns.erase(std::unique(part.columns.begin(), part.columns.end()), part.columns.end());
-  }
-  return parts;
+  for (std::size_t r = 0; r < n; ++r) parent[r] = find(static_cast<int>(r));
+  return parent;
 }
 
-/// One row alone: its choices in order.
-std::vector<RankedAssignment> rankRow(const std::vector<AssignmentProblem::Option>& options,
-                                      std::size_t k, double span) {
-  std::vector<RankedAssignment> out{{{kNothing}, 0}};
-  for (const auto& o : options) out.push_back({{o.column}, o.gain});
-  std::stable_sort(out.begin(), out.end(),
-                   [](const auto& a, const auto& b) { return a.log_weight > b.log_weight; });
-  std::size_t kept = 1;
-  while (kept < std::min(k, out.size()) && out[kept].log_weight >= out.front().log_weight - span)
-    ++kept;
-  out.resize(kept);
-  return out;
-}
-
-std::vector<RankedAssignment> rankIn(const AssignmentProblem& problem, const Part& part,
-                                     std::size_t k, double span) {
-  if (part.rows.size() == 1)
-    return rankRow(problem.rows[static_cast<std::size_t>(part.rows[0])], k, span);
+/// The best assignments of several rows that compete; columns as in the problem.
+std::vector<RankedAssignment> rankRows(const AssignmentProblem& problem,
+                                       const std::vector<int>& rows, std::size_t k, double span) {
+  std::vector<int> columns;
+  for (const int r : rows)
+    for (const auto& option : problem.rows[static_cast<std::size_t>(r)])
+      columns.push_back(option.column);
+  std::sort(columns.begin(), columns.end());
+  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
   CostMatrix m;
-  m.rows = static_cast<int>(part.rows.size());
-  m.columns = static_cast<int>(part.columns.size());
+  m.rows = static_cast<int>(rows.size());
+  m.columns = static_cast<int>(columns.size());
   m.cost.assign(static_cast<std::size_t>(m.rows) * static_cast<std::size_t>(m.width()), kForbidden);
   for (int r = 0; r < m.rows; ++r) {
-    for (const auto& o :
-         problem.rows[static_cast<std::size_t>(part.rows[static_cast<std::size_t>(r)])]) {
-      const auto c = std::lower_bound(part.columns.begin(), part.columns.end(), o.column);
-      m.at(r, static_cast<int>(c - part.columns.begin())) = -o.gain;
+    const int row = rows[static_cast<std::size_t>(r)];
+    for (const auto& o : problem.rows[static_cast<std::size_t>(row)]) {
+      const auto c = std::lower_bound(columns.begin(), columns.end(), o.column);
+      m.at(r, static_cast<int>(c - columns.begin())) = -o.gain;
     }
     m.at(r, m.columns + r) = 0;
   }
   auto out = rankPart(m, k, span);
   for (auto& a : out)
     for (int& c : a.column)
-      if (c != kNothing) c = part.columns[static_cast<std::size_t>(c)];
+      if (c != kNothing) c = columns[static_cast<std::size_t>(c)];
   return out;
 }
 
-/// The best `k` pairs of two sorted lists: which of either, by weight.
-std::vector<std::pair<std::size_t, std::size_t>> bestPairs(const std::vector<double>& a,
-                                                           const std::vector<double>& b,
-                                                           std::size_t k, double span) {
-  struct Pair {
-    double weight;
-    std::size_t i, j;
-    bool operator<(const Pair& o) const {
-      if (weight != o.weight) return weight < o.weight;
-      return i != o.i ? i > o.i : j > o.j;
+/// What differs from the best assignment: one row's column, or the choice of a group of rows.
+struct Change {
+  int group;  // index into the ranked groups; -1: a row alone
+  int row, choice;
+};
+
+/// An assignment as its differences from the best, and what they cost.
+struct Combination {
+  double loss = 0;
+  std::vector<Change> changes;
+};
+
+/// An alternative of one part and its loss against the part's best.
+struct Alternative {
+  double loss;
+  Change change;
+};
+
+/// The combinations with one more part whose alternatives are sorted by loss; the best `k` of them.
+void join(const std::vector<Alternative>& alternatives, std::size_t k, double span,
+          std::vector<Combination>& combinations) {
+  std::vector<Combination> more;
+  const std::size_t before = combinations.size();
+  for (std::size_t i = 0; i < before; ++i) {
+    for (const Alternative& a : alternatives) {
+      const double loss = combinations[i].loss + a.loss;
+      const bool full = before >= k && loss >= combinations.back().loss;
+      if (loss > span || full) break;  // later ones cost more
+      more.push_back(combinations[i]);
+      more.back().loss = loss;
+      more.back().changes.push_back(a.change);
     }
-  };
-  std::priority_queue<Pair> open;
-  for (std::size_t i = 0; i < a.size(); ++i) open.push({a[i] + b[0], i, 0});
-  std::vector<std::pair<std::size_t, std::size_t>> out;
-  while (!open.empty() && out.size() < k) {
-    const Pair p = open.top();
-    open.pop();
-    if (p.weight < a[0] + b[0] - span) break;
-    out.push_back({p.i, p.j});
-    if (p.j + 1 < b.size()) open.push({a[p.i] + b[p.j + 1], p.i, p.j + 1});
   }
-  return out;
+  if (more.empty()) return;
+  for (auto& c : more) combinations.push_back(std::move(c));
+  std::stable_sort(combinations.begin(), combinations.end(),
+                   [](const auto& x, const auto& y) { return x.loss < y.loss; });
+  if (combinations.size() > k) combinations.resize(k);
 }
 
 }  // namespace
 
 std::vector<RankedAssignment> rankedAssignments(const AssignmentProblem& problem, std::size_t k,
                                                 double span) {
-  RankedAssignment start;
-  start.column.assign(problem.rows.size(), kNothing);
-  std::vector<RankedAssignment> all{start};
-  for (const Part& part : independentParts(problem)) {
-    const auto own = rankIn(problem, part, k, span);
-    std::vector<double> a, b;
-    for (const auto& x : all) a.push_back(x.log_weight);
-    for (const auto& x : own) b.push_back(x.log_weight);
-    std::vector<RankedAssignment> joined;
-    const auto set = [&](RankedAssignment& to, const RankedAssignment& from) {
-      for (std::size_t r = 0; r < part.rows.size(); ++r)
-        to.column[static_cast<std::size_t>(part.rows[r])] = from.column[r];
-      to.log_weight += from.log_weight;
-    };
-    if (own.size() == 1) {  // the usual case: nothing to choose
-      for (auto& x : all) set(x, own[0]);
-      continue;
-    }
-    for (const auto& [i, j] : bestPairs(a, b, k, span)) {
-      joined.push_back(all[i]);
-      set(joined.back(), own[j]);
-    }
-    all = std::move(joined);
+  const std::size_t n = problem.rows.size();
+  const std::vector<int> group_of = groupsOf(problem);
+  std::vector<std::vector<int>> members(n);  // of groups of two rows and more, by first row
+  for (std::size_t r = 0; r < n; ++r) {
+    const auto first = static_cast<std::size_t>(group_of[r]);
+    if (first == r) continue;
+    if (members[first].empty()) members[first].push_back(group_of[r]);
+    members[first].push_back(static_cast<int>(r));
   }
-  return all;
+
+  RankedAssignment best;
+  best.column.assign(n, kNothing);
+  std::vector<std::vector<RankedAssignment>> groups;
+  std::vector<Combination> combinations(1);
+  std::vector<Alternative> alternatives;
+  for (std::size_t r = 0; r < n; ++r) {
+    if (group_of[r] != static_cast<int>(r)) continue;
+    const int row = static_cast<int>(r);
+    alternatives.clear();
+    if (members[r].empty()) {  // alone: every choice is free
+      double gain = 0;
+      for (const auto& o : problem.rows[r]) {
+        if (o.gain > gain) gain = o.gain, best.column[r] = o.column;
+      }
+      if (best.column[r] != kNothing) alternatives.push_back({gain, {-1, row, kNothing}});
+      for (const auto& o : problem.rows[r]) {
+        if (o.column != best.column[r])
+          alternatives.push_back({gain - o.gain, {-1, row, o.column}});
+      }
+      best.log_weight += gain;
+      std::stable_sort(alternatives.begin(), alternatives.end(),
+                       [](const auto& x, const auto& y) { return x.loss < y.loss; });
+    } else {
+      auto ranked = rankRows(problem, members[r], k, span);
+      for (std::size_t i = 0; i < members[r].size(); ++i)
+        best.column[static_cast<std::size_t>(members[r][i])] = ranked[0].column[i];
+      best.log_weight += ranked[0].log_weight;
+      for (std::size_t c = 1; c < ranked.size(); ++c) {
+        alternatives.push_back({ranked[0].log_weight - ranked[c].log_weight,
+                                {static_cast<int>(groups.size()), row, static_cast<int>(c)}});
+      }
+      groups.push_back(std::move(ranked));
+    }
+    join(alternatives, k, span, combinations);
+  }
+
+  std::vector<RankedAssignment> out;
+  out.reserve(combinations.size());
+  for (const Combination& c : combinations) {
+    out.push_back(best);
+    out.back().log_weight -= c.loss;
+    for (const Change& change : c.changes) {
+      if (change.group < 0) {
+        out.back().column[static_cast<std::size_t>(change.row)] = change.choice;
+        continue;
+      }
+      const auto& chosen =
+          groups[static_cast<std::size_t>(change.group)][static_cast<std::size_t>(change.choice)];
+      const auto& rows = members[static_cast<std::size_t>(change.row)];
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        out.back().column[static_cast<std::size_t>(rows[i])] = chosen.column[i];
+    }
+  }
+  return out;
 }
 
 }  // namespace perception
