@@ -32,6 +32,7 @@ packages=(
   libtbb-dev             # threads
   libnlopt-dev           # noise parameters by maximum likelihood
   libtinyxml2-dev        # GPX files
+  liblzf-dev             # compressed PCD files
   zlib1g-dev             # rawlogs are gzip files; check sums
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator

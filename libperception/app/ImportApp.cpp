@@ -7,6 +7,30 @@
 
 namespace perception {
 
+const std::vector<ImporterRow>& importers() {
+  static const std::vector<ImporterRow> kImporters = {
+      {"kitti", "one sequence of the KITTI tracking benchmark", &makeKittiImporter},
+      {"clouds", "a folder of point clouds (.bin .pcd .ply .csv), with stamps and poses",
+       &makeCloudsImporter},
+      {"images", "single frames of the KITTI object benchmark: images, labels, scans",
+       &makeImagesImporter},
+      {"vod", "View of Delft: radar points, lidar, image, labels, poses", &makeVodImporter},
+      {"radiate", "RADIATE: Navtech radar, lidar, camera, GPS, annotations", &makeRadiateImporter},
+      {"wads", "WADS: lidar scans in falling snow with a class per point", &makeWadsImporter},
+      {"snowykitti", "SnowyKITTI: KITTI scans with simulated snow, labelled per point",
+       &makeSnowyKittiImporter},
+      {"comma2k19", "comma2k19: tracks of a car's radar, ego motion, GNSS", &makeComma2k19Importer},
+      {"udacity", "Udacity's radar and laser measurements of one object (simulated)",
+       &makeUdacityImporter},
+      {"nmea", "a GPS receiver's NMEA 0183 log: the vehicle's own way, or an object's",
+       &makeNmeaImporter},
+      {"gpx", "a GPX track: the vehicle's own way, or an object's", &makeGpxImporter},
+  };
+  return kImporters;
+}
+
+void failUsage(const std::string& message) { throw Error(ExitCode::kUsage, message); }
+
 std::string ImportApp::description() const {
   return "Turns recordings of other formats into a rawlog and, with labels, FILE.truth.csv beside "
          "it.";
@@ -14,72 +38,69 @@ std::string ImportApp::description() const {
 
 void ImportApp::declare(CLI::App& cli) {
   cli.require_subcommand(1);
-  CLI::App& sub = *cli.add_subcommand("kitti", "one sequence of the KITTI tracking benchmark");
-  sub.add_option("--calib", kitti.calibration, "calibration file (P2, R0_rect, Tr_velo_to_cam)")
-      ->required();
-  auto* poses = sub.add_option("--poses", kitti.poses, "ego poses, one line a frame");
-  sub.add_option("--poses-frame", kitti.poses_frame, "whose poses they are")
-      ->check(CLI::IsMember({"velodyne", "camera", "imu"}))
-      ->capture_default_str();
-  sub.add_option("--poses-format", kitti.poses_format,
-                 "kitti: 12 numbers (3x4); tum: t x y z qx qy qz qw")
-      ->check(CLI::IsMember({"kitti", "tum"}))
-      ->capture_default_str();
-  sub.add_option("--oxts", kitti.oxts, "GPS/IMU file, instead of --poses")->excludes(poses);
-  sub.add_option("--lidar", kitti.lidar_dir, "folder of Velodyne scans, FRAME.bin or FRAME.bin.gz");
-  sub.add_option("--labels", kitti.labels, "truth: tracking labels");
-  sub.add_option("--images", kitti.images_dir,
-                 "folder of left colour images, FRAME.png or FRAME.jpg");
-  sub.add_flag("--embed-images", kitti.embed_images,
-               "images as JPEG inside the log, not in FILE_Images beside it");
-  sub.add_option("--detections", detections,
-                 "NAME:CLASS=FILE, repeatable; NAME: pointrcnn, pointgnn, rrc, dpm, kitti3d, "
-                 "kitti2d (or one of them and "
-                 "-anything); CLASS: rows of this type, or all");
-  sub.add_option("--rate", kitti.rate, "[Hz] of the frames; the cars' true rate was 9.66")
-      ->capture_default_str();
-  sub.add_option("--first", kitti.first, "first frame")->capture_default_str();
-  sub.add_option("--last", kitti.last, "last frame; -1: the last pose")->capture_default_str();
-  addOutputOption(sub, true);
-}
-
-void ImportApp::parseDetections() {
-  for (const std::string& text : detections) {
-    const auto colon = text.find(':');
-    const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
-    if (colon == std::string::npos || equals == std::string::npos || colon == 0 ||
-        equals <= colon + 1 || equals + 1 == text.size()) {
-      throw Error(ExitCode::kUsage,
-                  fmt::format("--detections '{}': expected NAME:CLASS=FILE", text));
-    }
-    kitti.detections.push_back({text.substr(0, colon), text.substr(colon + 1, equals - colon - 1),
-                                text.substr(equals + 1)});
+  importers_.clear();
+  for (std::size_t i = 0; i < importers().size(); ++i) {
+    const ImporterRow& row = importers()[i];
+    CLI::App& sub = *cli.add_subcommand(row.name, row.description);
+    sub.callback([this, i] { chosen_ = i; });
+    importers_.push_back(row.make());
+    importers_.back()->declare(sub);
+    sub.add_option("--rate", options.rate,
+                   "[Hz] of frames that carry no stamps; default: the format's own");
+    sub.add_option("--first", options.first, "first frame")->capture_default_str();
+    sub.add_option("--last", options.last, "last frame; -1: to the end")->capture_default_str();
+    sub.add_option("--repeat", options.repeat,
+                   "shows frames that stand alone so often, as a still world")
+        ->capture_default_str();
+    auto* copy = sub.add_flag("--copy-images", copy_images_,
+                              "images into FILE_Images beside the log, not a link to them");
+    sub.add_flag("--embed-images", embed_images_, "images as JPEG inside the log")->excludes(copy);
+    addOutputOption(sub, true);
   }
 }
 
+void ImportApp::checkOptions() const {
+  if (!(options.rate >= 0) || !(options.rate <= 1e4))
+    failUsage("--rate must be above 0 and at most 10000 Hz");
+  if (options.first < 0) failUsage("--first must be at least 0");
+  if (options.last >= 0 && options.last < options.first) failUsage("--last is before --first");
+  if (options.repeat < 1 || options.repeat > 1000) failUsage("--repeat must be 1 to 1000");
+}
+
 void ImportApp::run() {
-  parseDetections();
-  kitti.output = output;
-  std::optional<Progress> progress;
-  out_result = importKitti(kitti, [&progress](std::int64_t done, std::int64_t total) {
+  checkOptions();
+  options.output = output;
+  if (copy_images_) options.images = ImportOptions::Images::kCopy;
+  if (embed_images_) options.images = ImportOptions::Images::kEmbed;
+  Importer& importer = *importers_[chosen_];
+  importer.prepare(options);
+  std::optional<Progress> bar;
+  ImportLog log(options, [&bar](std::int64_t done, std::int64_t total) {
     stopIfAsked();
-    if (!progress) progress.emplace("import", static_cast<std::uint64_t>(total));
-    progress->update(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(done));
+    if (!bar) bar.emplace("import", static_cast<std::uint64_t>(total));
+    bar->update(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(done));
   });
-  progress.reset();
+  importer.run(log);
+  out_result = log.close();
+  bar.reset();
   for (const std::string& warning : out_result.warnings) warn(warning);
   report();
 }
 
 void ImportApp::report() const {
-  const KittiImportResult& r = out_result;
+  const ImportResult& r = out_result;
   fmt::print("{}: {} frames, {} entries, {:.2f} MB ({:.2f} MB inflated)\n", output, r.frames,
              r.entries, static_cast<double>(r.bytes) * 1e-6,
              static_cast<double>(r.bytes_inflated) * 1e-6);
-  if (!kitti.lidar_dir.empty()) fmt::print("  lidar: {} scans, {} points\n", r.scans, r.points);
+  if (r.scans > 0) fmt::print("  lidar: {} scans, {} points\n", r.scans, r.points);
+  if (r.radar_scans > 0)
+    fmt::print("  radar: {} scans, {} returns\n", r.radar_scans, r.radar_returns);
   for (const auto& [detector, count] : r.detections)
     fmt::print("  {}: {} detections\n", detector, count);
-  if (!kitti.images_dir.empty()) fmt::print("  images: {}\n", r.images);
+  if (r.images > 0) fmt::print("  images: {}\n", r.images);
+  if (r.poses > 0) fmt::print("  poses: {}\n", r.poses);
+  for (const auto& [label, count] : r.others) fmt::print("  {}: {} entries\n", label, count);
+  for (const std::string& note : r.notes) fmt::print("  {}\n", note);
   if (r.truth_file.empty()) return;
   fmt::print("{}: {} rows\n", r.truth_file, r.truth_rows);
   for (const auto& [type, count] : r.truth_types) fmt::print("  {}: {}\n", type, count);

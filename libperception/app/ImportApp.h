@@ -1,19 +1,19 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "libperception/app/App.h"
-#include "libperception/app/KittiImport.h"
+#include "libperception/app/Importer.h"
 
 namespace perception {
 
 /// perception-import: turns recordings of other formats into rawlogs with ground truth.
 class ImportApp : public App {
  public:
-  KittiImportParams kitti;              ///< of the sub-command kitti
-  std::vector<std::string> detections;  ///< NAME:CLASS=FILE
+  ImportOptions options;  ///< of all sub-commands
 
-  KittiImportResult out_result;
+  ImportResult out_result;
 
   std::string name() const override { return "perception-import"; }
   std::string description() const override;
@@ -21,8 +21,12 @@ class ImportApp : public App {
   void run() override;
 
  private:
-  void parseDetections();
+  void checkOptions() const;
   void report() const;
+
+  std::vector<std::unique_ptr<Importer>> importers_;  ///< as the table
+  std::size_t chosen_ = 0;
+  bool copy_images_ = false, embed_images_ = false;
 };
 
 }  // namespace perception

@@ -1,20 +1,13 @@
 #include "libperception/app/KittiFiles.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <functional>
-#include <limits>
-#include <string_view>
 
+#include "libperception/app/ImportText.h"
 #include "libperception/core/Error.h"
 
 namespace perception {
@@ -22,112 +15,6 @@ namespace perception {
 namespace {
 
 using Matrix34 = Eigen::Matrix<double, 3, 4>;
-
-/// The fields of one line; every complaint names file, line and column.
-class Row {
- public:
-  Row(const std::string& path, std::size_t line, std::string_view text, const char* separators)
-      : path_(path), line_(line) {
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
-      if (end > begin) fields_.push_back(text.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  }
-  std::size_t size() const { return fields_.size(); }
-  std::string text(std::size_t i) const { return std::string(at(i)); }
-  bool isNumber(std::size_t i) const {
-    double value = 0;
-    return parse(at(i), value);
-  }
-  double real(std::size_t i) const {
-    double value = 0;
-    if (!parse(at(i), value) || !std::isfinite(value)) fail(i, "a number");
-    return value;
-  }
-  std::int64_t integer(std::size_t i) const {
-    const double value = real(i);
-    if (value != std::floor(value) || std::abs(value) > 1e9) fail(i, "a whole number");
-    return static_cast<std::int64_t>(value);
-  }
-  std::int64_t frame(std::size_t i) const {
-    const std::int64_t value = integer(i);
-    if (value < 0) fail(i, "a frame number of at least 0");
-    return value;
-  }
-  void expect(bool holds, const std::string& expected) const {
-    if (!holds)
-      throw DataError(fmt::format("{}:{}: {} fields, expected {}", path_, line_, size(), expected));
-  }
-  [[noreturn]] void fail(std::size_t i, const std::string& expected) const {
-    throw DataError(fmt::format("{}:{}: field {}: found '{}', expected {}", path_, line_, i + 1,
-                                at(i), expected));
-  }
-  [[noreturn]] void failLine(const std::string& message) const {
-    throw DataError(fmt::format("{}:{}: {}", path_, line_, message));
-  }
-
- private:
-  static bool parse(std::string_view s, double& value) {
-    if (!s.empty() && s.front() == '+') s.remove_prefix(1);
-    const auto result = std::from_chars(s.data(), s.data() + s.size(), value);
-    return result.ec == std::errc() && result.ptr == s.data() + s.size();
-  }
-  std::string_view at(std::size_t i) const {
-    if (i >= fields_.size()) failLine(fmt::format("field {} is missing", i + 1));
-    return fields_[i];
-  }
-
-  const std::string& path_;
-  std::size_t line_;
-  std::vector<std::string_view> fields_;
-};
-
-/// Calls use(row) for each line that is not blank.
-void forEachRow(const std::string& path, const char* separators,
-                const std::function<void(const Row&)>& use) {
-  std::ifstream file(path);
-  if (!file) throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);
-  std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) {
-    const Row row(path, number, line, separators);
-    if (row.size() > 0) use(row);
-  }
-  if (file.bad())
-    throw DataError(fmt::format("{}: reading failed: {}", path, std::strerror(errno)));
-}
-
-constexpr const char* kSpaces = " \t\r";
-constexpr const char* kCommas = ", \t\r";
-
-/// A rigid motion from numbers of limited precision; their rotation is made exactly orthonormal.
-Pose3 toRigid(const Row& row, const Matrix34& m) {
-  const Eigen::Matrix3d r = m.leftCols<3>();
-  if (!(r * r.transpose()).isIdentity(1e-2) || r.determinant() < 0)
-    row.failLine("the 3x3 part is no rotation");
-  Pose3 pose = Pose3::Identity();
-  pose.linear() = Eigen::Quaterniond(r).normalized().toRotationMatrix();
-  pose.translation() = m.col(3);
-  return pose;
-}
-
-Matrix34 matrix34(const Row& row, std::size_t first) {
-  row.expect(row.size() == first + 12, fmt::format("{}", first + 12));
-  Matrix34 m;
-  for (std::size_t i = 0; i < 12; ++i) {
-    m(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = row.real(first + i);
-  }
-  return m;
-}
-
-Pose3 rotation33(const Row& row, std::size_t first) {
-  row.expect(row.size() == first + 9, fmt::format("{}", first + 9));
-  Matrix34 m = Matrix34::Zero();
-  for (std::size_t i = 0; i < 9; ++i) {
-    m(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) = row.real(first + i);
-  }
-  return toRigid(row, m);
-}
 
 /// KITTI's rectified images differ in size from day to day, and no calibration file says so; the
 /// focal length tells the day (image sizes of the raw data's S_rect_02).
@@ -141,7 +28,7 @@ constexpr ImageSize kImageSizes[] = {{721.5377, 1242, 375},   // 2011_09_26
                                      {707.0912, 1226, 370},   // 2011_09_30
                                      {718.8560, 1241, 376}};  // 2011_10_03
 
-void setCamera(const Row& row, const Matrix34& P2, KittiCalibration& calibration) {
+void setCamera(const TextRow& row, const Matrix34& P2, KittiCalibration& calibration) {
   CameraModel& c = calibration.camera;
   c.fx = P2(0, 0);
   c.fy = P2(1, 1);
@@ -159,7 +46,7 @@ void setCamera(const Row& row, const Matrix34& P2, KittiCalibration& calibration
   c.height = best->height;
 }
 
-KittiBox boxFrom(const Row& row, std::size_t first) {
+KittiBox boxFrom(const TextRow& row, std::size_t first) {
   KittiBox box;
   box.height = row.real(first);
   box.width = row.real(first + 1);
@@ -171,21 +58,14 @@ KittiBox boxFrom(const Row& row, std::size_t first) {
 
 bool isBox(const KittiBox& box) { return box.height > 0 && box.width > 0 && box.length > 0; }
 
-ObjectDetection::ImageBox imageBoxFrom(const Row& row, std::size_t first) {
+ObjectDetection::ImageBox imageBoxFrom(const TextRow& row, std::size_t first) {
   return {row.real(first), row.real(first + 1), row.real(first + 2), row.real(first + 3)};
 }
 
-/// frame [id] type truncated occluded alpha x1 y1 x2 y2 h w l x y z rotation_y [score]
-KittiLabel labelFrom(const Row& row) {
-  row.expect(row.size() >= 16 && row.size() <= 18,
-             "17 (label) or 18 (with score), or one less without an id");
-  const bool has_id = row.isNumber(1);
-  const std::size_t type = has_id ? 2 : 1;
+/// type truncated occluded alpha x1 y1 x2 y2 h w l x y z rotation_y [score], from field `type` on
+void readObject(const TextRow& row, std::size_t type, KittiLabel& label) {
   row.expect(row.size() >= type + 15 && row.size() <= type + 16,
              fmt::format("{} or {}", type + 15, type + 16));
-  KittiLabel label;
-  label.frame = row.frame(0);
-  if (has_id) label.id = row.integer(1);
   label.type = row.text(type);
   if (row.isNumber(type)) row.fail(type, "a type such as Car");
   label.truncated = row.real(type + 1);
@@ -195,11 +75,22 @@ KittiLabel labelFrom(const Row& row) {
   const KittiBox box = boxFrom(row, type + 8);
   if (isBox(box)) label.box = box;
   if (row.size() == type + 16) label.score = row.real(type + 15);
+}
+
+/// frame [id] type truncated occluded alpha x1 y1 x2 y2 h w l x y z rotation_y [score]
+KittiLabel labelFrom(const TextRow& row) {
+  row.expect(row.size() >= 16 && row.size() <= 18,
+             "17 (label) or 18 (with score), or one less without an id");
+  const bool has_id = row.isNumber(1);
+  KittiLabel label;
+  label.frame = row.frame(0);
+  if (has_id) label.id = row.integer(1);
+  readObject(row, has_id ? 2 : 1, label);
   return label;
 }
 
 /// frame,type number,x1,y1,x2,y2,score,h,w,l,x,y,z,rotation_y,alpha
-KittiLabel pointRcnnFrom(const Row& row) {
+KittiLabel pointRcnnFrom(const TextRow& row) {
   row.expect(row.size() == 15, "15");
   static constexpr std::array<const char*, 4> kTypes = {"", "Pedestrian", "Car", "Cyclist"};
   const std::int64_t type = row.integer(1);
@@ -216,7 +107,7 @@ KittiLabel pointRcnnFrom(const Row& row) {
 }
 
 /// frame,x1,y1,x2,y2,score; the class is that of the file.
-KittiLabel rrcFrom(const Row& row, const std::string& class_name) {
+KittiLabel rrcFrom(const TextRow& row, const std::string& class_name) {
   row.expect(row.size() == 6, "6");
   KittiLabel d;
   d.frame = row.frame(0);
@@ -240,18 +131,18 @@ KittiCalibration readKittiCalibration(const std::string& path) {
   KittiCalibration calibration;
   std::optional<Pose3> rectification, velo_to_cam;
   bool has_camera = false;
-  forEachRow(path, " \t\r:", [&](const Row& row) {
+  forEachRow(path, " \t\r:", [&](const TextRow& row) {
     const std::string name = row.text(0);
     // The tracking benchmark's own names and those of the object benchmark.
     if (name == "P2") {
-      setCamera(row, matrix34(row, 1), calibration);
+      setCamera(row, row.matrix34(1), calibration);
       has_camera = true;
     } else if (name == "R0_rect" || name == "R_rect") {
-      rectification = rotation33(row, 1);
+      rectification = row.rotation33(1);
     } else if (name == "Tr_velo_to_cam" || name == "Tr_velo_cam") {
-      velo_to_cam = toRigid(row, matrix34(row, 1));
-    } else if (name == "Tr_imu_to_velo" || name == "Tr_imu_velo") {
-      calibration.T_velo_imu = toRigid(row, matrix34(row, 1));
+      velo_to_cam = row.pose34(1);
+    } else if ((name == "Tr_imu_to_velo" || name == "Tr_imu_velo") && row.size() > 1) {
+      calibration.T_velo_imu = row.pose34(1);
     }
   });
   const auto need = [&](bool there, const char* name) {
@@ -267,20 +158,11 @@ KittiCalibration readKittiCalibration(const std::string& path) {
 
 std::vector<Pose3> readKittiPoses(const std::string& path, const std::string& format) {
   std::vector<Pose3> poses;
-  forEachRow(path, kSpaces, [&](const Row& row) {
-    if (format == "kitti") {
-      poses.push_back(toRigid(row, matrix34(row, 0)));
-      return;
-    }
-    if (row.text(0).front() == '#') return;
-    row.expect(row.size() == 8, "8: t x y z qx qy qz qw");
-    const Eigen::Quaterniond q(row.real(7), row.real(4), row.real(5), row.real(6));
-    if (std::abs(q.norm() - 1) > 1e-2) row.failLine("qx qy qz qw is no unit quaternion");
-    Pose3 pose = Pose3::Identity();
-    pose.linear() = q.normalized().toRotationMatrix();
-    pose.translation() = Vector3(row.real(1), row.real(2), row.real(3));
-    poses.push_back(pose);
-  });
+  if (format == "tum") {
+    for (const StampedPose& p : readTumPoses(path)) poses.push_back(p.pose);
+  } else {
+    forEachRow(path, kSpaces, [&](const TextRow& row) { poses.push_back(row.pose34(0)); });
+  }
   if (poses.empty()) throw DataError(fmt::format("{}: no pose in it", path));
   return poses;
 }
@@ -289,7 +171,7 @@ std::vector<Pose3> readKittiOxts(const std::string& path) {
   constexpr double kEarthRadius = 6378137;  // [m] as in the development kit
   std::vector<Pose3> poses;
   double scale = 0;
-  forEachRow(path, kSpaces, [&](const Row& row) {
+  forEachRow(path, kSpaces, [&](const TextRow& row) {
     row.expect(row.size() >= 6, "at least 6: lat lon alt roll pitch yaw ...");
     const double lat = row.real(0), lon = row.real(1);
     if (std::abs(lat) >= 90) row.fail(0, "a latitude in degrees");
@@ -305,7 +187,18 @@ std::vector<Pose3> readKittiOxts(const std::string& path) {
 
 std::vector<KittiLabel> readKittiLabels(const std::string& path) {
   std::vector<KittiLabel> labels;
-  forEachRow(path, kSpaces, [&](const Row& row) { labels.push_back(labelFrom(row)); });
+  forEachRow(path, kSpaces, [&](const TextRow& row) { labels.push_back(labelFrom(row)); });
+  return labels;
+}
+
+std::vector<KittiLabel> readKittiObjectLabels(const std::string& path, std::int64_t frame) {
+  std::vector<KittiLabel> labels;
+  forEachRow(path, kSpaces, [&](const TextRow& row) {
+    KittiLabel& label = labels.emplace_back();
+    label.frame = frame;
+    label.id = static_cast<std::int64_t>(labels.size()) - 1;
+    readObject(row, 0, label);
+  });
   return labels;
 }
 
@@ -313,7 +206,7 @@ std::vector<KittiLabel> readKittiDetections(const std::string& path, const std::
                                             const std::string& class_name) {
   std::vector<KittiLabel> detections;
   const bool commas = layout == "pointrcnn" || layout == "rrc";
-  forEachRow(path, commas ? kCommas : kSpaces, [&](const Row& row) {
+  forEachRow(path, commas ? kCommas : kSpaces, [&](const TextRow& row) {
     KittiLabel d = layout == "pointrcnn" ? pointRcnnFrom(row)
                    : layout == "rrc"     ? rrcFrom(row, class_name)
                                          : labelFrom(row);
@@ -327,21 +220,8 @@ std::vector<KittiLabel> readKittiDetections(const std::string& path, const std::
 LidarCloud readKittiScan(const std::string& path) {
   constexpr std::size_t kPointBytes = 16;
   constexpr std::size_t kMostBytes = kPointBytes << 24;  // 16 million points: no scanner has them
-  const gzFile file = gzopen(path.c_str(), "rb");        // reads plain files, too
-  if (file == nullptr)
-    throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);
-  std::vector<char> bytes;
-  int got = 0;
-  do {
-    const std::size_t begin = bytes.size();
-    bytes.resize(begin + (1U << 20));
-    got = gzread(file, bytes.data() + begin, 1U << 20);
-    bytes.resize(begin + static_cast<std::size_t>(std::max(got, 0)));
-  } while (got > 0 && bytes.size() <= kMostBytes);
-  // A cut gzip file shows only when it is closed.
-  const int closed = gzclose(file);
-  if (got < 0 || closed != Z_OK) throw DataError(fmt::format("{}: bad or cut gzip data", path));
-  if (bytes.size() > kMostBytes || bytes.size() % kPointBytes != 0) {
+  const std::string bytes = readBytes(path, kMostBytes);
+  if (bytes.size() % kPointBytes != 0) {
     throw DataError(fmt::format("{}: {} bytes, expected 16 a point (float32 x, y, z, intensity)",
                                 path, bytes.size()));
   }

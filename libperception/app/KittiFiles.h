@@ -53,6 +53,9 @@ std::vector<Pose3> readKittiOxts(const std::string& path);
 /// of ids).
 std::vector<KittiLabel> readKittiLabels(const std::string& path);
 
+/// Truth of one frame in the layout of the object benchmark: no frame, no id (ids count the lines).
+std::vector<KittiLabel> readKittiObjectLabels(const std::string& path, std::int64_t frame);
+
 /// Detections of one file, by frame: what is known of each in KITTI's terms. A row's type that is
 /// not `class_name` is left out unless `class_name` is "all". Layouts: see kittiDetectionLayouts().
 std::vector<KittiLabel> readKittiDetections(const std::string& path, const std::string& layout,

@@ -1,21 +1,18 @@
 #include "libperception/app/KittiImport.h"
 
 #include <fmt/format.h>
-#include <mrpt/obs/CObservationImage.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
-#include <set>
 #include <utility>
 
+#include "libperception/app/ImportText.h"
+#include "libperception/app/Importer.h"
 #include "libperception/app/KittiFiles.h"
 #include "libperception/core/Error.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/RawlogWriter.h"
-#include "libperception/sensors/ToObservation.h"
 
 namespace perception {
 
@@ -25,29 +22,12 @@ namespace {
 
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
-/// [%] of embedded images: no visible loss.
-constexpr int kJpegQuality = 95;
-/// [m] Height of the Velodyne on KITTI's car (Geiger et al., IJRR 2013, figure 3).
-constexpr double kVelodyneHeight = 1.73;
-/// Frame 0 of every sequence: the files carry no date. 2011-09-26 12:00:00 UTC, the day of most
-/// recordings.
-constexpr Stamp kFirstStamp{1317038400LL * 1'000'000'000};
-/// MRPT's clock counts in steps of this.
-constexpr std::int64_t kTickNs = 100;
-
-/// Types of the truth that a class of ours covers; the others are neither right nor wrong to
-/// report.
-const std::set<std::string> kCovered = {
-    "Car", "Van", "Truck", "Pedestrian", "Person", "Person_sitting", "Cyclist"};
-
 /// One detector's boxes, by frame.
 struct Detector {
   std::string name;
   KittiDetectionLayout layout{};
   std::map<std::int64_t, std::vector<KittiLabel>> by_frame;
 };
-
-[[noreturn]] void usage(const std::string& message) { throw Error(ExitCode::kUsage, message); }
 
 /// The layout goes by the name of the detector, or by what stands before its first dash
 /// (kitti2d-mine).
@@ -58,7 +38,7 @@ const KittiDetectionLayout& layoutOf(const std::string& name) {
     if (layout.name == base) return layout;
     known += (known.empty() ? "" : ", ") + std::string(layout.name);
   }
-  usage(fmt::format(
+  failUsage(fmt::format(
       "--detections: unknown detector '{}', expected one of {} (or one of these and '-anything')",
       name, known));
 }
@@ -66,9 +46,9 @@ const KittiDetectionLayout& layoutOf(const std::string& name) {
 /// The whole import of one sequence.
 class Import {
  public:
-  Import(const KittiImportParams& params, KittiImportResult& result)
-      : params_(params), result_(result) {}
-  void run(const std::function<void(std::int64_t, std::int64_t)>& progress);
+  Import(const KittiImportParams& params, ImportLog& log)
+      : params_(params), options_(log.options()), log_(log) {}
+  void run();
 
  private:
   void checkParams() const;
@@ -77,38 +57,28 @@ class Import {
   void readDetections();
   Stamp stampOf(std::int64_t frame) const;
   Pose3 egoAt(std::int64_t frame) const;
-  void writeFrame(std::int64_t frame, RawlogWriter& log);
+  void writeFrame(std::int64_t frame);
   std::optional<LidarCloud> readScan(std::int64_t frame);
-  void writeDetections(std::int64_t frame, RawlogWriter& log);
-  void writeImage(std::int64_t frame, RawlogWriter& log);
+  void writeDetections(std::int64_t frame);
+  void writeImage(std::int64_t frame);
   void addTruth(std::int64_t frame, const std::optional<LidarCloud>& cloud);
-  void setTruthVelocities();
-  void warnOfMissing();
 
   const KittiImportParams& params_;
-  KittiImportResult& result_;
+  const ImportOptions& options_;
+  ImportLog& log_;
   KittiCalibration calibration_;
-  Pose3 T_ego_velo_ = makePose(0, 0, kVelodyneHeight, 0);
+  Pose3 T_ego_velo_ = makePose(0, 0, kKittiVelodyneHeight, 0);
   Pose3 T_ego_pose_ = Pose3::Identity();  ///< of the frame that the poses are of
   std::vector<Pose3> poses_;              ///< of that frame, in the frame of the file
   std::int64_t last_ = 0;
   std::vector<Detector> detectors_;
   std::map<std::int64_t, std::vector<KittiLabel>> labels_;
-  std::vector<TruthObject> truth_;
-  std::vector<std::int64_t> missing_scans_, missing_images_;
 };
 
 void Import::checkParams() const {
-  if (params_.poses.empty() == params_.oxts.empty()) usage("give either --poses or --oxts");
-  if (!(params_.rate > 0) || !(params_.rate <= 1e4))
-    usage("--rate must be above 0 and at most 10000 Hz");
-  if (params_.first < 0) usage("--first must be at least 0");
-  if (params_.last >= 0 && params_.last < params_.first) usage("--last is before --first");
+  if (params_.poses.empty() == params_.oxts.empty()) failUsage("give either --poses or --oxts");
   for (const auto* dir : {&params_.lidar_dir, &params_.images_dir}) {
-    if (dir->empty()) continue;
-    if (!fs::exists(*dir))
-      throw DataError(fmt::format("{}: no such folder", *dir), ExitCode::kNoInput);
-    if (!fs::is_directory(*dir)) throw DataError(fmt::format("{}: not a folder", *dir));
+    if (!dir->empty()) requireFolder(*dir);
   }
 }
 
@@ -125,18 +95,18 @@ void Import::readPoses() {
   } else if (frame == "velodyne") {
     T_ego_pose_ = T_ego_velo_;
   } else {
-    usage("--poses-frame must be velodyne, camera or imu");
+    failUsage("--poses-frame must be velodyne, camera or imu");
   }
   if (params_.poses_format != "kitti" && params_.poses_format != "tum")
-    usage("--poses-format must be kitti or tum");
+    failUsage("--poses-format must be kitti or tum");
   poses_ = params_.oxts.empty() ? readKittiPoses(params_.poses, params_.poses_format)
                                 : readKittiOxts(params_.oxts);
   const auto end = static_cast<std::int64_t>(poses_.size());
-  last_ = params_.last < 0 ? end - 1 : params_.last;
-  if (params_.first >= end || last_ >= end) {
+  last_ = options_.last < 0 ? end - 1 : options_.last;
+  if (options_.first >= end || last_ >= end) {
     throw DataError(fmt::format("{}: {} poses (frames 0 to {}), but frames {} to {} are wanted",
                                 params_.oxts.empty() ? params_.poses : params_.oxts, end, end - 1,
-                                params_.first, last_));
+                                options_.first, last_));
   }
 }
 
@@ -147,7 +117,6 @@ void Import::readDetections() {
                                  [&](const Detector& d) { return d.name == wanted.name; });
     if (detector == detectors_.end()) {
       detector = detectors_.insert(detectors_.end(), Detector{wanted.name, layout, {}});
-      result_.detections[wanted.name] = 0;
     }
     for (auto& d : readKittiDetections(wanted.file, layout.name, wanted.class_name)) {
       detector->by_frame[d.frame].push_back(std::move(d));
@@ -166,8 +135,7 @@ void Import::readAll() {
 }
 
 Stamp Import::stampOf(std::int64_t frame) const {
-  const double ticks = std::round(static_cast<double>(frame) / params_.rate * (1e9 / kTickNs));
-  return {kFirstStamp.ns + static_cast<std::int64_t>(ticks) * kTickNs};
+  return stampAtRate(kUndatedStart, frame, options_.rate);
 }
 
 Pose3 Import::egoAt(std::int64_t frame) const {
@@ -192,37 +160,31 @@ std::optional<LidarCloud> Import::readScan(std::int64_t frame) {
   if (params_.lidar_dir.empty()) return {};
   const std::string path = frameFile(params_.lidar_dir, frame, {".bin", ".bin.gz"});
   if (path.empty()) {
-    missing_scans_.push_back(frame);
+    log_.missing("scan", params_.lidar_dir, frame);
     return {};
   }
   return readKittiScan(path);
 }
 
-void Import::writeFrame(std::int64_t frame, RawlogWriter& log) {
-  EgoState ego;
-  ego.stamp = stampOf(frame);
-  ego.T_world_ego = egoAt(frame);
-  ego.uncertainty = {0, 0, 0};  // not known: the site's minimum holds
-  log.write(*poseObservation(ego));
-  log.write(*frameComment(ego.stamp, frame));
+void Import::writeFrame(std::int64_t frame) {
+  const Stamp stamp = stampOf(frame);
+  log_.ego(stamp, egoAt(frame));
+  log_.frame(stamp, frame);
   const std::optional<LidarCloud> cloud = readScan(frame);
   if (cloud) {
     SensorFrame scan;
     scan.sensor = kLidarLabel;
-    scan.stamp = ego.stamp;
+    scan.stamp = stamp;
     scan.T_ego_sensor = T_ego_velo_;
     scan.data = *cloud;
-    log.write(*observationFromFrame(scan));
-    ++result_.scans;
-    result_.points += cloud->size();
+    log_.sensor(scan);
   }
-  writeDetections(frame, log);
-  if (!params_.images_dir.empty()) writeImage(frame, log);
+  writeDetections(frame);
+  if (!params_.images_dir.empty()) writeImage(frame);
   if (!params_.labels.empty()) addTruth(frame, cloud);
-  ++result_.frames;
 }
 
-void Import::writeDetections(std::int64_t frame, RawlogWriter& log) {
+void Import::writeDetections(std::int64_t frame) {
   const Pose3 T_ego_camera =
       T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
   for (const Detector& detector : detectors_) {
@@ -243,158 +205,135 @@ void Import::writeDetections(std::int64_t frame, RawlogWriter& log) {
           object.heading = wrapAngle(d.alpha);
       }
     }
-    result_.detections[detector.name] += found.objects.size();
     SensorFrame out;  // also without any object: that nothing was seen is news
     out.sensor = detector.name;
     out.stamp = stampOf(frame);
     out.T_ego_sensor = detector.layout.space_boxes ? T_ego_velo_ : T_ego_camera;
     out.data = std::move(found);
-    log.write(*observationFromFrame(out));
+    log_.sensor(out);
   }
 }
 
-void Import::writeImage(std::int64_t frame, RawlogWriter& log) {
+void Import::writeImage(std::int64_t frame) {
   const std::string path = frameFile(params_.images_dir, frame, {".png", ".jpg", ".jpeg"});
-  if (path.empty()) {
-    missing_images_.push_back(frame);
-    return;
-  }
-  const cv::Mat pixels = cv::imread(path, cv::IMREAD_COLOR);
-  if (pixels.empty()) throw DataError(fmt::format("{}: not an image", path));
-  mrpt::obs::CObservationImage image;
-  image.timestamp = fromStamp(stampOf(frame));
-  image.sensorLabel = kImageLabel;
-  image.cameraPose =
-      toMrpt(T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2);
-  auto& camera = image.cameraParams;
-  camera.ncols = static_cast<std::uint32_t>(pixels.cols);
-  camera.nrows = static_cast<std::uint32_t>(pixels.rows);
-  const CameraModel& c = calibration_.camera;
-  camera.setIntrinsicParamsFromValues(c.fx, c.fy, c.cx, c.cy);
-  if (params_.embed_images) {
-    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(false);  // MRPT's default is raw pixels
-    mrpt::img::CImage::SERIALIZATION_JPEG_QUALITY(kJpegQuality);
-    image.image = mrpt::img::CImage(pixels, mrpt::img::DEEP_COPY);
-  } else {
-    // Beside the log in the folder that MRPT's programs look into; the name alone stands in the
-    // log.
-    const fs::path folder = fs::path(params_.output).replace_extension().string() + "_Images";
-    const fs::path name =
-        fmt::format("{}_{:06}{}", kImageLabel, frame, fs::path(path).extension().string());
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!error) fs::copy_file(path, folder / name, fs::copy_options::overwrite_existing, error);
-    if (error)
-      throw OutputError(
-          fmt::format("{}: cannot copy: {}", (folder / name).string(), error.message()));
-    image.image.setExternalStorage(name.string());
-  }
-  log.write(image);
-  ++result_.images;
+  if (path.empty()) return log_.missing("image", params_.images_dir, frame);
+  ImportedImage image;
+  image.label = kImageLabel;
+  image.path = path;
+  image.stamp = stampOf(frame);
+  image.T_ego_camera = T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
+  image.camera = calibration_.camera;
+  log_.image(image, frame);
 }
 
 void Import::addTruth(std::int64_t frame, const std::optional<LidarCloud>& cloud) {
   const auto here = labels_.find(frame);
   if (here == labels_.end()) return;
   const Pose3 T_world_velo = egoAt(frame) * T_ego_velo_;
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   for (const KittiLabel& label : here->second) {
-    TruthObject& o = truth_.emplace_back();
-    o.frame = frame;
-    o.t = stampOf(frame) - stampOf(params_.first);
-    o.id = label.id;
-    o.type = label.type;
-    // Tracking labels grade truncation 0, 1, 2 (none, partly, wholly); the object benchmark gives
-    // the share itself.
-    o.truncated = std::max(0.0, label.truncated > 1 ? label.truncated / 2 : label.truncated);
-    o.occluded = std::max(0, label.occluded);
-    o.ignore = kCovered.count(label.type) == 0 || !label.box;
-    ++result_.truth_types[label.type];
-    if (!label.box) {  // an area of the image
-      o.position.setConstant(kUnknown);
-      o.yaw = o.length = o.width = o.height = kUnknown;
-      continue;
-    }
-    const ObjectDetection::SpaceBox box = boxInVelodyne(*label.box, calibration_);
-    const Vector3 axis = T_world_velo.linear() * Vector3(std::cos(box.yaw), std::sin(box.yaw), 0);
-    o.position = T_world_velo * box.bottom_centre;
-    o.yaw = std::atan2(axis.y(), axis.x());
-    o.length = box.length;
-    o.width = box.width;
-    o.height = box.height;
-    if (cloud) o.lidar_points = returnsInside(*label.box, *cloud, calibration_);
+    log_.truth(stampOf(frame), truthOf(label, calibration_, T_world_velo, cloud));
   }
 }
 
-/// Velocities by differences over the frames beside each row (one side at the ends of a track); a
-/// track with a gap starts anew behind it.
-void Import::setTruthVelocities() {
-  std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> rows;  // (id, frame) -> row
-  for (std::size_t i = 0; i < truth_.size(); ++i) {
-    if (truth_[i].id >= 0 && truth_[i].position.allFinite())
-      rows[{truth_[i].id, truth_[i].frame}] = i;
-  }
-  for (const auto& [key, i] : rows) {
-    const auto find = [&rows = rows, key = key](std::int64_t step) {
-      return rows.find({key.first, key.second + step});
-    };
-    const auto before = find(-1), after = find(1);
-    const TruthObject& a = truth_[before == rows.end() ? i : before->second];
-    const TruthObject& b = truth_[after == rows.end() ? i : after->second];
-    if (!(b.t > a.t)) continue;
-    truth_[i].vx = (b.position.x() - a.position.x()) / (b.t - a.t);
-    truth_[i].vy = (b.position.y() - a.position.y()) / (b.t - a.t);
-  }
-}
-
-void Import::warnOfMissing() {
-  const auto report = [this](const std::vector<std::int64_t>& missing, const std::string& dir,
-                             const char* what) {
-    if (missing.empty()) return;
-    const std::string message = fmt::format("{}: no {} for {} of {} frames (first: {})", dir, what,
-                                            missing.size(), result_.frames, missing.front());
-    if (static_cast<std::int64_t>(missing.size()) == result_.frames)
-      throw DataError(message, ExitCode::kNoInput);
-    result_.warnings.push_back(message);
-  };
-  report(missing_scans_, params_.lidar_dir, "scan");
-  report(missing_images_, params_.images_dir, "image");
-}
-
-void Import::run(const std::function<void(std::int64_t, std::int64_t)>& progress) {
+void Import::run() {
   checkParams();
   readAll();
-  RawlogWriter log(params_.output);
-  for (std::int64_t frame = params_.first; frame <= last_; ++frame) {
-    writeFrame(frame, log);
-    if (progress) progress(frame - params_.first + 1, last_ - params_.first + 1);
+  if (!params_.labels.empty()) log_.expectTruth();
+  for (std::int64_t frame = options_.first; frame <= last_; ++frame) {
+    writeFrame(frame);
+    log_.progress(frame - options_.first + 1, last_ - options_.first + 1);
   }
-  warnOfMissing();
-  if (!params_.labels.empty()) {  // before the log: where a log is, its truth is whole
-    setTruthVelocities();
-    result_.truth_rows = truth_.size();
-    result_.truth_file = truthFileOf(params_.output);
-    writeGroundTruth(result_.truth_file, truth_);
+}
+
+/// The sub-command kitti.
+class KittiImporter final : public Importer {
+ public:
+  void declare(CLI::App& cli) override;
+  void prepare(ImportOptions& options) override;
+  void run(ImportLog& log) override {
+    for (const std::string& text : detections_) params_.detections.push_back(detectionsOf(text));
+    Import(params_, log).run();
   }
-  log.close();
-  result_.entries = log.entries();
-  result_.bytes = log.bytes();
-  result_.bytes_inflated = log.bytesInflated();
+
+ private:
+  static KittiImportParams::Detections detectionsOf(const std::string& text);
+
+  KittiImportParams params_;
+  std::vector<std::string> detections_;  ///< NAME:CLASS=FILE
+};
+
+void KittiImporter::declare(CLI::App& cli) {
+  auto& p = params_;
+  cli.add_option("--calib", p.calibration, "calibration file (P2, R0_rect, Tr_velo_to_cam)")
+      ->required();
+  auto* poses = cli.add_option("--poses", p.poses, "ego poses, one line a frame");
+  cli.add_option("--poses-frame", p.poses_frame, "whose poses they are")
+      ->check(CLI::IsMember({"velodyne", "camera", "imu"}))
+      ->capture_default_str();
+  cli.add_option("--poses-format", p.poses_format,
+                 "kitti: 12 numbers (3x4); tum: t x y z qx qy qz qw")
+      ->check(CLI::IsMember({"kitti", "tum"}))
+      ->capture_default_str();
+  cli.add_option("--oxts", p.oxts, "GPS/IMU file, instead of --poses")->excludes(poses);
+  cli.add_option("--lidar", p.lidar_dir, "folder of Velodyne scans, FRAME.bin or FRAME.bin.gz");
+  cli.add_option("--labels", p.labels, "truth: tracking labels");
+  cli.add_option("--images", p.images_dir,
+                 "folder of left colour images, FRAME.png or FRAME.jpg; copied beside the log "
+                 "unless --embed-images");
+  cli.add_option("--detections", detections_,
+                 "NAME:CLASS=FILE, repeatable; NAME: pointrcnn, pointgnn, rrc, dpm, kitti3d, "
+                 "kitti2d (or one of them and -anything); CLASS: rows of this type, or all");
+}
+
+void KittiImporter::prepare(ImportOptions& options) {
+  if (options.images == ImportOptions::Images::kReference)
+    options.images = ImportOptions::Images::kCopy;
+  if (options.rate <= 0) options.rate = 10;
+}
+
+KittiImportParams::Detections KittiImporter::detectionsOf(const std::string& text) {
+  const auto colon = text.find(':');
+  const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
+  if (colon == std::string::npos || equals == std::string::npos || colon == 0 ||
+      equals <= colon + 1 || equals + 1 == text.size()) {
+    failUsage(fmt::format("--detections '{}': expected NAME:CLASS=FILE", text));
+  }
+  return {text.substr(0, colon), text.substr(colon + 1, equals - colon - 1),
+          text.substr(equals + 1)};
 }
 
 }  // namespace
 
-std::string truthFileOf(const std::string& rawlog) {
-  const fs::path path(rawlog);
-  if (path.extension() != ".rawlog") return rawlog + ".truth.csv";
-  return fs::path(path).replace_extension(".truth.csv").string();
+TruthObject truthOf(const KittiLabel& label, const KittiCalibration& calibration,
+                    const Pose3& T_world_velo, const std::optional<LidarCloud>& cloud) {
+  TruthObject o;
+  o.frame = label.frame;
+  o.id = label.id;
+  o.type = label.type;
+  // Tracking labels grade truncation 0, 1, 2 (none, partly, wholly); the object benchmark gives
+  // the share itself.
+  o.truncated = std::max(0.0, label.truncated > 1 ? label.truncated / 2 : label.truncated);
+  o.occluded = std::max(0, label.occluded);
+  o.ignore = !coveredType(label.type) || !label.box;
+  if (!label.box) {  // an area of the image
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    o.position.setConstant(kUnknown);
+    o.yaw = o.length = o.width = o.height = kUnknown;
+    return o;
+  }
+  placeTruth(boxInVelodyne(*label.box, calibration), T_world_velo, o);
+  if (cloud) o.lidar_points = returnsInside(*label.box, *cloud, calibration);
+  return o;
 }
 
-KittiImportResult importKitti(const KittiImportParams& params,
-                              const std::function<void(std::int64_t, std::int64_t)>& progress) {
-  KittiImportResult result;
-  Import(params, result).run(progress);
-  return result;
+std::unique_ptr<Importer> makeKittiImporter() { return std::make_unique<KittiImporter>(); }
+
+ImportResult importKitti(const KittiImportParams& params, ImportOptions options,
+                         const ImportProgress& progress) {
+  if (options.rate <= 0) options.rate = 10;
+  ImportLog log(std::move(options), progress);
+  Import(params, log).run();
+  return log.close();
 }
 
 }  // namespace perception

@@ -1,15 +1,14 @@
 #pragma once
-#include <cstdint>
-#include <functional>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "libperception/core/GroundTruth.h"
+#include "libperception/app/ImportLog.h"
+#include "libperception/app/KittiFiles.h"
 
 namespace perception {
 
-/// What is imported from a KITTI tracking sequence, and how.
+/// What is imported from a KITTI tracking sequence, beside ImportOptions.
 struct KittiImportParams {
   std::string calibration;               ///< calibration file
   std::string poses;                     ///< ego motion, one line a frame ...
@@ -24,31 +23,19 @@ struct KittiImportParams {
     std::string file;
   };
   std::vector<Detections> detections;
-  double rate = 10;                   ///< [Hz] of the frames (the cars' true rate was 9.66)
-  std::int64_t first = 0, last = -1;  ///< frame numbers; last -1: to the end of the poses
-  bool embed_images = false;          ///< as JPEG inside the log instead of files beside it
-  std::string output;                 ///< FILE.rawlog
 };
 
-/// What an import wrote.
-struct KittiImportResult {
-  std::int64_t frames = 0, scans = 0, images = 0;
-  std::uint64_t points = 0;
-  std::map<std::string, std::uint64_t> detections;   ///< by detector
-  std::uint64_t truth_rows = 0;                      ///< ignored ones included
-  std::map<std::string, std::uint64_t> truth_types;  ///< rows by type
-  std::string truth_file;                            ///< empty without labels
-  std::uint64_t entries = 0, bytes = 0, bytes_inflated = 0;
-  std::vector<std::string> warnings;  ///< parts of the data that are missing
-};
+/// [m] Height of the Velodyne on KITTI's car (Geiger et al., IJRR 2013, figure 3).
+inline constexpr double kKittiVelodyneHeight = 1.73;
 
 /// Writes FILE.rawlog and, with labels, FILE.truth.csv; frame by frame, so memory does not grow
 /// with the sequence. World: the ego frame at line 0 of the poses, 1.73 m under the Velodyne.
-/// `progress(done, total)` is called per frame. Throws Error (kUsage), DataError, OutputError.
-KittiImportResult importKitti(const KittiImportParams& params,
-                              const std::function<void(std::int64_t, std::int64_t)>& progress = {});
+/// Throws Error (kUsage), DataError, OutputError.
+ImportResult importKitti(const KittiImportParams& params, ImportOptions options,
+                         const ImportProgress& progress = {});
 
-/// FILE.truth.csv beside FILE.rawlog.
-std::string truthFileOf(const std::string& rawlog);
+/// A label as a row of the truth, stamp and velocity aside. `cloud`: in the Velodyne frame.
+TruthObject truthOf(const KittiLabel& label, const KittiCalibration& calibration,
+                    const Pose3& T_world_velo, const std::optional<LidarCloud>& cloud);
 
 }  // namespace perception

@@ -13,6 +13,7 @@
 
 #include "libperception/app/ImportApp.h"
 #include "libperception/app/KittiFiles.h"
+#include "libperception/app/KittiImport.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/EgoPose.h"
 #include "libperception/sensors/FromObservation.h"
@@ -93,7 +94,7 @@ class ImportTest : public ::testing::Test {
   }
 
   fs::path folder_;
-  KittiImportResult result_;
+  ImportResult result_;
   std::string error_;
 };
 
@@ -403,8 +404,9 @@ TEST_F(KittiGeometry, ParkedCarsStandStillInTheWorld) {
   params.labels = dir_ + "label_02/0009.txt";
   std::string folder = (fs::temp_directory_path() / "perception-XXXXXX").string();
   ASSERT_NE(::mkdtemp(folder.data()), nullptr);
-  params.output = folder + "/a.rawlog";
-  importKitti(params);
+  ImportOptions options;
+  options.output = folder + "/a.rawlog";
+  importKitti(params, options);
   const GroundTruth truth = readGroundTruth(folder + "/a.truth.csv");
   fs::remove_all(folder);
   std::map<std::int64_t, std::vector<const TruthObject*>> tracks;

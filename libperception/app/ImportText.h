@@ -1,0 +1,102 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+#include "libperception/core/Time.h"
+
+namespace perception {
+
+/// The fields of one line of somebody's text file; every complaint is a DataError that names file,
+/// line and field. Numbers are read whatever the locale. Valid while path and text live.
+class TextRow {
+ public:
+  TextRow(const std::string& path, std::size_t line, std::string_view text, const char* separators);
+
+  std::size_t size() const { return fields_.size(); }
+  std::size_t line() const { return line_; }
+  std::string text(std::size_t i) const { return std::string(at(i)); }
+  bool isNumber(std::size_t i) const;
+  double real(std::size_t i) const;  ///< finite
+  std::int64_t integer(std::size_t i) const;
+  std::int64_t frame(std::size_t i) const;  ///< an integer of at least 0
+
+  // Numbers in a row, from field `first` to the end of the line.
+  /// A pose of 12 numbers, 3x4 row-major; limited precision is repaired, what is no rotation fails.
+  Pose3 pose34(std::size_t first) const;
+  /// A rotation of 9 numbers, row-major.
+  Pose3 rotation33(std::size_t first) const;
+  /// 12 numbers as they are, 3x4 row-major.
+  Eigen::Matrix<double, 3, 4> matrix34(std::size_t first) const;
+
+  void expect(bool holds, const std::string& expected) const;
+  [[noreturn]] void fail(std::size_t i, const std::string& expected) const;
+  [[noreturn]] void failLine(const std::string& message) const;
+
+ private:
+  static bool parse(std::string_view s, double& value);
+  std::string_view at(std::size_t i) const;
+  Pose3 rigid(const Eigen::Matrix<double, 3, 4>& m) const;
+
+  const std::string& path_;
+  std::size_t line_;
+  std::vector<std::string_view> fields_;
+};
+
+inline constexpr const char* kSpaces = " \t\r";
+inline constexpr const char* kCommas = ", \t\r";
+
+/// Calls use(row) for each line of a file, plain or gzip, that is not blank. Throws DataError
+/// (kNoInput when the file is not there).
+void forEachRow(const std::string& path, const char* separators,
+                const std::function<void(const TextRow&)>& use);
+
+/// All bytes of a file, plain or gzip. Throws DataError: missing (kNoInput), cut or damaged gzip
+/// data, more than `most` bytes.
+std::string readBytes(const std::string& path, std::size_t most = std::size_t{1} << 28);
+
+/// Throws DataError unless it is a folder (kNoInput when it is not there).
+void requireFolder(const std::string& path);
+
+/// A file of a folder whose files are frames.
+struct FrameFile {
+  std::int64_t number = 0;  ///< the file's name, where every name is a number, else its place
+  std::string stem;         ///< name without folder and endings
+  std::string path;
+};
+/// The files of `dir` with one of the endings (".bin", ".bin.gz"), in order of number. Throws
+/// DataError for no folder and for a folder without such a file (kNoInput both).
+std::vector<FrameFile> frameFiles(const std::string& dir, const std::vector<std::string>& endings);
+/// DIR/STEM + one of the endings, the first that is there; empty: none.
+std::string fileOfStem(const std::string& dir, const std::string& stem,
+                       const std::vector<std::string>& endings);
+
+/// A pose with its time, of a TUM file: t x y z qx qy qz qw, lines of # left out.
+struct StampedPose {
+  Stamp stamp;
+  Pose3 pose = Pose3::Identity();
+};
+std::vector<StampedPose> readTumPoses(const std::string& path);
+/// Between two poses: linear in place, slerp in attitude.
+Pose3 interpolate(const Pose3& a, const Pose3& b, double share);
+
+/// Seconds as text, "1574859771.744660272", to the nanosecond. Empty: it is no such number.
+std::optional<Stamp> stampOfSeconds(std::string_view text);
+/// "2011-09-26 13:02:25.964389445", with a blank, a T or a _ in the middle, UTC.
+std::optional<Stamp> stampOfDate(std::string_view text);
+/// Midnight of "2011-09-26".
+std::optional<Stamp> stampOfDay(std::string_view text);
+
+/// Steps of MRPT's clock.
+inline constexpr std::int64_t kTickNs = 100;
+/// first + k / rate, rounded to MRPT's steps.
+Stamp stampAtRate(Stamp first, std::int64_t k, double rate);
+
+/// Where recordings without a date begin: 2011-09-26 12:00:00 UTC, the day of most of KITTI's.
+inline constexpr Stamp kUndatedStart{1317038400LL * 1'000'000'000};
+
+}  // namespace perception

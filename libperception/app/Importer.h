@@ -1,0 +1,48 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libperception/app/ImportLog.h"
+
+namespace CLI {
+class App;
+}
+
+namespace perception {
+
+/// One foreign format: its own options, and the import. Throws Error (kUsage), DataError (with file
+/// and line), OutputError.
+class Importer {
+ public:
+  virtual ~Importer() = default;
+  /// The options beside those of ImportOptions.
+  virtual void declare(CLI::App& cli) = 0;
+  /// Before the log is opened: the format's own defaults for what the person did not say.
+  virtual void prepare(ImportOptions&) {}
+  virtual void run(ImportLog& log) = 0;
+};
+
+/// A row per sub-command of perception-import.
+struct ImporterRow {
+  const char* name;
+  const char* description;
+  std::unique_ptr<Importer> (*make)();
+};
+const std::vector<ImporterRow>& importers();
+
+std::unique_ptr<Importer> makeKittiImporter();
+std::unique_ptr<Importer> makeCloudsImporter();
+std::unique_ptr<Importer> makeWadsImporter();
+std::unique_ptr<Importer> makeSnowyKittiImporter();
+std::unique_ptr<Importer> makeRadiateImporter();
+std::unique_ptr<Importer> makeVodImporter();
+std::unique_ptr<Importer> makeComma2k19Importer();
+std::unique_ptr<Importer> makeUdacityImporter();
+std::unique_ptr<Importer> makeImagesImporter();
+std::unique_ptr<Importer> makeNmeaImporter();
+std::unique_ptr<Importer> makeGpxImporter();
+
+[[noreturn]] void failUsage(const std::string& message);
+
+}  // namespace perception

@@ -1,0 +1,454 @@
+#include <fmt/format.h>
+#include <mrpt/containers/yaml.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+
+#include "libperception/app/ImportClouds.h"
+#include "libperception/app/ImportGps.h"
+#include "libperception/app/ImportText.h"
+#include "libperception/app/Importer.h"
+#include "libperception/core/Csv.h"
+#include "libperception/core/Error.h"
+
+namespace perception {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kLidarLabel = "LIDAR_TOP";
+constexpr const char* kRadarLabel = "RADAR_TOP";
+constexpr const char* kImageLabel = "CAMERA_LEFT";
+constexpr double kPixel = 0.17361;  ///< [m] of Navtech_Cartesian (data set's paper)
+/// Beams of one turn of the radar; bearing and range steps of its polar images.
+constexpr int kBeams = 400;
+constexpr double kMaxRange = 100;  ///< [m] of the radar (data set's paper)
+
+/// What is read of a folder, and what the recording does not say.
+struct RadiateParams {
+  std::string dir;
+  double lidar_height = 2.05;  ///< [m] road returns lie so far below the lidar (frame 28)
+  /// [s] The radar's stamps are later than its pictures: at 6.2 m/s they fit the lidar's returns
+  /// when these are moved 2.0 m ahead (correlation over radar frames 3, 8, 13, 17).
+  double radar_delay = 0.33;
+  /// [s] added to GPS stamps; that clock is not synchronised: empty: both recordings begin at once.
+  std::optional<double> gps_shift;
+  // The strongest echoes of each beam stand for the radar's picture, as in CFEAR radar odometry
+  // (Adolfsson et al., IROS 2021: k = 12, 60 of 255).
+  int strongest = 12;
+  int least_power = 60;       ///< [0, 255]
+  double nearest = 3;         ///< [m] the vehicle's own roof and the antenna's ringing
+  bool radar_images = false;  ///< also as images
+};
+
+using FrameTimes = std::map<std::int64_t, Stamp>;
+
+/// "Frame: 000018 Time: 1574859771.700975000"
+FrameTimes readTimes(const fs::path& path) {
+  FrameTimes times;
+  const std::string name = path.string();
+  forEachRow(name, kSpaces, [&](const TextRow& row) {
+    row.expect(row.size() == 4, "4: Frame: N Time: SECONDS");
+    const auto stamp = stampOfSeconds(row.text(3));
+    if (!stamp) row.fail(3, "seconds since 1970");
+    times[row.frame(1)] = *stamp;
+  });
+  if (times.empty()) throw DataError(name + ": no time in it");
+  return times;
+}
+
+/// Frames without a time are left out.
+void warnOfUntimed(const std::vector<std::int64_t>& frames, const std::string& dir,
+                   ImportLog& log) {
+  if (frames.empty()) return;
+  log.warn(fmt::format("{}: no time in {}.txt for {} frames (first: {}): left out", dir, dir,
+                       frames.size(), frames.front()));
+}
+
+/// Cells of the picture along one beam that are stronger than their neighbours, the strongest
+/// first.
+void addBeam(const cv::Mat& picture, int beam, const RadiateParams& params, RadarReturns& out) {
+  const double bearing = wrapAngle(kTwoPi * beam / kBeams);
+  const double c = std::cos(bearing), s = std::sin(bearing);
+  const int centre_u = picture.cols / 2, centre_v = picture.rows / 2;
+  const int cells = std::min({centre_u, centre_v, static_cast<int>(kMaxRange / kPixel)}) - 1;
+  std::vector<int> power(static_cast<std::size_t>(std::max(cells, 0)));
+  for (int i = 0; i < cells; ++i) {  // up is forward, left is left
+    const int u = centre_u - static_cast<int>(std::lround(s * i));
+    const int v = centre_v - static_cast<int>(std::lround(c * i));
+    power[static_cast<std::size_t>(i)] = picture.at<std::uint8_t>(v, u);
+  }
+  std::vector<std::pair<int, int>> peaks;  // (-power, cell)
+  for (std::size_t i = 1; i + 1 < power.size(); ++i) {
+    if (static_cast<double>(i) * kPixel < params.nearest || power[i] < params.least_power) continue;
+    if (power[i] > power[i - 1] && power[i] >= power[i + 1])
+      peaks.emplace_back(-power[i], static_cast<int>(i));
+  }
+  std::sort(peaks.begin(), peaks.end());
+  if (peaks.size() > static_cast<std::size_t>(params.strongest))
+    peaks.resize(static_cast<std::size_t>(params.strongest));
+  for (const auto& [negative, cell] : peaks) {
+    RadarReturn& r = out.returns.emplace_back();
+    r.range = cell * kPixel;
+    r.bearing = bearing;
+    r.has_rate = false;  // this radar measures none
+    r.amplitude = -negative;
+  }
+}
+
+RadarReturns returnsOf(const std::string& path, const RadiateParams& params) {
+  const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
+  if (picture.empty()) throw DataError(path + ": not an image");
+  RadarReturns out;
+  out.max_range = kMaxRange;
+  for (int beam = 0; beam < kBeams; ++beam) addBeam(picture, beam, params, out);
+  return out;
+}
+
+/// A box of the annotations, in pixels of Navtech_Cartesian.
+struct Annotation {
+  std::int64_t id = 0;
+  std::string type;
+  double x = 0, y = 0, width = 0, length = 0;  ///< [px] top left corner and size before turning
+  double rotation = 0;                         ///< [deg] counter-clockwise about the centre
+};
+
+/// RADIATE's class names in KITTI's terms; others are kept as they are.
+std::string typeOf(const std::string& name) {
+  static const std::map<std::string, std::string> kTypes = {{"car", "Car"},
+                                                            {"van", "Van"},
+                                                            {"truck", "Truck"},
+                                                            {"bus", "Bus"},
+                                                            {"bicycle", "Cyclist"},
+                                                            {"pedestrian", "Pedestrian"},
+                                                            {"motorbike", "Motorbike"}};
+  const auto row = kTypes.find(name);
+  return row == kTypes.end() ? name : row->second;
+}
+
+std::map<std::int64_t, std::vector<Annotation>> readAnnotations(const std::string& path) {
+  const auto fault = [&](const std::string& what) { throw DataError(path + ": " + what); };
+  const auto json = nlohmann::json::parse(readBytes(path), nullptr, false);
+  if (!json.is_array()) fault("no JSON list of objects");
+  std::map<std::int64_t, std::vector<Annotation>> by_frame;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const auto& object = json[i];
+    const std::string place = fmt::format("object {}", i);
+    if (!object.is_object() || !object.contains("id") || !object["id"].is_number_integer() ||
+        !object.contains("class_name") || !object["class_name"].is_string() ||
+        !object.contains("bboxes") || !object["bboxes"].is_array())
+      fault(place + ": expected id, class_name and bboxes");
+    for (std::size_t k = 0; k < object["bboxes"].size(); ++k) {
+      const auto& box = object["bboxes"][k];
+      if (box.is_array() && box.empty()) continue;  // not there in this frame
+      const bool good = box.is_object() && box.contains("position") && box["position"].is_array() &&
+                        box["position"].size() == 4 && box.contains("rotation") &&
+                        box["rotation"].is_number() &&
+                        std::all_of(box["position"].begin(), box["position"].end(),
+                                    [](const auto& v) { return v.is_number(); });
+      if (!good)
+        fault(fmt::format("{}, box {}: expected position [x, y, w, h] and rotation", place, k));
+      const auto& p = box["position"];
+      by_frame[static_cast<std::int64_t>(k) + 1].push_back(
+          {object["id"].get<std::int64_t>(), typeOf(object["class_name"].get<std::string>()),
+           p[0].get<double>(), p[1].get<double>(), p[2].get<double>(), p[3].get<double>(),
+           box["rotation"].get<double>()});
+    }
+  }
+  return by_frame;
+}
+
+/// calib.yaml: translations from the radar, x right, y ahead, z up.
+struct RadiateCalibration {
+  Vector3 lidar = Vector3::Zero(), camera = Vector3::Zero();  ///< [m] right, ahead, up of the radar
+  CameraModel model;
+  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3
+};
+
+RadiateCalibration readCalibration(const std::string& path) {
+  if (!fs::exists(path)) throw DataError(path + ": no such file", ExitCode::kNoInput);
+  RadiateCalibration c;
+  try {
+    const auto yaml = mrpt::containers::yaml::FromFile(path);
+    const auto place = [&](const char* name) {
+      const auto t = yaml[name]["T"];
+      return Vector3(t(0).as<double>(), t(1).as<double>(), t(2).as<double>());
+    };
+    c.lidar = place("lidar_calib");
+    c.camera = place("left_cam_calib");
+    const auto camera = yaml["left_cam_calib"];
+    c.model.fx = camera["fx"].as<double>(), c.model.fy = camera["fy"].as<double>();
+    c.model.cx = camera["cx"].as<double>(), c.model.cy = camera["cy"].as<double>();
+    for (const char* name : {"k1", "k2", "p1", "p2", "k3"})
+      c.distortion.push_back(camera[name].as<double>());
+  } catch (const std::exception& e) {
+    std::string what = e.what();
+    throw DataError(fmt::format("{}: expected lidar_calib and left_cam_calib with T, fx ...: {}",
+                                path, what.substr(0, what.find('\n'))));
+  }
+  return c;
+}
+
+/// RADIATE: a sequence's folder.
+class RadiateImporter final : public Importer {
+ public:
+  void declare(CLI::App& cli) override;
+  void run(ImportLog& log) override;
+
+ private:
+  fs::path path(const char* name) const { return fs::path(params_.dir) / name; }
+  std::string annotationFile() const;
+  void addRadar(ImportLog& log);
+  void addLidar(ImportLog& log);
+  void addImages(ImportLog& log);
+  void addGps(ImportLog& log);
+  void addTruth(ImportLog& log);
+  std::optional<Pose3> egoAt(Stamp stamp) const;
+  bool inside(Stamp stamp) const { return !first_ || (*first_ <= stamp && stamp <= last_); }
+  Stamp radarStamp(Stamp stamp) const { return stamp + -params_.radar_delay; }
+
+  RadiateParams params_;
+  RadiateCalibration calibration_;
+  double radar_height_ = 0;  ///< [m] above the road; the ego origin is below the radar
+  FrameTimes radar_times_;
+  std::vector<StampedPose> poses_;
+  std::optional<Stamp> first_;  ///< of the part that is wanted
+  Stamp last_;
+};
+
+void RadiateImporter::declare(CLI::App& cli) {
+  cli.add_option("--dir", params_.dir,
+                 "a sequence: Navtech_Cartesian/, velo_lidar/, zed_left/, their .txt, calib.yaml, "
+                 "annotations")
+      ->required();
+  cli.add_option("--lidar-height", params_.lidar_height, "[m] of the lidar above the road")
+      ->check(CLI::Range(0.1, 10.0))
+      ->capture_default_str();
+  cli.add_option("--radar-delay", params_.radar_delay, "[s] by which the radar's stamps are late")
+      ->check(CLI::Range(-5.0, 5.0))
+      ->capture_default_str();
+  cli.add_option("--gps-shift", params_.gps_shift,
+                 "[s] added to the GPS stamps; default: GPS and lidar begin at once");
+  cli.add_option("--strongest", params_.strongest, "returns taken of each of the radar's 400 beams")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  cli.add_option("--least-power", params_.least_power, "[0, 255] of a return")
+      ->check(CLI::Range(0, 255))
+      ->capture_default_str();
+  cli.add_flag("--radar-images", params_.radar_images, "the radar's pictures as images, too");
+}
+
+std::string RadiateImporter::annotationFile() const {
+  for (const char* name :
+       {"annotations_18frames.json", "annotations/annotations.json", "annotations.json"}) {
+    if (fs::exists(path(name))) return path(name).string();
+  }
+  return {};
+}
+
+std::optional<Pose3> RadiateImporter::egoAt(Stamp stamp) const {
+  const auto after = std::lower_bound(poses_.begin(), poses_.end(), stamp,
+                                      [](const StampedPose& p, Stamp t) { return p.stamp < t; });
+  if (after == poses_.end()) return {};
+  if (after == poses_.begin()) {
+    // The radar's first frames are older than the first fix: on with the first velocity.
+    if (poses_.size() < 2 || poses_.front().stamp - stamp > 1) return {};
+    const double share = (stamp - poses_[0].stamp) / (poses_[1].stamp - poses_[0].stamp);
+    return interpolate(poses_[0].pose, poses_[1].pose, share);
+  }
+  const StampedPose& before = *std::prev(after);
+  return interpolate(before.pose, after->pose,
+                     (stamp - before.stamp) / (after->stamp - before.stamp));
+}
+
+void RadiateImporter::addRadar(ImportLog& log) {
+  const std::string dir = path("Navtech_Cartesian").string();
+  const auto files = frameFiles(dir, {".png"});
+  std::vector<std::int64_t> untimed;
+  for (const FrameFile& file : files) {
+    if (!log.options().wants(file.number)) continue;
+    const auto time = radar_times_.find(file.number);
+    if (time == radar_times_.end()) {
+      untimed.push_back(file.number);
+      continue;
+    }
+    const Stamp stamp = radarStamp(time->second);
+    if (!first_) first_ = stamp;
+    last_ = stamp;
+    log.at(stamp, [this, stamp, file, &log] {
+      log.frame(stamp, file.number);
+      SensorFrame out;
+      out.sensor = kRadarLabel;
+      out.stamp = stamp;
+      out.T_ego_sensor = makePose(0, 0, radar_height_, 0);
+      out.data = returnsOf(file.path, params_);
+      log.sensor(out);
+      if (params_.radar_images) {
+        ImportedImage image;
+        image.label = "RADAR_PICTURE";
+        image.path = file.path;
+        image.stamp = stamp;
+        log.image(image, file.number);
+      }
+    });
+  }
+  warnOfUntimed(untimed, dir, log);
+  if (!first_) throw DataError(dir + ": none of the wanted frames", ExitCode::kNoInput);
+  first_ = *first_ + -0.5;
+  last_ = last_ + 0.5;
+}
+
+void RadiateImporter::addLidar(ImportLog& log) {
+  const std::string dir = path("velo_lidar").string();
+  const FrameTimes times = readTimes(path("velo_lidar.txt"));
+  CloudFormat format;
+  format.columns = {"x", "y", "z", "intensity", "ring"};
+  format.intensity_max = 255;
+  format.max_range = 100;  // [m] HDL-32E, data sheet
+  // The file's x looks to the right, its y ahead.
+  const Pose3 T_ego_lidar =
+      makePose(calibration_.lidar.y(), -calibration_.lidar.x(), params_.lidar_height, -kPi / 2);
+  std::vector<std::int64_t> untimed;
+  for (const FrameFile& file : frameFiles(dir, {".csv", ".csv.gz"})) {
+    const auto time = times.find(file.number);
+    if (time == times.end()) {
+      untimed.push_back(file.number);
+      continue;
+    }
+    const Stamp stamp = time->second;
+    if (!inside(stamp)) continue;
+    log.at(stamp, [stamp, file, format, T_ego_lidar, &log] {
+      SensorFrame out;
+      out.sensor = kLidarLabel;
+      out.stamp = stamp;
+      out.T_ego_sensor = T_ego_lidar;
+      out.data = readCloudFile(file.path, format);
+      log.sensor(out);
+    });
+  }
+  warnOfUntimed(untimed, dir, log);
+}
+
+void RadiateImporter::addImages(ImportLog& log) {
+  if (!fs::exists(path("zed_left"))) return;
+  const std::string dir = path("zed_left").string();
+  const FrameTimes times = readTimes(path("zed_left.txt"));
+  // Optical axes: x right, y down, z ahead; the calibration's turn of a degree is left out, since
+  // its order is not documented.
+  Pose3 T_ego_camera = makePose(calibration_.camera.y(), -calibration_.camera.x(),
+                                radar_height_ + calibration_.camera.z(), 0);
+  T_ego_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  std::vector<std::int64_t> untimed;
+  for (const FrameFile& file : frameFiles(dir, {".png", ".jpg"})) {
+    const auto time = times.find(file.number);
+    if (time == times.end()) {
+      untimed.push_back(file.number);
+      continue;
+    }
+    if (!inside(time->second)) continue;
+    ImportedImage image;
+    image.label = kImageLabel;
+    image.path = file.path;
+    image.stamp = time->second;
+    image.camera = calibration_.model;
+    image.T_ego_camera = T_ego_camera;
+    image.distortion = calibration_.distortion;
+    log.at(image.stamp, [image, file, &log] { log.image(image, file.number); });
+  }
+  warnOfUntimed(untimed, dir, log);
+}
+
+void RadiateImporter::addGps(ImportLog& log) {
+  if (!fs::exists(path("gps.csv"))) return;
+  const FrameTimes times = readTimes(path("GPS_IMU_Twist.txt"));
+  const double shift = params_.gps_shift.value_or(
+      readTimes(path("velo_lidar.txt")).begin()->second - times.begin()->second);
+  const CsvTable gps = CsvTable::fromFile(path("gps.csv").string());
+  std::vector<GpsFix> fixes;
+  for (std::size_t i = 0; i < gps.rows(); ++i) {
+    const auto time = times.find(gps.integer(i, gps.column("frame")));
+    if (time == times.end()) continue;
+    const GpsFix fix{time->second + shift, gps.real(i, gps.column("lat_deg")),
+                     gps.real(i, gps.column("lon_deg")), gps.real(i, gps.column("alt_m"))};
+    // Each fix stands twice.
+    if (fixes.empty() || fix.stamp > fixes.back().stamp) fixes.push_back(fix);
+  }
+  if (fixes.empty()) throw DataError(path("gps.csv").string() + ": no fix with a time");
+  poses_ = posesOfFixes(fixes);
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const Stamp stamp = fixes[i].stamp;
+    if (!inside(stamp)) continue;
+    log.at(stamp, [this, stamp, i, fix = fixes[i], &log] {
+      log.ego(stamp, poses_[i].pose);
+      log.observation(*gpsObservation(fix));
+    });
+  }
+  // Radar frames from before the first fix.
+  if (first_ && *first_ < fixes.front().stamp) {
+    for (const auto& [frame, time] : radar_times_) {
+      const Stamp stamp = radarStamp(time);
+      if (!log.options().wants(frame) || stamp >= fixes.front().stamp) continue;
+      const auto pose = egoAt(stamp);
+      if (pose) log.at(stamp, [stamp, pose = *pose, &log] { log.ego(stamp, pose); });
+    }
+  }
+  log.note(fmt::format("GPS stamps moved by {:.3f} s; heading by the course over ground", shift));
+}
+
+void RadiateImporter::addTruth(ImportLog& log) {
+  const std::string file = annotationFile();
+  if (file.empty()) return;
+  log.expectTruth();
+  const cv::Mat picture = cv::imread(
+      frameFiles(path("Navtech_Cartesian").string(), {".png"}).front().path, cv::IMREAD_GRAYSCALE);
+  const double centre_u = picture.cols * 0.5, centre_v = picture.rows * 0.5;
+  for (const auto& [frame, boxes] : readAnnotations(file)) {
+    const auto time = radar_times_.find(frame);
+    if (time == radar_times_.end() || !log.options().wants(frame)) continue;
+    const Stamp stamp = radarStamp(time->second);
+    const auto ego = egoAt(stamp);
+    for (const Annotation& a : boxes) {
+      ObjectDetection::SpaceBox box;
+      const double u = a.x + a.width / 2, v = a.y + a.length / 2;
+      box.bottom_centre = Vector3((centre_v - v) * kPixel, (centre_u - u) * kPixel, 0);
+      // An upright box points ahead; the turn is counter-clockwise in the picture, as ours.
+      box.yaw = wrapAngle(radians(a.rotation));
+      box.length = a.length * kPixel;
+      box.width = a.width * kPixel;
+      TruthObject o;
+      placeTruth(box, ego.value_or(Pose3::Identity()), o);
+      o.height = std::numeric_limits<double>::quiet_NaN();
+      o.frame = frame;
+      o.id = a.id;
+      o.type = a.type;
+      o.ignore = !coveredType(a.type);
+      log.truth(stamp, std::move(o));
+    }
+  }
+}
+
+void RadiateImporter::run(ImportLog& log) {
+  requireFolder(params_.dir);
+  calibration_ = readCalibration(path("calib.yaml").string());
+  radar_height_ = params_.lidar_height - calibration_.lidar.z();
+  radar_times_ = readTimes(path("Navtech_Cartesian.txt"));
+  addRadar(log);
+  addGps(log);  // before the others: poses first at an instant
+  addLidar(log);
+  addImages(log);
+  addTruth(log);
+  log.writeInOrder();
+}
+
+}  // namespace
+
+std::unique_ptr<Importer> makeRadiateImporter() { return std::make_unique<RadiateImporter>(); }
+
+}  // namespace perception
