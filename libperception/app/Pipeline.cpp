@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "libperception/lidar/LidarFrontEnd.h"
+#include "libperception/measurement/PositionFrontEnd.h"
 #include "libperception/radar/RadarFrontEnd.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/vision/VisionFrontEnd.h"
@@ -21,6 +22,7 @@ constexpr FrontEndRow kFrontEnds[] = {
     {"lidar", &makeLidarFrontEnd},
     {"boxes", &makeVisionFrontEnd},
     {"radar", &makeRadarFrontEnd},
+    {"positions", &makePositionFrontEnd},
 };
 
 constexpr double kSameInstant =
