@@ -35,9 +35,10 @@ constexpr double kMaxRange = 100;  ///< [m] of the radar (data set's paper)
 struct RadiateParams {
   std::string dir;
   double lidar_height = 2.05;  ///< [m] road returns lie so far below the lidar (frame 28)
-  /// [s] The radar's stamps are later than its pictures: at 6.2 m/s they fit the lidar's returns
-  /// when these are moved 2.0 m ahead (correlation over radar frames 3, 8, 13, 17).
-  double radar_delay = 0.33;
+  /// [s] The radar's stamps are later than its pictures: at 10 m/s they fit the lidar's returns
+  /// when these are moved 2.0 m ahead (correlation over radar frames 3, 8, 13, 17). A turn takes
+  /// 0.25 s.
+  double radar_delay = 0.2;
   /// [s] added to GPS stamps; that clock is not synchronised: empty: both recordings begin at once.
   std::optional<double> gps_shift;
   // The strongest echoes of each beam stand for the radar's picture, as in CFEAR radar odometry

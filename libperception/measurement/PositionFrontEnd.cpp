@@ -32,6 +32,9 @@ PositionModel::Params modelParams(const ClassTable& classes, const Sensing& sens
     row.detection = sensing.detection(id, view.range_min, 0, 1);
     for (int l = 0; l < labels; ++l) row.labels.push_back(std::exp(sensing.logLabel(l, id)));
     row.noise.setZero();  // all of it stands in R
+    const ObjectClass& of = classes[id];
+    row.extent = {of.length, of.width, of.length_sigma * of.length_sigma,
+                  of.width_sigma * of.width_sigma};
     p.classes.push_back(std::move(row));
   }
   for (int l = 0; l < labels; ++l) p.clutter_labels.push_back(std::exp(sensing.logLabelClutter(l)));

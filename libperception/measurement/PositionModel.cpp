@@ -62,6 +62,7 @@ std::optional<BirthState> PositionModel::birth(const Measurement& m, ClassId c,
   BirthState birth;
   birth.position = m.z;
   birth.covariance = m.R + params_.classes[static_cast<std::size_t>(c)].noise;
+  birth.extent = params_.classes[static_cast<std::size_t>(c)].extent;
   return birth;
 }
 
