@@ -12,7 +12,7 @@ class PositionModel : public MeasurementModel {
     std::vector<double> labels;  ///< P(label | class, detected); sums to 1
     Matrix2 noise =
         Matrix2::Identity();  ///< [m^2] covariance of z about the centre; Measurement::R is added
-    Extent extent;            ///< of newborn objects
+    Extent extent{};          ///< of newborn objects
   };
   struct Params {
     std::vector<ClassRow> classes;       ///< in the order of the class table
