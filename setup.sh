@@ -37,6 +37,8 @@ packages=(
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG
+  libopencv-dnn-dev libopencv-objdetect-dev libopencv-contrib-dev   # detectors: networks, people, part models
+  libmatio-dev           # part models as MATLAB files
   # to run
   libgl1-mesa-dri        # draws without a graphics card
   gnuplot-nox            # plots of the evaluation

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
-#include <string>
 
 #define PERCEPTION_DECLARE_KERNELS(level)                                                     \
   namespace level {                                                                           \
@@ -25,37 +23,11 @@ namespace {
 
 constexpr std::size_t kVector = 8;  // doubles of the widest register
 
-SimdLevel widest() {
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    return SimdLevel::kAvx512;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return SimdLevel::kAvx2;
-  return SimdLevel::kSse2;
-}
-
-SimdLevel chosen() {
-  const char* wish = std::getenv("PERCEPTION_SIMD");
-  const std::string name = wish ? wish : "";
-  SimdLevel level = widest();
-  if (name == "sse2") level = SimdLevel::kSse2;
-  if (name == "avx2") level = std::min(level, SimdLevel::kAvx2);
-  return level;
-}
-
 std::size_t countOf(const BatchPart& part, const Planes& planes) {
   return std::min(part.end, planes.size()) - part.first;
 }
 
 }  // namespace
-
-SimdLevel simdLevel() {
-  static const SimdLevel level = chosen();
-  return level;
-}
-
-const char* nameOf(SimdLevel level) {
-  return level == SimdLevel::kSse2 ? "sse2" : level == SimdLevel::kAvx2 ? "avx2" : "avx512";
-}
 
 Planes::Planes(std::size_t size, std::size_t planes)
     : size_(size),

@@ -2,15 +2,9 @@
 #include <cstddef>
 #include <vector>
 
-namespace perception {
+#include "libperception/core/Simd.h"
 
-/// How wide the arithmetic of a BankBatch is. Chosen at run time; results may differ in their last
-/// digits between levels.
-enum class SimdLevel { kSse2, kAvx2, kAvx512 };
-/// The widest that this processor has. The environment variable PERCEPTION_SIMD (sse2, avx2,
-/// avx512) lowers it.
-SimdLevel simdLevel();
-const char* nameOf(SimdLevel level);
+namespace perception {
 
 /// Numbers of many filters, one plane a quantity, each plane contiguous and padded to whole
 /// vectors.

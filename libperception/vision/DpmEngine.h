@@ -1,0 +1,59 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "libperception/core/Simd.h"
+#include "libperception/measurement/SensorFrame.h"
+#include "libperception/vision/DpmModel.h"
+#include "libperception/vision/GroundGate.h"
+
+namespace perception {
+
+/// How densely and where an engine looks.
+struct DpmOptions {
+  int levels_per_octave = 5;  ///< voc-release: 10
+  double enlarge = 1;         ///< [1, 4] size of the first image searched, for objects far away
+  int padding = 6;            ///< [cells] beyond the image, for objects it cuts; voc-release: 14
+  int window = 4;             ///< [cells of a part] how far a part may move; voc-release5: 4
+  double overlap = 0.5;       ///< of the weaker box: more is the same object (voc-release)
+};
+
+/// What an engine looks for with one model.
+struct DpmTarget {
+  DpmModel model;
+  double threshold = -1;       ///< score from which on a place is reported
+  double low = 0.5, high = 3;  ///< [m] heights of the objects, with a ground to stand on
+};
+
+/// A place where a model fits.
+struct DpmDetection {
+  int target = 0, component = 0;
+  double score = 0;
+  ObjectDetection::ImageBox box;  ///< [px] may reach beyond the image
+  std::optional<double> heading;  ///< [rad] KITTI's alpha, between the components' own
+};
+
+/// Finds deformable part models in images: all components of all classes on one feature pyramid,
+/// parts convolved exactly by Fourier transform of 16 x 16 patches (Dubout and Fleuret, ECCV 2012),
+/// only where the ground allows objects. The result is the same for any number of threads.
+class DpmEngine {
+ public:
+  DpmEngine(std::vector<DpmTarget> targets, DpmOptions options, SimdLevel level = simdLevel());
+  ~DpmEngine();
+  DpmEngine(DpmEngine&&) noexcept;
+
+  /// One box an object and target, best first. Without a gate everywhere.
+  std::vector<DpmDetection> detect(const Raster& image,
+                                   const std::optional<GroundGate>& gate = {}) const;
+  /// All places at or above the thresholds, before suppression.
+  std::vector<DpmDetection> places(const Raster& image,
+                                   const std::optional<GroundGate>& gate = {}) const;
+  const std::vector<DpmTarget>& targets() const;
+
+ private:
+  struct Bank;
+  std::unique_ptr<const Bank> bank_;
+};
+
+}  // namespace perception

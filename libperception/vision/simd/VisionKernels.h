@@ -1,0 +1,74 @@
+// The inner loops of the part models, compiled once a SIMD level. No inline functions and no other
+// headers here: the linker would take one level's copy for all.
+#pragma once
+
+namespace perception {
+
+/// Sides of the patches that are convolved by Fourier transform, and of their half spectrum.
+enum {
+  kPatch = 16,                               ///< [cells]
+  kHalf = kPatch / 2 + 1,                    ///< columns that a real signal needs
+  kFrequencies = kPatch * kHalf,             ///< ky major, kx = 0 .. kHalf - 1
+  kFeatures = 32,                            ///< values of a HOG cell
+  kSpectrum = kFrequencies * 2 * kFeatures,  ///< floats of a patch's spectrum
+  kOrientations = 18                         ///< contrast sensitive ones
+};
+
+/// A row of an image in three planes.
+struct PixelRow {
+  const float* channel[3];
+};
+
+struct VisionKernels {
+  int lanes;  ///< floats a vector; a group is 2 * lanes filters
+
+  /// Of pixels 1 .. width - 2: length of the strongest channel's gradient and its orientation, 0 ..
+  /// 17 in steps of 20 degrees. Writes up to a whole vector more.
+  void (*gradients)(const PixelRow* above, const PixelRow* row, const PixelRow* below, int width,
+                    float* magnitude, int* bin);
+  /// Shares each pixel among the two cells beside it: histogram[bin * stride + cell[x]] and the
+  /// next one, by weights[2 x], weights[2 x + 1].
+  void (*bin)(const float* magnitude, const int* bin, const int* cell, const float* weights,
+              int begin, int end, int stride, float* histogram);
+  /// target += weight * source
+  void (*accumulate)(const float* source, float weight, int n, float* target);
+  /// Energies of the cells of a histogram row (stride floats an orientation).
+  void (*energy)(const float* histogram, int stride, int cells, float* energy);
+  /// The 32 features of cells 1 .. cells - 2 of a row; energies of the rows above, at, below.
+  void (*features)(const float* histogram, int stride, int cells, const float* above,
+                   const float* at, const float* below, float* features);
+  /// The half spectrum of kPatch x kPatch cells: kSpectrum floats, per frequency 32 real parts,
+  /// then 32 imaginary ones. `row_stride` in floats.
+  void (*forward)(const float* features, long row_stride, float* spectrum);
+  /// Sums over features of spectrum * weights (see DpmEngine) for up to kAtOnce patches: per patch
+  /// kFrequencies * 4 * lanes floats.
+  void (*products)(const float* weights, const float* const* spectra, int patches,
+                   float* const* products);
+  /// Back to `rows` x `cols` responses of 2 * lanes filters each; strides in floats.
+  void (*inverse)(const float* products, int rows, int cols, float* responses, long row_stride);
+  /// Best displaced response at every second place: from rows x cols responses of 2 * lanes filters
+  /// with `window` more on every side; costs are (2 window + 1) x 2 * lanes for x, then for y.
+  void (*displace)(const float* responses, long row_stride, int rows, int cols, int window,
+                   const float* costs_x, const float* costs_y, float* scratch, float* best);
+  /// Direct correlation of a whole filter (height x width cells) at `n` places of a row.
+  void (*correlate)(const float* features, long row_stride, const float* filter, int height,
+                    int width, int n, float* responses);
+  /// Resampling down: target = sum of weights[k] * sources[k].
+  void (*blend)(const float* const* sources, const float* weights, int count, int n, float* target);
+  /// Resampling across: target[i] = sum of weights[k * n + i] * source[first[i] + k], k = 0 .. 2.
+  void (*gather)(const float* source, const int* first, const float* weights, int n, float* target);
+};
+
+enum { kAtOnce = 4 };  ///< patches of one call of products()
+
+namespace sse2 {
+extern const VisionKernels kVisionKernels;
+}
+namespace avx2 {
+extern const VisionKernels kVisionKernels;
+}
+namespace avx512 {
+extern const VisionKernels kVisionKernels;
+}
+
+}  // namespace perception
