@@ -18,8 +18,6 @@ namespace {
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
 constexpr const char* kBoxesLabel = "LABELLED_BOXES";
-/// [Hz] of one frame that is shown repeatedly.
-constexpr double kRepeatRate = 10;
 
 /// Single frames in the layout of KITTI's object benchmark: image_2, calib, label_2, velodyne.
 class ImagesImporter final : public Importer {
@@ -36,7 +34,7 @@ class ImagesImporter final : public Importer {
     if (kRepeatRate < 2 * options.rate * options.repeat)
       failUsage(
           "--repeat is too large for --rate: single frames follow each other at --rate, each "
-          "shown at 10 Hz");
+          "shown at 200 Hz");
   }
   void run(ImportLog& log) override;
 

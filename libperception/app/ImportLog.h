@@ -16,6 +16,10 @@
 
 namespace perception {
 
+/// [Hz] of a frame that is shown repeatedly: so fast that nothing would have moved meanwhile, not
+/// even what drives.
+inline constexpr double kRepeatRate = 200;
+
 /// What every importer understands.
 struct ImportOptions {
   /// Where a log's images are.

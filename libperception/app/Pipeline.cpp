@@ -173,6 +173,8 @@ void Pipeline::addTime(Stamp stamp) {
   if (last_stamp_.ns != 0 && last_stamp_ - stamp > setup_.run.clock_jump)
     startEpoch(stamp, last_stamp_ - stamp);
   if (last_stamp_.ns != 0 && stamp - last_stamp_ > setup_.run.clock_jump) {
+    // Before the first pose behind the gap comes: it would push the poses of these frames out.
+    while (!queue_.empty()) processInstant(queue_.pop(true));
     events_.add(stamp, event_kind::kClockJump,
                 fmt::format("nothing for {:.3f} s", stamp - last_stamp_));
   }

@@ -10,8 +10,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
+#include "libperception/app/ImportClock.h"
 #include "libperception/app/ImportClouds.h"
-#include "libperception/app/ImportGps.h"
+#include "libperception/app/ImportRadarPicture.h"
 #include "libperception/app/ImportText.h"
 #include "libperception/app/Importer.h"
 #include "libperception/core/Csv.h"
@@ -26,10 +27,12 @@ namespace {
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kRadarLabel = "RADAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
-constexpr double kPixel = 0.17361;  ///< [m] of Navtech_Cartesian (data set's paper)
-/// Beams of one turn of the radar; bearing and range steps of its polar images.
-constexpr int kBeams = 400;
-constexpr double kMaxRange = 100;  ///< [m] of the radar (data set's paper)
+/// [s] Radar frames that are older than the first fix by less go on with its velocity.
+constexpr double kBeforeFirstPose = 1;
+/// [s] of lidar scans that find the shift of the GPS clock.
+constexpr double kShiftScans = 4;
+/// [s] How far the shift is looked for about that with which both recordings begin at once.
+constexpr double kShiftReach = 5;
 
 /// What is read of a folder, and what the recording does not say.
 struct RadiateParams {
@@ -39,13 +42,10 @@ struct RadiateParams {
   /// when these are moved 2.0 m ahead (correlation over radar frames 3, 8, 13, 17). A turn takes
   /// 0.25 s.
   double radar_delay = 0.2;
-  /// [s] added to GPS stamps; that clock is not synchronised: empty: both recordings begin at once.
+  /// [s] added to GPS stamps, whose clock is not synchronised; empty: that which makes the lidar's
+  /// scans agree.
   std::optional<double> gps_shift;
-  // The strongest echoes of each beam stand for the radar's picture, as in CFEAR radar odometry
-  // (Adolfsson et al., IROS 2021: k = 12, 60 of 255).
-  int strongest = 12;
-  int least_power = 60;       ///< [0, 255]
-  double nearest = 3;         ///< [m] the vehicle's own roof and the antenna's ringing
+  RadarPictureParams radar;
   bool radar_images = false;  ///< also as images
 };
 
@@ -71,46 +71,6 @@ void warnOfUntimed(const std::vector<std::int64_t>& frames, const std::string& d
   if (frames.empty()) return;
   log.warn(fmt::format("{}: no time in {}.txt for {} frames (first: {}): left out", dir, dir,
                        frames.size(), frames.front()));
-}
-
-/// Cells of the picture along one beam that are stronger than their neighbours, the strongest
-/// first.
-void addBeam(const cv::Mat& picture, int beam, const RadiateParams& params, RadarReturns& out) {
-  const double bearing = wrapAngle(kTwoPi * beam / kBeams);
-  const double c = std::cos(bearing), s = std::sin(bearing);
-  const int centre_u = picture.cols / 2, centre_v = picture.rows / 2;
-  const int cells = std::min({centre_u, centre_v, static_cast<int>(kMaxRange / kPixel)}) - 1;
-  std::vector<int> power(static_cast<std::size_t>(std::max(cells, 0)));
-  for (int i = 0; i < cells; ++i) {  // up is forward, left is left
-    const int u = centre_u - static_cast<int>(std::lround(s * i));
-    const int v = centre_v - static_cast<int>(std::lround(c * i));
-    power[static_cast<std::size_t>(i)] = picture.at<std::uint8_t>(v, u);
-  }
-  std::vector<std::pair<int, int>> peaks;  // (-power, cell)
-  for (std::size_t i = 1; i + 1 < power.size(); ++i) {
-    if (static_cast<double>(i) * kPixel < params.nearest || power[i] < params.least_power) continue;
-    if (power[i] > power[i - 1] && power[i] >= power[i + 1])
-      peaks.emplace_back(-power[i], static_cast<int>(i));
-  }
-  std::sort(peaks.begin(), peaks.end());
-  if (peaks.size() > static_cast<std::size_t>(params.strongest))
-    peaks.resize(static_cast<std::size_t>(params.strongest));
-  for (const auto& [negative, cell] : peaks) {
-    RadarReturn& r = out.returns.emplace_back();
-    r.range = cell * kPixel;
-    r.bearing = bearing;
-    r.has_rate = false;  // this radar measures none
-    r.amplitude = -negative;
-  }
-}
-
-RadarReturns returnsOf(const std::string& path, const RadiateParams& params) {
-  const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
-  if (picture.empty()) throw DataError(path + ": not an image");
-  RadarReturns out;
-  out.max_range = kMaxRange;
-  for (int beam = 0; beam < kBeams; ++beam) addBeam(picture, beam, params, out);
-  return out;
 }
 
 /// A box of the annotations, in pixels of Navtech_Cartesian.
@@ -197,6 +157,14 @@ RadiateCalibration readCalibration(const std::string& path) {
   return c;
 }
 
+CloudFormat lidarFormat() {
+  CloudFormat format;
+  format.columns = {"x", "y", "z", "intensity", "ring"};
+  format.intensity_max = 255;
+  format.max_range = 100;  // [m] HDL-32E, data sheet
+  return format;
+}
+
 /// RADIATE: a sequence's folder.
 class RadiateImporter final : public Importer {
  public:
@@ -209,6 +177,8 @@ class RadiateImporter final : public Importer {
   void addRadar(ImportLog& log);
   void addLidar(ImportLog& log);
   void addImages(ImportLog& log);
+  std::vector<GpsFix> readFixes(ImportLog& log) const;
+  double gpsShift(const std::vector<GpsFix>& fixes, ImportLog& log) const;
   void addGps(ImportLog& log);
   void addTruth(ImportLog& log);
   std::optional<Pose3> egoAt(Stamp stamp) const;
@@ -217,6 +187,7 @@ class RadiateImporter final : public Importer {
 
   RadiateParams params_;
   RadiateCalibration calibration_;
+  Pose3 T_ego_lidar_ = Pose3::Identity();
   double radar_height_ = 0;  ///< [m] above the road; the ego origin is below the radar
   FrameTimes radar_times_;
   std::vector<StampedPose> poses_;
@@ -236,11 +207,12 @@ void RadiateImporter::declare(CLI::App& cli) {
       ->check(CLI::Range(-5.0, 5.0))
       ->capture_default_str();
   cli.add_option("--gps-shift", params_.gps_shift,
-                 "[s] added to the GPS stamps; default: GPS and lidar begin at once");
-  cli.add_option("--strongest", params_.strongest, "returns taken of each of the radar's 400 beams")
+                 "[s] added to the GPS stamps; default: what makes the lidar's scans agree");
+  cli.add_option("--strongest", params_.radar.strongest,
+                 "echoes taken of each of the radar's 400 beams")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  cli.add_option("--least-power", params_.least_power, "[0, 255] of a return")
+  cli.add_option("--least-power", params_.radar.least_power, "[0, 255] of an echo")
       ->check(CLI::Range(0, 255))
       ->capture_default_str();
   cli.add_flag("--radar-images", params_.radar_images, "the radar's pictures as images, too");
@@ -255,18 +227,12 @@ std::string RadiateImporter::annotationFile() const {
 }
 
 std::optional<Pose3> RadiateImporter::egoAt(Stamp stamp) const {
-  const auto after = std::lower_bound(poses_.begin(), poses_.end(), stamp,
-                                      [](const StampedPose& p, Stamp t) { return p.stamp < t; });
-  if (after == poses_.end()) return {};
-  if (after == poses_.begin()) {
-    // The radar's first frames are older than the first fix: on with the first velocity.
-    if (poses_.size() < 2 || poses_.front().stamp - stamp > 1) return {};
+  if (poses_.size() < 2) return {};
+  if (stamp < poses_.front().stamp && poses_.front().stamp - stamp <= kBeforeFirstPose) {
     const double share = (stamp - poses_[0].stamp) / (poses_[1].stamp - poses_[0].stamp);
     return interpolate(poses_[0].pose, poses_[1].pose, share);
   }
-  const StampedPose& before = *std::prev(after);
-  return interpolate(before.pose, after->pose,
-                     (stamp - before.stamp) / (after->stamp - before.stamp));
+  return poseBetween(poses_, stamp);
 }
 
 void RadiateImporter::addRadar(ImportLog& log) {
@@ -289,7 +255,7 @@ void RadiateImporter::addRadar(ImportLog& log) {
       out.sensor = kRadarLabel;
       out.stamp = stamp;
       out.T_ego_sensor = makePose(0, 0, radar_height_, 0);
-      out.data = returnsOf(file.path, params_);
+      out.data = radarReturnsOf(file.path, params_.radar);
       log.sensor(out);
       if (params_.radar_images) {
         ImportedImage image;
@@ -309,13 +275,6 @@ void RadiateImporter::addRadar(ImportLog& log) {
 void RadiateImporter::addLidar(ImportLog& log) {
   const std::string dir = path("velo_lidar").string();
   const FrameTimes times = readTimes(path("velo_lidar.txt"));
-  CloudFormat format;
-  format.columns = {"x", "y", "z", "intensity", "ring"};
-  format.intensity_max = 255;
-  format.max_range = 100;  // [m] HDL-32E, data sheet
-  // The file's x looks to the right, its y ahead.
-  const Pose3 T_ego_lidar =
-      makePose(calibration_.lidar.y(), -calibration_.lidar.x(), params_.lidar_height, -kPi / 2);
   std::vector<std::int64_t> untimed;
   for (const FrameFile& file : frameFiles(dir, {".csv", ".csv.gz"})) {
     const auto time = times.find(file.number);
@@ -325,12 +284,12 @@ void RadiateImporter::addLidar(ImportLog& log) {
     }
     const Stamp stamp = time->second;
     if (!inside(stamp)) continue;
-    log.at(stamp, [stamp, file, format, T_ego_lidar, &log] {
+    log.at(stamp, [this, stamp, file, &log] {
       SensorFrame out;
       out.sensor = kLidarLabel;
       out.stamp = stamp;
-      out.T_ego_sensor = T_ego_lidar;
-      out.data = readCloudFile(file.path, format);
+      out.T_ego_sensor = T_ego_lidar_;
+      out.data = readCloudFile(file.path, lidarFormat());
       log.sensor(out);
     });
   }
@@ -366,22 +325,52 @@ void RadiateImporter::addImages(ImportLog& log) {
   warnOfUntimed(untimed, dir, log);
 }
 
-void RadiateImporter::addGps(ImportLog& log) {
-  if (!fs::exists(path("gps.csv"))) return;
+std::vector<GpsFix> RadiateImporter::readFixes(ImportLog& log) const {
   const FrameTimes times = readTimes(path("GPS_IMU_Twist.txt"));
-  const double shift = params_.gps_shift.value_or(
-      readTimes(path("velo_lidar.txt")).begin()->second - times.begin()->second);
   const CsvTable gps = CsvTable::fromFile(path("gps.csv").string());
-  std::vector<GpsFix> fixes;
+  std::vector<GpsFix> all;
   for (std::size_t i = 0; i < gps.rows(); ++i) {
     const auto time = times.find(gps.integer(i, gps.column("frame")));
     if (time == times.end()) continue;
-    const GpsFix fix{time->second + shift, gps.real(i, gps.column("lat_deg")),
-                     gps.real(i, gps.column("lon_deg")), gps.real(i, gps.column("alt_m"))};
-    // Each fix stands twice.
-    if (fixes.empty() || fix.stamp > fixes.back().stamp) fixes.push_back(fix);
+    all.push_back({time->second, gps.real(i, gps.column("lat_deg")),
+                   gps.real(i, gps.column("lon_deg")), gps.real(i, gps.column("alt_m"))});
   }
+  std::size_t dropped = 0;
+  std::vector<GpsFix> fixes = steadyFixes(all, dropped);
   if (fixes.empty()) throw DataError(path("gps.csv").string() + ": no fix with a time");
+  if (dropped > 0)
+    log.warn(fmt::format("{}: {} fixes left out while their clock was set back",
+                         path("gps.csv").string(), dropped));
+  return fixes;
+}
+
+/// The shift of the GPS clock that makes the scans in the middle of the wanted part agree.
+double RadiateImporter::gpsShift(const std::vector<GpsFix>& fixes, ImportLog& log) const {
+  const FrameTimes times = readTimes(path("velo_lidar.txt"));
+  const double at_once = times.begin()->second - fixes.front().stamp;
+  const Stamp middle = *first_ + (last_ - *first_) / 2;
+  std::vector<StampedScan> scans;
+  for (const FrameFile& file : frameFiles(path("velo_lidar").string(), {".csv", ".csv.gz"})) {
+    const auto time = times.find(file.number);
+    if (time == times.end() || std::abs(time->second - middle) > kShiftScans / 2) continue;
+    const LidarCloud cloud = readCloudFile(file.path, lidarFormat());
+    auto& scan = scans.emplace_back(time->second, std::vector<Vector3>());
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      scan.second.push_back(T_ego_lidar_ * Vector3(cloud.x[i], cloud.y[i], cloud.z[i]));
+  }
+  const auto found = clockShift(posesOfFixes(fixes), scans, at_once, kShiftReach);
+  if (!found)
+    log.warn(path("gps.csv").string() +
+             ": its clock is not synchronised and the scans do not tell its shift: taken to begin "
+             "with the lidar's (--gps-shift)");
+  return found.value_or(at_once);
+}
+
+void RadiateImporter::addGps(ImportLog& log) {
+  if (!fs::exists(path("gps.csv"))) return;
+  std::vector<GpsFix> fixes = readFixes(log);
+  const double shift = params_.gps_shift ? *params_.gps_shift : gpsShift(fixes, log);
+  for (GpsFix& fix : fixes) fix.stamp = fix.stamp + shift;
   poses_ = posesOfFixes(fixes);
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const Stamp stamp = fixes[i].stamp;
@@ -418,11 +407,12 @@ void RadiateImporter::addTruth(ImportLog& log) {
     for (const Annotation& a : boxes) {
       ObjectDetection::SpaceBox box;
       const double u = a.x + a.width / 2, v = a.y + a.length / 2;
-      box.bottom_centre = Vector3((centre_v - v) * kPixel, (centre_u - u) * kPixel, 0);
+      box.bottom_centre =
+          Vector3((centre_v - v) * params_.radar.pixel, (centre_u - u) * params_.radar.pixel, 0);
       // An upright box points ahead; the turn is counter-clockwise in the picture, as ours.
       box.yaw = wrapAngle(radians(a.rotation));
-      box.length = a.length * kPixel;
-      box.width = a.width * kPixel;
+      box.length = a.length * params_.radar.pixel;
+      box.width = a.width * params_.radar.pixel;
       TruthObject o;
       placeTruth(box, ego.value_or(Pose3::Identity()), o);
       o.height = std::numeric_limits<double>::quiet_NaN();
@@ -439,6 +429,9 @@ void RadiateImporter::run(ImportLog& log) {
   requireFolder(params_.dir);
   calibration_ = readCalibration(path("calib.yaml").string());
   radar_height_ = params_.lidar_height - calibration_.lidar.z();
+  // The file's x looks to the right, its y ahead.
+  T_ego_lidar_ =
+      makePose(calibration_.lidar.y(), -calibration_.lidar.x(), params_.lidar_height, -kPi / 2);
   radar_times_ = readTimes(path("Navtech_Cartesian.txt"));
   addRadar(log);
   addGps(log);  // before the others: poses first at an instant

@@ -28,7 +28,6 @@ constexpr const char* kImageLabel = "CAMERA_FRONT";
 constexpr double kLidarHeight = 1.65;
 /// [s] before and after a frame that stands alone: poses that carry the vehicle's velocity.
 constexpr double kVelocityStep = 0.1;
-constexpr double kRepeatRate = 10;  ///< [Hz] of one frame that is shown repeatedly
 
 /// Where the parts of a recording lie: in the example set, in the whole data set.
 struct Part {
