@@ -1,8 +1,9 @@
 #include "libperception/app/EvaluateApp.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
+#include <glob.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -10,8 +11,11 @@
 #include <system_error>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/Csv.h"
 #include "libperception/evaluation/Plots.h"
+#include "libperception/scene/MeasurementRun.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/scene/RunRecord.h"
 #include "libperception/scene/TrackedRun.h"
 
 namespace perception {
@@ -36,6 +40,24 @@ std::vector<std::string> namesOf(const std::vector<std::string>& runs) {
   return distinct.size() == runs.size() ? names : runs;
 }
 
+// Folders that a shell pattern stands for, in order of their names.
+std::vector<std::string> foldersOf(const std::string& pattern) {
+  std::vector<std::string> folders;
+  glob_t found{};
+  if (glob(pattern.c_str(), GLOB_ONLYDIR, nullptr, &found) == 0) {
+    for (std::size_t i = 0; i < found.gl_pathc; ++i) {
+      if (fs::is_directory(found.gl_pathv[i])) folders.emplace_back(found.gl_pathv[i]);
+    }
+  }
+  globfree(&found);
+  return folders;
+}
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
 void createFolder(const std::string& dir) {
   std::error_code failed;
   fs::create_directories(dir, failed);
@@ -46,16 +68,31 @@ void createFolder(const std::string& dir) {
 
 std::string EvaluateApp::description() const {
   return "Holds tracked runs against the truth of their log: the paper's table, GOSPA, false "
-         "objects, plots.";
+         "objects, calibration, front ends, plots; several runs side by side or pooled.";
 }
 
 void EvaluateApp::declare(CLI::App& cli) {
-  cli.add_option("-r,--run", runs, "folder of a run of perception-track; several make one table")
-      ->required()
+  cli.add_option("-r,--run", runs,
+                 "folder of a run of perception-track; several make one table. CONDITION=PATTERN: "
+                 "all folders of that pattern, pooled as trials of one condition")
       ->type_name("DIR");
-  cli.add_option("-t,--truth", truth_file, "truth of the log, FILE.truth.csv")
-      ->required()
+  cli.add_option(
+         "-t,--truth", truth_file,
+         "truth of the log, FILE.truth.csv; {log} stands for the name of a run's log, {run} "
+         "for that of its folder")
       ->type_name("FILE");
+  cli.add_option("--manifest", manifest,
+                 "instead of both: CSV with the columns condition,run,truth; paths from its folder")
+      ->type_name("FILE");
+  cli.add_option("--front-end", front_ends,
+                 "recall and precision of the sensor of this label, or of all of a pattern "
+                 "('RADAR_*'); for runs with --measurements")
+      ->type_name("LABEL");
+  cli.add_option(
+         "--paper", paper,
+         fmt::format("rows of the paper beside ours: {}", fmt::join(paperTableNames(), ", ")))
+      ->delimiter(',')
+      ->type_name("NAME,...");
   addOutputOption(cli, false);
   cli.add_option("--range", params.selection.range, "truth counts up to this distance [m]")
       ->capture_default_str()
@@ -97,6 +134,12 @@ void EvaluateApp::declare(CLI::App& cli) {
       ->delimiter(',')
       ->type_name("NAME,...")
       ->capture_default_str();
+  cli.add_option("--min-existence", params.min_existence,
+                 "outputs below are left out of all figures but the existence calibration")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  cli.add_flag("--surroundings", surroundings,
+               "the truth holds poles and hedges, too (known of simulated logs): judge sizes");
   cli.add_option("--sensors", params.sensors,
                  "sensor set of the run for denominator B, C+L+R (else: what hit an object)");
   cli.add_option("--reference", reference,
@@ -110,7 +153,8 @@ void EvaluateApp::declare(CLI::App& cli) {
 std::string EvaluateApp::command() const {
   std::string text = name();
   for (const std::string& run : runs) text += " -r " + run;
-  text += " -t " + truth_file;
+  if (!truth_file.empty()) text += " -t " + truth_file;
+  if (!manifest.empty()) text += " --manifest " + manifest;
   text += fmt::format(
       " --range {:g} --fov-deg {:g} --min-points {} --max-occluded {} --tolerance {:g} --exclusion "
       "{:g}",
@@ -121,6 +165,10 @@ std::string EvaluateApp::command() const {
   text += fmt::format(" --complete-fov-deg {:g}", complete_fov_deg);
   if (params.alignment.empty_frames) text += " --empty-frames";
   if (!params.sensors.empty()) text += " --sensors " + params.sensors;
+  if (params.min_existence > 0) text += fmt::format(" --min-existence {:g}", params.min_existence);
+  if (surroundings) text += " --surroundings";
+  for (const std::string& pattern : front_ends) text += " --front-end " + pattern;
+  if (!paper.empty()) text += fmt::format(" --paper {}", fmt::join(paper, ","));
   if (!reference.empty()) text += " --reference " + reference;
   return text;
 }
@@ -128,34 +176,149 @@ std::string EvaluateApp::command() const {
 EvaluationReport EvaluateApp::emptyReport() const {
   EvaluationReport report;
   report.command = command();
-  report.truth = truth_file;
+  report.truth = manifest.empty() ? truth_file : manifest;
   report.reference = reference;
   report.options = params;
+  report.paper = out_report.paper;
   return report;
 }
 
+std::vector<EvaluateApp::Entry> EvaluateApp::manifestEntries() const {
+  const CsvTable table = CsvTable::fromFile(manifest);
+  const fs::path folder = fs::path(manifest).parent_path();
+  const auto condition = table.column("condition"), run = table.column("run"),
+             truth = table.column("truth");
+  std::vector<Entry> result;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (table.text(row, condition).empty()) table.fault(row, condition, "the name of a condition");
+    result.push_back({std::string(table.text(row, condition)),
+                      (folder / table.text(row, run)).string(),
+                      (folder / table.text(row, truth)).string()});
+  }
+  if (result.empty()) throw DataError(manifest + ": no run in it");
+  return result;
+}
+
+std::string EvaluateApp::truthOf(const std::string& dir) const {
+  std::string path = truth_file;
+  if (path.find("{log}") != std::string::npos) {
+    replaceAll(path, "{log}", fs::path(readRunRecord(dir + "/done.json").input).stem().string());
+  }
+  replaceAll(path, "{run}", lastPart(dir));
+  return path;
+}
+
+// What was asked for, in its order.
+std::vector<EvaluateApp::Entry> EvaluateApp::entries() const {
+  if (!manifest.empty()) {
+    if (!runs.empty() || !truth_file.empty())
+      throw Error(ExitCode::kUsage, "--manifest names runs and truths: no -r, no -t beside it");
+    return manifestEntries();
+  }
+  if (runs.empty()) throw Error(ExitCode::kUsage, "-r/--run or --manifest is needed");
+  if (truth_file.empty()) throw Error(ExitCode::kUsage, "-t/--truth is needed");
+  std::vector<Entry> result;
+  for (const std::string& run : runs) {
+    const auto equals = run.find('=');
+    // A path with a '=' in it is none of a condition.
+    const bool conditional =
+        equals != std::string::npos && equals > 0 && !fs::exists(run) && run.find('/') > equals;
+    if (!conditional) {
+      result.push_back({"", run, truthOf(run)});
+      continue;
+    }
+    const std::string condition = run.substr(0, equals), pattern = run.substr(equals + 1);
+    const std::vector<std::string> folders = foldersOf(pattern);
+    if (folders.empty())
+      throw DataError(fmt::format("{}: no folder of that name", pattern), ExitCode::kNoInput);
+    for (const std::string& folder : folders)
+      result.push_back({condition, folder, truthOf(folder)});
+  }
+  return result;
+}
+
+const GroundTruth& EvaluateApp::truth(const std::string& path) {
+  const auto known = truths_.find(path);
+  return known != truths_.end() ? known->second
+                                : truths_.emplace(path, readGroundTruth(path)).first->second;
+}
+
+void EvaluateApp::evaluateFrontEnds(const Entry& entry, const GroundTruth& truth,
+                                    EvaluatedRun& run) {
+  if (front_ends.empty()) return;
+  if (!fs::exists(entry.dir + "/measurements.csv")) {
+    throw DataError(entry.dir + "/measurements.csv: is not there: track with --measurements",
+                    ExitCode::kNoInput);
+  }
+  FrontEndOptions options;
+  options.selection = params.selection;
+  options.alignment = params.alignment;
+  const std::string record = entry.dir + "/done.json";
+  options.surroundings = surroundings || (fs::exists(record) && readRunRecord(record).simulated);
+  const MeasurementRun measurements = readMeasurementRun(entry.dir);
+  for (const std::string& pattern : front_ends)
+    run.front_ends.push_back(evaluateFrontEnd(measurements, pattern, truth, options));
+}
+
+EvaluatedRun EvaluateApp::evaluateEntry(const Entry& entry, const std::string& name) {
+  stopIfAsked();
+  const GroundTruth& known = truth(entry.truth);
+  const TrackedRun run = readTrackedRun(entry.dir);
+  EvaluatedRun evaluated{name, entry.dir, evaluate(run, known, params)};
+  if (!reference.empty())
+    evaluated.count_difference = countDifference(run, readTrackedRun(reference));
+  evaluateFrontEnds(entry, known, evaluated);
+  warnOfGaps(evaluated, entry.truth);
+  return evaluated;
+}
+
 void EvaluateApp::evaluateRuns() {
-  const GroundTruth truth = readGroundTruth(truth_file);
-  std::optional<TrackedRun> reference_run;
-  if (!reference.empty()) reference_run = readTrackedRun(reference);
-  const std::vector<std::string> names = namesOf(runs);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    stopIfAsked();
-    const TrackedRun run = readTrackedRun(runs[i]);
-    EvaluatedRun evaluated{names[i], runs[i], evaluate(run, truth, params), {}};
-    if (reference_run) evaluated.count_difference = countDifference(run, *reference_run);
-    warnOfGaps(evaluated);
-    out_report.runs.push_back(std::move(evaluated));
+  const std::vector<Entry> all = entries();
+  std::vector<std::string> dirs;
+  for (const Entry& entry : all) dirs.push_back(entry.dir);
+  const std::vector<std::string> names = namesOf(dirs);
+  std::vector<EvaluatedRun> evaluated;
+  for (std::size_t i = 0; i < all.size(); ++i) evaluated.push_back(evaluateEntry(all[i], names[i]));
+  pool(all, std::move(evaluated));
+}
+
+// Runs of one condition become one, at the place of the first of them.
+void EvaluateApp::pool(const std::vector<Entry>& entries, std::vector<EvaluatedRun> evaluated) {
+  std::vector<std::pair<std::string, std::vector<EvaluatedRun>>> groups;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::string& condition = entries[i].condition;
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
+      return !condition.empty() && g.first == condition;
+    });
+    if (group == groups.end()) group = groups.insert(groups.end(), {condition, {}});
+    group->second.push_back(std::move(evaluated[i]));
+  }
+  for (auto& [condition, members] : groups) {
+    out_report.runs.push_back(condition.empty() ? std::move(members.front())
+                                                : pooledRun(condition, std::move(members)));
   }
 }
 
-void EvaluateApp::warnOfGaps(const EvaluatedRun& run) {
+void EvaluateApp::addPaperRows() {
+  const std::vector<std::string> known = paperTableNames();
+  for (const std::string& table : paper) {
+    if (std::find(known.begin(), known.end(), table) == known.end()) {
+      throw Error(ExitCode::kUsage,
+                  fmt::format("--paper {}: there are: {}", table, fmt::join(known, ", ")));
+    }
+    for (const PaperTrackingRow& row : paperTrackingRows()) {
+      if (row.table == table) out_report.paper.push_back(row);
+    }
+  }
+}
+
+void EvaluateApp::warnOfGaps(const EvaluatedRun& run, const std::string& truth) {
   const TruthAlignment& alignment = run.evaluation.alignment;
   if (run.evaluation.instants.empty()) {
     warn(
         fmt::format("{}: no scene has a truth in {} (other log, or times more than {:g} s apart): "
                     "every figure is n/a",
-                    run.dir, truth_file, params.alignment.time_limit));
+                    run.dir, truth, params.alignment.time_limit));
   } else if (run.evaluation.samples.empty()) {
     warn(fmt::format("{}: no truth object counts: tracking figures are n/a", run.dir));
   }
@@ -171,22 +334,32 @@ void EvaluateApp::warnOfGaps(const EvaluatedRun& run) {
 
 void EvaluateApp::write(EvaluationReport report, const std::string& dir) {
   createFolder(dir);
-  // A joint report has the tables only; each run has its own pictures.
-  if (plots && report.runs.size() == 1) {
-    const PlotResult drawn = writePlots(report.runs.front(), report.options, dir, max_plots);
+  if (plots && !report.runs.empty()) {
+    const bool single = report.runs.size() == 1 && report.runs.front().trials.empty();
+    const PlotResult drawn = single
+                                 ? writePlots(report.runs.front(), report.options, dir, max_plots)
+                                 : writeComparisonPlots(report, dir);
     report.plots = drawn.files;
     if (!drawn.fault.empty()) warn(drawn.fault);
   }
   writeFile(dir + "/report.txt", textReport(report));
   writeFile(dir + "/report.md", markdownReport(report));
   writeFile(dir + "/report.json", jsonReport(report));
+  if (report.runs.size() == 1 && report.runs.front().trials.empty())
+    writeFile(dir + "/instants.csv", instantsCsv(report.runs.front()));
   out_folders.push_back(dir);
 }
 
+// Each run has a report of its own; several, or the conditions of trials, a joint one, too.
 void EvaluateApp::writeReports() {
-  const bool several = out_report.runs.size() > 1;
+  bool pooled = false;
+  for (const EvaluatedRun& run : out_report.runs) pooled = pooled || !run.trials.empty();
+  const bool several = out_report.runs.size() > 1 || pooled;
+  if (pooled && output.empty())
+    throw Error(ExitCode::kUsage, "-o/--output is needed for the report of conditions");
   for (const EvaluatedRun& run : out_report.runs) {
     stopIfAsked();
+    if (!run.trials.empty()) continue;
     EvaluationReport own = emptyReport();
     own.runs.push_back(run);
     std::string dir = run.dir + "/evaluation";
@@ -208,6 +381,7 @@ void EvaluateApp::run() {
   params.selection.fov = radians(fov_deg);
   params.selection.complete_fov = radians(complete_fov_deg);
   out_report = emptyReport();
+  addPaperRows();
   evaluateRuns();
   writeReports();
   const std::string text = textReport(out_report);

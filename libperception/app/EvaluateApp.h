@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,16 @@ namespace perception {
 /// table and more.
 class EvaluateApp : public App {
  public:
-  std::vector<std::string> runs;  ///< -r: folders of perception-track
-  std::string truth_file;         ///< -t
+  std::vector<std::string> runs;  ///< -r: folders of perception-track, or CONDITION=PATTERN of such
+  std::string truth_file;  ///< -t; {log} and {run} stand for the names of a run's log and folder
+  std::string manifest;    ///< --manifest: CSV with the columns condition, run, truth
   std::string
       reference;  ///< --reference: a run whose number of objects the others are compared with
+  std::vector<std::string> front_ends;  ///< --front-end: labels of sensors, or patterns of them
+  std::vector<std::string> paper;       ///< --paper: tables of the paper to stand beside ours
   EvaluationOptions params;
   double fov_deg = 180, complete_fov_deg = 360;
+  bool surroundings = false;  ///< --surroundings: the truth holds poles and hedges, too
   std::size_t max_plots =
       40;             ///< --max-plots: truth objects with a picture of their own, for each run
   bool plots = true;  ///< --no-plots clears it
@@ -30,12 +35,27 @@ class EvaluateApp : public App {
   void run() override;
 
  private:
+  /// One run to be evaluated; of no condition: for itself.
+  struct Entry {
+    std::string condition, dir, truth;
+  };
+
   std::string command() const;
   EvaluationReport emptyReport() const;
+  std::vector<Entry> entries() const;
+  std::vector<Entry> manifestEntries() const;
+  std::string truthOf(const std::string& dir) const;
+  EvaluatedRun evaluateEntry(const Entry& entry, const std::string& name);
+  void evaluateFrontEnds(const Entry& entry, const GroundTruth& truth, EvaluatedRun& run);
   void evaluateRuns();
-  void warnOfGaps(const EvaluatedRun& run);
+  void pool(const std::vector<Entry>& entries, std::vector<EvaluatedRun> runs);
+  const GroundTruth& truth(const std::string& path);
+  void warnOfGaps(const EvaluatedRun& run, const std::string& truth);
+  void addPaperRows();
   void writeReports();
   void write(EvaluationReport report, const std::string& dir);
+
+  std::map<std::string, GroundTruth> truths_;  ///< read so far, by path
 };
 
 }  // namespace perception

@@ -75,6 +75,9 @@ void RunParams::visit(ParamVisitor& v) {
          "silence after which a sensor counts as lost");
   v.real("clock_jump", clock_jump, {0.1, 1e6}, "s",
          "step of the clock that starts anew (back) or is reported (forward)");
+  v.boolean("write_measurements", write_measurements,
+            "what the front ends found goes into measurements.csv, scans.csv and sensors.csv; "
+            "--measurements wins");
 }
 
 PipelineSetup PipelineSetup::read(Config& config) {
@@ -187,6 +190,7 @@ void Pipeline::startEpoch(Stamp stamp, double back) {
   events_.warn(stamp, event_kind::kClockJump,
                fmt::format("the clock went back by {:.3f} s: tracks start anew", back));
   tracker_.reset();
+  if (observer_) observer_->onRestart();
   ego_.clear();
   queue_.clear();
   frame_numbers_.clear();
@@ -326,6 +330,7 @@ std::optional<MeasurementScan> Pipeline::measure(SensorFrame& frame, std::size_t
 }
 
 void Pipeline::update(const MeasurementScan& scan) {
+  if (observer_) observer_->onScan(scan);
   const auto scope = timing_.stage("filter");
   tracker_.process(scan);
 }
@@ -340,6 +345,7 @@ void Pipeline::watchSensors(Stamp now) {
 }
 
 void Pipeline::emit(const EgoState& ego, std::int64_t frame) {
+  if (observer_) observer_->onScene(ego, frame);
   const auto scope = timing_.stage("scene");
   ready_.push_back(scenes_.make(tracker_.mapHypothesis(), ego, frame));
 }

@@ -30,10 +30,11 @@ struct RunParams {
   Proposal association = Proposal::kSampled;
   std::string
       output_sensor;  ///< scenes at its scans; empty: the first lidar in use, else the first sensor
-  double output_rate = 0;       ///< [Hz] instead: scenes at a fixed rate; 0 = at scans
-  double reorder_window = 0.2;  ///< [s] how late an observation may come (SPEC 1)
-  double sensor_timeout = 1;    ///< [s] of silence after which a sensor counts as lost
-  double clock_jump = 5;        ///< [s] back: a new epoch; forward: a gap worth an event
+  double output_rate = 0;           ///< [Hz] instead: scenes at a fixed rate; 0 = at scans
+  double reorder_window = 0.2;      ///< [s] how late an observation may come (SPEC 1)
+  double sensor_timeout = 1;        ///< [s] of silence after which a sensor counts as lost
+  double clock_jump = 5;            ///< [s] back: a new epoch; forward: a gap worth an event
+  bool write_measurements = false;  ///< what the front ends found goes into the results, too
 
   static const std::vector<std::string>& associationNames();  ///< in the order of Proposal
   void visit(ParamVisitor& v);
@@ -61,6 +62,16 @@ struct PipelineSetup {
   static PipelineSetup read(Config& config);
 };
 
+/// Sees what passes through a pipeline, in order: to record it or to play it again.
+class PipelineObserver {
+ public:
+  virtual ~PipelineObserver() = default;
+  virtual void onScan(const MeasurementScan& scan) { (void)scan; }  ///< goes into the filter
+  /// A scene is taken for this instant.
+  virtual void onScene(const EgoState& ego, std::int64_t frame) { (void)ego, (void)frame; }
+  virtual void onRestart() {}  ///< all tracks are forgotten
+};
+
 /// From observations to scenes: the one place where sensors, ribs, filter and scene meet. Feed a
 /// log's observations with add(), take scenes with next() until it gives none, and at the end of
 /// the log again with `flush`.
@@ -72,6 +83,8 @@ class Pipeline {
   std::optional<Scene> next(bool flush = false);
   /// Reports what is only known at the end: sensors that never spoke, labels that nobody asked for.
   void finish();
+  /// To be told from now on; null: nobody.
+  void observe(PipelineObserver* observer) { observer_ = observer; }
 
   const CRbpfTracker& tracker() const { return tracker_; }
   const PipelineSetup& setup() const { return setup_; }
@@ -119,6 +132,7 @@ class Pipeline {
   std::optional<Stamp> first_stamp_, next_output_, last_instant_;
   Stamp last_stamp_;
   bool parked_said_ = false, ego_gap_ = false;
+  PipelineObserver* observer_ = nullptr;
 };
 
 }  // namespace perception

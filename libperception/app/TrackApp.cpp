@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "libperception/app/OutputFolder.h"
+#include "libperception/scene/MeasurementRun.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/scene/TrackedRun.h"
 #include "libperception/sensors/RawlogReader.h"
@@ -78,6 +79,36 @@ class ObjectEvents {
   std::set<std::uint64_t> born_, classified_, last_;
 };
 
+/// Records what the front ends hand to the filter.
+class MeasurementRecorder : public PipelineObserver {
+ public:
+  MeasurementRecorder(const std::string& dir, const Pipeline& pipeline)
+      : pipeline_(pipeline), writer_(dir, pipeline.setup().model.classes) {}
+
+  void onScan(const MeasurementScan& scan) override {
+    const auto known = sensors_.find(scan.sensor);
+    const RecordedSensor& sensor = known != sensors_.end() ? known->second : add(scan);
+    writer_.write(recordScan(scan, sensor), sensor, *pipeline_.firstStamp());
+  }
+  void close() { writer_.close(); }
+
+ private:
+  const RecordedSensor& add(const MeasurementScan& scan) {
+    RecordedSensor sensor;
+    for (const auto& s : pipeline_.setup().sensors) {
+      if (s.label != scan.sensor) continue;
+      sensor = describeSensor(scan, s.front_end->labelNames(), s.params.fov, s.params.range_min,
+                              s.params.range_max, pipeline_.setup().model.classes.size());
+    }
+    writer_.writeSensor(sensor);
+    return sensors_.emplace(scan.sensor, std::move(sensor)).first->second;
+  }
+
+  const Pipeline& pipeline_;
+  MeasurementRunWriter writer_;
+  std::map<std::string, RecordedSensor> sensors_;
+};
+
 }  // namespace
 
 void TrackApp::declare(CLI::App& cli) {
@@ -90,6 +121,8 @@ void TrackApp::declare(CLI::App& cli) {
   cli.add_option("--rate", rate,
                  "[Hz] Scenes at a fixed rate instead of at the output sensor's scans")
       ->check(CLI::Range(0.0, 1000.0));
+  cli.add_flag("--measurements", measurements,
+               "Record what the front ends found: measurements.csv, scans.csv, sensors.csv");
   cli.add_option("--export", exports,
                  "kitti:FILE: write the objects in KITTI's tracking format, too")
       ->allow_extra_args(false);
@@ -114,6 +147,7 @@ Config TrackApp::configWithOptions() const {
   // As settings of [run], so that the effective INI says what was run.
   if (!sensors.empty()) config.set("run.sensors=" + sensors);
   if (seed) config.set(fmt::format("run.seed={}", *seed));
+  if (measurements) config.set("run.write_measurements=true");
   if (rate > 0) config.set(fmt::format("run.output_rate={}", rate));
   return config;
 }
@@ -158,6 +192,12 @@ void TrackApp::trackLog(const std::string& log, const std::string& dir,
   EventLog events;
   RunTiming timing;
   Pipeline pipeline(setup, events, timing);
+  std::optional<MeasurementRecorder> recorder;
+  if (setup.run.write_measurements) {
+    for (const char* name : {"measurements.csv", "scans.csv", "sensors.csv"}) folder.pathFor(name);
+    recorder.emplace(written_to, pipeline);
+    pipeline.observe(&*recorder);
+  }
   ObjectEvents object_events(pipeline.setup().model.classes, events);
   LogFacts facts;
   std::optional<TrackedRunWriter> writer;
@@ -242,6 +282,7 @@ void TrackApp::trackLog(const std::string& log, const std::string& dir,
   out_record.tracks = ids.size();
   out_record.sensors = pipeline.sensorRecords();
   writer->close();
+  if (recorder) recorder->close();
   events.write(folder.pathFor("events.jsonl"), first);
   writeFile(folder.pathFor("effective.ini"), config.effectiveText());
   out_real_time_factor = log_seconds / std::max(timing.wallSeconds(), 1e-9);

@@ -18,6 +18,7 @@ class TrackApp : public App {
   std::optional<std::uint64_t> seed;  ///< --seed: wins over [run] seed
   double rate = 0;                    ///< --rate [Hz]: scenes at a fixed rate instead of at scans
   std::vector<std::string> exports;   ///< --export FORMAT:FILE
+  bool measurements = false;          ///< --measurements: record what the front ends found, too
   bool keep_scenes = false;           ///< keep all scenes in out_scenes (tests)
 
   std::string name() const override { return "perception-track"; }

@@ -4,11 +4,16 @@
 #include <cmath>
 #include <set>
 
+#include "libperception/core/Error.h"
+
 namespace perception {
 namespace {
 
 // Ranges of the paper's camera (SPEC 11, paper table on camera resolution, 2k images) [m].
 constexpr double kCameraCarRange = 15, kCameraPersonRange = 10;
+
+// Truth objects of pooled runs are numbered run by run.
+constexpr std::int64_t kIdsOfARun = 1000000;
 
 // [m] Rounding of a point of the rectangle itself.
 constexpr double kOnFootprint = 1e-6;
@@ -91,7 +96,7 @@ class Evaluator {
 
   void add(const TruthAtScene& instant) {
     const Scene& scene = run_.scenes[instant.scene];
-    const std::vector<SeenEstimate> estimates = see(scene);
+    std::vector<SeenEstimate> estimates = see(scene);
     std::vector<SeenTruth> counted, others;
     for (const TruthObject& object : instant.objects) {
       SeenTruth seen = see(object, scene);
@@ -102,6 +107,12 @@ class Evaluator {
     figures.frame = scene.frame;
     figures.t = scene.stamp - run_.first_stamp;
     figures.truth = counted.size();
+    addExistence(estimates, counted, others);
+    estimates.erase(std::remove_if(estimates.begin(), estimates.end(),
+                                   [&](const SeenEstimate& e) {
+                                     return e.object->existence < options_.min_existence;
+                                   }),
+                    estimates.end());
     countOutputs(estimates, counted, others, figures);
     setDistances(estimates, counted, others, figures);
     addSamples(estimates, counted, figures.t);
@@ -156,10 +167,44 @@ class Evaluator {
       const bool is_false = !anyNear(counted, e) && !anyNear(others, e);
       OutputCounts& counts = figures.outputs[static_cast<std::size_t>(e.object->class_id)];
       ++counts.named;
-      if (is_false) ++counts.false_;
+      if (is_false) {
+        ++counts.false_;
+        figures.false_objects.push_back({e.object->id, e.object->class_id, e.object->classified});
+      }
       if (!e.object->classified) continue;
       ++counts.classified_named;
       if (is_false) ++counts.classified_false;
+    }
+  }
+
+  // Real: paired with a truth of any type. Not real: nothing near, or an object that has its output
+  // already. What stands near a truth without being paired says nothing: the truth may be its own.
+  void addExistence(const std::vector<SeenEstimate>& estimates,
+                    const std::vector<SeenTruth>& counted, const std::vector<SeenTruth>& others) {
+    std::vector<SeenTruth> truth = counted;
+    truth.insert(truth.end(), others.begin(), others.end());
+    std::vector<SeenEstimate> named;
+    for (const SeenEstimate& e : estimates) {
+      if (isNamedInSector(e)) named.push_back(e);
+    }
+    std::vector<bool> real(named.size(), false), served(truth.size(), false);
+    const auto pairs =
+        match(centres(truth), centres(named), options_.tolerance, Pairing::kOneToOne);
+    for (std::size_t t = 0; t < pairs.size(); ++t) {
+      if (pairs[t] < 0) continue;
+      real[static_cast<std::size_t>(pairs[t])] = true;
+      served[t] = true;
+    }
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      bool unclear = false;
+      for (std::size_t t = 0; t < truth.size() && !real[i]; ++t) {
+        const Vector2& centre = named[i].footprint.centre;
+        const bool twice = served[t] && isNear(truth[t], centre, options_.tolerance);
+        unclear = unclear || (isNear(truth[t], centre, options_.exclusion) && !twice);
+      }
+      if (unclear) continue;
+      result_.existence.push_back(
+          {result_.instants.size(), named[i].object->existence, static_cast<bool>(real[i])});
     }
   }
 
@@ -251,6 +296,39 @@ Evaluation evaluate(const TrackedRun& run, const GroundTruth& truth,
   Evaluation evaluation = evaluator.take();
   evaluation.alignment = std::move(alignment);
   return evaluation;
+}
+
+Evaluation pooled(const std::vector<const Evaluation*>& parts) {
+  Evaluation sum;
+  std::int64_t run = 0;
+  for (const Evaluation* part : parts) {
+    if (run == 0) {
+      sum.class_names = part->class_names;
+      sum.named = part->named;
+      sum.sensors = part->sensors;
+    } else if (part->class_names != sum.class_names || part->named != sum.named) {
+      throw DataError("runs with different classes cannot be pooled");
+    }
+    const std::size_t first = sum.instants.size();
+    sum.instants.insert(sum.instants.end(), part->instants.begin(), part->instants.end());
+    for (TruthSample sample : part->samples) {
+      sample.instant += first;
+      if (sample.id >= 0) sample.id = run * kIdsOfARun + sample.id % kIdsOfARun;
+      sum.samples.push_back(std::move(sample));
+    }
+    for (ExistenceSample sample : part->existence) {
+      sample.instant += first;
+      sum.existence.push_back(sample);
+    }
+    sum.alignment.by_frame += part->alignment.by_frame;
+    sum.alignment.by_time += part->alignment.by_time;
+    sum.alignment.assumed_empty += part->alignment.assumed_empty;
+    sum.alignment.scenes_without_truth += part->alignment.scenes_without_truth;
+    sum.alignment.truth_without_scene += part->alignment.truth_without_scene;
+    for (std::size_t u = 0; u < sum.truth_use.size(); ++u) sum.truth_use[u] += part->truth_use[u];
+    ++run;
+  }
+  return sum;
 }
 
 }  // namespace perception

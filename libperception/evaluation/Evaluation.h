@@ -22,6 +22,7 @@ struct EvaluationOptions {
   double cutoff = 2;     ///< [m] c of GOSPA and OSPA
   /// Classes that are neither right nor wrong to output: the truth does not label poles and walls.
   std::vector<std::string> unnamed = {"static-other", "static_other", "phantom"};
+  double min_existence = 0;  ///< outputs below are left out of all figures but the calibration
   /// Letters of the sensor set (C, L, R) for denominator B; empty: the modalities that ever hit an
   /// output object.
   std::string sensors;
@@ -62,6 +63,20 @@ struct OutputCounts {
   std::size_t classified_named = 0, classified_false = 0;  ///< of these, probability >= .95
 };
 
+/// An output as a named class inside the sector that has no truth anywhere near.
+struct FalseObject {
+  std::uint64_t id = 0;
+  ClassId class_id = 0;
+  bool classified = false;
+};
+
+/// An output as a named class inside the sector, for the calibration of the existence probability.
+struct ExistenceSample {
+  std::size_t instant = 0;
+  double probability = 0;  ///< as stated
+  bool real = false;       ///< it is the output of some truth object, of whatever type
+};
+
 /// One evaluated instant.
 struct InstantFigures {
   std::int64_t frame = -1;
@@ -69,6 +84,7 @@ struct InstantFigures {
   std::size_t truth = 0;              ///< counted truth objects
   std::size_t estimates = 0;          ///< estimates in the set distances
   std::vector<OutputCounts> outputs;  ///< by class
+  std::vector<FalseObject> false_objects;
   Gospa gospa;
   double ospa = 0;  ///< [m]
 
@@ -82,7 +98,8 @@ struct Evaluation {
   std::string sensors;      ///< letters that denominator B was built for; empty: unknown
   std::vector<InstantFigures> instants;
   std::vector<TruthSample> samples;  ///< in order of time
-  TruthAlignment alignment;          ///< counts only; its instants are moved out
+  std::vector<ExistenceSample> existence;
+  TruthAlignment alignment;  ///< counts only; its instants are moved out
   std::array<std::size_t, kTruthUses>
       truth_use{};  ///< truth lines at evaluated instants, by TruthUse
 };
@@ -92,5 +109,10 @@ struct Evaluation {
 /// writes objects of existence > .5).
 Evaluation evaluate(const TrackedRun& run, const GroundTruth& truth,
                     const EvaluationOptions& options);
+
+/// All instants of several runs as those of one: figures over it are pooled over trials, as the
+/// paper's are. Truth objects of different runs stay different. Throws DataError when the runs'
+/// classes differ.
+Evaluation pooled(const std::vector<const Evaluation*>& parts);
 
 }  // namespace perception

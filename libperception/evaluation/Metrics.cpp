@@ -1,6 +1,7 @@
 #include "libperception/evaluation/Metrics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace perception {
@@ -37,6 +38,41 @@ class Sum {
 bool isOf(const TruthSample& sample, ClassId class_id) {
   return class_id < 0 || sample.class_id == class_id;
 }
+
+// Sorts stated probabilities into bins of equal width.
+class ReliabilityBuilder {
+ public:
+  void add(double probability, bool right) {
+    const double place = std::max(probability, 0.0) * static_cast<double>(kReliabilityBins);
+    const std::size_t bin = std::min(static_cast<std::size_t>(place), kReliabilityBins - 1);
+    stated_[bin].add(probability);
+    right_[bin].add(right ? 1.0 : 0.0);
+    ++counts_[bin];
+  }
+
+  Reliability finish() const {
+    Reliability result;
+    double error = 0, total = 0;
+    for (std::size_t b = 0; b < kReliabilityBins; ++b) {
+      ReliabilityBin bin;
+      bin.low = static_cast<double>(b) / kReliabilityBins;
+      bin.high = static_cast<double>(b + 1) / kReliabilityBins;
+      bin.count = counts_[b];
+      bin.mean_probability = stated_[b].mean();
+      bin.correct = right_[b].mean();
+      const auto n = static_cast<double>(bin.count);
+      if (bin.count) error += n * std::abs(*bin.mean_probability - *bin.correct);
+      total += n;
+      result.bins.push_back(bin);
+    }
+    if (total > 0) result.calibration_error = error / total;
+    return result;
+  }
+
+ private:
+  std::array<Sum, kReliabilityBins> stated_, right_;
+  std::array<std::size_t, kReliabilityBins> counts_{};
+};
 
 // Follows one truth object through its active instants.
 class TimelineBuilder {
@@ -219,33 +255,19 @@ SetFigures setFigures(const Evaluation& evaluation, double cutoff) {
 }
 
 Reliability reliability(const Evaluation& evaluation, Pairing pairing) {
-  std::vector<Sum> stated(kReliabilityBins), correct(kReliabilityBins);
-  Reliability result;
-  result.bins.resize(kReliabilityBins);
-  std::size_t total = 0;
+  ReliabilityBuilder builder;
   for (const TruthSample& sample : evaluation.samples) {
     const auto& match = sample.matched(pairing);
-    if (!match) continue;
-    const double place = match->probability * static_cast<double>(kReliabilityBins);
-    const std::size_t bin =
-        std::min(static_cast<std::size_t>(std::max(place, 0.0)), kReliabilityBins - 1);
-    stated[bin].add(match->probability);
-    correct[bin].add(match->class_id == sample.class_id ? 1.0 : 0.0);
-    ++result.bins[bin].count;
-    ++total;
+    if (match) builder.add(match->probability, match->class_id == sample.class_id);
   }
-  double error = 0;
-  for (std::size_t b = 0; b < kReliabilityBins; ++b) {
-    ReliabilityBin& bin = result.bins[b];
-    bin.low = static_cast<double>(b) / kReliabilityBins;
-    bin.high = static_cast<double>(b + 1) / kReliabilityBins;
-    bin.mean_probability = stated[b].mean();
-    bin.correct = correct[b].mean();
-    if (bin.count)
-      error += static_cast<double>(bin.count) * std::abs(*bin.mean_probability - *bin.correct);
-  }
-  if (total) result.calibration_error = error / static_cast<double>(total);
-  return result;
+  return builder.finish();
+}
+
+Reliability existenceReliability(const Evaluation& evaluation) {
+  ReliabilityBuilder builder;
+  for (const ExistenceSample& sample : evaluation.existence)
+    builder.add(sample.probability, sample.real);
+  return builder.finish();
 }
 
 CountDifference countDifference(const TrackedRun& run, const TrackedRun& reference) {

@@ -99,6 +99,9 @@ struct Reliability {
   Figure calibration_error;          ///< mean of |stated - correct|, weighted by count
 };
 Reliability reliability(const Evaluation& evaluation, Pairing pairing);
+/// The same of the existence probability: outputs as a named class inside the sector, and the share
+/// of them that some truth object is behind. An object that is put out twice is real once.
+Reliability existenceReliability(const Evaluation& evaluation);
 
 /// RMS difference in the number of objects between two runs (paper: against a run of 50 particles),
 /// at the instants that both have; nothing when there are none.

@@ -3,42 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
-#include <system_error>
 
-#include "libperception/core/Error.h"
 #include "libperception/evaluation/Gnuplot.h"
-#include "libperception/scene/OutputFile.h"
+#include "libperception/evaluation/RunPlots.h"
 
 namespace perception {
 namespace {
 
-namespace fs = std::filesystem;
+using namespace plot_colour;
 
 constexpr std::size_t kMinSamples = 5;        // fewer instants are no curve
 constexpr std::size_t kMaxOverviewRows = 60;  // more names cannot be read
 constexpr std::size_t kMaxNamedIds = 8;       // ids with a colour and a line in the legend
 
-// Colours that people with colour-blindness can tell apart (Okabe and Ito).
-constexpr const char* kGreen = "#009E73";
-constexpr const char* kOrange = "#E69F00";
-constexpr const char* kRed = "#C00000";
-constexpr const char* kBlue = "#0072B2";
-constexpr const char* kGrey = "#BBBBBB";
 constexpr const char* kIdColours[kMaxNamedIds] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                   "#E69F00", "#56B4E9", "#8B4513", "#F0E442"};
-
-// How every picture begins: nothing of the one before is left.
-constexpr const char* kPicture = R"(
-reset
-set encoding utf8
-set datafile missing 'nan'
-set terminal pngcairo size {width},{height} font 'sans,10' background rgb 'white'
-set output '{file}'
-set grid xtics ytics lt 1 lw 1 lc rgb '#DDDDDD'
-set key noenhanced outside right top vertical Left reverse
-)";
 
 constexpr const char* kOverviewHead = R"(
 set multiplot title {title} noenhanced font ',14'
@@ -81,20 +61,6 @@ unset multiplot
 unset output
 )";
 
-constexpr const char* kReliability = R"(
-set title {title} noenhanced font ',12'
-set size square
-set key inside bottom right
-set xrange [0:1.05]
-set yrange [0:1.05]
-set xlabel 'stated probability of the most probable class'
-set ylabel 'share of instants at which that class is right'
-plot x with lines dt 2 lw 2 lc rgb 'black' title 'right as often as stated', \
- 'reliability.dat' using 1:2 with linespoints pt 7 ps 1.5 lw 2 lc rgb '{blue}' title 'this run, with number of instants', \
- '' using 1:2:(sprintf('%d', $3)) with labels offset -1,-1.2 notitle
-unset output
-)";
-
 constexpr const char* kObject = R"(
 set multiplot layout 2,1 title {title} noenhanced font ',14'
 set lmargin 10
@@ -116,10 +82,10 @@ std::string objectName(const ObjectTimeline& o) { return fmt::format("{} {}", o.
 // The files of one folder of plots and the script that draws them.
 class PlotWriter {
  public:
-  PlotWriter(const EvaluatedRun& run, const EvaluationOptions& options, std::string dir)
+  PlotWriter(const EvaluatedRun& run, const EvaluationOptions& options, PlotScript& script)
       : run_(run),
         options_(options),
-        dir_(std::move(dir)),
+        script_(script),
         timelines_(objectTimelines(run.evaluation, Pairing::kOneToOne)) {}
 
   void overview() {
@@ -132,54 +98,37 @@ class PlotWriter {
       row_of[rows[r]->id] = r;
       names += fmt::format("{}{} {}", r ? ", " : "", gnuplotString(objectName(*rows[r])), r);
     }
-    data("overview_objects.dat", objectRows(row_of));
-    data("overview_instants.dat", instantRows());
+    script_.data("overview_objects.dat", objectRows(row_of));
+    script_.data("overview_instants.dat", instantRows());
     const std::size_t height = 400 + 22 * std::max<std::size_t>(rows.size(), 3);
     const double pixel = 1 / static_cast<double>(height);
     const double split = 250 * pixel;  // the lower panel keeps its height
-    begin("overview.png", 1200, height);
-    script_ += fmt::format(
+    script_.begin("overview.png", 1200, height);
+    script_.add(fmt::format(
         kOverviewHead,
         fmt::arg("title", gnuplotString("Tracking of every truth object, " + run_.name)),
-        fmt::arg("from", instants.front().t - 0.2), fmt::arg("to", instants.back().t + 0.2));
+        fmt::arg("from", instants.front().t - 0.2), fmt::arg("to", instants.back().t + 0.2)));
     if (!rows.empty()) {
-      script_ += fmt::format(
+      script_.add(fmt::format(
           kOverviewObjects, fmt::arg("size", 1 - split - 30 * pixel), fmt::arg("bottom", split),
           fmt::arg("title", gnuplotString(overviewScope(rows.size()))), fmt::arg("names", names),
           fmt::arg("rows", rows.size()), fmt::arg("grey", kGrey), fmt::arg("green", kGreen),
-          fmt::arg("orange", kOrange), fmt::arg("red", kRed));
+          fmt::arg("orange", kOrange), fmt::arg("red", kRed)));
     }
-    script_ += fmt::format(kOverviewInstants, fmt::arg("size", split), fmt::arg("orange", kOrange),
-                           fmt::arg("blue", kBlue));
-  }
-
-  void reliabilityPlot() {
-    const Reliability r = reliability(run_.evaluation, Pairing::kOneToOne);
-    if (!r.calibration_error) return;
-    std::string rows = "# mean stated probability, share correct, instants\n";
-    for (const ReliabilityBin& bin : r.bins) {
-      if (bin.count == 0) continue;
-      rows += fmt::format("{:.6f} {:.6f} {}\n", *bin.mean_probability, *bin.correct, bin.count);
-    }
-    data("reliability.dat", rows);
-    begin("reliability.png", 760, 760);
-    const std::string title =
-        fmt::format("Reliability of the class probability, {} (mean |stated - right| {:.3f})",
-                    run_.name, *r.calibration_error);
-    script_ +=
-        fmt::format(kReliability, fmt::arg("title", gnuplotString(title)), fmt::arg("blue", kBlue));
+    script_.add(fmt::format(kOverviewInstants, fmt::arg("size", split), fmt::arg("orange", kOrange),
+                            fmt::arg("blue", kBlue)));
   }
 
   void object(const ObjectTimeline& o) {
     const std::string name = fmt::format("object_{}", o.id);
-    data(name + ".dat", objectCurves(o));
-    begin(name + ".png", 1000, 700);
+    script_.data(name + ".dat", objectCurves(o));
+    script_.begin(name + ".png", 1000, 700);
     const std::string title = fmt::format("{}, {}: tracked at {} of {} instants", objectName(o),
                                           run_.name, o.returns, o.active);
-    script_ +=
-        fmt::format(kObject, fmt::arg("title", gnuplotString(title)),
-                    fmt::arg("from", o.first_active - 0.2), fmt::arg("to", o.last_active + 0.2),
-                    fmt::arg("range", curves(name, 2, o)), fmt::arg("bearing", curves(name, 3, o)));
+    script_.add(fmt::format(
+        kObject, fmt::arg("title", gnuplotString(title)), fmt::arg("from", o.first_active - 0.2),
+        fmt::arg("to", o.last_active + 0.2), fmt::arg("range", curves(name, 2, o)),
+        fmt::arg("bearing", curves(name, 3, o))));
   }
 
   std::vector<const ObjectTimeline*> longest(std::size_t count) const {
@@ -193,28 +142,7 @@ class PlotWriter {
     return objects;
   }
 
-  PlotResult draw() {
-    data("plots.gp", script_);
-    PlotResult result;
-    result.fault = runGnuplot(dir_, "plots.gp");
-    for (const std::string& file : files_) {
-      std::error_code ignored;
-      if (fs::exists(dir_ + "/" + file, ignored)) result.files.push_back("plots/" + file);
-    }
-    return result;
-  }
-
  private:
-  void data(const std::string& name, const std::string& text) const {
-    writeFile(dir_ + "/" + name, text);
-  }
-
-  void begin(const std::string& file, std::size_t width, std::size_t height) {
-    files_.push_back(file);
-    script_ += fmt::format(kPicture, fmt::arg("width", width), fmt::arg("height", height),
-                           fmt::arg("file", file));
-  }
-
   std::string overviewScope(std::size_t rows) const {
     const std::string some = rows < timelines_.size()
                                  ? fmt::format(", the longest {} of {}", rows, timelines_.size())
@@ -300,38 +228,41 @@ class PlotWriter {
 
   const EvaluatedRun& run_;
   const EvaluationOptions& options_;
-  std::string dir_, script_;
+  PlotScript& script_;
   std::vector<ObjectTimeline> timelines_;
-  std::vector<std::string> files_;
 };
-
-// Pictures of an earlier evaluation would be taken for this one's.
-void removeOldPictures(const std::string& dir) {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(dir, ignored)) {
-    const std::string name = entry.path().filename().string();
-    const bool ours =
-        name == "overview.png" || name == "reliability.png" || name.rfind("object_", 0) == 0;
-    if (ours) fs::remove(entry.path(), ignored);
-  }
-}
 
 }  // namespace
 
 PlotResult writePlots(const EvaluatedRun& run, const EvaluationOptions& options,
                       const std::string& dir, std::size_t max_objects) {
-  const std::string plots = dir + "/plots";
-  std::error_code failed;
-  fs::create_directories(plots, failed);
-  if (failed) throw OutputError(fmt::format("{}: cannot be created: {}", plots, failed.message()));
-  removeOldPictures(plots);
-  PlotWriter writer(run, options, plots);
+  PlotScript script(dir);
+  PlotWriter writer(run, options, script);
+  drawTimelines(run, options, script);
   writer.overview();
-  writer.reliabilityPlot();
+  drawSetDistance({&run}, options, script);
+  drawReliability({&run}, false, script);
+  drawReliability({&run}, true, script);
   for (const ObjectTimeline* object : writer.longest(max_objects)) {
     if (object->active >= kMinSamples) writer.object(*object);
   }
-  return writer.draw();
+  return script.draw();
+}
+
+PlotResult writeComparisonPlots(const EvaluationReport& report, const std::string& dir) {
+  PlotScript script(dir);
+  std::vector<const EvaluatedRun*> runs;
+  bool single = true;
+  for (const EvaluatedRun& run : report.runs) {
+    runs.push_back(&run);
+    single = single && run.trials.empty();
+  }
+  drawComparison(report, script);
+  // Trials of different logs have no common time.
+  if (single) drawSetDistance(runs, report.options, script);
+  drawReliability(runs, false, script);
+  drawReliability(runs, true, script);
+  return script.draw();
 }
 
 }  // namespace perception

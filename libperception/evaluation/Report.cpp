@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "libperception/scene/NumberFormat.h"
+
 namespace perception {
 namespace {
 
@@ -75,9 +77,38 @@ std::string scope(const EvaluationOptions& o) {
 
 }  // namespace
 
+EvaluatedRun pooledRun(std::string name, std::vector<EvaluatedRun> trials) {
+  EvaluatedRun run;
+  std::vector<const Evaluation*> parts;
+  for (const EvaluatedRun& trial : trials) parts.push_back(&trial.evaluation);
+  run.evaluation = pooled(parts);
+  run.front_ends = trials.empty() ? std::vector<FrontEndEvaluation>() : trials.front().front_ends;
+  for (std::size_t t = 1; t < trials.size(); ++t) {
+    for (std::size_t f = 0; f < run.front_ends.size(); ++f)
+      run.front_ends[f] += trials[t].front_ends.at(f);
+  }
+  run.name = std::move(name);
+  run.trials = std::move(trials);
+  return run;
+}
+
 std::string textReport(const EvaluationReport& report) {
   std::string text = report.command + "\n" + scope(report.options) + "\n\n";
   for (const ReportTable& table : reportTables(report)) text += textTable(table) + "\n";
+  return text;
+}
+
+std::string instantsCsv(const EvaluatedRun& run) {
+  std::string text =
+      "frame,t,truth,estimates,gospa,localisation,missed,false,ospa,outputs,false_outputs\n";
+  for (const InstantFigures& i : run.evaluation.instants) {
+    const OutputCounts outputs = i.allOutputs();
+    const auto number = [](double value) { return fixedPlaces(value, kMetrePlaces); };
+    text +=
+        fmt::format("{},{:.3f},{},{},{},{},{},{},{},{},{}\n", i.frame, i.t, i.truth, i.estimates,
+                    number(i.gospa.value()), number(i.gospa.localisation), number(i.gospa.missed),
+                    number(i.gospa.false_), number(i.ospa), outputs.named, outputs.false_);
+  }
   return text;
 }
 

@@ -3,17 +3,24 @@
 #include <string>
 #include <vector>
 
+#include "libperception/evaluation/FrontEndEvaluation.h"
 #include "libperception/evaluation/Metrics.h"
+#include "libperception/evaluation/PaperTables.h"
 
 namespace perception {
 
-/// One run held against the truth.
+/// One run held against the truth, or several of one condition pooled.
 struct EvaluatedRun {
   std::string name;  ///< as it stands in the tables
   std::string dir;
   Evaluation evaluation;
-  std::optional<CountDifference> count_difference;  ///< against EvaluationReport::reference
+  std::optional<CountDifference> count_difference = {};  ///< against EvaluationReport::reference
+  std::vector<FrontEndEvaluation> front_ends = {};       ///< in the order asked for
+  std::vector<EvaluatedRun> trials = {};  ///< the runs that were pooled; empty: a single run
 };
+
+/// The runs of one condition as one; they stay in `trials`. Throws DataError when they cannot be.
+EvaluatedRun pooledRun(std::string name, std::vector<EvaluatedRun> trials);
 
 /// All that a report tells.
 struct EvaluationReport {
@@ -22,7 +29,8 @@ struct EvaluationReport {
   std::string reference;  ///< path of the run that object counts are compared with; may be empty
   EvaluationOptions options;
   std::vector<EvaluatedRun> runs;
-  std::vector<std::string> plots;  ///< file names beside the report, for Markdown
+  std::vector<PaperTrackingRow> paper;  ///< rows of the paper to stand beside ours
+  std::vector<std::string> plots;       ///< file names beside the report, for Markdown
 };
 
 /// A table of a report; the first `labels` columns are words, the others numbers.
@@ -37,8 +45,16 @@ struct ReportTable {
 /// The tables of the report; the paper's table, its columns in its order, comes first.
 std::vector<ReportTable> reportTables(const EvaluationReport& report);
 
+/// Tables of the front ends, beside the paper's; none where no front end was asked for.
+std::vector<ReportTable> frontEndTables(const EvaluationReport& report);
+/// Every figure a row, every run a column; conditions with mean, deviation and range over trials.
+ReportTable sideBySideTable(const EvaluationReport& report);
+
 std::string textReport(const EvaluationReport& report);
 std::string markdownReport(const EvaluationReport& report);
+/// A line an instant: frame,t,truth,estimates,gospa,localisation,missed,false,ospa,outputs,
+/// false_outputs; [m], its parts [m^2].
+std::string instantsCsv(const EvaluatedRun& run);
 /// Every figure of the tables, both pairings, by run; null where a table says n/a.
 std::string jsonReport(const EvaluationReport& report);
 

@@ -96,6 +96,74 @@ Json json(const Reliability& reliability) {
   return {{"calibration_error", json(reliability.calibration_error)}, {"bins", bins}};
 }
 
+Json json(const RecallCounts& r) {
+  return {{"in_view", r.in_view},
+          {"found", r.found},
+          {"named", r.named},
+          {"named_by_papers_labels", r.named_primary},
+          {"measurements", r.measurements}};
+}
+
+Json json(const PrecisionCounts& p) {
+  Json on = Json::object();
+  for (const auto& [kind, count] : p.on) on[kind] = count;
+  return {{"measurements", p.measurements},
+          {"right_class", p.right_class},
+          {"right_size", p.right_size},
+          {"on", on}};
+}
+
+template <class Counts>
+Json binsJson(const std::vector<Counts>& bins) {
+  Json rows = Json::array();
+  for (const Counts& bin : bins) rows.push_back(json(bin));
+  return rows;
+}
+
+Json json(const FrontEndEvaluation& f) {
+  Json visible = Json::object(), with_points = Json::object(), labels = Json::object();
+  for (std::size_t c = 0; c < f.class_names.size(); ++c) {
+    visible[f.class_names[c]] = binsJson(f.visible[c]);
+    with_points[f.class_names[c]] = binsJson(f.with_points[c]);
+  }
+  for (const auto& [label, bins] : f.labels) labels[label] = binsJson(bins);
+  return {{"name", f.name},
+          {"sensors", f.sensors},
+          {"scans", f.scans},
+          {"scans_without_truth", f.scans_without_truth},
+          {"measurements", f.measurements},
+          {"surroundings_known", f.surroundings},
+          {"range_edges_m", f.range_edges},
+          {"visible", visible},
+          {"with_points", with_points},
+          {"labels", labels}};
+}
+
+Json trialJson(const EvaluatedRun& trial, double cutoff) {
+  return {{"name", trial.name},
+          {"dir", trial.dir},
+          {"closest", json(trackingFigures(trial.evaluation, Pairing::kClosest))},
+          {"one_to_one", json(trackingFigures(trial.evaluation, Pairing::kOneToOne))},
+          {"false_objects", json(falseObjectFigures(trial.evaluation))},
+          {"set_distance", json(setFigures(trial.evaluation, cutoff))}};
+}
+
+Json paperJson(const std::vector<PaperTrackingRow>& rows) {
+  Json result = Json::array();
+  for (const PaperTrackingRow& row : rows) {
+    result.push_back({{"table", row.table},
+                      {"condition", row.condition},
+                      {"sensors", row.sensors},
+                      {"object_tracked", row.tracked},
+                      {"range_rms_m", row.range},
+                      {"bearing_rms_rad", row.bearing},
+                      {"correct", row.correct},
+                      {"mis", row.mis},
+                      {"returns", row.returns}});
+  }
+  return result;
+}
+
 Json pairingJson(const Evaluation& evaluation, Pairing pairing) {
   Json result;
   result["all"] = json(trackingFigures(evaluation, pairing));
@@ -168,6 +236,7 @@ Json optionsJson(const EvaluationOptions& o) {
           {"cutoff_m", o.cutoff},
           {"time_limit_s", o.alignment.time_limit},
           {"empty_frames", o.alignment.empty_frames},
+          {"min_existence", o.min_existence},
           {"unnamed", o.unnamed}};
 }
 
@@ -194,9 +263,21 @@ std::string jsonReport(const EvaluationReport& report) {
                             {"classified", json(run.count_difference->classified)},
                             {"instants", run.count_difference->instants}};
     }
-    entry["instants"] = instantsJson(e);
+    entry["existence_reliability"] = json(existenceReliability(e));
+    if (!run.front_ends.empty()) {
+      Json& front_ends = entry["front_ends"] = Json::array();
+      for (const FrontEndEvaluation& f : run.front_ends) front_ends.push_back(json(f));
+    }
+    if (run.trials.empty()) {
+      entry["instants"] = instantsJson(e);
+    } else {
+      Json& trials = entry["trials"] = Json::array();
+      for (const EvaluatedRun& t : run.trials)
+        trials.push_back(trialJson(t, report.options.cutoff));
+    }
     result["runs"].push_back(std::move(entry));
   }
+  if (!report.paper.empty()) result["paper"] = paperJson(report.paper);
   // Paths need not be UTF-8.
   return result.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

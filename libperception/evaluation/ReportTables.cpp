@@ -55,6 +55,16 @@ ReportTable makeTable(std::string title, std::vector<std::string> labels,
   return table;
 }
 
+// The paper's rows, in the columns of paperTable().
+void addPaperRows(const EvaluationReport& report, ReportTable& table) {
+  for (const PaperTrackingRow& row : report.paper) {
+    table.rows.push_back({fmt::format("paper: {}, {}", row.sensors, row.condition), "all",
+                          fixedPlaces(row.tracked, 3), fixedPlaces(row.range, 3),
+                          fixedPlaces(row.bearing, 3), fixedPlaces(row.correct, 3),
+                          fixedPlaces(row.mis, 3), fmt::format("{}", row.returns)});
+  }
+}
+
 ReportTable paperTable(const EvaluationReport& report) {
   ReportTable table =
       makeTable("Results, columns as in the paper", {"Run", "Class"},
@@ -80,6 +90,7 @@ ReportTable paperTable(const EvaluationReport& report) {
                             number(f.mis), countOf(f.returns, f.active > 0)});
     }
   }
+  addPaperRows(report, table);
   return table;
 }
 
@@ -240,17 +251,38 @@ ReportTable setTable(const EvaluationReport& report) {
   return table;
 }
 
+void addBins(const Reliability& r, ReportTable& table) {
+  for (const ReliabilityBin& bin : r.bins) {
+    table.rows.push_back({fmt::format("{:.1f}-{:.1f}", bin.low, bin.high),
+                          fmt::format("{}", bin.count), number(bin.mean_probability),
+                          number(bin.correct)});
+  }
+}
+
 ReportTable reliabilityTable(const EvaluatedRun& run) {
   const Reliability r = reliability(run.evaluation, Pairing::kOneToOne);
   ReportTable table = makeTable("Reliability of the class probability: " + run.name,
                                 {"probability"}, {"instants", "mean stated", "correct"});
   table.notes = {"One-to-one matched outputs by the probability of their most probable class.",
                  "mean |stated - correct|, weighted by instants: " + number(r.calibration_error)};
-  for (const ReliabilityBin& bin : r.bins) {
-    table.rows.push_back({fmt::format("{:.1f}-{:.1f}", bin.low, bin.high),
-                          fmt::format("{}", bin.count), number(bin.mean_probability),
-                          number(bin.correct)});
-  }
+  addBins(r, table);
+  return table;
+}
+
+ReportTable existenceTable(const EvaluatedRun& run) {
+  const Reliability r = existenceReliability(run.evaluation);
+  ReportTable table = makeTable("Reliability of the existence probability: " + run.name,
+                                {"probability"}, {"outputs", "mean stated", "real"});
+  table.notes = {
+      "Outputs as a named class inside the sector. real: paired one-to-one with a truth of any "
+      "type; an object put out twice is real once.",
+      "Where the truth holds no poles and hedges (KITTI), one that is called a road user is not "
+      "real "
+      "here, though something stands there.",
+      "Outputs near a truth that they are not paired with are left out. A run writes objects from "
+      "[scene] min_existence on: set it to 0 to see the whole range, and --min-existence 0.5 here.",
+      "mean |stated - real|, weighted by outputs: " + number(r.calibration_error)};
+  addBins(r, table);
   return table;
 }
 
@@ -316,15 +348,20 @@ ReportTable coverageTable(const EvaluationReport& report) {
 }  // namespace
 
 std::vector<ReportTable> reportTables(const EvaluationReport& report) {
-  std::vector<ReportTable> tables = {paperTable(report),       trackedTable(report),
-                                     errorTable(report),       classificationTable(report),
-                                     falseObjectTable(report), setTable(report)};
+  std::vector<ReportTable> tables = {paperTable(report)};
+  if (report.runs.size() > 1) tables.push_back(sideBySideTable(report));
+  for (const auto& table : {trackedTable(report), errorTable(report), classificationTable(report),
+                            falseObjectTable(report), setTable(report)}) {
+    tables.push_back(table);
+  }
+  for (ReportTable& table : frontEndTables(report)) tables.push_back(std::move(table));
   if (!report.reference.empty()) tables.push_back(countTable(report));
   for (const EvaluatedRun& run : report.runs) {
     if (run.evaluation.samples.empty()) continue;
     for (const Pairing pairing : kAllPairings) tables.push_back(confusionTable(run, pairing));
     tables.push_back(reliabilityTable(run));
-    tables.push_back(objectTable(run));
+    if (!run.evaluation.existence.empty()) tables.push_back(existenceTable(run));
+    if (run.trials.empty()) tables.push_back(objectTable(run));
   }
   tables.push_back(coverageTable(report));
   return tables;

@@ -73,6 +73,7 @@ class LidarFrontEnd final : public FrontEnd {
   LidarFrontEnd(const LidarParams& params, const ClassTable& classes, const Sensing& sensing);
 
   MeasurementScan extract(const SensorFrame& frame) const override;
+  std::vector<std::string> labelNames() const override { return model_->sensing().labels(); }
   /// A frame without a point cloud gives empty detections.
   LidarDetections detect(const SensorFrame& frame) const;
   /// Obstacle returns [m], ego frame.

@@ -1,4 +1,7 @@
 #pragma once
+#include <string>
+#include <vector>
+
 #include "libperception/measurement/Measurement.h"
 
 namespace perception {
@@ -11,6 +14,8 @@ class FrontEnd {
   /// `frame.data` must hold the kind of data that this rib reads; bad points and boxes are dropped
   /// and counted.
   virtual MeasurementScan extract(const SensorFrame& frame) const = 0;
+  /// Names of what Measurement::label indexes; empty: no labels.
+  virtual std::vector<std::string> labelNames() const { return {}; }
 };
 
 }  // namespace perception

@@ -31,6 +31,7 @@ class PositionFrontEnd final : public FrontEnd {
   PositionFrontEnd(PositionParams params, const ClassTable& classes, const Sensing& sensing);
 
   MeasurementScan extract(const SensorFrame& frame) const override;
+  std::vector<std::string> labelNames() const override { return params_.labels; }
 
  private:
   PositionParams params_;

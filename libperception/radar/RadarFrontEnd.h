@@ -44,6 +44,7 @@ class RadarFrontEnd final : public FrontEnd {
   RadarFrontEnd(RadarParams params, const ClassTable& classes, const Sensing& sensing);
 
   MeasurementScan extract(const SensorFrame& frame) const override;
+  std::vector<std::string> labelNames() const override { return model_->sensing().labels(); }
 
   const RadarParams& params() const { return params_; }
 

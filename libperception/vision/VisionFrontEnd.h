@@ -41,6 +41,7 @@ class VisionFrontEnd final : public FrontEnd {
 
   /// Measurements under a FootprintModel whose sensor frame is the camera's level frame.
   MeasurementScan extract(const SensorFrame& frame) const override;
+  std::vector<std::string> labelNames() const override { return model_->sensing().labels(); }
 
  private:
   std::optional<Measurement> measure(const ObjectDetection& object, const SensorFrame& frame,

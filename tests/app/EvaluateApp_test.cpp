@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -157,6 +158,74 @@ TEST_F(EvaluateAppTest, WithoutOverlapItSaysNotAvailableAndEndsWithAWarning) {
   EXPECT_NE(out_.find("n/a"), std::string::npos);
   EXPECT_TRUE(
       report(dir_ + "/late/evaluation")["runs"][0]["closest"]["all"]["object_tracked_a"].is_null());
+}
+
+TEST_F(EvaluateAppTest, RunsOfOneConditionArePooled) {
+  fs::create_directories(dir_ + "/t");
+  fs::rename(dir_ + "/late", dir_ + "/t/one_L");
+  fs::rename(dir_ + "/perfect", dir_ + "/t/two_L");
+  EXPECT_EQ(run({"-r", "L+R=" + dir_ + "/t/*_L", "-t", truth(), "-o", dir_ + "/out", "--no-plots",
+                 "--paper", "sunny"}),
+            0)
+      << err_;
+  const auto all = report(dir_ + "/out");
+  ASSERT_EQ(all["runs"].size(), 1u);
+  EXPECT_EQ(all["runs"][0]["name"], "L+R");
+  EXPECT_EQ(all["runs"][0]["closest"]["all"]["active"], 2 * kFrames);
+  EXPECT_NEAR(all["runs"][0]["closest"]["all"]["object_tracked_a"].get<double>(),
+              (2 * kFrames - 2.0) / (2 * kFrames), 1e-12);
+  EXPECT_EQ(all["runs"][0]["trials"].size(), 2u);
+  EXPECT_EQ(all["paper"].size(), 3u);
+  EXPECT_NE(out_.find("paper: L+R, Sunny"), std::string::npos);
+  EXPECT_FALSE(fs::exists(dir_ + "/t/one_L/evaluation"));
+}
+
+TEST_F(EvaluateAppTest, AManifestNamesConditionsRunsAndTruths) {
+  std::ofstream(dir_ + "/runs.csv") << "condition,run,truth\n"
+                                       "first,late,log.truth.csv\n"
+                                       "second,perfect,log.truth.csv\n"
+                                       "second,late,log.truth.csv\n";
+  EXPECT_EQ(run({"--manifest", dir_ + "/runs.csv", "-o", dir_ + "/out", "--no-plots"}), 0) << err_;
+  const auto runs = report(dir_ + "/out")["runs"];
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[0]["closest"]["all"]["returns"], 18);
+  EXPECT_EQ(runs[1]["closest"]["all"]["returns"], 38);
+  EXPECT_NE(out_.find("second, 2 trials"), std::string::npos);
+}
+
+TEST_F(EvaluateAppTest, TheTruthMayBeNamedAfterTheRun) {
+  fs::copy(truth(), dir_ + "/late.truth.csv");
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", dir_ + "/{run}.truth.csv", "--no-plots"}), 0) << err_;
+}
+
+TEST_F(EvaluateAppTest, WhatCannotBeMeantIsAUsageError) {
+  const auto usage = static_cast<int>(ExitCode::kUsage);
+  EXPECT_EQ(run({"--manifest", "m.csv", "-t", truth()}), usage);
+  app_ = EvaluateApp();
+  EXPECT_EQ(run({"-t", truth()}), usage);
+  app_ = EvaluateApp();
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--paper", "moonlight"}), usage);
+  EXPECT_NE(err_.find("sunny"), std::string::npos) << err_;
+  app_ = EvaluateApp();
+  EXPECT_EQ(run({"-r", "L=" + dir_ + "/late", "-t", truth()}), usage);  // no -o
+  app_ = EvaluateApp();
+  EXPECT_EQ(run({"-r", "L=" + dir_ + "/nowhere*", "-t", truth(), "-o", dir_ + "/out"}),
+            static_cast<int>(ExitCode::kNoInput));
+}
+
+TEST_F(EvaluateAppTest, AFrontEndNeedsRecordedMeasurements) {
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--front-end", "LIDAR"}),
+            static_cast<int>(ExitCode::kNoInput));
+  EXPECT_NE(err_.find("--measurements"), std::string::npos) << err_;
+}
+
+TEST_F(EvaluateAppTest, InstantsAreATable) {
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
+  std::ifstream file(dir_ + "/late/evaluation/instants.csv");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), kFrames + 1);
+  EXPECT_NE(text.find("\n0,0.000,1,0,1.4142,0.0000,2.0000,0.0000,2.0000,0,0\n"), std::string::npos)
+      << text;
 }
 
 TEST_F(EvaluateAppTest, FaultsOfTheInputHaveTheirExitCodes) {

@@ -45,13 +45,15 @@ bool isPng(const std::string& path) {
   return head == "\x89PNG\r\n\x1a\n" && fs::file_size(path) > 5000;
 }
 
-TEST_F(Plots, DrawOverviewReliabilityAndObjects) {
+TEST_F(Plots, DrawTimelinesOverviewDistancesReliabilityAndObjects) {
   std::ofstream(dir_ + "/gnuplot.log");
   const PlotResult result = writePlots(run_, {}, dir_, 40);
   if (result.fault.find("not installed") != std::string::npos) GTEST_SKIP() << result.fault;
   EXPECT_EQ(result.fault, "");
-  EXPECT_EQ(result.files, (std::vector<std::string>{"plots/overview.png", "plots/reliability.png",
-                                                    "plots/object_3.png"}));
+  EXPECT_EQ(result.files,
+            (std::vector<std::string>{"plots/timelines.png", "plots/overview.png",
+                                      "plots/set_distance.png", "plots/reliability.png",
+                                      "plots/existence.png", "plots/object_3.png"}));
   for (const std::string& file : result.files) EXPECT_TRUE(isPng(dir_ + "/" + file)) << file;
   std::ifstream log(dir_ + "/plots/gnuplot.log");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(log), {}), "");
@@ -71,6 +73,29 @@ TEST_F(Plots, WithoutAnyInstantThereIsNothingToDraw) {
   run_.evaluation = evaluate(makeRun(), {}, {});
   const PlotResult result = writePlots(run_, {}, dir_, 40);
   EXPECT_TRUE(result.files.empty());
+}
+
+TEST_F(Plots, SeveralRunsAreDrawnIntoTheSamePictures) {
+  EvaluationReport report;
+  report.runs = {run_, run_};
+  report.runs[1].name = "L+R";
+  report.paper = paperTrackingRows();
+  const PlotResult result = writeComparisonPlots(report, dir_);
+  if (result.fault.find("not installed") != std::string::npos) GTEST_SKIP() << result.fault;
+  EXPECT_EQ(result.fault, "");
+  EXPECT_EQ(result.files,
+            (std::vector<std::string>{"plots/comparison.png", "plots/set_distance.png",
+                                      "plots/reliability.png", "plots/existence.png"}));
+  for (const std::string& file : result.files) EXPECT_TRUE(isPng(dir_ + "/" + file)) << file;
+  std::ifstream log(dir_ + "/plots/gnuplot.log");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(log), {}), "");
+}
+
+TEST_F(Plots, TrialsHaveNoCommonTime) {
+  EvaluationReport report;
+  report.runs = {pooledRun("A", {run_, run_}), pooledRun("B", {run_, run_})};
+  for (const std::string& file : writeComparisonPlots(report, dir_).files)
+    EXPECT_NE(file, "plots/set_distance.png");
 }
 
 TEST_F(Plots, AFaultyScriptIsReported) {

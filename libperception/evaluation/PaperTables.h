@@ -1,0 +1,58 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace perception {
+
+/// A row of the paper's tables of tracking results: the fractions and errors of one condition.
+struct PaperTrackingRow {
+  const char* table;      ///< short name, as given to --paper: sunny, particles, pedestrian ...
+  const char* condition;  ///< weather, number of particles or kind of object
+  const char* sensors;    ///< C+L+R
+  double tracked;         ///< Object Tracked
+  double range;           ///< [m] Range Error
+  double bearing;         ///< [rad] Bearing Error
+  double correct, mis;    ///< Correct Classification, Mis-Classification
+  int returns;            ///< Number of Returns
+};
+
+/// A row of the paper's table of recall and precision, with the precision by size that its text
+/// gives. All in [0, 1]; empty: not published.
+struct PaperFrontEndRow {
+  const char* sensor;
+  const char* condition;
+  std::optional<double> car_recall, car_size_precision, car_precision;
+  std::optional<double> person_recall, person_size_precision, person_precision;
+};
+
+/// A row of the paper's second particle study: rms errors in numbers of objects against 50
+/// particles.
+struct PaperParticlesRow {
+  int particles;
+  double duc;              ///< configuration 1: DUC's tracker
+  double all, classified;  ///< configuration 2: with classification
+};
+
+/// A row of the paper's two tables of rates: objects detected per sensor return, objects tracked on
+/// average.
+struct PaperRateRow {
+  const char* sensors;
+  bool tracked;  ///< else detected
+  double objects, cars, persons;
+};
+
+/// "Joint Data Association, Tracking, and Classification ... in Weather": tables results_particles,
+/// results_person, results_suburban, results_lidar, results_camera, results_full.
+const std::vector<PaperTrackingRow>& paperTrackingRows();
+/// Table Recall-Precision and section "Sensor Performance".
+const std::vector<PaperFrontEndRow>& paperFrontEndRows();
+/// Table Particle-stats.
+const std::vector<PaperParticlesRow>& paperParticlesRows();
+/// Tables Detection-Rate and Tracking-Rate: the uncontrolled drive.
+const std::vector<PaperRateRow>& paperRateRows();
+
+/// Names that --paper takes.
+std::vector<std::string> paperTableNames();
+
+}  // namespace perception

@@ -1,0 +1,95 @@
+#include "libperception/evaluation/PlotScript.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "libperception/core/Error.h"
+#include "libperception/evaluation/Gnuplot.h"
+#include "libperception/scene/OutputFile.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPicture = R"(
+reset
+set encoding utf8
+set datafile missing 'nan'
+set terminal pngcairo size {width},{height} font 'sans,10' background rgb 'white'
+set output '{file}'
+set grid xtics ytics lt 1 lw 1 lc rgb '#DDDDDD'
+set key noenhanced outside right top vertical Left reverse
+)";
+
+constexpr const char* kOurs[] = {"timelines.png",   "overview.png",  "set_distance.png",
+                                 "reliability.png", "existence.png", "comparison.png"};
+
+void removeOldPictures(const std::string& dir) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(dir, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const bool ours = std::find(std::begin(kOurs), std::end(kOurs), name) != std::end(kOurs) ||
+                      name.rfind("object_", 0) == 0;
+    if (ours) fs::remove(entry.path(), ignored);
+  }
+}
+
+}  // namespace
+
+namespace plot_colour {
+
+std::string ofRun(std::size_t i) {
+  constexpr const char* kRuns[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                   "#E69F00", "#56B4E9", "#8B4513", "#000000"};
+  return kRuns[i % std::size(kRuns)];
+}
+
+std::string ofClass(const std::string& name, std::size_t place) {
+  constexpr const char* kByName[][2] = {{"pedestrian", "#D55E00"},
+                                        {"cyclist", "#009E73"},
+                                        {"car", "#0072B2"},
+                                        {"bus", "#CC79A7"},
+                                        {"static-other", "#737373"}};
+  constexpr const char* kOthers[] = {"#E69F00", "#56B4E9", "#000000"};
+  for (const auto& row : kByName) {
+    if (name == row[0]) return row[1];
+  }
+  return kOthers[place % std::size(kOthers)];
+}
+
+}  // namespace plot_colour
+
+PlotScript::PlotScript(const std::string& dir) : dir_(dir + "/plots") {
+  std::error_code failed;
+  fs::create_directories(dir_, failed);
+  if (failed) throw OutputError(fmt::format("{}: cannot be created: {}", dir_, failed.message()));
+  removeOldPictures(dir_);
+}
+
+void PlotScript::data(const std::string& name, const std::string& text) const {
+  writeFile(dir_ + "/" + name, text);
+}
+
+void PlotScript::begin(const std::string& file, std::size_t width, std::size_t height) {
+  files_.push_back(file);
+  script_ += fmt::format(kPicture, fmt::arg("width", width), fmt::arg("height", height),
+                         fmt::arg("file", file));
+}
+
+PlotResult PlotScript::draw() const {
+  PlotResult result;
+  data("plots.gp", script_);
+  if (files_.empty()) return result;
+  result.fault = runGnuplot(dir_, "plots.gp");
+  for (const std::string& file : files_) {
+    std::error_code ignored;
+    if (fs::exists(dir_ + "/" + file, ignored)) result.files.push_back("plots/" + file);
+  }
+  return result;
+}
+
+}  // namespace perception

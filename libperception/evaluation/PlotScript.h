@@ -1,0 +1,48 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace perception {
+
+/// Colours that people with colour-blindness can tell apart (Okabe and Ito).
+namespace plot_colour {
+inline constexpr const char* kGreen = "#009E73";
+inline constexpr const char* kOrange = "#E69F00";
+inline constexpr const char* kRed = "#C00000";
+inline constexpr const char* kBlue = "#0072B2";
+inline constexpr const char* kGrey = "#BBBBBB";
+/// Of the i-th run in a picture of several.
+std::string ofRun(std::size_t i);
+/// Of an object class, as in the pictures of scenes; `place` of others.
+std::string ofClass(const std::string& name, std::size_t place);
+}  // namespace plot_colour
+
+/// What came of the plots.
+struct PlotResult {
+  std::vector<std::string> files;  ///< PNG names relative to the folder, "plots/overview.png" ...
+  std::string fault;               ///< why there are fewer than there should be; for a warning
+};
+
+/// One gnuplot script, plots.gp, with its data files in DIR/plots: pictures are begun one after the
+/// other and drawn at the end.
+class PlotScript {
+ public:
+  /// Creates DIR/plots and removes the pictures of an earlier evaluation, which would be taken for
+  /// this one's. Throws OutputError.
+  explicit PlotScript(const std::string& dir);
+
+  /// Writes a data file beside the script. Throws OutputError.
+  void data(const std::string& name, const std::string& text) const;
+  /// Starts a picture of this size [px]; nothing of the one before is left.
+  void begin(const std::string& file, std::size_t width, std::size_t height);
+  void add(const std::string& commands) { script_ += commands; }
+  /// Runs gnuplot. Throws OutputError when the script cannot be written.
+  PlotResult draw() const;
+
+ private:
+  std::string dir_, script_;
+  std::vector<std::string> files_;
+};
+
+}  // namespace perception
