@@ -1,0 +1,393 @@
+#include "libperception/app/DetectApp.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "libperception/app/DetectPicture.h"
+#include "libperception/app/ImportLog.h"
+#include "libperception/app/ImportText.h"
+#include "libperception/app/KittiFiles.h"
+#include "libperception/app/OutputFolder.h"
+#include "libperception/app/SnapshotImage.h"
+#include "libperception/scene/OutputFile.h"
+#include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/RawlogReader.h"
+#include "libperception/sensors/RawlogWriter.h"
+#include "libperception/sensors/ToObservation.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kImageEndings{".png", ".jpg", ".jpeg", ".bmp"};
+constexpr double kKittiCameraHeight = 1.65;  // [m] kitti.com/setup: cameras above the ground
+
+bool isLog(const std::string& path) {
+  return fs::path(path).extension() == ".rawlog" || fs::path(path).extension() == ".gz";
+}
+
+std::vector<std::string> imagesOf(const std::vector<std::string>& inputs) {
+  std::vector<std::string> out;
+  for (const std::string& input : inputs) {
+    if (!fs::is_directory(input)) {
+      out.push_back(input);
+      continue;
+    }
+    for (const FrameFile& file : frameFiles(input, kImageEndings)) out.push_back(file.path);
+  }
+  return out;
+}
+
+std::optional<Raster> readImage(const std::string& path) {
+  const cv::Mat pixels = cv::imread(path, cv::IMREAD_COLOR);
+  if (pixels.empty()) return std::nullopt;
+  Raster raster{pixels.cols, pixels.rows, 3, {}};
+  for (int y = 0; y < pixels.rows; ++y) {
+    const auto* row = pixels.ptr<std::uint8_t>(y);
+    raster.pixels.insert(raster.pixels.end(), row, row + pixels.cols * 3);
+  }
+  return raster;
+}
+
+/// x forward of the vehicle is z of the camera; `pitch` nose down.
+Pose3 opticalPose(double height, double pitch) {
+  Pose3 pose = Pose3::Identity();
+  const double c = std::cos(pitch), s = std::sin(pitch);
+  pose.linear().col(0) = Vector3(0, -1, 0);
+  pose.linear().col(1) = Vector3(-s, 0, -c);
+  pose.linear().col(2) = Vector3(c, 0, -s);
+  pose.translation() = Vector3(0, 0, height);
+  return pose;
+}
+
+bool isPanorama(const Raster& image, int choice) {
+  return choice == 1 || (choice == 0 && image.width == 2 * image.height && image.width % 8 == 0);
+}
+
+CameraModel panoramaCamera(const Raster& image) { return Panorama(image.width).camera(); }
+
+CameraModel cameraOf(const Raster& image, const DetectCameraParams& params) {
+  if (isPanorama(image, params.panorama)) return panoramaCamera(image);
+  CameraModel camera;
+  camera.width = image.width;
+  camera.height = image.height;
+  camera.cx = 0.5 * image.width - 0.5;
+  camera.cy = params.horizon > 0 ? params.horizon : 0.5 * image.height - 0.5;
+  camera.fx = camera.fy =
+      params.focal > 0 ? params.focal : 0.5 * image.width / std::tan(0.5 * params.field_of_view);
+  return camera;
+}
+
+std::string kittiLine(const ObjectDetection& o) {
+  const auto& b = *o.image_box;
+  return fmt::format(
+      "{} -1 -1 {:.4f} {:.2f} {:.2f} {:.2f} {:.2f} -1 -1 -1 -1000 -1000 -1000 -10 {:.4f}\n",
+      o.label, o.heading.value_or(-10), b.x1, b.y1, b.x2, b.y2, o.score);
+}
+
+}  // namespace
+
+void DetectCameraParams::visit(ParamVisitor& v) {
+  v.real("height", height, {0, 10}, "m", "of the camera over the ground; 0: not known");
+  v.angle("pitch_deg", pitch, {-45, 45}, "of the camera, down");
+  v.real("focal", focal, {0, 1e5}, "px", "focal length; 0: from field_of_view_deg");
+  v.angle("field_of_view_deg", field_of_view, {1, 170}, "across the image");
+  v.real("horizon", horizon, {0, 1e5}, "px", "row of the horizon at pitch 0; 0: the middle");
+  v.choice("panorama", panorama, {"auto", "yes", "no"},
+           "a whole spherical image; auto: twice as wide as high");
+}
+
+std::string DetectApp::description() const {
+  return "Finds cars and people in images, or in the images of a log; compares with labels.";
+}
+
+void DetectApp::declare(CLI::App& cli) {
+  addConfigOptions(cli, true);
+  cli.add_option("-i,--input", inputs, "Images, folders of images, or one log");
+  addOutputOption(cli, false);
+  cli.add_option("--labels", labels, "Truth: a folder of KITTI's object labels, or a CSV");
+  cli.add_option("--calib", calibrations, "Folder of KITTI calibrations (NAME.txt)");
+  cli.add_option("--camera", camera_label, "sensorLabel of the log's images; without it all");
+  cli.add_option("--label", boxes_label, "sensorLabel of the boxes; without it IMAGES_BOXES");
+  cli.add_option("--calibrate", calibrate, "Fit P(object | score) to the labels, write this INI");
+  cli.add_option("--export", kitti_folder, "kitti:DIR, one file an image in KITTI's layout");
+  cli.add_flag("--pictures", pictures, "Draw the boxes: pictures/NAME.png");
+  cli.add_option("--every", every, "Of a log's images one in so many")
+      ->check(CLI::Range(1, 100000));
+  cli.add_option("--overlap", overlap, "Intersection over union of a right box")
+      ->check(CLI::Range(0.1, 1.0))
+      ->capture_default_str();
+  cli.add_option("--min-height", min_height, "Labels below so many pixels do not count")
+      ->capture_default_str();
+  cli.add_option("--max-truncation", max_truncation, "Nor those cut off by more than this share")
+      ->capture_default_str();
+  cli.add_option("--max-occlusion", max_occlusion, "Nor those hidden more than this (KITTI: 0-3)")
+      ->capture_default_str();
+  addRunOptions(cli);
+}
+
+void DetectApp::run() {
+  Config config = loadConfig();
+  DetectorSetup setup = DetectorSetup::read(config);
+  const auto camera = config.read<DetectCameraParams>("camera");
+  if (configDone(config)) return;
+  if (inputs.empty()) throw Error(ExitCode::kUsage, "-i is required: images, a folder or a log");
+  if (!kitti_folder.empty()) {
+    if (kitti_folder.rfind("kitti:", 0) != 0)
+      throw Error(ExitCode::kUsage, "--export: expected kitti:DIR");
+    kitti_folder = kitti_folder.substr(6);
+  }
+  if (!calibrate.empty() && labels.empty())
+    throw Error(ExitCode::kUsage, "--calibrate needs --labels");
+  quality_ = DetectionQuality(overlap, min_height);
+  rows_ = "image,label,score,probability,x1,y1,x2,y2,heading_deg\n";
+  out_images = out_objects = out_unreadable = 0;
+  out_seconds = 0;
+  // Threads of the detectors; results do not depend on their number.
+  std::optional<tbb::global_control> limit;
+  if (threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  cv::setNumThreads(threads > 0 ? threads : -1);
+  const ImageDetector detector(std::move(setup));
+  if (isLog(inputs.front())) {
+    if (inputs.size() > 1) throw Error(ExitCode::kUsage, "one log at a time");
+    runLog(detector, camera, inputs.front());
+  } else {
+    runImages(detector, camera);
+  }
+  report();
+}
+
+ObjectDetections DetectApp::timed(const ImageDetector& detector, const Raster& image,
+                                  const CameraModel& camera, const std::optional<Pose3>& pose) {
+  const auto start = std::chrono::steady_clock::now();
+  auto found = detector.detect(image, camera, pose);
+  out_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return found;
+}
+
+void DetectApp::finish(const ImageDetector& detector, Result& result) {
+  if (!labels.empty()) quality_.add(result.truth, result.found.objects);
+  auto& objects = result.found.objects;
+  for (const ObjectDetection& o : objects) result.raw.push_back(o.score);
+  std::vector<ObjectDetection> before = objects;
+  calibrateScores(detector.setup(), objects);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const auto& o = objects[i];
+    if (!o.image_box) continue;
+    const bool calibrated = o.score != before[i].score;
+    rows_ += fmt::format("{},{},{:.4f},{},{:.2f},{:.2f},{:.2f},{:.2f},{}\n", result.name, o.label,
+                         result.raw[i],
+                         calibrated ? fmt::format("{:.4f}", 1 / (1 + std::exp(-o.score))) : "",
+                         o.image_box->x1, o.image_box->y1, o.image_box->x2, o.image_box->y2,
+                         o.heading ? fmt::format("{:.2f}", degrees(*o.heading)) : "");
+  }
+  ++out_images;
+  out_objects += static_cast<std::int64_t>(objects.size());
+  if (!kitti_folder.empty()) {
+    std::string lines;
+    for (const auto& o : objects) {
+      if (o.image_box) lines += kittiLine(o);
+    }
+    fs::create_directories(kitti_folder);
+    writeFile((fs::path(kitti_folder) / (fs::path(result.name).stem().string() + ".txt")).string(),
+              lines);
+  }
+}
+
+void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParams& params) {
+  if (!detector.hasBackend())
+    throw Error(ExitCode::kUsage, "backend file: boxes are taken from a log, -i FILE.rawlog");
+  const std::vector<std::string> files = imagesOf(inputs);
+  std::optional<ImageLabels> truth;
+  if (!labels.empty()) truth.emplace(labels, LabelRules{min_height, max_truncation, max_occlusion});
+  std::optional<OutputFolder> folder;
+  if (!output.empty()) folder.emplace(output);
+  if (pictures && !folder) throw Error(ExitCode::kUsage, "--pictures needs -o DIR");
+  Progress progress("detect", files.size());
+  for (const std::string& file : files) {
+    stopIfAsked();
+    const auto image = readImage(file);
+    if (!image) {
+      if (!fs::exists(file))
+        throw DataError(fmt::format("{}: no such image", file), ExitCode::kNoInput);
+      if (strict) throw DataError(fmt::format("{}: not an image", file));
+      ++out_unreadable;
+      warn(fmt::format("{}: not an image, left out", file));
+      continue;
+    }
+    Result result;
+    result.name = fs::path(file).filename().string();
+    result.image = *image;
+    CameraModel camera = cameraOf(*image, params);
+    std::optional<Pose3> pose;
+    if (params.height > 0) pose = opticalPose(params.height, params.pitch);
+    if (!calibrations.empty()) {
+      camera = readKittiCalibration(
+                   (fs::path(calibrations) / (fs::path(file).stem().string() + ".txt")).string())
+                   .camera;
+      pose = opticalPose(params.height > 0 ? params.height : kKittiCameraHeight, params.pitch);
+    }
+    result.found = timed(detector, *image, camera, pose);
+    if (truth) result.truth = truth->of(result.name);
+    finish(detector, result);
+    if (pictures) {
+      const bool calibrated = !result.raw.empty() && result.raw[0] != result.found.objects[0].score;
+      writePng(folder->pathFor("pictures/" + fs::path(file).stem().string() + ".png"),
+               detectionPicture(*image, result.found.objects, result.truth, calibrated));
+    }
+    progress.update(static_cast<std::uint64_t>(out_images), static_cast<std::uint64_t>(out_images));
+  }
+  if (truth) out_quality = quality_.results();
+  writeResults(folder ? &*folder : nullptr);
+  if (folder) folder->commit("detections.csv");
+  if (!calibrate.empty()) writeCalibration(detector);
+}
+
+void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& params,
+                       const std::string& log) {
+  if (!labels.empty()) throw Error(ExitCode::kUsage, "--labels belong to images, not to a log");
+  const bool from_log = !detector.hasBackend();
+  const bool to_log = !output.empty() && isLog(output);
+  if (!to_log && !(pictures && !output.empty()))
+    throw Error(ExitCode::kUsage, "-o FILE.rawlog is required, or --pictures -o DIR");
+  std::optional<RawlogWriter> writer;
+  std::optional<OutputFolder> folder;
+  if (to_log) {
+    writer.emplace(output);
+  } else {
+    folder.emplace(output);
+  }
+  RawlogReader reader(log);
+  Progress progress("detect", reader.fileBytes());
+  std::optional<ObjectDetections> held;  // newest boxes of the log
+  std::int64_t seen = 0;
+  while (const auto observation = reader.next()) {
+    stopIfAsked();
+    if (writer) writer->write(*observation);
+    if (const auto* boxes = dynamic_cast<const CObservationObjectDetections*>(observation.get())) {
+      if (boxes_label.empty() || boxes->sensorLabel == boxes_label) held = boxes->detections;
+    }
+    const auto frame = imageFrame(*observation, log);
+    if (!frame || (!camera_label.empty() && frame->sensor != camera_label)) continue;
+    if (seen++ % every != 0) continue;
+    const auto& data = std::get<CameraImage>(frame->data);
+    const auto image = data.load ? data.load() : std::nullopt;
+    if (!image || image->width <= 0 || image->height <= 0) {
+      if (strict) throw DataError(fmt::format("{}: image is missing or damaged", data.source));
+      if (out_unreadable++ == 0) warn(fmt::format("{}: image is missing or damaged", data.source));
+      continue;
+    }
+    CameraModel camera = data.camera;
+    if (isPanorama(*image, params.panorama)) {
+      camera = panoramaCamera(*image);
+    } else if (camera.fx <= 0) {
+      camera = cameraOf(*image, params);
+    }
+    Result result;
+    result.name = fmt::format("{}_{:06}", frame->sensor, seen - 1);
+    if (from_log) {
+      if (held) result.found = *held;
+    } else {
+      result.found = timed(detector, *image, camera, frame->T_ego_sensor);
+    }
+    finish(detector, result);
+    if (writer && !from_log) {
+      SensorFrame out = *frame;
+      out.sensor = boxes_label.empty() ? frame->sensor + "_BOXES" : boxes_label;
+      result.found.T_ego_camera.reset();  // the sensor's frame is the camera's
+      out.data = result.found;
+      writer->write(*observationFromFrame(out));
+    }
+    if (pictures && folder)
+      writePng(folder->pathFor("pictures/" + result.name + ".png"),
+               detectionPicture(*image, result.found.objects, {}, true));
+    progress.update(reader.bytesRead(), static_cast<std::uint64_t>(out_images));
+  }
+  if (reader.end() != RawlogReader::End::kClean) {
+    if (strict) throw DataError(reader.endMessage());
+    warn(reader.endMessage());
+  }
+  if (out_images == 0)
+    throw DataError(fmt::format("{}: no image{} in it that can be read", log,
+                                camera_label.empty() ? "" : " labelled " + camera_label));
+  if (writer) {
+    writer->close();
+    // The new log finds the images that the old one keeps beside itself.
+    const fs::path images = imageFolderOf(log), link = imageFolderOf(output);
+    if (fs::is_directory(images) && !fs::exists(fs::symlink_status(link)))
+      fs::create_directory_symlink(fs::absolute(images), link);
+  }
+  if (folder) {
+    writeResults(&*folder);
+    folder->commit("detections.csv");
+  }
+}
+
+void DetectApp::writeResults(OutputFolder* folder) const {
+  if (folder == nullptr) return;
+  writeFile(folder->pathFor("detections.csv"), rows_);
+  if (out_quality.empty()) return;
+  std::string table =
+      "label,labelled,right,wrong,average_precision,recall,headings,heading_median_deg,"
+      "heading_rms_deg,flips,orientation_similarity\n";
+  std::string curve = "label,score,recall,precision\n";
+  for (const LabelQuality& q : out_quality) {
+    table += fmt::format("{},{},{},{},{:.4f},{:.4f},{},{:.2f},{:.2f},{},{:.4f}\n", q.label,
+                         q.labelled, q.right, q.wrong, q.average_precision, q.recall, q.headings,
+                         degrees(q.heading_median), degrees(q.heading_rms), q.flips,
+                         q.orientation_similarity);
+    for (const auto& p : q.curve)
+      curve += fmt::format("{},{:.4f},{:.4f},{:.4f}\n", q.label, p.score, p.recall, p.precision);
+  }
+  writeFile(folder->pathFor("quality.csv"), table);
+  writeFile(folder->pathFor("precision.csv"), curve);
+}
+
+void DetectApp::writeCalibration(const ImageDetector& detector) const {
+  std::string text = fmt::format(
+      "; P(right | score) of boxes, fitted by perception-detect --calibrate to {} images, overlap "
+      "{}.\n; To be included by the INI of the detector.\n",
+      out_images, overlap);
+  for (const auto& [name, model] : detector.setup().models) {
+    std::string lines;
+    for (const std::string& label : quality_.labels()) {
+      if (!model.label.empty() && model.label != label) continue;
+      const auto fit = fitLogistic(quality_.judged(label));
+      const auto& boxes = quality_.judged(label);
+      const auto right = std::count_if(boxes.begin(), boxes.end(), [](auto& b) { return b.right; });
+      if (!fit) continue;
+      const std::string suffix = model.label.empty() ? "." + label : "";
+      lines += fmt::format("slope{} = {:.4f}  ; {} right boxes, {} wrong ones\n", suffix,
+                           fit->slope, right, static_cast<std::ptrdiff_t>(boxes.size()) - right);
+      lines += fmt::format("even_score{} = {:.4f}\n", suffix, fit->even_score);
+    }
+    if (!lines.empty()) text += fmt::format("\n[model.{}]\n{}", name, lines);
+  }
+  writeFile(calibrate, text);
+  fmt::print("{}: calibration of {} images\n", calibrate, out_images);
+}
+
+void DetectApp::report() const {
+  fmt::print("{} images, {} boxes; {:.1f} ms an image\n", out_images, out_objects,
+             out_images > 0 ? 1e3 * out_seconds / static_cast<double>(out_images) : 0.0);
+  for (const LabelQuality& q : out_quality) {
+    if (q.labelled == 0) continue;
+    fmt::print("{:12} AP {:.3f}  recall {:.3f}  ({} labelled, {} right, {} wrong)", q.label,
+               q.average_precision, q.recall, q.labelled, q.right, q.wrong);
+    if (q.headings > 0)
+      fmt::print("; heading: median {:.1f} deg, rms {:.1f} deg, {} flips of {}",
+                 degrees(q.heading_median), degrees(q.heading_rms), q.flips, q.headings);
+    fmt::print("\n");
+  }
+}
+
+}  // namespace perception

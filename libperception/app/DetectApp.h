@@ -1,0 +1,76 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/app/App.h"
+#include "libperception/app/DetectLabels.h"
+#include "libperception/vision/DetectionQuality.h"
+#include "libperception/vision/ImageDetector.h"
+
+namespace perception {
+
+class OutputFolder;
+
+/// [camera]: of images that come without a calibration of their own.
+struct DetectCameraParams {
+  double height = 0;                   ///< [m] over the ground; 0: not known
+  double pitch = 0;                    ///< [rad] nose down
+  double focal = 0;                    ///< [px]; 0: from field_of_view
+  double field_of_view = radians(80);  ///< [rad] across
+  double horizon = 0;                  ///< [px] row at pitch 0; 0: the middle
+  int panorama = 0;                    ///< auto (width = 2 height), yes, no
+
+  void visit(ParamVisitor& v);
+};
+
+/// perception-detect: a camera detector on images, or on the images of a log.
+class DetectApp : public App {
+ public:
+  std::string labels;        ///< --labels: truth of images
+  std::string calibrations;  ///< --calib: folder of KITTI calibrations
+  std::string camera_label;  ///< --camera: sensorLabel of the log's images; empty: all
+  std::string
+      boxes_label;        ///< --label: sensorLabel of the boxes; empty: that of the images + _BOXES
+  std::string calibrate;  ///< --calibrate: INI that gets the fitted logistics
+  std::string kitti_folder;  ///< --export kitti:DIR
+  bool pictures = false;     ///< --pictures
+  int every = 1;             ///< --every: of the log's images, one in so many
+  double overlap = 0.5, min_height = 25, max_truncation = 0.3;
+  int max_occlusion = 1;
+
+  std::int64_t out_images = 0, out_objects = 0, out_unreadable = 0;
+  std::vector<LabelQuality> out_quality;
+  double out_seconds = 0;  ///< wall, of detection alone
+
+  std::string name() const override { return "perception-detect"; }
+  std::string description() const override;
+  void declare(CLI::App& cli) override;
+  void run() override;
+
+ private:
+  /// A picture with its boxes, on the way to the outputs.
+  struct Result {
+    std::string name;
+    Raster image;
+    ObjectDetections found;
+    std::vector<double> raw;  ///< scores before calibration
+    std::vector<LabelledBox> truth;
+  };
+  void runImages(const ImageDetector& detector, const DetectCameraParams& camera);
+  void runLog(const ImageDetector& detector, const DetectCameraParams& camera,
+              const std::string& log);
+  ObjectDetections timed(const ImageDetector& detector, const Raster& image,
+                         const CameraModel& camera, const std::optional<Pose3>& pose);
+  void finish(const ImageDetector& detector, Result& result);
+  void writeResults(OutputFolder* folder) const;
+  void writeCalibration(const ImageDetector& detector) const;
+  void report() const;
+
+  DetectionQuality quality_{0.5, 25};
+  std::string rows_;  ///< detections.csv
+};
+
+}  // namespace perception

@@ -1,0 +1,33 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "libperception/vision/DetectionQuality.h"
+
+namespace perception {
+
+/// Which labels count.
+struct LabelRules {
+  double min_height = 25;       ///< [px]
+  double max_truncation = 0.3;  ///< share beyond the image
+  int max_occlusion = 1;        ///< KITTI: 0 = fully visible, 1 = partly, 2 = largely
+};
+
+/// Truth of images: a folder of KITTI's object labels (NAME.txt beside NAME.png), or a CSV with the
+/// columns image, class, x1, y1, x2, y2 and where there are ignore, occluded, heading_deg.
+class ImageLabels {
+ public:
+  /// Throws DataError.
+  ImageLabels(const std::string& path, LabelRules rules);
+  /// Of the image with that file name; throws DataError where a folder lacks its file.
+  std::vector<LabelledBox> of(const std::string& file_name) const;
+
+ private:
+  std::string path_;
+  LabelRules rules_;
+  std::map<std::string, std::vector<LabelledBox>> by_image_;  ///< of a CSV
+  bool folder_ = false;
+};
+
+}  // namespace perception

@@ -1,0 +1,38 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "libperception/vision/Detector.h"
+#include "libperception/vision/Panorama.h"
+
+namespace perception {
+
+/// A detector for any camera: ordinary pictures as they are, whole panoramas through their eight
+/// tiles.
+class ImageDetector {
+ public:
+  explicit ImageDetector(DetectorSetup setup);
+
+  /// Boxes in pixels of the image, each object once. `T_ego_camera` (optical frame), when known,
+  /// says where objects can stand. Without `camera.projection` = equirectangular the image is an
+  /// ordinary picture. Scores are the back end's own.
+  ObjectDetections detect(const Raster& image, const CameraModel& camera,
+                          const std::optional<Pose3>& T_ego_camera,
+                          const GroundPlane& ground = {}) const;
+  const DetectorSetup& setup() const { return setup_; }
+  bool hasBackend() const { return detector_ != nullptr; }
+
+ private:
+  std::optional<GroundGate> gateOf(const CameraModel& camera,
+                                   const std::optional<Pose3>& T_ego_camera,
+                                   const GroundPlane& ground) const;
+  const Panorama& panorama(int width) const;
+
+  DetectorSetup setup_;
+  std::unique_ptr<Detector> detector_;
+  mutable std::mutex mutex_;
+  mutable std::map<int, Panorama> panoramas_;  ///< by width
+};
+
+}  // namespace perception
