@@ -32,7 +32,9 @@ constexpr double kDeviceYawDeg = 0.81, kDeviceUpDeg = 3.81;
 constexpr int kFirstSlot = 528;  ///< CAN address of the radar's first track slot
 /// [s] Slots are sent one after the other: rows so near belong to one scan.
 constexpr double kScanSpread = 0.025;
-/// [m/s] and [m/s] A scan's speeds tell own motion: not used; rates are relative to the sensor.
+/// [s] The unit tells what its own filter held so long ago: least spread of the range rates of what
+/// stands (tests/radar/RealReturns_test).
+constexpr double kRadarDelay = 0.05;
 constexpr double kMaxRange = 200;  ///< [m] of the unit; the example reaches 184 m
 
 /// The columns of one of the recording's tables.
@@ -90,6 +92,9 @@ class Comma2k19Importer final : public Importer {
     cli.add_option("--radar-ahead", ahead_, "[m] of the radar ahead of the device")
         ->check(CLI::Range(-5.0, 10.0))
         ->capture_default_str();
+    cli.add_option("--radar-delay", delay_, "[s] by which the radar's tracks are late")
+        ->check(CLI::Range(-1.0, 1.0))
+        ->capture_default_str();
   }
   void run(ImportLog& log) override;
 
@@ -106,6 +111,7 @@ class Comma2k19Importer final : public Importer {
 
   std::string dir_;
   double height_ = kDeviceHeight, yaw_ = kDeviceYawDeg, up_ = kDeviceUpDeg, ahead_ = kRadarAhead;
+  double delay_ = kRadarDelay;
   double utc_offset_ = 0;     ///< [s] UTC - device clock
   double from_ = 0, to_ = 0;  ///< [s] of the radar scans that are wanted
 };
@@ -159,7 +165,7 @@ void Comma2k19Importer::readRadar(ImportLog& log) {
     for (; end < radar.csv.rows() && std::abs(radar.time(end) - begin) < kScanSpread; ++end)
       returns.returns.push_back(returnOf(radar, end));
     const std::int64_t frame = number++;
-    const double t = radar.time(end - 1);  // the scan is whole with its last slot
+    const double t = radar.time(end - 1) - delay_;  // the scan is whole with its last slot
     i = end;
     if (!log.options().wants(frame)) continue;
     if (!any) from_ = t;

@@ -18,6 +18,9 @@ namespace {
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
 constexpr const char* kBoxesLabel = "LABELLED_BOXES";
+/// Frames that stand alone are so far apart in time [Hz] and place [m] that no object of one is one
+/// of the next.
+constexpr double kAloneRate = 0.1, kAloneDistance = 500;
 
 /// Single frames in the layout of KITTI's object benchmark: image_2, calib, label_2, velodyne.
 class ImagesImporter final : public Importer {
@@ -30,17 +33,19 @@ class ImagesImporter final : public Importer {
                  "the labels' image boxes as detections LABELLED_BOXES: a detector without fault");
   }
   void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 0.1;  // nothing is carried from one frame to the next
+    alone_ = options.rate <= 0;
+    if (alone_) options.rate = kAloneRate;
     if (kRepeatRate < 2 * options.rate * options.repeat)
       failUsage(
-          "--repeat is too large for --rate: single frames follow each other at --rate, each "
-          "shown at 200 Hz");
+          "--repeat is too large for --rate: frames follow each other at --rate, each shown at 200 "
+          "Hz");
   }
   void run(ImportLog& log) override;
 
  private:
   struct Frame {
     FrameFile file;
+    Pose3 T_world_ego = Pose3::Identity();
     KittiCalibration calibration;
     std::optional<LidarCloud> cloud;
     std::vector<KittiLabel> labels;
@@ -51,6 +56,7 @@ class ImagesImporter final : public Importer {
 
   std::string dir_;
   bool label_boxes_ = false;
+  bool alone_ = true;  ///< frames of different places; else a sequence of a standing vehicle
 };
 
 ImagesImporter::Frame ImagesImporter::read(const FrameFile& file, ImportLog& log) const {
@@ -89,7 +95,7 @@ void ImagesImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog
   const KittiCalibration& calibration = frame.calibration;
   const Pose3 T_ego_camera =
       T_ego_velo * calibration.T_cam0_velo.inverse() * calibration.T_cam0_cam2;
-  log.ego(stamp, Pose3::Identity());
+  log.ego(stamp, frame.T_world_ego);
   if (last) log.frame(stamp, frame.file.number);
   SensorFrame out;
   out.stamp = stamp;
@@ -124,7 +130,7 @@ void ImagesImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog
   image.T_ego_camera = T_ego_camera;
   log.image(image, frame.file.number);
   for (const KittiLabel& label : frame.labels)
-    log.truth(stamp, truthOf(label, calibration, T_ego_velo, frame.cloud));
+    log.truth(stamp, truthOf(label, calibration, frame.T_world_ego * T_ego_velo, frame.cloud));
 }
 
 void ImagesImporter::run(ImportLog& log) {
@@ -132,7 +138,8 @@ void ImagesImporter::run(ImportLog& log) {
   std::int64_t place = 0;  // numbers of single frames are no times
   for (const FrameFile& file : files) {
     if (!log.options().wants(file.number)) continue;
-    const Frame frame = read(file, log);
+    Frame frame = read(file, log);
+    if (alone_) frame.T_world_ego = makePose(kAloneDistance * static_cast<double>(place), 0, 0, 0);
     const Stamp begin = stampAtRate(kUndatedStart, place++, log.options().rate);
     for (int k = 0; k < log.options().repeat; ++k)
       write(frame, stampAtRate(begin, k, kRepeatRate), k + 1 == log.options().repeat, log);

@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 constexpr double kTrail = 2;             // [s]
 constexpr double kNearestScene = 0.51;   // [s] from --time: half the period of a scene a second
 constexpr double kNearestTruth = 0.06;   // [s] half the period of 10 Hz, and rounding
+constexpr double kUnknownSize = 0.3;  // [m] of truth without a size
 constexpr std::size_t kSheetTiles = 36;  // on the contact sheet of --every
 constexpr double kSlowestFilm = 1;       // [s] a picture at most
 
@@ -251,9 +252,13 @@ void SnapshotApp::addTruth(SceneView& result) const {
   }
   if (!best) return;
   for (const TruthObject& object : best->objects) {
-    const bool whole = object.position.allFinite() && std::isfinite(object.yaw) &&
-                       object.length > 0 && object.width > 0 && object.height > 0;
-    if (whole && !object.ignore) result.truth.push_back(object);
+    if (!object.position.allFinite() || object.ignore) continue;
+    TruthObject& drawn = result.truth.emplace_back(object);
+    // What the truth leaves open is drawn small: radars' labels have no height, points no size.
+    for (double* size : {&drawn.length, &drawn.width, &drawn.height}) {
+      if (!(*size > 0)) *size = kUnknownSize;
+    }
+    if (!std::isfinite(drawn.yaw)) drawn.yaw = 0;
   }
 }
 
