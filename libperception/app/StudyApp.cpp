@@ -8,12 +8,14 @@
 #include <optional>
 #include <thread>
 
+#include "libperception/app/LogRecorder.h"
 #include "libperception/app/OutputFolder.h"
 #include "libperception/evaluation/Gnuplot.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/study/AssociationStudy.h"
 #include "libperception/study/GpsStudy.h"
 #include "libperception/study/HeadingStudy.h"
+#include "libperception/study/LogParticlesStudy.h"
 #include "libperception/study/MonteCarloStudy.h"
 #include "libperception/study/ParticlesStudy.h"
 
@@ -23,39 +25,42 @@ namespace {
 struct Study {
   const char* name;
   const char* description;
-  StudyReport (*run)(const StudyApp& app);
+  StudyReport (*run)(StudyApp& app);
   bool recordings = false;  ///< reads a folder of them
+  bool log = false;         ///< takes a rawlog
 };
 
 const Study kStudies[] = {
     {"monte-carlo", "walkers and cyclists told apart by their filters' innovations (simulated)",
-     [](const StudyApp& app) {
+     [](StudyApp& app) {
        MonteCarloParams p;
        p.seed = app.seed;
        if (app.runs > 0) p.repeats = app.runs;
        return monteCarloStudy(p);
      }},
     {"association", "identities through encounters, by proposal and particles (simulated)",
-     [](const StudyApp& app) {
+     [](StudyApp& app) {
        AssociationParams p;
        if (app.runs > 0) p.seeds = app.runs;
        return associationStudy(p);
      }},
-    {"particles", "numbers of objects in a busy street, by particles and births (simulated)",
-     [](const StudyApp& app) {
+    {"particles", "numbers of objects by particles and births, in a simulated street or a rawlog",
+     [](StudyApp& app) {
+       if (!app.log.empty()) return app.particlesOfLog();
        ParticlesParams p;
        if (app.runs > 0) p.scenes = app.runs;
        return particlesStudy(p);
-     }},
+     },
+     false, true},
     {"heading", "headings that confuse front and back (simulated)",
-     [](const StudyApp& app) {
+     [](StudyApp& app) {
        HeadingParams p;
        p.seed = app.seed;
        if (app.runs > 0) p.runs = app.runs;
        return headingStudy(p);
      }},
     {"gps", "travel modes told apart by positions once a second (recordings)",
-     [](const StudyApp& app) {
+     [](StudyApp& app) {
        GpsParams p;
        p.seed = app.seed;
        p.folder = app.folder;
@@ -91,6 +96,20 @@ void StudyApp::declare(CLI::App& cli) {
       sub->add_option("--stationary", stationary,
                       "Recording of a receiver at rest: its covariance is R");
     }
+    if (s.log) {
+      sub->add_option("--log", log, "Rawlog to be tracked, instead of simulated positions");
+      sub->add_option("-c,--config", config_file, "INI of the vehicle, for --log");
+      sub->add_option("--duc", duc_config, "INI of the tracker without classification, for --log");
+      sub->add_option("--set", settings, "section.key=value: overrides both INIs");
+      sub->add_option("-t,--truth", truth_file, "Truth of the log");
+      sub->add_option("--seconds", seconds, "Of the log; 0 = all")->check(CLI::Range(0.0, 1e6));
+      sub->add_option("--range", range, "Truth counts up to this distance [m]")
+          ->capture_default_str()
+          ->check(CLI::Range(0.1, 1e4));
+      sub->add_option("--fov-deg", fov_deg, "Whole angle ahead in which truth counts [deg]")
+          ->capture_default_str()
+          ->check(CLI::Range(0.1, 360.0));
+    }
     sub->callback([this, name = std::string(s.name)] { study = name; });
   }
 }
@@ -105,6 +124,27 @@ void StudyApp::run() {
   out_report = s->run(*this);
   writeReport();
   fmt::print("{}\nReport: {}/report.md\n", markdownOf(out_report), output);
+}
+
+RecordedLog StudyApp::record(const std::string& config) {
+  config_file = config;
+  Config loaded = loadConfig();
+  say(1, fmt::format("{}: seen with {}", log, config));
+  return recordLog(log, loaded, seconds);
+}
+
+StudyReport StudyApp::particlesOfLog() {
+  if (config_file.empty()) throw Error(ExitCode::kUsage, "--log needs -c/--config");
+  LogParticlesParams params;
+  params.seed = seed;
+  params.evaluation.selection.range = range;
+  params.evaluation.selection.fov = radians(fov_deg);
+  std::optional<GroundTruth> truth;
+  if (!truth_file.empty()) truth = readGroundTruth(truth_file);
+  const RecordedLog joint = record(config_file);
+  std::optional<RecordedLog> duc;
+  if (!duc_config.empty()) duc = record(duc_config);
+  return logParticlesStudy(params, joint, duc ? &*duc : nullptr, truth ? &*truth : nullptr);
 }
 
 void StudyApp::writeReport() {

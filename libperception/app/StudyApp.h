@@ -3,6 +3,7 @@
 #include <string>
 
 #include "libperception/app/App.h"
+#include "libperception/study/RecordedLog.h"
 #include "libperception/study/Study.h"
 
 namespace perception {
@@ -10,11 +11,16 @@ namespace perception {
 /// perception-study: experiments about the method, each a report with tables and plots.
 class StudyApp : public App {
  public:
-  std::string study;       ///< the name of the experiment
-  std::uint64_t seed = 1;  ///< --seed
-  int runs = 0;            ///< --runs; 0 = the study's own number
-  std::string folder;      ///< gps: recordings by class
-  std::string stationary;  ///< gps: recording of a receiver at rest
+  std::string study;                 ///< the name of the experiment
+  std::uint64_t seed = 1;            ///< --seed
+  int runs = 0;                      ///< --runs; 0 = the study's own number
+  std::string folder;                ///< gps: recordings by class
+  std::string stationary;            ///< gps: recording of a receiver at rest
+  std::string log;                   ///< particles: a rawlog instead of simulated positions
+  std::string duc_config;            ///< particles: --duc, INI of DUC's tracker
+  std::string truth_file;            ///< particles: --truth of the log
+  double seconds = 0;                ///< particles: of the log; 0 = all
+  double range = 20, fov_deg = 180;  ///< particles: where truth counts [m, deg]
 
   StudyReport out_report;
 
@@ -23,7 +29,11 @@ class StudyApp : public App {
   void declare(CLI::App& cli) override;
   void run() override;
 
+  /// The study of a log, for --log.
+  StudyReport particlesOfLog();
+
  private:
+  RecordedLog record(const std::string& config);
   void writeReport();
 };
 

@@ -244,8 +244,9 @@ void drawComparison(const EvaluationReport& report, PlotScript& script) {
     script.data(file, bars);
     script.add(fmt::format(
         "set title '{0}'\nset yrange [0:{1:.4f}]\n"
-        "plot '{2}' using 1:2 with boxes lc rgb '{3}', '' using 1:2:3:4 with yerrorbars pt -1 lw 2 "
-        "lc rgb 'black', '' using 1:4:(sprintf('%.3f', $2)) with labels offset 0,0.8",
+        "plot '{2}' using 1:2 with boxes lc rgb '{3}', '' using 1:3:(0):($4-$3) with vectors "
+        "heads size 0.08,90 lw 2 lc rgb 'black', '' using 1:4:(sprintf('%.3f', $2)) with labels "
+        "offset 0,0.8",
         compared.title, top > 0 ? 1.12 * top : 1, file, kBlue));
     if (in_paper) {
       script.add(fmt::format(", '' using 1:5 with points pt 5 ps 1.4 lc rgb '{}'", kOrange));

@@ -28,6 +28,8 @@ using Paper = PaperTrackingRow;
 const FigureRow kRows[] = {
     {"Object Tracked", 3, [](const Evaluation& e, const Options&) { return closest(e).tracked_a; },
      [](const Paper& p) { return Figure(p.tracked); }},
+    {"Object Tracked in the sensors' range", 3,
+     [](const Evaluation& e, const Options&) { return closest(e).tracked_b; }, none},
     {"Range Error (m)", 3, [](const Evaluation& e, const Options&) { return closest(e).range_rms; },
      [](const Paper& p) { return Figure(p.range); }},
     {"Bearing Error (rad)", 3,
@@ -115,7 +117,9 @@ ReportTable sideBySideTable(const EvaluationReport& report) {
     }
     table.rows.push_back(std::move(cells));
   }
-  table.notes = {"Closest matching as in the paper down to Number of Returns, one-to-one below."};
+  table.notes = {
+      "Closest matching as in the paper down to Number of Returns, one-to-one below. The "
+      "sensors' range: all with lidar, else 15 m, persons 10 m."};
   if (trials) {
     table.notes.push_back(
         "Of all trials' instants taken together, as the paper does; in brackets mean +- standard "

@@ -21,7 +21,7 @@ unset key
 unset ytics
 set grid noytics
 set lmargin {margin}
-set bmargin 7
+set bmargin 5
 set xrange [{from:.3f}:{to:.3f}]
 set yrange [{bottom:.2f}:-1]
 set xlabel 'time since the log''s first stamp (s)' offset 0,0.5
@@ -96,19 +96,28 @@ class TimelinePlot {
     addTruth();
     addFalse();
     const double bottom = next_row_ + 0.2;
-    script_.begin("timelines.png", 1300, 190 + static_cast<std::size_t>(20 * (bottom + 1)));
+    const std::size_t height = 170 + static_cast<std::size_t>(20 * (bottom + 1));
+    script_.begin("timelines.png", 1300, height);
     const auto& instants = evaluation_.instants;
     const double from = instants.front().t, to = instants.back().t;
-    script_.add(fmt::format(
-        kHead, fmt::arg("title", gnuplotString("What every true object was called, " + run_.name)),
-        fmt::arg("margin", 24), fmt::arg("from", from),
-        fmt::arg("to", to + 0.01 * (to - from) + 0.1), fmt::arg("bottom", bottom)));
+    script_.add(fmt::format(kHead, fmt::arg("title", gnuplotString(title())),
+                            fmt::arg("margin", 24), fmt::arg("from", from),
+                            fmt::arg("to", to + 0.01 * (to - from) + 0.1),
+                            fmt::arg("bottom", bottom)));
     script_.add(labels_);
-    addLegend();
+    addLegend(22 / static_cast<double>(height));
     addPlot();
   }
 
  private:
+  std::string title() const {
+    return fmt::format(
+        "What every true object was called, {} (within {:g} m and {:g} deg ahead; one-to-one "
+        "within "
+        "{:g} m)",
+        run_.name, options_.selection.range, degrees(options_.selection.fov), options_.tolerance);
+  }
+
   void label(double row, const std::string& text, const std::string& colour) {
     labels_ += fmt::format(
         "set label {} at graph -0.008, first {:.2f} right noenhanced textcolor rgb '{}'\n",
@@ -187,33 +196,23 @@ class TimelinePlot {
     if (all == 0 || all > longest.size()) next_row_ += 1;
   }
 
-  // Colours that occur, below the axis.
-  void addLegend() {
-    std::string text;
-    double x = 0.0;
-    const auto entry = [&](const std::string& colour, const std::string& what) {
-      text += fmt::format(
-          "set label {} at screen {:.3f}, screen 0.03 left noenhanced point pt 5 ps 1.6 lc rgb "
-          "'{}' "
-          "offset 1.2,0\n",
-          gnuplotString(what), 0.02 + x, colour);
-      x += 0.025 + 0.0075 * static_cast<double>(what.size());
-    };
+  // Colours that occur, below the axis; `y` in shares of the picture.
+  void addLegend(double y) {
+    double x = 0.02;
     for (std::size_t c = 0; c < evaluation_.class_names.size(); ++c) {
       const auto k = static_cast<ClassId>(c);
       if (stretches_.rows(2 * k).empty() && stretches_.rows(2 * k + 1).empty()) continue;
-      entry(classColour(k), evaluation_.class_names[c]);
+      const std::string& name = evaluation_.class_names[c];
+      script_.add(fmt::format(
+          "set label {} at screen {:.3f}, screen {:.4f} left noenhanced point pt 5 ps 1.6 lc rgb "
+          "'{}' offset 1.2,0\n",
+          gnuplotString(name), x, y, classColour(k)));
+      x += 0.025 + 0.0075 * static_cast<double>(name.size());
     }
-    text += fmt::format(
-        "set label 'pale: most probable, below .95   thin line: missed   black mark: another id   "
-        "names have the colour of the true class' at screen {:.3f}, screen 0.03 left\n",
-        0.03 + x);
-    script_.add(text);
     script_.add(fmt::format(
-        "set label {} at graph 1, screen 0.07 right noenhanced\n",
-        gnuplotString(fmt::format(
-            "truth within {:g} m and {:g} deg ahead, one-to-one within {:g} m",
-            options_.selection.range, degrees(options_.selection.fov), options_.tolerance))));
+        "set label 'pale: most probable, below .95   thin line: missed   black mark: another id   "
+        "names have the colour of the true class' at screen {:.3f}, screen {:.4f} left\n",
+        x + 0.01, y));
   }
 
   void addPlot() {

@@ -8,7 +8,9 @@
 #include <cstdlib>
 
 #include "libperception/evaluation/Gnuplot.h"
+#include "libperception/evaluation/PaperTables.h"
 #include "libperception/study/AssociationStudy.h"
+#include "libperception/study/RecordedLog.h"
 
 namespace perception {
 namespace {
@@ -21,22 +23,9 @@ constexpr std::size_t kLargestError = 12;  // objects, of the plot
 /// EXPECTED B2: clutter four times, detections 85 %, noise twice, close ones merge.
 const EncounterConditions kBusy{0.85, 4, 2, 0.7};
 
-/// The paper's table: particles, all objects with DUC's tracker, all and classified with its own.
-struct Published {
-  int particles;
-  const char *duc, *all, *classified;
-};
-constexpr Published kPaper[] = {{1, "2.76", "4.39", "1.94"},  {4, "2.45", "4.10", "1.80"},
-                                {8, "2.32", "3.80", "1.80"},  {12, "2.21", "3.57", "1.84"},
-                                {16, "2.33", "3.54", "1.64"}, {20, "2.31", "3.18", "1.78"}};
-
 FilterModel modelOf(const ParticlesMethod& method) {
   FilterModel model = associationModel(method.proposal);
-  if (method.duc) {
-    model.params.sampled_births = true;
-    model.params.existence_decay = 3;   // SPEC 5.1: T95
-    model.params.existence_min = 0.05;  // SPEC 5.9
-  }
+  if (method.duc) setDrawnBirths(model.params);
   return model;
 }
 
@@ -72,8 +61,10 @@ std::vector<std::string> rowOf(const std::string& label, const std::string& pape
 }
 
 std::string publishedOf(int particles, bool duc) {
-  for (const auto& p : kPaper) {
-    if (p.particles == particles) return duc ? p.duc : fmt::format("{} / {}", p.all, p.classified);
+  for (const PaperParticlesRow& row : paperParticlesRows()) {
+    if (row.particles != particles) continue;
+    return duc ? fmt::format("{:.2f}", row.duc)
+               : fmt::format("{:.2f} / {:.2f}", row.all, row.classified);
   }
   return "";
 }
