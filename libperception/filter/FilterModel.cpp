@@ -40,7 +40,7 @@ void FilterParams::visit(ParamVisitor& v) {
             "birth or clutter is drawn, as in DUC; else a newborn may be either (sampled only)");
   v.real("existence_decay", existence_decay, {0, 1e4}, "s",
          "in which an unseen object's existence falls to 5 %, as in DUC (3); 0: by detections");
-  v.real("max_distance", max_distance, {1, 1e4}, "m",
+  v.real("max_distance", max_distance, {1, 1e5}, "m",
          "tracks farther from the vehicle are dropped");
 }
 

@@ -132,7 +132,7 @@ void SensingParams::visit(ParamVisitor& v) {
   v.real("births_per_scan", births_per_scan, {1e-9, 1e4}, "",
          "expected number of new objects a scan (beta)");
   v.real("range_min", range_min, {0, 1000}, "m", "nearest objects that it sees");
-  v.real("range_max", range_max, {1, 1000}, "m", "farthest objects that it sees");
+  v.real("range_max", range_max, {1, 100000}, "m", "farthest objects that it sees");
   v.require(range_min < range_max, "range_min must lie below range_max");
   v.angle("fov_deg", fov, {1, 360},
           "full horizontal field of view about the sensor's forward axis");
