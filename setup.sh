@@ -34,6 +34,7 @@ packages=(
   libtinyxml2-dev        # GPX files
   liblzf-dev             # compressed PCD files
   zlib1g-dev             # rawlogs are gzip files; check sums
+  libnanoflann-dev       # kd-tree of the point filters that ours is compared with
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG

@@ -1,0 +1,60 @@
+#include "libperception/weather/Dror.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/weather/NeighbourTree.h"
+#include "libperception/weather/PointFilter.h"
+
+namespace perception {
+
+void DrorParams::visit(ParamVisitor& v) {
+  v.angle("azimuth_deg", azimuth, {0.01, 5}, "between beams");
+  v.real("multiplier", multiplier, {0.1, 100}, "", "of the distance between beams");
+  v.real("radius_min", radius_min, {0.001, 5}, "m", "least radius");
+  v.integer("neighbours", neighbours, {1, 100}, "that keep a return");
+  v.real("max_intensity", max_intensity, {0, 1}, "", "of a phantom");
+  v.real("max_range", max_range, {1, 1000}, "m", "of a phantom");
+}
+
+namespace {
+
+class Dror final : public PointFilter {
+ public:
+  explicit Dror(const DrorParams& params) : params_(params) {}
+
+  TrustStats apply(SensorFrame& frame) override {
+    TrustStats stats;
+    auto* cloud = std::get_if<LidarCloud>(&frame.data);
+    if (cloud == nullptr) return stats;
+    const NeighbourTree tree(*cloud);
+    stats.returns = cloud->size();
+    cloud->trust.assign(cloud->size(), 1);
+    for (std::size_t i = 0; i < cloud->size(); ++i) {
+      const double range =
+          std::hypot(static_cast<double>(cloud->x[i]), static_cast<double>(cloud->y[i]),
+                     static_cast<double>(cloud->z[i]));
+      if (range > params_.max_range) continue;
+      if (!cloud->intensity.empty() &&
+          static_cast<double>(cloud->intensity[i]) > params_.max_intensity)
+        continue;
+      const double radius =
+          std::max(params_.radius_min, params_.multiplier * range * params_.azimuth);
+      if (tree.hasWithin(i, radius, static_cast<std::size_t>(params_.neighbours))) continue;
+      cloud->trust[i] = 0;
+      ++stats.phantoms;
+    }
+    return stats;
+  }
+
+ private:
+  DrorParams params_;
+};
+
+}  // namespace
+
+std::unique_ptr<PointFilter> makeDror(const DrorParams& params) {
+  return std::make_unique<Dror>(params);
+}
+
+}  // namespace perception

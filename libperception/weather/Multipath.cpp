@@ -1,0 +1,112 @@
+#include "libperception/weather/Multipath.h"
+
+#include <cmath>
+#include <unordered_map>
+
+#include "libperception/weather/HeightAboveGround.h"
+
+namespace perception {
+
+void MultipathParams::visit(ParamVisitor& v) {
+  v.boolean("enabled", enabled, "look for mirror images in a wet road");
+  v.real("depth", depth, {0.05, 5}, "m", "below the ground plane");
+  v.real("tolerance", tolerance, {0.05, 5}, "m", "between mirrored and real return");
+  v.real("max_range", max_range, {1, 200}, "m", "up to which mirror images are looked for");
+  v.real("grade", grade, {0, 0.2}, "", "growth of `depth` with range");
+  v.integer("support", support, {1, 100}, "real returns near the mirrored one");
+}
+
+namespace {
+
+/// Counts real returns in cubes of the tolerance's size, but only in those around mirrored ones:
+/// few among the hundreds of thousands of a scan.
+class Cubes {
+ public:
+  explicit Cubes(double edge) : edge_(edge), maybe_(1U << 16, 0) {}
+
+  void watchAround(const Vector3& p) {
+    forAround(p, [this](std::uint64_t key) {
+      counts_.emplace(key, 0);
+      maybe_[slotOf(key)] = 1;
+    });
+  }
+  void add(const Vector3& p) {
+    const std::uint64_t key = keyOf(at(p.x()), at(p.y()), at(p.z()));
+    if (!maybe_[slotOf(key)]) return;
+    const auto found = counts_.find(key);
+    if (found != counts_.end()) ++found->second;
+  }
+  int around(const Vector3& p) const {
+    int sum = 0;
+    forAround(p, [&](std::uint64_t key) { sum += counts_.at(key); });
+    return sum;
+  }
+
+ private:
+  template <class Function>
+  void forAround(const Vector3& p, const Function& function) const {
+    const int x = at(p.x()), y = at(p.y()), z = at(p.z());
+    for (int dz = -1; dz <= 1; ++dz)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) function(keyOf(x + dx, y + dy, z + dz));
+  }
+  int at(double v) const { return static_cast<int>(std::floor(v / edge_)); }
+  static std::uint64_t keyOf(int x, int y, int z) {
+    const auto part = [](int v) {
+      return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v) & 0xFFFFFU);
+    };
+    return part(x) << 40 | part(y) << 20 | part(z);
+  }
+  static std::size_t slotOf(std::uint64_t key) { return (key * 0x9E3779B97F4A7C15ULL) >> 48; }
+
+  double edge_;
+  std::vector<char> maybe_;  // by slot: a watched cube may be there
+  std::unordered_map<std::uint64_t, int> counts_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
+                                            const MultipathParams& params) {
+  std::vector<std::uint32_t> found;
+  const auto* cloud = std::get_if<LidarCloud>(&frame.data);
+  if (cloud == nullptr || !frame.ground.measured) return found;
+  const HeightAboveGround height(frame.T_ego_sensor, frame.ground);
+  const auto depth = static_cast<float>(params.depth), grade = static_cast<float>(params.grade);
+  const auto far2 = static_cast<float>(params.max_range * params.max_range);
+  const auto placeOf = [&](std::size_t i) {
+    return Vector3(frame.T_ego_sensor * Vector3(static_cast<double>(cloud->x[i]),
+                                                static_cast<double>(cloud->y[i]),
+                                                static_cast<double>(cloud->z[i])));
+  };
+  std::vector<float> heights(cloud->size());
+  struct Mirrored {
+    std::uint32_t index;
+    Vector3 place;  // [m] of the image about the ground, ego frame
+  };
+  std::vector<Mirrored> below;
+  for (std::size_t i = 0; i < cloud->size(); ++i)
+    heights[i] = height.of(cloud->x[i], cloud->y[i], cloud->z[i]);
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    if (!(heights[i] < -depth)) continue;  // also what is no number
+    const float flat2 = cloud->x[i] * cloud->x[i] + cloud->y[i] * cloud->y[i];
+    if (!(flat2 < far2) || heights[i] > -depth - grade * std::sqrt(flat2)) continue;
+    // The road is flat enough for its plane's normal to be z.
+    below.push_back({static_cast<std::uint32_t>(i),
+                     placeOf(i) - Vector3(0, 0, 2 * static_cast<double>(heights[i]))});
+  }
+  if (below.empty()) return found;
+
+  Cubes cubes(params.tolerance);
+  for (const Mirrored& image : below) cubes.watchAround(image.place);
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    if (!(heights[i] > depth)) continue;
+    if (!cloud->trust.empty() && cloud->trust[i] < 0.5F) continue;
+    cubes.add(placeOf(i));
+  }
+  for (const Mirrored& image : below)
+    if (cubes.around(image.place) >= params.support) found.push_back(image.index);
+  return found;
+}
+
+}  // namespace perception

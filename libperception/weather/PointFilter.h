@@ -1,0 +1,53 @@
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libperception/core/Config.h"
+#include "libperception/measurement/SensorFrame.h"
+#include "libperception/weather/Dror.h"
+#include "libperception/weather/Dsor.h"
+#include "libperception/weather/Lior.h"
+#include "libperception/weather/Multipath.h"
+#include "libperception/weather/TrustParams.h"
+
+namespace perception {
+
+/// What a filter made of a scan.
+struct TrustStats {
+  std::size_t returns = 0;
+  std::size_t phantoms = 0;  ///< trusted less than one half
+  std::size_t mirrored = 0;  ///< of these: mirror images in a wet road
+  double share = 0;          ///< [-] of phantoms near the sensor, over the last scans
+};
+
+/// Tells phantoms from surfaces: writes LidarCloud::trust = 1 - P(phantom) of every return. One
+/// filter per sensor: it may remember earlier scans.
+class PointFilter {
+ public:
+  virtual ~PointFilter() = default;
+  /// A frame without a point cloud is left alone. `frame.ground` is used.
+  virtual TrustStats apply(SensorFrame& frame) = 0;
+};
+
+/// [weather] and the sections of its filters.
+struct WeatherParams {
+  std::string filter = "off";  ///< a row of pointFilterNames()
+  TrustParams trust;           ///< [weather.trust]
+  DrorParams dror;             ///< [weather.dror]
+  DsorParams dsor;             ///< [weather.dsor]
+  LiorParams lior;             ///< [weather.lior]
+  MultipathParams multipath;   ///< [weather.multipath]
+
+  static WeatherParams read(Config& config);
+  void visit(ParamVisitor& v);  ///< [weather] alone
+};
+
+/// "off" and the filters that there are.
+const std::vector<std::string>& pointFilterNames();
+
+/// The filter that the parameters name, followed by the test for mirror images; empty when off.
+std::unique_ptr<PointFilter> makePointFilter(const WeatherParams& params);
+
+}  // namespace perception

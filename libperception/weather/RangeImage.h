@@ -1,0 +1,49 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// A scan as a picture of ranges: a pixel a direction, so that the neighbours of a return are found
+/// without a search, at any range at the scale of the beams. The picture goes round; its margin
+/// holds the other end's columns.
+class RangeImage {
+ public:
+  static constexpr int kColumnReach = 4, kRowReach = 2;  ///< [px] of a return's neighbourhood
+
+  /// `column`, `row`: [rad] of a pixel (rows are even in the tangent of elevation). row = 0: found
+  /// from the first scan, the finest in which neighbouring beams lie in neighbouring rows.
+  RangeImage(double column, double row);
+
+  /// The last return of a direction stays.
+  void fill(const LidarCloud& cloud);
+
+  /// [m] of each return; 0 where it is not finite or in the sensor itself.
+  const std::vector<float>& ranges() const { return ranges_; }
+  /// Place of a return's pixel in the arrays below.
+  std::size_t pixelOf(std::size_t i) const { return pixels_[i]; }
+  const std::vector<float>& pixels() const { return image_; }  ///< [m]; 0: no return
+  std::ptrdiff_t stride() const { return stride_; }            ///< from a pixel to the row above it
+  double rowPitch() const { return row_; }                     ///< [rad]
+  std::size_t memoryBytes() const;
+
+ private:
+  void directions(const LidarCloud& cloud);
+  void layOut(double row);
+  double findRow();
+  double connectedShare(double row) const;
+  std::uint32_t pixelAt(float azimuth, float slope) const;
+
+  double column_, row_;
+  std::size_t columns_, rows_ = 0;
+  std::ptrdiff_t stride_ = 0;
+  float per_radian_ = 0, rows_per_slope_ = 0;
+  std::vector<float> ranges_, azimuth_, slope_;  ///< [m], [rad], tangent of elevation of each
+  std::vector<std::uint32_t> pixels_;
+  std::vector<float> image_;
+};
+
+}  // namespace perception

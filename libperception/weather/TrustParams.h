@@ -1,0 +1,50 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "libperception/core/Angle.h"
+#include "libperception/core/ParamSet.h"
+
+namespace perception {
+
+/// What the model looks at. Each feature adds to the log-odds of "phantom" by a curve.
+enum class TrustFeature { kRange, kTight, kWide, kBeyond, kHeight, kCompany };
+constexpr std::size_t kTrustFeatures = 6;
+
+/// The model of weather/PointTrust: [weather.trust]. The curves were fitted by trust_study to the
+/// odd scans of WADS sequence 36 (real falling snow, 128 beams) with the intensity left out, and
+/// the terms below `gain` to the same scans; a curve's knots are those of knotsOf().
+struct TrustParams {
+  double column = radians(0.2);  ///< [rad] of azimuth in a pixel of the range image
+  double row = 0;                ///< [rad] of elevation in a pixel; 0: found from the first scan
+  double max_range = 30;         ///< [m] beyond, flakes and drops give no returns (SPEC 9.1, 9.2)
+  double tight = 0.02;           ///< [-] of the range, + 3 cm: a neighbour of the same surface
+  double wide = 0.04;            ///< [-] of the range, + 3 cm
+  double beyond = 0.1;           ///< [-] of the range, + 30 cm: a beam that passes behind
+  int surface_neighbours = 6;    ///< of the eight nearest within `tight`: a surface, no model asked
+
+  std::array<std::vector<double>, kTrustFeatures> curves;  ///< [log-odds] at the knots
+  double bias = -3.95;                                     ///< [log-odds] of the first pass
+  /// Second pass, which also asks what the neighbours turned out to be: [-] of the first pass's
+  /// log-odds, [log-odds].
+  double gain = 0.32, second_bias = 4.75;
+
+  bool use_intensity = true;
+  double intensity_gain = 0.8;   ///< [-] of the learnt log-likelihood ratio
+  double intensity_memory = 10;  ///< [scans] of the learnt intensities
+  bool adapt_share = true;       ///< the share of phantoms follows the weather
+  double fitted_share = 0.1457;  ///< [-] of phantoms within share_range in the scans of the fit
+  double share_range = 15;       ///< [m]
+  double share_memory = 10;      ///< [scans]
+  double share_gain = 0.5;    ///< [-] of the change of log-odds; 1 is Bayes, but the share of few
+                              ///< phantoms is underestimated (SnowyKITTI)
+  double least_share = 1e-4;  ///< [-] of phantoms in clear air
+  double sensor_label = 4;    ///< [log-odds] the sensor itself says rain or dirt (own choice)
+  double rain_rule = 2;  ///< [log-odds] a first echo that is weaker or shorter than what follows
+
+  TrustParams();
+  static const std::vector<double>& knotsOf(TrustFeature feature);
+  void visit(ParamVisitor& v);
+};
+
+}  // namespace perception
