@@ -90,6 +90,7 @@ PipelineSetup PipelineSetup::read(Config& config) {
   s.scene = config.read<SceneParams>("scene");
   s.ego = config.read<EgoPoseParams>("ego");
   s.ground = config.read<GroundParams>("ground");
+  s.weather = WeatherParams::read(config);
   s.grid = config.read<GridParams>("grid");
   std::string letters;
   if (!readModalities(s.run.sensors, letters)) {
@@ -135,6 +136,7 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
     state.record.modality = std::string(1, static_cast<char>(sensor.params.modality));
     if (sensor.params.modality == Modality::kLidar) {
       state.ground = std::make_unique<GroundEstimator>(setup_.ground, setup_.run.seed);
+      state.weather = makePointFilter(setup_.weather);
     }
     states_.push_back(std::move(state));
   }
@@ -315,6 +317,10 @@ std::optional<MeasurementScan> Pipeline::measure(SensorFrame& frame, std::size_t
     ground_ = state.ground->update(frame);
   }
   frame.ground = ground_;
+  if (state.weather) {
+    const auto scope = timing_.stage("weather");
+    state.weather->apply(frame);
+  }
   const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
   MeasurementScan scan = setup_.sensors[sensor].front_end->extract(frame);
   if (scan.horizon) {

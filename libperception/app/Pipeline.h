@@ -20,6 +20,7 @@
 #include "libperception/scene/SceneFromPosterior.h"
 #include "libperception/sensors/EgoPose.h"
 #include "libperception/sensors/FromObservation.h"
+#include "libperception/weather/PointFilter.h"
 
 namespace perception {
 
@@ -55,6 +56,7 @@ struct PipelineSetup {
   SceneParams scene;
   EgoPoseParams ego;
   GroundParams ground;
+  WeatherParams weather;
   GridParams grid;              ///< of the safety grid in pictures
   std::vector<Sensor> sensors;  ///< in the order of the INI
 
@@ -99,6 +101,7 @@ class Pipeline {
     std::optional<Stamp> last;
     bool lost = false;
     std::unique_ptr<GroundEstimator> ground;  ///< lidars only
+    std::unique_ptr<PointFilter> weather;     ///< lidars only; empty: every return is trusted
   };
 
   void addTime(Stamp stamp);

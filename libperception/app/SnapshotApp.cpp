@@ -118,10 +118,12 @@ Config SnapshotApp::readSite(const std::string& run_dir) {
   Config config = loadConfig();
   if (config_file.empty()) {
     sensors.ground = config.read<GroundParams>("ground");
+    sensors.weather = WeatherParams::read(config);
     sensors.grid = config.read<GridParams>("grid");
   } else {
     PipelineSetup site = PipelineSetup::read(config);
     sensors.ground = site.ground;
+    sensors.weather = site.weather;
     sensors.grid = site.grid;
     sensors.sensors = std::move(site.sensors);
   }

@@ -122,6 +122,7 @@ void SnapshotSensors::lookAhead(const std::string& log) {
     }
   }
   params_.camera = chosen;
+  layers_.trust = layers_.trust || (layers_.lidar && params_.weather.filter != "off");
   layers_.measurements = !params_.sensors.empty() && !params_.no_measurements;
 }
 
@@ -199,9 +200,13 @@ void SnapshotSensors::take(SensorFrame frame) {
 
 void SnapshotSensors::takeLidar(SensorFrame& frame) {
   const auto seed = lidars_.size();
-  Lidar& lidar = lidars_.try_emplace(frame.sensor, Lidar{GroundEstimator(params_.ground, seed), {}})
+  Lidar& lidar = lidars_
+                     .try_emplace(frame.sensor, Lidar{GroundEstimator(params_.ground, seed),
+                                                      makePointFilter(params_.weather),
+                                                      {}})
                      .first->second;
   ground_ = frame.ground = lidar.ground.update(frame);
+  if (lidar.weather) lidar.weather->apply(frame);
   const LidarSettings settings = settingsOf(frame.sensor);
   const EgoPoints points = usablePoints(frame, settings.points);
   const std::vector<float> heights =
@@ -218,8 +223,9 @@ void SnapshotSensors::takeLidar(SensorFrame& frame) {
     const Vector3 place = frame.ego.T_world_ego * Vector3(points.x[i], points.y[i], points.z[i]);
     const bool hit = heights[i] > obstacles.height_min && heights[i] < obstacles.height_max;
     const float trusted = trust.empty() ? 1.0F : trust[points.source[i]];
-    if (heights[i] > kMirrored && trusted >= kTrusted) {
+    if (heights[i] > kMirrored) {
       (hit ? scan.hits : scan.clear).push_back(place);
+      if (hit) scan.weights.push_back(trusted);
     }
     lidar.points.push_back({place, heights[i], trusted});
   }

@@ -19,6 +19,7 @@ namespace perception {
 struct SnapshotSensorParams {
   GridParams grid;
   GroundParams ground;
+  WeatherParams weather;
   double memory = 5;  ///< [s] lidar scans so long before an instant fill the grid
   bool no_measurements = false;
   std::string camera;  ///< label of the camera that is shown; empty: the first one with images
@@ -50,6 +51,7 @@ class SnapshotSensors {
  private:
   struct Lidar {
     GroundEstimator ground;
+    std::unique_ptr<PointFilter> weather;
     std::vector<ViewPoint> points;  ///< of the last scan
   };
   struct LidarSettings {
