@@ -53,8 +53,8 @@ void DpmParams::visit(ParamVisitor& v) {
             "scales from one size to its half (voc-release: 10)");
   v.real("enlarge", options.enlarge, {1, 4}, "",
          "size of the first image searched: 2 finds cars of 16 to 20 px");
-  v.integer("padding", options.padding, {0, 32},
-            "cells of 8 px beyond the image (voc-release: 14)");
+  v.real("outside", options.outside, {0, 1}, "",
+         "share of an object's sides that may lie beyond the image");
   v.integer("window", options.window, {0, 12}, "cells of a part by which it may move");
   v.real("overlap", options.overlap, {0, 1}, "", "share of the weaker box in the better one");
 }

@@ -79,7 +79,7 @@ class Detector {
   virtual ~Detector() = default;
   /// Boxes in pixels, best first, each object once.
   virtual std::vector<ObjectDetection> detect(const Raster& image,
-                                              const std::optional<GroundGate>& gate) const = 0;
+                                              const SearchRegion& region) const = 0;
   /// May detect() be called from several threads at once?
   virtual bool parallel() const { return false; }
 };

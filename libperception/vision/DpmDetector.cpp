@@ -17,9 +17,9 @@ class DpmDetector final : public Detector {
   explicit DpmDetector(const DetectorSetup& setup) : engine_(targetsOf(setup), setup.dpm.options) {}
 
   std::vector<ObjectDetection> detect(const Raster& image,
-                                      const std::optional<GroundGate>& gate) const override {
+                                      const SearchRegion& region) const override {
     std::vector<ObjectDetection> out;
-    for (const DpmDetection& d : engine_.detect(image, gate)) {
+    for (const DpmDetection& d : engine_.detect(image, region)) {
       ObjectDetection o;
       o.label = engine_.targets()[static_cast<std::size_t>(d.target)].model.class_name;
       o.score = d.score;

@@ -16,42 +16,46 @@
 namespace perception {
 namespace {
 
+// Patches lie so far apart that equal frequencies of several do not fall on the same lines of the
+// cache (sizes alone are multiples of 2048 bytes).
+constexpr std::size_t kSpectrumStride = kSpectrum + 112;
+constexpr std::size_t kProductGap = 272;
 constexpr int kSmallestImage = 5;  // [cells] voc-release: the pyramid's last level
 
-/// A part as a lane of a group: its filter shifted so that its anchor is even.
+/// A part as one filter of a group.
 struct Lane {
   int component = -1, part = -1;
+  std::size_t parity = 0;  // of its anchor, a place in Group::parities
 };
 
 /// 2 * lanes filters that are convolved together.
 struct Group {
   std::vector<Lane> lanes;
-  AlignedFloats weights;           // per frequency and feature: A.re, A.im, B.re, B.im
-  AlignedFloats costs_x, costs_y;  // (2 window + 1) x 2 lanes
+  std::vector<std::pair<int, int>> parities;  // of anchors' columns and rows that occur: 0 or 1
+  AlignedFloats weights;                      // see VisionKernels::products
+  AlignedFloats costs_x, costs_y;             // (2 window + 1) x 2 lanes
 };
 
 /// floor(a / 2), for negative numbers too.
 int halfOf(int a) { return a >= 0 ? a / 2 : -((1 - a) / 2); }
+int parityOf(int a) { return a & 1; }
 
 /// A target with its filters as the kernels want them.
 struct Compiled {
   std::vector<Group> groups;
-  Span shift_x, shift_y;                                   // [root cells] of the parts' anchors
-  int least_width = 0, least_height = 0, most_height = 0;  // [cells]
 };
 
-/// Responses of a group at the places of a level's parts, displaced at best.
-struct GroupBest {
-  AlignedFloats best;
+/// What one group needs of one level, and what it gets.
+struct GroupSearch {
+  Span lattice_x, lattice_y;        // [root cells] of parts' places, halved
+  Span patch_columns, patch_rows;   // of the level's patches
+  std::vector<AlignedFloats> best;  // per parity: displaced responses, lattice by 2 * lanes
 };
 
 /// What one target needs of one level.
 struct Search {
-  Span rows;                        // [root cells] of root corners
-  Span lattice_x, lattice_y;        // [root cells] of parts' places, halved
-  Span patch_rows;                  // of the level's patches
-  std::vector<AlignedFloats> best;  // per group, lattice by 2 * lanes
-  bool empty() const { return rows.empty(); }
+  std::vector<Span> x, y;  // [root cells] per component: of the root's corner
+  std::vector<GroupSearch> groups;
 };
 
 /// A scale of the pyramid.
@@ -66,7 +70,7 @@ struct Level {
   Span part_x, part_y;  // [part cells] that patches read
   FeatureMap roots, parts;
   const FeatureMap* part_map = nullptr;
-  std::vector<AlignedFloats> spectra;  // per patch; empty where nobody looks
+  AlignedFloats spectra;  // kSpectrumStride a patch; not set where nobody looks
 };
 
 }  // namespace
@@ -82,17 +86,14 @@ struct DpmEngine::Bank {
   Bank(std::vector<DpmTarget> t, DpmOptions o, SimdLevel level);
   void compile(const DpmTarget& target);
   Group makeGroup(const DpmTarget& target, const std::vector<Lane>& lanes) const;
-  std::vector<Level> plan(int width, int height, const std::optional<GroundGate>& gate) const;
-  void planSearches(Level& level, const std::optional<GroundGate>& gate) const;
+  std::vector<Level> plan(int width, int height, const SearchRegion& region) const;
+  void planSearch(Level& level, std::size_t target, const SearchRegion& region) const;
   void planPatches(Level& level) const;
-  Span rootRows(const DpmTarget& target, const Compiled& c, const Level& level,
-                const std::optional<GroundGate>& gate) const;
   void buildFeatures(const Raster& image, std::vector<Level>& levels) const;
   void transform(std::vector<Level>& levels) const;
   void convolve(std::vector<Level>& levels) const;
   void convolveGroup(Level& level, std::size_t target, std::size_t group) const;
-  std::vector<DpmDetection> collect(const Level& level, std::size_t target,
-                                    const std::optional<GroundGate>& gate) const;
+  std::vector<DpmDetection> collect(const Level& level, std::size_t target) const;
 };
 
 DpmEngine::Bank::Bank(std::vector<DpmTarget> t, DpmOptions o, SimdLevel level)
@@ -106,8 +107,7 @@ DpmEngine::Bank::Bank(std::vector<DpmTarget> t, DpmOptions o, SimdLevel level)
                                   targets.front().model.cell));
     for (const DpmComponent& c : target.model.components) {
       for (const DpmPart& part : c.parts)
-        largest = std::max({largest, part.filter.height + (part.anchor_y & 1),
-                            part.filter.width + (part.anchor_x & 1)});
+        largest = std::max({largest, part.filter.height, part.filter.width});
     }
   }
   valid = kPatch - largest + 1;
@@ -120,21 +120,10 @@ DpmEngine::Bank::Bank(std::vector<DpmTarget> t, DpmOptions o, SimdLevel level)
 void DpmEngine::Bank::compile(const DpmTarget& target) {
   Compiled c;
   std::vector<Lane> lanes;
-  bool first = true;
   const auto& components = target.model.components;
   for (std::size_t k = 0; k < components.size(); ++k) {
-    const DpmComponent& component = components[k];
-    const int height = std::max(component.height, component.root.height);
-    c.least_width = first ? component.root.width : std::min(c.least_width, component.root.width);
-    c.least_height = first ? height : std::min(c.least_height, height);
-    c.most_height = std::max(c.most_height, height);
-    first = false;
-    for (std::size_t p = 0; p < component.parts.size(); ++p) {
-      lanes.push_back({static_cast<int>(k), static_cast<int>(p)});
-      const int x = halfOf(component.parts[p].anchor_x), y = halfOf(component.parts[p].anchor_y);
-      c.shift_x = c.shift_x.with({x, x + 1});
-      c.shift_y = c.shift_y.with({y, y + 1});
-    }
+    for (std::size_t p = 0; p < components[k].parts.size(); ++p)
+      lanes.push_back({static_cast<int>(k), static_cast<int>(p), 0});
   }
   const auto size = static_cast<std::size_t>(2 * kernels.lanes);
   for (std::size_t i = 0; i < lanes.size(); i += size) {
@@ -149,7 +138,7 @@ Group DpmEngine::Bank::makeGroup(const DpmTarget& target, const std::vector<Lane
   const int L = kernels.lanes, taps = 2 * options.window + 1;
   Group group;
   group.lanes = lanes;
-  group.weights = AlignedFloats(static_cast<std::size_t>(kFrequencies * kFeatures * 4 * L));
+  group.weights = AlignedFloats(static_cast<std::size_t>(kFrequencies * kFeatures * kWeights * L));
   group.costs_x = AlignedFloats(static_cast<std::size_t>(taps * 2 * L));
   group.costs_y = AlignedFloats(static_cast<std::size_t>(taps * 2 * L));
   std::fill_n(group.weights.data(), group.weights.size(), 0.F);
@@ -160,21 +149,27 @@ Group DpmEngine::Bank::makeGroup(const DpmTarget& target, const std::vector<Lane
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     const DpmPart& part = target.model.components[static_cast<std::size_t>(lanes[lane].component)]
                               .parts[static_cast<std::size_t>(lanes[lane].part)];
+    const std::pair<int, int> parity{parityOf(part.anchor_x), parityOf(part.anchor_y)};
+    const auto known = std::find(group.parities.begin(), group.parities.end(), parity);
+    group.lanes[lane].parity = static_cast<std::size_t>(known - group.parities.begin());
+    if (known == group.parities.end()) group.parities.push_back(parity);
     std::fill(patch.begin(), patch.end(), 0.F);
-    const int right = part.anchor_x & 1, down = part.anchor_y & 1;
     const int row = part.filter.width * kFeatures;
     for (int y = 0; y < part.filter.height; ++y)
       std::copy_n(part.filter.weights.begin() + y * row, row,
-                  patch.begin() + ((y + down) * kPatch + right) * kFeatures);
+                  patch.begin() + y * kPatch * kFeatures);
     kernels.forward(patch.data(), kPatch * kFeatures, spectrum.data());
     const int i = static_cast<int>(lane), half = i / L;
     for (int w = 0; w < kFrequencies; ++w) {
       for (int f = 0; f < kFeatures; ++f) {
-        float* to = group.weights.data() + (w * kFeatures + f) * 4 * L + half * 2 * L + i % L;
-        const float* from = spectrum.data() + w * 2 * kFeatures + f;
+        float* to = group.weights.data() + ((w * kFeatures + f) * kWeights + half * 3) * L + i % L;
+        const float* from = spectrum.data() + w * 3 * kFeatures + f;
         // Conjugate: a correlation; scaled for the inverse transform.
-        to[0] = from[0] / static_cast<float>(kCells);
-        to[L] = -from[kFeatures] / static_cast<float>(kCells);
+        const float re = from[0] / static_cast<float>(kCells);
+        const float im = -from[kFeatures] / static_cast<float>(kCells);
+        to[0] = re;
+        to[L] = im - re;
+        to[2 * L] = im + re;
       }
     }
     for (int t = 0; t < taps; ++t) {
@@ -191,69 +186,82 @@ Group DpmEngine::Bank::makeGroup(const DpmTarget& target, const std::vector<Lane
 
 // ---- what to look at
 
-Span DpmEngine::Bank::rootRows(const DpmTarget& target, const Compiled& c, const Level& level,
-                               const std::optional<GroundGate>& gate) const {
-  Span rows{-options.padding, level.cells_y + options.padding - c.least_height + 1};
-  if (!gate) return rows;
-  Span allowed;
-  for (const DpmComponent& component : target.model.components) {
-    const double pixel = cell / level.scale_y;
-    const auto bottoms = gate->bottoms(component.height * pixel, target.low, target.high);
-    allowed =
-        allowed.with({static_cast<int>(std::ceil(bottoms.begin / pixel)) - component.height,
-                      static_cast<int>(std::floor(bottoms.end / pixel)) - component.height + 1});
-  }
-  return rows.within(allowed);
+/// Corners at which a component of that size has at most its share outside the image.
+Span cornersOf(int size, int cells, double outside) {
+  const int beyond = static_cast<int>(std::ceil(outside * size));
+  return {-beyond, cells + beyond - size + 1};
 }
 
-void DpmEngine::Bank::planSearches(Level& level, const std::optional<GroundGate>& gate) const {
-  const int pad = options.padding;
-  for (std::size_t t = 0; t < targets.size(); ++t) {
-    const Compiled& c = compiled[t];
-    Search search;
-    search.rows = rootRows(targets[t], c, level, gate);
-    const int columns = level.cells_x + 2 * pad - c.least_width + 1;
-    if (search.rows.empty() || columns <= 0) {
-      level.searches.emplace_back();
-      continue;
+void DpmEngine::Bank::planSearch(Level& level, std::size_t target,
+                                 const SearchRegion& region) const {
+  const DpmTarget& t = targets[target];
+  const double pixel = cell / level.scale_y;
+  Search search;
+  for (const DpmComponent& c : t.model.components) {
+    Span x = cornersOf(c.root.width, level.cells_x, region.continued ? 0 : options.outside);
+    Span y = cornersOf(c.root.height, level.cells_y, options.outside);
+    if (region.ground) {
+      const auto bottoms = region.ground->bottoms(c.height * pixel, t.low, t.high);
+      y = y.within({static_cast<int>(std::ceil(bottoms.begin / pixel)) - c.height,
+                    static_cast<int>(std::floor(bottoms.end / pixel)) - c.height + 1});
     }
-    int tallest = 0;
-    for (const auto& component : targets[t].model.components)
-      tallest = std::max(tallest, component.root.height);
-    level.root_x = {-pad, level.cells_x + pad};
-    level.root_y = level.root_y.with({search.rows.begin, search.rows.end - 1 + tallest});
-    if (!c.groups.empty()) {
-      search.lattice_x = {-pad + c.shift_x.begin, -pad + columns - 1 + c.shift_x.end};
-      search.lattice_y = {search.rows.begin + c.shift_y.begin, search.rows.end - 1 + c.shift_y.end};
-    }
-    level.searches.push_back(std::move(search));
+    if (x.empty() || y.empty()) x = y = {};
+    search.x.push_back(x);
+    search.y.push_back(y);
+    if (x.empty()) continue;
+    level.root_x = level.root_x.with({x.begin, x.end - 1 + c.root.width});
+    level.root_y = level.root_y.with({y.begin, y.end - 1 + c.root.height});
   }
+  for (const Group& group : compiled[target].groups) {
+    GroupSearch g;
+    for (const Lane& lane : group.lanes) {
+      const auto k = static_cast<std::size_t>(lane.component);
+      if (search.x[k].empty()) continue;
+      const DpmPart& part = t.model.components[k].parts[static_cast<std::size_t>(lane.part)];
+      const int dx = halfOf(part.anchor_x), dy = halfOf(part.anchor_y);
+      g.lattice_x = g.lattice_x.with({search.x[k].begin + dx, search.x[k].end + dx});
+      g.lattice_y = g.lattice_y.with({search.y[k].begin + dy, search.y[k].end + dy});
+    }
+    search.groups.push_back(std::move(g));
+  }
+  level.searches.push_back(std::move(search));
 }
 
 void DpmEngine::Bank::planPatches(Level& level) const {
-  Span x, y;  // [part cells] of parts' places, moves included
-  const int w = options.window;
+  // [part cells] of parts' places, moves and odd anchors included.
+  const auto placesOf = [&](const Span& lattice) {
+    return lattice.empty() ? Span{}
+                           : Span{2 * lattice.begin - options.window,
+                                  2 * (lattice.end - 1) + 1 + options.window + 1};
+  };
+  Span x, y;
   for (const Search& s : level.searches) {
-    if (s.lattice_x.empty()) continue;
-    x = x.with({2 * s.lattice_x.begin - w, 2 * s.lattice_x.end - 1 + w});
-    y = y.with({2 * s.lattice_y.begin - w, 2 * s.lattice_y.end - 1 + w});
+    for (const GroupSearch& g : s.groups) {
+      x = x.with(placesOf(g.lattice_x));
+      y = y.with(placesOf(g.lattice_y));
+    }
   }
   if (x.empty()) return;
   level.patch_x0 = x.begin;
   level.patch_y0 = y.begin;
   level.patches_x = (x.size() + valid - 1) / valid;
   level.patches_y = (y.size() + valid - 1) / valid;
+  const auto patchesOf = [&](const Span& places, int origin) {
+    return places.empty()
+               ? Span{}
+               : Span{(places.begin - origin) / valid, (places.end - 1 - origin) / valid + 1};
+  };
   for (Search& s : level.searches) {
-    if (s.lattice_y.empty()) continue;
-    s.patch_rows = {(2 * s.lattice_y.begin - w - level.patch_y0) / valid,
-                    (2 * (s.lattice_y.end - 1) + w - level.patch_y0) / valid + 1};
+    for (GroupSearch& g : s.groups) {
+      g.patch_columns = patchesOf(placesOf(g.lattice_x), level.patch_x0);
+      g.patch_rows = patchesOf(placesOf(g.lattice_y), level.patch_y0);
+    }
   }
   level.part_x = {x.begin, x.begin + level.patches_x * valid + kPatch - valid};
   level.part_y = {y.begin, y.begin + level.patches_y * valid + kPatch - valid};
 }
 
-std::vector<Level> DpmEngine::Bank::plan(int width, int height,
-                                         const std::optional<GroundGate>& gate) const {
+std::vector<Level> DpmEngine::Bank::plan(int width, int height, const SearchRegion& region) const {
   std::vector<Level> levels;
   const int interval = options.levels_per_octave;
   for (int k = 0;; ++k) {
@@ -267,7 +275,7 @@ std::vector<Level> DpmEngine::Bank::plan(int width, int height,
     level.cells_x = cellsAcross(level.width, cell);
     level.cells_y = cellsAcross(level.height, cell);
     level.parts_level = k - interval;
-    planSearches(level, gate);
+    for (std::size_t t = 0; t < targets.size(); ++t) planSearch(level, t, region);
     planPatches(level);
     levels.push_back(std::move(level));
   }
@@ -318,22 +326,29 @@ void DpmEngine::Bank::buildFeatures(const Raster& image, std::vector<Level>& lev
   }
 }
 
+/// Does any group look at that patch?
+bool wanted(const Level& level, int column, int row) {
+  const auto holds = [](const Span& span, int i) { return i >= span.begin && i < span.end; };
+  for (const Search& s : level.searches) {
+    for (const GroupSearch& g : s.groups) {
+      if (holds(g.patch_columns, column) && holds(g.patch_rows, row)) return true;
+    }
+  }
+  return false;
+}
+
 void DpmEngine::Bank::transform(std::vector<Level>& levels) const {
   tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t k) {
     Level& level = levels[k];
-    level.spectra.resize(static_cast<std::size_t>(level.patches_x * level.patches_y));
+    level.spectra = AlignedFloats(static_cast<std::size_t>(level.patches_x * level.patches_y) *
+                                  kSpectrumStride);
     tbb::parallel_for(0, level.patches_y, [&](int row) {
-      const bool wanted = std::any_of(level.searches.begin(), level.searches.end(), [&](auto& s) {
-        return row >= s.patch_rows.begin && row < s.patch_rows.end;
-      });
-      if (!wanted) return;
       for (int column = 0; column < level.patches_x; ++column) {
-        AlignedFloats spectrum(kSpectrum);
+        if (!wanted(level, column, row)) continue;
+        const auto patch = static_cast<std::size_t>(row * level.patches_x + column);
         kernels.forward(
             level.part_map->cell(level.patch_x0 + column * valid, level.patch_y0 + row * valid),
-            level.part_map->rowStride(), spectrum.data());
-        level.spectra[static_cast<std::size_t>(row * level.patches_x + column)] =
-            std::move(spectrum);
+            level.part_map->rowStride(), level.spectra.data() + patch * kSpectrumStride);
       }
     });
   });
@@ -342,42 +357,47 @@ void DpmEngine::Bank::transform(std::vector<Level>& levels) const {
 // ---- parts
 
 void DpmEngine::Bank::convolveGroup(Level& level, std::size_t target, std::size_t group) const {
-  Search& search = level.searches[target];
+  GroupSearch& search = level.searches[target].groups[group];
   const Group& g = compiled[target].groups[group];
   const int lanes = 2 * kernels.lanes, w = options.window;
-  const int columns = level.patches_x * valid, rows = search.patch_rows.size() * valid;
-  const long stride = static_cast<long>(columns) * lanes;
-  AlignedFloats responses(static_cast<std::size_t>(rows * stride));
-  const auto product = static_cast<std::size_t>(kFrequencies * 2 * lanes);
+  const int across = search.patch_columns.size();
+  const long stride = static_cast<long>(across) * valid * lanes;
+  AlignedFloats responses(static_cast<std::size_t>(search.patch_rows.size() * valid * stride));
+  const auto product = static_cast<std::size_t>(kFrequencies * 2 * lanes) + kProductGap;
   AlignedFloats products(product * kAtOnce);
-  const int first = search.patch_rows.begin * level.patches_x;
-  const int count = search.patch_rows.size() * level.patches_x;
+  const int count = search.patch_rows.size() * across;
   for (int p = 0; p < count; p += kAtOnce) {
     const int n = std::min<int>(kAtOnce, count - p);
     const float* spectra[kAtOnce];
     float* out[kAtOnce];
     for (int i = 0; i < n; ++i) {
-      spectra[i] = level.spectra[static_cast<std::size_t>(first + p + i)].data();
+      const int row = search.patch_rows.begin + (p + i) / across;
+      const int column = search.patch_columns.begin + (p + i) % across;
+      spectra[i] = level.spectra.data() +
+                   static_cast<std::size_t>(row * level.patches_x + column) * kSpectrumStride;
       out[i] = products.data() + static_cast<std::size_t>(i) * product;
     }
     kernels.products(g.weights.data(), spectra, n, out);
     for (int i = 0; i < n; ++i) {
-      const int row = (p + i) / level.patches_x, column = (p + i) % level.patches_x;
+      const int row = (p + i) / across, column = (p + i) % across;
       kernels.inverse(
           out[i], valid, valid,
           responses.data() + row * valid * stride + static_cast<long>(column) * valid * lanes,
           stride);
     }
   }
-  const int lattice_x = search.lattice_x.size(), lattice_y = search.lattice_y.size();
-  AlignedFloats scratch(static_cast<std::size_t>((2 * lattice_y - 1 + 2 * w) * lattice_x * lanes));
-  AlignedFloats best(static_cast<std::size_t>(lattice_y * lattice_x * lanes));
-  const int x = 2 * search.lattice_x.begin - w - level.patch_x0;
+  const int columns = search.lattice_x.size(), rows = search.lattice_y.size();
+  AlignedFloats scratch(static_cast<std::size_t>((2 * rows - 1 + 2 * w) * columns * lanes));
+  const int x =
+      2 * search.lattice_x.begin - w - level.patch_x0 - search.patch_columns.begin * valid;
   const int y = 2 * search.lattice_y.begin - w - level.patch_y0 - search.patch_rows.begin * valid;
-  kernels.displace(responses.data() + y * stride + static_cast<long>(x) * lanes, stride,
-                   2 * lattice_y - 1, 2 * lattice_x - 1, w, g.costs_x.data(), g.costs_y.data(),
-                   scratch.data(), best.data());
-  search.best[group] = std::move(best);
+  for (const auto& [odd_x, odd_y] : g.parities) {
+    AlignedFloats best(static_cast<std::size_t>(rows * columns * lanes));
+    kernels.displace(responses.data() + (y + odd_y) * stride + static_cast<long>(x + odd_x) * lanes,
+                     stride, 2 * rows - 1, 2 * columns - 1, w, g.costs_x.data(), g.costs_y.data(),
+                     scratch.data(), best.data());
+    search.best.push_back(std::move(best));
+  }
 }
 
 void DpmEngine::Bank::convolve(std::vector<Level>& levels) const {
@@ -388,11 +408,10 @@ void DpmEngine::Bank::convolve(std::vector<Level>& levels) const {
   std::vector<Task> tasks;
   for (std::size_t t = 0; t < targets.size(); ++t) {
     for (std::size_t g = 0; g < compiled[t].groups.size(); ++g) tasks.push_back({t, g});
-    for (Level& level : levels) level.searches[t].best.resize(compiled[t].groups.size());
   }
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
     for (Level& level : levels) {
-      if (!level.searches[tasks[i].target].lattice_x.empty())
+      if (!level.searches[tasks[i].target].groups[tasks[i].group].lattice_x.empty())
         convolveGroup(level, tasks[i].target, tasks[i].group);
     }
   });
@@ -400,43 +419,42 @@ void DpmEngine::Bank::convolve(std::vector<Level>& levels) const {
 
 // ---- scores
 
-std::vector<DpmDetection> DpmEngine::Bank::collect(const Level& level, std::size_t target,
-                                                   const std::optional<GroundGate>& gate) const {
+std::vector<DpmDetection> DpmEngine::Bank::collect(const Level& level, std::size_t target) const {
   std::vector<DpmDetection> found;
   const DpmTarget& t = targets[target];
   const Search& search = level.searches[target];
-  if (search.empty()) return found;
-  const int pad = options.padding, lanes = 2 * kernels.lanes;
+  const auto lanes = static_cast<std::size_t>(2 * kernels.lanes);
   const double pixel_x = cell / level.scale_x, pixel_y = cell / level.scale_y;
-  std::vector<float> scores(static_cast<std::size_t>(level.cells_x + 2 * pad + 16));
+  AlignedFloats scores(static_cast<std::size_t>(level.root_x.size()));
   std::size_t first_lane = 0;
   for (std::size_t k = 0; k < t.model.components.size(); ++k) {
     const DpmComponent& c = t.model.components[k];
-    const int columns = level.cells_x + 2 * pad - c.root.width + 1;
-    const int last_row = level.cells_y + pad - c.root.height;
-    for (int y = search.rows.begin; y < search.rows.end && y <= last_row && columns > 0; ++y) {
-      const double top = y * pixel_y, bottom = (y + c.height) * pixel_y;
-      if (gate && !gate->admits(top, bottom, t.low, t.high)) continue;
-      kernels.correlate(level.roots.cell(-pad, y), level.roots.rowStride(), c.root.weights.data(),
-                        c.root.height, c.root.width, columns, scores.data());
+    const Span xs = search.x[k];
+    for (int y = search.y[k].begin; y < search.y[k].end; ++y) {
+      kernels.correlate(level.roots.cell(xs.begin, y), level.roots.rowStride(),
+                        c.root.weights.data(), c.root.height, c.root.width, xs.size(),
+                        scores.data());
       for (std::size_t p = 0; p < c.parts.size(); ++p) {
-        const std::size_t lane = first_lane + p;
-        const long row = y + halfOf(c.parts[p].anchor_y) - search.lattice_y.begin;
-        const long column = -pad + halfOf(c.parts[p].anchor_x) - search.lattice_x.begin;
-        const float* best = search.best[lane / static_cast<std::size_t>(lanes)].data() +
-                            (row * search.lattice_x.size() + column) * lanes +
-                            static_cast<long>(lane % static_cast<std::size_t>(lanes));
-        for (int x = 0; x < columns; ++x)
-          scores[static_cast<std::size_t>(x)] += best[static_cast<long>(x) * lanes];
+        const std::size_t group = (first_lane + p) / lanes, lane = (first_lane + p) % lanes;
+        const GroupSearch& g = search.groups[group];
+        const std::size_t parity = compiled[target].groups[group].lanes[lane].parity;
+        const long row = y + halfOf(c.parts[p].anchor_y) - g.lattice_y.begin;
+        const long column = xs.begin + halfOf(c.parts[p].anchor_x) - g.lattice_x.begin;
+        const float* best = g.best[parity].data() +
+                            static_cast<std::size_t>(row * g.lattice_x.size() + column) * lanes +
+                            lane;
+        for (int i = 0; i < xs.size(); ++i)
+          scores[static_cast<std::size_t>(i)] += best[static_cast<std::size_t>(i) * lanes];
       }
-      for (int x = 0; x < columns; ++x) {
-        const double score = static_cast<double>(scores[static_cast<std::size_t>(x)]) + c.offset;
+      for (int x = xs.begin; x < xs.end; ++x) {
+        const double score =
+            static_cast<double>(scores[static_cast<std::size_t>(x - xs.begin)]) + c.offset;
         if (score < t.threshold) continue;
         DpmDetection d;
         d.target = static_cast<int>(target);
         d.component = static_cast<int>(k);
         d.score = score;
-        d.box = {(x - pad) * pixel_x, top, (x - pad + c.width) * pixel_x, bottom};
+        d.box = {x * pixel_x, y * pixel_y, (x + c.width) * pixel_x, (y + c.height) * pixel_y};
         if (t.model.has_heading) d.heading = c.heading;
         found.push_back(d);
       }
@@ -453,24 +471,22 @@ DpmEngine::DpmEngine(DpmEngine&&) noexcept = default;
 
 const std::vector<DpmTarget>& DpmEngine::targets() const { return bank_->targets; }
 
-std::vector<DpmDetection> DpmEngine::places(const Raster& image,
-                                            const std::optional<GroundGate>& gate) const {
-  std::vector<Level> levels = bank_->plan(image.width, image.height, gate);
+std::vector<DpmDetection> DpmEngine::places(const Raster& image, const SearchRegion& region) const {
+  std::vector<Level> levels = bank_->plan(image.width, image.height, region);
   bank_->buildFeatures(image, levels);
   bank_->transform(levels);
   bank_->convolve(levels);
   const std::size_t n = bank_->targets.size();
   std::vector<std::vector<DpmDetection>> found(levels.size() * n);
   tbb::parallel_for(std::size_t{0}, found.size(),
-                    [&](std::size_t i) { found[i] = bank_->collect(levels[i / n], i % n, gate); });
+                    [&](std::size_t i) { found[i] = bank_->collect(levels[i / n], i % n); });
   std::vector<DpmDetection> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
   return all;
 }
 
-std::vector<DpmDetection> DpmEngine::detect(const Raster& image,
-                                            const std::optional<GroundGate>& gate) const {
-  return suppressed(places(image, gate), bank_->options.overlap);
+std::vector<DpmDetection> DpmEngine::detect(const Raster& image, const SearchRegion& region) const {
+  return suppressed(places(image, region), bank_->options.overlap);
 }
 
 }  // namespace perception

@@ -14,7 +14,7 @@ namespace perception {
 struct DpmOptions {
   int levels_per_octave = 5;  ///< voc-release: 10
   double enlarge = 1;         ///< [1, 4] size of the first image searched, for objects far away
-  int padding = 6;            ///< [cells] beyond the image, for objects it cuts; voc-release: 14
+  double outside = 0.4;       ///< share of an object's sides that may lie beyond the image
   int window = 4;             ///< [cells of a part] how far a part may move; voc-release5: 4
   double overlap = 0.5;       ///< of the weaker box: more is the same object (voc-release)
 };
@@ -43,12 +43,10 @@ class DpmEngine {
   ~DpmEngine();
   DpmEngine(DpmEngine&&) noexcept;
 
-  /// One box an object and target, best first. Without a gate everywhere.
-  std::vector<DpmDetection> detect(const Raster& image,
-                                   const std::optional<GroundGate>& gate = {}) const;
+  /// One box an object and target, best first.
+  std::vector<DpmDetection> detect(const Raster& image, const SearchRegion& region = {}) const;
   /// All places at or above the thresholds, before suppression.
-  std::vector<DpmDetection> places(const Raster& image,
-                                   const std::optional<GroundGate>& gate = {}) const;
+  std::vector<DpmDetection> places(const Raster& image, const SearchRegion& region = {}) const;
   const std::vector<DpmTarget>& targets() const;
 
  private:

@@ -28,4 +28,11 @@ struct GroundGate {
 std::optional<GroundGate> groundGate(const CameraModel& camera, const Pose3& T_ego_camera,
                                      const GroundPlane& ground, double slope_sigma);
 
+/// Where in an image objects are looked for.
+struct SearchRegion {
+  std::optional<GroundGate> ground;  ///< without it everywhere
+  /// Other images go on at both sides (tiles of a panorama): what this one cuts is theirs.
+  bool continued = false;
+};
+
 }  // namespace perception

@@ -42,7 +42,7 @@ ObjectDetections ImageDetector::detect(const Raster& image, const CameraModel& c
   out.T_ego_camera = T_ego_camera;
   if (!detector_ || image.width <= 0 || image.height <= 0) return out;
   if (camera.projection != CameraModel::Projection::kEquirectangular) {
-    out.objects = detector_->detect(image, gateOf(camera, T_ego_camera, ground));
+    out.objects = detector_->detect(image, {gateOf(camera, T_ego_camera, ground), false});
     return out;
   }
   const Panorama& whole = panorama(image.width);
@@ -51,7 +51,7 @@ ObjectDetections ImageDetector::detect(const Raster& image, const CameraModel& c
     std::optional<Pose3> pose;
     if (T_ego_camera) pose = turnedRight(*T_ego_camera, Panorama::tileAzimuth(k));
     tiles[static_cast<std::size_t>(k)] =
-        detector_->detect(whole.tile(image, k), gateOf(whole.tileCamera(), pose, ground));
+        detector_->detect(whole.tile(image, k), {gateOf(whole.tileCamera(), pose, ground), true});
   };
   if (detector_->parallel()) {
     tbb::parallel_for(0, Panorama::kTiles, look);

@@ -45,7 +45,7 @@ class OnnxDetector final : public Detector {
   }
 
   std::vector<ObjectDetection> detect(const Raster& image,
-                                      const std::optional<GroundGate>& gate) const override {
+                                      const SearchRegion& region) const override {
     const cv::Mat pixels = colourMat(image);
     const double scale = std::min(static_cast<double>(side_) / image.width,
                                   static_cast<double>(side_) / image.height);
@@ -69,7 +69,8 @@ class OnnxDetector final : public Detector {
                      std::min(image.width - 1.0, b.box.x2 / scale),
                      std::min(image.height - 1.0, b.box.y2 / scale)};
       if (!(o.image_box->x2 > o.image_box->x1) || !(o.image_box->y2 > o.image_box->y1)) continue;
-      if (gate && !gate->admits(o.image_box->y1, o.image_box->y2, model_.low, model_.high))
+      if (region.ground &&
+          !region.ground->admits(o.image_box->y1, o.image_box->y2, model_.low, model_.high))
         continue;
       out.push_back(std::move(o));
     }

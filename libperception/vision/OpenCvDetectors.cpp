@@ -61,7 +61,7 @@ class CvDpmDetector final : public Detector {
   }
 
   std::vector<ObjectDetection> detect(const Raster& image,
-                                      const std::optional<GroundGate>& gate) const override {
+                                      const SearchRegion& region) const override {
     cv::Mat pixels = colourMat(image).clone();  // cv::dpm changes its input
     std::vector<cv::dpm::DPMDetector::ObjectDetection> found;
     {
@@ -74,7 +74,7 @@ class CvDpmDetector final : public Detector {
       if (id >= names_.size()) continue;
       auto o = objectOf(f.rect, names_[id], static_cast<double>(f.score), image);
       if (isBox(o) && o.score >= params_[id].threshold &&
-          admitted(o, gate, params_[id].low, params_[id].high))
+          admitted(o, region.ground, params_[id].low, params_[id].high))
         out.push_back(std::move(o));
     }
     constexpr double kSame = 0.5;
@@ -99,7 +99,7 @@ class HogDetector final : public Detector {
   }
 
   std::vector<ObjectDetection> detect(const Raster& image,
-                                      const std::optional<GroundGate>& gate) const override {
+                                      const SearchRegion& region) const override {
     cv::Mat pixels;
     cv::resize(colourMat(image), pixels, {}, params_.enlarge, params_.enlarge, cv::INTER_LINEAR);
     std::vector<ObjectDetection> out;
@@ -117,7 +117,8 @@ class HogDetector final : public Detector {
       auto o = objectOf({(b.x + 0.2 * b.width) / s, (b.y + 0.1 * b.height) / s, 0.6 * b.width / s,
                          0.8 * b.height / s},
                         model_.label, weights[i], image);
-      if (isBox(o) && o.score >= model_.threshold && admitted(o, gate, model_.low, model_.high))
+      if (isBox(o) && o.score >= model_.threshold &&
+          admitted(o, region.ground, model_.low, model_.high))
         out.push_back(std::move(o));
     }
     return suppressed(std::move(out), params_.overlap);

@@ -114,11 +114,12 @@ std::map<PlaceKey, double> reference(const Raster& raster, const DpmModel& model
                                             : maps[static_cast<std::size_t>(k - interval)];
     const double px = model.cell * static_cast<double>(raster.width) / width;
     const double py = model.cell * static_cast<double>(raster.height) / height;
-    const int pad = options.padding;
     for (std::size_t c = 0; c < model.components.size(); ++c) {
       const DpmComponent& component = model.components[c];
-      for (int y = -pad; y + component.root.height <= roots.cellsY() + pad; ++y)
-        for (int x = -pad; x + component.root.width <= roots.cellsX() + pad; ++x) {
+      const int out_x = static_cast<int>(std::ceil(options.outside * component.root.width));
+      const int out_y = static_cast<int>(std::ceil(options.outside * component.root.height));
+      for (int y = -out_y; y + component.root.height <= roots.cellsY() + out_y; ++y)
+        for (int x = -out_x; x + component.root.width <= roots.cellsX() + out_x; ++x) {
           DpmDetection d;
           d.component = static_cast<int>(c);
           d.box = {x * px, y * py, (x + component.width) * px, (y + component.height) * py};
@@ -142,7 +143,7 @@ TEST(DpmEngine, ScoresEveryPlaceAsTheLiteralDetectorDoes) {
     DpmOptions options;
     options.levels_per_octave = 2;
     options.enlarge = enlarge;
-    options.padding = 2;
+    options.outside = 0.6;
     options.window = 3;
     const auto expected = reference(image, tinyModel(5), options);
     for (const SimdLevel level : levels()) {
@@ -192,7 +193,7 @@ TEST(DpmEngine, GroundLeavesOutWhatCannotStandAndChangesNoScore) {
   std::map<PlaceKey, double> admitted;
   for (const auto& d : engine.places(image))
     if (gate.admits(d.box.y1, d.box.y2, target.low, target.high)) admitted[keyOf(d)] = d.score;
-  const auto gated = engine.places(image, gate);
+  const auto gated = engine.places(image, {gate, false});
   ASSERT_EQ(gated.size(), admitted.size());
   ASSERT_GT(gated.size(), 100U);
   for (const auto& d : gated) ASSERT_NEAR(admitted.at(keyOf(d)), d.score, 1e-5);

@@ -10,7 +10,8 @@ enum {
   kHalf = kPatch / 2 + 1,                    ///< columns that a real signal needs
   kFrequencies = kPatch * kHalf,             ///< ky major, kx = 0 .. kHalf - 1
   kFeatures = 32,                            ///< values of a HOG cell
-  kSpectrum = kFrequencies * 2 * kFeatures,  ///< floats of a patch's spectrum
+  kSpectrum = kFrequencies * 3 * kFeatures,  ///< floats of a patch's spectrum
+  kWeights = 6,                              ///< vectors of a group's weight: see products()
   kOrientations = 18                         ///< contrast sensitive ones
 };
 
@@ -37,11 +38,14 @@ struct VisionKernels {
   /// The 32 features of cells 1 .. cells - 2 of a row; energies of the rows above, at, below.
   void (*features)(const float* histogram, int stride, int cells, const float* above,
                    const float* at, const float* below, float* features);
-  /// The half spectrum of kPatch x kPatch cells: kSpectrum floats, per frequency 32 real parts,
-  /// then 32 imaginary ones. `row_stride` in floats.
+  /// The half spectrum of kPatch x kPatch cells: kSpectrum floats, per frequency 32 real parts, 32
+  /// imaginary parts and 32 sums of both. `row_stride` in floats.
   void (*forward)(const float* features, long row_stride, float* spectrum);
-  /// Sums over features of spectrum * weights (see DpmEngine) for up to kAtOnce patches: per patch
-  /// kFrequencies * 4 * lanes floats.
+  /// Sums over features of spectrum x times weight w for up to kAtOnce patches: per patch
+  /// kFrequencies * 4 * lanes floats (A.re, A.im, B.re, B.im), where a group's filters are A and B.
+  /// By three products, not four: w is given as w.re, w.im - w.re, w.im + w.re of A, then of B;
+  /// x w = k - x.im (w.im + w.re) + i (k + x.re (w.im - w.re)) with k = (x.re + x.im) w.re.
+  /// Frequencies that are conjugates of others (kx = 0 or 8, ky > 8) are left out.
   void (*products)(const float* weights, const float* const* spectra, int patches,
                    float* const* products);
   /// Back to `rows` x `cols` responses of 2 * lanes filters each; strides in floats.
@@ -59,7 +63,7 @@ struct VisionKernels {
   void (*gather)(const float* source, const int* first, const float* weights, int n, float* target);
 };
 
-enum { kAtOnce = 4 };  ///< patches of one call of products()
+enum { kAtOnce = 16 };  ///< patches of one call of products(): weights are read once for all
 
 namespace sse2 {
 extern const VisionKernels kVisionKernels;

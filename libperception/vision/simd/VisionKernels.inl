@@ -15,6 +15,7 @@ using I = int __attribute__((vector_size(L * sizeof(int)), aligned(4), may_alias
 
 inline const V& at(const float* p) { return *reinterpret_cast<const V*>(p); }
 inline V& at(float* p) { return *reinterpret_cast<V*>(p); }
+inline V all(float x) { return x - V{}; }  // not V{} + x: 0 + -0 is 0, an addition to be done
 inline V maximum(V a, V b) { return a > b ? a : b; }
 inline V minimum(V a, V b) { return a < b ? a : b; }
 
@@ -101,7 +102,7 @@ void features(const float* histogram, int stride, int cells, const float* above,
     for (int o = 0; o < kOrientations; ++o) {
       const V h = at(histogram + o * stride + x);
       for (int b = 0; b < 4; ++b) {
-        const V part = minimum(h * n[b], V{} + 0.2F);
+        const V part = minimum(h * n[b], all(0.2F));
         out[o] += part;
         out[27 + b] += part;
       }
@@ -109,7 +110,7 @@ void features(const float* histogram, int stride, int cells, const float* above,
     }
     for (int o = 0; o < 9; ++o) {
       const V h = at(histogram + o * stride + x) + at(histogram + (o + 9) * stride + x);
-      for (int b = 0; b < 4; ++b) out[18 + o] += minimum(h * n[b], V{} + 0.2F);
+      for (int b = 0; b < 4; ++b) out[18 + o] += minimum(h * n[b], all(0.2F));
       out[18 + o] *= 0.5F;
     }
     for (int b = 0; b < 4; ++b) out[27 + b] *= 0.2357F;
@@ -175,65 +176,71 @@ void forward(const float* features, long row_stride, float* spectrum) {
       for (int x = 0; x < kHalf; ++x) {
         const int here = y * kPatch + x;
         const int there = (kPatch - y) % kPatch * kPatch + (kPatch - x) % kPatch;
-        float* out = spectrum + (y * kHalf + x) * 2 * kFeatures + 2 * L * pair;
-        at(out) = 0.5F * (re[here] + re[there]);
-        at(out + L) = 0.5F * (im[here] + im[there]);
-        at(out + kFeatures) = 0.5F * (im[here] - im[there]);
-        at(out + kFeatures + L) = 0.5F * (re[there] - re[here]);
+        float* out = spectrum + (y * kHalf + x) * 3 * kFeatures + 2 * L * pair;
+        const V ar = 0.5F * (re[here] + re[there]), ai = 0.5F * (im[here] - im[there]);
+        const V br = 0.5F * (im[here] + im[there]), bi = 0.5F * (re[there] - re[here]);
+        at(out) = ar;
+        at(out + L) = br;
+        at(out + kFeatures) = ai;
+        at(out + kFeatures + L) = bi;
+        at(out + 2 * kFeatures) = ar + ai;
+        at(out + 2 * kFeatures + L) = br + bi;
       }
     }
   }
 }
 
-/// One frequency of `kCount` patches: 2 L filters by 32 features.
-template <int kCount>
+/// Does another frequency hold the same, conjugated?
+inline bool isCopy(int x, int y) { return (x == 0 || x == kPatch / 2) && y > kPatch / 2; }
+
+/// One frequency of kCount patches: kVectors of the group's two vectors of filters by 32 features.
+template <int kCount, int kVectors>
 inline void frequency(const float* weights, const float* const* spectra, long offset,
                       float* const* products, long offset_out) {
-  V are[kCount] = {}, aim[kCount] = {}, bre[kCount] = {}, bim[kCount] = {};
+  V k1[kVectors][kCount] = {}, k2[kVectors][kCount] = {}, k3[kVectors][kCount] = {};
   for (int c = 0; c < kFeatures; ++c) {
-    const V war = at(weights), wai = at(weights + L);
-    const V wbr = at(weights + 2 * L), wbi = at(weights + 3 * L);
-    weights += 4 * L;
     for (int p = 0; p < kCount; ++p) {
-      const V xr = V{} + spectra[p][offset + c], xi = V{} + spectra[p][offset + kFeatures + c];
-      are[p] += xr * war;
-      aim[p] += xr * wai;
-      bre[p] += xr * wbr;
-      bim[p] += xr * wbi;
-      are[p] -= xi * wai;
-      aim[p] += xi * war;
-      bre[p] -= xi * wbi;
-      bim[p] += xi * wbr;
+      const float* x = spectra[p] + offset + c;
+      const V re = all(x[0]), im = all(x[kFeatures]), sum = all(x[2 * kFeatures]);
+      for (int v = 0; v < kVectors; ++v) {
+        k1[v][p] += sum * at(weights + 3 * v * L);
+        k2[v][p] += re * at(weights + (3 * v + 1) * L);
+        k3[v][p] += im * at(weights + (3 * v + 2) * L);
+      }
     }
+    weights += kWeights * L;
   }
   for (int p = 0; p < kCount; ++p) {
-    float* out = products[p] + offset_out;
-    at(out) = are[p];
-    at(out + L) = aim[p];
-    at(out + 2 * L) = bre[p];
-    at(out + 3 * L) = bim[p];
+    for (int v = 0; v < kVectors; ++v) {
+      at(products[p] + offset_out + 2 * v * L) = k1[v][p] - k3[v][p];
+      at(products[p] + offset_out + (2 * v + 1) * L) = k1[v][p] + k2[v][p];
+    }
   }
 }
 
 template <int kCount>
-inline void allFrequencies(const float* weights, const float* const* spectra,
-                           float* const* products) {
-  for (int w = 0; w < kFrequencies; ++w)
-    frequency<kCount>(weights + static_cast<long>(w) * kFeatures * 4 * L, spectra,
-                      static_cast<long>(w) * 2 * kFeatures, products, static_cast<long>(w) * 4 * L);
+inline void frequencyOf(const float* weights, const float* const* spectra, long offset,
+                        float* const* products, long offset_out) {
+  if constexpr (L == 16) {  // 32 registers hold both vectors of filters
+    frequency<kCount, 2>(weights, spectra, offset, products, offset_out);
+  } else {
+    frequency<kCount, 1>(weights, spectra, offset, products, offset_out);
+    frequency<kCount, 1>(weights + 3 * L, spectra, offset, products, offset_out + 2 * L);
+  }
 }
 
 void products(const float* weights, const float* const* spectra, int patches,
               float* const* products) {
-  switch (patches) {
-    case 1:
-      return allFrequencies<1>(weights, spectra, products);
-    case 2:
-      return allFrequencies<2>(weights, spectra, products);
-    case 3:
-      return allFrequencies<3>(weights, spectra, products);
-    default:
-      return allFrequencies<4>(weights, spectra, products);
+  for (int y = 0; y < kPatch; ++y) {
+    for (int x = 0; x < kHalf; ++x) {
+      if (isCopy(x, y)) continue;
+      const long w = y * kHalf + x;
+      const float* at_w = weights + w * kFeatures * kWeights * L;
+      const long in = w * 3 * kFeatures, out = w * 4 * L;
+      int p = 0;
+      for (; p + 4 <= patches; p += 4) frequencyOf<4>(at_w, spectra + p, in, products + p, out);
+      for (; p < patches; ++p) frequencyOf<1>(at_w, spectra + p, in, products + p, out);
+    }
   }
 }
 
@@ -242,12 +249,13 @@ void inverse(const float* products, int rows, int cols, float* responses, long r
   V re[kPatch * kPatch], im[kPatch * kPatch];
   for (int y = 0; y < kPatch; ++y) {
     for (int x = 0; x < kHalf; ++x) {
+      if (isCopy(x, y)) continue;
       const float* from = products + (y * kHalf + x) * 4 * L;
       const V ar = at(from), ai = at(from + L), br = at(from + 2 * L), bi = at(from + 3 * L);
       const int here = y * kPatch + x;
       const int there = (kPatch - y) % kPatch * kPatch + (kPatch - x) % kPatch;
       re[here] = ar - bi, im[here] = ai + br;
-      if (x == 0 || x == kPatch / 2) continue;
+      if (here == there) continue;
       re[there] = ar + bi, im[there] = br - ai;
     }
   }
