@@ -10,6 +10,7 @@
 #include "libperception/evaluation/Gnuplot.h"
 #include "libperception/evaluation/Metrics.h"
 #include "libperception/evaluation/PaperTables.h"
+#include "libperception/evaluation/PlotScript.h"
 
 namespace perception {
 namespace {
@@ -84,22 +85,16 @@ StudyTable countTable(const std::vector<Method>& methods, const std::vector<Coun
   table.title =
       "Errors in the number of objects; paper: all objects with DUC's tracker, all / classified "
       "with classification, on its own drive";
-  table.columns = {"configuration, particles",
-                   "paper",
-                   "rms of all",
-                   "rms of classified",
-                   "rms against truth",
-                   "bias",
-                   "mean of all",
-                   "mean of classified",
-                   "cars",
-                   "persons"};
+  table.columns = {"configuration, particles", "paper", "rms of all",      "rms of classified",
+                   "rms against truth",        "bias",  "things not held", "mean of all",
+                   "mean of classified",       "cars",  "persons"};
   for (std::size_t i = 0; i < methods.size(); ++i) {
     const CountErrors e = compareCounts(runs[i], runs[methods[i].reference]);
     table.rows.push_back({methods[i].label(), publishedOf(methods[i]), number(e.all, 2),
                           number(e.classified, 2), number(e.truth, 2), number(e.truth_bias, 2),
-                          number(meanOf(runs[i].all), 1), number(meanOf(runs[i].classified), 1),
-                          number(runs[i].mean_cars, 1), number(runs[i].mean_persons, 1)});
+                          number(e.unheld, 2), number(meanOf(runs[i].all), 1),
+                          number(meanOf(runs[i].classified), 1), number(runs[i].mean_cars, 1),
+                          number(runs[i].mean_persons, 1)});
   }
   return table;
 }
@@ -180,8 +175,9 @@ StudyPlot cdfPlot(const std::string& name, const std::string& title, const std::
     for (std::size_t e = 0; e < curves[i].cdf.size(); ++e)
       data += fmt::format("{} {:.4f}\n", e, curves[i].cdf[e]);
     plot.data.push_back({file, data});
-    plot.script += fmt::format("{}'{}' with steps lw 2 title {} noenhanced", i ? ", " : "", file,
-                               gnuplotString(curves[i].name));
+    plot.script +=
+        fmt::format("{}'{}' with steps lw 2 lc rgb '{}' title {} noenhanced", i ? ", " : "", file,
+                    plot_colour::ofRun(i), gnuplotString(curves[i].name));
   }
   plot.script += '\n';
   return plot;
@@ -233,7 +229,8 @@ void addPlots(const std::vector<Method>& methods, const std::vector<CountedRun>&
     const Method& m = methods[i];
     const CountErrors e = compareCounts(runs[i], runs[m.reference]);
     const bool of_duc = m.family == "DUC", of_joint = m.family == "joint";
-    const std::string particles = fmt::format("{} particles{}", m.replay.particles, m.note);
+    const std::string particles = fmt::format("{} particle{}{}", m.replay.particles,
+                                              m.replay.particles == 1 ? "" : "s", m.note);
     if (m.reference != i && of_duc) duc.push_back({particles, e.cdf_all});
     if (m.reference != i && of_joint) joint.push_back({particles, e.cdf_all});
     if (m.replay.particles != 8 || !(of_duc || of_joint)) continue;
@@ -268,6 +265,36 @@ double rms(const std::vector<int>& a, const std::vector<int>& b) {
 
 }  // namespace
 
+namespace {
+
+// Poles and hedges are things as much as road users; walls are in no truth. One output serves one
+// thing.
+void countThings(const TrackedRun& run, const GroundTruth& truth, const EvaluationOptions& options,
+                 CountedRun& counted) {
+  constexpr double kOverhead = 2;  // [m] above the vehicle's ground: crowns of trees
+  for (const TruthAtScene& instant : alignTruth(run, truth, options.alignment).instants) {
+    const Scene& scene = run.scenes[instant.scene];
+    const Pose3& ego = scene.ego.T_world_ego;
+    std::vector<Vector2> things, outputs;
+    for (TruthObject object : instant.objects) {
+      const Footprint footprint =
+          makeFootprint(object.position, object.yaw, object.length, object.width);
+      const bool area = isArea(object) || object.position.z() - ego.translation().z() > kOverhead;
+      object.ignore = false;
+      const TruthUse use = useOf(object, viewFrom(ego, footprint), 0, options.selection);
+      if (!area && use == TruthUse::kCounts) things.push_back(footprint.centre);
+    }
+    for (const SceneObject& o : scene.objects) outputs.emplace_back(o.position.head<2>());
+    int held = 0;
+    for (const int output : match(things, outputs, options.tolerance, Pairing::kOneToOne))
+      held += output >= 0;
+    counted.things.push_back(static_cast<int>(things.size()));
+    counted.held.push_back(held);
+  }
+}
+
+}  // namespace
+
 CountedRun countObjects(const TrackedRun& run, const GroundTruth* truth,
                         const EvaluationOptions& options) {
   CountedRun counted;
@@ -292,7 +319,9 @@ CountedRun countObjects(const TrackedRun& run, const GroundTruth* truth,
   const double scenes = std::max<double>(1, static_cast<double>(run.scenes.size()));
   counted.mean_cars = cars / scenes;
   counted.mean_persons = persons / scenes;
-  if (truth) counted.evaluation = evaluate(run, *truth, options);
+  if (!truth) return counted;
+  counted.evaluation = evaluate(run, *truth, options);
+  countThings(run, *truth, options, counted);
   return counted;
 }
 
@@ -311,6 +340,7 @@ CountErrors compareCounts(const CountedRun& run, const CountedRun& reference) {
     const auto n = static_cast<double>(run.evaluation->instants.size());
     e.truth = std::sqrt(squares / n);
     e.truth_bias = sum / n;
+    e.unheld = rms(run.things, run.held);
   }
   return e;
 }
@@ -354,7 +384,9 @@ StudyReport logParticlesStudy(const LogParticlesParams& params, const RecordedLo
   if (truth) {
     report.remarks.push_back(fmt::format(
         "Against the truth: outputs as road users less true ones, within {:g} m and {:g} deg "
-        "ahead, hidden ones and outputs beside them left out on both sides.",
+        "ahead, hidden ones and outputs beside them left out on both sides; what stands around and "
+        "is called a road user counts against it. Things not held: rms number of true things there "
+        "(poles and hedges, too) that have no output of their own, of whatever class.",
         params.evaluation.selection.range, degrees(params.evaluation.selection.fov)));
   }
   return report;

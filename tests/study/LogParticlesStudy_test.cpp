@@ -72,6 +72,25 @@ TEST(CompareCounts, AgainstTheTruthStandsWhatCountsOnBothSides) {
   ASSERT_TRUE(e.truth);
   EXPECT_DOUBLE_EQ(*e.truth, 1);
   EXPECT_DOUBLE_EQ(*e.truth_bias, 1);
+  EXPECT_DOUBLE_EQ(*e.unheld, 0);
+}
+
+TEST(CountObjects, APoleIsHeldByAnOutputOfAnyClass) {
+  GroundTruth truth;
+  GroundTruth::Instant instant;
+  instant.frame = 0;
+  TruthObject pole;
+  pole.frame = 0;
+  pole.type = "Misc";
+  pole.ignore = true;
+  for (const double x : {5.0, 10.0, 15.0}) {
+    pole.position = {x, 0, x > 12 ? 3.0 : 0.0};  // the last one hangs above the road
+    instant.objects.push_back(pole);
+  }
+  truth.instants = {instant};
+  const auto counted = countObjects(runOf({{object(1, 5, 0, true)}}), &truth, {});
+  EXPECT_EQ(counted.things, std::vector<int>{2});
+  EXPECT_EQ(counted.held, std::vector<int>{1});
 }
 
 }  // namespace
