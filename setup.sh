@@ -24,6 +24,7 @@ packages=(
   libmrpt-config-dev     # the options of MRPT's particle filter
   libmrpt-hwdrivers-dev  # drivers for MRPT's recorder
   libmrpt-system-dev     # time stamps, file names
+  libmrpt-topography-dev # latitudes and longitudes as east and north
   libeigen3-dev          # linear algebra
   libfmt-dev             # numbers as text, whatever the locale
   nlohmann-json3-dev     # events, run records, reports

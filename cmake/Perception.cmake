@@ -18,7 +18,7 @@ find_package(TBB REQUIRED)
 find_package(NLopt REQUIRED)
 find_package(tinyxml2 REQUIRED)
 find_package(ZLIB REQUIRED)
-foreach(part obs maps bayes random io opengl img config system hwdrivers)
+foreach(part obs maps bayes random io opengl img config system hwdrivers topography)
   find_package(mrpt-${part} REQUIRED)
 endforeach()
 

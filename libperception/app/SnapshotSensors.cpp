@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "libperception/app/SnapshotImage.h"
+#include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
 
 namespace perception {
@@ -128,8 +128,7 @@ void SnapshotSensors::lookAhead(const std::string& log) {
 
 std::optional<SensorFrame> SnapshotSensors::frameOf(
     const mrpt::obs::CObservation& observation) const {
-  if (auto frame = frameFromObservation(observation)) return frame;
-  return imageFrame(observation, log_);
+  return frameFromObservation(observation, nullptr, imagesBeside(log_));
 }
 
 void SnapshotSensors::advanceTo(Stamp stamp) {
@@ -137,7 +136,7 @@ void SnapshotSensors::advanceTo(Stamp stamp) {
   while (true) {
     if (!next_) next_ = reader_.next();
     if (!next_) return;
-    if (isSensorData(*next_) || imageFrame(*next_, log_)) {
+    if (isSensorData(*next_)) {
       const auto at = toStamp(next_->timestamp);
       if (at && *at > stamp) return;
       if (at && stamp - *at <= std::max(params_.memory, kLastImage)) {

@@ -8,11 +8,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <type_traits>
 
 #include "libperception/sensors/CObservationLidarScan.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/CObservationRadarScan.h"
+#include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/RangeClouds.h"
+#include "libperception/sensors/VelodyneCloud.h"
 
 namespace perception {
 
@@ -21,15 +26,15 @@ namespace {
 using mrpt::obs::CObservation;
 using Data = decltype(SensorFrame::data);
 
-/// Intensities of MRPT clouds come as [0, 1] or as the sensor's byte; ours are [0, 1]. A cloud with
-/// a value above 1 is taken to be in bytes as a whole.
+/// Intensities of MRPT clouds come as [0, 1] or as the sensor's integer of one or two bytes; ours
+/// are [0, 1]. The cloud's highest value tells which, for the cloud as a whole.
 void scaleIntensity(std::vector<float>& intensity) {
   float highest = 0;
   for (float& value : intensity) {
     if (!std::isfinite(value) || value < 0) value = 0;
     highest = std::max(highest, value);
   }
-  const float scale = highest > 1 ? 1.F / 255 : 1.F;
+  const float scale = highest > 255 ? 1.F / 65535 : highest > 1 ? 1.F / 255 : 1.F;
   for (float& value : intensity) value = std::min(1.F, value * scale);
 }
 
@@ -87,6 +92,42 @@ std::optional<Data> decode(const mrpt::obs::CObservationPointCloud& observation,
   return cloud;
 }
 
+Data cleaned(LidarCloud cloud, DecodeCounts& counts) {
+  scaleIntensity(cloud.intensity);
+  dropBadPoints(cloud, counts);
+  return cloud;
+}
+
+std::optional<Data> decode(const mrpt::obs::CObservationVelodyneScan& scan, DecodeCounts& counts) {
+  VelodyneCounts velodyne;
+  auto cloud = velodyneCloud(scan, &velodyne);
+  counts.no_range += velodyne.too_near;
+  if (!cloud) {
+    ++counts.rejected;
+    return {};
+  }
+  dropBadPoints(*cloud, counts);  // intensities are in [0, 1] already
+  return std::move(*cloud);
+}
+
+std::optional<Data> decode(const mrpt::obs::CObservation2DRangeScan& scan, DecodeCounts& counts) {
+  return cleaned(planarCloud(scan, counts.no_range), counts);
+}
+
+std::optional<Data> decode(const mrpt::obs::CObservation3DRangeScan& scan, DecodeCounts& counts) {
+  auto cloud = rangeImageCloud(scan, counts.no_range);
+  if (cloud) return cleaned(std::move(*cloud), counts);
+  ++counts.rejected;
+  return {};
+}
+
+std::optional<Data> decode(const mrpt::obs::CObservationRotatingScan& scan, DecodeCounts& counts) {
+  auto cloud = rotatingCloud(scan, counts.no_range);
+  if (cloud) return cleaned(std::move(*cloud), counts);
+  ++counts.rejected;
+  return {};
+}
+
 bool usable(const ObjectDetection& d) {
   if (!std::isfinite(d.score)) return false;
   if (d.image_box) {
@@ -128,18 +169,34 @@ std::optional<Data> decode(const CObservationRadarScan& observation, DecodeCount
   return scan;
 }
 
+std::optional<Data> decodeImage(const mrpt::obs::CObservationImage& observation,
+                                DecodeCounts& counts, const std::string& images) {
+  CameraImage image = cameraImage(observation, images);
+  std::error_code fault;
+  const bool missing = observation.image.isExternallyStored()
+                           ? !std::filesystem::is_regular_file(image.source, fault)
+                           : observation.image.isEmpty();
+  counts.missing_images += missing ? 1 : 0;
+  return image;
+}
+
 /// One class of observation that holds data for a front end: to decode another class, add its
 /// decode() and a row.
 struct Decoder {
   bool (*knows)(const CObservation&);
-  std::optional<Data> (*decode)(const CObservation&, DecodeCounts&);
+  std::optional<Data> (*decode)(const CObservation&, DecodeCounts&, const std::string& images);
 };
 
 template <class Class>
 constexpr Decoder decoderOf() {
   return {[](const CObservation& o) { return dynamic_cast<const Class*>(&o) != nullptr; },
-          [](const CObservation& o, DecodeCounts& counts) {
-            return perception::decode(dynamic_cast<const Class&>(o), counts);
+          [](const CObservation& o, DecodeCounts& counts, const std::string& images) {
+            if constexpr (std::is_same_v<Class, mrpt::obs::CObservationImage>) {
+              return decodeImage(dynamic_cast<const Class&>(o), counts, images);
+            } else {
+              static_cast<void>(images);
+              return perception::decode(dynamic_cast<const Class&>(o), counts);
+            }
           }};
 }
 
@@ -148,6 +205,11 @@ constexpr Decoder kDecoders[] = {
     decoderOf<mrpt::obs::CObservationPointCloud>(),
     decoderOf<CObservationObjectDetections>(),
     decoderOf<CObservationRadarScan>(),
+    decoderOf<mrpt::obs::CObservationImage>(),
+    decoderOf<mrpt::obs::CObservationVelodyneScan>(),
+    decoderOf<mrpt::obs::CObservation2DRangeScan>(),
+    decoderOf<mrpt::obs::CObservation3DRangeScan>(),
+    decoderOf<mrpt::obs::CObservationRotatingScan>(),
 };
 
 const Decoder* decoderFor(const CObservation& observation) {
@@ -191,8 +253,12 @@ void dropBadPoints(LidarCloud& cloud, DecodeCounts& counts) {
 
 bool isSensorData(const CObservation& observation) { return decoderFor(observation) != nullptr; }
 
+bool isImage(const CObservation& observation) {
+  return dynamic_cast<const mrpt::obs::CObservationImage*>(&observation) != nullptr;
+}
+
 std::optional<SensorFrame> frameFromObservation(const CObservation& observation,
-                                                DecodeCounts* counts) {
+                                                DecodeCounts* counts, const std::string& images) {
   DecodeCounts local;
   DecodeCounts& c = counts != nullptr ? *counts : local;
   const Decoder* decoder = decoderFor(observation);
@@ -202,7 +268,7 @@ std::optional<SensorFrame> frameFromObservation(const CObservation& observation,
     ++c.rejected_stamps;
     return {};
   }
-  auto data = decoder->decode(observation, c);
+  auto data = decoder->decode(observation, c, images);
   if (!data) return {};
   SensorFrame frame;
   frame.sensor = observation.sensorLabel;

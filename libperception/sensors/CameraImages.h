@@ -1,0 +1,18 @@
+#pragma once
+#include <mrpt/obs/CObservationImage.h>
+
+#include <string>
+
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// Where MRPT's programs keep the images of a log: LOG_Images beside LOG.rawlog.
+std::string imagesBeside(const std::string& log);
+
+/// The image with its camera; pixels are loaded when asked for, from the log or, for images stored
+/// outside, from `folder`. load() of an image that is missing or that no decoder reads gives
+/// nothing and throws nothing.
+CameraImage cameraImage(const mrpt::obs::CObservationImage& observation, const std::string& folder);
+
+}  // namespace perception
