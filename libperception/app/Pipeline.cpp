@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/measurement/PositionFrontEnd.h"
@@ -166,6 +167,7 @@ void Pipeline::add(const mrpt::obs::CObservation& observation) {
     if (frame_numbers_.size() > 200) frame_numbers_.pop_front();
     return;
   }
+  if (isImage(observation)) return;  // no front end reads images: their boxes come as detections
   if (isSensorData(observation)) {
     addFrame(observation);
   } else {
@@ -252,6 +254,12 @@ std::optional<Scene> Pipeline::next(bool flush) {
 }
 
 EgoState Pipeline::egoAt(Stamp stamp) {
+  // Tracks live in the world: in another one they are nowhere.
+  if (std::exchange(worlds_, ego_.worlds()) != ego_.worlds() && last_instant_) {
+    events_.add(stamp, event_kind::kEgoGap, "the world's frame is known now: tracks start anew");
+    tracker_.reset();
+    horizon_.reset();
+  }
   if (ego_.empty()) {
     if (!parked_said_)
       events_.warn(stamp, event_kind::kEgoGap,

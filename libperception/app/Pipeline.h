@@ -136,6 +136,7 @@ class Pipeline {
   Stamp last_stamp_;
   bool parked_said_ = false, ego_gap_ = false;
   PipelineObserver* observer_ = nullptr;
+  std::uint64_t worlds_ = 0;  ///< EgoPose::worlds() that the tracks live in
 };
 
 }  // namespace perception

@@ -375,6 +375,7 @@ Picture coveragePicture(const std::vector<SensorParams>& sensors, const std::str
   std::vector<Panel> panels = {
       {"Lidar", kLidarColour, {}}, {"Camera", kCameraColour, {}}, {"Radar", kRadarColour, {}}};
   for (const SensorParams& s : sensors) {
+    if (s.isOfEgo()) continue;
     panels[s.isLidar() ? 0 : s.isCamera() ? 1 : 2].sensors.push_back(coverageOf(s));
   }
   panels.erase(std::remove_if(panels.begin(), panels.end(),

@@ -38,12 +38,17 @@ EgoState between(const EgoState& a, const EgoState& b, Stamp stamp) {
       (1 - s) * a.T_world_ego.translation() + s * b.T_world_ego.translation();
   const Eigen::Quaterniond qa(a.T_world_ego.linear()), qb(b.T_world_ego.linear());
   state.T_world_ego.linear() = qa.slerp(s, qb).toRotationMatrix();
+  state.velocity = (1 - s) * a.velocity + s * b.velocity;
+  state.yaw_rate = (1 - s) * a.yaw_rate + s * b.yaw_rate;
   return state;
 }
 
 }  // namespace
 
 void EgoPoseParams::visit(ParamVisitor& v) {
+  v.choiceOf("source", source, {"auto", "poses", "fusion"},
+             "the log's poses; fusion of satellites, inertial unit and wheels; auto: poses where "
+             "there are some");
   v.text("label", label,
          "label of the pose observations; empty: EGO_POSE, or the first pose label of the log");
   v.real("sigma_xy", minimum.sigma_xy, {0, 10}, "m",
@@ -57,9 +62,11 @@ void EgoPoseParams::visit(ParamVisitor& v) {
   v.real("max_speed", max_speed, {1, 1000}, "m/s",
          "a pose that implies more is rejected as a jump");
   v.real("history", history, {1, 600}, "s", "poses kept, at least the longest delay of any sensor");
+  fusion.visit(v);
 }
 
-EgoPose::EgoPose(EgoPoseParams params) : params_(std::move(params)), label_(params_.label) {}
+EgoPose::EgoPose(EgoPoseParams params)
+    : params_(std::move(params)), fusion_(params_.fusion), label_(params_.label) {}
 
 EgoState EgoPose::parked(Stamp stamp, const PoseUncertainty& uncertainty) {
   EgoState state;
@@ -69,6 +76,8 @@ EgoState EgoPose::parked(Stamp stamp, const PoseUncertainty& uncertainty) {
 }
 
 void EgoPose::clear() {
+  worlds_ += fusion_.state().relocations;
+  fusion_.clear();
   poses_.clear();
   relocated_.clear();
 }
@@ -86,7 +95,11 @@ bool EgoPose::wants(const std::string& label) {
 
 void EgoPose::add(const mrpt::obs::CObservation& observation) {
   const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation);
-  if (pose == nullptr || !wants(pose->sensorLabel)) return;
+  if (pose == nullptr) {
+    if (poses_.empty() && params_.source != EgoPoseParams::Source::kPoses) fusion_.add(observation);
+    return;
+  }
+  if (params_.source == EgoPoseParams::Source::kFusion || !wants(pose->sensorLabel)) return;
   const auto stamp = toStamp(pose->timestamp);
   if (!stamp) {
     ++rejected_other_;
@@ -127,6 +140,7 @@ void EgoPose::add(const EgoState& pose) {
     ++rejected_other_;
     return;
   }
+  if (poses_.empty() && !fusion_.poses().empty()) ++worlds_;  // the log's own poses take over
   if (!poses_.empty()) {
     const auto place = std::lower_bound(poses_.begin(), poses_.end(), pose.stamp, before);
     const bool same_instant = place != poses_.end() && place->stamp == pose.stamp;
@@ -170,22 +184,30 @@ void EgoPose::setMotion(EgoState& state) const {
 }
 
 std::optional<EgoState> EgoPose::at(Stamp stamp) const {
-  if (poses_.empty()) return {};
-  const auto after = std::lower_bound(poses_.begin(), poses_.end(), stamp, before);
-  if (after != poses_.end() && (after->stamp == stamp || after != poses_.begin())) {
-    EgoState state = after->stamp == stamp ? *after : between(*std::prev(after), *after, stamp);
-    setMotion(state);
-    return state;
+  if (empty()) return {};
+  const auto& all = poses();
+  EgoState state;
+  const auto after = std::lower_bound(all.begin(), all.end(), stamp, before);
+  if (after != all.end() && (after->stamp == stamp || after != all.begin())) {
+    state = after->stamp == stamp ? *after : between(*std::prev(after), *after, stamp);
+    if (!fused()) setMotion(state);
+  } else {
+    state = after == all.end() ? all.back() : all.front();
+    const double dt = stamp - state.stamp;
+    if (std::abs(dt) > params_.extrapolation) return {};
+    if (!fused()) setMotion(state);
+    state.stamp = stamp;
+    state.T_world_ego.translation().head<2>() += dt * state.velocity;
+    state.T_world_ego.linear() =
+        Eigen::AngleAxisd(dt * state.yaw_rate, Vector3::UnitZ()).toRotationMatrix() *
+        state.T_world_ego.linear();
   }
-  EgoState state = after == poses_.end() ? poses_.back() : poses_.front();
-  const double dt = stamp - state.stamp;
-  if (std::abs(dt) > params_.extrapolation) return {};
-  setMotion(state);
-  state.stamp = stamp;
-  state.T_world_ego.translation().head<2>() += dt * state.velocity;
-  state.T_world_ego.linear() =
-      Eigen::AngleAxisd(dt * state.yaw_rate, Vector3::UnitZ()).toRotationMatrix() *
-      state.T_world_ego.linear();
+  if (fused()) {
+    auto& u = state.uncertainty;
+    u.sigma_xy = std::max(u.sigma_xy, params_.minimum.sigma_xy);
+    u.sigma_yaw = std::max(u.sigma_yaw, params_.minimum.sigma_yaw);
+    u.sigma_pitch = std::max(u.sigma_pitch, params_.minimum.sigma_pitch);
+  }
   return state;
 }
 

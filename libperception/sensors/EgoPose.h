@@ -8,11 +8,16 @@
 
 #include "libperception/core/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
+#include "libperception/sensors/EgoFusion.h"
 
 namespace perception {
 
 /// How the vehicle's pose is taken from the log: [ego].
 struct EgoPoseParams {
+  /// Poses of the log, or satellites, inertial unit and wheels, or these where no pose is.
+  enum class Source { kAuto, kPoses, kFusion };
+  Source source = Source::kAuto;
+  FusionParams fusion;
   std::string
       label;  ///< of the pose observations; empty: EGO_POSE, or the first label if there is none
   PoseUncertainty minimum;     ///< SPEC 1; a log that claims less (or nothing) gets this
@@ -27,22 +32,30 @@ struct EgoPoseParams {
 /// attitudes by slerp, beyond the newest pose for a moment with the last velocity. Poses may come
 /// in any order within the history.
 ///
-/// A log without any pose: empty() stays true and at() gives nothing; callers then use parked(),
+/// A log without poses but with a satellite receiver, an inertial unit or wheels gets them from
+/// EgoFusion; the first pose of the log ends that.
+///
+/// A log without any of them: empty() stays true and at() gives nothing; callers then use parked(),
 /// the documented fallback: the vehicle stands at the world's origin.
 class EgoPose {
  public:
   explicit EgoPose(EgoPoseParams params = {});
 
-  /// Takes a CObservationRobotPose of the wanted label; every other observation is ignored.
+  /// Takes a CObservationRobotPose of the wanted label and, unless `source` is poses, what
+  /// EgoFusion takes; every other observation is ignored.
   void add(const mrpt::obs::CObservation& observation);
   /// The same for a pose from elsewhere (velocity and yaw rate are ignored).
   void add(const EgoState& pose);
   /// The vehicle at `stamp`; empty when no pose is near enough in time.
   std::optional<EgoState> at(Stamp stamp) const;
 
-  bool empty() const { return poses_.empty(); }
+  bool empty() const { return poses().empty(); }
   /// Of the newest pose; only when not empty().
-  Stamp latest() const { return poses_.back().stamp; }
+  Stamp latest() const { return poses().back().stamp; }
+  /// How often the world of the poses became another one: when the first pose of the log took over
+  /// from EgoFusion, or this one found its heading. What was placed in the old world is void.
+  std::uint64_t worlds() const { return worlds_ + fusion_.state().relocations; }
+  const EgoFusion& fusion() const { return fusion_; }
   /// Forgets everything, as after a jump of the clock.
   void clear();
   static EgoState parked(Stamp stamp, const PoseUncertainty& uncertainty = {});
@@ -54,15 +67,19 @@ class EgoPose {
   }  ///< bad stamp or numbers, too old, same instant
 
  private:
+  const std::deque<EgoState>& poses() const { return poses_.empty() ? fusion_.poses() : poses_; }
+  bool fused() const { return poses_.empty(); }
   bool wants(const std::string& label);
   bool isJump(const EgoState& pose);
   void setMotion(EgoState& state) const;
 
   EgoPoseParams params_;
+  EgoFusion fusion_;
   std::string label_;               ///< in use
   std::deque<EgoState> poses_;      ///< by stamp; velocities are not set
   std::deque<EgoState> relocated_;  ///< a run of rejected poses that agree with each other
   std::uint64_t accepted_ = 0, rejected_jumps_ = 0, rejected_other_ = 0;
+  std::uint64_t worlds_ = 0;
 };
 
 }  // namespace perception

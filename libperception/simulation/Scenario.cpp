@@ -63,7 +63,7 @@ void WaypointParams::visit(ParamVisitor& v) {
 }
 
 void PoseParams::visit(ParamVisitor& v) {
-  v.real("pose_rate", rate, {1, 1000}, "1/s", "of the pose estimator (paper: 100 Hz)");
+  v.real("pose_rate", rate, {0, 1000}, "1/s", "of the pose estimator (paper: 100 Hz); 0: none");
   v.real("pose_sigma_xy", sigma_xy, {0, 10}, "m", "slow error of the reported pose");
   v.angle("pose_sigma_yaw_deg", sigma_yaw, {0, 10}, "slow error of the reported heading");
   v.real("pose_correlation", correlation, {0.01, 1000}, "s", "time constant of that error");
@@ -98,8 +98,10 @@ void ObjectParams::visit(ParamVisitor& v) {
 
 void SensorParams::visit(ParamVisitor& v) {
   const SensorKind before = kind;
-  v.choiceOf("kind", kind, {"lidar64", "lidar4", "camera_boxes", "spherical_camera", "radar"},
-             "what it is");
+  v.choiceOf(
+      "kind", kind,
+      {"lidar64", "lidar4", "camera_boxes", "spherical_camera", "radar", "gnss", "imu", "wheels"},
+      "what it is");
   if (kind != before && kind == SensorKind::kLidar4) lidar = LidarParams::fourLayer();
   v.real("x", x, {-20, 20}, "m", "place on the vehicle: forward of the rear axle");
   v.real("y", y, {-20, 20}, "m", "left");
@@ -107,7 +109,7 @@ void SensorParams::visit(ParamVisitor& v) {
   v.angle("yaw_deg", yaw, {-360, 360}, "of its forward axis, to the left");
   v.angle("pitch_deg", pitch, {-90, 90}, "down");
   v.angle("roll_deg", roll, {-180, 180}, "about its forward axis");
-  v.real("rate", rate, {0.1, 100}, "1/s", "scans or images");
+  v.real("rate", rate, {0.1, 1000}, "1/s", "scans, images or readings");
   v.real("phase", phase, {0, 10}, "s", "time of the first one");
   switch (kind) {
     case SensorKind::kLidar64:
@@ -119,6 +121,12 @@ void SensorParams::visit(ParamVisitor& v) {
       return panorama.visit(v);
     case SensorKind::kRadar:
       return radar.visit(v);
+    case SensorKind::kGnss:
+      return gnss.visit(v);
+    case SensorKind::kImu:
+      return imu.visit(v);
+    case SensorKind::kWheels:
+      return wheels.visit(v);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "libperception/core/Config.h"
 #include "libperception/core/Frames.h"
 #include "libperception/simulation/CameraBoxes.h"
+#include "libperception/simulation/EgoSensors.h"
 #include "libperception/simulation/LidarSensor.h"
 #include "libperception/simulation/RadarUnit.h"
 #include "libperception/simulation/SphericalCamera.h"
@@ -44,7 +45,7 @@ struct WaypointParams {
 
 /// What the vehicle's pose estimator says, in [ego]; the part of [ego] that a vehicle INI may hold.
 struct PoseParams {
-  double rate = 100;        ///< [1/s] (paper: 100 Hz)
+  double rate = 100;        ///< [1/s] (paper: 100 Hz); 0: the log holds no poses
   double sigma_xy = 0;      ///< [m] error of the reported pose: slowly varying
   double sigma_yaw = 0;     ///< [rad]
   double correlation = 10;  ///< [s] time constant of that error
@@ -82,7 +83,16 @@ struct ObjectParams {
   void visit(ParamVisitor& v);
 };
 
-enum class SensorKind { kLidar64, kLidar4, kCameraBoxes, kSphericalCamera, kRadar };
+enum class SensorKind {
+  kLidar64,
+  kLidar4,
+  kCameraBoxes,
+  kSphericalCamera,
+  kRadar,
+  kGnss,
+  kImu,
+  kWheels
+};
 
 /// [sensor.LABEL]: one sensor of the vehicle.
 struct SensorParams {
@@ -96,10 +106,17 @@ struct SensorParams {
   CameraParams camera;
   SphericalCameraParams panorama;
   RadarUnitParams radar;
+  GnssUnitParams gnss;
+  ImuUnitParams imu;
+  WheelUnitParams wheels;
 
   bool isLidar() const { return kind == SensorKind::kLidar64 || kind == SensorKind::kLidar4; }
   bool isCamera() const {
     return kind == SensorKind::kCameraBoxes || kind == SensorKind::kSphericalCamera;
+  }
+  /// Of the vehicle's own motion: sees nothing around it.
+  bool isOfEgo() const {
+    return kind == SensorKind::kGnss || kind == SensorKind::kImu || kind == SensorKind::kWheels;
   }
   /// Of a camera.
   CameraModel cameraModel() const {

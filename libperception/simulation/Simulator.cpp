@@ -37,7 +37,7 @@ Simulator::Simulator(Scenario scenario, const std::string& name, std::uint64_t s
       pose_rng_({seed, 0, 0, kPoseStream}) {
   const Scenario& s = world_.scenario();
   schedule(Event::kComment, 0, 1 / (2 * s.params.duration), 0);
-  schedule(Event::kPose, 0, s.ego.pose.rate, 0);
+  if (s.ego.pose.rate > 0) schedule(Event::kPose, 0, s.ego.pose.rate, 0);
   schedule(Event::kFrame, 0, s.params.rate, 0);
   for (std::size_t i = 0; i < s.sensors.size(); ++i) {
     schedule(Event::kSensor, i, s.sensors[i].rate, s.sensors[i].phase);
@@ -61,8 +61,12 @@ void Simulator::schedule(Event::Kind kind, std::size_t sensor, double rate, doub
 
 std::shared_ptr<mrpt::obs::CObservation> Simulator::next() {
   while (next_ < events_.size()) {
-    if (auto observation = play(events_[next_++])) return observation;
-    ++unwritten_;
+    const Event& event = events_[next_++];
+    if (auto observation = play(event)) return observation;
+    // A receiver without satellites is silent; other silence is a class that is missing.
+    const bool own =
+        event.kind == Event::kSensor && world_.scenario().sensors[event.sensor].isOfEgo();
+    unwritten_ += own ? 0 : 1;
   }
   endFrame();
   return nullptr;
@@ -112,15 +116,19 @@ void Simulator::endFrame() {
   open_.clear();
 }
 
-// Occlusion as seen from the first lidar (else the first camera); truncation by the cameras'
-// images.
+// Occlusion as seen from the first lidar (else the first sensor that looks around); truncation by
+// the cameras' images.
 void Simulator::setVisibility(std::vector<TruthObject>& rows, double t) {
   caster_.setTime(t);
   const auto& sensors = world_.scenario().sensors;
   const Pose3 T_world_ego = world_.ego(t).T_world_ego;
-  const auto lidar = std::find_if(sensors.begin(), sensors.end(),
-                                  [](const SensorParams& s) { return s.isLidar(); });
-  const SensorParams& eye = lidar != sensors.end() ? *lidar : sensors.front();
+  auto looker = std::find_if(sensors.begin(), sensors.end(),
+                             [](const SensorParams& s) { return s.isLidar(); });
+  if (looker == sensors.end()) {
+    looker = std::find_if(sensors.begin(), sensors.end(),
+                          [](const SensorParams& s) { return !s.isOfEgo(); });
+  }
+  const SensorParams& eye = looker != sensors.end() ? *looker : sensors.front();
   const Vector3 from = (T_world_ego * eye.T_ego_sensor()).translation();
   const bool has_camera = std::any_of(sensors.begin(), sensors.end(),
                                       [](const SensorParams& s) { return s.isCamera(); });
@@ -158,8 +166,25 @@ EgoState Simulator::reportedEgo(double t) {
   return ego;
 }
 
+std::shared_ptr<mrpt::obs::CObservation> Simulator::feelEgo(const Event& event) {
+  const SensorParams& sensor = world_.scenario().sensors[event.sensor];
+  const EgoMount mount{sensor.label, sensor.T_ego_sensor(), sensor.rate};
+  const EgoTruth truth{[this](double t) { return world_.ego(t); },
+                       [this](double t) { return world_.stamp(t); }};
+  const RngKey key{seed_, event.count, 0, kSensorStream + static_cast<std::uint32_t>(event.sensor)};
+  switch (sensor.kind) {
+    case SensorKind::kGnss:
+      return gnssObservation(sensor.gnss, mount, truth, event.t, key);
+    case SensorKind::kImu:
+      return imuObservation(sensor.imu, mount, truth, event.t, key);
+    default:
+      return wheelObservation(sensor.wheels, mount, truth, event.t, key);
+  }
+}
+
 std::shared_ptr<mrpt::obs::CObservation> Simulator::sense(const Event& event) {
   const SensorParams& sensor = world_.scenario().sensors[event.sensor];
+  if (sensor.isOfEgo()) return feelEgo(event);
   const RngKey key{seed_, event.count, 0, kSensorStream + static_cast<std::uint32_t>(event.sensor)};
   SensorFrame frame;
   frame.sensor = sensor.label;

@@ -61,6 +61,7 @@ class Simulator {
   std::shared_ptr<mrpt::obs::CObservation> sense(const Event& event);
   LidarCloud scanLidar(const Event& event, const RngKey& key);
   ObjectDetections seeObjects(const Event& event, const Pose3& T_world_camera, const RngKey& key);
+  std::shared_ptr<mrpt::obs::CObservation> feelEgo(const Event& event);
   RadarReturns listenRadar(const Event& event, const RngKey& key);
   void setVisibility(std::vector<TruthObject>& rows, double t);
 

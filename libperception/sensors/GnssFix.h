@@ -1,0 +1,60 @@
+#pragma once
+#include <mrpt/obs/CObservationGPS.h>
+
+#include <optional>
+
+#include "libperception/core/Frames.h"
+#include "libperception/core/ParamSet.h"
+#include "libperception/core/Time.h"
+
+namespace perception {
+
+/// What a satellite receiver is believed, where its messages do not say it themselves: in [ego].
+struct GnssParams {
+  double sigma = 1.5;           ///< [m] of a plain fix at HDOP 1, east and north each
+  double rtk_sigma = 0.03;      ///< [m] of a fixed RTK solution
+  double height_factor = 2;     ///< [-] heights are so much worse than east and north
+  double velocity_sigma = 0.2;  ///< [m/s] of Doppler speed and course (RMC, VTG)
+
+  void visit(ParamVisitor& v);
+};
+
+/// A place on WGS84.
+struct Geodetic {
+  double latitude = 0, longitude = 0;  ///< [deg] north, east
+  double height = 0;                   ///< [m] above the ellipsoid
+};
+
+/// One position of a satellite receiver, with what else its messages say.
+struct GnssFix {
+  Stamp stamp;
+  Geodetic place;                     ///< of the antenna
+  bool has_height = true;             ///< false: RMC and GLL alone
+  double sigma = 1.5;                 ///< [m] east and north each
+  double height_sigma = 3;            ///< [m]
+  std::optional<Vector2> velocity;    ///< [m/s] east, north
+  double velocity_sigma = 0.2;        ///< [m/s] each
+  std::optional<double> yaw;          ///< [rad] of the vehicle, from east: receivers with own INS
+  double yaw_sigma = 0.02;            ///< [rad]
+  Vector3 antenna = Vector3::Zero();  ///< [m] on the vehicle
+};
+
+/// The best position among the messages of an observation: NMEA GGA, RMC, GLL (speed and course of
+/// RMC, VTG), Novatel BESTPOS, INSPVAS (with INSCOVS), Topcon PZS (geodetic or cartesian). Empty
+/// when there is none or the receiver says that it is not valid.
+std::optional<GnssFix> gnssFix(const mrpt::obs::CObservationGPS& observation,
+                               const GnssParams& params);
+
+/// East, north, up [m] about a place on WGS84.
+class LocalFrame {
+ public:
+  explicit LocalFrame(const Geodetic& origin) : origin_(origin) {}
+  Vector3 fromGeodetic(const Geodetic& place) const;
+  Geodetic toGeodetic(const Vector3& enu) const;
+  const Geodetic& origin() const { return origin_; }
+
+ private:
+  Geodetic origin_;
+};
+
+}  // namespace perception

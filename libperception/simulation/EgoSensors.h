@@ -1,0 +1,81 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libperception/core/ParamSet.h"
+#include "libperception/core/Random.h"
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// A satellite receiver: [sensor.LABEL] kind = gnss.
+struct GnssUnitParams {
+  double sigma = 1.5;           ///< [m] east and north each, of every fix alone
+  double height_sigma = 3;      ///< [m]
+  double velocity_sigma = 0.1;  ///< [m/s] east and north each (Doppler)
+  bool velocity = true;         ///< RMC with speed and course beside GGA
+  double delay = 0;             ///< [s] a fix comes so late into the log, with its own stamp
+  std::vector<double> gap_from, gap_to;  ///< [s] no satellites
+  double latitude = 42.4440;             ///< [deg] of the scene's origin (Ithaca, New York)
+  double longitude = -76.5019;           ///< [deg]
+  double height = 250;                   ///< [m] above the ellipsoid
+
+  void visit(ParamVisitor& v);
+};
+
+/// Three gyros and three accelerometers: kind = imu. Biases are drawn once a log.
+struct ImuUnitParams {
+  double gyro_noise = radians(0.05);  ///< [rad/sqrt(s)] angle random walk
+  double gyro_bias = radians(0.5);    ///< [rad/s] deviation of each axis' bias
+  double accel_noise = 0.05;          ///< [m/s^2 sqrt(s)] velocity random walk
+  double accel_bias = 0.1;            ///< [m/s^2] deviation of each axis' bias
+  double vibration = 0.3;             ///< [m/s^2] of engine and road, across and upwards
+
+  void visit(ParamVisitor& v);
+};
+
+/// The speed of the rear axle: kind = wheels. The scale is drawn once a log.
+struct WheelUnitParams {
+  double sigma = 0.05;                   ///< [m/s] of one reading
+  double scale = 0.02;                   ///< [-] deviation of the scale: tyres, pressure
+  double yaw_rate_sigma = radians(0.5);  ///< [rad/s] of the difference between the wheels
+
+  void visit(ParamVisitor& v);
+};
+
+/// Where a sensor of the vehicle's own motion sits, and how often it speaks.
+struct EgoMount {
+  std::string label;
+  Pose3 T_ego_sensor = Pose3::Identity();
+  double rate = 10;  ///< [1/s]
+};
+
+/// How the vehicle really moves, by seconds since the log's first stamp.
+struct EgoTruth {
+  std::function<EgoState(double)> at;  ///< pose, velocity and yaw rate
+  std::function<Stamp(double)> stamp;
+};
+
+/// Readings at t [s]; `key` names the sensor (purpose) and the reading (counter).
+
+/// CObservationGPS with GGA and RMC; null in a gap.
+std::shared_ptr<mrpt::obs::CObservation> gnssObservation(const GnssUnitParams& params,
+                                                         const EgoMount& mount,
+                                                         const EgoTruth& truth, double t,
+                                                         const RngKey& key);
+/// CObservationIMU with the mean rates and forces since the reading before.
+std::shared_ptr<mrpt::obs::CObservation> imuObservation(const ImuUnitParams& params,
+                                                        const EgoMount& mount,
+                                                        const EgoTruth& truth, double t,
+                                                        const RngKey& key);
+/// CObservationOdometry with velocities alone.
+std::shared_ptr<mrpt::obs::CObservation> wheelObservation(const WheelUnitParams& params,
+                                                          const EgoMount& mount,
+                                                          const EgoTruth& truth, double t,
+                                                          const RngKey& key);
+
+}  // namespace perception
