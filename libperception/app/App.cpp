@@ -12,6 +12,8 @@
 #include <system_error>
 #include <utility>
 
+#include "libperception/sensors/MemoryLimit.h"
+
 namespace perception {
 namespace {
 
@@ -183,6 +185,7 @@ int runApp(App& app, int argc, const char* const* argv) {
   const int ended = parse(app, cli, argc, argv);
   if (ended >= 0) return ended;
   const StopSignals listening;
+  const MemoryLimit limit;  // logs are not believed: a forged size must not take the machine
   return static_cast<int>(runGuarded(app));
 }
 

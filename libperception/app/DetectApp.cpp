@@ -14,10 +14,11 @@
 #include "libperception/app/ImportText.h"
 #include "libperception/app/KittiFiles.h"
 #include "libperception/app/OutputFolder.h"
-#include "libperception/app/SnapshotImage.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/RawlogWriter.h"
 #include "libperception/sensors/ToObservation.h"
@@ -270,13 +271,15 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
   Progress progress("detect", reader.fileBytes());
   std::optional<ObjectDetections> held;  // newest boxes of the log
   std::int64_t seen = 0;
+  const std::string images = imagesBeside(log);
   while (const auto observation = reader.next()) {
     stopIfAsked();
     if (writer) writer->write(*observation);
     if (const auto* boxes = dynamic_cast<const CObservationObjectDetections*>(observation.get())) {
       if (boxes_label.empty() || boxes->sensorLabel == boxes_label) held = boxes->detections;
     }
-    const auto frame = imageFrame(*observation, log);
+    if (!isImage(*observation)) continue;
+    const auto frame = frameFromObservation(*observation, nullptr, images);
     if (!frame || (!camera_label.empty() && frame->sensor != camera_label)) continue;
     if (seen++ % every != 0) continue;
     const auto& data = std::get<CameraImage>(frame->data);

@@ -26,6 +26,20 @@ std::vector<SensorFrame> FrameQueue::pop(bool flush) {
   return out;
 }
 
+std::vector<SensorFrame> FrameQueue::take(Stamp until,
+                                          const std::function<bool(const std::string&)>& wanted) {
+  std::vector<SensorFrame> out;
+  for (auto it = frames_.begin(); it != frames_.end() && it->first.first <= until.ns;) {
+    if (wanted(it->first.second)) {
+      out.push_back(std::move(it->second));
+      it = frames_.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  return out;
+}
+
 void FrameQueue::clear() {
   frames_.clear();
   newest_ = {};

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -28,6 +29,9 @@ class FrameQueue {
   void advance(Stamp stamp);
   /// All frames of the oldest instant, once nothing older can come; with `flush` at once.
   std::vector<SensorFrame> pop(bool flush);
+  /// Takes frames up to `until` whose label `wanted` accepts, in the order of time, before their
+  /// turn.
+  std::vector<SensorFrame> take(Stamp until, const std::function<bool(const std::string&)>& wanted);
   bool empty() const { return frames_.empty(); }
   /// Forgets everything, as after a jump of the clock.
   void clear();

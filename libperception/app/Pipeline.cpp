@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "libperception/lidar/LidarFrontEnd.h"
@@ -104,6 +105,11 @@ PipelineSetup PipelineSetup::read(Config& config) {
     sensor.label = section.substr(prefix.size());
     if (sensor.label.find('.') != std::string::npos) continue;  // a table of that sensor
     sensor.params = config.read<SensingParams>(section);
+    if (sensor.params.kind == "lidar") sensor.scan = config.read<ScanParams>(section);
+    if (!sensor.scan.merge.empty() && sensor.scan.merge_window > s.run.reorder_window)
+      config.fault(section, "merge_window", "must not be above [run] reorder_window");
+    if (!sensor.scan.merge.empty() && sensor.params.pose)
+      config.fault(section, "pose", "several scanners are merged: their poses come with the log");
     sensor.front_end =
         makeFrontEnd(config, section, sensor.label, sensor.params.kind, s.model.classes);
     sensor.active = letters.find(static_cast<char>(sensor.params.modality)) != std::string::npos;
@@ -135,7 +141,7 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
     SensorState state;
     state.record.label = sensor.label;
     state.record.modality = std::string(1, static_cast<char>(sensor.params.modality));
-    if (sensor.params.modality == Modality::kLidar) {
+    if (sensor.params.modality == Modality::kLidar && sensor.scan.ground) {
       state.ground = std::make_unique<GroundEstimator>(setup_.ground, setup_.run.seed);
       state.weather = makePointFilter(setup_.weather);
     }
@@ -154,9 +160,42 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
 
 int Pipeline::sensorIndex(const std::string& label) const {
   for (std::size_t i = 0; i < setup_.sensors.size(); ++i) {
-    if (setup_.sensors[i].label == label) return static_cast<int>(i);
+    if (setup_.sensors[i].label == label || setup_.sensors[i].scan.merges(label))
+      return static_cast<int>(i);
   }
   return -1;
+}
+
+// Scans of several scanners, at most merge_window apart, become one frame at the newest one's time.
+void Pipeline::mergeScans(std::vector<SensorFrame>& frames) {
+  if (frames.empty()) return;
+  const Stamp stamp = frames.front().stamp;
+  for (const auto& sensor : setup_.sensors) {
+    const auto others =
+        std::stable_partition(frames.begin(), frames.end(), [&](const SensorFrame& f) {
+          return f.sensor == sensor.label || !sensor.scan.merges(f.sensor);
+        });
+    if (others == frames.end()) continue;
+    std::vector<SensorFrame> scans(std::make_move_iterator(others),
+                                   std::make_move_iterator(frames.end()));
+    frames.erase(others, frames.end());
+    const auto missing = [&](const std::string& label) {
+      return sensor.scan.merges(label) &&
+             std::none_of(scans.begin(), scans.end(),
+                          [&](const SensorFrame& f) { return f.sensor == label; });
+    };
+    for (auto& scan : queue_.take(stamp + sensor.scan.merge_window, missing)) {
+      if (missing(scan.sensor)) scans.push_back(std::move(scan));
+    }
+    std::sort(scans.begin(), scans.end(),
+              [](const SensorFrame& a, const SensorFrame& b) { return a.sensor < b.sensor; });
+    SensorFrame merged = mergedScan(scans, sensor.label);
+    if (merged.stamp == stamp) {
+      frames.push_back(std::move(merged));
+    } else {
+      queue_.push(std::move(merged));
+    }
+  }
 }
 
 void Pipeline::add(const mrpt::obs::CObservation& observation) {
@@ -181,7 +220,11 @@ void Pipeline::addTime(Stamp stamp) {
     startEpoch(stamp, last_stamp_ - stamp);
   if (last_stamp_.ns != 0 && stamp - last_stamp_ > setup_.run.clock_jump) {
     // Before the first pose behind the gap comes: it would push the poses of these frames out.
-    while (!queue_.empty()) processInstant(queue_.pop(true));
+    while (!queue_.empty()) {
+      auto frames = queue_.pop(true);
+      mergeScans(frames);
+      processInstant(std::move(frames));
+    }
     events_.add(stamp, event_kind::kClockJump,
                 fmt::format("nothing for {:.3f} s", stamp - last_stamp_));
   }
@@ -190,7 +233,11 @@ void Pipeline::addTime(Stamp stamp) {
 }
 
 void Pipeline::startEpoch(Stamp stamp, double back) {
-  while (!queue_.empty()) processInstant(queue_.pop(true));
+  while (!queue_.empty()) {
+    auto frames = queue_.pop(true);
+    mergeScans(frames);
+    processInstant(std::move(frames));
+  }
   events_.warn(stamp, event_kind::kClockJump,
                fmt::format("the clock went back by {:.3f} s: tracks start anew", back));
   tracker_.reset();
@@ -246,6 +293,7 @@ std::optional<Scene> Pipeline::next(bool flush) {
   while (ready_.empty()) {
     auto frames = queue_.pop(flush);
     if (frames.empty()) return std::nullopt;
+    mergeScans(frames);
     processInstant(std::move(frames));
   }
   Scene scene = std::move(ready_.front());

@@ -21,6 +21,7 @@
 #include "libperception/sensors/EgoPose.h"
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/weather/PointFilter.h"
+#include "libperception/sensors/ScanMerge.h"
 
 namespace perception {
 
@@ -47,6 +48,7 @@ struct PipelineSetup {
   struct Sensor {
     std::string label;
     SensingParams params;
+    ScanParams scan;  ///< lidars
     std::shared_ptr<const FrontEnd> front_end;
     bool active = false;  ///< its modality is in use
   };
@@ -107,6 +109,7 @@ class Pipeline {
   void addTime(Stamp stamp);
   void addFrame(const mrpt::obs::CObservation& observation);
   int sensorIndex(const std::string& label) const;
+  void mergeScans(std::vector<SensorFrame>& frames);
   void processInstant(std::vector<SensorFrame> frames);
   EgoState egoAt(Stamp stamp);
   std::int64_t frameNumberAt(Stamp stamp) const;

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <thread>
 
@@ -13,6 +14,7 @@
 #include "libperception/evaluation/Gnuplot.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/study/AssociationStudy.h"
+#include "libperception/study/EgoStudy.h"
 #include "libperception/study/GpsStudy.h"
 #include "libperception/study/HeadingStudy.h"
 #include "libperception/study/LogParticlesStudy.h"
@@ -28,6 +30,7 @@ struct Study {
   StudyReport (*run)(StudyApp& app);
   bool recordings = false;  ///< reads a folder of them
   bool log = false;         ///< takes a rawlog
+  bool scenario = false;    ///< reads a scenario INI
 };
 
 const Study kStudies[] = {
@@ -59,6 +62,18 @@ const Study kStudies[] = {
        if (app.runs > 0) p.runs = app.runs;
        return headingStudy(p);
      }},
+    {"ego", "the vehicle's own pose from satellites, inertial unit and wheels (simulated)",
+     [](StudyApp& app) {
+       EgoStudyParams p;
+       Config config = Config::fromFile(app.scenario);
+       p.scenario = readScenario(config);
+       config.finish();
+       p.name = std::filesystem::path(app.scenario).stem().string();
+       p.seed = app.seed;
+       if (app.runs > 0) p.runs = app.runs;
+       return egoStudy(p);
+     },
+     false, false, true},
     {"gps", "travel modes told apart by positions once a second (recordings)",
      [](StudyApp& app) {
        GpsParams p;
@@ -109,6 +124,12 @@ void StudyApp::declare(CLI::App& cli) {
       sub->add_option("--fov-deg", fov_deg, "Whole angle ahead in which truth counts [deg]")
           ->capture_default_str()
           ->check(CLI::Range(0.1, 360.0));
+    }
+    if (s.scenario) {
+      sub->add_option("-c,--config", scenario,
+                      "Scenario INI with sensors of kind gnss, imu, wheels")
+          ->required()
+          ->check(CLI::ExistingFile);
     }
     sub->callback([this, name = std::string(s.name)] { study = name; });
   }

@@ -21,6 +21,7 @@ class StudyApp : public App {
   std::string truth_file;            ///< particles: --truth of the log
   double seconds = 0;                ///< particles: of the log; 0 = all
   double range = 20, fov_deg = 180;  ///< particles: where truth counts [m, deg]
+  std::string scenario;              ///< ego: INI of the scenario
 
   StudyReport out_report;
 

@@ -10,12 +10,15 @@ void PointParams::visit(ParamVisitor& v) {
   v.real("vehicle_rear", vehicle_rear, {0, 20}, "m", "own body behind the ego origin");
   v.real("vehicle_side", vehicle_side, {0, 5}, "m", "own body to each side of the ego origin");
   v.real("vehicle_top", vehicle_top, {0, 6}, "m", "own body above the ground");
+  v.boolean("only_objects", only_objects,
+            "returns that the scanner itself labels as object, where it labels at all (SPEC 1)");
   v.require(range_min < range_max, "range_min must be below range_max");
 }
 
 namespace {
 
-bool ownProcessingDropsIt(std::uint8_t label) {
+bool ownProcessingDropsIt(std::uint8_t label, bool only_objects) {
+  if (only_objects) return label != static_cast<std::uint8_t>(PointLabel::kObject);
   return label == static_cast<std::uint8_t>(PointLabel::kRain) ||
          label == static_cast<std::uint8_t>(PointLabel::kDirt);
 }
@@ -49,7 +52,8 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
       ++points.dropped;
       continue;
     }
-    if (!cloud->label.empty() && ownProcessingDropsIt(cloud->label[i])) continue;
+    if (!cloud->label.empty() && ownProcessingDropsIt(cloud->label[i], params.only_objects))
+      continue;
     const float x = R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz + t.x();
     const float y = R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz + t.y();
     const float z = R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz + t.z();

@@ -17,6 +17,7 @@ struct PointParams {
   double vehicle_rear = 2.0;  ///< [m] behind it
   double vehicle_side = 1.3;  ///< [m] to each side of it
   double vehicle_top = 2.2;   ///< [m] above the ground
+  bool only_objects = false;  ///< of scanners that label their returns: what they call an object
 
   void visit(ParamVisitor& v);
 };

@@ -242,50 +242,65 @@ void EgoMotion::apply(EgoMotionState& state, const GnssFix& fix) {
   if (fix.yaw) updateYaw(state, wrapAngle(*fix.yaw - state.world_turn), fix.yaw_sigma);
 }
 
+// Place and height apart: receivers whose base stations differ agree in place and not in height.
 bool EgoMotion::updatePlace(EgoMotionState& state, const GnssFix& fix, const Vector3& world) {
   const EgoVector& x = state.estimate.x;
   const auto antennaAt = [&](double yaw, double pitch, double roll) -> Vector3 {
     return makePose(x[kEgoX], x[kEgoY], x[kEgoZ], yaw, pitch, roll) * fix.antenna;
   };
   const double yaw = x[kEgoYaw], pitch = x[kEgoPitch], roll = x[kEgoRoll];
-  EgoObservation o;
-  o.rows = 3;
-  o.z = world;
-  o.h = antennaAt(yaw, pitch, roll);
-  o.H.block<3, 3>(0, kEgoX).setIdentity();
+  EgoObservation both;
+  both.z = world;
+  both.h = antennaAt(yaw, pitch, roll);
+  both.H.block<3, 3>(0, kEgoX).setIdentity();
   constexpr double kStep = 1e-4;  // [rad] of the lever arm's derivatives
-  o.H.col(kEgoYaw) =
+  both.H.col(kEgoYaw) =
       (antennaAt(yaw + kStep, pitch, roll) - antennaAt(yaw - kStep, pitch, roll)) / (2 * kStep);
-  o.H.col(kEgoPitch) =
+  both.H.col(kEgoPitch) =
       (antennaAt(yaw, pitch + kStep, roll) - antennaAt(yaw, pitch - kStep, roll)) / (2 * kStep);
-  o.H.col(kEgoRoll) =
+  both.H.col(kEgoRoll) =
       (antennaAt(yaw, pitch, roll + kStep) - antennaAt(yaw, pitch, roll - kStep)) / (2 * kStep);
-  o.variance << square(fix.sigma), square(fix.sigma), square(fix.height_sigma);
-  if (!fix.has_height) {
-    o.rows = 2;
-    o.H.row(2).setZero();
-    o.z[2] = o.h[2] = 0;
-    o.variance[2] = 1;
-  }
-  static const double gates[] = {chi2Quantile(kGate, 2), chi2Quantile(kGate, 3)};
-  o.gate = gates[o.rows - 2];
-  if (filter_.update(state.estimate, o)) {
-    state.rejected_in_row = 0;
-    ++state.fixes;
-    return true;
-  }
-  ++state.rejected_fixes;
-  if (++state.rejected_in_row < kRelocation) return false;
-  // They agree with each other longer than chance allows: the vehicle is there.
-  state.rejected_in_row = 0;
-  for (const int axis : {kEgoX, kEgoY, kEgoZ}) {
+  static const double gate1 = chi2Quantile(kGate, 1), gate2 = chi2Quantile(kGate, 2);
+  EgoObservation place = both;
+  place.rows = 2;
+  place.H.row(2).setZero();
+  place.z[2] = place.h[2] = 0;
+  place.variance << square(fix.sigma), square(fix.sigma), 1;
+  place.gate = gate2;
+  EgoObservation height;
+  height.rows = 1;
+  height.z[0] = both.z[2], height.h[0] = both.h[2];
+  height.H.row(0) = both.H.row(2);
+  height.variance[0] = square(fix.height_sigma);
+  height.gate = gate1;
+  const Vector3 arm = both.h - x.segment<3>(kEgoX);
+  // Rejected ones that agree with each other for longer than chance allows: the vehicle is there.
+  const auto moveTo = [&](int axis, double value, double sigma) {
+    state.estimate.x[axis] = value;
     state.estimate.P.row(axis).setZero();
     state.estimate.P.col(axis).setZero();
-    state.estimate.P(axis, axis) = square(axis == kEgoZ ? fix.height_sigma : fix.sigma);
+    state.estimate.P(axis, axis) = square(sigma);
+  };
+  const EgoVector before = x;
+  const bool taken = filter_.update(state.estimate, place);
+  if (taken) {
+    state.rejected_in_row = 0;
+    ++state.fixes;
+  } else {
+    ++state.rejected_fixes;
+    if (++state.rejected_in_row < kRelocation) return false;
+    state.rejected_in_row = 0;
+    moveTo(kEgoX, world.x() - arm.x(), fix.sigma);
+    moveTo(kEgoY, world.y() - arm.y(), fix.sigma);
   }
-  const Vector3 arm = o.h - x.segment<3>(kEgoX);
-  state.estimate.x.segment<2>(kEgoX) = world.head<2>() - arm.head<2>();
-  if (fix.has_height) state.estimate.x[kEgoZ] = world.z() - arm.z();
+  if (!fix.has_height) return true;
+  height.h[0] += height.H.row(0).dot(x - before);
+  if (filter_.update(state.estimate, height)) {
+    state.rejected_heights_in_row = 0;
+  } else if (++state.rejected_heights_in_row >= kRelocation) {
+    state.rejected_heights_in_row = 0;
+    moveTo(kEgoZ, world.z() - arm.z(), fix.height_sigma);
+  }
   return true;
 }
 
@@ -332,8 +347,9 @@ void EgoMotion::findHeading(EgoMotionState& state, const GnssFix& fix, const Vec
   if (last && state.stamp - last->stamp <= kSameFix) {
     const Vector2 arm = (fix.antenna - last->antenna).head<2>();
     const double sigma = std::hypot(fix.sigma, last->sigma) / std::max(arm.norm(), 1e-3);
-    if (arm.norm() >= kLeastBaseline && sigma <= kHeadingSigma) {
-      const Vector2 seen = (enu - last->enu).head<2>();
+    const Vector2 seen = (enu - last->enu).head<2>();
+    const bool one_vehicle = std::abs(seen.norm() - arm.norm()) < 5 * sigma * arm.norm();
+    if (arm.norm() >= kLeastBaseline && sigma <= kHeadingSigma && one_vehicle) {
       return setHeading(state, fix, enu, direction(seen) - direction(arm) - x[kEgoYaw], sigma);
     }
   }

@@ -65,7 +65,7 @@ struct EgoMotionState {
   Vector3 world_shift = Vector3::Zero();    ///< [m] origin of the world in east, north, up
   Pose3 T_world_start = Pose3::Identity();  ///< where the frame of the start came to lie
   std::uint64_t relocations = 0, fixes = 0, rejected_fixes = 0;
-  int rejected_in_row = 0;
+  int rejected_in_row = 0, rejected_heights_in_row = 0;
 
   Vector3 toWorld(const Vector3& enu) const;
 };

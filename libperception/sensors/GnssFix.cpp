@@ -220,12 +220,16 @@ Vector3 LocalFrame::fromGeodetic(const Geodetic& place) const {
   return {enu.x, enu.y, enu.z};
 }
 
+// By hand: ENUToGeocentric() of MRPT 2.5.8 is 2 m off at a distance of 1.6 km.
 Geodetic LocalFrame::toGeodetic(const Vector3& enu) const {
+  const double la = radians(origin_.latitude), lo = radians(origin_.longitude);
+  const Vector3 east(-std::sin(lo), std::cos(lo), 0);
+  const Vector3 up(std::cos(la) * std::cos(lo), std::cos(la) * std::sin(lo), std::sin(la));
   mrpt::math::TPoint3D earth;
-  mrpt::topography::ENUToGeocentric({enu.x(), enu.y(), enu.z()},
-                                    {origin_.latitude, origin_.longitude, origin_.height}, earth,
-                                    mrpt::topography::TEllipsoid::Ellipsoid_WGS84());
-  return fromCartesian({earth.x, earth.y, earth.z});
+  mrpt::topography::geodeticToGeocentric_WGS84(
+      {origin_.latitude, origin_.longitude, origin_.height}, earth);
+  return fromCartesian(Vector3(earth.x, earth.y, earth.z) + enu.x() * east +
+                       enu.y() * up.cross(east) + enu.z() * up);
 }
 
 }  // namespace perception

@@ -71,6 +71,22 @@ LidarCloud unproject(const mrpt::obs::CObservation3DRangeScan& scan, std::uint64
   return cloud;
 }
 
+/// MRPT 2.5.8 makes sixteen times too many columns of Velodyne's packets and leaves the rest empty;
+/// the span of azimuths is that of the used ones.
+int columnsInUse(const mrpt::obs::CObservationRotatingScan& scan) {
+  constexpr int kTooMany = 16;
+  const auto& ranges = scan.rangeImage;
+  int used = ranges.cols();
+  const auto empty = [&](int column) {
+    for (int row = 0; row < ranges.rows(); ++row) {
+      if (ranges(row, column) != 0) return false;
+    }
+    return true;
+  };
+  while (used > 1 && empty(used - 1)) --used;
+  return used <= ranges.cols() / kTooMany ? ranges.cols() / kTooMany : ranges.cols();
+}
+
 /// Elevations [rad] of the rows of a range image; empty for models that nobody knows here.
 std::vector<double> elevationsOf(const mrpt::obs::CObservationRotatingScan& scan) {
   if (scan.rowCount == 1) return {0};
@@ -159,7 +175,7 @@ std::optional<LidarCloud> rotatingCloud(const mrpt::obs::CObservationRotatingSca
                    [&](std::size_t a, std::size_t b) { return elevations[a] < elevations[b]; });
   LidarCloud cloud;
   cloud.max_range = scan.maxRange;
-  const double columns = std::max(1, static_cast<int>(scan.columnCount) - 1);
+  const double columns = std::max(1, columnsInUse(scan) - 1);
   const double turn = scan.rowCount == 1 ? 1 : -1;  // fromVelodyne() keeps the clockwise azimuth
   for (std::size_t ring = 0; ring < order.size(); ++ring) {
     const int row = static_cast<int>(order[ring]);

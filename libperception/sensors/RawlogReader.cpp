@@ -8,10 +8,12 @@
 #include <mrpt/rtti/CObject.h>
 
 #include <algorithm>
+#include <new>
 
 #include "libperception/core/Error.h"
 #include "libperception/sensors/CRawlogInput.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/MemoryLimit.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {
@@ -105,6 +107,7 @@ const char* nameOf(RawlogReader::End end) {
 
 RawlogReader::RawlogReader(const std::string& path) : path_(path) {
   registerPerceptionClasses();
+  MemoryLimit::link();
   input_ = std::make_unique<CRawlogInput>(path);
   const std::string begin = input_->peek(kHeaderBytes);
   if (input_->state() == CRawlogInput::State::kFailed) {
@@ -177,6 +180,10 @@ bool RawlogReader::readEntry() {
   mrpt::serialization::CSerializable::Ptr object;
   try {
     object = input_->ReadObject();
+  } catch (const std::bad_alloc&) {
+    finish(End::kDamaged,
+           fmt::format("entry of class '{}' wants more memory than there is", header->class_name));
+    return false;
   } catch (const std::exception& e) {
     const std::string text = e.what();
     const std::string unknown = unknownClassIn(text);

@@ -29,8 +29,8 @@ class CRawlogInput;
 /// so.
 ///
 /// Not detectable: a log without compression that was cut exactly between two entries. Hostile
-/// sizes inside MRPT's own classes can take gigabytes before they fail; a program that reads
-/// unknown logs sets a limit (setrlimit RLIMIT_AS).
+/// sizes inside MRPT's own classes can take gigabytes before they fail: a program that reads
+/// unknown logs sets a MemoryLimit, as runApp() does.
 class RawlogReader {
  public:
   enum class End {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
 
 #include "libperception/app/LogRecorder.h"
 #include "libperception/app/TrackApp.h"
@@ -105,6 +106,24 @@ TEST(StudyApp, CountsTheParticlesThatALogNeeds) {
   EXPECT_EQ(app.out_report.tables[0].rows[0][0], "joint, 50");
   EXPECT_EQ(app.out_report.tables[0].rows[0][2], "0.00");
   EXPECT_EQ(app.out_report.tables[0].rows[3][1], "3.80 / 1.80");
+}
+
+TEST(StudyApp, EgoReportsErrorsThroughAGapOfSatellites) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.path() + "/ego";
+  const std::string scenario = std::string(PERCEPTION_SOURCE_DIR) + "/ini/scenarios/gnss_gap.ini";
+  StudyApp app;
+  const char* argv[] = {"perception-study", "ego",    "-c", scenario.c_str(), "-o",
+                        out.c_str(),        "--runs", "3"};
+  ASSERT_EQ(runApp(app, 8, argv), 0);
+  for (const char* name : {"report.md", "phases.csv", "ego.png"})
+    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
+  ASSERT_EQ(app.out_report.tables.size(), 1U);
+  const auto& rows = app.out_report.tables[0].rows;
+  ASSERT_EQ(rows.size(), 3U);  // before, in and after the gap
+  EXPECT_EQ(rows[1][2], "gap of 10 s");
+  EXPECT_LT(std::stod(rows[1][4]), 2);  // [m] the worst of all
+  EXPECT_LT(std::stod(rows[1][7]), 2);  // [deg]
 }
 
 TEST(StudyApp, UnknownStudiesAreAUsageError) {

@@ -1,0 +1,64 @@
+#include "libperception/sensors/MemoryLimit.h"
+
+#include <mrpt/core/aligned_allocator.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+
+// MRPT's own gives null when there is no memory, and its containers write through it. The program's
+// definition goes before the library's; aligned_free() there is free().
+void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
+  const std::size_t whole = (size + alignment - 1) / alignment * alignment;
+  void* const memory = whole < size ? nullptr : std::aligned_alloc(alignment, whole);
+  if (memory == nullptr && size > 0) throw std::bad_alloc();
+  return memory;
+}
+
+namespace perception {
+
+namespace {
+
+constexpr std::uint64_t kLeast = 2ULL << 30;  // [bytes] libraries alone reserve half of that
+
+std::uint64_t machineMemory() {
+  const auto pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);
+  return pages > 0 && size > 0
+             ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size)
+             : 0;
+}
+
+}  // namespace
+
+bool MemoryLimit::supported() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return false;
+#else
+  return true;
+#endif
+}
+
+void MemoryLimit::link() {}
+
+MemoryLimit::MemoryLimit(std::uint64_t bytes) {
+  if (!supported()) return;
+  const std::uint64_t memory = machineMemory();
+  if (bytes == 0 && memory == 0) return;
+  if (bytes == 0) bytes = std::max(kLeast, memory / 10 * 9);
+  struct rlimit limit {};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur <= bytes) return;
+  before_ = limit.rlim_cur;
+  limit.rlim_cur = bytes;
+  if (::setrlimit(RLIMIT_AS, &limit) != 0) before_.reset();
+}
+
+MemoryLimit::~MemoryLimit() {
+  struct rlimit limit {};
+  if (!before_ || ::getrlimit(RLIMIT_AS, &limit) != 0) return;
+  limit.rlim_cur = *before_;
+  ::setrlimit(RLIMIT_AS, &limit);
+}
+
+}  // namespace perception
