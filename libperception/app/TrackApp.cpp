@@ -217,7 +217,8 @@ void TrackApp::trackLog(const std::string& log, const std::string& dir,
     if (keep_scenes) out_scenes.push_back(scene);
     if (export_file.empty()) return;
     if (!kitti && facts.camera) {
-      kitti.emplace(export_temporary, setup.model.classes, *facts.camera);
+      kitti.emplace(export_temporary, setup.model.classes, *facts.camera,
+                    setup.scene.road_user_from);
       for (const auto& s : before_camera) kitti->write(s);
       before_camera.clear();
     }

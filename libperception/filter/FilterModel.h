@@ -1,4 +1,5 @@
 #pragma once
+#include "libperception/core/Frames.h"
 #include "libperception/core/ObjectClass.h"
 #include "libperception/filter/Heading.h"
 
@@ -39,6 +40,8 @@ struct FilterParams {
   double side_sigma = 0.5;  ///< [m] of a seen side as a measurement of the extent (SPEC 2: .3;
                             ///< measured on KITTI: .5)
   double base_walk = 0.05;  ///< [m^2/s] random walk of the base height (SPEC 2)
+  double facing_walk = radians(30) * radians(30);  ///< [rad^2/s] random walk of where people look;
+                                                   ///< twice a cyclist's rotation noise (SPEC 2)
   double hidden_tolerance = 1.0;  ///< [m] a track this much behind the horizon is still visible
   double merge_area =
       2.0;  ///< [m^2] footprints from this size on swallow tracks inside them (SPEC 5.9); 0: never

@@ -107,15 +107,15 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
     const Density density = densityOf(innovation, track.bank[j]);
     if (density.log_density == kMinusInfinity) continue;
     const double nis = density.nis, log_density = density.log_density;
-    const double label = scan.model->logLabelLikelihood(m.label, static_cast<ClassId>(j));
-    const double rest = std::log(detection) + m.log_score_ratio;
+    const double label = logLabelOf(*scan.model, m, static_cast<ClassId>(j));
+    const double label_and_score = logLabelAndScore(*scan.model, m, static_cast<ClassId>(j));
     const ClassFilter& f = track.bank[j];
     const double heading = m.heading && f.oriented ? logHeadingRatio(*m.heading, f.x[3], f.P(3, 3),
                                                                      model.params.heading)
                                                    : 0;
     pair.nis[j] = nis;
     // The heading tells objects apart, but not classes: people have one, too, that no filter keeps.
-    pair.log_by_class[j] = log_density + label + rest + heading;
+    pair.log_by_class[j] = log_density + label_and_score + std::log(detection) + heading;
     pair.log_class_evidence[j] = model.params.kinematic_exponent * log_density +
                                  label_exponent * label + detection_exponent * std::log(detection);
     mixture[j] = track.log_class[j] + pair.log_by_class[j];
@@ -166,12 +166,12 @@ NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan,
   result.log_class.assign(static_cast<std::size_t>(classes), kMinusInfinity);
   for (ClassId j = 0; j < classes; ++j) {
     result.log_class[static_cast<std::size_t>(j)] = std::log(model.classes[j].prior) +
-                                                    scan.model->logLabelLikelihood(m.label, j) +
+                                                    logLabelAndScore(*scan.model, m, j) +
                                                     scan.model->logBirthDensity(m, j, scan.state);
   }
-  result.log_birth = logNormalise(result.log_class) + m.log_score_ratio;
+  result.log_birth = logNormalise(result.log_class);
   result.log_clutter =
-      scan.model->logClutterDensity(m, scan.state) + scan.model->logLabelClutter(m.label);
+      scan.model->logClutterDensity(m, scan.state) + logClutterLabelAndScore(*scan.model, m);
   result.log_new = logAddExp(result.log_birth, result.log_clutter);
   result.existence =
       result.log_new > kMinusInfinity ? std::exp(result.log_birth - result.log_new) : 0;

@@ -31,6 +31,7 @@ void beginTrack(Stamp to, const FilterModel& model, Track& next, std::vector<Gau
   const double uniform = std::log(forget / static_cast<double>(model.classes.size()));
   for (double& lp : next.log_class) lp = logAddExp(lp + std::log1p(-forget), uniform);
   next.base_z.variance += model.params.base_walk * dt;
+  if (next.facing) next.facing->variance += model.params.facing_walk * dt;
 }
 
 /// What moves one Gaussian, as planes of a MotionBatch.

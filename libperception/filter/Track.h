@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "libperception/core/Kinematics.h"
@@ -41,9 +42,13 @@ struct Track {
   Stamp birth, stamp;         ///< of its first measurement; of its state
   Stamp last_in_view;         ///< last time that a sensor could have seen it
   double existence = 0;       ///< probability that it is a real object
-  std::vector<ClassFilter> bank;    ///< one filter a class
-  std::vector<double> log_class;    ///< log class probabilities, given existence; sum of exp is 1
-  ScalarEstimate base_z, height;    ///< [m] lowest point, world; lowest to highest point
+  std::vector<ClassFilter> bank;  ///< one filter a class
+  std::vector<double> log_class;  ///< log class probabilities, given existence; sum of exp is 1
+  ScalarEstimate base_z, height;  ///< [m] lowest point, world; lowest to highest point
+  /// Where an object whose class has no heading in its state (people) looks: [rad] world, once a
+  /// detector told.
+  std::optional<ScalarEstimate> facing;
+  HeadingBit facing_bit;            ///< of it: front or back
   std::array<Stamp, 3> last_hit{};  ///< by modality (modalityIndex); 0 = never
   std::array<int, 3> hits{};        ///< by modality
 

@@ -211,6 +211,39 @@ void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
   if (back) reverse(f);
 }
 
+/// Where an object without a heading in its state looks: axis by a scalar filter, direction by the
+/// bit, as useHeading() for the others.
+void updateFacing(const HeadingSeen& seen, const FilterModel& model, Track& track) {
+  const HeadingMode mode = model.params.heading;
+  if (mode == HeadingMode::kIgnored) return;
+  if (!track.facing) {
+    track.facing = {seen.yaw, seen.sigma * seen.sigma};
+    track.facing_bit = firstHeadingBit(seen);
+    return;
+  }
+  const HeadingResidual r = headingResidual(seen, track.facing->mean, mode);
+  if (r.y * r.y < kYawGate * (track.facing->variance + r.variance)) {
+    scalarUpdate({track.facing->mean + r.y, r.variance}, *track.facing);
+  } else {  // people turn on the spot
+    track.facing = {seen.yaw, seen.sigma * seen.sigma};
+  }
+  track.facing_bit = nextHeadingBit(track.facing_bit, r.same, seen);
+  if (asksForReversal(track.facing_bit, 0, 1, mode)) {
+    track.facing->mean += kPi;
+    track.facing_bit = track.facing_bit.reversed();
+  }
+  track.facing->mean = wrapAngle(track.facing->mean);
+}
+
+/// The direction of a class's length axis [rad], when something tells it.
+std::optional<double> lengthAxis(const ObjectClass& c, const ClassFilter& f, const Track& track,
+                                 const SidesSeen& sides) {
+  if (f.oriented) return f.x[3];
+  if (c.motion == Motion::kStatic) return sides.yaw;
+  if (c.motion == Motion::kConstantVelocity && track.facing) return track.facing->mean;
+  return {};
+}
+
 /// A filter that lost the object: from the measurement, with the velocity of the class that
 /// explains it best.
 ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best,
@@ -272,6 +305,7 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
       static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
   const Kinematics best_kinematics =
       kinematicsOf(model.classes[best], predicted.bank[static_cast<std::size_t>(best)]);
+  if (m.heading) updateFacing(*m.heading, model, track);
   const auto axes_seen = residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
   for (ClassId j = 0; j < model.classes.size(); ++j) {
@@ -286,9 +320,9 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
       f = restartFilter(c, *birth, best_kinematics, model);
     }
     if (c.motion == Motion::kWheeled) findHeading(m, birth, model, f);
-    if (m.sides && (f.oriented || c.motion == Motion::kStatic)) {
-      const double yaw = f.oriented ? f.x[3] : m.sides->yaw;
-      f.extent = updateExtent(f.extent, *m.sides, yaw, model.params.side_sigma);
+    if (m.sides) {
+      if (const auto yaw = lengthAxis(c, f, track, *m.sides))
+        f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
     }
     track.log_class[i] +=
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
@@ -340,6 +374,7 @@ Track newTrack(const NewLikelihood& news, std::size_t measurement, const Measure
     height += c.prior * c.height;
     height_variance += c.prior * c.height_sigma * c.height_sigma;
   }
+  if (m.heading) updateFacing(*m.heading, model, track);
   track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
   track.height = {height, height_variance + 0.25};
   updateHeights(m, model, track);

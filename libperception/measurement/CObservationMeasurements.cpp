@@ -46,6 +46,26 @@ std::optional<SidesSeen> readSides(CArchive& in) {
   return s;
 }
 
+void writeEvidence(CArchive& out, const Measurement& m) {
+  out << m.heading.has_value();
+  if (m.heading) out << m.heading->yaw << m.heading->sigma << m.heading->flip_probability;
+  if (m.sides) out << m.sides->a_sigma << m.sides->b_sigma;
+  out.WriteAs<std::uint32_t>(m.log_class.size());
+  for (const double lp : m.log_class) out << lp;
+  out << m.log_clutter;
+}
+
+void readEvidence(CArchive& in, Measurement& m) {
+  if (archive::readFlag(in)) {
+    m.heading.emplace();
+    in >> m.heading->yaw >> m.heading->sigma >> m.heading->flip_probability;
+  }
+  if (m.sides) in >> m.sides->a_sigma >> m.sides->b_sigma;
+  m.log_class.resize(archive::readCount(in, kMostNames, "classes"));
+  for (double& lp : m.log_class) in >> lp;
+  in >> m.log_clutter;
+}
+
 void writeMeasurement(CArchive& out, const Measurement& m) {
   out.WriteAs<std::uint8_t>(m.z.size());
   for (Eigen::Index i = 0; i < m.z.size(); ++i) out << m.z[i];
@@ -59,9 +79,10 @@ void writeMeasurement(CArchive& out, const Measurement& m) {
   writeScalar(out, m.base_z);
   writeScalar(out, m.height);
   writeSides(out, m.sides);
+  writeEvidence(out, m);
 }
 
-Measurement readMeasurement(CArchive& in, std::size_t labels) {
+Measurement readMeasurement(CArchive& in, std::size_t labels, std::uint8_t version) {
   Measurement m;
   const int axes = in.ReadAs<std::uint8_t>();
   if (axes > kMaxAxes) throw std::runtime_error(fmt::format("{} axes, at most {}", axes, kMaxAxes));
@@ -81,6 +102,7 @@ Measurement readMeasurement(CArchive& in, std::size_t labels) {
   m.base_z = readScalar(in);
   m.height = readScalar(in);
   m.sides = readSides(in);
+  if (version >= 1) readEvidence(in, m);
   return m;
 }
 
@@ -97,7 +119,7 @@ std::vector<std::string> readNames(CArchive& in) {
 
 }  // namespace
 
-uint8_t CObservationMeasurements::serializeGetVersion() const { return 0; }
+uint8_t CObservationMeasurements::serializeGetVersion() const { return 1; }
 
 void CObservationMeasurements::serializeTo(CArchive& out) const {
   out << timestamp << sensorLabel << sensor_pose << model;
@@ -110,7 +132,7 @@ void CObservationMeasurements::serializeTo(CArchive& out) const {
 }
 
 void CObservationMeasurements::serializeFrom(CArchive& in, uint8_t version) {
-  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> timestamp;
   sensorLabel = archive::readText(in);
   in >> sensor_pose;
@@ -125,7 +147,7 @@ void CObservationMeasurements::serializeFrom(CArchive& in, uint8_t version) {
   labels = readNames(in);
   measurements.clear();
   for (auto left = archive::readCount(in, kMostMeasurements, "measurements"); left > 0; --left) {
-    measurements.push_back(readMeasurement(in, labels.size()));
+    measurements.push_back(readMeasurement(in, labels.size(), version));
   }
 }
 

@@ -7,15 +7,19 @@ namespace perception {
 namespace {
 
 constexpr double kFloor = 0.1 * 0.1;  // [m^2]
+constexpr double kFloorShare = 1. / 9;  // as if no more than nine errors were independent
 
-void updateSide(double seen, bool complete, double variance, double& mean, double& var) {
+void updateSide(double seen, bool complete, double own_sigma, double sigma, double& mean,
+                double& var) {
   if (!complete) {
     mean = std::max(mean, seen);
     return;
   }
+  const double variance = own_sigma > 0 ? own_sigma * own_sigma : sigma * sigma;
+  const double floor = own_sigma > 0 ? kFloorShare * variance : kFloor;
   const double gain = var / (var + variance);
   mean += gain * (seen - mean);
-  var = std::max(std::min(var, kFloor), var * (1 - gain));
+  var = std::max(std::min(var, floor), var * (1 - gain));
 }
 
 }  // namespace
@@ -26,9 +30,9 @@ Extent updateExtent(const Extent& extent, const SidesSeen& sides, double yaw, do
   if (angle > radians(30) && angle < radians(60)) return extent;
   const bool a_is_length = angle < radians(45);
   Extent out = extent;
-  updateSide(sides.a, sides.a_complete, sigma * sigma, a_is_length ? out.length : out.width,
+  updateSide(sides.a, sides.a_complete, sides.a_sigma, sigma, a_is_length ? out.length : out.width,
              a_is_length ? out.var_length : out.var_width);
-  updateSide(sides.b, sides.b_complete, sigma * sigma, a_is_length ? out.width : out.length,
+  updateSide(sides.b, sides.b_complete, sides.b_sigma, sigma, a_is_length ? out.width : out.length,
              a_is_length ? out.var_width : out.var_length);
   return out;
 }

@@ -34,6 +34,7 @@ struct SidesSeen {
   double yaw_sigma = 0.2;                       ///< [rad]
   double a = 0, b = 0;                          ///< [m] seen length along and across yaw
   bool a_complete = false, b_complete = false;  ///< both ends of that side were seen
+  double a_sigma = 0, b_sigma = 0;  ///< [m] of complete sides; 0: the filter's side_sigma
   Vector2 centre = Vector2::Zero();             ///< [m] of the box, world
 };
 
@@ -53,6 +54,10 @@ struct Measurement {
   AxisMask seen = 0;           ///< which axes count, in likelihood, clutter and birth density alike
   int label = 0;               ///< index into the model's labels
   double log_score_ratio = 0;  ///< log p(score | object) / p(score | clutter)
+  /// log p(labels, scores | class, detected) by class and for clutter, of detectors that score
+  /// every label on its own. Empty: the model's label table and `log_score_ratio`.
+  std::vector<double> log_class;
+  double log_clutter = 0;
   Vector2 position = Vector2::Zero();    ///< [m] rough place of the object, world: for gating by
                                          ///< distance and pictures
   double position_sigma = 1;             ///< [m] how rough

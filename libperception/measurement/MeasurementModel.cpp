@@ -6,6 +6,19 @@
 
 namespace perception {
 
+double logLabelOf(const MeasurementModel& model, const Measurement& m, ClassId c) {
+  return m.log_class.empty() ? model.logLabelLikelihood(m.label, c)
+                             : m.log_class[static_cast<std::size_t>(c)];
+}
+
+double logLabelAndScore(const MeasurementModel& model, const Measurement& m, ClassId c) {
+  return logLabelOf(model, m, c) + (m.log_class.empty() ? m.log_score_ratio : 0);
+}
+
+double logClutterLabelAndScore(const MeasurementModel& model, const Measurement& m) {
+  return m.log_class.empty() ? model.logLabelClutter(m.label) : m.log_clutter;
+}
+
 bool touchesSector(const Vector2& centre, double reach, double fov, double range,
                    const SensorState& sensor) {
   const Vector2 d = centre - sensor.T_world_sensor.translation().head<2>();

@@ -90,6 +90,13 @@ class MeasurementModel {
                                           const SensorState& sensor) const = 0;
 };
 
+/// log p(label, score | class, detected), whichever way the measurement gives it.
+double logLabelAndScore(const MeasurementModel& model, const Measurement& m, ClassId c);
+/// The same of clutter.
+double logClutterLabelAndScore(const MeasurementModel& model, const Measurement& m);
+/// The part of logLabelAndScore() that tells classes apart.
+double logLabelOf(const MeasurementModel& model, const Measurement& m, ClassId c);
+
 /// Whether a disc of radius `reach` [m] about `centre` (world) touches the sector of full angle
 /// `fov` [rad] and radius `range` [m] about the sensor's forward axis. Near the origin it may say
 /// true too often.

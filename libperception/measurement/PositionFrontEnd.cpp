@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace perception {
 namespace {
@@ -29,7 +28,10 @@ PositionModel::Params modelParams(const ClassTable& classes, const Sensing& sens
   const int labels = static_cast<int>(sensing.labels().size());
   for (ClassId id = 0; id < classes.size(); ++id) {
     PositionModel::ClassRow row;
-    row.detection = sensing.detection(id, view.range_min, 0, 1);
+    const ClassSensing& seen = sensing.row(id);
+    row.detection = seen.detection;
+    row.full_range = seen.full_range;
+    row.last_range = seen.last_range;
     for (int l = 0; l < labels; ++l) row.labels.push_back(std::exp(sensing.logLabel(l, id)));
     row.noise.setZero();  // all of it stands in R
     const ObjectClass& of = classes[id];
@@ -43,6 +45,7 @@ PositionModel::Params modelParams(const ClassTable& classes, const Sensing& sens
   p.range = view.range_max;
   p.fov = view.fov;
   p.label_exponent = view.label_exponent;
+  p.detection_exponent = view.detection_exponent;
   return p;
 }
 
@@ -50,6 +53,23 @@ bool usable(const ObjectDetection::SpaceBox& box) {
   return box.bottom_centre.allFinite() &&
          std::isfinite(box.yaw + box.length + box.width + box.height) && box.length > 0 &&
          box.width > 0 && box.height > 0;
+}
+
+/// The label that is the class's name.
+int mostProbableLabel(const Sensing& sensing, ClassId c) {
+  int best = 0;
+  for (int l = 1; l < static_cast<int>(sensing.labels().size()); ++l) {
+    if (sensing.logLabel(l, c) > sensing.logLabel(best, c)) best = l;
+  }
+  return best;
+}
+
+/// A label's entry of a table or the value that holds for all.
+double entry(const PositionParams::Table& table, const std::string& label, double otherwise) {
+  for (const auto& [name, value] : table) {
+    if (name == label) return value;
+  }
+  return otherwise;
 }
 
 }  // namespace
@@ -63,11 +83,44 @@ void PositionParams::visit(ParamVisitor& v) {
     v.require(std::find(labels.begin(), labels.end(), label) != labels.end(),
               "names: '" + n + "' is not NAME=LABEL with one of the labels");
   }
+  const auto table = [&](const char* prefix, Table& rows, const char* unit, const char* text) {
+    v.table(prefix, rows, {-1e9, 1e9}, unit, text);
+    for (const auto& row : rows) {
+      v.require(std::find(labels.begin(), labels.end(), row.first) != labels.end(),
+                prefix + row.first + ": no such label");
+    }
+  };
   v.real("min_score", min_score, {-1e9, 1e9}, "", "boxes below are dropped");
   v.real("sigma", sigma, {0.001, 1e3}, "m", "of the centre, each axis");
-  v.real("range_share", range_share, {0, 1}, "", "of the distance, added to sigma in squares");
+  v.real("range_share", range_share, {0, 1}, "", "of the distance, added to sigma");
+  v.real("unsure_share", unsure_share, {0, 100}, "",
+         "by which both grow for a box that is clutter by its score");
+  v.real("score_slope", score_slope, {0, 1e3}, "1/score",
+         "P(object | score) = 1 / (1 + exp(-slope (score - offset) + fade range)); 0: no evidence");
+  v.real("score_offset", score_offset, {-1e9, 1e9}, "", "... score of even odds near by");
+  v.real("score_fade", score_fade, {-10, 10}, "1/m", "... by which the odds fall with the range");
+  v.real("score_balance", score_balance, {-50, 50}, "",
+         "... log of objects / clutter where that was counted");
+  table("score_slope.", label_slopes, "1/score", "the same for one label");
+  table("score_offset.", label_offsets, "", "the same for one label");
+  table("score_fade.", label_fades, "1/m", "the same for one label");
+  table("score_balance.", label_balances, "", "the same for one label");
+  v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log evidence");
+  v.words("clutter_like", clutter_like, "classes whose boxes score like clutter");
+  v.real("foreign_share", foreign_share, {0, 1}, "",
+         "of that evidence for classes that the label is not the name of");
+  v.real("group_distance", group_distance, {0, 10}, "m",
+         "boxes of different labels nearer than this are of one object; 0: off");
   v.boolean("sizes", sizes, "length, width, height and direction of the boxes are measured, too");
-  v.angle("axis_sigma_deg", axis_sigma, {0.1, 90}, "of that direction, front and back alike");
+  v.angle("axis_sigma_deg", axis_sigma, {0.1, 90}, "of that direction as an axis");
+  v.real("heading_flip", heading_flip, {0, 0.5}, "", "share of reversed directions");
+  v.real("length_sigma", length_sigma, {0.001, 10}, "m", "of a box");
+  v.real("width_sigma", width_sigma, {0.001, 10}, "m", "of a box");
+  v.real("height_sigma", height_sigma, {0.001, 10}, "m", "of a box");
+  v.real("base_sigma", base_sigma, {0.001, 10}, "m", "of a box's lower face");
+  table("length_excess.", length_excess, "m", "by which a label's boxes are too long");
+  table("width_excess.", width_excess, "m", "... too wide");
+  table("height_excess.", height_excess, "m", "... too high");
 }
 
 PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& classes,
@@ -79,6 +132,130 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
     const auto [name, label] = splitName(n);
     label_of_[name] = sensing.labelIndex(label);
   }
+  for (std::size_t l = 0; l < params_.labels.size(); ++l) {
+    const std::string& name = params_.labels[l];
+    Label label;
+    label.slope = entry(params_.label_slopes, name, params_.score_slope);
+    label.offset = entry(params_.label_offsets, name, params_.score_offset);
+    label.fade = entry(params_.label_fades, name, params_.score_fade);
+    label.balance = entry(params_.label_balances, name, params_.score_balance);
+    label.length_excess = entry(params_.length_excess, name, 0);
+    label.width_excess = entry(params_.width_excess, name, 0);
+    label.height_excess = entry(params_.height_excess, name, 0);
+    for (ClassId c = 0; c < classes.size(); ++c) {
+      label.log_label.push_back(sensing.logLabel(static_cast<int>(l), c));
+      const bool clutter_like =
+          std::count(params_.clutter_like.begin(), params_.clutter_like.end(), classes[c].name) > 0;
+      const bool own = mostProbableLabel(sensing, c) == static_cast<int>(l);
+      label.score_share.push_back(clutter_like ? 0 : own ? 1 : params_.foreign_share);
+    }
+    label.log_clutter = sensing.logLabelClutter(static_cast<int>(l));
+    labels_.push_back(std::move(label));
+  }
+}
+
+double PositionFrontEnd::logScoreRatio(const Candidate& c) const {
+  const Label& label = labels_[static_cast<std::size_t>(c.label)];
+  if (label.slope <= 0) return 0;
+  return std::clamp(label.logOdds(*c.object) - label.balance, -params_.score_limit,
+                    params_.score_limit);
+}
+
+std::vector<std::vector<PositionFrontEnd::Candidate>> PositionFrontEnd::groups(
+    const ObjectDetections& detections, MeasurementScan& scan) const {
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < detections.objects.size(); ++i) {
+    const ObjectDetection& object = detections.objects[i];
+    if (object.score < params_.min_score) continue;
+    const auto label = label_of_.find(object.label);
+    const bool good =
+        object.space_box && usable(*object.space_box) && label != label_of_.end() &&
+        // Out of the field of view neither clutter nor objects have a density.
+        model_->inView((scan.state.T_world_sensor * object.space_box->bottom_centre).head<2>(),
+                       scan.state);
+    if (good) {
+      candidates.push_back({&object, i, label->second});
+    } else {
+      ++scan.dropped;
+    }
+  }
+  // The surest box of a group leads it; boxes of one label never share a group.
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
+    return logScoreRatio(a) > logScoreRatio(b);
+  });
+  std::vector<std::vector<Candidate>> out;
+  for (const Candidate& c : candidates) {
+    const auto joins = [&](const std::vector<Candidate>& group) {
+      const Vector3 d =
+          c.object->space_box->bottom_centre - group.front().object->space_box->bottom_centre;
+      return d.head<2>().norm() < params_.group_distance &&
+             std::none_of(group.begin(), group.end(),
+                          [&](const Candidate& other) { return other.label == c.label; });
+    };
+    const auto group = std::find_if(out.begin(), out.end(), joins);
+    group != out.end() ? group->push_back(c) : out.push_back({c});
+  }
+  std::sort(out.begin(), out.end(),
+            [](const auto& a, const auto& b) { return a.front().index < b.front().index; });
+  return out;
+}
+
+void PositionFrontEnd::addEvidence(const Candidate& c, Measurement& m) const {
+  const Label& label = labels_[static_cast<std::size_t>(c.label)];
+  const double ratio = logScoreRatio(c);
+  for (std::size_t k = 0; k < label.log_label.size(); ++k)
+    m.log_class.push_back(label.log_label[k] + label.score_share[k] * ratio);
+  m.log_clutter = label.log_clutter;
+}
+
+void PositionFrontEnd::addBox(const Candidate& c, const SensorFrame& frame,
+                              const SensorState& state, Measurement& m) const {
+  const ObjectDetection::SpaceBox& box = *c.object->space_box;
+  const Label& label = labels_[static_cast<std::size_t>(c.label)];
+  const PoseUncertainty& pose = frame.ego.uncertainty;
+  const Vector3 axis =
+      state.T_world_sensor.linear() * Vector3(std::cos(box.yaw), std::sin(box.yaw), 0);
+  SidesSeen sides;
+  sides.yaw = std::atan2(axis.y(), axis.x());
+  sides.yaw_sigma = std::hypot(params_.axis_sigma, pose.sigma_yaw);
+  sides.a = std::max(0.1, box.length - label.length_excess);
+  sides.b = std::max(0.1, box.width - label.width_excess);
+  sides.a_complete = sides.b_complete = true;
+  sides.a_sigma = params_.length_sigma;
+  sides.b_sigma = params_.width_sigma;
+  sides.centre = m.position;
+  m.sides = sides;
+  m.heading = HeadingSeen{sides.yaw, sides.yaw_sigma, params_.heading_flip};
+  const Vector3 place = state.T_world_sensor * box.bottom_centre;
+  m.base_z = ScalarEstimate{place.z(), params_.base_sigma * params_.base_sigma};
+  m.height = ScalarEstimate{std::max(0.1, box.height - label.height_excess),
+                            params_.height_sigma * params_.height_sigma};
+}
+
+Measurement PositionFrontEnd::measure(const std::vector<Candidate>& group, const SensorFrame& frame,
+                                      const SensorState& state) const {
+  const Candidate& first = group.front();
+  const PoseUncertainty& pose = frame.ego.uncertainty;
+  const Vector2 place = (state.T_world_sensor * first.object->space_box->bottom_centre).head<2>();
+  const Vector2 sight = place - state.T_world_sensor.translation().head<2>();
+  Measurement m;
+  m.z = place;
+  m.seen = 3;
+  m.label = first.label;
+  m.detection = static_cast<int>(first.index);
+  // Place by the sensor, plus the vehicle's place and, across the line of sight, its heading.
+  const Vector2 across(-sight.y(), sight.x());
+  const Label& label = labels_[static_cast<std::size_t>(first.label)];
+  const double clutter = label.slope > 0 ? 1 / (1 + std::exp(label.logOdds(*first.object))) : 0;
+  const double own =
+      (params_.sigma + params_.range_share * sight.norm()) * (1 + params_.unsure_share * clutter);
+  m.R = (own * own + pose.sigma_xy * pose.sigma_xy) * Matrix2::Identity() +
+        pose.sigma_yaw * pose.sigma_yaw * across * across.transpose();
+  m.position = place;
+  m.position_sigma = std::sqrt(m.R.trace() / 2);
+  addEvidence(first, m);
+  if (params_.sizes) addBox(first, frame, state, m);
+  return m;
 }
 
 MeasurementScan PositionFrontEnd::extract(const SensorFrame& frame) const {
@@ -90,53 +267,8 @@ MeasurementScan PositionFrontEnd::extract(const SensorFrame& frame) const {
   scan.state = {frame.stamp, frame.T_world_sensor(), frame.ego};
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
   if (!detections) return scan;
-  const PoseUncertainty& pose = frame.ego.uncertainty;
-  const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
-  for (std::size_t i = 0; i < detections->objects.size(); ++i) {
-    const ObjectDetection& object = detections->objects[i];
-    if (object.score < params_.min_score) continue;
-    const auto label = label_of_.find(object.label);
-    if (!object.space_box || !usable(*object.space_box) || label == label_of_.end()) {
-      ++scan.dropped;
-      continue;
-    }
-    const ObjectDetection::SpaceBox& box = *object.space_box;
-    const Vector3 place = scan.state.T_world_sensor * box.bottom_centre;
-    const Vector2 sight = place.head<2>() - origin;
-    if (!model_->inView(place.head<2>(),
-                        scan.state)) {  // neither clutter nor objects have a density
-      ++scan.dropped;
-      continue;
-    }
-    Measurement m;
-    m.z = place.head<2>();
-    m.seen = 3;
-    m.label = label->second;
-    m.detection = static_cast<int>(i);
-    // Place by the sensor, plus the vehicle's place and, across the line of sight, its heading.
-    const Vector2 across(-sight.y(), sight.x());
-    const double own = params_.range_share * sight.norm();
-    m.R = (params_.sigma * params_.sigma + own * own + pose.sigma_xy * pose.sigma_xy) *
-              Matrix2::Identity() +
-          pose.sigma_yaw * pose.sigma_yaw * across * across.transpose();
-    m.position = place.head<2>();
-    m.position_sigma = std::sqrt(m.R.trace() / 2);
-    if (params_.sizes) {
-      const Vector3 axis =
-          scan.state.T_world_sensor.linear() * Vector3(std::cos(box.yaw), std::sin(box.yaw), 0);
-      SidesSeen sides;
-      sides.yaw = std::atan2(axis.y(), axis.x());
-      sides.yaw_sigma = std::hypot(params_.axis_sigma, pose.sigma_yaw);
-      sides.a = box.length, sides.b = box.width;
-      sides.a_complete = sides.b_complete = true;
-      sides.centre = m.position;
-      m.sides = sides;
-      m.heading = HeadingSeen{sides.yaw, sides.yaw_sigma, 0.5};
-      m.base_z = ScalarEstimate{place.z(), params_.sigma * params_.sigma};
-      m.height = ScalarEstimate{box.height, params_.sigma * params_.sigma};
-    }
-    scan.measurements.push_back(std::move(m));
-  }
+  for (const auto& group : groups(*detections, scan))
+    scan.measurements.push_back(measure(group, frame, scan.state));
   return scan;
 }
 
@@ -144,6 +276,10 @@ std::unique_ptr<FrontEnd> makePositionFrontEnd(Config& config, const std::string
                                                const ClassTable& classes) {
   const std::string section = "sensor." + sensor_label;
   const auto params = config.read<PositionParams>(section + ".positions");
+  for (const auto& name : params.clutter_like) {
+    if (classes.find(name) < 0 && name != "static-other")
+      config.fault(section + ".positions", "clutter_like", "no such class '" + name + "'");
+  }
   const Sensing sensing =
       Sensing::read(config, section, classes, params.labels, positionDefaults());
   return std::make_unique<PositionFrontEnd>(params, classes, sensing);

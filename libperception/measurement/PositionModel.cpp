@@ -1,8 +1,14 @@
 #include "libperception/measurement/PositionModel.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "libperception/measurement/ExtentUpdate.h"
+
 namespace perception {
+namespace {
+constexpr double kSideSigma = 0.5;  // [m] of sides that tell none of their own
+}
 
 const std::vector<AxisKind>& PositionModel::axes() const {
   static const std::vector<AxisKind> kinds{AxisKind::kLinear, AxisKind::kLinear};
@@ -32,7 +38,10 @@ bool PositionModel::inView(const Vector2& position, const SensorState& sensor) c
 double PositionModel::detectionProbability(ClassId c, const Kinematics& object, const Extent&,
                                            const SensorState& sensor, double visibility) const {
   if (!inView(object.q.head<2>(), sensor)) return 0;
-  return params_.classes[static_cast<std::size_t>(c)].detection * visibility;
+  const ClassRow& row = params_.classes[static_cast<std::size_t>(c)];
+  const double range = (object.q.head<2>() - sensor.T_world_sensor.translation().head<2>()).norm();
+  const double far = (range - row.full_range) / (row.last_range - row.full_range);
+  return row.detection * (1 - std::clamp(far, 0.0, 1.0)) * visibility;
 }
 
 bool PositionModel::mayDetect(const Vector2& position, double reach,
@@ -63,6 +72,7 @@ std::optional<BirthState> PositionModel::birth(const Measurement& m, ClassId c,
   birth.position = m.z;
   birth.covariance = m.R + params_.classes[static_cast<std::size_t>(c)].noise;
   birth.extent = params_.classes[static_cast<std::size_t>(c)].extent;
+  if (m.sides) birth.extent = updateExtent(birth.extent, *m.sides, m.sides->yaw, kSideSigma);
   return birth;
 }
 

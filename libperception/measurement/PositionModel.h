@@ -8,7 +8,9 @@ namespace perception {
 class PositionModel : public MeasurementModel {
  public:
   struct ClassRow {
-    double detection = 0.9;      ///< P(detected | in view)
+    double detection = 0.9;      ///< P(detected | in view, near)
+    double full_range = 1e9;     ///< [m] up to which that holds; falls linearly to 0 ...
+    double last_range = 2e9;     ///< [m] ... here
     std::vector<double> labels;  ///< P(label | class, detected); sums to 1
     Matrix2 noise =
         Matrix2::Identity();  ///< [m^2] covariance of z about the centre; Measurement::R is added
@@ -21,7 +23,7 @@ class PositionModel : public MeasurementModel {
     double births_per_scan = 0.03;       ///< beta
     double range = 20;  ///< [m] of the field of view, a sector about the sensor's forward axis
     double fov = kPi;   ///< [rad] its full angle; 2 pi or more: a full disc
-    double label_exponent = 1;  ///< SPEC 5.6
+    double label_exponent = 1, detection_exponent = 1;  ///< SPEC 5.6
   };
 
   explicit PositionModel(Params params) : params_(std::move(params)) {}
@@ -34,6 +36,7 @@ class PositionModel : public MeasurementModel {
   bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override;
   double logLabelLikelihood(int label, ClassId c) const override;
   double labelExponent() const override { return params_.label_exponent; }
+  double detectionExponent() const override { return params_.detection_exponent; }
   double logLabelClutter(int label) const override;
   double logClutterDensity(const Measurement& m, const SensorState& sensor) const override;
   double logBirthDensity(const Measurement& m, ClassId c, const SensorState& sensor) const override;

@@ -47,6 +47,7 @@ class Sensing {
   Sensing(SensingParams params, std::vector<ClassSensing> classes, std::vector<std::string> labels);
 
   const SensingParams& params() const { return params_; }
+  const ClassSensing& row(ClassId c) const { return classes_[static_cast<std::size_t>(c)]; }
   const std::vector<std::string>& labels() const { return labels_; }
   /// Index of a label name or -1.
   int labelIndex(const std::string& name) const;

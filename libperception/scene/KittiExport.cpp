@@ -64,17 +64,41 @@ std::optional<ObjectDetection::ImageBox> project(const std::array<Vector3, 8>& c
   return box;
 }
 
+// As what an object is written: its likeliest class, but a thing that may be a road user as that,
+// with the little probability that this has; the reader's threshold decides.
+struct Role {
+  ClassId class_id = 0;
+  double probability = 0;  // that it exists and is of such a kind
+};
+
+Role roleOf(const SceneObject& object, const ClassTable& classes, double road_user_from) {
+  if (object.class_probability.empty()) return {object.class_id, object.existence};
+  double road_user = 0;
+  ClassId best = -1;
+  const auto p = [&](ClassId c) { return object.class_probability[static_cast<std::size_t>(c)]; };
+  for (ClassId c = 0; c < classes.size(); ++c) {
+    if (!classes[c].reported) continue;
+    road_user += p(c);
+    if (best < 0 || p(c) > p(best)) best = c;
+  }
+  if (best < 0 || road_user * object.existence < road_user_from)
+    return {object.class_id, object.existence * (1 - road_user)};
+  return {best, object.existence * road_user};
+}
+
 }  // namespace
 
 std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& scene,
-                                       const ClassTable& classes, const KittiCamera& camera) {
+                                       const ClassTable& classes, const KittiCamera& camera,
+                                       double road_user_from) {
   const Pose3 T_world_camera = scene.ego.T_world_ego * camera.T_ego_camera;
   const Pose3 T_reference_world =
       (T_world_camera * Eigen::Translation3d(camera.reference_in_camera)).inverse();
   KittiObject result;
   result.frame = scene.frame;
   result.id = object.id;
-  result.type = classes[object.class_id].kitti_type;
+  const Role role = roleOf(object, classes, road_user_from);
+  result.type = classes[role.class_id].kitti_type;
   result.length = object.length, result.width = object.width, result.height = object.height;
   result.bottom_centre = T_reference_world * object.position;
   const Vector3 front =
@@ -82,7 +106,7 @@ std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& s
   result.rotation_y = std::atan2(-front.z(), front.x());
   result.alpha =
       wrapAngle(result.rotation_y - std::atan2(result.bottom_centre.x(), result.bottom_centre.z()));
-  result.score = logit(std::clamp(object.existence, kSurest, 1 - kSurest));
+  result.score = logit(std::clamp(role.probability, kSurest, 1 - kSurest));
 
   std::array<Vector3, 8> in_camera = corners(result);
   for (Vector3& corner : in_camera) corner += camera.reference_in_camera;
@@ -104,13 +128,13 @@ std::string kittiLine(const KittiObject& o) {
 }
 
 KittiExport::KittiExport(const std::string& path, const ClassTable& classes,
-                         const KittiCamera& camera)
-    : file_(path), classes_(classes), camera_(camera) {}
+                         const KittiCamera& camera, double road_user_from)
+    : file_(path), classes_(classes), camera_(camera), road_user_from_(road_user_from) {}
 
 void KittiExport::write(const Scene& scene) {
   if (scene.frame < 0) return;
   for (const SceneObject& object : scene.objects) {
-    if (const auto seen = kittiObject(object, scene, classes_, camera_))
+    if (const auto seen = kittiObject(object, scene, classes_, camera_, road_user_from_))
       file_.write(kittiLine(*seen));
   }
 }

@@ -35,14 +35,16 @@ struct KittiObject {
   Vector3 bottom_centre =
       Vector3::Zero();    ///< [m] frame of the rectified camera 0 (x right, y down, z forward)
   double rotation_y = 0;  ///< [rad] about that frame's y axis; 0: the front looks along x
-  double score = 0;       ///< log-odds of the existence probability, within +-13.8
+  double score = 0;       ///< log-odds that it exists and is no mere thing, within +-13.8
 };
 
-/// The object as KITTI sees it; empty when its box lies wholly outside the image. The box stands
+/// The object as KITTI sees it, as a road user when it exists and is one with a probability of at
+/// least `road_user_from`; empty when its box lies wholly outside the image. The box stands
 /// upright along the camera's y axis, as in KITTI, so that the image box is the one that a reader
 /// of the line computes.
 std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& scene,
-                                       const ClassTable& classes, const KittiCamera& camera);
+                                       const ClassTable& classes, const KittiCamera& camera,
+                                       double road_user_from = 0.5);
 
 /// `frame id type 0 0 alpha x1 y1 x2 y2 h w l x y z rotation_y score`, with line feed; truncated
 /// and occluded are 0.
@@ -53,7 +55,8 @@ std::string kittiLine(const KittiObject& object);
 class KittiExport {
  public:
   /// Throws OutputError.
-  KittiExport(const std::string& path, const ClassTable& classes, const KittiCamera& camera);
+  KittiExport(const std::string& path, const ClassTable& classes, const KittiCamera& camera,
+              double road_user_from = 0.5);
   void write(const Scene& scene);
   void close();
 
@@ -61,6 +64,7 @@ class KittiExport {
   OutputFile file_;
   ClassTable classes_;
   KittiCamera camera_;
+  double road_user_from_;
 };
 
 }  // namespace perception

@@ -39,6 +39,8 @@ void SceneParams::visit(ParamVisitor& v) {
   v.real("min_existence", min_existence, {0, 1}, "", "objects below are not put out");
   v.real("classified_at", classified_at, {0.5, 1}, "",
          "class probability from which an object is classified");
+  v.real("road_user_from", road_user_from, {0, 1}, "",
+         "KITTI export: written as a road user from this probability on");
 }
 
 std::uint64_t SceneFromPosterior::numberOf(std::uint64_t track_id) {
@@ -73,11 +75,18 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   } else {
     o.speed = speed;
     o.sd_speed = std::sqrt(along.dot(velocity_covariance * along));
-    const bool moves = speed >= kHeadingFromSpeed;
-    const Vector2 across(-along.y(), along.x());
-    o.yaw = moves ? std::atan2(along.y(), along.x()) : 0;
-    o.sd_yaw =
-        moves ? std::min(kPi, std::sqrt(across.dot(velocity_covariance * across)) / speed) : kPi;
+    if (track.facing) {
+      o.has_yaw = true;
+      o.yaw = track.facing->mean;
+      o.sd_yaw = std::min(kPi, std::sqrt(track.facing->variance));
+    } else if (speed >= kHeadingFromSpeed) {
+      const Vector2 across(-along.y(), along.x());
+      o.yaw = std::atan2(along.y(), along.x());
+      o.sd_yaw = std::min(kPi, std::sqrt(across.dot(velocity_covariance * across)) / speed);
+    } else {
+      o.yaw = 0;
+      o.sd_yaw = kPi;
+    }
   }
   o.length = f.extent.length;
   o.width = f.extent.width;

@@ -13,6 +13,8 @@ struct SceneParams {
   double min_existence = 0.5;  ///< objects below are not put out (SPEC 5.11)
   double classified_at =
       0.95;  ///< class probability from which an object counts as classified (the paper's)
+  double road_user_from = 0.5;  ///< KITTI export: an object that may be a mere thing is written as
+                                ///< the road user that it may be from this probability on
 
   void visit(ParamVisitor& v);
 };

@@ -100,8 +100,11 @@ PositionModel::Params sensorParams(const EncounterConditions& conditions, double
                                    const std::array<std::vector<double>, 2>& labels) {
   PositionModel::Params p;
   for (std::size_t c = 0; c < 2; ++c) {
-    p.classes.push_back({detection[c] * conditions.detection_factor, labels[c],
-                         Matrix2(conditions.noise_factor * noise[c])});
+    PositionModel::ClassRow row;
+    row.detection = detection[c] * conditions.detection_factor;
+    row.labels = labels[c];
+    row.noise = conditions.noise_factor * noise[c];
+    p.classes.push_back(std::move(row));
   }
   p.clutter_labels = {0.5, 0.5};
   p.clutter_per_scan = clutter * conditions.clutter_factor;
