@@ -27,6 +27,8 @@ void FilterParams::visit(ParamVisitor& v) {
   v.real("side_sigma", side_sigma, {0.01, 5}, "m", "a seen side as a measurement of the extent");
   v.real("base_walk", base_walk, {0, 10}, "m^2/s", "random walk of the base height");
   v.real("facing_walk", facing_walk, {0, 100}, "rad^2/s", "random walk of where people look");
+  v.real("hidden_detection", hidden_detection, {0, 1}, "",
+         "share of P_D that objects keep which others hide");
   v.real("hidden_tolerance", hidden_tolerance, {0, 20}, "m",
          "how far behind the horizon a track still counts as visible");
   v.real("merge_area", merge_area, {0, 100}, "m^2",

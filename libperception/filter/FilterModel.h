@@ -42,6 +42,7 @@ struct FilterParams {
   double base_walk = 0.05;  ///< [m^2/s] random walk of the base height (SPEC 2)
   double facing_walk = radians(30) * radians(30);  ///< [rad^2/s] random walk of where people look;
                                                    ///< twice a cyclist's rotation noise (SPEC 2)
+  double hidden_detection = 0;    ///< share of P_D that hidden objects keep
   double hidden_tolerance = 1.0;  ///< [m] a track this much behind the horizon is still visible
   double merge_area =
       2.0;  ///< [m^2] footprints from this size on swallow tracks inside them (SPEC 5.9); 0: never

@@ -138,7 +138,8 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
   row.predictions.resize(classes);
   scan.model->predict(kinematics.data(), extents.data(), classes, scan.state,
                       row.predictions.data());
-  const double visibility = visibilityOf(track, scan, model);
+  const double visibility =
+      std::max(visibilityOf(track, scan, model), model.params.hidden_detection);
   row.detection_by_class.resize(classes);
   for (std::size_t j = 0; j < classes; ++j) {
     const auto detection = [&](double visible) {

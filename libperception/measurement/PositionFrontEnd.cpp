@@ -111,6 +111,8 @@ void PositionParams::visit(ParamVisitor& v) {
          "of that evidence for classes that the label is not the name of");
   v.real("group_distance", group_distance, {0, 10}, "m",
          "boxes of different labels nearer than this are of one object; 0: off");
+  v.real("hides_from", hides_from, {0, 1}, "",
+         "P(object) from which a box hides what stands behind it; 1: no box does");
   v.boolean("sizes", sizes, "length, width, height and direction of the boxes are measured, too");
   v.angle("axis_sigma_deg", axis_sigma, {0.1, 90}, "of that direction as an axis");
   v.real("heading_flip", heading_flip, {0, 0.5}, "", "share of reversed directions");
@@ -152,6 +154,36 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
     label.log_clutter = sensing.logLabelClutter(static_cast<int>(l));
     labels_.push_back(std::move(label));
   }
+}
+
+double PositionFrontEnd::clutterProbability(const Candidate& c) const {
+  const Label& label = labels_[static_cast<std::size_t>(c.label)];
+  return label.slope > 0 ? 1 / (1 + std::exp(label.logOdds(*c.object))) : 0;
+}
+
+/// The faces of the boxes that surely stand there.
+std::shared_ptr<const Horizon> PositionFrontEnd::horizon(
+    const std::vector<std::vector<Candidate>>& groups, const SensorState& state) const {
+  if (params_.hides_from >= 1) return nullptr;
+  constexpr std::size_t kBins = 720;  // half a degree
+  constexpr double kStep = 0.1;       // [m] between points of an outline: half a degree at 11 m
+  auto result = std::make_shared<Horizon>(state.T_world_sensor.translation().head<2>(), kBins);
+  for (const auto& group : groups) {
+    const ObjectDetection::SpaceBox& box = *group.front().object->space_box;
+    if (1 - clutterProbability(group.front()) < params_.hides_from) continue;
+    const Vector2 along(std::cos(box.yaw), std::sin(box.yaw)), across(-along.y(), along.x());
+    const auto side = [&](const Vector2& direction, double length, const Vector2& offset) {
+      for (double s = -0.5 * length; s <= 0.5 * length; s += kStep) {
+        const Vector2 p = box.bottom_centre.head<2>() + offset + s * direction;
+        result->add((state.T_world_sensor * Vector3(p.x(), p.y(), 0)).head<2>());
+      }
+    };
+    for (const double sign : {-0.5, 0.5}) {
+      side(along, box.length, sign * box.width * across);
+      side(across, box.width, sign * box.length * along);
+    }
+  }
+  return result;
 }
 
 double PositionFrontEnd::logScoreRatio(const Candidate& c) const {
@@ -245,10 +277,8 @@ Measurement PositionFrontEnd::measure(const std::vector<Candidate>& group, const
   m.detection = static_cast<int>(first.index);
   // Place by the sensor, plus the vehicle's place and, across the line of sight, its heading.
   const Vector2 across(-sight.y(), sight.x());
-  const Label& label = labels_[static_cast<std::size_t>(first.label)];
-  const double clutter = label.slope > 0 ? 1 / (1 + std::exp(label.logOdds(*first.object))) : 0;
-  const double own =
-      (params_.sigma + params_.range_share * sight.norm()) * (1 + params_.unsure_share * clutter);
+  const double own = (params_.sigma + params_.range_share * sight.norm()) *
+                     (1 + params_.unsure_share * clutterProbability(first));
   m.R = (own * own + pose.sigma_xy * pose.sigma_xy) * Matrix2::Identity() +
         pose.sigma_yaw * pose.sigma_yaw * across * across.transpose();
   m.position = place;
@@ -267,8 +297,9 @@ MeasurementScan PositionFrontEnd::extract(const SensorFrame& frame) const {
   scan.state = {frame.stamp, frame.T_world_sensor(), frame.ego};
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
   if (!detections) return scan;
-  for (const auto& group : groups(*detections, scan))
-    scan.measurements.push_back(measure(group, frame, scan.state));
+  const auto found = groups(*detections, scan);
+  scan.horizon = horizon(found, scan.state);
+  for (const auto& group : found) scan.measurements.push_back(measure(group, frame, scan.state));
   return scan;
 }
 

@@ -45,6 +45,9 @@ struct PositionParams {
   /// cyclists right.)
   double group_distance = 0;
 
+  /// P(object) from which a box hides what stands behind it; 1: no box does.
+  double hides_from = 1;
+
   bool sizes = false;  ///< length, width, height and direction of the box are measured, too
   double axis_sigma = radians(10);                   ///< [rad] of that direction as an axis
   double heading_flip = 0.5;                         ///< share of reversed directions
@@ -90,6 +93,9 @@ class PositionFrontEnd final : public FrontEnd {
   void addEvidence(const Candidate& c, Measurement& m) const;
   void addBox(const Candidate& c, const SensorFrame& frame, const SensorState& state,
               Measurement& m) const;
+  double clutterProbability(const Candidate& c) const;
+  std::shared_ptr<const Horizon> horizon(const std::vector<std::vector<Candidate>>& groups,
+                                         const SensorState& state) const;
   double logScoreRatio(const Candidate& c) const;
 
   PositionParams params_;

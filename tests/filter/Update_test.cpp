@@ -111,5 +111,75 @@ TEST(Prediction, FadesWhatNobodyCouldSee) {
   EXPECT_NEAR(predictTrack(t, t.stamp + 3.0, f.model).existence, 0.9 * std::exp(-3.0 / 6), 1e-12);
 }
 
+/// A scan with one measurement at (1, 2) that says so much of its classes by itself.
+MeasurementScan scoredScan(const Fixture& f, double t, std::vector<double> log_class,
+                           double log_clutter) {
+  auto scan = positionScan(f.sensor, t, {{1, 2, 0}});
+  scan.measurements[0].log_class = std::move(log_class);
+  scan.measurements[0].log_clutter = log_clutter;
+  return scan;
+}
+
+TEST(NewTrack, EvidenceByClassStandsInPlaceOfLabelAndScore) {
+  const Fixture f;
+  const auto scan = scoredScan(f, 0, {1.5, -0.5}, -0.2);
+  const Track t = newTrack(likelihoodTable({}, scan, f.model).news[0], 0, scan, 0, f.model);
+  const auto& p = f.sensor->params();
+  const double walker = 0.6 * std::exp(1.5), thing = 0.4 * std::exp(-0.5);
+  const double birth = p.births_per_scan * (walker + thing);
+  EXPECT_NEAR(t.existence, birth / (birth + p.clutter_per_scan * std::exp(-0.2)), 1e-12);
+  EXPECT_NEAR(std::exp(t.log_class[0]), walker / (walker + thing), 1e-12);
+}
+
+TEST(HitTrack, EvidenceByClassMovesTheClassesByItsRatio) {
+  const Fixture f;
+  const Track before = predictTrack(f.born(), Stamp::fromSeconds(1000.1), f.model);
+  const auto after = [&](std::vector<double> log_class) {
+    const auto scan = scoredScan(f, 0.1, std::move(log_class), 0);
+    const auto table = likelihoodTable({before}, scan, f.model);
+    return hitTrack(before, table.tracks[0], table.tracks[0].pairs.at(0), scan, 1, f.model);
+  };
+  const Track even = after({0, 0}), tilted = after({1.25, 0});
+  EXPECT_NEAR((tilted.log_class[0] - tilted.log_class[1]) - (even.log_class[0] - even.log_class[1]),
+              1.25, 1e-9);
+}
+
+TEST(HitTrack, FacingFollowsTheAxisAndTheMajorityOfDirections) {
+  const Fixture f;
+  const auto facing = [&](double t, double yaw) {
+    auto scan = positionScan(f.sensor, t, {{1, 2, 0}});
+    scan.measurements[0].heading = HeadingSeen{yaw, 0.1, 0.1};
+    return scan;
+  };
+  const auto first = facing(0, 0.5);
+  Track track = newTrack(likelihoodTable({}, first, f.model).news[0], 0, first, 0, f.model);
+  ASSERT_TRUE(track.facing);
+  EXPECT_NEAR(track.facing->mean, 0.5, 1e-12);
+  std::uint64_t index = 0;
+  for (const double yaw : {0.5 + kPi, 0.6, 0.5, 0.5 + kPi, 0.6}) {
+    const double t = 0.1 * static_cast<double>(++index);
+    const auto scan = facing(t, yaw);
+    track = predictTrack(track, Stamp::fromSeconds(1000 + t), f.model);
+    const auto table = likelihoodTable({track}, scan, f.model);
+    track = hitTrack(track, table.tracks[0], table.tracks[0].pairs.at(0), scan, index, f.model);
+  }
+  EXPECT_NEAR(wrapAngle(track.facing->mean), 0.55, 0.1);
+  EXPECT_LT(track.facing->variance, 0.01);
+}
+
+TEST(LikelihoodTable, HiddenObjectsKeepTheirShareOfDetection) {
+  Fixture f;
+  f.model.params.hidden_detection = 0.25;
+  const Track track = predictTrack(f.born(), Stamp::fromSeconds(1000.1), f.model);
+  auto scan = positionScan(f.sensor, 0.1, {});
+  auto horizon = std::make_shared<Horizon>(Vector2(0, 0), 360);
+  for (double bearing = 0; bearing < kTwoPi; bearing += 0.01)
+    horizon->add({0.5 * std::cos(bearing), 0.5 * std::sin(bearing)});
+  f.model.params.hidden_tolerance = 0.1;
+  const double open = likelihoodTable({track}, scan, f.model).tracks[0].detection;
+  scan.horizon = horizon;
+  EXPECT_NEAR(likelihoodTable({track}, scan, f.model).tracks[0].detection, 0.25 * open, 1e-12);
+}
+
 }  // namespace
 }  // namespace perception

@@ -47,6 +47,31 @@ std::optional<KittiObject> seen(const SceneObject& object) {
   return kittiObject(object, atOrigin({object}), pedestrianAndCar(), frontCamera());
 }
 
+/// A pedestrian-or-thing: class table of a pedestrian and of one that is not reported.
+ClassTable pedestrianAndThing() {
+  ClassTable table = pedestrianAndCar();
+  table.classes[1].name = "static-other";
+  table.classes[1].kitti_type = "Misc";
+  table.classes[1].reported = false;
+  return table;
+}
+
+TEST(KittiExport, AThingThatMayBeARoadUserIsWrittenAsSuchFromTheGivenProbabilityOn) {
+  SceneObject o = carAt(21, 2, 0);
+  o.existence = 0.8;
+  o.class_id = 1;
+  o.class_probability = {0.25, 0.75};
+  const auto as = [&](double from) {
+    return kittiObject(o, atOrigin({o}), pedestrianAndThing(), frontCamera(), from);
+  };
+  ASSERT_TRUE(as(0.5) && as(0.19));
+  EXPECT_EQ(as(0.5)->type, "Misc");
+  EXPECT_NEAR(as(0.5)->score, std::log(0.6 / 0.4), 1e-12);
+  EXPECT_EQ(as(0.19)->type, "Pedestrian");
+  EXPECT_NEAR(as(0.19)->score, std::log(0.2 / 0.8), 1e-12);
+  EXPECT_EQ(as(0.21)->type, "Misc");
+}
+
 TEST(KittiExport, ACarAheadIsWhereKittiSaysItIs) {
   const auto o = seen(carAt(21, 2, 0));
   ASSERT_TRUE(o);

@@ -147,6 +147,12 @@ TEST(CObservationMeasurements, ComesBackBitForBit) {
   EXPECT_EQ(back->measurements[0].sides->a_complete, true);
   EXPECT_EQ(back->measurements[0].sides->centre, Vector2(11.5, 5.5));
   EXPECT_EQ(back->measurements[1].height->mean, 1.6);
+  ASSERT_TRUE(back->measurements[0].heading);
+  EXPECT_EQ(back->measurements[0].heading->flip_probability, 0.05);
+  EXPECT_EQ(back->measurements[0].sides->a_sigma, 0.25);
+  EXPECT_EQ(back->measurements[0].log_class, (std::vector<double>{-0.5, 1.5}));
+  EXPECT_EQ(back->measurements[0].log_clutter, -0.7);
+  EXPECT_FALSE(back->measurements[1].heading);
   EXPECT_FALSE(back->measurements[1].sides);
   EXPECT_NEAR(back->sensor_pose.z(), 1.73, 1e-9);  // the vehicle's own pose is not part of it
   EXPECT_NEAR(back->sensor_pose.x(), 0, 1e-9);

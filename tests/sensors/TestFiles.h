@@ -131,6 +131,10 @@ inline std::shared_ptr<CObservationMeasurements> someMeasurements(Stamp stamp = 
   scan.measurements[1].seen = 4;
   scan.measurements[1].sides.reset();
   scan.measurements[1].height = ScalarEstimate{1.6, 0.01};
+  scan.measurements[0].heading = HeadingSeen{0.4, 0.1, 0.05};
+  scan.measurements[0].sides->a_sigma = 0.25;
+  scan.measurements[0].log_class = {-0.5, 1.5};
+  scan.measurements[0].log_clutter = -0.7;
   return std::dynamic_pointer_cast<CObservationMeasurements>(measurementsObservation(
       scan, "FootprintModel", {"left", "right", "range"}, {"person_sized", "car_sized"}));
 }
