@@ -81,7 +81,8 @@ Role roleOf(const SceneObject& object, const ClassTable& classes, double road_us
     road_user += p(c);
     if (best < 0 || p(c) > p(best)) best = c;
   }
-  if (best < 0 || road_user * object.existence < road_user_from)
+  const bool thing = !classes[object.class_id].reported;
+  if (best < 0 || (thing && road_user * object.existence < road_user_from))
     return {object.class_id, object.existence * (1 - road_user)};
   return {best, object.existence * road_user};
 }

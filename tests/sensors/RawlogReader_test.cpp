@@ -181,7 +181,7 @@ TEST_F(RawlogReaderTest, TornMessageNamesPlaceEntryAndStamp) {
 
 TEST_F(RawlogReaderTest, NoBitFlipPassesAsAWholeGzipLog) {
   writeLog(log_, 3, 1, 100);
-  const std::string whole = readBytes(log_);
+  const std::string whole = readBytes(log_), content = inflated(log_);
   std::mt19937 random(7);
   for (int round = 0; round < 200; ++round) {
     std::string bytes = whole;
@@ -192,7 +192,9 @@ TEST_F(RawlogReaderTest, NoBitFlipPassesAsAWholeGzipLog) {
     try {
       RawlogReader reader(folder_.file("flip"));
       drain(reader);
-      EXPECT_NE(reader.end(), End::kClean) << "byte " << at;
+      // Some bits may stand either way: a copy from another place where the same bytes are.
+      const bool clean = reader.end() == End::kClean;
+      EXPECT_TRUE(!clean || inflated(folder_.file("flip")) == content) << "byte " << at;
     } catch (const DataError&) {  // the first entry is hit
     }
   }
