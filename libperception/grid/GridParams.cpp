@@ -3,8 +3,9 @@
 namespace perception {
 
 void GridParams::visit(ParamVisitor& v) {
-  v.choiceOf("back_end", back_end, {"octomap", "mrpt2d"},
-             "octomap: cells in space; mrpt2d: cells of the ground, cheaper");
+  v.choiceOf("back_end", back_end, {"octomap", "mrpt2d", "mrpt3d", "rolling", "rolling2d"},
+             "octomap, mrpt3d, rolling: cells in space; mrpt2d, rolling2d: of the ground, cheaper; "
+             "rolling and rolling2d for real time");
   v.real("resolution", resolution, {0.05, 2}, "m", "edge of a cell (SPEC 8.4)");
   v.real("size", size, {5, 400}, "m", "edge of the window around the vehicle (SPEC 8.4)");
   v.real("hit", hit, {0.01, 5}, "log-odds", "a scan with a return in the cell (SPEC 8.4)");

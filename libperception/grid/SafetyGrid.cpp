@@ -1,7 +1,9 @@
 #include "libperception/grid/SafetyGrid.h"
 
 #include "libperception/grid/CGridMrpt2d.h"
+#include "libperception/grid/CGridMrpt3d.h"
 #include "libperception/grid/GridOctomap.h"
+#include "libperception/grid/GridRolling.h"
 
 namespace perception {
 namespace {
@@ -12,7 +14,10 @@ struct BackEndRow {
 };
 
 constexpr BackEndRow kBackEnds[] = {{GridParams::BackEnd::kOctomap, &makeGridOctomap},
-                                    {GridParams::BackEnd::kMrpt2d, &makeGridMrpt2d}};
+                                    {GridParams::BackEnd::kMrpt2d, &makeGridMrpt2d},
+                                    {GridParams::BackEnd::kMrpt3d, &makeGridMrpt3d},
+                                    {GridParams::BackEnd::kRolling, &makeGridRolling},
+                                    {GridParams::BackEnd::kRolling2d, &makeGridRolling2d}};
 
 }  // namespace
 
