@@ -54,6 +54,8 @@ test_packages=(
 
 bench_packages=(
   libopencv-video-dev    # cv::KalmanFilter, a peer
+  libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar rib
+  libnanoflann-dev       # the same by region growing
 )
 
 say() { printf '\n== %s\n' "$*"; }

@@ -47,28 +47,71 @@ void dropInner(std::vector<Vector2>& points) {
   points.erase(std::remove_if(points.begin(), points.end(), inside), points.end());
 }
 
+/// Four floats that the compiler keeps in one register, on every x86-64.
+using Four = float __attribute__((vector_size(16)));
+Four least(Four a, Four b) { return a < b ? a : b; }
+Four largest(Four a, Four b) { return a > b ? a : b; }
+Four all(double value) {
+  const auto v = static_cast<float>(value);
+  return Four{v, v, v, v};
+}
+template <class Choose>
+float across(Four v, const Choose& choose) {
+  return choose(choose(v[0], v[1]), choose(v[2], v[3]));
+}
+float sumOf(Four v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+
+/// Points of a cluster relative to one of them, in fours; the last four repeat a point with weight
+/// zero.
+struct PointFours {
+  explicit PointFours(const std::vector<Vector2>& points) {
+    const Vector2 origin = points.front();
+    for (std::size_t i = 0; i < points.size(); i += 4) {
+      Four px{}, py{}, w{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Vector2 d = points[std::min(i + k, points.size() - 1)] - origin;
+        px[k] = static_cast<float>(d.x()), py[k] = static_cast<float>(d.y());
+        w[k] = i + k < points.size() ? 1.0f : 0.0f;
+      }
+      x.push_back(px), y.push_back(py), weight.push_back(w);
+    }
+    a.resize(x.size()), b.resize(x.size());
+  }
+  // Rotated points, while a direction is tried.
+  std::vector<Four> x, y, weight, a, b;  ///< [m]
+};
+
 /// Sum over the points of 1 / distance to the nearer of the two rectangle sides that the points lie
 /// along.
-double closeness(const std::vector<Vector2>& points, double yaw, double min_distance) {
-  const double c = std::cos(yaw), s = std::sin(yaw);
-  double a0 = 1e30, a1 = -1e30, b0 = 1e30, b1 = -1e30;
-  for (const Vector2& p : points) {
-    const double a = c * p.x() + s * p.y(), b = c * p.y() - s * p.x();
-    a0 = std::min(a0, a), a1 = std::max(a1, a), b0 = std::min(b0, b), b1 = std::max(b1, b);
+double closeness(PointFours& points, double yaw, double min_distance) {
+  const Four c = all(std::cos(yaw)), s = all(std::sin(yaw)), floor = all(min_distance);
+  Four a0 = all(1e30), a1 = all(-1e30), b0 = a0, b1 = a1;
+  const std::size_t count = points.x.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Four a = c * points.x[i] + s * points.y[i], b = c * points.y[i] - s * points.x[i];
+    points.a[i] = a, points.b[i] = b;
+    a0 = least(a0, a), a1 = largest(a1, a), b0 = least(b0, b), b1 = largest(b1, b);
   }
-  double low_a = 0, high_a = 0, low_b = 0, high_b = 0;
-  for (const Vector2& p : points) {
-    const double a = c * p.x() + s * p.y(), b = c * p.y() - s * p.x();
-    low_a += (a - a0) * (a - a0), high_a += (a1 - a) * (a1 - a);
-    low_b += (b - b0) * (b - b0), high_b += (b1 - b) * (b1 - b);
+  const auto lower = [](float p, float q) { return std::min(p, q); };
+  const auto higher = [](float p, float q) { return std::max(p, q); };
+  const auto spread = [](float v) { return all(static_cast<double>(v)); };
+  a0 = spread(across(a0, lower)), a1 = spread(across(a1, higher));
+  b0 = spread(across(b0, lower)), b1 = spread(across(b1, higher));
+  Four low_a{}, high_a{}, low_b{}, high_b{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Four a = points.a[i], b = points.b[i], w = points.weight[i];
+    low_a += w * (a - a0) * (a - a0), high_a += w * (a1 - a) * (a1 - a);
+    low_b += w * (b - b0) * (b - b0), high_b += w * (b1 - b) * (b1 - b);
   }
-  const double edge_a = low_a < high_a ? a0 : a1, edge_b = low_b < high_b ? b0 : b1;
-  double sum = 0;
-  for (const Vector2& p : points) {
-    const double a = c * p.x() + s * p.y(), b = c * p.y() - s * p.x();
-    sum += 1 / std::max(std::min(std::abs(a - edge_a), std::abs(b - edge_b)), min_distance);
+  const Four edge_a = sumOf(low_a) < sumOf(high_a) ? a0 : a1;
+  const Four edge_b = sumOf(low_b) < sumOf(high_b) ? b0 : b1;
+  Four sum{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Four off_a = largest(points.a[i] - edge_a, edge_a - points.a[i]);
+    const Four off_b = largest(points.b[i] - edge_b, edge_b - points.b[i]);
+    sum += points.weight[i] / largest(least(off_a, off_b), floor);
   }
-  return sum;
+  return static_cast<double>(sumOf(sum));
 }
 
 struct Direction {
@@ -76,7 +119,8 @@ struct Direction {
   double contrast = 0;  ///< [0, 1] how much better than the mean direction: 0 for a round cluster
 };
 
-Direction bestDirection(const std::vector<Vector2>& points, const BoxParams& params) {
+Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& params) {
+  PointFours points(places);
   const int steps = std::max(2, static_cast<int>(std::lround(kPi / 2 / params.step)));
   const double step = kPi / 2 / steps;
   std::vector<double> score(static_cast<std::size_t>(steps));
@@ -134,10 +178,15 @@ std::vector<Vector2> withoutStragglers(const std::vector<Vector2>& points, doubl
     along.push_back(c * p.x() + s * p.y()), across.push_back(c * p.y() - s * p.x());
   // Without the few lowest and highest values that a gap parts from the rest.
   const auto bounds = [&params](std::vector<double> values) {
-    std::sort(values.begin(), values.end());
     const auto few =
         static_cast<std::size_t>(params.straggler_share * static_cast<double>(values.size()));
     const std::size_t last = values.size() - 1;
+    const auto tail = static_cast<std::ptrdiff_t>(std::min(few + 1, values.size()));
+    // Only the ends need an order.
+    std::nth_element(values.begin(), values.begin() + tail - 1, values.end());
+    std::sort(values.begin(), values.begin() + tail);
+    std::nth_element(values.begin() + tail, values.end() - tail, values.end());
+    std::sort(values.end() - tail, values.end());
     double low = values.front(), high = values.back();
     for (std::size_t i = 0; i < few; ++i) {
       if (values[i + 1] - values[i] > params.straggler_gap) low = values[i + 1];

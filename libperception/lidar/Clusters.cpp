@@ -1,6 +1,7 @@
 #include "libperception/lidar/Clusters.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libperception/lidar/BoxFit.h"
 #include "libperception/lidar/Linkage.h"
@@ -24,10 +25,43 @@ void ClusterParams::visit(ParamVisitor& v) {
 
 namespace {
 
+constexpr std::uint32_t kNoCluster = ~0u;
+
+/// What tells without a hull that a group is no cluster.
 struct Candidate {
   std::uint32_t points = 0;
-  float highest = 0;
+  double weight = 0;                                   ///< sum of the trust in its returns
+  float highest = 0;                                   ///< [m] above ground
+  float x0 = kFar, y0 = kFar, x1 = -kFar, y1 = -kFar;  ///< [m] about its returns
+  static constexpr float kFar = 1e30f;
 };
+
+/// False when no rectangle about the hull can have the size of a cluster: its diagonal lies between
+/// the group's extent and the extents' diagonal, and its longest side is at least diagonal /
+/// sqrt(2).
+bool mayHaveCarSize(const Candidate& c, bool stable, const ClusterParams& params) {
+  const auto width = static_cast<double>(c.x1 - c.x0), depth = static_cast<double>(c.y1 - c.y0);
+  const double least = std::max(width, depth) * (std::sqrt(0.5) - 1e-6);
+  const double most = std::hypot(width, depth) * (1 + 1e-6);
+  if (least >= (stable ? params.max_size : params.unstable_max_size)) return false;
+  if (!stable) return most >= params.unstable_min_side;
+  return most >= params.min_side || width * depth * (1 + 1e-6) >= params.min_area;
+}
+
+std::vector<Candidate> candidatesOf(const std::vector<float>& x, const std::vector<float>& y,
+                                    const std::vector<float>& height,
+                                    const std::vector<float>& weight, const Partition& groups) {
+  std::vector<Candidate> candidates(groups.count);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Candidate& c = candidates[groups.group[i]];
+    ++c.points;
+    c.weight += weight.empty() ? 1.0 : static_cast<double>(weight[i]);
+    c.highest = std::max(c.highest, height[i]);
+    c.x0 = std::min(c.x0, x[i]), c.x1 = std::max(c.x1, x[i]);
+    c.y0 = std::min(c.y0, y[i]), c.y1 = std::max(c.y1, y[i]);
+  }
+  return candidates;
+}
 
 }  // namespace
 
@@ -56,33 +90,29 @@ void describeCluster(const std::vector<float>& x, const std::vector<float>& y,
 }
 
 std::vector<Cluster> findClusters(const std::vector<float>& x, const std::vector<float>& y,
-                                  const std::vector<float>& height, const ClusterParams& params) {
+                                  const std::vector<float>& height, const ClusterParams& params,
+                                  const std::vector<float>& weight) {
   const DoubleLinkage linkage = linkTwice(x, y, params.near_threshold, params.far_threshold);
   const std::vector<std::uint32_t>& group = linkage.near.group;
-  std::vector<Candidate> candidates(linkage.near.count);
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    Candidate& candidate = candidates[group[i]];
-    ++candidate.points;
-    candidate.highest = std::max(candidate.highest, height[i]);
-  }
+  const std::vector<Candidate> candidates = candidatesOf(x, y, height, weight, linkage.near);
 
   std::vector<Cluster> clusters;
-  std::vector<int> number(linkage.near.count, -1);
+  std::vector<std::uint32_t> number(linkage.near.count, kNoCluster);
   for (std::uint32_t g = 0; g < linkage.near.count; ++g) {
+    const Candidate& candidate = candidates[g];
     const bool stable = linkage.parts[linkage.far_of_near[g]] == 1;
-    if (candidates[g].points < static_cast<std::uint32_t>(params.min_points) ||
-        candidates[g].highest <= static_cast<float>(params.min_top) ||
-        (!stable && !params.accept_unstable))
+    if (candidate.weight < params.min_points - 1e-6 ||
+        candidate.highest <= static_cast<float>(params.min_top) ||
+        (!stable && !params.accept_unstable) || !mayHaveCarSize(candidate, stable, params))
       continue;
-    number[g] = static_cast<int>(clusters.size());
+    number[g] = static_cast<std::uint32_t>(clusters.size());
     clusters.emplace_back();
     clusters.back().stable = stable;
-    clusters.back().points.reserve(candidates[g].points);
+    clusters.back().points.reserve(candidate.points);
   }
   for (std::size_t i = 0; i < group.size(); ++i)
-    if (number[group[i]] >= 0)
-      clusters[static_cast<std::size_t>(number[group[i]])].points.push_back(
-          static_cast<std::uint32_t>(i));
+    if (const std::uint32_t n = number[group[i]]; n != kNoCluster)
+      clusters[n].points.push_back(static_cast<std::uint32_t>(i));
 
   for (Cluster& cluster : clusters) describeCluster(x, y, height, cluster);
   clusters.erase(

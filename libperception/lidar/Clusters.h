@@ -35,9 +35,10 @@ struct Cluster {
 };
 
 /// Car-sized clusters among obstacle points (x, y, height above ground; [m]), in the order of their
-/// first points.
+/// first points. `weight`: trust in each return, [0, 1]; empty: all 1. min_points counts weights.
 std::vector<Cluster> findClusters(const std::vector<float>& x, const std::vector<float>& y,
-                                  const std::vector<float>& height, const ClusterParams& params);
+                                  const std::vector<float>& height, const ClusterParams& params,
+                                  const std::vector<float>& weight = {});
 
 /// Fills hull, centroid, lowest and highest of a cluster from its points (at least one).
 void describeCluster(const std::vector<float>& x, const std::vector<float>& y,

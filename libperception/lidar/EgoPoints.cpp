@@ -1,5 +1,8 @@
 #include "libperception/lidar/EgoPoints.h"
 
+#include <algorithm>
+#include <array>
+
 namespace perception {
 
 void PointParams::visit(ParamVisitor& v) {
@@ -12,10 +15,16 @@ void PointParams::visit(ParamVisitor& v) {
   v.real("vehicle_top", vehicle_top, {0, 6}, "m", "own body above the ground");
   v.boolean("only_objects", only_objects,
             "returns that the scanner itself labels as object, where it labels at all (SPEC 1)");
+  v.integer("max_points", max_points, {1000, 100000000},
+            "returns of a scan; larger scans are thinned evenly");
   v.require(range_min < range_max, "range_min must be below range_max");
 }
 
 namespace {
+
+constexpr float kBeyondAnyLidar2 = 1e3f * 1e3f;  // [m^2]
+constexpr std::size_t kBlock = 512;              // points that stay in the nearest cache
+constexpr std::size_t kTaken = 16;  // neighbours of a line of the cache, taken together
 
 bool ownProcessingDropsIt(std::uint8_t label, bool only_objects) {
   if (only_objects) return label != static_cast<std::uint8_t>(PointLabel::kObject);
@@ -23,47 +32,132 @@ bool ownProcessingDropsIt(std::uint8_t label, bool only_objects) {
          label == static_cast<std::uint8_t>(PointLabel::kDirt);
 }
 
+/// One block of a cloud: its points in the ego frame and which of them are usable.
+struct Block {
+  std::array<float, kBlock> px, py, pz;  ///< [m] sensor frame, when the cloud is thinned
+  std::array<float, kBlock> x, y, z;     ///< [m] ego frame
+  std::array<std::int32_t, kBlock> keep, has_range;
+  std::array<std::uint32_t, kBlock> source;
+};
+
+/// The bounds of PointParams in floats, and the sensor's pose.
+struct Rules {
+  Rules(const SensorFrame& frame, const PointParams& params)
+      : R(frame.T_ego_sensor.linear().cast<float>()),
+        t(frame.T_ego_sensor.translation().cast<float>()),
+        near2(static_cast<float>(params.range_min * params.range_min)),
+        far2(static_cast<float>(params.range_max * params.range_max)),
+        front(static_cast<float>(params.vehicle_front)),
+        rear(static_cast<float>(-params.vehicle_rear)),
+        side(static_cast<float>(params.vehicle_side)),
+        top(static_cast<float>(params.vehicle_top)) {}
+  Eigen::Matrix3f R;
+  Eigen::Vector3f t;
+  float near2, far2, front, rear, side, top;
+};
+
+/// Transforms and judges `count` points; no branches, so that the compiler makes vectors of it.
+PERCEPTION_WIDER void judge(const float* px, const float* py, const float* pz, std::size_t count,
+                            const Rules& rules, Block& block) {
+  const float r00 = rules.R(0, 0), r01 = rules.R(0, 1), r02 = rules.R(0, 2), tx = rules.t.x();
+  const float r10 = rules.R(1, 0), r11 = rules.R(1, 1), r12 = rules.R(1, 2), ty = rules.t.y();
+  const float r20 = rules.R(2, 0), r21 = rules.R(2, 1), r22 = rules.R(2, 2), tz = rules.t.z();
+  const float near2 = rules.near2, far2 = rules.far2, front = rules.front, rear = rules.rear,
+              side = rules.side, top = rules.top;
+  for (std::size_t k = 0; k < count; ++k) {
+    const float range2 = px[k] * px[k] + py[k] * py[k] + pz[k] * pz[k];
+    const float x = r00 * px[k] + r01 * py[k] + r02 * pz[k] + tx;
+    const float y = r10 * px[k] + r11 * py[k] + r12 * pz[k] + ty;
+    const float z = r20 * px[k] + r21 * py[k] + r22 * pz[k] + tz;
+    const float dx = x - tx, dy = y - ty, horizontal2 = dx * dx + dy * dy;
+    // False also where something is not a number.
+    const std::int32_t has_range = (range2 > 0) & (range2 < kBeyondAnyLidar2);
+    const std::int32_t within = (horizontal2 >= near2) & (horizontal2 <= far2);
+    const std::int32_t own = (x < front) & (x > rear) & (y < side) & (y > -side) & (z < top);
+    block.x[k] = x, block.y[k] = y, block.z[k] = z;
+    block.has_range[k] = has_range;
+    block.keep[k] = has_range & within & (own ^ 1);
+  }
+}
+
+/// Moves what is kept to the front; the number of it. Most is kept, so groups move as a whole.
+std::size_t squeeze(Block& block, std::size_t size) {
+  constexpr std::size_t kGroup = 8;
+  std::size_t kept = 0;
+  const auto move = [&block, &kept](std::size_t from, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      block.x[kept + k] = block.x[from + k], block.y[kept + k] = block.y[from + k];
+      block.z[kept + k] = block.z[from + k], block.source[kept + k] = block.source[from + k];
+    }
+    kept += count;
+  };
+  for (std::size_t first = 0; first < size; first += kGroup) {
+    std::int32_t all = 0;
+    if (first + kGroup <= size)
+      for (std::size_t k = 0; k < kGroup; ++k) all += block.keep[first + k];
+    if (all == static_cast<std::int32_t>(kGroup)) {
+      if (kept == first) {
+        kept += kGroup;
+      } else {
+        move(first, kGroup);
+      }
+      continue;
+    }
+    for (std::size_t k = first; k < std::min(first + kGroup, size); ++k)
+      if (block.keep[k] != 0) move(k, 1);
+  }
+  return kept;
+}
+
+void append(const Block& block, std::size_t kept, EgoPoints& points) {
+  const auto end = static_cast<std::ptrdiff_t>(kept);
+  points.x.insert(points.x.end(), block.x.begin(), block.x.begin() + end);
+  points.y.insert(points.y.end(), block.y.begin(), block.y.begin() + end);
+  points.z.insert(points.z.end(), block.z.begin(), block.z.begin() + end);
+  points.source.insert(points.source.end(), block.source.begin(), block.source.begin() + end);
+}
+
 }  // namespace
 
 EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
   EgoPoints points;
   points.sensor = frame.T_ego_sensor.translation();
+  points.reach = params.range_max;
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
-  if (cloud == nullptr) return points;
-  const std::size_t count = cloud->size();
-  points.x.resize(count), points.y.resize(count), points.z.resize(count),
-      points.source.resize(count);
+  if (cloud == nullptr || cloud->size() == 0) return points;
+  // A scan that is too large is thinned by whole groups of neighbours.
+  const std::size_t stride =
+      1 + (cloud->size() - 1) / static_cast<std::size_t>(std::max(params.max_points, 1));
+  const auto index = [stride](std::size_t k) { return k / kTaken * kTaken * stride + k % kTaken; };
+  const std::size_t groups = (cloud->size() + kTaken * stride - 1) / (kTaken * stride);
+  const std::size_t in_last = std::min(kTaken, cloud->size() - (groups - 1) * kTaken * stride);
+  const std::size_t count = (groups - 1) * kTaken + in_last;
+  points.capped = cloud->size() - count;
+  points.x.reserve(count), points.y.reserve(count), points.z.reserve(count);
+  points.source.reserve(count);
 
-  const Eigen::Matrix3f R = frame.T_ego_sensor.linear().cast<float>();
-  const Eigen::Vector3f t = frame.T_ego_sensor.translation().cast<float>();
-  const auto near2 = static_cast<float>(params.range_min * params.range_min);
-  const auto far2 = static_cast<float>(params.range_max * params.range_max);
-  const auto front = static_cast<float>(params.vehicle_front),
-             rear = static_cast<float>(-params.vehicle_rear);
-  const auto side = static_cast<float>(params.vehicle_side),
-             top = static_cast<float>(params.vehicle_top);
-  constexpr float kBeyondAnyLidar2 = 1e3f * 1e3f;  // [m^2]
-
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float px = cloud->x[i], py = cloud->y[i], pz = cloud->z[i];
-    const float range2 = px * px + py * py + pz * pz;
-    if (!(range2 < kBeyondAnyLidar2)) {  // also NaN
-      ++points.dropped;
-      continue;
+  const Rules rules(frame, params);
+  Block block;
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    const std::size_t size = std::min(kBlock, count - first);
+    if (stride == 1) {
+      judge(&cloud->x[first], &cloud->y[first], &cloud->z[first], size, rules, block);
+    } else {
+      for (std::size_t k = 0; k < size; ++k) {
+        const std::size_t i = index(first + k);
+        block.px[k] = cloud->x[i], block.py[k] = cloud->y[i], block.pz[k] = cloud->z[i];
+      }
+      judge(block.px.data(), block.py.data(), block.pz.data(), size, rules, block);
     }
-    if (!cloud->label.empty() && ownProcessingDropsIt(cloud->label[i], params.only_objects))
-      continue;
-    const float x = R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz + t.x();
-    const float y = R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz + t.y();
-    const float z = R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz + t.z();
-    const float dx = x - t.x(), dy = y - t.y(), horizontal2 = dx * dx + dy * dy;
-    if (horizontal2 < near2 || horizontal2 > far2) continue;
-    if (x < front && x > rear && std::abs(y) < side && z < top) continue;
-    points.x[kept] = x, points.y[kept] = y, points.z[kept] = z;
-    points.source[kept++] = static_cast<std::uint32_t>(i);
+    for (std::size_t k = 0; k < size; ++k) points.dropped += block.has_range[k] == 0;
+    if (!cloud->label.empty())
+      for (std::size_t k = 0; k < size; ++k)
+        if (ownProcessingDropsIt(cloud->label[index(first + k)], params.only_objects))
+          block.keep[k] = 0;
+    for (std::size_t k = 0; k < size; ++k)
+      block.source[k] = static_cast<std::uint32_t>(index(first + k));
+    append(block, squeeze(block, size), points);
   }
-  points.x.resize(kept), points.y.resize(kept), points.z.resize(kept), points.source.resize(kept);
   return points;
 }
 

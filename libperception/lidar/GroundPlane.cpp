@@ -26,34 +26,28 @@ void GroundParams::visit(ParamVisitor& v) {
          "share of mirrored returns that freezes the plane");
   v.real("wet_range", wet_range, {5, 100}, "m", "range within which that share is taken");
   v.real("freeze", freeze, {0, 60}, "s", "for which a wet road holds the plane");
+  v.integer("max_points", max_points, {1000, 100000000}, "returns of a scan used, evenly taken");
   v.require(range_min < range_max, "range_min must be below range_max");
 }
 
 namespace {
 
+constexpr double kMissed = 1e-5;  // of RANSAC: more draws are not worth their time
 constexpr std::uint32_t kRansacPurpose = 0x67726f75;  // "grou": this user's own random streams
 
-/// The plane through three points as (a, b, c); empty when they lie on a line seen from above.
-std::optional<Vector3> planeThrough(const Eigen::Vector3f& p, const Eigen::Vector3f& q,
-                                    const Eigen::Vector3f& r) {
-  const Vector3 u = (q - p).cast<double>(), v = (r - p).cast<double>();
+/// The plane through three places as (a, b, c); empty when they lie on a line seen from above.
+std::optional<Vector3> planeThrough(const Vector3& p, const Vector3& q, const Vector3& r) {
+  const Vector3 u = q - p, v = r - p;
   const double area = u.x() * v.y() - u.y() * v.x();
   if (std::abs(area) < 1) return std::nullopt;  // [m^2] too thin to tell a slope
   const double a = (u.z() * v.y() - v.z() * u.y()) / area,
                b = (u.x() * v.z() - v.x() * u.z()) / area;
-  return Vector3(
-      a, b,
-      static_cast<double>(p.z()) - a * static_cast<double>(p.x()) - b * static_cast<double>(p.y()));
-}
-
-double residual(const Vector3& plane, const Eigen::Vector3f& p) {
-  return static_cast<double>(p.z()) - plane[0] * static_cast<double>(p.x()) -
-         plane[1] * static_cast<double>(p.y()) - plane[2];
+  return Vector3(a, b, p.z() - a * p.x() - b * p.y());
 }
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> GroundEstimator::candidates(const EgoPoints& points) const {
+GroundEstimator::Candidates GroundEstimator::candidates(const EgoPoints& points) const {
   const int rings = static_cast<int>(std::ceil(params_.range_max / params_.ring));
   const auto cells = static_cast<std::size_t>(rings * params_.sectors);
   const auto inverse_ring = static_cast<float>(1 / params_.ring);
@@ -68,28 +62,40 @@ std::vector<Eigen::Vector3f> GroundEstimator::candidates(const EgoPoints& points
   for (std::size_t i = 0; i < points.size(); ++i) {
     const float x = points.x[i], y = points.y[i], range = std::sqrt(x * x + y * y);
     if (range < near || range >= far || points.z[i] < a * x + b * y + c - depth) continue;
-    const int sector =
-        static_cast<int>((roughBearing(x, y) + 3.14159265f) * inverse_sector) % params_.sectors;
+    int sector = static_cast<int>((roughBearing(x, y) + 3.14159265f) * inverse_sector);
+    if (sector >= params_.sectors) sector = 0;
     const int cell = sector * rings + std::min(static_cast<int>(range * inverse_ring), rings - 1);
     cell_of[i] = static_cast<std::uint32_t>(cell);
     ++start[static_cast<std::size_t>(cell) + 1];
   }
   for (std::size_t k = 1; k <= cells; ++k) start[k] += start[k - 1];
-  std::vector<std::uint32_t> order(start.back()), next(start.begin(), start.end() - 1);
+  struct Return {
+    float z;
+    std::uint32_t i;
+    bool operator<(const Return& other) const {
+      return z < other.z || (z == other.z && i < other.i);
+    }
+  };
+  std::vector<Return> sorted(start.back());
+  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (cell_of[i] != ~0u) order[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
+    if (cell_of[i] != ~0u)
+      sorted[next[cell_of[i]]++] = {points.z[i], static_cast<std::uint32_t>(i)};
 
-  std::vector<Eigen::Vector3f> result;
+  Candidates result;
   for (std::size_t k = 0; k < cells; ++k) {
     const std::size_t count = start[k + 1] - start[k];
     if (count < static_cast<std::size_t>(params_.cell_points)) continue;
-    const auto first = order.begin() + start[k], last = order.begin() + start[k + 1];
-    const auto nth =
-        first + static_cast<std::ptrdiff_t>(params_.quantile * static_cast<double>(count));
-    std::nth_element(first, nth, last, [&](std::uint32_t i, std::uint32_t j) {
-      return points.z[i] < points.z[j] || (points.z[i] == points.z[j] && i < j);
-    });
-    result.emplace_back(points.x[*nth], points.y[*nth], points.z[*nth]);
+    const auto first = sorted.begin() + start[k], last = sorted.begin() + start[k + 1];
+    const auto place = static_cast<std::ptrdiff_t>(params_.quantile * static_cast<double>(count));
+    const auto nth = first + place;
+    if (place < 3) {  // few: cheaper than nth_element
+      for (auto low = first; low <= nth; ++low) std::iter_swap(low, std::min_element(low, last));
+    } else {
+      std::nth_element(first, nth, last);
+    }
+    result.x.push_back(points.x[nth->i]), result.y.push_back(points.y[nth->i]);
+    result.z.push_back(nth->z);
   }
   return result;
 }
@@ -109,25 +115,36 @@ double GroundEstimator::mirroredShareOf(const EgoPoints& points) const {
   return near == 0 ? 0 : static_cast<double>(below) / static_cast<double>(near);
 }
 
-std::optional<GroundPlane> GroundEstimator::fit(const std::vector<Eigen::Vector3f>& candidates,
+std::optional<GroundPlane> GroundEstimator::fit(const Candidates& candidates,
                                                 const Stamp& stamp) const {
   const auto count = static_cast<std::uint32_t>(candidates.size());
   if (count < 6) return std::nullopt;
   Rng rng(RngKey{seed_, static_cast<std::uint64_t>(stamp.ns), 0, kRansacPurpose});
   const double max_slope = std::tan(params_.max_tilt);
+  const auto place = [&candidates](std::uint32_t i) {
+    return Vector3(static_cast<double>(candidates.x[i]), static_cast<double>(candidates.y[i]),
+                   static_cast<double>(candidates.z[i]));
+  };
 
   Vector3 best = Vector3::Zero();
   int best_inliers = 0;
-  for (int i = 0; i < params_.iterations; ++i) {
+  const auto tolerance = static_cast<float>(params_.tolerance);
+  double missed = 1;  // probability that no draw so far was of three inliers of a plane so good
+  for (int i = 0; i < params_.iterations && missed > kMissed; ++i) {
     const std::uint32_t p = rng.below(count), q = rng.below(count), r = rng.below(count);
-    const auto plane = planeThrough(candidates[p], candidates[q], candidates[r]);
+    const auto plane = planeThrough(place(p), place(q), place(r));
     if (!plane || std::hypot((*plane)[0], (*plane)[1]) > max_slope ||
         std::abs((*plane)[2]) > params_.max_offset)
       continue;
+    const Eigen::Vector3f n = plane->cast<float>();
     int inliers = 0;
-    for (const auto& candidate : candidates)
-      inliers += std::abs(residual(*plane, candidate)) < params_.tolerance;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const float off = candidates.z[k] - n.x() * candidates.x[k] - n.y() * candidates.y[k] - n.z();
+      inliers += (off < tolerance) & (off > -tolerance);
+    }
     if (inliers > best_inliers) best = *plane, best_inliers = inliers;
+    const double share = static_cast<double>(best_inliers) / count;
+    missed = std::pow(1 - share * share * share, i + 1);
   }
   if (best_inliers < std::max(6.0, params_.min_inliers * count)) return std::nullopt;
 
@@ -137,11 +154,11 @@ std::optional<GroundPlane> GroundEstimator::fit(const std::vector<Eigen::Vector3
     Vector3 rhs = Vector3::Zero();
     double squares = 0;
     int used = 0;
-    for (const auto& candidate : candidates) {
-      const double r = residual(best, candidate);
-      if (std::abs(r) > 3 * sigma) continue;
-      const Vector3 row(static_cast<double>(candidate.x()), static_cast<double>(candidate.y()), 1);
-      A += row * row.transpose(), rhs += row * r, squares += r * r, ++used;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const Vector3 at = place(k), row(at.x(), at.y(), 1);
+      const double off = at.z() - best.dot(row);
+      if (std::abs(off) > 3 * sigma) continue;
+      A += row * row.transpose(), rhs += row * off, squares += off * off, ++used;
     }
     if (used < 6) break;
     const Eigen::LDLT<Eigen::Matrix3d> solver(A);
@@ -158,6 +175,7 @@ GroundPlane GroundEstimator::update(const SensorFrame& frame) {
   PointParams all;
   all.range_min = params_.range_min,
   all.range_max = params_.range_max + frame.T_ego_sensor.translation().norm();
+  all.max_points = params_.max_points;
   const EgoPoints points = usablePoints(frame, all);
   mirrored_share_ = mirroredShareOf(points);
   wet_ = plane_.measured && frame.stamp < frozen_until_;

@@ -27,6 +27,7 @@ struct GroundParams {
   double wet_share = 0.05;  ///< of the returns within wet_range that are mirrored: the road is wet
   double wet_range = 20;    ///< [m] beyond it a change of pitch looks the same (own choice)
   double freeze = 2;        ///< [s] for which a wet road holds the plane
+  int max_points = 16000;   ///< of a scan used, evenly taken: some 20 a cell (own choice)
 
   void visit(ParamVisitor& v);
 };
@@ -50,10 +51,14 @@ class GroundEstimator {
   double mirroredShare() const { return mirrored_share_; }
 
  private:
-  std::vector<Eigen::Vector3f> candidates(const EgoPoints& points) const;
+  /// A low return of every polar cell.
+  struct Candidates {
+    std::vector<float> x, y, z;  ///< [m] ego frame
+    std::size_t size() const { return x.size(); }
+  };
+  Candidates candidates(const EgoPoints& points) const;
   double mirroredShareOf(const EgoPoints& points) const;
-  std::optional<GroundPlane> fit(const std::vector<Eigen::Vector3f>& candidates,
-                                 const Stamp& stamp) const;
+  std::optional<GroundPlane> fit(const Candidates& candidates, const Stamp& stamp) const;
 
   GroundParams params_;
   std::uint64_t seed_;

@@ -21,6 +21,7 @@ void SurfaceParams::visit(ParamVisitor& v) {
 
 namespace {
 
+constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kNoGround = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLowReturns =
     1.0f;                           // [m] above the plane: higher returns say nothing of the ground
@@ -34,69 +35,118 @@ float medianOfThree(float a, float b, float c) {
 
 }  // namespace
 
-std::size_t GroundSurface::cellOf(float dx, float dy) const {
-  const auto sector =
-      static_cast<std::size_t>((roughBearing(dx, dy) + 3.14159265f) * inverse_sector_) % sectors_;
-  const auto ring = static_cast<std::size_t>(std::sqrt(dx * dx + dy * dy) * inverse_ring_);
-  return sector * rings_ + std::min(ring, rings_ - 1);
-}
-
 GroundSurface::GroundSurface(const GroundPlane& plane, const EgoPoints& points,
-                             const SurfaceParams& params)
+                             const SurfaceParams& params, std::vector<float>* heights)
     : plane_(plane),
       sensor_x_(static_cast<float>(points.sensor.x())),
-      sensor_y_(static_cast<float>(points.sensor.y())) {
-  if (!params.local || points.size() == 0) {
-    departure_.assign(1, 0);
-    return;
+      sensor_y_(static_cast<float>(points.sensor.y())),
+      departure_(1, 0.0f) {
+  const bool local = params.local && points.size() > 0;
+  if (local) {
+    sectors_ = static_cast<std::size_t>(params.sectors);
+    rings_ = 1 + static_cast<std::size_t>(points.reach / params.ring);
+    inverse_ring_ = static_cast<float>(1 / params.ring);
+    inverse_sector_ = static_cast<float>(params.sectors / kTwoPi);
   }
-  float far2 = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const float dx = points.x[i] - sensor_x_, dy = points.y[i] - sensor_y_;
-    far2 = std::max(far2, dx * dx + dy * dy);
-  }
-  sectors_ = static_cast<std::size_t>(params.sectors);
-  rings_ = 1 + static_cast<std::size_t>(std::sqrt(static_cast<double>(far2)) / params.ring);
-  inverse_ring_ = static_cast<float>(1 / params.ring);
-  inverse_sector_ = static_cast<float>(params.sectors / kTwoPi);
+  if (!local && heights == nullptr) return;
+  thread_local Placed placed;  // memory that every scan needs again
+  place(points, params, placed);
+  if (local) follow(lowestOf(placed, params), params);
+  if (heights != nullptr) subtract(placed, *heights);
+}
 
-  // Heights above the plane by cell, low returns only.
-  const auto a = static_cast<float>(plane.a), b = static_cast<float>(plane.b),
-             c = static_cast<float>(plane.c);
-  const auto bound_near = static_cast<float>(params.bound_near),
-             bound_slope = static_cast<float>(params.bound_slope);
-  std::vector<std::uint32_t> cell_of(points.size(), ~0u), start(sectors_ * rings_ + 1, 0);
-  std::vector<float> height(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const float dx = points.x[i] - sensor_x_, dy = points.y[i] - sensor_y_;
-    height[i] = points.z[i] - (a * points.x[i] + b * points.y[i] + c);
-    const float bound = bound_near + bound_slope * std::sqrt(dx * dx + dy * dy);
-    if (height[i] > bound + kLowReturns || height[i] < -bound - kMirrorMargin) continue;
-    cell_of[i] = static_cast<std::uint32_t>(cellOf(dx, dy));
-    ++start[cell_of[i] + 1];
-  }
-  for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
-  std::vector<float> sorted(start.back());
-  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (cell_of[i] != ~0u) sorted[next[cell_of[i]]++] = height[i];
+namespace {
 
-  std::vector<float> lowest(sectors_ * rings_, kNoGround);
-  for (std::size_t k = 0; k < lowest.size(); ++k) {
-    const std::size_t count = start[k + 1] - start[k];
-    if (count < static_cast<std::size_t>(params.cell_points)) continue;
-    const auto first = sorted.begin() + start[k];
-    const auto nth =
-        first + static_cast<std::ptrdiff_t>(params.quantile * static_cast<double>(count));
-    std::nth_element(first, nth, sorted.begin() + start[k + 1]);
-    lowest[k] = *nth;
+/// The constants of placeAll().
+struct PlaceRules {
+  float a, b, c;                  ///< the plane
+  float sensor_x, sensor_y;       ///< [m]
+  float rings, sectors;           ///< numbers
+  float per_ring, per_sector;     ///< [1/m, 1/rad]
+  float bound_near, bound_slope;  ///< [m, -] of departures from the plane
+};
+
+/// Height above the plane and cell of each point; no branches, so that the compiler makes vectors
+/// of it.
+PERCEPTION_WIDER void placeAll(const float* __restrict x, const float* __restrict y,
+                               const float* __restrict z, std::size_t count, PlaceRules r,
+                               float* __restrict above, float* __restrict low,
+                               std::int32_t* __restrict cell) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = x[i] - r.sensor_x, dy = y[i] - r.sensor_y;
+    const float range = std::sqrt(dx * dx + dy * dy);
+    const float height = z[i] - (r.a * x[i] + r.b * y[i] + r.c);
+    float sector = static_cast<float>(
+        static_cast<std::int32_t>((roughBearing(dx, dy) + 3.14159265f) * r.per_sector));
+    sector -= sector >= r.sectors ? r.sectors : 0.0f;
+    const float all_rings = range * r.per_ring;
+    const float ring = all_rings < r.rings - 1 ? all_rings : r.rings - 1;
+    cell[i] = static_cast<std::int32_t>(sector * r.rings + ring);  // below 2^24: exact
+    const float bound = r.bound_near + r.bound_slope * range;
+    above[i] = height;
+    low[i] = height <= bound + kLowReturns && height >= -bound - kMirrorMargin ? height : kFar;
   }
-  follow(std::move(lowest), params);
+}
+
+}  // namespace
+
+void GroundSurface::place(const EgoPoints& points, const SurfaceParams& params,
+                          Placed& placed) const {
+  const PlaceRules rules{static_cast<float>(plane_.a),
+                         static_cast<float>(plane_.b),
+                         static_cast<float>(plane_.c),
+                         sensor_x_,
+                         sensor_y_,
+                         static_cast<float>(rings_),
+                         static_cast<float>(sectors_),
+                         inverse_ring_,
+                         inverse_sector_,
+                         static_cast<float>(params.bound_near),
+                         static_cast<float>(params.bound_slope)};
+  const std::size_t count = points.size();
+  placed.above.resize(count), placed.cell.resize(count), placed.low.resize(count);
+  placeAll(points.x.data(), points.y.data(), points.z.data(), count, rules, placed.above.data(),
+           placed.low.data(), placed.cell.data());
+}
+
+/// The quantile of each cell's low heights, at most the third from below; none where too few are
+/// low.
+std::vector<float> GroundSurface::lowestOf(const Placed& placed,
+                                           const SurfaceParams& params) const {
+  struct Lowest {
+    float first = kFar, second = kFar, third = kFar;  ///< [m] above the plane
+    std::int32_t count = 0;
+  };
+  std::vector<Lowest> cells(sectors_ * rings_);
+  const auto add = [&](std::size_t i) {
+    Lowest& cell = cells[static_cast<std::size_t>(placed.cell[i])];
+    const float height = placed.low[i];
+    const float not_first = std::max(cell.first, height);
+    const float not_second = std::max(cell.second, not_first);
+    cell.first = std::min(cell.first, height);
+    cell.second = std::min(cell.second, not_first);
+    cell.third = std::min(cell.third, not_second);
+    cell.count += height < kFar;
+  };
+  // Neighbours in a scan share cells; four places of the scan by turns do not wait for each other.
+  const std::size_t quarter = placed.cell.size() / 4;
+  for (std::size_t i = 0; i < quarter; ++i)
+    add(i), add(i + quarter), add(i + 2 * quarter), add(i + 3 * quarter);
+  for (std::size_t i = 4 * quarter; i < placed.cell.size(); ++i) add(i);
+
+  std::vector<float> heights(cells.size(), kNoGround);
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const Lowest& cell = cells[k];
+    if (cell.count < params.cell_points) continue;
+    const int place = static_cast<int>(params.quantile * cell.count);
+    heights[k] = place == 0 ? cell.first : place == 1 ? cell.second : cell.third;
+  }
+  return heights;
 }
 
 /// Outward along each sector: a cell's lowest return is ground if it can be reached from the ground
 /// before it.
-void GroundSurface::follow(std::vector<float> lowest, const SurfaceParams& params) {
+void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams& params) {
   const auto ring = static_cast<float>(params.ring), step = static_cast<float>(params.step);
   const auto slope = static_cast<float>(params.slope),
              max_step = static_cast<float>(params.max_step);
@@ -131,23 +181,26 @@ void GroundSurface::follow(std::vector<float> lowest, const SurfaceParams& param
   }
 }
 
+void GroundSurface::subtract(const Placed& placed, std::vector<float>& heights) const {
+  heights.resize(placed.above.size());
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    heights[i] = placed.above[i] - departure_[static_cast<std::size_t>(placed.cell[i])];
+}
+
 double GroundSurface::heightAt(double x, double y) const {
-  const float departure = departure_.size() == 1
-                              ? 0.0f
-                              : departure_[cellOf(static_cast<float>(x) - sensor_x_,
-                                                  static_cast<float>(y) - sensor_y_)];
-  return plane_.heightAt(x, y) + static_cast<double>(departure);
+  const auto dx = static_cast<float>(x) - sensor_x_, dy = static_cast<float>(y) - sensor_y_;
+  const std::size_t ring =
+      std::min(static_cast<std::size_t>(std::sqrt(dx * dx + dy * dy) * inverse_ring_), rings_ - 1);
+  const auto sector =
+      static_cast<std::size_t>((roughBearing(dx, dy) + 3.14159265f) * inverse_sector_) % sectors_;
+  return plane_.heightAt(x, y) + static_cast<double>(departure_[sector * rings_ + ring]);
 }
 
 std::vector<float> GroundSurface::heightsAbove(const EgoPoints& points) const {
-  const auto a = static_cast<float>(plane_.a), b = static_cast<float>(plane_.b),
-             c = static_cast<float>(plane_.c);
-  std::vector<float> heights(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    heights[i] = points.z[i] - (a * points.x[i] + b * points.y[i] + c);
-  if (departure_.size() > 1)
-    for (std::size_t i = 0; i < points.size(); ++i)
-      heights[i] -= departure_[cellOf(points.x[i] - sensor_x_, points.y[i] - sensor_y_)];
+  std::vector<float> heights;
+  Placed placed;
+  place(points, {}, placed);
+  subtract(placed, heights);
   return heights;
 }
 

@@ -12,13 +12,13 @@ namespace perception {
 struct SurfaceParams {
   bool local = true;  ///< false: the plane alone, as in the paper
   int sectors = 120;
-  double ring = 2;            ///< [m] depth of a cell
-  int cell_points = 3;        ///< returns below which a cell tells nothing
-  double quantile = 0.05;     ///< height of a cell's ground among its low returns
-  double step = 0.15;         ///< [m] a kerb: change from one cell to the next outward
-  double slope = 0.05;        ///< [-] further change per metre since the last cell with ground
-  double max_step = 0.25;     ///< [m] whatever the gap: below the underside of cars
-  double bound_near = 0.2;    ///< [m] largest distance from the plane at the vehicle
+  double ring = 2;          ///< [m] depth of a cell
+  int cell_points = 3;      ///< returns below which a cell tells nothing
+  double quantile = 0.05;   ///< height of a cell's ground among its low returns, at most the third
+  double step = 0.15;       ///< [m] a kerb: change from one cell to the next outward
+  double slope = 0.05;      ///< [-] further change per metre since the last cell with ground
+  double max_step = 0.25;   ///< [m] whatever the gap: below the underside of cars
+  double bound_near = 0.2;  ///< [m] largest distance from the plane at the vehicle
   double bound_slope = 0.03;  ///< [-] growth of that bound with range
 
   void visit(ParamVisitor& v);
@@ -28,7 +28,9 @@ struct SurfaceParams {
 /// departure from it that is followed outward along the beams.
 class GroundSurface {
  public:
-  GroundSurface(const GroundPlane& plane, const EgoPoints& points, const SurfaceParams& params);
+  /// `heights`, where given, becomes heightsAbove(points).
+  GroundSurface(const GroundPlane& plane, const EgoPoints& points, const SurfaceParams& params,
+                std::vector<float>* heights = nullptr);
 
   /// [m] of the ground below a place of the ego frame.
   double heightAt(double x, double y) const;
@@ -36,14 +38,22 @@ class GroundSurface {
   std::vector<float> heightsAbove(const EgoPoints& points) const;
 
  private:
-  std::size_t cellOf(float dx, float dy) const;
-  void follow(std::vector<float> lowest, const SurfaceParams& params);
+  /// What a point is to the surface, before the surface is known.
+  struct Placed {
+    std::vector<float> above;        ///< [m] the plane
+    std::vector<std::int32_t> cell;  ///< [sector][ring]
+    std::vector<float> low;          ///< [m] above the plane, of what may tell of the ground
+  };
+  void place(const EgoPoints& points, const SurfaceParams& params, Placed& placed) const;
+  std::vector<float> lowestOf(const Placed& placed, const SurfaceParams& params) const;
+  void follow(const std::vector<float>& lowest, const SurfaceParams& params);
+  void subtract(const Placed& placed, std::vector<float>& heights) const;
 
   GroundPlane plane_;
   float sensor_x_, sensor_y_;  ///< [m] centre of the cells, ego frame
   std::size_t sectors_ = 1, rings_ = 1;
-  float inverse_ring_ = 0, inverse_sector_ = 0;
-  std::vector<float> departure_;  ///< [m] above the plane; [sector][ring]
+  float inverse_ring_ = 0, inverse_sector_ = 0;  ///< [1/m, 1/rad]
+  std::vector<float> departure_;                 ///< [m] above the plane; [sector][ring]
 };
 
 }  // namespace perception

@@ -39,6 +39,8 @@ LidarParams::LidarParams() {
 
 namespace {
 
+constexpr float kHides = 0.5f;  // [-] trust below which a return is more likely a flake than a wall
+
 enum Label { kCarSized, kPersonSized, kUnstable };
 
 /// Heights of the ground and of the returns that one scan's measurements share.
@@ -71,7 +73,8 @@ std::shared_ptr<const Horizon> horizonOf(const LidarDetections& found, const Pos
   const auto per_radian = static_cast<float>(static_cast<double>(bins) / kTwoPi);
   for (std::size_t i = 0; i < found.x.size(); ++i) {
     if (found.above[i] < static_cast<float>(params.hiding_min) ||
-        found.above[i] > static_cast<float>(params.hiding_max))
+        found.above[i] > static_cast<float>(params.hiding_max) ||
+        (!found.trust.empty() && found.trust[i] < kHides))
       continue;
     const float dx = found.x[i] - sx, dy = found.y[i] - sy, range2 = dx * dx + dy * dy;
     Bin& bin =
@@ -91,14 +94,17 @@ std::shared_ptr<const Horizon> horizonOf(const LidarDetections& found, const Pos
   return horizon;
 }
 
+/// A sample of the returns tells as much: the highest beam has its share of them.
 double topSlope(const LidarDetections& found) {
-  const auto sx = static_cast<float>(found.points.sensor.x()),
-             sy = static_cast<float>(found.points.sensor.y()),
-             sz = static_cast<float>(found.points.sensor.z());
+  constexpr std::size_t kSample = 16000;
+  const EgoPoints& points = found.points;
+  const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
+             sz = static_cast<float>(points.sensor.z());
+  const std::size_t stride = 1 + points.size() / kSample;
   float top = -std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < found.points.size(); ++i) {
-    const float dx = found.points.x[i] - sx, dy = found.points.y[i] - sy;
-    top = std::max(top, (found.points.z[i] - sz) / std::sqrt(dx * dx + dy * dy));
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    const float dx = points.x[i] - sx, dy = points.y[i] - sy;
+    top = std::max(top, (points.z[i] - sz) / std::sqrt(dx * dx + dy * dy));
   }
   return static_cast<double>(top);
 }
@@ -135,6 +141,48 @@ void fillVertical(const ScanContext& scan, const Vector2& place, double lowest, 
   m.height = ScalarEstimate{highest - base, top_sigma * top_sigma + base_sigma * base_sigma};
 }
 
+/// Ground, obstacles and what is neither: mirrored in a wet road, above all that drives.
+void splitGround(const LidarCloud& cloud, const ObstacleParams& params, LidarDetections& found) {
+  const EgoPoints& points = found.points;
+  const std::size_t count = points.size();
+  found.ground.assign(cloud.size(), 0);
+  const auto low = static_cast<float>(params.height_min),
+             high = static_cast<float>(params.height_max);
+  constexpr auto kGround = static_cast<std::uint8_t>(PointLabel::kGround);
+  const bool labelled = !cloud.label.empty(), trusted = cloud.trust.size() == cloud.size();
+  found.obstacles.resize(count);
+  std::size_t obstacles = 0;
+  for (std::size_t i = 0; i < count; ++i) {  // what is no obstacle is overwritten by the next
+    const std::uint32_t source = points.source[i];
+    const float height = found.height[i];
+    const bool ground = (std::abs(height) <= low) | (labelled && cloud.label[source] == kGround);
+    found.ground[source] = ground;
+    found.obstacles[obstacles] = static_cast<std::uint32_t>(i);
+    obstacles += !ground & (height > low) & (height < high);
+  }
+  found.obstacles.resize(obstacles);
+  found.x.resize(obstacles), found.y.resize(obstacles), found.above.resize(obstacles);
+  for (std::size_t k = 0; k < obstacles; ++k) {
+    const std::uint32_t i = found.obstacles[k];
+    found.x[k] = points.x[i], found.y[k] = points.y[i], found.above[k] = found.height[i];
+  }
+  if (!trusted) return;
+  found.trust.resize(obstacles);
+  for (std::size_t k = 0; k < obstacles; ++k)
+    found.trust[k] = cloud.trust[points.source[found.obstacles[k]]];
+}
+
+/// Trust in a return of the obstacles.
+double trustIn(const LidarDetections& found, std::uint32_t i) {
+  return found.trust.empty() ? 1.0 : static_cast<double>(found.trust[i]);
+}
+
+double trustIn(const LidarDetections& found, const std::vector<std::uint32_t>& returns) {
+  double sum = 0;
+  for (const std::uint32_t i : returns) sum += trustIn(found, i);
+  return sum;
+}
+
 /// One object, one detection, and no return in two: where a peak lies in a cluster's hull, one of
 /// the two goes or they are parted. A peak that explains most of a short cluster is a person with
 /// legs apart; one that is the middle of something rider-sized belongs to it; else the cluster is
@@ -144,18 +192,24 @@ void settleOverlaps(LidarDetections& found, const PersonParams& params,
                     const ClusterParams& cluster_params) {
   std::vector<std::uint8_t> drop_cluster(found.clusters.size(), 0),
       drop_peak(found.persons.size(), 0);
+  std::vector<Eigen::AlignedBox2d> about;
+  for (const Cluster& cluster : found.clusters) {
+    Eigen::AlignedBox2d box;
+    for (const Vector2& corner : cluster.hull) box.extend(corner);
+    about.push_back(box);
+  }
   for (std::size_t p = 0; p < found.persons.size(); ++p) {
     const PersonPeak& peak = found.persons[p];
     for (std::size_t c = 0; c < found.clusters.size(); ++c) {
       Cluster& cluster = found.clusters[c];
-      if (drop_cluster[c] || distanceToHull(cluster.hull, peak.centre) >= params.hull_margin)
+      if (drop_cluster[c] || about[c].exteriorDistance(peak.centre) >= params.hull_margin ||
+          distanceToHull(cluster.hull, peak.centre) >= params.hull_margin)
         continue;
       const double longest = sizeOf(cluster.hull).longest;
       std::vector<std::uint32_t> shared;
       std::set_intersection(peak.points.begin(), peak.points.end(), cluster.points.begin(),
                             cluster.points.end(), std::back_inserter(shared));
-      const double share =
-          static_cast<double>(shared.size()) / static_cast<double>(cluster.points.size());
+      const double share = trustIn(found, shared) / trustIn(found, cluster.points);
       if (longest < cluster_params.min_side && share >= params.whole_share) {
         drop_cluster[c] = 1;
       } else if (cluster.stable || peak.normalised < params.crowd_threshold ||
@@ -166,8 +220,7 @@ void settleOverlaps(LidarDetections& found, const PersonParams& params,
         std::set_difference(cluster.points.begin(), cluster.points.end(), shared.begin(),
                             shared.end(), std::back_inserter(rest));
         cluster.points = std::move(rest);
-        drop_cluster[c] =
-            cluster.points.size() < static_cast<std::size_t>(cluster_params.min_points);
+        drop_cluster[c] = trustIn(found, cluster.points) < cluster_params.min_points - 1e-6;
         if (drop_cluster[c]) continue;
         describeCluster(found.x, found.y, found.above, cluster);
         drop_cluster[c] = !hasCarSize(cluster, cluster_params);
@@ -261,31 +314,14 @@ LidarFrontEnd::LidarFrontEnd(const LidarParams& params, const ClassTable& classe
 
 LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   EgoPoints points = usablePoints(frame, params_.points);
-  GroundSurface surface(frame.ground, points, params_.surface);
-  std::vector<float> height = surface.heightsAbove(points);
-  LidarDetections found{std::move(points), std::move(height), {}, {}, {}, {}, {}, {}, {},
-                        std::move(surface)};
-
+  std::vector<float> height;
+  GroundSurface surface(frame.ground, points, params_.surface, &height);
+  LidarDetections found(std::move(points), std::move(height), std::move(surface));
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud == nullptr) return found;
-  found.ground.assign(cloud->size(), 0);
-  const auto low = static_cast<float>(params_.obstacles.height_min);
-  const auto high = static_cast<float>(params_.obstacles.height_max);
-  constexpr auto kGround = static_cast<std::uint8_t>(PointLabel::kGround);
-  for (std::size_t i = 0; i < found.points.size(); ++i) {
-    const std::uint32_t source = found.points.source[i];
-    const bool said_ground = !cloud->label.empty() && cloud->label[source] == kGround;
-    if (said_ground || std::abs(found.height[i]) <= low) {
-      found.ground[source] = 1;
-    } else if (found.height[i] > low &&
-               found.height[i] < high) {  // below the ground: mirrored, no obstacle
-      found.obstacles.push_back(static_cast<std::uint32_t>(i));
-      found.x.push_back(found.points.x[i]), found.y.push_back(found.points.y[i]);
-      found.above.push_back(found.height[i]);
-    }
-  }
-  found.clusters = findClusters(found.x, found.y, found.above, params_.clusters);
-  found.persons = findPersons(found.x, found.y, found.above, params_.persons);
+  splitGround(*cloud, params_.obstacles, found);
+  found.clusters = findClusters(found.x, found.y, found.above, params_.clusters, found.trust);
+  found.persons = findPersons(found.x, found.y, found.above, params_.persons, found.trust);
   settleOverlaps(found, params_.persons, params_.clusters);
   return found;
 }
@@ -304,6 +340,7 @@ std::vector<Vector3> LidarFrontEnd::obstaclePoints(const SensorFrame& frame) con
 MeasurementScan LidarFrontEnd::extract(const SensorFrame& frame) const {
   const LidarDetections found = detect(frame);
   MeasurementScan scan;
+  scan.dropped_points = found.points.dropped + found.points.capped;
   scan.sensor = frame.sensor;
   scan.modality = model_->sensing().params().modality;
   scan.frame = frame.frame;

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/Config.h"
@@ -55,10 +56,14 @@ struct LidarParams {
 /// What the front end found in one scan, in the ego frame: for the tracker, for pictures and for
 /// the safety grid.
 struct LidarDetections {
+  LidarDetections(EgoPoints points_, std::vector<float> height_, GroundSurface surface_)
+      : points(std::move(points_)), height(std::move(height_)), surface(std::move(surface_)) {}
+
   EgoPoints points;                      ///< usable returns
   std::vector<float> height;             ///< [m] of each above the local ground
   std::vector<std::uint32_t> obstacles;  ///< indices into points, in the scan's order
   std::vector<float> x, y, above;        ///< [m] the obstacles' place and height above ground
+  std::vector<float> trust;              ///< [0, 1] in each obstacle; empty: all 1
   std::vector<Cluster> clusters;         ///< car-sized; their indices run over the obstacles
   std::vector<PersonPeak>
       persons;  ///< outside of the clusters' hulls; their indices run over the obstacles

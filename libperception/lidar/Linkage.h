@@ -16,11 +16,15 @@ struct Partition {
 /// of the graph that joins points no farther than a threshold apart.
 struct DoubleLinkage {
   Partition near;  ///< at the small threshold
-  Partition far;   ///< at the large one: every group is a union of groups of `near`
+  /// At the large one every group is a union of groups of `near`.
+  std::uint32_t far_count = 0;
   std::vector<std::uint32_t> far_of_near;  ///< the far group of each near group
   std::vector<std::uint32_t>
       parts;  ///< near groups in each far group; 1: the same set at both thresholds
 };
+
+/// The far group of every point, numbered in the order of the groups' first points.
+Partition farPartition(const DoubleLinkage& linkage);
 
 /// `near_threshold` < `far_threshold` [m]; coordinates finite. Distances are compared as squares in
 /// float.

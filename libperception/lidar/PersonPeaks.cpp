@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "libperception/lidar/PersonResponse.h"
+
 namespace perception {
 
 void PersonParams::visit(ParamVisitor& v) {
@@ -29,188 +31,129 @@ void PersonParams::visit(ParamVisitor& v) {
          "normalised response that counts beside something unstable");
 }
 
-double personKernel(double r, const PersonParams& params) {
-  const double s2 = params.sigma * params.sigma, u = r * r / (2 * s2);
-  const double fourth = params.kernel == PersonParams::Kernel::kPrinted
-                            ? r * r * u
-                            : 2 * u * u;  // r^4 / (2 s^2), r^4 / (2 s^4)
-  return std::exp(-u) / (kPi * s2) * ((1 - u) + 0.15 * (1 - fourth));
-}
-
 namespace {
 
-/// Returns counted in square cells, with the filter's response at every cell's centre.
-class ResponseGrid {
+/// The returns of the cells about some places, cell by cell.
+class Neighbourhoods {
  public:
-  ResponseGrid(const std::vector<float>& x, const std::vector<float>& y,
-               const PersonParams& params);
-
-  std::size_t columns() const { return columns_; }
-  std::size_t rows() const { return rows_; }
-  float at(std::size_t column, std::size_t row) const { return response_[row * columns_ + column]; }
-  Vector2 centre(std::size_t column, std::size_t row) const {
-    return {x0_ + (static_cast<double>(column) + 0.5) * cell_,
-            y0_ + (static_cast<double>(row) + 0.5) * cell_};
-  }
-  /// Cells that hold returns, in the order of the grid.
-  const std::vector<std::uint32_t>& occupied() const { return occupied_; }
-  /// The returns within `radius` of `place`, in the scan's order.
-  std::vector<std::uint32_t> within(const Vector2& place, double radius,
-                                    const std::vector<float>& x, const std::vector<float>& y) const;
+  /// Square blocks of cells that reach `reach` cells to each side of `middles`.
+  Neighbourhoods(const PersonResponse& response, const std::vector<std::uint32_t>& middles,
+                 std::size_t reach);
+  /// Calls f with each return in the block about `middle`.
+  template <class Function>
+  void forEach(std::uint32_t middle, const Function& f) const;
 
  private:
-  void scatter(const std::vector<std::uint32_t>& counts, const PersonParams& params);
-
-  double cell_, x0_ = 0, y0_ = 0;
-  std::size_t margin_, columns_ = 0, rows_ = 0;
-  std::vector<float> response_;
-  std::vector<std::uint32_t> start_, points_, occupied_;
+  std::size_t columns_, reach_;
+  std::vector<std::uint32_t> number_;  ///< of a cell + 1; 0: in no block
+  std::vector<std::uint32_t> start_, returns_;
 };
 
-ResponseGrid::ResponseGrid(const std::vector<float>& x, const std::vector<float>& y,
-                           const PersonParams& params)
-    : cell_(params.cell),
-      margin_(static_cast<std::size_t>(std::ceil(params.support / params.cell)) + 1) {
-  if (x.empty()) return;
-  const auto [x_low, x_high] = std::minmax_element(x.begin(), x.end());
-  const auto [y_low, y_high] = std::minmax_element(y.begin(), y.end());
-  const double margin = static_cast<double>(margin_) * cell_;
-  // Cells lie on multiples of their side, so that they do not depend on which return is the
-  // outermost.
-  x0_ = std::floor(static_cast<double>(*x_low) / cell_) * cell_ - margin;
-  y0_ = std::floor(static_cast<double>(*y_low) / cell_) * cell_ - margin;
-  columns_ = static_cast<std::size_t>((static_cast<double>(*x_high) - x0_) / cell_) + 1 + margin_;
-  rows_ = static_cast<std::size_t>((static_cast<double>(*y_high) - y0_) / cell_) + 1 + margin_;
-
-  std::vector<std::uint32_t> cell_of(x.size());
-  std::vector<std::uint32_t> counts(columns_ * rows_, 0);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto column = static_cast<std::size_t>((static_cast<double>(x[i]) - x0_) / cell_);
-    const auto row = static_cast<std::size_t>((static_cast<double>(y[i]) - y0_) / cell_);
-    cell_of[i] = static_cast<std::uint32_t>(row * columns_ + column);
-    ++counts[cell_of[i]];
-  }
-  start_.resize(counts.size() + 1, 0);
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    start_[k + 1] = start_[k] + counts[k];
-    if (counts[k] > 0) occupied_.push_back(static_cast<std::uint32_t>(k));
-  }
-  points_.resize(x.size());
-  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-  for (std::size_t i = 0; i < x.size(); ++i)
-    points_[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
-  scatter(counts, params);
+Neighbourhoods::Neighbourhoods(const PersonResponse& response,
+                               const std::vector<std::uint32_t>& middles, std::size_t reach)
+    : columns_(response.columns()), reach_(reach), number_(response.values().size(), 0) {
+  std::uint32_t count = 0;
+  for (const std::uint32_t middle : middles)
+    for (std::size_t row = middle - reach_ * columns_; row <= middle + reach_ * columns_;
+         row += columns_)
+      for (std::size_t k = row - reach_; k <= row + reach_; ++k)
+        if (number_[k] == 0) number_[k] = ++count;
+  start_.assign(count + 2, 0);
+  const std::vector<std::uint32_t>& cells = response.cellOfReturn();
+  for (const std::uint32_t k : cells) ++start_[number_[k]];
+  start_[0] = 0;  // returns in no block
+  for (std::size_t n = 1; n < start_.size(); ++n) start_[n] += start_[n - 1];
+  returns_.resize(start_[count]);
+  std::vector<std::uint32_t> next(start_.begin(), start_.end());
+  for (std::uint32_t i = 0; i < cells.size(); ++i)
+    if (const std::uint32_t n = number_[cells[i]]; n != 0) returns_[next[n - 1]++] = i;
 }
 
-/// Every occupied cell adds its count times the kernel to the cells around it, row by row.
-void ResponseGrid::scatter(const std::vector<std::uint32_t>& counts, const PersonParams& params) {
-  const auto reach = static_cast<std::ptrdiff_t>(params.support / cell_);
-  struct Row {
-    std::ptrdiff_t offset;  ///< of its first cell from the centre, in the grid
-    std::vector<float> weights;
-  };
-  std::vector<Row> kernel;
-  for (std::ptrdiff_t row = -reach; row <= reach; ++row) {
-    const double dy = static_cast<double>(row) * cell_;
-    const auto half =
-        static_cast<std::ptrdiff_t>(std::sqrt(params.support * params.support - dy * dy) / cell_);
-    Row line{row * static_cast<std::ptrdiff_t>(columns_) - half, {}};
-    for (std::ptrdiff_t column = -half; column <= half; ++column)
-      line.weights.push_back(static_cast<float>(
-          personKernel(std::hypot(static_cast<double>(column) * cell_, dy), params)));
-    kernel.push_back(std::move(line));
-  }
-  response_.assign(columns_ * rows_, 0);
-  for (const std::uint32_t k : occupied_) {
-    const auto count = static_cast<float>(counts[k]);
-    for (const Row& line : kernel) {
-      float* out = response_.data() + static_cast<std::ptrdiff_t>(k) + line.offset;
-      for (std::size_t i = 0; i < line.weights.size(); ++i) out[i] += count * line.weights[i];
-    }
-  }
+template <class Function>
+void Neighbourhoods::forEach(std::uint32_t middle, const Function& f) const {
+  for (std::size_t row = middle - reach_ * columns_; row <= middle + reach_ * columns_;
+       row += columns_)
+    for (std::size_t k = row - reach_; k <= row + reach_; ++k)
+      for (std::uint32_t p = start_[number_[k] - 1]; p < start_[number_[k]]; ++p) f(returns_[p]);
 }
 
-std::vector<std::uint32_t> ResponseGrid::within(const Vector2& place, double radius,
-                                                const std::vector<float>& x,
-                                                const std::vector<float>& y) const {
-  std::vector<std::uint32_t> found;
-  const auto clampTo = [](double value, std::size_t count) {
-    return static_cast<std::size_t>(std::clamp(value, 0.0, static_cast<double>(count - 1)));
+/// Drops maxima whose response per return is too low whatever the returns at the circle's rim are:
+/// walls and hedges.
+void dropCrowded(const PersonResponse& response, const PersonParams& params,
+                 std::vector<std::uint32_t>& maxima) {
+  std::vector<std::ptrdiff_t> inside;  // cells that lie in the circle as a whole
+  const auto reach = static_cast<std::ptrdiff_t>(params.radius / params.cell);
+  for (std::ptrdiff_t row = -reach; row <= reach; ++row)
+    for (std::ptrdiff_t column = -reach; column <= reach; ++column)
+      if (std::hypot(std::abs(static_cast<double>(row)) + 0.5,
+                     std::abs(static_cast<double>(column)) + 0.5) *
+              params.cell <=
+          params.radius)
+        inside.push_back(row * static_cast<std::ptrdiff_t>(response.columns()) + column);
+  const auto crowded = [&](std::uint32_t k) {
+    double weight = 0;
+    for (const std::ptrdiff_t offset : inside)
+      weight += static_cast<double>(
+          response.weights()[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + offset)]);
+    return static_cast<double>(response.values()[k]) < params.threshold * (1 - 1e-5) * weight;
   };
-  const std::size_t left = clampTo((place.x() - radius - x0_) / cell_, columns_);
-  const std::size_t right = clampTo((place.x() + radius - x0_) / cell_, columns_);
-  const std::size_t bottom = clampTo((place.y() - radius - y0_) / cell_, rows_);
-  const std::size_t top = clampTo((place.y() + radius - y0_) / cell_, rows_);
-  for (std::size_t row = bottom; row <= top; ++row)
-    for (std::uint32_t p = start_[row * columns_ + left]; p < start_[row * columns_ + right + 1];
-         ++p) {
-      const std::uint32_t i = points_[p];
-      const double dx = static_cast<double>(x[i]) - place.x(),
-                   dy = static_cast<double>(y[i]) - place.y();
-      if (dx * dx + dy * dy <= radius * radius) found.push_back(i);
-    }
-  std::sort(found.begin(), found.end());
-  return found;
+  maxima.erase(std::remove_if(maxima.begin(), maxima.end(), crowded), maxima.end());
 }
 
 /// The peak at a cell, when its returns are person-sized.
-bool describe(const ResponseGrid& grid, std::size_t column, std::size_t row,
+bool describe(const PersonResponse& response, const Neighbourhoods& near, std::uint32_t cell,
               const std::vector<float>& x, const std::vector<float>& y,
-              const std::vector<float>& height, const PersonParams& params, PersonPeak& peak) {
-  peak.response = static_cast<double>(grid.at(column, row));
-  peak.points = grid.within(grid.centre(column, row), params.radius, x, y);
-  if (peak.points.size() < static_cast<std::size_t>(params.min_points)) return false;
-  const auto count = static_cast<double>(peak.points.size());
-  peak.normalised = peak.response / count;
-  if (peak.normalised < params.threshold) return false;
-  peak.centre = Vector2::Zero();
+              const std::vector<float>& height, const std::vector<float>& weight,
+              const PersonParams& params, PersonPeak& peak) {
+  const Vector2 centre = response.centre(cell);
+  near.forEach(cell, [&](std::uint32_t i) {
+    const double dx = static_cast<double>(x[i]) - centre.x(),
+                 dy = static_cast<double>(y[i]) - centre.y();
+    if (dx * dx + dy * dy <= params.radius * params.radius) peak.points.push_back(i);
+  });
+  if (peak.points.empty()) return false;
+  std::sort(peak.points.begin(), peak.points.end());
+  peak.response = static_cast<double>(response.values()[cell]);
   peak.lowest = peak.highest = height[peak.points.front()];
   for (const std::uint32_t i : peak.points) {
-    peak.centre += Vector2(static_cast<double>(x[i]), static_cast<double>(y[i])) / count;
-    peak.lowest = std::min(peak.lowest, height[i]),
+    const double w = weight.empty() ? 1.0 : static_cast<double>(weight[i]);
+    peak.weight += w;
+    peak.centre += w * Vector2(static_cast<double>(x[i]), static_cast<double>(y[i]));
+    peak.lowest = std::min(peak.lowest, height[i]);
     peak.highest = std::max(peak.highest, height[i]);
   }
+  if (peak.weight < params.min_points - 1e-6) return false;
+  peak.centre /= peak.weight;
+  peak.normalised = peak.response / peak.weight;
   const auto span = static_cast<double>(peak.highest - peak.lowest);
-  return span >= params.min_span && span <= params.max_span;
-}
-
-/// Not below any of its eight neighbours; of equal ones the first in the grid.
-bool isLocalMaximum(const ResponseGrid& grid, std::size_t column, std::size_t row) {
-  const float here = grid.at(column, row);
-  for (std::size_t r = row - 1; r <= row + 1; ++r)
-    for (std::size_t c = column - 1; c <= column + 1; ++c) {
-      const bool before = r < row || (r == row && c < column);
-      if (grid.at(c, r) > here || (before && grid.at(c, r) == here)) return false;
-    }
-  return true;
+  return peak.normalised >= params.threshold && span >= params.min_span && span <= params.max_span;
 }
 
 }  // namespace
 
 std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vector<float>& y,
-                                    const std::vector<float>& height, const PersonParams& params) {
-  const ResponseGrid grid(x, y, params);
-  // A positive maximum lies in a cell with returns or beside one.
-  std::vector<std::uint8_t> looked_at(grid.columns() * grid.rows(), 0);
-  std::vector<std::uint32_t> cells;
-  const auto columns = static_cast<std::uint32_t>(grid.columns());
-  for (const std::uint32_t k : grid.occupied())
-    for (const std::uint32_t row : {k - columns, k, k + columns})
-      for (const std::uint32_t near : {row - 1, row, row + 1})
-        if (!std::exchange(looked_at[near], std::uint8_t{1})) cells.push_back(near);
+                                    const std::vector<float>& height, const PersonParams& params,
+                                    const std::vector<float>& weight) {
+  std::vector<PersonPeak> peaks;
+  if (x.empty()) return peaks;
+  const PersonResponse response(x, y, weight, params);
+  // A peak of at least min_points returns with that response each; any positive one may do where
+  // the threshold is zero.
+  const double least = std::max(params.threshold * params.min_points * (1 - 1e-3), 1e-6);
+  std::vector<std::uint32_t> maxima = response.maxima(static_cast<float>(least));
+  dropCrowded(response, params, maxima);
+  const auto reach = static_cast<std::size_t>(params.radius / params.cell + 0.5);
+  const Neighbourhoods near(response, maxima, std::min(reach, response.margin() - 1));
 
   std::vector<PersonPeak> candidates;
-  for (const std::uint32_t k : cells) {
-    const std::size_t column = k % columns, row = k / columns;
-    if (grid.at(column, row) <= 0 || !isLocalMaximum(grid, column, row)) continue;
+  for (const std::uint32_t cell : maxima) {
     PersonPeak peak;
-    if (describe(grid, column, row, x, y, height, params, peak))
+    if (describe(response, near, cell, x, y, height, weight, params, peak))
       candidates.push_back(std::move(peak));
   }
   std::stable_sort(
       candidates.begin(), candidates.end(),
       [](const PersonPeak& a, const PersonPeak& b) { return a.response > b.response; });
-  std::vector<PersonPeak> peaks;
   for (PersonPeak& candidate : candidates) {
     const bool alone = std::none_of(peaks.begin(), peaks.end(), [&](const PersonPeak& stronger) {
       return (stronger.centre - candidate.centre).norm() < params.separation;

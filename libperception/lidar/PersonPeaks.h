@@ -41,15 +41,15 @@ struct PersonPeak {
   std::vector<std::uint32_t> points;  ///< within `radius` of the peak, in the scan's order
   Vector2 centre = Vector2::Zero();   ///< [m] mean of those
   double response = 0;                ///< of the filter, sum over returns
+  double weight = 0;                  ///< of the returns within radius
   double normalised = 0;              ///< response per return within radius
   float lowest = 0, highest = 0;      ///< [m] above ground
 };
 
-/// The kernel L(r) [1/m^2].
-double personKernel(double r, const PersonParams& params);
-
-/// Peaks among obstacle points (x, y, height above ground; [m]), strongest first.
+/// Peaks among obstacle points (x, y, height above ground; [m]), strongest first. `weight`: trust
+/// in each return, [0, 1]; empty: all 1. Wherever returns are counted their weights are summed.
 std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vector<float>& y,
-                                    const std::vector<float>& height, const PersonParams& params);
+                                    const std::vector<float>& height, const PersonParams& params,
+                                    const std::vector<float>& weight = {});
 
 }  // namespace perception

@@ -86,6 +86,8 @@ struct MeasurementScan {
   std::vector<Measurement> measurements;
   std::size_t dropped =
       0;  ///< detections that could not be used: no such label, a box that is none
+  std::size_t dropped_points =
+      0;  ///< returns of a lidar without a range, and those above the front end's limit of a scan
 };
 
 }  // namespace perception

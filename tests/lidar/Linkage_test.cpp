@@ -60,7 +60,7 @@ TEST(Linkage, EqualsEveryPairAtBothThresholds) {
     const Partition near = everyPair(p, 0.5), far = everyPair(p, 1.0);
     ASSERT_EQ(linkage.near.count, near.count) << seed;
     ASSERT_EQ(linkage.near.group, near.group) << seed;
-    ASSERT_EQ(linkage.far.group, far.group) << seed;
+    ASSERT_EQ(farPartition(linkage).group, far.group) << seed;
   }
 }
 
@@ -73,16 +73,17 @@ TEST(Linkage, EqualsEveryPairOnALatticeAtTheThreshold) {  // every neighbour lie
         p.x.push_back(static_cast<float>(i) * pitch), p.y.push_back(static_cast<float>(j) * pitch);
     const DoubleLinkage linkage = linkTwice(p.x, p.y, 0.5, 1.0);
     EXPECT_EQ(linkage.near.group, everyPair(p, 0.5).group) << pitch;
-    EXPECT_EQ(linkage.far.group, everyPair(p, 1.0).group) << pitch;
+    EXPECT_EQ(farPartition(linkage).group, everyPair(p, 1.0).group) << pitch;
   }
 }
 
 TEST(Linkage, FarGroupsAreUnionsOfNearGroups) {
   const Plane p = randomPlane(99, 3000, 30);
   const DoubleLinkage linkage = linkTwice(p.x, p.y, 0.5, 1.0);
-  EXPECT_LT(linkage.far.count, linkage.near.count);
+  EXPECT_LT(linkage.far_count, linkage.near.count);
+  const Partition far = farPartition(linkage);
   for (std::size_t i = 0; i < p.x.size(); ++i)
-    ASSERT_EQ(linkage.far_of_near[linkage.near.group[i]], linkage.far.group[i]);
+    ASSERT_EQ(linkage.far_of_near[linkage.near.group[i]], far.group[i]);
   EXPECT_EQ(std::accumulate(linkage.parts.begin(), linkage.parts.end(), 0u), linkage.near.count);
 }
 
@@ -100,9 +101,20 @@ TEST(Linkage, DoesNotDependOnTheOrderOfThePoints) {
   }
 }
 
+TEST(Linkage, EqualsEveryPairWherePointsSpreadBeyondItsTable) {
+  Plane p = randomPlane(11, 300, 12);
+  for (std::size_t i = 0; i < p.x.size(); ++i) {  // cells 1024 apart share a place of the table
+    const auto turn = static_cast<float>(i % 5);
+    p.x[i] += 362.0f * turn, p.y[i] -= 724.0f * turn;
+  }
+  const DoubleLinkage linkage = linkTwice(p.x, p.y, 0.5, 1.0);
+  EXPECT_EQ(linkage.near.group, everyPair(p, 0.5).group);
+  EXPECT_EQ(farPartition(linkage).group, everyPair(p, 1.0).group);
+}
+
 TEST(Linkage, TakesNoPointsOneAndFarOnes) {
   EXPECT_EQ(linkTwice({}, {}, 0.5, 1.0).near.count, 0u);
-  EXPECT_EQ(linkTwice({3}, {4}, 0.5, 1.0).far.count, 1u);
+  EXPECT_EQ(linkTwice({3}, {4}, 0.5, 1.0).far_count, 1u);
   EXPECT_EQ(linkTwice({-1e6f, 1e6f, 1e6f}, {0, 0, 0}, 0.5, 1.0).near.count, 2u);
 }
 

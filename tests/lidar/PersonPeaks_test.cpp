@@ -4,6 +4,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Random.h"
+#include "libperception/lidar/PersonResponse.h"
 
 namespace perception {
 namespace {
