@@ -9,22 +9,27 @@ namespace perception {
 
 const std::vector<ImporterRow>& importers() {
   static const std::vector<ImporterRow> kImporters = {
-      {"kitti", "one sequence of the KITTI tracking benchmark", &makeKittiImporter},
-      {"clouds", "a folder of point clouds (.bin .pcd .ply .csv), with stamps and poses",
+      {"kitti", "one sequence of the KITTI tracking benchmark", kUsesRate | kUsesImages,
+       &makeKittiImporter},
+      {"clouds", "a folder of point clouds (.bin .pcd .ply .csv), with stamps and poses", kUsesRate,
        &makeCloudsImporter},
       {"images", "single frames of the KITTI object benchmark: images, labels, scans",
-       &makeImagesImporter},
-      {"vod", "View of Delft: radar points, lidar, image, labels, poses", &makeVodImporter},
-      {"radiate", "RADIATE: Navtech radar, lidar, camera, GPS, annotations", &makeRadiateImporter},
-      {"wads", "WADS: lidar scans in falling snow with a class per point", &makeWadsImporter},
-      {"snowykitti", "SnowyKITTI: KITTI scans with simulated snow, labelled per point",
+       kUsesRate | kUsesImages | kUsesRepeat, &makeImagesImporter},
+      {"vod", "View of Delft: radar points, lidar, image, labels, poses",
+       kUsesRate | kUsesImages | kUsesRepeat, &makeVodImporter},
+      {"radiate", "RADIATE: Navtech radar, lidar, camera, GPS, annotations", kUsesImages,
+       &makeRadiateImporter},
+      {"wads", "WADS: lidar scans in falling snow with a class per point", kUsesRate,
+       &makeWadsImporter},
+      {"snowykitti", "SnowyKITTI: KITTI scans with simulated snow, labelled per point", kUsesRate,
        &makeSnowyKittiImporter},
-      {"comma2k19", "comma2k19: tracks of a car's radar, ego motion, GNSS", &makeComma2k19Importer},
-      {"udacity", "Udacity's radar and laser measurements of one object (simulated)",
+      {"comma2k19", "comma2k19: tracks of a car's radar, ego motion, GNSS", 0,
+       &makeComma2k19Importer},
+      {"udacity", "Udacity's radar and laser measurements of one object (simulated)", 0,
        &makeUdacityImporter},
-      {"nmea", "a GPS receiver's NMEA 0183 log: the vehicle's own way, or an object's",
+      {"nmea", "a GPS receiver's NMEA 0183 log: the vehicle's own way, or an object's", 0,
        &makeNmeaImporter},
-      {"gpx", "a GPX track: the vehicle's own way, or an object's", &makeGpxImporter},
+      {"gpx", "a GPX track: the vehicle's own way, or an object's", 0, &makeGpxImporter},
   };
   return kImporters;
 }
@@ -45,16 +50,21 @@ void ImportApp::declare(CLI::App& cli) {
     sub.callback([this, i] { chosen_ = i; });
     importers_.push_back(row.make());
     importers_.back()->declare(sub);
-    sub.add_option("--rate", options.rate,
-                   "[Hz] of frames that carry no stamps; default: the format's own");
     sub.add_option("--first", options.first, "first frame")->capture_default_str();
     sub.add_option("--last", options.last, "last frame; -1: to the end")->capture_default_str();
-    sub.add_option("--repeat", options.repeat,
-                   "shows frames that stand alone so often, as a still world")
-        ->capture_default_str();
-    auto* copy = sub.add_flag("--copy-images", copy_images_,
-                              "images into FILE_Images beside the log, not a link to them");
-    sub.add_flag("--embed-images", embed_images_, "images as JPEG inside the log")->excludes(copy);
+    if (row.uses & kUsesRate)
+      sub.add_option("--rate", options.rate,
+                     "[Hz] of frames that carry no stamps; default: the format's own");
+    if (row.uses & kUsesRepeat)
+      sub.add_option("--repeat", options.repeat,
+                     "shows frames that stand alone so often, as a still world")
+          ->capture_default_str();
+    if (row.uses & kUsesImages) {
+      auto* copy = sub.add_flag("--copy-images", copy_images_,
+                                "images into FILE_Images beside the log, not a link to them");
+      sub.add_flag("--embed-images", embed_images_, "images as JPEG inside the log")
+          ->excludes(copy);
+    }
     addOutputOption(sub, true);
   }
 }

@@ -23,10 +23,14 @@ class Importer {
   virtual void run(ImportLog& log) = 0;
 };
 
+/// Options of ImportOptions that not every format can use: a recording with stamps has its rate.
+enum SharedOption : unsigned { kUsesRate = 1, kUsesImages = 2, kUsesRepeat = 4 };
+
 /// A row per sub-command of perception-import.
 struct ImporterRow {
   const char* name;
   const char* description;
+  unsigned uses;  ///< SharedOption; --first and --last are everybody's
   std::unique_ptr<Importer> (*make)();
 };
 const std::vector<ImporterRow>& importers();

@@ -40,6 +40,14 @@ TEST(Importers, EachHasANameOfItsOwnAndSaysWhatItReads) {
   EXPECT_EQ(names.size(), 11u);
 }
 
+class ImportOptionsOfFormats : public test::ImportRun {};
+
+TEST_F(ImportOptionsOfFormats, WhatAFormatCannotUseIsRefused) {
+  expectFault(64, "--rate", "udacity", {"--measurements", file("u.txt"), "--rate", "5"});
+  expectFault(64, "--repeat", "clouds", {"--clouds", file("c"), "--repeat", "5"});
+  expectFault(64, "--copy-images", "nmea", {"--track", file("a.nmea"), "--copy-images"});
+}
+
 // ------------------------------------------------------------- WADS, SnowyKITTI: snow per point
 
 class SnowImport : public test::ImportRun {
