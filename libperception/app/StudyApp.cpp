@@ -117,11 +117,14 @@ void StudyApp::declare(CLI::App& cli) {
       sub->add_option("--duc", duc_config, "INI of the tracker without classification, for --log");
       sub->add_option("--set", settings, "section.key=value: overrides both INIs");
       sub->add_option("-t,--truth", truth_file, "Truth of the log");
+      sub->add_option("--counts", counts, "Numbers of particles, for --log (else the paper's)")
+          ->delimiter(',')
+          ->check(CLI::Range(1, 100000));
       sub->add_option("--seconds", seconds, "Of the log; 0 = all")->check(CLI::Range(0.0, 1e6));
-      sub->add_option("--range", range, "Truth counts up to this distance [m]")
+      sub->add_option("--range", range, "Objects count up to this distance [m]")
           ->capture_default_str()
           ->check(CLI::Range(0.1, 1e4));
-      sub->add_option("--fov-deg", fov_deg, "Whole angle ahead in which truth counts [deg]")
+      sub->add_option("--fov-deg", fov_deg, "Whole angle ahead in which they count [deg]")
           ->capture_default_str()
           ->check(CLI::Range(0.1, 360.0));
     }
@@ -158,6 +161,7 @@ StudyReport StudyApp::particlesOfLog() {
   if (config_file.empty()) throw Error(ExitCode::kUsage, "--log needs -c/--config");
   LogParticlesParams params;
   params.seed = seed;
+  if (!counts.empty()) params.counts = counts;
   params.evaluation.selection.range = range;
   params.evaluation.selection.fov = radians(fov_deg);
   std::optional<GroundTruth> truth;

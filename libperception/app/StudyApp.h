@@ -19,8 +19,9 @@ class StudyApp : public App {
   std::string log;                   ///< particles: a rawlog instead of simulated positions
   std::string duc_config;            ///< particles: --duc, INI of DUC's tracker
   std::string truth_file;            ///< particles: --truth of the log
+  std::vector<int> counts;           ///< particles: of the log; empty = the paper's
   double seconds = 0;                ///< particles: of the log; 0 = all
-  double range = 20, fov_deg = 180;  ///< particles: where truth counts [m, deg]
+  double range = 30, fov_deg = 360;  ///< particles: where objects of a log count [m, deg]
   std::string scenario;              ///< ego: INI of the scenario
 
   StudyReport out_report;

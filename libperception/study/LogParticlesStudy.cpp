@@ -305,15 +305,20 @@ CountedRun countObjects(const TrackedRun& run, const GroundTruth* truth,
   }
   double cars = 0, persons = 0;
   for (const Scene& scene : run.scenes) {
-    int classified = 0;
+    int all = 0, classified = 0;
     for (const SceneObject& o : scene.objects) {
+      // A list may hold what was left behind long ago: only what is around counts.
+      const GroundView view =
+          viewFrom(scene.ego.T_world_ego, makeFootprint(o.position, o.yaw, o.length, o.width));
+      if (!inSector(view, options.selection.range, options.selection.fov)) continue;
+      ++all;
       const auto c = static_cast<std::size_t>(o.class_id);
       if (!o.classified || !named[c]) continue;
       ++classified;
       cars += run.class_names[c] == "car";
       persons += run.class_names[c] == "pedestrian";
     }
-    counted.all.push_back(static_cast<int>(scene.objects.size()));
+    counted.all.push_back(all);
     counted.classified.push_back(classified);
   }
   const double scenes = std::max<double>(1, static_cast<double>(run.scenes.size()));
@@ -373,21 +378,22 @@ StudyReport logParticlesStudy(const LogParticlesParams& params, const RecordedLo
   report.tables.push_back(cdfTable(methods, runs));
   addPlots(methods, runs, where, report);
   report.remarks = {
-      fmt::format("Rms of all, of classified objects: against {} particles of the same "
+      fmt::format("Objects count within {:g} m and {:g} deg ahead. Rms of all, of classified "
+                  "objects: against {} particles of the same "
                   "configuration; those of another seed are the noise of this measure, below which "
                   "no method can be told from the reference.",
+                  params.evaluation.selection.range, degrees(params.evaluation.selection.fov),
                   params.reference),
       "The rows with DUC's births and with ranked assignments have the joint configuration's "
       "reference.",
       "Classified: a class of road users with 95 % or more. The paper classified cars and "
       "pedestrians alone; what is left over was unclassified there and is static-other here."};
   if (truth) {
-    report.remarks.push_back(fmt::format(
-        "Against the truth: outputs as road users less true ones, within {:g} m and {:g} deg "
-        "ahead, hidden ones and outputs beside them left out on both sides; what stands around and "
-        "is called a road user counts against it. Things not held: rms number of true things there "
-        "(poles and hedges, too) that have no output of their own, of whatever class.",
-        params.evaluation.selection.range, degrees(params.evaluation.selection.fov)));
+    report.remarks.push_back(
+        "Against the truth: outputs as road users less true ones, hidden ones and outputs beside "
+        "them left out on both sides; what stands around and is called a road user counts against "
+        "it. Things not held: rms number of true things there (poles and hedges, too) that have no "
+        "output of their own, of whatever class.");
   }
   return report;
 }

@@ -15,12 +15,13 @@ struct LogParticlesParams {
   std::vector<int> counts = {1, 4, 8, 12, 16, 20};  ///< the paper's
   int reference = 50;                               ///< the paper's benchmark
   std::uint64_t seed = 1;
-  EvaluationOptions evaluation;  ///< where objects count, against the truth
+  EvaluationOptions evaluation;  ///< its sector is where objects count
 };
 
 /// A tracked log reduced to what the study compares.
 struct CountedRun {
-  std::vector<int> all, classified;  ///< objects by scene; classified: as a class that is named
+  std::vector<int> all,
+      classified;  ///< objects in the sector by scene; classified: as a class that is named
   double mean_cars = 0, mean_persons = 0;  ///< classified ones a scene
   std::optional<Evaluation> evaluation;    ///< where there is a truth
   /// True things of any type that count, by instant with a truth, and those of them with an output

@@ -38,6 +38,11 @@ TEST(CountObjects, OnlyRoadUsersAreClassified) {
       {});
   EXPECT_EQ(counted.all, (std::vector<int>{3, 0}));
   EXPECT_EQ(counted.classified, (std::vector<int>{1, 0}));
+  EvaluationOptions near;
+  near.selection.range = 10;
+  EXPECT_EQ(
+      countObjects(runOf({{object(1, 5, 1, true), object(3, 12, 0, false)}}), nullptr, near).all,
+      std::vector<int>{1});
   EXPECT_DOUBLE_EQ(counted.mean_cars, 0.5);
   EXPECT_FALSE(counted.evaluation);
 }
