@@ -66,6 +66,7 @@ const std::vector<std::string>& RunParams::associationNames() {
 void RunParams::visit(ParamVisitor& v) {
   v.unsigned64("seed", seed, "of all random numbers; --seed wins");
   v.text("sensors", sensors, "modalities in use, letters C, L, R joined by +; --sensors wins");
+  v.words("without", without, "labels of sensors that are left out all the same");
   v.choiceOf("association", association, associationNames(),
              "how a hypothesis chooses the causes of measurements");
   v.text("output_sensor", output_sensor,
@@ -112,8 +113,15 @@ PipelineSetup PipelineSetup::read(Config& config) {
       config.fault(section, "pose", "several scanners are merged: their poses come with the log");
     sensor.front_end =
         makeFrontEnd(config, section, sensor.label, sensor.params.kind, s.model.classes);
-    sensor.active = letters.find(static_cast<char>(sensor.params.modality)) != std::string::npos;
+    const auto& without = s.run.without;
+    sensor.active = letters.find(static_cast<char>(sensor.params.modality)) != std::string::npos &&
+                    std::find(without.begin(), without.end(), sensor.label) == without.end();
     s.sensors.push_back(std::move(sensor));
+  }
+  for (const auto& label : s.run.without) {
+    const auto is_it = [&](const Sensor& sensor) { return sensor.label == label; };
+    if (std::none_of(s.sensors.begin(), s.sensors.end(), is_it))
+      config.fault("run", "without", "there is no [sensor." + label + "]");
   }
   const auto active = [](const Sensor& sensor) { return sensor.active; };
   if (std::none_of(s.sensors.begin(), s.sensors.end(), active)) {

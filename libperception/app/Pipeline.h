@@ -20,15 +20,16 @@
 #include "libperception/scene/SceneFromPosterior.h"
 #include "libperception/sensors/EgoPose.h"
 #include "libperception/sensors/FromObservation.h"
-#include "libperception/weather/PointFilter.h"
 #include "libperception/sensors/ScanMerge.h"
+#include "libperception/weather/PointFilter.h"
 
 namespace perception {
 
 /// [run]: what is run on a log, and when scenes are put out.
 struct RunParams {
   unsigned long long seed = 1;
-  std::string sensors = "C+L+R";  ///< modalities in use: letters joined by +
+  std::string sensors = "C+L+R";     ///< modalities in use: letters joined by +
+  std::vector<std::string> without;  ///< labels of sensors that are left out all the same
   Proposal association = Proposal::kSampled;
   std::string
       output_sensor;  ///< scenes at its scans; empty: the first lidar in use, else the first sensor

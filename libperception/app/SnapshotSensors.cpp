@@ -169,7 +169,7 @@ std::optional<EgoState> SnapshotSensors::egoAt(Stamp stamp) const {
 
 const PipelineSetup::Sensor* SnapshotSensors::sensorOf(const std::string& label) const {
   for (const auto& sensor : params_.sensors) {
-    if (sensor.label == label) return &sensor;
+    if (sensor.label == label || sensor.scan.merges(label)) return &sensor;
   }
   return nullptr;
 }
