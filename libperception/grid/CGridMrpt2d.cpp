@@ -43,13 +43,28 @@ class CGridMrpt2d final : public SafetyGrid {
   }
 
   std::vector<GridCell> occupiedCells() const override {
+    return cellsWhere([this](double v) { return v > params().occupied; });
+  }
+  std::vector<GridCell> knownCells() const override {
+    return cellsWhere([](double v) { return v != 0; });
+  }
+
+  void restore(const std::vector<GridCell>& cells) override {
+    for (const GridCell& cell : cells)
+      if (Cell* at =
+              find({evidence_.indexOf(cell.centre.x()), evidence_.indexOf(cell.centre.y()), 0}))
+        add(*at, cell.log_odds);
+  }
+
+  template <class Wanted>
+  std::vector<GridCell> cellsWhere(const Wanted& wanted) const {
     std::vector<GridCell> cells;
     const double height = params().z_max - params().z_min;
     for (std::int64_t y = 0; y < cells_; ++y) {
       const Cell* row = map_.getRow(static_cast<int>(y));
       for (std::int64_t x = 0; x < cells_; ++x) {
         const double log_odds = valueOf(row[x]);
-        if (log_odds <= params().occupied) continue;
+        if (!wanted(log_odds)) continue;
         cells.push_back(
             {centreOf(x, y), {params().resolution, params().resolution, height}, log_odds});
       }

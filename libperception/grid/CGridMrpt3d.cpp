@@ -47,7 +47,19 @@ class CGridMrpt3d final : public SafetyGrid {
     return at ? valueOf(*at) : 0;
   }
 
-  std::vector<GridCell> occupiedCells() const override { return cellsAbove(params().occupied); }
+  std::vector<GridCell> occupiedCells() const override {
+    return cellsWhere([this](double v) { return v > params().occupied; });
+  }
+  std::vector<GridCell> knownCells() const override {
+    return cellsWhere([](double v) { return v != 0; });
+  }
+
+  void restore(const std::vector<GridCell>& cells) override {
+    for (const GridCell& cell : cells)
+      if (Cell* at = find({evidence_.indexOf(cell.centre.x()), evidence_.indexOf(cell.centre.y()),
+                           evidence_.indexOf(cell.centre.z())}))
+        add(*at, cell.log_odds);
+  }
 
   std::size_t memoryBytes() const override {
     return static_cast<std::size_t>(cells_ * cells_ * layers_) * sizeof(Cell) +
@@ -55,13 +67,14 @@ class CGridMrpt3d final : public SafetyGrid {
   }
 
  private:
-  std::vector<GridCell> cellsAbove(double threshold) const {
+  template <class Wanted>
+  std::vector<GridCell> cellsWhere(const Wanted& wanted) const {
     std::vector<GridCell> cells;
     for (std::int64_t z = corner_.z; z < corner_.z + layers_; ++z)
       for (std::int64_t y = corner_.y; y < corner_.y + cells_; ++y)
         for (std::int64_t x = corner_.x; x < corner_.x + cells_; ++x) {
           const double v = valueOf(*find({x, y, z}));
-          if (v > threshold)
+          if (wanted(v))
             cells.push_back({{evidence_.centreOf(x), evidence_.centreOf(y), evidence_.centreOf(z)},
                              Vector3::Constant(params().resolution),
                              v});

@@ -123,6 +123,28 @@ class GridOctomap final : public SafetyGrid {
     return cells;
   }
 
+  std::vector<GridCell> knownCells() const override {
+    std::vector<GridCell> cells;
+    for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf) {
+      const Vector3 centre = centreOf(leaf.getKey());
+      const double log_odds = decayed(*leaf);
+      if (leaf.getDepth() == kDepth && std::abs(log_odds) >= kForgotten && inWindow(centre))
+        cells.push_back({centre, Vector3::Constant(params().resolution), log_odds});
+    }
+    return cells;
+  }
+
+  void restore(const std::vector<GridCell>& cells) override {
+    TreeCursor cursor(*tree_);
+    for (const GridCell& cell : cells) {
+      if (!inWindow(cell.centre)) continue;
+      const octomap::OcTreeKey key =
+          keyOf({evidence_.indexOf(cell.centre.x()), evidence_.indexOf(cell.centre.y()),
+                 evidence_.indexOf(cell.centre.z())});
+      add(*cursor.at(key, true), key, cell.log_odds);
+    }
+  }
+
   std::size_t memoryBytes() const override {
     return tree_->memoryUsage() + evidence_.memoryBytes() +
            listed_.capacity() * sizeof(octomap::OcTreeKey);

@@ -96,7 +96,32 @@ class GridRolling final : public SafetyGrid {
     return valueOf(values_[slot * static_cast<std::size_t>(layers_) + layer], slot);
   }
 
-  std::vector<GridCell> occupiedCells() const override { return cellsAbove(params().occupied); }
+  std::vector<GridCell> occupiedCells() const override {
+    const auto least = static_cast<std::int16_t>(params().occupied * kUnits);
+    return cellsWhere(
+        [=](const std::int16_t* begin, const std::int16_t* end) {
+          return *std::max_element(begin, end) >= least;
+        },
+        [this](double v) { return v > params().occupied; });
+  }
+  std::vector<GridCell> knownCells() const override {
+    return cellsWhere([](const std::int16_t*, const std::int16_t*) { return true; },
+                      [](double v) { return v != 0; });
+  }
+
+  void restore(const std::vector<GridCell>& cells) override {
+    for (const GridCell& cell : cells) {
+      const CellIndex index = {indexOf(cell.centre.x()), indexOf(cell.centre.y()),
+                               indexOf(cell.centre.z())};
+      if (!inWindow(index)) continue;
+      const std::size_t slot = slotOf(index);
+      bringUpToNow(slot);
+      std::int16_t& value = values_[slot * static_cast<std::size_t>(layers_) +
+                                    static_cast<std::size_t>(modulo(index.z, layers_))];
+      const double after = std::clamp(value / kUnits + cell.log_odds, params().low, params().high);
+      value = units(after);
+    }
+  }
 
   std::size_t memoryBytes() const override {
     return values_.capacity() * sizeof(std::int16_t) + times_.capacity() * sizeof(std::int32_t) +
@@ -118,18 +143,19 @@ class GridRolling final : public SafetyGrid {
            c.x < first_.x + cells_ && c.y < first_.y + cells_ && c.z < first_.z + layers_;
   }
 
-  std::vector<GridCell> cellsAbove(double threshold) const {
+  /// `column_may`: a quick look at a column of values; `wanted`: at a cell's log-odds.
+  template <class ColumnMay, class Wanted>
+  std::vector<GridCell> cellsWhere(const ColumnMay& column_may, const Wanted& wanted) const {
     std::vector<GridCell> cells;
     if (!started_) return cells;
-    const auto least = static_cast<std::int16_t>(threshold * kUnits);
     for (std::int64_t y = first_.y; y < first_.y + cells_; ++y)
       for (std::int64_t x = first_.x; x < first_.x + cells_; ++x) {
         const std::size_t slot = slotOf({x, y, 0});
         const std::int16_t* values = values_.data() + slot * static_cast<std::size_t>(layers_);
-        if (*std::max_element(values, values + layers_) < least) continue;
+        if (!column_may(values, values + layers_)) continue;
         for (std::int64_t z = first_.z; z < first_.z + layers_; ++z) {
           const double v = valueOf(values[modulo(z, layers_)], slot);
-          if (v > threshold)
+          if (wanted(v))
             cells.push_back({{centreOf(x), centreOf(y), centreOf(z)},
                              Vector3::Constant(params().resolution),
                              v});

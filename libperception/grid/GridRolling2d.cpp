@@ -59,13 +59,33 @@ class GridRolling2d final : public SafetyGrid {
   }
 
   std::vector<GridCell> occupiedCells() const override {
+    return cellsWhere([this](double v) { return v > params().occupied; });
+  }
+  std::vector<GridCell> knownCells() const override {
+    return cellsWhere([](double v) { return v != 0; });
+  }
+
+  void restore(const std::vector<GridCell>& cells) override {
+    for (const GridCell& cell : cells) {
+      const std::int64_t x = indexOf(cell.centre.x()), y = indexOf(cell.centre.y());
+      if (!started_ || x < first_.x || y < first_.y || x >= first_.x + cells_ ||
+          y >= first_.y + cells_)
+        continue;
+      float& value = values_[slotOf(x, y)];
+      value = std::clamp(value + static_cast<float>(cell.log_odds),
+                         static_cast<float>(params().low), static_cast<float>(params().high));
+    }
+  }
+
+  template <class Wanted>
+  std::vector<GridCell> cellsWhere(const Wanted& wanted) const {
     std::vector<GridCell> cells;
     if (!started_) return cells;
     const double height = params().z_max - params().z_min;
     for (std::int64_t y = first_.y; y < first_.y + cells_; ++y)
       for (std::int64_t x = first_.x; x < first_.x + cells_; ++x) {
         const double v = valueOf(values_[slotOf(x, y)]);
-        if (v > params().occupied)
+        if (wanted(v))
           cells.push_back({centreOf(x, y), {params().resolution, params().resolution, height}, v});
       }
     return cells;

@@ -43,6 +43,10 @@ class SafetyGrid {
   virtual double logOdds(const Vector3& place) const = 0;
   /// All cells above params().occupied, in an order that depends on the scans alone.
   virtual std::vector<GridCell> occupiedCells() const = 0;
+  /// All cells that something is known of, in such an order.
+  virtual std::vector<GridCell> knownCells() const = 0;
+  /// Takes cells of another time or grid into the window of the last scan, as of that scan.
+  virtual void restore(const std::vector<GridCell>& cells) = 0;
   virtual std::size_t memoryBytes() const = 0;
 
   const GridParams& params() const { return params_; }

@@ -7,8 +7,10 @@
 namespace perception {
 namespace {
 
-constexpr int kAgreed = 24;  // columns in a row that were crossed before: the rest was, too (16:
-                             // .975 of octomap's free cells, 24: see grid_bench)
+// After so many columns in a row that were crossed before, the rest was, too: a least number and a
+// share of the columns left, over which rays that came together may part again.
+constexpr int kAgreed = 2;
+constexpr float kAgreedShare = 0.1F;
 constexpr float kFullWeight = 0.99F;  // counts as 1
 constexpr float kInside = 1e-3F;      // [cells] by which clipped ends stay within the window
 
@@ -158,6 +160,8 @@ void WindowMarks<Mask>::cast(const Place& end) {
   auto column = static_cast<std::ptrdiff_t>(y * cells_ + x);
   Mask spared = s > 0 ? 0 : Mask{1} << z;
   int agreed = 0;
+  const int enough =
+      kAgreed + static_cast<int>(kAgreedShare * (last - s) * (std::abs(dx) + std::abs(dy)));
   while (true) {
     const bool sideways = next_x < next_y;
     const float next = sideways ? next_x : next_y;
@@ -168,7 +172,7 @@ void WindowMarks<Mask>::cast(const Place& end) {
     Mask& marked = crossed_[static_cast<std::size_t>(column)];
     agreed = (marked & layers) == layers ? agreed + (spared == 0) : 0;
     marked |= layers;
-    if (done || agreed >= kAgreed) return;
+    if (done || agreed >= enough) return;
     spared = 0, z = left;
     column += sideways ? step_x : step_y;
     next_x += sideways ? per_x : 0, next_y += sideways ? 0 : per_y;
