@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Scores what kitti_detections.sh tracked, by the evaluation harness mot_eval.py: prints and writes the tables."""
 import argparse
 import concurrent.futures
