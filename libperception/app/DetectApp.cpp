@@ -29,6 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kImageEndings{".png", ".jpg", ".jpeg", ".bmp"};
+constexpr int kImagesAFold = 3;              // neighbours of a drive show the same objects
 constexpr double kKittiCameraHeight = 1.65;  // [m] kitti.com/setup: cameras above the ground
 
 bool isLog(const std::string& path) {
@@ -111,7 +112,7 @@ std::string DetectApp::description() const {
 }
 
 void DetectApp::declare(CLI::App& cli) {
-  addConfigOptions(cli, true);
+  addConfigOptions(cli, false);
   cli.add_option("-i,--input", inputs, "Images, folders of images, or one log");
   addOutputOption(cli, false);
   cli.add_option("--labels", labels, "Truth: a folder of KITTI's object labels, or a CSV");
@@ -120,6 +121,10 @@ void DetectApp::declare(CLI::App& cli) {
   cli.add_option("--label", boxes_label, "sensorLabel of the boxes; without it IMAGES_BOXES");
   cli.add_option("--calibrate", calibrate, "Fit P(object | score) to the labels, write this INI");
   cli.add_option("--export", kitti_folder, "kitti:DIR, one file an image in KITTI's layout");
+  cli.add_option("--train-heading", train_heading,
+                 "Learn to tell headings of boxes from images and --labels, write this file");
+  cli.add_option("--heading-label", heading_label, "Class of the boxes to learn from")
+      ->capture_default_str();
   cli.add_flag("--pictures", pictures, "Draw the boxes: pictures/NAME.png");
   cli.add_option("--every", every, "Of a log's images one in so many")
       ->check(CLI::Range(1, 100000));
@@ -136,6 +141,8 @@ void DetectApp::declare(CLI::App& cli) {
 }
 
 void DetectApp::run() {
+  if (!train_heading.empty()) return trainHeading();
+  if (config_file.empty()) throw Error(ExitCode::kUsage, "-c INI is required: ini/detectors");
   Config config = loadConfig();
   DetectorSetup setup = DetectorSetup::read(config);
   const auto camera = config.read<DetectCameraParams>("camera");
@@ -202,6 +209,38 @@ void DetectApp::finish(const ImageDetector& detector, Result& result) {
     writeFile((fs::path(kitti_folder) / (fs::path(result.name).stem().string() + ".txt")).string(),
               lines);
   }
+}
+
+void DetectApp::trainHeading() const {
+  if (labels.empty() || inputs.empty())
+    throw Error(ExitCode::kUsage, "--train-heading needs -i IMAGES and --labels");
+  const ImageLabels truth(labels, LabelRules{min_height, max_truncation, max_occlusion});
+  std::vector<HeadingExample> examples;
+  int fold = 0;
+  for (const std::string& file : imagesOf(inputs)) {
+    stopIfAsked();
+    const auto image = readImage(file);
+    if (!image) throw DataError(fmt::format("{}: not an image", file));
+    ++fold;
+    for (const LabelledBox& l : truth.of(fs::path(file).filename().string())) {
+      if (l.label != heading_label || l.ignore || l.area || !l.heading) continue;
+      for (const bool mirrored : {false, true}) {
+        HeadingExample e;
+        e.features = HeadingHead::describe(*image, l.box, false, mirrored);
+        e.heading = mirrored ? wrapAngle(kPi - *l.heading) : *l.heading;
+        e.fold = fold / kImagesAFold;
+        if (!e.features.empty()) examples.push_back(std::move(e));
+      }
+    }
+  }
+  const HeadingHead head = HeadingHead::train(heading_label, examples);
+  writeFile(train_heading, head.text());
+  fmt::print(
+      "{}: {} pictures of {} images, mirrored ones included\n"
+      "axis within {:.1f} deg (rms), front and back confused in {:.1f} % (cross-validated)\n"
+      "[sensor.LABEL.detector] heading_model = {} takes both\n",
+      train_heading, head.examples(), fold, degrees(head.axisSigma()), 100 * head.flipShare(),
+      train_heading);
 }
 
 void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParams& params) {
@@ -299,6 +338,7 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
     result.name = fmt::format("{}_{:06}", frame->sensor, seen - 1);
     if (from_log) {
       if (held) result.found = *held;
+      detector.addHeadings(*image, camera, result.found.objects);
     } else {
       result.found = timed(detector, *image, camera, frame->T_ego_sensor);
     }

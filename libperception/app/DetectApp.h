@@ -35,9 +35,11 @@ class DetectApp : public App {
   std::string
       boxes_label;        ///< --label: sensorLabel of the boxes; empty: that of the images + _BOXES
   std::string calibrate;  ///< --calibrate: INI that gets the fitted logistics
-  std::string kitti_folder;  ///< --export kitti:DIR
-  bool pictures = false;     ///< --pictures
-  int every = 1;             ///< --every: of the log's images, one in so many
+  std::string kitti_folder;   ///< --export kitti:DIR
+  std::string train_heading;  ///< --train-heading: file of the head that is learnt from the labels
+  std::string heading_label = "Car";  ///< --heading-label: of the boxes to learn from
+  bool pictures = false;              ///< --pictures
+  int every = 1;                      ///< --every: of the log's images, one in so many
   double overlap = 0.5, min_height = 25, max_truncation = 0.3;
   int max_occlusion = 1;
 
@@ -65,6 +67,7 @@ class DetectApp : public App {
   ObjectDetections timed(const ImageDetector& detector, const Raster& image,
                          const CameraModel& camera, const std::optional<Pose3>& pose);
   void finish(const ImageDetector& detector, Result& result);
+  void trainHeading() const;
   void writeResults(OutputFolder* folder) const;
   void writeCalibration(const ImageDetector& detector) const;
   void report() const;

@@ -9,6 +9,7 @@
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/vision/DpmEngine.h"
 #include "libperception/vision/GroundGate.h"
+#include "libperception/vision/HeadingHead.h"
 
 namespace perception {
 
@@ -62,11 +63,12 @@ struct DetectorSetup {
   bool ground_gate = true;  ///< look only where objects can stand, when the camera's place is known
   double ground_slope_sigma = radians(1.2);  ///< [rad] of the road and of the vehicle's pitch
   std::vector<std::pair<std::string, DetectorModelParams>> models;  ///< by name, as in the INI
+  std::vector<HeadingHeadParams> headings;                          ///< [heading.NAME]
   DpmParams dpm;
   OnnxParams onnx;
   HogParams hog;
 
-  /// Reads [detector], [model.*] and the section of the back end.
+  /// Reads [detector], [model.*], [heading.*] and the sections of the back ends.
   static DetectorSetup read(Config& config);
   void visit(ParamVisitor& v);
   std::string backendName() const;

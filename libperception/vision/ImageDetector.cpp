@@ -18,7 +18,17 @@ Pose3 turnedRight(const Pose3& T_ego_camera, double angle) {
 }  // namespace
 
 ImageDetector::ImageDetector(DetectorSetup setup)
-    : setup_(std::move(setup)), detector_(makeDetector(setup_)) {}
+    : setup_(std::move(setup)), detector_(makeDetector(setup_)) {
+  for (const HeadingHeadParams& params : setup_.headings)
+    heads_.push_back(HeadingHead::read(params.file));
+}
+
+void ImageDetector::addHeadings(const Raster& image, const CameraModel& camera,
+                                std::vector<ObjectDetection>& objects) const {
+  const bool closed = camera.projection == CameraModel::Projection::kEquirectangular;
+  for (std::size_t i = 0; i < heads_.size(); ++i)
+    heads_[i].apply(image, closed, setup_.headings[i].replace, objects);
+}
 
 std::optional<GroundGate> ImageDetector::gateOf(const CameraModel& camera,
                                                 const std::optional<Pose3>& T_ego_camera,
@@ -43,6 +53,7 @@ ObjectDetections ImageDetector::detect(const Raster& image, const CameraModel& c
   if (!detector_ || image.width <= 0 || image.height <= 0) return out;
   if (camera.projection != CameraModel::Projection::kEquirectangular) {
     out.objects = detector_->detect(image, {gateOf(camera, T_ego_camera, ground), false});
+    addHeadings(image, out.camera, out.objects);
     return out;
   }
   const Panorama& whole = panorama(image.width);
@@ -60,6 +71,7 @@ ObjectDetections ImageDetector::detect(const Raster& image, const CameraModel& c
   }
   out.objects = whole.merge(tiles).objects;
   out.camera = whole.camera();
+  addHeadings(image, out.camera, out.objects);
   return out;
 }
 

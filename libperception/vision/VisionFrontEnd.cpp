@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/core/Error.h"
 #include "libperception/measurement/PoseNoise.h"
+#include "libperception/vision/HeadingHead.h"
 
 namespace perception {
 namespace {
@@ -56,6 +58,8 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.angle("heading_sigma_deg", heading_sigma, {0.1, 90}, "of the detector's headings, as axes");
   v.real("heading_flip", heading_flip, {0, 0.5}, "",
          "share of its headings that are reversed; 0.5: they tell the axis alone");
+  v.path("heading_model", heading_model,
+         "file of the heading head that told them: its measured errors replace both keys above");
 }
 
 VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry,
@@ -147,8 +151,17 @@ MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
 std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& sensor_label,
                                              const ClassTable& classes) {
   const std::string section = "sensor." + sensor_label;
-  const auto detector = config.read<DetectorParams>(section + ".detector");
+  auto detector = config.read<DetectorParams>(section + ".detector");
   const auto geometry = config.read<BoxGeometryParams>(section + ".geometry");
+  if (!detector.heading_model.empty()) {
+    try {
+      const HeadingHead head = HeadingHead::read(detector.heading_model);
+      detector.heading_sigma = head.axisSigma();
+      detector.heading_flip = std::min(0.5, head.flipShare());
+    } catch (const DataError& e) {
+      config.fault(section + ".detector", "heading_model", e.what());
+    }
+  }
   const Sensing sensing =
       Sensing::read(config, section, classes, detector.labels, cameraDefaults());
   return std::make_unique<VisionFrontEnd>(detector, geometry, classes, sensing);
