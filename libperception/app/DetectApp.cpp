@@ -15,9 +15,7 @@
 #include "libperception/app/KittiFiles.h"
 #include "libperception/app/OutputFolder.h"
 #include "libperception/scene/OutputFile.h"
-#include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/CameraImages.h"
-#include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/RawlogWriter.h"
@@ -70,14 +68,17 @@ Pose3 opticalPose(double height, double pitch) {
   return pose;
 }
 
-bool isPanorama(const Raster& image, int choice) {
-  return choice == 1 || (choice == 0 && image.width == 2 * image.height && image.width % 8 == 0);
+/// A calibrated camera is a pinhole unless the INI says otherwise.
+bool isPanorama(const Raster& image, int choice, bool calibrated) {
+  constexpr int kLeastWidth = 1024;  // [px] the smallest of the paper's panoramas
+  return choice == 1 || (choice == 0 && !calibrated && image.width >= kLeastWidth &&
+                         image.width == 2 * image.height && image.width % 8 == 0);
 }
 
 CameraModel panoramaCamera(const Raster& image) { return Panorama(image.width).camera(); }
 
 CameraModel cameraOf(const Raster& image, const DetectCameraParams& params) {
-  if (isPanorama(image, params.panorama)) return panoramaCamera(image);
+  if (isPanorama(image, params.panorama, false)) return panoramaCamera(image);
   CameraModel camera;
   camera.width = image.width;
   camera.height = image.height;
@@ -103,8 +104,9 @@ void DetectCameraParams::visit(ParamVisitor& v) {
   v.real("focal", focal, {0, 1e5}, "px", "focal length; 0: from field_of_view_deg");
   v.angle("field_of_view_deg", field_of_view, {1, 170}, "across the image");
   v.real("horizon", horizon, {0, 1e5}, "px", "row of the horizon at pitch 0; 0: the middle");
-  v.choice("panorama", panorama, {"auto", "yes", "no"},
-           "a whole spherical image; auto: twice as wide as high");
+  v.choice(
+      "panorama", panorama, {"auto", "yes", "no"},
+      "a whole spherical image; auto: twice as wide as high, 1024 px or more, without calibration");
 }
 
 std::string DetectApp::description() const {
@@ -187,11 +189,12 @@ void DetectApp::finish(const ImageDetector& detector, Result& result) {
   auto& objects = result.found.objects;
   for (const ObjectDetection& o : objects) result.raw.push_back(o.score);
   std::vector<ObjectDetection> before = objects;
-  calibrateScores(detector.setup(), objects);
+  scores_are_log_odds_ = !detector.hasBackend();  // boxes of a log were calibrated when written
+  if (!scores_are_log_odds_) calibrateScores(detector.setup(), objects);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const auto& o = objects[i];
     if (!o.image_box) continue;
-    const bool calibrated = o.score != before[i].score;
+    const bool calibrated = scores_are_log_odds_ || o.score != before[i].score;
     rows_ += fmt::format("{},{},{:.4f},{},{:.2f},{:.2f},{:.2f},{:.2f},{}\n", result.name, o.label,
                          result.raw[i],
                          calibrated ? fmt::format("{:.4f}", 1 / (1 + std::exp(-o.score))) : "",
@@ -279,11 +282,7 @@ void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParam
     result.found = timed(detector, *image, camera, pose);
     if (truth) result.truth = truth->of(result.name);
     finish(detector, result);
-    if (pictures) {
-      const bool calibrated = !result.raw.empty() && result.raw[0] != result.found.objects[0].score;
-      writePng(folder->pathFor("pictures/" + fs::path(file).stem().string() + ".png"),
-               detectionPicture(*image, result.found.objects, result.truth, calibrated));
-    }
+    if (pictures) draw(*folder, result);
     progress.update(static_cast<std::uint64_t>(out_images), static_cast<std::uint64_t>(out_images));
   }
   if (truth) out_quality = quality_.results();
@@ -295,10 +294,11 @@ void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParam
 void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& params,
                        const std::string& log) {
   if (!labels.empty()) throw Error(ExitCode::kUsage, "--labels belong to images, not to a log");
-  const bool from_log = !detector.hasBackend();
   const bool to_log = !output.empty() && isLog(output);
   if (!to_log && !(pictures && !output.empty()))
     throw Error(ExitCode::kUsage, "-o FILE.rawlog is required, or --pictures -o DIR");
+  if (to_log && !detector.hasBackend())
+    throw Error(ExitCode::kUsage, "backend file: the log has its boxes; --pictures -o DIR");
   std::optional<RawlogWriter> writer;
   std::optional<OutputFolder> folder;
   if (to_log) {
@@ -308,51 +308,38 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
   }
   RawlogReader reader(log);
   Progress progress("detect", reader.fileBytes());
-  std::optional<ObjectDetections> held;  // newest boxes of the log
+  std::optional<SensorFrame> shown, boxes;  // newest image and boxes, for the back end `file`
   std::int64_t seen = 0;
   const std::string images = imagesBeside(log);
   while (const auto observation = reader.next()) {
     stopIfAsked();
     if (writer) writer->write(*observation);
-    if (const auto* boxes = dynamic_cast<const CObservationObjectDetections*>(observation.get())) {
-      if (boxes_label.empty() || boxes->sensorLabel == boxes_label) held = boxes->detections;
-    }
-    if (!isImage(*observation)) continue;
-    const auto frame = frameFromObservation(*observation, nullptr, images);
-    if (!frame || (!camera_label.empty() && frame->sensor != camera_label)) continue;
-    if (seen++ % every != 0) continue;
-    const auto& data = std::get<CameraImage>(frame->data);
-    const auto image = data.load ? data.load() : std::nullopt;
-    if (!image || image->width <= 0 || image->height <= 0) {
-      if (strict) throw DataError(fmt::format("{}: image is missing or damaged", data.source));
-      if (out_unreadable++ == 0) warn(fmt::format("{}: image is missing or damaged", data.source));
-      continue;
-    }
-    CameraModel camera = data.camera;
-    if (isPanorama(*image, params.panorama)) {
-      camera = panoramaCamera(*image);
-    } else if (camera.fx <= 0) {
-      camera = cameraOf(*image, params);
-    }
-    Result result;
-    result.name = fmt::format("{}_{:06}", frame->sensor, seen - 1);
-    if (from_log) {
-      if (held) result.found = *held;
-      detector.addHeadings(*image, camera, result.found.objects);
+    std::optional<SensorFrame> frame;
+    if (isImage(*observation)) frame = frameFromObservation(*observation, nullptr, images);
+    const bool is_image =
+        frame && (camera_label.empty() || frame->sensor == camera_label) && seen++ % every == 0;
+    if (detector.hasBackend()) {
+      if (!is_image) continue;
+      auto result = detectIn(*frame, seen - 1, detector, params);
+      if (!result) continue;
+      finish(detector, *result);
+      if (writer) writer->write(*boxesObservation(*frame, result->found));
+      if (folder) draw(*folder, *result);
     } else {
-      result.found = timed(detector, *image, camera, frame->T_ego_sensor);
+      if (is_image) shown = std::move(frame);
+      const auto decoded = frameFromObservation(*observation);
+      if (decoded && std::holds_alternative<ObjectDetections>(decoded->data) &&
+          (boxes_label.empty() || decoded->sensor == boxes_label))
+        boxes = decoded;
+      if (!shown || !boxes || !(shown->stamp == boxes->stamp)) continue;
+      if (auto result = detectIn(*shown, seen - 1, detector, params)) {
+        result->found = std::get<ObjectDetections>(boxes->data);
+        detector.addHeadings(result->image, result->found.camera, result->found.objects);
+        finish(detector, *result);
+        draw(*folder, *result);
+      }
+      shown.reset();
     }
-    finish(detector, result);
-    if (writer && !from_log) {
-      SensorFrame out = *frame;
-      out.sensor = boxes_label.empty() ? frame->sensor + "_BOXES" : boxes_label;
-      result.found.T_ego_camera.reset();  // the sensor's frame is the camera's
-      out.data = result.found;
-      writer->write(*observationFromFrame(out));
-    }
-    if (pictures && folder)
-      writePng(folder->pathFor("pictures/" + result.name + ".png"),
-               detectionPicture(*image, result.found.objects, {}, true));
     progress.update(reader.bytesRead(), static_cast<std::uint64_t>(out_images));
   }
   if (reader.end() != RawlogReader::End::kClean) {
@@ -360,19 +347,63 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
     warn(reader.endMessage());
   }
   if (out_images == 0)
-    throw DataError(fmt::format("{}: no image{} in it that can be read", log,
-                                camera_label.empty() ? "" : " labelled " + camera_label));
+    throw DataError(fmt::format("{}: no image{} in it that can be read{}", log,
+                                camera_label.empty() ? "" : " labelled " + camera_label,
+                                detector.hasBackend() ? "" : ", with boxes of the same time"));
   if (writer) {
     writer->close();
     // The new log finds the images that the old one keeps beside itself.
-    const fs::path images = imageFolderOf(log), link = imageFolderOf(output);
-    if (fs::is_directory(images) && !fs::exists(fs::symlink_status(link)))
-      fs::create_directory_symlink(fs::absolute(images), link);
+    const fs::path beside = imageFolderOf(log), link = imageFolderOf(output);
+    if (fs::is_directory(beside) && !fs::exists(fs::symlink_status(link)))
+      fs::create_directory_symlink(fs::absolute(beside), link);
   }
   if (folder) {
     writeResults(&*folder);
     folder->commit("detections.csv");
   }
+}
+
+std::optional<DetectApp::Result> DetectApp::detectIn(const SensorFrame& frame, std::int64_t number,
+                                                     const ImageDetector& detector,
+                                                     const DetectCameraParams& params) {
+  const auto& data = std::get<CameraImage>(frame.data);
+  auto image = data.load ? data.load() : std::nullopt;
+  if (!image || image->width <= 0 || image->height <= 0) {
+    if (strict) throw DataError(fmt::format("{}: image is missing or damaged", data.source));
+    if (out_unreadable++ == 0) warn(fmt::format("{}: image is missing or damaged", data.source));
+    return std::nullopt;
+  }
+  CameraModel camera = data.camera;
+  if (isPanorama(*image, params.panorama, camera.fx > 0)) {
+    camera = panoramaCamera(*image);
+  } else if (camera.fx <= 0) {
+    camera = cameraOf(*image, params);
+  }
+  Result result;
+  result.name = fmt::format("{}_{:06}", frame.sensor, number);
+  result.found = timed(detector, *image, camera, frame.T_ego_sensor);
+  result.image = std::move(*image);
+  return result;
+}
+
+std::shared_ptr<mrpt::obs::CObservation> DetectApp::boxesObservation(
+    const SensorFrame& image, const ObjectDetections& found) const {
+  SensorFrame out = image;
+  out.sensor = boxes_label.empty() ? image.sensor + "_BOXES" : boxes_label;
+  ObjectDetections boxes = found;
+  boxes.T_ego_camera.reset();  // the sensor's frame is the camera's
+  out.data = std::move(boxes);
+  return observationFromFrame(out);
+}
+
+void DetectApp::draw(OutputFolder& folder, const Result& result) const {
+  const auto& objects = result.found.objects;
+  bool calibrated = false;
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    calibrated = calibrated || objects[i].score != result.raw[i];
+  writePng(
+      folder.pathFor("pictures/" + fs::path(result.name).stem().string() + ".png"),
+      detectionPicture(result.image, objects, result.truth, calibrated || scores_are_log_odds_));
 }
 
 void DetectApp::writeResults(OutputFolder* folder) const {

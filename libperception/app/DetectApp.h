@@ -1,6 +1,9 @@
 #pragma once
+#include <mrpt/obs/CObservation.h>
+
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +24,7 @@ struct DetectCameraParams {
   double focal = 0;                    ///< [px]; 0: from field_of_view
   double field_of_view = radians(80);  ///< [rad] across
   double horizon = 0;                  ///< [px] row at pitch 0; 0: the middle
-  int panorama = 0;                    ///< auto (width = 2 height), yes, no
+  int panorama = 0;                    ///< auto (width = 2 height, no calibration), yes, no
 
   void visit(ParamVisitor& v);
 };
@@ -64,6 +67,12 @@ class DetectApp : public App {
   void runImages(const ImageDetector& detector, const DetectCameraParams& camera);
   void runLog(const ImageDetector& detector, const DetectCameraParams& camera,
               const std::string& log);
+  /// An image of a log with its boxes; empty when it cannot be read.
+  std::optional<Result> detectIn(const SensorFrame& frame, std::int64_t number,
+                                 const ImageDetector& detector, const DetectCameraParams& params);
+  std::shared_ptr<mrpt::obs::CObservation> boxesObservation(const SensorFrame& image,
+                                                            const ObjectDetections& found) const;
+  void draw(OutputFolder& folder, const Result& result) const;
   ObjectDetections timed(const ImageDetector& detector, const Raster& image,
                          const CameraModel& camera, const std::optional<Pose3>& pose);
   void finish(const ImageDetector& detector, Result& result);
@@ -74,6 +83,7 @@ class DetectApp : public App {
 
   DetectionQuality quality_{0.5, 25};
   std::string rows_;  ///< detections.csv
+  bool scores_are_log_odds_ = false;
 };
 
 }  // namespace perception
