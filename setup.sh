@@ -54,6 +54,7 @@ test_packages=(
 
 bench_packages=(
   libopencv-video-dev    # cv::KalmanFilter, a peer
+  python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti_*
   libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar rib
   libnanoflann-dev       # the same by region growing
 )

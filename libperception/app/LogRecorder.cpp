@@ -36,7 +36,8 @@ class Recorder : public PipelineObserver {
 
 }  // namespace
 
-RecordedLog recordLog(const std::string& log, Config& config, double seconds) {
+RecordedLog recordLog(const std::string& log, Config& config, double seconds,
+                      const ObservationEdit& edit) {
   registerPerceptionClasses();
   PipelineSetup setup = PipelineSetup::read(config);
   config.finish();
@@ -61,6 +62,7 @@ RecordedLog recordLog(const std::string& log, Config& config, double seconds) {
     if (comment && comment->text.rfind("simulated log", 0) == 0) recorded.simulated = true;
     const auto first = pipeline.firstStamp();
     if (seconds > 0 && first && pipeline.lastStamp() - *first > seconds) break;
+    if (edit) edit(*observation);
     pipeline.add(*observation);
     while (pipeline.next()) {
     }

@@ -1,4 +1,7 @@
 #pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <functional>
 #include <string>
 
 #include "libperception/core/Config.h"
@@ -6,8 +9,12 @@
 
 namespace perception {
 
+/// Changes an observation between log and front end.
+using ObservationEdit = std::function<void(mrpt::obs::CObservation&)>;
+
 /// Reads a log once through the front ends of a configuration. `seconds` of it; 0 = all. Throws
 /// DataError when no scene comes of it.
-RecordedLog recordLog(const std::string& log, Config& config, double seconds);
+RecordedLog recordLog(const std::string& log, Config& config, double seconds,
+                      const ObservationEdit& edit = {});
 
 }  // namespace perception

@@ -13,10 +13,14 @@
 #include "libperception/app/OutputFolder.h"
 #include "libperception/evaluation/Gnuplot.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/registerClasses.h"
 #include "libperception/study/AssociationStudy.h"
 #include "libperception/study/EgoStudy.h"
 #include "libperception/study/GpsStudy.h"
 #include "libperception/study/HeadingStudy.h"
+#include "libperception/study/LabelsStudy.h"
 #include "libperception/study/LogParticlesStudy.h"
 #include "libperception/study/MonteCarloStudy.h"
 #include "libperception/study/ParticlesStudy.h"
@@ -31,6 +35,7 @@ struct Study {
   bool recordings = false;  ///< reads a folder of them
   bool log = false;         ///< takes a rawlog
   bool scenario = false;    ///< reads a scenario INI
+  bool labels = false;      ///< reads rawlogs with detections and truth
 };
 
 const Study kStudies[] = {
@@ -84,6 +89,8 @@ const Study kStudies[] = {
        return gpsStudy(p);
      },
      true},
+    {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
+     [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, false, true},
 };
 
 }  // namespace
@@ -125,6 +132,22 @@ void StudyApp::declare(CLI::App& cli) {
           ->capture_default_str()
           ->check(CLI::Range(0.1, 1e4));
       sub->add_option("--fov-deg", fov_deg, "Whole angle ahead in which they count [deg]")
+          ->capture_default_str()
+          ->check(CLI::Range(0.1, 360.0));
+    }
+    if (s.labels) {
+      sub->add_option("-i,--input", inputs,
+                      "Rawlogs with boxes of a detector, LOG.truth.csv beside")
+          ->required();
+      sub->add_option("-c,--config", config_file,
+                      "INI whose sensors take boxes without a label, too")
+          ->required();
+      sub->add_option("--set", settings, "section.key=value: overrides the INI");
+      sub->add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
+      sub->add_option("--range", labels_range, "Truth counts up to this distance [m]")
+          ->capture_default_str()
+          ->check(CLI::Range(0.1, 1e4));
+      sub->add_option("--fov-deg", labels_fov_deg, "Whole angle ahead in which truth counts [deg]")
           ->capture_default_str()
           ->check(CLI::Range(0.1, 360.0));
     }
@@ -170,6 +193,31 @@ StudyReport StudyApp::particlesOfLog() {
   std::optional<RecordedLog> duc;
   if (!duc_config.empty()) duc = record(duc_config);
   return logParticlesStudy(params, joint, duc ? &*duc : nullptr, truth ? &*truth : nullptr);
+}
+
+StudyReport StudyApp::labelsOfLogs() {
+  registerPerceptionClasses();
+  LabelsParams params;
+  params.seed = seed;
+  params.evaluation.selection.range = labels_range;
+  params.evaluation.selection.fov = radians(labels_fov_deg);
+  std::vector<LabelledLog> logs;
+  for (const std::string& file : inputs) {
+    LabelledLog entry;
+    const std::filesystem::path path(file);
+    entry.name = path.stem().string();
+    entry.truth = readGroundTruth((path.parent_path() / (entry.name + ".truth.csv")).string());
+    entry.record = [this, file](const LabelledLog::Edit& edit) {
+      Config config = loadConfig();
+      return recordLog(file, config, seconds, [&](mrpt::obs::CObservation& observation) {
+        auto* boxes = dynamic_cast<CObservationObjectDetections*>(&observation);
+        const auto stamp = toStamp(observation.timestamp);
+        if (boxes && stamp) edit(boxes->detections, *stamp);
+      });
+    };
+    logs.push_back(std::move(entry));
+  }
+  return labelsStudy(params, logs);
 }
 
 void StudyApp::writeReport() {

@@ -23,6 +23,7 @@ class StudyApp : public App {
   double seconds = 0;                ///< particles: of the log; 0 = all
   double range = 30, fov_deg = 360;  ///< particles: where objects of a log count [m, deg]
   std::string scenario;              ///< ego: INI of the scenario
+  double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
 
   StudyReport out_report;
 
@@ -33,6 +34,8 @@ class StudyApp : public App {
 
   /// The study of a log, for --log.
   StudyReport particlesOfLog();
+  /// Labels of a detector, on the logs of -i.
+  StudyReport labelsOfLogs();
 
  private:
   RecordedLog record(const std::string& config);

@@ -270,6 +270,22 @@ Reliability existenceReliability(const Evaluation& evaluation) {
   return builder.finish();
 }
 
+void ClearFigures::setMota() {
+  const auto share = ratio(misses + false_objects + id_switches, truth);
+  mota = share ? Figure(1 - *share) : Figure();
+}
+
+ClearFigures clearFigures(const Evaluation& evaluation) {
+  ClearFigures figures;
+  const TrackingFigures tracking = trackingFigures(evaluation, Pairing::kOneToOne);
+  figures.truth = tracking.active;
+  figures.misses = tracking.active - tracking.returns;
+  figures.id_switches = tracking.id_switches;
+  for (const ExistenceSample& sample : evaluation.existence) figures.false_objects += !sample.real;
+  figures.setMota();
+  return figures;
+}
+
 CountDifference countDifference(const TrackedRun& run, const TrackedRun& reference) {
   const auto classified = [](const Scene& scene) {
     return std::count_if(scene.objects.begin(), scene.objects.end(),

@@ -103,6 +103,19 @@ Reliability reliability(const Evaluation& evaluation, Pairing pairing);
 /// of them that some truth object is behind. An object that is put out twice is real once.
 Reliability existenceReliability(const Evaluation& evaluation);
 
+/// CLEAR MOT (Bernardin and Stiefelhagen 2008), one output to one truth object within the tolerance.
+struct ClearFigures {
+  std::size_t truth = 0;          ///< counted truth objects over all instants
+  std::size_t misses = 0;         ///< of these without an output
+  std::size_t false_objects = 0;  ///< outputs as a named class without a truth of any type
+  std::size_t id_switches = 0;    ///< as in TrackingFigures
+  Figure mota;                    ///< 1 - (misses + false objects + id switches) / truth
+
+  void setMota();  ///< from the counts
+};
+/// Strict when the evaluation's exclusion is its tolerance: outputs between the two are left out.
+ClearFigures clearFigures(const Evaluation& evaluation);
+
 /// RMS difference in the number of objects between two runs (paper: against a run of 50 particles),
 /// at the instants that both have; nothing when there are none.
 struct CountDifference {

@@ -144,11 +144,15 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
     label.length_excess = entry(params_.length_excess, name, 0);
     label.width_excess = entry(params_.width_excess, name, 0);
     label.height_excess = entry(params_.height_excess, name, 0);
+    // A label that is no class's name ("unknown") speaks for all road users alike.
+    bool names_a_class = false;
+    for (ClassId c = 0; c < classes.size(); ++c)
+      names_a_class = names_a_class || mostProbableLabel(sensing, c) == static_cast<int>(l);
     for (ClassId c = 0; c < classes.size(); ++c) {
       label.log_label.push_back(sensing.logLabel(static_cast<int>(l), c));
       const bool clutter_like =
           std::count(params_.clutter_like.begin(), params_.clutter_like.end(), classes[c].name) > 0;
-      const bool own = mostProbableLabel(sensing, c) == static_cast<int>(l);
+      const bool own = !names_a_class || mostProbableLabel(sensing, c) == static_cast<int>(l);
       label.score_share.push_back(clutter_like ? 0 : own ? 1 : params_.foreign_share);
     }
     label.log_clutter = sensing.logLabelClutter(static_cast<int>(l));

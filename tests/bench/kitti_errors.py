@@ -49,6 +49,7 @@ FALSE = {
     'place': ('localisation', 'within 2 m of a missed object, too little overlap, with a box'),
     'place, coasting': ('coasting', 'within 2 m of a missed object, too little overlap, no box'),
     'second': ('association', 'on an object that has its track already'),
+    'sitting': ('labels', 'on a sitting person (KITTI: Person), which the 3D rules do not excuse'),
     'other': ('decision', 'on an object of another type'),
 }
 
@@ -171,7 +172,8 @@ def count_class(me, a, sequence, cls, missed, false, totals, worst):
             if (iou[:, j] >= MIN_IOU).any():
                 track.wrong[f] = 'second'
             elif (other_iou[j] >= MIN_IOU).any():
-                track.wrong[f] = 'other'
+                on = every.type[every.at(f)][other_iou[j].argmax()]
+                track.wrong[f] = 'sitting' if low == 'pedestrian' and on.startswith('person') else 'other'
             elif (truth_near[j] & free).any():
                 track.wrong[f] = 'place' if box else 'place, coasting'
             else:
@@ -283,10 +285,9 @@ def panel(a, world, track, folder, number):
     half = max(high - low) / 2
     middle = (low + high) / 2
     reasons = collections.Counter(track.wrong.values()).most_common(2)
-    table = FALSE
     title = '%04d %s %d: %d of %d frames wrong, score %.1f\\n%s' % (
         track.sequence, track.cls, track.number, len(track.wrong), len(frames), np.mean(track.scores),
-        '; '.join('%d %s (%s)' % (n, table[r][0], r) for r, n in reasons))
+        '; '.join('%d %s (%s)' % (n, FALSE[r][0], r) for r, n in reasons))
     text = 'set title "%s" noenhanced font ",9"\nset xrange [%.2f:%.2f]\nset yrange [%.2f:%.2f]\n' % (
         title, middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half)
     styles = (('foreign', 'with points pt 6 ps 0.5 lc rgb "#BBBBBB" title "box of another class"'),

@@ -31,6 +31,28 @@ TEST(Metrics, SharingLetsOneEstimateTrackTwoTruths) {
   EXPECT_EQ(trackingFigures(e, Pairing::kOneToOne).returns, 1u);
 }
 
+TEST(Metrics, MotaCountsMissesFalseObjectsAndSwitches) {
+  EvaluationOptions options;
+  options.exclusion = options.tolerance;
+  // Four instants of one car: tracked, missed, another id, and that one twice; a stray output in
+  // the first, 2.5 m beside the car.
+  const Evaluation e =
+      compare({{makeObject(1, 10, 0), makeObject(5, 10, 2.5)},
+               {},
+               {makeObject(2, 10, 0)},
+               {makeObject(2, 10, 0), makeObject(3, 10, 1)}},
+              {makeTruth(0, 1, 10, 0), makeTruth(1, 1, 10, 0), makeTruth(2, 1, 10, 0),
+               makeTruth(3, 1, 10, 0)},
+              options);
+  const ClearFigures f = clearFigures(e);
+  EXPECT_EQ(f.truth, 4u);
+  EXPECT_EQ(f.misses, 1u);
+  EXPECT_EQ(f.false_objects, 2u);
+  EXPECT_EQ(f.id_switches, 1u);
+  EXPECT_NEAR(*f.mota, 0, kTiny);
+  EXPECT_FALSE(clearFigures(compare({{}}, {makeTruth(0, 1, 90, 0)})).mota);  // no truth counts
+}
+
 TEST(Metrics, InstantsWithoutEstimatesCountAsMissedFromTheFirstOn) {
   const Evaluation e = compare({{}, {makeObject(1, 10, 0)}, {}, {makeObject(1, 10, 0)}},
                                {makeTruth(0, 1, 10, 0), makeTruth(1, 1, 10, 0),
