@@ -14,6 +14,8 @@ void ObstacleParams::visit(ParamVisitor& v) {
          "above ground from which a return is an obstacle (paper)");
   v.real("height_max", height_max, {0.5, 10}, "m",
          "above ground up to which a return is an obstacle");
+  v.real("min_trust", min_trust, {0, 1}, "",
+         "in a return below which it is a phantom and no obstacle");
   v.real("hiding_min", hiding_min, {0.1, 5}, "m",
          "height from which returns hide what lies behind");
   v.real("hiding_max", hiding_max, {0.2, 10}, "m", "height up to which they do");
@@ -150,6 +152,7 @@ void splitGround(const LidarCloud& cloud, const ObstacleParams& params, LidarDet
              high = static_cast<float>(params.height_max);
   constexpr auto kGround = static_cast<std::uint8_t>(PointLabel::kGround);
   const bool labelled = !cloud.label.empty(), trusted = cloud.trust.size() == cloud.size();
+  const auto least_trust = static_cast<float>(params.min_trust);
   found.obstacles.resize(count);
   std::size_t obstacles = 0;
   for (std::size_t i = 0; i < count; ++i) {  // what is no obstacle is overwritten by the next
@@ -158,7 +161,8 @@ void splitGround(const LidarCloud& cloud, const ObstacleParams& params, LidarDet
     const bool ground = (std::abs(height) <= low) | (labelled && cloud.label[source] == kGround);
     found.ground[source] = ground;
     found.obstacles[obstacles] = static_cast<std::uint32_t>(i);
-    obstacles += !ground & (height > low) & (height < high);
+    const bool phantom = trusted && cloud.trust[source] < least_trust;
+    obstacles += !ground & !phantom & (height > low) & (height < high);
   }
   found.obstacles.resize(obstacles);
   found.x.resize(obstacles), found.y.resize(obstacles), found.above.resize(obstacles);
@@ -321,7 +325,8 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   if (cloud == nullptr) return found;
   splitGround(*cloud, params_.obstacles, found);
   found.clusters = findClusters(found.x, found.y, found.above, params_.clusters, found.trust);
-  found.persons = findPersons(found.x, found.y, found.above, params_.persons, found.trust);
+  found.persons = findPersons(found.x, found.y, found.above, params_.persons, found.trust,
+                              found.points.sensor.head<2>());
   settleOverlaps(found, params_.persons, params_.clusters);
   return found;
 }

@@ -19,6 +19,7 @@ namespace perception {
 struct ObstacleParams {
   double height_min = 0.30;  ///< [m] above ground (paper)
   double height_max = 3.0;   ///< [m] above ground (SPEC 8.1): beyond are bridges and crowns
+  double min_trust = 0.1;    ///< [0, 1] less: a phantom that joins no two obstacles (own choice)
   double hiding_min = 1.0;   ///< [m] above ground that a hiding column reaches
   double hiding_max = 2.2;   ///< [m] above ground; higher returns leave the view below them free
   double hiding_bin = radians(0.4);  ///< [rad] of the horizon

@@ -19,6 +19,12 @@ void PersonParams::visit(ParamVisitor& v) {
   v.integer("min_points", min_points, {1, 1000}, "returns within radius");
   v.real("min_span", min_span, {0, 3}, "m", "least height from lowest to highest return");
   v.real("max_span", max_span, {0.5, 5}, "m", "largest height from lowest to highest return");
+  v.real("max_top", max_top, {0.5, 5}, "m", "highest return above ground");
+  v.real("max_bottom", max_bottom, {0, 5}, "m", "lowest return above ground");
+  v.real("min_width", min_width, {0, 2}, "m", "across the line of sight; posts are narrower");
+  v.integer("width_points", width_points, {1, 1000}, "returns from which the width is known");
+  v.real("max_gap", max_gap, {0, 5}, "m", "between heights of returns, or if more:");
+  v.angle("gap_angle_deg", gap_angle, {0, 10}, "the gap's angle as seen from the sensor");
   v.real("separation", separation, {0, 5}, "m", "radius of non-maximum suppression");
   v.real("hull_margin", hull_margin, {0, 3}, "m",
          "about accepted clusters in which peaks compete with them");
@@ -129,11 +135,40 @@ bool describe(const PersonResponse& response, const Neighbourhoods& near, std::u
   return peak.normalised >= params.threshold && span >= params.min_span && span <= params.max_span;
 }
 
+/// Whether the returns have the shape of somebody upright: wide enough for shoulders, low enough
+/// for a person, without the gaps of twigs. Fills width and gap.
+bool hasShape(const std::vector<float>& x, const std::vector<float>& y,
+              const std::vector<float>& height, const PersonParams& params, const Vector2& sensor,
+              PersonPeak& peak) {
+  const Vector2 sight = peak.centre - sensor;
+  const double range = std::max(sight.norm(), 1e-6);
+  const Vector2 across(-sight.y() / range, sight.x() / range);
+  std::vector<float> heights;
+  double sum = 0, squares = 0;
+  for (const std::uint32_t i : peak.points) {
+    const double off =
+        across.dot(Vector2(static_cast<double>(x[i]), static_cast<double>(y[i])) - peak.centre);
+    sum += off, squares += off * off;
+    heights.push_back(height[i]);
+  }
+  const auto count = static_cast<double>(peak.points.size());
+  peak.width = std::sqrt(12 * std::max(0.0, squares / count - sum * sum / (count * count)));
+  std::sort(heights.begin(), heights.end());
+  for (std::size_t i = 1; i < heights.size(); ++i)
+    peak.gap = std::max(peak.gap, static_cast<double>(heights[i] - heights[i - 1]));
+
+  const bool narrow = peak.points.size() >= static_cast<std::size_t>(params.width_points) &&
+                      peak.width < params.min_width;
+  return !narrow && static_cast<double>(peak.highest) <= params.max_top &&
+         static_cast<double>(peak.lowest) <= params.max_bottom &&
+         peak.gap <= std::max(params.max_gap, params.gap_angle * range);
+}
+
 }  // namespace
 
 std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vector<float>& y,
                                     const std::vector<float>& height, const PersonParams& params,
-                                    const std::vector<float>& weight) {
+                                    const std::vector<float>& weight, const Vector2& sensor) {
   std::vector<PersonPeak> peaks;
   if (x.empty()) return peaks;
   const PersonResponse response(x, y, weight, params);
@@ -148,7 +183,8 @@ std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vect
   std::vector<PersonPeak> candidates;
   for (const std::uint32_t cell : maxima) {
     PersonPeak peak;
-    if (describe(response, near, cell, x, y, height, weight, params, peak))
+    if (describe(response, near, cell, x, y, height, weight, params, peak) &&
+        hasShape(x, y, height, params, sensor, peak))
       candidates.push_back(std::move(peak));
   }
   std::stable_sort(

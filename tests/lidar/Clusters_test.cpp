@@ -67,6 +67,15 @@ TEST(Clusters, LeavePersonSizedGroupsAlone) {
   EXPECT_EQ(Returns().row(10, 0, 14, 0.1f, 1.7f).find().size(), 1u);  // 1.3 m
 }
 
+TEST(Clusters, WeightsCountAsReturns) {
+  const Returns car = Returns().row(10, 0, 10, 0.4f, 1.4f);
+  const auto find = [&car](float weight) {
+    return findClusters(car.x, car.y, car.height, {}, std::vector<float>(10, weight)).size();
+  };
+  EXPECT_EQ(find(0.7f), 1u);  // seven returns
+  EXPECT_EQ(find(0.69f), 0u);
+}
+
 TEST(Clusters, NoReturnsNoClusters) { EXPECT_TRUE(Returns().find().empty()); }
 
 }  // namespace

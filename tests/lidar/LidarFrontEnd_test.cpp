@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/Random.h"
 #include "tests/support/SyntheticCloud.h"
 
 namespace perception {
@@ -148,6 +149,51 @@ TEST(LidarFrontEnd, BadPointsChangeNothing) {
   ASSERT_EQ(dirty.measurements.size(), clean.measurements.size());
   for (std::size_t i = 0; i < clean.measurements.size(); ++i)
     EXPECT_EQ(dirty.measurements[i].z, clean.measurements[i].z);
+}
+
+TEST(LidarFrontEnd, ReturnsWithoutRangeAreDroppedAndCounted) {
+  SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
+  const std::size_t measured = frontEnd().extract(frame).measurements.size();
+  auto& cloud = std::get<LidarCloud>(frame.data);
+  for (int i = 0; i < 5; ++i) cloud.x.push_back(0), cloud.y.push_back(0), cloud.z.push_back(0);
+  const MeasurementScan scan = frontEnd().extract(frame);
+  EXPECT_EQ(scan.dropped_points, 5u);
+  EXPECT_EQ(scan.measurements.size(), measured);
+}
+
+TEST(LidarFrontEnd, AScanBeyondTheLimitIsThinnedAndCounted) {
+  LidarParams params;
+  params.points.max_points = 10000;
+  const SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
+  const std::size_t size = std::get<LidarCloud>(frame.data).size();
+  ASSERT_GT(size, 3 * 10000u);
+  const LidarDetections found = frontEnd(params).detect(frame);
+  EXPECT_EQ(found.ground.size(), size);
+  EXPECT_LE(size - found.points.capped, 10000u + 16u);
+  EXPECT_GT(size - found.points.capped, 5000u);
+  EXPECT_EQ(frontEnd(params).extract(frame).dropped_points, found.points.capped);
+  EXPECT_EQ(found.points.source.back() / 16 % (size / 10000 + 1), 0u);  // whole groups of 16
+}
+
+TEST(LidarFrontEnd, PhantomsJoinNothingAndHideNothing) {
+  SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
+  const MeasurementScan clear = frontEnd().extract(frame);
+  auto& cloud = std::get<LidarCloud>(frame.data);
+  cloud.trust.assign(cloud.size(), 1.0f);
+  Rng rng(RngKey{3, 0, 0, 17});
+  for (int i = 0; i < 400; ++i) {  // snow about the car and before it
+    cloud.x.push_back(static_cast<float>(rng.uniform(5, 18)));
+    cloud.y.push_back(static_cast<float>(rng.uniform(0, 8)));
+    cloud.z.push_back(static_cast<float>(rng.uniform(-1.2, 0.2)));
+    cloud.trust.push_back(0.05f);
+  }
+  const MeasurementScan snowy = frontEnd().extract(frame);
+  ASSERT_EQ(snowy.measurements.size(), clear.measurements.size());
+  for (std::size_t i = 0; i < clear.measurements.size(); ++i) {
+    EXPECT_EQ(snowy.measurements[i].label, clear.measurements[i].label);
+    EXPECT_LT((snowy.measurements[i].z - clear.measurements[i].z).norm(), 0.01);
+  }
+  EXPECT_GT(snowy.horizon->visibility(0.1, 0.2, 10, 1), 0.95);
 }
 
 TEST(LidarFrontEnd, FramesWithoutPointsGiveNothing) {

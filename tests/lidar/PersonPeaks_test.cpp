@@ -125,6 +125,38 @@ TEST(PersonPeaks, NeedReturnsAndHeight) {
   EXPECT_TRUE(low.find().empty());
 }
 
+TEST(PersonPeaks, PostsCrownsAndTwigsAreNone) {
+  Returns post, trunk, crown, twigs;
+  for (int i = 0; i < 40; ++i) {  // 8 cm wide, as seen from the origin
+    post.add(10 + 0.02 * (i % 3), 0.02 * (i % 5), 0.35 + 0.03 * i);
+    trunk.add(10 + 0.02 * (i % 3), 0.08 * (i % 5), 0.35 + 0.05 * i);  // 2.3 m high
+    crown.add(10 + 0.02 * (i % 3), 0.08 * (i % 5), 1.05 + 0.025 * i);
+    twigs.add(10 + 0.02 * (i % 3), 0.08 * (i % 5), (i < 20 ? 0.35 : 1.25) + 0.01 * (i % 20));
+  }
+  for (const Returns& returns : {post, trunk, crown, twigs}) {
+    EXPECT_TRUE(returns.find().empty());
+    PersonParams paper;
+    paper.max_top = paper.max_bottom = paper.max_gap = 5, paper.min_width = 0;
+    EXPECT_EQ(returns.find(paper).size(), 1u);
+  }
+}
+
+TEST(PersonPeaks, WeightsCountAsReturns) {
+  Returns returns;
+  returns.person(10, 0, 30, 5);
+  const std::vector<float> half(30, 0.5f), none(30, 0.1f);
+  const PersonParams params;
+  const auto whole = returns.find(),
+             weighted = findPersons(returns.x, returns.y, returns.height, params, half);
+  ASSERT_EQ(whole.size(), 1u);
+  ASSERT_EQ(weighted.size(), 1u);
+  EXPECT_NEAR(weighted[0].response, whole[0].response / 2, 1e-3);
+  EXPECT_NEAR(weighted[0].normalised, whole[0].normalised, 1e-4);
+  EXPECT_NEAR(weighted[0].weight, 15, 1e-6);
+  // 30 returns of which three are of surfaces: fewer than min_points.
+  EXPECT_TRUE(findPersons(returns.x, returns.y, returns.height, params, none).empty());
+}
+
 TEST(PersonPeaks, NoReturnsNoPersons) { EXPECT_TRUE(Returns().find().empty()); }
 
 }  // namespace
