@@ -41,7 +41,7 @@ MISSED = {
 }
 FALSE = {
     'clutter': ('clutter', 'on nothing labelled, with a box; a track that never was right'),
-    'clutter, coasting': ('coasting', 'on nothing labelled, no box; a track that never was right'),
+    'clutter without box': ('coasting', 'on nothing labelled, no box; a track that never was right'),
     'before': ('labels', 'before the first right frame of the track, with a box'),
     'between': ('labels', 'between right frames, nothing labelled near, with a box'),
     'after': ('labels', 'after the last right frame, with a box'),
@@ -49,8 +49,8 @@ FALSE = {
     'place': ('localisation', 'within 2 m of a missed object, too little overlap, with a box'),
     'place, coasting': ('coasting', 'within 2 m of a missed object, too little overlap, no box'),
     'second': ('association', 'on an object that has its track already'),
-    'sitting': ('labels', 'on a sitting person (KITTI: Person), which the 3D rules do not excuse'),
-    'other': ('decision', 'on an object of another type'),
+    'sitting person': ('labels', 'on a sitting person (KITTI: Person), which the 3D rules do not excuse'),
+    'another type': ('decision', 'on an object of another type'),
 }
 
 
@@ -173,7 +173,7 @@ def count_class(me, a, sequence, cls, missed, false, totals, worst):
                 track.wrong[f] = 'second'
             elif (other_iou[j] >= MIN_IOU).any():
                 on = every.type[every.at(f)][other_iou[j].argmax()]
-                track.wrong[f] = 'sitting' if low == 'pedestrian' and on.startswith('person') else 'other'
+                track.wrong[f] = 'sitting person' if low == 'pedestrian' and on.startswith('person') else 'another type'
             elif (truth_near[j] & free).any():
                 track.wrong[f] = 'place' if box else 'place, coasting'
             else:
@@ -181,7 +181,7 @@ def count_class(me, a, sequence, cls, missed, false, totals, worst):
                 waiting.append((track, f, box))
     for track, f, box in waiting:     # what they are depends on the track's other frames
         if not track.right:
-            track.wrong[f] = 'clutter' if box else 'clutter, coasting'
+            track.wrong[f] = 'clutter' if box else 'clutter without box'
         elif not box:
             track.wrong[f] = 'coasting'
         else:
@@ -284,10 +284,11 @@ def panel(a, world, track, folder, number):
     low, high = points.min(0) - 4, points.max(0) + 4
     half = max(high - low) / 2
     middle = (low + high) / 2
-    reasons = collections.Counter(track.wrong.values()).most_common(2)
-    title = '%04d %s %d: %d of %d frames wrong, score %.1f\\n%s' % (
-        track.sequence, track.cls, track.number, len(track.wrong), len(frames), np.mean(track.scores),
-        '; '.join('%d %s (%s)' % (n, FALSE[r][0], r) for r, n in reasons))
+    reasons = collections.Counter(track.wrong.values()).most_common(3)
+    away = np.mean([np.hypot(path[f][0] - world.ego[f][0], path[f][1] - world.ego[f][1]) for f in path])
+    title = '%04d %s %d: %d of %d frames wrong, score %.1f, %.0f m away\\n%s' % (
+        track.sequence, track.cls, track.number, len(track.wrong), len(frames), np.mean(track.scores), away,
+        '; '.join('%d %s' % (n, r) for r, n in reasons))
     text = 'set title "%s" noenhanced font ",9"\nset xrange [%.2f:%.2f]\nset yrange [%.2f:%.2f]\n' % (
         title, middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half)
     styles = (('foreign', 'with points pt 6 ps 0.5 lc rgb "#BBBBBB" title "box of another class"'),
@@ -354,7 +355,7 @@ def main():
     parser.add_argument('-t', '--threshold', type=float, default=0.0)
     parser.add_argument('--worst', type=int, default=10)
     parser.add_argument('sequences', nargs='*', type=int)
-    a = parser.parse_args()
+    a = parser.parse_intermixed_args()
     shared = os.environ.get('PERCEPTION_SHARED', os.path.join(ROOT, '..', 'shared'))
     a.data = os.path.join(shared, 'data', 'kitti_tracking')
     if not os.path.exists(os.path.join(shared, 'tools', 'mot_eval.py')) or not os.path.isdir(a.data):

@@ -71,6 +71,25 @@ TEST(PositionFrontEnd, ScoreSpeaksForTheLabelsOwnClassALittleForOthersAndNotForT
   EXPECT_NEAR(m.log_clutter, std::log(0.5), 1e-12);
 }
 
+TEST(PositionFrontEnd, ALabelThatIsNoClassesNameSpeaksForAllRoadUsersAlike) {
+  PositionParams p = params();
+  p.labels = {"person", "cyclist", "unknown"};
+  p.names.push_back("unknown=unknown");
+  const Sensing two = sensing();
+  const Sensing three(two.params(), {two.row(0), two.row(1), two.row(2)}, p.labels);
+  SensorFrame frame;
+  ObjectDetections detections;
+  detections.objects = {boxAt("unknown", 2.0, 10, 0)};
+  frame.data = std::move(detections);
+  const auto scan = PositionFrontEnd(p, classes(), three).extract(frame);
+  ASSERT_EQ(scan.measurements.size(), 1U);
+  const Measurement& m = scan.measurements[0];
+  const double ratio = 2 * (2.0 - 1.0) + 0.5;
+  EXPECT_NEAR(m.log_class[0], m.log_class[1], 1e-12);
+  EXPECT_NEAR(m.log_class[0] - m.log_class[2], ratio, 1e-12);  // but not for things
+  EXPECT_NEAR(m.log_class[2], m.log_clutter, 1e-12);
+}
+
 TEST(PositionFrontEnd, OddsFallWithTheRangeAndStayWithinTheLimit) {
   PositionParams p = params();
   p.score_fade = 0.05;
