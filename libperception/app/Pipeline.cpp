@@ -396,6 +396,13 @@ std::optional<MeasurementScan> Pipeline::measure(SensorFrame& frame, std::size_t
   ++state.record.frames;
   state.record.measurements += scan.measurements.size();
   state.record.dropped_measurements += scan.dropped;
+  state.record.dropped_points += scan.dropped_points;
+  if (scan.dropped_points > 0 && !state.points_said) {
+    events_.warn(frame.stamp, event_kind::kDroppedPoints,
+                 fmt::format("{}: {} returns of a scan without a range or beyond max_points",
+                             frame.sensor, scan.dropped_points));
+    state.points_said = true;
+  }
   return scan;
 }
 

@@ -103,6 +103,7 @@ class Pipeline {
     SensorRecord record;
     std::optional<Stamp> last;
     bool lost = false;
+    bool points_said = false;  ///< that returns were dropped
     std::unique_ptr<GroundEstimator> ground;  ///< lidars only
     std::unique_ptr<PointFilter> weather;     ///< lidars only; empty: every return is trusted
   };

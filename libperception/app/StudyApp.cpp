@@ -11,6 +11,7 @@
 
 #include "libperception/app/LogRecorder.h"
 #include "libperception/app/OutputFolder.h"
+#include "libperception/app/PersonFilterStudy.h"
 #include "libperception/evaluation/Gnuplot.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
@@ -36,6 +37,7 @@ struct Study {
   bool log = false;         ///< takes a rawlog
   bool scenario = false;    ///< reads a scenario INI
   bool labels = false;      ///< reads rawlogs with detections and truth
+  bool scan = false;        ///< takes a scan of a rawlog
 };
 
 const Study kStudies[] = {
@@ -91,6 +93,8 @@ const Study kStudies[] = {
      true},
     {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
      [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, false, true},
+    {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
+     [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
 };
 
 }  // namespace
@@ -151,6 +155,7 @@ void StudyApp::declare(CLI::App& cli) {
           ->capture_default_str()
           ->check(CLI::Range(0.1, 360.0));
     }
+    if (s.scan) sub->add_option("--log", log, "Rawlog whose first lidar scan is filtered");
     if (s.scenario) {
       sub->add_option("-c,--config", scenario,
                       "Scenario INI with sensors of kind gnss, imu, wheels")
