@@ -10,6 +10,8 @@
 
 namespace perception {
 
+struct DpmBank;
+
 /// How densely and where an engine looks.
 struct DpmOptions {
   int levels_per_octave = 5;  ///< voc-release: 10
@@ -50,8 +52,7 @@ class DpmEngine {
   const std::vector<DpmTarget>& targets() const;
 
  private:
-  struct Bank;
-  std::unique_ptr<const Bank> bank_;
+  std::unique_ptr<const DpmBank> bank_;
 };
 
 }  // namespace perception
