@@ -167,9 +167,9 @@ void costs(int threads) {
   std::vector<Row> rows;
   rows.push_back({"car 16 + pedestrian 8, whole image", bank(true), false});
   rows.push_back({"car 16 + pedestrian 8, ground gate", bank(true), true});
-  rows.push_back({"the same, enlarged twice", bank(true), true});
+  rows.push_back({"ground gate, enlarged twice", bank(true), true});
   rows.back().setup.dpm.options.enlarge = 2;
-  rows.push_back({"the same, 10 levels an octave", bank(true), true});
+  rows.push_back({"not enlarged, ground gate, 10 levels an octave", bank(true), true});
   rows.back().setup.dpm.options.levels_per_octave = 10;
   rows.push_back({"car 16 alone, whole image", bank(false), false});
   for (const Row& row : rows) {
