@@ -81,11 +81,14 @@ TrustCurve::TrustCurve(const std::vector<double>& knots, const std::vector<doubl
 }
 
 std::size_t IntensityLaw::binOf(float intensity) {
-  const float byte = intensity * 255;
-  if (!(byte >= 0.5F)) return 0;
-  std::size_t bin = 1;
-  for (float edge = 1.5F; bin + 1 < kBins && byte >= edge; edge = 2 * edge + 0.5F) ++bin;
-  return bin;
+  if (!(intensity > 0)) return 0;
+  static const std::array<std::uint8_t, 256> kBinOfByte = [] {
+    std::array<std::uint8_t, 256> bins{};
+    for (std::size_t byte = 1; byte < bins.size(); ++byte)
+      for (std::size_t rest = byte; rest > 0 && bins[byte] + 1U < kBins; rest /= 2) ++bins[byte];
+    return bins;
+  }();
+  return kBinOfByte[static_cast<std::size_t>(std::clamp(intensity * 255 + 0.5F, 0.0F, 255.0F))];
 }
 
 void IntensityLaw::forget(double share) {
@@ -158,7 +161,7 @@ void PointTrust::findSuspects(const SensorFrame& frame, const LidarCloud& cloud)
     const int around = same(below[-1]) + same(below[0]) + same(below[1]) + same(here[-1]) +
                        same(here[1]) + same(above[-1]) + same(above[0]) + same(above[1]);
     if (around >= params_.surface_neighbours) continue;
-    SuspectReturn& suspect = suspects_.emplace_back();
+    SuspectReturn suspect;
     suspect.index = static_cast<std::uint32_t>(i);
     suspect.features[at(TrustFeature::kRange)] = r;
     suspect.features[at(TrustFeature::kHeight)] = height.of(cloud.x[i], cloud.y[i], cloud.z[i]);
@@ -168,10 +171,12 @@ void PointTrust::findSuspects(const SensorFrame& frame, const LidarCloud& cloud)
                                  TrustFeature::kBeyond, TrustFeature::kHeight})
       sum += curves_[at(f)].at(suspect.features[at(f)]);
     suspect.geometry = sum;
+    suspects_.push_back(suspect);
   }
 }
 
 void PointTrust::hearSensor(const LidarCloud& cloud) {
+  if (cloud.label.empty() && cloud.echo.empty()) return;
   const auto rain = static_cast<std::uint8_t>(PointLabel::kRain);
   const auto dirt = static_cast<std::uint8_t>(PointLabel::kDirt);
   for (SuspectReturn& suspect : suspects_) {
@@ -199,7 +204,8 @@ void PointTrust::followWeather() {
   std::array<double, kBins> counts{};
   const auto reach = static_cast<float>(params_.share_range);
   int near = 0;
-  for (const float r : image_.ranges()) near += r > 0 && r <= reach;
+  for (const float r : image_.ranges())
+    near += static_cast<int>(r > 0) & static_cast<int>(r <= reach);
   if (near == 0) return;
   for (const SuspectReturn& s : suspects_) {
     if (s.features[at(TrustFeature::kRange)] > reach) continue;
