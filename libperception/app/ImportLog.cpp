@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/core/Error.h"
+#include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/ToObservation.h"
 
@@ -22,10 +23,6 @@ namespace {
 constexpr int kJpegQuality = 95;
 /// [s] Rows of one object farther apart are two stretches: no velocity across the gap.
 constexpr double kTruthGap = 1.0;
-
-fs::path withoutLogEnding(const std::string& rawlog) {
-  return fs::path(rawlog).replace_extension();
-}
 
 void failImage(const fs::path& path, const char* what, const std::error_code& error) {
   throw OutputError(fmt::format("{}: cannot {}: {}", path.string(), what, error.message()));
@@ -217,9 +214,7 @@ std::string truthFileOf(const std::string& rawlog) {
   return fs::path(path).replace_extension(".truth.csv").string();
 }
 
-std::string imageFolderOf(const std::string& rawlog) {
-  return withoutLogEnding(rawlog).string() + "_Images";
-}
+std::string imageFolderOf(const std::string& rawlog) { return imagesBeside(rawlog); }
 
 bool coveredType(const std::string& type) {
   static const std::set<std::string> kCovered = {

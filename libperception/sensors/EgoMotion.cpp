@@ -238,7 +238,7 @@ void EgoMotion::apply(EgoMotionState& state, const GnssFix& fix) {
     return;
   }
   if (!updatePlace(state, fix, state.toWorld(enu))) return;
-  if (fix.velocity) updateVelocity(state, fix);
+  if (fix.has_velocity) updateVelocity(state, fix);
   if (fix.yaw) updateYaw(state, wrapAngle(*fix.yaw - state.world_turn), fix.yaw_sigma);
 }
 
@@ -311,7 +311,7 @@ void EgoMotion::updateVelocity(EgoMotionState& state, const GnssFix& fix) {
   const Vector2 swing = rotate2(x[kEgoYaw], rate * Vector2(-fix.antenna.y(), fix.antenna.x()));
   EgoObservation o;
   o.rows = 2;
-  o.z.head<2>() = rotate2(-state.world_turn, *fix.velocity);
+  o.z.head<2>() = rotate2(-state.world_turn, fix.velocity);
   o.h.head<2>() = x[kEgoSpeed] * Vector2(c, s) + swing;
   o.H(0, kEgoSpeed) = c, o.H(1, kEgoSpeed) = s;
   o.H(0, kEgoYaw) = -o.h[1], o.H(1, kEgoYaw) = o.h[0];
@@ -354,11 +354,11 @@ void EgoMotion::findHeading(EgoMotionState& state, const GnssFix& fix, const Vec
     }
   }
   // The course over ground.
-  if (fix.velocity && fix.velocity->norm() >= kCourseSpeed) {
-    const double sigma = std::hypot(fix.velocity_sigma / fix.velocity->norm(), radians(2));
+  if (fix.has_velocity && fix.velocity.norm() >= kCourseSpeed) {
+    const double sigma = std::hypot(fix.velocity_sigma / fix.velocity.norm(), radians(2));
     const double back = state.had_wheels && x[kEgoSpeed] < 0 ? kPi : 0;
     if (sigma <= kHeadingSigma)
-      return setHeading(state, fix, enu, direction(*fix.velocity) + back - x[kEgoYaw], sigma);
+      return setHeading(state, fix, enu, direction(fix.velocity) + back - x[kEgoYaw], sigma);
   }
   // The way since an earlier fix, seen by satellites and by the vehicle itself.
   if (!state.reference ||

@@ -93,6 +93,7 @@ std::optional<GnssFix> fromInspvas(const gnss::Message_NV_OEM6_INSPVAS& ins,
   GnssFix fix;
   fix.place = {f.lat, f.lon, f.hgt};
   setSigma(fix, params.sigma, params);
+  fix.has_velocity = true;
   fix.velocity = Vector2(f.vel_east, f.vel_north);
   fix.velocity_sigma = params.velocity_sigma;
   fix.yaw = wrapAngle(radians(90 - f.azimuth));  // clockwise from north
@@ -152,7 +153,8 @@ std::optional<GnssFix> fromTopcon(const gnss::Message_TOPCON_PZS& pzs, const Gns
   }
   if (pzs.hasCartesianPosVel) {
     const Vector3 v(pzs.cartesian_vx, pzs.cartesian_vy, pzs.cartesian_vz);
-    if (v.allFinite()) fix.velocity = horizontalPart(v, fix.place);
+    fix.has_velocity = v.allFinite();
+    if (fix.has_velocity) fix.velocity = horizontalPart(v, fix.place);
     fix.velocity_sigma = params.velocity_sigma;
   }
   return fix;
@@ -169,6 +171,7 @@ void addCourse(const CObservationGPS& o, const GnssParams& params, GnssFix& fix)
   }
   if (!std::isfinite(speed + course) || speed < kCourseSpeed) return;
   const double yaw = radians(90 - course);
+  fix.has_velocity = true;
   fix.velocity = speed * Vector2(std::cos(yaw), std::sin(yaw));
   fix.velocity_sigma = params.velocity_sigma;
 }
@@ -207,7 +210,7 @@ std::optional<GnssFix> gnssFix(const CObservationGPS& observation, const GnssPar
   if (!stamp) return {};
   auto fix = bestOf(observation, params);
   if (!fix || !std::isfinite(fix->place.height)) return {};
-  if (!fix->velocity) addCourse(observation, params, *fix);
+  if (!fix->has_velocity) addCourse(observation, params, *fix);
   fix->stamp = *stamp;
   fix->antenna = toPose3(observation.sensorPose).translation();
   return fix;

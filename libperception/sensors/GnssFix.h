@@ -28,15 +28,16 @@ struct Geodetic {
 /// One position of a satellite receiver, with what else its messages say.
 struct GnssFix {
   Stamp stamp;
-  Geodetic place;                     ///< of the antenna
-  bool has_height = true;             ///< false: RMC and GLL alone
-  double sigma = 1.5;                 ///< [m] east and north each
-  double height_sigma = 3;            ///< [m]
-  std::optional<Vector2> velocity;    ///< [m/s] east, north
-  double velocity_sigma = 0.2;        ///< [m/s] each
-  std::optional<double> yaw;          ///< [rad] of the vehicle, from east: receivers with own INS
-  double yaw_sigma = 0.02;            ///< [rad]
-  Vector3 antenna = Vector3::Zero();  ///< [m] on the vehicle
+  Geodetic place;           ///< of the antenna
+  bool has_height = true;   ///< false: RMC and GLL alone
+  double sigma = 1.5;       ///< [m] east and north each
+  double height_sigma = 3;  ///< [m]
+  bool has_velocity = false;
+  Vector2 velocity = Vector2::Zero();  ///< [m/s] east, north
+  double velocity_sigma = 0.2;         ///< [m/s] each
+  std::optional<double> yaw;           ///< [rad] of the vehicle, from east: receivers with own INS
+  double yaw_sigma = 0.02;             ///< [rad]
+  Vector3 antenna = Vector3::Zero();   ///< [m] on the vehicle
 };
 
 /// The best position among the messages of an observation: NMEA GGA, RMC, GLL (speed and course of

@@ -44,7 +44,7 @@ TEST(GnssFix, GgaSaysHowSureItIs) {
     EXPECT_NEAR(fix->sigma, sigma, 1e-9) << quality;
     EXPECT_EQ(fix->place.height, 92);
     EXPECT_TRUE(fix->antenna.isApprox(Vector3(1, 0.5, 1.8)));
-    EXPECT_FALSE(fix->velocity);
+    EXPECT_FALSE(fix->has_velocity);
   }
   for (const int quality : {0, 7}) {
     auto o = observation();
@@ -64,14 +64,14 @@ TEST(GnssFix, CourseOfRmcIsVelocityToEastAndNorth) {
   auto fix = gnssFix(o, {});
   ASSERT_TRUE(fix);
   EXPECT_FALSE(fix->has_height);
-  ASSERT_TRUE(fix->velocity);
+  ASSERT_TRUE(fix->has_velocity);
   const double speed = 10 * 1852. / 3600;
-  EXPECT_NEAR(fix->velocity->x(), speed * 0.5, 1e-9);
-  EXPECT_NEAR(fix->velocity->y(), speed * std::sqrt(0.75), 1e-9);
+  EXPECT_NEAR(fix->velocity.x(), speed * 0.5, 1e-9);
+  EXPECT_NEAR(fix->velocity.y(), speed * std::sqrt(0.75), 1e-9);
   o.setMsg(gga(1, 1));
   fix = gnssFix(o, {});
   ASSERT_TRUE(fix);
-  EXPECT_TRUE(fix->has_height && fix->velocity);
+  EXPECT_TRUE(fix->has_height && fix->has_velocity);
   rmc.fields.validity_char = 'V';
   mrpt::obs::CObservationGPS invalid = observation();
   invalid.setMsg(rmc);
@@ -97,9 +97,9 @@ TEST(GnssFix, NovatelGivesItsOwnDeviationsAndHeading) {
   ins.fields.azimuth = 60;
   o.setMsg(ins);
   fix = gnssFix(o, {});
-  ASSERT_TRUE(fix && fix->yaw && fix->velocity);
+  ASSERT_TRUE(fix && fix->yaw && fix->has_velocity);
   EXPECT_NEAR(*fix->yaw, radians(30), 1e-12);
-  EXPECT_NEAR(fix->velocity->norm(), 5, 1e-12);
+  EXPECT_NEAR(fix->velocity.norm(), 5, 1e-12);
 }
 
 TEST(GnssFix, CartesianPositionsAreTheSamePlace) {
@@ -121,9 +121,9 @@ TEST(GnssFix, CartesianPositionsAreTheSamePlace) {
   const auto fix = gnssFix(o, {});
   ASSERT_TRUE(fix);
   EXPECT_LT(frame.fromGeodetic(fix->place).norm(), 1e-3);
-  ASSERT_TRUE(fix->velocity);
-  EXPECT_NEAR(fix->velocity->x(), 0, 1e-9);
-  EXPECT_NEAR(fix->velocity->y(), 5, 1e-9);
+  ASSERT_TRUE(fix->has_velocity);
+  EXPECT_NEAR(fix->velocity.x(), 0, 1e-9);
+  EXPECT_NEAR(fix->velocity.y(), 5, 1e-9);
 }
 
 TEST(GnssFix, NonsenseIsNoFix) {
