@@ -25,8 +25,9 @@ struct PersonParams {
   int min_points = 4;      ///< returns within radius
   double min_span = 0.8;   ///< [m] lowest to highest return
   double max_span = 2.2;   ///< [m]
-  // What the paper leaves to the filter; measured on KITTI 0000 and WADS, where people keep clear
-  // of these bounds and nine in ten trunks, posts and hedge corners do not.
+  // What the paper leaves to the filter. Measured on KITTI 0000 and WADS: people keep clear of
+  // these bounds but for two that touch others, and nine in ten trunks, posts and hedge corners do
+  // not.
   double max_top = 2.1;           ///< [m] above ground: a tall person with a hat
   double max_bottom = 1.0;        ///< [m] above ground: what begins higher is a crown
   double min_width = 0.22;        ///< [m] across the line of sight; posts have .10 to .20
