@@ -365,16 +365,18 @@ StudyPlot figuresPlot(const std::vector<Condition>& conditions, const std::strin
       "the class, and objects with an output of the right class at their tenth measurement.";
   plot.script = fmt::format(
       "set multiplot layout 4,2 title {} noenhanced\nset grid\nset datafile missing 'n/a'\n"
-      "set lmargin 10\nset key outside top center horizontal\n",
+      "set lmargin 10\nset key outside top center horizontal font ',9' samplen 2\n",
       gnuplotString("What labels are worth, " + where));
   for (const Panel& panel : kPanels) {
     for (const auto kind : {LabelDamage::kDropped, LabelDamage::kFlipped}) {
       const bool dropped = kind == LabelDamage::kDropped;
       const char* how = dropped ? "dropped" : "flipped";
       plot.script += fmt::format(
-          "set xlabel 'labels {} (%)'\nset ylabel '{}'\nset yrange {}\nset xrange [-2:{}]\n"
+          "set key width {}\nset xlabel 'labels {} (%)'\nset ylabel '{}'\nset yrange {}\n"
+          "set xrange [-2:{}]\n"
           "set xtics ({}'0' 0, '10' 10, '20' 20, '30' 30, '40' 40, '50' 50)\nplot ",
-          how, panel.label, panel.range, dropped ? 75 : 52, dropped ? "'none left' 70, " : "");
+          dropped ? -4 : 0, how, panel.label, panel.range, dropped ? 75 : 52,
+          dropped ? "'none left' 70, " : "");
       bool first = true;
       for (const Line& line : lines()) {
         if (!dropped && line.method.takes_unlabelled && line.method.per_class) continue;

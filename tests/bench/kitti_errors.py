@@ -286,7 +286,7 @@ def panel(a, world, track, folder, number):
     middle = (low + high) / 2
     reasons = collections.Counter(track.wrong.values()).most_common(3)
     away = np.mean([np.hypot(path[f][0] - world.ego[f][0], path[f][1] - world.ego[f][1]) for f in path])
-    title = '%04d %s %d: %d of %d frames wrong, score %.1f, %.0f m away\\n%s' % (
+    title = '%04d %s %d: %d of %d frames wrong, score %.1f\\n%.0f m away: %s' % (
         track.sequence, track.cls, track.number, len(track.wrong), len(frames), np.mean(track.scores), away,
         '; '.join('%d %s' % (n, r) for r, n in reasons))
     text = 'set title "%s" noenhanced font ",9"\nset xrange [%.2f:%.2f]\nset yrange [%.2f:%.2f]\n' % (
