@@ -10,7 +10,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/app/DetectPicture.h"
-#include "libperception/app/ImportLog.h"
 #include "libperception/app/ImportText.h"
 #include "libperception/app/KittiFiles.h"
 #include "libperception/app/OutputFolder.h"
@@ -353,7 +352,7 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
   if (writer) {
     writer->close();
     // The new log finds the images that the old one keeps beside itself.
-    const fs::path beside = imageFolderOf(log), link = imageFolderOf(output);
+    const fs::path beside = images, link = imagesBeside(output);
     if (fs::is_directory(beside) && !fs::exists(fs::symlink_status(link)))
       fs::create_directory_symlink(fs::absolute(beside), link);
   }
