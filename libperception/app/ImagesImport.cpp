@@ -141,8 +141,12 @@ void ImagesImporter::run(ImportLog& log) {
     Frame frame = read(file, log);
     if (alone_) frame.T_world_ego = makePose(kAloneDistance * static_cast<double>(place), 0, 0, 0);
     const Stamp begin = stampAtRate(kUndatedStart, place++, log.options().rate);
-    for (int k = 0; k < log.options().repeat; ++k)
-      write(frame, stampAtRate(begin, k, kRepeatRate), k + 1 == log.options().repeat, log);
+    const int repeat = log.options().repeat;
+    if (alone_) log.ego(begin + -kStillPoses, frame.T_world_ego);
+    for (int k = 0; k < repeat; ++k)
+      write(frame, stampAtRate(begin, k, kRepeatRate), k + 1 == repeat, log);
+    if (alone_)
+      log.ego(stampAtRate(begin, repeat - 1, kRepeatRate) + kStillPoses, frame.T_world_ego);
     log.progress(place, static_cast<std::int64_t>(files.size()));
   }
 }

@@ -311,8 +311,12 @@ void VodImporter::run(ImportLog& log) {
     }
     const Stamp stamp = stampAtRate(kUndatedStart, files[i].number, log.options().rate);
     const int repeat = log.options().repeat;
+    const bool still = repeat > 1;
+    const Stamp end = stampAtRate(stamp, repeat - 1, kRepeatRate);
+    if (still) log.ego(stamp + -kStillPoses, egoOf(frame));
     for (int k = 0; k < repeat; ++k)
-      write(frame, stampAtRate(stamp, k, kRepeatRate), repeat > 1, k + 1 == repeat, log);
+      write(frame, stampAtRate(stamp, k, kRepeatRate), still, k + 1 == repeat, log);
+    if (still) log.ego(end + kStillPoses, egoOf(frame));
     if (repeat == 1 && frame.alone && frame.has_radar) ++carried;
     log.progress(++done, static_cast<std::int64_t>(files.size()));
   }

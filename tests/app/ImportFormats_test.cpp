@@ -512,6 +512,7 @@ TEST_F(ImagesImport, FramesThatStandAloneShareNoObject) {
   EXPECT_NEAR(
       (frames[3].ego.T_world_ego.translation() - frames[0].ego.T_world_ego.translation()).norm(),
       500, 1e-6);
+  for (const auto& frame : frames) EXPECT_NEAR(frame.ego.velocity.norm(), 0, 1e-6);
   const auto& objects = std::get<ObjectDetections>(frames[0].data).objects;
   ASSERT_EQ(objects.size(), 1u);  // areas are no objects
   EXPECT_EQ(objects[0].label, "Car");
