@@ -17,7 +17,7 @@ constexpr std::size_t kTrustFeatures = 6;
 struct TrustParams {
   double column = radians(0.2);  ///< [rad] of azimuth in a pixel of the range image
   double row = 0;                ///< [rad] of elevation in a pixel; 0: found from the first scan
-  double max_range = 30;         ///< [m] beyond, flakes and drops give no returns (SPEC 9.1, 9.2)
+  double max_range = 20;         ///< [m] beyond, flakes give hardly a return (WADS: 2 of 1000)
   double tight = 0.02;           ///< [-] of the range, + 3 cm: a neighbour of the same surface
   double wide = 0.04;            ///< [-] of the range, + 3 cm
   double beyond = 0.1;           ///< [-] of the range, + 30 cm: a beam that passes behind
