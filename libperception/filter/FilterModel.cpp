@@ -39,6 +39,8 @@ void FilterParams::visit(ParamVisitor& v) {
             "assignments that a hypothesis is continued with (association = ranked)");
   v.real("ranked_span", ranked_span, {0.1, 1e9}, "",
          "hypotheses lighter than the best by more in log weight are dropped (ranked)");
+  v.real("decide_class", decide_class, {0, 1}, "",
+         "class probability from which its filter alone goes on until surprised; 0: never");
   v.boolean("sampled_births", sampled_births,
             "birth or clutter is drawn, as in DUC; else a newborn may be either (sampled only)");
   v.real("existence_decay", existence_decay, {0, 1e4}, "s",

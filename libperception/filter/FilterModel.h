@@ -42,13 +42,16 @@ struct FilterParams {
   double base_walk = 0.05;  ///< [m^2/s] random walk of the base height (SPEC 2)
   double facing_walk = radians(30) * radians(30);  ///< [rad^2/s] random walk of where people look;
                                                    ///< twice a cyclist's rotation noise (SPEC 2)
-  double hidden_detection = 0;    ///< share of P_D that hidden objects keep
+  double hidden_detection = 0;                     ///< share of P_D that hidden objects keep
   double hidden_tolerance = 1.0;  ///< [m] a track this much behind the horizon is still visible
   double merge_area =
       2.0;  ///< [m^2] footprints from this size on swallow tracks inside them (SPEC 5.9); 0: never
   HeadingMode heading = HeadingMode::kSplit;  ///< use of measured headings (SPEC 7)
   int ranked_children = 4;  ///< assignments that a hypothesis is continued with (SPEC 6: 3 to 5)
   double ranked_span = 14;  ///< in log weight below the best; lighter hypotheses are dropped (1e-6)
+  /// Probability from which a class is decided, and its filter alone goes on; below it, or when a
+  /// measurement surprises that filter (one in a hundred), the bank widens again. 0: never.
+  double decide_class = 0;
   bool sampled_births = false;  ///< birth or clutter is drawn as in DUC instead of a Bernoulli
                                 ///< newborn (SPEC 5.3); only with the sampled proposal
   double existence_decay =

@@ -31,7 +31,9 @@ struct Gates {
 bool coarselyNear(const Track& track, const Measurement& m) {
   double reach = 0;
   double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& f : track.bank) {
+  for (std::size_t j = 0; j < track.bank.size(); ++j) {
+    if (!track.live(static_cast<ClassId>(j))) continue;
+    const ClassFilter& f = track.bank[j];
     const double sigma = std::sqrt(std::max(f.P(0, 0), f.P(1, 1))) + m.position_sigma;
     const double size = 0.5 * std::max(f.extent.length, f.extent.width);
     reach = std::max(reach, kCoarseGate * sigma + size + kCoarseMargin);
@@ -98,18 +100,25 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
   std::vector<double> mixture(classes, kMinusInfinity);
   const double label_exponent = scan.model->labelExponent();
   const double detection_exponent = scan.model->detectionExponent();
+  Density density;
+  Eigen::Index n = 0;
+  bool seen = false;  // a decided class: one filter stands for all
   for (std::size_t j = 0; j < classes; ++j) {
     const double detection = row.detection_by_class[j];
-    if (!row.predictions[j].defined || detection <= 0) continue;
-    const auto innovation =
-        innovationOf(track.bank[j], kinematics[j], row.predictions[j], m, *scan.model);
-    const auto n = innovation.y.size();
-    const Density density = densityOf(innovation, track.bank[j]);
+    const std::size_t filter = track.filterOf(j);
+    if (!row.predictions[filter].defined || detection <= 0) continue;
+    if (track.sure < 0 || !seen) {
+      const auto innovation = innovationOf(track.bank[filter], kinematics[filter],
+                                           row.predictions[filter], m, *scan.model);
+      n = innovation.y.size();
+      density = densityOf(innovation, track.bank[filter]);
+      seen = true;
+    }
     if (density.log_density == kMinusInfinity) continue;
     const double nis = density.nis, log_density = density.log_density;
     const double label = logLabelOf(*scan.model, m, static_cast<ClassId>(j));
     const double label_and_score = logLabelAndScore(*scan.model, m, static_cast<ClassId>(j));
-    const ClassFilter& f = track.bank[j];
+    const ClassFilter& f = track.bank[filter];
     const double heading = m.heading && f.oriented ? logHeadingRatio(*m.heading, f.x[3], f.P(3, 3),
                                                                      model.params.heading)
                                                    : 0;
@@ -132,8 +141,12 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
   std::vector<Kinematics> kinematics(classes);
   std::vector<Extent> extents(classes);
   for (std::size_t j = 0; j < classes; ++j) {
-    kinematics[j] = kinematicsOf(model.classes[static_cast<ClassId>(j)], track.bank[j]);
-    extents[j] = track.bank[j].extent;
+    const std::size_t filter = track.filterOf(j);
+    kinematics[j] =
+        filter == j || j == 0
+            ? kinematicsOf(model.classes[static_cast<ClassId>(filter)], track.bank[filter])
+            : kinematics[0];
+    extents[j] = track.bank[filter].extent;
   }
   row.predictions.resize(classes);
   scan.model->predict(kinematics.data(), extents.data(), classes, scan.state,
@@ -229,6 +242,7 @@ bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel
   const double dt = scan.state.stamp - track.stamp;
   if (dt >= kNeverOlder - 1e-6) return true;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
+    if (!track.live(j)) continue;
     const ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
     const bool speed_known = model.classes[j].motion == Motion::kWheeled && f.oriented;
     const double speed = speed_known ? std::abs(f.x[2]) : f.x.tail<2>().norm();

@@ -21,8 +21,10 @@ void beginTrack(Stamp to, const FilterModel& model, Track& next, std::vector<Gau
   const double dt = to - next.stamp;
   if (dt <= 0) return;
   next.stamp = to;
-  for (ClassId j = 0; j < model.classes.size(); ++j)
-    beginPrediction(model.classes[j], dt, next.bank[static_cast<std::size_t>(j)], steps);
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    if (next.live(j))
+      beginPrediction(model.classes[j], dt, next.bank[static_cast<std::size_t>(j)], steps);
+  }
   const bool in_view = to - next.last_in_view < kOutOfViewAfter;
   const double life = in_view ? model.params.survival_in_view : model.params.survival_out_of_view;
   const double decay = model.params.existence_decay;  // to 5 % = e^-3 in this time

@@ -43,6 +43,7 @@ struct Track {
   Stamp last_in_view;         ///< last time that a sensor could have seen it
   double existence = 0;       ///< probability that it is a real object
   std::vector<ClassFilter> bank;  ///< one filter a class
+  ClassId sure = -1;  ///< the class that is decided: its filter alone is kept up to date; -1: all
   std::vector<double> log_class;  ///< log class probabilities, given existence; sum of exp is 1
   ScalarEstimate base_z, height;  ///< [m] lowest point, world; lowest to highest point
   /// Where an object whose class has no heading in its state (people) looks: [rad] world, once a
@@ -54,6 +55,12 @@ struct Track {
 
   /// Index of the most probable class.
   ClassId likeliestClass() const;
+  /// Whether the class's filter is kept up to date.
+  bool live(ClassId c) const { return sure < 0 || sure == c; }
+  /// Index of the filter that stands for the class.
+  std::size_t filterOf(std::size_t c) const {
+    return sure < 0 ? c : static_cast<std::size_t>(sure);
+  }
 };
 
 using TrackHandle = std::shared_ptr<const Track>;

@@ -19,14 +19,26 @@ namespace {
 /// could never win again.
 constexpr double kLostProbability = 1 - 1e-5;
 
-double lostNis(Eigen::Index axes) {
-  static const auto quantiles = [] {
-    std::array<double, kMaxAxes + 1> q{};
+/// What one true pair in a hundred exceeds surprises a decided class.
+constexpr double kSurprisingProbability = 0.99;
+
+/// Chi-square quantiles by number of axes.
+struct Quantiles {
+  explicit Quantiles(double probability) {
     for (int n = 1; n <= kMaxAxes; ++n)
-      q[static_cast<std::size_t>(n)] = chi2Quantile(kLostProbability, n);
-    return q;
-  }();
-  return quantiles[static_cast<std::size_t>(axes)];
+      of[static_cast<std::size_t>(n)] = chi2Quantile(probability, n);
+  }
+  std::array<double, kMaxAxes + 1> of{};
+};
+
+double lostNis(Eigen::Index axes) {
+  static const Quantiles quantiles(kLostProbability);
+  return quantiles.of[static_cast<std::size_t>(axes)];
+}
+
+double surprisingNis(Eigen::Index axes) {
+  static const Quantiles quantiles(kSurprisingProbability);
+  return quantiles.of[static_cast<std::size_t>(axes)];
 }
 
 constexpr double kLogLeastMode = -14;  // log probability, about 1e-6
@@ -244,6 +256,54 @@ std::optional<double> lengthAxis(const ObjectClass& c, const ClassFilter& f, con
   return {};
 }
 
+/// The filter of another class from a decided one's: the same place and velocity.
+ClassFilter converted(const ObjectClass& from, const ClassFilter& source, const ObjectClass& to,
+                      const Extent& extent) {
+  ClassFilter f;
+  const Kinematics k = kinematicsOf(from, source);
+  const Matrix4 J = k.J.topRows<4>();
+  f.extent = extent;
+  f.x = k.q.head<4>();
+  f.P = J * source.P * J.transpose();
+  if (to.motion == Motion::kStatic) {
+    f.x.tail<2>().setZero();
+    f.P.rightCols<2>().setZero();
+    f.P.bottomRows<2>().setZero();
+    return f;
+  }
+  if (from.motion == Motion::kStatic) {
+    const double sigma = 0.5 * std::min(to.max_speed, 1.0);  // [m/s] it stood until now
+    f.P(2, 2) = f.P(3, 3) = sigma * sigma;
+  }
+  if (to.motion == Motion::kWheeled && source.oriented) {
+    f.x = source.x, f.P = source.P;
+    f.oriented = true;
+    f.heading = source.heading;
+  }
+  startModes(to, f);
+  return f;
+}
+
+/// Decides a class that has become sure, or takes the decision back.
+void decideClass(const FilterModel& model, bool surprised, Track& track) {
+  if (model.params.decide_class <= 0) return;
+  const ClassId best = track.likeliestClass();
+  const bool sure = !surprised && std::exp(track.log_class[static_cast<std::size_t>(best)]) >=
+                                      model.params.decide_class;
+  if (track.sure >= 0 && (!sure || best != track.sure)) {
+    for (ClassId j = 0; j < model.classes.size(); ++j) {
+      ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
+      if (j != track.sure) {
+        f = converted(model.classes[track.sure], track.bank[static_cast<std::size_t>(track.sure)],
+                      model.classes[j], f.extent);
+      }
+    }
+    track.sure = -1;
+  } else if (sure) {
+    track.sure = best;
+  }
+}
+
 /// A filter that lost the object: from the measurement, with the velocity of the class that
 /// explains it best.
 ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best,
@@ -303,15 +363,21 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
 
   const auto best =
       static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
+  const ClassId live = track.sure < 0 ? best : track.sure;
   const Kinematics best_kinematics =
-      kinematicsOf(model.classes[best], predicted.bank[static_cast<std::size_t>(best)]);
+      kinematicsOf(model.classes[live], predicted.bank[static_cast<std::size_t>(live)]);
   if (m.heading) updateFacing(*m.heading, model, track);
   const auto axes_seen = residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ObjectClass& c = model.classes[j];
     const auto i = static_cast<std::size_t>(j);
-    ClassFilter& f = track.bank[i];
+    ClassFilter& f = track.bank[track.filterOf(i)];
+    if (!track.live(j)) {
+      track.log_class[i] +=
+          pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
+      continue;
+    }
     const auto birth = scan.model->birth(m, j, scan.state);
     if (pair.nis[i] < lost) {
       const Kinematics k = kinematicsOf(c, f);
@@ -329,6 +395,7 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
   }
   updateHeights(m, model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
+  decideClass(model, pair.nis[static_cast<std::size_t>(best)] > surprisingNis(axes_seen), track);
   return track;
 }
 
@@ -344,6 +411,7 @@ Track missTrack(const Track& predicted, const TrackLikelihoods& row, const Measu
     track.log_class[j] += scan.model->detectionExponent() * std::log1p(-row.detection_by_class[j]);
   }
   clampClasses(model.params.class_epsilon, track.log_class);
+  decideClass(model, false, track);
   return track;
 }
 

@@ -55,15 +55,6 @@ bool usable(const ObjectDetection::SpaceBox& box) {
          box.width > 0 && box.height > 0;
 }
 
-/// The label that is the class's name.
-int mostProbableLabel(const Sensing& sensing, ClassId c) {
-  int best = 0;
-  for (int l = 1; l < static_cast<int>(sensing.labels().size()); ++l) {
-    if (sensing.logLabel(l, c) > sensing.logLabel(best, c)) best = l;
-  }
-  return best;
-}
-
 /// A label's entry of a table or the value that holds for all.
 double entry(const PositionParams::Table& table, const std::string& label, double otherwise) {
   for (const auto& [name, value] : table) {
@@ -147,12 +138,12 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
     // A label that is no class's name ("unknown") speaks for all road users alike.
     bool names_a_class = false;
     for (ClassId c = 0; c < classes.size(); ++c)
-      names_a_class = names_a_class || mostProbableLabel(sensing, c) == static_cast<int>(l);
+      names_a_class = names_a_class || sensing.labelOf(c) == static_cast<int>(l);
     for (ClassId c = 0; c < classes.size(); ++c) {
       label.log_label.push_back(sensing.logLabel(static_cast<int>(l), c));
       const bool clutter_like =
           std::count(params_.clutter_like.begin(), params_.clutter_like.end(), classes[c].name) > 0;
-      const bool own = !names_a_class || mostProbableLabel(sensing, c) == static_cast<int>(l);
+      const bool own = !names_a_class || sensing.labelOf(c) == static_cast<int>(l);
       label.score_share.push_back(clutter_like ? 0 : own ? 1 : params_.foreign_share);
     }
     label.log_clutter = sensing.logLabelClutter(static_cast<int>(l));

@@ -160,6 +160,9 @@ void SensingParams::visit(ParamVisitor& v) {
   }
   v.table("clutter_label.", clutter_labels, {0, 1}, "",
           "P(label | clutter); labels not named share the rest");
+  v.table(
+      "precision.", precision, {0.5, 1}, "",
+      "the paper's mode: P(label | its class) = precision, else 1 - precision; one key a label");
 }
 
 void ClassSensing::visit(ParamVisitor& v) {
@@ -176,6 +179,12 @@ Sensing Sensing::read(Config& config, const std::string& section, const ClassTab
                       const std::vector<std::string>& labels, const SensingParams& defaults) {
   const auto params = config.read<SensingParams>(section, defaults);
   checkRow(config, section, params.clutter_labels, "clutter_label.", labels);
+  for (const auto& [name, p] : params.precision) {
+    if (std::find(labels.begin(), labels.end(), name) == labels.end())
+      config.fault(section, "precision." + name, "no label of this sensor");
+  }
+  if (!params.precision.empty() && params.precision.size() != labels.size())
+    config.fault(section, "", "precision.*: expected one for each label of this sensor");
   const std::string prefix = section + ".class.";
   for (const auto& s : config.sectionsWithPrefix(prefix)) {
     if (classes.find(s.substr(prefix.size())) < 0)
@@ -200,8 +209,28 @@ Sensing::Sensing(SensingParams params, std::vector<ClassSensing> classes,
     for (double& p : row) p = std::log(p);
     log_labels_.push_back(std::move(row));
   }
+  if (params_.precision.size() == labels_.size() && !labels_.empty()) takePrecision();
   log_clutter_labels_ = completeRow(params_.clutter_labels, labels_);
   for (double& p : log_clutter_labels_) p = std::log(p);
+}
+
+void Sensing::takePrecision() {
+  constexpr double kLeast = 1e-3;  // the paper clamps probabilities (SPEC 5.6)
+  const auto table = log_labels_;
+  for (std::size_t c = 0; c < table.size(); ++c) {
+    const auto own = std::max_element(table[c].begin(), table[c].end()) - table[c].begin();
+    for (const auto& [name, p] : params_.precision) {
+      const int label = labelIndex(name);
+      if (label < 0) continue;
+      log_labels_[c][static_cast<std::size_t>(label)] =
+          std::log(std::max(kLeast, label == own ? p : 1 - p));
+    }
+  }
+}
+
+int Sensing::labelOf(ClassId c) const {
+  const auto& row = log_labels_[static_cast<std::size_t>(c)];
+  return static_cast<int>(std::max_element(row.begin(), row.end()) - row.begin());
 }
 
 int Sensing::labelIndex(const std::string& name) const {

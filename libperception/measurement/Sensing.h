@@ -22,6 +22,9 @@ struct SensingParams {
   std::optional<Pose3> pose;        ///< on the vehicle; when given it wins over the log's
   std::vector<std::pair<std::string, double>>
       clutter_labels;  ///< P(label | clutter); the rest shares evenly
+  /// The paper's reading of labels in place of the class tables: a label's precision p is
+  /// P(label | its class), 1 - p is P(label | any other class) (SPEC 5.6). Empty: the tables.
+  std::vector<std::pair<std::string, double>> precision;
 
   void visit(ParamVisitor& v);
 };
@@ -52,6 +55,8 @@ class Sensing {
   /// Index of a label name or -1.
   int labelIndex(const std::string& name) const;
   double logLabel(int label, ClassId c) const;
+  /// The label that is the name of the class: the likeliest of its row.
+  int labelOf(ClassId c) const;
   double logLabelClutter(int label) const {
     return log_clutter_labels_[static_cast<std::size_t>(label)];
   }
@@ -60,6 +65,8 @@ class Sensing {
   double area() const;  ///< [m^2] of the field of view
 
  private:
+  void takePrecision();
+
   SensingParams params_;
   std::vector<ClassSensing> classes_;
   std::vector<std::string> labels_;

@@ -21,6 +21,14 @@ struct Mixture {
 Mixture mixtureOf(const Track& track, const FilterModel& model, const std::vector<double>& p) {
   Mixture out;
   std::vector<Kinematics> kinematics;
+  if (track.sure >= 0) {
+    const ClassFilter& f = track.bank[static_cast<std::size_t>(track.sure)];
+    const Kinematics k = kinematicsOf(model.classes[track.sure], f);
+    const Matrix4 J = k.J.topRows<4>();
+    out.mean = k.q.head<4>();
+    out.covariance = J * f.P * J.transpose();
+    return out;
+  }
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     kinematics.push_back(kinematicsOf(model.classes[j], track.bank[static_cast<std::size_t>(j)]));
     out.mean += p[static_cast<std::size_t>(j)] * kinematics.back().q.head<4>();

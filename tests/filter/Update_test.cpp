@@ -167,6 +167,59 @@ TEST(HitTrack, FacingFollowsTheAxisAndTheMajorityOfDirections) {
   EXPECT_LT(track.facing->variance, 0.01);
 }
 
+/// A walker of 1 m/s, seen at 10 Hz with labels that speak for it, under a hard decision at .99.
+Track walkerAfter(const Fixture& f, int scans, double jump = 0) {
+  Track track = f.born();
+  for (int i = 1; i <= scans; ++i) {
+    const double t = 0.1 * i;
+    const double x = 1 + t + (i == scans ? jump : 0);
+    auto scan = positionScan(f.sensor, t, {{x, 2, 0}});
+    scan.measurements[0].log_class = {1.0, 0.0};
+    track = predictTrack(track, scan.state.stamp, f.model);
+    const auto table = likelihoodTable({track}, scan, f.model);
+    track = hitTrack(track, table.tracks[0], table.tracks[0].pairs.at(0), scan,
+                     static_cast<std::uint64_t>(i), f.model);
+  }
+  return track;
+}
+
+TEST(DecidedClass, GoesOnAloneLikeInAFullBank) {
+  Fixture f;
+  const Track full = walkerAfter(f, 30);
+  f.model.params.decide_class = 0.99;
+  const Track track = walkerAfter(f, 30);
+  EXPECT_EQ(full.sure, -1);
+  ASSERT_EQ(track.sure, 0);
+  EXPECT_TRUE(track.bank[0].x.isApprox(full.bank[0].x, 1e-12));
+  EXPECT_TRUE(track.bank[0].P.isApprox(full.bank[0].P, 1e-12));
+  EXPECT_NE(track.bank[1].x[0], full.bank[1].x[0]) << "the other filter rests";
+}
+
+TEST(DecidedClass, ASurpriseWidensTheBankAtTheSamePlace) {
+  Fixture f;
+  f.model.params.decide_class = 0.99;
+  const Track track = walkerAfter(f, 30, 1.5);
+  EXPECT_EQ(track.sure, -1);
+  EXPECT_TRUE((track.bank[1].x.head<2>().isApprox(track.bank[0].x.head<2>(), 1e-12)));
+  EXPECT_EQ(track.bank[1].x[2], 0) << "a static object has no velocity";
+}
+
+TEST(DecidedClass, LabelsOfAnotherClassTakeTheDecisionBack) {
+  Fixture f;
+  f.model.params.decide_class = 0.99;
+  f.model.params.class_epsilon = 1e-3;
+  Track track = walkerAfter(f, 30);
+  ASSERT_EQ(track.sure, 0);
+  for (int i = 1; i <= 20 && track.sure == 0; ++i) {
+    auto scan = positionScan(f.sensor, 3 + 0.1 * i, {{4 + 0.1 * i, 2, 0}});
+    scan.measurements[0].log_class = {0.0, 1.0};
+    track = predictTrack(track, scan.state.stamp, f.model);
+    const auto table = likelihoodTable({track}, scan, f.model);
+    track = hitTrack(track, table.tracks[0], table.tracks[0].pairs.at(0), scan, 100, f.model);
+  }
+  EXPECT_NE(track.sure, 0);
+}
+
 TEST(LikelihoodTable, HiddenObjectsKeepTheirShareOfDetection) {
   Fixture f;
   f.model.params.hidden_detection = 0.25;

@@ -46,6 +46,27 @@ TEST(Sensing, StartsFromTheTableOfTheKindOfSensor) {
   EXPECT_NEAR(std::exp(s.logLabel(0, 2)), 0.5, 1e-9);
 }
 
+TEST(Sensing, ThePapersPrecisionStandsForTheTableOfLabels) {
+  Config config = Config::fromText(
+      "[sensor.A]\nmodality = L\nprecision.car_sized = 0.51\nprecision.person_sized = 0.55\n"
+      "[sensor.A.class.car]\nlabel.car_sized = 0.9\n",
+      "a.ini");
+  const Sensing s = read(config);
+  EXPECT_NEAR(s.logLabel(0, 1), std::log(0.51), 1e-12);
+  EXPECT_NEAR(s.logLabel(0, 0), std::log(0.49), 1e-12);
+  EXPECT_NEAR(s.logLabel(1, 0), std::log(0.55), 1e-12);
+  // The paper: a car is known after some 74 clusters, a person after 15 (posterior .95).
+  EXPECT_NEAR(std::log(19) / (s.logLabel(0, 1) - s.logLabel(0, 0)), 73.6, 0.1);
+  EXPECT_NEAR(std::log(19) / (s.logLabel(1, 0) - s.logLabel(1, 1)), 14.7, 0.1);
+}
+
+TEST(Sensing, PrecisionMustNameEveryLabel) {
+  EXPECT_NE(faultsOf("[sensor.A]\nprecision.car_sized = 0.51\n").find("one for each label"),
+            std::string::npos);
+  EXPECT_NE(faultsOf("[sensor.A]\nprecision.tram = 0.51\n").find("no label of this sensor"),
+            std::string::npos);
+}
+
 TEST(Sensing, RowsSumToOne) {
   Config config =
       Config::fromText("[sensor.A]\n[sensor.A.class.car]\nlabel.car_sized = 0.7\n", "a.ini");
