@@ -5,33 +5,13 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/core/Random.h"
 #include "libperception/evaluation/Evaluation.h"
 #include "libperception/evaluation/Metrics.h"
+#include "libperception/study/LabelDamage.h"
 #include "libperception/study/RecordedLog.h"
 #include "libperception/study/Study.h"
 
 namespace perception {
-
-/// The label of a box whose detector does not say what it is. A configuration that takes such boxes
-/// lists it among its labels.
-inline constexpr const char* kNoLabel = "unknown";
-
-/// How a detector's labels are spoilt: of every thing, with this probability.
-struct LabelDamage {
-  enum Kind { kNone, kDropped, kFlipped } kind = kNone;
-  double probability = 0;  ///< 1 with kDropped: the classes are pooled without labels
-};
-
-/// Boxes of different labels nearer to each other than `group_distance` [m] are of one thing. A
-/// thing that is hit keeps its surest box alone, with place, size and score; its label becomes
-/// kNoLabel (dropped) or one of the others, each alike (flipped). What is hit with one probability
-/// is also hit with a larger one.
-void damageLabels(const LabelDamage& damage, const std::vector<std::string>& labels,
-                  double group_distance, const RngKey& key, ObjectDetections& detections);
-
-/// Keeps one label's boxes and, if asked for, those without a label.
-void keepLabel(const std::string& label, bool without_label, ObjectDetections& detections);
 
 /// A log whose front ends can be run on spoilt detections.
 struct LabelledLog {
