@@ -66,7 +66,7 @@ const std::vector<std::string>& RunParams::associationNames() {
 void RunParams::visit(ParamVisitor& v) {
   v.unsigned64("seed", seed, "of all random numbers; --seed wins");
   v.text("sensors", sensors, "modalities in use, letters C, L, R joined by +; --sensors wins");
-  v.words("without", without, "labels of sensors that are left out all the same");
+  v.words("without", without, "labels of sensors that are left out all the same; none");
   v.choiceOf("association", association, associationNames(),
              "how a hypothesis chooses the causes of measurements");
   v.text("output_sensor", output_sensor,
@@ -119,6 +119,7 @@ PipelineSetup PipelineSetup::read(Config& config) {
     s.sensors.push_back(std::move(sensor));
   }
   for (const auto& label : s.run.without) {
+    if (label == "none") continue;
     const auto is_it = [&](const Sensor& sensor) { return sensor.label == label; };
     if (std::none_of(s.sensors.begin(), s.sensors.end(), is_it))
       config.fault("run", "without", "there is no [sensor." + label + "]");
