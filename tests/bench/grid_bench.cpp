@@ -174,7 +174,8 @@ void timeThem(std::vector<Method>& methods, const std::vector<GridScan>& scans, 
 
 void inSpace(const std::vector<GridScan>& scans) {
   const auto ours = makeSafetyGrid(windowParams(GridParams::BackEnd::kRolling));
-  mrpt::maps::COccupancyGridMap3D flat({-30, -30, kBottom}, {30, 30, kTop}, kResolution);
+  mrpt::maps::COccupancyGridMap3D flat({-30, -30, kBottom}, {30, 30, kTop},
+                                       static_cast<float>(kResolution));
   mrpt::maps::COctoMap octo(kResolution);
   octo.insertionOptions.maxrange = kReach;
   std::vector<Method> methods;
