@@ -41,6 +41,7 @@ RecordedLog recordLog(const std::string& log, Config& config, double seconds,
   registerPerceptionClasses();
   PipelineSetup setup = PipelineSetup::read(config);
   config.finish();
+  setup.run.output_lag = setup.model.history = 0;  // replays are causal
   RecordedLog recorded;
   recorded.name = std::filesystem::path(log).stem().string();
   recorded.model = setup.model;

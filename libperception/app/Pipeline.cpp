@@ -73,6 +73,8 @@ void RunParams::visit(ParamVisitor& v) {
          "scenes at its scans; empty: the first lidar in use, else the first sensor");
   v.real("output_rate", output_rate, {0, 1000}, "Hz",
          "scenes at a fixed rate instead; 0: at scans; --rate wins");
+  v.real("output_lag", output_lag, {0, 10}, "s",
+         "scenes come so late, smoothed by what was seen meanwhile; 0: at once");
   v.real("reorder_window", reorder_window, {0, 10}, "s", "how late an observation may come");
   v.real("sensor_timeout", sensor_timeout, {0.01, 1e4}, "s",
          "silence after which a sensor counts as lost");
@@ -89,6 +91,7 @@ PipelineSetup PipelineSetup::read(Config& config) {
   s.model.classes = readClassTable(config);
   s.model.params = config.read<FilterParams>("filter");
   s.model.proposal = s.run.association;
+  s.model.history = s.run.output_lag;
   s.particles = config.read<ParticleFilterParams>("particle_filter");
   s.scene = config.read<SceneParams>("scene");
   s.ego = config.read<EgoPoseParams>("ego");
@@ -249,6 +252,7 @@ void Pipeline::startEpoch(Stamp stamp, double back) {
   }
   events_.warn(stamp, event_kind::kClockJump,
                fmt::format("the clock went back by {:.3f} s: tracks start anew", back));
+  makeScenes(std::nullopt);
   tracker_.reset();
   if (observer_) observer_->onRestart();
   ego_.clear();
@@ -301,7 +305,11 @@ void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
 std::optional<Scene> Pipeline::next(bool flush) {
   while (ready_.empty()) {
     auto frames = queue_.pop(flush);
-    if (frames.empty()) return std::nullopt;
+    if (frames.empty()) {
+      if (flush) makeScenes(std::nullopt);
+      if (ready_.empty()) return std::nullopt;
+      break;
+    }
     mergeScans(frames);
     processInstant(std::move(frames));
   }
@@ -314,6 +322,7 @@ EgoState Pipeline::egoAt(Stamp stamp) {
   // Tracks live in the world: in another one they are nowhere.
   if (std::exchange(worlds_, ego_.worlds()) != ego_.worlds() && last_instant_) {
     events_.add(stamp, event_kind::kEgoGap, "the world's frame is known now: tracks start anew");
+    makeScenes(std::nullopt);
     tracker_.reset();
     horizon_.reset();
   }
@@ -368,6 +377,7 @@ void Pipeline::processInstant(std::vector<SensorFrame> frames) {
   }
   watchSensors(stamp);
   last_instant_ = stamp;
+  if (setup_.run.output_lag > 0) makeScenes(stamp);
   if (setup_.run.output_rate > 0) {
     if (!next_output_) next_output_ = stamp;
   } else if (output) {
@@ -424,8 +434,18 @@ void Pipeline::watchSensors(Stamp now) {
 
 void Pipeline::emit(const EgoState& ego, std::int64_t frame) {
   if (observer_) observer_->onScene(ego, frame);
+  asked_.emplace_back(ego, frame);
+  makeScenes(ego.stamp);
+}
+
+// Those whose lag is over; without `now` all, as no more is going to be seen.
+void Pipeline::makeScenes(std::optional<Stamp> now) {
   const auto scope = timing_.stage("scene");
-  ready_.push_back(scenes_.make(tracker_.mapHypothesis(), ego, frame));
+  while (!asked_.empty() && (!now || *now - asked_.front().first.stamp >= setup_.run.output_lag)) {
+    const auto& [ego, frame] = asked_.front();
+    ready_.push_back(scenes_.make(tracker_.mapHypothesis(), ego, frame));
+    asked_.pop_front();
+  }
 }
 
 void Pipeline::emitUntil(Stamp stamp) {

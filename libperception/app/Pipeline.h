@@ -33,7 +33,9 @@ struct RunParams {
   Proposal association = Proposal::kSampled;
   std::string
       output_sensor;  ///< scenes at its scans; empty: the first lidar in use, else the first sensor
-  double output_rate = 0;           ///< [Hz] instead: scenes at a fixed rate; 0 = at scans
+  double output_rate = 0;  ///< [Hz] instead: scenes at a fixed rate; 0 = at scans
+  double output_lag =
+      0;  ///< [s] scenes come so late, smoothed by what was seen meanwhile; 0: at once
   double reorder_window = 0.2;      ///< [s] how late an observation may come (SPEC 1)
   double sensor_timeout = 1;        ///< [s] of silence after which a sensor counts as lost
   double clock_jump = 5;            ///< [s] back: a new epoch; forward: a gap worth an event
@@ -103,7 +105,7 @@ class Pipeline {
     SensorRecord record;
     std::optional<Stamp> last;
     bool lost = false;
-    bool points_said = false;  ///< that returns were dropped
+    bool points_said = false;                 ///< that returns were dropped
     std::unique_ptr<GroundEstimator> ground;  ///< lidars only
     std::unique_ptr<PointFilter> weather;     ///< lidars only; empty: every return is trusted
   };
@@ -119,6 +121,7 @@ class Pipeline {
   void update(const MeasurementScan& scan);
   void watchSensors(Stamp now);
   void emit(const EgoState& ego, std::int64_t frame);
+  void makeScenes(std::optional<Stamp> now);
   void emitUntil(Stamp stamp);
   void startEpoch(Stamp stamp, double back);
 
@@ -129,7 +132,8 @@ class Pipeline {
   SceneFromPosterior scenes_;
   EgoPose ego_;
   FrameQueue queue_;
-  std::vector<SensorState> states_;  ///< as setup_.sensors
+  std::vector<SensorState> states_;                      ///< as setup_.sensors
+  std::deque<std::pair<EgoState, std::int64_t>> asked_;  ///< instants whose scene is still to come
   std::deque<Scene> ready_;
   std::deque<std::pair<Stamp, std::int64_t>> frame_numbers_;  ///< recent
   std::map<std::string, std::uint64_t> ignored_;  ///< frames by label that no section asks for

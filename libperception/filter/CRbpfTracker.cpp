@@ -71,6 +71,7 @@ bool CRbpfTracker::process(const MeasurementScan& scan) {
 void CRbpfTracker::reset() {
   setPosterior(Posterior::empty(model_.proposal == Proposal::kSampled ? slots_ : 1));
   map_ = std::make_shared<const Hypothesis>();
+  history_.clear();
   started_ = false;
 }
 
@@ -90,7 +91,14 @@ void CRbpfTracker::prediction_and_update_pfOptimalProposal(const mrpt::obs::CAct
   static_cast<StepStats&>(stats_) = result.stats;
   stats_.hypotheses = best.distinct;
   stats_.map_probability = best.probability;
+  if (model_.history > 0) keepHistory(result.posterior, scan_->state.stamp);
   setPosterior(std::move(result.posterior));
+}
+
+void CRbpfTracker::keepHistory(const Posterior& posterior, Stamp now) {
+  history_.emplace_back(now, posterior.hypotheses);
+  // One from before the span stays: an instant inside of it lies between two scans.
+  while (history_.size() > 1 && now - history_[1].first >= model_.history) history_.pop_front();
 }
 
 void CRbpfTracker::setPosterior(Posterior&& posterior) {

@@ -2,6 +2,10 @@
 #include <mrpt/bayes/CParticleFilter.h>
 #include <mrpt/bayes/CParticleFilterData.h>
 
+#include <deque>
+#include <utility>
+#include <vector>
+
 #include "libperception/core/ParamSet.h"
 #include "libperception/filter/Step.h"
 
@@ -65,6 +69,7 @@ class CRbpfTracker final
 
  private:
   void setPosterior(Posterior&& posterior);
+  void keepHistory(const Posterior& posterior, Stamp now);
 
   FilterModel model_;
   mrpt::bayes::CParticleFilter executor_;
@@ -75,6 +80,9 @@ class CRbpfTracker final
   Stamp stamp_;
   const MeasurementScan* scan_ = nullptr;  ///< the scan that executeOn() is to use
   HypothesisHandle map_;
+  /// What the particles held after the scans of the last FilterModel::history seconds: keeps alive
+  /// what tracks are linked to.
+  std::deque<std::pair<Stamp, std::vector<HypothesisHandle>>> history_;
   ScanStats stats_;
 };
 

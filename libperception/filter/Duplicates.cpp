@@ -44,6 +44,7 @@ TrackHandle takeOver(const Track& older, const Track& younger) {
   t.id = older.id;
   t.birth = older.birth;
   t.log_class = older.log_class;
+  t.previous = older.previous;
   for (std::size_t i = 0; i < t.hits.size(); ++i) t.hits[i] += older.hits[i];
   return std::make_shared<const Track>(std::move(t));
 }

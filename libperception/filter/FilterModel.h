@@ -66,6 +66,8 @@ struct FilterModel {
   ClassTable classes;
   FilterParams params;
   Proposal proposal = Proposal::kSampled;
+  double history =
+      0;  ///< [s] for which tracks stay linked to what they were: for smoothing; 0: not
 };
 
 }  // namespace perception

@@ -12,9 +12,9 @@ namespace {
 
 void symmetrise(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
-/// SPEC 3.1: F = [I dtI; 0 I], Q of white acceleration; position_psd adds slip.
-void predictConstantVelocity(const ObjectClass& c, double psd, double damping, double dt,
-                             Vector4& x, Matrix4& P) {
+/// SPEC 3.1: F = [I dtI; 0 I], Q of white acceleration; position_psd adds slip. Returns F.
+Matrix4 predictConstantVelocity(const ObjectClass& c, double psd, double damping, double dt,
+                                Vector4& x, Matrix4& P) {
   const SpeedNoise n(damping, dt);
   Matrix4 F = Matrix4::Identity();
   F(0, 2) = F(1, 3) = n.way;
@@ -27,12 +27,13 @@ void predictConstantVelocity(const ObjectClass& c, double psd, double damping, d
   }
   x = F * x;
   P = F * P * F.transpose() + Q;
+  return F;
 }
 
 /// SPEC 3.2: speed v along theta, both random walks; Q to first order, valid for any dt and
-/// composing consistently.
-void predictWheeled(const ObjectClass& object_class, double psd, double damping, double dt,
-                    Vector4& x, Matrix4& P) {
+/// composing consistently. Returns F.
+Matrix4 predictWheeled(const ObjectClass& object_class, double psd, double damping, double dt,
+                       Vector4& x, Matrix4& P) {
   const SpeedNoise noise(damping, dt);
   const double c = std::cos(x[3]), s = std::sin(x[3]), v = x[2];
   Matrix4 F = Matrix4::Identity();
@@ -57,6 +58,7 @@ void predictWheeled(const ObjectClass& object_class, double psd, double damping,
   x[1] += noise.way * v * s;
   x[2] *= noise.keep;
   P = F * P * F.transpose() + Q;
+  return F;
 }
 
 /// x - reference, the heading wrapped.
@@ -127,16 +129,20 @@ bool needsSubSteps(const GaussianStep& s) {
   return s.oriented && (s.dt > 0.25 || (*s.P)(3, 3) > radians(30) * radians(30)) && s.dt > 0.1;
 }
 
-void predictGaussian(const GaussianStep& s) {
+void predictGaussian(const GaussianStep& s, Matrix4* transition) {
+  Matrix4 whole = Matrix4::Identity();
   if (!s.oriented) {
-    predictConstantVelocity(*s.object_class, s.psd, s.damping, s.dt, *s.x, *s.P);
+    whole = predictConstantVelocity(*s.object_class, s.psd, s.damping, s.dt, *s.x, *s.P);
   } else {
     const int steps =
         needsSubSteps(s) ? std::max(1, static_cast<int>(std::ceil(s.dt / 0.1 - 1e-9))) : 1;
-    for (int i = 0; i < steps; ++i)
-      predictWheeled(*s.object_class, s.psd, s.damping, s.dt / steps, *s.x, *s.P);
+    for (int i = 0; i < steps; ++i) {
+      const Matrix4 F = predictWheeled(*s.object_class, s.psd, s.damping, s.dt / steps, *s.x, *s.P);
+      if (transition) whole = F * whole;
+    }
   }
   symmetrise(*s.P);
+  if (transition) *transition = whole;
 }
 
 void startModes(const ObjectClass& c, ClassFilter& f) {

@@ -22,8 +22,8 @@ struct GaussianStep {
 /// that are left to move; combineModes() comes after them.
 void beginPrediction(const ObjectClass& object_class, double dt, ClassFilter& filter,
                      std::vector<GaussianStep>& out);
-/// Moves one Gaussian.
-void predictGaussian(const GaussianStep& step);
+/// Moves one Gaussian; `transition`, where asked for, becomes dx(after)/dx(before).
+void predictGaussian(const GaussianStep& step, Matrix4* transition = nullptr);
 /// Whether it has to be taken in sub-steps.
 bool needsSubSteps(const GaussianStep& step);
 

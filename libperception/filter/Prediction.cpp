@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libperception/core/LogMath.h"
 #include "libperception/filter/BankBatch.h"
@@ -20,18 +21,14 @@ constexpr std::size_t kWorthBatch = 8;
 void beginTrack(Stamp to, const FilterModel& model, Track& next, std::vector<GaussianStep>& steps) {
   const double dt = to - next.stamp;
   if (dt <= 0) return;
+  TrackOdds odds = predictOdds(next, to, model);
+  next.existence = odds.existence;
+  next.log_class = std::move(odds.log_class);
   next.stamp = to;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     if (next.live(j))
       beginPrediction(model.classes[j], dt, next.bank[static_cast<std::size_t>(j)], steps);
   }
-  const bool in_view = to - next.last_in_view < kOutOfViewAfter;
-  const double life = in_view ? model.params.survival_in_view : model.params.survival_out_of_view;
-  const double decay = model.params.existence_decay;  // to 5 % = e^-3 in this time
-  next.existence *= std::exp(decay > 0 ? -3 * dt / decay : -dt / life);
-  const double forget = -std::expm1(-dt / model.params.class_forgetting);
-  const double uniform = std::log(forget / static_cast<double>(model.classes.size()));
-  for (double& lp : next.log_class) lp = logAddExp(lp + std::log1p(-forget), uniform);
   next.base_z.variance += model.params.base_walk * dt;
   if (next.facing) next.facing->variance += model.params.facing_walk * dt;
 }
@@ -89,6 +86,20 @@ void moveBatch(const std::vector<GaussianStep>& steps, bool wheeled) {
 }
 
 }  // namespace
+
+TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model) {
+  TrackOdds odds{track.existence, track.log_class};
+  const double dt = to - track.stamp;
+  if (dt <= 0) return odds;
+  const bool in_view = to - track.last_in_view < kOutOfViewAfter;
+  const double life = in_view ? model.params.survival_in_view : model.params.survival_out_of_view;
+  const double decay = model.params.existence_decay;  // to 5 % = e^-3 in this time
+  odds.existence *= std::exp(decay > 0 ? -3 * dt / decay : -dt / life);
+  const double forget = -std::expm1(-dt / model.params.class_forgetting);
+  const double uniform = std::log(forget / static_cast<double>(model.classes.size()));
+  for (double& lp : odds.log_class) lp = logAddExp(lp + std::log1p(-forget), uniform);
+  return odds;
+}
 
 Track predictTrack(const Track& track, Stamp to, const FilterModel& model) {
   Track next = track;

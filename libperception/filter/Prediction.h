@@ -10,8 +10,15 @@ namespace perception {
 /// (SPEC 5.1, 5.7).
 Track predictTrack(const Track& track, Stamp to, const FilterModel& model);
 
-/// The same for those tracks that are `touched`, their Gaussians in batches (see BankBatch); the
-/// others stay empty. Equal to predictTrack up to rounding.
+/// What a later time makes of the existence and the classes of a track.
+struct TrackOdds {
+  double existence = 0;
+  std::vector<double> log_class;
+};
+TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model);
+
+/// predictTrack() for those tracks that are `touched`, their Gaussians in batches (see BankBatch);
+/// the others stay empty. Equal up to rounding.
 std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,
                                  const std::vector<char>& touched, Stamp to,
                                  const FilterModel& model);

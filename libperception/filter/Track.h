@@ -52,6 +52,9 @@ struct Track {
   HeadingBit facing_bit;            ///< of it: front or back
   std::array<Stamp, 3> last_hit{};  ///< by modality (modalityIndex); 0 = never
   std::array<int, 3> hits{};        ///< by modality
+  /// What it was before its last scan, for as long as somebody keeps that; only where the model
+  /// asks for a history.
+  std::weak_ptr<const Track> previous;
 
   /// Index of the most probable class.
   ClassId likeliestClass() const;

@@ -58,7 +58,8 @@ bool Updates::keep(const Track& t) const {
          (f.x.head<2>() - ego).norm() <= model_.params.max_distance;
 }
 
-void Updates::store(std::size_t cell, Track&& track) {
+void Updates::store(std::size_t cell, Track&& track, const TrackHandle& before) {
+  if (model_.history > 0) track.previous = before;
   if (keep(track)) made_[cell] = std::make_shared<const Track>(std::move(track));
 }
 
@@ -73,13 +74,15 @@ std::size_t Updates::make(std::uint64_t scan_index) {
     for (std::size_t p = 0; p < row.pairs.size(); ++p) {
       const std::size_t cell = first_[t] + 1 + p;
       if (wanted_[cell])
-        store(cell, hitTrack(predicted, row, row.pairs[p], scan_, scan_index, model_));
+        store(cell, hitTrack(predicted, row, row.pairs[p], scan_, scan_index, model_),
+              tracks_.before[t]);
     }
-    if (wanted_[missCell(t)]) store(missCell(t), missTrack(predicted, row, scan_, model_));
+    if (wanted_[missCell(t)])
+      store(missCell(t), missTrack(predicted, row, scan_, model_), tracks_.before[t]);
   });
   parallelFor(table_.news.size(), [&](std::size_t k) {
     if (wanted_[newCell(k)])
-      store(newCell(k), newTrack(table_.news[k], k, scan_, scan_index, model_));
+      store(newCell(k), newTrack(table_.news[k], k, scan_, scan_index, model_), nullptr);
   });
   duplicates_ = DuplicateTable(model_, scan_.state.stamp, made_);
   return static_cast<std::size_t>(std::count(wanted_.begin(), wanted_.end(), 1));

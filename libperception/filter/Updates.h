@@ -35,7 +35,8 @@ class Updates {
   std::size_t missCell(std::size_t track) const { return first_[track]; }
   std::size_t newCell(std::size_t k) const { return first_.back() + k; }
   bool keep(const Track& t) const;
-  void store(std::size_t cell, Track&& track);
+  /// `before`: what the track was before the scan; null for a newborn.
+  void store(std::size_t cell, Track&& track, const TrackHandle& before);
   /// The cells that follow from an association, in the order of the hypothesis's tracks.
   std::vector<std::size_t> cellsOf(std::size_t h, const Association& association) const;
 

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "libperception/filter/MotionModels.h"
+#include "libperception/filter/Parallel.h"
 #include "libperception/filter/Prediction.h"
+#include "libperception/filter/Smoothing.h"
 
 namespace perception {
 namespace {
@@ -106,16 +109,28 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   return o;
 }
 
+TrackHandle SceneFromPosterior::trackAt(const TrackHandle& track, Stamp stamp) const {
+  if (stamp < track->stamp && model_.history > 0) {
+    const auto smoothed = smoothedTrack(*track, stamp, model_);
+    const double existence = smoothed ? smoothed->existence : -1;
+    return existence < params_.min_existence ? nullptr : std::make_shared<const Track>(*smoothed);
+  }
+  if (track->existence < params_.min_existence) return nullptr;
+  return stamp > track->stamp ? std::make_shared<const Track>(predictTrack(*track, stamp, model_))
+                              : track;
+}
+
 Scene SceneFromPosterior::make(const Hypothesis& hypothesis, const EgoState& ego,
                                std::int64_t frame) {
   Scene scene;
   scene.stamp = ego.stamp;
   scene.frame = frame;
   scene.ego = ego;
-  for (const auto& handle : hypothesis.tracks) {
-    if (handle->existence < params_.min_existence) continue;
-    scene.objects.push_back(
-        objectOf(ego.stamp > handle->stamp ? predictTrack(*handle, ego.stamp, model_) : *handle));
+  std::vector<TrackHandle> tracks(hypothesis.tracks.size());
+  parallelFor(tracks.size(),
+              [&](std::size_t i) { tracks[i] = trackAt(hypothesis.tracks[i], ego.stamp); });
+  for (const auto& track : tracks) {
+    if (track) scene.objects.push_back(objectOf(*track));
   }
   std::sort(scene.objects.begin(), scene.objects.end(),
             [](const SceneObject& a, const SceneObject& b) { return a.id < b.id; });

@@ -26,13 +26,16 @@ class SceneFromPosterior {
   SceneFromPosterior(FilterModel model, SceneParams params)
       : model_(std::move(model)), params_(params) {}
 
-  /// The objects at `ego.stamp`: a prediction of a copy when that is later than the tracks. The
-  /// mean over classes of position and velocity, size and heading of the most probable class.
+  /// The objects at `ego.stamp`: a prediction of a copy when that is later than the tracks,
+  /// smoothed when it is earlier (FilterModel::history). The mean over classes of position and
+  /// velocity, size and heading of the most probable class.
   Scene make(const Hypothesis& hypothesis, const EgoState& ego, std::int64_t frame);
 
   std::uint64_t objectsSoFar() const { return numbers_.size(); }
 
  private:
+  /// The track at that time; null when it is not believed in, then.
+  TrackHandle trackAt(const TrackHandle& track, Stamp stamp) const;
   SceneObject objectOf(const Track& track);
   std::uint64_t numberOf(std::uint64_t track_id);
 
