@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "libperception/core/LogMath.h"
-#include "libperception/filter/RankedAssignments.h"
 
 namespace perception {
 namespace {
@@ -151,43 +150,9 @@ std::vector<SampledAssociation> sampleAssociations(const std::vector<std::size_t
   out.reserve(branches.size());
   for (Branch& b : branches) {
     for (std::uint32_t& s : b.sampled.slots) s = streams[s];
+    for (int& c : b.sampled.association.cause)
+      if (c >= 0) c = static_cast<int>(tracks[static_cast<std::size_t>(c)]);
     out.push_back(std::move(b.sampled));
-  }
-  return out;
-}
-
-std::vector<Association> rankAssociations(const std::vector<std::size_t>& tracks,
-                                          const AssociationIndex& index, std::size_t k,
-                                          double span) {
-  const std::vector<int> place = placesOf(tracks, index);
-  AssignmentProblem problem;
-  problem.columns = static_cast<int>(tracks.size());
-  problem.rows.resize(index.measurements());
-  Association base;
-  base.log_weight = logAllMissed(tracks, index);
-  for (std::size_t m = 0; m < index.measurements(); ++m) {
-    // Of the causes that are no track the likeliest stands for all: there is only one unless births
-    // are sampled.
-    const auto& others = index.others(m);
-    const auto other =
-        std::max_element(others.begin(), others.end(),
-                         [](const auto& a, const auto& b) { return a.log_weight < b.log_weight; });
-    base.cause.push_back(other->cause);
-    const bool possible = other->log_weight > kMinusInfinity;
-    if (possible) base.log_weight += other->log_weight;
-    for (const auto& c : index.candidates(m)) {
-      if (place[c.track] < 0 || !possible) continue;
-      problem.rows[m].push_back({place[c.track], c.log_odds - other->log_weight});
-    }
-  }
-  std::vector<Association> out;
-  for (const auto& ranked : rankedAssignments(problem, k, span)) {
-    Association a = base;
-    a.log_weight += ranked.log_weight;
-    for (std::size_t m = 0; m < ranked.column.size(); ++m) {
-      if (ranked.column[m] != RankedAssignment::kNothing) a.cause[m] = ranked.column[m];
-    }
-    out.push_back(std::move(a));
   }
   return out;
 }

@@ -12,7 +12,7 @@ struct Association {
   static constexpr int kNew = -1;  ///< a newborn: a Bernoulli one that may be clutter, or, where
                                    ///< births are sampled, a sure one
   static constexpr int kClutter = -2;  ///< only where births are sampled
-  std::vector<int> cause;  ///< by measurement: index into the hypothesis's tracks, kNew or kClutter
+  std::vector<int> cause;  ///< by measurement: index of a distinct track, kNew or kClutter
   double log_weight = 0;   ///< log p(scan | history) / proposal, exact
 };
 
@@ -61,12 +61,6 @@ std::vector<SampledAssociation> sampleAssociations(const std::vector<std::size_t
                                                    const std::vector<std::size_t>& order,
                                                    std::vector<std::uint32_t> slots,
                                                    const RngKey& key);
-
-/// The `k` likeliest associations of one hypothesis, best first, each with its own exact weight;
-/// none lighter than the best by more than `span` in log weight (SPEC 6).
-std::vector<Association> rankAssociations(const std::vector<std::size_t>& tracks,
-                                          const AssociationIndex& index, std::size_t k,
-                                          double span);
 
 /// A random permutation of 0..n-1.
 std::vector<std::size_t> randomOrder(std::size_t n, Rng rng);

@@ -9,6 +9,7 @@ namespace perception {
 namespace {
 
 constexpr double kUnseen = 0.25;  // [s] a track not hit for so long gives way to a fresh one
+constexpr std::uint32_t kAbsent = static_cast<std::uint32_t>(-1);
 constexpr double kSureClass =
     0.95;  // a track of unsure class has no footprint that others must respect
 
@@ -51,8 +52,7 @@ TrackHandle takeOver(const Track& older, const Track& younger) {
 
 }  // namespace
 
-DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now,
-                               const std::vector<TrackHandle>& tracks)
+DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackTable& tracks)
     : cells_(tracks.size()) {
   const double least = model.params.merge_area;
   if (least <= 0) return;
@@ -84,23 +84,38 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now,
     if (ja != jb) return ja < jb;
     return a.older != b.older ? a.older < b.older : a.younger < b.younger;
   });
+  if (conflicts_.empty()) return;
+  involved_.assign(cells_, kAbsent);
+  for (const Conflict& c : conflicts_) {
+    for (const std::size_t cell : {c.older, c.younger}) {
+      std::uint32_t& number = involved_[cell];
+      if (number == kAbsent) number = static_cast<std::uint32_t>(involved_count_++);
+    }
+  }
 }
 
-std::vector<std::size_t> DuplicateTable::merged(std::vector<std::size_t> cells) const {
+std::vector<std::uint32_t> DuplicateTable::merged(std::vector<std::uint32_t> cells) const {
   if (conflicts_.empty()) return cells;
-  constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> place(cells_, kAbsent);
-  for (std::size_t i = 0; i < cells.size(); ++i) place[cells[i]] = i;
+  std::vector<std::uint32_t> place(involved_count_, kAbsent);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::uint32_t number = involved_[cells[i]];
+    if (number != kAbsent) place[number] = static_cast<std::uint32_t>(i);
+  }
   for (std::size_t c = 0; c < conflicts_.size(); ++c) {
     const Conflict& conflict = conflicts_[c];
-    const std::size_t older = place[conflict.older], younger = place[conflict.younger];
+    std::uint32_t& younger = place[involved_[conflict.younger]];
+    const std::uint32_t older = place[involved_[conflict.older]];
     if (older == kAbsent || younger == kAbsent) continue;
-    place[conflict.younger] = kAbsent;
     cells[younger] = kAbsent;
-    if (conflict.replacement) cells[older] = cells_ + c;
+    younger = kAbsent;
+    if (conflict.replacement) cells[older] = static_cast<std::uint32_t>(cells_ + c);
   }
   cells.erase(std::remove(cells.begin(), cells.end(), kAbsent), cells.end());
   return cells;
+}
+
+void DuplicateTable::appendReplacements(TrackTable& tracks) const {
+  for (const Conflict& c : conflicts_) tracks.push_back(c.replacement);
 }
 
 }  // namespace perception

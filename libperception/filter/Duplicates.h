@@ -17,14 +17,13 @@ class DuplicateTable {
  public:
   DuplicateTable() = default;
   /// `tracks` by cell; null ones are not there.
-  DuplicateTable(const FilterModel& model, Stamp now, const std::vector<TrackHandle>& tracks);
+  DuplicateTable(const FilterModel& model, Stamp now, const TrackTable& tracks);
 
-  /// The cells of one hypothesis without its duplicates, in the same order.
-  std::vector<std::size_t> merged(std::vector<std::size_t> cells) const;
-  /// The track of a cell that merged() gave.
-  const TrackHandle& handle(std::size_t cell, const std::vector<TrackHandle>& tracks) const {
-    return cell < tracks.size() ? tracks[cell] : conflicts_[cell - tracks.size()].replacement;
-  }
+  /// The cells of one hypothesis without its duplicates, in the same order. Cells beyond those of
+  /// the table that it was made from are those of the replacements.
+  std::vector<std::uint32_t> merged(std::vector<std::uint32_t> cells) const;
+  /// Tracks of these cells.
+  void appendReplacements(TrackTable& tracks) const;
 
  private:
   struct Conflict {
@@ -33,6 +32,8 @@ class DuplicateTable {
   };
   std::size_t cells_ = 0;
   std::vector<Conflict> conflicts_;
+  std::vector<std::uint32_t> involved_;  // by cell: number among the conflicts' cells, or none
+  std::size_t involved_count_ = 0;
 };
 
 }  // namespace perception

@@ -1,142 +1,43 @@
 #include "libperception/filter/RankedAssignments.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
-#include <queue>
+#include <utility>
+
+#include "libperception/filter/RankedSums.h"
 
 namespace perception {
 namespace {
 
-constexpr double kForbidden = std::numeric_limits<double>::infinity();
 constexpr int kNothing = RankedAssignment::kNothing;
+/// Dual variables are exact up to rounding: what is this little beyond the limit stays in.
+constexpr double kRounding = 1e-9;
 
-/// Costs (negative gains) of one connected part: rows x (columns + rows), the last ones being each
-/// row's "nothing".
-struct CostMatrix {
-  int rows = 0, columns = 0;  // columns: of tracks
-  std::vector<double> cost;   // row by row, width() wide
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  int width() const { return columns + rows; }
-  double& at(int r, int c) {
-    return cost[static_cast<std::size_t>(r) * static_cast<std::size_t>(width()) +
-                static_cast<std::size_t>(c)];
+/// The whole problem: columns of tracks first, then each row's "nothing".
+AssignmentNode solveWhole(const AssignmentProblem& problem) {
+  AssignmentSolver solver;
+  const int n = static_cast<int>(problem.rows.size());
+  solver.begin(problem.columns + n);
+  for (int r = 0; r < n; ++r) {
+    for (const auto& o : problem.rows[at(r)]) solver.addOption(o.column, -o.gain);
+    solver.addOption(problem.columns + r, 0);
+    solver.endRow();
   }
-  double at(int r, int c) const { return const_cast<CostMatrix*>(this)->at(r, c); }
-};
-
-struct Solution {
-  std::vector<int> column;  // by row, in 0..width()
-  double cost = kForbidden;
-};
-
-/// Successive shortest augmenting paths with potentials (Jonker and Volgenant 1987 in its plain
-/// form): one path a row, O(rows^2 width).
-Solution solve(const CostMatrix& m) {
-  const int n = m.rows, w = m.width();
-  std::vector<double> u(static_cast<std::size_t>(n), 0), v(static_cast<std::size_t>(w), 0);
-  std::vector<int> row_of(static_cast<std::size_t>(w), -1), from(static_cast<std::size_t>(w));
-  std::vector<double> distance(static_cast<std::size_t>(w));
-  std::vector<char> done(static_cast<std::size_t>(w));
-  for (int start = 0; start < n; ++start) {
-    std::fill(distance.begin(), distance.end(), kForbidden);
-    std::fill(done.begin(), done.end(), 0);
-    std::fill(from.begin(), from.end(), -1);
-    int row = start, reached = -1;
-    double length = 0;
-    std::vector<int> tree;  // columns whose shortest path is known
-    while (reached < 0) {
-      int next = -1;
-      double least = kForbidden;
-      for (int c = 0; c < w; ++c) {
-        const auto i = static_cast<std::size_t>(c);
-        if (done[i]) continue;
-        const double reduced = length + m.at(row, c) - u[static_cast<std::size_t>(row)] - v[i];
-        if (reduced < distance[i]) distance[i] = reduced, from[i] = row;
-        if (distance[i] < least) least = distance[i], next = c;
-      }
-      if (next < 0) return {};  // this row has no free choice left
-      length = least;
-      done[static_cast<std::size_t>(next)] = 1;
-      if (row_of[static_cast<std::size_t>(next)] < 0) {
-        reached = next;
-      } else {
-        tree.push_back(next);
-        row = row_of[static_cast<std::size_t>(next)];
-      }
-    }
-    u[static_cast<std::size_t>(start)] += length;
-    for (const int c : tree) {
-      const auto i = static_cast<std::size_t>(c);
-      const double slack = length - distance[i];
-      u[static_cast<std::size_t>(row_of[i])] += slack;
-      v[i] -= slack;
-    }
-    for (int c = reached; c >= 0;) {
-      const int r = from[static_cast<std::size_t>(c)];
-      row_of[static_cast<std::size_t>(c)] = r;
-      // The column that r held before is the one to hand on.
-      int previous = -1;
-      for (const int t : tree) {
-        if (t != c && row_of[static_cast<std::size_t>(t)] == r) previous = t;
-      }
-      c = r == start ? -1 : previous;
-    }
-  }
-  Solution s;
-  s.column.assign(static_cast<std::size_t>(n), -1);
-  s.cost = 0;
-  for (int c = 0; c < w; ++c) {
-    const int r = row_of[static_cast<std::size_t>(c)];
-    if (r < 0) continue;
-    s.column[static_cast<std::size_t>(r)] = c;
-    s.cost += m.at(r, c);
-  }
-  return s;
+  return solver.solve();
 }
 
-/// A set of assignments with the best one of it.
-struct Node {
-  CostMatrix matrix;
-  Solution best;
-  int fixed = 0;                             // rows 0..fixed-1 have no choice left
-  std::size_t serial = 0;                    // for ties
-  bool operator<(const Node& other) const {  // of a heap whose top is the cheapest
-    return best.cost != other.best.cost ? best.cost > other.best.cost : serial > other.serial;
-  }
-};
-
-RankedAssignment toRanked(const Solution& s, int columns) {
-  RankedAssignment out;
-  out.log_weight = -s.cost;
-  for (const int c : s.column) out.column.push_back(c < columns ? c : kNothing);
-  return out;
-}
-
-/// Murty: take the best assignment of a set, split the rest of the set by the first row in which
-/// they differ from it.
-std::vector<RankedAssignment> rankPart(const CostMatrix& part, std::size_t k, double span) {
-  std::vector<RankedAssignment> out;
-  std::priority_queue<Node> open;
-  std::size_t serial = 0;
-  Node root{part, solve(part), 0, serial++};
-  if (root.best.cost == kForbidden) return out;
-  const double limit = root.best.cost + span;
-  open.push(std::move(root));
-  while (!open.empty() && out.size() < k) {
-    const Node node = open.top();
-    open.pop();
-    out.push_back(toRanked(node.best, part.columns));
-    CostMatrix rest = node.matrix;
-    for (int r = node.fixed; r < part.rows && out.size() < k; ++r) {
-      const int taken = node.best.column[static_cast<std::size_t>(r)];
-      const double kept = rest.at(r, taken);
-      rest.at(r, taken) = kForbidden;
-      Solution s = solve(rest);
-      if (s.cost <= limit) open.push({rest, std::move(s), r, serial++});
-      for (int c = 0; c < part.width(); ++c) rest.at(r, c) = kForbidden;
-      for (int other = r + 1; other < part.rows; ++other) rest.at(other, taken) = kForbidden;
-      rest.at(r, taken) = kept;
+/// A problem without the options that no assignment within the span can have.
+AssignmentProblem pruned(const AssignmentProblem& problem, const AssignmentNode& root,
+                         double span) {
+  AssignmentProblem out;
+  out.columns = problem.columns;
+  out.rows.resize(problem.rows.size());
+  for (std::size_t r = 0; r < problem.rows.size(); ++r) {
+    for (const auto& o : problem.rows[r]) {
+      const double reduced = -o.gain - root.u[r] - root.v[at(o.column)];
+      if (reduced <= span + kRounding) out.rows[r].push_back(o);
     }
   }
   return out;
@@ -145,22 +46,20 @@ std::vector<RankedAssignment> rankPart(const CostMatrix& part, std::size_t k, do
 /// Rows that compete for columns, directly or through others: by row the first row of its group.
 std::vector<int> groupsOf(const AssignmentProblem& problem) {
   const std::size_t n = problem.rows.size();
-  std::vector<int> parent(n), owner(static_cast<std::size_t>(problem.columns), -1);
+  std::vector<int> parent(n), owner(at(problem.columns), -1);
   std::iota(parent.begin(), parent.end(), 0);
   const auto find = [&](int r) {
-    while (parent[static_cast<std::size_t>(r)] != r)
-      r = parent[static_cast<std::size_t>(r)] =
-          parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(r)])];
+    while (parent[at(r)] != r) r = parent[at(r)] = parent[at(parent[at(r)])];
     return r;
   };
   for (std::size_t r = 0; r < n; ++r) {
     for (const auto& option : problem.rows[r]) {
-      int& o = owner[static_cast<std::size_t>(option.column)];
+      int& o = owner[at(option.column)];
       if (o < 0) {
         o = static_cast<int>(r);
       } else {
         const int one = find(o), other = find(static_cast<int>(r));
-        parent[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
+        parent[at(std::max(one, other))] = std::min(one, other);
       }
     }
   }
@@ -168,142 +67,149 @@ std::vector<int> groupsOf(const AssignmentProblem& problem) {
   return parent;
 }
 
-/// The best assignments of several rows that compete; columns as in the problem.
-std::vector<RankedAssignment> rankRows(const AssignmentProblem& problem,
-                                       const std::vector<int>& rows, std::size_t k, double span) {
-  std::vector<int> columns;
-  for (const int r : rows)
-    for (const auto& option : problem.rows[static_cast<std::size_t>(r)])
-      columns.push_back(option.column);
-  std::sort(columns.begin(), columns.end());
-  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
-  CostMatrix m;
-  m.rows = static_cast<int>(rows.size());
-  m.columns = static_cast<int>(columns.size());
-  m.cost.assign(static_cast<std::size_t>(m.rows) * static_cast<std::size_t>(m.width()), kForbidden);
-  for (int r = 0; r < m.rows; ++r) {
-    const int row = rows[static_cast<std::size_t>(r)];
-    for (const auto& o : problem.rows[static_cast<std::size_t>(row)]) {
-      const auto c = std::lower_bound(columns.begin(), columns.end(), o.column);
-      m.at(r, static_cast<int>(c - columns.begin())) = -o.gain;
+/// Murty: take the best assignment of a set, split the rest of the set by the first row in which
+/// they differ from it. All but the first of the best `k` within the limit.
+std::vector<AssignmentNode> rankOthers(AssignmentSolver& solver, AssignmentNode root, std::size_t k,
+                                       double span) {
+  std::vector<AssignmentNode> out;
+  std::vector<AssignmentNode> open;  // by cost, ties by age; never more than can still come out
+  const double limit = root.cost + span;
+  AssignmentNode node = std::move(root), child;
+  while (out.size() + 1 < k) {
+    const std::size_t wanted = k - 1 - out.size();
+    for (int r = node.fixed; r < solver.rows(); ++r) {
+      const double bound = open.size() < wanted ? limit : std::min(limit, open.back().cost);
+      if (!solver.solveChild(node, r, bound, child)) continue;
+      const auto place =
+          std::upper_bound(open.begin(), open.end(), child.cost,
+                           [](double cost, const AssignmentNode& n) { return cost < n.cost; });
+      if (open.size() >= wanted && place == open.end()) continue;
+      open.insert(place, std::move(child));
+      if (open.size() > wanted) open.pop_back();
+      child = AssignmentNode();
     }
-    m.at(r, m.columns + r) = 0;
+    if (open.empty()) break;
+    node = open.front();
+    open.erase(open.begin());
+    out.push_back(node);
   }
-  auto out = rankPart(m, k, span);
-  for (auto& a : out)
-    for (int& c : a.column)
-      if (c != kNothing) c = columns[static_cast<std::size_t>(c)];
   return out;
 }
 
-/// What differs from the best assignment: one row's column, or the choice of a group of rows.
-struct Change {
-  int group;  // index into the ranked groups; -1: a row alone
-  int row, choice;
-};
-
-/// An assignment as its differences from the best, and what they cost.
-struct Combination {
-  double loss = 0;
-  std::vector<Change> changes;
-};
-
-/// An alternative of one part and its loss against the part's best.
-struct Alternative {
+/// The alternatives of several rows that compete: losses and, by row, columns of the problem.
+struct GroupAlternative {
   double loss;
-  Change change;
+  std::vector<int> column;
 };
 
-/// The combinations with one more part whose alternatives are sorted by loss; the best `k` of them.
-void join(const std::vector<Alternative>& alternatives, std::size_t k, double span,
-          std::vector<Combination>& combinations) {
-  std::vector<Combination> more;
-  const std::size_t before = combinations.size();
-  for (std::size_t i = 0; i < before; ++i) {
-    for (const Alternative& a : alternatives) {
-      const double loss = combinations[i].loss + a.loss;
-      const bool full = before >= k && loss >= combinations.back().loss;
-      if (loss > span || full) break;  // later ones cost more
-      more.push_back(combinations[i]);
-      more.back().loss = loss;
-      more.back().changes.push_back(a.change);
+std::vector<GroupAlternative> rankGroup(const AssignmentProblem& problem,
+                                        const AssignmentNode& whole, const std::vector<int>& rows,
+                                        std::size_t k, double span) {
+  std::vector<int> columns;
+  for (const int r : rows)
+    for (const auto& option : problem.rows[at(r)]) columns.push_back(option.column);
+  std::sort(columns.begin(), columns.end());
+  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+  const int tracks = static_cast<int>(columns.size()), n = static_cast<int>(rows.size());
+  const auto own = [&](int column, int row) {
+    if (column >= problem.columns) return tracks + row;
+    return static_cast<int>(std::lower_bound(columns.begin(), columns.end(), column) -
+                            columns.begin());
+  };
+  AssignmentSolver solver;
+  solver.begin(tracks + n);
+  AssignmentNode root;
+  root.v.resize(at(tracks + n));
+  for (int c = 0; c < tracks; ++c) root.v[at(c)] = whole.v[at(columns[at(c)])];
+  for (int i = 0; i < n; ++i) {
+    const int row = rows[at(i)];
+    for (const auto& o : problem.rows[at(row)]) {
+      solver.addOption(own(o.column, i), -o.gain);
+      if (whole.column[at(row)] == o.column) root.cost -= o.gain;
     }
+    solver.addOption(tracks + i, 0);
+    solver.endRow();
+    root.column.push_back(own(whole.column[at(row)], i));
+    root.u.push_back(whole.u[at(row)]);
+    root.v[at(tracks + i)] = whole.v[at(problem.columns + row)];
   }
-  if (more.empty()) return;
-  for (auto& c : more) combinations.push_back(std::move(c));
-  std::stable_sort(combinations.begin(), combinations.end(),
+  const double least = root.cost;
+  std::vector<GroupAlternative> out;
+  for (const auto& node : rankOthers(solver, std::move(root), k, span)) {
+    out.push_back({node.cost - least, {}});
+    for (const int c : node.column)
+      out.back().column.push_back(c < tracks ? columns[at(c)] : kNothing);
+  }
+  return out;
+}
+
+/// The alternatives of a row whose options nobody else wants.
+std::vector<GroupAlternative> rankAlone(const std::vector<AssignmentProblem::Option>& options,
+                                        int best, std::size_t k, double span) {
+  double gain = 0;
+  for (const auto& o : options)
+    if (o.column == best) gain = o.gain;
+  std::vector<GroupAlternative> out;
+  if (best != kNothing) out.push_back({gain, {kNothing}});
+  for (const auto& o : options)
+    if (o.column != best) out.push_back({gain - o.gain, {o.column}});
+  std::stable_sort(out.begin(), out.end(),
                    [](const auto& x, const auto& y) { return x.loss < y.loss; });
-  if (combinations.size() > k) combinations.resize(k);
+  while (!out.empty() && (out.back().loss > span || out.size() >= k)) out.pop_back();
+  return out;
 }
 
 }  // namespace
 
-std::vector<RankedAssignment> rankedAssignments(const AssignmentProblem& problem, std::size_t k,
-                                                double span) {
-  const std::size_t n = problem.rows.size();
-  const std::vector<int> group_of = groupsOf(problem);
-  std::vector<std::vector<int>> members(n);  // of groups of two rows and more, by first row
-  for (std::size_t r = 0; r < n; ++r) {
-    const auto first = static_cast<std::size_t>(group_of[r]);
-    if (first == r) continue;
-    if (members[first].empty()) members[first].push_back(group_of[r]);
-    members[first].push_back(static_cast<int>(r));
-  }
+AssignmentRanking::AssignmentRanking(AssignmentProblem problem)
+    : problem_(std::move(problem)), root_(solveWhole(problem_)) {
+  best_.log_weight = -root_.cost;
+  best_.column.reserve(root_.column.size());
+  for (const int c : root_.column) best_.column.push_back(c < problem_.columns ? c : kNothing);
+}
 
-  RankedAssignment best;
-  best.column.assign(n, kNothing);
-  std::vector<std::vector<RankedAssignment>> groups;
-  std::vector<Combination> combinations(1);
-  std::vector<Alternative> alternatives;
+std::vector<RankedAssignment> AssignmentRanking::rank(std::size_t k, double span) const {
+  const std::size_t n = problem_.rows.size();
+  const AssignmentProblem problem = pruned(problem_, root_, span);
+  const std::vector<int> group_of = groupsOf(problem);
+  std::vector<std::vector<int>> members(n);  // of groups, by first row
+  for (std::size_t r = 0; r < n; ++r) members[at(group_of[r])].push_back(static_cast<int>(r));
+
+  struct Group {
+    int row;  // its first
+    std::vector<GroupAlternative> alternatives;
+  };
+  std::vector<Group> groups;
+  RankedSums sums(k);
   for (std::size_t r = 0; r < n; ++r) {
-    if (group_of[r] != static_cast<int>(r)) continue;
-    const int row = static_cast<int>(r);
-    alternatives.clear();
-    if (members[r].empty()) {  // alone: every choice is free
-      double gain = 0;
-      for (const auto& o : problem.rows[r]) {
-        if (o.gain > gain) gain = o.gain, best.column[r] = o.column;
-      }
-      if (best.column[r] != kNothing) alternatives.push_back({gain, {-1, row, kNothing}});
-      for (const auto& o : problem.rows[r]) {
-        if (o.column != best.column[r])
-          alternatives.push_back({gain - o.gain, {-1, row, o.column}});
-      }
-      best.log_weight += gain;
-      std::stable_sort(alternatives.begin(), alternatives.end(),
-                       [](const auto& x, const auto& y) { return x.loss < y.loss; });
-    } else {
-      auto ranked = rankRows(problem, members[r], k, span);
-      for (std::size_t i = 0; i < members[r].size(); ++i)
-        best.column[static_cast<std::size_t>(members[r][i])] = ranked[0].column[i];
-      best.log_weight += ranked[0].log_weight;
-      for (std::size_t c = 1; c < ranked.size(); ++c) {
-        alternatives.push_back({ranked[0].log_weight - ranked[c].log_weight,
-                                {static_cast<int>(groups.size()), row, static_cast<int>(c)}});
-      }
-      groups.push_back(std::move(ranked));
-    }
-    join(alternatives, k, span, combinations);
+    if (members[r].empty()) continue;
+    const bool alone = members[r].size() == 1;
+    auto found = alone ? rankAlone(problem.rows[r], best_.column[r], k, span)
+                       : rankGroup(problem, root_, members[r], k, span);
+    if (found.empty()) continue;
+    std::vector<double> losses;
+    for (const auto& a : found) losses.push_back(a.loss);
+    sums.join(static_cast<std::uint32_t>(groups.size()), losses.data(), losses.size(), span);
+    groups.push_back({static_cast<int>(r), std::move(found)});
   }
 
   std::vector<RankedAssignment> out;
-  out.reserve(combinations.size());
-  for (const Combination& c : combinations) {
-    out.push_back(best);
-    out.back().log_weight -= c.loss;
-    for (const Change& change : c.changes) {
-      if (change.group < 0) {
-        out.back().column[static_cast<std::size_t>(change.row)] = change.choice;
-        continue;
-      }
-      const auto& chosen =
-          groups[static_cast<std::size_t>(change.group)][static_cast<std::size_t>(change.choice)];
-      const auto& rows = members[static_cast<std::size_t>(change.row)];
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        out.back().column[static_cast<std::size_t>(rows[i])] = chosen.column[i];
-    }
+  out.reserve(sums.sums().size());
+  for (const RankedSums::Sum& sum : sums.sums()) {
+    out.push_back(best_);
+    out.back().log_weight -= sum.loss;
+    sums.forEachChange(sum, [&](std::uint32_t g, std::uint32_t alternative) {
+      const auto& columns = groups[g].alternatives[alternative].column;
+      const auto& rows = members[at(groups[g].row)];
+      for (std::size_t i = 0; i < rows.size(); ++i) out.back().column[at(rows[i])] = columns[i];
+    });
   }
   return out;
+}
+
+std::vector<RankedAssignment> rankedAssignments(const AssignmentProblem& problem, std::size_t k,
+                                                double span) {
+  return AssignmentRanking(problem).rank(k, span);
 }
 
 }  // namespace perception

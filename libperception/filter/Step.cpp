@@ -2,20 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
 
 #include "libperception/core/LogMath.h"
 #include "libperception/filter/Association.h"
 #include "libperception/filter/LikelihoodTable.h"
+#include "libperception/filter/Numbering.h"
 #include "libperception/filter/Parallel.h"
 #include "libperception/filter/Prediction.h"
+#include "libperception/filter/RankedChildren.h"
 #include "libperception/filter/Updates.h"
 
 namespace perception {
 namespace {
 
 enum Purpose : std::uint32_t { kOrder = 0x5701, kSample = 0x5702 };
+
+/// A handle's identity as a key.
+template <class T>
+std::uint64_t keyOf(const T* p) {
+  return static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(p));
+}
 
 /// The hypotheses before the scan, each distinct one once.
 struct Groups {
@@ -25,35 +32,70 @@ struct Groups {
 
 Groups groupSlots(const Posterior& before) {
   Groups groups;
-  std::unordered_map<const Hypothesis*, std::size_t> number;
+  Numbering numbers(before.hypotheses.size());
   for (std::size_t i = 0; i < before.hypotheses.size(); ++i) {
-    const auto [it, fresh] =
-        number.try_emplace(before.hypotheses[i].get(), groups.hypotheses.size());
+    const auto [number, fresh] = numbers.numberOf(keyOf(before.hypotheses[i].get()));
     if (fresh) {
       groups.hypotheses.push_back(before.hypotheses[i]);
       groups.slots.emplace_back();
     }
-    groups.slots[it->second].push_back(static_cast<std::uint32_t>(i));
+    groups.slots[number].push_back(static_cast<std::uint32_t>(i));
   }
   return groups;
 }
 
-/// Numbers the tracks in order of first appearance (so never by address) and predicts those that
-/// the scan concerns.
+/// Numbers the tracks in order of first appearance, so never by address.
+class TrackNumbers {
+ public:
+  TrackNumbers(const std::vector<HypothesisHandle>& hypotheses, std::vector<TrackHandle>& tracks)
+      : tracks_(tracks), by_key_(64) {
+    for (const auto& h : hypotheses) {
+      if (!h->tracks.table() || h->tracks.table() == table_) continue;
+      one_table_ = table_ == nullptr;
+      table_ = h->tracks.table();
+      if (!one_table_) break;
+    }
+    if (table_ && one_table_) by_place_.assign(table_->size(), kNone);
+  }
+
+  std::vector<std::size_t> of(const TrackList& list) {
+    std::vector<std::size_t> out;
+    out.reserve(list.size());
+    for (const std::uint32_t place : list.places()) {
+      std::size_t number = 0;
+      if (one_table_) {
+        if (by_place_[place] == kNone) {
+          by_place_[place] = tracks_.size();
+          tracks_.push_back((*table_)[place]);
+        }
+        number = by_place_[place];
+      } else {
+        const TrackHandle& track = (*list.table())[place];
+        const auto [key_number, fresh] = by_key_.numberOf(keyOf(track.get()));
+        if (fresh) tracks_.push_back(track);
+        number = key_number;
+      }
+      out.push_back(number);
+    }
+    return out;
+  }
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::vector<TrackHandle>& tracks_;
+  const TrackTable* table_ = nullptr;
+  bool one_table_ = true;  // as after a step; posteriors made by hand may have several
+  std::vector<std::size_t> by_place_;
+  Numbering by_key_;
+};
+
+/// Lists the distinct tracks and predicts those that the scan concerns.
 ScanTracks tracksOf(const std::vector<HypothesisHandle>& hypotheses, const MeasurementScan& scan,
                     const FilterModel& model) {
   ScanTracks out;
-  std::unordered_map<const Track*, std::size_t> number;
+  TrackNumbers numbers(hypotheses, out.before);
   out.of_hypothesis.reserve(hypotheses.size());
-  for (const auto& h : hypotheses) {
-    auto& indices = out.of_hypothesis.emplace_back();
-    indices.reserve(h->tracks.size());
-    for (const auto& t : h->tracks) {
-      const auto [it, fresh] = number.try_emplace(t.get(), out.before.size());
-      if (fresh) out.before.push_back(t);
-      indices.push_back(it->second);
-    }
-  }
+  for (const auto& h : hypotheses) out.of_hypothesis.push_back(numbers.of(h->tracks));
   out.touched.assign(out.before.size(), 0);
   parallelFor(out.before.size(),
               [&](std::size_t i) { out.touched[i] = concerns(scan, *out.before[i], model); });
@@ -87,45 +129,37 @@ std::vector<Child> sampleChildren(const Groups& groups, const ScanTracks& tracks
 }
 
 /// The best `slots` children over all hypotheses.
-std::vector<Child> rankChildren(const Groups& groups, const std::vector<double>& log_weights,
-                                const ScanTracks& tracks, const AssociationIndex& index,
-                                const FilterModel& model, std::size_t slots) {
+std::vector<Child> rankedChildren(const Groups& groups, const std::vector<double>& log_weights,
+                                  const ScanTracks& tracks, const AssociationIndex& index,
+                                  const FilterModel& model, std::size_t slots) {
   const bool nearest = model.proposal == Proposal::kNearest;
-  const auto k = nearest ? 1 : static_cast<std::size_t>(model.params.ranked_children);
-  std::vector<std::vector<Association>> ranked(groups.hypotheses.size());
-  parallelFor(ranked.size(), [&](std::size_t h) {
-    ranked[h] = rankAssociations(tracks.of_hypothesis[h], index, k, model.params.ranked_span);
-  });
+  RankingLimits limits;
+  limits.children = nearest ? 1 : static_cast<std::size_t>(model.params.ranked_children);
+  limits.slots = nearest ? 1 : slots;
+  limits.span = model.params.ranked_span;
+  std::vector<double> weights(groups.hypotheses.size(), kMinusInfinity);
+  for (std::size_t h = 0; h < weights.size(); ++h)
+    for (const std::uint32_t s : groups.slots[h])
+      weights[h] = logAddExp(weights[h], log_weights[s]);
   std::vector<Child> children;
-  for (std::size_t h = 0; h < ranked.size(); ++h) {
-    double weight = kMinusInfinity;
-    for (const std::uint32_t s : groups.slots[h]) weight = logAddExp(weight, log_weights[s]);
-    for (auto& a : ranked[h]) {
-      const double child_weight = weight + a.log_weight;
-      children.push_back({h, std::move(a), {}, child_weight});
-    }
-  }
-  std::stable_sort(children.begin(), children.end(),
-                   [](const Child& a, const Child& b) { return a.log_weight > b.log_weight; });
-  std::size_t kept = 0;
-  while (kept < std::min(children.size(), nearest ? 1 : slots) &&
-         children[kept].log_weight >= children.front().log_weight - model.params.ranked_span)
-    ++kept;
-  children.resize(kept);
+  for (auto& c : rankChildren(tracks.of_hypothesis, weights, index, limits))
+    children.push_back({c.parent, std::move(c.association), {}, c.log_weight});
   return children;
 }
 
 /// Children of equal history share a handle (sampled: slots stay) or become one (ranked).
 Posterior posteriorOf(std::vector<Child> children, std::vector<HypothesisHandle> handles,
                       const Posterior& before, bool sampled) {
-  std::unordered_map<std::uint64_t, std::size_t>
-      first;  // by key: the child, or the place in `after`
+  Numbering numbers(children.size());  // by the hypotheses' keys
   Posterior after;
   if (sampled) {
     after.hypotheses.resize(before.hypotheses.size());
     after.log_weights = before.log_weights;
+    std::vector<std::size_t> originals;
     for (std::size_t c = 0; c < children.size(); ++c) {
-      const auto original = first.try_emplace(handles[c]->key, c).first->second;
+      const auto [number, fresh] = numbers.numberOf(handles[c]->key);
+      if (fresh) originals.push_back(c);
+      const std::size_t original = originals[number];
       for (const std::uint32_t slot : children[c].slots) {
         after.hypotheses[slot] = handles[original];
         after.log_weights[slot] += children[c].association.log_weight;
@@ -134,12 +168,12 @@ Posterior posteriorOf(std::vector<Child> children, std::vector<HypothesisHandle>
     return after;
   }
   for (std::size_t c = 0; c < children.size(); ++c) {
-    const auto [it, fresh] = first.try_emplace(handles[c]->key, after.hypotheses.size());
+    const auto [number, fresh] = numbers.numberOf(handles[c]->key);
     if (fresh) {
       after.hypotheses.push_back(handles[c]);
       after.log_weights.push_back(children[c].log_weight);
     } else {
-      double& w = after.log_weights[it->second];
+      double& w = after.log_weights[number];
       w = logAddExp(w, children[c].log_weight);
     }
   }
@@ -162,16 +196,14 @@ StepResult step(const Posterior& before, const MeasurementScan& scan, const Filt
   const bool sampled = model.proposal == Proposal::kSampled;
   std::vector<Child> children =
       sampled ? sampleChildren(groups, tracks, index, key)
-              : rankChildren(groups, before.log_weights, tracks, index, model, slots);
+              : rankedChildren(groups, before.log_weights, tracks, index, model, slots);
 
   Updates updates(tracks, table, scan, model);
   for (const Child& c : children) updates.want(c.parent, c.association);
   StepResult result;
   result.stats.updates = updates.make(key.counter);
   std::vector<HypothesisHandle> handles(children.size());
-  parallelFor(children.size(), [&](std::size_t c) {
-    handles[c] = updates.assemble(children[c].parent, children[c].association);
-  });
+  parallelFor(children.size(), [&](std::size_t c) { handles[c] = updates.assemble(c); });
   result.stats.measurements = scan.measurements.size();
   result.stats.distinct_tracks = tracks.before.size();
   for (std::size_t t = 0; t < tracks.before.size(); ++t) {
@@ -187,14 +219,14 @@ MapHypothesis mapHypothesis(const Posterior& posterior) {
     std::size_t first;
     double log_weight;
   };
-  std::unordered_map<std::uint64_t, std::size_t> number;  // by key
-  std::vector<Group> groups;                              // in order of first appearance
+  Numbering numbers(posterior.hypotheses.size());
+  std::vector<Group> groups;  // in order of first appearance
   for (std::size_t i = 0; i < posterior.hypotheses.size(); ++i) {
-    const auto [it, fresh] = number.try_emplace(posterior.hypotheses[i]->key, groups.size());
+    const auto [number, fresh] = numbers.numberOf(posterior.hypotheses[i]->key);
     if (fresh) {
       groups.push_back({i, posterior.log_weights[i]});
     } else {
-      double& w = groups[it->second].log_weight;
+      double& w = groups[number].log_weight;
       w = logAddExp(w, posterior.log_weights[i]);
     }
   }

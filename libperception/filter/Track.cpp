@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
+
+#include "libperception/filter/Numbering.h"
 
 namespace perception {
 
@@ -11,23 +14,21 @@ ClassId Track::likeliestClass() const {
                               log_class.begin());
 }
 
-namespace {
-
-/// splitmix64's finaliser: a bijection of 64-bit numbers that looks random.
-std::uint64_t mix(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-  return z ^ (z >> 31);
+TrackList::TrackList(TrackTable tracks) : places_(tracks.size()) {
+  std::iota(places_.begin(), places_.end(), 0u);
+  table_ = std::make_shared<const TrackTable>(std::move(tracks));
 }
 
-}  // namespace
+std::uint64_t historyKey(const Track& track) {
+  return mixBits(track.history + 0x9E3779B97F4A7C15ull);
+}
 
-Hypothesis::Hypothesis(std::vector<TrackHandle> t) : tracks(std::move(t)) {
-  for (const auto& track : tracks) key += mix(track->history + 0x9E3779B97F4A7C15ull);
+Hypothesis::Hypothesis(TrackTable t) : tracks(std::move(t)) {
+  for (const auto& track : tracks) key += historyKey(*track);
 }
 
 std::uint64_t extendHistory(std::uint64_t history, std::uint64_t scan, std::size_t measurement) {
-  return mix(history ^ (birthId(scan, measurement) + 0x9E3779B97F4A7C15ull));
+  return mixBits(history ^ (birthId(scan, measurement) + 0x9E3779B97F4A7C15ull));
 }
 
 std::vector<double> classProbabilities(const Track& track) {

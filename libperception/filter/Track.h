@@ -1,8 +1,11 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/Kinematics.h"
@@ -67,16 +70,66 @@ struct Track {
 };
 
 using TrackHandle = std::shared_ptr<const Track>;
+/// All distinct tracks after a scan; what no hypothesis has is null.
+using TrackTable = std::vector<TrackHandle>;
+
+/// The tracks of one hypothesis: places in a table that all hypotheses of a scan share, so that a
+/// thousand of them cost numbers and not handles.
+class TrackList {
+ public:
+  class Iterator {
+   public:
+    using iterator_category = std::forward_iterator_tag;
+    using value_type = TrackHandle;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const TrackHandle*;
+    using reference = const TrackHandle&;
+    Iterator(const TrackTable* table, const std::uint32_t* place) : table_(table), place_(place) {}
+    reference operator*() const { return (*table_)[*place_]; }
+    pointer operator->() const { return &**this; }
+    Iterator& operator++() { return ++place_, *this; }
+    Iterator operator++(int) { return {table_, place_++}; }
+    bool operator==(const Iterator& other) const { return place_ == other.place_; }
+    bool operator!=(const Iterator& other) const { return place_ != other.place_; }
+
+   private:
+    const TrackTable* table_;
+    const std::uint32_t* place_;
+  };
+
+  TrackList() = default;
+  explicit TrackList(TrackTable tracks);
+  /// `places` of tracks that are there.
+  TrackList(std::shared_ptr<const TrackTable> table, std::vector<std::uint32_t> places)
+      : table_(std::move(table)), places_(std::move(places)) {}
+
+  Iterator begin() const { return {table_.get(), places_.data()}; }
+  Iterator end() const { return {table_.get(), places_.data() + places_.size()}; }
+  std::size_t size() const { return places_.size(); }
+  bool empty() const { return places_.empty(); }
+  const TrackHandle& operator[](std::size_t i) const { return (*table_)[places_[i]]; }
+
+  const TrackTable* table() const { return table_.get(); }  ///< may be null where there is no track
+  const std::vector<std::uint32_t>& places() const { return places_; }
+
+ private:
+  std::shared_ptr<const TrackTable> table_;
+  std::vector<std::uint32_t> places_;
+};
 
 /// A sampled association history and the tracks that follow from it, in order of their birth.
 /// Immutable once made: particles share it.
 struct Hypothesis {
-  std::vector<TrackHandle> tracks;
+  TrackList tracks;
   std::uint64_t key = 0;  ///< of the tracks' histories, in any order: equal keys, equal hypotheses
 
   Hypothesis() = default;
-  explicit Hypothesis(std::vector<TrackHandle> t);
+  explicit Hypothesis(TrackTable t);
+  Hypothesis(TrackList list, std::uint64_t k) : tracks(std::move(list)), key(k) {}
 };
+
+/// What a track adds to the key of its hypothesis.
+std::uint64_t historyKey(const Track& track);
 
 /// What a particle holds. Never null.
 using HypothesisHandle = std::shared_ptr<const Hypothesis>;

@@ -12,42 +12,41 @@ namespace perception {
 Updates::Updates(const ScanTracks& tracks, const LikelihoodTable& table,
                  const MeasurementScan& scan, const FilterModel& model)
     : tracks_(tracks), table_(table), scan_(scan), model_(model) {
-  std::size_t cell = 0;
+  Cell cell = 0;
   first_.reserve(tracks.before.size() + 1);
   for (const auto& row : table.tracks) {
     first_.push_back(cell);
-    cell += 1 + row.pairs.size();
+    cell += 1 + static_cast<Cell>(row.pairs.size());
   }
+  of_track_ = first_;
   first_.push_back(cell);
   wanted_.assign(cell + table.news.size(), 0);
   made_.resize(wanted_.size());
 }
 
-std::size_t Updates::hitCell(std::size_t track, std::size_t k) const {
+Updates::Cell Updates::hitCell(std::size_t track, std::size_t k) const {
   const auto& pairs = table_.tracks[track].pairs;
-  const auto it = std::lower_bound(pairs.begin(), pairs.end(), k,
-                                   [](const auto& p, std::size_t m) { return p.measurement < m; });
-  return first_[track] + 1 + static_cast<std::size_t>(it - pairs.begin());
-}
-
-std::vector<std::size_t> Updates::cellsOf(std::size_t h, const Association& association) const {
-  const auto& own = tracks_.of_hypothesis[h];
-  std::vector<std::size_t> cells;
-  cells.reserve(own.size() + association.cause.size());
-  for (const std::size_t t : own) cells.push_back(missCell(t));
-  for (std::size_t k = 0; k < association.cause.size(); ++k) {
-    const int cause = association.cause[k];
-    if (cause >= 0) {
-      cells[static_cast<std::size_t>(cause)] = hitCell(own[static_cast<std::size_t>(cause)], k);
-    } else if (cause == Association::kNew) {
-      cells.push_back(newCell(k));
-    }
-  }
-  return cells;
+  Cell i = 0;
+  while (pairs[i].measurement != k) ++i;
+  return first_[track] + 1 + i;
 }
 
 void Updates::want(std::size_t h, const Association& association) {
-  for (const std::size_t cell : cellsOf(h, association)) wanted_[cell] = 1;
+  const auto& own = tracks_.of_hypothesis[h];
+  auto& cells = children_.emplace_back();
+  cells.reserve(own.size() + association.cause.size());
+  for (std::size_t k = 0; k < association.cause.size(); ++k) {
+    if (association.cause[k] < 0) continue;
+    const auto t = static_cast<std::size_t>(association.cause[k]);
+    of_track_[t] = hitCell(t, k);
+  }
+  for (const std::size_t t : own) {
+    cells.push_back(of_track_[t]);
+    of_track_[t] = missCell(t);
+  }
+  for (std::size_t k = 0; k < association.cause.size(); ++k)
+    if (association.cause[k] == Association::kNew) cells.push_back(newCell(k));
+  for (const Cell c : cells) wanted_[c] = 1;
 }
 
 bool Updates::keep(const Track& t) const {
@@ -58,7 +57,7 @@ bool Updates::keep(const Track& t) const {
          (f.x.head<2>() - ego).norm() <= model_.params.max_distance;
 }
 
-void Updates::store(std::size_t cell, Track&& track, const TrackHandle& before) {
+void Updates::store(Cell cell, Track&& track, const TrackHandle& before) {
   if (model_.history > 0) track.previous = before;
   if (keep(track)) made_[cell] = std::make_shared<const Track>(std::move(track));
 }
@@ -72,7 +71,7 @@ std::size_t Updates::make(std::uint64_t scan_index) {
     const auto& row = table_.tracks[t];
     const Track& predicted = tracks_.predicted[t];
     for (std::size_t p = 0; p < row.pairs.size(); ++p) {
-      const std::size_t cell = first_[t] + 1 + p;
+      const Cell cell = first_[t] + 1 + static_cast<Cell>(p);
       if (wanted_[cell])
         store(cell, hitTrack(predicted, row, row.pairs[p], scan_, scan_index, model_),
               tracks_.before[t]);
@@ -85,18 +84,25 @@ std::size_t Updates::make(std::uint64_t scan_index) {
       store(newCell(k), newTrack(table_.news[k], k, scan_, scan_index, model_), nullptr);
   });
   duplicates_ = DuplicateTable(model_, scan_.state.stamp, made_);
+  auto all = std::make_shared<TrackTable>(std::move(made_));
+  duplicates_.appendReplacements(*all);
+  keys_.reserve(all->size());
+  for (const auto& track : *all) keys_.push_back(track ? historyKey(*track) : 0);
+  all_ = std::move(all);
   return static_cast<std::size_t>(std::count(wanted_.begin(), wanted_.end(), 1));
 }
 
-HypothesisHandle Updates::assemble(std::size_t h, const Association& association) const {
-  const auto cells = duplicates_.merged(cellsOf(h, association));
-  std::vector<TrackHandle> handles;
-  handles.reserve(cells.size());
-  for (const std::size_t cell : cells) {
-    const TrackHandle& handle = duplicates_.handle(cell, made_);
-    if (handle) handles.push_back(handle);
+HypothesisHandle Updates::assemble(std::size_t c) const {
+  std::vector<Cell> cells = duplicates_.merged(children_[c]);
+  std::uint64_t key = 0;
+  std::size_t kept = 0;
+  for (const Cell cell : cells) {
+    if (!(*all_)[cell]) continue;
+    key += keys_[cell];
+    cells[kept++] = cell;
   }
-  return std::make_shared<const Hypothesis>(std::move(handles));
+  cells.resize(kept);
+  return std::make_shared<const Hypothesis>(TrackList(all_, std::move(cells)), key);
 }
 
 }  // namespace perception

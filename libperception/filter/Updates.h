@@ -23,31 +23,34 @@ class Updates {
   Updates(const ScanTracks& tracks, const LikelihoodTable& table, const MeasurementScan& scan,
           const FilterModel& model);
 
-  /// Calls for the tracks that follow from an association of hypothesis `h`.
+  /// Calls for the tracks that follow from an association of hypothesis `h`: the next child.
   void want(std::size_t h, const Association& association);
   /// Makes all that is wanted; returns how many. `scan_index` goes into the histories.
   std::size_t make(std::uint64_t scan_index);
-  /// The hypothesis that follows.
-  HypothesisHandle assemble(std::size_t h, const Association& association) const;
+  /// The hypothesis of child `c`, counted as they were called for.
+  HypothesisHandle assemble(std::size_t c) const;
 
  private:
-  std::size_t hitCell(std::size_t track, std::size_t k) const;
-  std::size_t missCell(std::size_t track) const { return first_[track]; }
-  std::size_t newCell(std::size_t k) const { return first_.back() + k; }
+  using Cell = std::uint32_t;
+  Cell hitCell(std::size_t track, std::size_t k) const;
+  Cell missCell(std::size_t track) const { return first_[track]; }
+  Cell newCell(std::size_t k) const { return first_.back() + static_cast<Cell>(k); }
   bool keep(const Track& t) const;
   /// `before`: what the track was before the scan; null for a newborn.
-  void store(std::size_t cell, Track&& track, const TrackHandle& before);
-  /// The cells that follow from an association, in the order of the hypothesis's tracks.
-  std::vector<std::size_t> cellsOf(std::size_t h, const Association& association) const;
+  void store(Cell cell, Track&& track, const TrackHandle& before);
 
   const ScanTracks& tracks_;
   const LikelihoodTable& table_;
   const MeasurementScan& scan_;
   const FilterModel& model_;
-  std::vector<std::size_t> first_;  ///< cell of each track's miss; its hits follow in pair order
+  std::vector<Cell> first_;     ///< cell of each track's miss; its hits follow in pair order
+  std::vector<Cell> of_track_;  ///< cells in the association that is being looked at
   std::vector<char> wanted_;
-  std::vector<TrackHandle> made_;  ///< null when not wanted or dropped
+  std::vector<std::vector<Cell>> children_;  ///< cells, in the order of the hypothesis's tracks
+  TrackTable made_;                          ///< null when not wanted or dropped
   DuplicateTable duplicates_;
+  std::shared_ptr<const TrackTable> all_;  ///< made_ and what the duplicates became
+  std::vector<std::uint64_t> keys_;        ///< of all_
 };
 
 }  // namespace perception
