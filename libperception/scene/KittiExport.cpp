@@ -87,6 +87,23 @@ Role roleOf(const SceneObject& object, const ClassTable& classes, double road_us
   return {best, object.existence * road_user};
 }
 
+// A heading that could be any tells nothing of the outline.
+bool headingKnown(const SceneObject& object) {
+  constexpr double kUnknown = 1.2;  // [rad] of a heading that is uniform as an axis: pi / sqrt(12)
+  return object.has_yaw && object.sd_yaw < kUnknown;
+}
+
+// Without a heading an object is a disc of the mean diameter, as sensors see it; in KITTI's boxes
+// a square across the line of sight that is as broad as the disc looks.
+void takeAsDisc(KittiObject& o) {
+  const double radius = 0.25 * (o.length + o.width);
+  const double range = std::hypot(o.bottom_centre.x(), o.bottom_centre.z());
+  const double half = std::asin(std::min(0.9, radius / std::max(range, 1e-3)));
+  // Half side a of the square with a / (range - a) = tan(half).
+  o.length = o.width = 2 * range * std::tan(half) / (1 + std::tan(half));
+  o.rotation_y = wrapAngle(std::atan2(o.bottom_centre.x(), o.bottom_centre.z()) - kPi / 2);
+}
+
 }  // namespace
 
 std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& scene,
@@ -102,9 +119,13 @@ std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& s
   result.type = classes[role.class_id].kitti_type;
   result.length = object.length, result.width = object.width, result.height = object.height;
   result.bottom_centre = T_reference_world * object.position;
-  const Vector3 front =
-      T_reference_world.linear() * Vector3(std::cos(object.yaw), std::sin(object.yaw), 0);
-  result.rotation_y = std::atan2(-front.z(), front.x());
+  if (headingKnown(object)) {
+    const Vector3 front =
+        T_reference_world.linear() * Vector3(std::cos(object.yaw), std::sin(object.yaw), 0);
+    result.rotation_y = std::atan2(-front.z(), front.x());
+  } else {
+    takeAsDisc(result);
+  }
   result.alpha =
       wrapAngle(result.rotation_y - std::atan2(result.bottom_centre.x(), result.bottom_centre.z()));
   result.score = logit(std::clamp(role.probability, kSurest, 1 - kSurest));

@@ -44,6 +44,35 @@ std::optional<Vector3> onGround(const Vector3& direction, const Vector3& origin,
   return origin + direction * (height / fall);
 }
 
+/// [-] rise of a direction per unit of way over ground.
+double rise(const Vector3& direction) { return direction.z() / direction.head<2>().norm(); }
+
+/// The edges of a box seen as rises, with their deviations.
+struct Rises {
+  double bottom = 0, top = 0;
+  double edge_sigma = 0;   ///< of either, by the detector
+  double pitch_sigma = 0;  ///< of both alike
+};
+
+/// Range of an object of a usual height from the angle that its box is high: pitch and slope drop
+/// out, its own height takes their place.
+ScalarEstimate rangeByHeight(const ScalarEstimate& height, const Rises& seen) {
+  const double angle = seen.top - seen.bottom;
+  const double relative2 = height.variance / (height.mean * height.mean) +
+                           2 * seen.edge_sigma * seen.edge_sigma / (angle * angle);
+  const double range = height.mean / angle;
+  return {range, range * range * relative2};
+}
+
+/// Both ranges as one, unless they contradict each other: then the object is not as high as usual.
+ScalarEstimate together(const ScalarEstimate& ground, const ScalarEstimate& height) {
+  constexpr double kContradiction = 3;  // standard deviations
+  const double d = ground.mean - height.mean, variance = ground.variance + height.variance;
+  if (d * d > kContradiction * kContradiction * variance) return ground;
+  const double gain = ground.variance / variance;
+  return {ground.mean - gain * d, ground.variance * (1 - gain)};
+}
+
 }  // namespace
 
 void BoxGeometryParams::visit(ParamVisitor& v) {
@@ -105,7 +134,8 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
                                        const CameraModel& camera, const Pose3& T_ego_camera,
                                        const GroundPlane& ground,
                                        const PoseUncertainty& uncertainty,
-                                       const BoxGeometryParams& params) {
+                                       const BoxGeometryParams& params,
+                                       const std::optional<ScalarEstimate>& usual_height) {
   if (!(box.x2 > box.x1) || !(box.y2 > box.y1) || camera.fx <= 0 || camera.fy <= 0)
     return std::nullopt;
   const Pose3 level = levelFrame(T_ego_camera);
@@ -134,26 +164,39 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
   if (box.y2 >= camera.height - params.border) return out;
 
   const Vector3 origin = T_ego_camera.translation();
-  const auto foot = onGround(ray(middle, box.y2, camera, T_ego_camera), origin, ground);
-  if (!foot) return out;
-  const double range = (*foot - origin).head<2>().norm();
-  if (range > params.max_range) return out;
-  const double h = origin.z() - ground.heightAt(foot->x(), foot->y());
-  // sigma_r = (r^2 + h^2) / h * sigma_phi; phi: pixel, own pitch, pose pitch (VISION_NOTES 3).
-  const double sigma_phi = std::sqrt(
-      std::pow((params.bottom_sigma + params.bottom_share * (box.y2 - box.y1)) / camera.fy, 2) +
-      params.pitch_sigma * params.pitch_sigma + uncertainty.sigma_pitch * uncertainty.sigma_pitch);
-  out.range = range;
-  out.range_sigma = (range * range + h * h) / h * sigma_phi + params.range_floor;
+  const Vector3 lowest = ray(middle, box.y2, camera, T_ego_camera);
   const double box_height = box.y2 - box.y1;
   const bool upright = box_height > box.x2 - box.x1;
-  if (upright && box.y2 >= camera.height - params.border_share * box_height)
-    out.range_sigma += params.cut_share * range;
-  // Height of the upper edge over the foot at that range.
-  const Vector3 top = ray(middle, box.y1, camera, T_ego_camera);
-  const double flat = top.head<2>().norm();
-  out.height = std::max(0.1, origin.z() + range * top.z() / flat - foot->z());
-  out.height_sigma = 0.1 + out.height * out.range_sigma / range;
+  const bool cut = upright && box.y2 >= camera.height - params.border_share * box_height;
+  Rises seen;
+  seen.bottom = rise(lowest);
+  seen.top = rise(ray(middle, box.y1, camera, T_ego_camera));
+  seen.edge_sigma = (params.bottom_sigma + params.bottom_share * box_height) / camera.fy;
+  seen.pitch_sigma = std::hypot(params.pitch_sigma, uncertainty.sigma_pitch);
+
+  std::optional<ScalarEstimate> range;
+  if (const auto foot = onGround(lowest, origin, ground)) {
+    const double r = (*foot - origin).head<2>().norm();
+    const double h = origin.z() - ground.heightAt(foot->x(), foot->y());
+    // sigma_r = (r^2 + h^2) / h * sigma_phi; phi: pixel, own pitch, pose pitch (VISION_NOTES 3).
+    double sigma =
+        (r * r + h * h) / h * std::hypot(seen.edge_sigma, seen.pitch_sigma) + params.range_floor;
+    if (cut) sigma += params.cut_share * r;
+    if (r <= params.max_range) range = ScalarEstimate{r, sigma * sigma};
+  }
+  if (usual_height && !cut && box.y1 > params.border) {
+    const ScalarEstimate by_height = rangeByHeight(*usual_height, seen);
+    range = range ? together(*range, by_height) : by_height;
+  }
+  if (!range) return out;
+  out.range = range->mean;
+  out.range_sigma = std::sqrt(range->variance);
+  // Lower end and height follow the box's own rays: so they fit the picture whatever the pitch.
+  out.base = origin.z() + range->mean * seen.bottom;
+  out.base_sigma = std::hypot(range->mean * std::hypot(seen.edge_sigma, seen.pitch_sigma),
+                              seen.bottom * out.range_sigma);
+  out.height = std::max(0.1, range->mean * (seen.top - seen.bottom));
+  out.height_sigma = 0.1 + out.height * out.range_sigma / range->mean;
   return out;
 }
 

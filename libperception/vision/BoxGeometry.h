@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "libperception/core/ParamSet.h"
+#include "libperception/measurement/Measurement.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -43,6 +44,7 @@ struct BoxOnGround {
                                 ///< off, above the horizon
   double range_sigma = 0;       ///< [m]
   double height = 0, height_sigma = 0;  ///< [m] of the object, with a range only
+  double base = 0, base_sigma = 0;      ///< [m] its lower end, ego frame, with a range only
 };
 
 /// [rad, ccw, in (-pi, pi]] middle of a box between the bearings of its edges, also across the
@@ -66,11 +68,14 @@ Pose3 levelFrame(const Pose3& T_ego_camera);
 /// `T_ego_camera` is optical (x right, y down, z forward). The ground holds in the ego frame, so
 /// the camera's pitch and roll against it are part of the geometry. In a panorama that closes, a
 /// box over the seam reaches beyond the image's width (or begins left of 0): its columns are
-/// angles. Empty when the box is none or lies behind the camera's horizon.
+/// angles. Empty when the box is none or lies behind the camera's horizon. `usual_height` [m] of
+/// what the label names tells the range, too, by the angle that the box is high, unless the ground
+/// contradicts it (a van among cars): it holds where pitch and slope spoil the ground's.
 std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
                                        const CameraModel& camera, const Pose3& T_ego_camera,
                                        const GroundPlane& ground,
                                        const PoseUncertainty& uncertainty,
-                                       const BoxGeometryParams& params);
+                                       const BoxGeometryParams& params,
+                                       const std::optional<ScalarEstimate>& usual_height = {});
 
 }  // namespace perception

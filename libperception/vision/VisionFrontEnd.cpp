@@ -48,10 +48,15 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.real("score_offset", score_offset, {-1e9, 1e9}, "",
          "score that is no evidence for or against an object");
   v.table("score_offset.", label_offsets, {-1e9, 1e9}, "", "the same for one label");
-  for (const auto& row : label_offsets) {
-    v.require(std::find(labels.begin(), labels.end(), row.first) != labels.end(),
-              "score_offset." + row.first + ": no such label");
+  v.table("usual_height.", usual_heights, {0.1, 10}, "m",
+          "of what a label names: its box's height tells the range, too");
+  v.table("usual_height_sigma.", usual_height_sigmas, {0.01, 5}, "m", "its spread over objects");
+  for (const auto* table : {&label_offsets, &usual_heights, &usual_height_sigmas}) {
+    for (const auto& row : *table)
+      v.require(std::find(labels.begin(), labels.end(), row.first) != labels.end(),
+                row.first + ": no such label");
   }
+  v.boolean("base", base, "the lower edge measures the height of the ground at the object, too");
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
          "log-odds of an object per unit of score; 0: no evidence");
   v.real("score_limit", score_limit, {0, 50}, "", "bound of these log-odds");
@@ -70,6 +75,14 @@ VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geomet
   for (const auto& n : detector_.names) {
     if (const auto pair = splitName(n)) label_of_[pair->first] = sensing.labelIndex(pair->second);
   }
+  constexpr double kHeightShare = 0.1;  // of the mean: spread where none is given
+  usual_height_.resize(sensing.labels().size());
+  for (const auto& [name, mean] : detector_.usual_heights) {
+    double sigma = kHeightShare * mean;
+    for (const auto& [other, value] : detector_.usual_height_sigmas)
+      if (other == name) sigma = value;
+    usual_height_[static_cast<std::size_t>(sensing.labelIndex(name))] = {mean, sigma * sigma};
+  }
 }
 
 std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object,
@@ -79,8 +92,9 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
                                                    const SensorState& state) const {
   const auto label = label_of_.find(object.label);
   if (!object.image_box || label == label_of_.end() || label->second < 0) return std::nullopt;
-  const auto box = boxOnGround(*object.image_box, camera, T_ego_camera, frame.ground,
-                               frame.ego.uncertainty, geometry_);
+  const auto box =
+      boxOnGround(*object.image_box, camera, T_ego_camera, frame.ground, frame.ego.uncertainty,
+                  geometry_, usual_height_[static_cast<std::size_t>(label->second)]);
   if (!box || (!box->left_seen && !box->right_seen && !box->range)) return std::nullopt;
 
   Measurement m;
@@ -118,6 +132,13 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
                             detector_.heading_flip};
   }
   if (box->range) m.height = ScalarEstimate{box->height, box->height_sigma * box->height_sigma};
+  if (box->range && detector_.base) {
+    const double azimuth = yawOf(levelFrame(T_ego_camera)) + middleBearing(box->left, box->right);
+    const Vector3 foot(T_ego_camera.translation().x() + range * std::cos(azimuth),
+                       T_ego_camera.translation().y() + range * std::sin(azimuth), box->base);
+    m.base_z =
+        ScalarEstimate{(frame.ego.T_world_ego * foot).z(), box->base_sigma * box->base_sigma};
+  }
   return m;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct DetectorParams {
   double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
   std::vector<std::pair<std::string, double>> label_offsets;  ///< score_offset of single labels
   double score_limit = 4;                                     ///< of that logarithm
+  /// [m] of what a label names, mean and spread over objects: they tell the range, too.
+  std::vector<std::pair<std::string, double>> usual_heights, usual_height_sigmas;
+  bool base = false;  ///< the lower edge measures the height of the ground at the object, too
   double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error (SPEC
                                       ///< 4.2); KITTI's bank: 6.7 deg
   double heading_flip = 0.2;  ///< share of headings that confuse front and back; 0.5: axis alone
@@ -52,6 +56,7 @@ class VisionFrontEnd final : public FrontEnd {
   DetectorParams detector_;
   BoxGeometryParams geometry_;
   std::map<std::string, int> label_of_;
+  std::vector<std::optional<ScalarEstimate>> usual_height_;  ///< by label
   std::shared_ptr<const FootprintModel> model_;
 };
 

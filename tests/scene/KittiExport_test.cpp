@@ -72,6 +72,19 @@ TEST(KittiExport, AThingThatMayBeARoadUserIsWrittenAsSuchFromTheGivenProbability
   EXPECT_EQ(as(0.21)->type, "Misc");
 }
 
+TEST(KittiExport, AnObjectWithoutHeadingIsAsBroadFromEverySide) {
+  for (const double y : {0.0, 8.0}) {
+    SceneObject o = carAt(21, y, 0);
+    o.has_yaw = false;
+    o.length = 4, o.width = 2;  // a disc of radius 1.5 m
+    const auto line = seen(o);
+    ASSERT_TRUE(line);
+    const double bearing = std::atan2(-y, 20.0), half = std::asin(1.5 / std::hypot(20, y));
+    EXPECT_NEAR(line->box.x1, 620 + 720 * std::tan(bearing - half), 1);
+    EXPECT_NEAR(line->box.x2, 620 + 720 * std::tan(bearing + half), 1);
+  }
+}
+
 TEST(KittiExport, ACarAheadIsWhereKittiSaysItIs) {
   const auto o = seen(carAt(21, 2, 0));
   ASSERT_TRUE(o);

@@ -81,6 +81,31 @@ TEST(BoxGeometry, RangeIsAsUncertainAsPitchMakesIt) {
   EXPECT_NEAR(at(15), 1.6, 0.05);
 }
 
+TEST(BoxGeometry, AUsualHeightTellsTheRangeWherePitchSpoilsTheGround) {
+  const Pose3 pitched = cameraPose(1.65, radians(1)), assumed = cameraPose(1.65);
+  const auto box = boardBox(30.3, 0.9, -0.9, 1.5, pitched);  // 30 m from the camera
+  const ScalarEstimate usual{1.5, 0.1 * 0.1};
+  const auto ground = boxOnGround(box, kCamera, assumed, {}, {}, {});
+  const auto both = boxOnGround(box, kCamera, assumed, {}, {}, {}, usual);
+  ASSERT_TRUE(ground->range && both->range);
+  EXPECT_GT(std::abs(*ground->range - 30), 5);
+  EXPECT_NEAR(*both->range, 30, 3);
+  EXPECT_LT(both->range_sigma, ground->range_sigma);
+  // Lower end and height at that range give the box's own rows again.
+  EXPECT_NEAR(both->height, 1.5 * *both->range / 30, 0.05);
+}
+
+TEST(BoxGeometry, AnUnusualHeightLeavesTheRangeToTheGround) {
+  const Pose3 pose = cameraPose(1.65);
+  const auto van = boardBox(12.3, 0.9, -0.9, 3, pose);
+  BoxGeometryParams sharp;
+  sharp.bottom_sigma = 1;
+  sharp.bottom_share = 0.02;
+  const auto box = boxOnGround(van, kCamera, pose, {}, {}, sharp, ScalarEstimate{1.5, 0.1 * 0.1});
+  EXPECT_NEAR(*box->range, 12, 0.1);
+  EXPECT_NEAR(box->height, 3, 0.05);
+}
+
 TEST(BoxGeometry, EdgesAtTheBorderOfTheImageAreNotSeen) {
   const Pose3 pose = cameraPose(1.65);
   const auto left = boxOnGround({0, 150, 100, 300}, kCamera, pose, {}, {}, {});
