@@ -9,6 +9,7 @@
 #include "libperception/core/Angle.h"
 #include "libperception/core/Chi2.h"
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/Linearisation.h"
 #include "libperception/filter/MotionModels.h"
 
 namespace perception {
@@ -151,6 +152,11 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
   row.predictions.resize(classes);
   scan.model->predict(kinematics.data(), extents.data(), classes, scan.state,
                       row.predictions.data());
+  for (std::size_t j = 0; j < classes; ++j) {
+    if (track.filterOf(j) != j) continue;
+    lineariseAlongAspect(model.classes[static_cast<ClassId>(j)], track.bank[j], kinematics[j],
+                         *scan.model, scan.state, row.predictions[j]);
+  }
   const double visibility =
       std::max(visibilityOf(track, scan, model), model.params.hidden_detection);
   row.detection_by_class.resize(classes);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numeric>
 #include <utility>
 
@@ -9,6 +10,9 @@
 
 namespace perception {
 namespace {
+
+/// A heading known so well moves along its tangent: the mean step is .4 % shorter.
+constexpr double kSureHeading = radians(5);
 
 void symmetrise(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
@@ -58,6 +62,57 @@ Matrix4 predictWheeled(const ObjectClass& object_class, double psd, double dampi
   x[1] += noise.way * v * s;
   x[2] *= noise.keep;
   P = F * P * F.transpose() + Q;
+  return F;
+}
+
+/// The same with the moments of an uncertain heading in place of the tangent: with (v, theta)
+/// jointly Gaussian, E[v e^(i theta)] = e^(i theta - s^2/2) (v + i cov(v, theta)) and
+/// E[v^2 e^(2i theta)] = e^(2i theta - 2 s^2) ((v + 2i cov)^2 + var v), s^2 the heading's variance.
+/// By Stein's lemma the best line through the curve has the mean of the Jacobian as its slope.
+Matrix4 predictUncertainHeading(const ObjectClass& object_class, double psd, double damping,
+                                double dt, Vector4& x, Matrix4& P) {
+  using Complex = std::complex<double>;
+  const SpeedNoise noise(damping, dt);
+  const double v = x[2], spread = P(3, 3), cov = P(2, 3);
+  const Complex direction = std::polar(std::exp(-0.5 * spread), x[3]);  // E[e^(i theta)]
+  const Complex velocity = direction * Complex(v, cov);
+  const Complex shifted(v, 2 * cov);
+  const Complex square =
+      std::polar(std::exp(-2 * spread), 2 * x[3]) * (shifted * shifted + P(2, 2));
+  const Complex turn = Complex(0, 1) * velocity;  // d(velocity)/d(theta)
+  Matrix2 second;                                 // E[V V']
+  const double whole = v * v + P(2, 2);
+  second << 0.5 * (whole + square.real()), 0.5 * square.imag(), 0.5 * square.imag(),
+      0.5 * (whole - square.real());
+  Matrix2 slope;  // by v and theta
+  slope << direction.real(), turn.real(), direction.imag(), turn.imag();
+  const Vector2 mean(velocity.real(), velocity.imag());
+  const Matrix2 unexplained =
+      second - mean * mean.transpose() - slope * P.bottomRightCorner<2, 2>() * slope.transpose();
+
+  Matrix4 F = Matrix4::Identity();
+  F.block<2, 2>(0, 2) = noise.way * slope;
+  F(2, 2) = noise.keep;
+  const Vector2 u = slope.col(0), n = slope.col(1);
+  const double qw = object_class.yaw_rate_psd;
+  // E[u u'] of the unit vector along the motion, E[n n'] of v times that across it.
+  const Complex twice = std::polar(std::exp(-2 * spread), 2 * x[3]);
+  Matrix2 along;
+  along << 0.5 * (1 + twice.real()), 0.5 * twice.imag(), 0.5 * twice.imag(),
+      0.5 * (1 - twice.real());
+  const Matrix2 across = whole * Matrix2::Identity() - second;
+  Matrix4 Q = Matrix4::Zero();
+  Q.topLeftCorner<2, 2>() = psd * noise.pp * along + dt * dt * dt / 3 * qw * across;
+  Q.topLeftCorner<2, 2>().diagonal().array() += object_class.position_psd * dt;
+  Q.block<2, 1>(0, 2) = psd * noise.pv * u;
+  Q.block<2, 1>(0, 3) = dt * dt / 2 * qw * n;
+  Q.block<2, 2>(2, 0) = Q.block<2, 2>(0, 2).transpose().eval();
+  Q(2, 2) = psd * noise.vv;
+  Q(3, 3) = qw * dt;
+  x.head<2>() += noise.way * mean;
+  x[2] *= noise.keep;
+  P = (F * P * F.transpose() + Q).eval();
+  P.topLeftCorner<2, 2>() += noise.way * noise.way * unexplained;
   return F;
 }
 
@@ -129,6 +184,10 @@ bool needsSubSteps(const GaussianStep& s) {
   return s.oriented && (s.dt > 0.25 || (*s.P)(3, 3) > radians(30) * radians(30)) && s.dt > 0.1;
 }
 
+bool hasUncertainHeading(const GaussianStep& s) {
+  return s.oriented && (*s.P)(3, 3) > kSureHeading * kSureHeading;
+}
+
 void predictGaussian(const GaussianStep& s, Matrix4* transition) {
   Matrix4 whole = Matrix4::Identity();
   if (!s.oriented) {
@@ -137,7 +196,8 @@ void predictGaussian(const GaussianStep& s, Matrix4* transition) {
     const int steps =
         needsSubSteps(s) ? std::max(1, static_cast<int>(std::ceil(s.dt / 0.1 - 1e-9))) : 1;
     for (int i = 0; i < steps; ++i) {
-      const Matrix4 F = predictWheeled(*s.object_class, s.psd, s.damping, s.dt / steps, *s.x, *s.P);
+      const auto predict = hasUncertainHeading(s) ? predictUncertainHeading : predictWheeled;
+      const Matrix4 F = predict(*s.object_class, s.psd, s.damping, s.dt / steps, *s.x, *s.P);
       if (transition) whole = F * whole;
     }
   }

@@ -26,6 +26,8 @@ void beginPrediction(const ObjectClass& object_class, double dt, ClassFilter& fi
 void predictGaussian(const GaussianStep& step, Matrix4* transition = nullptr);
 /// Whether it has to be taken in sub-steps.
 bool needsSubSteps(const GaussianStep& step);
+/// Whether the heading is too uncertain for its tangent: moments then take the step (no batch).
+bool hasUncertainHeading(const GaussianStep& step);
 
 /// White acceleration through a speed that decays (rate `damping` [1/s]): integrals over the step.
 /// Without decay SPEC 3.1's dt^3/3, dt^2/2, dt.

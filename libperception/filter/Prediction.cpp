@@ -123,7 +123,7 @@ std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,
   std::vector<GaussianStep> free, wheeled;
   for (const auto& own : steps) {
     for (const auto& s : own) {
-      if (needsSubSteps(s)) {
+      if (needsSubSteps(s) || hasUncertainHeading(s)) {
         predictGaussian(s);
       } else {
         (s.oriented ? wheeled : free).push_back(s);

@@ -61,6 +61,8 @@ class MeasurementModel {
   /// classes: batches hold whole banks.
   virtual void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                        const SensorState& sensor, AxisPrediction* out) const = 0;
+  /// Whether h of an object with a heading depends on the side that it shows the sensor.
+  virtual bool seesAspect() const { return false; }
   /// P(detected | class, state), in [0, 1]: 0 outside the field of view; `visibility` in [0, 1] is
   /// the share not hidden.
   virtual double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,

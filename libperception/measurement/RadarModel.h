@@ -38,6 +38,7 @@ class RadarModel final : public MeasurementModel {
 
   const std::vector<AxisKind>& axes() const override;
   AxisMask extentAxes() const override { return 0; }  ///< one point says nothing of a size
+  bool seesAspect() const override { return true; }
   void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                const SensorState& sensor, AxisPrediction* out) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,

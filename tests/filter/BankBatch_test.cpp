@@ -27,7 +27,9 @@ ClassFilter randomFilter(Rng& rng, bool oriented) {
   Matrix4 A;
   for (int i = 0; i < 16; ++i) A(i / 4, i % 4) = rng.normal();
   f.P = 0.1 * A * A.transpose() + 0.05 * Matrix4::Identity();
-  if (oriented) f.P(3, 3) = 0.04 + f.P(3, 3) * 0, f.P *= 0.1, f.P.diagonal().array() += 0.05;
+  if (oriented) {  // a heading sure enough for batches (hasUncertainHeading)
+    f.P.row(3) *= 0.05, f.P.col(3) *= 0.05;
+  }
   f.x << rng.normal(0, 20), rng.normal(0, 20), rng.normal(0, 5), rng.uniform(-3, 3);
   f.oriented = oriented;
   return f;

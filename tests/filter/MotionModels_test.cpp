@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
@@ -42,6 +43,53 @@ TEST(ConstantVelocity, StepsCompose) {
   predictClassFilter(c, 0.4, twice);
   EXPECT_LT((once.x - twice.x).norm(), 1e-12);
   EXPECT_LT((once.P - twice.P).norm(), 1e-12);
+}
+
+TEST(Wheeled, AnUncertainHeadingMovesByItsMoments) {
+  // Against the moments of half a million drawn states moved exactly; bounds: five standard errors.
+  ObjectClass c = wheeled();
+  c.accel_psd = c.yaw_rate_psd = c.position_psd = 0;
+  ClassFilter f = orientedFilter(3, -2, 7, 0.8);
+  f.P(3, 3) = 0.16;
+  f.P(2, 3) = f.P(3, 2) = 0.12;
+  const ClassFilter before = f;
+  constexpr double kDt = 0.1;
+  predictClassFilter(c, kDt, f);
+
+  constexpr int kDraws = 500000;
+  const Matrix4 root = before.P.llt().matrixL();
+  Rng rng({5});
+  Vector4 sum = Vector4::Zero();
+  Matrix4 squares = Matrix4::Zero();
+  for (int i = 0; i < kDraws; ++i) {
+    const Vector4 n(rng.normal(), rng.normal(), rng.normal(), rng.normal());
+    Vector4 x = before.x + root * n;
+    x.head<2>() += kDt * x[2] * Vector2(std::cos(x[3]), std::sin(x[3]));
+    const Vector4 d = x - f.x;
+    sum += d;
+    squares += d * d.transpose();
+  }
+  const Vector4 mean = sum / kDraws;
+  const Matrix4 covariance = squares / kDraws - mean * mean.transpose();
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(mean[i], 0, 5 * std::sqrt(f.P(i, i) / kDraws)) << i;
+    for (int j = 0; j < 4; ++j)
+      EXPECT_NEAR(covariance(i, j), f.P(i, j), 5 * std::sqrt(2 * f.P(i, i) * f.P(j, j) / kDraws))
+          << i << j;
+  }
+  // The tangent would say: seven tenths of a metre ahead; the mean of the turns is shorter.
+  EXPECT_LT((f.x - before.x).head<2>().norm(), 0.7 * std::exp(-0.08) + 0.02);
+}
+
+TEST(Wheeled, MomentsJoinTheTangentWhereHeadingsAreSure) {
+  const ObjectClass c = wheeled();
+  ClassFilter tangent = orientedFilter(3, -2, 7, 0.8), moments = tangent;
+  tangent.P(3, 3) = std::pow(radians(4.99), 2);
+  moments.P(3, 3) = std::pow(radians(5.01), 2);
+  predictClassFilter(c, 0.1, tangent);
+  predictClassFilter(c, 0.1, moments);
+  EXPECT_LT((tangent.x - moments.x).norm(), 0.003);  // 0.4 % of 0.7 m
+  EXPECT_LT((tangent.P - moments.P).norm(), 0.005);
 }
 
 TEST(Wheeled, NoiseIsTheIntegralOfItsLinearisation) {
