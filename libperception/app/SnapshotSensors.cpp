@@ -224,7 +224,7 @@ void SnapshotSensors::takeLidar(SensorFrame& frame) {
     const float trusted = trust.empty() ? 1.0F : trust[points.source[i]];
     if (heights[i] > kMirrored) {
       (hit ? scan.hits : scan.clear).push_back(place);
-      if (hit) scan.weights.push_back(trusted);
+      if (hit && !trust.empty()) scan.weights.push_back(trusted);
     }
     lidar.points.push_back({place, heights[i], trusted});
   }

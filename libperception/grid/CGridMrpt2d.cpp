@@ -31,7 +31,7 @@ class CGridMrpt2d final : public SafetyGrid {
     if (!scan.T_world_ground.matrix().allFinite()) return stats;
     advance(scan, stats);
     for (const CellEvidence& cell : evidence_.collect(scan, stats)) {
-      if (Cell* at = find(cell.cell)) add(*at, cell.logOdds(params()));
+      if (Cell* at = find(cell.cell)) add(*at, cell.logOdds(params(), valueOf(*at)));
     }
     return stats;
   }

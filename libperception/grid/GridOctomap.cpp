@@ -95,7 +95,8 @@ class GridOctomap final : public SafetyGrid {
       // Beams make free cells only in the slab itself, where they bear on driving.
       const bool create = cell.weight > 0 || cell.relevant;
       const octomap::OcTreeKey key = keyOf(cell.cell);
-      if (StampedNode* node = cursor.at(key, create)) add(*node, key, cell.logOdds(params()));
+      if (StampedNode* node = cursor.at(key, create))
+        add(*node, key, cell.logOdds(params(), decayed(*node)));
     }
     if (now_ms_ - swept_ms_ >= kSweepMs) sweep();
     return stats;

@@ -64,6 +64,7 @@ class GridRolling final : public SafetyGrid {
     if (!scan.T_world_ground.matrix().allFinite()) return stats;
     advance(scan, stats);
     marks_.collect(scan, first_, stats);
+    judged_ = scan.weights.size() == scan.hits.size();
     const auto turn = static_cast<unsigned>(modulo(first_.z, layers_));
     std::size_t doubt = 0, column = 0;
     for (std::int64_t y = 0; y < cells_; ++y) {
@@ -262,6 +263,7 @@ class GridRolling final : public SafetyGrid {
     crossed &= ~bit;
     const auto layer = static_cast<std::size_t>((doubt.layer + turn) % layers_);
     std::int16_t& value = values_[slot * static_cast<std::size_t>(layers_) + layer];
+    if (judged_) log_odds += voidedBy(w, value / kUnits);
     value = std::clamp(static_cast<std::int16_t>(value + units(log_odds)), low_, high_);
   }
 
@@ -274,8 +276,9 @@ class GridRolling final : public SafetyGrid {
       if (!(left & 15)) continue;
       Short4 v;
       std::memcpy(&v, values, sizeof v);
-      v += (spread(static_cast<unsigned>(hit)) & hits) |
-           (spread(static_cast<unsigned>(crossed)) & misses);
+      const Short4 hit_here = spread(static_cast<unsigned>(hit));
+      if (judged_) v &= ~(hit_here & (v < 0));  // voidedBy()
+      v += (hit_here & hits) | (spread(static_cast<unsigned>(crossed)) & misses);
       v = v < low ? low : v;
       v = v > high ? high : v;
       std::memcpy(values, &v, sizeof v);
@@ -289,6 +292,7 @@ class GridRolling final : public SafetyGrid {
   std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units as of the column's time
   std::vector<std::int32_t> times_;   // [ms] since start_
   std::int16_t hit_ = 0, miss_ = 0, low_ = 0, high_ = 0;
+  bool judged_ = false;  // the scan's hits came with weights
   bool started_ = false;
   Stamp start_;
   std::int64_t now_ = 0;  // [ms] since start_

@@ -163,7 +163,7 @@ class GridRolling2d final : public SafetyGrid {
     const double res = params().resolution, per_metre = 1 / res;
     const double corner_x = static_cast<double>(first_.x) * res;
     const double corner_y = static_cast<double>(first_.y) * res;
-    const bool weighted = scan.weights.size() == scan.hits.size();
+    const bool weighted = judged_ = scan.weights.size() == scan.hits.size();
     const double z_min = params().z_min, z_max = params().z_max;
     const double grade2 = params().grade * params().grade;
     const auto edge = static_cast<double>(cells_);
@@ -242,6 +242,7 @@ class GridRolling2d final : public SafetyGrid {
         if (!(weights_[at] | crossed_[at])) continue;
         const float w = static_cast<float>(weights_[at]) / kWhole;
         float& value = values_[row_begin + column];
+        if (judged_ && value < 0) value *= 1 - w;  // voidedBy()
         value = std::clamp(value + w * hit + (crossed_[at] ? (1 - w) * miss : 0), low, high);
         weights_[at] = crossed_[at] = 0;
       }
@@ -254,6 +255,7 @@ class GridRolling2d final : public SafetyGrid {
   std::vector<Ray> rays_;                        // by bearing
   float per_radian_, nearest2_;
   Pose3 T_world_ground_ = Pose3::Identity();
+  bool judged_ = false;  // the scan's hits came with weights
   bool started_ = false;
   Stamp now_;
   CellIndex first_;

@@ -33,7 +33,8 @@ struct GridStats {
 /// The lidar's short memory for safety: which cells around the vehicle are occupied, without ever
 /// waiting for the filter. Evidence is added once per cell and scan, since returns of one scan are
 /// not independent: weight * hit, and (1 - weight) * miss where beams went through. Cells forget
-/// with tau; what leaves the window is forgotten at once.
+/// with tau; what leaves the window is forgotten at once. Where hits come with weights, one of
+/// weight w also voids the share w of "was free": two scans then mark whatever drives in.
 class SafetyGrid {
  public:
   virtual ~SafetyGrid() = default;

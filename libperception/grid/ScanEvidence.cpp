@@ -41,9 +41,11 @@ const std::vector<CellEvidence>& ScanEvidence::collect(const GridScan& scan, Gri
   markHits(scan, stats);
   chooseRays(scan, stats);
   evidence_.reserve(touched_.size());
+  const bool judged = !scan.hits.empty() && scan.weights.size() == scan.hits.size();
   for (const std::uint32_t place : touched_) {
     const std::uint8_t mark = marks_[place];
-    evidence_.push_back({cellAt(place), (mark & ~kCrossed) / kFullWeight, (mark & kCrossed) != 0});
+    evidence_.push_back(
+        {cellAt(place), (mark & ~kCrossed) / kFullWeight, (mark & kCrossed) != 0, true, judged});
     marks_[place] = 0;
   }
   touched_.clear();

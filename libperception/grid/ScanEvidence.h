@@ -12,16 +12,25 @@ struct CellIndex {
   std::int64_t x = 0, y = 0, z = 0;
 };
 
+/// [log-odds] by which a hit voids that the cell was free. A return that was judged a surface says
+/// that something has come; one of which nothing is known may be a flake, and counts up from there.
+inline double voidedBy(double weight, double log_odds) {
+  return log_odds < 0 ? -weight * log_odds : 0;
+}
+
 /// Evidence of one scan about one cell.
 struct CellEvidence {
   CellIndex cell;
   double weight = 0;     ///< [0, 1] the greatest of the cell's hits
   bool crossed = false;  ///< a clearing ray went through
   bool relevant = true;  ///< within the slab itself, not only where it has been widened
+  bool judged = false;   ///< the scan's hits came with weights
 
-  /// [log-odds] w hit + (1 - w) miss, the miss only where a beam went through.
-  double logOdds(const GridParams& params) const {
-    return weight * params.hit + (crossed ? (1 - weight) * params.miss : 0);
+  /// [log-odds] w hit + (1 - w) miss, the miss only where a beam went through, and what a judged
+  /// hit takes off `before`.
+  double logOdds(const GridParams& params, double before) const {
+    return weight * params.hit + (crossed ? (1 - weight) * params.miss : 0) +
+           (judged ? voidedBy(weight, before) : 0);
   }
 };
 

@@ -137,6 +137,23 @@ TEST_P(SafetyGridContract, TheSameReturnsWithFullWeightBlock) {
   EXPECT_NEAR(g->freeDistance({}).distance, 8, g->params().resolution + 1e-9);
 }
 
+TEST_P(SafetyGridContract, TwoTrustedScansMarkWhatDrivesIntoFreeSpace) {
+  const auto judged = grid(), unjudged = grid();
+  for (int i = 0; i < 22; ++i) {
+    GridScan scan = sceneWithWall(i * kPeriod, i < 20 ? 30 : 12);
+    unjudged->insert(scan);
+    scan.weights.assign(scan.hits.size(), 1.0F);
+    judged->insert(scan);
+  }
+  int places = 0, marked = 0, before = 0;
+  for (double y = -3; y <= 3; y += 0.4) {
+    const Vector3 place(12.05, y, 1.05);
+    ++places, marked += judged->isOccupied(place), before += unjudged->isOccupied(place);
+  }
+  EXPECT_EQ(marked, places);
+  EXPECT_LT(before, places / 2) << "two flakes in a place would block as well";
+}
+
 TEST_P(SafetyGridContract, EmptyScansAreHarmless) {
   const auto g = grid();
   EXPECT_TRUE(g->occupiedCells().empty());

@@ -63,7 +63,10 @@ class SnowRun {
     const auto part = [res](double v) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / res)) + 100000);
     };
-    return part(p.x()) << 40 | part(p.y()) << 20 | part(p.z());
+    const GridParams::BackEnd kind = grid_->params().back_end;
+    const bool flat =
+        kind == GridParams::BackEnd::kMrpt2d || kind == GridParams::BackEnd::kRolling2d;
+    return part(p.x()) << 40 | part(p.y()) << 20 | (flat ? 0 : part(p.z()));
   }
 
   void fillGrid(const std::vector<std::uint32_t>& labels) {
@@ -86,7 +89,7 @@ class SnowRun {
       (hit ? scan.hits : scan.clear).push_back(place);
       if (!hit) continue;
       const std::uint32_t source = points_.source[i];
-      scan.weights.push_back(cloud.trust.empty() ? 1.0F : cloud.trust[source]);
+      if (!cloud.trust.empty()) scan.weights.push_back(cloud.trust[source]);
       if (labels.empty()) continue;
       History& history = history_[keyOf(place)];
       (labels[source] == kSnowLabel ? history.snow : history.other) += 1;
