@@ -35,7 +35,9 @@ Footprint footprintOf(const Track& t) {
 }
 
 bool holds(const Footprint& f, const Vector2& p) {
-  const Vector2 own = rotate2(-f.yaw, p - f.centre);
+  const Vector2 d = p - f.centre;
+  if (d.squaredNorm() > f.half.squaredNorm() + 1e-6) return false;  // not even a corner's distance
+  const Vector2 own = rotate2(-f.yaw, d);
   return std::abs(own.x()) <= f.half.x() && std::abs(own.y()) <= f.half.y();
 }
 

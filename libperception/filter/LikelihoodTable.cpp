@@ -4,45 +4,17 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include "libperception/filter/Parallel.h"
-
 #include "libperception/core/Angle.h"
-#include "libperception/core/Chi2.h"
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/Gating.h"
 #include "libperception/filter/Linearisation.h"
 #include "libperception/filter/MotionModels.h"
+#include "libperception/filter/Parallel.h"
 
 namespace perception {
 namespace {
 
 constexpr double kMaxDetection = 0.999;  // P_D = 1 would make one miss a proof
-/// Before any matrix: pairs farther apart than this many standard deviations (plus 2 m of size)
-/// cannot pass the gate.
-constexpr double kCoarseGate = 6;
-constexpr double kCoarseMargin = 2;  // [m]
-
-struct Gates {
-  explicit Gates(double probability) {
-    for (int n = 1; n <= kMaxAxes; ++n)
-      quantile[static_cast<std::size_t>(n)] = chi2Quantile(probability, n);
-  }
-  std::array<double, kMaxAxes + 1> quantile{};
-};
-
-bool coarselyNear(const Track& track, const Measurement& m) {
-  double reach = 0;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t j = 0; j < track.bank.size(); ++j) {
-    if (!track.live(static_cast<ClassId>(j))) continue;
-    const ClassFilter& f = track.bank[j];
-    const double sigma = std::sqrt(std::max(f.P(0, 0), f.P(1, 1))) + m.position_sigma;
-    const double size = 0.5 * std::max(f.extent.length, f.extent.width);
-    reach = std::max(reach, kCoarseGate * sigma + size + kCoarseMargin);
-    nearest = std::min(nearest, (f.x.head<2>() - m.position).norm());
-  }
-  return nearest <= reach;
-}
-
 /// Share of the track's directions that nothing nearer hides.
 double visibilityOf(const Track& track, const MeasurementScan& scan, const FilterModel& model) {
   if (!scan.horizon) return 1;
@@ -86,31 +58,49 @@ Density densityOf(const Innovation& innovation, const ClassFilter& filter) {
   return out;
 }
 
-PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
-                              const std::vector<Kinematics>& kinematics, std::size_t k,
-                              const MeasurementScan& scan, const FilterModel& model,
-                              double& min_excess, const Gates& gates) {
+/// What one track after the other needs again.
+struct Scratch {
+  std::vector<std::size_t> near;
+  std::vector<Kinematics> kinematics;
+  std::vector<Extent> extents;
+  std::vector<AxisPrediction> predictions;
+  std::vector<AxisBounds> bounds;
+  std::vector<double> mixture;
+  PairLikelihood pair;
+};
+
+int axesSeen(const Measurement& m, std::size_t axes) {
+  int n = 0;
+  for (std::size_t i = 0; i < axes; ++i) n += m.seen >> i & 1;
+  return n;
+}
+
+/// Fills scratch.pair; returns by how much its least NIS exceeds the gate.
+double pairLikelihood(const Track& track, const std::vector<double>& detection_by_class,
+                      std::size_t k, const MeasurementScan& scan, const FilterModel& model,
+                      const Gates& gates, Scratch& scratch) {
   const Measurement& m = scan.measurements[k];
   const std::size_t classes = track.bank.size();
-  PairLikelihood pair;
+  PairLikelihood& pair = scratch.pair;
   pair.measurement = k;
   pair.log_by_class.assign(classes, kMinusInfinity);
   pair.log_class_evidence.assign(classes, kMinusInfinity);
   pair.nis.assign(classes, std::numeric_limits<double>::infinity());
-  min_excess = std::numeric_limits<double>::infinity();
-  std::vector<double> mixture(classes, kMinusInfinity);
+  double min_excess = std::numeric_limits<double>::infinity();
+  auto& mixture = scratch.mixture;
+  mixture.assign(classes, kMinusInfinity);
   const double label_exponent = scan.model->labelExponent();
   const double detection_exponent = scan.model->detectionExponent();
   Density density;
   Eigen::Index n = 0;
   bool seen = false;  // a decided class: one filter stands for all
   for (std::size_t j = 0; j < classes; ++j) {
-    const double detection = row.detection_by_class[j];
+    const double detection = detection_by_class[j];
     const std::size_t filter = track.filterOf(j);
-    if (!row.predictions[filter].defined || detection <= 0) continue;
+    if (!scratch.predictions[filter].defined || detection <= 0) continue;
     if (track.sure < 0 || !seen) {
-      const auto innovation = innovationOf(track.bank[filter], kinematics[filter],
-                                           row.predictions[filter], m, *scan.model);
+      const auto innovation = innovationOf(track.bank[filter], scratch.kinematics[filter],
+                                           scratch.predictions[filter], m, *scan.model);
       n = innovation.y.size();
       density = densityOf(innovation, track.bank[filter]);
       seen = true;
@@ -132,30 +122,34 @@ PairLikelihood pairLikelihood(const Track& track, const TrackLikelihoods& row,
     min_excess = std::min(min_excess, nis - gates.quantile[static_cast<std::size_t>(n)]);
   }
   pair.log_likelihood = logSumExp(mixture);
-  return pair;
+  return min_excess;
 }
 
 TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& scan,
                                   const FilterModel& model, const Gates& gates) {
   const std::size_t classes = track.bank.size();
+  thread_local Scratch scratch;
   TrackLikelihoods row;
-  std::vector<Kinematics> kinematics(classes);
-  std::vector<Extent> extents(classes);
+  const Surroundings around(track);
+  auto& near = scratch.near;
+  near.clear();
+  for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
+    if (around.mayBeNear(scan.measurements[k])) near.push_back(k);
+  }
+  // Out of view and nothing near: the scan says nothing of it.
+  if (near.empty() &&
+      !scan.model->mayDetect(around.centre, around.spread + 2 * around.size + 1, scan.state)) {
+    row.detection_by_class.assign(classes, 0);
+    return row;
+  }
+  auto& kinematics = scratch.kinematics;
+  kinematics.resize(classes);
   for (std::size_t j = 0; j < classes; ++j) {
     const std::size_t filter = track.filterOf(j);
     kinematics[j] =
         filter == j || j == 0
             ? kinematicsOf(model.classes[static_cast<ClassId>(filter)], track.bank[filter])
             : kinematics[0];
-    extents[j] = track.bank[filter].extent;
-  }
-  row.predictions.resize(classes);
-  scan.model->predict(kinematics.data(), extents.data(), classes, scan.state,
-                      row.predictions.data());
-  for (std::size_t j = 0; j < classes; ++j) {
-    if (track.filterOf(j) != j) continue;
-    lineariseAlongAspect(model.classes[static_cast<ClassId>(j)], track.bank[j], kinematics[j],
-                         *scan.model, scan.state, row.predictions[j]);
   }
   const double visibility =
       std::max(visibilityOf(track, scan, model), model.params.hidden_detection);
@@ -164,18 +158,50 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
     const auto detection = [&](double visible) {
       return std::min(kMaxDetection,
                       scan.model->detectionProbability(static_cast<ClassId>(j), kinematics[j],
-                                                       extents[j], scan.state, visible));
+                                                       track.bank[track.filterOf(j)].extent,
+                                                       scan.state, visible));
     };
     row.detection_by_class[j] = detection(visibility);
-    row.detection += std::exp(track.log_class[j]) * row.detection_by_class[j];
-    row.in_view = row.in_view || detection(1) > 0;
+    if (row.detection_by_class[j] > 0) {
+      row.detection += std::exp(track.log_class[j]) * row.detection_by_class[j];
+      row.in_view = true;
+    } else if (!row.in_view && visibility < 1) {
+      row.in_view = detection(1) > 0;
+    }
   }
-  for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
-    if (!coarselyNear(track, scan.measurements[k])) continue;
-    double excess = 0;
-    auto pair = pairLikelihood(track, row, kinematics, k, scan, model, excess, gates);
-    if (excess <= 0 && pair.log_likelihood > kMinusInfinity) row.pairs.push_back(std::move(pair));
+  if (near.empty() || row.detection <= 0) return row;
+  auto& extents = scratch.extents;
+  auto& predictions = scratch.predictions;
+  auto& bounds = scratch.bounds;
+  extents.resize(classes);
+  predictions.resize(classes);
+  for (AxisPrediction& p : predictions) {  // models leave alone what they have nothing to say of
+    p.defined = false;
+    p.R_model.resize(0, 0);
   }
+  bounds.clear();
+  for (std::size_t j = 0; j < classes; ++j) extents[j] = track.bank[track.filterOf(j)].extent;
+  scan.model->predict(kinematics.data(), extents.data(), classes, scan.state, predictions.data());
+  for (std::size_t j = 0; j < classes; ++j) {
+    if (track.filterOf(j) != j) continue;
+    lineariseAlongAspect(model.classes[static_cast<ClassId>(j)], track.bank[j], kinematics[j],
+                         *scan.model, scan.state, predictions[j]);
+    bounds.emplace_back(track.bank[j], kinematics[j], predictions[j]);
+  }
+  const auto& kinds = scan.model->axes();
+  for (const std::size_t k : near) {
+    const Measurement& m = scan.measurements[k];
+    const double gate = gates.quantile[static_cast<std::size_t>(axesSeen(m, kinds.size()))];
+    if (std::all_of(bounds.begin(), bounds.end(),
+                    [&](const AxisBounds& b) { return b.exclude(m, kinds, gate); }))
+      continue;
+    if (!coarselyNear(track, m)) continue;
+    const double excess =
+        pairLikelihood(track, row.detection_by_class, k, scan, model, gates, scratch);
+    if (excess <= 0 && scratch.pair.log_likelihood > kMinusInfinity)
+      row.pairs.push_back(scratch.pair);
+  }
+  if (!row.pairs.empty()) row.predictions = predictions;
   return row;
 }
 
@@ -201,73 +227,10 @@ NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan,
 
 }  // namespace
 
-Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
-                        const AxisPrediction& prediction, const Measurement& m,
-                        const MeasurementModel& model) {
-  Innovation out;
-  out.y = residual(model, m, prediction.h);
-  const auto n = out.y.size();
-  out.H.resize(n, 4);
-  out.R.resize(n, n);
-  auto& H_extent = out.H_extent;
-  H_extent.resize(n, 2);
-  std::array<Eigen::Index, kMaxAxes> axis{};
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < model.axes().size(); ++i) {
-    if (m.seen >> i & 1) axis[static_cast<std::size_t>(row++)] = static_cast<Eigen::Index>(i);
-  }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto a = axis[static_cast<std::size_t>(i)];
-    out.H.row(i) = prediction.H_q.row(a) * kinematics.J;
-    H_extent.row(i) = prediction.H_extent.row(a);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const auto b = axis[static_cast<std::size_t>(k)];
-      out.R(i, k) = m.R(a, b) + (prediction.R_model.size() > 0 ? prediction.R_model(a, b) : 0);
-    }
-  }
-  const Vector2 extent_variance(filter.extent.var_length, filter.extent.var_width);
-  out.R += H_extent * extent_variance.asDiagonal() * H_extent.transpose();
-  for (Eigen::Index i = 0; i < n; ++i)
-    if (!(model.extentAxes() >> axis[static_cast<std::size_t>(i)] & 1)) H_extent.row(i).setZero();
-  out.R.diagonal().array() += 1e-9;  // S stays invertible whatever the sensor says (SPEC 4)
-  out.S = out.covarianceOf(filter.P);
-  return out;
-}
-
-AxisVector Innovation::residualOf(const ModeFilter& mode, const ClassFilter& filter) const {
-  Vector4 d = mode.x - filter.x;
-  if (filter.oriented) d[3] = wrapAngle(d[3]);
-  return y - H * d;
-}
-
-AxisMatrix Innovation::covarianceOf(const Matrix4& P) const { return H * P * H.transpose() + R; }
-
-bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel& model) {
-  constexpr double kNeverOlder = 0.1;      // [s]
-  constexpr double kMaxAcceleration = 10;  // [m/s^2] of what may happen meanwhile
-  const double dt = scan.state.stamp - track.stamp;
-  if (dt >= kNeverOlder - 1e-6) return true;
-  for (ClassId j = 0; j < model.classes.size(); ++j) {
-    if (!track.live(j)) continue;
-    const ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
-    const bool speed_known = model.classes[j].motion == Motion::kWheeled && f.oriented;
-    const double speed = speed_known ? std::abs(f.x[2]) : f.x.tail<2>().norm();
-    const double sigma = std::sqrt(std::max(f.P(0, 0), f.P(1, 1)));
-    const double reach = kCoarseGate * sigma + 0.5 * (f.extent.length + f.extent.width) +
-                         kCoarseMargin + (speed + kMaxAcceleration * dt) * dt;
-    if (scan.model->mayDetect(f.x.head<2>(), reach, scan.state)) return true;
-    for (const auto& m : scan.measurements) {
-      const double far = reach + kCoarseGate * m.position_sigma;
-      if ((m.position - f.x.head<2>()).squaredNorm() <= far * far) return true;
-    }
-  }
-  return false;
-}
-
 LikelihoodTable likelihoodTable(const std::vector<Track>& predicted,
                                 const std::vector<char>& touched, const MeasurementScan& scan,
                                 const FilterModel& model) {
-  const Gates gates(model.params.gate_probability);
+  const Gates& gates = Gates::of(model.params.gate_probability);
   LikelihoodTable table;
   table.tracks.resize(predicted.size());
   table.news.resize(scan.measurements.size());

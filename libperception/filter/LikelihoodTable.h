@@ -2,6 +2,8 @@
 #include <vector>
 
 #include "libperception/filter/FilterModel.h"
+#include "libperception/filter/Gating.h"
+#include "libperception/filter/Innovation.h"
 #include "libperception/filter/Track.h"
 #include "libperception/measurement/MeasurementModel.h"
 
@@ -49,26 +51,5 @@ LikelihoodTable likelihoodTable(const std::vector<Track>& predicted,
 /// The same with all rows.
 LikelihoodTable likelihoodTable(const std::vector<Track>& predicted, const MeasurementScan& scan,
                                 const FilterModel& model);
-
-/// False when the scan can say nothing of the track, whether it was detected or not: it stays as it
-/// is for now. Tracks are never left behind for longer than 0.1 s.
-bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel& model);
-
-/// Innovation and its covariance of one class filter for the axes seen, and H = dh/dstate. Motion
-/// modes share h and H, taken at the class filter's mean.
-struct Innovation {
-  AxisVector y;
-  AxisMatrix S;
-  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, kMaxAxes, 4> H;
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2>
-      H_extent;  ///< dh/d(length, width), rows that do not correct the extent zero
-  AxisMatrix R;  ///< measurement noise, extent uncertainty included
-
-  AxisVector residualOf(const ModeFilter& mode, const ClassFilter& filter) const;
-  AxisMatrix covarianceOf(const Matrix4& P) const;  ///< S for another P
-};
-Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
-                        const AxisPrediction& prediction, const Measurement& m,
-                        const MeasurementModel& model);
 
 }  // namespace perception

@@ -17,13 +17,46 @@ constexpr double kOutOfViewAfter = 1.0;  // [s]
 /// Fewer Gaussians than this are not worth a batch.
 constexpr std::size_t kWorthBatch = 8;
 
+/// Tracks that are begun one after the other.
+constexpr std::size_t kChunk = 16;
+
+/// The class chain over one step (SPEC 5.7). Most tracks take the same step.
+struct ClassChain {
+  double dt = -1, time_constant = 0;  // [s]
+  int classes = 0;
+  double log_keep = 0, log_uniform = 0;
+
+  static const ClassChain& over(double dt, const FilterModel& model) {
+    thread_local ClassChain last;
+    const double time_constant = model.params.class_forgetting;
+    const int classes = model.classes.size();
+    if (last.dt != dt || last.time_constant != time_constant || last.classes != classes) {
+      const double forget = -std::expm1(-dt / time_constant);
+      last = {dt, time_constant, classes, std::log1p(-forget),
+              std::log(forget / static_cast<double>(classes))};
+    }
+    return last;
+  }
+};
+
+/// Existence and classes of `track` at a later time, in place.
+void moveOdds(const Track& track, Stamp to, const FilterModel& model, double& existence,
+              std::vector<double>& log_class) {
+  const double dt = to - track.stamp;
+  if (dt <= 0) return;
+  const bool in_view = to - track.last_in_view < kOutOfViewAfter;
+  const double life = in_view ? model.params.survival_in_view : model.params.survival_out_of_view;
+  const double decay = model.params.existence_decay;  // to 5 % = e^-3 in this time
+  existence *= std::exp(decay > 0 ? -3 * dt / decay : -dt / life);
+  const ClassChain& chain = ClassChain::over(dt, model);
+  for (double& lp : log_class) lp = logAddExp(lp + chain.log_keep, chain.log_uniform);
+}
+
 /// All of the prediction but the motion of the Gaussians, which go to `steps`.
 void beginTrack(Stamp to, const FilterModel& model, Track& next, std::vector<GaussianStep>& steps) {
   const double dt = to - next.stamp;
   if (dt <= 0) return;
-  TrackOdds odds = predictOdds(next, to, model);
-  next.existence = odds.existence;
-  next.log_class = std::move(odds.log_class);
+  moveOdds(next, to, model, next.existence, next.log_class);
   next.stamp = to;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     if (next.live(j))
@@ -89,15 +122,7 @@ void moveBatch(const std::vector<GaussianStep>& steps, bool wheeled) {
 
 TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model) {
   TrackOdds odds{track.existence, track.log_class};
-  const double dt = to - track.stamp;
-  if (dt <= 0) return odds;
-  const bool in_view = to - track.last_in_view < kOutOfViewAfter;
-  const double life = in_view ? model.params.survival_in_view : model.params.survival_out_of_view;
-  const double decay = model.params.existence_decay;  // to 5 % = e^-3 in this time
-  odds.existence *= std::exp(decay > 0 ? -3 * dt / decay : -dt / life);
-  const double forget = -std::expm1(-dt / model.params.class_forgetting);
-  const double uniform = std::log(forget / static_cast<double>(model.classes.size()));
-  for (double& lp : odds.log_class) lp = logAddExp(lp + std::log1p(-forget), uniform);
+  moveOdds(track, to, model, odds.existence, odds.log_class);
   return odds;
 }
 
@@ -114,15 +139,19 @@ std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,
                                  const std::vector<char>& touched, Stamp to,
                                  const FilterModel& model) {
   std::vector<Track> predicted(tracks.size());
-  std::vector<std::vector<GaussianStep>> steps(tracks.size());
-  parallelFor(tracks.size(), [&](std::size_t i) {
-    if (!touched[i]) return;
-    predicted[i] = *tracks[i];
-    beginTrack(to, model, predicted[i], steps[i]);
+  std::vector<std::vector<GaussianStep>> steps((tracks.size() + kChunk - 1) / kChunk);
+  parallelFor(steps.size(), [&](std::size_t chunk) {
+    steps[chunk].reserve(kChunk * static_cast<std::size_t>(model.classes.size()));
+    const std::size_t end = std::min((chunk + 1) * kChunk, tracks.size());
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      if (!touched[i]) continue;
+      predicted[i] = *tracks[i];
+      beginTrack(to, model, predicted[i], steps[chunk]);
+    }
   });
   std::vector<GaussianStep> free, wheeled;
-  for (const auto& own : steps) {
-    for (const auto& s : own) {
+  for (const auto& chunk : steps) {
+    for (const auto& s : chunk) {
       if (needsSubSteps(s) || hasUncertainHeading(s)) {
         predictGaussian(s);
       } else {

@@ -190,7 +190,7 @@ Posterior Posterior::empty(std::size_t n) {
 StepResult step(const Posterior& before, const MeasurementScan& scan, const FilterModel& model,
                 const RngKey& key, std::size_t slots) {
   const Groups groups = groupSlots(before);
-  const ScanTracks tracks = tracksOf(groups.hypotheses, scan, model);
+  ScanTracks tracks = tracksOf(groups.hypotheses, scan, model);
   const LikelihoodTable table = likelihoodTable(tracks.predicted, tracks.touched, scan, model);
   const AssociationIndex index(tracks.predicted, table, model);
   const bool sampled = model.proposal == Proposal::kSampled;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -399,12 +400,12 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
   return track;
 }
 
-Track missTrack(const Track& predicted, const TrackLikelihoods& row, const MeasurementScan& scan,
+Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementScan& scan,
                 const FilterModel& model) {
-  Track track = predicted;
+  Track track = std::move(predicted);
   if (row.in_view) track.last_in_view = scan.state.stamp;
   if (row.detection <= 0 || model.params.existence_decay > 0) return track;
-  const double r = predicted.existence;
+  const double r = track.existence;
   track.existence = r * (1 - row.detection) / (1 - r * row.detection);
   for (std::size_t j = 0; j < track.log_class.size(); ++j) {
     // Misses of one object are no more independent than its labels.

@@ -12,7 +12,7 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
 
 /// The predicted track after a scan without a measurement of it: existence and the classes that
 /// should have been seen lose mass.
-Track missTrack(const Track& predicted, const TrackLikelihoods& row, const MeasurementScan& scan,
+Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementScan& scan,
                 const FilterModel& model);
 
 /// The Bernoulli newborn of a measurement.

@@ -9,8 +9,8 @@
 
 namespace perception {
 
-Updates::Updates(const ScanTracks& tracks, const LikelihoodTable& table,
-                 const MeasurementScan& scan, const FilterModel& model)
+Updates::Updates(ScanTracks& tracks, const LikelihoodTable& table, const MeasurementScan& scan,
+                 const FilterModel& model)
     : tracks_(tracks), table_(table), scan_(scan), model_(model) {
   Cell cell = 0;
   first_.reserve(tracks.before.size() + 1);
@@ -69,7 +69,7 @@ std::size_t Updates::make(std::uint64_t scan_index) {
       return;
     }
     const auto& row = table_.tracks[t];
-    const Track& predicted = tracks_.predicted[t];
+    Track& predicted = tracks_.predicted[t];
     for (std::size_t p = 0; p < row.pairs.size(); ++p) {
       const Cell cell = first_[t] + 1 + static_cast<Cell>(p);
       if (wanted_[cell])
@@ -77,7 +77,7 @@ std::size_t Updates::make(std::uint64_t scan_index) {
               tracks_.before[t]);
     }
     if (wanted_[missCell(t)])
-      store(missCell(t), missTrack(predicted, row, scan_, model_), tracks_.before[t]);
+      store(missCell(t), missTrack(std::move(predicted), row, scan_, model_), tracks_.before[t]);
   });
   parallelFor(table_.news.size(), [&](std::size_t k) {
     if (wanted_[newCell(k)])

@@ -20,12 +20,13 @@ struct ScanTracks {
 /// hypothesis wants and handed out as often as needed.
 class Updates {
  public:
-  Updates(const ScanTracks& tracks, const LikelihoodTable& table, const MeasurementScan& scan,
+  Updates(ScanTracks& tracks, const LikelihoodTable& table, const MeasurementScan& scan,
           const FilterModel& model);
 
   /// Calls for the tracks that follow from an association of hypothesis `h`: the next child.
   void want(std::size_t h, const Association& association);
-  /// Makes all that is wanted; returns how many. `scan_index` goes into the histories.
+  /// Makes all that is wanted, of the predicted tracks, which are used up; returns how many.
+  /// `scan_index` goes into the histories.
   std::size_t make(std::uint64_t scan_index);
   /// The hypothesis of child `c`, counted as they were called for.
   HypothesisHandle assemble(std::size_t c) const;
@@ -39,7 +40,7 @@ class Updates {
   /// `before`: what the track was before the scan; null for a newborn.
   void store(Cell cell, Track&& track, const TrackHandle& before);
 
-  const ScanTracks& tracks_;
+  ScanTracks& tracks_;
   const LikelihoodTable& table_;
   const MeasurementScan& scan_;
   const FilterModel& model_;

@@ -1,31 +1,32 @@
 // The whole filter under the load of a paper's vehicle in a busy street (simulated measurements):
 // 66 objects, a lidar that sees them all 12 times a second, eight radars with 8 returns 20 times a
 // second, a camera with 10 boxes 10 times a second. One thread; CPU clock.
-//   filter_load_bench [seconds of log, default 5]
+// With --plot the figures go into FILE.csv and a picture FILE.png of cost against particles.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "libperception/app/Pipeline.h"
+#include "libperception/evaluation/Gnuplot.h"
+#include "libperception/evaluation/PlotScript.h"
 #include "libperception/filter/CRbpfTracker.h"
 #include "libperception/measurement/MeasurementModel.h"
+#include "tests/bench/CpuClock.h"
 
 namespace perception {
 namespace {
 
 constexpr int kObjects = 66;
-
-double cpuSeconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double residentMb() {
   rusage usage{};
@@ -171,33 +172,96 @@ std::vector<MeasurementScan> logOf(const std::vector<Unit>& units,
   return scans;
 }
 
-void run(const char* street_name, const std::vector<MeasurementScan>& scans,
+const char* nameOf(Proposal p) { return p == Proposal::kSampled ? "sampled" : "ranked"; }
+
+/// What one setting costs.
+struct Load {
+  std::string street, proposal;
+  int particles = 0;
+  double real_time = 0;              // seconds of log per CPU second
+  double p50 = 0, p99 = 0, max = 0;  // [ms] a message
+  double distinct = 0, hypotheses = 0, objects = 0, megabytes = 0;
+};
+
+Load run(const char* street_name, const std::vector<MeasurementScan>& scans,
          const FilterModel& base, Proposal proposal, int particles, double seconds) {
   FilterModel model = base;
   model.proposal = proposal;
   ParticleFilterParams pf;
   pf.sample_size = particles;
   CRbpfTracker tracker(model, pf.toMrpt(), 1);
+  Load load{street_name, nameOf(proposal), particles};
   std::vector<double> times;
-  double total = 0, distinct = 0, hypotheses = 0, objects = 0;
+  double total = 0;
+  const auto n = static_cast<double>(scans.size());
   for (const auto& scan : scans) {
-    const double begin = cpuSeconds();
+    const double begin = test::cpuSeconds();
     tracker.process(scan);
-    const double cpu = cpuSeconds() - begin;
+    const double cpu = test::cpuSeconds() - begin;
     times.push_back(1e3 * cpu);
     total += cpu;
-    distinct += static_cast<double>(tracker.stats().distinct_tracks);
-    hypotheses += static_cast<double>(tracker.stats().hypotheses);
-    objects = static_cast<double>(tracker.mapHypothesis().tracks.size());
+    load.distinct += static_cast<double>(tracker.stats().distinct_tracks) / n;
+    load.hypotheses += static_cast<double>(tracker.stats().hypotheses) / n;
+    load.objects = static_cast<double>(tracker.mapHypothesis().tracks.size());
   }
   std::sort(times.begin(), times.end());
-  const auto n = static_cast<double>(scans.size());
+  load.real_time = seconds / total;
+  load.p50 = times[times.size() / 2];
+  load.p99 = times[static_cast<std::size_t>(0.99 * n)];
+  load.max = times.back();
+  load.megabytes = residentMb();
+  return load;
+}
+
+void print(const Load& l) {
   fmt::print(
       "{:<8} {:<8} {:>5}  {:>7.2f}  {:>7.3f} {:>7.3f} {:>7.3f}  {:>7.1f} {:>7.1f} {:>5.0f} "
       "{:>7.0f}\n",
-      street_name, proposal == Proposal::kSampled ? "sampled" : "ranked", particles,
-      seconds / total, times[times.size() / 2], times[static_cast<std::size_t>(0.99 * n)],
-      times.back(), distinct / n, hypotheses / n, objects, residentMb());
+      l.street, l.proposal, l.particles, l.real_time, l.p50, l.p99, l.max, l.distinct, l.hypotheses,
+      l.objects, l.megabytes);
+  std::fflush(stdout);
+}
+
+/// The figures as CSV and cost against particles as a picture, one panel a street.
+void draw(const std::vector<Load>& loads, const std::string& file) {
+  const std::filesystem::path stem(file);
+  const std::string dir = stem.has_parent_path() ? stem.parent_path().string() : ".";
+  const std::string name = stem.filename().string();
+  std::string csv =
+      "street,proposal,particles,real_time,p50_ms,p99_ms,max_ms,distinct,hypotheses\n";
+  for (const Load& l : loads)
+    csv += fmt::format("{},{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.1f},{:.1f}\n", l.street, l.proposal,
+                       l.particles, l.real_time, l.p50, l.p99, l.max, l.distinct, l.hypotheses);
+  std::string gp = fmt::format(
+      "set terminal pngcairo size 1200,560 font 'DejaVu Sans,12'\nset output {}\n"
+      "set datafile separator ','\nset multiplot layout 1,2 title "
+      "'CPU time of a message: 66 objects, ten sensors, 182 messages a second (simulated)'\n"
+      "set logscale xy\nset xrange [0.8:1300]\nset yrange [0.05:30]\nset grid\n"
+      "set xlabel 'particles'\nset ylabel 'CPU time a message [ms]'\nset key top left\n"
+      "set xtics (1, 8, 64, 256, 1000)\nset arrow from 0.8,5 to 1300,5 nohead lc rgb '{}' dt 3\n"
+      "set label 'limit 5 ms' at 1200,5.5 right tc rgb '#555555'\n",
+      gnuplotString(name + ".png"), plot_colour::kGrey);
+  for (const char* street : {"open", "crowded"}) {
+    gp += fmt::format("set title '{}'\nplot ", std::string(street) == "open"
+                                                   ? "open street: little ambiguity (4 m apart)"
+                                                   : "crowded street: much ambiguity (1 m apart)");
+    for (const char* proposal : {"sampled", "ranked"}) {
+      const char* colour =
+          std::string(proposal) == "sampled" ? plot_colour::kBlue : plot_colour::kOrange;
+      for (const auto& [column, label, dash] :
+           {std::tuple{6, "p99", 1}, std::tuple{5, "median", 2}}) {
+        gp += fmt::format(
+            "{} using 3:((strcol(1) eq '{}' && strcol(2) eq '{}') ? ${} : NaN) with linespoints "
+            "pt 7 lw 2 dt {} lc rgb '{}' title '{}, {}', ",
+            gnuplotString(name + ".csv"), street, proposal, column, dash, colour, proposal, label);
+      }
+    }
+    gp += "\n";
+  }
+  std::ofstream(dir + "/" + name + ".csv") << csv;
+  std::ofstream(dir + "/" + name + ".gp") << gp;
+  const std::string fault = runGnuplot(dir, name + ".gp");
+  if (!fault.empty()) fmt::print(stderr, "{}\n", fault);
 }
 
 }  // namespace
@@ -205,7 +269,15 @@ void run(const char* street_name, const std::vector<MeasurementScan>& scans,
 
 int main(int argc, char** argv) {
   using namespace perception;
-  const double seconds = argc > 1 ? std::atof(argv[1]) : 5;
+  CLI::App app("The whole filter under load");
+  double seconds = 5;
+  std::vector<int> counts = {1, 8, 64, 256, 1000};
+  std::string only, plot;
+  app.add_option("seconds", seconds, "of log");
+  app.add_option("--particles", counts, "counts")->delimiter(',');
+  app.add_option("--only", only, "sampled or ranked");
+  app.add_option("--plot", plot, "FILE: writes FILE.csv and FILE.png");
+  CLI11_PARSE(app, argc, argv);
   tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   Config config = Config::fromFile(PERCEPTION_SOURCE_DIR "/ini/skynet.ini");
   const PipelineSetup setup = PipelineSetup::read(config);
@@ -215,13 +287,19 @@ int main(int argc, char** argv) {
              units.size(), kObjects, setup.model.classes.size(), seconds);
   fmt::print(
       "street   proposal  part.  x real   ms p50     p99     max  distinct hypoth. tracks  MB\n");
+  std::vector<Load> loads;
   for (const double spacing : {4.0, 1.0}) {
     Rng rng({static_cast<std::uint64_t>(spacing), 1, 0, 0});
     const auto objects = street(setup.model.classes, spacing, rng);
     const auto scans = logOf(units, objects, seconds);
     for (const Proposal p : {Proposal::kSampled, Proposal::kRanked}) {
-      for (const int particles : {1, 8, 64, 256, 1000})
-        run(spacing > 2 ? "open" : "crowded", scans, setup.model, p, particles, seconds);
+      if (!only.empty() && only != nameOf(p)) continue;
+      for (const int particles : counts) {
+        loads.push_back(
+            run(spacing > 2 ? "open" : "crowded", scans, setup.model, p, particles, seconds));
+        print(loads.back());
+      }
     }
   }
+  if (!plot.empty()) draw(loads, plot);
 }

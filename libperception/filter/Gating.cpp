@@ -1,0 +1,133 @@
+#include "libperception/filter/Gating.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libperception/core/Angle.h"
+#include "libperception/core/Chi2.h"
+
+namespace perception {
+namespace {
+
+/// Before any matrix: pairs farther apart than this many standard deviations (plus 2 m of size)
+/// cannot pass the gate.
+constexpr double kCoarseGate = 6;
+constexpr double kCoarseMargin = 2;     // [m]
+constexpr double kSlack = 1e-6;         // [m] what two computations of a distance may differ by
+constexpr double kRounding = 1 + 1e-6;  // the same of a NIS
+
+/// Reach of one class filter [m], the measurement's own deviation left out.
+double coarseReach(const ClassFilter& f) {
+  return kCoarseGate * std::sqrt(std::max(f.P(0, 0), f.P(1, 1))) +
+         0.5 * std::max(f.extent.length, f.extent.width) + kCoarseMargin;
+}
+
+}  // namespace
+
+Gates::Gates(double probability) {
+  for (int n = 1; n <= kMaxAxes; ++n)
+    quantile[static_cast<std::size_t>(n)] = chi2Quantile(probability, n);
+}
+
+const Gates& Gates::of(double probability) {
+  thread_local double last = -1;
+  thread_local Gates gates(0.5);
+  if (probability != last) {
+    gates = Gates(probability);
+    last = probability;
+  }
+  return gates;
+}
+
+Surroundings::Surroundings(const Track& track) {
+  bool first = true;
+  for (std::size_t j = 0; j < track.bank.size(); ++j) {
+    if (!track.live(static_cast<ClassId>(j))) continue;
+    const ClassFilter& f = track.bank[j];
+    if (first) centre = f.x.head<2>();
+    first = false;
+    spread = std::max(spread, (f.x.head<2>() - centre).squaredNorm());
+    size = std::max(size, 0.5 * std::max(f.extent.length, f.extent.width));
+    reach = std::max(reach, coarseReach(f));
+  }
+  spread = std::sqrt(spread);
+}
+
+bool Surroundings::mayBeNear(const Measurement& m) const {
+  const double far = reach + kCoarseGate * m.position_sigma + spread + kSlack;
+  return !((m.position - centre).squaredNorm() > far * far);
+}
+
+bool coarselyNear(const Track& track, const Measurement& m) {
+  double reach = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < track.bank.size(); ++j) {
+    if (!track.live(static_cast<ClassId>(j))) continue;
+    const ClassFilter& f = track.bank[j];
+    const double sigma = std::sqrt(std::max(f.P(0, 0), f.P(1, 1))) + m.position_sigma;
+    const double size = 0.5 * std::max(f.extent.length, f.extent.width);
+    reach = std::max(reach, kCoarseGate * sigma + size + kCoarseMargin);
+    nearest = std::min(nearest, (f.x.head<2>() - m.position).norm());
+  }
+  return nearest <= reach;
+}
+
+AxisBounds::AxisBounds(const ClassFilter& filter, const Kinematics& k,
+                       const AxisPrediction& prediction)
+    : prediction_(prediction), applies_(filter.modes.empty()) {
+  if (!prediction.defined || !applies_) return;
+  for (Eigen::Index a = 0; a < prediction.h.size(); ++a) {
+    const auto& H = prediction.H_q;
+    double variance = 0;
+    if (H(a, 2) == 0 && H(a, 3) == 0 && H(a, 4) == 0) {  // a place only
+      const double x = H(a, 0), y = H(a, 1);
+      variance = x * x * filter.P(0, 0) + 2 * x * y * filter.P(0, 1) + y * y * filter.P(1, 1);
+    } else {
+      const Eigen::RowVector4d row = H.row(a) * k.J;
+      variance = row * filter.P * row.transpose();
+    }
+    const double l = prediction.H_extent(a, 0), w = prediction.H_extent(a, 1);
+    variance += l * l * filter.extent.var_length + w * w * filter.extent.var_width;
+    if (prediction.R_model.size() > 0) variance += prediction.R_model(a, a);
+    variance_[static_cast<std::size_t>(a)] = variance + 2e-9;
+  }
+}
+
+bool AxisBounds::exclude(const Measurement& m, const std::vector<AxisKind>& kinds,
+                         double gate) const {
+  if (!prediction_.defined) return true;
+  if (!applies_) return false;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (!(m.seen >> i & 1)) continue;
+    const auto a = static_cast<Eigen::Index>(i);
+    double y = m.z[a] - prediction_.h[a];
+    if (kinds[i] == AxisKind::kAngle && std::abs(y) > kPi) y = wrapAngle(y);
+    if (y * y > gate * kRounding * (variance_[i] + m.R(a, a))) return true;
+  }
+  return false;
+}
+
+bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel& model) {
+  constexpr double kNeverOlder = 0.1;      // [s]
+  constexpr double kMaxAcceleration = 10;  // [m/s^2] of what may happen meanwhile
+  const double dt = scan.state.stamp - track.stamp;
+  if (dt >= kNeverOlder - 1e-6) return true;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    if (!track.live(j)) continue;
+    const ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
+    const bool speed_known = model.classes[j].motion == Motion::kWheeled && f.oriented;
+    const double speed = speed_known ? std::abs(f.x[2]) : f.x.tail<2>().norm();
+    const double sigma = std::sqrt(std::max(f.P(0, 0), f.P(1, 1)));
+    const double reach = kCoarseGate * sigma + 0.5 * (f.extent.length + f.extent.width) +
+                         kCoarseMargin + (speed + kMaxAcceleration * dt) * dt;
+    if (scan.model->mayDetect(f.x.head<2>(), reach, scan.state)) return true;
+    for (const auto& m : scan.measurements) {
+      const double far = reach + kCoarseGate * m.position_sigma;
+      if ((m.position - f.x.head<2>()).squaredNorm() <= far * far) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace perception

@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "libperception/filter/FilterModel.h"
+#include "libperception/filter/Track.h"
+#include "libperception/measurement/MeasurementModel.h"
+
+namespace perception {
+
+/// Chi-square quantiles of one probability by number of axes.
+struct Gates {
+  explicit Gates(double probability);
+  /// Those of the probability asked for last: a run has one.
+  static const Gates& of(double probability);
+  std::array<double, kMaxAxes + 1> quantile{};
+};
+
+/// A disc about one class filter that holds the centres of all that are kept up to date.
+struct Surroundings {
+  Vector2 centre = Vector2::Zero();  ///< [m] world
+  double spread = 0;                 ///< [m] radius
+  double size = 0;                   ///< [m] half of the largest side
+  double reach = 0;  ///< [m] of the coarse gate, the measurement's own deviation left out
+  explicit Surroundings(const Track& track);
+  /// False when no class filter can be coarsely near: most pairs end here.
+  bool mayBeNear(const Measurement& m) const;
+};
+
+/// Before any matrix: false for pairs that are too far apart to pass the gate.
+bool coarselyNear(const Track& track, const Measurement& m);
+
+/// Bounds from below the NIS of one class filter by its axes one by one: y' S^-1 y >= y_a^2 / S_aa.
+/// Most pairs that are coarsely near fail here, at a few products each.
+class AxisBounds {
+ public:
+  AxisBounds(const ClassFilter& filter, const Kinematics& k, const AxisPrediction& prediction);
+  /// True only if the NIS is beyond `gate`; `kinds` are the model's axes.
+  bool exclude(const Measurement& m, const std::vector<AxisKind>& kinds, double gate) const;
+
+ private:
+  const AxisPrediction& prediction_;
+  bool applies_;  // of motion modes any may be the nearest
+  std::array<double, kMaxAxes> variance_{};
+};
+
+/// False when the scan can say nothing of the track, whether it was detected or not: it stays as it
+/// is for now. Tracks are never left behind for longer than 0.1 s.
+bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel& model);
+
+}  // namespace perception
