@@ -252,13 +252,10 @@ void Pipeline::startEpoch(Stamp stamp, double back) {
   }
   events_.warn(stamp, event_kind::kClockJump,
                fmt::format("the clock went back by {:.3f} s: tracks start anew", back));
-  makeScenes(std::nullopt);
-  tracker_.reset();
-  if (observer_) observer_->onRestart();
+  restartTracks();
   ego_.clear();
   queue_.clear();
   frame_numbers_.clear();
-  horizon_.reset();
   next_output_.reset();
   last_instant_.reset();
   for (auto& s : states_) s.last.reset();
@@ -322,9 +319,7 @@ EgoState Pipeline::egoAt(Stamp stamp) {
   // Tracks live in the world: in another one they are nowhere.
   if (std::exchange(worlds_, ego_.worlds()) != ego_.worlds() && last_instant_) {
     events_.add(stamp, event_kind::kEgoGap, "the world's frame is known now: tracks start anew");
-    makeScenes(std::nullopt);
-    tracker_.reset();
-    horizon_.reset();
+    restartTracks();
   }
   if (ego_.empty()) {
     if (!parked_said_)
@@ -350,6 +345,26 @@ EgoState Pipeline::egoAt(Stamp stamp) {
   return state;
 }
 
+// A vehicle that is only taken to stand may be anywhere after a while: what is seen now would be
+// paired with what stood there before, and look as if it had run.
+void Pipeline::mindBlindGap(Stamp stamp) {
+  if (!ego_.empty() || !last_instant_) return;
+  const double gap = stamp - *last_instant_;
+  if (gap <= setup_.ego.blind_gap) return;
+  events_.warn(stamp, event_kind::kEgoGap,
+               fmt::format("nothing seen for {:.3f} s, and nothing tells how the vehicle moved: "
+                           "tracks start anew",
+                           gap));
+  restartTracks();
+}
+
+void Pipeline::restartTracks() {
+  makeScenes(std::nullopt);
+  tracker_.reset();
+  if (observer_) observer_->onRestart();
+  horizon_.reset();
+}
+
 std::int64_t Pipeline::frameNumberAt(Stamp stamp) const {
   for (auto it = frame_numbers_.rbegin(); it != frame_numbers_.rend(); ++it) {
     if (std::abs(stamp - it->first) <= kSameInstant) return it->second;
@@ -361,6 +376,7 @@ void Pipeline::processInstant(std::vector<SensorFrame> frames) {
   if (frames.empty()) return;
   const Stamp stamp = frames.front().stamp;
   emitUntil(stamp);
+  mindBlindGap(stamp);
   const EgoState ego = egoAt(stamp);
   const std::int64_t number = frameNumberAt(stamp);
   bool output = false;

@@ -116,6 +116,8 @@ class Pipeline {
   void mergeScans(std::vector<SensorFrame>& frames);
   void processInstant(std::vector<SensorFrame> frames);
   EgoState egoAt(Stamp stamp);
+  void mindBlindGap(Stamp stamp);
+  void restartTracks();
   std::int64_t frameNumberAt(Stamp stamp) const;
   std::optional<MeasurementScan> measure(SensorFrame& frame, std::size_t sensor);
   void update(const MeasurementScan& scan);

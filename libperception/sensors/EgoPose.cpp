@@ -62,6 +62,8 @@ void EgoPoseParams::visit(ParamVisitor& v) {
   v.real("max_speed", max_speed, {1, 1000}, "m/s",
          "a pose that implies more is rejected as a jump");
   v.real("history", history, {1, 600}, "s", "poses kept, at least the longest delay of any sensor");
+  v.real("blind_gap", blind_gap, {0.1, 1e6}, "s",
+         "without any scan, in a log that does not tell the vehicle's motion: tracks start anew");
   fusion.visit(v);
 }
 

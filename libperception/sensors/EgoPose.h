@@ -24,6 +24,10 @@ struct EgoPoseParams {
   double extrapolation = 0.2;  ///< [s] at most beyond the last pose
   double max_speed = 100;      ///< [m/s] a step that implies more is a jump
   double history = 10;         ///< [s] of poses that are kept
+  /// [s] without any scan, while nothing tells how the vehicle moves, after which tracks start
+  /// anew: at 5 m/s another bush stands then where one was, and the pair looks like a runner
+  /// (own choice).
+  double blind_gap = 2;
 
   void visit(ParamVisitor& v);
 };

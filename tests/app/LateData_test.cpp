@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include "libperception/app/FrameQueue.h"
 #include "libperception/app/Pipeline.h"
@@ -177,6 +178,34 @@ TEST(LateData, BeyondTheWindowIsDroppedAndCountedAtItsSensor) {
     const bool camera = dropped.sensors[i].label == "CAMERA";
     EXPECT_EQ(dropped.sensors[i].dropped_frames, never.sensors[i].dropped_frames + camera);
   }
+}
+
+/// The demo log without what was seen between 2 and 5 s, with or without the vehicle's poses.
+Log holedLog(bool poses) {
+  Log out;
+  for (const auto& o : demoLog()) {
+    const double t = *toStamp(o->timestamp) - *toStamp(demoLog().front()->timestamp);
+    if (isSensorData(*o) ? t < 2 || t > 4.5 : poses) out.push_back(o);
+  }
+  return out;
+}
+
+TEST(BlindGap, TracksStartAnewWhereNothingTellsHowTheVehicleMoved) {
+  const auto survivors = [](const Tracked& run) {
+    std::set<std::uint64_t> before, both;
+    const Stamp start = run.scenes.front().stamp;
+    for (const Scene& scene : run.scenes)
+      for (const auto& object : scene.objects) {
+        if (scene.stamp - start < 3) before.insert(object.id);
+        if (scene.stamp - start > 3 && before.count(object.id) > 0) both.insert(object.id);
+      }
+    return both.size();
+  };
+  const Tracked blind = track(holedLog(false)), seeing = track(holedLog(true));
+  ASSERT_GT(blind.scenes.back().stamp - blind.scenes.front().stamp, 4.4);
+  EXPECT_EQ(survivors(blind), 0u);
+  EXPECT_GT(survivors(seeing), 0u);
+  EXPECT_GT(survivors(track(holedLog(false), "ego.blind_gap=10")), 0u);
 }
 
 TEST(OutputLag, EveryInstantComesOnceAndIsTheSameForAnyThreads) {
