@@ -1,39 +1,17 @@
 #include "libperception/grid/GridRolling.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 
+#include "libperception/grid/LogOddsColumn.h"
 #include "libperception/grid/WindowMarks.h"
 
 namespace perception {
 namespace {
 
-constexpr double kUnits = 2048;      // per log-odd: 7 + 5, the largest sum, stays below 32767
+constexpr double kUnits = LogOddsColumn::kUnits;
+constexpr int kGroup = LogOddsColumn::kGroup;
 constexpr double kForgotten = 0.05;  // [log-odds] as good as unknown: decay by rounding ends there
-constexpr int kGroup = 4;            // layers worked on at once
-
-using Short4 = std::int16_t __attribute__((vector_size(8)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
-
-std::int16_t units(double log_odds) {
-  return static_cast<std::int16_t>(std::lround(log_odds * kUnits));
-}
-
-// The four bits of a number as four words of ones or zeros.
-constexpr std::array<std::array<std::int16_t, kGroup>, 16> kSpread = [] {
-  std::array<std::array<std::int16_t, kGroup>, 16> words{};
-  for (std::size_t bits = 0; bits < 16; ++bits)
-    for (std::size_t k = 0; k < kGroup; ++k) words[bits][k] = bits >> k & 1 ? -1 : 0;
-  return words;
-}();
-
-Short4 spread(unsigned bits) {
-  Short4 words;
-  std::memcpy(&words, kSpread[bits & 15].data(), sizeof words);
-  return words;
-}
 
 int layersOf(const GridParams& params) {
   const double spread = 2 * params.grade * params.size * std::sqrt(0.5);
@@ -54,10 +32,8 @@ class GridRolling final : public SafetyGrid {
         layers_(layersOf(params)),
         marks_(params, static_cast<int>(layers_)),
         values_(static_cast<std::size_t>(cells_ * cells_ * layers_), 0),
-        times_(static_cast<std::size_t>(cells_ * cells_), 0) {
-    hit_ = units(params.hit), miss_ = units(params.miss);
-    low_ = units(params.low), high_ = units(params.high);
-  }
+        times_(static_cast<std::size_t>(cells_ * cells_), 0),
+        column_(params.hit, params.miss, params.low, params.high) {}
 
   GridStats insert(const GridScan& scan) override {
     GridStats stats;
@@ -66,25 +42,20 @@ class GridRolling final : public SafetyGrid {
     marks_.collect(scan, first_, stats);
     judged_ = scan.weights.size() == scan.hits.size();
     const auto turn = static_cast<unsigned>(modulo(first_.z, layers_));
-    std::size_t doubt = 0, column = 0;
+    std::size_t column = 0;
     for (std::int64_t y = 0; y < cells_; ++y) {
       const std::int64_t row = modulo(first_.y + y, cells_) * cells_;
       std::int64_t slot_x = modulo(first_.x, cells_);
       for (std::int64_t x = 0; x < cells_; ++x, ++column) {
         const auto slot = static_cast<std::size_t>(row + slot_x);
         if (++slot_x == cells_) slot_x = 0;
-        const Mask hit = marks_.hit(column);
-        Mask crossed = marks_.crossed(column) & ~hit;
-        const bool doubted =
-            doubt < marks_.doubts().size() && marks_.doubts()[doubt].column == column;
-        if (!(hit | crossed) && !doubted) continue;
-        bringUpToNow(slot);
-        for (; doubt < marks_.doubts().size() && marks_.doubts()[doubt].column == column; ++doubt)
-          takeDoubt(marks_.doubts()[doubt], slot, turn, crossed);
-        add(slot, turned(hit, turn), turned(crossed, turn));
+        const Mask hit = marks_.hit(column), crossed = marks_.crossed(column) & ~hit;
+        if (!(hit | crossed)) continue;
+        update(slot, turned(hit, turn), turned(crossed, turn));
         marks_.reset(column);
       }
     }
+    for (const auto& doubt : marks_.doubts()) takeDoubt(doubt, turn);
     return stats;
   }
 
@@ -116,11 +87,11 @@ class GridRolling final : public SafetyGrid {
                                indexOf(cell.centre.z())};
       if (!inWindow(index)) continue;
       const std::size_t slot = slotOf(index);
-      bringUpToNow(slot);
+      update(slot, 0, 0);
       std::int16_t& value = values_[slot * static_cast<std::size_t>(layers_) +
                                     static_cast<std::size_t>(modulo(index.z, layers_))];
       const double after = std::clamp(value / kUnits + cell.log_odds, params().low, params().high);
-      value = units(after);
+      value = LogOddsColumn::units(after);
     }
   }
 
@@ -226,23 +197,14 @@ class GridRolling final : public SafetyGrid {
     return std::abs(v) < kForgotten ? 0 : v;
   }
 
-  // Most columns were last seen in the scan before: one exponential serves them all.
-  void bringUpToNow(std::size_t slot) {
+  // To the time of the scan, and its evidence on top. Most columns were last seen in the scan
+  // before: one exponential serves them all.
+  void update(std::size_t slot, Mask hit, Mask crossed) {
     const std::int64_t age = now_ - times_[slot];
-    if (age <= 0) return;
-    if (age != last_age_) last_age_ = age, last_loss_ = lossOver(age);
+    if (age != last_age_) last_age_ = age, last_loss_ = LogOddsColumn::lossOf(decayOver(age));
     times_[slot] = static_cast<std::int32_t>(now_);
-    const Int4 loss = {last_loss_, last_loss_, last_loss_, last_loss_};
-    std::int16_t* values = values_.data() + slot * static_cast<std::size_t>(layers_);
-    for (std::int64_t k = 0; k < layers_; k += kGroup, values += kGroup) {
-      Short4 v;
-      std::memcpy(&v, values, sizeof v);
-      v -= __builtin_convertvector((__builtin_convertvector(v, Int4) * loss) >> 15, Short4);
-      std::memcpy(values, &v, sizeof v);
-    }
-  }
-  std::int32_t lossOver(std::int64_t ms) const {
-    return static_cast<std::int32_t>(std::lround((1 - decayOver(ms)) * 32768));
+    column_.update(values_.data() + slot * static_cast<std::size_t>(layers_),
+                   static_cast<int>(layers_), last_loss_, hit, crossed, judged_);
   }
 
   // Bit k of a window's mask is layer first_.z + k of the world; in the array it stands modulo.
@@ -254,35 +216,18 @@ class GridRolling final : public SafetyGrid {
     return static_cast<Mask>((mask << turn | mask >> (count - turn)) & all);
   }
 
-  void takeDoubt(const typename WindowMarks<Mask>::Doubt& doubt, std::size_t slot, unsigned turn,
-                 Mask& crossed) {
-    const Mask bit = Mask{1} << doubt.layer;
+  void takeDoubt(const typename WindowMarks<Mask>::Doubt& doubt, unsigned turn) {
+    const std::int64_t x = doubt.column % cells_, y = doubt.column / cells_;
+    const std::size_t slot = slotOf({first_.x + x, first_.y + y, 0});
+    update(slot, 0, 0);
     const double w = static_cast<double>(doubt.weight);
-    double log_odds = w * params().hit;
-    if (crossed & bit) log_odds += (1 - w) * params().miss;
-    crossed &= ~bit;
+    double log_odds = w * params().hit + (doubt.crossed ? (1 - w) * params().miss : 0);
     const auto layer = static_cast<std::size_t>((doubt.layer + turn) % layers_);
     std::int16_t& value = values_[slot * static_cast<std::size_t>(layers_) + layer];
     if (judged_) log_odds += voidedBy(w, value / kUnits);
-    value = std::clamp(static_cast<std::int16_t>(value + units(log_odds)), low_, high_);
-  }
-
-  void add(std::size_t slot, Mask hit, Mask crossed) {
-    const Short4 hits = {hit_, hit_, hit_, hit_}, misses = {miss_, miss_, miss_, miss_};
-    const Short4 low = {low_, low_, low_, low_}, high = {high_, high_, high_, high_};
-    std::int16_t* values = values_.data() + slot * static_cast<std::size_t>(layers_);
-    for (Mask left = hit | crossed; left != 0;
-         left >>= kGroup, hit >>= kGroup, crossed >>= kGroup, values += kGroup) {
-      if (!(left & 15)) continue;
-      Short4 v;
-      std::memcpy(&v, values, sizeof v);
-      const Short4 hit_here = spread(static_cast<unsigned>(hit));
-      if (judged_) v &= ~(hit_here & (v < 0));  // voidedBy()
-      v += (hit_here & hits) | (spread(static_cast<unsigned>(crossed)) & misses);
-      v = v < low ? low : v;
-      v = v > high ? high : v;
-      std::memcpy(values, &v, sizeof v);
-    }
+    value = static_cast<std::int16_t>(std::clamp<int>(value + LogOddsColumn::units(log_odds),
+                                                      LogOddsColumn::units(params().low),
+                                                      LogOddsColumn::units(params().high)));
   }
 
   static constexpr std::int64_t kLongestMs = 0x7fffffff;
@@ -291,13 +236,13 @@ class GridRolling final : public SafetyGrid {
   WindowMarks<Mask> marks_;
   std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units as of the column's time
   std::vector<std::int32_t> times_;   // [ms] since start_
-  std::int16_t hit_ = 0, miss_ = 0, low_ = 0, high_ = 0;
+  LogOddsColumn column_;
   bool judged_ = false;  // the scan's hits came with weights
   bool started_ = false;
   Stamp start_;
   std::int64_t now_ = 0;  // [ms] since start_
   std::int64_t last_age_ = -1;
-  std::int32_t last_loss_ = 0;
+  std::int16_t last_loss_ = 0;
   CellIndex first_;  // lowest cell of the window
 };
 

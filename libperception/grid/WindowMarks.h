@@ -3,15 +3,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "libperception/grid/BeamBlock.h"
+#include "libperception/grid/BeamCover.h"
 #include "libperception/grid/SafetyGrid.h"
 #include "libperception/grid/ScanEvidence.h"
+#include "libperception/grid/WindowFrame.h"
 
 namespace perception {
 
 /// What one scan says of the cells of a window, a bit a cell: columns of cells in `Mask`, layer by
-/// layer. Every end of a beam gets its ray; rays are followed backwards and end where they run into
-/// cells that others have crossed before, since nearer to the sensor they only come closer. So a
-/// scan costs by the cells that it sees and not by its beams.
+/// layer. Every beam is followed as far as no other of its direction was before (BeamCover).
 template <class Mask>
 class WindowMarks {
  public:
@@ -21,7 +22,8 @@ class WindowMarks {
   struct Doubt {
     std::uint32_t column = 0;
     std::uint8_t layer = 0;
-    float weight = 0;  ///< [0, 1) the greatest of its hits
+    bool crossed = false;  ///< a beam went through
+    float weight = 0;      ///< [0, 1) the greatest of its hits
   };
 
   WindowMarks(const GridParams& params, int layers);
@@ -31,33 +33,32 @@ class WindowMarks {
   /// Forgets a column; all of those that were marked must be forgotten before the next scan.
   void reset(std::size_t column) { crossed_[column] = hit_[column] = 0; }
 
-  std::size_t columns() const { return crossed_.size(); }  ///< [y][x]
+  /// Without the cells in doubt. Columns are numbered [y][x].
   Mask crossed(std::size_t column) const { return crossed_[column]; }
-  Mask hit(std::size_t column) const { return hit_[column]; }  ///< with full weight
-  const std::vector<Doubt>& doubts() const { return doubts_; }
+  Mask hit(std::size_t column) const { return hit_[column]; }   ///< with full weight
+  const std::vector<Doubt>& doubts() const { return doubts_; }  ///< by column and layer
   std::size_t memoryBytes() const;
 
  private:
-  /// A point in cells from the window's corner, and how it lies to the slab.
-  struct Place {
-    float x, y, z;
-    float low, high;  ///< [m] above the slab's lower side, below its upper side
-  };
-
-  Place placeOf(const Vector3& p) const;
-  bool inWindow(const Place& p) const;
+  /// Hands the index and cell of each point to `take`, and casts its beam if that says so.
+  template <class Take>
+  void forPoints(const std::vector<Vector3>& points, GridStats& stats, const Take& take);
   void takeHits(const GridScan& scan, GridStats& stats);
-  void takeClear(const GridScan& scan, GridStats& stats);
-  void cast(const Place& end);
-  void mergeDoubts();
+  void castBeams();
+  void cross(std::size_t beam, float from, float to);
+  void markCrossed();
+  void settleDoubts();
 
   GridParams params_;
   int cells_, layers_;
-  double per_metre_;
-  Vector3 corner_ = Vector3::Zero();                             // [m] world
-  double slope_x_ = 0, slope_y_ = 0, slope_z_ = 1, offset_ = 0;  // height above the ground
-  Vector2 centre_ = Vector2::Zero();                             // [m] of the vehicle, world
-  Place origin_{};
+  WindowFrame frame_;
+  bool rays_ = false;
+  WindowPlace origin_{};
+  BeamCover cover_;
+  PlacedBlock placed_;
+  BeamBlock beams_;
+  CrossedCells cells_crossed_;
+  std::vector<Mask> runs_;  // of layers: [lowest][highest]
   std::vector<Mask> crossed_, hit_;
   std::vector<Doubt> doubts_;
 };

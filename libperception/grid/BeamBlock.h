@@ -1,0 +1,67 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace perception {
+
+/// A place in cells from the corner of a window, and how it lies to the slab of heights that
+/// matter.
+struct WindowPlace {
+  float x, y, z;    ///< [cells]
+  float low, high;  ///< [m] above the slab's lower side, below its upper side
+};
+
+/// Some beams on their way through a window of columns, as vectors. A beam goes along the axis on
+/// which it is longest (its face); everything else is linear in the distance along that axis.
+struct BeamBlock {
+  static constexpr std::size_t kSize = 256;
+  template <class Number>
+  using Lane = std::array<Number, kSize>;
+
+  Lane<float> x, y, z, low, high;  ///< ends, as in WindowPlace
+  std::size_t count = 0;
+
+  // What prepare() makes of them.
+  Lane<float> across, up;                 ///< [-] cells aside and upwards per cell along
+  Lane<float> from, to;                   ///< [cells] along, from the sensor; none where to <= from
+  Lane<std::int32_t> face;                ///< 0: x grows, 1: x falls, 2: y grows, 3: y falls
+  Lane<std::int32_t> bin_across, bin_up;  ///< of BeamCover's finest octave
+
+  void add(const WindowPlace& end) {
+    x[count] = end.x, y[count] = end.y, z[count] = end.z;
+    low[count] = end.low, high[count] = end.high, ++count;
+  }
+  /// Cuts the beams to the window of `cells` by `cells` columns of `layers` and to the slab, and
+  /// to where they enter the cells of their ends: these are not crossed.
+  void prepare(const WindowPlace& origin, int cells, int layers);
+};
+
+/// A stretch of a beam, along its axis in the direction in which it rises: t [cells] grows.
+struct BeamStretch {
+  static constexpr int kMostLayers = 64;
+  float from, to;           ///< [cells] t
+  float aside, height;      ///< [cells] at t = 0, the sensor
+  float across, up;         ///< [-] per t; up >= 0
+  float first;              ///< [cells] t where the first cell along begins
+  std::int32_t count;       ///< of cells along
+  std::int32_t column;      ///< of the first cell and row 0
+  std::int32_t step, side;  ///< from column to column along and aside
+};
+
+/// Columns that beams cross, and which layers of each: low * 32 + high, or low * 64 + high where
+/// there are more layers. Collected first and marked later, so that neither waits for the other.
+struct CrossedCells {
+  static constexpr std::size_t kMost = 4096;
+  std::array<std::int32_t, kMost> column, run;
+  std::size_t count = 0;
+
+  /// As many as add() may need at most.
+  bool hasRoomFor(std::int32_t cells) const {
+    return count + 2 * static_cast<std::size_t>(cells + 8) <= kMost;
+  }
+  /// The cells of a stretch; `wide`: more than 32 layers.
+  void add(const BeamStretch& beam, bool wide);
+};
+
+}  // namespace perception

@@ -1,0 +1,85 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace perception {
+
+/// Arithmetic on the log-odds of a column of cells, eight layers at once: 16 bit integers in steps
+/// of 1/2048, of which 7 + 5, the largest sum, stays below 32767.
+class LogOddsColumn {
+ public:
+  static constexpr double kUnits = 2048;
+  static constexpr int kGroup = 4;  ///< columns have a multiple of so many layers
+
+  LogOddsColumn(double hit, double miss, double low, double high)
+      : hit_(eight(units(hit))),
+        miss_(eight(units(miss))),
+        low_(eight(units(low))),
+        high_(eight(units(high))) {}
+
+  static std::int16_t units(double log_odds) {
+    return static_cast<std::int16_t>(std::lround(log_odds * kUnits));
+  }
+  /// What a share of 1 - keep takes away, as forget() and update() want it.
+  static std::int16_t lossOf(double keep) {
+    return static_cast<std::int16_t>(std::min(32767L, std::lround((1 - keep) * 32768)));
+  }
+
+  /// Takes the loss off, then adds the evidence of a scan, a bit a layer. `judged`: hits void that
+  /// their cells were free (voidedBy() for weights of one).
+  template <class Mask>
+  void update(std::int16_t* values, int layers, std::int16_t loss, Mask hit, Mask crossed,
+              bool judged) const {
+    const Short8 losses = eight(loss);
+    for (; layers > 0; layers -= 8, values += 8) {
+      Short8 v = load(values, layers);
+      v -= highHalf(v + v, losses);
+      const Short8 hits = spread(hit);
+      if (judged) v &= ~(hits & (v < 0));
+      v += (hits & hit_) | (spread(crossed) & miss_);
+      v = v < low_ ? low_ : v;
+      v = v > high_ ? high_ : v;
+      store(v, values, layers);
+      if constexpr (sizeof(Mask) > 1) hit = hit >> 8, crossed = crossed >> 8;
+    }
+  }
+
+ private:
+  using Short8 = std::int16_t __attribute__((vector_size(16)));
+
+  static Short8 eight(std::int16_t v) { return Short8{v, v, v, v, v, v, v, v}; }
+  static Short8 load(const std::int16_t* values, int layers) {
+    Short8 v{};
+    std::memcpy(&v, values, layers >= 8 ? 16 : 8);
+    return v;
+  }
+  static void store(const Short8& v, std::int16_t* values, int layers) {
+    std::memcpy(values, &v, layers >= 8 ? 16 : 8);
+  }
+  // The low eight bits of a number as eight words of ones or zeros.
+  template <class Mask>
+  static Short8 spread(Mask bits) {
+    constexpr Short8 kBits = {1, 2, 4, 8, 16, 32, 64, 128};
+    return (eight(static_cast<std::int16_t>(bits)) & kBits) == kBits;
+  }
+  // a b / 2^16, rounded down.
+  static Short8 highHalf(const Short8& a, const Short8& b) {
+#if defined(__SSE2__)
+    return reinterpret_cast<Short8>(
+        _mm_mulhi_epi16(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
+#else
+    using Int8 = std::int32_t __attribute__((vector_size(32)));
+    return __builtin_convertvector(
+        (__builtin_convertvector(a, Int8) * __builtin_convertvector(b, Int8)) >> 16, Short8);
+#endif
+  }
+
+  Short8 hit_, miss_, low_, high_;
+};
+
+}  // namespace perception
