@@ -56,6 +56,8 @@ void DetectorParams::visit(ParamVisitor& v) {
       v.require(std::find(labels.begin(), labels.end(), row.first) != labels.end(),
                 row.first + ": no such label");
   }
+  v.real("hides_from", hides_from, {-1e9, 1e9}, "",
+         "score from which a box hides what stands behind it");
   v.boolean("base", base, "the lower edge measures the height of the ground at the object, too");
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
          "log-odds of an object per unit of score; 0: no evidence");
@@ -142,6 +144,28 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
   return m;
 }
 
+/// What the boxes hide, at the ranges that they tell; null: no box hides.
+std::shared_ptr<const Horizon> VisionFrontEnd::horizon(
+    const MeasurementScan& scan, const std::vector<ObjectDetection>& objects) const {
+  if (detector_.hides_from >= 1e9) return nullptr;
+  constexpr std::size_t kBins = 1440;           // a quarter of a degree
+  constexpr double kStep = kTwoPi / kBins / 2;  // [rad] no bin of a box is left out
+  const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
+  const double forward = yawOf(scan.state.T_world_sensor);
+  auto result = std::make_shared<Horizon>(origin, kBins);
+  for (const Measurement& m : scan.measurements) {
+    if (m.seen != FootprintModel::kAll) continue;
+    if (objects[static_cast<std::size_t>(m.detection)].score < detector_.hides_from) continue;
+    const double width = wrapAngle(m.z[FootprintModel::kLeft] - m.z[FootprintModel::kRight]);
+    for (double a = 0; a <= width; a += kStep) {
+      const double bearing = forward + m.z[FootprintModel::kRight] + a;
+      result->add(origin +
+                  m.z[FootprintModel::kRange] * Vector2(std::cos(bearing), std::sin(bearing)));
+    }
+  }
+  return result;
+}
+
 MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
   MeasurementScan scan;
   scan.sensor = frame.sensor;
@@ -166,6 +190,7 @@ MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
     m->detection = static_cast<int>(index[i]);
     scan.measurements.push_back(std::move(*m));
   }
+  scan.horizon = horizon(scan, detections->objects);
   return scan;
 }
 

@@ -29,6 +29,9 @@ struct DetectorParams {
   /// [m] of what a label names, mean and spread over objects: they tell the range, too.
   std::vector<std::pair<std::string, double>> usual_heights, usual_height_sigmas;
   bool base = false;  ///< the lower edge measures the height of the ground at the object, too
+  /// Score from which a box hides what stands behind it (the filter's hidden_detection and
+  /// hidden_tolerance say how much, and from where).
+  double hides_from = 1e9;
   double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error (SPEC
                                       ///< 4.2); KITTI's bank: 6.7 deg
   double heading_flip = 0.2;  ///< share of headings that confuse front and back; 0.5: axis alone
@@ -52,6 +55,9 @@ class VisionFrontEnd final : public FrontEnd {
   std::optional<Measurement> measure(const ObjectDetection& object, const SensorFrame& frame,
                                      const CameraModel& camera, const Pose3& T_ego_camera,
                                      const SensorState& state) const;
+
+  std::shared_ptr<const Horizon> horizon(const MeasurementScan& scan,
+                                         const std::vector<ObjectDetection>& objects) const;
 
   DetectorParams detector_;
   BoxGeometryParams geometry_;

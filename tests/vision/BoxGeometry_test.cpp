@@ -125,6 +125,35 @@ TEST(BoxGeometry, RefusesABoxThatIsNone) {
   EXPECT_FALSE(boxOnGround({nan, 100, 190, 200}, kCamera, pose, {}, {}, {}));
 }
 
+TEST(VisionFrontEnd, SureBoxesHideWhatStandsBehindThem) {
+  Config config = Config::fromText(
+      "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = constant-velocity\n"
+      "[sensor.A]\nkind = boxes\nmodality = C\n[sensor.A.detector]\nhides_from = 0.5\n",
+      "a.ini");
+  const ClassTable classes = readClassTable(config);
+  const auto front_end = makeVisionFrontEnd(config, "A", classes);
+  SensorFrame frame;
+  frame.sensor = "A";
+  frame.T_ego_sensor = cameraPose(1.65);
+  const auto horizonAt = [&](double score) {
+    ObjectDetections detections;
+    detections.camera = kCamera;
+    ObjectDetection o;
+    o.label = "Pedestrian";
+    o.score = score;
+    o.image_box = boardBox(12, 0.4, -0.4, 1.7, frame.T_ego_sensor);
+    detections.objects.push_back(o);
+    frame.data = detections;
+    return front_end->extract(frame).horizon;
+  };
+  const auto sure = horizonAt(0.9), doubtful = horizonAt(0.3);
+  ASSERT_TRUE(sure && doubtful);
+  EXPECT_EQ(sure->visibility(-0.02, 0.02, 15, 0.5), 0);
+  EXPECT_EQ(sure->visibility(-0.02, 0.02, 11, 0.5), 1);
+  EXPECT_EQ(sure->visibility(0.1, 0.2, 15, 0.5), 1);
+  EXPECT_EQ(doubtful->visibility(-0.02, 0.02, 15, 0.5), 1);
+}
+
 TEST(VisionFrontEnd, MapsNamesToLabelsAndDropsTheRest) {
   Config config = Config::fromText(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = "
