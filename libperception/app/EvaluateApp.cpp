@@ -220,9 +220,11 @@ std::vector<EvaluateApp::Entry> EvaluateApp::entries() const {
   std::vector<Entry> result;
   for (const std::string& run : runs) {
     const auto equals = run.find('=');
-    // A path with a '=' in it is none of a condition.
+    // A path with a '=' in it is none of a condition; C/H+R=... is one.
+    const auto slash = run.find('/');
+    const bool in_folder = slash < equals && (slash == 0 || fs::exists(run.substr(0, slash)));
     const bool conditional =
-        equals != std::string::npos && equals > 0 && !fs::exists(run) && run.find('/') > equals;
+        equals != std::string::npos && equals > 0 && !fs::exists(run) && !in_folder;
     if (!conditional) {
       result.push_back({"", run, truthOf(run)});
       continue;

@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "libperception/app/App.h"
-#include "libperception/app/Pipeline.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -77,6 +76,16 @@ RecordedLog recordLog(const std::string& log, Config& config, double seconds,
     throw DataError(log + ": no scene came of it: the log holds no frame of a sensor in use");
   recorded.first_stamp = *pipeline.firstStamp();
   return recorded;
+}
+
+RecordedSensor describeSensor(const PipelineSetup& setup, const MeasurementScan& scan) {
+  RecordedSensor sensor;
+  for (const auto& s : setup.sensors) {
+    if (s.label != scan.sensor) continue;
+    sensor = describeSensor(scan, s.front_end->labelNames(), s.params.fov, s.params.range_min,
+                            s.params.range_max, setup.model.classes.size());
+  }
+  return sensor;
 }
 
 }  // namespace perception

@@ -4,7 +4,9 @@
 #include <functional>
 #include <string>
 
+#include "libperception/app/Pipeline.h"
 #include "libperception/core/Config.h"
+#include "libperception/scene/MeasurementRun.h"
 #include "libperception/study/RecordedLog.h"
 
 namespace perception {
@@ -16,5 +18,8 @@ using ObservationEdit = std::function<void(mrpt::obs::CObservation&)>;
 /// DataError when no scene comes of it.
 RecordedLog recordLog(const std::string& log, Config& config, double seconds,
                       const ObservationEdit& edit = {});
+
+/// What the sensor of a scan is expected to see, by its section of the INI.
+RecordedSensor describeSensor(const PipelineSetup& setup, const MeasurementScan& scan);
 
 }  // namespace perception

@@ -45,15 +45,22 @@ std::shared_ptr<const FrontEnd> makeFrontEnd(Config& config, const std::string& 
   return nullptr;
 }
 
-/// "C+L" -> does it hold that modality; anything but C, L, R joined by + is a fault.
-bool readModalities(const std::string& text, std::string& letters) {
+/// "C+L" -> "CL"; anything but C, C/H, L, R joined by + is a fault. C/H: a camera whose headings
+/// are one wide Gaussian, the paper's baseline.
+bool readModalities(const std::string& text, std::string& letters, bool& wide_heading) {
+  constexpr const char* kCameraHeading = "C/H";
   letters.clear();
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (i % 2 == 1 ? text[i] != '+' : std::string("CLR").find(text[i]) == std::string::npos)
-      return false;
-    if (i % 2 == 0) letters += text[i];
+  wide_heading = false;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('+', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    const bool heading = word == kCameraHeading;
+    if (!heading && word != "C" && word != "L" && word != "R") return false;
+    letters += word[0];
+    wide_heading = wide_heading || heading;
+    at = end + 1;
   }
-  return text.size() % 2 == 1;
+  return true;
 }
 
 }  // namespace
@@ -65,7 +72,9 @@ const std::vector<std::string>& RunParams::associationNames() {
 
 void RunParams::visit(ParamVisitor& v) {
   v.unsigned64("seed", seed, "of all random numbers; --seed wins");
-  v.text("sensors", sensors, "modalities in use, letters C, L, R joined by +; --sensors wins");
+  v.text("sensors", sensors,
+         "modalities in use: C, C/H (camera headings as one wide Gaussian), L, R joined by +; "
+         "--sensors wins");
   v.words("without", without, "labels of sensors that are left out all the same; none");
   v.choiceOf("association", association, associationNames(),
              "how a hypothesis chooses the causes of measurements");
@@ -99,10 +108,12 @@ PipelineSetup PipelineSetup::read(Config& config) {
   s.weather = WeatherParams::read(config);
   s.grid = config.read<GridParams>("grid");
   std::string letters;
-  if (!readModalities(s.run.sensors, letters)) {
+  bool wide_heading = false;
+  if (!readModalities(s.run.sensors, letters, wide_heading)) {
     config.fault("run", "sensors",
-                 "'" + s.run.sensors + "' is not a list of C, L, R joined by + (as C+L)");
+                 "'" + s.run.sensors + "' is not a list of C, C/H, L, R joined by + (as C+L)");
   }
+  if (wide_heading) s.model.params.heading = HeadingMode::kWide;
   const std::string prefix = "sensor.";
   for (const auto& section : config.sectionsWithPrefix(prefix)) {
     Sensor sensor;

@@ -38,6 +38,7 @@ struct Study {
   bool scenario = false;    ///< reads a scenario INI
   bool labels = false;      ///< reads rawlogs with detections and truth
   bool scan = false;        ///< takes a scan of a rawlog
+  void (*declare)(CLI::App& cli, ResolutionOptions& options) = nullptr;  ///< options of its own
 };
 
 const Study kStudies[] = {
@@ -93,6 +94,12 @@ const Study kStudies[] = {
      true},
     {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
      [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, false, true},
+    {"resolution", "what a panorama's resolution is worth: the paper's tables of its camera",
+     [](StudyApp& app) {
+       app.resolution.seed = app.seed;
+       return resolutionStudy(app.resolution);
+     },
+     false, false, false, false, false, &declareResolution},
     {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
      [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
 };
@@ -155,6 +162,7 @@ void StudyApp::declare(CLI::App& cli) {
           ->capture_default_str()
           ->check(CLI::Range(0.1, 360.0));
     }
+    if (s.declare) s.declare(*sub, resolution);
     if (s.scan) sub->add_option("--log", log, "Rawlog whose first lidar scan is filtered");
     if (s.scenario) {
       sub->add_option("-c,--config", scenario,

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "libperception/app/App.h"
+#include "libperception/app/ResolutionStudy.h"
 #include "libperception/study/RecordedLog.h"
 #include "libperception/study/Study.h"
 
@@ -23,6 +24,7 @@ class StudyApp : public App {
   double seconds = 0;                ///< particles: of the log; 0 = all
   double range = 30, fov_deg = 360;  ///< particles: where objects of a log count [m, deg]
   std::string scenario;              ///< ego: INI of the scenario
+  ResolutionOptions resolution;      ///< resolution: all of its options
   double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
 
   StudyReport out_report;

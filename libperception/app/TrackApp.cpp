@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include "libperception/app/LogRecorder.h"
 #include "libperception/app/OutputFolder.h"
 #include "libperception/scene/MeasurementRun.h"
 #include "libperception/scene/OutputFile.h"
@@ -94,12 +95,7 @@ class MeasurementRecorder : public PipelineObserver {
 
  private:
   const RecordedSensor& add(const MeasurementScan& scan) {
-    RecordedSensor sensor;
-    for (const auto& s : pipeline_.setup().sensors) {
-      if (s.label != scan.sensor) continue;
-      sensor = describeSensor(scan, s.front_end->labelNames(), s.params.fov, s.params.range_min,
-                              s.params.range_max, pipeline_.setup().model.classes.size());
-    }
+    RecordedSensor sensor = describeSensor(pipeline_.setup(), scan);
     writer_.writeSensor(sensor);
     return sensors_.emplace(scan.sensor, std::move(sensor)).first->second;
   }
@@ -116,7 +112,9 @@ void TrackApp::declare(CLI::App& cli) {
   addInputOption(cli, false);
   addOutputOption(cli, false);
   addRunOptions(cli);
-  cli.add_option("--sensors", sensors, "Modalities in use: letters C, L, R joined by +");
+  cli.add_option(
+      "--sensors", sensors,
+      "Modalities in use: C, C/H (camera headings as one wide Gaussian), L, R joined by +");
   cli.add_option("--seed", seed, "Seed of all random numbers");
   cli.add_option("--rate", rate,
                  "[Hz] Scenes at a fixed rate instead of at the output sensor's scans")

@@ -161,11 +161,11 @@ class ScanJudge {
     if (thing.class_id < 0 || object.ignore) return;
     const auto c = static_cast<std::size_t>(thing.class_id);
     const GroundView view = viewFrom(scan.T_world_sensor, thing.footprint);
-    const bool in_view = view.closest_range <= sensor_.class_range[c] &&
-                         view.range >= sensor_.range_min &&
+    const double range = options_.centre_range ? view.range : view.closest_range;
+    const bool in_view = range <= sensor_.class_range[c] && view.range >= sensor_.range_min &&
                          std::abs(view.bearing) <= 0.5 * sensor_.fov;
     if (!in_view || object.occluded > options_.selection.max_occluded) return;
-    const std::size_t bin = binOf(view.closest_range);
+    const std::size_t bin = binOf(range);
     counts.in_view = 1;
     result_.visible[c][bin] += counts;
     if (object.lidar_points < 0 || object.lidar_points >= options_.selection.min_points)

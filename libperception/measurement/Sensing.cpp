@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/core/LogMath.h"
+#include "libperception/measurement/CameraResolution.h"
 
 namespace perception {
 namespace {
@@ -140,6 +141,13 @@ void SensingParams::visit(ParamVisitor& v) {
          "tempers labels in the class update: 1 = independent labels");
   v.real("detection_exponent", detection_exponent, {1e-3, 1}, "",
          "tempers detections and misses in the class update");
+  std::vector<std::string> resolutions = cameraResolutionNames();
+  resolutions.insert(resolutions.begin(), "none");
+  v.choice("resolution", resolution, resolutions,
+           "panoramas of the paper's detector (kind = boxes): sets range_max, clutter_per_scan, "
+           "births_per_scan and the ranges of all classes, over the keys for these");
+  v.require(resolution == 0 || kind == "boxes", "resolution: of cameras, kind = boxes");
+  takeResolution();
   std::vector<double> numbers;
   if (pose) {
     const Vector3 t = pose->translation();
@@ -163,6 +171,16 @@ void SensingParams::visit(ParamVisitor& v) {
   v.table(
       "precision.", precision, {0.5, 1}, "",
       "the paper's mode: P(label | its class) = precision, else 1 - precision; one key a label");
+}
+
+void SensingParams::takeResolution() {
+  if (resolution == 0) return;
+  const CameraResolution& row = cameraResolutions()[static_cast<std::size_t>(resolution) - 1];
+  // Of the panorama at 2k, whose figures SPEC 5.3 gives, births grow with the range's border.
+  constexpr double kBirths = 0.01, kRange = 15;  // [1/scan], [m]
+  range_max = 1.2 * row.car_range;
+  clutter_per_scan = row.false_per_image;
+  births_per_scan = kBirths * row.car_range / kRange;
 }
 
 void ClassSensing::visit(ParamVisitor& v) {
@@ -210,6 +228,7 @@ Sensing::Sensing(SensingParams params, std::vector<ClassSensing> classes,
     log_labels_.push_back(std::move(row));
   }
   if (params_.precision.size() == labels_.size() && !labels_.empty()) takePrecision();
+  if (params_.resolution > 0) takeResolution();
   log_clutter_labels_ = completeRow(params_.clutter_labels, labels_);
   for (double& p : log_clutter_labels_) p = std::log(p);
 }
@@ -225,6 +244,20 @@ void Sensing::takePrecision() {
       log_labels_[c][static_cast<std::size_t>(label)] =
           std::log(std::max(kLeast, label == own ? p : 1 - p));
     }
+  }
+}
+
+// Recall falls from all to none within 10 % of the paper's range; what the detector calls a car is
+// seen as far as cars are.
+void Sensing::takeResolution() {
+  const CameraResolution& resolution =
+      cameraResolutions()[static_cast<std::size_t>(params_.resolution) - 1];
+  for (std::size_t c = 0; c < classes_.size(); ++c) {
+    const bool vehicle =
+        labelIndex("car") >= 0 && labelOf(static_cast<ClassId>(c)) == labelIndex("car");
+    const double range = vehicle ? resolution.car_range : resolution.person_range;
+    classes_[c].full_range = 0.9 * range;
+    classes_[c].last_range = 1.1 * range;
   }
 }
 

@@ -22,11 +22,15 @@ struct SensingParams {
   std::optional<Pose3> pose;        ///< on the vehicle; when given it wins over the log's
   std::vector<std::pair<std::string, double>>
       clutter_labels;  ///< P(label | clutter); the rest shares evenly
+  /// Panoramas of the paper: a row of cameraResolutions(), 1, 2 ...; 0: none. Sets range_max,
+  /// clutter, births and every class's ranges, over what the INI says of them.
+  int resolution = 0;
   /// The paper's reading of labels in place of the class tables: a label's precision p is
   /// P(label | its class), 1 - p is P(label | any other class) (SPEC 5.6). Empty: the tables.
   std::vector<std::pair<std::string, double>> precision;
 
   void visit(ParamVisitor& v);
+  void takeResolution();
 };
 
 /// How the sensor sees one class: [sensor.LABEL.class.NAME].
@@ -66,6 +70,7 @@ class Sensing {
 
  private:
   void takePrecision();
+  void takeResolution();
 
   SensingParams params_;
   std::vector<ClassSensing> classes_;

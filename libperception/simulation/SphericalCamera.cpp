@@ -1,9 +1,9 @@
 #include "libperception/simulation/SphericalCamera.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "libperception/measurement/CameraResolution.h"
 #include "libperception/simulation/CameraBoxes.h"
 #include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/World.h"
@@ -14,19 +14,6 @@ namespace {
 constexpr std::uint32_t kFalseSlot = 1u << 20, kWeatherPurpose = 0x57EA0000;  // random streams
 constexpr double kRangeEdge = 0.1;  // recall falls from all to none within +-10 % of the range
 constexpr double kHidden = 0.15, kClear = 0.5;  // visible share: not found below, all above
-
-/// The paper's table of resolutions. False boxes follow from its detections per image (cars
-/// .46/1.53/4.52/8.12, persons .15/.45/5.98/27.31) and precision (95 and 90 %).
-struct ResolutionRow {
-  const char* name;
-  int width, height;               ///< [px]
-  double car_range, person_range;  ///< [m]
-  double false_per_image;
-};
-constexpr std::array<ResolutionRow, 4> kResolutions = {{{"1k", 1024, 512, 7, 5, 0.04},
-                                                        {"2k", 2048, 1024, 15, 10, 0.12},
-                                                        {"4k", 4096, 2048, 32, 20, 0.82},
-                                                        {"8k", 8000, 4000, 70, 40, 3.1}}};
 
 /// What the detector makes of a kind: two labels (SPEC 2, camera columns).
 struct Answer {
@@ -161,7 +148,7 @@ std::optional<ObjectDetection> falseBox(const LidarCaster& caster, double t,
 }  // namespace
 
 void SphericalCameraParams::setResolution(Resolution r) {
-  const ResolutionRow& row = kResolutions[static_cast<std::size_t>(r)];
+  const CameraResolution& row = cameraResolutions()[static_cast<std::size_t>(r)];
   resolution = r;
   width = row.width, height = row.height;
   car_range = row.car_range, person_range = row.person_range;
@@ -170,9 +157,8 @@ void SphericalCameraParams::setResolution(Resolution r) {
 
 void SphericalCameraParams::visit(ParamVisitor& v) {
   const Resolution before = resolution;
-  std::vector<std::string> names;
-  for (const ResolutionRow& row : kResolutions) names.emplace_back(row.name);
-  v.choiceOf("resolution", resolution, names, "sets size, ranges and false boxes (paper)");
+  v.choiceOf("resolution", resolution, cameraResolutionNames(),
+             "sets size, ranges and false boxes (paper)");
   if (resolution != before) setResolution(resolution);
   v.real("car_range", car_range, {1, 300}, "m", "recall of cars and busses holds within");
   v.real("person_range", person_range, {1, 300}, "m", "recall of persons and cyclists");

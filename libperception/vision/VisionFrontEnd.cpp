@@ -198,7 +198,7 @@ std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& 
                                              const ClassTable& classes) {
   const std::string section = "sensor." + sensor_label;
   auto detector = config.read<DetectorParams>(section + ".detector");
-  const auto geometry = config.read<BoxGeometryParams>(section + ".geometry");
+  auto geometry = config.read<BoxGeometryParams>(section + ".geometry");
   if (!detector.heading_model.empty()) {
     try {
       const HeadingHead head = HeadingHead::read(detector.heading_model);
@@ -210,6 +210,8 @@ std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& 
   }
   const Sensing sensing =
       Sensing::read(config, section, classes, detector.labels, cameraDefaults());
+  // Of objects as far as they are seen; what stands farther may still be a box.
+  if (sensing.params().resolution > 0) geometry.max_range = 1.1 * sensing.params().range_max;
   return std::make_unique<VisionFrontEnd>(detector, geometry, classes, sensing);
 }
 

@@ -1,8 +1,10 @@
 #include "libperception/app/StudyApp.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/obs/CObservationImage.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -10,6 +12,8 @@
 
 #include "libperception/app/LogRecorder.h"
 #include "libperception/app/TrackApp.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/RawlogWriter.h"
 #include "libperception/study/LogParticlesStudy.h"
 #include "tests/support/TemporaryFolder.h"
 
@@ -124,6 +128,61 @@ TEST(StudyApp, EgoReportsErrorsThroughAGapOfSatellites) {
   EXPECT_EQ(rows[1][2], "gap of 10 s");
   EXPECT_LT(std::stod(rows[1][4]), 2);  // [m] the worst of all
   EXPECT_LT(std::stod(rows[1][7]), 2);  // [deg]
+}
+
+const StudyTable& tableOf(const StudyReport& report, const std::string& name) {
+  const auto found = std::find_if(report.tables.begin(), report.tables.end(),
+                                  [&](const StudyTable& t) { return t.name == name; });
+  if (found == report.tables.end()) throw std::runtime_error("no table " + name);
+  return *found;
+}
+
+TEST(StudyApp, ResolutionTracksEverySensorSetOfThePaper) {
+  const test::TemporaryFolder folder;
+  const std::string ini = std::string(PERCEPTION_SOURCE_DIR) + "/ini/";
+  const std::string out = folder.path() + "/resolution", site = ini + "skynet.ini",
+                    scenario = ini + "scenarios/C.ini";
+  StudyApp app;
+  const char* argv[] = {
+      "perception-study", "resolution", "-c", site.c_str(), "--scenario", scenario.c_str(),
+      "--seconds",        "2",          "-o", out.c_str(),  "--set",      "run.without=IBEO"};
+  ASSERT_EQ(runApp(app, 12, argv), 0);
+  for (const char* name : {"report.md", "recall_precision.csv", "recall.png", "tracking_rate.png"})
+    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
+  std::vector<std::string> sets;
+  for (const auto& row : tableOf(app.out_report, "tracking_rate").rows) sets.push_back(row[0]);
+  EXPECT_EQ(sets,
+            (std::vector<std::string>{"C-1k+R", "C-2k+R", "C-4k+R", "C-8k+R", "L+R", "C-8k+L+R"}));
+  const auto& seen = tableOf(app.out_report, "detection_rate").rows;
+  EXPECT_GT(std::stod(seen[3][1]), std::stod(seen[0][1]));  // 8k sees more than 1k
+}
+
+TEST(StudyApp, ResolutionTakesTheImagesOfALog) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "hog.ini")
+      << "[detector]\nbackend = hog\n[model.people]\nlabel = Pedestrian\nthreshold = 0\n";
+  {
+    RawlogWriter log(folder / "panorama.rawlog");
+    for (int i = 0; i < 2; ++i) {
+      mrpt::obs::CObservationImage image;
+      image.timestamp = fromStamp(Stamp{1317038400000000000LL + i * 100000000LL});
+      image.sensorLabel = "CAMERA";
+      image.image = mrpt::img::CImage(2048, 1024, mrpt::img::CH_RGB);
+      log.write(image);
+    }
+    log.close();
+  }
+  StudyApp app;
+  const std::string site = std::string(PERCEPTION_SOURCE_DIR) + "/ini/skynet.ini",
+                    log = folder / "panorama.rawlog", hog = folder / "hog.ini",
+                    out = folder / "out";
+  const char* argv[] = {"perception-study", "resolution", "-c",        site.c_str(), "--log",
+                        log.c_str(),        "--detector", hog.c_str(), "-o",         out.c_str()};
+  ASSERT_EQ(runApp(app, 10, argv), 0);
+  const auto& rows = tableOf(app.out_report, "tracking_rate").rows;
+  ASSERT_EQ(rows.size(), 2U);  // nothing is enlarged to 4k
+  EXPECT_EQ(rows[0][0], "C-1k");
+  EXPECT_EQ(rows[1][0], "C-2k");
 }
 
 TEST(StudyApp, UnknownStudiesAreAUsageError) {

@@ -98,6 +98,20 @@ TEST(Sensing, ReportsWhatCannotBe) {
   EXPECT_EQ(faultsOf("[sensor.A]\npose = 1, 2, 3, 90, 0, 0\n"), "");
 }
 
+TEST(Sensing, TheResolutionOfAPanoramaSetsItsRanges) {
+  Config config = Config::fromText(
+      "[sensor.A]\nkind = boxes\nmodality = C\nresolution = 8k\nrange_max = 18\n"
+      "[sensor.A.class.pedestrian]\nfull_range = 9\nlast_range = 11\n",
+      "a.ini");
+  const Sensing s = Sensing::read(config, "sensor.A", classes(), {"car", "person"}, {});
+  EXPECT_NO_THROW(config.finish());
+  EXPECT_NEAR(s.detection(1, 62, 0, 1), 0.85, 1e-12);  // cars: full to 63 m, to 77 m at most
+  EXPECT_EQ(s.detection(1, 78, 0, 1), 0);
+  EXPECT_NEAR(s.detection(0, 35, 0, 1), 0.70, 1e-12);  // persons: full to 36 m, to 44 m at most
+  EXPECT_EQ(s.detection(0, 45, 0, 1), 0);
+  EXPECT_NE(faultsOf("[sensor.A]\nresolution = 8k\n").find("of cameras"), std::string::npos);
+}
+
 TEST(Sensing, FadesAtTheBordersOfItsView) {
   SensingParams p;
   p.range_min = 2;
