@@ -68,6 +68,9 @@ void OnnxParams::visit(ParamVisitor& v) {
   v.integer("input", input, {0, 4096}, "side of the square input in pixels; 0: as the file says");
   v.choice("layout", layout, layoutNames(), "of the output; auto: by its shape");
   v.real("overlap", overlap, {0, 1}, "", "intersection over union of boxes of one object");
+  v.boolean("windows", windows, "long images also in overlapping squares of their shorter side");
+  v.real("window_overlap", window_overlap, {0, 0.9}, "",
+         "share of a square that the next sees, too");
 }
 
 void HogParams::visit(ParamVisitor& v) {

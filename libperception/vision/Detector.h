@@ -43,6 +43,8 @@ struct OnnxParams {
   int input = 0;          ///< [px] side of the square input; 0: as the file says
   int layout = 0;         ///< of the output, a place in layoutNames(); 0: by its shape
   double overlap = 0.45;  ///< of boxes of one class that are one object (intersection over union)
+  bool windows = true;    ///< long images also in squares of their shorter side
+  double window_overlap = 0.5;  ///< share of a square that the next one sees, too
 
   static const std::vector<std::string>& layoutNames();
   void visit(ParamVisitor& v);

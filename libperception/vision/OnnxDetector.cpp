@@ -20,6 +20,8 @@ namespace perception {
 namespace {
 
 constexpr double kLeastScore = 0.01;  // weaker boxes of a network are no boxes
+constexpr double kLongish = 1.3;  // a longer image is cut into squares, too: what scale it loses
+constexpr double kCut = 0.03;     // of its width: a box so near to its window's edge is cut by it
 
 /// Networks of the YOLO kind through cv::dnn.
 class OnnxDetector final : public Detector {
@@ -47,37 +49,67 @@ class OnnxDetector final : public Detector {
   std::vector<ObjectDetection> detect(const Raster& image,
                                       const SearchRegion& region) const override {
     const cv::Mat pixels = colourMat(image);
-    const double scale = std::min(static_cast<double>(side_) / image.width,
-                                  static_cast<double>(side_) / image.height);
-    cv::Mat input(side_, side_, CV_8UC3, cv::Scalar::all(114));  // the grey that they learnt with
-    cv::Mat part = input(cv::Rect(0, 0, std::max(1, cvRound(image.width * scale)),
-                                  std::max(1, cvRound(image.height * scale))));
-    cv::resize(pixels, part, part.size(), 0, 0, cv::INTER_LINEAR);
-    const std::lock_guard<std::mutex> lock(one_at_a_time_);
-    const cv::Mat output = run(input);
-    const auto boxes = decodeOnnxOutput(reinterpret_cast<const float*>(output.data),
-                                        {output.size[1], output.size[2]}, layout_, side_,
-                                        std::max(kLeastScore, model_.threshold));
     std::vector<ObjectDetection> out;
-    for (const OnnxBox& b : boxes) {
+    const std::lock_guard<std::mutex> lock(one_at_a_time_);
+    const cv::Size whole(image.width, image.height);
+    for (const cv::Rect& window : windowsOf(whole)) look(pixels, window, region, out);
+    return suppressed(std::move(out), params_.overlap);
+  }
+
+ private:
+  /// The image itself, and where it is much longer than broad squares along it that share
+  /// `window_overlap`: a network of 416 px sees a car of 40 px in 1242 as one of 13.
+  std::vector<cv::Rect> windowsOf(const cv::Size& image) const {
+    std::vector<cv::Rect> out{{{0, 0}, image}};
+    const int side = std::min(image.width, image.height);
+    const int length = std::max(image.width, image.height);
+    if (!params_.windows || length < kLongish * side || length <= side_) return out;
+    const double step = (1 - params_.window_overlap) * side;
+    const int count = 1 + static_cast<int>(std::ceil((length - side) / step));
+    for (int i = 0; i < count; ++i) {
+      const int begin = static_cast<int>(static_cast<long>(length - side) * i / (count - 1));
+      out.emplace_back(image.width > image.height ? begin : 0,
+                       image.width > image.height ? 0 : begin, side, side);
+    }
+    return out;
+  }
+
+  /// The boxes of one window, those left out that it cuts: others show them whole.
+  void look(const cv::Mat& pixels, const cv::Rect& window, const SearchRegion& region,
+            std::vector<ObjectDetection>& out) const {
+    const double scale = std::min(static_cast<double>(side_) / window.width,
+                                  static_cast<double>(side_) / window.height);
+    cv::Mat input(side_, side_, CV_8UC3, cv::Scalar::all(114));  // the grey that they learnt with
+    cv::Mat part = input(cv::Rect(0, 0, std::max(1, cvRound(window.width * scale)),
+                                  std::max(1, cvRound(window.height * scale))));
+    cv::resize(pixels(window), part, part.size(), 0, 0, cv::INTER_LINEAR);
+    const cv::Mat output = run(input);
+    for (const OnnxBox& b : decodeOnnxOutput(reinterpret_cast<const float*>(output.data),
+                                             {output.size[1], output.size[2]}, layout_, side_,
+                                             std::max(kLeastScore, model_.threshold))) {
       const auto name = names_.find(b.index);
       if (name == names_.end()) continue;
+      const double border = kCut * (b.box.x2 - b.box.x1) / scale;
+      const double x1 = window.x + b.box.x1 / scale, x2 = window.x + b.box.x2 / scale;
+      const double y1 = window.y + b.box.y1 / scale, y2 = window.y + b.box.y2 / scale;
+      const bool cut = (window.x > 0 && x1 < window.x + border) ||
+                       (window.y > 0 && y1 < window.y + border) ||
+                       (window.br().x < pixels.cols && x2 > window.br().x - border) ||
+                       (window.br().y < pixels.rows && y2 > window.br().y - border);
       ObjectDetection o;
       o.label = name->second;
       o.score = b.score;
-      o.image_box = {std::max(0.0, b.box.x1 / scale), std::max(0.0, b.box.y1 / scale),
-                     std::min(image.width - 1.0, b.box.x2 / scale),
-                     std::min(image.height - 1.0, b.box.y2 / scale)};
-      if (!(o.image_box->x2 > o.image_box->x1) || !(o.image_box->y2 > o.image_box->y1)) continue;
+      o.image_box = {std::max(0.0, x1), std::max(0.0, y1), std::min(pixels.cols - 1.0, x2),
+                     std::min(pixels.rows - 1.0, y2)};
+      if (cut || !(o.image_box->x2 > o.image_box->x1) || !(o.image_box->y2 > o.image_box->y1))
+        continue;
       if (region.ground &&
           !region.ground->admits(o.image_box->y1, o.image_box->y2, model_.low, model_.high))
         continue;
       out.push_back(std::move(o));
     }
-    return suppressed(std::move(out), params_.overlap);
   }
 
- private:
   void readNames() {
     for (const std::string& word : model_.names) {
       int index = -1;

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <random>
 
 #include "libperception/core/Angle.h"
@@ -202,6 +205,36 @@ TEST(OnnxFile, TellsAnInputThatWasLeftOpen) {
   }
   std::ofstream(folder / "no.onnx") << "this is no network";
   EXPECT_THROW(readOnnxFile(folder / "no.onnx"), DataError);
+}
+
+// A long street, 1242 x 375, shown to a network of 416 x 416.
+TEST(OnnxDetector, WindowsShowALongImageAtItsOwnScale) {
+  const std::string shared = PERCEPTION_SHARED_DATA;
+  const std::string file = shared + "/data/kitti_object13/image_2/000008.png";
+  DetectorModelParams net;
+  net.file = shared + "/models/yolox_nano.onnx";
+  net.names = {"2=Car"};
+  net.threshold = 0.3;
+  const cv::Mat pixels = cv::imread(file);
+  if (pixels.empty() || !std::filesystem::exists(net.file)) GTEST_SKIP() << "no " << file;
+  const Raster image{pixels.cols, pixels.rows, 3, {pixels.datastart, pixels.dataend}};
+  const auto boxesOf = [&](bool windows, double overlap) {
+    DetectorSetup setup;
+    setup.backend = 2;
+    setup.models = {{"net", net}};
+    setup.onnx.windows = windows;
+    setup.onnx.window_overlap = overlap;
+    return makeDetector(setup)->detect(image, {});
+  };
+  const auto whole = boxesOf(false, 0.5), cut = boxesOf(true, 0.5);
+  EXPECT_GT(cut.size(), whole.size());
+  EXPECT_GE(cut.size(), 5U);  // six cars, one of them far
+  // No car is there twice, wherever the windows end.
+  for (const auto& boxes : {cut, boxesOf(true, 0.3)}) {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        EXPECT_LT(overlapOf(*boxes[i].image_box, *boxes[k].image_box), 0.46);
+  }
 }
 
 Raster plain(int width, int height) {
