@@ -14,6 +14,7 @@
 #include "gui-offscreen/SceneFile.h"
 #include "gui-offscreen/VideoFile.h"
 #include "libperception/app/Pipeline.h"
+#include "libperception/grid/CGridExport.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr double kTrail = 2;             // [s]
 constexpr double kNearestScene = 0.51;   // [s] from --time: half the period of a scene a second
 constexpr double kNearestTruth = 0.06;   // [s] half the period of 10 Hz, and rounding
-constexpr double kUnknownSize = 0.3;  // [m] of truth without a size
+constexpr double kUnknownSize = 0.3;     // [m] of truth without a size
 constexpr std::size_t kSheetTiles = 36;  // on the contact sheet of --every
 constexpr double kSlowestFilm = 1;       // [s] a picture at most
 
@@ -90,6 +91,11 @@ void SnapshotApp::declare(CLI::App& cli) {
   cli.add_option("--scene", scene_file,
                  "with --time or --frame: also a file for MRPT's SceneViewer3D")
       ->type_name("FILE.3Dscene");
+  cli.add_option("--grid", grid_files,
+                 "with --time or --frame: also the safety grid, by the file's ending: .ot, .bt "
+                 "(octovis), .gridmap.gz (MRPT), .png (from above)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   cli.add_option(
          "--view", view,
          "top (from above), driver (from behind the vehicle), camera (its image), joined by "
@@ -320,8 +326,11 @@ void SnapshotApp::run() {
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the runs");
   if (output.empty() && video.empty())
     throw Error(ExitCode::kUsage, "-o: expected a file or folder");
-  if (!scene_file.empty() && !time && !frame) {
-    throw Error(ExitCode::kUsage, "--scene: of one instant, --time or --frame");
+  if ((!scene_file.empty() || !grid_files.empty()) && !time && !frame) {
+    throw Error(ExitCode::kUsage, "--scene, --grid: of one instant, --time or --frame");
+  }
+  if (!grid_files.empty() && inputs.empty()) {
+    throw Error(ExitCode::kUsage, "--grid: the safety grid comes from the log's scans: -i");
   }
   if (contact > 0 && run_dirs.size() > 1) throw Error(ExitCode::kUsage, "--contact: of one run");
   readViews();
@@ -384,6 +393,11 @@ void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
     createFolder(fs::path(scene_file).parent_path());
     writeSceneFile(scene_file, views[0], params.range);
     out_files.push_back(scene_file);
+  }
+  for (const std::string& file : grid_files) {
+    createFolder(fs::path(file).parent_path());
+    saveGrid(shown_[0].sensors->grid(), file);
+    out_files.push_back(file);
   }
 }
 

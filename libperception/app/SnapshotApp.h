@@ -25,6 +25,7 @@ class SnapshotApp : public App {
   std::string video;                      ///< --video: a film of every scene
   double video_from = 0, video_to = 1e9;  ///< --from, --to [s]: which part of the log is filmed
   std::string scene_file;                 ///< --scene: .3Dscene of the instant
+  std::vector<std::string> grid_files;    ///< --grid: of the instant, by their endings
   std::string view = "both";              ///< --view: top, driver, camera joined by +; both; all
   std::vector<std::string> titles;        ///< --title: instead of the runs' names
   bool no_measurements = false;           ///< --no-measurements

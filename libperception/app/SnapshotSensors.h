@@ -42,6 +42,7 @@ class SnapshotSensors {
   void fill(SceneView& view);
 
   const ViewLayers& layers() const { return layers_; }
+  const SafetyGrid& grid() const { return *grid_; }  ///< as of the last instant
   const RawlogReader& reader() const { return reader_; }
   std::uint64_t scans() const { return scans_; }    ///< put into the grid so far
   std::uint64_t frames() const { return frames_; }  ///< of any sensor, at the run's times

@@ -36,6 +36,16 @@ std::map<std::pair<int, int>, double> groundOf(const std::vector<GridCell>& cell
 
 }  // namespace
 
+void saveGrid(const SafetyGrid& grid, const std::string& file) {
+  if (endsWith(file, ".ot") || endsWith(file, ".bt")) {
+    saveOctree(grid, file);
+  } else if (endsWith(file, ".gridmap.gz") || endsWith(file, ".png")) {
+    saveGround(grid, file);
+  } else {
+    throw Error(ExitCode::kUsage, file + ": expected a grid as .ot, .bt, .gridmap.gz or .png");
+  }
+}
+
 void saveOctree(const SafetyGrid& grid, const std::string& file) {
   octomap::OcTree tree(grid.params().resolution);
   tree.setClampingThresMin(octomap::probability(grid.params().low));

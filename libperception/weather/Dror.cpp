@@ -1,10 +1,9 @@
 #include "libperception/weather/Dror.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "libperception/weather/CloudVerdict.h"
 #include "libperception/weather/NeighbourTree.h"
-#include "libperception/weather/PointFilter.h"
 
 namespace perception {
 
@@ -24,27 +23,19 @@ class Dror final : public PointFilter {
   explicit Dror(const DrorParams& params) : params_(params) {}
 
   TrustStats apply(SensorFrame& frame) override {
-    TrustStats stats;
     auto* cloud = std::get_if<LidarCloud>(&frame.data);
-    if (cloud == nullptr) return stats;
+    if (cloud == nullptr) return {};
     const NeighbourTree tree(*cloud);
-    stats.returns = cloud->size();
-    cloud->trust.assign(cloud->size(), 1);
-    for (std::size_t i = 0; i < cloud->size(); ++i) {
-      const double range =
-          std::hypot(static_cast<double>(cloud->x[i]), static_cast<double>(cloud->y[i]),
-                     static_cast<double>(cloud->z[i]));
-      if (range > params_.max_range) continue;
+    return judge(*cloud, [&](std::size_t i) {
+      const double range = rangeOf(*cloud, i);
+      if (range > params_.max_range) return false;
       if (!cloud->intensity.empty() &&
           static_cast<double>(cloud->intensity[i]) > params_.max_intensity)
-        continue;
+        return false;
       const double radius =
           std::max(params_.radius_min, params_.multiplier * range * params_.azimuth);
-      if (tree.hasWithin(i, radius, static_cast<std::size_t>(params_.neighbours))) continue;
-      cloud->trust[i] = 0;
-      ++stats.phantoms;
-    }
-    return stats;
+      return !tree.hasWithin(i, radius, static_cast<std::size_t>(params_.neighbours));
+    });
   }
 
  private:

@@ -1,9 +1,10 @@
 #include "libperception/weather/Dsor.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "libperception/weather/CloudVerdict.h"
 #include "libperception/weather/NeighbourTree.h"
-#include "libperception/weather/PointFilter.h"
 
 namespace perception {
 
@@ -20,11 +21,8 @@ class Dsor final : public PointFilter {
   explicit Dsor(const DsorParams& params) : params_(params) {}
 
   TrustStats apply(SensorFrame& frame) override {
-    TrustStats stats;
     auto* cloud = std::get_if<LidarCloud>(&frame.data);
-    if (cloud == nullptr) return stats;
-    stats.returns = cloud->size();
-    cloud->trust.assign(cloud->size(), 1);
+    if (cloud == nullptr) return {};
     const std::vector<double> distance = meanDistances(*cloud);
     double sum = 0, squares = 0;
     for (const double d : distance) sum += d, squares += d * d;
@@ -32,15 +30,9 @@ class Dsor final : public PointFilter {
     const double mean = sum / count;
     const double deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
     const double scan = mean + params_.spread * deviation;
-    for (std::size_t i = 0; i < cloud->size(); ++i) {
-      const double range =
-          std::hypot(static_cast<double>(cloud->x[i]), static_cast<double>(cloud->y[i]),
-                     static_cast<double>(cloud->z[i]));
-      if (distance[i] < scan * params_.range_factor * range) continue;
-      cloud->trust[i] = 0;
-      ++stats.phantoms;
-    }
-    return stats;
+    return judge(*cloud, [&](std::size_t i) {
+      return distance[i] >= scan * params_.range_factor * rangeOf(*cloud, i);
+    });
   }
 
  private:

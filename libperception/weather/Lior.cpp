@@ -1,9 +1,7 @@
 #include "libperception/weather/Lior.h"
 
-#include <cmath>
-
+#include "libperception/weather/CloudVerdict.h"
 #include "libperception/weather/NeighbourTree.h"
-#include "libperception/weather/PointFilter.h"
 
 namespace perception {
 
@@ -21,25 +19,15 @@ class Lior final : public PointFilter {
   explicit Lior(const LiorParams& params) : params_(params) {}
 
   TrustStats apply(SensorFrame& frame) override {
-    TrustStats stats;
     auto* cloud = std::get_if<LidarCloud>(&frame.data);
-    if (cloud == nullptr) return stats;
-    stats.returns = cloud->size();
-    cloud->trust.assign(cloud->size(), 1);
-    if (cloud->intensity.empty()) return stats;
+    if (cloud == nullptr) return {};
+    if (cloud->intensity.empty()) return judge(*cloud, [](std::size_t) { return false; });
     const NeighbourTree tree(*cloud);
-    for (std::size_t i = 0; i < cloud->size(); ++i) {
-      const double range =
-          std::hypot(static_cast<double>(cloud->x[i]), static_cast<double>(cloud->y[i]),
-                     static_cast<double>(cloud->z[i]));
-      if (range > params_.max_range ||
-          static_cast<double>(cloud->intensity[i]) >= params_.max_intensity)
-        continue;
-      if (tree.hasWithin(i, params_.radius, static_cast<std::size_t>(params_.neighbours))) continue;
-      cloud->trust[i] = 0;
-      ++stats.phantoms;
-    }
-    return stats;
+    return judge(*cloud, [&](std::size_t i) {
+      return rangeOf(*cloud, i) <= params_.max_range &&
+             static_cast<double>(cloud->intensity[i]) < params_.max_intensity &&
+             !tree.hasWithin(i, params_.radius, static_cast<std::size_t>(params_.neighbours));
+    });
   }
 
  private:

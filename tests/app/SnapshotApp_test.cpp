@@ -216,6 +216,23 @@ TEST_F(SnapshotAppTest, SceneFileIsThatOfOneInstant) {
   EXPECT_EQ(run({"--every", "1", "-o", dir_ + "/x", "--scene", dir_ + "/a.3Dscene"}), 64);
 }
 
+TEST_F(SnapshotAppTest, GridIsWrittenByTheEndingsOfItsFiles) {
+  const std::vector<std::string> how = {"--frame", "20", "--view", "top", "-o", dir_ + "/a.png"};
+  std::vector<std::string> with_grid = how;
+  with_grid.insert(with_grid.end(), {"-i", kDemoLog, "--set", "grid.back_end=rolling"});
+  const std::vector<std::string> endings = {".ot", ".bt", ".gridmap.gz", ".png"};
+  for (const std::string& ending : endings)
+    with_grid.insert(with_grid.end(), {"--grid", dir_ + "/grid" + ending});
+  ASSERT_EQ(run(with_grid), 0);
+  for (const std::string& ending : endings)
+    EXPECT_GT(fs::file_size(dir_ + "/grid" + ending), 200U) << ending;
+  std::vector<std::string> without_log = how;
+  without_log.insert(without_log.end(), {"--grid", dir_ + "/b.png"});
+  EXPECT_EQ(run(without_log), 64);
+  with_grid.back() = dir_ + "/grid.pcd";
+  EXPECT_EQ(run(with_grid), 64);
+}
+
 // One image a second of the run, in the log or beside it; the first is missing.
 void writeImageLog(const std::string& path, bool embedded) {
   const std::string folder = path.substr(0, path.rfind('.')) + "_Images";

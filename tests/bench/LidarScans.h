@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libperception/app/ImportClouds.h"
+#include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception::bench {
@@ -20,6 +21,15 @@ struct RecordedScan {
   SensorFrame frame;                       ///< sensor straight above the ego origin on the road
   std::vector<std::uint16_t> point_class;  ///< WADS numbers; empty: none
 };
+
+/// The lidar rib alone, without what a tracker has to know of it.
+inline LidarFrontEnd frontEnd(const LidarParams& params) {
+  ClassTable classes;
+  classes.classes.resize(1);
+  return LidarFrontEnd(
+      params, classes,
+      Sensing(SensingParams{}, {ClassSensing{}}, LidarFrontEnd::labels(params.clusters)));
+}
 
 inline double cpuSeconds() {
   timespec t{};
