@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/Wider.h"
+#include "libperception/grid/FlatBeams.h"
 #include "libperception/grid/GridRolling.h"
 #include "libperception/grid/ScanEvidence.h"
 
@@ -12,17 +13,23 @@ constexpr double kForgotten = 0.05;  // [log-odds] as good as unknown
 constexpr float kTrusted = 0.5F;     // a hit below does not end a beam: what lies behind was seen
 constexpr int kWhole = 255;          // weight of a hit in a mark
 
-// atan2 within 3e-4 rad without a call: for choosing a direction's ray. Abramowitz and
-// Stegun 4.4.49.
-inline float roughBearing(float x, float y) {
-  const float ax = std::abs(x), ay = std::abs(y);
-  const float high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
-  const float t = low / (high + 1e-30F), s = t * t;
-  float angle =
-      t * (0.9998660F + s * (-0.3302995F + s * (0.1801410F + s * (-0.0851330F + s * 0.0208351F))));
-  angle = ay > ax ? 1.57079633F - angle : angle;
-  angle = x < 0 ? 3.14159265F - angle : angle;
-  return y < 0 ? -angle : angle;
+/// The evidence that cells of a row take in.
+struct RowEvidence {
+  const std::uint8_t *weights, *crossed;  ///< of 255; 0 or 1
+  float hit, miss, low, high;             ///< [log-odds]
+  float voided;                           ///< share of voidedBy(): 1 where hits are judged
+};
+
+PERCEPTION_WIDER void addRow(float* __restrict values, std::size_t count, RowEvidence e) {
+  const std::uint8_t* __restrict weights = e.weights, * __restrict crossed = e.crossed;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float w = static_cast<float>(weights[i]) * (1.0F / kWhole), v = values[i];
+    const float left = v < 0 ? v - v * w * e.voided : v;
+    const float miss = static_cast<float>(crossed[i]) * ((1 - w) * e.miss);
+    const float sum = left + (w * e.hit + miss);
+    const float bounded = sum < e.low ? e.low : sum;
+    values[i] = bounded > e.high ? e.high : bounded;
+  }
 }
 
 /// Cells of the ground in one flat array that rolls with the vehicle; a beam a direction, up to its
@@ -35,18 +42,27 @@ class GridRolling2d final : public SafetyGrid {
         values_(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_), 0),
         weights_(values_.size(), 0),
         crossed_(values_.size(), 0),
-        rays_(static_cast<std::size_t>(std::ceil(kTwoPi / params.ray_step))),
-        per_radian_(static_cast<float>(static_cast<double>(rays_.size()) / kTwoPi)),
-        nearest2_(static_cast<float>(params.resolution * params.resolution)) {}
+        beams_(params.ray_step) {}
 
   GridStats insert(const GridScan& scan) override {
     GridStats stats;
     if (!scan.T_world_ground.matrix().allFinite()) return stats;
     advance(scan, stats);
     T_world_ground_ = scan.T_world_ground;
-    rays_.assign(rays_.size(), Ray{});
-    takePoints(scan, stats);
-    castRays(scan, stats);
+    frame_ = WindowFrame(params(), scan.T_world_ground, first_, cells_, 0);
+    judged_ = scan.weights.size() == scan.hits.size();
+    rays_ = scan.origin.allFinite();
+    const WindowPlace origin = placeOf(rays_ ? scan.origin : scan.T_world_ground.translation());
+    beams_.begin(origin);
+    takeHits(scan, stats);
+    forPoints(scan.clear, stats, scan.hits.size(),
+              [](std::size_t, std::int32_t, bool) { return false; });
+    if (rays_)
+      beams_.forBeams([&](std::uint32_t i) {
+        ++stats.rays;
+        cast(origin,
+             placeOf(i < scan.hits.size() ? scan.hits[i] : scan.clear[i - scan.hits.size()]));
+      });
     addEvidence();
     return stats;
   }
@@ -93,16 +109,10 @@ class GridRolling2d final : public SafetyGrid {
 
   std::size_t memoryBytes() const override {
     return values_.capacity() * sizeof(float) + weights_.capacity() + crossed_.capacity() +
-           rays_.capacity() * sizeof(Ray);
+           beams_.memoryBytes() + sizeof placed_;
   }
 
  private:
-  struct Ray {
-    float range2 = 0;      // [m^2] 0: none
-    float x = 0, y = 0;    // [m] from the sensor
-    bool stopped = false;  // by a hit that is trusted
-  };
-
   std::int64_t indexOf(double v) const {
     return static_cast<std::int64_t>(std::floor(v / params().resolution));
   }
@@ -146,114 +156,90 @@ class GridRolling2d final : public SafetyGrid {
     started_ = true;
   }
 
-  void offerRay(float x, float y, bool stops) {
-    const float range2 = x * x + y * y;
-    if (!(range2 > nearest2_)) return;
-    const auto bin =
-        static_cast<std::uint32_t>(static_cast<int>((roughBearing(x, y) + 3.1416F) * per_radian_));
-    Ray& ray = rays_[bin < rays_.size() ? bin : 0];
-    const bool better = ray.stopped ? stops && range2 < ray.range2 : stops || range2 > ray.range2;
-    if (better) ray = {range2, x, y, stops};
+  WindowPlace placeOf(const Vector3& p) {
+    frame_.place(&p, 1, placed_);
+    return placed_.at(0);
   }
 
-  void takePoints(const GridScan& scan, GridStats& stats) {
-    const bool rays = scan.origin.allFinite();
-    const Vector3 origin = rays ? scan.origin : T_world_ground_.translation();
-    const Vector3 up = T_world_ground_.linear().col(2), centre = T_world_ground_.translation();
-    const double res = params().resolution, per_metre = 1 / res;
-    const double corner_x = static_cast<double>(first_.x) * res;
-    const double corner_y = static_cast<double>(first_.y) * res;
-    const bool weighted = judged_ = scan.weights.size() == scan.hits.size();
-    const double z_min = params().z_min, z_max = params().z_max;
-    const double grade2 = params().grade * params().grade;
-    const auto edge = static_cast<double>(cells_);
-    for (std::size_t i = 0; i < scan.hits.size(); ++i) {
-      const Vector3 p = scan.hits[i];
-      const double flat_x = p.x() - centre.x(), flat_y = p.y() - centre.y();
-      const double z = up.x() * flat_x + up.y() * flat_y + up.z() * (p.z() - centre.z());
-      if (!std::isfinite(z)) {
-        ++stats.not_finite;
-        continue;
+  /// Hands the index and cell of each point to `take`, which says whether it stops a beam. `first`:
+  /// number of the first one.
+  template <class Take>
+  void forPoints(const std::vector<Vector3>& points, GridStats& stats, std::size_t first,
+                 const Take& take) {
+    for (std::size_t begin = 0; begin < points.size(); begin += PlacedBlock::kSize) {
+      const std::size_t count = std::min(PlacedBlock::kSize, points.size() - begin);
+      frame_.place(&points[begin], count, placed_);
+      beams_.look(placed_, count);
+      for (std::size_t k = 0; k < count; ++k) {
+        if (placed_.cell[k] == PlacedBlock::kNotFinite) {
+          ++stats.not_finite;
+          continue;
+        }
+        const bool stops = take(begin + k, placed_.cell[k], placed_.in_slab[k] != 0);
+        beams_.offer(k, static_cast<std::uint32_t>(first + begin + k), stops);
       }
-      const double outside = std::max(z_min - z, z - z_max);
-      const bool in_slab =
-          outside <= 0 || outside * outside <= grade2 * (flat_x * flat_x + flat_y * flat_y);
-      float w = weighted ? scan.weights[i] : 1.0F;
+    }
+  }
+
+  void takeHits(const GridScan& scan, GridStats& stats) {
+    forPoints(scan.hits, stats, 0, [&](std::size_t i, std::int32_t cell, bool in_slab) {
+      if (!in_slab) return false;
+      float w = judged_ ? scan.weights[i] : 1.0F;
       if (!(w < 1)) w = 1;  // no verdict: believe the return
       if (w < 0) w = 0;
-      const double x = (p.x() - corner_x) * per_metre, y = (p.y() - corner_y) * per_metre;
-      if (in_slab && x >= 0 && y >= 0 && x < edge && y < edge) {
+      if (cell >= 0) {
         ++stats.hits;
-        std::uint8_t& mark =
-            weights_[static_cast<std::size_t>(static_cast<int>(y) * cells_ + static_cast<int>(x))];
+        std::uint8_t& mark = weights_[static_cast<std::size_t>(cell / PlacedBlock::kLayers)];
         mark = std::max(mark, static_cast<std::uint8_t>(w * kWhole + 0.5F));
       }
-      if (rays)
-        offerRay(static_cast<float>(p.x() - origin.x()), static_cast<float>(p.y() - origin.y()),
-                 in_slab && w >= kTrusted);
-    }
-    for (const Vector3& p : scan.clear) {
-      const auto x = static_cast<float>(p.x() - origin.x());
-      const auto y = static_cast<float>(p.y() - origin.y());
-      if (!std::isfinite(x + y + static_cast<float>(p.z()))) {
-        ++stats.not_finite;
-      } else if (rays) {
-        offerRay(x, y, false);
-      }
-    }
+      return w >= kTrusted;
+    });
   }
 
   // Amanatides and Woo, as in ScanEvidence. The last cell is not crossed: there the beam ended.
-  void castRays(const GridScan& scan, GridStats& stats) {
-    const auto per_metre = static_cast<float>(1 / params().resolution);
-    const auto ox =
-        static_cast<float>(scan.origin.x() / params().resolution - static_cast<double>(first_.x));
-    const auto oy =
-        static_cast<float>(scan.origin.y() / params().resolution - static_cast<double>(first_.y));
-    for (const Ray& ray : rays_) {
-      if (ray.range2 <= 0) continue;
-      ++stats.rays;
-      const float dx = ray.x * per_metre, dy = ray.y * per_metre;
-      int x = static_cast<int>(std::floor(ox)), y = static_cast<int>(std::floor(oy));
-      const int step_x = dx > 0 ? 1 : -1, step_y = dy > 0 ? 1 : -1;
-      const float per_x = std::abs(1 / dx), per_y = std::abs(1 / dy);  // infinity: never
-      float next_x = dx != 0 ? (static_cast<float>(dx > 0 ? x + 1 : x) - ox) / dx : per_x;
-      float next_y = dy != 0 ? (static_cast<float>(dy > 0 ? y + 1 : y) - oy) / dy : per_y;
-      while (std::min(next_x, next_y) < 1 && x >= 0 && y >= 0 && x < cells_ && y < cells_) {
-        crossed_[static_cast<std::size_t>(y * cells_ + x)] = 1;
-        const bool sideways = next_x < next_y;
-        x += sideways ? step_x : 0, y += sideways ? 0 : step_y;
-        next_x += sideways ? per_x : 0, next_y += sideways ? 0 : per_y;
-      }
+  void cast(const WindowPlace& from, const WindowPlace& to) {
+    const float dx = to.x - from.x, dy = to.y - from.y;
+    int x = static_cast<int>(std::floor(from.x)), y = static_cast<int>(std::floor(from.y));
+    const int step_x = dx > 0 ? 1 : -1, step_y = dy > 0 ? 1 : -1;
+    const float per_x = std::abs(1 / dx), per_y = std::abs(1 / dy);  // infinity: never
+    float next_x = dx != 0 ? (static_cast<float>(dx > 0 ? x + 1 : x) - from.x) / dx : per_x;
+    float next_y = dy != 0 ? (static_cast<float>(dy > 0 ? y + 1 : y) - from.y) / dy : per_y;
+    while (std::min(next_x, next_y) < 1 && x >= 0 && y >= 0 && x < cells_ && y < cells_) {
+      crossed_[static_cast<std::size_t>(y * cells_ + x)] = 1;
+      const bool sideways = next_x < next_y;
+      x += sideways ? step_x : 0, y += sideways ? 0 : step_y;
+      next_x += sideways ? per_x : 0, next_y += sideways ? 0 : per_y;
     }
   }
 
+  // The window's columns are those of the array from some column on, and then from its first on.
   void addEvidence() {
-    const auto hit = static_cast<float>(params().hit), miss = static_cast<float>(params().miss);
-    const auto low = static_cast<float>(params().low), high = static_cast<float>(params().high);
-    std::size_t at = 0;
-    for (std::int64_t y = 0; y < cells_; ++y) {
-      const std::size_t row = slotOf(first_.x, y + first_.y);
-      const std::size_t row_begin =
-          row / static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_);
-      std::size_t column = row - row_begin;
-      for (std::int64_t x = 0; x < cells_; ++x, ++at, ++column) {
-        if (column == static_cast<std::size_t>(cells_)) column = 0;
-        if (!(weights_[at] | crossed_[at])) continue;
-        const float w = static_cast<float>(weights_[at]) / kWhole;
-        float& value = values_[row_begin + column];
-        if (judged_ && value < 0) value *= 1 - w;  // voidedBy()
-        value = std::clamp(value + w * hit + (crossed_[at] ? (1 - w) * miss : 0), low, high);
-        weights_[at] = crossed_[at] = 0;
-      }
+    RowEvidence row{weights_.data(),
+                    crossed_.data(),
+                    static_cast<float>(params().hit),
+                    static_cast<float>(params().miss),
+                    static_cast<float>(params().low),
+                    static_cast<float>(params().high),
+                    judged_ ? 1.0F : 0.0F};
+    const auto width = static_cast<std::size_t>(cells_);
+    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y) {
+      const std::size_t begin = slotOf(first_.x, y), behind = begin % width;
+      addRow(&values_[begin], width - behind, row);
+      row.weights += width - behind, row.crossed += width - behind;
+      addRow(&values_[begin - behind], behind, row);
+      row.weights += behind, row.crossed += behind;
     }
+    std::fill(weights_.begin(), weights_.end(), std::uint8_t{0});
+    std::fill(crossed_.begin(), crossed_.end(), std::uint8_t{0});
   }
 
   int cells_;
   std::vector<float> values_;  // [log-odds], by place in the world modulo the window
   std::vector<std::uint8_t> weights_, crossed_;  // of the scan, from the window's corner
-  std::vector<Ray> rays_;                        // by bearing
-  float per_radian_, nearest2_;
+  FlatBeams beams_;
+  PlacedBlock placed_;
+  WindowFrame frame_;
+  bool rays_ = false;  // it is known where the sensor is
   Pose3 T_world_ground_ = Pose3::Identity();
   bool judged_ = false;  // the scan's hits came with weights
   bool started_ = false;

@@ -1,59 +1,66 @@
 #include "libperception/grid/WindowFrame.h"
 
 #include <cmath>
+#include <cstring>
 
 #include "libperception/core/Wider.h"
 
 namespace perception {
 namespace {
 
-/// The constants of placeAll(), as in WindowFrame.
-struct Constants {
-  double per_metre, corner_x, corner_y, corner_z, slope_x, slope_y, slope_z, offset;
-  double centre_x, centre_y;
-  float z_min, z_max, grade, cells, layers;
-};
+using Double4 = double __attribute__((vector_size(32)));
+using Float4 = float __attribute__((vector_size(16)));
 
-// Doubles as far as places of the world go, floats from the window's corner on.
-PERCEPTION_WIDER void placeAll(const double* __restrict xyz, std::size_t count, const Constants& c,
-                               PlacedBlock& out) {
-  float* __restrict ox = out.x.data(), * __restrict oy = out.y.data(), * __restrict oz = out.z.data();
-  float* __restrict low = out.low.data(), * __restrict high = out.high.data();
-  const Constants k = c;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double px = xyz[3 * i], py = xyz[3 * i + 1], pz = xyz[3 * i + 2];
-    ox[i] = static_cast<float>((px - k.corner_x) * k.per_metre);
-    oy[i] = static_cast<float>((py - k.corner_y) * k.per_metre);
-    oz[i] = static_cast<float>((pz - k.corner_z) * k.per_metre);
-    const auto above =
-        static_cast<float>(k.slope_x * px + k.slope_y * py + k.slope_z * pz + k.offset);
-    const auto dx = static_cast<float>(px - k.centre_x), dy = static_cast<float>(py - k.centre_y);
-    const float wider = k.grade * std::sqrt(dx * dx + dy * dy);
-    low[i] = above - k.z_min + wider;
-    high[i] = k.z_max + wider - above;
+// Doubles as far as places of the world go, floats from the window's corner on. Four points at a
+// time; a double behind the last one is read.
+PERCEPTION_WIDER void toCells(const double* xyz, std::size_t count, const double* corner,
+                              double per_metre, float* x, float* y, float* z) {
+  const Double4 from = {corner[0], corner[1], corner[2], 0};
+  for (std::size_t i = 0; i < count; i += 4, xyz += 12) {
+    Float4 row[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      Double4 v;
+      std::memcpy(&v, xyz + 3 * k, sizeof v);
+      row[k] = __builtin_convertvector((v - from) * per_metre, Float4);
+    }
+    using Int4 = std::int32_t __attribute__((vector_size(16)));
+    const Float4 xy01 = __builtin_shuffle(row[0], row[1], Int4{0, 4, 1, 5});
+    const Float4 xy23 = __builtin_shuffle(row[2], row[3], Int4{0, 4, 1, 5});
+    const Float4 z01 = __builtin_shuffle(row[0], row[1], Int4{2, 6, 3, 7});
+    const Float4 z23 = __builtin_shuffle(row[2], row[3], Int4{2, 6, 3, 7});
+    const Float4 xs = __builtin_shuffle(xy01, xy23, Int4{0, 1, 4, 5});
+    const Float4 ys = __builtin_shuffle(xy01, xy23, Int4{2, 3, 6, 7});
+    const Float4 zs = __builtin_shuffle(z01, z23, Int4{0, 1, 4, 5});
+    std::memcpy(x + i, &xs, sizeof xs), std::memcpy(y + i, &ys, sizeof ys);
+    std::memcpy(z + i, &zs, sizeof zs);
   }
 }
 
-PERCEPTION_WIDER void findCells(std::size_t count, float cells, float layers, PlacedBlock& out) {
-  const float* __restrict x = out.x.data(), * __restrict y = out.y.data();
-  const float* __restrict z = out.z.data(), * __restrict low = out.low.data();
-  const float* __restrict high = out.high.data();
-  std::int32_t* __restrict cell = out.cell.data(), * __restrict in_slab = out.in_slab.data();
-  const auto row = static_cast<std::int32_t>(cells);
+PERCEPTION_WIDER void placeAll(const float* __restrict xs, const float* __restrict ys,
+                               const float* __restrict zs, std::size_t count, const WindowRules k,
+                               float* __restrict low, float* __restrict high,
+                               std::int32_t* __restrict cell, std::int32_t* __restrict in_slab) {
+  const auto row = static_cast<std::int32_t>(k.cells);
+  const float tall = k.layers > 0 ? 1 : 0, top = k.layers > 0 ? k.layers : 1;
   for (std::size_t i = 0; i < count; ++i) {
+    const float x = xs[i], y = ys[i], z = zs[i];
+    const float above = k.slope_x * x + k.slope_y * y + k.slope_z * z + k.offset;
+    const float dx = x - k.centre_x, dy = y - k.centre_y;
+    const float wider = k.grade * std::sqrt(dx * dx + dy * dy);
+    const float over = above - k.z_min + wider, under = k.z_max + wider - above;
+    low[i] = over, high[i] = under;
+    in_slab[i] = (over >= 0) & (under >= 0);
+
+    const float up = z * tall;
     const std::int32_t inside =
-        (x[i] >= 0) & (y[i] >= 0) & (z[i] >= 0) & (x[i] < cells) & (y[i] < cells) & (z[i] < layers);
-    const float sum = x[i] + y[i] + z[i];
+        (x >= 0) & (y >= 0) & (up >= 0) & (x < k.cells) & (y < k.cells) & (up < top);
+    const float sum = x + y + z;
     const std::int32_t finite = sum - sum == 0;  // not of infinities and what is no number
-    const float kx = inside != 0 ? x[i] : 0, ky = inside != 0 ? y[i] : 0;
-    const float kz = inside != 0 ? z[i] : 0;
-    const std::int32_t place =
-        (static_cast<std::int32_t>(ky) * row + static_cast<std::int32_t>(kx)) *
-            PlacedBlock::kLayers +
-        static_cast<std::int32_t>(kz);
+    const float kx = inside != 0 ? x : 0, ky = inside != 0 ? y : 0, kz = inside != 0 ? up : 0;
+    const std::int32_t column = static_cast<std::int32_t>(ky) * row + static_cast<std::int32_t>(kx);
+    const std::int32_t place = column * PlacedBlock::kLayers + static_cast<std::int32_t>(kz);
     const std::int32_t elsewhere = finite != 0 ? PlacedBlock::kOutside : PlacedBlock::kNotFinite;
     cell[i] = inside != 0 ? place : elsewhere;
-    in_slab[i] = (low[i] >= 0) & (high[i] >= 0);
   }
 }
 
@@ -62,27 +69,31 @@ PERCEPTION_WIDER void findCells(std::size_t count, float cells, float layers, Pl
 WindowFrame::WindowFrame(const GridParams& params, const Pose3& T_world_ground,
                          const CellIndex& first, int cells, int layers)
     : per_metre_(1 / params.resolution),
-      corner_x_(params.resolution * static_cast<double>(first.x)),
-      corner_y_(params.resolution * static_cast<double>(first.y)),
-      corner_z_(params.resolution * static_cast<double>(first.z)),
-      centre_x_(T_world_ground.translation().x()),
-      centre_y_(T_world_ground.translation().y()),
-      z_min_(static_cast<float>(params.z_min)),
-      z_max_(static_cast<float>(params.z_max)),
-      grade_(static_cast<float>(params.grade)),
-      cells_(static_cast<float>(cells)),
-      layers_(static_cast<float>(layers)) {
-  const Vector3 up = T_world_ground.linear().col(2);
-  slope_x_ = up.x(), slope_y_ = up.y(), slope_z_ = up.z();
-  offset_ = -up.dot(T_world_ground.translation());
+      corner_{params.resolution * static_cast<double>(first.x),
+              params.resolution * static_cast<double>(first.y),
+              params.resolution * static_cast<double>(first.z)} {
+  const Vector3 corner(corner_[0], corner_[1], corner_[2]);
+  const Vector3 centre = T_world_ground.translation() - corner;
+  const Vector3 up = T_world_ground.linear().col(2), slope = up * params.resolution;
+  rules_.slope_x = static_cast<float>(slope.x()), rules_.slope_y = static_cast<float>(slope.y());
+  rules_.slope_z = static_cast<float>(slope.z());
+  rules_.offset = static_cast<float>(-up.dot(centre));
+  rules_.centre_x = static_cast<float>(centre.x() * per_metre_);
+  rules_.centre_y = static_cast<float>(centre.y() * per_metre_);
+  rules_.grade = static_cast<float>(params.grade * params.resolution);
+  rules_.z_min = static_cast<float>(params.z_min), rules_.z_max = static_cast<float>(params.z_max);
+  rules_.cells = static_cast<float>(cells), rules_.layers = static_cast<float>(layers);
 }
 
 void WindowFrame::place(const Vector3* points, std::size_t count, PlacedBlock& out) const {
-  placeAll(points->data(), count,
-           {per_metre_, corner_x_, corner_y_, corner_z_, slope_x_, slope_y_, slope_z_, offset_,
-            centre_x_, centre_y_, z_min_, z_max_, grade_, cells_, layers_},
-           out);
-  findCells(count, cells_, layers_, out);
+  // The last ones from a copy, with room behind.
+  const std::size_t whole = count > 4 ? (count - 1) / 4 * 4 : 0;
+  toCells(points->data(), whole, corner_, per_metre_, out.x.data(), out.y.data(), out.z.data());
+  double rest[13] = {};
+  std::memcpy(rest, points[whole].data(), (count - whole) * sizeof(Vector3));
+  toCells(rest, 4, corner_, per_metre_, &out.x[whole], &out.y[whole], &out.z[whole]);
+  placeAll(out.x.data(), out.y.data(), out.z.data(), count, rules_, out.low.data(), out.high.data(),
+           out.cell.data(), out.in_slab.data());
 }
 
 }  // namespace perception

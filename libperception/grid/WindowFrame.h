@@ -25,11 +25,20 @@ struct PlacedBlock {
   WindowPlace at(std::size_t k) const { return {x[k], y[k], z[k], low[k], high[k]}; }
 };
 
+/// What decides on a point, in cells from the window's corner and metres above the ground.
+struct WindowRules {
+  float slope_x = 0, slope_y = 0, slope_z = 1, offset = 0;  ///< [m] of height per cell; [m]
+  float centre_x = 0, centre_y = 0;                         ///< [cells] of the vehicle
+  float z_min = 0, z_max = 0;                               ///< [m]
+  float grade = 0;                                          ///< [m] per cell
+  float cells = 0, layers = 0;
+};
+
 /// Where a window lies in the world, and the slab of heights that matter in it.
 class WindowFrame {
  public:
   WindowFrame() = default;
-  /// `first`: lowest cell of the window.
+  /// `first`: lowest cell of the window. No layers: all heights are in.
   WindowFrame(const GridParams& params, const Pose3& T_world_ground, const CellIndex& first,
               int cells, int layers);
 
@@ -38,11 +47,8 @@ class WindowFrame {
 
  private:
   double per_metre_ = 1;
-  double corner_x_ = 0, corner_y_ = 0, corner_z_ = 0;            ///< [m]
-  double slope_x_ = 0, slope_y_ = 0, slope_z_ = 1, offset_ = 0;  ///< height above the ground
-  double centre_x_ = 0, centre_y_ = 0;                           ///< [m] of the vehicle
-  float z_min_ = 0, z_max_ = 0, grade_ = 0;                      ///< as in GridParams
-  float cells_ = 0, layers_ = 0;
+  double corner_[3] = {0, 0, 0};  ///< [m]
+  WindowRules rules_;
 };
 
 }  // namespace perception

@@ -1,9 +1,9 @@
 #pragma once
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "libperception/core/ParamSet.h"
+#include "libperception/core/RoughBearing.h"
 #include "libperception/core/Wider.h"
 #include "libperception/measurement/SensorFrame.h"
 
@@ -41,18 +41,5 @@ struct EgoPoints {
 /// The finite returns outside the own vehicle, without those that the sensor itself calls rain or
 /// dirt, evenly thinned to max_points. A frame that holds no point cloud gives none.
 EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params);
-
-/// atan2(y, x) within 3e-4 rad [rad], without a call per point: for choosing sectors, not for
-/// measuring. Abramowitz and Stegun 4.4.49, four terms.
-inline float roughBearing(float x, float y) {
-  const float ax = std::abs(x), ay = std::abs(y);
-  const float high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
-  const float t = low / (high + 1e-30f), s = t * t;
-  float angle =
-      t * (0.9998660f + s * (-0.3302995f + s * (0.1801410f + s * (-0.0851330f + s * 0.0208351f))));
-  angle = ay > ax ? 1.57079633f - angle : angle;
-  angle = x < 0 ? 3.14159265f - angle : angle;
-  return y < 0 ? -angle : angle;
-}
 
 }  // namespace perception

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/RoughBearing.h"
 
 namespace perception {
 namespace {
@@ -14,19 +15,6 @@ constexpr double kConnected = 0.6;   // share of pixels with a neighbour above o
 // [rad] 64 and 128 beams, 32, 16, and a few layers (Ibeo).
 const double kRows[] = {radians(0.35), radians(0.5), radians(0.7), radians(1.0),
                         radians(1.4),  radians(2.0), radians(3.0)};
-
-// atan2 within 3e-4 rad without a call or a branch, so that the loop over a scan is vectorised.
-// Abramowitz and Stegun 4.4.49, four terms.
-inline float roughAtan2(float y, float x) {
-  const float ax = std::abs(x), ay = std::abs(y);
-  const float high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
-  const float t = low / (high + 1e-30F), s = t * t;
-  float angle =
-      t * (0.9998660F + s * (-0.3302995F + s * (0.1801410F + s * (-0.0851330F + s * 0.0208351F))));
-  angle = ay > ax ? 1.57079633F - angle : angle;
-  angle = x < 0 ? 3.14159265F - angle : angle;
-  return y < 0 ? -angle : angle;
-}
 
 }  // namespace
 
@@ -44,7 +32,7 @@ void RangeImage::directions(const LidarCloud& cloud) {
   for (std::size_t i = 0; i < count; ++i) {
     const float flat2 = x[i] * x[i] + y[i] * y[i];
     const float r = std::sqrt(flat2 + z[i] * z[i]);
-    azimuth[i] = roughAtan2(y[i], x[i]);
+    azimuth[i] = roughBearing(x[i], y[i]);
     slope[i] = z[i] / (std::sqrt(flat2) + 1e-6F);
     range[i] = r > kInstrument && r < 1e3F ? r : 0.0F;  // NaN fails both
   }
