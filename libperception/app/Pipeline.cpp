@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "libperception/filter/LanePrior.h"
 #include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/measurement/PositionFrontEnd.h"
 #include "libperception/radar/RadarFrontEnd.h"
@@ -101,6 +102,9 @@ PipelineSetup PipelineSetup::read(Config& config) {
   s.model.params = config.read<FilterParams>("filter");
   s.model.proposal = s.run.association;
   s.model.history = s.run.output_lag;
+  const auto lanes = config.read<LaneParams>("lanes");
+  if (!lanes.file.empty())
+    s.model.lanes = std::make_shared<const LanePrior>(LaneMap::fromFile(lanes.file), lanes);
   s.particles = config.read<ParticleFilterParams>("particle_filter");
   s.scene = config.read<SceneParams>("scene");
   s.ego = config.read<EgoPoseParams>("ego");

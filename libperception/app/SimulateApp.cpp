@@ -10,6 +10,7 @@
 #include "gui-offscreen/Picture.h"
 #include "libperception/app/ScenarioPictures.h"
 #include "libperception/core/GroundTruth.h"
+#include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/RawlogWriter.h"
 #include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/Simulator.h"
@@ -18,11 +19,11 @@ namespace perception {
 
 namespace {
 
-// FILE.truth.csv beside FILE.rawlog.
-std::string truthBeside(const std::string& rawlog) {
+// FILE.truth.csv and the like beside FILE.rawlog.
+std::string beside(const std::string& rawlog, const char* ending) {
   const std::filesystem::path path(rawlog);
   const bool named = path.extension() == ".rawlog";
-  return (named ? path.parent_path() / path.stem() : path).string() + ".truth.csv";
+  return (named ? path.parent_path() / path.stem() : path).string() + ending;
 }
 
 }  // namespace
@@ -120,6 +121,7 @@ void SimulateApp::run() {
   const std::string scene = std::filesystem::path(config_file).stem().string();
   const std::string name = trial > 0 ? fmt::format("{}, trial {}", scene, trial) : scene;
   const double duration = scenario.params.duration;
+  const std::vector<Lane> lanes = scenario.lanes;
   Simulator simulator(std::move(scenario), name, trialSeed(seed, trial), threads);
   RawlogWriter log(output, gzip_level);
   {
@@ -136,8 +138,9 @@ void SimulateApp::run() {
     if (packed.valid()) packed.get();
   }
   // The truth first: a log of the final name then never lacks it.
-  out_truth_file = truthBeside(output);
+  out_truth_file = beside(output, ".truth.csv");
   writeGroundTruth(out_truth_file, simulator.truth());
+  if (!lanes.empty()) writeFile(beside(output, ".lanes.csv"), lanesText(lanes));
   log.close();
   out_frames = simulator.frames();
   out_entries = log.entries(), out_bytes = log.bytes();

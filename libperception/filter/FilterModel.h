@@ -1,4 +1,6 @@
 #pragma once
+#include <memory>
+
 #include "libperception/core/Frames.h"
 #include "libperception/core/ObjectClass.h"
 #include "libperception/filter/Heading.h"
@@ -61,11 +63,14 @@ struct FilterParams {
   void visit(ParamVisitor& v);
 };
 
+class LanePrior;
+
 /// The model of the world that the filter assumes.
 struct FilterModel {
   ClassTable classes;
   FilterParams params;
   Proposal proposal = Proposal::kSampled;
+  std::shared_ptr<const LanePrior> lanes;  ///< null: no map of lanes
   double history =
       0;  ///< [s] for which tracks stay linked to what they were: for smoothing; 0: not
 };

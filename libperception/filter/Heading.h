@@ -15,9 +15,10 @@ enum class HeadingMode {
 struct HeadingBit {
   double log_odds = 0;         ///< that theta is the heading and not its opposite; 0: nothing known
   int same = 0, opposite = 0;  ///< detections that agreed with theta, or not
+  double lane = 0;             ///< what a lane gave to the log-odds
 
   bool measured() const { return same + opposite > 0; }
-  HeadingBit reversed() const { return {-log_odds, opposite, same}; }
+  HeadingBit reversed() const { return {-log_odds, opposite, same, -lane}; }
 };
 
 /// A measured heading against theta.

@@ -327,4 +327,25 @@ void reverse(ClassFilter& f) {
   f.heading = f.heading.reversed();
 }
 
+void updateYaw(double y, double variance, ClassFilter& f) {
+  const auto one = [&](Vector4& x, Matrix4& P) {
+    const Vector4 K = P.col(3) / (P(3, 3) + variance);
+    x += K * y;
+    P = (P - K * P.row(3)).eval();
+    P = (0.5 * (P + P.transpose())).eval();
+    x[3] = wrapAngle(x[3]);
+  };
+  if (f.modes.empty()) {
+    one(f.x, f.P);
+    return;
+  }
+  const double mean = f.x[3];
+  const double target = y + mean;
+  for (auto& m : f.modes) {
+    y = wrapAngle(target - m.x[3]);
+    one(m.x, m.P);
+  }
+  combineModes(f);
+}
+
 }  // namespace perception

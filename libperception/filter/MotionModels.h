@@ -53,6 +53,9 @@ void orientByVelocity(ClassFilter& filter);
 void orientByAxis(double yaw, double yaw_variance, ClassFilter& filter);
 /// The same with a known direction: v may be negative.
 void orientAlong(double yaw, double yaw_variance, ClassFilter& filter);
+/// A direct measurement of an oriented filter's theta: residual [rad] and variance.
+void updateYaw(double y, double variance, ClassFilter& filter);
+inline constexpr double kYawGate = 6.635;  ///< chi-square .99, one degree of freedom
 /// The exact symmetry (v, theta) -> (-v, theta + pi) of an oriented filter (SPEC 7).
 void reverse(ClassFilter& filter);
 

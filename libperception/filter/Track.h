@@ -44,6 +44,7 @@ struct Track {
   std::uint64_t history = 0;  ///< hash of its association history: equal histories, equal tracks
   Stamp birth, stamp;         ///< of its first measurement; of its state
   Stamp last_in_view;         ///< last time that a sensor could have seen it
+  Stamp last_lane;            ///< last time that a lane spoke of its heading; 0 = never
   double existence = 0;       ///< probability that it is a real object
   std::vector<ClassFilter> bank;  ///< one filter a class
   ClassId sure = -1;  ///< the class that is decided: its filter alone is kept up to date; -1: all

@@ -43,7 +43,6 @@ double surprisingNis(Eigen::Index axes) {
 }
 
 constexpr double kLogLeastMode = -14;  // log probability, about 1e-6
-constexpr double kYawGate = 6.635;     // chi-square .99, one degree of freedom
 
 void scalarUpdate(const ScalarEstimate& z, ScalarEstimate& x) {
   const double gain = x.variance / (x.variance + z.variance);
@@ -154,28 +153,6 @@ void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
     combineModes(f);
   }
   updateExtentBy(innovation, f.extent);
-}
-
-/// A direct measurement of an oriented filter's theta: residual [rad] and variance.
-void updateYaw(double y, double variance, ClassFilter& f) {
-  const auto one = [&](Vector4& x, Matrix4& P) {
-    const Vector4 K = P.col(3) / (P(3, 3) + variance);
-    x += K * y;
-    P = (P - K * P.row(3)).eval();
-    P = (0.5 * (P + P.transpose())).eval();
-    x[3] = wrapAngle(x[3]);
-  };
-  if (f.modes.empty()) {
-    one(f.x, f.P);
-    return;
-  }
-  const double mean = f.x[3];
-  const double target = y + mean;
-  for (auto& m : f.modes) {
-    y = wrapAngle(target - m.x[3]);
-    one(m.x, m.P);
-  }
-  combineModes(f);
 }
 
 /// What a detector says of the heading (SPEC 7): the axis by a scalar update, the direction by the

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "libperception/filter/LanePrior.h"
 #include "libperception/filter/Parallel.h"
 #include "libperception/filter/Update.h"
 
@@ -59,6 +60,7 @@ bool Updates::keep(const Track& t) const {
 
 void Updates::store(Cell cell, Track&& track, const TrackHandle& before) {
   if (model_.history > 0) track.previous = before;
+  if (model_.lanes) model_.lanes->apply(model_, track);
   if (keep(track)) made_[cell] = std::make_shared<const Track>(std::move(track));
 }
 

@@ -81,6 +81,14 @@ void RoadParams::visit(ParamVisitor& v) {
   v.require(x.size() == y.size() && x.size() >= 2, "x, y: expected two or more values of each");
 }
 
+void LaneSection::visit(ParamVisitor& v) {
+  v.reals("x", x, -1, kPlace, "m", "of the centre line in driving direction, world");
+  v.reals("y", y, -1, kPlace, "m", "of the centre line in driving direction, world");
+  v.real("width", width, {0.5, 20}, "m", "of the lane");
+  v.boolean("one_way", one_way, "false: driven either way");
+  v.require(x.size() == y.size() && x.size() >= 2, "x, y: expected two or more values of each");
+}
+
 void ObjectParams::visit(ParamVisitor& v) {
   const ObjectKind before = kind;
   v.choiceOf("kind", kind, kindNames(), "shape, usual size and truth type");
@@ -142,11 +150,18 @@ Scenario readScenario(Config& config) {
   scenario.params = config.read<ScenarioParams>("scenario", {}, true);
   scenario.ego = config.read<EgoParams>("ego", {}, true);
   scenario.variation = config.read<VariationParams>("variation");
-  const std::string object_prefix = "object.", road_prefix = "road.";
+  const std::string object_prefix = "object.", road_prefix = "road.", lane_prefix = "lane.";
   for (const std::string& section : config.sectionsWithPrefix(road_prefix)) {
     RoadParams road;
     road.name = section.substr(road_prefix.size());
     scenario.roads.push_back(config.read(section, road));
+  }
+  for (const std::string& section : config.sectionsWithPrefix(lane_prefix)) {
+    const auto read = config.read<LaneSection>(section);
+    Lane lane{section.substr(lane_prefix.size()), {}, read.width, read.one_way};
+    for (std::size_t i = 0; i < std::min(read.x.size(), read.y.size()); ++i)
+      lane.points.emplace_back(read.x[i], read.y[i]);
+    scenario.lanes.push_back(std::move(lane));
   }
   for (const std::string& section : config.sectionsWithPrefix(object_prefix)) {
     ObjectParams object;

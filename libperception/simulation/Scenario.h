@@ -5,6 +5,7 @@
 
 #include "libperception/core/Config.h"
 #include "libperception/core/Frames.h"
+#include "libperception/core/LaneMap.h"
 #include "libperception/simulation/CameraBoxes.h"
 #include "libperception/simulation/EgoSensors.h"
 #include "libperception/simulation/LidarSensor.h"
@@ -66,6 +67,15 @@ struct RoadParams {
   std::string name;          ///< from the section's title
   std::vector<double> x, y;  ///< [m] middle line
   double width = 7;          ///< [m]
+
+  void visit(ParamVisitor& v);
+};
+
+/// [lane.NAME]: a lane of a road, for the map that goes with the log.
+struct LaneSection {
+  std::vector<double> x, y;  ///< [m] centre line in driving direction, world
+  double width = 3.5;        ///< [m]
+  bool one_way = true;
 
   void visit(ParamVisitor& v);
 };
@@ -144,6 +154,7 @@ struct Scenario {
   EgoParams ego;
   VariationParams variation;
   std::vector<RoadParams> roads;      ///< none: asphalt everywhere
+  std::vector<Lane> lanes;            ///< that the log's map shows
   std::vector<ObjectParams> objects;  ///< in the order of the file
   std::vector<SensorParams> sensors;
 };

@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+
+namespace perception {
+
+/// A lane: its centre line in driving direction, world frame.
+struct Lane {
+  std::string name;
+  std::vector<Vector2> points;  ///< [m] two or more, no two the same in a row
+  double width = 3.5;           ///< [m]
+  bool one_way = true;          ///< false: driven either way, so only its axis tells
+};
+
+/// What a lane says of a place on it.
+struct LanePlace {
+  double direction = 0;  ///< [rad] of driving, world
+  double offset = 0;     ///< [m] to the left of the centre line
+  bool one_way = true;
+  std::size_t lane = 0;  ///< index into LaneMap::lanes()
+};
+
+/// Lanes to be looked up by place.
+class LaneMap {
+ public:
+  explicit LaneMap(std::vector<Lane> lanes);
+  /// FILE.lanes.csv: `lane,x,y,width,one_way`, a line a point, the points of one lane together and
+  /// in driving direction; x, y and width in metres, world frame. Throws DataError with file and
+  /// line.
+  static LaneMap fromFile(const std::string& path);
+
+  const std::vector<Lane>& lanes() const { return lanes_; }
+  /// All lanes whose width covers the place, the one whose middle is nearest first.
+  std::vector<LanePlace> at(const Vector2& place) const;
+
+ private:
+  struct Segment {
+    std::uint32_t lane, first;  // from this point of the lane to the next one
+  };
+  static std::int64_t cellOf(double x, double y);
+
+  std::vector<Lane> lanes_;
+  std::unordered_map<std::int64_t, std::vector<Segment>> cells_;  // segments by what they may cover
+};
+
+/// The content of FILE.lanes.csv.
+std::string lanesText(const std::vector<Lane>& lanes);
+
+}  // namespace perception
