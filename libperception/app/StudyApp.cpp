@@ -25,6 +25,7 @@
 #include "libperception/study/LogParticlesStudy.h"
 #include "libperception/study/MonteCarloStudy.h"
 #include "libperception/study/ParticlesStudy.h"
+#include "libperception/study/TemperingStudy.h"
 
 namespace perception {
 namespace {
@@ -39,6 +40,7 @@ struct Study {
   bool labels = false;      ///< reads rawlogs with detections and truth
   bool scan = false;        ///< takes a scan of a rawlog
   void (*declare)(CLI::App& cli, ResolutionOptions& options) = nullptr;  ///< options of its own
+  bool tempering = false;  ///< reads rawlogs with truth
 };
 
 const Study kStudies[] = {
@@ -100,9 +102,17 @@ const Study kStudies[] = {
        return resolutionStudy(app.resolution);
      },
      false, false, false, false, false, &declareResolution},
+    {"tempering", "how far labels and innovations count in the class update (rawlogs with truth)",
+     [](StudyApp& app) { return app.temperingOfLogs(); }, false, false, false, false, false,
+     nullptr, true},
     {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
      [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
 };
+
+/// LOG.truth.csv beside LOG.rawlog.
+GroundTruth truthBeside(const std::string& log) {
+  return readGroundTruth(std::filesystem::path(log).replace_extension(".truth.csv").string());
+}
 
 }  // namespace
 
@@ -163,6 +173,20 @@ void StudyApp::declare(CLI::App& cli) {
           ->check(CLI::Range(0.1, 360.0));
     }
     if (s.declare) s.declare(*sub, resolution);
+    if (s.tempering) {
+      sub->add_option("-i,--input", inputs, "Rawlogs, LOG.truth.csv beside; two or more")
+          ->required();
+      sub->add_option("-c,--config", config_file, "INI of the vehicle")->required();
+      sub->add_option("--set", settings, "section.key=value: overrides the INI");
+      sub->add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
+      sub->add_option("--range", tempering_range, "Truth counts up to this distance [m]")
+          ->capture_default_str()
+          ->check(CLI::Range(0.1, 1e4));
+      sub->add_option("--fov-deg", tempering_fov_deg,
+                      "Whole angle ahead in which truth counts [deg]")
+          ->capture_default_str()
+          ->check(CLI::Range(0.1, 360.0));
+    }
     if (s.scan) sub->add_option("--log", log, "Rawlog whose first lidar scan is filtered");
     if (s.scenario) {
       sub->add_option("-c,--config", scenario,
@@ -217,9 +241,8 @@ StudyReport StudyApp::labelsOfLogs() {
   std::vector<LabelledLog> logs;
   for (const std::string& file : inputs) {
     LabelledLog entry;
-    const std::filesystem::path path(file);
-    entry.name = path.stem().string();
-    entry.truth = readGroundTruth((path.parent_path() / (entry.name + ".truth.csv")).string());
+    entry.name = std::filesystem::path(file).stem().string();
+    entry.truth = truthBeside(file);
     entry.record = [this, file](const LabelledLog::Edit& edit) {
       Config config = loadConfig();
       return recordLog(file, config, seconds, [&](mrpt::obs::CObservation& observation) {
@@ -231,6 +254,21 @@ StudyReport StudyApp::labelsOfLogs() {
     logs.push_back(std::move(entry));
   }
   return labelsStudy(params, logs);
+}
+
+StudyReport StudyApp::temperingOfLogs() {
+  TemperingParams params;
+  params.seed = seed;
+  if (runs > 0) params.rounds = runs;
+  params.evaluation.selection.range = tempering_range;
+  params.evaluation.selection.fov = radians(tempering_fov_deg);
+  std::vector<TemperingLog> logs;
+  for (const std::string& file : inputs) {
+    log = file;
+    logs.push_back({record(config_file), truthBeside(file)});
+    params.particles = logs.back().log.particles.sample_size;
+  }
+  return temperingStudy(params, logs);
 }
 
 void StudyApp::writeReport() {

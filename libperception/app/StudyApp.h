@@ -25,7 +25,8 @@ class StudyApp : public App {
   double range = 30, fov_deg = 360;  ///< particles: where objects of a log count [m, deg]
   std::string scenario;              ///< ego: INI of the scenario
   ResolutionOptions resolution;      ///< resolution: all of its options
-  double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
+  double labels_range = 40, labels_fov_deg = 80;         ///< labels: where truth counts [m, deg]
+  double tempering_range = 30, tempering_fov_deg = 360;  ///< tempering: the same
 
   StudyReport out_report;
 
@@ -38,6 +39,8 @@ class StudyApp : public App {
   StudyReport particlesOfLog();
   /// Labels of a detector, on the logs of -i.
   StudyReport labelsOfLogs();
+  /// Exponents of the class update, on the logs of -i.
+  StudyReport temperingOfLogs();
 
  private:
   RecordedLog record(const std::string& config);

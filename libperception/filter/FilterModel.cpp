@@ -41,6 +41,11 @@ void FilterParams::visit(ParamVisitor& v) {
          "hypotheses lighter than the best by more in log weight are dropped (ranked)");
   v.real("decide_class", decide_class, {0, 1}, "",
          "class probability from which its filter alone goes on until surprised; 0: never");
+  v.boolean("shape_prior", shape_prior,
+            "associations weigh the height and lowest point of a detection, too");
+  v.real("region_memory", region_memory, {0, 0.99}, "",
+         "correlation of a sensor's errors of one object, for the association; 0: independent");
+  v.real("region_time", region_time, {0.01, 1e4}, "s", "in which it falls to 1/e");
   v.boolean("sampled_births", sampled_births,
             "birth or clutter is drawn, as in DUC; else a newborn may be either (sampled only)");
   v.real("existence_decay", existence_decay, {0, 1e4}, "s",

@@ -54,6 +54,13 @@ struct FilterParams {
   /// Probability from which a class is decided, and its filter alone goes on; below it, or when a
   /// measurement surprises that filter (one in a hundred), the bank widens again. 0: never.
   double decide_class = 0;
+  /// An association also weighs the height and the lowest point of a detection, which are no axes
+  /// of the measurement: densities of the object's own against those of births and of clutter.
+  bool shape_prior = false;
+  /// Correlation of a sensor's errors of one object from scan to scan, for the association alone: a
+  /// measurement is expected where the object's last region was. 0: errors are independent.
+  double region_memory = 0;
+  double region_time = 1;       ///< [s] in which that correlation falls to 1/e
   bool sampled_births = false;  ///< birth or clutter is drawn as in DUC instead of a Bernoulli
                                 ///< newborn (SPEC 5.3); only with the sampled proposal
   double existence_decay =

@@ -18,6 +18,12 @@ void LaneParams::visit(ParamVisitor& v) {
 
 void LanePrior::apply(const FilterModel& model, Track& track) const {
   if (track.stamp - track.last_lane < params_.interval) return;
+  double wheeled = 0;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    if (model.classes[j].motion == Motion::kWheeled)
+      wheeled += std::exp(track.log_class[static_cast<std::size_t>(j)]);
+  }
+  if (wheeled < 0.5) return;  // who crosses on foot is not to become a cyclist along the lane
   bool spoke = false;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     if (model.classes[j].motion == Motion::kWheeled && track.live(j))

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include "libperception/core/Angle.h"
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/AssignmentPrior.h"
 #include "libperception/filter/Gating.h"
 #include "libperception/filter/Linearisation.h"
 #include "libperception/filter/MotionModels.h"
@@ -89,6 +90,9 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
   double min_excess = std::numeric_limits<double>::infinity();
   auto& mixture = scratch.mixture;
   mixture.assign(classes, kMinusInfinity);
+  const RegionSeen* region = regionOf(track, scan, model);
+  std::vector<double> with_region(region ? classes : 0, kMinusInfinity);
+  double log_region = 0;
   const double label_exponent = scan.model->labelExponent();
   const double detection_exponent = scan.model->detectionExponent();
   Density density;
@@ -103,6 +107,11 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
                                            scratch.predictions[filter], m, *scan.model);
       n = innovation.y.size();
       density = densityOf(innovation, track.bank[filter]);
+      if (region) {
+        log_region = densityOf(withRegion(innovation, *region, m, scan, model), track.bank[filter])
+                         .log_density -
+                     density.log_density;
+      }
       seen = true;
     }
     if (density.log_density == kMinusInfinity) continue;
@@ -119,9 +128,13 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
     pair.log_class_evidence[j] = model.params.kinematic_exponent * log_density +
                                  label_exponent * label + detection_exponent * std::log(detection);
     mixture[j] = track.log_class[j] + pair.log_by_class[j];
+    if (region) with_region[j] = mixture[j] + log_region;
     min_excess = std::min(min_excess, nis - gates.quantile[static_cast<std::size_t>(n)]);
   }
   pair.log_likelihood = logSumExp(mixture);
+  if (pair.log_likelihood == kMinusInfinity) return min_excess;
+  if (region) pair.log_prior = logSumExp(with_region) - pair.log_likelihood;
+  if (model.params.shape_prior) pair.log_prior += logShape(track, m);
   return min_excess;
 }
 
@@ -218,6 +231,7 @@ NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan,
   result.log_birth = logNormalise(result.log_class);
   result.log_clutter =
       scan.model->logClutterDensity(m, scan.state) + logClutterLabelAndScore(*scan.model, m);
+  if (model.params.shape_prior) weighShape(m, scan.state, model, result);
   result.log_new = logAddExp(result.log_birth, result.log_clutter);
   result.existence =
       result.log_new > kMinusInfinity ? std::exp(result.log_birth - result.log_new) : 0;

@@ -37,6 +37,15 @@ struct ClassFilter {
       modes;  ///< of classes with several; x and P are then their mean and spread
 };
 
+/// How a sensor's last measurement of an object lay off its filter after the update: detectors err
+/// alike from one scan to the next.
+struct RegionSeen {
+  std::uint64_t sensor = 0;  ///< hash of its label
+  Stamp stamp;
+  AxisMask seen = 0;
+  AxisVector error;  ///< z - h of the axes seen, packed
+};
+
 /// One object inside a hypothesis. Immutable once made: hypotheses share it.
 struct Track {
   std::uint64_t id =
@@ -56,6 +65,7 @@ struct Track {
   HeadingBit facing_bit;            ///< of it: front or back
   std::array<Stamp, 3> last_hit{};  ///< by modality (modalityIndex); 0 = never
   std::array<int, 3> hits{};        ///< by modality
+  std::vector<RegionSeen> regions;  ///< by sensor, where the model asks for them
   /// What it was before its last scan, for as long as somebody keeps that; only where the model
   /// asks for a history.
   std::weak_ptr<const Track> previous;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "libperception/filter/AssignmentPrior.h"
 #include "libperception/filter/LanePrior.h"
 #include "libperception/filter/Parallel.h"
 #include "libperception/filter/Update.h"
@@ -74,9 +75,11 @@ std::size_t Updates::make(std::uint64_t scan_index) {
     Track& predicted = tracks_.predicted[t];
     for (std::size_t p = 0; p < row.pairs.size(); ++p) {
       const Cell cell = first_[t] + 1 + static_cast<Cell>(p);
-      if (wanted_[cell])
-        store(cell, hitTrack(predicted, row, row.pairs[p], scan_, scan_index, model_),
-              tracks_.before[t]);
+      if (!wanted_[cell]) continue;
+      Track hit = hitTrack(predicted, row, row.pairs[p], scan_, scan_index, model_);
+      if (model_.params.region_memory > 0)
+        rememberRegion(scan_.measurements[row.pairs[p].measurement], scan_, model_, hit);
+      store(cell, std::move(hit), tracks_.before[t]);
     }
     if (wanted_[missCell(t)])
       store(missCell(t), missTrack(std::move(predicted), row, scan_, model_), tracks_.before[t]);

@@ -108,6 +108,14 @@ TEST(LanePrior, LeavesAloneWhoTurnsOrCrosses) {
   EXPECT_EQ(t.last_lane.ns, 0);
 }
 
+TEST(LanePrior, SaysNothingOfWhatIsHardlyWheeled) {
+  const Street s;
+  Track t = Street::car({0, 1}, 5, 0.2, 0.1);
+  t.log_class = {std::log(0.4), std::log(0.6)};
+  s.lanes().apply(s.model, t);
+  EXPECT_EQ(t.bank[0].x[3], 0.2);
+}
+
 TEST(LanePrior, ALaneOfBothWaysTellsTheAxisAlone) {
   const Street s;
   Track t = Street::car({0, 20}, 0.1, kPi - 0.2, 0.1);
