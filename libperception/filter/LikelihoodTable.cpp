@@ -84,6 +84,7 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
   const std::size_t classes = track.bank.size();
   PairLikelihood& pair = scratch.pair;
   pair.measurement = k;
+  pair.log_prior = 0;
   pair.log_by_class.assign(classes, kMinusInfinity);
   pair.log_class_evidence.assign(classes, kMinusInfinity);
   pair.nis.assign(classes, std::numeric_limits<double>::infinity());
@@ -102,15 +103,15 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
     const double detection = detection_by_class[j];
     const std::size_t filter = track.filterOf(j);
     if (!scratch.predictions[filter].defined || detection <= 0) continue;
+    const ClassFilter& f = track.bank[filter];
     if (track.sure < 0 || !seen) {
-      const auto innovation = innovationOf(track.bank[filter], scratch.kinematics[filter],
-                                           scratch.predictions[filter], m, *scan.model);
+      const auto innovation =
+          innovationOf(f, scratch.kinematics[filter], scratch.predictions[filter], m, *scan.model);
       n = innovation.y.size();
-      density = densityOf(innovation, track.bank[filter]);
+      density = densityOf(innovation, f);
       if (region) {
-        log_region = densityOf(withRegion(innovation, *region, m, scan, model), track.bank[filter])
-                         .log_density -
-                     density.log_density;
+        const auto expected = withRegion(innovation, *region, m, scan, model);
+        log_region = densityOf(expected, f).log_density - density.log_density;
       }
       seen = true;
     }
@@ -118,7 +119,6 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
     const double nis = density.nis, log_density = density.log_density;
     const double label = logLabelOf(*scan.model, m, static_cast<ClassId>(j));
     const double label_and_score = logLabelAndScore(*scan.model, m, static_cast<ClassId>(j));
-    const ClassFilter& f = track.bank[filter];
     const double heading = m.heading && f.oriented ? logHeadingRatio(*m.heading, f.x[3], f.P(3, 3),
                                                                      model.params.heading)
                                                    : 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "libperception/core/Random.h"
 #include "libperception/filter/Prediction.h"
 #include "libperception/filter/Step.h"
 #include "tests/support/FilterWorld.h"
@@ -218,6 +219,41 @@ TEST(DecidedClass, LabelsOfAnotherClassTakeTheDecisionBack) {
     track = hitTrack(track, table.tracks[0], table.tracks[0].pairs.at(0), scan, 100, f.model);
   }
   EXPECT_NE(track.sure, 0);
+}
+
+/// How often a decided bank is wide again: a walker seen with the sensor's own noise for 400 scans,
+/// whose steps begin to be `jerk` [m] long at random from scan 200 on.
+struct Widened {
+  int steady = 0, restless = 0;
+  explicit Widened(double jerk) {
+    Fixture f;
+    f.model.params.decide_class = 0.99;
+    f.model.params.class_epsilon = 1e-3;
+    Rng rng({7, 0, 0, 0xdec1});
+    Track track = f.born();
+    double x = 1;
+    for (int i = 1; i <= 400; ++i) {
+      x += 0.1 + (i > 200 ? jerk * rng.normal() : 0);
+      auto scan =
+          positionScan(f.sensor, 0.1 * i, {{x + 0.2 * rng.normal(), 2 + 0.2 * rng.normal(), 0}});
+      scan.measurements[0].log_class = {1.0, 0.0};
+      track = predictTrack(track, scan.state.stamp, f.model);
+      const auto table = likelihoodTable({track}, scan, f.model);
+      if (table.tracks[0].pairs.empty()) continue;
+      track = hitTrack(track, table.tracks[0], table.tracks[0].pairs[0], scan,
+                       static_cast<std::uint64_t>(i), f.model);
+      if (i > 50) (i > 200 ? restless : steady) += track.sure < 0;
+    }
+  }
+};
+
+TEST(DecidedClass, NisSaysWhenToWidenOnceInAHundredScansElseOnlyWhenItIsDue) {
+  // The sensor's noise is .04 m^2: NIS is chi-square with two degrees of freedom, so one scan in a
+  // hundred surprises. Of 150: 1.5 with a deviation of 1.2; five deviations for the bound.
+  const Widened honest(0), jumping(0.6);
+  EXPECT_LE(honest.steady, 1.5 + 5 * 1.2);
+  EXPECT_EQ(jumping.steady, honest.steady) << "until it jumps they are the same";
+  EXPECT_GT(jumping.restless, 5 * (honest.restless + 1));
 }
 
 TEST(LikelihoodTable, HiddenObjectsKeepTheirShareOfDetection) {
