@@ -260,6 +260,7 @@ StudyReport StudyApp::temperingOfLogs() {
   TemperingParams params;
   params.seed = seed;
   if (runs > 0) params.rounds = runs;
+  params.evaluation.selection.min_points = 5;  // posts are thin
   params.evaluation.selection.range = tempering_range;
   params.evaluation.selection.fov = radians(tempering_fov_deg);
   std::vector<TemperingLog> logs;

@@ -85,12 +85,19 @@ double objective(unsigned, const double* x, double*, void* data) {
   return calibrate(p.logs, fromVector(x, p.start), p.params).log_likelihood;
 }
 
-/// Label exponents and the kinematic one of maximum likelihood (NLopt's Nelder-Mead).
+/// Label exponents and the kinematic one of maximum likelihood (NLopt's Nelder-Mead), from the best
+/// of the INI's and of equal ones: the likelihood has ridges, as associations change with it.
 Exponents fit(const std::vector<const TemperingLog*>& logs, const Exponents& start,
               const TemperingParams& params) {
   Problem problem{logs, start, params};
   std::vector<double> x = asVector(start);
   for (double& v : x) v = std::clamp(v, std::log(kLeastExponent), std::log(kMostExponent));
+  double start_value = objective(0, x.data(), nullptr, &problem);
+  for (const double equal : {0.1, 0.3, 1.0}) {
+    const std::vector<double> other(x.size(), std::log(equal));
+    const double value = objective(0, other.data(), nullptr, &problem);
+    if (value > start_value) x = other, start_value = value;
+  }
   const auto n = static_cast<unsigned>(x.size());
   nlopt_opt optimiser = nlopt_create(NLOPT_LN_NELDERMEAD, n);
   nlopt_set_lower_bounds1(optimiser, std::log(kLeastExponent));
