@@ -14,7 +14,9 @@ constexpr double kSureClass =
     0.95;  // a track of unsure class has no footprint that others must respect
 
 struct Footprint {
+  std::uint64_t id = 0;
   Vector2 centre, half;  // [m]
+  double corner2 = 0;    // [m^2] square of the distance from the centre to a corner
   double yaw = 0;        // [rad]
   double area = 0;       // [m^2] of a track whose class is sure, else 0
   Stamp last_hit;
@@ -23,9 +25,11 @@ struct Footprint {
 Footprint footprintOf(const Track& t) {
   const ClassFilter& f = t.bank[static_cast<std::size_t>(t.likeliestClass())];
   Footprint out;
+  out.id = t.id;
   out.centre = f.x.head<2>();
   out.half = f.oriented ? Vector2(0.5 * f.extent.length, 0.5 * f.extent.width)
                         : Vector2::Constant(0.25 * (f.extent.length + f.extent.width));
+  out.corner2 = out.half.squaredNorm() + 1e-6;
   out.yaw = f.oriented ? f.x[3] : 0;
   const bool sure =
       std::exp(t.log_class[static_cast<std::size_t>(t.likeliestClass())]) >= kSureClass;
@@ -36,7 +40,7 @@ Footprint footprintOf(const Track& t) {
 
 bool holds(const Footprint& f, const Vector2& p) {
   const Vector2 d = p - f.centre;
-  if (d.squaredNorm() > f.half.squaredNorm() + 1e-6) return false;  // not even a corner's distance
+  if (d.squaredNorm() > f.corner2) return false;
   const Vector2 own = rotate2(-f.yaw, d);
   return std::abs(own.x()) <= f.half.x() && std::abs(own.y()) <= f.half.y();
 }
@@ -68,10 +72,10 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
   }
   for (const std::size_t i : large) {
     for (const std::size_t j : there) {
-      if (tracks[i]->id == tracks[j]->id || !holds(feet[i], feet[j].centre)) continue;
+      if (feet[i].id == feet[j].id || !holds(feet[i], feet[j].centre)) continue;
       // Of two large ones that hold each other one entry is enough.
       if (feet[j].area >= least && j < i && holds(feet[j], feet[i].centre)) continue;
-      const bool first = tracks[i]->id < tracks[j]->id;
+      const bool first = feet[i].id < feet[j].id;
       const std::size_t older = first ? i : j, younger = first ? j : i;
       Conflict conflict{older, younger, nullptr};
       if (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <queue>
@@ -61,7 +62,6 @@ struct Parts {
 struct Variant {
   std::uint32_t part = 0;
   std::size_t example = 0;                     // a hypothesis that sees it so
-  double reach = kMinusInfinity;               // loss that some hypothesis can still afford
   std::unique_ptr<AssignmentRanking> ranking;  // with its best assignment
   std::vector<std::size_t> columns;            // distinct track by column of the ranking
   std::vector<RankedAssignment> ranked;        // best first
@@ -89,12 +89,14 @@ struct Variants {
     of_hypothesis.resize(tracks.size() * n);
     std::vector<std::uint64_t> first(n), signature(n);
     std::vector<char> differs(n, 0);
+    std::vector<std::uint64_t> mixed(parts.of_track.size());
+    for (std::size_t t = 0; t < mixed.size(); ++t) mixed[t] = mixBits(t + 1);
     Numbering numbers(4 * n + 64);
     for (std::size_t h = 0; h < tracks.size(); ++h) {
       auto& own = h == 0 ? first : signature;
       std::fill(own.begin(), own.end(), 0);
       for (const std::size_t t : tracks[h])
-        if (parts.of_track[t] != kNoPart) own[parts.of_track[t]] += mixBits(t + 1);
+        if (parts.of_track[t] != kNoPart) own[parts.of_track[t]] += mixed[t];
       for (std::uint32_t p = 0; p < n; ++p) {
         std::uint32_t& variant = of_hypothesis[h * n + p];
         if (h > 0 && own[p] == first[p]) {
@@ -189,13 +191,15 @@ std::vector<RankedChild> rankChildren(const std::vector<std::vector<std::size_t>
     base.cause.push_back(other.cause);
     if (other.log_weight > kMinusInfinity) base.log_weight += other.log_weight;
   }
+  std::vector<double> best_of(variants.size());
+  for (std::size_t v = 0; v < variants.size(); ++v)
+    best_of[v] = variants[v].ranking->best().log_weight;
   std::vector<double> best(hypotheses);
   for (std::size_t h = 0; h < hypotheses; ++h) {
     best[h] = 0;
     for (const std::size_t t : tracks[h]) best[h] += index.logMiss(t);
     best[h] += base.log_weight;
-    for (std::size_t p = 0; p < n; ++p)
-      best[h] += variants[all.of_hypothesis[h * n + p]].ranking->best().log_weight;
+    for (std::size_t p = 0; p < n; ++p) best[h] += best_of[all.of_hypothesis[h * n + p]];
     best[h] += log_weights[h];
   }
 
@@ -206,21 +210,26 @@ std::vector<RankedChild> rankChildren(const std::vector<std::vector<std::size_t>
                    [&](std::size_t a, std::size_t b) { return best[a] > best[b]; });
   Survivors survivors(limits.slots, best[order.front()] - limits.span);
   for (const double weight : best) survivors.add(weight);
+  std::vector<double> reach_of(variants.size(), kMinusInfinity);  // loss that some can afford
   for (const std::size_t h : order) {
     const double loss = best[h] - survivors.floor();
     if (loss < 0) break;
     for (std::size_t p = 0; p < n; ++p) {
-      Variant& v = variants[all.of_hypothesis[h * n + p]];
-      v.reach = std::max(v.reach, loss);
+      double& reach = reach_of[all.of_hypothesis[h * n + p]];
+      reach = std::max(reach, loss);
     }
   }
   parallelFor(variants.size(), [&](std::size_t i) {
     Variant& v = variants[i];
-    if (v.reach < 0) return;
-    v.ranked = v.ranking->rank(limits.children, v.reach);
+    if (reach_of[i] < 0) return;
+    v.ranked = v.ranking->rank(limits.children, reach_of[i]);
     for (std::size_t k = 1; k < v.ranked.size(); ++k)
       v.losses.push_back(v.ranked[0].log_weight - v.ranked[k].log_weight);
   });
+
+  std::vector<double> first_loss(variants.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t v = 0; v < variants.size(); ++v)
+    if (!variants[v].losses.empty()) first_loss[v] = variants[v].losses.front();
 
   // What all hypotheses see alike is joined once.
   const auto join = [&](std::uint32_t variant, double limit, RankedSums& sums) {
@@ -241,8 +250,11 @@ std::vector<RankedChild> rankChildren(const std::vector<std::vector<std::size_t>
   for (const std::size_t h : order) {
     if (best[h] < survivors.floor()) break;
     sums.restart(alike);
-    for (const std::uint32_t p : all.varied)
-      join(all.of_hypothesis[h * n + p], best[h] - survivors.floor(), sums);
+    const double most = best[h] - survivors.floor();
+    for (const std::uint32_t p : all.varied) {
+      const std::uint32_t v = all.of_hypothesis[h * n + p];
+      if (first_loss[v] <= most) join(v, most, sums);
+    }
     for (std::size_t k = 0; k < sums.sums().size(); ++k) {
       const double weight = best[h] - sums.sums()[k].loss;
       if (weight < survivors.floor()) break;

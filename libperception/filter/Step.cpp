@@ -65,7 +65,7 @@ class TrackNumbers {
       std::size_t number = 0;
       if (one_table_) {
         if (by_place_[place] == kNone) {
-          by_place_[place] = tracks_.size();
+          by_place_[place] = static_cast<std::uint32_t>(tracks_.size());
           tracks_.push_back((*table_)[place]);
         }
         number = by_place_[place];
@@ -81,11 +81,11 @@ class TrackNumbers {
   }
 
  private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
   std::vector<TrackHandle>& tracks_;
   const TrackTable* table_ = nullptr;
   bool one_table_ = true;  // as after a step; posteriors made by hand may have several
-  std::vector<std::size_t> by_place_;
+  std::vector<std::uint32_t> by_place_;
   Numbering by_key_;
 };
 

@@ -19,6 +19,9 @@ Updates::Updates(ScanTracks& tracks, const LikelihoodTable& table, const Measure
   for (const auto& row : table.tracks) {
     first_.push_back(cell);
     cell += 1 + static_cast<Cell>(row.pairs.size());
+    measurement_of_.push_back(0);
+    for (const auto& pair : row.pairs)
+      measurement_of_.push_back(static_cast<std::uint32_t>(pair.measurement));
   }
   of_track_ = first_;
   first_.push_back(cell);
@@ -27,10 +30,9 @@ Updates::Updates(ScanTracks& tracks, const LikelihoodTable& table, const Measure
 }
 
 Updates::Cell Updates::hitCell(std::size_t track, std::size_t k) const {
-  const auto& pairs = table_.tracks[track].pairs;
-  Cell i = 0;
-  while (pairs[i].measurement != k) ++i;
-  return first_[track] + 1 + i;
+  Cell cell = first_[track] + 1;
+  while (measurement_of_[cell] != k) ++cell;
+  return cell;
 }
 
 void Updates::want(std::size_t h, const Association& association) {

@@ -44,8 +44,9 @@ class Updates {
   const LikelihoodTable& table_;
   const MeasurementScan& scan_;
   const FilterModel& model_;
-  std::vector<Cell> first_;     ///< cell of each track's miss; its hits follow in pair order
-  std::vector<Cell> of_track_;  ///< cells in the association that is being looked at
+  std::vector<Cell> first_;  ///< cell of each track's miss; its hits follow in pair order
+  std::vector<std::uint32_t> measurement_of_;  ///< by cell of a hit
+  std::vector<Cell> of_track_;                 ///< cells in the association that is being looked at
   std::vector<char> wanted_;
   std::vector<std::vector<Cell>> children_;  ///< cells, in the order of the hypothesis's tracks
   TrackTable made_;                          ///< null when not wanted or dropped
