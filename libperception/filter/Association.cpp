@@ -11,15 +11,15 @@ namespace perception {
 namespace {
 
 /// Where the hypothesis keeps each distinct track; -1: not at all.
-std::vector<int> placesOf(const std::vector<std::size_t>& tracks, const AssociationIndex& index) {
+std::vector<int> placesOf(const TrackNumbers& tracks, const AssociationIndex& index) {
   std::vector<int> place(index.tracks(), -1);
   for (std::size_t i = 0; i < tracks.size(); ++i) place[tracks[i]] = static_cast<int>(i);
   return place;
 }
 
-double logAllMissed(const std::vector<std::size_t>& tracks, const AssociationIndex& index) {
+double logAllMissed(const TrackNumbers& tracks, const AssociationIndex& index) {
   double sum = 0;
-  for (const std::size_t t : tracks) sum += index.logMiss(t);
+  for (const std::uint32_t t : tracks) sum += index.logMiss(t);
   return sum;
 }
 
@@ -116,7 +116,7 @@ AssociationIndex::AssociationIndex(const std::vector<Track>& predicted,
   }
 }
 
-std::vector<SampledAssociation> sampleAssociations(const std::vector<std::size_t>& tracks,
+std::vector<SampledAssociation> sampleAssociations(const TrackNumbers& tracks,
                                                    const AssociationIndex& index,
                                                    const std::vector<std::size_t>& order,
                                                    std::vector<std::uint32_t> slots,

@@ -6,6 +6,9 @@
 
 namespace perception {
 
+/// The tracks of one hypothesis as indices into the scan's distinct tracks.
+using TrackNumbers = std::vector<std::uint32_t>;
+
 /// For one hypothesis: the cause of every measurement, and what that does to the hypothesis's
 /// weight.
 struct Association {
@@ -56,7 +59,7 @@ struct SampledAssociation {
 /// SPEC 5.4). Slots that drew alike so far share the work. `tracks` are indices of the hypothesis's
 /// tracks into the distinct ones; `order` is the scan's random order of measurements, the same for
 /// all hypotheses; slot i draws from stream i of `key`.
-std::vector<SampledAssociation> sampleAssociations(const std::vector<std::size_t>& tracks,
+std::vector<SampledAssociation> sampleAssociations(const TrackNumbers& tracks,
                                                    const AssociationIndex& index,
                                                    const std::vector<std::size_t>& order,
                                                    std::vector<std::uint32_t> slots,

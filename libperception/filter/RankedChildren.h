@@ -24,7 +24,7 @@ struct RankedChild {
 /// (SPEC 6). The scan falls into parts whose measurements share no candidates; hypotheses that hold
 /// the same tracks in a part share its ranking, and what cannot be among the best `slots` of all
 /// is never made. `tracks`: by hypothesis indices of its tracks into the distinct ones.
-std::vector<RankedChild> rankChildren(const std::vector<std::vector<std::size_t>>& tracks,
+std::vector<RankedChild> rankChildren(const std::vector<TrackNumbers>& tracks,
                                       const std::vector<double>& log_weights,
                                       const AssociationIndex& index, const RankingLimits& limits);
 

@@ -26,30 +26,34 @@ std::uint64_t keyOf(const T* p) {
 
 /// The hypotheses before the scan, each distinct one once.
 struct Groups {
-  std::vector<HypothesisHandle> hypotheses;       // in order of first appearance
-  std::vector<std::vector<std::uint32_t>> slots;  // that hold it, ascending
+  std::vector<const Hypothesis*> hypotheses;  // in order of first appearance
+  std::vector<std::size_t> of_slot;           // index of the slot's hypothesis
+
+  explicit Groups(const Posterior& before) {
+    Numbering numbers(before.hypotheses.size());
+    of_slot.reserve(before.hypotheses.size());
+    for (const auto& h : before.hypotheses) {
+      const auto [number, fresh] = numbers.numberOf(keyOf(h.get()));
+      if (fresh) hypotheses.push_back(h.get());
+      of_slot.push_back(number);
+    }
+  }
+
+  /// By hypothesis the slots that hold it, ascending.
+  std::vector<std::vector<std::uint32_t>> slots() const {
+    std::vector<std::vector<std::uint32_t>> out(hypotheses.size());
+    for (std::size_t i = 0; i < of_slot.size(); ++i)
+      out[of_slot[i]].push_back(static_cast<std::uint32_t>(i));
+    return out;
+  }
 };
 
-Groups groupSlots(const Posterior& before) {
-  Groups groups;
-  Numbering numbers(before.hypotheses.size());
-  for (std::size_t i = 0; i < before.hypotheses.size(); ++i) {
-    const auto [number, fresh] = numbers.numberOf(keyOf(before.hypotheses[i].get()));
-    if (fresh) {
-      groups.hypotheses.push_back(before.hypotheses[i]);
-      groups.slots.emplace_back();
-    }
-    groups.slots[number].push_back(static_cast<std::uint32_t>(i));
-  }
-  return groups;
-}
-
 /// Numbers the tracks in order of first appearance, so never by address.
-class TrackNumbers {
+class TrackNumbering {
  public:
-  TrackNumbers(const std::vector<HypothesisHandle>& hypotheses, std::vector<TrackHandle>& tracks)
+  TrackNumbering(const std::vector<const Hypothesis*>& hypotheses, std::vector<TrackHandle>& tracks)
       : tracks_(tracks), by_key_(64) {
-    for (const auto& h : hypotheses) {
+    for (const Hypothesis* h : hypotheses) {
       if (!h->tracks.table() || h->tracks.table() == table_) continue;
       one_table_ = table_ == nullptr;
       table_ = h->tracks.table();
@@ -58,11 +62,11 @@ class TrackNumbers {
     if (table_ && one_table_) by_place_.assign(table_->size(), kNone);
   }
 
-  std::vector<std::size_t> of(const TrackList& list) {
-    std::vector<std::size_t> out;
+  TrackNumbers of(const TrackList& list) {
+    TrackNumbers out;
     out.reserve(list.size());
     for (const std::uint32_t place : list.places()) {
-      std::size_t number = 0;
+      std::uint32_t number = 0;
       if (one_table_) {
         if (by_place_[place] == kNone) {
           by_place_[place] = static_cast<std::uint32_t>(tracks_.size());
@@ -73,7 +77,7 @@ class TrackNumbers {
         const TrackHandle& track = (*list.table())[place];
         const auto [key_number, fresh] = by_key_.numberOf(keyOf(track.get()));
         if (fresh) tracks_.push_back(track);
-        number = key_number;
+        number = static_cast<std::uint32_t>(key_number);
       }
       out.push_back(number);
     }
@@ -90,12 +94,12 @@ class TrackNumbers {
 };
 
 /// Lists the distinct tracks and predicts those that the scan concerns.
-ScanTracks tracksOf(const std::vector<HypothesisHandle>& hypotheses, const MeasurementScan& scan,
+ScanTracks tracksOf(const std::vector<const Hypothesis*>& hypotheses, const MeasurementScan& scan,
                     const FilterModel& model) {
   ScanTracks out;
-  TrackNumbers numbers(hypotheses, out.before);
+  TrackNumbering numbers(hypotheses, out.before);
   out.of_hypothesis.reserve(hypotheses.size());
-  for (const auto& h : hypotheses) out.of_hypothesis.push_back(numbers.of(h->tracks));
+  for (const Hypothesis* h : hypotheses) out.of_hypothesis.push_back(numbers.of(h->tracks));
   out.touched.assign(out.before.size(), 0);
   parallelFor(out.before.size(),
               [&](std::size_t i) { out.touched[i] = concerns(scan, *out.before[i], model); });
@@ -116,8 +120,9 @@ std::vector<Child> sampleChildren(const Groups& groups, const ScanTracks& tracks
                                   const AssociationIndex& index, const RngKey& key) {
   const auto order = randomOrder(index.measurements(), Rng(key.withPurpose(kOrder)));
   std::vector<std::vector<SampledAssociation>> sampled(groups.hypotheses.size());
+  const auto slots = groups.slots();
   parallelFor(sampled.size(), [&](std::size_t h) {
-    sampled[h] = sampleAssociations(tracks.of_hypothesis[h], index, order, groups.slots[h],
+    sampled[h] = sampleAssociations(tracks.of_hypothesis[h], index, order, slots[h],
                                     key.withPurpose(kSample));
   });
   std::vector<Child> children;
@@ -138,9 +143,10 @@ std::vector<Child> rankedChildren(const Groups& groups, const std::vector<double
   limits.slots = nearest ? 1 : slots;
   limits.span = model.params.ranked_span;
   std::vector<double> weights(groups.hypotheses.size(), kMinusInfinity);
-  for (std::size_t h = 0; h < weights.size(); ++h)
-    for (const std::uint32_t s : groups.slots[h])
-      weights[h] = logAddExp(weights[h], log_weights[s]);
+  for (std::size_t s = 0; s < groups.of_slot.size(); ++s) {
+    double& weight = weights[groups.of_slot[s]];
+    weight = logAddExp(weight, log_weights[s]);
+  }
   std::vector<Child> children;
   for (auto& c : rankChildren(tracks.of_hypothesis, weights, index, limits))
     children.push_back({c.parent, std::move(c.association), {}, c.log_weight});
@@ -189,7 +195,7 @@ Posterior Posterior::empty(std::size_t n) {
 
 StepResult step(const Posterior& before, const MeasurementScan& scan, const FilterModel& model,
                 const RngKey& key, std::size_t slots) {
-  const Groups groups = groupSlots(before);
+  const Groups groups(before);
   ScanTracks tracks = tracksOf(groups.hypotheses, scan, model);
   const LikelihoodTable table = likelihoodTable(tracks.predicted, tracks.touched, scan, model);
   const AssociationIndex index(tracks.predicted, table, model);

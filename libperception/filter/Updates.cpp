@@ -44,7 +44,7 @@ void Updates::want(std::size_t h, const Association& association) {
     const auto t = static_cast<std::size_t>(association.cause[k]);
     of_track_[t] = hitCell(t, k);
   }
-  for (const std::size_t t : own) {
+  for (const std::uint32_t t : own) {
     cells.push_back(of_track_[t]);
     of_track_[t] = missCell(t);
   }
@@ -99,8 +99,8 @@ std::size_t Updates::make(std::uint64_t scan_index) {
   return static_cast<std::size_t>(std::count(wanted_.begin(), wanted_.end(), 1));
 }
 
-HypothesisHandle Updates::assemble(std::size_t c) const {
-  std::vector<Cell> cells = duplicates_.merged(children_[c]);
+HypothesisHandle Updates::assemble(std::size_t c) {
+  std::vector<Cell> cells = duplicates_.merged(std::move(children_[c]));
   std::uint64_t key = 0;
   std::size_t kept = 0;
   for (const Cell cell : cells) {

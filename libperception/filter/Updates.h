@@ -11,9 +11,9 @@ namespace perception {
 /// The tracks of one scan before it: each distinct one once.
 struct ScanTracks {
   std::vector<TrackHandle> before;
-  std::vector<Track> predicted;  ///< at the scan's time; untouched ones hold nothing
-  std::vector<char> touched;     ///< the scan says something of it: predicted and scored
-  std::vector<std::vector<std::size_t>> of_hypothesis;  ///< by distinct hypothesis: indices
+  std::vector<Track> predicted;             ///< at the scan's time; untouched ones hold nothing
+  std::vector<char> touched;                ///< the scan says something of it: predicted and scored
+  std::vector<TrackNumbers> of_hypothesis;  ///< by distinct hypothesis
 };
 
 /// Pass 4: the updated tracks of one scan, made once per distinct (track, cause) that some
@@ -28,8 +28,8 @@ class Updates {
   /// Makes all that is wanted, of the predicted tracks, which are used up; returns how many.
   /// `scan_index` goes into the histories.
   std::size_t make(std::uint64_t scan_index);
-  /// The hypothesis of child `c`, counted as they were called for.
-  HypothesisHandle assemble(std::size_t c) const;
+  /// The hypothesis of child `c`, counted as they were called for; once.
+  HypothesisHandle assemble(std::size_t c);
 
  private:
   using Cell = std::uint32_t;

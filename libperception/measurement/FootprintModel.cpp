@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "libperception/core/LogMath.h"
 #include "libperception/measurement/ExtentUpdate.h"
@@ -84,13 +85,17 @@ void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double
   };
   Eigen::Matrix<double, 2, 5> dq;
   Matrix2 dextent;
+  // Angles from the centre's direction by their tangents; by themselves beside the object, where
+  // corners lie behind the sensor.
   const double middle = std::atan2(d.y(), d.x());
+  const bool ahead = d.norm() > half.norm();
   Vector2 left_corner, right_corner;
-  double left = -10, right = 10;
+  double left = -std::numeric_limits<double>::infinity(), right = -left;
   for (const double ex : {-1.0, 1.0}) {
     for (const double ey : {-1.0, 1.0}) {
       const Vector2 c = point({ex * half.x(), ey * half.y()});
-      const double offset = wrapAngle(std::atan2(c.y(), c.x()) - middle);
+      const double offset =
+          ahead ? perpendicular(d).dot(c) / d.dot(c) : wrapAngle(std::atan2(c.y(), c.x()) - middle);
       if (offset > left) left = offset, left_corner = {ex, ey};
       if (offset < right) right = offset, right_corner = {ex, ey};
     }
