@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "libperception/core/Random.h"
+#include "libperception/core/RoughBearing.h"
+#include "libperception/core/Wider.h"
 
 namespace perception {
 
@@ -45,29 +47,52 @@ std::optional<Vector3> planeThrough(const Vector3& p, const Vector3& q, const Ve
   return Vector3(a, b, p.z() - a * p.x() - b * p.y());
 }
 
+/// Polar cells about the vehicle, and which returns count.
+struct PolarCells {
+  float a, b, c, depth;        ///< the plane; [m] below it returns are mirrored
+  float near, far;             ///< [m]
+  float per_ring, per_sector;  ///< [1/m, 1/rad]
+  std::int32_t rings, sectors;
+};
+
+/// The cell of each point, rings x sectors where it is in none; no branches, so that the compiler
+/// makes vectors of it.
+PERCEPTION_WIDER void findCells(const float* __restrict xs, const float* __restrict ys,
+                                const float* __restrict zs, std::size_t count, const PolarCells k,
+                                std::uint32_t* __restrict cell) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = xs[i], y = ys[i], range = std::sqrt(x * x + y * y);
+    const std::int32_t counts =
+        (range >= k.near) & (range < k.far) & (zs[i] >= k.a * x + k.b * y + k.c - k.depth);
+    const auto turn = static_cast<std::int32_t>((roughBearing(x, y) + 3.14159265f) * k.per_sector);
+    const std::int32_t sector = turn >= k.sectors ? 0 : turn;
+    const auto out = static_cast<std::int32_t>(range * k.per_ring);
+    const std::int32_t ring = out < k.rings - 1 ? out : k.rings - 1;
+    cell[i] =
+        static_cast<std::uint32_t>(counts != 0 ? sector * k.rings + ring : k.rings * k.sectors);
+  }
+}
+
 }  // namespace
 
 GroundEstimator::Candidates GroundEstimator::candidates(const EgoPoints& points) const {
   const int rings = static_cast<int>(std::ceil(params_.range_max / params_.ring));
   const auto cells = static_cast<std::size_t>(rings * params_.sectors);
-  const auto inverse_ring = static_cast<float>(1 / params_.ring);
-  const auto inverse_sector = static_cast<float>(params_.sectors / kTwoPi);
-  const auto near = static_cast<float>(params_.range_min),
-             far = static_cast<float>(params_.range_max);
-  const float depth = plane_.measured ? static_cast<float>(params_.wet_depth) : 1e9f;
-  const auto a = static_cast<float>(plane_.a), b = static_cast<float>(plane_.b),
-             c = static_cast<float>(plane_.c);
-
-  std::vector<std::uint32_t> cell_of(points.size(), ~0u), start(cells + 1, 0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const float x = points.x[i], y = points.y[i], range = std::sqrt(x * x + y * y);
-    if (range < near || range >= far || points.z[i] < a * x + b * y + c - depth) continue;
-    int sector = static_cast<int>((roughBearing(x, y) + 3.14159265f) * inverse_sector);
-    if (sector >= params_.sectors) sector = 0;
-    const int cell = sector * rings + std::min(static_cast<int>(range * inverse_ring), rings - 1);
-    cell_of[i] = static_cast<std::uint32_t>(cell);
-    ++start[static_cast<std::size_t>(cell) + 1];
-  }
+  const PolarCells rules{static_cast<float>(plane_.a),
+                         static_cast<float>(plane_.b),
+                         static_cast<float>(plane_.c),
+                         plane_.measured ? static_cast<float>(params_.wet_depth) : 1e9f,
+                         static_cast<float>(params_.range_min),
+                         static_cast<float>(params_.range_max),
+                         static_cast<float>(1 / params_.ring),
+                         static_cast<float>(params_.sectors / kTwoPi),
+                         rings,
+                         params_.sectors};
+  std::vector<std::uint32_t> cell_of(points.size()), start(cells + 2, 0);
+  findCells(points.x.data(), points.y.data(), points.z.data(), points.size(), rules,
+            cell_of.data());
+  for (const std::uint32_t cell : cell_of) ++start[cell + 1];  // in no cell: in the last
+  start.pop_back();
   for (std::size_t k = 1; k <= cells; ++k) start[k] += start[k - 1];
   struct Return {
     float z;
@@ -79,7 +104,7 @@ GroundEstimator::Candidates GroundEstimator::candidates(const EgoPoints& points)
   std::vector<Return> sorted(start.back());
   std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (cell_of[i] != ~0u)
+    if (cell_of[i] != cells)
       sorted[next[cell_of[i]]++] = {points.z[i], static_cast<std::uint32_t>(i)};
 
   Candidates result;

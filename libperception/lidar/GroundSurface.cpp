@@ -181,10 +181,21 @@ void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams
   }
 }
 
+namespace {
+
+PERCEPTION_WIDER void subtractAll(const float* __restrict above,
+                                  const std::int32_t* __restrict cell,
+                                  const float* __restrict departure, std::size_t count,
+                                  float* __restrict heights) {
+  for (std::size_t i = 0; i < count; ++i) heights[i] = above[i] - departure[cell[i]];
+}
+
+}  // namespace
+
 void GroundSurface::subtract(const Placed& placed, std::vector<float>& heights) const {
   heights.resize(placed.above.size());
-  for (std::size_t i = 0; i < heights.size(); ++i)
-    heights[i] = placed.above[i] - departure_[static_cast<std::size_t>(placed.cell[i])];
+  subtractAll(placed.above.data(), placed.cell.data(), departure_.data(), heights.size(),
+              heights.data());
 }
 
 double GroundSurface::heightAt(double x, double y) const {

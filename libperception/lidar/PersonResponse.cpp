@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/lidar/EgoPoints.h"
+#include "libperception/core/Lanes.h"
+#include "libperception/core/Wider.h"
 #include "libperception/lidar/PersonPeaks.h"
 
 namespace perception {
@@ -26,26 +27,71 @@ PersonResponse::PersonResponse(const std::vector<float>& x, const std::vector<fl
   scatter(params);
 }
 
+namespace {
+
+struct Spread {
+  float lowest, highest;
+};
+
+PERCEPTION_WIDER Spread spreadOf(const float* v, std::size_t count) {
+  Float8 low = eight(v[0]), high = low;
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    const Float8 more = load8(v + i);
+    low = smaller(low, more), high = larger(high, more);
+  }
+  Spread bounds{v[0], v[0]};
+  for (int k = 0; k < kLanes; ++k) {
+    bounds.lowest = std::min(bounds.lowest, low[k]);
+    bounds.highest = std::max(bounds.highest, high[k]);
+  }
+  for (; i < count; ++i) {
+    bounds.lowest = std::min(bounds.lowest, v[i]);
+    bounds.highest = std::max(bounds.highest, v[i]);
+  }
+  return bounds;
+}
+
+PERCEPTION_WIDER void findCells(const float* __restrict x, const float* __restrict y,
+                                std::size_t count, double x0, double y0, double per_metre,
+                                std::int32_t columns, std::uint32_t* __restrict cell) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto column = static_cast<std::int32_t>((static_cast<double>(x[i]) - x0) * per_metre);
+    const auto row = static_cast<std::int32_t>((static_cast<double>(y[i]) - y0) * per_metre);
+    cell[i] = static_cast<std::uint32_t>(row * columns + column);
+  }
+}
+
+/// Where, in steps of sixteen, the first sixteen begin of which one is at least so large.
+PERCEPTION_WIDER std::size_t firstGroupWith(const float* v, std::size_t begin, std::size_t end,
+                                            float least) {
+  for (; begin + 2 * kLanes <= end; begin += 2 * kLanes) {
+    const Int8 any = (load8(v + begin) >= least) | (load8(v + begin + kLanes) >= least);
+    const std::int32_t all =
+        (any[0] | any[1]) | (any[2] | any[3]) | (any[4] | any[5]) | (any[6] | any[7]);
+    if (all != 0) break;
+  }
+  return begin;
+}
+
+}  // namespace
+
 void PersonResponse::place(const std::vector<float>& x, const std::vector<float>& y,
                            const std::vector<float>& weight) {
-  const auto [x_low, x_high] = std::minmax_element(x.begin(), x.end());
-  const auto [y_low, y_high] = std::minmax_element(y.begin(), y.end());
+  const Spread x_bounds = spreadOf(x.data(), x.size()), y_bounds = spreadOf(y.data(), y.size());
   const double margin = static_cast<double>(margin_) * cell_, per_metre = 1 / cell_;
   // Cells lie on multiples of their side, so that they do not depend on which return is the
   // outermost.
-  x0_ = std::floor(static_cast<double>(*x_low) / cell_) * cell_ - margin;
-  y0_ = std::floor(static_cast<double>(*y_low) / cell_) * cell_ - margin;
-  columns_ = static_cast<std::size_t>((static_cast<double>(*x_high) - x0_) / cell_) + 1 + margin_;
-  rows_ = static_cast<std::size_t>((static_cast<double>(*y_high) - y0_) / cell_) + 1 + margin_;
+  x0_ = std::floor(static_cast<double>(x_bounds.lowest) / cell_) * cell_ - margin;
+  y0_ = std::floor(static_cast<double>(y_bounds.lowest) / cell_) * cell_ - margin;
+  columns_ =
+      static_cast<std::size_t>((static_cast<double>(x_bounds.highest) - x0_) / cell_) + 1 + margin_;
+  rows_ =
+      static_cast<std::size_t>((static_cast<double>(y_bounds.highest) - y0_) / cell_) + 1 + margin_;
 
-  const double x0 = x0_, y0 = y0_;
-  const auto columns = static_cast<std::int32_t>(columns_);
   cell_of_return_.resize(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto column = static_cast<std::int32_t>((static_cast<double>(x[i]) - x0) * per_metre);
-    const auto row = static_cast<std::int32_t>((static_cast<double>(y[i]) - y0) * per_metre);
-    cell_of_return_[i] = static_cast<std::uint32_t>(row * columns + column);
-  }
+  findCells(x.data(), y.data(), x.size(), x0_, y0_, per_metre, static_cast<std::int32_t>(columns_),
+            cell_of_return_.data());
   weights_.assign(columns_ * rows_, 0);
   for (std::size_t i = 0; i < x.size(); ++i) {
     float& sum = weights_[cell_of_return_[i]];
@@ -120,10 +166,8 @@ std::vector<std::uint32_t> PersonResponse::maxima(float least) const {
   constexpr std::size_t kGroup = 16;
   const std::size_t first = columns_ + 1, last = response_.size() - columns_ - 1;
   for (std::size_t begin = first; begin < last; begin += kGroup) {
+    begin = firstGroupWith(response_.data(), begin, last, least);
     const std::size_t end = std::min(begin + kGroup, last);
-    std::int32_t any = 0;
-    for (std::size_t k = begin; k < end; ++k) any |= response_[k] >= least;
-    if (any == 0) continue;
     for (std::size_t k = begin; k < end; ++k)
       if (response_[k] >= least && isMaximum(k)) found.push_back(static_cast<std::uint32_t>(k));
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "libperception/core/Lanes.h"
+#include "libperception/core/Wider.h"
 #include "libperception/weather/HeightAboveGround.h"
 
 namespace perception {
@@ -23,34 +25,51 @@ constexpr double kShareBounds[] = {-7, 2};  // [log-odds] that weather may add
 float sigmoid(float v) { return 1 / (1 + std::exp(-v)); }
 double logit(double p) { return std::log(p / (1 - p)); }
 
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = int __attribute__((vector_size(16)));
-
 constexpr std::size_t at(TrustFeature feature) { return static_cast<std::size_t>(feature); }
 
-Float4 four(float v) { return Float4{v, v, v, v}; }
-float countOf(const Int4 v) { return static_cast<float>(-(v[0] + v[1] + v[2] + v[3])); }
+/// How many of the eight nearest pixels are within `tight` of `r`: rows of three and a fourth
+/// beside them that does not count.
+int sameAround(const float* pixel, std::ptrdiff_t stride, float r, float tight) {
+  using Float4 = float __attribute__((vector_size(16)));
+  using Int4 = std::int32_t __attribute__((vector_size(16)));
+  const auto same = [&](const float* row) -> Int4 {
+    Float4 off;
+    std::memcpy(&off, row - 1, sizeof off);
+    off -= r;
+    return (off < tight) & (-off < tight);
+  };
+  const Int4 counts =
+      same(pixel - stride) + same(pixel + stride) + (same(pixel) & Int4{-1, 0, -1, 0});
+  return -(counts[0] + counts[1] + counts[2]);
+}
 
-/// Hands the neighbourhood of a pixel to `count`, four at a time and 0 for the pixel itself: rows
-/// of two vectors and a ninth column apart, since the vectoriser does not take loops of nine.
-template <class Count>
-void forNeighbours(const RangeImage& image, std::size_t pixel, const Count& count) {
+/// How the beams around a return fare, counted.
+struct Neighbours {
+  int tight = 0, wide = 0, beyond = 0, filled = 0;
+};
+
+/// `corner`: first pixel of the neighbourhood. Rows of eight and a ninth column apart.
+PERCEPTION_WIDER Neighbours countNeighbours(const float* corner, std::ptrdiff_t stride, float r,
+                                            float tight, float wide, float behind) {
   static_assert(RangeImage::kColumnReach == 4 && RangeImage::kRowReach == 2, "nine by five");
-  const float* line = image.pixels().data() + pixel - RangeImage::kRowReach * image.stride() -
-                      RangeImage::kColumnReach;
-  Float4 ninth{};
-  for (int row = 0; row < 5; ++row, line += image.stride()) {
-    Float4 a, b;
-    std::memcpy(&a, line, sizeof a), std::memcpy(&b, line + 4, sizeof b);
-    if (row == 2) b[0] = 0;
-    count(a), count(b);
-    if (row < 4) {
-      ninth[row] = line[8];
-    } else {
-      count(Float4{line[8], 0, 0, 0});
-    }
+  Int8 near = eight(0), neighbours = eight(0), beyond = eight(0), filled = eight(0);
+  const auto count = [&](const Float8& other) {  // downwards: true is -1
+    const Float8 off = magnitude(other - r);
+    near += off<tight, neighbours += off<wide, beyond += other> behind, filled += other> 0;
+  };
+  Float8 ninth = eight(0.0F);
+  for (int row = 0; row < 5; ++row, corner += stride) {
+    Float8 line = load8(corner);
+    if (row == 2) line[RangeImage::kColumnReach] = 0;  // the return itself
+    count(line);
+    ninth[row] = corner[kLanes];
   }
   count(ninth);
+  // None exceeds 45: four of them fit a number.
+  std::int32_t lanes[kLanes], all = 0;
+  store8(near + (neighbours << 8) + (beyond << 16) + (filled << 24), lanes);
+  for (const std::int32_t lane : lanes) all -= lane;
+  return {all & 255, all >> 8 & 255, all >> 16 & 255, all >> 24 & 255};
 }
 
 /// The first of two echoes of a pulse is rain when it is weaker or shorter (paper).
@@ -130,19 +149,16 @@ PointTrust::PointTrust(const TrustParams& params)
 // How the beams around a return fare.
 void PointTrust::lookAround(std::size_t pixel, SuspectReturn& suspect) const {
   const float r = suspect.features[at(TrustFeature::kRange)];
-  const Float4 r4 = four(r), tight = four(static_cast<float>(params_.tight) * r + kTightFloor);
-  const Float4 wide = four(static_cast<float>(params_.wide) * r + kTightFloor);
-  const Float4 behind = four((1 + static_cast<float>(params_.beyond)) * r + kBeyondFloor);
-  Int4 near{}, neighbours{}, beyond{}, filled{};  // count downwards: true is -1
-  forNeighbours(image_, pixel, [&](const Float4 other) {
-    const Float4 d = other - r4;
-    near += (d < tight) & (-d < tight), neighbours += (d < wide) & (-d < wide);
-    beyond += other > behind, filled += other > Float4{};
-  });
-  suspect.features[at(TrustFeature::kTight)] = countOf(near);
-  suspect.features[at(TrustFeature::kWide)] = countOf(neighbours);
+  const float* corner = image_.pixels().data() + pixel - RangeImage::kRowReach * image_.stride() -
+                        RangeImage::kColumnReach;
+  const Neighbours n = countNeighbours(corner, image_.stride(), r,
+                                       static_cast<float>(params_.tight) * r + kTightFloor,
+                                       static_cast<float>(params_.wide) * r + kTightFloor,
+                                       (1 + static_cast<float>(params_.beyond)) * r + kBeyondFloor);
+  suspect.features[at(TrustFeature::kTight)] = static_cast<float>(n.tight);
+  suspect.features[at(TrustFeature::kWide)] = static_cast<float>(n.wide);
   suspect.features[at(TrustFeature::kBeyond)] =
-      countOf(filled) > 0 ? countOf(beyond) / countOf(filled) : 1.0F;
+      n.filled > 0 ? static_cast<float>(n.beyond) / static_cast<float>(n.filled) : 1.0F;
 }
 
 void PointTrust::findSuspects(const SensorFrame& frame, const LidarCloud& cloud) {
@@ -156,10 +172,7 @@ void PointTrust::findSuspects(const SensorFrame& frame, const LidarCloud& cloud)
     if (!(r > 0) || r > far) continue;
     const std::size_t pixel = image_.pixelOf(i);
     const float tight = static_cast<float>(params_.tight) * r + kTightFloor;
-    const float *below = image + pixel - stride, *here = image + pixel, *above = here + stride;
-    const auto same = [&](float other) { return static_cast<int>(std::abs(other - r) < tight); };
-    const int around = same(below[-1]) + same(below[0]) + same(below[1]) + same(here[-1]) +
-                       same(here[1]) + same(above[-1]) + same(above[0]) + same(above[1]);
+    const int around = sameAround(image + pixel, stride, r, tight);
     if (around >= params_.surface_neighbours) continue;
     SuspectReturn suspect;
     suspect.index = static_cast<std::uint32_t>(i);
@@ -249,6 +262,7 @@ void PointTrust::learnIntensity(const LidarCloud& cloud) {
 
 void PointTrust::countCompany(const LidarCloud& cloud) {
   cubes_.clear();
+  cubes_.place(cloud.x, cloud.y, cloud.z);
   std::size_t next = 0;
   const auto far = static_cast<float>(params_.max_range);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -256,7 +270,7 @@ void PointTrust::countCompany(const LidarCloud& cloud) {
     const bool doubted = suspected && suspects_[next].first > kPhantom;
     next += suspected;
     const float r = image_.ranges()[i];
-    if (r > 0 && r <= far) cubes_.add(cloud.x[i], cloud.y[i], cloud.z[i], doubted);
+    if (r > 0 && r <= far) cubes_.add(i, doubted);
   }
 }
 

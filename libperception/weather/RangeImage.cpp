@@ -5,6 +5,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/RoughBearing.h"
+#include "libperception/core/Wider.h"
 
 namespace perception {
 namespace {
@@ -16,6 +17,43 @@ constexpr double kConnected = 0.6;   // share of pixels with a neighbour above o
 const double kRows[] = {radians(0.35), radians(0.5), radians(0.7), radians(1.0),
                         radians(1.4),  radians(2.0), radians(3.0)};
 
+/// How RangeImage lays its pixels out.
+struct PixelRules {
+  float per_radian, rows_per_slope;
+  std::int32_t columns, stride;
+};
+
+/// Of `count` points [m]: range [m], azimuth [rad], tangent of elevation.
+PERCEPTION_WIDER void findDirections(const float* __restrict x, const float* __restrict y,
+                                     const float* __restrict z, std::size_t count,
+                                     float* __restrict range, float* __restrict azimuth,
+                                     float* __restrict slope) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float flat2 = x[i] * x[i] + y[i] * y[i];
+    const float r = std::sqrt(flat2 + z[i] * z[i]);
+    azimuth[i] = roughBearing(x[i], y[i]);
+    slope[i] = z[i] / (std::sqrt(flat2) + 1e-6F);
+    range[i] = (r > kInstrument) & (r < 1e3F) ? r : 0.0F;  // NaN fails both
+  }
+}
+
+/// Pixels of directions; 0 where there is no range.
+PERCEPTION_WIDER void findPixels(const float* __restrict range, const float* __restrict azimuth,
+                                 const float* __restrict slope, std::size_t count, PixelRules k,
+                                 std::uint32_t* __restrict pixels) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto turn =
+        static_cast<std::int32_t>((azimuth[i] + static_cast<float>(kPi)) * k.per_radian);
+    const std::int32_t column = turn < k.columns - 1 ? turn : k.columns - 1;
+    const float high = slope[i] < kSteepest ? slope[i] : kSteepest;
+    const float up = (high > -kSteepest ? high : -kSteepest) + kSteepest;
+    const std::int32_t row =
+        static_cast<std::int32_t>(up * k.rows_per_slope) + RangeImage::kRowReach;
+    const std::int32_t pixel = row * k.stride + column + RangeImage::kColumnReach;
+    pixels[i] = static_cast<std::uint32_t>(range[i] > 0 ? pixel : 0);
+  }
+}
+
 }  // namespace
 
 RangeImage::RangeImage(double column, double row)
@@ -26,16 +64,9 @@ RangeImage::RangeImage(double column, double row)
 
 void RangeImage::directions(const LidarCloud& cloud) {
   const std::size_t count = cloud.size();
-  ranges_.resize(count), azimuth_.resize(count), slope_.resize(count), pixels_.resize(count);
-  const float *x = cloud.x.data(), *y = cloud.y.data(), *z = cloud.z.data();
-  float *range = ranges_.data(), *azimuth = azimuth_.data(), *slope = slope_.data();
-  for (std::size_t i = 0; i < count; ++i) {
-    const float flat2 = x[i] * x[i] + y[i] * y[i];
-    const float r = std::sqrt(flat2 + z[i] * z[i]);
-    azimuth[i] = roughBearing(x[i], y[i]);
-    slope[i] = z[i] / (std::sqrt(flat2) + 1e-6F);
-    range[i] = r > kInstrument && r < 1e3F ? r : 0.0F;  // NaN fails both
-  }
+  ranges_.resize(count), azimuth_.resize(count), slope_.resize(count);
+  findDirections(cloud.x.data(), cloud.y.data(), cloud.z.data(), count, ranges_.data(),
+                 azimuth_.data(), slope_.data());
 }
 
 void RangeImage::layOut(double row) {
@@ -46,12 +77,13 @@ void RangeImage::layOut(double row) {
   stride_ = static_cast<std::ptrdiff_t>(columns_ + 2 * kColumnReach);
 }
 
-std::uint32_t RangeImage::pixelAt(float azimuth, float slope) const {
-  const int column = std::min(static_cast<int>((azimuth + static_cast<float>(kPi)) * per_radian_),
-                              static_cast<int>(columns_) - 1);
-  const float up = std::clamp(slope, -kSteepest, kSteepest) + kSteepest;
-  const int row = static_cast<int>(up * rows_per_slope_) + kRowReach;
-  return static_cast<std::uint32_t>(row * static_cast<int>(stride_) + column + kColumnReach);
+void RangeImage::findPixelsOf(const RangeImage& directions) {
+  pixels_.resize(directions.ranges_.size());
+  findPixels(directions.ranges_.data(), directions.azimuth_.data(), directions.slope_.data(),
+             pixels_.size(),
+             {per_radian_, rows_per_slope_, static_cast<std::int32_t>(columns_),
+              static_cast<std::int32_t>(stride_)},
+             pixels_.data());
 }
 
 // Of the directions with a return, how many have one in the row above or below.
@@ -59,8 +91,9 @@ double RangeImage::connectedShare(double row) const {
   RangeImage other(column_, row);
   other.layOut(row);
   std::vector<char> filled((other.rows_ + 2 * kRowReach) * static_cast<std::size_t>(other.stride_));
-  for (std::size_t i = 0; i < ranges_.size(); ++i)
-    if (ranges_[i] > 0) filled[other.pixelAt(azimuth_[i], slope_[i])] = 1;
+  other.findPixelsOf(*this);
+  for (const std::uint32_t pixel : other.pixels_) filled[pixel] = 1;
+  filled[0] = 0;
   std::size_t all = 0, connected = 0;
   const auto stride = static_cast<std::size_t>(other.stride_);
   for (std::size_t p = stride + 1; p + stride + 1 < filled.size(); ++p) {
@@ -82,11 +115,8 @@ void RangeImage::fill(const LidarCloud& cloud) {
   directions(cloud);
   if (rows_ == 0) layOut(row_ > 0 ? row_ : findRow());
   image_.assign((rows_ + 2 * kRowReach) * static_cast<std::size_t>(stride_), 0.0F);
-  for (std::size_t i = 0; i < ranges_.size(); ++i) {
-    const std::uint32_t pixel = ranges_[i] > 0 ? pixelAt(azimuth_[i], slope_[i]) : 0;
-    pixels_[i] = pixel;
-    image_[pixel] = ranges_[i];
-  }
+  findPixelsOf(*this);
+  for (std::size_t i = 0; i < ranges_.size(); ++i) image_[pixels_[i]] = ranges_[i];
   image_[0] = 0;
   for (std::size_t row = kRowReach; row < rows_ + kRowReach; ++row) {
     float* line = image_.data() + row * static_cast<std::size_t>(stride_);

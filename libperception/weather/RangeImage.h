@@ -35,7 +35,7 @@ class RangeImage {
   void layOut(double row);
   double findRow();
   double connectedShare(double row) const;
-  std::uint32_t pixelAt(float azimuth, float slope) const;
+  void findPixelsOf(const RangeImage& directions);
 
   double column_, row_;
   std::size_t columns_, rows_ = 0;

@@ -13,15 +13,18 @@ class SurroundingCubes {
   explicit SurroundingCubes(float reach);  ///< [m] horizontal, from the sensor
 
   void clear();
-  void add(float x, float y, float z, bool doubted) {
-    const std::size_t cube = cubeAt(x, y, z);
-    std::uint16_t& count = counts_[2 * cube + (doubted ? 1 : 0)];
+  /// The points that add() is about.
+  void place(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z);
+  void add(std::size_t i, bool doubted) {
+    std::uint16_t& count = counts_[2 * cube_of_[i] + (doubted ? 1 : 0)];
     count = static_cast<std::uint16_t>(count + (count < 0xFFFF));
   }
   /// ln((1 + trusted) / (1 + doubted)) of the others in the eight cubes that meet nearest to a
   /// place where a return counts as `doubted` itself.
   float company(float x, float y, float z, bool doubted) const;
-  std::size_t memoryBytes() const { return counts_.capacity() * sizeof(std::uint16_t); }
+  std::size_t memoryBytes() const {
+    return counts_.capacity() * sizeof(std::uint16_t) + cube_of_.capacity() * sizeof(std::uint32_t);
+  }
 
  private:
   static constexpr float kEdge = 0.5F;     // [m]
@@ -36,13 +39,11 @@ class SurroundingCubes {
     const int i = static_cast<int>((z - kBottom) * (1 / kEdge));
     return i < 0 ? 0 : i < kLayers ? i : kLayers - 1;
   }
-  std::size_t cubeAt(float x, float y, float z) const {
-    return static_cast<std::size_t>((along(x) * side_ + along(y)) * kLayers + layer(z));
-  }
 
   float reach_;
   int side_;
   std::vector<std::uint16_t> counts_;  // trusted, doubted of each cube
+  std::vector<std::uint32_t> cube_of_;
 };
 
 }  // namespace perception
