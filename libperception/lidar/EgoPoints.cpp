@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <numeric>
+
+#include "libperception/core/Lanes.h"
 
 namespace perception {
 
@@ -82,14 +86,18 @@ PERCEPTION_WIDER void judge(const float* px, const float* py, const float* pz, s
 
 /// Moves what is kept to the front; the number of it. Most is kept, so groups move as a whole.
 std::size_t squeeze(Block& block, std::size_t size) {
-  constexpr std::size_t kGroup = 8;
+  constexpr std::size_t kGroup = kLanes;
   std::size_t kept = 0;
-  const auto move = [&block, &kept](std::size_t from, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      block.x[kept + k] = block.x[from + k], block.y[kept + k] = block.y[from + k];
-      block.z[kept + k] = block.z[from + k], block.source[kept + k] = block.source[from + k];
-    }
-    kept += count;
+  const auto move = [&block, &kept](std::size_t from) {
+    block.x[kept] = block.x[from], block.y[kept] = block.y[from];
+    block.z[kept] = block.z[from], block.source[kept] = block.source[from], ++kept;
+  };
+  const auto moveGroup = [&block, &kept](std::size_t from) {
+    for (auto* lane : {&block.x, &block.y, &block.z}) store8(load8(&(*lane)[from]), &(*lane)[kept]);
+    std::uint32_t group[kGroup];
+    std::memcpy(group, &block.source[from], sizeof group);
+    std::memcpy(&block.source[kept], group, sizeof group);
+    kept += kGroup;
   };
   for (std::size_t first = 0; first < size; first += kGroup) {
     std::int32_t all = 0;
@@ -99,12 +107,12 @@ std::size_t squeeze(Block& block, std::size_t size) {
       if (kept == first) {
         kept += kGroup;
       } else {
-        move(first, kGroup);
+        moveGroup(first);
       }
       continue;
     }
     for (std::size_t k = first; k < std::min(first + kGroup, size); ++k)
-      if (block.keep[k] != 0) move(k, 1);
+      if (block.keep[k] != 0) move(k);
   }
   return kept;
 }
@@ -154,8 +162,12 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
       for (std::size_t k = 0; k < size; ++k)
         if (ownProcessingDropsIt(cloud->label[index(first + k)], params.only_objects))
           block.keep[k] = 0;
-    for (std::size_t k = 0; k < size; ++k)
-      block.source[k] = static_cast<std::uint32_t>(index(first + k));
+    if (stride == 1) {
+      std::iota(block.source.begin(), block.source.end(), static_cast<std::uint32_t>(first));
+    } else {
+      for (std::size_t k = 0; k < size; ++k)
+        block.source[k] = static_cast<std::uint32_t>(index(first + k));
+    }
     append(block, squeeze(block, size), points);
   }
   return points;

@@ -174,7 +174,8 @@ void PointTrust::findSuspects(const SensorFrame& frame, const LidarCloud& cloud)
     const float tight = static_cast<float>(params_.tight) * r + kTightFloor;
     const int around = sameAround(image + pixel, stride, r, tight);
     if (around >= params_.surface_neighbours) continue;
-    SuspectReturn suspect;
+    SuspectReturn& suspect =
+        suspects_.emplace_back();  // in place: a copy would wait for the stores
     suspect.index = static_cast<std::uint32_t>(i);
     suspect.features[at(TrustFeature::kRange)] = r;
     suspect.features[at(TrustFeature::kHeight)] = height.of(cloud.x[i], cloud.y[i], cloud.z[i]);
@@ -184,7 +185,6 @@ void PointTrust::findSuspects(const SensorFrame& frame, const LidarCloud& cloud)
                                  TrustFeature::kBeyond, TrustFeature::kHeight})
       sum += curves_[at(f)].at(suspect.features[at(f)]);
     suspect.geometry = sum;
-    suspects_.push_back(suspect);
   }
 }
 
