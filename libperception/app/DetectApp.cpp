@@ -7,10 +7,10 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 
 #include "libperception/app/DetectPicture.h"
-#include "libperception/app/ImportText.h"
+#include "libperception/app/DetectResults.h"
 #include "libperception/app/KittiFiles.h"
 #include "libperception/app/OutputFolder.h"
 #include "libperception/scene/OutputFile.h"
@@ -21,92 +21,14 @@
 #include "libperception/sensors/ToObservation.h"
 
 namespace perception {
-namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kImageEndings{".png", ".jpg", ".jpeg", ".bmp"};
-constexpr int kImagesAFold = 3;              // neighbours of a drive show the same objects
+namespace {
+
 constexpr double kKittiCameraHeight = 1.65;  // [m] kitti.com/setup: cameras above the ground
 
-bool isLog(const std::string& path) {
-  return fs::path(path).extension() == ".rawlog" || fs::path(path).extension() == ".gz";
-}
-
-std::vector<std::string> imagesOf(const std::vector<std::string>& inputs) {
-  std::vector<std::string> out;
-  for (const std::string& input : inputs) {
-    if (!fs::is_directory(input)) {
-      out.push_back(input);
-      continue;
-    }
-    for (const FrameFile& file : frameFiles(input, kImageEndings)) out.push_back(file.path);
-  }
-  return out;
-}
-
-std::optional<Raster> readImage(const std::string& path) {
-  const cv::Mat pixels = cv::imread(path, cv::IMREAD_COLOR);
-  if (pixels.empty()) return std::nullopt;
-  Raster raster{pixels.cols, pixels.rows, 3, {}};
-  for (int y = 0; y < pixels.rows; ++y) {
-    const auto* row = pixels.ptr<std::uint8_t>(y);
-    raster.pixels.insert(raster.pixels.end(), row, row + pixels.cols * 3);
-  }
-  return raster;
-}
-
-/// x forward of the vehicle is z of the camera; `pitch` nose down.
-Pose3 opticalPose(double height, double pitch) {
-  Pose3 pose = Pose3::Identity();
-  const double c = std::cos(pitch), s = std::sin(pitch);
-  pose.linear().col(0) = Vector3(0, -1, 0);
-  pose.linear().col(1) = Vector3(-s, 0, -c);
-  pose.linear().col(2) = Vector3(c, 0, -s);
-  pose.translation() = Vector3(0, 0, height);
-  return pose;
-}
-
-/// A calibrated camera is a pinhole unless the INI says otherwise.
-bool isPanorama(const Raster& image, int choice, bool calibrated) {
-  constexpr int kLeastWidth = 1024;  // [px] the smallest of the paper's panoramas
-  return choice == 1 || (choice == 0 && !calibrated && image.width >= kLeastWidth &&
-                         image.width == 2 * image.height && image.width % 8 == 0);
-}
-
-CameraModel panoramaCamera(const Raster& image) { return Panorama(image.width).camera(); }
-
-CameraModel cameraOf(const Raster& image, const DetectCameraParams& params) {
-  if (isPanorama(image, params.panorama, false)) return panoramaCamera(image);
-  CameraModel camera;
-  camera.width = image.width;
-  camera.height = image.height;
-  camera.cx = 0.5 * image.width - 0.5;
-  camera.cy = params.horizon > 0 ? params.horizon : 0.5 * image.height - 0.5;
-  camera.fx = camera.fy =
-      params.focal > 0 ? params.focal : 0.5 * image.width / std::tan(0.5 * params.field_of_view);
-  return camera;
-}
-
-std::string kittiLine(const ObjectDetection& o) {
-  const auto& b = *o.image_box;
-  return fmt::format(
-      "{} -1 -1 {:.4f} {:.2f} {:.2f} {:.2f} {:.2f} -1 -1 -1 -1000 -1000 -1000 -10 {:.4f}\n",
-      o.label, o.heading.value_or(-10), b.x1, b.y1, b.x2, b.y2, o.score);
-}
-
 }  // namespace
-
-void DetectCameraParams::visit(ParamVisitor& v) {
-  v.real("height", height, {0, 10}, "m", "of the camera over the ground; 0: not known");
-  v.angle("pitch_deg", pitch, {-45, 45}, "of the camera, down");
-  v.real("focal", focal, {0, 1e5}, "px", "focal length; 0: from field_of_view_deg");
-  v.angle("field_of_view_deg", field_of_view, {1, 170}, "across the image");
-  v.real("horizon", horizon, {0, 1e5}, "px", "row of the horizon at pitch 0; 0: the middle");
-  v.choice(
-      "panorama", panorama, {"auto", "yes", "no"},
-      "a whole spherical image; auto: twice as wide as high, 1024 px or more, without calibration");
-}
 
 std::string DetectApp::description() const {
   return "Finds cars and people in images, or in the images of a log; compares with labels.";
@@ -166,7 +88,7 @@ void DetectApp::run() {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   cv::setNumThreads(threads > 0 ? threads : -1);
   const ImageDetector detector(std::move(setup));
-  if (isLog(inputs.front())) {
+  if (isRawlog(inputs.front())) {
     if (inputs.size() > 1) throw Error(ExitCode::kUsage, "one log at a time");
     runLog(detector, camera, inputs.front());
   } else {
@@ -205,7 +127,7 @@ void DetectApp::finish(const ImageDetector& detector, Result& result) {
   if (!kitti_folder.empty()) {
     std::string lines;
     for (const auto& o : objects) {
-      if (o.image_box) lines += kittiLine(o);
+      if (o.image_box) lines += kittiBoxLine(o);
     }
     fs::create_directories(kitti_folder);
     writeFile((fs::path(kitti_folder) / (fs::path(result.name).stem().string() + ".txt")).string(),
@@ -213,42 +135,10 @@ void DetectApp::finish(const ImageDetector& detector, Result& result) {
   }
 }
 
-void DetectApp::trainHeading() const {
-  if (labels.empty() || inputs.empty())
-    throw Error(ExitCode::kUsage, "--train-heading needs -i IMAGES and --labels");
-  const ImageLabels truth(labels, LabelRules{min_height, max_truncation, max_occlusion});
-  std::vector<HeadingExample> examples;
-  int fold = 0;
-  for (const std::string& file : imagesOf(inputs)) {
-    stopIfAsked();
-    const auto image = readImage(file);
-    if (!image) throw DataError(fmt::format("{}: not an image", file));
-    ++fold;
-    for (const LabelledBox& l : truth.of(fs::path(file).filename().string())) {
-      if (l.label != heading_label || l.ignore || l.area || !l.heading) continue;
-      for (const bool mirrored : {false, true}) {
-        HeadingExample e;
-        e.features = HeadingHead::describe(*image, l.box, false, mirrored);
-        e.heading = mirrored ? wrapAngle(kPi - *l.heading) : *l.heading;
-        e.fold = fold / kImagesAFold;
-        if (!e.features.empty()) examples.push_back(std::move(e));
-      }
-    }
-  }
-  const HeadingHead head = HeadingHead::train(heading_label, examples);
-  writeFile(train_heading, head.text());
-  fmt::print(
-      "{}: {} pictures of {} images, mirrored ones included\n"
-      "axis within {:.1f} deg (rms), front and back confused in {:.1f} % (cross-validated)\n"
-      "[sensor.LABEL.detector] heading_model = {} takes both\n",
-      train_heading, head.examples(), fold, degrees(head.axisSigma()), 100 * head.flipShare(),
-      train_heading);
-}
-
 void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParams& params) {
   if (!detector.hasBackend())
     throw Error(ExitCode::kUsage, "backend file: boxes are taken from a log, -i FILE.rawlog");
-  const std::vector<std::string> files = imagesOf(inputs);
+  const std::vector<std::string> files = imageFiles(inputs);
   std::optional<ImageLabels> truth;
   if (!labels.empty()) truth.emplace(labels, LabelRules{min_height, max_truncation, max_occlusion});
   std::optional<OutputFolder> folder;
@@ -271,12 +161,12 @@ void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParam
     result.image = *image;
     CameraModel camera = cameraOf(*image, params);
     std::optional<Pose3> pose;
-    if (params.height > 0) pose = opticalPose(params.height, params.pitch);
+    if (params.height > 0) pose = cameraPose(params.height, params.pitch);
     if (!calibrations.empty()) {
       camera = readKittiCalibration(
                    (fs::path(calibrations) / (fs::path(file).stem().string() + ".txt")).string())
                    .camera;
-      pose = opticalPose(params.height > 0 ? params.height : kKittiCameraHeight, params.pitch);
+      pose = cameraPose(params.height > 0 ? params.height : kKittiCameraHeight, params.pitch);
     }
     result.found = timed(detector, *image, camera, pose);
     if (truth) result.truth = truth->of(result.name);
@@ -287,13 +177,15 @@ void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParam
   if (truth) out_quality = quality_.results();
   writeResults(folder ? &*folder : nullptr);
   if (folder) folder->commit("detections.csv");
-  if (!calibrate.empty()) writeCalibration(detector);
+  if (calibrate.empty()) return;
+  writeFile(calibrate, calibrationIni(detector.setup(), quality_, out_images, overlap));
+  fmt::print("{}: calibration of {} images\n", calibrate, out_images);
 }
 
 void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& params,
                        const std::string& log) {
   if (!labels.empty()) throw Error(ExitCode::kUsage, "--labels belong to images, not to a log");
-  const bool to_log = !output.empty() && isLog(output);
+  const bool to_log = !output.empty() && isRawlog(output);
   if (!to_log && !(pictures && !output.empty()))
     throw Error(ExitCode::kUsage, "-o FILE.rawlog is required, or --pictures -o DIR");
   if (to_log && !detector.hasBackend())
@@ -409,44 +301,8 @@ void DetectApp::writeResults(OutputFolder* folder) const {
   if (folder == nullptr) return;
   writeFile(folder->pathFor("detections.csv"), rows_);
   if (out_quality.empty()) return;
-  std::string table =
-      "label,labelled,right,wrong,average_precision,recall,headings,heading_median_deg,"
-      "heading_rms_deg,flips,orientation_similarity\n";
-  std::string curve = "label,score,recall,precision\n";
-  for (const LabelQuality& q : out_quality) {
-    table += fmt::format("{},{},{},{},{:.4f},{:.4f},{},{:.2f},{:.2f},{},{:.4f}\n", q.label,
-                         q.labelled, q.right, q.wrong, q.average_precision, q.recall, q.headings,
-                         degrees(q.heading_median), degrees(q.heading_rms), q.flips,
-                         q.orientation_similarity);
-    for (const auto& p : q.curve)
-      curve += fmt::format("{},{:.4f},{:.4f},{:.4f}\n", q.label, p.score, p.recall, p.precision);
-  }
-  writeFile(folder->pathFor("quality.csv"), table);
-  writeFile(folder->pathFor("precision.csv"), curve);
-}
-
-void DetectApp::writeCalibration(const ImageDetector& detector) const {
-  std::string text = fmt::format(
-      "; P(right | score) of boxes, fitted by perception-detect --calibrate to {} images, overlap "
-      "{}.\n; To be included by the INI of the detector.\n",
-      out_images, overlap);
-  for (const auto& [name, model] : detector.setup().models) {
-    std::string lines;
-    for (const std::string& label : quality_.labels()) {
-      if (!model.label.empty() && model.label != label) continue;
-      const auto fit = fitLogistic(quality_.judged(label));
-      const auto& boxes = quality_.judged(label);
-      const auto right = std::count_if(boxes.begin(), boxes.end(), [](auto& b) { return b.right; });
-      if (!fit) continue;
-      const std::string suffix = model.label.empty() ? "." + label : "";
-      lines += fmt::format("slope{} = {:.4f}  ; {} right boxes, {} wrong ones\n", suffix,
-                           fit->slope, right, static_cast<std::ptrdiff_t>(boxes.size()) - right);
-      lines += fmt::format("even_score{} = {:.4f}\n", suffix, fit->even_score);
-    }
-    if (!lines.empty()) text += fmt::format("\n[model.{}]\n{}", name, lines);
-  }
-  writeFile(calibrate, text);
-  fmt::print("{}: calibration of {} images\n", calibrate, out_images);
+  writeFile(folder->pathFor("quality.csv"), qualityCsv(out_quality));
+  writeFile(folder->pathFor("precision.csv"), precisionCsv(out_quality));
 }
 
 void DetectApp::report() const {

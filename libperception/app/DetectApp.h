@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libperception/app/App.h"
+#include "libperception/app/DetectImages.h"
 #include "libperception/app/DetectLabels.h"
 #include "libperception/vision/DetectionQuality.h"
 #include "libperception/vision/ImageDetector.h"
@@ -16,18 +17,6 @@
 namespace perception {
 
 class OutputFolder;
-
-/// [camera]: of images that come without a calibration of their own.
-struct DetectCameraParams {
-  double height = 0;                   ///< [m] over the ground; 0: not known
-  double pitch = 0;                    ///< [rad] nose down
-  double focal = 0;                    ///< [px]; 0: from field_of_view
-  double field_of_view = radians(80);  ///< [rad] across
-  double horizon = 0;                  ///< [px] row at pitch 0; 0: the middle
-  int panorama = 0;                    ///< auto (width = 2 height, no calibration), yes, no
-
-  void visit(ParamVisitor& v);
-};
 
 /// perception-detect: a camera detector on images, or on the images of a log.
 class DetectApp : public App {
@@ -78,7 +67,6 @@ class DetectApp : public App {
   void finish(const ImageDetector& detector, Result& result);
   void trainHeading() const;
   void writeResults(OutputFolder* folder) const;
-  void writeCalibration(const ImageDetector& detector) const;
   void report() const;
 
   DetectionQuality quality_{0.5, 25};
