@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <thread>
 
@@ -13,11 +14,13 @@
 #include "libperception/app/OutputFolder.h"
 #include "libperception/app/PersonFilterStudy.h"
 #include "libperception/evaluation/Gnuplot.h"
+#include "libperception/measurement/PositionFrontEnd.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/registerClasses.h"
 #include "libperception/study/AssociationStudy.h"
+#include "libperception/study/BoxEvidenceStudy.h"
 #include "libperception/study/EgoStudy.h"
 #include "libperception/study/GpsStudy.h"
 #include "libperception/study/HeadingStudy.h"
@@ -105,6 +108,8 @@ const Study kStudies[] = {
     {"tempering", "how far labels and innovations count in the class update (rawlogs with truth)",
      [](StudyApp& app) { return app.temperingOfLogs(); }, false, false, false, false, false,
      nullptr, true},
+    {"boxes", "what scores and shapes of a 3D detector's boxes say of objects, fitted (rawlogs)",
+     [](StudyApp& app) { return app.boxesOfLogs(); }, false, false, false, true},
     {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
      [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
 };
@@ -272,10 +277,41 @@ StudyReport StudyApp::temperingOfLogs() {
   return temperingStudy(params, logs);
 }
 
+StudyReport StudyApp::boxesOfLogs() {
+  registerPerceptionClasses();
+  std::vector<BoxLog> logs;
+  std::string sensor;
+  for (const std::string& file : inputs) {
+    std::map<Stamp, ObjectDetections> seen;
+    Config config = loadConfig();
+    const RecordedLog log =
+        recordLog(file, config, seconds, [&](mrpt::obs::CObservation& observation) {
+          const auto* boxes = dynamic_cast<CObservationObjectDetections*>(&observation);
+          const auto stamp = toStamp(observation.timestamp);
+          const bool in_space =
+              boxes &&
+              std::any_of(boxes->detections.objects.begin(), boxes->detections.objects.end(),
+                          [](const auto& o) { return o.space_box.has_value(); });
+          if (!in_space || !stamp) return;
+          sensor = observation.sensorLabel;
+          seen[*stamp] = boxes->detections;
+        });
+    logs.push_back(boxLog(log, sensor, seen, truthBeside(file)));
+  }
+  std::map<std::string, std::string> names;
+  for (const std::string& name :
+       loadConfig().read<PositionParams>("sensor." + sensor + ".positions").names) {
+    const auto equals = name.find('=');
+    names[name.substr(0, equals)] = name.substr(equals + 1);
+  }
+  return boxEvidenceStudy(sensor, logs, names);
+}
+
 void StudyApp::writeReport() {
   OutputFolder folder(output);
   for (const auto& table : out_report.tables)
     writeFile(folder.pathFor(table.name + ".csv"), csvOf(table));
+  for (const auto& [file, content] : out_report.files) writeFile(folder.pathFor(file), content);
   std::string dir;
   for (const auto& plot : out_report.plots) {
     for (const auto& [file, content] : plot.data) writeFile(folder.pathFor(file), content);

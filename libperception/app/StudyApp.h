@@ -41,6 +41,8 @@ class StudyApp : public App {
   StudyReport labelsOfLogs();
   /// Exponents of the class update, on the logs of -i.
   StudyReport temperingOfLogs();
+  /// Evidence of a 3D detector's boxes, on the logs of -i.
+  StudyReport boxesOfLogs();
 
  private:
   RecordedLog record(const std::string& config);

@@ -55,6 +55,33 @@ bool usable(const ObjectDetection::SpaceBox& box) {
          box.width > 0 && box.height > 0;
 }
 
+/// The usual box's parts by their names in the INI.
+struct UsualPart {
+  const char* name;
+  double UsualBox::*value;
+};
+constexpr UsualPart kUsualParts[] = {
+    {"length", &UsualBox::length},
+    {"width", &UsualBox::width},
+    {"height", &UsualBox::height},
+    {"base", &UsualBox::base},
+    {"length_sigma", &UsualBox::length_sigma},
+    {"width_sigma", &UsualBox::width_sigma},
+    {"height_sigma", &UsualBox::height_sigma},
+    {"base_sigma", &UsualBox::base_sigma},
+};
+
+/// "PART.LABEL" with one of the parts and one of the labels.
+template <typename Parts, typename Name>
+bool isPartOfLabel(const std::string& key, const Parts& parts, Name name,
+                   const std::vector<std::string>& labels) {
+  return std::any_of(std::begin(parts), std::end(parts), [&](const auto& part) {
+    return std::any_of(labels.begin(), labels.end(), [&](const std::string& label) {
+      return key == std::string(name(part)) + "." + label;
+    });
+  });
+}
+
 /// A label's entry of a table or the value that holds for all.
 double entry(const PositionParams::Table& table, const std::string& label, double otherwise) {
   for (const auto& [name, value] : table) {
@@ -96,6 +123,20 @@ void PositionParams::visit(ParamVisitor& v) {
   table("score_offset.", label_offsets, "", "the same for one label");
   table("score_fade.", label_fades, "1/m", "the same for one label");
   table("score_balance.", label_balances, "", "the same for one label");
+  v.table("weight.", weights, {-1e3, 1e3}, "",
+          "... weight of FEATURE.LABEL in the same log-odds: length, width, height, base (squared "
+          "misfits), slope, neighbour");
+  for (const auto& row : weights)
+    v.require(isPartOfLabel(
+                  row.first, kBoxFeatureNames, [](auto n) { return n; }, labels),
+              "weight." + row.first + ": not FEATURE.LABEL");
+  v.table("usual.", usual, {-100, 100}, "m",
+          "PART.LABEL: what such boxes measure: length, length_sigma, width ... base_sigma");
+  for (const auto& row : usual)
+    v.require(isPartOfLabel(
+                  row.first, kUsualParts, [](const auto& p) { return p.name; }, labels) &&
+                  (row.first.find("_sigma") == std::string::npos || row.second > 0),
+              "usual." + row.first + ": not PART.LABEL, or a spread of 0");
   v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log evidence");
   v.words("clutter_like", clutter_like, "classes whose boxes score like clutter");
   v.real("foreign_share", foreign_share, {0, 1}, "",
@@ -128,9 +169,15 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
   for (std::size_t l = 0; l < params_.labels.size(); ++l) {
     const std::string& name = params_.labels[l];
     Label label;
-    label.slope = entry(params_.label_slopes, name, params_.score_slope);
-    label.offset = entry(params_.label_offsets, name, params_.score_offset);
-    label.fade = entry(params_.label_fades, name, params_.score_fade);
+    label.evidence.slope = entry(params_.label_slopes, name, params_.score_slope);
+    label.evidence.offset = entry(params_.label_offsets, name, params_.score_offset);
+    label.evidence.fade = entry(params_.label_fades, name, params_.score_fade);
+    for (std::size_t i = 0; i < kBoxFeatures; ++i)
+      label.evidence.weights[i] =
+          entry(params_.weights, std::string(kBoxFeatureNames[i]) + "." + name, 0);
+    for (const UsualPart& part : kUsualParts)
+      label.usual.*part.value =
+          entry(params_.usual, std::string(part.name) + "." + name, label.usual.*part.value);
     label.balance = entry(params_.label_balances, name, params_.score_balance);
     label.length_excess = entry(params_.length_excess, name, 0);
     label.width_excess = entry(params_.width_excess, name, 0);
@@ -153,7 +200,7 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
 
 double PositionFrontEnd::clutterProbability(const Candidate& c) const {
   const Label& label = labels_[static_cast<std::size_t>(c.label)];
-  return label.slope > 0 ? 1 / (1 + std::exp(label.logOdds(*c.object))) : 0;
+  return label.evidence.slope > 0 ? 1 / (1 + std::exp(c.log_odds)) : 0;
 }
 
 /// The faces of the boxes that surely stand there.
@@ -183,13 +230,12 @@ std::shared_ptr<const Horizon> PositionFrontEnd::horizon(
 
 double PositionFrontEnd::logScoreRatio(const Candidate& c) const {
   const Label& label = labels_[static_cast<std::size_t>(c.label)];
-  if (label.slope <= 0) return 0;
-  return std::clamp(label.logOdds(*c.object) - label.balance, -params_.score_limit,
-                    params_.score_limit);
+  if (label.evidence.slope <= 0) return 0;
+  return std::clamp(c.log_odds - label.balance, -params_.score_limit, params_.score_limit);
 }
 
 std::vector<std::vector<PositionFrontEnd::Candidate>> PositionFrontEnd::groups(
-    const ObjectDetections& detections, MeasurementScan& scan) const {
+    const ObjectDetections& detections, const Pose3& T_ego_sensor, MeasurementScan& scan) const {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < detections.objects.size(); ++i) {
     const ObjectDetection& object = detections.objects[i];
@@ -201,7 +247,12 @@ std::vector<std::vector<PositionFrontEnd::Candidate>> PositionFrontEnd::groups(
         model_->inView((scan.state.T_world_sensor * object.space_box->bottom_centre).head<2>(),
                        scan.state);
     if (good) {
-      candidates.push_back({&object, i, label->second});
+      const Label& known = labels_[static_cast<std::size_t>(label->second)];
+      const double range = object.space_box->bottom_centre.head<2>().norm();
+      candidates.push_back(
+          {&object, i, label->second,
+           known.evidence.logOdds(object.score, range,
+                                  boxFeatures(detections, i, known.usual, T_ego_sensor))});
     } else {
       ++scan.dropped;
     }
@@ -292,7 +343,7 @@ MeasurementScan PositionFrontEnd::extract(const SensorFrame& frame) const {
   scan.state = {frame.stamp, frame.T_world_sensor(), frame.ego};
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
   if (!detections) return scan;
-  const auto found = groups(*detections, scan);
+  const auto found = groups(*detections, frame.T_ego_sensor, scan);
   scan.horizon = horizon(found, scan.state);
   for (const auto& group : found) scan.measurements.push_back(measure(group, frame, scan.state));
   return scan;

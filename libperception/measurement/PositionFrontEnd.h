@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libperception/core/Config.h"
+#include "libperception/measurement/BoxFeatures.h"
 #include "libperception/measurement/FrontEnd.h"
 #include "libperception/measurement/PositionModel.h"
 #include "libperception/measurement/Sensing.h"
@@ -30,6 +31,10 @@ struct PositionParams {
   double score_offset = 0;
   double score_fade = 0;  ///< [1/m]
   Table label_slopes, label_offsets, label_fades;
+  /// What else a box shows (BoxFeatures): "FEATURE.LABEL", the weight in these log-odds ...
+  Table weights;
+  /// ... and "length.LABEL", "length_sigma.LABEL" ..., what such boxes usually measure [m].
+  Table usual;
   /// log of (objects / clutter) among all boxes of that count; it turns the odds into
   /// p(score | object) / p(score | clutter).
   double score_balance = 0;
@@ -70,23 +75,23 @@ class PositionFrontEnd final : public FrontEnd {
  private:
   /// What is known of one label.
   struct Label {
-    double slope = 0, offset = 0, fade = 0, balance = 0;
+    BoxEvidence evidence;
+    UsualBox usual;
+    double balance = 0;
     double length_excess = 0, width_excess = 0, height_excess = 0;
     /// By class: log p(label | class); share of the score's evidence that it takes.
     std::vector<double> log_label, score_share;
     double log_clutter = 0;
-
-    double logOdds(const ObjectDetection& o) const {
-      return slope * (o.score - offset) - fade * o.space_box->bottom_centre.head<2>().norm();
-    }
   };
   struct Candidate {
     const ObjectDetection* object;
     std::size_t index;
     int label;
+    double log_odds = 0;  ///< of an object, by score, range and features
   };
 
   std::vector<std::vector<Candidate>> groups(const ObjectDetections& detections,
+                                             const Pose3& T_ego_sensor,
                                              MeasurementScan& scan) const;
   Measurement measure(const std::vector<Candidate>& group, const SensorFrame& frame,
                       const SensorState& state) const;

@@ -29,7 +29,8 @@ struct StudyReport {
   std::string data;  ///< what it was measured on: begins with "simulated" where it was
   std::vector<StudyTable> tables;
   std::vector<StudyPlot> plots;
-  std::vector<std::string> remarks;  ///< sentences that belong to the figures
+  std::vector<std::pair<std::string, std::string>> files;  ///< further ones: name, content
+  std::vector<std::string> remarks;                        ///< sentences that belong to the figures
 };
 
 /// The report as one Markdown text, plots linked as NAME.png.
