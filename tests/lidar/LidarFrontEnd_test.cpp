@@ -175,6 +175,19 @@ TEST(LidarFrontEnd, AScanBeyondTheLimitIsThinnedAndCounted) {
   EXPECT_EQ(found.points.source.back() / 16 % (size / 10000 + 1), 0u);  // whole groups of 16
 }
 
+TEST(EgoPoints, FiftyMillionReturnsAreThinnedToTheLimitAndTheRestIsSaid) {
+  constexpr std::size_t kReturns = 50000000;
+  SensorFrame frame;
+  LidarCloud cloud;
+  cloud.x.assign(kReturns, 10), cloud.y.assign(kReturns, 5), cloud.z.assign(kReturns, 1);
+  frame.data = std::move(cloud);
+  const PointParams params;
+  const EgoPoints points = usablePoints(frame, params);
+  EXPECT_LE(points.size(), static_cast<std::size_t>(params.max_points) + 16);
+  EXPECT_GT(points.size(), static_cast<std::size_t>(params.max_points) / 2);
+  EXPECT_EQ(points.size() + points.capped, kReturns);
+}
+
 TEST(LidarFrontEnd, PhantomsJoinNothingAndHideNothing) {
   SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
   const MeasurementScan clear = frontEnd().extract(frame);
