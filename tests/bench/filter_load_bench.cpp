@@ -81,6 +81,7 @@ std::vector<Unit> vehicle(const PipelineSetup& setup) {
   std::vector<Unit> units;
   int radar = 0;
   for (const auto& s : setup.sensors) {
+    if (!s.active) continue;
     SensorFrame nothing;
     if (s.params.modality == Modality::kLidar) {
       nothing.data = LidarCloud{};
@@ -238,7 +239,7 @@ void draw(const std::vector<Load>& loads, const std::string& file) {
       "set logscale xy\nset xrange [0.8:1300]\nset yrange [0.05:30]\nset grid\n"
       "set xlabel 'particles'\nset ylabel 'CPU time a message [ms]'\nset key top left\n"
       "set xtics (1, 8, 64, 256, 1000)\nset arrow from 0.8,5 to 1300,5 nohead lc rgb '{}' dt 3\n"
-      "set label 'limit 5 ms' at 1200,5.5 right tc rgb '#555555'\n",
+      "set label 'limit 5 ms' at 0.9,5.7 left tc rgb '#555555'\n",
       gnuplotString(name + ".png"), plot_colour::kGrey);
   for (const char* street : {"open", "crowded"}) {
     gp += fmt::format("set title '{}'\nplot ", std::string(street) == "open"
