@@ -16,6 +16,8 @@ void FilterParams::visit(ParamVisitor& v) {
          "tempers innovations in the class update");
   v.real("height_exponent", height_exponent, {0, 1}, "",
          "tempers what the estimated height says of the class; 0: nothing");
+  v.real("side_exponent", side_exponent, {0, 1}, "",
+         "tempers what complete sides (length, width) say of the class; 0: nothing");
   v.real("speed_slack", speed_slack, {0, 10}, "",
          "share of max_speed by which faster objects are still plausible; 0: no limit");
   v.real("start_speed_sigma", start_speed_sigma, {0.1, 50}, "m/s", "speed of newborn objects");

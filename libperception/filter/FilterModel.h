@@ -32,6 +32,9 @@ struct FilterParams {
       0.5;  ///< tempers the innovations' evidence in the class update only (SPEC 5.6)
   double height_exponent =
       0.5;  ///< tempers what the estimated height says of the class; 0: nothing
+  /// The same of the length and width of complete sides. Off: a half-hidden car's complete side may
+  /// be half a side; 0.5 for boxes of detectors whose labels tell little.
+  double side_exponent = 0;
   double speed_slack =
       0.2;  ///< share of a class's max_speed by which faster objects are plausible; 0: no limit
   double start_speed_sigma =

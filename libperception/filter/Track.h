@@ -59,6 +59,9 @@ struct Track {
   ClassId sure = -1;  ///< the class that is decided: its filter alone is kept up to date; -1: all
   std::vector<double> log_class;  ///< log class probabilities, given existence; sum of exp is 1
   ScalarEstimate base_z, height;  ///< [m] lowest point, world; lowest to highest point
+  /// [m] along and across the heading, of complete sides, whatever the class: evidence of it. What
+  /// each class makes of the size is its filter's `extent`.
+  ScalarEstimate length, width;
   /// Where an object whose class has no heading in its state (people) looks: [rad] world, once a
   /// detector told.
   std::optional<ScalarEstimate> facing;

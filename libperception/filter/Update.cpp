@@ -10,6 +10,7 @@
 #include "libperception/core/Chi2.h"
 #include "libperception/core/LogMath.h"
 #include "libperception/filter/MotionModels.h"
+#include "libperception/filter/SizeEvidence.h"
 #include "libperception/measurement/ExtentUpdate.h"
 
 namespace perception {
@@ -304,27 +305,18 @@ double logSpeed(const ObjectClass& c, const ClassFilter& f, const FilterModel& m
   return excess <= 0 ? 0 : -0.5 * excess * excess / (slack * slack + variance);
 }
 
-/// Evidence of an estimated height for a class: its mean and spread over objects. Returns lie
-/// within the object, so the estimate has a bias of its own.
-double logHeight(const ObjectClass& c, const ScalarEstimate& height) {
-  constexpr double kBias = 0.2;  // [m] between highest return and top
-  const double variance = c.height_sigma * c.height_sigma + kBias * kBias + height.variance;
-  const double d = height.mean - c.height;
-  return -0.5 * (d * d / variance + std::log(variance));
-}
-
-/// Base and height, and what the height's change says of the class: the evidence of the estimate
-/// before is taken back, so that in the end a height counts once.
-void updateHeights(const Measurement& m, const FilterModel& model, Track& track) {
-  if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
-  if (!m.height) return;
-  const ScalarEstimate before = track.height;
-  scalarUpdate(*m.height, track.height);
+/// The length axis [rad] that the likeliest class with a heading gives the object.
+std::optional<double> axisOf(const FilterModel& model, const Track& track) {
+  std::optional<double> axis;
+  double best = kMinusInfinity;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
-    track.log_class[static_cast<std::size_t>(j)] +=
-        model.params.height_exponent *
-        (logHeight(model.classes[j], track.height) - logHeight(model.classes[j], before));
+    const auto i = static_cast<std::size_t>(j);
+    const ClassFilter& f = track.bank[track.filterOf(i)];
+    if (!track.live(j) || !f.oriented || track.log_class[i] <= best) continue;
+    best = track.log_class[i];
+    axis = f.x[3];
   }
+  return axis;
 }
 
 }  // namespace
@@ -371,7 +363,8 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
     track.log_class[i] +=
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
-  updateHeights(m, model, track);
+  if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
+  updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
   decideClass(model, pair.nis[static_cast<std::size_t>(best)] > surprisingNis(axes_seen), track);
   return track;
@@ -404,7 +397,6 @@ Track newTrack(const NewLikelihood& news, std::size_t measurement, const Measure
   track.hits[modalityIndex(scan.modality)] = 1;
   track.existence = std::min(news.existence, model.params.existence_max);
   track.log_class = news.log_class;
-  double height = 0, height_variance = 0;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ObjectClass& c = model.classes[j];
     const auto birth = scan.model->birth(m, j, scan.state);
@@ -417,13 +409,12 @@ Track newTrack(const NewLikelihood& news, std::size_t measurement, const Measure
     }
     if (birth && m.heading && c.motion == Motion::kWheeled)
       useHeading(*m.heading, model, track.bank.back());
-    height += c.prior * c.height;
-    height_variance += c.prior * c.height_sigma * c.height_sigma;
   }
   if (m.heading) updateFacing(*m.heading, model, track);
   track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
-  track.height = {height, height_variance + 0.25};
-  updateHeights(m, model, track);
+  if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
+  startSizes(model, track);
+  updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
   return track;
 }

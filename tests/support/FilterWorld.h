@@ -39,6 +39,7 @@ inline FilterModel exactModel(ClassTable classes) {
   model.params.class_epsilon = 0;
   model.params.speed_slack = 0;
   model.params.height_exponent = 0;
+  model.params.side_exponent = 0;
   model.params.merge_area = 0;
   model.params.class_forgetting = 1e18;
   model.params.kinematic_exponent = 1;
