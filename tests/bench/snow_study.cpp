@@ -73,9 +73,10 @@ int run() {
   fmt::print("WADS 36, {} scans with their poses; sums over scans\n\n", scans.size());
   fmt::print(
       "| back end | intensity | cells of snow alone within 15 m, without | with | ratio | car and "
-      "person cells | kept | kept of those without snow | clusters of snow a scan, without | with "
+      "person cells | kept | on even scans | kept of those without snow | clusters of snow a scan, "
+      "without | with "
       "| all clusters | with |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   const char* names[] = {"octomap", "mrpt2d", "mrpt3d", "rolling", "rolling2d"};
   for (const auto back_end : {GridParams::BackEnd::kRolling, GridParams::BackEnd::kOctomap,
                               GridParams::BackEnd::kRolling2d})
@@ -87,12 +88,13 @@ int run() {
       const auto sum = test::compareInSnow(scans, weather, grid);
       const auto count = static_cast<double>(sum.scans);
       fmt::print(
-          "| {} | {} | {:.0f} | {:.0f} | {:.1f} | {:.0f} | {:.2f} % | {:.2f} % | {:.2f} | {:.2f} | "
+          "| {} | {} | {:.0f} | {:.0f} | {:.1f} | {:.0f} | {:.2f} % | {:.2f} % | {:.2f} % | {:.2f} "
+          "| {:.2f} | "
           "{:.1f} | {:.1f} |\n",
           names[static_cast<std::size_t>(back_end)], intensity ? "used" : "hidden", sum.plain_cells,
-          sum.trusted_cells, sum.fewer(), sum.user_cells, 100 * sum.kept(), 100 * sum.cleanKept(),
-          sum.plain_clusters / count, sum.trusted_clusters / count, sum.plain_all / count,
-          sum.trusted_all / count);
+          sum.trusted_cells, sum.fewer(), sum.user_cells, 100 * sum.kept(), 100 * sum.evenKept(),
+          100 * sum.cleanKept(), sum.plain_clusters / count, sum.trusted_clusters / count,
+          sum.plain_all / count, sum.trusted_all / count);
       std::fflush(stdout);
     }
   return 0;

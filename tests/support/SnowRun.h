@@ -141,12 +141,14 @@ struct SnowComparison {
   std::size_t scans = 0;
   double plain_cells = 0, trusted_cells = 0;        ///< occupied by snow alone, summed over scans
   double user_cells = 0, user_cells_kept = 0;       ///< of cars and persons
+  double even_cells = 0, even_cells_kept = 0;       ///< of these: in scans of even number
   double clean_cells = 0, clean_cells_kept = 0;     ///< of these: no snow has ever been in them
   double plain_clusters = 0, trusted_clusters = 0;  ///< of snow
   double plain_all = 0, trusted_all = 0;            ///< all clusters
 
   double fewer() const { return plain_cells / std::max(1.0, trusted_cells); }
   double cleanKept() const { return clean_cells_kept / std::max(1.0, clean_cells); }
+  double evenKept() const { return even_cells_kept / std::max(1.0, even_cells); }
   double kept() const { return user_cells_kept / std::max(1.0, user_cells); }
 };
 
@@ -165,6 +167,7 @@ inline SnowComparison compareInSnow(const std::vector<LabelledScan>& scans,
       if (!plain.grid().isOccupied(place)) continue;
       const bool kept = trusted.grid().isOccupied(place);
       sum.user_cells += 1, sum.user_cells_kept += kept;
+      if (scan.number % 2 == 0) sum.even_cells += 1, sum.even_cells_kept += kept;
       if (plain.snowedIn(place)) continue;  // snow has helped to mark it
       sum.clean_cells += 1, sum.clean_cells_kept += kept;
     }
