@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "libperception/core/Random.h"
 #include "libperception/core/RoughBearing.h"
@@ -45,6 +46,31 @@ std::optional<Vector3> planeThrough(const Vector3& p, const Vector3& q, const Ve
   const double a = (u.z() * v.y() - v.z() * u.y()) / area,
                b = (u.x() * v.z() - v.x() * u.z()) / area;
   return Vector3(a, b, p.z() - a * p.x() - b * p.y());
+}
+
+/// Number i of height z as one number that is ordered by height, then by i.
+std::uint64_t byHeight(float z, std::uint32_t i) {
+  const float no_negative_zero = z + 0.0f;
+  std::uint32_t bits;
+  std::memcpy(&bits, &no_negative_zero, sizeof bits);
+  bits ^= (bits >> 31) != 0 ? 0xFFFFFFFFu : 0x80000000u;
+  return std::uint64_t{bits} << 32 | i;
+}
+
+/// The number that `place` others are below; changes their order.
+std::uint64_t nthOf(std::uint64_t* numbers, std::size_t count, std::size_t place) {
+  if (place >= 3) {
+    std::nth_element(numbers, numbers + place, numbers + count);
+    return numbers[place];
+  }
+  std::uint64_t lowest[3] = {~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}};
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint64_t second = std::max(lowest[0], numbers[k]);
+    const std::uint64_t third = std::max(lowest[1], second);
+    lowest[0] = std::min(lowest[0], numbers[k]), lowest[1] = std::min(lowest[1], second);
+    lowest[2] = std::min(lowest[2], third);
+  }
+  return lowest[place];
 }
 
 /// Polar cells about the vehicle, and which returns count.
@@ -94,33 +120,21 @@ GroundEstimator::Candidates GroundEstimator::candidates(const EgoPoints& points)
   for (const std::uint32_t cell : cell_of) ++start[cell + 1];  // in no cell: in the last
   start.pop_back();
   for (std::size_t k = 1; k <= cells; ++k) start[k] += start[k - 1];
-  struct Return {
-    float z;
-    std::uint32_t i;
-    bool operator<(const Return& other) const {
-      return z < other.z || (z == other.z && i < other.i);
-    }
-  };
-  std::vector<Return> sorted(start.back());
+  std::vector<std::uint64_t> sorted(start.back());
   std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (cell_of[i] != cells)
-      sorted[next[cell_of[i]]++] = {points.z[i], static_cast<std::uint32_t>(i)};
+      sorted[next[cell_of[i]]++] = byHeight(points.z[i], static_cast<std::uint32_t>(i));
 
   Candidates result;
   for (std::size_t k = 0; k < cells; ++k) {
     const std::size_t count = start[k + 1] - start[k];
     if (count < static_cast<std::size_t>(params_.cell_points)) continue;
-    const auto first = sorted.begin() + start[k], last = sorted.begin() + start[k + 1];
-    const auto place = static_cast<std::ptrdiff_t>(params_.quantile * static_cast<double>(count));
-    const auto nth = first + place;
-    if (place < 3) {  // few: cheaper than nth_element
-      for (auto low = first; low <= nth; ++low) std::iter_swap(low, std::min_element(low, last));
-    } else {
-      std::nth_element(first, nth, last);
-    }
-    result.x.push_back(points.x[nth->i]), result.y.push_back(points.y[nth->i]);
-    result.z.push_back(nth->z);
+    std::uint64_t* first = sorted.data() + start[k];
+    const auto place = static_cast<std::size_t>(params_.quantile * static_cast<double>(count));
+    const auto i = static_cast<std::uint32_t>(nthOf(first, count, place));
+    result.x.push_back(points.x[i]), result.y.push_back(points.y[i]);
+    result.z.push_back(points.z[i]);
   }
   return result;
 }

@@ -92,7 +92,7 @@ void PersonResponse::place(const std::vector<float>& x, const std::vector<float>
   cell_of_return_.resize(x.size());
   findCells(x.data(), y.data(), x.size(), x0_, y0_, per_metre, static_cast<std::int32_t>(columns_),
             cell_of_return_.data());
-  weights_.assign(columns_ * rows_, 0);
+  weights_ = std::vector<float>(columns_ * rows_);  // zeros, faster than assign()
   for (std::size_t i = 0; i < x.size(); ++i) {
     float& sum = weights_[cell_of_return_[i]];
     const float more = weight.empty() ? 1.0f : weight[i];
@@ -146,7 +146,7 @@ PERCEPTION_WIDER void addKernel(const KernelRows& kernel, float weight, float* c
 /// Every cell with returns adds its weight times the kernel to the cells around it.
 void PersonResponse::scatter(const PersonParams& params) {
   const KernelRows kernel(columns_, params);
-  response_.assign(columns_ * rows_, 0);
+  response_ = std::vector<float>(columns_ * rows_);
   for (const std::uint32_t k : occupied_) addKernel(kernel, weights_[k], response_.data() + k);
 }
 

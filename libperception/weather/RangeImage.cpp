@@ -114,7 +114,8 @@ double RangeImage::findRow() {
 void RangeImage::fill(const LidarCloud& cloud) {
   directions(cloud);
   if (rows_ == 0) layOut(row_ > 0 ? row_ : findRow());
-  image_.assign((rows_ + 2 * kRowReach) * static_cast<std::size_t>(stride_), 0.0F);
+  image_.resize((rows_ + 2 * kRowReach) * static_cast<std::size_t>(stride_));
+  std::fill(image_.begin(), image_.end(), 0.0F);
   findPixelsOf(*this);
   for (std::size_t i = 0; i < ranges_.size(); ++i) image_[pixels_[i]] = ranges_[i];
   image_[0] = 0;
