@@ -9,18 +9,18 @@ import sys
 CLASSES = ('Car', 'Pedestrian', 'Cyclist')
 STAGES = ('positions', 'boxes', 'filter', 'scene')  # of timing.json: what a frame costs, without file handling
 COLUMNS = ('class', 'sAMOTA', 'AMOTA', 'MOTA', 'MOTP', 'IDS', 'FRAG', 'FP', 'FN', 'HOTA', 'DetA', 'AssA', 'score from')
-MIN_IOU = 0.25
+MIN_IOU = {'3d': 0.25, '2d': 0.5}
 
 
-def score_best(tools, labels, res, sequences, cls):
+def score_best(tools, labels, res, sequences, cls, mode):
     """The customary figures: tracks above the mean score that gives the best MOTA; sAMOTA over all scores."""
     sys.path.insert(0, tools)
     import mot_eval
-    r = mot_eval.evaluate(labels, res, sequences, cls, '3d', MIN_IOU, '3d')
+    r = mot_eval.evaluate(labels, res, sequences, cls, mode, MIN_IOU[mode], mode)
     return row(cls, r, r['best'], '%.2f' % r['best']['threshold'])
 
 
-def score_all(tools, labels, res, sequences, cls, threshold):
+def score_all(tools, labels, res, sequences, cls, mode, threshold):
     """All lines of the folder count: nothing is chosen by looking at the truth."""
     sys.path.insert(0, tools)
     import mot_eval as me
@@ -31,8 +31,8 @@ def score_all(tools, labels, res, sequences, cls, threshold):
         truth = me.load(os.path.join(labels, name), types, n)
         areas = me.load(os.path.join(labels, name), ['dontcare'], n)
         tracks = me.load(os.path.join(res, name), [cls.lower()], n)
-        prepared.append(me.ClearSequence(truth, tracks, areas, cls.lower(), '3d', MIN_IOU))
-    r = me.evaluate(labels, res, sequences, cls, '3d', MIN_IOU, '3d', hota_at=-1e9)
+        prepared.append(me.ClearSequence(truth, tracks, areas, cls.lower(), mode, MIN_IOU[mode]))
+    r = me.evaluate(labels, res, sequences, cls, mode, MIN_IOU[mode], mode, hota_at=-1e9)
     return row(cls, r, me.clear(prepared, -1e9), '%g' % threshold, integral=False)
 
 
@@ -76,6 +76,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ('tools', 'data', 'out', 'config', 'options'):
         parser.add_argument('--' + name, required=name in ('tools', 'data', 'out'), default='')
+    parser.add_argument('--mode', choices=MIN_IOU, default='3d')
     parser.add_argument('--threshold', type=float, default=0.0)
     parser.add_argument('sequences', nargs='+', type=int)
     a = parser.parse_args()
@@ -83,14 +84,14 @@ def main():
     kept = os.path.join(a.out, 'res_from_%g' % a.threshold)
     keep_above(res, kept, a.threshold)
     with concurrent.futures.ProcessPoolExecutor() as pool:
-        best = [pool.submit(score_best, a.tools, labels, res, a.sequences, c) for c in CLASSES]
-        fixed = [pool.submit(score_all, a.tools, labels, kept, a.sequences, c, a.threshold) for c in CLASSES]
+        best = [pool.submit(score_best, a.tools, labels, res, a.sequences, c, a.mode) for c in CLASSES]
+        fixed = [pool.submit(score_all, a.tools, labels, kept, a.sequences, c, a.mode, a.threshold) for c in CLASSES]
         best, fixed = [f.result() for f in best], [f.result() for f in fixed]
     frames, milliseconds = cost(a.out, a.sequences)
 
-    text = '# Boxes of detectors, tracked on KITTI\n\nSequences %s, %d frames; %s%s; 3D overlap of %g.\n\n' % (
+    text = '# Boxes of detectors, tracked on KITTI\n\nSequences %s, %d frames; %s%s; %s overlap of %g.\n\n' % (
         ' '.join('%04d' % s for s in a.sequences), frames, os.path.basename(a.config),
-        ' ' + a.options if a.options else '', MIN_IOU)
+        ' ' + a.options if a.options else '', a.mode.upper(), MIN_IOU[a.mode])
     text += markdown('At the score of the best MOTA (per class, by looking at the truth)', best) + '\n'
     text += markdown('All that is put out with a score of %g or more' % a.threshold, fixed) + '\n'
     text += 'CPU a frame, one thread: %.2f ms (%s).\n' % (

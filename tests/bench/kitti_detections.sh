@@ -3,17 +3,19 @@
 # with ini/kitti-detections.ini and scores the result by CLEAR MOT, sAMOTA and HOTA (3D overlap of .25): at the threshold of
 # the best MOTA, as is the custom, and of all that is put out at one score, as a vehicle would use it. Leaves OUT/report.md,
 # OUT/res (KITTI's format) and OUT/run. Half a minute for `dev` on four cores.
-#   tests/bench/kitti_detections.sh [-t SCORE] [-c INI] [-o OUT] [dev | train | SEQUENCE ...] [perception-track options]
+#   tests/bench/kitti_detections.sh [-t SCORE] [-m 2d] [-c INI] [-o OUT] [dev | train | SEQUENCE ...] [perception-track options]
+#   -m   2d: image boxes at an overlap of .5, for cameras alone (--sensors C --set run.output_sensor=rrc) [3d]
 #   -t   the one score, log-odds that it exists and is a road user [0]
 # PERCEPTION_SHARED: folder with data/kitti_tracking and tools/mot_eval.py [../shared]; PERCEPTION_BIN: programs [build/bin].
 # Needs python3-numpy and python3-scipy. What decides is `dev`; the configuration was counted on `train`.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
 
-threshold=0 ini=ini/kitti-detections.ini out=out/kitti_detections
-while getopts t:c:o: option; do
+threshold=0 mode=3d ini=ini/kitti-detections.ini out=out/kitti_detections
+while getopts t:m:c:o: option; do
   case $option in
     t) threshold=$OPTARG ;;
+    m) mode=$OPTARG ;;
     c) ini=$OPTARG ;;
     o) out=$OPTARG ;;
     *) exit 64 ;;
@@ -61,4 +63,4 @@ printf '%s\n' "${sequences[@]}" | sort -r |
   xargs -P "$(nproc)" -I{} bash -c 'import "$0" && track "$0" "$@"' {} "$@"
 
 /usr/bin/python3 tests/bench/kitti_detections.py --tools "$shared/tools" --data "$data" --out "$out" \
-  --threshold "$threshold" --config "$ini" --options "$*" "${sequences[@]}"
+  --threshold "$threshold" --mode "$mode" --config "$ini" --options "$*" "${sequences[@]}"
