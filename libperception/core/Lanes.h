@@ -10,7 +10,10 @@ using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 constexpr int kLanes = 8;
 
-// Always part of their caller, so that they are compiled as wide as it is.
+// Always part of their caller, so that they are compiled as wide as it is, and nothing is handed
+// over.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
 #define PERCEPTION_LANES inline __attribute__((always_inline))
 
 PERCEPTION_LANES Float8 eight(float v) { return Float8{v, v, v, v, v, v, v, v}; }
@@ -42,5 +45,7 @@ PERCEPTION_LANES Float8 roundedDown(const Float8& v) {
   const Float8 whole = asFloats(truncated(v));
   return whole > v ? whole - 1 : whole;
 }
+
+#pragma GCC diagnostic pop
 
 }  // namespace perception
