@@ -13,8 +13,8 @@ namespace {
 /// line with weights 1 / (2 reach^2); sqrt 3 would give a Gaussian's fourth moment, too, but folds
 /// of the outline that lie farther out (the other diagonal, the mirrored heading of a range rate)
 /// are then not seen, and the filter locks on the wrong side of them: of 200 simulated busses NEES
-/// is 2.4 per degree of freedom with 1.73, 1.25 with 2.5 (tests/filter/Consistency_test).
-constexpr double kReach = 2.5;
+/// is 2.4 per degree of freedom with 1.73, 1.3 with 2.3 (tests/filter/Consistency_test).
+constexpr double kReach = 2.3;
 constexpr double kWeight = 1 / (2 * kReach * kReach);
 constexpr double kPlainReach = 0.05;  // [m] corners that move no more than this: the tangent does
 
@@ -40,7 +40,8 @@ AxisVector difference(const AxisVector& h, const AxisVector& reference,
 void lineariseAlongAspect(const ObjectClass& c, const ClassFilter& filter,
                           const Kinematics& kinematics, const MeasurementModel& model,
                           const SensorState& sensor, AxisPrediction& prediction) {
-  if (!filter.oriented || !prediction.defined || !model.seesAspect()) return;
+  const AspectLine line = model.aspectLine();
+  if (!filter.oriented || !prediction.defined || line == AspectLine::kNone) return;
   const Vector2 d = filter.x.head<2>() - sensor.T_world_sensor.translation().head<2>();
   if (d.squaredNorm() < 1e-6) return;
   const auto gradient = aspectGradient(d);
@@ -69,7 +70,7 @@ void lineariseAlongAspect(const ObjectClass& c, const ClassFilter& filter,
   const AxisMatrix unexplained = kWeight * (up * up.transpose() + down * down.transpose()) -
                                  shift * shift.transpose() - variance * slope * slope.transpose();
   prediction.h += shift;
-  prediction.H_q += (slope - tangent) * gradient;
+  if (line == AspectLine::kChord) prediction.H_q += (slope - tangent) * gradient;
   if (prediction.R_model.size() == 0) {
     prediction.R_model = unexplained;
   } else {

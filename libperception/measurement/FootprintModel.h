@@ -22,7 +22,7 @@ class FootprintModel : public MeasurementModel {
 
   const std::vector<AxisKind>& axes() const override;
   AxisMask extentAxes() const override { return 1 << kLeft | 1 << kRight; }
-  bool seesAspect() const override { return true; }
+  AspectLine aspectLine() const override { return AspectLine::kChord; }
   void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                const SensorState& sensor, AxisPrediction* out) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,

@@ -15,6 +15,14 @@ enum class AxisKind {
   kAngle  ///< [rad], wrapped to (-pi, pi]
 };
 
+/// How a prediction is made linear along the aspect of an object, the heading as seen from the
+/// sensor (filter/Linearisation).
+enum class AspectLine {
+  kNone,    ///< h does not depend on it, or is linear enough
+  kChord,   ///< slope and spread from wide sigma points
+  kTangent  ///< the tangent's slope, the spread from wide sigma points
+};
+
 /// What one object would look like: h and its derivatives. Not `defined`: the model cannot say
 /// (object at the sensor).
 struct AxisPrediction {
@@ -61,8 +69,8 @@ class MeasurementModel {
   /// classes: batches hold whole banks.
   virtual void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                        const SensorState& sensor, AxisPrediction* out) const = 0;
-  /// Whether h of an object with a heading depends on the side that it shows the sensor.
-  virtual bool seesAspect() const { return false; }
+  /// Whether, and how, h of an object with a heading follows the side that it shows the sensor.
+  virtual AspectLine aspectLine() const { return AspectLine::kNone; }
   /// P(detected | class, state), in [0, 1]: 0 outside the field of view; `visibility` in [0, 1] is
   /// the share not hidden.
   virtual double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,

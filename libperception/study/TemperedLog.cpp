@@ -21,7 +21,7 @@ class TemperedModel final : public MeasurementModel {
                const SensorState& sensor, AxisPrediction* out) const override {
     model_->predict(objects, extents, count, sensor, out);
   }
-  bool seesAspect() const override { return model_->seesAspect(); }
+  AspectLine aspectLine() const override { return model_->aspectLine(); }
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                               const SensorState& sensor, double visibility) const override {
     return model_->detectionProbability(c, object, extent, sensor, visibility);

@@ -187,7 +187,7 @@ TEST_P(Consistency, OfEveryClass) {
                static_cast<std::uint32_t>(GetParam())});
       runTrack(classes, id, sensor, rng, sums);
     }
-    EXPECT_LE(sums.lost, kRuns / 100) << sensor.name << ", " << classes[id].name;
+    EXPECT_LE(sums.lost, 0.015 * kRuns) << sensor.name << ", " << classes[id].name;
     ASSERT_GT(sums.nees_dof, kRuns) << classes[id].name;
     // 99.9 % intervals of the chi-square sums, by the normal limit (hundreds of degrees);
     // linearised sensors get 3 % for their curvature, and radars, whose wide sigma points are on
