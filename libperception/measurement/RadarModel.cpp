@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/core/LogMath.h"
+#include "libperception/measurement/OutlineInView.h"
 
 namespace perception {
 namespace {
@@ -20,6 +21,12 @@ bool hasRate(const Measurement& m) { return m.seen >> RadarModel::kRate & 1; }
 
 Vector2 lineOfSight(const Measurement& m, const SensorState& s) {
   return direction(yawOf(s.T_world_sensor) + m.z[RadarModel::kBearing]);
+}
+
+/// Half of an edge's slope to the bearing of the outline's middle.
+void addHalf(const AxisPrediction& outline, FootprintModel::Axis edge, AxisPrediction& out) {
+  out.H_q.row(RadarModel::kBearing) += 0.5 * outline.H_q.row(edge);
+  out.H_extent.row(RadarModel::kBearing) += 0.5 * outline.H_extent.row(edge);
 }
 
 /// Density [s/m] of speeds that spread evenly over [-max, max], seen with variance `noise`.
@@ -55,6 +62,8 @@ void RadarModelParams::visit(ParamVisitor& v) {
           "of a newborn's course about the line of sight (DUC: 30); 90: nothing is known");
   v.real("hidden_detection", hidden_detection, {0, 1}, "",
          "share of P_D left for objects that a lidar finds hidden");
+  v.angle("view_edge_deg", view_edge, {0.1, 20},
+          "deviation of the border of the view, over which detections fade");
   v.real("depth_share", depth_share, {0, 1}, "",
          "of the object's depth along the line of sight, added to the range's deviation");
 }
@@ -76,17 +85,18 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
     AxisPrediction& p = out[i];
     if (!p.defined) continue;
     const AxisPrediction outline = p;
-    const double left = outline.h[FootprintModel::kLeft], right = outline.h[FootprintModel::kRight];
-    const double width = wrapAngle(left - right);
-    const double bearing = wrapAngle(right + 0.5 * width);
-    p.h[kRange] = outline.h[FootprintModel::kRange];
+    const OutlineInView part =
+        outlineInView(outline, objects[i], extents[i], sensor, 0.5 * sensing().params().fov);
+    const double width = wrapAngle(part.left - part.right);
+    const double bearing = wrapAngle(part.right + 0.5 * width);
+    p.h[kRange] = part.range;
     p.h[kBearing] = bearing;
-    p.H_q.row(kRange) = outline.H_q.row(FootprintModel::kRange);
-    p.H_extent.row(kRange) = outline.H_extent.row(FootprintModel::kRange);
-    p.H_q.row(kBearing) =
-        0.5 * (outline.H_q.row(FootprintModel::kLeft) + outline.H_q.row(FootprintModel::kRight));
-    p.H_extent.row(kBearing) = 0.5 * (outline.H_extent.row(FootprintModel::kLeft) +
-                                      outline.H_extent.row(FootprintModel::kRight));
+    p.H_q.row(kRange) = part.range_q;
+    p.H_extent.row(kRange) = part.range_extent;
+    p.H_q.row(kBearing).setZero();
+    p.H_extent.row(kBearing).setZero();
+    if (!part.left_cut) addHalf(outline, FootprintModel::kLeft, p);
+    if (!part.right_cut) addHalf(outline, FootprintModel::kRight, p);
     // rho_dot = u . (V - v_s), where u turns with the bearing: SPEC 4.3's d/dp is the special case
     // of a point.
     const Vector2 u = direction(forward + bearing);
@@ -99,7 +109,7 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
     // Anywhere on the outline's width with equal probability, and somewhat behind the nearest
     // point.
     const Vector2 centre = objects[i].q.head<2>() - sensorPosition(sensor);
-    const double depth = 2 * std::max(0.0, centre.norm() - p.h[kRange]);
+    const double depth = 2 * std::max(0.0, centre.norm() - outline.h[FootprintModel::kRange]);
     p.R_model.setZero(kAxes, kAxes);
     p.R_model(kRange, kRange) = std::pow(params_.depth_share * depth, 2);
     const double variance = width * width / 12;
@@ -112,8 +122,33 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
 double RadarModel::detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                                         const SensorState& sensor, double visibility) const {
   const double hidden = 1 - std::clamp(visibility, 0.0, 1.0);
-  return footprint_.detectionProbability(c, object, extent, sensor,
-                                         1 - hidden * (1 - params_.hidden_detection));
+  // What reaches into the view answers: the edge next to the axis counts, not the centre.
+  const Vector2 d = object.q.head<2>() - sensorPosition(sensor);
+  const double middle = wrapAngle(std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor));
+  AxisPrediction outline;
+  footprint_.predict(&object, &extent, 1, sensor, &outline);
+  double bearing = middle;
+  if (outline.defined) {
+    const double left = middle + wrapAngle(outline.h[FootprintModel::kLeft] - middle);
+    const double right = middle + wrapAngle(outline.h[FootprintModel::kRight] - middle);
+    bearing = std::clamp(0.0, right, left);
+  }
+  const double range = std::max(0.0, d.norm() - 0.25 * (extent.length + extent.width));
+  return edgeShare(bearing) *
+         sensing().detection(c, range, 0, 1 - hidden * (1 - params_.hidden_detection));
+}
+
+double RadarModel::edgeShare(double bearing) const {
+  constexpr double kFaded = 3;  // deviations
+  const double fov = sensing().params().fov;
+  if (fov >= kTwoPi) return 1;
+  const double inside = (0.5 * fov - std::abs(wrapAngle(bearing))) / params_.view_edge;
+  return inside < -kFaded ? 0 : 0.5 * std::erfc(-inside / std::sqrt(2.0));
+}
+
+bool RadarModel::mayDetect(const Vector2& position, double reach, const SensorState& sensor) const {
+  const SensingParams& p = sensing().params();
+  return touchesSector(position, reach, p.fov + 6 * params_.view_edge, p.range_max, sensor);
 }
 
 double RadarModel::logClutterDensity(const Measurement& m, const SensorState&) const {

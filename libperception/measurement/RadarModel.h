@@ -15,6 +15,8 @@ struct RadarModelParams {
                                              ///< sight: DUC 30 deg; 90 deg tells nothing
   double hidden_detection = 0.5;  ///< share of P_D that is left for objects that a lidar finds
                                   ///< hidden: radar sees past and below vehicles, through snow
+  double view_edge = radians(2);  ///< [rad] deviation of the border of the view: detections fade
+                                  ///< there, a beam has no sharp end
   double depth_share = 0.15;      ///< of the object's depth along the line of sight, added to the
                                   ///< range's deviation: returns come from wheels and inside, too
 
@@ -45,9 +47,7 @@ class RadarModel final : public MeasurementModel {
                const SensorState& sensor, AxisPrediction* out) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                               const SensorState& sensor, double visibility) const override;
-  bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override {
-    return footprint_.mayDetect(position, reach, sensor);
-  }
+  bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override;
   double detectionExponent() const override { return sensing().params().detection_exponent; }
   double logLabelLikelihood(int, ClassId) const override { return 0; }  ///< radars give no labels
   double logLabelClutter(int) const override { return 0; }
@@ -59,6 +59,9 @@ class RadarModel final : public MeasurementModel {
   const Sensing& sensing() const { return footprint_.sensing(); }
 
  private:
+  /// Share of detections left at a bearing [rad] of the outline.
+  double edgeShare(double bearing) const;
+
   ClassTable classes_;
   FootprintModel footprint_;
   RadarModelParams params_;

@@ -10,6 +10,8 @@ constexpr double kSteepest = radians(60);  // no return of a road user comes fro
 constexpr double kDoubleSigmas =
     3;  // a ghost is told by twice the values within so many deviations
 
+constexpr double kBorderSigmas = 3;  // beyond the view by so many of a bearing's own deviations
+
 SensingParams radarDefaults() {
   SensingParams p;
   p.kind = "radar";
@@ -176,8 +178,10 @@ MeasurementScan RadarFrontEnd::extract(const SensorFrame& frame) const {
   const double own2 = params_.own_speed_sigma * params_.own_speed_sigma;
   for (const RadarTarget& t :
        radarTargets(*data, scan.state.T_world_sensor.inverse() * sensor, params_, scan.dropped)) {
-    // Beyond the view of [sensor.LABEL] neither clutter nor objects have a density.
-    if (t.range > view.range_max || std::abs(t.bearing) > 0.5 * view.fov) {
+    // The bearing's own error carries returns past the border of the view: without those the rest
+    // would lie too far inside on average.
+    if (t.range > view.range_max ||
+        std::abs(t.bearing) > 0.5 * view.fov + kBorderSigmas * params_.bearing_sigma) {
       ++scan.dropped;
       continue;
     }
