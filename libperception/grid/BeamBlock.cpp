@@ -64,44 +64,10 @@ PERCEPTION_WIDER void prepareBeams(BeamBlock& b, const WindowPlace& o, float cel
   }
 }
 
-PERCEPTION_WIDER std::size_t addCells(const BeamStretch& beam, int shift, std::int32_t* column,
-                                      std::int32_t* run) {
-  const Float8 from = eight(beam.from), to = eight(beam.to);
-  const Float8 aside = eight(beam.aside), height = eight(beam.height);
-  const float across = beam.across, up = beam.up;
-  const float up_per_across = up / (across == 0 ? kLevel : across);
-  const std::int32_t side = beam.side, last = beam.count - 1;
-  std::size_t count = 0;
-  for (std::int32_t group = 0; group <= last; group += kLanes, count += 2 * kLanes) {
-    // Lanes beyond the end repeat the last cell.
-    const Int8 number = smaller(group + firstEight(), eight(last));
-    const Int8 along = beam.column + number * beam.step;
-    const Float8 cell = asFloats(number) + beam.first;
-    const Float8 in = larger(cell, from), leave = smaller(cell + 1, to);
-    const Float8 y0 = aside + across * in, y1 = aside + across * leave;
-    const Float8 z0 = height + up * in, z1 = height + up * leave;
-    const Int8 row0 = truncated(y0), row1 = truncated(y1);
-    // Where the beam changes its row it has a second column.
-    const Float8 border = asFloats(larger(row0, row1));
-    const Float8 crossing = height + up_per_across * (border - aside);
-    const Float8 between = row0 == row1 ? z1 : smaller(larger(crossing, z0), z1);
-    const Int8 change = truncated(between);
-    store8(along + row0 * side, column + count);
-    store8(along + row1 * side, column + count + kLanes);
-    store8((truncated(z0) << shift) + change, run + count);
-    store8((change << shift) + truncated(z1), run + count + kLanes);
-  }
-  return count;
-}
-
 }  // namespace
 
 void BeamBlock::prepare(const WindowPlace& origin, int cells, int layers) {
   prepareBeams(*this, origin, static_cast<float>(cells), static_cast<float>(layers));
-}
-
-void CrossedCells::add(const BeamStretch& beam, bool wide) {
-  count += addCells(beam, wide ? 6 : 5, &column[count], &run[count]);
 }
 
 }  // namespace perception

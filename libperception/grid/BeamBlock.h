@@ -37,31 +37,4 @@ struct BeamBlock {
   void prepare(const WindowPlace& origin, int cells, int layers);
 };
 
-/// A stretch of a beam, along its axis in the direction in which it rises: t [cells] grows.
-struct BeamStretch {
-  static constexpr int kMostLayers = 64;
-  float from, to;           ///< [cells] t
-  float aside, height;      ///< [cells] at t = 0, the sensor
-  float across, up;         ///< [-] per t; up >= 0
-  float first;              ///< [cells] t where the first cell along begins
-  std::int32_t count;       ///< of cells along
-  std::int32_t column;      ///< of the first cell and row 0
-  std::int32_t step, side;  ///< from column to column along and aside
-};
-
-/// Columns that beams cross, and which layers of each: low * 32 + high, or low * 64 + high where
-/// there are more layers. Collected first and marked later, so that neither waits for the other.
-struct CrossedCells {
-  static constexpr std::size_t kMost = 4096;
-  std::array<std::int32_t, kMost> column, run;
-  std::size_t count = 0;
-
-  /// As many as add() may need at most.
-  bool hasRoomFor(std::int32_t cells) const {
-    return count + 2 * static_cast<std::size_t>(cells + 8) <= kMost;
-  }
-  /// The cells of a stretch; `wide`: more than 32 layers.
-  void add(const BeamStretch& beam, bool wide);
-};
-
 }  // namespace perception

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/grid/ColumnAges.h"
 #include "libperception/grid/LogOddsColumn.h"
 #include "libperception/grid/WindowMarks.h"
 
@@ -32,7 +33,7 @@ class GridRolling final : public SafetyGrid {
         layers_(layersOf(params)),
         marks_(params, static_cast<int>(layers_)),
         values_(static_cast<std::size_t>(cells_ * cells_ * layers_), 0),
-        times_(static_cast<std::size_t>(cells_ * cells_), 0),
+        ages_(static_cast<std::size_t>(cells_ * cells_), params.tau),
         column_(params.hit, params.miss, params.low, params.high) {}
 
   GridStats insert(const GridScan& scan) override {
@@ -96,8 +97,7 @@ class GridRolling final : public SafetyGrid {
   }
 
   std::size_t memoryBytes() const override {
-    return values_.capacity() * sizeof(std::int16_t) + times_.capacity() * sizeof(std::int32_t) +
-           marks_.memoryBytes();
+    return values_.capacity() * sizeof(std::int16_t) + ages_.memoryBytes() + marks_.memoryBytes();
   }
 
  private:
@@ -142,22 +142,22 @@ class GridRolling final : public SafetyGrid {
     const double below = params().grade * params().size * std::sqrt(0.5) - params().z_min;
     const CellIndex first = {indexOf(centre.x()) - cells_ / 2, indexOf(centre.y()) - cells_ / 2,
                              indexOf(centre.z() - below + 1e-9)};
-    if (!started_) start_ = scan.stamp;
-    const auto ms = static_cast<std::int64_t>(std::llround((scan.stamp - start_) * 1000));
-    stats.late = ms < now_;
-    now_ = std::max(now_, ms);
+    if (!started_) now_ = scan.stamp;
+    stats.late = scan.stamp < now_;
+    const double passed = std::max(0.0, scan.stamp - now_);
+    now_ = now_ + passed;
+    ages_.advance(passed);
     if (!started_ || std::abs(first.x - first_.x) >= cells_ ||
-        std::abs(first.y - first_.y) >= cells_ || std::abs(first.z - first_.z) >= layers_ ||
-        now_ > kLongestMs) {
-      if (now_ > kLongestMs) start_ = scan.stamp, now_ = 0;  // after 24 days the clock starts anew
+        std::abs(first.y - first_.y) >= cells_ || std::abs(first.z - first_.z) >= layers_) {
       std::fill(values_.begin(), values_.end(), std::int16_t{0});
-      std::fill(times_.begin(), times_.end(), static_cast<std::int32_t>(now_));
+      ages_.touchAll();
     } else {
       enterColumns(first);
       enterLayers(first);
     }
     first_ = first;
     started_ = true;
+    ages_.refresh([this](std::size_t slot) { update(slot, 0, 0); });
   }
 
   void enterColumns(const CellIndex& first) {
@@ -188,23 +188,16 @@ class GridRolling final : public SafetyGrid {
     }
   }
 
-  double decayOver(std::int64_t ms) const {
-    return std::exp(-static_cast<double>(ms) / 1000 / params().tau);
-  }
-
   double valueOf(std::int16_t value, std::size_t slot) const {
-    const double v = value / kUnits * decayOver(now_ - times_[slot]);
+    const double v = value / kUnits * ages_.keep(slot);
     return std::abs(v) < kForgotten ? 0 : v;
   }
 
-  // To the time of the scan, and its evidence on top. Most columns were last seen in the scan
-  // before: one exponential serves them all.
+  // To the time of the scan, and its evidence on top.
   void update(std::size_t slot, Mask hit, Mask crossed) {
-    const std::int64_t age = now_ - times_[slot];
-    if (age != last_age_) last_age_ = age, last_loss_ = LogOddsColumn::lossOf(decayOver(age));
-    times_[slot] = static_cast<std::int32_t>(now_);
     column_.update(values_.data() + slot * static_cast<std::size_t>(layers_),
-                   static_cast<int>(layers_), last_loss_, hit, crossed, judged_);
+                   static_cast<int>(layers_), ages_.loss(slot), hit, crossed, judged_);
+    ages_.touch(slot);
   }
 
   // Bit k of a window's mask is layer first_.z + k of the world; in the array it stands modulo.
@@ -230,19 +223,14 @@ class GridRolling final : public SafetyGrid {
                                                       LogOddsColumn::units(params().high)));
   }
 
-  static constexpr std::int64_t kLongestMs = 0x7fffffff;
-
   std::int64_t cells_, layers_;
   WindowMarks<Mask> marks_;
-  std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units as of the column's time
-  std::vector<std::int32_t> times_;   // [ms] since start_
+  std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units, as old as ages_ says
+  ColumnAges ages_;
   LogOddsColumn column_;
   bool judged_ = false;  // the scan's hits came with weights
   bool started_ = false;
-  Stamp start_;
-  std::int64_t now_ = 0;  // [ms] since start_
-  std::int64_t last_age_ = -1;
-  std::int16_t last_loss_ = 0;
+  Stamp now_;        // of the last scan
   CellIndex first_;  // lowest cell of the window
 };
 

@@ -53,10 +53,17 @@ class LogOddsColumn {
   using Short8 = std::int16_t __attribute__((vector_size(16)));
 
   static Short8 eight(std::int16_t v) { return Short8{v, v, v, v, v, v, v, v}; }
+  using Long2 = std::int64_t __attribute__((vector_size(16)));
+
   static Short8 load(const std::int16_t* values, int layers) {
-    Short8 v{};
-    std::memcpy(&v, values, layers >= 8 ? 16 : 8);
-    return v;
+    Short8 v;
+    if (layers >= 8) {
+      std::memcpy(&v, values, sizeof v);
+      return v;
+    }
+    std::int64_t four;  // by way of a number: half a vector written is slow to read
+    std::memcpy(&four, values, sizeof four);
+    return reinterpret_cast<Short8>(Long2{four, 0});
   }
   static void store(const Short8& v, std::int16_t* values, int layers) {
     std::memcpy(values, &v, layers >= 8 ? 16 : 8);

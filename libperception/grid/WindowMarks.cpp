@@ -17,14 +17,9 @@ WindowMarks<Mask>::WindowMarks(const GridParams& params, int layers)
       cells_(static_cast<int>(std::ceil(params.size / params.resolution))),
       layers_(std::min(layers, kMostLayers)),
       cover_(cells_, layers_),
-      runs_(static_cast<std::size_t>(kMostLayers) * kMostLayers, 0),
+      fans_(cells_),
       crossed_(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_), 0),
-      hit_(crossed_.size(), 0) {
-  for (int low = 0; low < kMostLayers; ++low)
-    for (int high = low; high < kMostLayers; ++high)
-      runs_[static_cast<std::size_t>(low * kMostLayers + high)] =
-          static_cast<Mask>((Mask{2} << high) - (Mask{1} << low));
-}
+      hit_(crossed_.size(), 0) {}
 
 template <class Mask>
 void WindowMarks<Mask>::collect(const GridScan& scan, const CellIndex& first, GridStats& stats) {
@@ -35,9 +30,10 @@ void WindowMarks<Mask>::collect(const GridScan& scan, const CellIndex& first, Gr
   frame_.place(&origin, 1, placed_);
   origin_ = placed_.at(0);
   cover_.begin(origin_.z);
+  fans_.begin(origin_);
   takeHits(scan, stats);
   if (rays_) forPoints(scan.clear, stats, [](std::size_t, std::int32_t, bool) { return true; });
-  markCrossed();
+  fans_.mark(crossed_.data());
   settleDoubts();
 }
 
@@ -104,39 +100,18 @@ void WindowMarks<Mask>::castBeams() {
 
 template <class Mask>
 void WindowMarks<Mask>::cross(std::size_t i, float from, float to) {
-  const bool along_x = beams_.face[i] < 2, rises = beams_.up[i] >= 0;
-  const bool grows = (beams_.face[i] % 2 == 0) == rises;  // the axis with t
-  const float on = along_x ? origin_.x : origin_.y;
-  BeamStretch beam;
-  beam.from = rises ? from : -to, beam.to = rises ? to : -from;
-  beam.aside = along_x ? origin_.y : origin_.x, beam.height = origin_.z;
-  beam.across = rises ? beams_.across[i] : -beams_.across[i], beam.up = std::abs(beams_.up[i]);
-  const auto first = static_cast<int>(grows ? on + beam.from : on - beam.from);
-  const auto last = static_cast<int>(grows ? on + beam.to : on - beam.to);
-  beam.first = grows ? static_cast<float>(first) - on : on - static_cast<float>(first + 1);
-  beam.count = 1 + (grows ? last - first : first - last);
-  const int step = along_x ? 1 : cells_;
-  beam.column = first * step, beam.step = grows ? step : -step, beam.side = along_x ? cells_ : 1;
+  const bool along_x = beams_.face[i] < 2, back = beams_.face[i] % 2 != 0;
+  const float on = along_x ? origin_.x : origin_.y, aside = along_x ? origin_.y : origin_.x;
+  const float across = beams_.across[i], up = beams_.up[i];
   // What lies between two places within the window lies within it, whatever the rounding.
-  const auto isInside = [&](int cell, float t) {
-    const float y = beam.aside + beam.across * t, z = beam.height + beam.up * t;
-    return cell >= 0 && cell < cells_ && y >= 0 && y < static_cast<float>(cells_) && z >= 0 &&
-           z < static_cast<float>(layers_);
+  const auto isInside = [&](float t) {
+    const float x = back ? on - t : on + t, y = aside + across * t, z = origin_.z + up * t;
+    return x >= 0 && x < static_cast<float>(cells_) && y >= 0 && y < static_cast<float>(cells_) &&
+           z >= 0 && z < static_cast<float>(layers_);
   };
-  if (!isInside(first, beam.from) || !isInside(last, beam.to)) return;
-  if (!cells_crossed_.hasRoomFor(beam.count)) markCrossed();
-  cells_crossed_.add(beam, kMostLayers > 32);
-}
-
-template <class Mask>
-void WindowMarks<Mask>::markCrossed() {
-  const std::int32_t *column = cells_crossed_.column.data(), *run = cells_crossed_.run.data();
-  Mask* crossed = crossed_.data();
-  const Mask* runs = runs_.data();
-  const std::size_t count = cells_crossed_.count;  // a multiple of eight
-  for (std::size_t i = 0; i < count; i += 8)
-    for (std::size_t k = i; k < i + 8; ++k) crossed[column[k]] |= runs[run[k]];
-  cells_crossed_.count = 0;
+  if (!isInside(from) || !isInside(to)) return;
+  if (fans_.isFull()) fans_.mark(crossed_.data());
+  fans_.add(beams_.face[i], {across, up, from, to});
 }
 
 // One entry a cell, without those that a trusted return has settled.
@@ -163,8 +138,8 @@ void WindowMarks<Mask>::settleDoubts() {
 template <class Mask>
 std::size_t WindowMarks<Mask>::memoryBytes() const {
   return (crossed_.capacity() + hit_.capacity()) * sizeof(Mask) +
-         doubts_.capacity() * sizeof(Doubt) + cover_.memoryBytes() + sizeof *this +
-         runs_.capacity() * sizeof(Mask);
+         doubts_.capacity() * sizeof(Doubt) + cover_.memoryBytes() + fans_.memoryBytes() +
+         sizeof *this;
 }
 
 template class WindowMarks<std::uint32_t>;

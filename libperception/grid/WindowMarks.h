@@ -5,6 +5,7 @@
 
 #include "libperception/grid/BeamBlock.h"
 #include "libperception/grid/BeamCover.h"
+#include "libperception/grid/BeamFans.h"
 #include "libperception/grid/SafetyGrid.h"
 #include "libperception/grid/ScanEvidence.h"
 #include "libperception/grid/WindowFrame.h"
@@ -46,7 +47,6 @@ class WindowMarks {
   void takeHits(const GridScan& scan, GridStats& stats);
   void castBeams();
   void cross(std::size_t beam, float from, float to);
-  void markCrossed();
   void settleDoubts();
 
   GridParams params_;
@@ -57,8 +57,7 @@ class WindowMarks {
   BeamCover cover_;
   PlacedBlock placed_;
   BeamBlock beams_;
-  CrossedCells cells_crossed_;
-  std::vector<Mask> runs_;  // of layers: [lowest][highest]
+  BeamFans<Mask> fans_;
   std::vector<Mask> crossed_, hit_;
   std::vector<Doubt> doubts_;
 };

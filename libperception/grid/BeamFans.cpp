@@ -1,0 +1,222 @@
+#include "libperception/grid/BeamFans.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/Lanes.h"
+#include "libperception/core/Wider.h"
+
+namespace perception {
+namespace {
+
+// [cells] a fan's width at the window's far end. With the cell that a beam may go aside within a
+// cell along this is less than two, so three rows hold it.
+constexpr float kWidest = 0.9F;
+constexpr int kRows = 3;
+constexpr float kLevel = 1e-20F;  // [-] instead of a slope of zero
+
+/// What the beams of a fan share. Its octant is mirrored so that they grow along and aside.
+struct Fan {
+  float along, aside, height;  ///< [cells] of the sensor
+  float slope;                 ///< [-] the least of its beams
+  std::int32_t first, last;    ///< groups of cells along
+  std::int32_t column;         ///< of cell and row 0
+  std::int32_t step, side;     ///< from column to column along and aside
+  std::int32_t rows;           ///< of the window
+};
+
+/// Where it gathers what its beams cross, by cell along.
+template <class Mask>
+struct FanCells {
+  float* begins;   ///< [cells] along, from the sensor, of each cell
+  float* borders;  ///< [cells] aside, from the sensor, of the far border of its first row
+  Mask* row[kRows];
+};
+
+using Mask8x32 = std::uint32_t __attribute__((vector_size(32)));
+using Mask8x64 = std::uint64_t __attribute__((vector_size(64)));
+using Long8 = std::int64_t __attribute__((vector_size(64)));
+
+// A bit at the layer of each height.
+PERCEPTION_LANES void setBit(const Float8& z, Mask8x32& bit) {
+  bit = Mask8x32{1, 1, 1, 1, 1, 1, 1, 1} << reinterpret_cast<Mask8x32>(truncated(z));
+}
+PERCEPTION_LANES void setBit(const Float8& z, Mask8x64& bit) {
+  bit = Mask8x64{1, 1, 1, 1, 1, 1, 1, 1} << __builtin_convertvector(truncated(z), Mask8x64);
+}
+PERCEPTION_LANES Mask8x32 where(const Int8& lanes, const Mask8x32& bits) {
+  return reinterpret_cast<Mask8x32>(lanes) & bits;
+}
+PERCEPTION_LANES Mask8x64 where(const Int8& lanes, const Mask8x64& bits) {
+  return reinterpret_cast<Mask8x64>(__builtin_convertvector(lanes, Long8)) & bits;
+}
+
+template <class Bits, class Mask>
+PERCEPTION_LANES void gather(Mask* masks, const Bits& bits) {
+  Bits all;
+  std::memcpy(&all, masks, sizeof all);
+  all |= bits;
+  std::memcpy(masks, &all, sizeof all);
+}
+
+// The layers between the heights where the beam enters and leaves each row of eight cells.
+template <bool kRises, class Bits, class Mask>
+PERCEPTION_LANES void crossCells(const BeamStretch& beam, const Fan& fan,
+                                 const FanCells<Mask>& cells) {
+  const Float8 from = eight(beam.from), to = eight(beam.to);
+  const Float8 height = eight(fan.height), up = eight(beam.up);
+  const Float8 per_across = eight(1 / (beam.across > kLevel ? beam.across : kLevel));
+  const auto first = static_cast<std::int32_t>(fan.along + beam.from) / kLanes * kLanes;
+  const auto last = static_cast<std::int32_t>(fan.along + beam.to);
+  for (std::int32_t i = first; i <= last; i += kLanes) {
+    const Float8 begin = load8(cells.begins + i), border = load8(cells.borders + i);
+    const Float8 in = smaller(larger(begin, from), to);
+    const Float8 leave = smaller(larger(begin + 1, from), to);
+    const Float8 t1 = smaller(larger(border * per_across, in), leave);
+    const Float8 t2 = smaller(larger((border + 1) * per_across, in), leave);
+    Bits b0, b1, b2, b3;
+    setBit(height + up * in, b0), setBit(height + up * t1, b1);
+    setBit(height + up * t2, b2), setBit(height + up * leave, b3);
+    gather(cells.row[0] + i, where(in < t1, kRises ? b1 + b1 - b0 : b0 + b0 - b1));
+    gather(cells.row[1] + i, where(t1 < t2, kRises ? b2 + b2 - b1 : b1 + b1 - b2));
+    gather(cells.row[2] + i, where(t2 < leave, kRises ? b3 + b3 - b2 : b2 + b2 - b3));
+  }
+}
+
+template <class Bits, class Mask>
+PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
+                               std::size_t count, const FanCells<Mask>& cells, Mask* crossed) {
+  for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
+    const Float8 begin = asFloats(i + firstEight()) - fan.along;
+    store8(begin, cells.begins + i);
+    const Float8 low = fan.aside + fan.slope * larger(begin, eight(0.0F));
+    store8(roundedDown(low) + 1 - fan.aside, cells.borders + i);
+    const Bits none{};
+    for (Mask* row : cells.row) store8(none, row + i);
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const BeamStretch& beam = beams[order[k]];
+    if (beam.up >= 0) {
+      crossCells<true, Bits>(beam, fan, cells);
+    } else {
+      crossCells<false, Bits>(beam, fan, cells);
+    }
+  }
+  for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
+    const Int8 along = fan.column + smaller(i + firstEight(), eight(fan.rows - 1)) * fan.step;
+    const Int8 row = truncated(load8(cells.borders + i) + (fan.aside - 0.5F));
+    for (std::int32_t r = 0; r < kRows; ++r) {
+      std::int32_t column[kLanes];
+      store8(along + smaller(row + r, eight(fan.rows - 1)) * fan.side, column);
+      for (int k = 0; k < kLanes; ++k) crossed[column[k]] |= cells.row[r][i + k];
+    }
+  }
+}
+
+PERCEPTION_WIDER void crossFanOf(const Fan& fan, const BeamStretch* beams,
+                                 const std::uint16_t* order, std::size_t count,
+                                 const FanCells<std::uint32_t>& cells, std::uint32_t* crossed) {
+  crossFan<Mask8x32>(fan, beams, order, count, cells, crossed);
+}
+PERCEPTION_WIDER void crossFanOf(const Fan& fan, const BeamStretch* beams,
+                                 const std::uint16_t* order, std::size_t count,
+                                 const FanCells<std::uint64_t>& cells, std::uint64_t* crossed) {
+  crossFan<Mask8x64>(fan, beams, order, count, cells, crossed);
+}
+
+}  // namespace
+
+template <class Mask>
+BeamFans<Mask>::BeamFans(int cells)
+    : cells_(cells), beams_(kMost), fans_(kMost), order_(kMost) {
+  const auto most_slopes = static_cast<std::size_t>(std::ceil(static_cast<float>(cells) / kWidest));
+  ends_.resize(kOctants * (most_slopes + 1) + 1);
+  const auto along = static_cast<std::size_t>((cells + kLanes - 1) / kLanes * kLanes);
+  begins_.resize(along), borders_.resize(along), gathered_.resize(kRows * along);
+}
+
+template <class Mask>
+void BeamFans<Mask>::begin(const WindowPlace& origin) {
+  origin_ = origin;
+  const auto cells = static_cast<float>(cells_);
+  const float reach = std::max(std::max(origin.x, cells - origin.x),
+                               std::max(origin.y, cells - origin.y));
+  per_slope_ = std::clamp(reach, 1.0F, cells) / kWidest;
+  slopes_ = static_cast<int>(per_slope_) + 1;
+}
+
+template <class Mask>
+void BeamFans<Mask>::add(int face, const BeamStretch& beam) {
+  const bool falls = beam.across < 0;
+  const float slope = std::abs(beam.across);
+  const int fan = std::min(static_cast<int>(slope * per_slope_), slopes_ - 1);
+  beams_[count_] = {slope, beam.up, beam.from, beam.to};
+  fans_[count_++] = static_cast<std::uint16_t>((2 * face + (falls ? 1 : 0)) * slopes_ + fan);
+}
+
+// By counting, the last first.
+template <class Mask>
+void BeamFans<Mask>::sort() {
+  const auto fans = static_cast<std::size_t>(kOctants * slopes_);
+  std::fill_n(ends_.begin(), fans + 1, std::uint16_t{0});
+  for (std::size_t i = 0; i < count_; ++i) ++ends_[fans_[i]];
+  std::uint16_t sum = 0;
+  for (std::size_t fan = 0; fan < fans; ++fan)
+    ends_[fan] = sum = static_cast<std::uint16_t>(sum + ends_[fan]);
+  for (std::size_t i = 0; i < count_; ++i) order_[--ends_[fans_[i]]] = static_cast<std::uint16_t>(i);
+  ends_[fans] = sum;  // ends_[k] is now where fan k begins
+}
+
+template <class Mask>
+void BeamFans<Mask>::mark(Mask* crossed) {
+  if (count_ == 0) return;
+  sort();
+  for (int octant = 0; octant < kOctants; ++octant)
+    for (int slope = 0; slope < slopes_; ++slope) {
+      const auto fan = static_cast<std::size_t>(octant * slopes_ + slope);
+      if (ends_[fan] < ends_[fan + 1])
+        markFan(octant, slope, ends_[fan], ends_[fan + 1], crossed);
+    }
+  count_ = 0;
+}
+
+template <class Mask>
+void BeamFans<Mask>::markFan(int octant, int slope, std::size_t begin, std::size_t end,
+                             Mask* crossed) {
+  const int face = octant / 2;
+  const bool along_x = face < 2, back = face % 2 != 0, falls = octant % 2 != 0;
+  const float on = along_x ? origin_.x : origin_.y, aside = along_x ? origin_.y : origin_.x;
+  const auto cells = static_cast<float>(cells_);
+  const int step = along_x ? 1 : cells_, side = along_x ? cells_ : 1;
+  Fan fan{};
+  fan.along = back ? cells - on : on, fan.aside = falls ? cells - aside : aside;
+  fan.height = origin_.z;
+  fan.slope = static_cast<float>(slope) / per_slope_;
+  fan.column = (back ? (cells_ - 1) * step : 0) + (falls ? (cells_ - 1) * side : 0);
+  fan.step = back ? -step : step, fan.side = falls ? -side : side;
+  fan.rows = cells_;
+  float from = cells, to = -cells;
+  for (std::size_t k = begin; k < end; ++k) {
+    from = std::min(from, beams_[order_[k]].from), to = std::max(to, beams_[order_[k]].to);
+  }
+  fan.first = static_cast<std::int32_t>(fan.along + from) / kLanes * kLanes;
+  fan.last = static_cast<std::int32_t>(fan.along + to);
+  const std::size_t length = begins_.size();
+  crossFanOf(fan, beams_.data(), order_.data() + begin, end - begin,
+             {begins_.data(),
+              borders_.data(),
+              {gathered_.data(), gathered_.data() + length, gathered_.data() + 2 * length}},
+             crossed);
+}
+
+template <class Mask>
+std::size_t BeamFans<Mask>::memoryBytes() const {
+  return beams_.capacity() * sizeof(BeamStretch) + gathered_.capacity() * sizeof(Mask) +
+         (begins_.capacity() + borders_.capacity()) * sizeof(float) +
+         (fans_.capacity() + order_.capacity() + ends_.capacity()) * sizeof(std::uint16_t);
+}
+
+template class BeamFans<std::uint32_t>;
+template class BeamFans<std::uint64_t>;
+
+}  // namespace perception

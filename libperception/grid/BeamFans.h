@@ -1,0 +1,58 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libperception/grid/BeamBlock.h"
+
+namespace perception {
+
+/// A stretch of a beam, on its face (BeamBlock).
+struct BeamStretch {
+  float across, up;  ///< [-] cells aside and upwards per cell along
+  float from, to;    ///< [cells] along, from the sensor
+};
+
+/// Stretches of beams on their way to the columns that they cross. Those of nearly the same bearing
+/// are a fan: at any distance they are in the same three columns at most, which are found once for
+/// all of them, and whose layers are gathered before they are marked.
+template <class Mask>
+class BeamFans {
+ public:
+  /// For a window of `cells` by `cells` columns.
+  explicit BeamFans(int cells);
+
+  /// Beams come from `origin` now; none may be waiting.
+  void begin(const WindowPlace& origin);
+  bool isFull() const { return count_ == kMost; }
+  /// A stretch within the window.
+  void add(int face, const BeamStretch& beam);
+  /// Marks the layers that the waiting stretches cross, columns numbered [y][x], and lets them go.
+  void mark(Mask* crossed);
+  std::size_t memoryBytes() const;
+
+ private:
+  static constexpr std::size_t kMost = 16384;  ///< stretches that wait
+  static constexpr int kOctants = 8;          ///< [face][falls aside]
+
+  void sort();
+  void markFan(int octant, int slope, std::size_t begin, std::size_t end, Mask* crossed);
+
+  int cells_;
+  float per_slope_ = 1;  ///< fans per unit of slope across
+  int slopes_ = 1;       ///< fans of an octant
+  WindowPlace origin_{};
+  std::size_t count_ = 0;
+  std::vector<BeamStretch> beams_;
+  std::vector<std::uint16_t> fans_;   ///< of each stretch
+  std::vector<std::uint16_t> order_;  ///< stretches by fan
+  std::vector<std::uint16_t> ends_;   ///< of each fan, in order_
+  std::vector<float> begins_, borders_;
+  std::vector<Mask> gathered_;  ///< [row of three][cell along]
+};
+
+extern template class BeamFans<std::uint32_t>;
+extern template class BeamFans<std::uint64_t>;
+
+}  // namespace perception
