@@ -30,7 +30,15 @@ PERCEPTION_LANES Float8 entry(const Float8& origin, const Float8& end, const Flo
   return (border - origin) / steep;
 }
 
-PERCEPTION_WIDER void prepareBeams(BeamBlock& b, const WindowPlace& o, float cells, float layers) {
+// Whether a beam is within [0, size) at `from` and `to`, whatever the rounding. So it is between.
+PERCEPTION_LANES Int8 within(const Float8& origin, const Float8& slope, const Float8& from,
+                             const Float8& to, float size) {
+  const Float8 begin = origin + slope * from, end = origin + slope * to;
+  return (begin >= 0) & (end >= 0) & (begin < size) & (end < size);
+}
+
+PERCEPTION_WIDER void prepareBeams(BeamBlock& b, const WindowPlace& o, float cells, float layers,
+                                   const FanBins fans) {
   const float inside_cells = cells - kInside, inside_layers = layers - kInside;
   const Float8 ox = eight(o.x), oy = eight(o.y), oz = eight(o.z);
   for (std::size_t i = 0; i < b.count; i += kLanes) {
@@ -53,21 +61,28 @@ PERCEPTION_WIDER void prepareBeams(BeamBlock& b, const WindowPlace& o, float cel
     const Float8 last = larger(entry(on, end_on, ahead * per_length),
                                larger(entry(aside, end_aside, across), entry(oz, z, up)));
     store8(across, &b.across[i]), store8(up, &b.up[i]);
-    store8(from * length, &b.from[i]);
-    store8(smaller(to * length, last - kInside), &b.to[i]);
+    const Float8 begin = from * length, end = smaller(to * length, last - kInside);
+    const Int8 inside = within(on, ahead * per_length, begin, end, cells) &
+                        within(aside, across, begin, end, cells) &
+                        within(oz + eight(0.0F), up, begin, end, layers);
+    store8(begin, &b.from[i]), store8(inside ? end : begin, &b.to[i]);
     // The last bin holds a slope of one, too.
     store8(truncated(smaller((across + 1) * kBinsAcross, eight(2 * kBinsAcross - 0.5F))),
            &b.bin_across[i]);
     store8(truncated(roundedDown(up * kBinsUp)), &b.bin_up[i]);
     const Int8 falls = ahead > 0 ? eight(0) : eight(1);
-    store8(along_x ? falls : falls + 2, &b.face[i]);
+    const Int8 face = along_x ? falls : falls + 2;
+    store8(face, &b.face[i]);
+    const Int8 slope =
+        smaller(truncated(magnitude(across) * fans.per_slope), fans.slopes - 1 + eight(0));
+    store8((face * 2 - (across < 0)) * fans.slopes + slope, &b.fan[i]);
   }
 }
 
 }  // namespace
 
-void BeamBlock::prepare(const WindowPlace& origin, int cells, int layers) {
-  prepareBeams(*this, origin, static_cast<float>(cells), static_cast<float>(layers));
+void BeamBlock::prepare(const WindowPlace& origin, int cells, int layers, const FanBins& fans) {
+  prepareBeams(*this, origin, static_cast<float>(cells), static_cast<float>(layers), fans);
 }
 
 }  // namespace perception

@@ -12,6 +12,13 @@ struct WindowPlace {
   float low, high;  ///< [m] above the slab's lower side, below its upper side
 };
 
+/// How beams of a window are divided into fans: by octant (its face, then whether it falls aside),
+/// then by slope.
+struct FanBins {
+  float per_slope = 1;      ///< fans per unit of slope across
+  std::int32_t slopes = 1;  ///< fans of an octant
+};
+
 /// Some beams on their way through a window of columns, as vectors. A beam goes along the axis on
 /// which it is longest (its face); everything else is linear in the distance along that axis.
 struct BeamBlock {
@@ -27,6 +34,7 @@ struct BeamBlock {
   Lane<float> from, to;                   ///< [cells] along, from the sensor; none where to <= from
   Lane<std::int32_t> face;                ///< 0: x grows, 1: x falls, 2: y grows, 3: y falls
   Lane<std::int32_t> bin_across, bin_up;  ///< of BeamCover's finest octave
+  Lane<std::int32_t> fan;                 ///< of BeamFans
 
   void add(const WindowPlace& end) {
     x[count] = end.x, y[count] = end.y, z[count] = end.z;
@@ -34,7 +42,7 @@ struct BeamBlock {
   }
   /// Cuts the beams to the window of `cells` by `cells` columns of `layers` and to the slab, and
   /// to where they enter the cells of their ends: these are not crossed.
-  void prepare(const WindowPlace& origin, int cells, int layers);
+  void prepare(const WindowPlace& origin, int cells, int layers, const FanBins& fans);
 };
 
 }  // namespace perception

@@ -13,16 +13,17 @@ namespace {
 // cell along this is less than two, so three rows hold it.
 constexpr float kWidest = 0.9F;
 constexpr int kRows = 3;
-constexpr float kLevel = 1e-20F;  // [-] instead of a slope of zero
+constexpr float kFarthest = 7000;  // [cells] to the window's far end: fans are numbered in 16 bits
+constexpr float kLevel = 1e-20F;   // [-] instead of a slope of zero
 
 /// What the beams of a fan share. Its octant is mirrored so that they grow along and aside.
 struct Fan {
   float along, aside, height;  ///< [cells] of the sensor
   float slope;                 ///< [-] the least of its beams
   std::int32_t first, last;    ///< groups of cells along
+  std::int32_t cells;          ///< of the window
   std::int32_t column;         ///< of cell and row 0
   std::int32_t step, side;     ///< from column to column along and aside
-  std::int32_t rows;           ///< of the window
 };
 
 /// Where it gathers what its beams cross, by cell along.
@@ -103,12 +104,15 @@ PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const s
     }
   }
   for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
-    const Int8 along = fan.column + smaller(i + firstEight(), eight(fan.rows - 1)) * fan.step;
     const Int8 row = truncated(load8(cells.borders + i) + (fan.aside - 0.5F));
-    for (std::int32_t r = 0; r < kRows; ++r) {
-      std::int32_t column[kLanes];
-      store8(along + smaller(row + r, eight(fan.rows - 1)) * fan.side, column);
-      for (int k = 0; k < kLanes; ++k) crossed[column[k]] |= cells.row[r][i + k];
+    std::int32_t column[kLanes];
+    store8(fan.column + (i + firstEight()) * fan.step + row * fan.side, column);
+    const std::int32_t most = fan.cells - i < kLanes ? fan.cells - i : kLanes;
+    for (std::int32_t k = 0; k < most; ++k) {
+      Mask* const first = crossed + column[k];
+      first[0] |= cells.row[0][i + k];
+      first[fan.side] |= cells.row[1][i + k];
+      first[2 * fan.side] |= cells.row[2][i + k];
     }
   }
 }
@@ -127,10 +131,7 @@ PERCEPTION_WIDER void crossFanOf(const Fan& fan, const BeamStretch* beams,
 }  // namespace
 
 template <class Mask>
-BeamFans<Mask>::BeamFans(int cells)
-    : cells_(cells), beams_(kMost), fans_(kMost), order_(kMost) {
-  const auto most_slopes = static_cast<std::size_t>(std::ceil(static_cast<float>(cells) / kWidest));
-  ends_.resize(kOctants * (most_slopes + 1) + 1);
+BeamFans<Mask>::BeamFans(int cells) : cells_(cells), beams_(kMost), fans_(kMost), order_(kMost) {
   const auto along = static_cast<std::size_t>((cells + kLanes - 1) / kLanes * kLanes);
   begins_.resize(along), borders_.resize(along), gathered_.resize(kRows * along);
 }
@@ -139,51 +140,37 @@ template <class Mask>
 void BeamFans<Mask>::begin(const WindowPlace& origin) {
   origin_ = origin;
   const auto cells = static_cast<float>(cells_);
-  const float reach = std::max(std::max(origin.x, cells - origin.x),
-                               std::max(origin.y, cells - origin.y));
-  per_slope_ = std::clamp(reach, 1.0F, cells) / kWidest;
-  slopes_ = static_cast<int>(per_slope_) + 1;
+  const float reach = std::max({origin.x, cells - origin.x, origin.y, cells - origin.y});
+  bins_.per_slope = std::clamp(reach, 1.0F, kFarthest) / kWidest;
+  bins_.slopes = static_cast<std::int32_t>(bins_.per_slope) + 1;
+  ends_.resize(static_cast<std::size_t>(kOctants * bins_.slopes + 1));
 }
 
-template <class Mask>
-void BeamFans<Mask>::add(int face, const BeamStretch& beam) {
-  const bool falls = beam.across < 0;
-  const float slope = std::abs(beam.across);
-  const int fan = std::min(static_cast<int>(slope * per_slope_), slopes_ - 1);
-  beams_[count_] = {slope, beam.up, beam.from, beam.to};
-  fans_[count_++] = static_cast<std::uint16_t>((2 * face + (falls ? 1 : 0)) * slopes_ + fan);
-}
-
-// By counting, the last first.
+// By counting; afterwards ends_ tells where each fan begins, and the next one ends it.
 template <class Mask>
 void BeamFans<Mask>::sort() {
-  const auto fans = static_cast<std::size_t>(kOctants * slopes_);
-  std::fill_n(ends_.begin(), fans + 1, std::uint16_t{0});
+  std::fill(ends_.begin(), ends_.end(), std::uint16_t{0});
   for (std::size_t i = 0; i < count_; ++i) ++ends_[fans_[i]];
   std::uint16_t sum = 0;
-  for (std::size_t fan = 0; fan < fans; ++fan)
-    ends_[fan] = sum = static_cast<std::uint16_t>(sum + ends_[fan]);
-  for (std::size_t i = 0; i < count_; ++i) order_[--ends_[fans_[i]]] = static_cast<std::uint16_t>(i);
-  ends_[fans] = sum;  // ends_[k] is now where fan k begins
+  for (std::uint16_t& end : ends_) end = sum = static_cast<std::uint16_t>(sum + end);
+  for (std::size_t i = 0; i < count_; ++i)
+    order_[--ends_[fans_[i]]] = static_cast<std::uint16_t>(i);
 }
 
 template <class Mask>
 void BeamFans<Mask>::mark(Mask* crossed) {
   if (count_ == 0) return;
   sort();
-  for (int octant = 0; octant < kOctants; ++octant)
-    for (int slope = 0; slope < slopes_; ++slope) {
-      const auto fan = static_cast<std::size_t>(octant * slopes_ + slope);
-      if (ends_[fan] < ends_[fan + 1])
-        markFan(octant, slope, ends_[fan], ends_[fan + 1], crossed);
-    }
+  for (int fan = 0; fan < kOctants * bins_.slopes; ++fan) markFan(fan, crossed);
   count_ = 0;
 }
 
 template <class Mask>
-void BeamFans<Mask>::markFan(int octant, int slope, std::size_t begin, std::size_t end,
-                             Mask* crossed) {
-  const int face = octant / 2;
+void BeamFans<Mask>::markFan(int number, Mask* crossed) {
+  const std::size_t begin = ends_[static_cast<std::size_t>(number)];
+  const std::size_t end = ends_[static_cast<std::size_t>(number) + 1];
+  if (begin == end) return;
+  const int octant = number / bins_.slopes, face = octant / 2;
   const bool along_x = face < 2, back = face % 2 != 0, falls = octant % 2 != 0;
   const float on = along_x ? origin_.x : origin_.y, aside = along_x ? origin_.y : origin_.x;
   const auto cells = static_cast<float>(cells_);
@@ -191,12 +178,12 @@ void BeamFans<Mask>::markFan(int octant, int slope, std::size_t begin, std::size
   Fan fan{};
   fan.along = back ? cells - on : on, fan.aside = falls ? cells - aside : aside;
   fan.height = origin_.z;
-  fan.slope = static_cast<float>(slope) / per_slope_;
+  fan.slope = static_cast<float>(number % bins_.slopes) / bins_.per_slope;
+  fan.cells = cells_;
   fan.column = (back ? (cells_ - 1) * step : 0) + (falls ? (cells_ - 1) * side : 0);
   fan.step = back ? -step : step, fan.side = falls ? -side : side;
-  fan.rows = cells_;
-  float from = cells, to = -cells;
-  for (std::size_t k = begin; k < end; ++k) {
+  float from = beams_[order_[begin]].from, to = beams_[order_[begin]].to;
+  for (std::size_t k = begin + 1; k < end; ++k) {
     from = std::min(from, beams_[order_[k]].from), to = std::max(to, beams_[order_[k]].to);
   }
   fan.first = static_cast<std::int32_t>(fan.along + from) / kLanes * kLanes;

@@ -8,9 +8,9 @@
 
 namespace perception {
 
-/// A stretch of a beam, on its face (BeamBlock).
+/// A stretch of a beam within the window, on its face (BeamBlock).
 struct BeamStretch {
-  float across, up;  ///< [-] cells aside and upwards per cell along
+  float across, up;  ///< [-] cells aside (its amount) and upwards per cell along
   float from, to;    ///< [cells] along, from the sensor
 };
 
@@ -25,23 +25,27 @@ class BeamFans {
 
   /// Beams come from `origin` now; none may be waiting.
   void begin(const WindowPlace& origin);
+  const FanBins& bins() const { return bins_; }
   bool isFull() const { return count_ == kMost; }
-  /// A stretch within the window.
-  void add(int face, const BeamStretch& beam);
-  /// Marks the layers that the waiting stretches cross, columns numbered [y][x], and lets them go.
+  void add(std::int32_t fan, const BeamStretch& beam) {
+    beams_[count_] = beam;
+    fans_[count_++] = static_cast<std::uint16_t>(fan);
+  }
+  /// Marks the layers that the waiting stretches cross and lets them go. Columns are numbered
+  /// [y][x]; margin() of them before and behind may be touched, but are left as they are.
   void mark(Mask* crossed);
+  std::size_t margin() const { return 2 * static_cast<std::size_t>(cells_); }
   std::size_t memoryBytes() const;
 
  private:
   static constexpr std::size_t kMost = 16384;  ///< stretches that wait
-  static constexpr int kOctants = 8;          ///< [face][falls aside]
+  static constexpr int kOctants = 8;
 
   void sort();
-  void markFan(int octant, int slope, std::size_t begin, std::size_t end, Mask* crossed);
+  void markFan(int fan, Mask* crossed);
 
   int cells_;
-  float per_slope_ = 1;  ///< fans per unit of slope across
-  int slopes_ = 1;       ///< fans of an octant
+  FanBins bins_;
   WindowPlace origin_{};
   std::size_t count_ = 0;
   std::vector<BeamStretch> beams_;

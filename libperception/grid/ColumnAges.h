@@ -49,10 +49,10 @@ class ColumnAges {
  private:
   static constexpr std::size_t kRound = 256;  // values of a byte
 
-  double tau_, now_ = 0;               // [s]
-  std::uint8_t scan_ = 0;              // the last one
-  std::array<double, kRound> times_;   // [s] of the scans of a round
-  std::array<double, kRound> keep_;    // since then
+  double tau_, now_ = 0;              // [s]
+  std::uint8_t scan_ = 0;             // the last one
+  std::array<double, kRound> times_;  // [s] of the scans of a round
+  std::array<double, kRound> keep_;   // since then
   std::array<std::int16_t, kRound> losses_;
   std::vector<std::uint8_t> scans_;  // in which each column was last touched
   std::size_t next_ = 0;             // to be refreshed

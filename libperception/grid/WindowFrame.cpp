@@ -1,5 +1,6 @@
 #include "libperception/grid/WindowFrame.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -64,7 +65,59 @@ PERCEPTION_WIDER void placeAll(const float* __restrict xs, const float* __restri
   }
 }
 
+struct BlockCounts {
+  std::int32_t hits = 0, not_finite = 0;
+};
+
+PERCEPTION_WIDER BlockCounts settleAll(const std::int32_t* __restrict cell,
+                                       const std::int32_t* __restrict in_slab,
+                                       const float* __restrict weights, std::size_t count,
+                                       std::int32_t* __restrict settled) {
+  BlockCounts sum;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t hit = (cell[i] >= 0) & in_slab[i];
+    const std::int32_t full = hit & !(weights[i] < PlacedBlock::kFullWeight);
+    settled[i] = full != 0 ? cell[i] : PlacedBlock::kOutside;
+    sum.hits += hit;
+    sum.not_finite += cell[i] == PlacedBlock::kNotFinite;
+  }
+  return sum;
+}
+
+constexpr PlacedBlock::Lane<float> allFull() {
+  PlacedBlock::Lane<float> weights{};
+  for (float& w : weights) w = 1;
+  return weights;
+}
+
 }  // namespace
+
+void PlacedBlock::chooseHits(std::size_t count, const float* weights, std::int32_t before) {
+  static constexpr Lane<float> kAllFull = allFull();
+  const BlockCounts sum = settleAll(cell.data(), in_slab.data(), weights ? weights : &kAllFull[0],
+                                    count, settled.data());
+  hits = static_cast<std::size_t>(sum.hits);
+  not_finite = static_cast<std::size_t>(sum.not_finite);
+  leaveOut(count, before);
+}
+
+void PlacedBlock::chooseClear(std::size_t count, std::int32_t before) {
+  hits = 0;
+  not_finite = static_cast<std::size_t>(
+      std::count(cell.begin(), cell.begin() + static_cast<std::ptrdiff_t>(count), kNotFinite));
+  std::copy_n(cell.begin(), count, settled.begin());
+  leaveOut(count, before);
+}
+
+// Without branches: whether a cell is new is anybody's guess.
+void PlacedBlock::leaveOut(std::size_t count, std::int32_t before) {
+  chosen_count = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    chosen[chosen_count] = static_cast<std::uint16_t>(k);
+    chosen_count += (cell[k] < 0) | (cell[k] != before) ? 1 : 0;
+    before = settled[k];
+  }
+}
 
 WindowFrame::WindowFrame(const GridParams& params, const Pose3& T_world_ground,
                          const CellIndex& first, int cells, int layers)

@@ -15,6 +15,7 @@ struct PlacedBlock {
   static constexpr std::size_t kSize = 256;
   static constexpr std::int32_t kLayers = 64;  ///< cell = column * kLayers + layer
   static constexpr std::int32_t kOutside = -1, kNotFinite = -2;
+  static constexpr float kFullWeight = 0.99F;  ///< of a hit: counts as 1
   template <class Number>
   using Lane = std::array<Number, kSize>;
 
@@ -22,7 +23,23 @@ struct PlacedBlock {
   Lane<std::int32_t> cell;         ///< or kOutside, kNotFinite
   Lane<std::int32_t> in_slab;      ///< 0 or 1
 
+  // What chooseHits() and chooseClear() make of them.
+  std::array<std::uint16_t, kSize> chosen;
+  std::size_t chosen_count = 0;
+  std::size_t hits = 0, not_finite = 0;  ///< among them
+  Lane<std::int32_t> settled;            ///< the cell if it needs no further point, or kOutside
+
+  /// Leaves out hits that say nothing new, those in the cell of the one before when that was within
+  /// the slab and of full weight. `weights`: null where all are full. `before`: settled cell of the
+  /// point before the first one.
+  void chooseHits(std::size_t count, const float* weights, std::int32_t before);
+  /// Leaves out points in the cell of the one before.
+  void chooseClear(std::size_t count, std::int32_t before);
+
   WindowPlace at(std::size_t k) const { return {x[k], y[k], z[k], low[k], high[k]}; }
+
+ private:
+  void leaveOut(std::size_t count, std::int32_t before);
 };
 
 /// What decides on a point, in cells from the window's corner and metres above the ground.

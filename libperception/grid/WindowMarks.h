@@ -32,21 +32,26 @@ class WindowMarks {
   /// `first`: lowest cell of the window. The marks last until reset().
   void collect(const GridScan& scan, const CellIndex& first, GridStats& stats);
   /// Forgets a column; all of those that were marked must be forgotten before the next scan.
-  void reset(std::size_t column) { crossed_[column] = hit_[column] = 0; }
+  void reset(std::size_t column) { crossed_[fans_.margin() + column] = hit_[column] = 0; }
 
   /// Without the cells in doubt. Columns are numbered [y][x].
-  Mask crossed(std::size_t column) const { return crossed_[column]; }
+  Mask crossed(std::size_t column) const { return crossed_[fans_.margin() + column]; }
   Mask hit(std::size_t column) const { return hit_[column]; }   ///< with full weight
   const std::vector<Doubt>& doubts() const { return doubts_; }  ///< by column and layer
   std::size_t memoryBytes() const;
 
  private:
-  /// Hands the index and cell of each point to `take`, and casts its beam if that says so.
-  template <class Take>
-  void forPoints(const std::vector<Vector3>& points, GridStats& stats, const Take& take);
+  std::size_t columns() const {
+    return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_);
+  }
   void takeHits(const GridScan& scan, GridStats& stats);
+  bool takeHit(std::int32_t cell, float weight);
+  void takeClear(const GridScan& scan, GridStats& stats);
+  void addBeam(std::size_t k) {
+    if (rays_) beams_.add(placed_.at(k));
+  }
+  void finishBlock(GridStats& stats);
   void castBeams();
-  void cross(std::size_t beam, float from, float to);
   void settleDoubts();
 
   GridParams params_;
@@ -58,7 +63,8 @@ class WindowMarks {
   PlacedBlock placed_;
   BeamBlock beams_;
   BeamFans<Mask> fans_;
-  std::vector<Mask> crossed_, hit_;
+  std::vector<Mask> crossed_;  // with the margins of fans_
+  std::vector<Mask> hit_;
   std::vector<Doubt> doubts_;
 };
 
