@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "libperception/core/Lanes.h"
 #include "libperception/core/Wider.h"
@@ -20,18 +21,10 @@ constexpr float kLevel = 1e-20F;   // [-] instead of a slope of zero
 struct Fan {
   float along, aside, height;  ///< [cells] of the sensor
   float slope;                 ///< [-] the least of its beams
-  std::int32_t first, last;    ///< groups of cells along
+  std::int32_t first, last;    ///< cells along, `first` of a group
   std::int32_t cells;          ///< of the window
   std::int32_t column;         ///< of cell and row 0
   std::int32_t step, side;     ///< from column to column along and aside
-};
-
-/// Where it gathers what its beams cross, by cell along.
-template <class Mask>
-struct FanCells {
-  float* begins;   ///< [cells] along, from the sensor, of each cell
-  float* borders;  ///< [cells] aside, from the sensor, of the far border of its first row
-  Mask* row[kRows];
 };
 
 using Mask8x32 = std::uint32_t __attribute__((vector_size(32)));
@@ -60,72 +53,90 @@ PERCEPTION_LANES void gather(Mask* masks, const Bits& bits) {
   std::memcpy(masks, &all, sizeof all);
 }
 
-// The layers between the heights where the beam enters and leaves each row of eight cells.
+// For each group of cells along: where they begin and where the first row ends that a beam of the
+// fan may be in, as distances [cells] from the sensor.
+PERCEPTION_LANES void layOut(const Fan& fan, float* guides) {
+  for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
+    const Float8 begin = asFloats(i + firstEight()) - fan.along;
+    const Float8 low = fan.aside + fan.slope * larger(begin, eight(0.0F));
+    store8(begin, guides + 2 * i);
+    store8(roundedDown(low) + 1 - fan.aside, guides + 2 * i + kLanes);
+  }
+}
+
+// The layers between the heights where the beam enters and leaves each row of a group of cells.
 template <bool kRises, class Bits, class Mask>
-PERCEPTION_LANES void crossCells(const BeamStretch& beam, const Fan& fan,
-                                 const FanCells<Mask>& cells) {
+PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sensor_height,
+                                 const float* guides, Mask* gathered) {
   const Float8 from = eight(beam.from), to = eight(beam.to);
-  const Float8 height = eight(fan.height), up = eight(beam.up);
+  const Float8 height = eight(sensor_height), up = eight(beam.up);
   const Float8 per_across = eight(1 / (beam.across > kLevel ? beam.across : kLevel));
-  const auto first = static_cast<std::int32_t>(fan.along + beam.from) / kLanes * kLanes;
-  const auto last = static_cast<std::int32_t>(fan.along + beam.to);
+  const auto first = static_cast<std::int32_t>(along + beam.from) / kLanes * kLanes;
+  const auto last = static_cast<std::int32_t>(along + beam.to);
   for (std::int32_t i = first; i <= last; i += kLanes) {
-    const Float8 begin = load8(cells.begins + i), border = load8(cells.borders + i);
+    const Float8 begin = load8(guides + 2 * i), border = load8(guides + 2 * i + kLanes);
     const Float8 in = smaller(larger(begin, from), to);
     const Float8 leave = smaller(larger(begin + 1, from), to);
-    const Float8 t1 = smaller(larger(border * per_across, in), leave);
-    const Float8 t2 = smaller(larger((border + 1) * per_across, in), leave);
+    const Float8 reached = border * per_across;
+    const Float8 t1 = smaller(larger(reached, in), leave);
+    const Float8 t2 = smaller(larger(reached + per_across, in), leave);
     Bits b0, b1, b2, b3;
     setBit(height + up * in, b0), setBit(height + up * t1, b1);
     setBit(height + up * t2, b2), setBit(height + up * leave, b3);
-    gather(cells.row[0] + i, where(in < t1, kRises ? b1 + b1 - b0 : b0 + b0 - b1));
-    gather(cells.row[1] + i, where(t1 < t2, kRises ? b2 + b2 - b1 : b1 + b1 - b2));
-    gather(cells.row[2] + i, where(t2 < leave, kRises ? b3 + b3 - b2 : b2 + b2 - b3));
+    Mask* const rows = gathered + kRows * i;
+    gather(rows, where(in < t1, kRises ? b1 + b1 - b0 : b0 + b0 - b1));
+    gather(rows + kLanes, where(t1 < t2, kRises ? b2 + b2 - b1 : b1 + b1 - b2));
+    gather(rows + 2 * kLanes, where(t2 < leave, kRises ? b3 + b3 - b2 : b2 + b2 - b3));
+  }
+}
+
+// No beam is in the cells beyond the window's end, of the last group: they mark nothing.
+template <class Mask>
+PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, const Mask* gathered,
+                                   Mask* crossed) {
+  const std::ptrdiff_t side = fan.side;
+  for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
+    const Int8 along = smaller(i + firstEight(), eight(fan.cells - 1));
+    const Int8 row = truncated(load8(guides + 2 * i + kLanes) + (fan.aside - 0.5F));
+    std::int32_t column[kLanes];
+    store8(fan.column + along * fan.step + row * fan.side, column);
+    const Mask* rows = gathered + kRows * i;
+    for (int k = 0; k < kLanes; ++k) {
+      Mask* const first = crossed + column[k];
+      first[0] |= rows[k];
+      first[side] |= rows[k + kLanes];
+      first[2 * side] |= rows[k + 2 * kLanes];
+    }
   }
 }
 
 template <class Bits, class Mask>
 PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
-                               std::size_t count, const FanCells<Mask>& cells, Mask* crossed) {
-  for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
-    const Float8 begin = asFloats(i + firstEight()) - fan.along;
-    store8(begin, cells.begins + i);
-    const Float8 low = fan.aside + fan.slope * larger(begin, eight(0.0F));
-    store8(roundedDown(low) + 1 - fan.aside, cells.borders + i);
-    const Bits none{};
-    for (Mask* row : cells.row) store8(none, row + i);
-  }
+                               std::size_t count, float* guides, Mask* gathered, Mask* crossed) {
+  layOut(fan, guides);
+  const auto groups = static_cast<std::size_t>((fan.last - fan.first) / kLanes + 1);
+  std::memset(gathered + kRows * fan.first, 0, groups * kRows * sizeof(Bits));
+  const float along = fan.along, height = fan.height;
   for (std::size_t k = 0; k < count; ++k) {
-    const BeamStretch& beam = beams[order[k]];
+    const BeamStretch beam = beams[order[k]];
     if (beam.up >= 0) {
-      crossCells<true, Bits>(beam, fan, cells);
+      crossCells<true, Bits>(beam, along, height, guides, gathered);
     } else {
-      crossCells<false, Bits>(beam, fan, cells);
+      crossCells<false, Bits>(beam, along, height, guides, gathered);
     }
   }
-  for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
-    const Int8 row = truncated(load8(cells.borders + i) + (fan.aside - 0.5F));
-    std::int32_t column[kLanes];
-    store8(fan.column + (i + firstEight()) * fan.step + row * fan.side, column);
-    const std::int32_t most = fan.cells - i < kLanes ? fan.cells - i : kLanes;
-    for (std::int32_t k = 0; k < most; ++k) {
-      Mask* const first = crossed + column[k];
-      first[0] |= cells.row[0][i + k];
-      first[fan.side] |= cells.row[1][i + k];
-      first[2 * fan.side] |= cells.row[2][i + k];
-    }
-  }
+  markGathered(fan, guides, gathered, crossed);
 }
 
 PERCEPTION_WIDER void crossFanOf(const Fan& fan, const BeamStretch* beams,
-                                 const std::uint16_t* order, std::size_t count,
-                                 const FanCells<std::uint32_t>& cells, std::uint32_t* crossed) {
-  crossFan<Mask8x32>(fan, beams, order, count, cells, crossed);
+                                 const std::uint16_t* order, std::size_t count, float* guides,
+                                 std::uint32_t* gathered, std::uint32_t* crossed) {
+  crossFan<Mask8x32>(fan, beams, order, count, guides, gathered, crossed);
 }
 PERCEPTION_WIDER void crossFanOf(const Fan& fan, const BeamStretch* beams,
-                                 const std::uint16_t* order, std::size_t count,
-                                 const FanCells<std::uint64_t>& cells, std::uint64_t* crossed) {
-  crossFan<Mask8x64>(fan, beams, order, count, cells, crossed);
+                                 const std::uint16_t* order, std::size_t count, float* guides,
+                                 std::uint64_t* gathered, std::uint64_t* crossed) {
+  crossFan<Mask8x64>(fan, beams, order, count, guides, gathered, crossed);
 }
 
 }  // namespace
@@ -133,7 +144,7 @@ PERCEPTION_WIDER void crossFanOf(const Fan& fan, const BeamStretch* beams,
 template <class Mask>
 BeamFans<Mask>::BeamFans(int cells) : cells_(cells), beams_(kMost), fans_(kMost), order_(kMost) {
   const auto along = static_cast<std::size_t>((cells + kLanes - 1) / kLanes * kLanes);
-  begins_.resize(along), borders_.resize(along), gathered_.resize(kRows * along);
+  guides_.resize(2 * along), gathered_.resize(kRows * along);
 }
 
 template <class Mask>
@@ -188,18 +199,14 @@ void BeamFans<Mask>::markFan(int number, Mask* crossed) {
   }
   fan.first = static_cast<std::int32_t>(fan.along + from) / kLanes * kLanes;
   fan.last = static_cast<std::int32_t>(fan.along + to);
-  const std::size_t length = begins_.size();
-  crossFanOf(fan, beams_.data(), order_.data() + begin, end - begin,
-             {begins_.data(),
-              borders_.data(),
-              {gathered_.data(), gathered_.data() + length, gathered_.data() + 2 * length}},
-             crossed);
+  crossFanOf(fan, beams_.data(), order_.data() + begin, end - begin, guides_.data(),
+             gathered_.data(), crossed);
 }
 
 template <class Mask>
 std::size_t BeamFans<Mask>::memoryBytes() const {
   return beams_.capacity() * sizeof(BeamStretch) + gathered_.capacity() * sizeof(Mask) +
-         (begins_.capacity() + borders_.capacity()) * sizeof(float) +
+         guides_.capacity() * sizeof(float) +
          (fans_.capacity() + order_.capacity() + ends_.capacity()) * sizeof(std::uint16_t);
 }
 

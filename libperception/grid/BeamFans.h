@@ -52,8 +52,8 @@ class BeamFans {
   std::vector<std::uint16_t> fans_;   ///< of each stretch
   std::vector<std::uint16_t> order_;  ///< stretches by fan
   std::vector<std::uint16_t> ends_;   ///< of each fan, in order_
-  std::vector<float> begins_, borders_;
-  std::vector<Mask> gathered_;  ///< [row of three][cell along]
+  std::vector<float> guides_;         ///< of a fan: [group of cells along][begin, border][cell]
+  std::vector<Mask> gathered_;        ///< [group of cells along][row of three][cell]
 };
 
 extern template class BeamFans<std::uint32_t>;
