@@ -23,6 +23,14 @@ Vector2 lineOfSight(const Measurement& m, const SensorState& s) {
   return direction(yawOf(s.T_world_sensor) + m.z[RadarModel::kBearing]);
 }
 
+/// [m, m^2] from its nearest point to the centre of a rectangle whose heading nobody knows: mean
+/// and variance over all headings of its support function, (l |cos| + w |sin|) / 2.
+ScalarEstimate halfDepth(double length, double width) {
+  const double mean = (length + width) / kPi;
+  const double square = 0.125 * (length * length + width * width) + length * width / kTwoPi;
+  return {mean, std::max(0.0, square - mean * mean)};
+}
+
 /// Half of an edge's slope to the bearing of the outline's middle.
 void addHalf(const AxisPrediction& outline, FootprintModel::Axis edge, AxisPrediction& out) {
   out.H_q.row(RadarModel::kBearing) += 0.5 * outline.H_q.row(edge);
@@ -54,6 +62,8 @@ ScalarEstimate groundSpeed(const Measurement& m, const SensorState& sensor) {
 
 void RadarModelParams::visit(ParamVisitor& v) {
   v.real("rate_span", rate_span, {1, 1000}, "m/s", "over which the range rates of clutter spread");
+  v.real("standing_share", standing_share, {0, 1}, "",
+         "of the returns of no object those that stand: posts, rails, the road");
   v.real("min_birth_speed", min_birth_speed, {0, 50}, "m/s",
          "over ground, along the line of sight: returns below it only update; 0: all may start");
   v.real("min_birth_sigmas", min_birth_sigmas, {0, 10}, "",
@@ -112,6 +122,14 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
     const double depth = 2 * std::max(0.0, centre.norm() - outline.h[FootprintModel::kRange]);
     p.R_model.setZero(kAxes, kAxes);
     p.R_model(kRange, kRange) = std::pow(params_.depth_share * depth, 2);
+    if (!objects[i].has_yaw && isWheeled(i)) {
+      // The disc about the outline has the right width, but not the right depth.
+      const Extent& e = extents[i];
+      const ScalarEstimate half = halfDepth(e.length, e.width);
+      p.h[kRange] = std::max(kNearest, p.h[kRange] + 0.25 * (e.length + e.width) - half.mean);
+      p.H_extent.row(kRange).array() += 0.25 - 1 / kPi;
+      p.R_model(kRange, kRange) += half.variance;
+    }
     const double variance = width * width / 12;
     p.R_model(kBearing, kBearing) = variance;
     p.R_model(kBearing, kRate) = p.R_model(kRate, kBearing) = variance * turn;
@@ -151,10 +169,17 @@ bool RadarModel::mayDetect(const Vector2& position, double reach, const SensorSt
   return touchesSector(position, reach, p.fov + 6 * params_.view_edge, p.range_max, sensor);
 }
 
-double RadarModel::logClutterDensity(const Measurement& m, const SensorState&) const {
-  // Even over the field of view: range / area per metre and radian (SPEC 5.3).
+double RadarModel::logClutterDensity(const Measurement& m, const SensorState& sensor) const {
+  // Even over the field of view: range / area per metre and radian (SPEC 5.3). Most of what is no
+  // object stands, and so is likelier where own motion puts its range rate.
   const double position = std::max(m.z[kRange], kNearest) / sensing().area();
-  const double rate = hasRate(m) ? 1 / params_.rate_span : 1;
+  double rate = 1;
+  if (hasRate(m)) {
+    const ScalarEstimate speed = groundSpeed(m, sensor);
+    const double standing = std::exp(-0.5 * speed.mean * speed.mean / speed.variance) /
+                            std::sqrt(kTwoPi * speed.variance);
+    rate = params_.standing_share * standing + (1 - params_.standing_share) / params_.rate_span;
+  }
   return std::log(sensing().params().clutter_per_scan * position * rate);
 }
 
@@ -184,12 +209,15 @@ std::optional<BirthState> RadarModel::birth(const Measurement& m, ClassId c,
   e = {object_class.length, object_class.width,
        object_class.length_sigma * object_class.length_sigma,
        object_class.width_sigma * object_class.width_sigma};
-  // A disc behind its nearest point, as far off as half of length or width may be; the reflecting
+  // Behind its nearest point by half of what it is deep, whichever way it points; the reflecting
   // point lies anywhere on its width.
-  const double radius = 0.25 * (e.length + e.width), rho = m.z[kRange] + radius;
+  const double radius = 0.25 * (e.length + e.width);
+  const ScalarEstimate half = object_class.motion == Motion::kWheeled ? halfDepth(e.length, e.width)
+                                                                      : ScalarEstimate{radius, 0};
+  const double rho = m.z[kRange] + half.mean;
   const Vector2 away = lineOfSight(m, sensor), across = perpendicular(away);
-  const double along_variance = m.R(kRange, kRange) + 0.0625 * (e.var_length + e.var_width) +
-                                std::pow(0.25 * (e.length - e.width), 2);
+  const double along_variance =
+      m.R(kRange, kRange) + (e.var_length + e.var_width) / (kPi * kPi) + half.variance;
   const double across_variance = rho * rho * m.R(kBearing, kBearing) + radius * radius / 3;
   birth.position = sensorPosition(sensor) + rho * away;
   birth.covariance =

@@ -6,7 +6,9 @@ namespace perception {
 /// What a radar unit's model needs besides the tables of [sensor.LABEL]; a part of
 /// [sensor.LABEL.radar].
 struct RadarModelParams {
-  double rate_span = 53.6;  ///< [m/s] over which the range rates of clutter spread (DUC's unit)
+  double rate_span = 53.6;      ///< [m/s] over which the range rates of clutter spread (DUC's unit)
+  double standing_share = 0.8;  ///< of clutter: posts, rails, the road (View of Delft: .83 of all
+                                ///< returns); the others have any rate
   double min_birth_speed = 0.5;  ///< [m/s] over ground along the line of sight: returns below it
                                  ///< may be of anything that stands and start no objects (SPEC 4.3)
   double min_birth_sigmas = 3;  ///< ... nor those within so many of its own deviations of standing:
@@ -61,6 +63,10 @@ class RadarModel final : public MeasurementModel {
  private:
   /// Share of detections left at a bearing [rad] of the outline.
   double edgeShare(double bearing) const;
+  /// Whether object i of a batch has a length axis: batches hold whole banks.
+  bool isWheeled(std::size_t i) const {
+    return classes_.classes[i % classes_.classes.size()].motion == Motion::kWheeled;
+  }
 
   ClassTable classes_;
   FootprintModel footprint_;

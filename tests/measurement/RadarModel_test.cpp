@@ -172,6 +172,42 @@ TEST(RadarModel, SpreadOfReflectingPointsHasTheModelsCovariance) {
   EXPECT_LT((scatter - expected).norm(), (5 * 0.9 / std::sqrt(n) + 0.01) * expected.norm());
 }
 
+TEST(RadarModel, CentreOfUnknownHeadingLiesHalfItsMeanDepthBehindTheReturn) {
+  // Cars of all headings (simulated), far away: what their nearest points say of their centres.
+  SensorState s;
+  Kinematics k;
+  k.q << 60, 0, 0, 0, 0;
+  const Extent e{4.5, 1.8, 0, 0};
+  const double unknown = predict(k, e, s).h[RadarModel::kRange];
+  Rng rng({6, 0, 0, 0});
+  const int n = 20000;
+  double sum = 0, square = 0;
+  k.has_yaw = true;
+  for (int i = 0; i < n; ++i) {
+    k.q[4] = rng.uniform(-kPi, kPi);
+    const double off = predict(k, e, s).h[RadarModel::kRange] - unknown;
+    sum += off, square += off * off;
+  }
+  EXPECT_LT(std::abs(sum / n), 0.05);  // nearest points off the line of sight are a little farther
+  k.has_yaw = false;
+  const auto p = predict(k, e, s);
+  const double depth = 0.15 * 2 * 0.25 * (e.length + e.width);  // RadarModelParams::depth_share
+  EXPECT_NEAR(square / n, p.R_model(0, 0) - depth * depth, 0.05);
+  const auto birth = model().birth(returnOf(60, 0, -9), 0, s);
+  EXPECT_NEAR(birth->position.x(), 60 + (4.5 + 1.8) / kPi, 1e-9);
+}
+
+TEST(RadarModel, MostOfWhatIsNoObjectStands) {
+  const SensorState s = drivingSensor();
+  const Vector2 own = sensorVelocity(s);
+  const double forward = yawOf(s.T_world_sensor);
+  const double still = -Vector2(std::cos(forward), std::sin(forward)).dot(own);
+  const double stands = model().logClutterDensity(returnOf(30, 0, still), s);
+  const double moves = model().logClutterDensity(returnOf(30, 0, still + 8), s);
+  EXPECT_NEAR(moves, std::log(0.2 * 0.3 * 30 / model().sensing().area() / 53.6), 1e-6);
+  EXPECT_GT(stands - moves, std::log(100));
+}
+
 TEST(RadarModel, OnlyMovingReturnsStartObjects) {
   const SensorState s = drivingSensor();
   const Vector2 own = sensorVelocity(s);
