@@ -38,7 +38,10 @@ template <class Lanes>
 PERCEPTION_LANES Lanes smaller(const Lanes& a, const Lanes& b) {
   return a < b ? a : b;
 }
-PERCEPTION_LANES Float8 magnitude(const Float8& v) { return v < 0 ? -v : v; }
+PERCEPTION_LANES Float8 magnitude(const Float8& v) {
+  return reinterpret_cast<Float8>(reinterpret_cast<Int8>(v) &
+                                  eight(0x7FFFFFFF));  // without the sign
+}
 PERCEPTION_LANES Int8 truncated(const Float8& v) { return __builtin_convertvector(v, Int8); }
 PERCEPTION_LANES Float8 asFloats(const Int8& v) { return __builtin_convertvector(v, Float8); }
 PERCEPTION_LANES Float8 roundedDown(const Float8& v) {

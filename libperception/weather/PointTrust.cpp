@@ -2,74 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
-#include "libperception/core/Lanes.h"
 #include "libperception/core/Wider.h"
 #include "libperception/weather/HeightAboveGround.h"
 
 namespace perception {
 namespace {
 
-constexpr float kTightFloor = 0.03F;        // [m] noise of a range
-constexpr float kBeyondFloor = 0.3F;        // [m]
 constexpr float kPhantom = 0;               // [log-odds] above it a verdict is "phantom"
 constexpr float kSettled = -5;              // [log-odds] below it no neighbour can make a phantom
-constexpr double kIntensityPrior = 50;      // [returns] that a bin's ratio must stand against
 constexpr std::size_t kIntensityStep = 4;   // every fourth return tells as much
 constexpr float kBeyondDoubt = 8;           // [log-odds]
-constexpr float kIntensityBound = 4;        // [log-odds]
-constexpr double kFewestPhantoms = 20;      // [returns] below it no intensity is learnt
 constexpr double kShareBounds[] = {-7, 2};  // [log-odds] that weather may add
 
 float sigmoid(float v) { return 1 / (1 + std::exp(-v)); }
 double logit(double p) { return std::log(p / (1 - p)); }
 
-constexpr std::size_t at(TrustFeature feature) { return static_cast<std::size_t>(feature); }
-
-/// How many of the eight nearest pixels are within `tight` of `r`: rows of three and a fourth
-/// beside them that does not count.
-int sameAround(const float* pixel, std::ptrdiff_t stride, float r, float tight) {
-  using Float4 = float __attribute__((vector_size(16)));
-  using Int4 = std::int32_t __attribute__((vector_size(16)));
-  const auto same = [&](const float* row) -> Int4 {
-    Float4 off;
-    std::memcpy(&off, row - 1, sizeof off);
-    off -= r;
-    return (off < tight) & (-off < tight);
-  };
-  const Int4 counts =
-      same(pixel - stride) + same(pixel + stride) + (same(pixel) & Int4{-1, 0, -1, 0});
-  return -(counts[0] + counts[1] + counts[2]);
+/// The places of odds not below `least`: their number.
+std::size_t findOpen(float least, const float* odds, std::size_t count, std::uint32_t* open) {
+  std::size_t found = 0;
+  for (std::size_t s = 0; s < count; ++s) {  // what is below is overwritten by the next
+    open[found] = static_cast<std::uint32_t>(s);
+    found += odds[s] >= least;
+  }
+  return found;
 }
 
-/// How the beams around a return fare, counted.
-struct Neighbours {
-  int tight = 0, wide = 0, beyond = 0, filled = 0;
-};
-
-/// `corner`: first pixel of the neighbourhood. Rows of eight and a ninth column apart.
-PERCEPTION_WIDER Neighbours countNeighbours(const float* corner, std::ptrdiff_t stride, float r,
-                                            float tight, float wide, float behind) {
-  static_assert(RangeImage::kColumnReach == 4 && RangeImage::kRowReach == 2, "nine by five");
-  Int8 near = eight(0), neighbours = eight(0), beyond = eight(0), filled = eight(0);
-  const auto count = [&](const Float8& other) {  // downwards: true is -1
-    const Float8 off = magnitude(other - r);
-    near += off<tight, neighbours += off<wide, beyond += other> behind, filled += other> 0;
-  };
-  Float8 ninth = eight(0.0F);
-  for (int row = 0; row < 5; ++row, corner += stride) {
-    Float8 line = load8(corner);
-    if (row == 2) line[RangeImage::kColumnReach] = 0;  // the return itself
-    count(line);
-    ninth[row] = corner[kLanes];
-  }
-  count(ninth);
-  // None exceeds 45: four of them fit a number.
-  std::int32_t lanes[kLanes], all = 0;
-  store8(near + (neighbours << 8) + (beyond << 16) + (filled << 24), lanes);
-  for (const std::int32_t lane : lanes) all -= lane;
-  return {all & 255, all >> 8 & 255, all >> 16 & 255, all >> 24 & 255};
+/// Of ranges [m], how many are no farther than that; 0 is none.
+PERCEPTION_WIDER int countWithin(const float* ranges, std::size_t count, float far) {
+  int within = 0;
+  for (std::size_t i = 0; i < count; ++i) within += (ranges[i] > 0) & (ranges[i] <= far);
+  return within;
 }
 
 /// The first of two echoes of a pulse is rain when it is weaker or shorter (paper).
@@ -86,105 +49,71 @@ bool isRainEcho(const LidarCloud& c, std::size_t i) {
 
 }  // namespace
 
-TrustCurve::TrustCurve(const std::vector<double>& knots, const std::vector<double>& values) {
-  low_ = static_cast<float>(knots.front());
-  per_unit_ = static_cast<float>(kLast / (knots.back() - knots.front()));
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < table_.size(); ++i) {
-    const double v =
-        knots.front() + static_cast<double>(i) * (knots.back() - knots.front()) / kLast;
-    while (k + 2 < knots.size() && v > knots[k + 1]) ++k;
-    const double share = std::clamp((v - knots[k]) / (knots[k + 1] - knots[k]), 0.0, 1.0);
-    table_[i] = static_cast<float>(values[k] + share * (values[k + 1] - values[k]));
+CountCurves::CountCurves(const TrustCurve& of_tight, const TrustCurve& of_wide,
+                         const TrustCurve& of_beyond) {
+  constexpr std::uint32_t kMost = NeighbourCounts::kMost;
+  for (std::uint32_t n = 0; n < kMost; ++n) {
+    tight[n] = of_tight.at(static_cast<float>(n)), wide[n] = of_wide.at(static_cast<float>(n));
+    for (std::uint32_t part = 0; part < kMost; ++part)
+      beyond[n * kMost + part] =
+          of_beyond.at(n > 0 ? static_cast<float>(part) / static_cast<float>(n) : 1.0F);
   }
 }
 
-std::size_t IntensityLaw::binOf(float intensity) {
-  if (!(intensity > 0)) return 0;
-  static const std::array<std::uint8_t, 256> kBinOfByte = [] {
-    std::array<std::uint8_t, 256> bins{};
-    for (std::size_t byte = 1; byte < bins.size(); ++byte)
-      for (std::size_t rest = byte; rest > 0 && bins[byte] + 1U < kBins; rest /= 2) ++bins[byte];
-    return bins;
-  }();
-  return kBinOfByte[static_cast<std::size_t>(std::clamp(intensity * 255 + 0.5F, 0.0F, 255.0F))];
+namespace {
+
+std::array<TrustCurve, kTrustFeatures> curvesOf(const TrustParams& params) {
+  std::array<TrustCurve, kTrustFeatures> curves;
+  for (std::size_t f = 0; f < kTrustFeatures; ++f)
+    curves[f] = TrustCurve(TrustParams::knotsOf(static_cast<TrustFeature>(f)), params.curves[f]);
+  return curves;
 }
 
-void IntensityLaw::forget(double share) {
-  for (auto* counts : {&phantoms_, &surfaces_})
-    for (double& count : *counts) count *= share;
-}
-
-void IntensityLaw::add(float intensity, double phantom, double returns) {
-  const std::size_t bin = binOf(intensity);
-  phantoms_[bin] += phantom * returns;
-  surfaces_[bin] += (1 - phantom) * returns;
-}
-
-std::array<float, IntensityLaw::kBins> IntensityLaw::logRatios() const {
-  std::array<float, kBins> ratios{};
-  double phantoms = 0, surfaces = 0;
-  for (std::size_t b = 0; b < kBins; ++b) phantoms += phantoms_[b], surfaces += surfaces_[b];
-  if (phantoms < kFewestPhantoms || surfaces < kFewestPhantoms) return ratios;
-  for (std::size_t b = 0; b < kBins; ++b) {
-    const double pooled = 0.5 * (phantoms_[b] / phantoms + surfaces_[b] / surfaces);
-    const double p = (phantoms_[b] + kIntensityPrior * pooled) / (phantoms + kIntensityPrior);
-    const double s = (surfaces_[b] + kIntensityPrior * pooled) / (surfaces + kIntensityPrior);
-    if (p > 0 && s > 0)
-      ratios[b] =
-          std::clamp(static_cast<float>(std::log(p / s)), -kIntensityBound, kIntensityBound);
-  }
-  return ratios;
-}
+}  // namespace
 
 PointTrust::PointTrust(const TrustParams& params)
     : params_(params),
+      curves_(curvesOf(params)),
+      count_curves_(curve(TrustFeature::kTight), curve(TrustFeature::kWide),
+                    curve(TrustFeature::kBeyond)),
       image_(params.column, params.row),
       share_(params.fitted_share),
-      cubes_(static_cast<float>(params.max_range)) {
-  for (std::size_t f = 0; f < kTrustFeatures; ++f)
-    curves_[f] = TrustCurve(TrustParams::knotsOf(static_cast<TrustFeature>(f)), params.curves[f]);
-}
+      cubes_(static_cast<float>(params.max_range)) {}
 
-// How the beams around a return fare.
-void PointTrust::lookAround(std::size_t pixel, SuspectReturn& suspect) const {
-  const float r = suspect.features[at(TrustFeature::kRange)];
-  const float* corner = image_.pixels().data() + pixel - RangeImage::kRowReach * image_.stride() -
-                        RangeImage::kColumnReach;
-  const Neighbours n = countNeighbours(corner, image_.stride(), r,
-                                       static_cast<float>(params_.tight) * r + kTightFloor,
-                                       static_cast<float>(params_.wide) * r + kTightFloor,
-                                       (1 + static_cast<float>(params_.beyond)) * r + kBeyondFloor);
-  suspect.features[at(TrustFeature::kTight)] = static_cast<float>(n.tight);
-  suspect.features[at(TrustFeature::kWide)] = static_cast<float>(n.wide);
-  suspect.features[at(TrustFeature::kBeyond)] =
-      n.filled > 0 ? static_cast<float>(n.beyond) / static_cast<float>(n.filled) : 1.0F;
-}
-
-void PointTrust::findSuspects(const SensorFrame& frame, const LidarCloud& cloud) {
-  suspects_.clear();
-  const HeightAboveGround height(frame.T_ego_sensor, frame.ground);
+// Every return into the image and into its cube, all of them trusted as yet.
+void PointTrust::placeReturns(const LidarCloud& cloud) {
+  cubes_.clear();
   const auto far = static_cast<float>(params_.max_range);
-  const float* image = image_.pixels().data();
-  const std::ptrdiff_t stride = image_.stride();
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float r = image_.ranges()[i];
-    if (!(r > 0) || r > far) continue;
-    const std::size_t pixel = image_.pixelOf(i);
-    const float tight = static_cast<float>(params_.tight) * r + kTightFloor;
-    const int around = sameAround(image + pixel, stride, r, tight);
-    if (around >= params_.surface_neighbours) continue;
-    SuspectReturn& suspect =
-        suspects_.emplace_back();  // in place: a copy would wait for the stores
-    suspect.index = static_cast<std::uint32_t>(i);
-    suspect.features[at(TrustFeature::kRange)] = r;
-    suspect.features[at(TrustFeature::kHeight)] = height.of(cloud.x[i], cloud.y[i], cloud.z[i]);
-    lookAround(pixel, suspect);
-    float sum = static_cast<float>(params_.bias);
-    for (const TrustFeature f : {TrustFeature::kRange, TrustFeature::kTight, TrustFeature::kWide,
-                                 TrustFeature::kBeyond, TrustFeature::kHeight})
-      sum += curves_[at(f)].at(suspect.features[at(f)]);
-    suspect.geometry = sum;
+  image_.fill(cloud, [&](std::size_t first, std::size_t count) {
+    cubes_.add(&cloud.x[first], &cloud.y[first], &cloud.z[first], &image_.ranges()[first], count,
+               far);
+  });
+}
+
+NeighbourRules PointTrust::neighbourRules() const {
+  return {static_cast<float>(params_.max_range), static_cast<float>(params_.tight),
+          static_cast<float>(params_.wide), static_cast<float>(params_.beyond),
+          params_.surface_neighbours};
+}
+
+// The first pass: who is no surface for sure, and what does the geometry say of it?
+void PointTrust::lookAround(const SensorFrame& frame, const LidarCloud& cloud) {
+  suspects_.reserve(cloud.size());
+  open_.resize(suspects_.index.size());
+  suspects_.count =
+      findSuspects(image_, neighbourRules(), suspects_.index.data(), suspects_.neighbours.data());
+  const HeightAboveGround height(frame.T_ego_sensor, frame.ground);
+  const TrustCurve &of_range = curve(TrustFeature::kRange),
+                   &of_height = curve(TrustFeature::kHeight);
+  const auto bias = static_cast<float>(params_.bias);
+  for (std::size_t s = 0; s < suspects_.count; ++s) {
+    const std::size_t i = suspects_.index[s];
+    const NeighbourCounts counts = suspects_.neighbours[s];
+    const float r = image_.ranges()[i], high = height.of(cloud.x[i], cloud.y[i], cloud.z[i]);
+    suspects_.range[s] = r, suspects_.height[s] = high;
+    suspects_.geometry[s] = bias + of_range.at(r) + count_curves_.tight[counts.tight()] +
+                            count_curves_.wide[counts.wide()] +
+                            count_curves_.beyond[counts.beyondAndFilled()] + of_height.at(high);
   }
 }
 
@@ -192,12 +121,12 @@ void PointTrust::hearSensor(const LidarCloud& cloud) {
   if (cloud.label.empty() && cloud.echo.empty()) return;
   const auto rain = static_cast<std::uint8_t>(PointLabel::kRain);
   const auto dirt = static_cast<std::uint8_t>(PointLabel::kDirt);
-  for (SuspectReturn& suspect : suspects_) {
-    const std::size_t i = suspect.index;
+  for (std::size_t s = 0; s < suspects_.count; ++s) {
+    const std::size_t i = suspects_.index[s];
     if (!cloud.label.empty() && (cloud.label[i] == rain || cloud.label[i] == dirt))
-      suspect.sensor += static_cast<float>(params_.sensor_label);
+      suspects_.geometry[s] += static_cast<float>(params_.sensor_label);
     if (!cloud.echo.empty() && isRainEcho(cloud, i))
-      suspect.sensor += static_cast<float>(params_.rain_rule);
+      suspects_.geometry[s] += static_cast<float>(params_.rain_rule);
   }
 }
 
@@ -213,25 +142,28 @@ double PointTrust::weatherLogOdds() const {
 void PointTrust::followWeather() {
   if (!params_.adapt_share) return;
   constexpr int kBins = 128;
-  constexpr double kWidth = 0.25;  // [log-odds]
-  std::array<double, kBins> counts{};
+  constexpr float kPerLogOdds = 4, kMiddle = kBins / 2;
+  static const std::array<double, kBins> kSurfaceOdds = [] {  // at the middles of the bins
+    std::array<double, kBins> odds{};
+    for (int b = 0; b < kBins; ++b)
+      odds[static_cast<std::size_t>(b)] =
+          std::exp(-(b + 0.5 - static_cast<double>(kMiddle)) / static_cast<double>(kPerLogOdds));
+    return odds;
+  }();
   const auto reach = static_cast<float>(params_.share_range);
-  int near = 0;
-  for (const float r : image_.ranges())
-    near += static_cast<int>(r > 0) & static_cast<int>(r <= reach);
+  const int near = countWithin(image_.ranges().data(), image_.ranges().size(), reach);
   if (near == 0) return;
-  for (const SuspectReturn& s : suspects_) {
-    if (s.features[at(TrustFeature::kRange)] > reach) continue;
-    const double place = static_cast<double>(s.second) / kWidth + kBins / 2.0;
-    counts[static_cast<std::size_t>(std::clamp(place, 0.0, kBins - 1.0))] += 1;
+  std::array<std::uint32_t, kBins> counts{};
+  for (std::size_t s = 0; s < suspects_.count; ++s) {
+    const float place = std::clamp(suspects_.second[s] * kPerLogOdds + kMiddle, 0.0F, kBins - 1.0F);
+    counts[static_cast<std::size_t>(place)] += suspects_.range[s] <= reach;
   }
   double share = started_ ? share_ : params_.fitted_share;
   for (int step = 0; step < 30; ++step) {
-    const double shift = logit(share) - logit(params_.fitted_share);
+    const double against = std::exp(logit(params_.fitted_share) - logit(share));
     double phantoms = 0;
-    for (int b = 0; b < kBins; ++b)
-      phantoms += counts[static_cast<std::size_t>(b)] /
-                  (1 + std::exp(-((b + 0.5 - kBins / 2.0) * kWidth + shift)));
+    for (std::size_t b = 0; b < kBins; ++b)
+      phantoms += static_cast<double>(counts[b]) / (1 + kSurfaceOdds[b] * against);
     share = std::clamp(phantoms / near, params_.least_share, 0.9);
   }
   const double weight = started_ ? 1 / params_.share_memory : 1;
@@ -239,56 +171,75 @@ void PointTrust::followWeather() {
   started_ = true;
 }
 
+// Asks what intensities are those of phantoms, by what the geometry says of these returns.
 void PointTrust::learnIntensity(const LidarCloud& cloud) {
-  if (!params_.use_intensity || cloud.intensity.empty()) return;
-  law_.forget(1 - 1 / params_.intensity_memory);
-  const auto weather = static_cast<float>(weatherLogOdds());
+  IntensityLaw::findBins(cloud.intensity, bins_);
   const auto far = static_cast<float>(params_.max_range);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < cloud.size(); i += kIntensityStep) {
-    while (next < suspects_.size() && suspects_[next].index < i) ++next;
-    const float r = image_.ranges()[i];
-    if (!(r > 0) || r > far) continue;
-    const bool suspected = next < suspects_.size() && suspects_[next].index == i;
-    const float odds =
-        suspected ? suspects_[next].geometry + suspects_[next].sensor + weather : -kBeyondDoubt;
-    law_.add(cloud.intensity[i], odds > -kBeyondDoubt ? static_cast<double>(sigmoid(odds)) : 0,
-             kIntensityStep);
+  std::array<std::uint32_t, IntensityLaw::kBins> returns{};
+  const std::vector<float>& ranges = image_.ranges();
+  for (std::size_t i = 0; i < cloud.size(); i += kIntensityStep)
+    returns[bins_[i]] += (ranges[i] > 0) & (ranges[i] <= far);
+  std::array<double, IntensityLaw::kBins> phantoms{};
+  const auto weather = static_cast<float>(weatherLogOdds());
+  const std::size_t open =
+      findOpen(-kBeyondDoubt - weather, suspects_.geometry.data(), suspects_.count, open_.data());
+  for (std::size_t k = 0; k < open; ++k) {
+    const std::uint32_t i = suspects_.index[open_[k]];
+    if (i % kIntensityStep == 0)
+      phantoms[bins_[i]] += static_cast<double>(sigmoid(suspects_.geometry[open_[k]] + weather));
   }
-  const auto ratios = law_.logRatios();
-  for (SuspectReturn& s : suspects_)
-    s.intensity = ratios[IntensityLaw::binOf(cloud.intensity[s.index])];
+  law_.forget(1 - 1 / params_.intensity_memory);
+  for (std::size_t b = 0; b < IntensityLaw::kBins; ++b)
+    law_.add(b, kIntensityStep * phantoms[b], kIntensityStep * (returns[b] - phantoms[b]));
 }
 
-void PointTrust::countCompany(const LidarCloud& cloud) {
-  cubes_.clear();
-  cubes_.place(cloud.x, cloud.y, cloud.z);
-  std::size_t next = 0;
-  const auto far = static_cast<float>(params_.max_range);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const bool suspected = next < suspects_.size() && suspects_[next].index == i;
-    const bool doubted = suspected && suspects_[next].first > kPhantom;
-    next += suspected;
-    const float r = image_.ranges()[i];
-    if (r > 0 && r <= far) cubes_.add(i, doubted);
+// The first pass, complete: geometry and intensity.
+void PointTrust::weighIntensity(const LidarCloud& cloud) {
+  const bool used = params_.use_intensity && cloud.intensity.size() == cloud.size();
+  std::array<float, IntensityLaw::kBins> ratios{};
+  if (used) {
+    learnIntensity(cloud);
+    ratios = law_.logRatios();
+    for (float& ratio : ratios) ratio *= static_cast<float>(params_.intensity_gain);
+  }
+  for (std::size_t s = 0; s < suspects_.count; ++s) {
+    const float more = used ? ratios[bins_[suspects_.index[s]]] : 0;
+    suspects_.first[s] = suspects_.second[s] = suspects_.geometry[s] + more;
   }
 }
 
 // The second pass: what did the first make of the neighbours and of what else is within half a
 // metre?
 void PointTrust::askCompany(const LidarCloud& cloud) {
-  const auto gain = static_cast<float>(params_.intensity_gain);
-  for (SuspectReturn& s : suspects_) s.first = s.geometry + s.sensor + gain * s.intensity;
-  countCompany(cloud);
+  const std::size_t open =
+      findOpen(kSettled, suspects_.first.data(), suspects_.count, open_.data());
+  for (std::size_t k = 0; k < open; ++k) {
+    const std::uint32_t s = open_[k];
+    const std::size_t i = suspects_.index[s];
+    if (suspects_.first[s] > kPhantom) cubes_.doubt(cloud.x[i], cloud.y[i], cloud.z[i]);
+  }
   const auto own = static_cast<float>(params_.gain);
   const auto bias = static_cast<float>(params_.second_bias);
-  for (SuspectReturn& s : suspects_) {
-    s.second = s.first;
-    if (s.first < kSettled) continue;
-    const std::size_t i = s.index;
-    float& company = s.features[at(TrustFeature::kCompany)];
-    company = cubes_.company(cloud.x[i], cloud.y[i], cloud.z[i], s.first > kPhantom);
-    s.second = own * s.first + bias + curves_[at(TrustFeature::kCompany)].at(company);
+  for (std::size_t k = 0; k < open; ++k) {
+    const std::uint32_t s = open_[k];
+    const std::size_t i = suspects_.index[s];
+    const float first = suspects_.first[s];
+    suspects_.company[s] = cubes_.company(cloud.x[i], cloud.y[i], cloud.z[i], first > kPhantom);
+    suspects_.second[s] =
+        own * first + bias + curve(TrustFeature::kCompany).at(suspects_.company[s]);
+  }
+}
+
+void PointTrust::giveTrust(LidarCloud& cloud, TrustStats& stats) {
+  cloud.trust.assign(cloud.size(), 1);
+  const auto weather = static_cast<float>(weatherLogOdds());
+  const std::size_t open =
+      findOpen(-kBeyondDoubt - weather, suspects_.second.data(), suspects_.count, open_.data());
+  for (std::size_t k = 0; k < open; ++k) {
+    const std::uint32_t s = open_[k];
+    const float odds = suspects_.second[s] + weather;
+    cloud.trust[suspects_.index[s]] = sigmoid(-odds);
+    stats.phantoms += odds > kPhantom;
   }
 }
 
@@ -296,28 +247,27 @@ TrustStats PointTrust::apply(SensorFrame& frame) {
   TrustStats stats;
   auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud == nullptr) return stats;
-  image_.fill(*cloud);
-  findSuspects(frame, *cloud);
+  placeReturns(*cloud);
+  lookAround(frame, *cloud);
   hearSensor(*cloud);
-  learnIntensity(*cloud);
+  weighIntensity(*cloud);
   askCompany(*cloud);
   followWeather();
-
   stats.returns = cloud->size();
   stats.share = share_;
-  cloud->trust.assign(cloud->size(), 1);
-  const auto weather = static_cast<float>(weatherLogOdds());
-  for (const SuspectReturn& s : suspects_) {
-    const float odds = s.second + weather;
-    if (odds < -kBeyondDoubt) continue;
-    cloud->trust[s.index] = sigmoid(-odds);
-    stats.phantoms += odds > kPhantom;
-  }
+  giveTrust(*cloud, stats);
   return stats;
 }
 
+std::vector<SuspectReturn> PointTrust::suspects() const {
+  std::vector<SuspectReturn> all;
+  all.reserve(suspects_.count);
+  for (std::size_t s = 0; s < suspects_.count; ++s) all.push_back(suspects_.at(s));
+  return all;
+}
+
 std::size_t PointTrust::memoryBytes() const {
-  return image_.memoryBytes() + sizeof(SuspectReturn) * suspects_.capacity() + cubes_.memoryBytes();
+  return image_.memoryBytes() + suspects_.memoryBytes() + bins_.capacity() + cubes_.memoryBytes();
 }
 
 std::unique_ptr<PointFilter> makePointTrust(const TrustParams& params) {

@@ -1,9 +1,11 @@
 #include "libperception/weather/RangeImage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/Lanes.h"
 #include "libperception/core/RoughBearing.h"
 #include "libperception/core/Wider.h"
 
@@ -54,6 +56,27 @@ PERCEPTION_WIDER void findPixels(const float* __restrict range, const float* __r
   }
 }
 
+/// The first and the last pixel with a return.
+struct PixelSpan {
+  std::int32_t first, last;
+};
+
+PERCEPTION_WIDER PixelSpan widened(const std::uint32_t* pixels, std::size_t count, PixelSpan span) {
+  Int8 first = eight(span.first), last = eight(span.last);
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    Int8 some = eight(0);
+    std::memcpy(&some, pixels + i,
+                i + kLanes <= count ? sizeof some : (count - i) * sizeof *pixels);
+    last = larger(last, some);
+    first = smaller(first, some == 0 ? first : some);  // 0: no range
+  }
+  for (int k = 0; k < kLanes; ++k) {
+    span.first = std::min(span.first, first[k]);
+    span.last = std::max(span.last, last[k]);
+  }
+  return span;
+}
+
 }  // namespace
 
 RangeImage::RangeImage(double column, double row)
@@ -61,13 +84,6 @@ RangeImage::RangeImage(double column, double row)
       row_(row),
       columns_(std::max<std::size_t>(2 * kColumnReach,
                                      static_cast<std::size_t>(std::lround(kTwoPi / column)))) {}
-
-void RangeImage::directions(const LidarCloud& cloud) {
-  const std::size_t count = cloud.size();
-  ranges_.resize(count), azimuth_.resize(count), slope_.resize(count);
-  findDirections(cloud.x.data(), cloud.y.data(), cloud.z.data(), count, ranges_.data(),
-                 azimuth_.data(), slope_.data());
-}
 
 void RangeImage::layOut(double row) {
   row_ = row;
@@ -77,21 +93,33 @@ void RangeImage::layOut(double row) {
   stride_ = static_cast<std::ptrdiff_t>(columns_ + 2 * kColumnReach);
 }
 
-void RangeImage::findPixelsOf(const RangeImage& directions) {
-  pixels_.resize(directions.ranges_.size());
-  findPixels(directions.ranges_.data(), directions.azimuth_.data(), directions.slope_.data(),
-             pixels_.size(),
-             {per_radian_, rows_per_slope_, static_cast<std::int32_t>(columns_),
-              static_cast<std::int32_t>(stride_)},
-             pixels_.data());
+// Range and pixel of each return, block by block: directions never leave the nearest cache.
+void RangeImage::place(const LidarCloud& cloud, const BlockVisitor& look) {
+  constexpr std::size_t kBlock = 1024;
+  std::array<float, kBlock> azimuth, slope;
+  const PixelRules rules{per_radian_, rows_per_slope_, static_cast<std::int32_t>(columns_),
+                         static_cast<std::int32_t>(stride_)};
+  ranges_.resize(cloud.size()), pixels_.resize(cloud.size());
+  PixelSpan span{static_cast<std::int32_t>(rows_ + kRowReach) * rules.stride, 0};
+  for (std::size_t first = 0; first < cloud.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, cloud.size() - first);
+    findDirections(&cloud.x[first], &cloud.y[first], &cloud.z[first], count, &ranges_[first],
+                   azimuth.data(), slope.data());
+    findPixels(&ranges_[first], azimuth.data(), slope.data(), count, rules, &pixels_[first]);
+    span = widened(&pixels_[first], count, span);
+    if (look) look(first, count);
+  }
+  const auto stride = static_cast<std::int32_t>(stride_);
+  lowest_ = static_cast<std::size_t>(span.first / stride);
+  highest_ = static_cast<std::size_t>(span.last / stride);
 }
 
 // Of the directions with a return, how many have one in the row above or below.
-double RangeImage::connectedShare(double row) const {
+double RangeImage::connectedShare(const LidarCloud& cloud, double row) const {
   RangeImage other(column_, row);
   other.layOut(row);
+  other.place(cloud);
   std::vector<char> filled((other.rows_ + 2 * kRowReach) * static_cast<std::size_t>(other.stride_));
-  other.findPixelsOf(*this);
   for (const std::uint32_t pixel : other.pixels_) filled[pixel] = 1;
   filled[0] = 0;
   std::size_t all = 0, connected = 0;
@@ -105,30 +133,37 @@ double RangeImage::connectedShare(double row) const {
   return all == 0 ? 0 : static_cast<double>(connected) / static_cast<double>(all);
 }
 
-double RangeImage::findRow() {
+double RangeImage::findRow(const LidarCloud& cloud) const {
   for (const double row : kRows)
-    if (connectedShare(row) >= kConnected) return row;
+    if (connectedShare(cloud, row) >= kConnected) return row;
   return *(std::end(kRows) - 1);
 }
 
-void RangeImage::fill(const LidarCloud& cloud) {
-  directions(cloud);
-  if (rows_ == 0) layOut(row_ > 0 ? row_ : findRow());
-  image_.resize((rows_ + 2 * kRowReach) * static_cast<std::size_t>(stride_));
-  std::fill(image_.begin(), image_.end(), 0.0F);
-  findPixelsOf(*this);
-  for (std::size_t i = 0; i < ranges_.size(); ++i) image_[pixels_[i]] = ranges_[i];
-  image_[0] = 0;
-  for (std::size_t row = kRowReach; row < rows_ + kRowReach; ++row) {
-    float* line = image_.data() + row * static_cast<std::size_t>(stride_);
+// Rows without returns are empty already.
+void RangeImage::wipe() {
+  const auto stride = static_cast<std::size_t>(stride_);
+  image_.resize((rows_ + 2 * kRowReach) * stride);
+  if (highest_ >= lowest_)
+    std::fill_n(image_.begin() + static_cast<std::ptrdiff_t>(lowest_ * stride),
+                (highest_ + 1 - lowest_) * stride, 0.0F);
+}
+
+void RangeImage::fill(const LidarCloud& cloud, const BlockVisitor& look) {
+  if (rows_ == 0) layOut(row_ > 0 ? row_ : findRow(cloud));
+  wipe();
+  place(cloud, look);
+  float* image = image_.data();
+  for (std::size_t i = 0; i < ranges_.size(); ++i) image[pixels_[i]] = ranges_[i];
+  image[0] = 0;
+  for (std::size_t row = lowest_; row <= highest_; ++row) {
+    float* line = image + row * static_cast<std::size_t>(stride_);
     std::copy(line + columns_, line + columns_ + kColumnReach, line);
     std::copy(line + kColumnReach, line + 2 * kColumnReach, line + kColumnReach + columns_);
   }
 }
 
 std::size_t RangeImage::memoryBytes() const {
-  return sizeof(float) *
-             (ranges_.capacity() + azimuth_.capacity() + slope_.capacity() + image_.capacity()) +
+  return sizeof(float) * (ranges_.capacity() + image_.capacity()) +
          sizeof(std::uint32_t) * pixels_.capacity();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "libperception/measurement/SensorFrame.h"
@@ -12,38 +13,41 @@ namespace perception {
 /// holds the other end's columns.
 class RangeImage {
  public:
+  using BlockVisitor = std::function<void(std::size_t first, std::size_t count)>;
   static constexpr int kColumnReach = 4, kRowReach = 2;  ///< [px] of a return's neighbourhood
 
   /// `column`, `row`: [rad] of a pixel (rows are even in the tangent of elevation). row = 0: found
   /// from the first scan, the finest in which neighbouring beams lie in neighbouring rows.
   RangeImage(double column, double row);
 
-  /// The last return of a direction stays.
-  void fill(const LidarCloud& cloud);
+  /// The last return of a direction stays. `look`, where given, is shown each block of returns when
+  /// they are in the nearest cache: its first one and their number.
+  void fill(const LidarCloud& cloud, const BlockVisitor& look = {});
 
   /// [m] of each return; 0 where it is not finite or in the sensor itself.
   const std::vector<float>& ranges() const { return ranges_; }
-  /// Place of a return's pixel in the arrays below.
-  std::size_t pixelOf(std::size_t i) const { return pixels_[i]; }
+  /// Place of each return's pixel in the array below.
+  const std::vector<std::uint32_t>& pixelsOfReturns() const { return pixels_; }
   const std::vector<float>& pixels() const { return image_; }  ///< [m]; 0: no return
   std::ptrdiff_t stride() const { return stride_; }            ///< from a pixel to the row above it
   double rowPitch() const { return row_; }                     ///< [rad]
   std::size_t memoryBytes() const;
 
  private:
-  void directions(const LidarCloud& cloud);
   void layOut(double row);
-  double findRow();
-  double connectedShare(double row) const;
-  void findPixelsOf(const RangeImage& directions);
+  double findRow(const LidarCloud& cloud) const;
+  double connectedShare(const LidarCloud& cloud, double row) const;
+  void place(const LidarCloud& cloud, const BlockVisitor& look = {});
+  void wipe();
 
   double column_, row_;
   std::size_t columns_, rows_ = 0;
   std::ptrdiff_t stride_ = 0;
   float per_radian_ = 0, rows_per_slope_ = 0;
-  std::vector<float> ranges_, azimuth_, slope_;  ///< [m], [rad], tangent of elevation of each
+  std::vector<float> ranges_;  ///< [m] of each return
   std::vector<std::uint32_t> pixels_;
   std::vector<float> image_;
+  std::size_t lowest_ = 0, highest_ = 0;  ///< rows with returns, margins not counted
 };
 
 }  // namespace perception

@@ -13,17 +13,19 @@ class SurroundingCubes {
   explicit SurroundingCubes(float reach);  ///< [m] horizontal, from the sensor
 
   void clear();
-  /// The points that add() is about.
-  void place(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z);
-  void add(std::size_t i, bool doubted) {
-    std::uint16_t& count = counts_[2 * cube_of_[i] + (doubted ? 1 : 0)];
-    count = static_cast<std::uint16_t>(count + (count < 0xFFFF));
+  /// Some returns [m, sensor frame] and their ranges [m]: those up to `far` count as trusted.
+  void add(const float* x, const float* y, const float* z, const float* range, std::size_t count,
+           float far);
+  /// One of the returns that were added is a phantom.
+  void doubt(float x, float y, float z) {
+    const std::size_t cube = columnAt(along(x), along(y)) + static_cast<std::size_t>(layer(z));
+    --trusted_[cube], ++doubted_[cube];
   }
   /// ln((1 + trusted) / (1 + doubted)) of the others in the eight cubes that meet nearest to a
   /// place where a return counts as `doubted` itself.
   float company(float x, float y, float z, bool doubted) const;
   std::size_t memoryBytes() const {
-    return counts_.capacity() * sizeof(std::uint16_t) + cube_of_.capacity() * sizeof(std::uint32_t);
+    return (trusted_.capacity() + doubted_.capacity()) * sizeof(std::uint32_t);
   }
 
  private:
@@ -40,10 +42,13 @@ class SurroundingCubes {
     return i < 0 ? 0 : i < kLayers ? i : kLayers - 1;
   }
 
+  std::size_t columnAt(int x, int y) const {
+    return static_cast<std::size_t>((x * side_ + y) * kLayers);
+  }
+
   float reach_;
   int side_;
-  std::vector<std::uint16_t> counts_;  // trusted, doubted of each cube
-  std::vector<std::uint32_t> cube_of_;
+  std::vector<std::uint32_t> trusted_, doubted_;  // [returns] of each cube; the last: farther ones
 };
 
 }  // namespace perception

@@ -202,8 +202,8 @@ TEST(PointTrust, SameScansGiveTheSameTrust) {
 TEST(IntensityLaw, TellsBinsThatPhantomsHaveMoreOften) {
   IntensityLaw law;
   for (int i = 0; i < 1000; ++i) {
-    law.add(0, 1, 1);
-    law.add(0.3F, 0, 1);
+    law.add(IntensityLaw::binOf(0), 1, 0);
+    law.add(IntensityLaw::binOf(0.3F), 0, 1);
   }
   const auto ratios = law.logRatios();
   EXPECT_GT(ratios[IntensityLaw::binOf(0)], 2);

@@ -1,0 +1,68 @@
+#include "libperception/weather/IntensityLaw.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/Lanes.h"
+#include "libperception/core/Wider.h"
+
+namespace perception {
+namespace {
+
+constexpr double kPrior = 50;           // [returns] that a bin's ratio must stand against
+constexpr float kBound = 4;             // [log-odds]
+constexpr double kFewestPhantoms = 20;  // [returns] below it nothing is learnt
+
+/// The number of binary digits of intensities as bytes: a float's exponent tells it.
+PERCEPTION_LANES Int8 digitsOf(const Float8& intensity) {
+  const Float8 scaled = intensity * 255 + 0.5F;
+  const Float8 low = scaled > 0 ? scaled : eight(0.0F);  // not a number, too
+  const Float8 bytes = asFloats(truncated(smaller(low, eight(255.0F))));
+  return larger((reinterpret_cast<Int8>(bytes) >> 23) - 126, eight(0));
+}
+
+PERCEPTION_WIDER void findAll(const float* intensity, std::size_t count, std::uint8_t* bins) {
+  using Byte8 = std::uint8_t __attribute__((vector_size(8)));
+  for (std::size_t i = 0; i + kLanes <= count; i += kLanes)
+    store8(__builtin_convertvector(digitsOf(load8(intensity + i)), Byte8), bins + i);
+}
+
+}  // namespace
+
+std::size_t IntensityLaw::binOf(float intensity) {
+  return static_cast<std::size_t>(digitsOf(eight(intensity))[0]);
+}
+
+void IntensityLaw::findBins(const std::vector<float>& intensity, std::vector<std::uint8_t>& bins) {
+  bins.resize(intensity.size());
+  findAll(intensity.data(), intensity.size(), bins.data());
+  for (std::size_t i = intensity.size() / kLanes * kLanes; i < intensity.size(); ++i)
+    bins[i] = static_cast<std::uint8_t>(binOf(intensity[i]));
+}
+
+void IntensityLaw::forget(double share) {
+  for (auto* counts : {&phantoms_, &surfaces_})
+    for (double& count : *counts) count *= share;
+}
+
+void IntensityLaw::add(std::size_t bin, double phantoms, double surfaces) {
+  phantoms_[bin] += phantoms;
+  surfaces_[bin] += surfaces;
+}
+
+std::array<float, IntensityLaw::kBins> IntensityLaw::logRatios() const {
+  std::array<float, kBins> ratios{};
+  double phantoms = 0, surfaces = 0;
+  for (std::size_t b = 0; b < kBins; ++b) phantoms += phantoms_[b], surfaces += surfaces_[b];
+  if (phantoms < kFewestPhantoms || surfaces < kFewestPhantoms) return ratios;
+  for (std::size_t b = 0; b < kBins; ++b) {
+    const double pooled = 0.5 * (phantoms_[b] / phantoms + surfaces_[b] / surfaces);
+    const double p = (phantoms_[b] + kPrior * pooled) / (phantoms + kPrior);
+    const double s = (surfaces_[b] + kPrior * pooled) / (surfaces + kPrior);
+    if (p > 0 && s > 0)
+      ratios[b] = std::clamp(static_cast<float>(std::log(p / s)), -kBound, kBound);
+  }
+  return ratios;
+}
+
+}  // namespace perception

@@ -1,0 +1,25 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace perception {
+
+/// A curve through knots, read from a table: a multiplication and a look-up per return.
+class TrustCurve {
+ public:
+  TrustCurve() = default;
+  TrustCurve(const std::vector<double>& knots, const std::vector<double>& values);
+  float at(float v) const {
+    const float place = (v - low_) * per_unit_ + 0.5F;
+    const float low = place > 0 ? place : 0;
+    return table_[static_cast<std::size_t>(static_cast<int>(low < kLast ? low : kLast))];
+  }
+
+ private:
+  static constexpr int kLast = 511;
+  float low_ = 0, per_unit_ = 1;
+  std::array<float, kLast + 1> table_{};
+};
+
+}  // namespace perception
