@@ -28,7 +28,8 @@ namespace {
 
 constexpr float kBeyondAnyLidar2 = 1e3f * 1e3f;  // [m^2]
 constexpr std::size_t kBlock = 512;              // points that stay in the nearest cache
-constexpr std::size_t kTaken = 16;  // neighbours of a line of the cache, taken together
+constexpr std::size_t kAhead = 512;  // points by which far places of the scan are asked for early
+constexpr std::size_t kTaken = 16;   // neighbours of a line of the cache, taken together
 
 bool ownProcessingDropsIt(std::uint8_t label, bool only_objects) {
   if (only_objects) return label != static_cast<std::uint8_t>(PointLabel::kObject);
@@ -40,7 +41,7 @@ bool ownProcessingDropsIt(std::uint8_t label, bool only_objects) {
 struct Block {
   std::array<float, kBlock> px, py, pz;  ///< [m] sensor frame, when the cloud is thinned
   std::array<float, kBlock> x, y, z;     ///< [m] ego frame
-  std::array<std::int32_t, kBlock> keep, has_range;
+  std::array<std::int32_t, kBlock> keep, has_range;  ///< 0 or 1
   std::array<std::uint32_t, kBlock> source;
 };
 
@@ -100,10 +101,9 @@ std::size_t squeeze(Block& block, std::size_t size) {
     kept += kGroup;
   };
   for (std::size_t first = 0; first < size; first += kGroup) {
-    std::int32_t all = 0;
-    if (first + kGroup <= size)
-      for (std::size_t k = 0; k < kGroup; ++k) all += block.keep[first + k];
-    if (all == static_cast<std::int32_t>(kGroup)) {
+    std::uint64_t marks[kGroup / 2] = {};  // of two points each
+    if (first + kGroup <= size) std::memcpy(marks, &block.keep[first], sizeof marks);
+    if ((marks[0] & marks[1] & marks[2] & marks[3]) == 0x0000000100000001) {
       if (kept == first) {
         kept += kGroup;
       } else {
@@ -115,6 +115,15 @@ std::size_t squeeze(Block& block, std::size_t size) {
       if (block.keep[k] != 0) move(k);
   }
   return kept;
+}
+
+/// Most groups are whole: no call is needed to copy them.
+void takeGroup(const float* from, std::size_t count, float* to) {
+  if (count == kTaken) {
+    std::memcpy(to, from, kTaken * sizeof *to);
+  } else {
+    std::copy_n(from, count, to);
+  }
 }
 
 void append(const Block& block, std::size_t kept, EgoPoints& points) {
@@ -151,9 +160,14 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
     if (stride == 1) {
       judge(&cloud->x[first], &cloud->y[first], &cloud->z[first], size, rules, block);
     } else {
-      for (std::size_t k = 0; k < size; ++k) {
-        const std::size_t i = index(first + k);
-        block.px[k] = cloud->x[i], block.py[k] = cloud->y[i], block.pz[k] = cloud->z[i];
+      for (std::size_t k = 0; k < size; k += kTaken) {
+        const std::size_t i = index(first + k), taken = std::min(kTaken, size - k);
+        const std::size_t later = std::min(index(first + k + kAhead), cloud->size() - 1);
+        for (const auto* axis : {&cloud->x, &cloud->y, &cloud->z})
+          __builtin_prefetch(axis->data() + later);
+        takeGroup(&cloud->x[i], taken, &block.px[k]);
+        takeGroup(&cloud->y[i], taken, &block.py[k]);
+        takeGroup(&cloud->z[i], taken, &block.pz[k]);
       }
       judge(block.px.data(), block.py.data(), block.pz.data(), size, rules, block);
     }
@@ -165,8 +179,9 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
     if (stride == 1) {
       std::iota(block.source.begin(), block.source.end(), static_cast<std::uint32_t>(first));
     } else {
-      for (std::size_t k = 0; k < size; ++k)
-        block.source[k] = static_cast<std::uint32_t>(index(first + k));
+      for (std::size_t k = 0; k < size; k += kTaken)
+        std::iota(&block.source[k], &block.source[k] + std::min(kTaken, size - k),
+                  static_cast<std::uint32_t>(index(first + k)));
     }
     append(block, squeeze(block, size), points);
   }

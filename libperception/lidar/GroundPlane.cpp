@@ -99,6 +99,23 @@ PERCEPTION_WIDER void findCells(const float* __restrict xs, const float* __restr
   }
 }
 
+/// Of points within `far`, how many there are and how many lie `depth` below the plane.
+struct NearCounts {
+  std::int32_t near, below;
+};
+PERCEPTION_WIDER NearCounts countNear(const float* __restrict x, const float* __restrict y,
+                                      const float* __restrict z, std::size_t count,
+                                      const PolarCells k) {
+  const float far2 = k.far * k.far;
+  NearCounts counts{0, 0};
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t near = x[i] * x[i] + y[i] * y[i] < far2;
+    counts.near += near;
+    counts.below += near & (z[i] < k.a * x[i] + k.b * y[i] + k.c - k.depth);
+  }
+  return counts;
+}
+
 }  // namespace
 
 GroundEstimator::Candidates GroundEstimator::candidates(const EgoPoints& points) const {
@@ -140,18 +157,14 @@ GroundEstimator::Candidates GroundEstimator::candidates(const EgoPoints& points)
 }
 
 double GroundEstimator::mirroredShareOf(const EgoPoints& points) const {
-  const auto a = static_cast<float>(plane_.a), b = static_cast<float>(plane_.b),
-             c = static_cast<float>(plane_.c);
-  const auto depth = static_cast<float>(params_.wet_depth);
-  const auto range2 = static_cast<float>(params_.wet_range * params_.wet_range);
-  std::size_t near = 0, below = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const float x = points.x[i], y = points.y[i];
-    const bool counts = x * x + y * y < range2;
-    near += counts;
-    below += counts && points.z[i] < a * x + b * y + c - depth;
-  }
-  return near == 0 ? 0 : static_cast<double>(below) / static_cast<double>(near);
+  PolarCells within{};
+  within.a = static_cast<float>(plane_.a), within.b = static_cast<float>(plane_.b);
+  within.c = static_cast<float>(plane_.c);
+  within.depth = static_cast<float>(params_.wet_depth);
+  within.far = static_cast<float>(params_.wet_range);
+  const NearCounts counts =
+      countNear(points.x.data(), points.y.data(), points.z.data(), points.size(), within);
+  return counts.near == 0 ? 0 : static_cast<double>(counts.below) / counts.near;
 }
 
 std::optional<GroundPlane> GroundEstimator::fit(const Candidates& candidates,
