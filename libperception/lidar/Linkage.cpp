@@ -7,30 +7,11 @@
 #include <numeric>
 #include <utility>
 
+#include "libperception/lidar/Forest.h"
+
 namespace perception {
 
 namespace {
-
-/// Union-find with path halving; the smaller root wins, so that roots do not depend on the order of
-/// unions.
-class Forest {
- public:
-  explicit Forest(std::size_t count) : parent_(count) {
-    for (std::size_t i = 0; i < count; ++i) parent_[i] = static_cast<std::uint32_t>(i);
-  }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t i, std::uint32_t j) {
-    i = find(i), j = find(j);
-    if (i < j) parent_[j] = i;
-    if (j < i) parent_[i] = j;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// Points by square cells whose diagonal is just below the small threshold: all points of a cell
 /// are one group. Cells are numbered row by row. A table of the plane finds them, which wraps
@@ -286,20 +267,6 @@ void link(const Cells& cells, const std::vector<Reach>& reaches, double threshol
   }
 }
 
-/// Groups of the points, numbered in the order of their first points.
-Partition partitionOf(const Cells& cells, Forest& forest) {
-  Partition partition;
-  partition.group.resize(cells.cell_of_point.size());
-  std::vector<std::uint32_t> number(cells.count(), Cells::kNone), root(cells.count());
-  for (std::uint32_t k = 0; k < cells.count(); ++k) root[k] = forest.find(k);
-  for (std::size_t i = 0; i < partition.group.size(); ++i) {
-    std::uint32_t& n = number[root[cells.cell_of_point[i]]];
-    if (n == Cells::kNone) n = partition.count++;
-    partition.group[i] = n;
-  }
-  return partition;
-}
-
 }  // namespace
 
 Partition farPartition(const DoubleLinkage& linkage) {
@@ -323,20 +290,13 @@ DoubleLinkage linkTwice(const std::vector<float>& x, const std::vector<float>& y
   link(cells, {{0, 1, 1}, {1, -1, 1}}, near_threshold, set, near_forest);  // most of what there is
   for (std::uint32_t& s : set) s = near_forest.find(s);
   link(cells, reachesOf(side, near_threshold), near_threshold, set, near_forest);
-  result.near = partitionOf(cells, near_forest);
+  result.near = partitionOf(cells.cell_of_point, near_forest);
 
   // The near groups are the nodes of the second forest.
   for (std::size_t i = 0; i < x.size(); ++i) set[cells.cell_of_point[i]] = result.near.group[i];
   Forest far_forest(result.near.count);
   link(cells, reachesOf(side, far_threshold), far_threshold, set, far_forest);
-  result.far_of_near.resize(result.near.count);
-  for (std::uint32_t g = 0; g < result.near.count; ++g) {
-    // Near groups come in the order of their first points, and the smaller root wins: so do these.
-    const std::uint32_t root = far_forest.find(g);
-    result.far_of_near[g] = root == g ? result.far_count++ : result.far_of_near[root];
-  }
-  result.parts.assign(result.far_count, 0);
-  for (const std::uint32_t far : result.far_of_near) ++result.parts[far];
+  joinNearGroups(far_forest, result);
   return result;
 }
 

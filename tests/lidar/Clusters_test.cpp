@@ -76,6 +76,35 @@ TEST(Clusters, WeightsCountAsReturns) {
   EXPECT_EQ(find(0.69f), 0u);
 }
 
+/// A car whose side rises from 0.6 to 1.4 m, and a branch across it, 1.1 m higher than what is
+/// below.
+Returns carBelowBranch() {
+  Returns returns = Returns().row(10, 0, 11, 0.4f, 1.4f);
+  for (std::size_t i = 0; i < 11; ++i) returns.height[i] = 0.6f + 0.08f * static_cast<float>(i);
+  for (int i = 0; i < 12; ++i) {
+    returns.x.push_back(12), returns.y.push_back(static_cast<float>(i) * 0.4f);
+    returns.height.push_back(2.11f);
+  }
+  return returns;
+}
+
+TEST(Clusters, SeenFromAboveABranchOverACarIsPartOfIt) {
+  const auto clusters = carBelowBranch().find();
+  ASSERT_EQ(clusters.size(), 1u);
+  EXPECT_EQ(clusters[0].points.size(), 23u);
+}
+
+TEST(Clusters, InSpaceABranchOverACarIsAnotherCluster) {
+  ClusterParams params;
+  params.in_space = true;
+  const auto clusters = carBelowBranch().find(params);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_EQ(clusters[0].points.size(), 11u);
+  EXPECT_FLOAT_EQ(clusters[0].highest, 1.4f);
+  EXPECT_EQ(clusters[1].points.size(), 12u);
+  EXPECT_FLOAT_EQ(clusters[1].lowest, 2.11f);
+}
+
 TEST(Clusters, NoReturnsNoClusters) { EXPECT_TRUE(Returns().find().empty()); }
 
 }  // namespace
