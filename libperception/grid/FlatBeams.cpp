@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/Lanes.h"
 #include "libperception/core/RoughBearing.h"
 #include "libperception/core/Wider.h"
 
@@ -18,35 +18,107 @@ struct Rose {
   std::int32_t count;
 };
 
-PERCEPTION_WIDER void findBearings(const float* __restrict x, const float* __restrict y,
-                                   std::size_t count, Rose rose, std::int32_t* __restrict bearing,
-                                   float* __restrict range) {
+// Points in the sensor's own cell and what is no number have the bearing behind the last one.
+PERCEPTION_WIDER void findBearings(const PlacedBlock& placed, std::size_t count, const Rose rose,
+                                   std::int32_t* __restrict bearing, float* __restrict range) {
+  const float* __restrict x = placed.x.data(), * __restrict y = placed.y.data();
+  const std::int32_t* __restrict cell = placed.cell.data();
   for (std::size_t i = 0; i < count; ++i) {
     const float dx = x[i] - rose.x, dy = y[i] - rose.y, range2 = dx * dx + dy * dy;
     const auto bin = static_cast<std::int32_t>((roughBearing(dx, dy) + 3.1416F) * rose.per_radian);
     const std::int32_t bounded = bin < rose.count ? bin : 0;
-    bearing[i] = range2 > 1 ? bounded : -1;
+    const std::int32_t has_one = (range2 > 1) & (cell[i] != PlacedBlock::kNotFinite);
+    bearing[i] = has_one != 0 ? bounded : rose.count;
     range[i] = range2;
+  }
+}
+
+/// A beam of a block on its way, mirrored so that it grows along.
+struct FlatBeam {
+  float on, aside, across;  ///< [cells], [cells], [-]
+  float from, to;           ///< [cells] along
+  std::int32_t column;      ///< of cell and row 0
+  std::int32_t step, side;  ///< from column to column along and aside
+  std::int32_t cells;       ///< of the window
+};
+
+// Lanes beyond its end stay in its last cell.
+PERCEPTION_LANES void crossOne(const FlatBeam& beam, std::uint8_t* crossed) {
+  const Float8 from = eight(beam.from), to = eight(beam.to);
+  const auto first = static_cast<std::int32_t>(beam.on + beam.from);
+  const auto last = std::min(static_cast<std::int32_t>(beam.on + beam.to), beam.cells - 1);
+  for (std::int32_t i = first; i <= last; i += kLanes) {
+    const Int8 along = smaller(i + firstEight(), eight(last));
+    const Float8 begin = asFloats(along) - beam.on;
+    const Int8 row0 = truncated(beam.aside + beam.across * larger(begin, from));
+    const Int8 row1 = truncated(beam.aside + beam.across * smaller(begin + 1, to));
+    std::int32_t enters[kLanes], leaves[kLanes];
+    store8(beam.column + along * beam.step + row0 * beam.side, enters);
+    store8(beam.column + along * beam.step + row1 * beam.side, leaves);
+    for (int k = 0; k < kLanes; ++k) crossed[enters[k]] = 1, crossed[leaves[k]] = 1;
+  }
+}
+
+PERCEPTION_WIDER void crossAll(const BeamBlock& b, const WindowPlace origin, std::int32_t cells,
+                               std::uint8_t* crossed) {
+  for (std::size_t i = 0; i < b.count; ++i) {
+    if (!(b.from[i] < b.to[i])) continue;
+    const bool along_x = b.face[i] < 2, back = b.face[i] % 2 != 0;
+    const float on = along_x ? origin.x : origin.y;
+    const std::int32_t step = along_x ? 1 : cells;
+    crossOne({back ? static_cast<float>(cells) - on : on, along_x ? origin.y : origin.x,
+              b.across[i], b.from[i], b.to[i], back ? (cells - 1) * step : 0, back ? -step : step,
+              along_x ? cells : 1, cells},
+             crossed);
   }
 }
 
 }  // namespace
 
-FlatBeams::FlatBeams(double step)
-    : beams_(static_cast<std::size_t>(std::ceil(kTwoPi / step))),
-      per_radian_(static_cast<float>(static_cast<double>(beams_.size()) / kTwoPi)) {}
+FlatBeams::FlatBeams(double step, int cells)
+    : beams_(static_cast<std::size_t>(std::ceil(kTwoPi / step)) + 1),
+      per_radian_(static_cast<float>(static_cast<double>(beams_.size() - 1) / kTwoPi)),
+      cells_(cells) {}
 
 void FlatBeams::begin(const WindowPlace& origin) {
   std::fill(beams_.begin(), beams_.end(), Beam{});
-  origin_ = origin;
+  origin_ = origin, origin_.z = kMiddle, origin_.low = origin_.high = 1;
 }
 
 void FlatBeams::look(const PlacedBlock& placed, std::size_t count) {
-  float ranges[PlacedBlock::kSize];
-  findBearings(placed.x.data(), placed.y.data(), count,
-               {origin_.x, origin_.y, per_radian_, static_cast<std::int32_t>(beams_.size())},
-               bearing_.data(), ranges);
-  std::memcpy(range_.data(), ranges, count * sizeof(float));
+  findBearings(placed, count,
+               {origin_.x, origin_.y, per_radian_, static_cast<std::int32_t>(beams_.size() - 1)},
+               bearing_.data(), range_.data());
+}
+
+// Mostly a scan's points are no farther than those before: a branch that is seldom taken.
+void FlatBeams::offerClear(const PlacedBlock& placed, std::size_t count, std::uint32_t first) {
+  look(placed, count);
+  for (std::size_t k = 0; k < count; ++k) {
+    Beam& beam = beams_[static_cast<std::size_t>(bearing_[k])];
+    if (range_[k] > beam.farthest)
+      beam.farthest = range_[k], beam.end = first + static_cast<std::uint32_t>(k);
+  }
+}
+
+void FlatBeams::offerHits(const PlacedBlock& placed, const std::int32_t* stops, std::size_t count,
+                          std::uint32_t first) {
+  look(placed, count);
+  for (std::size_t k = 0; k < count; ++k) {
+    Beam& beam = beams_[static_cast<std::size_t>(bearing_[k])];
+    const std::uint32_t point = first + static_cast<std::uint32_t>(k);
+    if (stops[k] != 0) {
+      if (range_[k] < beam.nearest) beam.nearest = range_[k], beam.stop = point;
+    } else if (range_[k] > beam.farthest) {
+      beam.farthest = range_[k], beam.end = point;
+    }
+  }
+}
+
+void FlatBeams::crossBlock(std::uint8_t* crossed) {
+  block_.prepare(origin_, cells_, 1, {});
+  crossAll(block_, origin_, cells_, crossed);
+  block_.count = 0;
 }
 
 }  // namespace perception

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libperception/grid/BeamBlock.h"
 #include "libperception/grid/WindowFrame.h"
 
 namespace perception {
@@ -11,46 +12,54 @@ namespace perception {
 /// is none, to its farthest.
 class FlatBeams {
  public:
-  explicit FlatBeams(double step);  ///< [rad] of bearing
+  /// `step`: [rad] of bearing. `cells`: of the window.
+  FlatBeams(double step, int cells);
 
   /// Forgets the last scan. `origin`: the sensor.
   void begin(const WindowPlace& origin);
-  /// Bearings and ranges of placed points, for offer().
-  void look(const PlacedBlock& placed, std::size_t count);
-  /// Point k of those, number `index` of the scan.
-  void offer(std::size_t k, std::uint32_t index, bool stops) {
-    const std::int32_t bearing = bearing_[k];
-    if (bearing < 0) return;
-    const std::uint64_t key = std::uint64_t{range_[k]} << 32 | index;
-    Beam& beam = beams_[static_cast<std::size_t>(bearing)];
-    if (stops) {
-      beam.nearest = key < beam.nearest ? key : beam.nearest;
-    } else {
-      beam.farthest = key > beam.farthest ? key : beam.farthest;
+  /// Placed points that stop no beam, the scan's `first` and following.
+  void offerClear(const PlacedBlock& placed, std::size_t count, std::uint32_t first);
+  /// Placed points of which some do. `stops`: 0 or 1 for each.
+  void offerHits(const PlacedBlock& placed, const std::int32_t* stops, std::size_t count,
+                 std::uint32_t first);
+  /// Sets the columns [y][x] that beams cross, `place` being where a point of the scan is. Returns
+  /// their number.
+  template <class Place>
+  std::size_t cross(const Place& place, std::uint8_t* crossed) {
+    std::size_t beams = 0;
+    for (std::size_t bearing = 0; bearing + 1 < beams_.size(); ++bearing) {
+      const Beam& beam = beams_[bearing];
+      if (!(beam.nearest < kNone) && !(beam.farthest > 0)) continue;
+      const WindowPlace end = place(beam.nearest < kNone ? beam.stop : beam.end);
+      // On the ground heights play no part.
+      block_.add({end.x, end.y, kMiddle, 1, 1});
+      ++beams;
+      if (block_.count == BeamBlock::kSize) crossBlock(crossed);
     }
-  }
-  /// Hands the number of the point where it ends to `take`, beam by beam.
-  template <class Take>
-  void forBeams(const Take& take) const {
-    for (const Beam& beam : beams_) {
-      if (beam.nearest == kNone && beam.farthest == 0) continue;
-      take(static_cast<std::uint32_t>(beam.nearest == kNone ? beam.farthest : beam.nearest));
-    }
+    crossBlock(crossed);
+    return beams;
   }
   std::size_t memoryBytes() const { return beams_.capacity() * sizeof(Beam) + sizeof *this; }
 
  private:
-  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-  /// The range, whose bits grow with it, and the point's number below.
+  static constexpr float kNone = 3e38F, kMiddle = 0.5F;
+  /// Squared ranges [cells^2] of its nearest point that stops it and of its farthest one that does
+  /// not, and their numbers.
   struct Beam {
-    std::uint64_t nearest = kNone, farthest = 0;
+    float nearest = kNone, farthest = 0;
+    std::uint32_t stop = 0, end = 0;
   };
 
-  std::vector<Beam> beams_;
+  void look(const PlacedBlock& placed, std::size_t count);
+  void crossBlock(std::uint8_t* crossed);
+
+  std::vector<Beam> beams_;  // and one for points without a bearing
   float per_radian_;
+  int cells_;
   WindowPlace origin_{};
-  PlacedBlock::Lane<std::int32_t> bearing_;  // -1: in the sensor's own cell
-  PlacedBlock::Lane<std::uint32_t> range_;   // bits of the squared range
+  PlacedBlock::Lane<std::int32_t> bearing_;
+  PlacedBlock::Lane<float> range_;
+  BeamBlock block_;
 };
 
 }  // namespace perception

@@ -13,22 +13,36 @@ constexpr double kForgotten = 0.05;  // [log-odds] as good as unknown
 constexpr float kTrusted = 0.5F;     // a hit below does not end a beam: what lies behind was seen
 constexpr int kWhole = 255;          // weight of a hit in a mark
 
-/// The evidence that cells of a row take in.
+/// What cells of a row keep and take in.
 struct RowEvidence {
-  const std::uint8_t *weights, *crossed;  ///< of 255; 0 or 1
-  float hit, miss, low, high;             ///< [log-odds]
-  float voided;                           ///< share of voidedBy(): 1 where hits are judged
+  std::uint8_t *weights, *crossed;  ///< of 255; 0 or 1; used up
+  float keep;                       ///< share of the log-odds that is not forgotten
+  float hit, miss, low, high;       ///< [log-odds]
+  float voided;                     ///< share of voidedBy(): 1 where hits are judged
 };
 
-PERCEPTION_WIDER void addRow(float* __restrict values, std::size_t count, RowEvidence e) {
-  const std::uint8_t* __restrict weights = e.weights, * __restrict crossed = e.crossed;
+PERCEPTION_WIDER void addRow(float* __restrict values, std::size_t count, const RowEvidence e) {
+  std::uint8_t* __restrict weights = e.weights, * __restrict crossed = e.crossed;
   for (std::size_t i = 0; i < count; ++i) {
-    const float w = static_cast<float>(weights[i]) * (1.0F / kWhole), v = values[i];
+    const float w = static_cast<float>(weights[i]) * (1.0F / kWhole), v = values[i] * e.keep;
     const float left = v < 0 ? v - v * w * e.voided : v;
     const float miss = static_cast<float>(crossed[i]) * ((1 - w) * e.miss);
     const float sum = left + (w * e.hit + miss);
     const float bounded = sum < e.low ? e.low : sum;
     values[i] = bounded > e.high ? e.high : bounded;
+    weights[i] = 0, crossed[i] = 0;
+  }
+}
+
+/// What hits weigh, and which of them stop a beam.
+PERCEPTION_WIDER void weigh(const PlacedBlock& placed, const float* __restrict weights,
+                            std::size_t count, std::int32_t* __restrict stops,
+                            std::int32_t* __restrict marks) {
+  const std::int32_t* __restrict in_slab = placed.in_slab.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const float w = weights[i] < PlacedBlock::kFullWeight ? weights[i] : 1;  // no verdict: believe
+    stops[i] = in_slab[i] & (w >= kTrusted);
+    marks[i] = static_cast<std::int32_t>((w > 0 ? w : 0) * kWhole + 0.5F);
   }
 }
 
@@ -42,7 +56,7 @@ class GridRolling2d final : public SafetyGrid {
         values_(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_), 0),
         weights_(values_.size(), 0),
         crossed_(values_.size(), 0),
-        beams_(params.ray_step) {}
+        beams_(params.ray_step, cells_) {}
 
   GridStats insert(const GridScan& scan) override {
     GridStats stats;
@@ -52,17 +66,15 @@ class GridRolling2d final : public SafetyGrid {
     frame_ = WindowFrame(params(), scan.T_world_ground, first_, cells_, 0);
     judged_ = scan.weights.size() == scan.hits.size();
     rays_ = scan.origin.allFinite();
-    const WindowPlace origin = placeOf(rays_ ? scan.origin : scan.T_world_ground.translation());
-    beams_.begin(origin);
+    beams_.begin(frame_.place(rays_ ? scan.origin : scan.T_world_ground.translation()));
     takeHits(scan, stats);
-    forPoints(scan.clear, stats, scan.hits.size(),
-              [](std::size_t, std::int32_t, bool) { return false; });
-    if (rays_)
-      beams_.forBeams([&](std::uint32_t i) {
-        ++stats.rays;
-        cast(origin,
-             placeOf(i < scan.hits.size() ? scan.hits[i] : scan.clear[i - scan.hits.size()]));
-      });
+    takeClear(scan, stats);
+    if (rays_) {
+      const auto place = [&](std::uint32_t i) {
+        return frame_.place(i < scan.hits.size() ? scan.hits[i] : scan.clear[i - scan.hits.size()]);
+      };
+      stats.rays += beams_.cross(place, crossed_.data());
+    }
     addEvidence();
     return stats;
   }
@@ -109,7 +121,7 @@ class GridRolling2d final : public SafetyGrid {
 
   std::size_t memoryBytes() const override {
     return values_.capacity() * sizeof(float) + weights_.capacity() + crossed_.capacity() +
-           beams_.memoryBytes() + sizeof placed_;
+           beams_.memoryBytes() + sizeof *this;
   }
 
  private:
@@ -141,10 +153,7 @@ class GridRolling2d final : public SafetyGrid {
     stats.late = scan.stamp < now_;
     const double age = std::max(0.0, scan.stamp - now_);
     now_ = now_ + age;
-    if (age > 0) {
-      const auto keep = static_cast<float>(std::exp(-age / params().tau));
-      for (float& v : values_) v *= keep;
-    }
+    keep_ = static_cast<float>(std::exp(-age / params().tau));
     if (started_)
       for (std::int64_t y = first.y; y < first.y + cells_; ++y) {
         const bool row = y < first_.y || y >= first_.y + cells_;
@@ -156,59 +165,35 @@ class GridRolling2d final : public SafetyGrid {
     started_ = true;
   }
 
-  WindowPlace placeOf(const Vector3& p) {
-    frame_.place(&p, 1, placed_);
-    return placed_.at(0);
-  }
-
-  /// Hands the index and cell of each point to `take`, which says whether it stops a beam. `first`:
-  /// number of the first one.
-  template <class Take>
-  void forPoints(const std::vector<Vector3>& points, GridStats& stats, std::size_t first,
-                 const Take& take) {
-    for (std::size_t begin = 0; begin < points.size(); begin += PlacedBlock::kSize) {
-      const std::size_t count = std::min(PlacedBlock::kSize, points.size() - begin);
-      frame_.place(&points[begin], count, placed_);
-      beams_.look(placed_, count);
-      for (std::size_t k = 0; k < count; ++k) {
-        if (placed_.cell[k] == PlacedBlock::kNotFinite) {
-          ++stats.not_finite;
-          continue;
-        }
-        const bool stops = take(begin + k, placed_.cell[k], placed_.in_slab[k] != 0);
-        beams_.offer(k, static_cast<std::uint32_t>(first + begin + k), stops);
+  void takeHits(const GridScan& scan, GridStats& stats) {
+    constexpr std::size_t kSize = PlacedBlock::kSize;
+    const std::vector<float> full(judged_ ? 0 : kSize, 1.0F);
+    PlacedBlock::Lane<std::int32_t> stops, marks;
+    std::int32_t settled = PlacedBlock::kOutside;
+    for (std::size_t begin = 0; begin < scan.hits.size(); begin += kSize) {
+      const std::size_t count = std::min(kSize, scan.hits.size() - begin);
+      const float* weights = judged_ ? &scan.weights[begin] : full.data();
+      frame_.place(scan.hits, begin, count, placed_);
+      weigh(placed_, weights, count, stops.data(), marks.data());
+      beams_.offerHits(placed_, stops.data(), count, static_cast<std::uint32_t>(begin));
+      placed_.chooseHits(count, weights, settled);
+      settled = placed_.settled[count - 1];
+      stats.hits += placed_.hits, stats.not_finite += placed_.not_finite;
+      for (std::size_t i = 0; i < placed_.chosen_count; ++i) {
+        const std::size_t k = placed_.chosen[i];
+        if (placed_.cell[k] < 0 || placed_.in_slab[k] == 0) continue;
+        const auto column = static_cast<std::size_t>(placed_.cell[k] / PlacedBlock::kLayers);
+        weights_[column] = std::max(weights_[column], static_cast<std::uint8_t>(marks[k]));
       }
     }
   }
 
-  void takeHits(const GridScan& scan, GridStats& stats) {
-    forPoints(scan.hits, stats, 0, [&](std::size_t i, std::int32_t cell, bool in_slab) {
-      if (!in_slab) return false;
-      float w = judged_ ? scan.weights[i] : 1.0F;
-      if (!(w < 1)) w = 1;  // no verdict: believe the return
-      if (w < 0) w = 0;
-      if (cell >= 0) {
-        ++stats.hits;
-        std::uint8_t& mark = weights_[static_cast<std::size_t>(cell / PlacedBlock::kLayers)];
-        mark = std::max(mark, static_cast<std::uint8_t>(w * kWhole + 0.5F));
-      }
-      return w >= kTrusted;
-    });
-  }
-
-  // Amanatides and Woo, as in ScanEvidence. The last cell is not crossed: there the beam ended.
-  void cast(const WindowPlace& from, const WindowPlace& to) {
-    const float dx = to.x - from.x, dy = to.y - from.y;
-    int x = static_cast<int>(std::floor(from.x)), y = static_cast<int>(std::floor(from.y));
-    const int step_x = dx > 0 ? 1 : -1, step_y = dy > 0 ? 1 : -1;
-    const float per_x = std::abs(1 / dx), per_y = std::abs(1 / dy);  // infinity: never
-    float next_x = dx != 0 ? (static_cast<float>(dx > 0 ? x + 1 : x) - from.x) / dx : per_x;
-    float next_y = dy != 0 ? (static_cast<float>(dy > 0 ? y + 1 : y) - from.y) / dy : per_y;
-    while (std::min(next_x, next_y) < 1 && x >= 0 && y >= 0 && x < cells_ && y < cells_) {
-      crossed_[static_cast<std::size_t>(y * cells_ + x)] = 1;
-      const bool sideways = next_x < next_y;
-      x += sideways ? step_x : 0, y += sideways ? 0 : step_y;
-      next_x += sideways ? per_x : 0, next_y += sideways ? 0 : per_y;
+  void takeClear(const GridScan& scan, GridStats& stats) {
+    for (std::size_t begin = 0; begin < scan.clear.size(); begin += PlacedBlock::kSize) {
+      const std::size_t count = std::min(PlacedBlock::kSize, scan.clear.size() - begin);
+      frame_.place(scan.clear, begin, count, placed_);
+      stats.not_finite += placed_.countNotFinite(count);
+      beams_.offerClear(placed_, count, static_cast<std::uint32_t>(scan.hits.size() + begin));
     }
   }
 
@@ -216,6 +201,7 @@ class GridRolling2d final : public SafetyGrid {
   void addEvidence() {
     RowEvidence row{weights_.data(),
                     crossed_.data(),
+                    keep_,
                     static_cast<float>(params().hit),
                     static_cast<float>(params().miss),
                     static_cast<float>(params().low),
@@ -229,8 +215,6 @@ class GridRolling2d final : public SafetyGrid {
       addRow(&values_[begin - behind], behind, row);
       row.weights += behind, row.crossed += behind;
     }
-    std::fill(weights_.begin(), weights_.end(), std::uint8_t{0});
-    std::fill(crossed_.begin(), crossed_.end(), std::uint8_t{0});
   }
 
   int cells_;
@@ -244,6 +228,7 @@ class GridRolling2d final : public SafetyGrid {
   bool judged_ = false;  // the scan's hits came with weights
   bool started_ = false;
   Stamp now_;
+  float keep_ = 1;  // share of what was known that is left at the scan
   CellIndex first_;
 };
 

@@ -7,6 +7,7 @@
 #include "libperception/core/Time.h"
 #include "libperception/grid/FreeDistance.h"
 #include "libperception/grid/GridParams.h"
+#include "libperception/grid/GridPoints.h"
 
 namespace perception {
 
@@ -16,10 +17,9 @@ struct GridScan {
   Vector3 origin = Vector3::Zero();  ///< [m] the sensor
   /// The vehicle on the ground: centre of the window, and z = 0 from which heights count.
   Pose3 T_world_ground = Pose3::Identity();
-  std::vector<Vector3> hits;   ///< [m] obstacle returns
+  GridPoints hits;             ///< obstacle returns
   std::vector<float> weights;  ///< [0, 1] of each hit: 1 - P(phantom); empty: all 1
-  std::vector<Vector3>
-      clear;  ///< [m] returns that are no obstacle (ground): their beams only clear
+  GridPoints clear;            ///< returns that are no obstacle (ground): their beams only clear
 };
 
 /// What insert() made of a scan.

@@ -20,7 +20,7 @@ float weightOf(const GridScan& scan, std::size_t i) {
   return std::isfinite(w) ? std::clamp(w, 0.0F, 1.0F) : 1.0F;  // no verdict: believe the return
 }
 
-const Vector3& pointOf(const GridScan& scan, std::size_t i) {
+Vector3 pointOf(const GridScan& scan, std::size_t i) {
   return i < scan.hits.size() ? scan.hits[i] : scan.clear[i - scan.hits.size()];
 }
 
@@ -97,7 +97,7 @@ CellIndex ScanEvidence::cellAt(std::size_t cell) const {
 
 void ScanEvidence::markHits(const GridScan& scan, GridStats& stats) {
   for (std::size_t i = 0; i < scan.hits.size(); ++i) {
-    const Vector3& p = scan.hits[i];
+    const Vector3 p = scan.hits[i];
     if (!p.allFinite()) {
       ++stats.not_finite;
       continue;

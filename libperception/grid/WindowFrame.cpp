@@ -2,49 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "libperception/core/Wider.h"
 
 namespace perception {
 namespace {
 
-using Double4 = double __attribute__((vector_size(32)));
-using Float4 = float __attribute__((vector_size(16)));
-
-// Doubles as far as places of the world go, floats from the window's corner on. Four points at a
-// time; a double behind the last one is read.
-PERCEPTION_WIDER void toCells(const double* xyz, std::size_t count, const double* corner,
-                              double per_metre, float* x, float* y, float* z) {
-  const Double4 from = {corner[0], corner[1], corner[2], 0};
-  for (std::size_t i = 0; i < count; i += 4, xyz += 12) {
-    Float4 row[4];
-    for (std::size_t k = 0; k < 4; ++k) {
-      Double4 v;
-      std::memcpy(&v, xyz + 3 * k, sizeof v);
-      row[k] = __builtin_convertvector((v - from) * per_metre, Float4);
-    }
-    using Int4 = std::int32_t __attribute__((vector_size(16)));
-    const Float4 xy01 = __builtin_shuffle(row[0], row[1], Int4{0, 4, 1, 5});
-    const Float4 xy23 = __builtin_shuffle(row[2], row[3], Int4{0, 4, 1, 5});
-    const Float4 z01 = __builtin_shuffle(row[0], row[1], Int4{2, 6, 3, 7});
-    const Float4 z23 = __builtin_shuffle(row[2], row[3], Int4{2, 6, 3, 7});
-    const Float4 xs = __builtin_shuffle(xy01, xy23, Int4{0, 1, 4, 5});
-    const Float4 ys = __builtin_shuffle(xy01, xy23, Int4{2, 3, 6, 7});
-    const Float4 zs = __builtin_shuffle(z01, z23, Int4{0, 1, 4, 5});
-    std::memcpy(x + i, &xs, sizeof xs), std::memcpy(y + i, &ys, sizeof ys);
-    std::memcpy(z + i, &zs, sizeof zs);
-  }
-}
+/// Where the base of some points is [cells].
+struct Offset {
+  float x, y, z;
+  float per_metre;
+};
 
 PERCEPTION_WIDER void placeAll(const float* __restrict xs, const float* __restrict ys,
-                               const float* __restrict zs, std::size_t count, const WindowRules k,
+                               const float* __restrict zs, std::size_t count, const Offset from,
+                               const WindowRules k, float* __restrict out_x,
+                               float* __restrict out_y, float* __restrict out_z,
                                float* __restrict low, float* __restrict high,
                                std::int32_t* __restrict cell, std::int32_t* __restrict in_slab) {
   const auto row = static_cast<std::int32_t>(k.cells);
   const float tall = k.layers > 0 ? 1 : 0, top = k.layers > 0 ? k.layers : 1;
   for (std::size_t i = 0; i < count; ++i) {
-    const float x = xs[i], y = ys[i], z = zs[i];
+    const float x = xs[i] * from.per_metre + from.x;
+    const float y = ys[i] * from.per_metre + from.y;
+    const float z = zs[i] * from.per_metre + from.z;
+    out_x[i] = x, out_y[i] = y, out_z[i] = z;
     const float above = k.slope_x * x + k.slope_y * y + k.slope_z * z + k.offset;
     const float dx = x - k.centre_x, dy = y - k.centre_y;
     const float wider = k.grade * std::sqrt(dx * dx + dy * dy);
@@ -103,10 +85,14 @@ void PlacedBlock::chooseHits(std::size_t count, const float* weights, std::int32
 
 void PlacedBlock::chooseClear(std::size_t count, std::int32_t before) {
   hits = 0;
-  not_finite = static_cast<std::size_t>(
-      std::count(cell.begin(), cell.begin() + static_cast<std::ptrdiff_t>(count), kNotFinite));
+  not_finite = countNotFinite(count);
   std::copy_n(cell.begin(), count, settled.begin());
   leaveOut(count, before);
+}
+
+std::size_t PlacedBlock::countNotFinite(std::size_t count) const {
+  const auto end = cell.begin() + static_cast<std::ptrdiff_t>(count);
+  return static_cast<std::size_t>(std::count(cell.begin(), end, kNotFinite));
 }
 
 // Without branches: whether a cell is new is anybody's guess.
@@ -138,15 +124,23 @@ WindowFrame::WindowFrame(const GridParams& params, const Pose3& T_world_ground,
   rules_.cells = static_cast<float>(cells), rules_.layers = static_cast<float>(layers);
 }
 
-void WindowFrame::place(const Vector3* points, std::size_t count, PlacedBlock& out) const {
-  // The last ones from a copy, with room behind.
-  const std::size_t whole = count > 4 ? (count - 1) / 4 * 4 : 0;
-  toCells(points->data(), whole, corner_, per_metre_, out.x.data(), out.y.data(), out.z.data());
-  double rest[13] = {};
-  std::memcpy(rest, points[whole].data(), (count - whole) * sizeof(Vector3));
-  toCells(rest, 4, corner_, per_metre_, &out.x[whole], &out.y[whole], &out.z[whole]);
-  placeAll(out.x.data(), out.y.data(), out.z.data(), count, rules_, out.low.data(), out.high.data(),
-           out.cell.data(), out.in_slab.data());
+void WindowFrame::place(const GridPoints& points, std::size_t first, std::size_t count,
+                        PlacedBlock& out) const {
+  const auto at = [&](int axis) {
+    return static_cast<float>((points.base()[axis] - corner_[axis]) * per_metre_);
+  };
+  placeAll(points.x(first), points.y(first), points.z(first), count,
+           {at(0), at(1), at(2), static_cast<float>(per_metre_)}, rules_, out.x.data(),
+           out.y.data(), out.z.data(), out.low.data(), out.high.data(), out.cell.data(),
+           out.in_slab.data());
+}
+
+WindowPlace WindowFrame::place(const Vector3& point) const {
+  GridPoints one;
+  one.push_back(point);
+  PlacedBlock placed;
+  place(one, 0, 1, placed);
+  return placed.at(0);
 }
 
 }  // namespace perception

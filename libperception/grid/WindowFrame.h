@@ -6,6 +6,7 @@
 #include "libperception/core/Frames.h"
 #include "libperception/grid/BeamBlock.h"
 #include "libperception/grid/GridParams.h"
+#include "libperception/grid/GridPoints.h"
 #include "libperception/grid/ScanEvidence.h"
 
 namespace perception {
@@ -33,6 +34,7 @@ struct PlacedBlock {
   /// the slab and of full weight. `weights`: null where all are full. `before`: settled cell of the
   /// point before the first one.
   void chooseHits(std::size_t count, const float* weights, std::int32_t before);
+  std::size_t countNotFinite(std::size_t count) const;
   /// Leaves out points in the cell of the one before.
   void chooseClear(std::size_t count, std::int32_t before);
 
@@ -59,8 +61,11 @@ class WindowFrame {
   WindowFrame(const GridParams& params, const Pose3& T_world_ground, const CellIndex& first,
               int cells, int layers);
 
-  /// `points`: [m] world, at most PlacedBlock::kSize.
-  void place(const Vector3* points, std::size_t count, PlacedBlock& out) const;
+  /// At most PlacedBlock::kSize points from `first` on.
+  void place(const GridPoints& points, std::size_t first, std::size_t count,
+             PlacedBlock& out) const;
+  /// `point`: [m] world.
+  WindowPlace place(const Vector3& point) const;
 
  private:
   double per_metre_ = 1;

@@ -21,8 +21,7 @@ void WindowMarks<Mask>::collect(const GridScan& scan, const CellIndex& first, Gr
   frame_ = WindowFrame(params_, scan.T_world_ground, first, cells_, layers_);
   rays_ = scan.origin.allFinite();
   const Vector3 origin = rays_ ? scan.origin : scan.T_world_ground.translation();
-  frame_.place(&origin, 1, placed_);
-  origin_ = placed_.at(0);
+  origin_ = frame_.place(origin);
   cover_.begin(origin_.z);
   fans_.begin(origin_);
   takeHits(scan, stats);
@@ -37,7 +36,7 @@ void WindowMarks<Mask>::takeHits(const GridScan& scan, GridStats& stats) {
   std::int32_t last = PlacedBlock::kOutside, settled = last;
   for (std::size_t begin = 0; begin < scan.hits.size(); begin += PlacedBlock::kSize) {
     const std::size_t count = std::min(PlacedBlock::kSize, scan.hits.size() - begin);
-    frame_.place(&scan.hits[begin], count, placed_);
+    frame_.place(scan.hits, begin, count, placed_);
     placed_.chooseHits(count, weighted ? &scan.weights[begin] : nullptr, settled);
     settled = placed_.settled[count - 1];
     stats.hits += placed_.hits;
@@ -77,7 +76,7 @@ void WindowMarks<Mask>::takeClear(const GridScan& scan, GridStats& stats) {
   std::int32_t settled = PlacedBlock::kOutside;
   for (std::size_t begin = 0; begin < scan.clear.size(); begin += PlacedBlock::kSize) {
     const std::size_t count = std::min(PlacedBlock::kSize, scan.clear.size() - begin);
-    frame_.place(&scan.clear[begin], count, placed_);
+    frame_.place(scan.clear, begin, count, placed_);
     placed_.chooseClear(count, settled);
     settled = placed_.settled[count - 1];
     for (std::size_t i = 0; i < placed_.chosen_count; ++i)

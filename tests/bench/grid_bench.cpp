@@ -83,9 +83,11 @@ struct Method {
 std::unique_ptr<octomap::OcTree> treeOf(const GridScan& scan) {
   auto tree = std::make_unique<octomap::OcTree>(kResolution);
   octomap::Pointcloud cloud;
-  for (const Vector3& p : scan.hits)
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) {
+    const Vector3 p = scan.hits[i];
     cloud.push_back(static_cast<float>(p.x()), static_cast<float>(p.y()),
                     static_cast<float>(p.z()));
+  }
   tree->insertPointCloud(
       cloud,
       octomap::point3d(static_cast<float>(scan.origin.x()), static_cast<float>(scan.origin.y()),
@@ -119,9 +121,11 @@ void compareWithOctomap(const std::vector<GridScan>& scans) {
 mrpt::maps::CSimplePointsMap pointsOf(const GridScan& scan) {
   mrpt::maps::CSimplePointsMap points;
   points.reserve(scan.hits.size());
-  for (const Vector3& p : scan.hits)
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) {
+    const Vector3 p = scan.hits[i];
     points.insertPoint(static_cast<float>(p.x()), static_cast<float>(p.y()),
                        static_cast<float>(p.z()));
+  }
   return points;
 }
 
@@ -132,7 +136,8 @@ mrpt::obs::CObservation2DRangeScan virtualScan(const GridScan& scan) {
   out.maxRange = 80;
   out.resizeScan(720);
   std::vector<float> nearest(720, 80.F);
-  for (const Vector3& p : scan.hits) {
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) {
+    const Vector3 p = scan.hits[i];
     if (p.z() < 0.3 || p.z() > 3) continue;
     const double turn = (std::atan2(p.y(), p.x()) + kPi) / kTwoPi;
     float& r = nearest[std::min<std::size_t>(719, static_cast<std::size_t>(turn * 720))];
@@ -218,8 +223,11 @@ void onTheGround(const std::vector<GridScan>& scans) {
                      {}});
   std::vector<GridScan> split = scans;
   for (GridScan& scan : split) {
-    std::vector<Vector3> hits;
-    for (const Vector3& p : scan.hits) (p.z() > 0.3 && p.z() < 3 ? hits : scan.clear).push_back(p);
+    GridPoints hits;
+    for (std::size_t i = 0; i < scan.hits.size(); ++i) {
+      const Vector3 p = scan.hits[i];
+      (p.z() > 0.3 && p.z() < 3 ? hits : scan.clear).push_back(p);
+    }
     scan.hits = std::move(hits);
   }
   timeThem(methods, split, 10 * kRepeats);
@@ -241,7 +249,7 @@ void memory(const std::vector<GridScan>& scans) {
       GridScan scan = scans[static_cast<std::size_t>(i) % scans.size()];
       scan.stamp = Stamp::fromSeconds(1000 + 0.1 * i);
       const Vector3 moved(i, 0.1 * i, 0);
-      for (Vector3& p : scan.hits) p += moved;
+      scan.hits.shift(moved);
       scan.origin += moved, scan.T_world_ground.translation() += moved;
       grid->insert(scan);
       if (i == 100) early = grid->memoryBytes(), resident = residentMb();

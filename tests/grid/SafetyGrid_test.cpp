@@ -193,9 +193,7 @@ TEST_P(SafetyGridContract, WorldFarFromItsOriginChangesNothing) {
   const Vector3 far(512000, 5402000, 300);  // UTM
   for (int i = 0; i < 3; ++i) {
     GridScan scan = sceneWithWall(i * kPeriod, 20);
-    for (auto* points : {&scan.hits, &scan.clear}) {
-      for (Vector3& p : *points) p += far;
-    }
+    scan.hits.shift(far), scan.clear.shift(far);
     scan.origin += far;
     scan.T_world_ground.translation() += far;
     g->insert(scan);

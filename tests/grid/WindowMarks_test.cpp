@@ -93,13 +93,13 @@ TEST(WindowMarks, BeamsThatShareTheirWayLeaveOutCornersAlone) {
   }
   std::set<int> all;
   GridScan one = scan;
-  for (const Vector3& hit : scan.hits) {
-    one.hits = {hit};
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) {
+    one.hits.clear(), one.hits.push_back(scan.hits[i]);
     for (const int cell : crossedBy(alone, one)) all.insert(cell);
   }
-  for (const Vector3& hit : scan.hits) all.erase(cellOf(hit));
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) all.erase(cellOf(scan.hits[i]));
   std::set<int> cells = crossedBy(together, scan);
-  for (const Vector3& hit : scan.hits) cells.erase(cellOf(hit));
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) cells.erase(cellOf(scan.hits[i]));
   for (const int cell : cells) EXPECT_EQ(all.count(cell), 1U);
   EXPECT_GT(static_cast<double>(cells.size()), 0.97 * static_cast<double>(all.size()));
 }
@@ -109,7 +109,7 @@ TEST(WindowMarks, ACellInDoubtTellsWhetherABeamWentThrough) {
   GridScan scan;
   scan.T_world_ground.translation() = Vector3(6, 6, 0);
   scan.origin = {6.1, 6.1, 1.7};
-  scan.hits = {{9.1, 6.1, 1.7}, {10.1, 6.1, 1.7}};
+  scan.hits.emplace_back(9.1, 6.1, 1.7), scan.hits.emplace_back(10.1, 6.1, 1.7);
   scan.weights = {0.2F, 0.3F};
   GridStats stats;
   marks.collect(scan, {0, 0, 0}, stats);

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+
+namespace perception {
+
+/// Points of a scan, axis by axis, as offsets from a place among them: there floats are fine
+/// enough, wherever in the world it is.
+class GridPoints {
+ public:
+  /// `p`: [m] world. The base is the first one that is a number, in whole metres: what has short
+  /// coordinates keeps them.
+  void push_back(const Vector3& p) {
+    if (!based_ && p.allFinite()) base_ = p.array().round(), based_ = true;
+    x_.push_back(static_cast<float>(p.x() - base_.x()));
+    y_.push_back(static_cast<float>(p.y() - base_.y()));
+    z_.push_back(static_cast<float>(p.z() - base_.z()));
+  }
+  void emplace_back(double x, double y, double z) { push_back({x, y, z}); }
+  void reserve(std::size_t count) { x_.reserve(count), y_.reserve(count), z_.reserve(count); }
+  void clear() { x_.clear(), y_.clear(), z_.clear(), based_ = false; }
+  /// Moves all of them. [m]
+  void shift(const Vector3& by) { base_ += by; }
+
+  std::size_t size() const { return x_.size(); }
+  bool empty() const { return x_.empty(); }
+  /// [m] world
+  Vector3 operator[](std::size_t i) const {
+    return base_ + Vector3(static_cast<double>(x_[i]), static_cast<double>(y_[i]),
+                           static_cast<double>(z_[i]));
+  }
+  const Vector3& base() const { return base_; }                          ///< [m] world
+  const float* x(std::size_t first) const { return x_.data() + first; }  ///< [m] from base()
+  const float* y(std::size_t first) const { return y_.data() + first; }
+  const float* z(std::size_t first) const { return z_.data() + first; }
+
+ private:
+  Vector3 base_ = Vector3::Zero();
+  bool based_ = false;
+  std::vector<float> x_, y_, z_;
+};
+
+}  // namespace perception
