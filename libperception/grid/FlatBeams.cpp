@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Lanes.h"
@@ -30,6 +31,33 @@ PERCEPTION_WIDER void findBearings(const PlacedBlock& placed, std::size_t count,
     const std::int32_t has_one = (range2 > 1) & (cell[i] != PlacedBlock::kNotFinite);
     bearing[i] = has_one != 0 ? bounded : rose.count;
     range[i] = range2;
+  }
+}
+
+// Points that are farther than their bearing's farthest before the block. Mostly none is.
+PERCEPTION_WIDER void findFarther(const std::int32_t* __restrict bearing,
+                                  const float* __restrict range, std::size_t count,
+                                  const float* __restrict farthest, std::uint8_t* __restrict news) {
+  for (std::size_t i = 0; i < count; ++i) news[i] = range[i] > farthest[bearing[i]];
+}
+// Points that stop a beam nearer than those before the block, and all that stop none.
+PERCEPTION_WIDER void findNearer(const std::int32_t* __restrict bearing,
+                                 const float* __restrict range,
+                                 const std::int32_t* __restrict stops, std::size_t count,
+                                 const float* __restrict nearest, std::uint8_t* __restrict news) {
+  for (std::size_t i = 0; i < count; ++i)
+    news[i] = (range[i] < nearest[bearing[i]]) | (stops[i] == 0);
+}
+
+// `news`: with eight more bytes of 0.
+template <class Take>
+void forNews(const std::uint8_t* news, std::size_t count, const Take& take) {
+  for (std::size_t i = 0; i < count; i += 8) {
+    std::uint64_t eight_of_them = 0;
+    std::memcpy(&eight_of_them, news + i, sizeof eight_of_them);
+    if (eight_of_them == 0) continue;
+    for (std::size_t k = i; k < i + 8; ++k)
+      if (news[k] != 0) take(k);
   }
 }
 
@@ -76,43 +104,51 @@ PERCEPTION_WIDER void crossAll(const BeamBlock& b, const WindowPlace origin, std
 }  // namespace
 
 FlatBeams::FlatBeams(double step, int cells)
-    : beams_(static_cast<std::size_t>(std::ceil(kTwoPi / step)) + 1),
-      per_radian_(static_cast<float>(static_cast<double>(beams_.size() - 1) / kTwoPi)),
+    : bearings_(static_cast<std::size_t>(std::ceil(kTwoPi / step))),
+      nearest_(bearings_ + 1),
+      farthest_(bearings_ + 1),
+      stops_(bearings_ + 1),
+      ends_(bearings_ + 1),
+      per_radian_(static_cast<float>(static_cast<double>(bearings_) / kTwoPi)),
       cells_(cells) {}
 
 void FlatBeams::begin(const WindowPlace& origin) {
-  std::fill(beams_.begin(), beams_.end(), Beam{});
+  std::fill(nearest_.begin(), nearest_.end(), kNone);
+  std::fill(farthest_.begin(), farthest_.end(), 0.0F);
   origin_ = origin, origin_.z = kMiddle, origin_.low = origin_.high = 1;
 }
 
 void FlatBeams::look(const PlacedBlock& placed, std::size_t count) {
   findBearings(placed, count,
-               {origin_.x, origin_.y, per_radian_, static_cast<std::int32_t>(beams_.size() - 1)},
+               {origin_.x, origin_.y, per_radian_, static_cast<std::int32_t>(bearings_)},
                bearing_.data(), range_.data());
 }
 
-// Mostly a scan's points are no farther than those before: a branch that is seldom taken.
 void FlatBeams::offerClear(const PlacedBlock& placed, std::size_t count, std::uint32_t first) {
   look(placed, count);
-  for (std::size_t k = 0; k < count; ++k) {
-    Beam& beam = beams_[static_cast<std::size_t>(bearing_[k])];
-    if (range_[k] > beam.farthest)
-      beam.farthest = range_[k], beam.end = first + static_cast<std::uint32_t>(k);
-  }
+  std::uint8_t news[PlacedBlock::kSize + kLanes] = {};
+  findFarther(bearing_.data(), range_.data(), count, farthest_.data(), news);
+  forNews(news, count, [&](std::size_t k) {
+    const auto bearing = static_cast<std::size_t>(bearing_[k]);
+    if (range_[k] > farthest_[bearing])
+      farthest_[bearing] = range_[k], ends_[bearing] = first + static_cast<std::uint32_t>(k);
+  });
 }
 
 void FlatBeams::offerHits(const PlacedBlock& placed, const std::int32_t* stops, std::size_t count,
                           std::uint32_t first) {
   look(placed, count);
-  for (std::size_t k = 0; k < count; ++k) {
-    Beam& beam = beams_[static_cast<std::size_t>(bearing_[k])];
+  std::uint8_t news[PlacedBlock::kSize + kLanes] = {};
+  findNearer(bearing_.data(), range_.data(), stops, count, nearest_.data(), news);
+  forNews(news, count, [&](std::size_t k) {
+    const auto bearing = static_cast<std::size_t>(bearing_[k]);
     const std::uint32_t point = first + static_cast<std::uint32_t>(k);
     if (stops[k] != 0) {
-      if (range_[k] < beam.nearest) beam.nearest = range_[k], beam.stop = point;
-    } else if (range_[k] > beam.farthest) {
-      beam.farthest = range_[k], beam.end = point;
+      if (range_[k] < nearest_[bearing]) nearest_[bearing] = range_[k], stops_[bearing] = point;
+    } else if (range_[k] > farthest_[bearing]) {
+      farthest_[bearing] = range_[k], ends_[bearing] = point;
     }
-  }
+  });
 }
 
 void FlatBeams::crossBlock(std::uint8_t* crossed) {

@@ -27,10 +27,10 @@ class FlatBeams {
   template <class Place>
   std::size_t cross(const Place& place, std::uint8_t* crossed) {
     std::size_t beams = 0;
-    for (std::size_t bearing = 0; bearing + 1 < beams_.size(); ++bearing) {
-      const Beam& beam = beams_[bearing];
-      if (!(beam.nearest < kNone) && !(beam.farthest > 0)) continue;
-      const WindowPlace end = place(beam.nearest < kNone ? beam.stop : beam.end);
+    for (std::size_t bearing = 0; bearing < bearings_; ++bearing) {
+      const bool stopped = nearest_[bearing] < kNone;
+      if (!stopped && !(farthest_[bearing] > 0)) continue;
+      const WindowPlace end = place(stopped ? stops_[bearing] : ends_[bearing]);
       // On the ground heights play no part.
       block_.add({end.x, end.y, kMiddle, 1, 1});
       ++beams;
@@ -39,21 +39,21 @@ class FlatBeams {
     crossBlock(crossed);
     return beams;
   }
-  std::size_t memoryBytes() const { return beams_.capacity() * sizeof(Beam) + sizeof *this; }
+  std::size_t memoryBytes() const {
+    return 2 * nearest_.capacity() * (sizeof(float) + sizeof(std::uint32_t)) + sizeof *this;
+  }
 
  private:
   static constexpr float kNone = 3e38F, kMiddle = 0.5F;
-  /// Squared ranges [cells^2] of its nearest point that stops it and of its farthest one that does
-  /// not, and their numbers.
-  struct Beam {
-    float nearest = kNone, farthest = 0;
-    std::uint32_t stop = 0, end = 0;
-  };
 
   void look(const PlacedBlock& placed, std::size_t count);
   void crossBlock(std::uint8_t* crossed);
 
-  std::vector<Beam> beams_;  // and one for points without a bearing
+  std::size_t bearings_;
+  // By bearing, and one for points without: squared ranges [cells^2] of the nearest point that
+  // stops the beam and of the farthest that does not, and their numbers.
+  std::vector<float> nearest_, farthest_;
+  std::vector<std::uint32_t> stops_, ends_;
   float per_radian_;
   int cells_;
   WindowPlace origin_{};

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/grid/ColumnAges.h"
-#include "libperception/grid/LogOddsColumn.h"
+#include "libperception/grid/ColumnRun.h"
 #include "libperception/grid/WindowMarks.h"
 
 namespace perception {
@@ -43,18 +42,13 @@ class GridRolling final : public SafetyGrid {
     marks_.collect(scan, first_, stats);
     judged_ = scan.weights.size() == scan.hits.size();
     const auto turn = static_cast<unsigned>(modulo(first_.z, layers_));
-    std::size_t column = 0;
-    for (std::int64_t y = 0; y < cells_; ++y) {
-      const std::int64_t row = modulo(first_.y + y, cells_) * cells_;
-      std::int64_t slot_x = modulo(first_.x, cells_);
-      for (std::int64_t x = 0; x < cells_; ++x, ++column) {
-        const auto slot = static_cast<std::size_t>(row + slot_x);
-        if (++slot_x == cells_) slot_x = 0;
-        const Mask hit = marks_.hit(column), crossed = marks_.crossed(column) & ~hit;
-        if (!(hit | crossed)) continue;
-        update(slot, turned(hit, turn), turned(crossed, turn));
-        marks_.reset(column);
-      }
+    // The window's columns are those of the array from some column on, and then from its first on.
+    const auto behind = static_cast<std::size_t>(modulo(first_.x, cells_));
+    const auto width = static_cast<std::size_t>(cells_);
+    for (std::size_t y = 0; y < width; ++y) {
+      const std::size_t row = slotOf({0, first_.y + static_cast<std::int64_t>(y), 0});
+      addEvidence(y * width, row + behind, width - behind, turn);
+      addEvidence(y * width + width - behind, row, behind, turn);
     }
     for (const auto& doubt : marks_.doubts()) takeDoubt(doubt, turn);
     return stats;
@@ -200,13 +194,13 @@ class GridRolling final : public SafetyGrid {
     ages_.touch(slot);
   }
 
-  // Bit k of a window's mask is layer first_.z + k of the world; in the array it stands modulo.
-  Mask turned(Mask mask, unsigned turn) const {
-    if (turn == 0) return mask;
-    const auto count = static_cast<unsigned>(layers_);
-    Mask all = static_cast<Mask>(~Mask{0});
-    if (count < 8 * sizeof(Mask)) all = static_cast<Mask>((Mask{1} << count) - 1);
-    return static_cast<Mask>((mask << turn | mask >> (count - turn)) & all);
+  // Of `count` columns of the window from `column` on, which stand from `slot` on in the array.
+  void addEvidence(std::size_t column, std::size_t slot, std::size_t count, unsigned turn) {
+    updateColumns(column_,
+                  ColumnRun<Mask>{values_.data() + slot * static_cast<std::size_t>(layers_),
+                                  marks_.hits(column), marks_.crossings(column), slot, count,
+                                  static_cast<int>(layers_), turn, judged_},
+                  ages_);
   }
 
   void takeDoubt(const typename WindowMarks<Mask>::Doubt& doubt, unsigned turn) {

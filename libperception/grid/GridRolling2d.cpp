@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "libperception/core/Wider.h"
 #include "libperception/grid/FlatBeams.h"
@@ -21,8 +22,9 @@ struct RowEvidence {
   float voided;                     ///< share of voidedBy(): 1 where hits are judged
 };
 
-PERCEPTION_WIDER void addRow(float* __restrict values, std::size_t count, const RowEvidence e) {
-  std::uint8_t* __restrict weights = e.weights, * __restrict crossed = e.crossed;
+PERCEPTION_WIDER void addHits(float* __restrict values, std::uint8_t* __restrict weights,
+                              std::uint8_t* __restrict crossed, std::size_t count,
+                              const RowEvidence e) {
   for (std::size_t i = 0; i < count; ++i) {
     const float w = static_cast<float>(weights[i]) * (1.0F / kWhole), v = values[i] * e.keep;
     const float left = v < 0 ? v - v * w * e.voided : v;
@@ -31,6 +33,29 @@ PERCEPTION_WIDER void addRow(float* __restrict values, std::size_t count, const 
     const float bounded = sum < e.low ? e.low : sum;
     values[i] = bounded > e.high ? e.high : bounded;
     weights[i] = 0, crossed[i] = 0;
+  }
+}
+
+PERCEPTION_WIDER void addMisses(float* __restrict values, std::uint8_t* __restrict crossed,
+                                std::size_t count, const RowEvidence e) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float sum = values[i] * e.keep + static_cast<float>(crossed[i]) * e.miss;
+    values[i] = sum < e.low ? e.low : sum;
+    crossed[i] = 0;
+  }
+}
+
+// Most stretches of a row have no hit.
+void addRow(float* values, std::size_t count, RowEvidence e) {
+  constexpr std::size_t kStretch = 32;
+  static constexpr std::uint8_t kNone[kStretch] = {};
+  for (std::size_t i = 0; i < count; i += kStretch) {
+    const std::size_t length = std::min(kStretch, count - i);
+    if (std::memcmp(e.weights + i, kNone, length) == 0) {
+      addMisses(values + i, e.crossed + i, length, e);
+    } else {
+      addHits(values + i, e.weights + i, e.crossed + i, length, e);
+    }
   }
 }
 
@@ -192,7 +217,7 @@ class GridRolling2d final : public SafetyGrid {
     for (std::size_t begin = 0; begin < scan.clear.size(); begin += PlacedBlock::kSize) {
       const std::size_t count = std::min(PlacedBlock::kSize, scan.clear.size() - begin);
       frame_.place(scan.clear, begin, count, placed_);
-      stats.not_finite += placed_.countNotFinite(count);
+      stats.not_finite += placed_.not_finite;
       beams_.offerClear(placed_, count, static_cast<std::uint32_t>(scan.hits.size() + begin));
     }
   }

@@ -7,6 +7,8 @@
 #include <emmintrin.h>
 #endif
 
+#include "libperception/core/Lanes.h"
+
 namespace perception {
 
 /// Arithmetic on the log-odds of a column of cells, eight layers at once: 16 bit integers in steps
@@ -33,8 +35,8 @@ class LogOddsColumn {
   /// Takes the loss off, then adds the evidence of a scan, a bit a layer. `judged`: hits void that
   /// their cells were free (voidedBy() for weights of one).
   template <class Mask>
-  void update(std::int16_t* values, int layers, std::int16_t loss, Mask hit, Mask crossed,
-              bool judged) const {
+  PERCEPTION_LANES void update(std::int16_t* values, int layers, std::int16_t loss, Mask hit,
+                               Mask crossed, bool judged) const {
     const Short8 losses = eight(loss);
     for (; layers > 0; layers -= 8, values += 8) {
       Short8 v = load(values, layers);
@@ -48,14 +50,28 @@ class LogOddsColumn {
       if constexpr (sizeof(Mask) > 1) hit = hit >> 8, crossed = crossed >> 8;
     }
   }
+  /// The same without hits.
+  template <class Mask>
+  PERCEPTION_LANES void clear(std::int16_t* values, int layers, std::int16_t loss,
+                              Mask crossed) const {
+    const Short8 losses = eight(loss);
+    for (; layers > 0; layers -= 8, values += 8) {
+      Short8 v = load(values, layers);
+      v -= highHalf(v + v, losses);
+      v += spread(crossed) & miss_;
+      v = v < low_ ? low_ : v;
+      store(v, values, layers);
+      if constexpr (sizeof(Mask) > 1) crossed = crossed >> 8;
+    }
+  }
 
  private:
   using Short8 = std::int16_t __attribute__((vector_size(16)));
 
-  static Short8 eight(std::int16_t v) { return Short8{v, v, v, v, v, v, v, v}; }
+  PERCEPTION_LANES static Short8 eight(std::int16_t v) { return Short8{v, v, v, v, v, v, v, v}; }
   using Long2 = std::int64_t __attribute__((vector_size(16)));
 
-  static Short8 load(const std::int16_t* values, int layers) {
+  PERCEPTION_LANES static Short8 load(const std::int16_t* values, int layers) {
     Short8 v;
     if (layers >= 8) {
       std::memcpy(&v, values, sizeof v);
@@ -65,17 +81,17 @@ class LogOddsColumn {
     std::memcpy(&four, values, sizeof four);
     return reinterpret_cast<Short8>(Long2{four, 0});
   }
-  static void store(const Short8& v, std::int16_t* values, int layers) {
+  PERCEPTION_LANES static void store(const Short8& v, std::int16_t* values, int layers) {
     std::memcpy(values, &v, layers >= 8 ? 16 : 8);
   }
   // The low eight bits of a number as eight words of ones or zeros.
   template <class Mask>
-  static Short8 spread(Mask bits) {
+  PERCEPTION_LANES static Short8 spread(Mask bits) {
     constexpr Short8 kBits = {1, 2, 4, 8, 16, 32, 64, 128};
     return (eight(static_cast<std::int16_t>(bits)) & kBits) == kBits;
   }
   // a b / 2^16, rounded down.
-  static Short8 highHalf(const Short8& a, const Short8& b) {
+  PERCEPTION_LANES static Short8 highHalf(const Short8& a, const Short8& b) {
 #if defined(__SSE2__)
     return reinterpret_cast<Short8>(
         _mm_mulhi_epi16(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));

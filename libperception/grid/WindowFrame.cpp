@@ -14,13 +14,16 @@ struct Offset {
   float per_metre;
 };
 
-PERCEPTION_WIDER void placeAll(const float* __restrict xs, const float* __restrict ys,
-                               const float* __restrict zs, std::size_t count, const Offset from,
-                               const WindowRules k, float* __restrict out_x,
-                               float* __restrict out_y, float* __restrict out_z,
-                               float* __restrict low, float* __restrict high,
-                               std::int32_t* __restrict cell, std::int32_t* __restrict in_slab) {
+// Returns how many are no numbers.
+PERCEPTION_WIDER std::int32_t placeAll(const float* __restrict xs, const float* __restrict ys,
+                                       const float* __restrict zs, std::size_t count,
+                                       const Offset from, const WindowRules k,
+                                       float* __restrict out_x, float* __restrict out_y,
+                                       float* __restrict out_z, float* __restrict low,
+                                       float* __restrict high, std::int32_t* __restrict cell,
+                                       std::int32_t* __restrict in_slab) {
   const auto row = static_cast<std::int32_t>(k.cells);
+  std::int32_t not_finite = 0;
   const float tall = k.layers > 0 ? 1 : 0, top = k.layers > 0 ? k.layers : 1;
   for (std::size_t i = 0; i < count; ++i) {
     const float x = xs[i] * from.per_metre + from.x;
@@ -44,26 +47,24 @@ PERCEPTION_WIDER void placeAll(const float* __restrict xs, const float* __restri
     const std::int32_t place = column * PlacedBlock::kLayers + static_cast<std::int32_t>(kz);
     const std::int32_t elsewhere = finite != 0 ? PlacedBlock::kOutside : PlacedBlock::kNotFinite;
     cell[i] = inside != 0 ? place : elsewhere;
+    not_finite += 1 - finite;
   }
+  return not_finite;
 }
 
-struct BlockCounts {
-  std::int32_t hits = 0, not_finite = 0;
-};
-
-PERCEPTION_WIDER BlockCounts settleAll(const std::int32_t* __restrict cell,
-                                       const std::int32_t* __restrict in_slab,
-                                       const float* __restrict weights, std::size_t count,
-                                       std::int32_t* __restrict settled) {
-  BlockCounts sum;
+// Returns how many are hits.
+PERCEPTION_WIDER std::int32_t settleAll(const std::int32_t* __restrict cell,
+                                        const std::int32_t* __restrict in_slab,
+                                        const float* __restrict weights, std::size_t count,
+                                        std::int32_t* __restrict settled) {
+  std::int32_t hits = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::int32_t hit = (cell[i] >= 0) & in_slab[i];
     const std::int32_t full = hit & !(weights[i] < PlacedBlock::kFullWeight);
     settled[i] = full != 0 ? cell[i] : PlacedBlock::kOutside;
-    sum.hits += hit;
-    sum.not_finite += cell[i] == PlacedBlock::kNotFinite;
+    hits += hit;
   }
-  return sum;
+  return hits;
 }
 
 constexpr PlacedBlock::Lane<float> allFull() {
@@ -76,33 +77,25 @@ constexpr PlacedBlock::Lane<float> allFull() {
 
 void PlacedBlock::chooseHits(std::size_t count, const float* weights, std::int32_t before) {
   static constexpr Lane<float> kAllFull = allFull();
-  const BlockCounts sum = settleAll(cell.data(), in_slab.data(), weights ? weights : &kAllFull[0],
-                                    count, settled.data());
-  hits = static_cast<std::size_t>(sum.hits);
-  not_finite = static_cast<std::size_t>(sum.not_finite);
+  hits = static_cast<std::size_t>(settleAll(
+      cell.data(), in_slab.data(), weights ? weights : &kAllFull[0], count, settled.data()));
   leaveOut(count, before);
 }
 
 void PlacedBlock::chooseClear(std::size_t count, std::int32_t before) {
-  hits = 0;
-  not_finite = countNotFinite(count);
   std::copy_n(cell.begin(), count, settled.begin());
   leaveOut(count, before);
 }
 
-std::size_t PlacedBlock::countNotFinite(std::size_t count) const {
-  const auto end = cell.begin() + static_cast<std::ptrdiff_t>(count);
-  return static_cast<std::size_t>(std::count(cell.begin(), end, kNotFinite));
-}
-
 // Without branches: whether a cell is new is anybody's guess.
 void PlacedBlock::leaveOut(std::size_t count, std::int32_t before) {
-  chosen_count = 0;
+  std::size_t left = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    chosen[chosen_count] = static_cast<std::uint16_t>(k);
-    chosen_count += (cell[k] < 0) | (cell[k] != before) ? 1 : 0;
+    chosen[left] = static_cast<std::uint16_t>(k);
+    left += static_cast<std::size_t>((cell[k] < 0) | (cell[k] != before));
     before = settled[k];
   }
+  chosen_count = left;
 }
 
 WindowFrame::WindowFrame(const GridParams& params, const Pose3& T_world_ground,
@@ -129,10 +122,11 @@ void WindowFrame::place(const GridPoints& points, std::size_t first, std::size_t
   const auto at = [&](int axis) {
     return static_cast<float>((points.base()[axis] - corner_[axis]) * per_metre_);
   };
-  placeAll(points.x(first), points.y(first), points.z(first), count,
-           {at(0), at(1), at(2), static_cast<float>(per_metre_)}, rules_, out.x.data(),
-           out.y.data(), out.z.data(), out.low.data(), out.high.data(), out.cell.data(),
-           out.in_slab.data());
+  const std::int32_t not_finite = placeAll(
+      points.x(first), points.y(first), points.z(first), count,
+      {at(0), at(1), at(2), static_cast<float>(per_metre_)}, rules_, out.x.data(), out.y.data(),
+      out.z.data(), out.low.data(), out.high.data(), out.cell.data(), out.in_slab.data());
+  out.not_finite = static_cast<std::size_t>(not_finite);
 }
 
 WindowPlace WindowFrame::place(const Vector3& point) const {

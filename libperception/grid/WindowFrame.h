@@ -23,18 +23,18 @@ struct PlacedBlock {
   Lane<float> x, y, z, low, high;  ///< as in WindowPlace
   Lane<std::int32_t> cell;         ///< or kOutside, kNotFinite
   Lane<std::int32_t> in_slab;      ///< 0 or 1
+  std::size_t not_finite = 0;      ///< how many
 
   // What chooseHits() and chooseClear() make of them.
   std::array<std::uint16_t, kSize> chosen;
   std::size_t chosen_count = 0;
-  std::size_t hits = 0, not_finite = 0;  ///< among them
-  Lane<std::int32_t> settled;            ///< the cell if it needs no further point, or kOutside
+  std::size_t hits = 0;        ///< of all
+  Lane<std::int32_t> settled;  ///< the cell if it needs no further point, or kOutside
 
   /// Leaves out hits that say nothing new, those in the cell of the one before when that was within
   /// the slab and of full weight. `weights`: null where all are full. `before`: settled cell of the
   /// point before the first one.
   void chooseHits(std::size_t count, const float* weights, std::int32_t before);
-  std::size_t countNotFinite(std::size_t count) const;
   /// Leaves out points in the cell of the one before.
   void chooseClear(std::size_t count, std::int32_t before);
 

@@ -36,7 +36,10 @@ class WindowMarks {
 
   /// Without the cells in doubt. Columns are numbered [y][x].
   Mask crossed(std::size_t column) const { return crossed_[fans_.margin() + column]; }
-  Mask hit(std::size_t column) const { return hit_[column]; }   ///< with full weight
+  Mask hit(std::size_t column) const { return hit_[column]; }  ///< with full weight
+  /// To be read and forgotten in one go: those of a column and the ones behind it.
+  Mask* crossings(std::size_t column) { return &crossed_[fans_.margin() + column]; }
+  Mask* hits(std::size_t column) { return hit_.data() + column; }
   const std::vector<Doubt>& doubts() const { return doubts_; }  ///< by column and layer
   std::size_t memoryBytes() const;
 
