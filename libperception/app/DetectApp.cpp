@@ -159,7 +159,7 @@ void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParam
     Result result;
     result.name = fs::path(file).filename().string();
     result.image = *image;
-    CameraModel camera = cameraOf(*image, params);
+    CameraModel camera = cameraOf(*image, params, file);
     std::optional<Pose3> pose;
     if (params.height > 0) pose = cameraPose(params.height, params.pitch);
     if (!calibrations.empty()) {
@@ -266,9 +266,9 @@ std::optional<DetectApp::Result> DetectApp::detectIn(const SensorFrame& frame, s
   }
   CameraModel camera = data.camera;
   if (isPanorama(*image, params.panorama, camera.fx > 0)) {
-    camera = panoramaCamera(*image);
+    camera = panoramaCamera(*image, params, data.source);
   } else if (camera.fx <= 0) {
-    camera = cameraOf(*image, params);
+    camera = cameraOf(*image, params, data.source);
   }
   Result result;
   result.name = fmt::format("{}_{:06}", frame.sensor, number);

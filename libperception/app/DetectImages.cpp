@@ -1,11 +1,14 @@
 #include "libperception/app/DetectImages.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/app/ImportText.h"
-#include "libperception/vision/Panorama.h"
+#include "libperception/core/Error.h"
 
 namespace perception {
 namespace {
@@ -21,10 +24,12 @@ void DetectCameraParams::visit(ParamVisitor& v) {
   v.angle("pitch_deg", pitch, {-45, 45}, "of the camera, down");
   v.real("focal", focal, {0, 1e5}, "px", "focal length; 0: from field_of_view_deg");
   v.angle("field_of_view_deg", field_of_view, {1, 170}, "across the image");
-  v.real("horizon", horizon, {0, 1e5}, "px", "row of the horizon at pitch 0; 0: the middle");
+  v.real("horizon", horizon, {0, 1e5}, "px",
+         "row of the horizon at pitch 0, of panoramas, too; 0: the middle");
   v.choice(
       "panorama", panorama, {"auto", "yes", "no"},
-      "a whole spherical image; auto: twice as wide as high, 1024 px or more, without calibration");
+      "the full circle across (equirectangular); auto: twice as wide as high, 1024 px or more, "
+      "without calibration");
 }
 
 bool isRawlog(const std::string& path) {
@@ -67,13 +72,30 @@ Pose3 cameraPose(double height, double pitch) {
 bool isPanorama(const Raster& image, int choice, bool calibrated) {
   constexpr int kLeastWidth = 1024;  // [px] the smallest of the paper's panoramas
   return choice == 1 || (choice == 0 && !calibrated && image.width >= kLeastWidth &&
-                         image.width == 2 * image.height && image.width % 8 == 0);
+                         std::abs(image.width - 2 * image.height) <= 1);
 }
 
-CameraModel panoramaCamera(const Raster& image) { return Panorama(image.width).camera(); }
+CameraModel panoramaCamera(const Raster& image, const DetectCameraParams& params,
+                           const std::string& name) {
+  constexpr int kLeast = 64;  // [px] Panorama's
+  if (image.width < kLeast || 2 * image.height > image.width + 1)
+    throw DataError(
+        fmt::format("{}: {} x {} pixels are no panorama: expected the full circle "
+                    "across, {} px or more, and at most half as high",
+                    name, image.width, image.height, kLeast));
+  CameraModel camera;
+  camera.projection = CameraModel::Projection::kEquirectangular;
+  camera.width = image.width;
+  camera.height = image.height;
+  camera.fx = camera.fy = image.width / kTwoPi;
+  camera.cx = 0.5 * image.width - 0.5;
+  camera.cy = params.horizon > 0 ? params.horizon : 0.5 * image.height - 0.5;
+  return camera;
+}
 
-CameraModel cameraOf(const Raster& image, const DetectCameraParams& params) {
-  if (isPanorama(image, params.panorama, false)) return panoramaCamera(image);
+CameraModel cameraOf(const Raster& image, const DetectCameraParams& params,
+                     const std::string& name) {
+  if (isPanorama(image, params.panorama, false)) return panoramaCamera(image, params, name);
   CameraModel camera;
   camera.width = image.width;
   camera.height = image.height;

@@ -14,7 +14,7 @@ struct DetectCameraParams {
   double pitch = 0;                    ///< [rad] nose down
   double focal = 0;                    ///< [px]; 0: from field_of_view
   double field_of_view = radians(80);  ///< [rad] across
-  double horizon = 0;                  ///< [px] row at pitch 0; 0: the middle
+  double horizon = 0;                  ///< [px] row at pitch 0, of panoramas, too; 0: the middle
   int panorama = 0;                    ///< auto (width = 2 height, no calibration), yes, no
 
   void visit(ParamVisitor& v);
@@ -31,8 +31,12 @@ std::optional<Raster> readImage(const std::string& path);
 Pose3 cameraPose(double height, double pitch);
 /// A calibrated camera is a pinhole unless the INI says otherwise.
 bool isPanorama(const Raster& image, int choice, bool calibrated);
-/// The camera of an image without calibration.
-CameraModel cameraOf(const Raster& image, const DetectCameraParams& params);
-CameraModel panoramaCamera(const Raster& image);
+/// The camera of an image without calibration. `name` for the message of a DataError: `panorama =
+/// yes` and no picture of the full circle.
+CameraModel cameraOf(const Raster& image, const DetectCameraParams& params,
+                     const std::string& name);
+/// The full circle across, with as many pixels a radian downwards.
+CameraModel panoramaCamera(const Raster& image, const DetectCameraParams& params,
+                           const std::string& name);
 
 }  // namespace perception

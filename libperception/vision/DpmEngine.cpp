@@ -80,6 +80,13 @@ void convolve(const DpmBank& bank, std::vector<DpmLevel>& levels) {
 
 // ---- scores
 
+/// Place in DpmComponent::octaves of a root's scale (voc-release5, loc_feat.m: the first `interval`
+/// levels are finer than the image, the next as many go down to its half).
+std::size_t octaveOf(double scale) {
+  constexpr double kRounding = 1e-3;  // scales are of whole pixels
+  return scale > 1 + kRounding ? 0 : scale > 0.5 + kRounding ? 1 : 2;
+}
+
 std::vector<DpmDetection> collect(const DpmBank& bank, const DpmLevel& level, std::size_t target) {
   std::vector<DpmDetection> found;
   const DpmTarget& t = bank.targets[target];
@@ -90,6 +97,7 @@ std::vector<DpmDetection> collect(const DpmBank& bank, const DpmLevel& level, st
   std::size_t first_lane = 0;
   for (std::size_t k = 0; k < t.model.components.size(); ++k) {
     const DpmComponent& c = t.model.components[k];
+    const double offset = c.offset + c.octaves[octaveOf(level.scale_x)];
     const Span xs = search.x[k];
     for (int y = search.y[k].begin; y < search.y[k].end; ++y) {
       bank.kernels.correlate(level.roots.cell(xs.begin, y), level.roots.rowStride(),
@@ -109,7 +117,7 @@ std::vector<DpmDetection> collect(const DpmBank& bank, const DpmLevel& level, st
       }
       for (int x = xs.begin; x < xs.end; ++x) {
         const double score =
-            static_cast<double>(scores[static_cast<std::size_t>(x - xs.begin)]) + c.offset;
+            static_cast<double>(scores[static_cast<std::size_t>(x - xs.begin)]) + offset;
         if (score < t.threshold) continue;
         DpmDetection d;
         d.target = static_cast<int>(target);

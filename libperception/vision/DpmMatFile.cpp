@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -201,6 +202,13 @@ class ModelReader {
     out.width = static_cast<int>(window[1]);
     const auto offset = weights(in_.field(rules, "offset", index), 0);
     out.offset = (offset.empty() ? 0 : offset[0]) * bias();
+    if (const matvar_t* loc = in_.find(rules, "loc", index);
+        loc != nullptr && loc->class_type == MAT_C_STRUCT && MatModel::count(loc) > 0) {
+      const auto octaves = weights(loc, 0);
+      if (octaves.size() != std::size(out.octaves))
+        in_.fail(fmt::format(".rules.loc: {} weights, expected 3", octaves.size()));
+      std::copy(octaves.begin(), octaves.end(), out.octaves);
+    }
     out.root = filter(indexOf(symbols[0]));
     for (std::size_t p = 1; p < symbols.size(); ++p)
       out.parts.push_back(part(indexOf(symbols[p]), in_.numbers(in_.cell(anchors, p), "anchor")));

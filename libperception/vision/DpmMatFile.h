@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// Reads a star model of voc-release4 or voc-release5 (without its octave terms) from a MATLAB file
+/// Reads a star model of voc-release4 or voc-release5 from a MATLAB file
 /// (variable `model`). Throws DataError with file and field.
 DpmModel readDpmMatFile(const std::string& path);
 

@@ -39,6 +39,12 @@ class Words {
   void key(const char* key) {
     if (word(key) != key) fail(fmt::format("'{}'", key));
   }
+  /// Takes the word if it is there.
+  bool has(const std::string& word) {
+    if (atEnd() || text_.compare(place_, word.size(), word) != 0) return false;
+    place_ += word.size();
+    return true;
+  }
   double real(const char* expected) {
     if (atEnd()) fail(expected);
     double value = 0;
@@ -113,6 +119,9 @@ DpmComponent readComponent(Words& in, int number) {
   c.heading = in.real("an angle");
   in.key("offset");
   c.offset = in.real("an offset");
+  if (in.has("octaves")) {
+    for (double& o : c.octaves) o = in.real("an offset of an octave");
+  }
   in.key("detwindow_hw");
   c.height = in.whole("height of the window", 1, kLargest);
   c.width = in.whole("width of the window", 1, kLargest);
@@ -181,8 +190,10 @@ std::string dpmModelText(const DpmModel& model) {
                   model.components.size(), model.cell, model.threshold);
   for (std::size_t k = 0; k < model.components.size(); ++k) {
     const DpmComponent& c = model.components[k];
-    out += fmt::format("component {} alpha_rad {} offset {} detwindow_hw {} {} parts {}\n", k,
-                       c.heading, c.offset, c.height, c.width, c.parts.size());
+    out += fmt::format("component {} alpha_rad {} offset {}", k, c.heading, c.offset);
+    if (c.octaves[0] != 0 || c.octaves[1] != 0 || c.octaves[2] != 0)
+      out += fmt::format(" octaves {} {} {}", c.octaves[0], c.octaves[1], c.octaves[2]);
+    out += fmt::format(" detwindow_hw {} {} parts {}\n", c.height, c.width, c.parts.size());
     out +=
         fmt::format("root anchor_xyl 0 0 0 size_hw {} {} dims 32\n", c.root.height, c.root.width);
     writeWeights(c.root, out);

@@ -23,6 +23,9 @@ struct DpmPart {
 struct DpmComponent {
   double heading = 0;         ///< [rad] KITTI's alpha
   double offset = 0;          ///< added to the score
+  /// The same by the root's scale in the image: enlarged, down to a half, smaller
+  /// (voc-release5's location features).
+  double octaves[3] = {0, 0, 0};
   int height = 0, width = 0;  ///< [cells] of the detection window
   DpmFilter root;
   std::vector<DpmPart> parts;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "libperception/vision/PanoramaFit.h"
+
 namespace perception {
 namespace {
 
@@ -56,13 +58,16 @@ ObjectDetections ImageDetector::detect(const Raster& image, const CameraModel& c
     addHeadings(image, out.camera, out.objects);
     return out;
   }
-  const Panorama& whole = panorama(image.width);
+  const PanoramaFit fit(out.camera);
+  const Panorama& whole = panorama(fit.width());
+  const Raster fitted = fit.isWhole() ? Raster{} : fit.whole(image);
+  const Raster& sphere = fit.isWhole() ? image : fitted;
   std::vector<std::vector<ObjectDetection>> tiles(Panorama::kTiles);
   const auto look = [&](int k) {
     std::optional<Pose3> pose;
     if (T_ego_camera) pose = turnedRight(*T_ego_camera, Panorama::tileAzimuth(k));
     tiles[static_cast<std::size_t>(k)] =
-        detector_->detect(whole.tile(image, k), {gateOf(whole.tileCamera(), pose, ground), true});
+        detector_->detect(whole.tile(sphere, k), {gateOf(whole.tileCamera(), pose, ground), true});
   };
   if (detector_->parallel()) {
     tbb::parallel_for(0, Panorama::kTiles, look);
@@ -70,7 +75,7 @@ ObjectDetections ImageDetector::detect(const Raster& image, const CameraModel& c
     for (int k = 0; k < Panorama::kTiles; ++k) look(k);
   }
   out.objects = whole.merge(tiles).objects;
-  out.camera = whole.camera();
+  if (!fit.isWhole()) fit.toPicture(out.objects);
   addHeadings(image, out.camera, out.objects);
   return out;
 }

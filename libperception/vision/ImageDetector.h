@@ -8,8 +8,8 @@
 
 namespace perception {
 
-/// A detector for any camera: ordinary pictures as they are, whole panoramas through their eight
-/// tiles.
+/// A detector for any camera: ordinary pictures as they are, panoramas of the full circle through
+/// their eight tiles.
 class ImageDetector {
  public:
   explicit ImageDetector(DetectorSetup setup);

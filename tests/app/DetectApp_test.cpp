@@ -8,6 +8,9 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "libperception/app/DetectLabels.h"
+#include "libperception/app/KittiFiles.h"
+#include "libperception/core/Angle.h"
 #include "libperception/core/Csv.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/Conversions.h"
@@ -141,6 +144,118 @@ TEST(DetectApp, BoxesGoIntoTheLogBehindTheirImages) {
   EXPECT_EQ(order,
             (std::vector<std::string>{"CAMERA", "BOARDS", "OTHER", "CAMERA", "BOARDS", "OTHER"}));
   EXPECT_NEAR(last_x, kX + 32, 1e-6);
+}
+
+/// What a pinhole of `focal` [px] at `yaw` [rad, to the right] sees, painted into a panorama.
+void paint(const cv::Mat& image, double fx, double cx, double cy, double yaw, double horizon,
+           cv::Mat& panorama) {
+  const double f = panorama.cols / kTwoPi, middle = 0.5 * panorama.cols - 0.5;
+  for (int v = 0; v < panorama.rows; ++v) {
+    for (int u = 0; u < panorama.cols; ++u) {
+      const double right = wrapAngle((u - middle) / f - yaw);
+      if (std::abs(right) > radians(44)) continue;
+      const int x = cvRound(fx * std::tan(right) + cx);
+      const int y = cvRound(fx * std::tan((v - horizon) / f) / std::cos(right) + cy);
+      if (x >= 0 && y >= 0 && x < image.cols && y < image.rows)
+        panorama.at<cv::Vec3b>(v, u) = image.at<cv::Vec3b>(y, x);
+    }
+  }
+}
+
+double overlapOf(const CsvTable& t, std::size_t row, double x1, double y1, double x2, double y2) {
+  const auto at = [&](const char* name) { return t.real(row, t.column(name)); };
+  const double w = std::min(x2, at("x2")) - std::max(x1, at("x1"));
+  const double h = std::min(y2, at("y2")) - std::max(y1, at("y1"));
+  if (w <= 0 || h <= 0) return 0;
+  const double own = (at("x2") - at("x1")) * (at("y2") - at("y1"));
+  return w * h / (own + (x2 - x1) * (y2 - y1) - w * h);
+}
+
+TEST(DetectApp, AnyPictureOfTheFullCircleIsAPanorama) {
+  const test::TemporaryFolder folder;
+  writeDetector(folder);
+  // 1501 columns are no multiple of 8, 420 rows a part of the sphere, the horizon off their middle.
+  constexpr double kHorizon = 190, kFocal = 1501 / kTwoPi;
+  cv::Mat panorama(420, 1501, CV_8UC3, cv::Scalar::all(120));
+  const std::vector<double> yaws{0, radians(90), radians(180)};  // the last one over the seam
+  for (const double yaw : yaws)
+    paint(picture(0), kFocal, kX + 31.5, kY + 23.5, yaw, kHorizon, panorama);
+  cv::imwrite(folder / "circle.jpg", panorama);
+  DetectApp app;
+  EXPECT_EQ(detect(app, {"-c", folder / "detector.ini", "-i", folder / "circle.jpg", "--set",
+                         "camera.panorama=yes", "--set", "camera.horizon=190", "--set",
+                         "dpm.enlarge=2", "--pictures", "-o", folder / "out"}),
+            0);
+  const CsvTable boxes = CsvTable::fromFile(folder / "out/detections.csv");
+  for (const double yaw : yaws) {
+    double u = 750 + yaw * kFocal, best = 0;
+    for (std::size_t row = 0; row < boxes.rows(); ++row)
+      best = std::max(best, overlapOf(boxes, row, u - 32, kHorizon - 24, u + 32, kHorizon + 24));
+    EXPECT_GT(best, 0.6) << yaw;
+  }
+  const cv::Mat drawn = cv::imread(folder / "out/pictures/circle.png");
+  EXPECT_EQ(drawn.cols, 1501);
+  // Without the key it is an ordinary picture, as it is not twice as wide as high.
+  EXPECT_EQ(detect(app, {"-c", folder / "detector.ini", "-i", folder / "circle.jpg"}), 0);
+  // And no picture that is too high for a circle is a panorama.
+  cv::imwrite(folder / "high.jpg", cv::Mat(420, 600, CV_8UC3, cv::Scalar::all(120)));
+  EXPECT_EQ(detect(app, {"-c", folder / "detector.ini", "-i", folder / "high.jpg", "--set",
+                         "camera.panorama=yes"}),
+            65);
+}
+
+TEST(DetectApp, CarsOfRealPicturesAreFoundInAPanoramaOfThem) {
+  const std::string shared = PERCEPTION_SHARED_DATA;
+  const std::string data = shared + "/data/kitti_object13/";
+  if (!std::filesystem::exists(data) || !std::filesystem::exists(shared + "/data/kitti_dpm_models"))
+    GTEST_SKIP() << "no images or models in " << shared << "/data";
+  // The four images with most clear cars, a quarter of the circle each; the first lies on the seam.
+  const std::vector<std::string> names{"000008", "000010", "000003", "000004"};
+  constexpr double kHorizon = 200, kFocal = 2600 / kTwoPi;
+  cv::Mat panorama(460, 2600, CV_8UC3, cv::Scalar::all(120));
+  struct Car {
+    double x1, y1, x2, y2;
+  };
+  std::vector<Car> cars;
+  const ImageLabels labels(data + "label_2", LabelRules{40, 0.3, 1});
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const CameraModel c = readKittiCalibration(data + "calib/" + names[i] + ".txt").camera;
+    const double yaw = radians(180) + static_cast<double>(i) * radians(90);
+    paint(cv::imread(data + "image_2/" + names[i] + ".png"), c.fx, c.cx, c.cy, yaw, kHorizon,
+          panorama);
+    for (const LabelledBox& l : labels.of(names[i] + ".png")) {
+      if (l.label != "Car" || l.ignore || l.area) continue;
+      const auto right = [&](double x) { return std::atan((x - c.cx) / c.fx); };
+      const double middle = std::cos(0.5 * (right(l.box.x1) + right(l.box.x2)));
+      const auto row = [&](double y) {
+        return kHorizon + kFocal * std::atan((y - c.cy) / c.fy * middle);
+      };
+      const double left = 1299.5 + kFocal * (yaw + right(l.box.x1));
+      const double shift = std::floor(left / 2600) * 2600;
+      cars.push_back({left - shift, row(l.box.y1),
+                      left - shift + kFocal * (right(l.box.x2) - right(l.box.x1)), row(l.box.y2)});
+    }
+  }
+  ASSERT_GE(cars.size(), 7U);
+  const test::TemporaryFolder folder;
+  cv::imwrite(folder / "circle.jpg", panorama);
+  DetectApp app;
+  ASSERT_EQ(detect(app, {"-c", PERCEPTION_SOURCE_DIR "/ini/detectors/kitti_bank.ini", "--set",
+                         "detector.folder=" + shared + "/data/kitti_dpm_models", "--set",
+                         "camera.panorama=yes", "--set", "camera.horizon=200", "-i",
+                         folder / "circle.jpg", "-o", folder / "out"}),
+            0);
+  const CsvTable boxes = CsvTable::fromFile(folder / "out/detections.csv");
+  std::size_t found = 0;
+  for (const Car& car : cars) {
+    double best = 0;
+    for (std::size_t row = 0; row < boxes.rows(); ++row) {
+      if (boxes.text(row, boxes.column("label")) == "Car")
+        best = std::max(best, overlapOf(boxes, row, car.x1, car.y1, car.x2, car.y2));
+    }
+    found += best > 0.5;
+  }
+  EXPECT_GE(found, cars.size() - cars.size() / 4) << "of " << cars.size();
 }
 
 TEST(DetectApp, SaysWhatIsMissing) {

@@ -161,6 +161,28 @@ TEST(DpmEngine, ScoresEveryPlaceAsTheLiteralDetectorDoes) {
   }
 }
 
+TEST(DpmEngine, AnOctavesOffsetGoesToTheScalesOfItsOctave) {
+  const Raster image = picture(200, 170, 3);
+  DpmOptions options;
+  options.levels_per_octave = 2;
+  options.enlarge = 2;
+  DpmModel shifted = tinyModel(5);
+  for (DpmComponent& c : shifted.components)
+    c.octaves[0] = 0.1, c.octaves[1] = 0.2, c.octaves[2] = 0.4;
+  std::map<PlaceKey, double> plain;
+  for (const auto& d : DpmEngine({everywhere(tinyModel(5))}, options).places(image))
+    plain[keyOf(d)] = d.score;
+  std::array<int, 3> seen{};
+  for (const auto& d : DpmEngine({everywhere(shifted)}, options).places(image)) {
+    const auto& c = shifted.components[static_cast<std::size_t>(d.component)];
+    const double scale = 8 * c.width / (d.box.x2 - d.box.x1);
+    const std::size_t octave = scale > 1.01 ? 0 : scale > 0.51 ? 1 : 2;
+    ++seen[octave];
+    ASSERT_NEAR(d.score - plain.at(keyOf(d)), c.octaves[octave], 1e-5) << scale;
+  }
+  for (const int n : seen) EXPECT_GT(n, 0);
+}
+
 TEST(DpmEngine, SeveralModelsShareAPyramidAndChangeNothing) {
   const Raster image = picture(90, 70, 4);
   DpmOptions options;

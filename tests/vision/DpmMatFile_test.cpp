@@ -76,11 +76,12 @@ std::string writeModel(const TemporaryFolder& folder, int release) {
     return structs("", {{text("type", "D"), numbers("rhs", {filter_symbol}),
                          structs("def", {{value(3, deformation), flip(mirrored)}})}});
   };
-  matvar_t* start = structs(
-      "",
-      {{text("type", "S"), numbers("rhs", {2, 5, 6}), numbers("detwindow", {3, 4}),
-        cells("anchor", {numbers("", {0, 0, 0}), numbers("", {1, 2, 1}), numbers("", {5, 3, 1})}),
-        structs("offset", {{value(4, {-0.7})}})}});
+  std::vector<matvar_t*> rule = {
+      text("type", "S"), numbers("rhs", {2, 5, 6}), numbers("detwindow", {3, 4}),
+      cells("anchor", {numbers("", {0, 0, 0}), numbers("", {1, 2, 1}), numbers("", {5, 3, 1})}),
+      structs("offset", {{value(4, {-0.7})}})};
+  if (blocks) rule.push_back(structs("loc", {{numbers("blocklabel", {5})}}));
+  matvar_t* start = structs("", {rule});
   const auto nothing = [] { return numbers("", {}, {0, 0}); };
   std::vector<matvar_t*> fields = {
       text("class", "board"),
@@ -94,7 +95,8 @@ std::string writeModel(const TemporaryFolder& folder, int release) {
     fields.push_back(structs("blocks", {{numbers("w", weights(kRoot, 1))},
                                         {numbers("w", weights(kPart, 2))},
                                         {numbers("w", deformation)},
-                                        {numbers("w", {-0.07})}}));
+                                        {numbers("w", {-0.07})},
+                                        {numbers("w", {-0.3, 0.02, 0.05})}}));
     fields.push_back(structs("features", {{numbers("bias", {10})}}));
   }
   matvar_t* model = structs("model", {fields});
@@ -127,6 +129,18 @@ TEST(DpmMatFile, ReleasesFourAndFiveGiveOneModel) {
   }
   EXPECT_EQ(four.components[0].root.weights, five.components[0].root.weights);
   EXPECT_EQ(four.components[0].parts[0].filter.weights, five.components[0].parts[0].filter.weights);
+}
+
+TEST(DpmMatFile, ReleaseFiveWeighsTheOctaveOfTheRoot) {
+  const TemporaryFolder folder;
+  const DpmModel four = readDpmModel(writeModel(folder, 4));
+  for (const double o : four.components[0].octaves) EXPECT_EQ(o, 0);
+  const DpmModel five = readDpmModel(writeModel(folder, 5));
+  EXPECT_EQ(five.components[0].octaves[0], -0.3);
+  EXPECT_EQ(five.components[0].octaves[1], 0.02);
+  EXPECT_EQ(five.components[0].octaves[2], 0.05);
+  const DpmModel again = parseDpmModel(dpmModelText(five), "text");
+  EXPECT_EQ(again.components[0].octaves[2], 0.05);
 }
 
 TEST(DpmMatFile, AMirroredBlockOfReleaseFiveIsTurnedRound) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/Random.h"
@@ -68,27 +69,52 @@ inline Raster render(const Panorama& panorama, const Post& post) {
   return image;
 }
 
-/// The detector of these tests: the box about all dark pixels.
+/// Where the darkest pixel of each row (or column), from the `first` one on, passes half of white:
+/// between the centres of two rows.
+inline double crossing(const std::vector<int>& darkest, int first, int step) {
+  const int before = darkest[static_cast<std::size_t>(first - step)];
+  const int at = darkest[static_cast<std::size_t>(first)];
+  return first - step * (127.5 - at) / std::max(1, before - at);
+}
+
+/// The detector of these tests: the box about what is darker than half, its edges between pixels as
+/// a detector without faults would put them.
 inline std::vector<ObjectDetection> detect(const Raster& tile) {
-  int x1 = tile.width, y1 = tile.height, x2 = -1, y2 = -1;
+  std::vector<int> rows(static_cast<std::size_t>(tile.height), 255);
+  std::vector<int> columns(static_cast<std::size_t>(tile.width), 255);
   for (int y = 0; y < tile.height; ++y) {
     for (int x = 0; x < tile.width; ++x) {
-      if (tile.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(tile.width) +
-                      static_cast<std::size_t>(x)] >= 128)
-        continue;
-      x1 = std::min(x1, x), x2 = std::max(x2, x), y1 = std::min(y1, y), y2 = std::max(y2, y);
+      const auto row = static_cast<std::size_t>(y), column = static_cast<std::size_t>(x);
+      const int grey = tile.pixels[row * static_cast<std::size_t>(tile.width) + column];
+      rows[row] = std::min(rows[row], grey), columns[column] = std::min(columns[column], grey);
     }
   }
-  if (x2 < x1) return {};
+  const auto ends = [](const std::vector<int>& darkest) {
+    int first = -1, last = -1;
+    for (int i = 0; i < static_cast<int>(darkest.size()); ++i) {
+      if (darkest[static_cast<std::size_t>(i)] > 127) continue;
+      first = first < 0 ? i : first, last = i;
+    }
+    return std::pair(first, last);
+  };
+  const auto [top, bottom] = ends(rows);
+  const auto [left, right] = ends(columns);
+  if (top < 0) return {};
+  const auto edge = [](const std::vector<int>& darkest, int at, int step) {
+    const int beyond = at - step;
+    if (beyond < 0 || beyond >= static_cast<int>(darkest.size())) return at - 0.5 * step;
+    return crossing(darkest, at, step);
+  };
   ObjectDetection d;
   d.label = "person";
-  d.image_box =
-      ObjectDetection::ImageBox{x1 - 0.5, y1 - 0.5, x2 + 0.5, y2 + 0.5};  // edges of the pixels
+  d.image_box = ObjectDetection::ImageBox{edge(columns, left, 1), edge(rows, top, 1),
+                                          edge(columns, right, -1), edge(rows, bottom, -1)};
   return {d};
 }
 
 struct ChainError {
-  double range = 0, bearing = 0;  ///< share of the range, [rad]
+  double range = 0, bearing = 0;  ///< share of the range, [rad]; without sign
+  double too_far = 0;             ///< share of the range, with it
   double deviations = 0;          ///< error of the range in its own standard deviations
   int objects = 0;
 };
@@ -119,7 +145,8 @@ inline ChainError chainError(const Panorama& panorama, const Post& post, double 
     return e;
   }
   const double truth = post.distance - kRadius;
-  e.range = std::abs(*out->range - truth) / truth;
+  e.too_far = (*out->range - truth) / truth;
+  e.range = std::abs(e.too_far);
   e.deviations = (*out->range - truth) / out->range_sigma;
   e.bearing = std::abs(wrapAngle(middleBearing(out->left, out->right) - post.bearing));
   return e;
