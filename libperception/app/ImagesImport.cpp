@@ -91,8 +91,8 @@ ImagesImporter::Frame ImagesImporter::read(const FrameFile& file, ImportLog& log
 }
 
 void ImagesImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog& log) const {
-  const Pose3 T_ego_velo = makePose(0, 0, kKittiVelodyneHeight, 0);
   const KittiCalibration& calibration = frame.calibration;
+  const Pose3 T_ego_velo = levelVelodyne(calibration);
   const Pose3 T_ego_camera =
       T_ego_velo * calibration.T_cam0_velo.inverse() * calibration.T_cam0_cam2;
   log.ego(stamp, frame.T_world_ego);

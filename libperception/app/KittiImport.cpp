@@ -304,6 +304,15 @@ KittiImportParams::Detections KittiImporter::detectionsOf(const std::string& tex
 
 }  // namespace
 
+Pose3 levelVelodyne(const KittiCalibration& calibration) {
+  const Vector3 up = -calibration.T_cam0_velo.linear().row(1).transpose();  // in the Velodyne frame
+  const Vector3 left = up.cross(Vector3::UnitX()).normalized();
+  Pose3 T_ego_velo = Pose3::Identity();
+  T_ego_velo.linear() << left.cross(up).transpose(), left.transpose(), up.transpose();
+  T_ego_velo.translation().z() = kKittiVelodyneHeight;
+  return T_ego_velo;
+}
+
 TruthObject truthOf(const KittiLabel& label, const KittiCalibration& calibration,
                     const Pose3& T_world_velo, const std::optional<LidarCloud>& cloud) {
   TruthObject o;

@@ -28,6 +28,12 @@ struct KittiImportParams {
 /// [m] Height of the Velodyne on KITTI's car (Geiger et al., IJRR 2013, figure 3).
 inline constexpr double kKittiVelodyneHeight = 1.73;
 
+/// The Velodyne over the ground of a still frame, where the ground holds what an image box says: the
+/// cameras are level with it (KITTI's page on the sensor setup), and the Velodyne looks down by half
+/// a degree (its scans see the road rise by .7 to 1.2 % ahead, labels of the tracking sequences, in
+/// the cameras' frame, by .1 %).
+Pose3 levelVelodyne(const KittiCalibration& calibration);
+
 /// Writes FILE.rawlog and, with labels, FILE.truth.csv; frame by frame, so memory does not grow
 /// with the sequence. World: the ego frame at line 0 of the poses, 1.73 m under the Velodyne.
 /// Throws Error (kUsage), DataError, OutputError.

@@ -262,8 +262,7 @@ TEST_F(RealImport, LabelledBoxesGiveTracksOfCarsInSingleImages) {
       if (o.type != "Car" || o.occluded > 1 || o.truncated > 0.3 || !(range < 20)) continue;
       ++near;
       tracked += std::any_of(scene->objects.begin(), scene->objects.end(), [&](const auto& object) {
-        // A box in one image shows the near end of a car; half a length is unseen.
-        return (object.position - o.position).template head<2>().norm() < 2.5;
+        return (object.position - o.position).template head<2>().norm() < 2;
       });
     }
   }
