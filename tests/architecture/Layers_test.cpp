@@ -119,6 +119,27 @@ TEST(Layers, EveryIncludeKeepsTheRule) {
   }
 }
 
+// With these two rules each header compiles alone, in the source beside it, and twice;
+// HeadersAlone.cmake compiles those that have no source.
+TEST(Layers, SourcesIncludeTheirOwnHeaderFirst) {
+  const auto sources = ourSources();
+  std::set<std::string> headers;
+  for (const SourceFile& file : sources) {
+    if (!file.isHeader()) continue;
+    headers.insert(file.path);
+    EXPECT_NE(("\n" + file.text).find("\n#pragma once\n"), std::string::npos) << file.path;
+  }
+  int pairs = 0;
+  for (const SourceFile& file : sources) {
+    const std::string header = file.path.substr(0, file.path.rfind('.')) + ".h";
+    if (!file.isSource() || headers.count(header) == 0) continue;
+    const auto includes = includesOf(file);
+    EXPECT_TRUE(!includes.empty() && includes[0].path == header) << file.path << ": " << header;
+    ++pairs;
+  }
+  EXPECT_GT(pairs, 100);
+}
+
 std::string faultOfLine(const std::string& path, const std::string& line) {
   const SourceFile file{path, line + "\n"};
   const auto includes = includesOf(file);
