@@ -4,14 +4,15 @@
 #include <cmath>
 
 #include "libperception/core/Frames.h"
+#include "libperception/filter/MotionModels.h"
 
 namespace perception {
 namespace {
 
 constexpr double kUnseen = 0.25;  // [s] a track not hit for so long gives way to a fresh one
 constexpr std::uint32_t kAbsent = static_cast<std::uint32_t>(-1);
-constexpr double kSureClass =
-    0.95;  // a track of unsure class has no footprint that others must respect
+/// A track of less sure class (.95) has no footprint that others must respect.
+const double kLogSureClass = std::log(0.95);
 
 struct Footprint {
   std::uint64_t id = 0;
@@ -20,19 +21,24 @@ struct Footprint {
   double yaw = 0;        // [rad]
   double area = 0;       // [m^2] of a track whose class is sure, else 0
   Stamp last_hit;
+  bool fresh = true;  // of this scan
 };
 
-Footprint footprintOf(const Track& t) {
-  const ClassFilter& f = t.bank[static_cast<std::size_t>(t.likeliestClass())];
+/// Of tracks that the scan left behind where they have gone meanwhile.
+Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
+  const ClassId best = t.likeliestClass();
+  const ClassFilter& f = t.bank[static_cast<std::size_t>(best)];
   Footprint out;
   out.id = t.id;
   out.centre = f.x.head<2>();
+  out.fresh = t.stamp == now;
+  if (!out.fresh)
+    out.centre += (now - t.stamp) * kinematicsOf(model.classes[best], f).q.segment<2>(2);
   out.half = f.oriented ? Vector2(0.5 * f.extent.length, 0.5 * f.extent.width)
                         : Vector2::Constant(0.25 * (f.extent.length + f.extent.width));
   out.corner2 = out.half.squaredNorm() + 1e-6;
   out.yaw = f.oriented ? f.x[3] : 0;
-  const bool sure =
-      std::exp(t.log_class[static_cast<std::size_t>(t.likeliestClass())]) >= kSureClass;
+  const bool sure = t.log_class[static_cast<std::size_t>(best)] >= kLogSureClass;
   out.area = sure ? 4 * out.half.x() * out.half.y() : 0;
   out.last_hit = *std::max_element(t.last_hit.begin(), t.last_hit.end());
   return out;
@@ -66,12 +72,13 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
   std::vector<std::size_t> there, large;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!tracks[i]) continue;
-    feet[i] = footprintOf(*tracks[i]);
+    feet[i] = footprintOf(*tracks[i], model, now);
     there.push_back(i);
     if (feet[i].area >= least) large.push_back(i);
   }
   for (const std::size_t i : large) {
     for (const std::size_t j : there) {
+      if (!feet[i].fresh && !feet[j].fresh) continue;  // compared when one of them was
       if (feet[i].id == feet[j].id || !holds(feet[i], feet[j].centre)) continue;
       // Of two large ones that hold each other one entry is enough.
       if (feet[j].area >= least && j < i && holds(feet[j], feet[i].centre)) continue;

@@ -108,26 +108,33 @@ bool AxisBounds::exclude(const Measurement& m, const std::vector<AxisKind>& kind
   return false;
 }
 
-bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel& model) {
-  constexpr double kNeverOlder = 0.1;      // [s]
-  constexpr double kMaxAcceleration = 10;  // [m/s^2] of what may happen meanwhile
-  const double dt = scan.state.stamp - track.stamp;
-  if (dt >= kNeverOlder - 1e-6) return true;
+Whereabouts whereaboutsOf(const Track& track, const FilterModel& model) {
+  constexpr double kMargin = 1;  // [m] beyond the objects' own size
+  const Surroundings around(track);
+  Whereabouts w;
+  w.centre = around.centre;
+  w.reach = around.spread + 2 * around.size + kMargin;
+  double speed2 = 0;
+  const auto move = [&](const Vector4& x, const Matrix4& P, bool oriented) {
+    // The mean of v e^(i theta) grows by the covariance of both, at most var v / e (MotionModels).
+    const double own = oriented ? x[2] * x[2] + P(2, 2) / std::exp(1.0) : x.tail<2>().squaredNorm();
+    speed2 = std::max(speed2, own);
+  };
   for (ClassId j = 0; j < model.classes.size(); ++j) {
-    if (!track.live(j)) continue;
     const ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
-    const bool speed_known = model.classes[j].motion == Motion::kWheeled && f.oriented;
-    const double speed = speed_known ? std::abs(f.x[2]) : f.x.tail<2>().norm();
-    const double sigma = std::sqrt(std::max(f.P(0, 0), f.P(1, 1)));
-    const double reach = kCoarseGate * sigma + 0.5 * (f.extent.length + f.extent.width) +
-                         kCoarseMargin + (speed + kMaxAcceleration * dt) * dt;
-    if (scan.model->mayDetect(f.x.head<2>(), reach, scan.state)) return true;
-    for (const auto& m : scan.measurements) {
-      const double far = reach + kCoarseGate * m.position_sigma;
-      if ((m.position - f.x.head<2>()).squaredNorm() <= far * far) return true;
-    }
+    if (!track.live(j) || model.classes[j].motion == Motion::kStatic) continue;
+    move(f.x, f.P, f.oriented);
+    for (const ModeFilter& mode : f.modes) move(mode.x, mode.P, f.oriented);
   }
-  return false;
+  w.speed = std::sqrt(speed2);
+  return w;
+}
+
+bool concerns(const MeasurementScan& scan, const Track& track) {
+  const Whereabouts& w = track.whereabouts;
+  const double dt = scan.state.stamp - track.stamp;
+  return dt >= kLongestSleep - 1e-6 || w.reach == std::numeric_limits<double>::infinity() ||
+         scan.model->mayDetect(w.centre, w.reach + w.speed * dt, scan.state);
 }
 
 }  // namespace perception

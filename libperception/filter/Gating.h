@@ -44,8 +44,15 @@ class AxisBounds {
   std::array<double, kMaxAxes> variance_{};
 };
 
-/// False when the scan can say nothing of the track, whether it was detected or not: it stays as it
-/// is for now. Tracks are never left behind for longer than 0.1 s.
-bool concerns(const MeasurementScan& scan, const Track& track, const FilterModel& model);
+/// Where a sensor may see the track: P_D is taken at the means of the class filters.
+Whereabouts whereaboutsOf(const Track& track, const FilterModel& model);
+
+/// A track that no scan concerns is left behind for at most this long [s]: more steps at once would
+/// cost at its end what they saved.
+inline constexpr double kLongestSleep = 0.5;
+
+/// False when the scan can say nothing of the track, since all its class filters, predicted, are
+/// out of view: it stays as it is for now.
+bool concerns(const MeasurementScan& scan, const Track& track);
 
 }  // namespace perception

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
-#include "libperception/core/LogMath.h"
 
 namespace perception {
 namespace {
@@ -17,10 +16,6 @@ double flipProbability(const HeadingSeen& seen) {
   return std::clamp(seen.flip_probability, kLeastFlip, 0.5);
 }
 
-double logNormal(double y, double variance) {
-  return -0.5 * (y * y / variance + std::log(kTwoPi * variance));
-}
-
 /// log P(v | theta is the heading) / P(v | theta is its opposite).
 double logForward(double v, double v_variance) {
   const double positive = 0.5 * std::erfc(-v / std::sqrt(2 * std::max(v_variance, 1e-12)));
@@ -31,7 +26,8 @@ double logForward(double v, double v_variance) {
 }  // namespace
 
 HeadingResidual headingResidual(const HeadingSeen& seen, double theta, HeadingMode mode) {
-  const double direct = wrapAngle(seen.yaw - theta), opposite = wrapAngle(direct + kPi);
+  const double direct = wrapAngle(seen.yaw - theta);
+  const double opposite = direct > 0 ? direct - kPi : direct + kPi;
   const double variance = seen.sigma * seen.sigma;
   const bool same = std::abs(direct) <= std::abs(opposite);
   if (mode == HeadingMode::kWide)
@@ -43,12 +39,12 @@ double logHeadingRatio(const HeadingSeen& seen, double theta, double theta_varia
                        HeadingMode mode) {
   if (mode == HeadingMode::kIgnored) return 0;
   const HeadingResidual r = headingResidual(seen, theta, mode);
-  const double variance = r.variance + theta_variance, uniform = std::log(kTwoPi);
-  if (mode == HeadingMode::kWide) return uniform + logNormal(r.y, variance);
-  const double p = flipProbability(seen);
-  const double near = logNormal(r.y, variance), far = logNormal(kPi - std::abs(r.y), variance);
-  return uniform + (r.same ? logAddExp(std::log1p(-p) + near, std::log(p) + far)
-                           : logAddExp(std::log(p) + near, std::log1p(-p) + far));
+  const double variance = r.variance + theta_variance;
+  const double nearer = 0.5 * (std::log(kTwoPi / variance) - r.y * r.y / variance);
+  if (mode == HeadingMode::kWide) return nearer;
+  const double p = flipProbability(seen), other = kPi - std::abs(r.y);
+  const double ratio = std::exp(0.5 * (r.y * r.y - other * other) / variance);  // at most 1
+  return nearer + std::log(r.same ? (1 - p) + p * ratio : p + (1 - p) * ratio);
 }
 
 HeadingBit firstHeadingBit(const HeadingSeen& seen) { return nextHeadingBit({}, true, seen); }

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include "libperception/core/Angle.h"
 #include "libperception/core/LogMath.h"
 #include "libperception/filter/AssignmentPrior.h"
 #include "libperception/filter/Gating.h"
 #include "libperception/filter/Linearisation.h"
 #include "libperception/filter/MotionModels.h"
+#include "libperception/filter/PairDensity.h"
 #include "libperception/filter/Parallel.h"
 
 namespace perception {
@@ -29,36 +29,6 @@ double visibilityOf(const Track& track, const MeasurementScan& scan, const Filte
                                   model.params.hidden_tolerance);
 }
 
-/// Log density of an innovation and its normalised square; of modes their mixture and the least.
-struct Density {
-  double log_density = kMinusInfinity;
-  double nis = std::numeric_limits<double>::infinity();
-};
-
-Density gaussian(const AxisVector& y, const AxisMatrix& S) {
-  Density out;
-  const Eigen::LLT<AxisMatrix> llt(S);
-  if (llt.info() != Eigen::Success) return out;
-  const auto n = y.size();
-  out.nis = llt.matrixL().solve(y).squaredNorm();
-  double log_det = 0;
-  for (Eigen::Index i = 0; i < n; ++i) log_det += 2 * std::log(llt.matrixLLT()(i, i));
-  out.log_density = -0.5 * (out.nis + log_det + static_cast<double>(n) * std::log(kTwoPi));
-  return out;
-}
-
-Density densityOf(const Innovation& innovation, const ClassFilter& filter) {
-  if (filter.modes.empty()) return gaussian(innovation.y, innovation.S);
-  Density out;
-  for (const auto& mode : filter.modes) {
-    const Density d =
-        gaussian(innovation.residualOf(mode, filter), innovation.covarianceOf(mode.P));
-    out.log_density = logAddExp(out.log_density, mode.log_probability + d.log_density);
-    out.nis = std::min(out.nis, d.nis);
-  }
-  return out;
-}
-
 /// What one track after the other needs again.
 struct Scratch {
   std::vector<std::size_t> near;
@@ -66,20 +36,35 @@ struct Scratch {
   std::vector<Extent> extents;
   std::vector<AxisPrediction> predictions;
   std::vector<AxisBounds> bounds;
+  std::vector<ExpectedAxes> expected;  // by class; of filters without modes
+  std::vector<double> log_detection;   // by class
   std::vector<double> mixture;
+  std::vector<double> with_region;
   PairLikelihood pair;
 };
 
-int axesSeen(const Measurement& m, std::size_t axes) {
-  int n = 0;
-  for (std::size_t i = 0; i < axes; ++i) n += m.seen >> i & 1;
-  return n;
+/// One class filter against one measurement; `log_region`: by how much the track's last region
+/// makes it likelier, where there is one.
+Density filterDensity(const Track& track, std::size_t filter, const Measurement& m,
+                      const AxisList& axes, const MeasurementScan& scan, const FilterModel& model,
+                      const RegionSeen* region, const Scratch& scratch, double& log_region) {
+  const ClassFilter& f = track.bank[filter];
+  const AxisPrediction& prediction = scratch.predictions[filter];
+  if (f.modes.empty() && !region)
+    return scratch.expected[filter].densityOf(prediction, m, axes, scan.model->axes());
+  const auto innovation = innovationOf(f, scratch.kinematics[filter], prediction, m, *scan.model);
+  const Density density = densityOf(innovation, f);
+  if (region) {
+    const auto expected = withRegion(innovation, *region, m, scan, model);
+    log_region = densityOf(expected, f).log_density - density.log_density;
+  }
+  return density;
 }
 
 /// Fills scratch.pair; returns by how much its least NIS exceeds the gate.
 double pairLikelihood(const Track& track, const std::vector<double>& detection_by_class,
-                      std::size_t k, const MeasurementScan& scan, const FilterModel& model,
-                      const Gates& gates, Scratch& scratch) {
+                      std::size_t k, const AxisList& axes, const MeasurementScan& scan,
+                      const FilterModel& model, double gate, Scratch& scratch) {
   const Measurement& m = scan.measurements[k];
   const std::size_t classes = track.bank.size();
   PairLikelihood& pair = scratch.pair;
@@ -92,12 +77,12 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
   auto& mixture = scratch.mixture;
   mixture.assign(classes, kMinusInfinity);
   const RegionSeen* region = regionOf(track, scan, model);
-  std::vector<double> with_region(region ? classes : 0, kMinusInfinity);
+  auto& with_region = scratch.with_region;
+  with_region.assign(region ? classes : 0, kMinusInfinity);
   double log_region = 0;
   const double label_exponent = scan.model->labelExponent();
   const double detection_exponent = scan.model->detectionExponent();
   Density density;
-  Eigen::Index n = 0;
   bool seen = false;  // a decided class: one filter stands for all
   for (std::size_t j = 0; j < classes; ++j) {
     const double detection = detection_by_class[j];
@@ -105,14 +90,7 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
     if (!scratch.predictions[filter].defined || detection <= 0) continue;
     const ClassFilter& f = track.bank[filter];
     if (track.sure < 0 || !seen) {
-      const auto innovation =
-          innovationOf(f, scratch.kinematics[filter], scratch.predictions[filter], m, *scan.model);
-      n = innovation.y.size();
-      density = densityOf(innovation, f);
-      if (region) {
-        const auto expected = withRegion(innovation, *region, m, scan, model);
-        log_region = densityOf(expected, f).log_density - density.log_density;
-      }
+      density = filterDensity(track, filter, m, axes, scan, model, region, scratch, log_region);
       seen = true;
     }
     if (density.log_density == kMinusInfinity) continue;
@@ -124,12 +102,13 @@ double pairLikelihood(const Track& track, const std::vector<double>& detection_b
                                                    : 0;
     pair.nis[j] = nis;
     // The heading tells objects apart, but not classes: people have one, too, that no filter keeps.
-    pair.log_by_class[j] = log_density + label_and_score + std::log(detection) + heading;
+    pair.log_by_class[j] = log_density + label_and_score + scratch.log_detection[j] + heading;
     pair.log_class_evidence[j] = model.params.kinematic_exponent * log_density +
-                                 label_exponent * label + detection_exponent * std::log(detection);
+                                 label_exponent * label +
+                                 detection_exponent * scratch.log_detection[j];
     mixture[j] = track.log_class[j] + pair.log_by_class[j];
     if (region) with_region[j] = mixture[j] + log_region;
-    min_excess = std::min(min_excess, nis - gates.quantile[static_cast<std::size_t>(n)]);
+    min_excess = std::min(min_excess, nis - gate);
   }
   pair.log_likelihood = logSumExp(mixture);
   if (pair.log_likelihood == kMinusInfinity) return min_excess;
@@ -144,16 +123,15 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
   thread_local Scratch scratch;
   TrackLikelihoods row;
   const Surroundings around(track);
+  // Out of view: the scan says nothing of it.
+  if (!scan.model->mayDetect(around.centre, around.spread + 2 * around.size + 1, scan.state)) {
+    row.detection_by_class.assign(classes, 0);
+    return row;
+  }
   auto& near = scratch.near;
   near.clear();
   for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
     if (around.mayBeNear(scan.measurements[k])) near.push_back(k);
-  }
-  // Out of view and nothing near: the scan says nothing of it.
-  if (near.empty() &&
-      !scan.model->mayDetect(around.centre, around.spread + 2 * around.size + 1, scan.state)) {
-    row.detection_by_class.assign(classes, 0);
-    return row;
   }
   auto& kinematics = scratch.kinematics;
   kinematics.resize(classes);
@@ -193,6 +171,10 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
     p.R_model.resize(0, 0);
   }
   bounds.clear();
+  scratch.expected.resize(classes);
+  scratch.log_detection.resize(classes);
+  for (std::size_t j = 0; j < classes; ++j)
+    scratch.log_detection[j] = std::log(row.detection_by_class[j]);
   for (std::size_t j = 0; j < classes; ++j) extents[j] = track.bank[track.filterOf(j)].extent;
   scan.model->predict(kinematics.data(), extents.data(), classes, scan.state, predictions.data());
   for (std::size_t j = 0; j < classes; ++j) {
@@ -200,17 +182,21 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
     lineariseAlongAspect(model.classes[static_cast<ClassId>(j)], track.bank[j], kinematics[j],
                          *scan.model, scan.state, predictions[j]);
     bounds.emplace_back(track.bank[j], kinematics[j], predictions[j]);
+    if (predictions[j].defined && track.bank[j].modes.empty())
+      scratch.expected[j].set(track.bank[j], kinematics[j], predictions[j]);
   }
   const auto& kinds = scan.model->axes();
+  row.pairs.reserve(near.size());
   for (const std::size_t k : near) {
     const Measurement& m = scan.measurements[k];
-    const double gate = gates.quantile[static_cast<std::size_t>(axesSeen(m, kinds.size()))];
+    const AxisList axes(m, kinds.size());
+    const double gate = gates.quantile[static_cast<std::size_t>(axes.count)];
     if (std::all_of(bounds.begin(), bounds.end(),
                     [&](const AxisBounds& b) { return b.exclude(m, kinds, gate); }))
       continue;
     if (!coarselyNear(track, m)) continue;
     const double excess =
-        pairLikelihood(track, row.detection_by_class, k, scan, model, gates, scratch);
+        pairLikelihood(track, row.detection_by_class, k, axes, scan, model, gate, scratch);
     if (excess <= 0 && scratch.pair.log_likelihood > kMinusInfinity)
       row.pairs.push_back(scratch.pair);
   }

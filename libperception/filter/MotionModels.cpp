@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numeric>
 #include <utility>
 
@@ -71,48 +70,49 @@ Matrix4 predictWheeled(const ObjectClass& object_class, double psd, double dampi
 /// By Stein's lemma the best line through the curve has the mean of the Jacobian as its slope.
 Matrix4 predictUncertainHeading(const ObjectClass& object_class, double psd, double damping,
                                 double dt, Vector4& x, Matrix4& P) {
-  using Complex = std::complex<double>;
   const SpeedNoise noise(damping, dt);
   const double v = x[2], spread = P(3, 3), cov = P(2, 3);
-  const Complex direction = std::polar(std::exp(-0.5 * spread), x[3]);  // E[e^(i theta)]
-  const Complex velocity = direction * Complex(v, cov);
-  const Complex shifted(v, 2 * cov);
-  const Complex square =
-      std::polar(std::exp(-2 * spread), 2 * x[3]) * (shifted * shifted + P(2, 2));
-  const Complex turn = Complex(0, 1) * velocity;  // d(velocity)/d(theta)
-  Matrix2 second;                                 // E[V V']
+  const double c = std::cos(x[3]), s = std::sin(x[3]), shrink = std::exp(-0.5 * spread);
+  const Vector2 u(shrink * c, shrink * s);  // E[e^(i theta)]
+  const Vector2 mean(v * u.x() - cov * u.y(), v * u.y() + cov * u.x());
+  const Vector2 n(-mean.y(), mean.x());  // d(mean)/d(theta)
+  const double shrink4 = shrink * shrink * shrink * shrink;
+  const Vector2 twice(shrink4 * (c * c - s * s), 2 * shrink4 * c * s);  // E[e^(2i theta)]
   const double whole = v * v + P(2, 2);
-  second << 0.5 * (whole + square.real()), 0.5 * square.imag(), 0.5 * square.imag(),
-      0.5 * (whole - square.real());
+  const double re = whole - 4 * cov * cov, im = 4 * v * cov;  // (v + 2i cov)^2 + var v
+  const Vector2 square(twice.x() * re - twice.y() * im, twice.x() * im + twice.y() * re);
+  Matrix2 second;  // E[V V']
+  second << 0.5 * (whole + square.x()), 0.5 * square.y(), 0.5 * square.y(),
+      0.5 * (whole - square.x());
   Matrix2 slope;  // by v and theta
-  slope << direction.real(), turn.real(), direction.imag(), turn.imag();
-  const Vector2 mean(velocity.real(), velocity.imag());
+  slope << u, n;
   const Matrix2 unexplained =
       second - mean * mean.transpose() - slope * P.bottomRightCorner<2, 2>() * slope.transpose();
 
   Matrix4 F = Matrix4::Identity();
   F.block<2, 2>(0, 2) = noise.way * slope;
   F(2, 2) = noise.keep;
-  const Vector2 u = slope.col(0), n = slope.col(1);
   const double qw = object_class.yaw_rate_psd;
   // E[u u'] of the unit vector along the motion, E[n n'] of v times that across it.
-  const Complex twice = std::polar(std::exp(-2 * spread), 2 * x[3]);
   Matrix2 along;
-  along << 0.5 * (1 + twice.real()), 0.5 * twice.imag(), 0.5 * twice.imag(),
-      0.5 * (1 - twice.real());
+  along << 0.5 * (1 + twice.x()), 0.5 * twice.y(), 0.5 * twice.y(), 0.5 * (1 - twice.x());
   const Matrix2 across = whole * Matrix2::Identity() - second;
-  Matrix4 Q = Matrix4::Zero();
-  Q.topLeftCorner<2, 2>() = psd * noise.pp * along + dt * dt * dt / 3 * qw * across;
-  Q.topLeftCorner<2, 2>().diagonal().array() += object_class.position_psd * dt;
-  Q.block<2, 1>(0, 2) = psd * noise.pv * u;
-  Q.block<2, 1>(0, 3) = dt * dt / 2 * qw * n;
-  Q.block<2, 2>(2, 0) = Q.block<2, 2>(0, 2).transpose().eval();
-  Q(2, 2) = psd * noise.vv;
-  Q(3, 3) = qw * dt;
+  // F P F' by blocks: F changes the place by the second half of the state alone.
+  const Matrix2 B = P.bottomRightCorner<2, 2>(), way = noise.way * slope;
+  const Matrix2 moved = P.topRightCorner<2, 2>() + way * B;
+  const Matrix2 back = way * P.bottomLeftCorner<2, 2>();
+  P.topLeftCorner<2, 2>() += back + moved * way.transpose() + psd * noise.pp * along +
+                             dt * dt * dt / 3 * qw * across + noise.way * noise.way * unexplained;
+  P(0, 0) += object_class.position_psd * dt;
+  P(1, 1) += object_class.position_psd * dt;
+  P.block<2, 1>(0, 2) = noise.keep * moved.col(0) + psd * noise.pv * u;
+  P.block<2, 1>(0, 3) = moved.col(1) + dt * dt / 2 * qw * n;
+  P.bottomLeftCorner<2, 2>() = P.topRightCorner<2, 2>().transpose().eval();
+  P(2, 2) = noise.keep * noise.keep * B(0, 0) + psd * noise.vv;
+  P(2, 3) = P(3, 2) = noise.keep * B(0, 1);
+  P(3, 3) += qw * dt;
   x.head<2>() += noise.way * mean;
   x[2] *= noise.keep;
-  P = (F * P * F.transpose() + Q).eval();
-  P.topLeftCorner<2, 2>() += noise.way * noise.way * unexplained;
   return F;
 }
 

@@ -44,10 +44,12 @@ void moveOdds(const Track& track, Stamp to, const FilterModel& model, double& ex
               std::vector<double>& log_class) {
   const double dt = to - track.stamp;
   if (dt <= 0) return;
-  const bool in_view = to - track.last_in_view < kOutOfViewAfter;
-  const double life = in_view ? model.params.survival_in_view : model.params.survival_out_of_view;
-  const double decay = model.params.existence_decay;  // to 5 % = e^-3 in this time
-  existence *= std::exp(decay > 0 ? -3 * dt / decay : -dt / life);
+  const auto& p = model.params;
+  const double until = track.last_in_view - track.stamp + kOutOfViewAfter;
+  const double in_view = std::clamp(until, 0.0, dt);
+  const double lives = in_view / p.survival_in_view + (dt - in_view) / p.survival_out_of_view;
+  const double decay = p.existence_decay;  // to 5 % = e^-3 in this time
+  existence *= std::exp(decay > 0 ? -3 * dt / decay : -lives);
   const ClassChain& chain = ClassChain::over(dt, model);
   for (double& lp : log_class) lp = logAddExp(lp + chain.log_keep, chain.log_uniform);
 }

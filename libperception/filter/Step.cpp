@@ -102,7 +102,7 @@ ScanTracks tracksOf(const std::vector<const Hypothesis*>& hypotheses, const Meas
   for (const Hypothesis* h : hypotheses) out.of_hypothesis.push_back(numbers.of(h->tracks));
   out.touched.assign(out.before.size(), 0);
   parallelFor(out.before.size(),
-              [&](std::size_t i) { out.touched[i] = concerns(scan, *out.before[i], model); });
+              [&](std::size_t i) { out.touched[i] = concerns(scan, *out.before[i]); });
   out.predicted = predictTracks(out.before, out.touched, scan.state.stamp, model);
   return out;
 }

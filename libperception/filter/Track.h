@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -46,6 +47,15 @@ struct RegionSeen {
   AxisVector error;  ///< z - h of the axes seen, packed
 };
 
+/// A disc about the means of all class filters, and how fast it grows: what tells whether a sensor
+/// can see the track without predicting it.
+struct Whereabouts {
+  Vector2 centre = Vector2::Zero();  ///< [m] world
+  /// [m] radius of the disc at the track's time; without bounds until somebody asked.
+  double reach = std::numeric_limits<double>::infinity();
+  double speed = 0;  ///< [m/s] of the fastest mean
+};
+
 /// One object inside a hypothesis. Immutable once made: hypotheses share it.
 struct Track {
   std::uint64_t id =
@@ -69,6 +79,7 @@ struct Track {
   std::array<Stamp, 3> last_hit{};  ///< by modality (modalityIndex); 0 = never
   std::array<int, 3> hits{};        ///< by modality
   std::vector<RegionSeen> regions;  ///< by sensor, where the model asks for them
+  Whereabouts whereabouts;          ///< made from the rest when a scan is done with it
   /// What it was before its last scan, for as long as somebody keeps that; only where the model
   /// asks for a history.
   std::weak_ptr<const Track> previous;

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "libperception/core/Chi2.h"
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/KalmanUpdate.h"
 #include "libperception/filter/MotionModels.h"
 #include "libperception/filter/SizeEvidence.h"
 #include "libperception/measurement/ExtentUpdate.h"
@@ -42,8 +41,6 @@ double surprisingNis(Eigen::Index axes) {
   static const Quantiles quantiles(kSurprisingProbability);
   return quantiles.of[static_cast<std::size_t>(axes)];
 }
-
-constexpr double kLogLeastMode = -14;  // log probability, about 1e-6
 
 void scalarUpdate(const ScalarEstimate& z, ScalarEstimate& x) {
   const double gain = x.variance / (x.variance + z.variance);
@@ -99,61 +96,6 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
     }
   }
   return f;
-}
-
-/// The extent is a static part of the state whose correlation with the rest is left out: seen edges
-/// measure it, too. The floor of its variance keeps systematic errors (rounded corners, mirrors)
-/// from making it certain.
-void updateExtentBy(const Innovation& innovation, Extent& e) {
-  constexpr double kFloor = 0.1 * 0.1;  // [m^2]
-  const Vector2 variance(e.var_length, e.var_width);
-  const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2> HV =
-      innovation.H_extent * variance.asDiagonal();
-  const auto llt = innovation.S.llt();
-  const Vector2 change = HV.transpose() * llt.solve(innovation.y);
-  const Matrix2 gain = HV.transpose() * llt.solve(HV);
-  e.length = std::max(0.1, e.length + change.x());
-  e.width = std::max(0.1, e.width + change.y());
-  e.var_length = std::max(std::min(kFloor, e.var_length), e.var_length - gain(0, 0));
-  e.var_width = std::max(std::min(kFloor, e.var_width), e.var_width - gain(1, 1));
-}
-
-/// Kalman update of one Gaussian in Joseph form (SPEC 4); returns the log density of y up to a
-/// constant.
-double gaussianUpdate(const AxisVector& y, const AxisMatrix& S, const Innovation& innovation,
-                      Vector4& x, Matrix4& P) {
-  using Gain = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kMaxAxes>;
-  const Gain PHt = P * innovation.H.transpose();
-  const auto llt = S.llt();
-  const Gain K = llt.solve(PHt.transpose()).transpose();
-  const Matrix4 I_KH = Matrix4::Identity() - K * innovation.H;
-  x += K * y;
-  P = (I_KH * P * I_KH.transpose() + K * innovation.R * K.transpose()).eval();
-  P = (0.5 * (P + P.transpose())).eval();
-  const double log_det = 2 * llt.matrixLLT().diagonal().array().log().sum();
-  return -0.5 * (llt.matrixL().solve(y).squaredNorm() + log_det);
-}
-
-void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
-  if (f.modes.empty()) {
-    gaussianUpdate(innovation.y, innovation.S, innovation, f.x, f.P);
-    if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
-  } else {
-    std::vector<double> log_mode;
-    for (auto& mode : f.modes) {
-      const AxisVector y = innovation.residualOf(mode, f);
-      const AxisMatrix S = innovation.covarianceOf(mode.P);
-      log_mode.push_back(mode.log_probability + gaussianUpdate(y, S, innovation, mode.x, mode.P));
-      if (f.oriented) mode.x[3] = wrapAngle(mode.x[3]);
-    }
-    logNormalise(log_mode);
-    for (std::size_t i = 0; i < log_mode.size(); ++i) {
-      // A floor keeps a mode able to come back within a few scans.
-      f.modes[i].log_probability = std::max(log_mode[i], kLogLeastMode);
-    }
-    combineModes(f);
-  }
-  updateExtentBy(innovation, f.extent);
 }
 
 /// What a detector says of the heading (SPEC 7): the axis by a scalar update, the direction by the
@@ -348,8 +290,10 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
           pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
       continue;
     }
-    const auto birth = scan.model->birth(m, j, scan.state);
-    if (pair.nis[i] < lost) {
+    const bool is_lost = !(pair.nis[i] < lost);
+    std::optional<BirthState> birth;
+    if (is_lost || c.motion == Motion::kWheeled) birth = scan.model->birth(m, j, scan.state);
+    if (!is_lost) {
       const Kinematics k = kinematicsOf(c, f);
       kalmanUpdate(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
     } else if (birth) {

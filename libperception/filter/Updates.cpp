@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libperception/filter/AssignmentPrior.h"
+#include "libperception/filter/Gating.h"
 #include "libperception/filter/LanePrior.h"
 #include "libperception/filter/Parallel.h"
 #include "libperception/filter/Update.h"
@@ -64,7 +65,9 @@ bool Updates::keep(const Track& t) const {
 void Updates::store(Cell cell, Track&& track, const TrackHandle& before) {
   if (model_.history > 0) track.previous = before;
   if (model_.lanes) model_.lanes->apply(model_, track);
-  if (keep(track)) made_[cell] = std::make_shared<const Track>(std::move(track));
+  if (!keep(track)) return;
+  track.whereabouts = whereaboutsOf(track, model_);
+  made_[cell] = std::make_shared<const Track>(std::move(track));
 }
 
 std::size_t Updates::make(std::uint64_t scan_index) {

@@ -25,8 +25,12 @@ bool touchesSector(const Vector2& centre, double reach, double fov, double range
   const double distance = d.norm();
   if (distance - reach > range) return false;
   if (fov >= kTwoPi || distance <= reach) return true;
-  const double off = wrapAngle(std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor));
-  return std::abs(off) - std::asin(reach / distance) <= 0.5 * fov;
+  // Along the sector's edge on the centre's side and, positive outside, across it.
+  const Vector2 forward = sensor.T_world_sensor.linear().col(0).head<2>().normalized();
+  const double along = forward.dot(d), across = std::abs(forward.x() * d.y() - forward.y() * d.x());
+  const double c = std::cos(0.5 * fov), s = std::sin(0.5 * fov);
+  const double beyond = across * c - along * s;
+  return beyond <= 0 || (beyond <= reach && along * c + across * s >= 0);
 }
 
 AxisVector residual(const MeasurementModel& model, const Measurement& m, const AxisVector& h) {

@@ -29,10 +29,11 @@ void PositionModel::predict(const Kinematics* objects, const Extent*, std::size_
 
 bool PositionModel::inView(const Vector2& position, const SensorState& sensor) const {
   const Vector2 d = position - sensor.T_world_sensor.translation().head<2>();
-  if (d.norm() > params_.range) return false;
-  return params_.fov >= kTwoPi ||
-         std::abs(wrapAngle(std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor))) <=
-             0.5 * params_.fov;
+  const double range = d.norm();
+  if (range > params_.range) return false;
+  if (params_.fov >= kTwoPi) return true;
+  const Vector2 forward = sensor.T_world_sensor.linear().col(0).head<2>().normalized();
+  return forward.dot(d) >= range * std::cos(0.5 * params_.fov);
 }
 
 double PositionModel::detectionProbability(ClassId c, const Kinematics& object, const Extent&,

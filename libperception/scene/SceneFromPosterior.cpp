@@ -116,8 +116,9 @@ TrackHandle SceneFromPosterior::trackAt(const TrackHandle& track, Stamp stamp) c
     return existence < params_.min_existence ? nullptr : std::make_shared<const Track>(*smoothed);
   }
   if (track->existence < params_.min_existence) return nullptr;
-  return stamp > track->stamp ? std::make_shared<const Track>(predictTrack(*track, stamp, model_))
-                              : track;
+  if (stamp <= track->stamp) return track;
+  auto predicted = std::make_shared<const Track>(predictTrack(*track, stamp, model_));
+  return predicted->existence < params_.min_existence ? nullptr : predicted;
 }
 
 Scene SceneFromPosterior::make(const Hypothesis& hypothesis, const EgoState& ego,

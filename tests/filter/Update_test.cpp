@@ -109,7 +109,11 @@ TEST(Prediction, FadesWhatNobodyCouldSee) {
   Track t = f.born();
   t.existence = 0.9;
   EXPECT_NEAR(predictTrack(t, t.stamp + 0.5, f.model).existence, 0.9 * std::exp(-0.5 / 60), 1e-12);
-  EXPECT_NEAR(predictTrack(t, t.stamp + 3.0, f.model).existence, 0.9 * std::exp(-3.0 / 6), 1e-12);
+  // In view for one more second, in one step or in several.
+  const double later = 0.9 * std::exp(-1.0 / 60 - 2.0 / 6);
+  EXPECT_NEAR(predictTrack(t, t.stamp + 3.0, f.model).existence, later, 1e-12);
+  const Track between = predictTrack(t, t.stamp + 1.3, f.model);
+  EXPECT_NEAR(predictTrack(between, t.stamp + 3.0, f.model).existence, later, 1e-12);
 }
 
 /// A scan with one measurement at (1, 2) that says so much of its classes by itself.
