@@ -155,6 +155,26 @@ void RawlogReader::finish(End end, const std::string& what) {
                              last_stamp_ ? fmt::format("{:.6f}", last_stamp_->seconds()) : "none");
 }
 
+/// Says what an exception of an entry's class means.
+void RawlogReader::finishAtFault(const std::string& class_name, const std::string& fault) {
+  using State = CRawlogInput::State;
+  const std::string unknown = unknownClassIn(fault);
+  if (input_->state() == State::kTorn) {
+    finish(End::kTorn, input_->reason());
+  } else if (input_->state() != State::kGood && input_->state() != State::kEnd) {
+    finish(End::kDamaged, input_->reason());
+  } else if (!unknown.empty()) {
+    finish(End::kUnknownClass, unknownClassMessage(unknown));
+  } else if (fault.find("unknown serialization version") != std::string::npos) {
+    finish(End::kNewerVersion,
+           fmt::format("entry of class '{}' was written by a newer version of it: {}", class_name,
+                       firstLine(fault)));
+  } else {
+    finish(End::kDamaged,
+           fmt::format("entry of class '{}' cannot be read: {}", class_name, firstLine(fault)));
+  }
+}
+
 bool RawlogReader::readEntry() {
   using State = CRawlogInput::State;
   entry_offset_ = input_->position();
@@ -185,25 +205,15 @@ bool RawlogReader::readEntry() {
            fmt::format("entry of class '{}' wants more memory than there is", header->class_name));
     return false;
   } catch (const std::exception& e) {
-    const std::string text = e.what();
-    const std::string unknown = unknownClassIn(text);
-    if (input_->state() == State::kTorn) {
-      finish(End::kTorn, input_->reason());
-    } else if (input_->state() != State::kGood && input_->state() != State::kEnd) {
-      finish(End::kDamaged, input_->reason());
-    } else if (!unknown.empty()) {
-      finish(End::kUnknownClass, unknownClassMessage(unknown));
-    } else if (text.find("unknown serialization version") != std::string::npos) {
-      finish(End::kNewerVersion,
-             fmt::format("entry of class '{}' was written by a newer version of it: {}",
-                         header->class_name, firstLine(text)));
-    } else {
-      finish(End::kDamaged, fmt::format("entry of class '{}' cannot be read: {}",
-                                        header->class_name, firstLine(text)));
-    }
+    finishAtFault(header->class_name, e.what());
     return false;
   }
   ++entries_;
+  take(object);
+  return true;
+}
+
+void RawlogReader::take(const mrpt::serialization::CSerializable::Ptr& object) {
   if (!object) {
     ++skipped_["nullptr"];
   } else if (auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)) {
@@ -218,7 +228,6 @@ bool RawlogReader::readEntry() {
   } else {
     ++skipped_[object->GetRuntimeClass()->className];
   }
-  return true;
 }
 
 void RawlogReader::addActions(const mrpt::obs::CActionCollection& actions) {

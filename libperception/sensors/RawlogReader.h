@@ -1,6 +1,7 @@
 #pragma once
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/poses/CPose2D.h>
+#include <mrpt/serialization/CSerializable.h>
 
 #include <cstdint>
 #include <deque>
@@ -63,6 +64,8 @@ class RawlogReader {
 
  private:
   bool readEntry();
+  void finishAtFault(const std::string& class_name, const std::string& fault);
+  void take(const mrpt::serialization::CSerializable::Ptr& object);
   void addActions(const mrpt::obs::CActionCollection& actions);
   void finish(End end, const std::string& what);
 

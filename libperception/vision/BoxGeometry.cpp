@@ -73,6 +73,44 @@ ScalarEstimate together(const ScalarEstimate& ground, const ScalarEstimate& heig
   return {ground.mean - gain * d, ground.variance * (1 - gain)};
 }
 
+/// Bearings of the left and right edge, with their deviations.
+void seeEdges(const ObjectDetection::ImageBox& box, const CameraModel& camera,
+              const Pose3& T_ego_camera, const BoxGeometryParams& params, BoxOnGround& out) {
+  const double forward = yawOf(levelFrame(T_ego_camera)), row = 0.5 * (box.y1 + box.y2);
+  const auto bearing = [&](double column) {
+    const Vector3 r = ray(azimuth(column, camera), row, camera, T_ego_camera);
+    return wrapAngle(std::atan2(r.y(), r.x()) - forward);
+  };
+  out.left = bearing(box.x1);
+  out.right = bearing(box.x2);
+  const bool closed = isFullCircle(camera);
+  out.left_seen = closed || box.x1 > params.border;
+  out.right_seen = closed || box.x2 < camera.width - params.border;
+  // d(bearing)/d(pixel): cos^2(bearing) / fx, on a sphere 1 / fx.
+  const double edge_sigma = params.edge_sigma + params.edge_share * (box.x2 - box.x1);
+  const auto perPixel = [&](double b) {
+    return (isSpherical(camera) ? 1 : std::pow(std::cos(b), 2)) / camera.fx;
+  };
+  out.left_sigma = edge_sigma * perPixel(out.left);
+  out.right_sigma = edge_sigma * perPixel(out.right);
+}
+
+/// Range of the point at which the ray of the lower edge meets the ground; empty beyond max_range.
+std::optional<ScalarEstimate> rangeByGround(const Vector3& lowest, const Vector3& origin,
+                                            const GroundPlane& ground, const Rises& seen, bool cut,
+                                            const BoxGeometryParams& params) {
+  const auto foot = onGround(lowest, origin, ground);
+  if (!foot) return std::nullopt;
+  const double r = (*foot - origin).head<2>().norm();
+  if (r > params.max_range) return std::nullopt;
+  const double h = origin.z() - ground.heightAt(foot->x(), foot->y());
+  // sigma_r = (r^2 + h^2) / h * sigma_phi; phi: pixel, own pitch, pose pitch (VISION_NOTES 3).
+  double sigma =
+      (r * r + h * h) / h * std::hypot(seen.edge_sigma, seen.pitch_sigma) + params.range_floor;
+  if (cut) sigma += params.cut_share * r;
+  return ScalarEstimate{r, sigma * sigma};
+}
+
 }  // namespace
 
 void BoxGeometryParams::visit(ParamVisitor& v) {
@@ -138,32 +176,14 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
                                        const std::optional<ScalarEstimate>& usual_height) {
   if (!(box.x2 > box.x1) || !(box.y2 > box.y1) || camera.fx <= 0 || camera.fy <= 0)
     return std::nullopt;
-  const Pose3 level = levelFrame(T_ego_camera);
-  const double forward = yawOf(level);
-  // The middle of the azimuths, not of the columns: those differ by up to 1.2 deg at a tile's edge
-  // (VISION_NOTES 3).
-  const double azimuth1 = azimuth(box.x1, camera), azimuth2 = azimuth(box.x2, camera);
-  const double middle = 0.5 * (azimuth1 + azimuth2), row = 0.5 * (box.y1 + box.y2);
-  const auto bearing = [&](double column_azimuth) {
-    const Vector3 r = ray(column_azimuth, row, camera, T_ego_camera);
-    return wrapAngle(std::atan2(r.y(), r.x()) - forward);
-  };
   BoxOnGround out;
-  out.left = bearing(azimuth1);
-  out.right = bearing(azimuth2);
-  const bool closed = isFullCircle(camera);
-  out.left_seen = closed || box.x1 > params.border;
-  out.right_seen = closed || box.x2 < camera.width - params.border;
-  // d(bearing)/d(pixel): cos^2(bearing) / fx, on a sphere 1 / fx.
-  const double edge_sigma = params.edge_sigma + params.edge_share * (box.x2 - box.x1);
-  const auto perPixel = [&](double b) {
-    return (isSpherical(camera) ? 1 : std::pow(std::cos(b), 2)) / camera.fx;
-  };
-  out.left_sigma = edge_sigma * perPixel(out.left);
-  out.right_sigma = edge_sigma * perPixel(out.right);
+  seeEdges(box, camera, T_ego_camera, params, out);
   if (box.y2 >= camera.height - params.border) return out;
 
   const Vector3 origin = T_ego_camera.translation();
+  // The middle of the azimuths, not of the columns: those differ by up to 1.2 deg at a tile's edge
+  // (VISION_NOTES 3).
+  const double middle = 0.5 * (azimuth(box.x1, camera) + azimuth(box.x2, camera));
   const Vector3 lowest = ray(middle, box.y2, camera, T_ego_camera);
   const double box_height = box.y2 - box.y1;
   const bool upright = box_height > box.x2 - box.x1;
@@ -174,16 +194,7 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
   seen.edge_sigma = (params.bottom_sigma + params.bottom_share * box_height) / camera.fy;
   seen.pitch_sigma = std::hypot(params.pitch_sigma, uncertainty.sigma_pitch);
 
-  std::optional<ScalarEstimate> range;
-  if (const auto foot = onGround(lowest, origin, ground)) {
-    const double r = (*foot - origin).head<2>().norm();
-    const double h = origin.z() - ground.heightAt(foot->x(), foot->y());
-    // sigma_r = (r^2 + h^2) / h * sigma_phi; phi: pixel, own pitch, pose pitch (VISION_NOTES 3).
-    double sigma =
-        (r * r + h * h) / h * std::hypot(seen.edge_sigma, seen.pitch_sigma) + params.range_floor;
-    if (cut) sigma += params.cut_share * r;
-    if (r <= params.max_range) range = ScalarEstimate{r, sigma * sigma};
-  }
+  auto range = rangeByGround(lowest, origin, ground, seen, cut, params);
   if (usual_height && !cut && box.y1 > params.border) {
     const ScalarEstimate by_height = rangeByHeight(*usual_height, seen);
     range = range ? together(*range, by_height) : by_height;
