@@ -21,6 +21,10 @@ void ObstacleParams::visit(ParamVisitor& v) {
   v.real("hiding_max", hiding_max, {0.2, 10}, "m", "height up to which they do");
   v.angle("hiding_bin_deg", hiding_bin, {0.05, 10}, "width of a direction of the horizon");
   v.real("hiding_margin", hiding_margin, {0, 5}, "m", "by which a hiding return is nearer");
+  v.angle(
+      "sparse_step_deg", sparse_step, {0, 5},
+      "bearing between neighbouring returns: a cluster's end is hidden where the next return of "
+      "the same side would be too far off to join; 0: not asked");
   v.require(height_min < height_max, "height_min must be below height_max");
   v.require(hiding_min < hiding_max, "hiding_min must be below hiding_max");
 }
@@ -245,6 +249,9 @@ Outline outlineInWorld(const ScanContext& scan, const std::vector<Vector2>& hull
   Outline outline = outlineOf(places, scan.T_world_sensor);
   markHiddenEdges(outline, scan.horizon, scan.T_world_sensor, scan.params.obstacles.hiding_margin,
                   scan.params.obstacles.hiding_bin, scan.fov);
+  if (scan.params.obstacles.sparse_step > 0)
+    markSparseEdges(outline, places, scan.T_world_sensor, scan.params.obstacles.sparse_step,
+                    scan.params.clusters.near_threshold);
   return outline;
 }
 

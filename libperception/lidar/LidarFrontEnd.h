@@ -24,6 +24,8 @@ struct ObstacleParams {
   double hiding_max = 2.2;   ///< [m] above ground; higher returns leave the view below them free
   double hiding_bin = radians(0.4);  ///< [rad] of the horizon
   double hiding_margin = 0.5;        ///< [m] by which a hiding return is nearer than what it hides
+  double sparse_step = 0;  ///< [rad] between neighbouring returns: ends that sparseness explains
+                           ///< are not seen; 0: the test is off
 
   void visit(ParamVisitor& v);
 };
