@@ -12,26 +12,43 @@
 namespace perception {
 namespace {
 
-/// Where directions begin and how many there are.
-struct Rose {
-  float x, y;  ///< [cells]
-  float per_radian;
-  std::int32_t count;
-};
+using Rose = FlatBeams::Rose;
 
 // Points in the sensor's own cell and what is no number have the bearing behind the last one.
+PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, std::int32_t finite,
+                                        const Rose& rose) {
+  const auto bin = static_cast<std::int32_t>((roughBearing(dx, dy) + 3.1416F) * rose.per_radian);
+  const std::int32_t bounded = bin < rose.count ? bin : 0;
+  const std::int32_t has_one = (range2 > 1) & finite;
+  return has_one != 0 ? bounded : rose.count;
+}
+
 PERCEPTION_WIDER void findBearings(const PlacedBlock& placed, std::size_t count, const Rose rose,
                                    std::int32_t* __restrict bearing, float* __restrict range) {
   const float* __restrict x = placed.x.data(), * __restrict y = placed.y.data();
   const std::int32_t* __restrict cell = placed.cell.data();
   for (std::size_t i = 0; i < count; ++i) {
     const float dx = x[i] - rose.x, dy = y[i] - rose.y, range2 = dx * dx + dy * dy;
-    const auto bin = static_cast<std::int32_t>((roughBearing(dx, dy) + 3.1416F) * rose.per_radian);
-    const std::int32_t bounded = bin < rose.count ? bin : 0;
-    const std::int32_t has_one = (range2 > 1) & (cell[i] != PlacedBlock::kNotFinite);
-    bearing[i] = has_one != 0 ? bounded : rose.count;
+    bearing[i] = bearingOf(dx, dy, range2, cell[i] != PlacedBlock::kNotFinite, rose);
     range[i] = range2;
   }
+}
+
+// Of points that only clear their bearing is all that matters. Returns how many are no numbers.
+PERCEPTION_WIDER std::int32_t findClear(const float* __restrict x, const float* __restrict y,
+                                        const float* __restrict z, std::size_t count,
+                                        const PointOffset from, const Rose rose,
+                                        std::int32_t* __restrict bearing, float* __restrict range) {
+  std::int32_t not_finite = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = x[i] * from.per_metre + from.x - rose.x;
+    const float dy = y[i] * from.per_metre + from.y - rose.y;
+    const float sum = x[i] + y[i] + z[i], range2 = dx * dx + dy * dy;
+    const std::int32_t finite = sum - sum == 0;
+    bearing[i] = bearingOf(dx, dy, range2, finite, rose);
+    range[i] = range2, not_finite += 1 - finite;
+  }
+  return not_finite;
 }
 
 // Points that are farther than their bearing's farthest before the block. Mostly none is.
@@ -40,27 +57,6 @@ PERCEPTION_WIDER void findFarther(const std::int32_t* __restrict bearing,
                                   const float* __restrict farthest, std::uint8_t* __restrict news) {
   for (std::size_t i = 0; i < count; ++i) news[i] = range[i] > farthest[bearing[i]];
 }
-// Points that stop a beam nearer than those before the block, and all that stop none.
-PERCEPTION_WIDER void findNearer(const std::int32_t* __restrict bearing,
-                                 const float* __restrict range,
-                                 const std::int32_t* __restrict stops, std::size_t count,
-                                 const float* __restrict nearest, std::uint8_t* __restrict news) {
-  for (std::size_t i = 0; i < count; ++i)
-    news[i] = (range[i] < nearest[bearing[i]]) | (stops[i] == 0);
-}
-
-// `news`: with eight more bytes of 0.
-template <class Take>
-void forNews(const std::uint8_t* news, std::size_t count, const Take& take) {
-  for (std::size_t i = 0; i < count; i += 8) {
-    std::uint64_t eight_of_them = 0;
-    std::memcpy(&eight_of_them, news + i, sizeof eight_of_them);
-    if (eight_of_them == 0) continue;
-    for (std::size_t k = i; k < i + 8; ++k)
-      if (news[k] != 0) take(k);
-  }
-}
-
 /// A beam of a block on its way, mirrored so that it grows along.
 struct FlatBeam {
   float on, aside, across;  ///< [cells], [cells], [-]
@@ -118,37 +114,55 @@ void FlatBeams::begin(const WindowPlace& origin) {
   origin_ = origin, origin_.z = kMiddle, origin_.low = origin_.high = 1;
 }
 
-void FlatBeams::look(const PlacedBlock& placed, std::size_t count) {
-  findBearings(placed, count,
-               {origin_.x, origin_.y, per_radian_, static_cast<std::int32_t>(bearings_)},
-               bearing_.data(), range_.data());
+FlatBeams::Rose FlatBeams::rose() const {
+  return {origin_.x, origin_.y, per_radian_, static_cast<std::int32_t>(bearings_)};
 }
 
-void FlatBeams::offerClear(const PlacedBlock& placed, std::size_t count, std::uint32_t first) {
-  look(placed, count);
-  std::uint8_t news[PlacedBlock::kSize + kLanes] = {};
-  findFarther(bearing_.data(), range_.data(), count, farthest_.data(), news);
-  forNews(news, count, [&](std::size_t k) {
-    const auto bearing = static_cast<std::size_t>(bearing_[k]);
-    if (range_[k] > farthest_[bearing])
-      farthest_[bearing] = range_[k], ends_[bearing] = first + static_cast<std::uint32_t>(k);
-  });
+std::size_t FlatBeams::offerClear(const GridPoints& points, const WindowFrame& frame,
+                                  std::uint32_t first) {
+  constexpr std::size_t kSize = PlacedBlock::kSize, kGroup = 8;
+  std::size_t not_finite = 0;
+  for (std::size_t block = 0; block < points.size(); block += kSize) {
+    const std::size_t count = std::min(kSize, points.size() - block);
+    not_finite += static_cast<std::size_t>(findClear(points.x(block), points.y(block),
+                                                     points.z(block), count, frame.offsetOf(points),
+                                                     rose(), bearing_.data(), range_.data()));
+    std::uint8_t news[kSize] = {};
+    findFarther(bearing_.data(), range_.data(), count, farthest_.data(), news);
+    for (std::size_t begin = 0; begin < count; begin += kGroup) {
+      std::uint64_t any = 0;
+      std::memcpy(&any, news + begin, kGroup);
+      if (any == 0) continue;
+      for (std::size_t k = begin; k < std::min(begin + kGroup, count); ++k) {
+        const auto bearing = static_cast<std::size_t>(bearing_[k]);
+        if (range_[k] > farthest_[bearing])
+          farthest_[bearing] = range_[k],
+          ends_[bearing] = first + static_cast<std::uint32_t>(block + k);
+      }
+    }
+  }
+  return not_finite;
 }
 
+// Of neighbouring returns either may be the nearer one: no branches.
 void FlatBeams::offerHits(const PlacedBlock& placed, const std::int32_t* stops, std::size_t count,
                           std::uint32_t first) {
-  look(placed, count);
-  std::uint8_t news[PlacedBlock::kSize + kLanes] = {};
-  findNearer(bearing_.data(), range_.data(), stops, count, nearest_.data(), news);
-  forNews(news, count, [&](std::size_t k) {
+  findBearings(placed, count, rose(), bearing_.data(), range_.data());
+  bool all_stop = true;
+  for (std::size_t k = 0; k < count; ++k) {
     const auto bearing = static_cast<std::size_t>(bearing_[k]);
-    const std::uint32_t point = first + static_cast<std::uint32_t>(k);
-    if (stops[k] != 0) {
-      if (range_[k] < nearest_[bearing]) nearest_[bearing] = range_[k], stops_[bearing] = point;
-    } else if (range_[k] > farthest_[bearing]) {
-      farthest_[bearing] = range_[k], ends_[bearing] = point;
-    }
-  });
+    const float range = stops[k] != 0 ? range_[k] : kNone, nearest = nearest_[bearing];
+    const bool nearer = range < nearest;
+    nearest_[bearing] = nearer ? range : nearest;
+    stops_[bearing] = nearer ? first + static_cast<std::uint32_t>(k) : stops_[bearing];
+    all_stop &= stops[k] != 0;
+  }
+  if (all_stop) return;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto bearing = static_cast<std::size_t>(bearing_[k]);
+    if (stops[k] == 0 && range_[k] > farthest_[bearing])
+      farthest_[bearing] = range_[k], ends_[bearing] = first + static_cast<std::uint32_t>(k);
+  }
 }
 
 void FlatBeams::crossBlock(std::uint8_t* crossed) {

@@ -12,14 +12,21 @@ namespace perception {
 /// is none, to its farthest.
 class FlatBeams {
  public:
+  /// Where directions begin and how many there are.
+  struct Rose {
+    float x, y;  ///< [cells]
+    float per_radian;
+    std::int32_t count;
+  };
+
   /// `step`: [rad] of bearing. `cells`: of the window.
   FlatBeams(double step, int cells);
 
   /// Forgets the last scan. `origin`: the sensor.
   void begin(const WindowPlace& origin);
-  /// Placed points that stop no beam, the scan's `first` and following.
-  void offerClear(const PlacedBlock& placed, std::size_t count, std::uint32_t first);
-  /// Placed points of which some do. `stops`: 0 or 1 for each.
+  /// Points that stop no beam, the scan's `first` and following. Returns how many are no numbers.
+  std::size_t offerClear(const GridPoints& points, const WindowFrame& frame, std::uint32_t first);
+  /// Placed points of which some stop a beam. `stops`: 0 or 1 for each.
   void offerHits(const PlacedBlock& placed, const std::int32_t* stops, std::size_t count,
                  std::uint32_t first);
   /// Sets the columns [y][x] that beams cross, `place` being where a point of the scan is. Returns
@@ -46,7 +53,7 @@ class FlatBeams {
  private:
   static constexpr float kNone = 3e38F, kMiddle = 0.5F;
 
-  void look(const PlacedBlock& placed, std::size_t count);
+  Rose rose() const;
   void crossBlock(std::uint8_t* crossed);
 
   std::size_t bearings_;

@@ -93,7 +93,8 @@ class GridRolling2d final : public SafetyGrid {
     rays_ = scan.origin.allFinite();
     beams_.begin(frame_.place(rays_ ? scan.origin : scan.T_world_ground.translation()));
     takeHits(scan, stats);
-    takeClear(scan, stats);
+    stats.not_finite +=
+        beams_.offerClear(scan.clear, frame_, static_cast<std::uint32_t>(scan.hits.size()));
     if (rays_) {
       const auto place = [&](std::uint32_t i) {
         return frame_.place(i < scan.hits.size() ? scan.hits[i] : scan.clear[i - scan.hits.size()]);
@@ -210,15 +211,6 @@ class GridRolling2d final : public SafetyGrid {
         const auto column = static_cast<std::size_t>(placed_.cell[k] / PlacedBlock::kLayers);
         weights_[column] = std::max(weights_[column], static_cast<std::uint8_t>(marks[k]));
       }
-    }
-  }
-
-  void takeClear(const GridScan& scan, GridStats& stats) {
-    for (std::size_t begin = 0; begin < scan.clear.size(); begin += PlacedBlock::kSize) {
-      const std::size_t count = std::min(PlacedBlock::kSize, scan.clear.size() - begin);
-      frame_.place(scan.clear, begin, count, placed_);
-      stats.not_finite += placed_.not_finite;
-      beams_.offerClear(placed_, count, static_cast<std::uint32_t>(scan.hits.size() + begin));
     }
   }
 

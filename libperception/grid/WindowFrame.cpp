@@ -8,16 +8,10 @@
 namespace perception {
 namespace {
 
-/// Where the base of some points is [cells].
-struct Offset {
-  float x, y, z;
-  float per_metre;
-};
-
 // Returns how many are no numbers.
 PERCEPTION_WIDER std::int32_t placeAll(const float* __restrict xs, const float* __restrict ys,
                                        const float* __restrict zs, std::size_t count,
-                                       const Offset from, const WindowRules k,
+                                       const PointOffset from, const WindowRules k,
                                        float* __restrict out_x, float* __restrict out_y,
                                        float* __restrict out_z, float* __restrict low,
                                        float* __restrict high, std::int32_t* __restrict cell,
@@ -67,6 +61,13 @@ PERCEPTION_WIDER std::int32_t settleAll(const std::int32_t* __restrict cell,
   return hits;
 }
 
+// From the second point on.
+PERCEPTION_WIDER void findNews(const std::int32_t* __restrict cell,
+                               const std::int32_t* __restrict settled, std::size_t count,
+                               std::uint8_t* __restrict news) {
+  for (std::size_t i = 1; i < count; ++i) news[i] = (cell[i] < 0) | (cell[i] != settled[i - 1]);
+}
+
 constexpr PlacedBlock::Lane<float> allFull() {
   PlacedBlock::Lane<float> weights{};
   for (float& w : weights) w = 1;
@@ -89,11 +90,13 @@ void PlacedBlock::chooseClear(std::size_t count, std::int32_t before) {
 
 // Without branches: whether a cell is new is anybody's guess.
 void PlacedBlock::leaveOut(std::size_t count, std::int32_t before) {
+  std::uint8_t news[kSize];
+  news[0] = cell[0] < 0 || cell[0] != before;
+  findNews(cell.data(), settled.data(), count, news);
   std::size_t left = 0;
   for (std::size_t k = 0; k < count; ++k) {
     chosen[left] = static_cast<std::uint16_t>(k);
-    left += static_cast<std::size_t>((cell[k] < 0) | (cell[k] != before));
-    before = settled[k];
+    left += news[k];
   }
   chosen_count = left;
 }
@@ -119,14 +122,18 @@ WindowFrame::WindowFrame(const GridParams& params, const Pose3& T_world_ground,
 
 void WindowFrame::place(const GridPoints& points, std::size_t first, std::size_t count,
                         PlacedBlock& out) const {
+  const std::int32_t not_finite =
+      placeAll(points.x(first), points.y(first), points.z(first), count, offsetOf(points), rules_,
+               out.x.data(), out.y.data(), out.z.data(), out.low.data(), out.high.data(),
+               out.cell.data(), out.in_slab.data());
+  out.not_finite = static_cast<std::size_t>(not_finite);
+}
+
+PointOffset WindowFrame::offsetOf(const GridPoints& points) const {
   const auto at = [&](int axis) {
     return static_cast<float>((points.base()[axis] - corner_[axis]) * per_metre_);
   };
-  const std::int32_t not_finite = placeAll(
-      points.x(first), points.y(first), points.z(first), count,
-      {at(0), at(1), at(2), static_cast<float>(per_metre_)}, rules_, out.x.data(), out.y.data(),
-      out.z.data(), out.low.data(), out.high.data(), out.cell.data(), out.in_slab.data());
-  out.not_finite = static_cast<std::size_t>(not_finite);
+  return {at(0), at(1), at(2), static_cast<float>(per_metre_)};
 }
 
 WindowPlace WindowFrame::place(const Vector3& point) const {

@@ -53,6 +53,12 @@ struct WindowRules {
   float cells = 0, layers = 0;
 };
 
+/// Where the base of some points is in a window [cells], and how fine its cells are.
+struct PointOffset {
+  float x, y, z;
+  float per_metre;
+};
+
 /// Where a window lies in the world, and the slab of heights that matter in it.
 class WindowFrame {
  public:
@@ -64,6 +70,7 @@ class WindowFrame {
   /// At most PlacedBlock::kSize points from `first` on.
   void place(const GridPoints& points, std::size_t first, std::size_t count,
              PlacedBlock& out) const;
+  PointOffset offsetOf(const GridPoints& points) const;
   /// `point`: [m] world.
   WindowPlace place(const Vector3& point) const;
 
