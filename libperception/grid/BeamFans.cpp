@@ -31,12 +31,27 @@ using Mask8x32 = std::uint32_t __attribute__((vector_size(32)));
 using Mask8x64 = std::uint64_t __attribute__((vector_size(64)));
 using Long8 = std::int64_t __attribute__((vector_size(64)));
 
-// A bit at the layer of each height.
-PERCEPTION_LANES void setBit(const Float8& z, Mask8x32& bit) {
-  bit = Mask8x32{1, 1, 1, 1, 1, 1, 1, 1} << reinterpret_cast<Mask8x32>(truncated(z));
+// A bit at the layer of each height. `kShifts`: by lane, which SSE2 has not; else the float of that
+// value is put together.
+template <bool kShifts>
+PERCEPTION_LANES Mask8x32 bitOf(const Int8& layer) {
+  if constexpr (kShifts)
+    return Mask8x32{1, 1, 1, 1, 1, 1, 1, 1} << reinterpret_cast<Mask8x32>(layer);
+  constexpr std::int32_t kBias = 127, kMantissa = 23;
+  const Int8 power = (layer + kBias) << kMantissa;
+  return __builtin_convertvector(reinterpret_cast<Float8>(power), Mask8x32);
 }
+template <bool kShifts>
+PERCEPTION_LANES void setBit(const Float8& z, Mask8x32& bit) {
+  bit = bitOf<kShifts>(truncated(z));
+}
+template <bool kShifts>
 PERCEPTION_LANES void setBit(const Float8& z, Mask8x64& bit) {
-  bit = Mask8x64{1, 1, 1, 1, 1, 1, 1, 1} << __builtin_convertvector(truncated(z), Mask8x64);
+  const Int8 layer = truncated(z), upper = layer > 31;
+  const Mask8x64 half = __builtin_convertvector(bitOf<kShifts>(layer & 31), Mask8x64);
+  const Long8 shifted = __builtin_convertvector(upper, Long8);
+  bit = (half & ~reinterpret_cast<Mask8x64>(shifted)) |
+        (half << 32 & reinterpret_cast<Mask8x64>(shifted));
 }
 PERCEPTION_LANES Mask8x32 where(const Int8& lanes, const Mask8x32& bits) {
   return reinterpret_cast<Mask8x32>(lanes) & bits;
@@ -65,7 +80,7 @@ PERCEPTION_LANES void layOut(const Fan& fan, float* guides) {
 }
 
 // The layers between the heights where the beam enters and leaves each row of a group of cells.
-template <bool kRises, class Bits, class Mask>
+template <bool kRises, bool kShifts, class Bits, class Mask>
 PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sensor_height,
                                  const float* guides, Mask* gathered) {
   const Float8 from = eight(beam.from), to = eight(beam.to);
@@ -81,8 +96,8 @@ PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sen
     const Float8 t1 = smaller(larger(reached, in), leave);
     const Float8 t2 = smaller(larger(reached + per_across, in), leave);
     Bits b0, b1, b2, b3;
-    setBit(height + up * in, b0), setBit(height + up * t1, b1);
-    setBit(height + up * t2, b2), setBit(height + up * leave, b3);
+    setBit<kShifts>(height + up * in, b0), setBit<kShifts>(height + up * t1, b1);
+    setBit<kShifts>(height + up * t2, b2), setBit<kShifts>(height + up * leave, b3);
     Mask* const rows = gathered + kRows * i;
     gather(rows, where(in < t1, kRises ? b1 + b1 - b0 : b0 + b0 - b1));
     gather(rows + kLanes, where(t1 < t2, kRises ? b2 + b2 - b1 : b1 + b1 - b2));
@@ -110,7 +125,7 @@ PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, const Ma
   }
 }
 
-template <class Bits, class Mask>
+template <bool kShifts, class Bits, class Mask>
 PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
                                std::size_t count, float* guides, Mask* gathered, Mask* crossed) {
   layOut(fan, guides);
@@ -120,24 +135,37 @@ PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const s
   for (std::size_t k = 0; k < count; ++k) {
     const BeamStretch beam = beams[order[k]];
     if (beam.up >= 0) {
-      crossCells<true, Bits>(beam, along, height, guides, gathered);
+      crossCells<true, kShifts, Bits>(beam, along, height, guides, gathered);
     } else {
-      crossCells<false, Bits>(beam, along, height, guides, gathered);
+      crossCells<false, kShifts, Bits>(beam, along, height, guides, gathered);
     }
   }
   markGathered(fan, guides, gathered, crossed);
 }
 
-PERCEPTION_WIDER void crossFanOf(const Fan& fan, const BeamStretch* beams,
-                                 const std::uint16_t* order, std::size_t count, float* guides,
-                                 std::uint32_t* gathered, std::uint32_t* crossed) {
-  crossFan<Mask8x32>(fan, beams, order, count, guides, gathered, crossed);
+// As PERCEPTION_WIDER, but each width has its own way to set bits.
+PERCEPTION_TARGET("default")
+void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
+                std::size_t count, float* guides, std::uint32_t* gathered, std::uint32_t* crossed) {
+  crossFan<false, Mask8x32>(fan, beams, order, count, guides, gathered, crossed);
 }
-PERCEPTION_WIDER void crossFanOf(const Fan& fan, const BeamStretch* beams,
-                                 const std::uint16_t* order, std::size_t count, float* guides,
-                                 std::uint64_t* gathered, std::uint64_t* crossed) {
-  crossFan<Mask8x64>(fan, beams, order, count, guides, gathered, crossed);
+PERCEPTION_TARGET("default")
+void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
+                std::size_t count, float* guides, std::uint64_t* gathered, std::uint64_t* crossed) {
+  crossFan<false, Mask8x64>(fan, beams, order, count, guides, gathered, crossed);
 }
+#if PERCEPTION_HAS_WIDER
+PERCEPTION_TARGET("avx2")
+void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
+                std::size_t count, float* guides, std::uint32_t* gathered, std::uint32_t* crossed) {
+  crossFan<true, Mask8x32>(fan, beams, order, count, guides, gathered, crossed);
+}
+PERCEPTION_TARGET("avx2")
+void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
+                std::size_t count, float* guides, std::uint64_t* gathered, std::uint64_t* crossed) {
+  crossFan<true, Mask8x64>(fan, beams, order, count, guides, gathered, crossed);
+}
+#endif
 
 }  // namespace
 
