@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -34,88 +35,90 @@ std::string percent(const std::optional<double>& value) {
   return value ? fmt::format("{:.1f}", 100 * *value) : "n/a";
 }
 
-StudyTable figuresTable(const std::vector<LabelCondition>& conditions, const LabelsParams& params) {
+using Row = std::vector<std::string>;
+
+// A table with a row a condition: labels, method, and what `fill` adds.
+StudyTable conditionsTable(const char* name, const char* title, const Row& figures,
+                           const std::vector<LabelCondition>& conditions,
+                           const std::function<void(const LabelCondition&, Row&)>& fill) {
   StudyTable table;
-  table.name = "labels";
-  table.title = "Tracking by what the detector says of the class";
-  table.columns = {"labels",
-                   "method",
-                   "MOTA by class (%)",
-                   "missed",
-                   "false",
-                   "id switches",
-                   "MOTA, whatever class (%)",
-                   "id switches, whatever class",
-                   "right class after 1 (%)",
-                   "after 3 (%)",
-                   "after 10 (%)",
-                   "after 30 (%)"};
+  table.name = name;
+  table.title = title;
+  table.columns = {"labels", "method"};
+  table.columns.insert(table.columns.end(), figures.begin(), figures.end());
   for (const LabelCondition& c : conditions) {
-    const ClearFigures by_class = sumOf(c.score.of_class);
-    std::vector<std::string> row = {c.labels(),
-                                    c.method.name,
-                                    percent(by_class.mota),
-                                    fmt::format("{}", by_class.misses),
-                                    fmt::format("{}", by_class.false_objects),
-                                    fmt::format("{}", by_class.id_switches),
-                                    percent(c.score.any_class.mota),
-                                    fmt::format("{}", c.score.any_class.id_switches)};
-    for (const int k : {1, 3, 10, 30}) {
-      row.push_back(k <= params.last_measurement
-                        ? percent(rightShare(c.score, static_cast<std::size_t>(k)))
-                        : "n/a");
-    }
+    Row row = {c.labels(), c.method.name};
+    fill(c, row);
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+StudyTable figuresTable(const std::vector<LabelCondition>& conditions, const LabelsParams& params) {
+  const Row figures = {"MOTA by class (%)",
+                       "missed",
+                       "false",
+                       "id switches",
+                       "MOTA, whatever class (%)",
+                       "id switches, whatever class",
+                       "right class after 1 (%)",
+                       "after 3 (%)",
+                       "after 10 (%)",
+                       "after 30 (%)"};
+  return conditionsTable(
+      "labels", "Tracking by what the detector says of the class", figures, conditions,
+      [&](const LabelCondition& c, Row& row) {
+        const ClearFigures by_class = sumOf(c.score.of_class);
+        row.push_back(percent(by_class.mota));
+        for (const auto count : {by_class.misses, by_class.false_objects, by_class.id_switches})
+          row.push_back(fmt::format("{}", count));
+        row.push_back(percent(c.score.any_class.mota));
+        row.push_back(fmt::format("{}", c.score.any_class.id_switches));
+        for (const int k : {1, 3, 10, 30}) {
+          row.push_back(k <= params.last_measurement
+                            ? percent(rightShare(c.score, static_cast<std::size_t>(k)))
+                            : "n/a");
+        }
+      });
 }
 
 StudyTable classTable(const std::vector<LabelCondition>& conditions, const LabelsParams& params) {
-  StudyTable table;
-  table.name = "labels_by_class";
-  table.title = "The same by class";
-  table.columns = {"labels", "method"};
+  Row figures;
   for (const std::string& label : params.labels) {
     for (const char* figure : {"MOTA (%)", "id switches", "right after 10 (%)"})
-      table.columns.push_back(label + ": " + figure);
+      figures.push_back(label + ": " + figure);
   }
-  for (const LabelCondition& c : conditions) {
-    std::vector<std::string> row = {c.labels(), c.method.name};
-    for (std::size_t l = 0; l < params.labels.size(); ++l) {
-      row.push_back(percent(c.score.of_class[l].mota));
-      row.push_back(fmt::format("{}", c.score.of_class[l].id_switches));
-      row.push_back(params.last_measurement >= 10
-                        ? percent(rightShare(c.score, 10, static_cast<int>(l)))
-                        : "n/a");
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  return conditionsTable(
+      "labels_by_class", "The same by class", figures, conditions,
+      [&](const LabelCondition& c, Row& row) {
+        for (std::size_t l = 0; l < params.labels.size(); ++l) {
+          row.push_back(percent(c.score.of_class[l].mota));
+          row.push_back(fmt::format("{}", c.score.of_class[l].id_switches));
+          row.push_back(params.last_measurement >= 10
+                            ? percent(rightShare(c.score, 10, static_cast<int>(l)))
+                            : "n/a");
+        }
+      });
 }
 
 StudyTable curveTable(const std::vector<LabelCondition>& conditions, const LabelsParams& params) {
-  StudyTable table;
-  table.name = "right_class";
-  table.title =
-      "Share of objects (%) that have an output of the right class at their k-th measurement";
-  table.columns = {"labels", "method"};
+  Row figures, counts = {"(objects that had one)", ""};
   std::vector<std::size_t> numbers;
   for (const std::size_t k : {1, 2, 3, 4, 5, 7, 10, 15, 20, 30, 40}) {
-    if (k <= static_cast<std::size_t>(params.last_measurement)) numbers.push_back(k);
-  }
-  for (const std::size_t k : numbers) table.columns.push_back(fmt::format("{}", k));
-  std::vector<std::string> counts = {"(objects that had one)", ""};
-  for (const std::size_t k : numbers) {
+    if (k > static_cast<std::size_t>(params.last_measurement)) continue;
+    numbers.push_back(k);
+    figures.push_back(fmt::format("{}", k));
     std::size_t n = 0;
     for (const auto& objects : conditions.front().score.objects) n += objects[k - 1];
     counts.push_back(fmt::format("{}", n));
   }
-  table.rows.push_back(std::move(counts));
-  for (const LabelCondition& c : conditions) {
-    std::vector<std::string> row = {c.labels(), c.method.name};
-    for (const std::size_t k : numbers) row.push_back(percent(rightShare(c.score, k)));
-    table.rows.push_back(std::move(row));
-  }
+  StudyTable table = conditionsTable(
+      "right_class",
+      "Share of objects (%) that have an output of the right class at their k-th measurement",
+      figures, conditions, [&](const LabelCondition& c, Row& row) {
+        for (const std::size_t k : numbers) row.push_back(percent(rightShare(c.score, k)));
+      });
+  table.rows.insert(table.rows.begin(), std::move(counts));
   return table;
 }
 
