@@ -1,12 +1,10 @@
 #include <fmt/format.h>
-#include <mrpt/containers/yaml.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
@@ -15,6 +13,7 @@
 #include "libperception/app/ImportRadarPicture.h"
 #include "libperception/app/ImportText.h"
 #include "libperception/app/Importer.h"
+#include "libperception/app/RadiateFiles.h"
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
 
@@ -49,112 +48,12 @@ struct RadiateParams {
   bool radar_images = false;  ///< also as images
 };
 
-using FrameTimes = std::map<std::int64_t, Stamp>;
-
-/// "Frame: 000018 Time: 1574859771.700975000"
-FrameTimes readTimes(const fs::path& path) {
-  FrameTimes times;
-  const std::string name = path.string();
-  forEachRow(name, kSpaces, [&](const TextRow& row) {
-    row.expect(row.size() == 4, "4: Frame: N Time: SECONDS");
-    const auto stamp = stampOfSeconds(row.text(3));
-    if (!stamp) row.fail(3, "seconds since 1970");
-    times[row.frame(1)] = *stamp;
-  });
-  if (times.empty()) throw DataError(name + ": no time in it");
-  return times;
-}
-
 /// Frames without a time are left out.
 void warnOfUntimed(const std::vector<std::int64_t>& frames, const std::string& dir,
                    ImportLog& log) {
   if (frames.empty()) return;
   log.warn(fmt::format("{}: no time in {}.txt for {} frames (first: {}): left out", dir, dir,
                        frames.size(), frames.front()));
-}
-
-/// A box of the annotations, in pixels of Navtech_Cartesian.
-struct Annotation {
-  std::int64_t id = 0;
-  std::string type;
-  double x = 0, y = 0, width = 0, length = 0;  ///< [px] top left corner and size before turning
-  double rotation = 0;                         ///< [deg] counter-clockwise about the centre
-};
-
-/// RADIATE's class names in KITTI's terms; others are kept as they are.
-std::string typeOf(const std::string& name) {
-  static const std::map<std::string, std::string> kTypes = {{"car", "Car"},
-                                                            {"van", "Van"},
-                                                            {"truck", "Truck"},
-                                                            {"bus", "Bus"},
-                                                            {"bicycle", "Cyclist"},
-                                                            {"pedestrian", "Pedestrian"},
-                                                            {"motorbike", "Motorbike"}};
-  const auto row = kTypes.find(name);
-  return row == kTypes.end() ? name : row->second;
-}
-
-std::map<std::int64_t, std::vector<Annotation>> readAnnotations(const std::string& path) {
-  const auto fault = [&](const std::string& what) { throw DataError(path + ": " + what); };
-  const auto json = nlohmann::json::parse(readBytes(path), nullptr, false);
-  if (!json.is_array()) fault("no JSON list of objects");
-  std::map<std::int64_t, std::vector<Annotation>> by_frame;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const auto& object = json[i];
-    const std::string place = fmt::format("object {}", i);
-    if (!object.is_object() || !object.contains("id") || !object["id"].is_number_integer() ||
-        !object.contains("class_name") || !object["class_name"].is_string() ||
-        !object.contains("bboxes") || !object["bboxes"].is_array())
-      fault(place + ": expected id, class_name and bboxes");
-    for (std::size_t k = 0; k < object["bboxes"].size(); ++k) {
-      const auto& box = object["bboxes"][k];
-      if (box.is_array() && box.empty()) continue;  // not there in this frame
-      const bool good = box.is_object() && box.contains("position") && box["position"].is_array() &&
-                        box["position"].size() == 4 && box.contains("rotation") &&
-                        box["rotation"].is_number() &&
-                        std::all_of(box["position"].begin(), box["position"].end(),
-                                    [](const auto& v) { return v.is_number(); });
-      if (!good)
-        fault(fmt::format("{}, box {}: expected position [x, y, w, h] and rotation", place, k));
-      const auto& p = box["position"];
-      by_frame[static_cast<std::int64_t>(k) + 1].push_back(
-          {object["id"].get<std::int64_t>(), typeOf(object["class_name"].get<std::string>()),
-           p[0].get<double>(), p[1].get<double>(), p[2].get<double>(), p[3].get<double>(),
-           box["rotation"].get<double>()});
-    }
-  }
-  return by_frame;
-}
-
-/// calib.yaml: translations from the radar, x right, y ahead, z up.
-struct RadiateCalibration {
-  Vector3 lidar = Vector3::Zero(), camera = Vector3::Zero();  ///< [m] right, ahead, up of the radar
-  CameraModel model;
-  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3
-};
-
-RadiateCalibration readCalibration(const std::string& path) {
-  if (!fs::exists(path)) throw DataError(path + ": no such file", ExitCode::kNoInput);
-  RadiateCalibration c;
-  try {
-    const auto yaml = mrpt::containers::yaml::FromFile(path);
-    const auto place = [&](const char* name) {
-      const auto t = yaml[name]["T"];
-      return Vector3(t(0).as<double>(), t(1).as<double>(), t(2).as<double>());
-    };
-    c.lidar = place("lidar_calib");
-    c.camera = place("left_cam_calib");
-    const auto camera = yaml["left_cam_calib"];
-    c.model.fx = camera["fx"].as<double>(), c.model.fy = camera["fy"].as<double>();
-    c.model.cx = camera["cx"].as<double>(), c.model.cy = camera["cy"].as<double>();
-    for (const char* name : {"k1", "k2", "p1", "p2", "k3"})
-      c.distortion.push_back(camera[name].as<double>());
-  } catch (const std::exception& e) {
-    std::string what = e.what();
-    throw DataError(fmt::format("{}: expected lidar_calib and left_cam_calib with T, fx ...: {}",
-                                path, what.substr(0, what.find('\n'))));
-  }
-  return c;
 }
 
 CloudFormat lidarFormat() {
@@ -274,7 +173,7 @@ void RadiateImporter::addRadar(ImportLog& log) {
 
 void RadiateImporter::addLidar(ImportLog& log) {
   const std::string dir = path("velo_lidar").string();
-  const FrameTimes times = readTimes(path("velo_lidar.txt"));
+  const FrameTimes times = readRadiateTimes(path("velo_lidar.txt"));
   std::vector<std::int64_t> untimed;
   for (const FrameFile& file : frameFiles(dir, {".csv", ".csv.gz"})) {
     const auto time = times.find(file.number);
@@ -299,7 +198,7 @@ void RadiateImporter::addLidar(ImportLog& log) {
 void RadiateImporter::addImages(ImportLog& log) {
   if (!fs::exists(path("zed_left"))) return;
   const std::string dir = path("zed_left").string();
-  const FrameTimes times = readTimes(path("zed_left.txt"));
+  const FrameTimes times = readRadiateTimes(path("zed_left.txt"));
   // Optical axes: x right, y down, z ahead; the calibration's turn of a degree is left out, since
   // its order is not documented.
   Pose3 T_ego_camera = makePose(calibration_.camera.y(), -calibration_.camera.x(),
@@ -326,7 +225,7 @@ void RadiateImporter::addImages(ImportLog& log) {
 }
 
 std::vector<GpsFix> RadiateImporter::readFixes(ImportLog& log) const {
-  const FrameTimes times = readTimes(path("GPS_IMU_Twist.txt"));
+  const FrameTimes times = readRadiateTimes(path("GPS_IMU_Twist.txt"));
   const CsvTable gps = CsvTable::fromFile(path("gps.csv").string());
   std::vector<GpsFix> all;
   for (std::size_t i = 0; i < gps.rows(); ++i) {
@@ -346,7 +245,7 @@ std::vector<GpsFix> RadiateImporter::readFixes(ImportLog& log) const {
 
 /// The shift of the GPS clock that makes the scans in the middle of the wanted part agree.
 double RadiateImporter::gpsShift(const std::vector<GpsFix>& fixes, ImportLog& log) const {
-  const FrameTimes times = readTimes(path("velo_lidar.txt"));
+  const FrameTimes times = readRadiateTimes(path("velo_lidar.txt"));
   const double at_once = times.begin()->second - fixes.front().stamp;
   const Stamp middle = *first_ + (last_ - *first_) / 2;
   std::vector<StampedScan> scans;
@@ -399,12 +298,12 @@ void RadiateImporter::addTruth(ImportLog& log) {
   const cv::Mat picture = cv::imread(
       frameFiles(path("Navtech_Cartesian").string(), {".png"}).front().path, cv::IMREAD_GRAYSCALE);
   const double centre_u = picture.cols * 0.5, centre_v = picture.rows * 0.5;
-  for (const auto& [frame, boxes] : readAnnotations(file)) {
+  for (const auto& [frame, boxes] : readRadiateAnnotations(file)) {
     const auto time = radar_times_.find(frame);
     if (time == radar_times_.end() || !log.options().wants(frame)) continue;
     const Stamp stamp = radarStamp(time->second);
     const auto ego = egoAt(stamp);
-    for (const Annotation& a : boxes) {
+    for (const RadiateAnnotation& a : boxes) {
       ObjectDetection::SpaceBox box;
       const double u = a.x + a.width / 2, v = a.y + a.length / 2;
       box.bottom_centre =
@@ -427,12 +326,12 @@ void RadiateImporter::addTruth(ImportLog& log) {
 
 void RadiateImporter::run(ImportLog& log) {
   requireFolder(params_.dir);
-  calibration_ = readCalibration(path("calib.yaml").string());
+  calibration_ = readRadiateCalibration(path("calib.yaml").string());
   radar_height_ = params_.lidar_height - calibration_.lidar.z();
   // The file's x looks to the right, its y ahead.
   T_ego_lidar_ =
       makePose(calibration_.lidar.y(), -calibration_.lidar.x(), params_.lidar_height, -kPi / 2);
-  radar_times_ = readTimes(path("Navtech_Cartesian.txt"));
+  radar_times_ = readRadiateTimes(path("Navtech_Cartesian.txt"));
   addRadar(log);
   addGps(log);  // before the others: poses first at an instant
   addLidar(log);
