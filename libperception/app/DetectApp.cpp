@@ -182,21 +182,44 @@ void DetectApp::runImages(const ImageDetector& detector, const DetectCameraParam
   fmt::print("{}: calibration of {} images\n", calibrate, out_images);
 }
 
-void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& params,
-                       const std::string& log) {
+/// Where a log's boxes go: into another log, or as pictures and tables into a folder.
+struct DetectApp::LogOutput {
+  std::optional<RawlogWriter> writer;
+  std::optional<OutputFolder> folder;
+};
+
+void DetectApp::openOutput(bool detects, LogOutput& out) const {
   if (!labels.empty()) throw Error(ExitCode::kUsage, "--labels belong to images, not to a log");
   const bool to_log = !output.empty() && isRawlog(output);
   if (!to_log && !(pictures && !output.empty()))
     throw Error(ExitCode::kUsage, "-o FILE.rawlog is required, or --pictures -o DIR");
-  if (to_log && !detector.hasBackend())
+  if (to_log && !detects)
     throw Error(ExitCode::kUsage, "backend file: the log has its boxes; --pictures -o DIR");
-  std::optional<RawlogWriter> writer;
-  std::optional<OutputFolder> folder;
   if (to_log) {
-    writer.emplace(output);
+    out.writer.emplace(output);
   } else {
-    folder.emplace(output);
+    out.folder.emplace(output);
   }
+}
+
+void DetectApp::closeOutput(const std::string& images, LogOutput& out) const {
+  if (out.writer) {
+    out.writer->close();
+    // The new log finds the images that the old one keeps beside itself.
+    const fs::path beside = images, link = imagesBeside(output);
+    if (fs::is_directory(beside) && !fs::exists(fs::symlink_status(link)))
+      fs::create_directory_symlink(fs::absolute(beside), link);
+  }
+  if (out.folder) {
+    writeResults(&*out.folder);
+    out.folder->commit("detections.csv");
+  }
+}
+
+void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& params,
+                       const std::string& log) {
+  LogOutput out;
+  openOutput(detector.hasBackend(), out);
   RawlogReader reader(log);
   Progress progress("detect", reader.fileBytes());
   std::optional<SensorFrame> shown, boxes;  // newest image and boxes, for the back end `file`
@@ -204,7 +227,7 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
   const std::string images = imagesBeside(log);
   while (const auto observation = reader.next()) {
     stopIfAsked();
-    if (writer) writer->write(*observation);
+    if (out.writer) out.writer->write(*observation);
     std::optional<SensorFrame> frame;
     if (isImage(*observation)) frame = frameFromObservation(*observation, nullptr, images);
     const bool is_image =
@@ -214,8 +237,8 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
       auto result = detectIn(*frame, seen - 1, detector, params);
       if (!result) continue;
       finish(detector, *result);
-      if (writer) writer->write(*boxesObservation(*frame, result->found));
-      if (folder) draw(*folder, *result);
+      if (out.writer) out.writer->write(*boxesObservation(*frame, result->found));
+      if (out.folder) draw(*out.folder, *result);
     } else {
       if (is_image) shown = std::move(frame);
       const auto decoded = frameFromObservation(*observation);
@@ -227,7 +250,7 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
         result->found = std::get<ObjectDetections>(boxes->data);
         detector.addHeadings(result->image, result->found.camera, result->found.objects);
         finish(detector, *result);
-        draw(*folder, *result);
+        draw(*out.folder, *result);
       }
       shown.reset();
     }
@@ -241,17 +264,7 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
     throw DataError(fmt::format("{}: no image{} in it that can be read{}", log,
                                 camera_label.empty() ? "" : " labelled " + camera_label,
                                 detector.hasBackend() ? "" : ", with boxes of the same time"));
-  if (writer) {
-    writer->close();
-    // The new log finds the images that the old one keeps beside itself.
-    const fs::path beside = images, link = imagesBeside(output);
-    if (fs::is_directory(beside) && !fs::exists(fs::symlink_status(link)))
-      fs::create_directory_symlink(fs::absolute(beside), link);
-  }
-  if (folder) {
-    writeResults(&*folder);
-    folder->commit("detections.csv");
-  }
+  closeOutput(images, out);
 }
 
 std::optional<DetectApp::Result> DetectApp::detectIn(const SensorFrame& frame, std::int64_t number,

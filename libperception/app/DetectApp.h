@@ -54,6 +54,9 @@ class DetectApp : public App {
     std::vector<LabelledBox> truth;
   };
   void runImages(const ImageDetector& detector, const DetectCameraParams& camera);
+  struct LogOutput;
+  void openOutput(bool detects, LogOutput& out) const;
+  void closeOutput(const std::string& images, LogOutput& out) const;
   void runLog(const ImageDetector& detector, const DetectCameraParams& camera,
               const std::string& log);
   /// An image of a log with its boxes; empty when it cannot be read.

@@ -72,6 +72,13 @@ std::string EvaluateApp::description() const {
 }
 
 void EvaluateApp::declare(CLI::App& cli) {
+  declareInputs(cli);
+  addOutputOption(cli, false);
+  declareTruth(cli);
+  declareFigures(cli);
+}
+
+void EvaluateApp::declareInputs(CLI::App& cli) {
   cli.add_option("-r,--run", runs,
                  "folder of a run of perception-track; several make one table. CONDITION=PATTERN: "
                  "all folders of that pattern, pooled as trials of one condition")
@@ -93,7 +100,10 @@ void EvaluateApp::declare(CLI::App& cli) {
          fmt::format("rows of the paper beside ours: {}", fmt::join(paperTableNames(), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
-  addOutputOption(cli, false);
+}
+
+/// Which truth counts.
+void EvaluateApp::declareTruth(CLI::App& cli) {
   cli.add_option("--range", params.selection.range, "truth counts up to this distance [m]")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1e4));
@@ -113,6 +123,10 @@ void EvaluateApp::declare(CLI::App& cli) {
                  "truth counts up to this KITTI occlusion (0-3)")
       ->capture_default_str()
       ->check(CLI::Range(0, 3));
+}
+
+/// How outputs are matched with it, and what is reported.
+void EvaluateApp::declareFigures(CLI::App& cli) {
   cli.add_option("--tolerance", params.tolerance,
                  "greatest distance of the centres of truth and estimate [m]")
       ->capture_default_str()

@@ -35,6 +35,9 @@ class EvaluateApp : public App {
   void run() override;
 
  private:
+  void declareInputs(CLI::App& cli);
+  void declareTruth(CLI::App& cli);
+  void declareFigures(CLI::App& cli);
   /// One run to be evaluated; of no condition: for itself.
   struct Entry {
     std::string condition, dir, truth;

@@ -114,6 +114,15 @@ const Study kStudies[] = {
      [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
 };
 
+/// --range [m] and --fov-deg [deg] of what counts.
+void addSector(CLI::App& sub, const char* range_help, const char* fov_help, double& range,
+               double& fov_deg) {
+  sub.add_option("--range", range, range_help)->capture_default_str()->check(CLI::Range(0.1, 1e4));
+  sub.add_option("--fov-deg", fov_deg, fov_help)
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 360.0));
+}
+
 /// LOG.truth.csv beside LOG.rawlog.
 GroundTruth truthBeside(const std::string& log) {
   return readGroundTruth(std::filesystem::path(log).replace_extension(".truth.csv").string());
@@ -135,63 +144,11 @@ void StudyApp::declare(CLI::App& cli) {
         ->check(CLI::Range(0, 1000000));
     sub->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
         ->check(CLI::Range(0, 4096));
-    if (s.recordings) {
-      sub->add_option(
-             "-i,--input", folder,
-             "Folder with pedestrian/, cyclist/, car/, bus/, each with CLASS_USER_....nmea, "
-             ".gpx or .csv files")
-          ->required();
-      sub->add_option("--stationary", stationary,
-                      "Recording of a receiver at rest: its covariance is R");
-    }
-    if (s.log) {
-      sub->add_option("--log", log, "Rawlog to be tracked, instead of simulated positions");
-      sub->add_option("-c,--config", config_file, "INI of the vehicle, for --log");
-      sub->add_option("--duc", duc_config, "INI of the tracker without classification, for --log");
-      sub->add_option("--set", settings, "section.key=value: overrides both INIs");
-      sub->add_option("-t,--truth", truth_file, "Truth of the log");
-      sub->add_option("--counts", counts, "Numbers of particles, for --log (else the paper's)")
-          ->delimiter(',')
-          ->check(CLI::Range(1, 100000));
-      sub->add_option("--seconds", seconds, "Of the log; 0 = all")->check(CLI::Range(0.0, 1e6));
-      sub->add_option("--range", range, "Objects count up to this distance [m]")
-          ->capture_default_str()
-          ->check(CLI::Range(0.1, 1e4));
-      sub->add_option("--fov-deg", fov_deg, "Whole angle ahead in which they count [deg]")
-          ->capture_default_str()
-          ->check(CLI::Range(0.1, 360.0));
-    }
-    if (s.labels) {
-      sub->add_option("-i,--input", inputs,
-                      "Rawlogs with boxes of a detector, LOG.truth.csv beside")
-          ->required();
-      sub->add_option("-c,--config", config_file,
-                      "INI whose sensors take boxes without a label, too")
-          ->required();
-      sub->add_option("--set", settings, "section.key=value: overrides the INI");
-      sub->add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
-      sub->add_option("--range", labels_range, "Truth counts up to this distance [m]")
-          ->capture_default_str()
-          ->check(CLI::Range(0.1, 1e4));
-      sub->add_option("--fov-deg", labels_fov_deg, "Whole angle ahead in which truth counts [deg]")
-          ->capture_default_str()
-          ->check(CLI::Range(0.1, 360.0));
-    }
+    if (s.recordings) declareRecordings(*sub);
+    if (s.log) declareLog(*sub);
+    if (s.labels) declareLabels(*sub);
     if (s.declare) s.declare(*sub, resolution);
-    if (s.tempering) {
-      sub->add_option("-i,--input", inputs, "Rawlogs, LOG.truth.csv beside; two or more")
-          ->required();
-      sub->add_option("-c,--config", config_file, "INI of the vehicle")->required();
-      sub->add_option("--set", settings, "section.key=value: overrides the INI");
-      sub->add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
-      sub->add_option("--range", tempering_range, "Truth counts up to this distance [m]")
-          ->capture_default_str()
-          ->check(CLI::Range(0.1, 1e4));
-      sub->add_option("--fov-deg", tempering_fov_deg,
-                      "Whole angle ahead in which truth counts [deg]")
-          ->capture_default_str()
-          ->check(CLI::Range(0.1, 360.0));
-    }
+    if (s.tempering) declareTempering(*sub);
     if (s.scan) sub->add_option("--log", log, "Rawlog whose first lidar scan is filtered");
     if (s.scenario) {
       sub->add_option("-c,--config", scenario,
@@ -201,6 +158,50 @@ void StudyApp::declare(CLI::App& cli) {
     }
     sub->callback([this, name = std::string(s.name)] { study = name; });
   }
+}
+
+void StudyApp::declareRecordings(CLI::App& sub) {
+  sub.add_option("-i,--input", folder,
+                 "Folder with pedestrian/, cyclist/, car/, bus/, each with CLASS_USER_....nmea, "
+                 ".gpx or .csv files")
+      ->required();
+  sub.add_option("--stationary", stationary,
+                 "Recording of a receiver at rest: its covariance is R");
+}
+
+void StudyApp::declareLog(CLI::App& sub) {
+  sub.add_option("--log", log, "Rawlog to be tracked, instead of simulated positions");
+  sub.add_option("-c,--config", config_file, "INI of the vehicle, for --log");
+  sub.add_option("--duc", duc_config, "INI of the tracker without classification, for --log");
+  sub.add_option("--set", settings, "section.key=value: overrides both INIs");
+  sub.add_option("-t,--truth", truth_file, "Truth of the log");
+  sub.add_option("--counts", counts, "Numbers of particles, for --log (else the paper's)")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 100000));
+  sub.add_option("--seconds", seconds, "Of the log; 0 = all")->check(CLI::Range(0.0, 1e6));
+  addSector(sub, "Objects count up to this distance [m]",
+            "Whole angle ahead in which they count [deg]", range, fov_deg);
+}
+
+void StudyApp::declareLabels(CLI::App& sub) {
+  sub.add_option("-i,--input", inputs, "Rawlogs with boxes of a detector, LOG.truth.csv beside")
+      ->required();
+  sub.add_option("-c,--config", config_file, "INI whose sensors take boxes without a label, too")
+      ->required();
+  addLogsOptions(sub, labels_range, labels_fov_deg);
+}
+
+void StudyApp::declareTempering(CLI::App& sub) {
+  sub.add_option("-i,--input", inputs, "Rawlogs, LOG.truth.csv beside; two or more")->required();
+  sub.add_option("-c,--config", config_file, "INI of the vehicle")->required();
+  addLogsOptions(sub, tempering_range, tempering_fov_deg);
+}
+
+void StudyApp::addLogsOptions(CLI::App& sub, double& range_of, double& fov) {
+  sub.add_option("--set", settings, "section.key=value: overrides the INI");
+  sub.add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
+  addSector(sub, "Truth counts up to this distance [m]",
+            "Whole angle ahead in which truth counts [deg]", range_of, fov);
 }
 
 void StudyApp::run() {

@@ -45,6 +45,12 @@ class StudyApp : public App {
   StudyReport boxesOfLogs();
 
  private:
+  void declareRecordings(CLI::App& sub);
+  void declareLog(CLI::App& sub);
+  void declareLabels(CLI::App& sub);
+  void declareTempering(CLI::App& sub);
+  /// What studies of several rawlogs share; `range_of` [m], `fov` [deg]: where truth counts.
+  void addLogsOptions(CLI::App& sub, double& range_of, double& fov);
   RecordedLog record(const std::string& config);
   void writeReport();
 };
