@@ -11,6 +11,9 @@ namespace {
 // SPEC 7: the log-odds forget slowly and stay within bounds, 97 % of vehicles drive forward.
 constexpr double kMemory = 0.98, kLogOddsLimit = 6, kForward = 0.97, kReverseAt = -0.5;
 constexpr double kLeastFlip = 1e-3;  // no detector is surer of front and back than this
+/// Share of detected axes that are not within their sigma of the object's but anywhere: 1 % of
+/// Geiger's on KITTI lie beyond 22.5 deg (VISION_NOTES 2).
+constexpr double kStray = 0.01;
 
 double flipProbability(const HeadingSeen& seen) {
   return std::clamp(seen.flip_probability, kLeastFlip, 0.5);
@@ -47,7 +50,11 @@ double logHeadingRatio(const HeadingSeen& seen, double theta, double theta_varia
   return nearer + std::log(r.same ? (1 - p) + p * ratio : p + (1 - p) * ratio);
 }
 
-HeadingBit firstHeadingBit(const HeadingSeen& seen) { return nextHeadingBit({}, true, seen); }
+HeadingBit firstHeadingBit(const HeadingSeen& seen) {
+  HeadingBit bit = nextHeadingBit({}, true, seen);
+  bit.axis_log_odds = std::min(std::log((1 - kStray) / kStray), kLogOddsLimit);
+  return bit;
+}
 
 HeadingBit nextHeadingBit(const HeadingBit& bit, bool same, const HeadingSeen& seen) {
   const double p = flipProbability(seen), evidence = std::log((1 - p) / p);
@@ -56,6 +63,16 @@ HeadingBit nextHeadingBit(const HeadingBit& bit, bool same, const HeadingSeen& s
                              kLogOddsLimit);
   ++(same ? next.same : next.opposite);
   return next;
+}
+
+double nextAxisLogOdds(const HeadingBit& bit, const HeadingSeen& seen, double theta,
+                       double theta_variance) {
+  const HeadingResidual r = headingResidual(seen, theta, HeadingMode::kSplit);
+  const double variance = r.variance + theta_variance;
+  const double near = std::exp(-0.5 * r.y * r.y / variance) / std::sqrt(kTwoPi * variance);
+  const double evidence =
+      std::log((1 - kStray) * kPi * near + kStray);  // over the axes' uniform density of 1 / pi
+  return std::clamp(kMemory * bit.axis_log_odds + evidence, -kLogOddsLimit, kLogOddsLimit);
 }
 
 bool asksForReversal(const HeadingBit& bit, double v, double v_variance, HeadingMode mode) {

@@ -16,9 +16,10 @@ struct HeadingBit {
   double log_odds = 0;         ///< that theta is the heading and not its opposite; 0: nothing known
   int same = 0, opposite = 0;  ///< detections that agreed with theta, or not
   double lane = 0;             ///< what a lane gave to the log-odds
+  double axis_log_odds = 0;    ///< that theta lies along the object at all; 0: no detector told
 
   bool measured() const { return same + opposite > 0; }
-  HeadingBit reversed() const { return {-log_odds, opposite, same, -lane}; }
+  HeadingBit reversed() const { return {-log_odds, opposite, same, -lane, axis_log_odds}; }
 };
 
 /// A measured heading against theta.
@@ -38,6 +39,12 @@ double logHeadingRatio(const HeadingSeen& seen, double theta, double theta_varia
 HeadingBit firstHeadingBit(const HeadingSeen& seen);
 /// The bit after one more detection.
 HeadingBit nextHeadingBit(const HeadingBit& bit, bool same, const HeadingSeen& seen);
+
+/// Log-odds that theta, with `theta_variance` [rad^2], lies along the object after one more
+/// detection: what it says of the axis against an axis that may be any. Detectors' stray axes bound
+/// what a single one can say against it.
+double nextAxisLogOdds(const HeadingBit& bit, const HeadingSeen& seen, double theta,
+                       double theta_variance);
 
 /// Whether speed v [m/s, m^2/s^2] and bit ask for (v, theta) -> (-v, theta + pi).
 bool asksForReversal(const HeadingBit& bit, double v, double v_variance, HeadingMode mode);

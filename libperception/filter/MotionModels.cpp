@@ -315,6 +315,19 @@ void orientAlong(double yaw, double yaw_variance, ClassFilter& f) {
   f.P(3, 3) = yaw_variance;
 }
 
+void reorient(double yaw, double yaw_variance, ClassFilter& f) {
+  const auto one = [](Vector4& x, Matrix4& P) {
+    const double v = x[2], c = std::cos(x[3]), s = std::sin(x[3]);
+    Matrix4 J = Matrix4::Identity();
+    J.bottomRightCorner<2, 2>() << c, -v * s, s, v * c;
+    x.tail<2>() << v * c, v * s;
+    P = (J * P * J.transpose()).eval();
+  };
+  for (auto& m : f.modes) one(m.x, m.P);
+  one(f.x, f.P);
+  orientAlong(yaw, yaw_variance, f);
+}
+
 void reverse(ClassFilter& f) {
   const auto one = [](Vector4& x, Matrix4& P) {
     x[2] = -x[2];

@@ -53,6 +53,8 @@ void orientByVelocity(ClassFilter& filter);
 void orientByAxis(double yaw, double yaw_variance, ClassFilter& filter);
 /// The same with a known direction: v may be negative.
 void orientAlong(double yaw, double yaw_variance, ClassFilter& filter);
+/// The same of a filter that is oriented already: its velocity is kept as far as it lies along.
+void reorient(double yaw, double yaw_variance, ClassFilter& filter);
 /// A direct measurement of an oriented filter's theta: residual [rad] and variance.
 void updateYaw(double y, double variance, ClassFilter& filter);
 inline constexpr double kYawGate = 6.635;  ///< chi-square .99, one degree of freedom

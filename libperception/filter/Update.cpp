@@ -7,8 +7,10 @@
 
 #include "libperception/core/Chi2.h"
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/HeadingUpdate.h"
 #include "libperception/filter/KalmanUpdate.h"
 #include "libperception/filter/MotionModels.h"
+#include "libperception/filter/ScalarUpdate.h"
 #include "libperception/filter/SizeEvidence.h"
 #include "libperception/measurement/ExtentUpdate.h"
 
@@ -40,12 +42,6 @@ double lostNis(Eigen::Index axes) {
 double surprisingNis(Eigen::Index axes) {
   static const Quantiles quantiles(kSurprisingProbability);
   return quantiles.of[static_cast<std::size_t>(axes)];
-}
-
-void scalarUpdate(const ScalarEstimate& z, ScalarEstimate& x) {
-  const double gain = x.variance / (x.variance + z.variance);
-  x.mean += gain * (z.mean - x.mean);
-  x.variance *= 1 - gain;
 }
 
 /// Floor and renormalisation of the class posterior (SPEC 5.6).
@@ -96,76 +92,6 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
     }
   }
   return f;
-}
-
-/// What a detector says of the heading (SPEC 7): the axis by a scalar update, the direction by the
-/// bit.
-void useHeading(const HeadingSeen& seen, const FilterModel& model, ClassFilter& f) {
-  const HeadingMode mode = model.params.heading;
-  if (mode == HeadingMode::kIgnored) return;
-  const double sigma2 = seen.sigma * seen.sigma;
-  if (!f.oriented) {
-    const bool wide = mode == HeadingMode::kWide;
-    orientAlong(seen.yaw, wide ? headingResidual(seen, seen.yaw, mode).variance : sigma2, f);
-    f.heading = firstHeadingBit(seen);
-    return;
-  }
-  const HeadingResidual r = headingResidual(seen, f.x[3], mode);
-  if (r.y * r.y >= kYawGate * (f.P(3, 3) + r.variance)) return;
-  updateYaw(r.y, r.variance, f);
-  f.heading = nextHeadingBit(f.heading, r.same, seen);
-}
-
-/// A wheeled filter takes its heading from what is known by now: the detector, the box seen, else
-/// its own motion (SPEC 3.4, with a constant-velocity start in place of the two-point start). An
-/// oriented one that drives backwards against what is known of its direction is reversed.
-void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
-                 const FilterModel& model, ClassFilter& f) {
-  const auto& p = model.params;
-  const double box_extra = p.shape_yaw_sigma * p.shape_yaw_sigma;
-  if (!f.oriented) {
-    const double v = f.x.tail<2>().norm();
-    const double sigma_v = std::sqrt(0.5 * (f.P(2, 2) + f.P(3, 3)));
-    if (v >= p.orient_min_speed && sigma_v <= p.orient_max_sigma * v) {
-      orientByVelocity(f);
-    } else if (birth && birth->yaw) {
-      orientByAxis(birth->yaw->mean, birth->yaw->variance + box_extra, f);
-    }
-  } else if (birth && birth->yaw) {  // the box's long axis, front and back alike
-    const double y = wrapAxis(birth->yaw->mean - f.x[3]);
-    const double variance = birth->yaw->variance + box_extra;
-    if (y * y < kYawGate * (f.P(3, 3) + variance)) updateYaw(y, variance, f);
-  }
-  if (m.heading) useHeading(*m.heading, model, f);
-  if (!f.oriented) return;
-  const bool clearly_back = f.x[2] < -p.orient_min_speed && f.x[2] * f.x[2] > 4 * f.P(2, 2);
-  const bool back = f.heading.measured() ? asksForReversal(f.heading, f.x[2], f.P(2, 2), p.heading)
-                                         : clearly_back;
-  if (back) reverse(f);
-}
-
-/// Where an object without a heading in its state looks: axis by a scalar filter, direction by the
-/// bit, as useHeading() for the others.
-void updateFacing(const HeadingSeen& seen, const FilterModel& model, Track& track) {
-  const HeadingMode mode = model.params.heading;
-  if (mode == HeadingMode::kIgnored) return;
-  if (!track.facing) {
-    track.facing = {seen.yaw, seen.sigma * seen.sigma};
-    track.facing_bit = firstHeadingBit(seen);
-    return;
-  }
-  const HeadingResidual r = headingResidual(seen, track.facing->mean, mode);
-  if (r.y * r.y < kYawGate * (track.facing->variance + r.variance)) {
-    scalarUpdate({track.facing->mean + r.y, r.variance}, *track.facing);
-  } else {  // people turn on the spot
-    track.facing = {seen.yaw, seen.sigma * seen.sigma};
-  }
-  track.facing_bit = nextHeadingBit(track.facing_bit, r.same, seen);
-  if (asksForReversal(track.facing_bit, 0, 1, mode)) {
-    track.facing->mean += kPi;
-    track.facing_bit = track.facing_bit.reversed();
-  }
-  track.facing->mean = wrapAngle(track.facing->mean);
 }
 
 /// The direction of a class's length axis [rad], when something tells it.
@@ -278,7 +204,7 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
   const ClassId live = track.sure < 0 ? best : track.sure;
   const Kinematics best_kinematics =
       kinematicsOf(model.classes[live], predicted.bank[static_cast<std::size_t>(live)]);
-  if (m.heading) updateFacing(*m.heading, model, track);
+  if (m.heading) updateFacing(*m.heading, model.params, track);
   const auto axes_seen = residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
   for (ClassId j = 0; j < model.classes.size(); ++j) {
@@ -299,7 +225,7 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
     }
-    if (c.motion == Motion::kWheeled) findHeading(m, birth, model, f);
+    if (c.motion == Motion::kWheeled) findHeading(m, birth, model.params, f);
     if (m.sides) {
       if (const auto yaw = lengthAxis(c, f, track, *m.sides))
         f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
@@ -352,9 +278,9 @@ Track newTrack(const NewLikelihood& news, std::size_t measurement, const Measure
       track.existence = 0;  // no state: cannot be tracked
     }
     if (birth && m.heading && c.motion == Motion::kWheeled)
-      useHeading(*m.heading, model, track.bank.back());
+      useHeading(*m.heading, model.params, track.bank.back());
   }
-  if (m.heading) updateFacing(*m.heading, model, track);
+  if (m.heading) updateFacing(*m.heading, model.params, track);
   track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
   startSizes(model, track);
