@@ -21,6 +21,7 @@
 #include "libperception/sensors/registerClasses.h"
 #include "libperception/study/AssociationStudy.h"
 #include "libperception/study/BoxEvidenceStudy.h"
+#include "libperception/study/DetectorStudy.h"
 #include "libperception/study/EgoStudy.h"
 #include "libperception/study/GpsStudy.h"
 #include "libperception/study/HeadingStudy.h"
@@ -110,6 +111,8 @@ const Study kStudies[] = {
      nullptr, true},
     {"boxes", "what scores and shapes of a 3D detector's boxes say of objects, fitted (rawlogs)",
      [](StudyApp& app) { return app.boxesOfLogs(); }, false, false, false, true},
+    {"detector", "detection, labels, clutter and noise of detectors, counted (rawlogs with truth)",
+     [](StudyApp& app) { return app.detectorsOfLogs(); }, false, false, false, true},
     {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
      [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
 };
@@ -306,6 +309,29 @@ StudyReport StudyApp::boxesOfLogs() {
     names[name.substr(0, equals)] = name.substr(equals + 1);
   }
   return boxEvidenceStudy(sensor, logs, names);
+}
+
+StudyReport StudyApp::detectorsOfLogs() {
+  registerPerceptionClasses();
+  Config config = loadConfig();
+  const PipelineSetup setup = PipelineSetup::read(config);
+  DetectorStudyInput input;
+  input.classes = setup.model.classes;
+  std::map<std::string, std::size_t> labels;
+  for (const PipelineSetup::Sensor& sensor : setup.sensors) {
+    if (!sensor.active) continue;
+    input.labels[sensor.label] = sensor.front_end->labelNames();
+    labels[sensor.label] = input.labels[sensor.label].size();
+  }
+  std::map<std::string, DetectorCounts> counts;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    Config own = loadConfig();
+    const RecordedLog recorded = recordLog(inputs[i], own, seconds);
+    input.simulated = input.simulated || recorded.simulated;
+    input.logs += (i ? ", " : "") + recorded.name;
+    countDetections(recorded, truthBeside(inputs[i]), i, labels, counts);
+  }
+  return detectorStudy(input, counts);
 }
 
 void StudyApp::writeReport() {

@@ -43,6 +43,8 @@ class StudyApp : public App {
   StudyReport temperingOfLogs();
   /// Evidence of a 3D detector's boxes, on the logs of -i.
   StudyReport boxesOfLogs();
+  /// What detectors see of labelled objects, on the logs of -i.
+  StudyReport detectorsOfLogs();
 
  private:
   void declareRecordings(CLI::App& sub);

@@ -1,0 +1,47 @@
+#include "libperception/scene/SceneFromPosterior.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/scene/SceneFixture.h"
+
+namespace perception {
+namespace {
+
+/// One car of 4 by 2 m whose place is known to `sigma` [m] along each axis.
+Hypothesis oneCar(double sigma) {
+  Track track;
+  track.id = 1;
+  track.existence = 0.99;
+  track.stamp = track.birth = test::kFirstStamp;
+  track.log_class = {-9.2, -1e-4};
+  track.bank.resize(2);
+  for (ClassFilter& f : track.bank) {
+    f.x << 10, 3, 0, 0;
+    f.P = Vector4(sigma * sigma, sigma * sigma, 0.1, 0.1).asDiagonal();
+    f.extent = {4, 2, 0.01, 0.01};
+  }
+  return Hypothesis(TrackTable{std::make_shared<const Track>(track)});
+}
+
+std::size_t putOut(double sigma, double place_within) {
+  FilterModel model;
+  model.classes = test::pedestrianAndCar();
+  SceneParams params;
+  params.place_within = place_within;
+  EgoState ego;
+  ego.stamp = test::kFirstStamp;
+  return SceneFromPosterior(model, params).make(oneCar(sigma), ego, 0).objects.size();
+}
+
+TEST(Scene, LeavesOutObjectsWhosePlaceIsTooUncertainForTheirSize) {
+  // sqrt(4 * 2) = 2.83 m, half of it 1.41 m; deviations of 1 m in x and y are 1.41 m together.
+  EXPECT_EQ(putOut(0.99, 0.5), 1U);
+  EXPECT_EQ(putOut(1.01, 0.5), 0U);
+}
+
+TEST(Scene, PutsOutEveryPlaceUnlessAsked) { EXPECT_EQ(putOut(20, 0), 1U); }
+
+}  // namespace
+}  // namespace perception
