@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "libperception/filter/MotionModels.h"
 #include "libperception/filter/Parallel.h"
@@ -52,6 +53,8 @@ void SceneParams::visit(ParamVisitor& v) {
          "class probability from which an object is classified");
   v.real("road_user_from", road_user_from, {0, 1}, "",
          "KITTI export: written as a road user from this probability on");
+  v.real("place_within", place_within, {0, 100}, "",
+         "of sqrt(length width): places that are less certain are not put out; 0: all are");
 }
 
 std::uint64_t SceneFromPosterior::numberOf(std::uint64_t track_id) {
@@ -109,6 +112,11 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   return o;
 }
 
+bool SceneFromPosterior::knowsPlace(const SceneObject& o) const {
+  const double size2 = o.length * o.width, share2 = params_.place_within * params_.place_within;
+  return share2 <= 0 || o.sd_x * o.sd_x + o.sd_y * o.sd_y <= share2 * size2;
+}
+
 TrackHandle SceneFromPosterior::trackAt(const TrackHandle& track, Stamp stamp) const {
   if (stamp < track->stamp && model_.history > 0) {
     const auto smoothed = smoothedTrack(*track, stamp, model_);
@@ -131,7 +139,9 @@ Scene SceneFromPosterior::make(const Hypothesis& hypothesis, const EgoState& ego
   parallelFor(tracks.size(),
               [&](std::size_t i) { tracks[i] = trackAt(hypothesis.tracks[i], ego.stamp); });
   for (const auto& track : tracks) {
-    if (track) scene.objects.push_back(objectOf(*track));
+    if (!track) continue;
+    SceneObject object = objectOf(*track);
+    if (knowsPlace(object)) scene.objects.push_back(std::move(object));
   }
   std::sort(scene.objects.begin(), scene.objects.end(),
             [](const SceneObject& a, const SceneObject& b) { return a.id < b.id; });

@@ -15,6 +15,9 @@ struct SceneParams {
       0.95;  ///< class probability from which an object counts as classified (the paper's)
   double road_user_from = 0.5;  ///< KITTI export: an object that may be a mere thing is written as
                                 ///< the road user that it may be from this probability on
+  /// Share of sqrt(length * width) to which a place must be known (deviations of x and y together):
+  /// objects less certain are tracked, but not put out. 0: all are.
+  double place_within = 0;
 
   void visit(ParamVisitor& v);
 };
@@ -37,6 +40,7 @@ class SceneFromPosterior {
   /// The track at that time; null when it is not believed in, then.
   TrackHandle trackAt(const TrackHandle& track, Stamp stamp) const;
   SceneObject objectOf(const Track& track);
+  bool knowsPlace(const SceneObject& object) const;
   std::uint64_t numberOf(std::uint64_t track_id);
 
   FilterModel model_;
