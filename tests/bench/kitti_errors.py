@@ -4,8 +4,8 @@
     tests/bench/kitti_errors.py OUT [-t SCORE] [--worst N] [SEQUENCE ...]
 
 OUT is the folder of a run of kitti_detections.sh. Matching as mot_eval.py does (3D overlap of .25, KITTI's rules for what is
-ignored), of all lines with a score of SCORE or more. Prints and writes OUT/errors.md, and draws the N tracks with the most
-wrong frames from above as OUT/worst.png. Needs python3-numpy, python3-scipy, gnuplot-nox; PERCEPTION_SHARED as there.
+ignored), of all lines with a score of SCORE or more. Prints and writes OUT/errors.md, and draws the N worst from above as
+OUT/worst.png: half of them the tracks with the most false frames, half the objects with the most missed ones. Needs python3-numpy, python3-scipy, gnuplot-nox; PERCEPTION_SHARED as there.
 """
 import argparse
 import collections
@@ -89,10 +89,10 @@ class Detections:
 
 
 class Track:
-    """What a track did, frame by frame."""
+    """What a track did, or what became of a labelled object (`lost`), frame by frame."""
 
-    def __init__(self, sequence, cls, number):
-        self.sequence, self.cls, self.number = sequence, cls, number
+    def __init__(self, sequence, cls, number, lost=False):
+        self.sequence, self.cls, self.number, self.lost = sequence, cls, number, lost
         self.right, self.wrong, self.boxes = [], {}, {}   # frames; frame -> reason; frame -> image box
         self.scores = []
 
@@ -133,7 +133,7 @@ def count_class(me, a, sequence, cls, missed, false, totals, worst):
     detections = Detections(a.data, sequence)
     ignored = (truth.occ > me.MAX_OCCLUSION) | (truth.trunc > me.MAX_TRUNCATION) | (truth.type != low)
     small = np.abs(tracks.box2[:, 3] - tracks.box2[:, 1]) <= me.MIN_HEIGHT
-    history, waiting = {}, []
+    history, objects, waiting = {}, {}, []
     for f in range(n):
         g, t = truth.at(f), tracks.at(f)
         gb, tb, types, scores = truth.box3[g], tracks.box3[t], tracks.type[t], tracks.score[t]
@@ -148,10 +148,14 @@ def count_class(me, a, sequence, cls, missed, false, totals, worst):
             if ignored[g][k]:
                 continue
             totals['objects', cls] += 1
+            number = int(truth.id[g][k])
+            thing = objects.setdefault(number, Track(sequence, cls, number, lost=True))
             if k in pairs:
                 totals['right', cls] += 1
+                thing.right.append(f)
                 continue
-            missed[missed_reason(k, gb, tb, types, scores, cls, a.threshold, iou, boxes, iou_boxes), cls] += 1
+            thing.wrong[f] = missed_reason(k, gb, tb, types, scores, cls, a.threshold, iou, boxes, iou_boxes)
+            missed[thing.wrong[f], cls] += 1
         cover = me.iou2d(tracks.box2[t], areas.box2[areas.at(f)], over_a=True)
         other = every.box3[every.at(f)]
         other_iou = overlaps(me, tb, other)
@@ -190,6 +194,7 @@ def count_class(me, a, sequence, cls, missed, false, totals, worst):
         for reason in track.wrong.values():
             false[reason, cls] += 1
         worst.append(track)
+    worst.extend(objects.values())
 
 
 def markdown(a, missed, false, totals):
@@ -253,10 +258,35 @@ class World:
         return x + np.cos(yaw) * p[0] - np.sin(yaw) * p[1], y + np.sin(yaw) * p[0] + np.cos(yaw) * p[1]
 
 
+# What a panel's title says of its reasons, in words that stand alone.
+PLAIN = {
+    'clutter': 'the detector marks a thing as this class', 'clutter without box': 'kept without boxes, never right',
+    'before': 'not labelled yet', 'between': 'not labelled meanwhile', 'after': 'not labelled any more',
+    'coasting': 'kept after its object was gone', 'second': 'second track of one object',
+    'sitting person': 'a person that sits: KITTI has another class for it', 'another type': 'a road user of another class',
+    'none': 'the detector has no box on it', 'foreign': 'the detector has only boxes of another class',
+    'weak': 'the detector has only doubtful boxes', 'no track': 'no track in spite of boxes', 'low': 'tracked, too little sure',
+    'thing': 'tracked, called a thing', 'class': 'tracked as another class', 'taken': 'its track stands for a neighbour',
+    'place, box': 'tracked too far off, no box on it',
+}
+
+
+def title(track, number, frames, away):
+    reason, n = collections.Counter(track.wrong.values()).most_common(1)[0]
+    plain = PLAIN.get(reason, 'too little overlap' + (', no box' if 'coasting' in reason else ''))
+    what = ('%s missed' if track.lost else 'false %s') % track.cls.lower()
+    return '%d. %s, %d of %d frames\\n%d x %s\\nsequence %04d, %s %d, %.0f m away' % (
+        number, what, len(track.wrong), len(frames), n, plain, track.sequence, 'label' if track.lost else 'track',
+        track.number, away)
+
+
 def panel(a, world, track, folder, number):
-    """Data files and gnuplot commands of one track's picture."""
+    """Data files and gnuplot commands of one track's, or one lost object's, picture."""
     frames = sorted(set(track.right) | set(track.wrong) | set(track.boxes))
-    path = {f: world.tracks[f, track.number] for f in frames if (f, track.number) in world.tracks}
+    if track.lost:
+        path = {f: (x, y) for f, x, y, _ in world.truth[track.number] if f in frames and f in world.ego}
+    else:
+        path = {f: world.tracks[f, track.number] for f in frames if (f, track.number) in world.tracks}
     points = np.array(list(path.values()))
     detections = Detections(a.data, track.sequence)
     near, files = [], {}
@@ -268,9 +298,8 @@ def panel(a, world, track, folder, number):
     files['ego'] = ['%.3f %.3f' % world.ego[f][:2] for f in path if f in world.ego]
     files['right'] = ['%.3f %.3f' % path[f] for f in path if f in track.right]
     files['wrong'] = ['%.3f %.3f' % path[f] for f in path if f in track.wrong]
-    files['track'] = ['%.3f %.3f' % p for p in path.values()]
-    files['box'] = ['%.3f %.3f' % p[:2] for p in near if p[2]]
-    files['foreign'] = ['%.3f %.3f' % p[:2] for p in near if not p[2]]
+    files['box'] = ['%.3f %.3f' % p[:2] for p in near if p[2] and p[3] >= 0]
+    files['foreign'] = ['%.3f %.3f' % p[:2] for p in near if not p[2] or p[3] < 0]
     files['truth'] = []
     for rows in world.truth.values():
         close = [(f, x, y) for f, x, y, _ in rows
@@ -281,25 +310,32 @@ def panel(a, world, track, folder, number):
         names[key] = '%02d_%s.dat' % (number, key)
         with open(os.path.join(folder, names[key]), 'w') as file:
             file.write('\n'.join(lines) + '\n' if any(lines) else '')
-    low, high = points.min(0) - 4, points.max(0) + 4
-    half = max(high - low) / 2
-    middle = (low + high) / 2
-    reasons = collections.Counter(track.wrong.values()).most_common(3)
+    half = max(max(points.max(0) - points.min(0)) / 2, 2.5) + 2.5
+    middle = (points.max(0) + points.min(0)) / 2
     away = np.mean([np.hypot(path[f][0] - world.ego[f][0], path[f][1] - world.ego[f][1]) for f in path])
-    title = '%04d %s %d: %d of %d frames wrong, score %.1f\\n%.0f m away: %s' % (
-        track.sequence, track.cls, track.number, len(track.wrong), len(frames), np.mean(track.scores), away,
-        '; '.join('%d %s' % (n, r) for r, n in reasons))
     text = 'set title "%s" noenhanced font ",9"\nset xrange [%.2f:%.2f]\nset yrange [%.2f:%.2f]\n' % (
-        title, middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half)
-    styles = (('foreign', 'with points pt 6 ps 0.5 lc rgb "#BBBBBB" title "box of another class"'),
-              ('box', 'with points pt 6 ps 0.8 lc rgb "#56B4E9" title "box of its class"'),
-              ('truth', 'with lines lw 3 lc rgb "black" title "label"'),
-              ('track', 'with lines lw 1 lc rgb "#888888" title "track"'),
-              ('right', 'with points pt 7 ps 0.6 lc rgb "#009E73" title "right"'),
-              ('wrong', 'with points pt 7 ps 0.6 lc rgb "#C00000" title "wrong"'),
-              ('ego', 'with lines lw 2 dt 2 lc rgb "#E69F00" title "vehicle"'))
-    drawn = ['"%s" %s' % (names[k], s) for k, s in styles if any(files[k])]
+        title(track, number, frames, away), middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half)
+    # Every panel draws every kind, so that one key serves all; what is not there is drawn out of sight.
+    drawn = []
+    for k, style in STYLES:
+        drawn.append(('"%s" %s notitle' if any(files[k]) else '1/0 %.0s%s notitle') % (names[k], style))
     return text + 'plot ' + ', '.join(drawn) + '\n'
+
+
+STYLES = (('foreign', 'with points pt 6 ps 0.5 lc rgb "#BBBBBB"'), ('box', 'with points pt 6 ps 1.0 lc rgb "#56B4E9"'),
+          ('truth', 'with lines lw 3 lc rgb "black"'), ('right', 'with points pt 7 ps 0.6 lc rgb "#009E73"'),
+          ('wrong', 'with points pt 7 ps 0.6 lc rgb "#C00000"'), ('ego', 'with lines lw 2 dt 2 lc rgb "#E69F00"'))
+KEY = {'foreign': 'doubtful box, or one of another class', 'box': 'box of the detector, same class',
+       'truth': 'ways of labelled objects', 'right': 'output and label agree', 'wrong': 'false output, or label that was missed',
+       'ego': 'the vehicle'}
+
+
+def key_panel():
+    """A panel that holds the key alone."""
+    text = ('set title "Boxes, tracks and labels from above, metres\\n(the vehicle is mostly out of the picture)" font ",9"\n'
+            'unset border\nunset tics\nunset grid\nset key center center vertical spacing 1.6 font ",10"\n'
+            'set xrange [0:1]\nset yrange [0:1]\nplot ')
+    return text + ', '.join('1/0 %s title "%s"' % (style, KEY[k]) for k, style in STYLES) + '\n'
 
 
 def crop(a, track, folder, number):
@@ -331,21 +367,20 @@ def draw(a, tracks):
         os.remove(old)
     worlds = {}
     panels, crops = [], []
-    for number, track in enumerate(tracks):
+    for number, track in enumerate(tracks, 1):
         world = worlds.setdefault(track.sequence, None) or World(a, track.sequence)
         worlds[track.sequence] = world
         panels.append(panel(a, world, track, folder, number))
-        picture = crop(a, track, folder, number)
+        picture = None if track.lost else crop(a, track, folder, number)
         if picture:
             crops.append(picture)
-    columns = 5
-    rows = -(-(len(panels) + len(crops)) // columns)
+    columns = 4
+    rows = -(-(len(panels) + len(crops) + 1) // columns)
     script = ('set terminal pngcairo size %d,%d font "Sans,9"\nset output "../worst.png"\n'
-              'set multiplot layout %d,%d title "Tracks with the most wrong frames, from above [m]"\n'
-              'set size ratio -1\nset grid\nset key bottom left samplen 1 font ",7" opaque\n' % (
-                  columns * 420, rows * 450 + 30, rows, columns))
+              'set multiplot layout %d,%d\nset size ratio -1\nset grid\nunset key\n' % (
+                  columns * 400, rows * 450, rows, columns))
     with open(os.path.join(folder, 'worst.gp'), 'w') as file:
-        file.write(script + ''.join(panels) + ''.join(crops) + 'unset multiplot\n')
+        file.write(script + ''.join(panels) + ''.join(crops) + key_panel() + 'unset multiplot\n')
     subprocess.run(['gnuplot', 'worst.gp'], cwd=folder, check=True)
 
 
@@ -375,8 +410,9 @@ def main():
         file.write(text)
     tracks = [t for t in tracks if t.wrong]
     tracks.sort(key=lambda t: (-len(t.wrong), t.sequence, t.number))
-    draw(a, tracks[:a.worst])
-    print('Worst tracks: %s' % os.path.join(a.out, 'worst.png'))
+    false_most = [t for t in tracks if not t.lost][:(a.worst + 1) // 2]
+    draw(a, false_most + [t for t in tracks if t.lost][:a.worst // 2])
+    print('Worst tracks and objects: %s' % os.path.join(a.out, 'worst.png'))
 
 
 if __name__ == '__main__':
