@@ -117,6 +117,7 @@ PipelineSetup PipelineSetup::read(Config& config) {
     config.fault("run", "sensors",
                  "'" + s.run.sensors + "' is not a list of C, C/H, L, R joined by + (as C+L)");
   }
+  if (letters.find('L') == std::string::npos) s.scene.place_within = 0;  // see SceneParams
   if (wide_heading) s.model.params.heading = HeadingMode::kWide;
   const std::string prefix = "sensor.";
   for (const auto& section : config.sectionsWithPrefix(prefix)) {

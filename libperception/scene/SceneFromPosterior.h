@@ -16,7 +16,8 @@ struct SceneParams {
   double road_user_from = 0.5;  ///< KITTI export: an object that may be a mere thing is written as
                                 ///< the road user that it may be from this probability on
   /// Share of sqrt(length * width) to which a place must be known (deviations of x and y together):
-  /// objects less certain are tracked, but not put out. 0: all are.
+  /// objects less certain are tracked, but not put out. 0: all are. Only
+  /// where a lidar takes part: other sensors alone know few places so well.
   double place_within = 0;
 
   void visit(ParamVisitor& v);

@@ -48,5 +48,17 @@ TEST(SiteInis, AHeadingAsOneWideGaussianIsASensorSet) {
     EXPECT_THROW(setupOf(wrong), ConfigError) << wrong;
 }
 
+TEST(SiteInis, PlacesMustBeKnownToHalfTheSizeOnlyWhereALidarTakesPart) {
+  const auto placeWithin = [](const std::string& sensors) {
+    Config config =
+        Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/kitti-detections.ini");
+    config.set("run.sensors=" + sensors);
+    return PipelineSetup::read(config).scene.place_within;
+  };
+  EXPECT_EQ(placeWithin("L"), 0.5);
+  EXPECT_EQ(placeWithin("C+L"), 0.5);
+  EXPECT_EQ(placeWithin("C"), 0);
+}
+
 }  // namespace
 }  // namespace perception
