@@ -5,8 +5,6 @@
 #include <cstring>
 #include <numeric>
 
-#include "libperception/core/Lanes.h"
-
 namespace perception {
 
 void PointParams::visit(ParamVisitor& v) {
@@ -37,12 +35,25 @@ bool ownProcessingDropsIt(std::uint8_t label, bool only_objects) {
          label == static_cast<std::uint8_t>(PointLabel::kDirt);
 }
 
-/// One block of a cloud: its points in the ego frame and which of them are usable.
+/// Verdicts on one block of a cloud, and its points where they do not lie side by side.
 struct Block {
-  std::array<float, kBlock> px, py, pz;  ///< [m] sensor frame, when the cloud is thinned
-  std::array<float, kBlock> x, y, z;     ///< [m] ego frame
-  std::array<std::int32_t, kBlock> keep, has_range;  ///< 0 or 1
-  std::array<std::uint32_t, kBlock> source;
+  std::array<float, kBlock> px, py, pz;   ///< [m] sensor frame, when the cloud is thinned
+  std::array<std::int32_t, kBlock> keep;  ///< 0 or 1
+};
+
+/// Where a block's points go: behind those that are kept already.
+struct Places {
+  Places(EgoPoints& points, std::size_t first)
+      : x(&points.x[first]),
+        y(&points.y[first]),
+        z(&points.z[first]),
+        source(&points.source[first]) {}
+  float *x, *y, *z;  ///< [m] ego frame
+  std::uint32_t* source;
+};
+
+struct Verdicts {
+  std::int32_t kept = 0, with_range = 0;  ///< numbers
 };
 
 /// The bounds of PointParams in floats, and the sensor's pose.
@@ -62,13 +73,16 @@ struct Rules {
 };
 
 /// Transforms and judges `count` points; no branches, so that the compiler makes vectors of it.
-PERCEPTION_WIDER void judge(const float* px, const float* py, const float* pz, std::size_t count,
-                            const Rules& rules, Block& block) {
+PERCEPTION_WIDEST Verdicts judge(const float* __restrict px, const float* __restrict py,
+                                 const float* __restrict pz, std::size_t count, const Rules& rules,
+                                 float* __restrict ex, float* __restrict ey, float* __restrict ez,
+                                 std::int32_t* __restrict keep) {
   const float r00 = rules.R(0, 0), r01 = rules.R(0, 1), r02 = rules.R(0, 2), tx = rules.t.x();
   const float r10 = rules.R(1, 0), r11 = rules.R(1, 1), r12 = rules.R(1, 2), ty = rules.t.y();
   const float r20 = rules.R(2, 0), r21 = rules.R(2, 1), r22 = rules.R(2, 2), tz = rules.t.z();
   const float near2 = rules.near2, far2 = rules.far2, front = rules.front, rear = rules.rear,
               side = rules.side, top = rules.top;
+  Verdicts all;
   for (std::size_t k = 0; k < count; ++k) {
     const float range2 = px[k] * px[k] + py[k] * py[k] + pz[k] * pz[k];
     const float x = r00 * px[k] + r01 * py[k] + r02 * pz[k] + tx;
@@ -79,40 +93,20 @@ PERCEPTION_WIDER void judge(const float* px, const float* py, const float* pz, s
     const std::int32_t has_range = (range2 > 0) & (range2 < kBeyondAnyLidar2);
     const std::int32_t within = (horizontal2 >= near2) & (horizontal2 <= far2);
     const std::int32_t own = (x < front) & (x > rear) & (y < side) & (y > -side) & (z < top);
-    block.x[k] = x, block.y[k] = y, block.z[k] = z;
-    block.has_range[k] = has_range;
-    block.keep[k] = has_range & within & (own ^ 1);
+    const std::int32_t kept = has_range & within & (own ^ 1);
+    ex[k] = x, ey[k] = y, ez[k] = z, keep[k] = kept;
+    all.with_range += has_range, all.kept += kept;
   }
+  return all;
 }
 
-/// Moves what is kept to the front; the number of it. Most is kept, so groups move as a whole.
-std::size_t squeeze(Block& block, std::size_t size) {
-  constexpr std::size_t kGroup = kLanes;
+/// Moves what is kept to the front; the number of it.
+std::size_t squeeze(const Block& block, std::size_t size, const Places& at) {
   std::size_t kept = 0;
-  const auto move = [&block, &kept](std::size_t from) {
-    block.x[kept] = block.x[from], block.y[kept] = block.y[from];
-    block.z[kept] = block.z[from], block.source[kept] = block.source[from], ++kept;
-  };
-  const auto moveGroup = [&block, &kept](std::size_t from) {
-    for (auto* lane : {&block.x, &block.y, &block.z}) store8(load8(&(*lane)[from]), &(*lane)[kept]);
-    std::uint32_t group[kGroup];
-    std::memcpy(group, &block.source[from], sizeof group);
-    std::memcpy(&block.source[kept], group, sizeof group);
-    kept += kGroup;
-  };
-  for (std::size_t first = 0; first < size; first += kGroup) {
-    std::uint64_t marks[kGroup / 2] = {};  // of two points each
-    if (first + kGroup <= size) std::memcpy(marks, &block.keep[first], sizeof marks);
-    if ((marks[0] & marks[1] & marks[2] & marks[3]) == 0x0000000100000001) {
-      if (kept == first) {
-        kept += kGroup;
-      } else {
-        moveGroup(first);
-      }
-      continue;
-    }
-    for (std::size_t k = first; k < std::min(first + kGroup, size); ++k)
-      if (block.keep[k] != 0) move(k);
+  for (std::size_t k = 0; k < size; ++k) {  // what is dropped is overwritten by the next
+    at.x[kept] = at.x[k], at.y[kept] = at.y[k], at.z[kept] = at.z[k];
+    at.source[kept] = at.source[k];
+    kept += static_cast<std::size_t>(block.keep[k]);
   }
   return kept;
 }
@@ -126,12 +120,16 @@ void takeGroup(const float* from, std::size_t count, float* to) {
   }
 }
 
-void append(const Block& block, std::size_t kept, EgoPoints& points) {
-  const auto end = static_cast<std::ptrdiff_t>(kept);
-  points.x.insert(points.x.end(), block.x.begin(), block.x.begin() + end);
-  points.y.insert(points.y.end(), block.y.begin(), block.y.begin() + end);
-  points.z.insert(points.z.end(), block.z.begin(), block.z.begin() + end);
-  points.source.insert(points.source.end(), block.source.begin(), block.source.begin() + end);
+void resize(EgoPoints& points, std::size_t size) {
+  for (auto* axis : {&points.x, &points.y, &points.z}) axis->resize(size);
+  points.source.resize(size);
+}
+
+/// Asks for what is needed next: fetching by itself stops at every page.
+void ask(const LidarCloud& cloud, std::size_t first, std::size_t count) {
+  for (const auto* axis : {&cloud.x, &cloud.y, &cloud.z})
+    for (std::size_t k = first; k < std::min(first + count, axis->size()); k += kTaken)
+      __builtin_prefetch(axis->data() + k);
 }
 
 }  // namespace
@@ -155,36 +153,36 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
 
   const Rules rules(frame, params);
   Block block;
+  std::size_t kept = 0;
   for (std::size_t first = 0; first < count; first += kBlock) {
     const std::size_t size = std::min(kBlock, count - first);
+    const float *px = &cloud->x[first], *py = &cloud->y[first], *pz = &cloud->z[first];
+    resize(points, kept + size);
+    const Places at(points, kept);
     if (stride == 1) {
-      judge(&cloud->x[first], &cloud->y[first], &cloud->z[first], size, rules, block);
+      ask(*cloud, first + kBlock, kBlock);
+      std::iota(at.source, at.source + size, static_cast<std::uint32_t>(first));
     } else {
       for (std::size_t k = 0; k < size; k += kTaken) {
         const std::size_t i = index(first + k), taken = std::min(kTaken, size - k);
-        const std::size_t later = std::min(index(first + k + kAhead), cloud->size() - 1);
-        for (const auto* axis : {&cloud->x, &cloud->y, &cloud->z})
-          __builtin_prefetch(axis->data() + later);
+        ask(*cloud, index(first + k + kAhead), 1);
         takeGroup(&cloud->x[i], taken, &block.px[k]);
         takeGroup(&cloud->y[i], taken, &block.py[k]);
         takeGroup(&cloud->z[i], taken, &block.pz[k]);
+        std::iota(at.source + k, at.source + k + taken, static_cast<std::uint32_t>(i));
       }
-      judge(block.px.data(), block.py.data(), block.pz.data(), size, rules, block);
+      px = block.px.data(), py = block.py.data(), pz = block.pz.data();
     }
-    for (std::size_t k = 0; k < size; ++k) points.dropped += block.has_range[k] == 0;
+    const Verdicts all = judge(px, py, pz, size, rules, at.x, at.y, at.z, block.keep.data());
+    points.dropped += size - static_cast<std::size_t>(all.with_range);
     if (!cloud->label.empty())
       for (std::size_t k = 0; k < size; ++k)
         if (ownProcessingDropsIt(cloud->label[index(first + k)], params.only_objects))
           block.keep[k] = 0;
-    if (stride == 1) {
-      std::iota(block.source.begin(), block.source.end(), static_cast<std::uint32_t>(first));
-    } else {
-      for (std::size_t k = 0; k < size; k += kTaken)
-        std::iota(&block.source[k], &block.source[k] + std::min(kTaken, size - k),
-                  static_cast<std::uint32_t>(index(first + k)));
-    }
-    append(block, squeeze(block, size), points);
+    const bool whole = cloud->label.empty() && static_cast<std::size_t>(all.kept) == size;
+    kept += whole ? size : squeeze(block, size, at);
   }
+  resize(points, kept);
   return points;
 }
 

@@ -83,9 +83,9 @@ struct PolarCells {
 
 /// The cell of each point, rings x sectors where it is in none; no branches, so that the compiler
 /// makes vectors of it.
-PERCEPTION_WIDER void findCells(const float* __restrict xs, const float* __restrict ys,
-                                const float* __restrict zs, std::size_t count, const PolarCells k,
-                                std::uint32_t* __restrict cell) {
+PERCEPTION_WIDEST void findCells(const float* __restrict xs, const float* __restrict ys,
+                                 const float* __restrict zs, std::size_t count, const PolarCells k,
+                                 std::uint32_t* __restrict cell) {
   for (std::size_t i = 0; i < count; ++i) {
     const float x = xs[i], y = ys[i], range = std::sqrt(x * x + y * y);
     const std::int32_t counts =
@@ -103,9 +103,9 @@ PERCEPTION_WIDER void findCells(const float* __restrict xs, const float* __restr
 struct NearCounts {
   std::int32_t near, below;
 };
-PERCEPTION_WIDER NearCounts countNear(const float* __restrict x, const float* __restrict y,
-                                      const float* __restrict z, std::size_t count,
-                                      const PolarCells k) {
+PERCEPTION_WIDEST NearCounts countNear(const float* __restrict x, const float* __restrict y,
+                                       const float* __restrict z, std::size_t count,
+                                       const PolarCells k) {
   const float far2 = k.far * k.far;
   NearCounts counts{0, 0};
   for (std::size_t i = 0; i < count; ++i) {

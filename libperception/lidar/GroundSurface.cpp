@@ -49,10 +49,12 @@ GroundSurface::GroundSurface(const GroundPlane& plane, const EgoPoints& points,
     inverse_sector_ = static_cast<float>(params.sectors / kTwoPi);
   }
   if (!local && heights == nullptr) return;
-  thread_local Placed placed;  // memory that every scan needs again
-  place(points, params, placed);
-  if (local) follow(lowestOf(placed, params), params);
-  if (heights != nullptr) subtract(placed, *heights);
+  thread_local std::vector<float> own;          // memory that every scan needs again
+  thread_local std::vector<std::int32_t> cell;  // [sector][ring]
+  std::vector<float>& above = heights != nullptr ? *heights : own;
+  place(points, params, above, cell);
+  if (local) follow(lowestOf(above, cell, params), params);
+  if (heights != nullptr) subtract(cell, above);
 }
 
 namespace {
@@ -68,10 +70,9 @@ struct PlaceRules {
 
 /// Height above the plane and cell of each point; no branches, so that the compiler makes vectors
 /// of it.
-PERCEPTION_WIDER void placeAll(const float* __restrict x, const float* __restrict y,
-                               const float* __restrict z, std::size_t count, PlaceRules r,
-                               float* __restrict above, float* __restrict low,
-                               std::int32_t* __restrict cell) {
+PERCEPTION_WIDEST void placeAll(const float* __restrict x, const float* __restrict y,
+                                const float* __restrict z, std::size_t count, PlaceRules r,
+                                float* __restrict above, std::int32_t* __restrict cell) {
   for (std::size_t i = 0; i < count; ++i) {
     const float dx = x[i] - r.sensor_x, dy = y[i] - r.sensor_y;
     const float range = std::sqrt(dx * dx + dy * dy);
@@ -81,17 +82,18 @@ PERCEPTION_WIDER void placeAll(const float* __restrict x, const float* __restric
     sector -= sector >= r.sectors ? r.sectors : 0.0f;
     const float all_rings = range * r.per_ring;
     const float ring = all_rings < r.rings - 1 ? all_rings : r.rings - 1;
-    cell[i] = static_cast<std::int32_t>(sector * r.rings + ring);  // below 2^24: exact
+    const auto place = static_cast<std::int32_t>(sector * r.rings + ring);  // below 2^24: exact
     const float bound = r.bound_near + r.bound_slope * range;
+    const std::int32_t low = (height <= bound + kLowReturns) & (height >= -bound - kMirrorMargin);
     above[i] = height;
-    low[i] = height <= bound + kLowReturns && height >= -bound - kMirrorMargin ? height : kFar;
+    cell[i] = place ^ (low - 1);
   }
 }
 
 }  // namespace
 
 void GroundSurface::place(const EgoPoints& points, const SurfaceParams& params,
-                          Placed& placed) const {
+                          std::vector<float>& above, std::vector<std::int32_t>& cell) const {
   const PlaceRules rules{static_cast<float>(plane_.a),
                          static_cast<float>(plane_.b),
                          static_cast<float>(plane_.c),
@@ -104,42 +106,59 @@ void GroundSurface::place(const EgoPoints& points, const SurfaceParams& params,
                          static_cast<float>(params.bound_near),
                          static_cast<float>(params.bound_slope)};
   const std::size_t count = points.size();
-  placed.above.resize(count), placed.cell.resize(count), placed.low.resize(count);
-  placeAll(points.x.data(), points.y.data(), points.z.data(), count, rules, placed.above.data(),
-           placed.low.data(), placed.cell.data());
+  above.resize(count), cell.resize(count);
+  placeAll(points.x.data(), points.y.data(), points.z.data(), count, rules, above.data(),
+           cell.data());
 }
+
+namespace {
+
+/// The three lowest heights [m] of a cell and, in the last place, how many there were: bits of a
+/// whole number.
+using Lowest = float __attribute__((vector_size(16)));
+using Whole4 = std::int32_t __attribute__((vector_size(16)));
+constexpr std::size_t kWays = 8;
+
+inline __attribute__((always_inline)) void add(float height, Lowest& cell) {
+  constexpr float kAnyHigher = std::numeric_limits<float>::infinity();
+  const Lowest h{height, height, height, height};
+  const Lowest before = __builtin_shuffle(cell, Lowest{-kAnyHigher, kAnyHigher, 0, 0},
+                                          Whole4{4, 0, 1, 5});  // the next lower; never the number
+  const Lowest not_before = before > h ? before : h;
+  const Lowest lowest = cell < not_before ? cell : not_before;
+  cell = reinterpret_cast<Lowest>(reinterpret_cast<Whole4>(lowest) + Whole4{0, 0, 0, 1});
+}
+
+/// Heights into their cells. Neighbours in a scan share cells; eight places of the scan by turns do
+/// not wait for each other. What is not low goes into a cell of its own for each of them.
+PERCEPTION_WIDEST void addAll(const float* above, const std::int32_t* cell, std::size_t count,
+                              Lowest* cells, std::size_t cell_count) {
+  const std::size_t part = count / kWays;
+  const auto one = [&](std::size_t i, std::size_t way) __attribute__((always_inline)) {
+    const std::int32_t k = cell[i];
+    add(above[i], cells[k >= 0 ? static_cast<std::size_t>(k) : cell_count + way]);
+  };
+  for (std::size_t i = 0; i < part; ++i)
+    for (std::size_t way = 0; way < kWays; ++way) one(i + way * part, way);
+  for (std::size_t i = kWays * part; i < count; ++i) one(i, 0);
+}
+
+}  // namespace
 
 /// The quantile of each cell's low heights, at most the third from below; none where too few are
 /// low.
-std::vector<float> GroundSurface::lowestOf(const Placed& placed,
+std::vector<float> GroundSurface::lowestOf(const std::vector<float>& above,
+                                           const std::vector<std::int32_t>& cell,
                                            const SurfaceParams& params) const {
-  struct Lowest {
-    float first = kFar, second = kFar, third = kFar;  ///< [m] above the plane
-    std::int32_t count = 0;
-  };
-  std::vector<Lowest> cells(sectors_ * rings_);
-  const auto add = [&](std::size_t i) {
-    Lowest& cell = cells[static_cast<std::size_t>(placed.cell[i])];
-    const float height = placed.low[i];
-    const float not_first = std::max(cell.first, height);
-    const float not_second = std::max(cell.second, not_first);
-    cell.first = std::min(cell.first, height);
-    cell.second = std::min(cell.second, not_first);
-    cell.third = std::min(cell.third, not_second);
-    cell.count += height < kFar;
-  };
-  // Neighbours in a scan share cells; four places of the scan by turns do not wait for each other.
-  const std::size_t quarter = placed.cell.size() / 4;
-  for (std::size_t i = 0; i < quarter; ++i)
-    add(i), add(i + quarter), add(i + 2 * quarter), add(i + 3 * quarter);
-  for (std::size_t i = 4 * quarter; i < placed.cell.size(); ++i) add(i);
-
-  std::vector<float> heights(cells.size(), kNoGround);
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    const Lowest& cell = cells[k];
-    if (cell.count < params.cell_points) continue;
-    const int place = static_cast<int>(params.quantile * cell.count);
-    heights[k] = place == 0 ? cell.first : place == 1 ? cell.second : cell.third;
+  const std::size_t count = sectors_ * rings_;
+  thread_local std::vector<Lowest> cells;
+  cells.assign(count + kWays, Lowest{kFar, kFar, kFar, 0});
+  addAll(above.data(), cell.data(), cell.size(), cells.data(), count);
+  std::vector<float> heights(count, kNoGround);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::int32_t low = reinterpret_cast<const Whole4&>(cells[k])[3];
+    if (low < params.cell_points) continue;
+    heights[k] = cells[k][std::min(static_cast<int>(params.quantile * low), 2)];
   }
   return heights;
 }
@@ -183,19 +202,18 @@ void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams
 
 namespace {
 
-PERCEPTION_WIDER void subtractAll(const float* __restrict above,
-                                  const std::int32_t* __restrict cell,
-                                  const float* __restrict departure, std::size_t count,
-                                  float* __restrict heights) {
-  for (std::size_t i = 0; i < count; ++i) heights[i] = above[i] - departure[cell[i]];
+PERCEPTION_WIDEST void subtractAll(const std::int32_t* __restrict cell,
+                                   const float* __restrict departure, std::size_t count,
+                                   float* __restrict heights) {
+  for (std::size_t i = 0; i < count; ++i)
+    heights[i] -= departure[cell[i] ^ (cell[i] >> 31)];  // not low: the complement
 }
 
 }  // namespace
 
-void GroundSurface::subtract(const Placed& placed, std::vector<float>& heights) const {
-  heights.resize(placed.above.size());
-  subtractAll(placed.above.data(), placed.cell.data(), departure_.data(), heights.size(),
-              heights.data());
+void GroundSurface::subtract(const std::vector<std::int32_t>& cell,
+                             std::vector<float>& above) const {
+  subtractAll(cell.data(), departure_.data(), above.size(), above.data());
 }
 
 double GroundSurface::heightAt(double x, double y) const {
@@ -209,9 +227,9 @@ double GroundSurface::heightAt(double x, double y) const {
 
 std::vector<float> GroundSurface::heightsAbove(const EgoPoints& points) const {
   std::vector<float> heights;
-  Placed placed;
-  place(points, {}, placed);
-  subtract(placed, heights);
+  std::vector<std::int32_t> cell;
+  place(points, {}, heights, cell);
+  subtract(cell, heights);
   return heights;
 }
 

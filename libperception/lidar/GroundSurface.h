@@ -38,16 +38,16 @@ class GroundSurface {
   std::vector<float> heightsAbove(const EgoPoints& points) const;
 
  private:
-  /// What a point is to the surface, before the surface is known.
-  struct Placed {
-    std::vector<float> above;        ///< [m] the plane
-    std::vector<std::int32_t> cell;  ///< [sector][ring]
-    std::vector<float> low;          ///< [m] above the plane, of what may tell of the ground
-  };
-  void place(const EgoPoints& points, const SurfaceParams& params, Placed& placed) const;
-  std::vector<float> lowestOf(const Placed& placed, const SurfaceParams& params) const;
+  /// Heights of all points above the plane [m], and their cells, [sector][ring]; the complement of
+  /// it where a point is too high or too low to tell of the ground.
+  void place(const EgoPoints& points, const SurfaceParams& params, std::vector<float>& above,
+             std::vector<std::int32_t>& cell) const;
+  std::vector<float> lowestOf(const std::vector<float>& above,
+                              const std::vector<std::int32_t>& cell,
+                              const SurfaceParams& params) const;
   void follow(const std::vector<float>& lowest, const SurfaceParams& params);
-  void subtract(const Placed& placed, std::vector<float>& heights) const;
+  /// Makes heights above the ground of those above the plane.
+  void subtract(const std::vector<std::int32_t>& cell, std::vector<float>& above) const;
 
   GroundPlane plane_;
   float sensor_x_, sensor_y_;  ///< [m] centre of the cells, ego frame
