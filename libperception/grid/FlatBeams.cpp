@@ -2,61 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Lanes.h"
-#include "libperception/core/RoughBearing.h"
 #include "libperception/core/Wider.h"
 
 namespace perception {
 namespace {
 
-using Rose = FlatBeams::Rose;
+constexpr std::size_t kSize = FlatBlock::kSize;
 
-// Points in the sensor's own cell and what is no number have the bearing behind the last one.
-PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, std::int32_t finite,
-                                        const Rose& rose) {
-  const auto bin = static_cast<std::int32_t>((roughBearing(dx, dy) + 3.1416F) * rose.per_radian);
-  const std::int32_t bounded = bin < rose.count ? bin : 0;
-  const std::int32_t has_one = (range2 > 1) & finite;
-  return has_one != 0 ? bounded : rose.count;
+// Points that are nearer, or farther, than their bearing's best before the block. Mostly none is.
+PERCEPTION_WIDER void findNearer(const std::int32_t* __restrict bearing,
+                                 const float* __restrict range, const float* __restrict nearest,
+                                 std::uint8_t* __restrict news) {
+  for (std::size_t i = 0; i < kSize; ++i) news[i] = range[i] < nearest[bearing[i]];
 }
-
-PERCEPTION_WIDER void findBearings(const PlacedBlock& placed, std::size_t count, const Rose rose,
-                                   std::int32_t* __restrict bearing, float* __restrict range) {
-  const float* __restrict x = placed.x.data(), * __restrict y = placed.y.data();
-  const std::int32_t* __restrict cell = placed.cell.data();
-  for (std::size_t i = 0; i < count; ++i) {
-    const float dx = x[i] - rose.x, dy = y[i] - rose.y, range2 = dx * dx + dy * dy;
-    bearing[i] = bearingOf(dx, dy, range2, cell[i] != PlacedBlock::kNotFinite, rose);
-    range[i] = range2;
-  }
-}
-
-// Of points that only clear their bearing is all that matters. Returns how many are no numbers.
-PERCEPTION_WIDER std::int32_t findClear(const float* __restrict x, const float* __restrict y,
-                                        const float* __restrict z, std::size_t count,
-                                        const PointOffset from, const Rose rose,
-                                        std::int32_t* __restrict bearing, float* __restrict range) {
-  std::int32_t not_finite = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float dx = x[i] * from.per_metre + from.x - rose.x;
-    const float dy = y[i] * from.per_metre + from.y - rose.y;
-    const float sum = x[i] + y[i] + z[i], range2 = dx * dx + dy * dy;
-    const std::int32_t finite = sum - sum == 0;
-    bearing[i] = bearingOf(dx, dy, range2, finite, rose);
-    range[i] = range2, not_finite += 1 - finite;
-  }
-  return not_finite;
-}
-
-// Points that are farther than their bearing's farthest before the block. Mostly none is.
 PERCEPTION_WIDER void findFarther(const std::int32_t* __restrict bearing,
-                                  const float* __restrict range, std::size_t count,
-                                  const float* __restrict farthest, std::uint8_t* __restrict news) {
-  for (std::size_t i = 0; i < count; ++i) news[i] = range[i] > farthest[bearing[i]];
+                                  const float* __restrict range, const float* __restrict farthest,
+                                  std::uint8_t* __restrict news) {
+  for (std::size_t i = 0; i < kSize; ++i) news[i] = range[i] > farthest[bearing[i]];
 }
+
 /// A beam of a block on its way, mirrored so that it grows along.
 struct FlatBeam {
   float on, aside, across;  ///< [cells], [cells], [-]
@@ -66,108 +33,155 @@ struct FlatBeam {
   std::int32_t cells;       ///< of the window
 };
 
-// Lanes beyond its end stay in its last cell.
-PERCEPTION_LANES void crossOne(const FlatBeam& beam, std::uint8_t* crossed) {
+// The columns that it enters and leaves, eight cells along at a time; lanes beyond its end stay in
+// its last cell. Returns how many there are in `way`.
+PERCEPTION_LANES std::int32_t followOne(const FlatBeam& beam, std::int32_t* way) {
   const Float8 from = eight(beam.from), to = eight(beam.to);
   const auto first = static_cast<std::int32_t>(beam.on + beam.from);
   const auto last = std::min(static_cast<std::int32_t>(beam.on + beam.to), beam.cells - 1);
-  for (std::int32_t i = first; i <= last; i += kLanes) {
-    const Int8 along = smaller(i + firstEight(), eight(last));
-    const Float8 begin = asFloats(along) - beam.on;
+  std::int32_t count = 0;
+  for (std::int32_t i = first; i <= last; i += kLanes, count += 2 * kLanes) {
+    const Float8 cell = smaller(asFloats(i + firstEight()), eight(static_cast<float>(last)));
+    const Int8 along = truncated(cell);
+    const Float8 begin = cell - beam.on;
     const Int8 row0 = truncated(beam.aside + beam.across * larger(begin, from));
     const Int8 row1 = truncated(beam.aside + beam.across * smaller(begin + 1, to));
-    std::int32_t enters[kLanes], leaves[kLanes];
-    store8(beam.column + along * beam.step + row0 * beam.side, enters);
-    store8(beam.column + along * beam.step + row1 * beam.side, leaves);
-    for (int k = 0; k < kLanes; ++k) crossed[enters[k]] = 1, crossed[leaves[k]] = 1;
+    store8(beam.column + along * beam.step + row0 * beam.side, way + count);
+    store8(beam.column + along * beam.step + row1 * beam.side, way + count + kLanes);
   }
+  return count;
 }
 
 PERCEPTION_WIDER void crossAll(const BeamBlock& b, const WindowPlace origin, std::int32_t cells,
-                               std::uint8_t* crossed) {
+                               std::int32_t* way, std::uint8_t* crossed) {
   for (std::size_t i = 0; i < b.count; ++i) {
     if (!(b.from[i] < b.to[i])) continue;
     const bool along_x = b.face[i] < 2, back = b.face[i] % 2 != 0;
     const float on = along_x ? origin.x : origin.y;
     const std::int32_t step = along_x ? 1 : cells;
-    crossOne({back ? static_cast<float>(cells) - on : on, along_x ? origin.y : origin.x,
-              b.across[i], b.from[i], b.to[i], back ? (cells - 1) * step : 0, back ? -step : step,
-              along_x ? cells : 1, cells},
-             crossed);
+    const std::int32_t count =
+        followOne({back ? static_cast<float>(cells) - on : on, along_x ? origin.y : origin.x,
+                   b.across[i], b.from[i], b.to[i], back ? (cells - 1) * step : 0,
+                   back ? -step : step, along_x ? cells : 1, cells},
+                  way);
+    for (std::int32_t k = 0; k < count; k += kLanes)
+      for (std::int32_t j = 0; j < kLanes; ++j) crossed[static_cast<std::uint32_t>(way[k + j])] = 1;
   }
 }
 
 }  // namespace
 
 FlatBeams::FlatBeams(double step, int cells)
-    : bearings_(static_cast<std::size_t>(std::ceil(kTwoPi / step))),
-      nearest_(bearings_ + 1),
-      farthest_(bearings_ + 1),
-      stops_(bearings_ + 1),
-      ends_(bearings_ + 1),
-      per_radian_(static_cast<float>(static_cast<double>(bearings_) / kTwoPi)),
-      cells_(cells) {}
+    : cells_(cells), way_(static_cast<std::size_t>(2 * (cells + kLanes))) {
+  const auto bearings = static_cast<std::size_t>(std::ceil(kTwoPi / step));
+  rose_.per_radian = static_cast<float>(static_cast<double>(bearings) / kTwoPi);
+  rose_.count = static_cast<std::int32_t>(bearings);
+  nearest_.resize(bearings + 1), farthest_.resize(bearings + 1);
+  stops_.resize(bearings + 1), ends_.resize(bearings + 1);
+}
 
 void FlatBeams::begin(const WindowPlace& origin) {
   std::fill(nearest_.begin(), nearest_.end(), kNone);
   std::fill(farthest_.begin(), farthest_.end(), 0.0F);
   origin_ = origin, origin_.z = kMiddle, origin_.low = origin_.high = 1;
+  rose_.x = origin.x, rose_.y = origin.y;
 }
 
-FlatBeams::Rose FlatBeams::rose() const {
-  return {origin_.x, origin_.y, per_radian_, static_cast<std::int32_t>(bearings_)};
+void FlatBeams::offerHits(const FlatBlock& hits, std::size_t first) {
+  std::uint8_t marks[kSize];
+  findNearer(hits.bearing.data(), hits.stop.data(), nearest_.data(), marks);
+  news_.find(marks, kSize);
+  for (const std::size_t k : news_) {
+    const auto bearing = static_cast<std::size_t>(hits.bearing[k]);
+    const bool nearer = hits.stop[k] < nearest_[bearing];
+    nearest_[bearing] = nearer ? hits.stop[k] : nearest_[bearing];
+    stops_[bearing] = nearer ? static_cast<std::uint32_t>(first + k) : stops_[bearing];
+  }
+  if (hits.passes)
+    offerPassing(hits.bearing.data(), hits.pass.data(), static_cast<std::uint32_t>(first));
 }
 
-std::size_t FlatBeams::offerClear(const GridPoints& points, const WindowFrame& frame,
-                                  std::uint32_t first) {
-  constexpr std::size_t kSize = PlacedBlock::kSize, kGroup = 8;
+void FlatBeams::offerPassing(const std::int32_t* bearings, const float* ranges,
+                             std::uint32_t first) {
+  std::uint8_t marks[kSize];
+  findFarther(bearings, ranges, farthest_.data(), marks);
+  news_.find(marks, kSize);
+  for (const std::size_t k : news_) {
+    const auto bearing = static_cast<std::size_t>(bearings[k]);
+    if (ranges[k] > farthest_[bearing])
+      farthest_[bearing] = ranges[k], ends_[bearing] = first + static_cast<std::uint32_t>(k);
+  }
+}
+
+// Of a stopped beam nothing is asked any more. Most of what is left are returns of the ground
+// nearer than what has been seen before: whole blocks of them say nothing.
+std::size_t FlatBeams::offerClear(const GridPoints& points, const WindowFrame& frame) {
+  for (std::size_t i = 0; i < nearest_.size(); ++i)
+    if (nearest_[i] < kNone) farthest_[i] = kNone;
+  const PointOffset from = frame.offsetOf(points);
   std::size_t not_finite = 0;
-  for (std::size_t block = 0; block < points.size(); block += kSize) {
-    const std::size_t count = std::min(kSize, points.size() - block);
-    not_finite += static_cast<std::size_t>(findClear(points.x(block), points.y(block),
-                                                     points.z(block), count, frame.offsetOf(points),
-                                                     rose(), bearing_.data(), range_.data()));
-    std::uint8_t news[kSize] = {};
-    findFarther(bearing_.data(), range_.data(), count, farthest_.data(), news);
-    for (std::size_t begin = 0; begin < count; begin += kGroup) {
-      std::uint64_t any = 0;
-      std::memcpy(&any, news + begin, kGroup);
-      if (any == 0) continue;
-      for (std::size_t k = begin; k < std::min(begin + kGroup, count); ++k) {
-        const auto bearing = static_cast<std::size_t>(bearing_[k]);
-        if (range_[k] > farthest_[bearing])
-          farthest_[bearing] = range_[k],
-          ends_[bearing] = first + static_cast<std::uint32_t>(block + k);
-      }
-    }
+  findLeast();
+  for (std::size_t first = 0; first < points.size(); first += kSize) {
+    const std::size_t count = std::min(kSize, points.size() - first);
+    if (count == kSize && saysNothing(surveyClear(points, first, from, rose_))) continue;
+    clear_.place(points, first, count, from, rose_);
+    not_finite += clear_.not_finite;
+    offerPassing(clear_.bearing.data(), clear_.range.data(),
+                 kClear | static_cast<std::uint32_t>(first));
+    findLeast();
   }
   return not_finite;
 }
 
-// Of neighbouring returns either may be the nearer one: no branches.
-void FlatBeams::offerHits(const PlacedBlock& placed, const std::int32_t* stops, std::size_t count,
-                          std::uint32_t first) {
-  findBearings(placed, count, rose(), bearing_.data(), range_.data());
-  bool all_stop = true;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto bearing = static_cast<std::size_t>(bearing_[k]);
-    const float range = stops[k] != 0 ? range_[k] : kNone, nearest = nearest_[bearing];
-    const bool nearer = range < nearest;
-    nearest_[bearing] = nearer ? range : nearest;
-    stops_[bearing] = nearer ? first + static_cast<std::uint32_t>(k) : stops_[bearing];
-    all_stop &= stops[k] != 0;
+bool FlatBeams::saysNothing(const ClearSurvey& survey) const {
+  if (!survey.all_finite) return false;
+  for (std::size_t q = 0; q < kQuadrants; ++q)
+    if (survey.quadrants >> q & 1U && !(survey.farthest <= least_[q])) return false;
+  return true;
+}
+
+// Bearings begin at -x and turn left; roughly, so those beside a quadrant are taken for part of it.
+void FlatBeams::findLeast() {
+  constexpr std::array<std::size_t, kQuadrants> kByTurn = {3, 2, 0, 1};
+  constexpr std::size_t kBeside = 2;
+  const std::size_t bearings = farthest_.size() - 1;
+  for (std::size_t turn = 0; turn < kQuadrants; ++turn) {
+    const std::size_t begin = turn * bearings / kQuadrants;
+    const std::size_t end = ((turn + 1) * bearings + kQuadrants - 1) / kQuadrants;
+    float least = *std::min_element(farthest_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                    farthest_.begin() + static_cast<std::ptrdiff_t>(end));
+    for (std::size_t k = 1; k <= kBeside; ++k)
+      least = std::min({least, farthest_[(begin + bearings - k) % bearings],
+                        farthest_[(end + k - 1) % bearings]});
+    least_[kByTurn[turn]] = least;
   }
-  if (all_stop) return;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto bearing = static_cast<std::size_t>(bearing_[k]);
-    if (stops[k] == 0 && range_[k] > farthest_[bearing])
-      farthest_[bearing] = range_[k], ends_[bearing] = first + static_cast<std::uint32_t>(k);
+}
+
+std::size_t FlatBeams::cross(const GridPoints& hits, const GridPoints& clear,
+                             const WindowFrame& frame, std::uint8_t* crossed) {
+  const PointOffset of_hits = frame.offsetOf(hits), of_clear = frame.offsetOf(clear);
+  std::size_t beams = 0;
+  for (std::size_t bearing = 0; bearing + 1 < nearest_.size(); ++bearing) {
+    const bool stopped = nearest_[bearing] < kNone;
+    if (!stopped && !(farthest_[bearing] > 0)) continue;
+    const std::uint32_t end = stopped ? stops_[bearing] : ends_[bearing];
+    const bool is_clear = (end & kClear) != 0;
+    const PointOffset& from = is_clear ? of_clear : of_hits;
+    const GridPoints& points = is_clear ? clear : hits;
+    const std::size_t i = end & ~kClear;
+    // On the ground heights play no part.
+    block_.add({*points.x(i) * from.per_metre + from.x, *points.y(i) * from.per_metre + from.y,
+                kMiddle, 1, 1});
+    ++beams;
+    if (block_.count == BeamBlock::kSize) crossBlock(crossed);
   }
+  crossBlock(crossed);
+  return beams;
 }
 
 void FlatBeams::crossBlock(std::uint8_t* crossed) {
   block_.prepare(origin_, cells_, 1, {});
-  crossAll(block_, origin_, cells_, crossed);
+  crossAll(block_, origin_, cells_, way_.data(), crossed);
   block_.count = 0;
 }
 

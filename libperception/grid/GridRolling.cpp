@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/grid/ColumnRun.h"
+#include "libperception/grid/RollingSquare.h"
 #include "libperception/grid/WindowMarks.h"
 
 namespace perception {
@@ -30,6 +31,7 @@ class GridRolling final : public SafetyGrid {
       : SafetyGrid(params),
         cells_(static_cast<std::int64_t>(std::ceil(params.size / params.resolution))),
         layers_(layersOf(params)),
+        square_(cells_),
         marks_(params, static_cast<int>(layers_)),
         values_(static_cast<std::size_t>(cells_ * cells_ * layers_), 0),
         ages_(static_cast<std::size_t>(cells_ * cells_), params.tau),
@@ -42,14 +44,12 @@ class GridRolling final : public SafetyGrid {
     marks_.collect(scan, first_, stats);
     judged_ = scan.weights.size() == scan.hits.size();
     const auto turn = static_cast<unsigned>(modulo(first_.z, layers_));
-    // The window's columns are those of the array from some column on, and then from its first on.
-    const auto behind = static_cast<std::size_t>(modulo(first_.x, cells_));
-    const auto width = static_cast<std::size_t>(cells_);
-    for (std::size_t y = 0; y < width; ++y) {
-      const std::size_t row = slotOf({0, first_.y + static_cast<std::int64_t>(y), 0});
-      addEvidence(y * width, row + behind, width - behind, turn);
-      addEvidence(y * width + width - behind, row, behind, turn);
-    }
+    std::size_t column = 0;
+    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y)
+      square_.forRow(first_.x, y, cells_, [&](std::size_t slot, std::size_t count) {
+        addEvidence(column, slot, count, turn);
+        column += count;
+      });
     for (const auto& doubt : marks_.doubts()) takeDoubt(doubt, turn);
     return stats;
   }
@@ -101,12 +101,10 @@ class GridRolling final : public SafetyGrid {
   double centreOf(std::int64_t i) const {
     return (static_cast<double>(i) + 0.5) * params().resolution;
   }
-  std::size_t slotOf(const CellIndex& cell) const {
-    return static_cast<std::size_t>(modulo(cell.y, cells_) * cells_ + modulo(cell.x, cells_));
-  }
+  std::size_t slotOf(const CellIndex& cell) const { return square_.slotOf(cell.x, cell.y); }
   bool inWindow(const CellIndex& c) const {
-    return started_ && c.x >= first_.x && c.y >= first_.y && c.z >= first_.z &&
-           c.x < first_.x + cells_ && c.y < first_.y + cells_ && c.z < first_.z + layers_;
+    return started_ && square_.holds(first_, c.x, c.y) && c.z >= first_.z &&
+           c.z < first_.z + layers_;
   }
 
   /// `column_may`: a quick look at a column of values; `wanted`: at a cell's log-odds.
@@ -114,19 +112,22 @@ class GridRolling final : public SafetyGrid {
   std::vector<GridCell> cellsWhere(const ColumnMay& column_may, const Wanted& wanted) const {
     std::vector<GridCell> cells;
     if (!started_) return cells;
-    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y)
-      for (std::int64_t x = first_.x; x < first_.x + cells_; ++x) {
-        const std::size_t slot = slotOf({x, y, 0});
-        const std::int16_t* values = values_.data() + slot * static_cast<std::size_t>(layers_);
-        if (!column_may(values, values + layers_)) continue;
-        for (std::int64_t z = first_.z; z < first_.z + layers_; ++z) {
-          const double v = valueOf(values[modulo(z, layers_)], slot);
-          if (wanted(v))
-            cells.push_back({{centreOf(x), centreOf(y), centreOf(z)},
-                             Vector3::Constant(params().resolution),
-                             v});
+    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y) {
+      std::int64_t x = first_.x;
+      square_.forRow(x, y, cells_, [&](std::size_t begin, std::size_t count) {
+        for (std::size_t slot = begin; slot < begin + count; ++slot, ++x) {
+          const std::int16_t* values = values_.data() + slot * static_cast<std::size_t>(layers_);
+          if (!column_may(values, values + layers_)) continue;
+          for (std::int64_t z = first_.z; z < first_.z + layers_; ++z) {
+            const double v = valueOf(values[modulo(z, layers_)], slot);
+            if (wanted(v))
+              cells.push_back({{centreOf(x), centreOf(y), centreOf(z)},
+                               Vector3::Constant(params().resolution),
+                               v});
+          }
         }
-      }
+      });
+    }
     return cells;
   }
 
@@ -146,31 +147,15 @@ class GridRolling final : public SafetyGrid {
       std::fill(values_.begin(), values_.end(), std::int16_t{0});
       ages_.touchAll();
     } else {
-      enterColumns(first);
+      square_.forEntering(first_, first, [this](std::size_t slot, std::size_t count) {
+        const auto layers = static_cast<std::size_t>(layers_);
+        std::fill_n(&values_[slot * layers], count * layers, std::int16_t{0});
+      });
       enterLayers(first);
     }
     first_ = first;
     started_ = true;
     ages_.refresh([this](std::size_t slot) { update(slot, 0, 0); });
-  }
-
-  void enterColumns(const CellIndex& first) {
-    const auto forget = [this](std::int64_t x, std::int64_t y) {
-      const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(slotOf({x, y, 0})) * layers_;
-      std::fill(begin, begin + layers_, std::int16_t{0});
-    };
-    const auto isNew = [this](std::int64_t i, std::int64_t old) {
-      return i < old || i >= old + cells_;
-    };
-    for (std::int64_t y = first.y; y < first.y + cells_; ++y) {
-      if (isNew(y, first_.y)) {
-        for (std::int64_t x = first.x; x < first.x + cells_; ++x) forget(x, y);
-        continue;
-      }
-      if (first.x > first_.x)
-        for (std::int64_t x = first_.x + cells_; x < first.x + cells_; ++x) forget(x, y);
-      for (std::int64_t x = first.x; x < first_.x; ++x) forget(x, y);
-    }
   }
 
   void enterLayers(const CellIndex& first) {
@@ -218,6 +203,7 @@ class GridRolling final : public SafetyGrid {
   }
 
   std::int64_t cells_, layers_;
+  RollingSquare square_;
   WindowMarks<Mask> marks_;
   std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units, as old as ages_ says
   ColumnAges ages_;

@@ -1,75 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
-#include "libperception/core/Wider.h"
 #include "libperception/grid/FlatBeams.h"
+#include "libperception/grid/FlatEvidence.h"
 #include "libperception/grid/GridRolling.h"
-#include "libperception/grid/ScanEvidence.h"
+#include "libperception/grid/RollingSquare.h"
 
 namespace perception {
 namespace {
 
 constexpr double kForgotten = 0.05;  // [log-odds] as good as unknown
-constexpr float kTrusted = 0.5F;     // a hit below does not end a beam: what lies behind was seen
-constexpr int kWhole = 255;          // weight of a hit in a mark
-
-/// What cells of a row keep and take in.
-struct RowEvidence {
-  std::uint8_t *weights, *crossed;  ///< of 255; 0 or 1; used up
-  float keep;                       ///< share of the log-odds that is not forgotten
-  float hit, miss, low, high;       ///< [log-odds]
-  float voided;                     ///< share of voidedBy(): 1 where hits are judged
-};
-
-PERCEPTION_WIDER void addHits(float* __restrict values, std::uint8_t* __restrict weights,
-                              std::uint8_t* __restrict crossed, std::size_t count,
-                              const RowEvidence e) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float w = static_cast<float>(weights[i]) * (1.0F / kWhole), v = values[i] * e.keep;
-    const float left = v < 0 ? v - v * w * e.voided : v;
-    const float miss = static_cast<float>(crossed[i]) * ((1 - w) * e.miss);
-    const float sum = left + (w * e.hit + miss);
-    const float bounded = sum < e.low ? e.low : sum;
-    values[i] = bounded > e.high ? e.high : bounded;
-    weights[i] = 0, crossed[i] = 0;
-  }
-}
-
-PERCEPTION_WIDER void addMisses(float* __restrict values, std::uint8_t* __restrict crossed,
-                                std::size_t count, const RowEvidence e) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float sum = values[i] * e.keep + static_cast<float>(crossed[i]) * e.miss;
-    values[i] = sum < e.low ? e.low : sum;
-    crossed[i] = 0;
-  }
-}
-
-// Most stretches of a row have no hit.
-void addRow(float* values, std::size_t count, RowEvidence e) {
-  constexpr std::size_t kStretch = 32;
-  static constexpr std::uint8_t kNone[kStretch] = {};
-  for (std::size_t i = 0; i < count; i += kStretch) {
-    const std::size_t length = std::min(kStretch, count - i);
-    if (std::memcmp(e.weights + i, kNone, length) == 0) {
-      addMisses(values + i, e.crossed + i, length, e);
-    } else {
-      addHits(values + i, e.weights + i, e.crossed + i, length, e);
-    }
-  }
-}
-
-/// What hits weigh, and which of them stop a beam.
-PERCEPTION_WIDER void weigh(const PlacedBlock& placed, const float* __restrict weights,
-                            std::size_t count, std::int32_t* __restrict stops,
-                            std::int32_t* __restrict marks) {
-  const std::int32_t* __restrict in_slab = placed.in_slab.data();
-  for (std::size_t i = 0; i < count; ++i) {
-    const float w = weights[i] < PlacedBlock::kFullWeight ? weights[i] : 1;  // no verdict: believe
-    stops[i] = in_slab[i] & (w >= kTrusted);
-    marks[i] = static_cast<std::int32_t>((w > 0 ? w : 0) * kWhole + 0.5F);
-  }
-}
 
 /// Cells of the ground in one flat array that rolls with the vehicle; a beam a direction, up to its
 /// first trusted hit or, where there is none, its farthest end.
@@ -78,8 +18,9 @@ class GridRolling2d final : public SafetyGrid {
   explicit GridRolling2d(const GridParams& params)
       : SafetyGrid(params),
         cells_(static_cast<int>(std::ceil(params.size / params.resolution))),
+        square_(cells_),
         values_(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_), 0),
-        weights_(values_.size(), 0),
+        weights_(values_.size() + 1, 0),
         crossed_(values_.size(), 0),
         beams_(params.ray_step, cells_) {}
 
@@ -93,23 +34,16 @@ class GridRolling2d final : public SafetyGrid {
     rays_ = scan.origin.allFinite();
     beams_.begin(frame_.place(rays_ ? scan.origin : scan.T_world_ground.translation()));
     takeHits(scan, stats);
-    stats.not_finite +=
-        beams_.offerClear(scan.clear, frame_, static_cast<std::uint32_t>(scan.hits.size()));
-    if (rays_) {
-      const auto place = [&](std::uint32_t i) {
-        return frame_.place(i < scan.hits.size() ? scan.hits[i] : scan.clear[i - scan.hits.size()]);
-      };
-      stats.rays += beams_.cross(place, crossed_.data());
-    }
-    addEvidence();
+    stats.not_finite += beams_.offerClear(scan.clear, frame_);
+    if (rays_) stats.rays += beams_.cross(scan.hits, scan.clear, frame_, crossed_.data());
+    takeEvidence();
     return stats;
   }
 
   double logOdds(const Vector3& place) const override {
     if (!place.allFinite() || !started_) return 0;
-    const std::int64_t x = indexOf(place.x()) - first_.x, y = indexOf(place.y()) - first_.y;
-    if (x < 0 || y < 0 || x >= cells_ || y >= cells_) return 0;
-    return valueOf(values_[slotOf(x + first_.x, y + first_.y)]);
+    const std::int64_t x = indexOf(place.x()), y = indexOf(place.y());
+    return square_.holds(first_, x, y) ? valueOf(values_[square_.slotOf(x, y)]) : 0;
   }
 
   std::vector<GridCell> occupiedCells() const override {
@@ -122,10 +56,8 @@ class GridRolling2d final : public SafetyGrid {
   void restore(const std::vector<GridCell>& cells) override {
     for (const GridCell& cell : cells) {
       const std::int64_t x = indexOf(cell.centre.x()), y = indexOf(cell.centre.y());
-      if (!started_ || x < first_.x || y < first_.y || x >= first_.x + cells_ ||
-          y >= first_.y + cells_)
-        continue;
-      float& value = values_[slotOf(x, y)];
+      if (!started_ || !square_.holds(first_, x, y)) continue;
+      float& value = values_[square_.slotOf(x, y)];
       value = std::clamp(value + static_cast<float>(cell.log_odds),
                          static_cast<float>(params().low), static_cast<float>(params().high));
     }
@@ -136,12 +68,15 @@ class GridRolling2d final : public SafetyGrid {
     std::vector<GridCell> cells;
     if (!started_) return cells;
     const double height = params().z_max - params().z_min;
-    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y)
-      for (std::int64_t x = first_.x; x < first_.x + cells_; ++x) {
-        const double v = valueOf(values_[slotOf(x, y)]);
-        if (wanted(v))
-          cells.push_back({centreOf(x, y), {params().resolution, params().resolution, height}, v});
-      }
+    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y) {
+      std::int64_t x = first_.x;
+      square_.forRow(x, y, cells_, [&](std::size_t slot, std::size_t count) {
+        for (std::size_t i = slot; i < slot + count; ++i, ++x)
+          if (const double v = valueOf(values_[i]); wanted(v))
+            cells.push_back(
+                {centreOf(x, y), {params().resolution, params().resolution, height}, v});
+      });
+    }
     return cells;
   }
 
@@ -153,10 +88,6 @@ class GridRolling2d final : public SafetyGrid {
  private:
   std::int64_t indexOf(double v) const {
     return static_cast<std::int64_t>(std::floor(v / params().resolution));
-  }
-  std::size_t slotOf(std::int64_t x, std::int64_t y) const {
-    const auto wrap = [this](std::int64_t i) { return ((i % cells_) + cells_) % cells_; };
-    return static_cast<std::size_t>(wrap(y) * cells_ + wrap(x));
   }
   double valueOf(float v) const {
     return std::abs(v) < static_cast<float>(kForgotten) ? 0 : static_cast<double>(v);
@@ -181,64 +112,50 @@ class GridRolling2d final : public SafetyGrid {
     now_ = now_ + age;
     keep_ = static_cast<float>(std::exp(-age / params().tau));
     if (started_)
-      for (std::int64_t y = first.y; y < first.y + cells_; ++y) {
-        const bool row = y < first_.y || y >= first_.y + cells_;
-        if (!row && first.x == first_.x) continue;
-        for (std::int64_t x = first.x; x < first.x + cells_; ++x)
-          if (row || x < first_.x || x >= first_.x + cells_) values_[slotOf(x, y)] = 0;
-      }
+      square_.forEntering(first_, first, [this](std::size_t slot, std::size_t count) {
+        std::fill_n(&values_[slot], count, 0.0F);
+      });
     first_ = first;
     started_ = true;
   }
 
+  // Last ones first: scans begin with their highest beams, and what these see is farther off.
   void takeHits(const GridScan& scan, GridStats& stats) {
-    constexpr std::size_t kSize = PlacedBlock::kSize;
-    const std::vector<float> full(judged_ ? 0 : kSize, 1.0F);
-    PlacedBlock::Lane<std::int32_t> stops, marks;
-    std::int32_t settled = PlacedBlock::kOutside;
-    for (std::size_t begin = 0; begin < scan.hits.size(); begin += kSize) {
-      const std::size_t count = std::min(kSize, scan.hits.size() - begin);
-      const float* weights = judged_ ? &scan.weights[begin] : full.data();
-      frame_.place(scan.hits, begin, count, placed_);
-      weigh(placed_, weights, count, stops.data(), marks.data());
-      beams_.offerHits(placed_, stops.data(), count, static_cast<std::uint32_t>(begin));
-      placed_.chooseHits(count, weights, settled);
-      settled = placed_.settled[count - 1];
-      stats.hits += placed_.hits, stats.not_finite += placed_.not_finite;
-      for (std::size_t i = 0; i < placed_.chosen_count; ++i) {
-        const std::size_t k = placed_.chosen[i];
-        if (placed_.cell[k] < 0 || placed_.in_slab[k] == 0) continue;
-        const auto column = static_cast<std::size_t>(placed_.cell[k] / PlacedBlock::kLayers);
-        weights_[column] = std::max(weights_[column], static_cast<std::uint8_t>(marks[k]));
-      }
+    const std::size_t blocks = (scan.hits.size() + FlatBlock::kSize - 1) / FlatBlock::kSize;
+    for (std::size_t block = blocks; block-- > 0;) {
+      const std::size_t begin = block * FlatBlock::kSize;
+      const std::size_t count = std::min(FlatBlock::kSize, scan.hits.size() - begin);
+      hits_.place(scan.hits, judged_ ? &scan.weights[begin] : nullptr, begin, count, frame_,
+                  beams_.rose());
+      hits_.markColumns(judged_, weights_.data());
+      beams_.offerHits(hits_, begin);
+      stats.hits += hits_.hits, stats.not_finite += hits_.not_finite;
     }
   }
 
-  // The window's columns are those of the array from some column on, and then from its first on.
-  void addEvidence() {
-    RowEvidence row{weights_.data(),
-                    crossed_.data(),
-                    keep_,
-                    static_cast<float>(params().hit),
-                    static_cast<float>(params().miss),
-                    static_cast<float>(params().low),
-                    static_cast<float>(params().high),
-                    judged_ ? 1.0F : 0.0F};
-    const auto width = static_cast<std::size_t>(cells_);
-    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y) {
-      const std::size_t begin = slotOf(first_.x, y), behind = begin % width;
-      addRow(&values_[begin], width - behind, row);
-      row.weights += width - behind, row.crossed += width - behind;
-      addRow(&values_[begin - behind], behind, row);
-      row.weights += behind, row.crossed += behind;
-    }
+  void takeEvidence() {
+    FlatEvidence row{weights_.data(),
+                     crossed_.data(),
+                     keep_,
+                     static_cast<float>(params().hit),
+                     static_cast<float>(params().miss),
+                     static_cast<float>(params().low),
+                     static_cast<float>(params().high),
+                     judged_ ? 1.0F : 0.0F};
+    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y)
+      square_.forRow(first_.x, y, cells_, [&](std::size_t slot, std::size_t count) {
+        addEvidence(&values_[slot], count, row);
+        row.weights += count, row.crossed += count;
+      });
   }
 
   int cells_;
+  RollingSquare square_;
   std::vector<float> values_;  // [log-odds], by place in the world modulo the window
-  std::vector<std::uint8_t> weights_, crossed_;  // of the scan, from the window's corner
+  // Of the scan, from the window's corner on. Hits elsewhere mark the weight behind the last one.
+  std::vector<std::uint8_t> weights_, crossed_;
   FlatBeams beams_;
-  PlacedBlock placed_;
+  FlatBlock hits_;
   WindowFrame frame_;
   bool rays_ = false;  // it is known where the sensor is
   Pose3 T_world_ground_ = Pose3::Identity();

@@ -88,17 +88,11 @@ void PlacedBlock::chooseClear(std::size_t count, std::int32_t before) {
   leaveOut(count, before);
 }
 
-// Without branches: whether a cell is new is anybody's guess.
 void PlacedBlock::leaveOut(std::size_t count, std::int32_t before) {
-  std::uint8_t news[kSize];
+  std::uint8_t news[kSize] = {};
   news[0] = cell[0] < 0 || cell[0] != before;
   findNews(cell.data(), settled.data(), count, news);
-  std::size_t left = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    chosen[left] = static_cast<std::uint16_t>(k);
-    left += news[k];
-  }
-  chosen_count = left;
+  chosen.find(news, kSize);
 }
 
 WindowFrame::WindowFrame(const GridParams& params, const Pose3& T_world_ground,

@@ -5,6 +5,7 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/grid/BeamBlock.h"
+#include "libperception/grid/Chosen.h"
 #include "libperception/grid/GridParams.h"
 #include "libperception/grid/GridPoints.h"
 #include "libperception/grid/ScanEvidence.h"
@@ -26,8 +27,7 @@ struct PlacedBlock {
   std::size_t not_finite = 0;      ///< how many
 
   // What chooseHits() and chooseClear() make of them.
-  std::array<std::uint16_t, kSize> chosen;
-  std::size_t chosen_count = 0;
+  Chosen chosen;
   std::size_t hits = 0;        ///< of all
   Lane<std::int32_t> settled;  ///< the cell if it needs no further point, or kOutside
 
@@ -71,6 +71,7 @@ class WindowFrame {
   void place(const GridPoints& points, std::size_t first, std::size_t count,
              PlacedBlock& out) const;
   PointOffset offsetOf(const GridPoints& points) const;
+  const WindowRules& rules() const { return rules_; }
   /// `point`: [m] world.
   WindowPlace place(const Vector3& point) const;
 

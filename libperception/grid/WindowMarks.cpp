@@ -40,8 +40,7 @@ void WindowMarks<Mask>::takeHits(const GridScan& scan, GridStats& stats) {
     placed_.chooseHits(count, weighted ? &scan.weights[begin] : nullptr, settled);
     settled = placed_.settled[count - 1];
     stats.hits += placed_.hits;
-    for (std::size_t i = 0; i < placed_.chosen_count; ++i) {
-      const std::size_t k = placed_.chosen[i];
+    for (const std::size_t k : placed_.chosen) {
       const std::int32_t cell = placed_.cell[k];
       bool wanted = cell != PlacedBlock::kNotFinite;
       if (cell >= 0) {
@@ -79,8 +78,8 @@ void WindowMarks<Mask>::takeClear(const GridScan& scan, GridStats& stats) {
     frame_.place(scan.clear, begin, count, placed_);
     placed_.chooseClear(count, settled);
     settled = placed_.settled[count - 1];
-    for (std::size_t i = 0; i < placed_.chosen_count; ++i)
-      if (placed_.cell[placed_.chosen[i]] != PlacedBlock::kNotFinite) addBeam(placed_.chosen[i]);
+    for (const std::size_t k : placed_.chosen)
+      if (placed_.cell[k] != PlacedBlock::kNotFinite) addBeam(k);
     finishBlock(stats);
   }
 }

@@ -1,0 +1,180 @@
+#include "libperception/grid/FlatBlock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "libperception/core/Lanes.h"
+#include "libperception/core/RoughBearing.h"
+#include "libperception/core/Wider.h"
+
+namespace perception {
+namespace {
+
+constexpr float kTrusted = 0.5F;  // a hit below does not end a beam: what lies behind was seen
+
+// Points in the sensor's own cell and what is no number have the bearing behind the last one.
+PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, std::int32_t finite,
+                                        const Rose& rose) {
+  const auto bin = static_cast<std::int32_t>((roughBearing(dx, dy) + 3.1416F) * rose.per_radian);
+  const std::int32_t bounded = bin < rose.count ? bin : 0;
+  const std::int32_t has_one = (range2 > 1) & finite;
+  return has_one != 0 ? bounded : rose.count;
+}
+
+/// The points of a block, axis by axis. [m] from their base
+struct BlockPoints {
+  const float *x, *y, *z;
+  std::size_t count;
+};
+
+struct BlockCounts {
+  std::int32_t hits, beside, not_finite;  // `beside`: outside the slab
+};
+
+PERCEPTION_WIDER BlockCounts placeHits(const BlockPoints points, const PointOffset from,
+                                       const WindowRules k, const Rose rose,
+                                       FlatBlock& __restrict out) {
+  const float* __restrict xs = points.x, * __restrict ys = points.y, * __restrict zs = points.z;
+  const auto row = static_cast<std::int32_t>(k.cells);
+  const std::int32_t behind = row * row;
+  BlockCounts counts{0, 0, 0};
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const float x = xs[i] * from.per_metre + from.x;
+    const float y = ys[i] * from.per_metre + from.y;
+    const float z = zs[i] * from.per_metre + from.z;
+    const float above = k.slope_x * x + k.slope_y * y + k.slope_z * z + k.offset;
+    const float cx = x - k.centre_x, cy = y - k.centre_y;
+    const float wider = k.grade * std::sqrt(cx * cx + cy * cy);
+    const float over = above - k.z_min + wider, under = k.z_max + wider - above;
+    const std::int32_t in_slab = (over >= 0) & (under >= 0);
+    const std::int32_t marks = in_slab & (x >= 0) & (y >= 0) & (x < k.cells) & (y < k.cells);
+    const float kx = marks != 0 ? x : 0, ky = marks != 0 ? y : 0;
+    const std::int32_t column = static_cast<std::int32_t>(ky) * row + static_cast<std::int32_t>(kx);
+    out.column[i] = marks != 0 ? column : behind;
+    const float sum = x + y + z;
+    const std::int32_t finite = sum - sum == 0;  // not of infinities and what is no number
+    const float dx = x - rose.x, dy = y - rose.y, range2 = dx * dx + dy * dy;
+    out.bearing[i] = bearingOf(dx, dy, range2, finite, rose);
+    out.stop[i] = in_slab != 0 ? range2 : FlatBlock::kNone;
+    out.pass[i] = in_slab != 0 ? 0 : range2;
+    counts.hits += marks, counts.beside += 1 - in_slab, counts.not_finite += 1 - finite;
+  }
+  return counts;
+}
+
+// Of hits that all stop their beams makes those that do. Returns whether some do not.
+PERCEPTION_WIDER std::int32_t weigh(const float* __restrict weights, std::size_t count,
+                                    FlatBlock& __restrict out) {
+  std::int32_t passes = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float given = weights[i], stop = out.stop[i], pass = out.pass[i];
+    const float w = given < PlacedBlock::kFullWeight ? given : 1;  // no verdict: believe it
+    const float share = w > 0 ? w : 0;
+    out.mark[i] = static_cast<std::int32_t>(share * FlatBlock::kWhole + 0.5F);
+    const float range2 = stop < FlatBlock::kNone ? stop : pass;
+    const float stops = w >= kTrusted ? stop : FlatBlock::kNone;
+    out.stop[i] = stops, out.pass[i] = w >= kTrusted ? pass : range2;
+    passes |= stops >= FlatBlock::kNone;
+  }
+  return passes;
+}
+
+// Of points that only clear their bearing is all that matters. Returns how many are no numbers.
+PERCEPTION_WIDER std::int32_t placeClear(const BlockPoints points, const PointOffset from,
+                                         const Rose rose, std::int32_t* __restrict bearing,
+                                         float* __restrict range) {
+  const float* __restrict xs = points.x, * __restrict ys = points.y, * __restrict zs = points.z;
+  std::int32_t not_finite = 0;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const float dx = xs[i] * from.per_metre + from.x - rose.x;
+    const float dy = ys[i] * from.per_metre + from.y - rose.y;
+    const float sum = xs[i] + ys[i] + zs[i], range2 = dx * dx + dy * dy;
+    const std::int32_t finite = sum - sum == 0;
+    bearing[i] = bearingOf(dx, dy, range2, finite, rose);
+    range[i] = range2, not_finite += 1 - finite;
+  }
+  return not_finite;
+}
+
+PERCEPTION_LANES std::int32_t bitsOf(float v) {
+  std::int32_t bits;
+  std::memcpy(&bits, &v, sizeof bits);
+  return bits;
+}
+
+struct SurveyBits {
+  std::int32_t farthest, any_x, any_y, all_x, all_y, not_finite;
+};
+
+// Squares are not negative, so their order is that of their bits; no number is above them all.
+PERCEPTION_WIDER void survey(const float* __restrict xs, const float* __restrict ys,
+                             const float* __restrict zs, const PointOffset from, const Rose rose,
+                             SurveyBits& out) {
+  SurveyBits s{0, 0, 0, -1, -1, 0};
+  for (std::size_t i = 0; i < ClearBlock::kSize; ++i) {
+    const float dx = xs[i] * from.per_metre + from.x - rose.x;
+    const float dy = ys[i] * from.per_metre + from.y - rose.y;
+    const float sum = xs[i] + ys[i] + zs[i];
+    const std::int32_t range = bitsOf(dx * dx + dy * dy) & 0x7FFFFFFF;
+    s.farthest = range > s.farthest ? range : s.farthest;
+    s.any_x |= bitsOf(dx), s.any_y |= bitsOf(dy);
+    s.all_x &= bitsOf(dx), s.all_y &= bitsOf(dy);
+    s.not_finite |= bitsOf(sum - sum);
+  }
+  out = s;
+}
+
+}  // namespace
+
+void FlatBlock::place(const GridPoints& points, const float* weights, std::size_t first,
+                      std::size_t count, const WindowFrame& frame, const Rose& rose) {
+  const BlockPoints block{points.x(first), points.y(first), points.z(first), count};
+  const BlockCounts counts = placeHits(block, frame.offsetOf(points), frame.rules(), rose, *this);
+  const std::int32_t passing = weights ? weigh(weights, count, *this) : counts.beside;
+  hits = static_cast<std::size_t>(counts.hits), passes = passing > 0;
+  not_finite = static_cast<std::size_t>(counts.not_finite);
+  const auto row = static_cast<std::int32_t>(frame.rules().cells);
+  for (std::size_t i = count; i < kSize; ++i) {
+    column[i] = row * row, mark[i] = 0;
+    bearing[i] = rose.count, stop[i] = kNone, pass[i] = 0;
+  }
+}
+
+// Neighbouring hits often mark the same column, and would wait for each other.
+void FlatBlock::markColumns(bool weighted, std::uint8_t* weights) const {
+  if (!weighted) {
+    for (const std::int32_t i : column) weights[i] = kWhole;
+    return;
+  }
+  constexpr std::size_t kStreams = 4, kApart = kSize / kStreams;
+  for (std::size_t i = 0; i < kApart; ++i)
+    for (std::size_t k = i; k < kSize; k += kApart) {
+      std::uint8_t& weight = weights[column[k]];
+      weight = std::max(weight, static_cast<std::uint8_t>(mark[k]));
+    }
+}
+
+void ClearBlock::place(const GridPoints& points, std::size_t first, std::size_t count,
+                       PointOffset from, const Rose& rose) {
+  const BlockPoints block{points.x(first), points.y(first), points.z(first), count};
+  not_finite =
+      static_cast<std::size_t>(placeClear(block, from, rose, bearing.data(), range.data()));
+  for (std::size_t i = count; i < kSize; ++i) bearing[i] = rose.count, range[i] = 0;
+}
+
+ClearSurvey surveyClear(const GridPoints& points, std::size_t first, PointOffset from,
+                        const Rose& rose) {
+  SurveyBits bits{};
+  survey(points.x(first), points.y(first), points.z(first), from, rose, bits);
+  ClearSurvey out;
+  std::memcpy(&out.farthest, &bits.farthest, sizeof out.farthest);
+  const unsigned falls_x = bits.any_x < 0, rises_x = bits.all_x >= 0;
+  const unsigned falls_y = bits.any_y < 0, rises_y = bits.all_y >= 0;
+  const unsigned along_x = rises_x | falls_x << 1U;
+  out.quadrants = along_x * rises_y | along_x * falls_y << 2U;
+  out.all_finite = bits.not_finite == 0;
+  return out;
+}
+
+}  // namespace perception
