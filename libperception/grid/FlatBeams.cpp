@@ -13,14 +13,14 @@ namespace {
 constexpr std::size_t kSize = FlatBlock::kSize;
 
 // Points that are nearer, or farther, than their bearing's best before the block. Mostly none is.
-PERCEPTION_WIDER void findNearer(const std::int32_t* __restrict bearing,
-                                 const float* __restrict range, const float* __restrict nearest,
-                                 std::uint8_t* __restrict news) {
+PERCEPTION_WIDEST void findNearer(const std::int32_t* __restrict bearing,
+                                  const float* __restrict range, const float* __restrict nearest,
+                                  std::uint8_t* __restrict news) {
   for (std::size_t i = 0; i < kSize; ++i) news[i] = range[i] < nearest[bearing[i]];
 }
-PERCEPTION_WIDER void findFarther(const std::int32_t* __restrict bearing,
-                                  const float* __restrict range, const float* __restrict farthest,
-                                  std::uint8_t* __restrict news) {
+PERCEPTION_WIDEST void findFarther(const std::int32_t* __restrict bearing,
+                                   const float* __restrict range, const float* __restrict farthest,
+                                   std::uint8_t* __restrict news) {
   for (std::size_t i = 0; i < kSize; ++i) news[i] = range[i] > farthest[bearing[i]];
 }
 
@@ -52,8 +52,8 @@ PERCEPTION_LANES std::int32_t followOne(const FlatBeam& beam, std::int32_t* way)
   return count;
 }
 
-PERCEPTION_WIDER void crossAll(const BeamBlock& b, const WindowPlace origin, std::int32_t cells,
-                               std::int32_t* way, std::uint8_t* crossed) {
+PERCEPTION_WIDEST void crossAll(const BeamBlock& b, const WindowPlace origin, std::int32_t cells,
+                                std::int32_t* way, std::uint8_t* crossed) {
   for (std::size_t i = 0; i < b.count; ++i) {
     if (!(b.from[i] < b.to[i])) continue;
     const bool along_x = b.face[i] < 2, back = b.face[i] % 2 != 0;

@@ -13,13 +13,17 @@ namespace {
 
 constexpr float kTrusted = 0.5F;  // a hit below does not end a beam: what lies behind was seen
 
-// Points in the sensor's own cell and what is no number have the bearing behind the last one.
-PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, std::int32_t finite,
-                                        const Rose& rose) {
+// Points in the sensor's own cell have the bearing behind the last one.
+PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, const Rose& rose) {
   const auto bin = static_cast<std::int32_t>((roughBearing(dx, dy) + 3.1416F) * rose.per_radian);
   const std::int32_t bounded = bin < rose.count ? bin : 0;
-  const std::int32_t has_one = (range2 > 1) & finite;
-  return has_one != 0 ? bounded : rose.count;
+  return range2 > 1 ? bounded : rose.count;
+}
+
+PERCEPTION_LANES std::int32_t bitsOf(float v) {
+  std::int32_t bits;
+  std::memcpy(&bits, &v, sizeof bits);
+  return bits;
 }
 
 /// The points of a block, axis by axis. [m] from their base
@@ -29,12 +33,13 @@ struct BlockPoints {
 };
 
 struct BlockCounts {
-  std::int32_t hits, beside, not_finite;  // `beside`: outside the slab
+  std::int32_t hits, beside;  // `beside`: outside the slab
+  std::int32_t not_finite;    // not zero where some points are no numbers
 };
 
-PERCEPTION_WIDER BlockCounts placeHits(const BlockPoints points, const PointOffset from,
-                                       const WindowRules k, const Rose rose,
-                                       FlatBlock& __restrict out) {
+PERCEPTION_WIDEST BlockCounts placeHits(const BlockPoints points, const PointOffset from,
+                                        const WindowRules k, const Rose rose,
+                                        FlatBlock& __restrict out) {
   const float* __restrict xs = points.x, * __restrict ys = points.y, * __restrict zs = points.z;
   const auto row = static_cast<std::int32_t>(k.cells);
   const std::int32_t behind = row * row;
@@ -53,54 +58,63 @@ PERCEPTION_WIDER BlockCounts placeHits(const BlockPoints points, const PointOffs
     const std::int32_t column = static_cast<std::int32_t>(ky) * row + static_cast<std::int32_t>(kx);
     out.column[i] = marks != 0 ? column : behind;
     const float sum = x + y + z;
-    const std::int32_t finite = sum - sum == 0;  // not of infinities and what is no number
     const float dx = x - rose.x, dy = y - rose.y, range2 = dx * dx + dy * dy;
-    out.bearing[i] = bearingOf(dx, dy, range2, finite, rose);
-    out.stop[i] = in_slab != 0 ? range2 : FlatBlock::kNone;
-    out.pass[i] = in_slab != 0 ? 0 : range2;
-    counts.hits += marks, counts.beside += 1 - in_slab, counts.not_finite += 1 - finite;
+    out.bearing[i] = bearingOf(dx, dy, range2, rose);
+    out.range[i] = range2, out.stop[i] = in_slab != 0 ? range2 : FlatBlock::kNone;
+    counts.hits += marks, counts.beside += 1 - in_slab;
+    counts.not_finite |= bitsOf(sum - sum);  // zero of numbers
   }
   return counts;
 }
 
 // Of hits that all stop their beams makes those that do. Returns whether some do not.
-PERCEPTION_WIDER std::int32_t weigh(const float* __restrict weights, std::size_t count,
-                                    FlatBlock& __restrict out) {
+PERCEPTION_WIDEST std::int32_t weigh(const float* __restrict weights, std::size_t count,
+                                     FlatBlock& __restrict out) {
   std::int32_t passes = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const float given = weights[i], stop = out.stop[i], pass = out.pass[i];
+    const float given = weights[i], stop = out.stop[i];
     const float w = given < PlacedBlock::kFullWeight ? given : 1;  // no verdict: believe it
     const float share = w > 0 ? w : 0;
     out.mark[i] = static_cast<std::int32_t>(share * FlatBlock::kWhole + 0.5F);
-    const float range2 = stop < FlatBlock::kNone ? stop : pass;
     const float stops = w >= kTrusted ? stop : FlatBlock::kNone;
-    out.stop[i] = stops, out.pass[i] = w >= kTrusted ? pass : range2;
+    out.stop[i] = stops;
     passes |= stops >= FlatBlock::kNone;
   }
   return passes;
 }
 
-// Of points that only clear their bearing is all that matters. Returns how many are no numbers.
-PERCEPTION_WIDER std::int32_t placeClear(const BlockPoints points, const PointOffset from,
-                                         const Rose rose, std::int32_t* __restrict bearing,
-                                         float* __restrict range) {
+PERCEPTION_WIDEST void findPassing(FlatBlock& out) {
+  for (std::size_t i = 0; i < FlatBlock::kSize; ++i) {
+    const float range2 = out.range[i];
+    out.pass[i] = out.stop[i] < FlatBlock::kNone ? 0 : range2;
+  }
+}
+
+// Gives points that are no numbers the bearing behind the last one. Returns how many there are.
+std::size_t dropNotFinite(const BlockPoints& points, const Rose& rose, std::int32_t* bearing) {
+  std::size_t dropped = 0;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const float sum = points.x[i] + points.y[i] + points.z[i];
+    if (sum - sum == 0) continue;
+    bearing[i] = rose.count, ++dropped;
+  }
+  return dropped;
+}
+
+// Of points that only clear their bearing is all that matters. Not zero where some are no numbers.
+PERCEPTION_WIDEST std::int32_t placeClear(const BlockPoints points, const PointOffset from,
+                                          const Rose rose, std::int32_t* __restrict bearing,
+                                          float* __restrict range) {
   const float* __restrict xs = points.x, * __restrict ys = points.y, * __restrict zs = points.z;
   std::int32_t not_finite = 0;
   for (std::size_t i = 0; i < points.count; ++i) {
     const float dx = xs[i] * from.per_metre + from.x - rose.x;
     const float dy = ys[i] * from.per_metre + from.y - rose.y;
     const float sum = xs[i] + ys[i] + zs[i], range2 = dx * dx + dy * dy;
-    const std::int32_t finite = sum - sum == 0;
-    bearing[i] = bearingOf(dx, dy, range2, finite, rose);
-    range[i] = range2, not_finite += 1 - finite;
+    bearing[i] = bearingOf(dx, dy, range2, rose);
+    range[i] = range2, not_finite |= bitsOf(sum - sum);
   }
   return not_finite;
-}
-
-PERCEPTION_LANES std::int32_t bitsOf(float v) {
-  std::int32_t bits;
-  std::memcpy(&bits, &v, sizeof bits);
-  return bits;
 }
 
 struct SurveyBits {
@@ -108,9 +122,9 @@ struct SurveyBits {
 };
 
 // Squares are not negative, so their order is that of their bits; no number is above them all.
-PERCEPTION_WIDER void survey(const float* __restrict xs, const float* __restrict ys,
-                             const float* __restrict zs, const PointOffset from, const Rose rose,
-                             SurveyBits& out) {
+PERCEPTION_WIDEST void survey(const float* __restrict xs, const float* __restrict ys,
+                              const float* __restrict zs, const PointOffset from, const Rose rose,
+                              SurveyBits& out) {
   SurveyBits s{0, 0, 0, -1, -1, 0};
   for (std::size_t i = 0; i < ClearBlock::kSize; ++i) {
     const float dx = xs[i] * from.per_metre + from.x - rose.x;
@@ -132,13 +146,14 @@ void FlatBlock::place(const GridPoints& points, const float* weights, std::size_
   const BlockPoints block{points.x(first), points.y(first), points.z(first), count};
   const BlockCounts counts = placeHits(block, frame.offsetOf(points), frame.rules(), rose, *this);
   const std::int32_t passing = weights ? weigh(weights, count, *this) : counts.beside;
-  hits = static_cast<std::size_t>(counts.hits), passes = passing > 0;
-  not_finite = static_cast<std::size_t>(counts.not_finite);
+  hits = static_cast<std::size_t>(counts.hits), passes = passing != 0;
+  not_finite = counts.not_finite != 0 ? dropNotFinite(block, rose, bearing.data()) : 0;
   const auto row = static_cast<std::int32_t>(frame.rules().cells);
   for (std::size_t i = count; i < kSize; ++i) {
     column[i] = row * row, mark[i] = 0;
-    bearing[i] = rose.count, stop[i] = kNone, pass[i] = 0;
+    bearing[i] = rose.count, range[i] = 0, stop[i] = kNone;
   }
+  if (passes) findPassing(*this);
 }
 
 // Neighbouring hits often mark the same column, and would wait for each other.
@@ -158,8 +173,8 @@ void FlatBlock::markColumns(bool weighted, std::uint8_t* weights) const {
 void ClearBlock::place(const GridPoints& points, std::size_t first, std::size_t count,
                        PointOffset from, const Rose& rose) {
   const BlockPoints block{points.x(first), points.y(first), points.z(first), count};
-  not_finite =
-      static_cast<std::size_t>(placeClear(block, from, rose, bearing.data(), range.data()));
+  const std::int32_t some = placeClear(block, from, rose, bearing.data(), range.data());
+  not_finite = some != 0 ? dropNotFinite(block, rose, bearing.data()) : 0;
   for (std::size_t i = count; i < kSize; ++i) bearing[i] = rose.count, range[i] = 0;
 }
 

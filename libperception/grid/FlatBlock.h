@@ -27,8 +27,9 @@ struct FlatBlock {
   Lane<std::int32_t> column;   ///< [y][x]; behind the window's last one where a hit marks none
   Lane<std::int32_t> mark;     ///< its weight, of kWhole; only where hits come with weights
   Lane<std::int32_t> bearing;  ///< Rose::count in the sensor's own cell
-  Lane<float> stop;            ///< [cells^2] squared range of a hit that stops its beam, or kNone
-  Lane<float> pass;            ///< [cells^2] of a hit that does not, or 0
+  Lane<float> range;           ///< [cells^2] squared
+  Lane<float> stop;            ///< the same of a hit that stops its beam, or kNone
+  Lane<float> pass;            ///< of a hit that does not, or 0; only where there is one
   bool passes = false;         ///< there is such a hit
   std::size_t hits = 0;        ///< that mark a column
   std::size_t not_finite = 0;  ///< that are no numbers

@@ -54,7 +54,7 @@ PERCEPTION_LANES void addStretches(float* __restrict values, std::size_t count, 
   }
 }
 
-PERCEPTION_WIDER void addAll(float* __restrict values, std::size_t count, const FlatEvidence e) {
+PERCEPTION_WIDEST void addAll(float* __restrict values, std::size_t count, const FlatEvidence e) {
   std::size_t i = 0;
   addStretches<kStretch>(values, count, i, e);
   addStretches<8>(values, count, i, e);
