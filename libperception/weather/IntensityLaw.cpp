@@ -21,10 +21,9 @@ PERCEPTION_LANES Int8 digitsOf(const Float8& intensity) {
   return larger((reinterpret_cast<Int8>(bytes) >> 23) - 126, eight(0));
 }
 
-PERCEPTION_WIDER void findAll(const float* intensity, std::size_t count, std::uint8_t* bins) {
-  using Byte8 = std::uint8_t __attribute__((vector_size(8)));
+PERCEPTION_WIDER void findAll(const float* intensity, std::size_t count, std::uint32_t* bins) {
   for (std::size_t i = 0; i + kLanes <= count; i += kLanes)
-    store8(__builtin_convertvector(digitsOf(load8(intensity + i)), Byte8), bins + i);
+    store8(digitsOf(load8(intensity + i)), bins + i);
 }
 
 }  // namespace
@@ -33,11 +32,10 @@ std::size_t IntensityLaw::binOf(float intensity) {
   return static_cast<std::size_t>(digitsOf(eight(intensity))[0]);
 }
 
-void IntensityLaw::findBins(const std::vector<float>& intensity, std::vector<std::uint8_t>& bins) {
-  bins.resize(intensity.size());
-  findAll(intensity.data(), intensity.size(), bins.data());
-  for (std::size_t i = intensity.size() / kLanes * kLanes; i < intensity.size(); ++i)
-    bins[i] = static_cast<std::uint8_t>(binOf(intensity[i]));
+void IntensityLaw::findBins(const float* intensity, std::size_t count, std::uint32_t* bins) {
+  findAll(intensity, count, bins);
+  for (std::size_t i = count / kLanes * kLanes; i < count; ++i)
+    bins[i] = static_cast<std::uint32_t>(binOf(intensity[i]));
 }
 
 void IntensityLaw::forget(double share) {

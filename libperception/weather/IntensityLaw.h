@@ -13,7 +13,7 @@ class IntensityLaw {
   static constexpr std::size_t kBins = 9;
   /// Of intensities in [0, 1]: zero, then octaves of 1/255.
   static std::size_t binOf(float intensity);
-  static void findBins(const std::vector<float>& intensity, std::vector<std::uint8_t>& bins);
+  static void findBins(const float* intensity, std::size_t count, std::uint32_t* bins);
   void forget(double share);  ///< [-] of what is known that stays
   /// Returns of a bin, by what they are likely to be.
   void add(std::size_t bin, double phantoms, double surfaces);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "libperception/weather/RangeImage.h"
+#include "libperception/weather/SuspectReturns.h"
 
 namespace perception {
 
@@ -16,31 +17,25 @@ struct NeighbourRules {
   int surface;   ///< of the eight nearest within `tight`: no suspect
 };
 
-/// What is in the pixels about a return, RangeImage::kColumnReach columns and kRowReach rows to
-/// each side, in one number: six bits a count, so that it can be looked up in a table.
-class NeighbourCounts {
+/// Counts what is about near returns. Those that a range image shows are counted eight pixels of a
+/// row at once; the others, which shared their pixel with a later one, each by itself, and those at
+/// one range in one pixel (echoes that are one) once.
+class NeighbourCounter {
  public:
-  static constexpr int kBits = 6;
-  static constexpr std::uint32_t kMost = 1U << kBits;  ///< no count reaches it
-
-  NeighbourCounts() = default;
-  explicit NeighbourCounts(std::uint32_t bits) : bits_(bits) {}
-  std::uint32_t tight() const { return bits_ % kMost; }                      ///< within `tight`
-  std::uint32_t wide() const { return bits_ >> kBits & (kMost - 1); }        ///< within `wide`
-  std::uint32_t beyond() const { return bits_ >> 2 * kBits & (kMost - 1); }  ///< pass behind
-  std::uint32_t filled() const { return bits_ >> 3 * kBits & (kMost - 1); }  ///< with a return
-  std::uint32_t around() const { return bits_ >> 4 * kBits; }  ///< of the eight nearest, `tight`
-  /// beyond() and filled() as one number below kMost^2.
-  std::uint32_t beyondAndFilled() const { return bits_ >> 2 * kBits & (kMost * kMost - 1); }
+  /// Fills `neighbours` of all returns that are there.
+  void count(const RangeImage& image, const NeighbourRules& rules, SuspectReturns& near);
+  std::size_t memoryBytes() const;
 
  private:
-  std::uint32_t bits_ = 0;
-};
+  std::size_t findHidden(const RangeImage& image, SuspectReturns& near);
+  std::size_t tellTwinsApart(std::size_t hidden, const SuspectReturns& near);
 
-/// Returns of the cloud up to `far` that fewer than `surface` of their eight nearest pixels share a
-/// surface with, in the scan's order, and what is about each: their number. Both arrays hold as
-/// many as there are returns.
-std::size_t findSuspects(const RangeImage& image, const NeighbourRules& rules,
-                         std::uint32_t* suspects, NeighbourCounts* counts);
+  std::vector<std::uint32_t> of_pixel_;    // bits of NeighbourCounts
+  std::vector<std::uint32_t> hidden_;      // returns that the image does not show
+  std::vector<std::uint32_t> kind_;        // of each of them
+  std::vector<std::uint32_t> kind_pixel_;  // of each kind
+  std::vector<float> kind_range_;          // [m]
+  std::vector<std::uint32_t> of_kind_;     // bits of NeighbourCounts
+};
 
 }  // namespace perception

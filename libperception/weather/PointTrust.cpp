@@ -3,33 +3,39 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/core/Pack.h"
 #include "libperception/core/Wider.h"
-#include "libperception/weather/HeightAboveGround.h"
 
 namespace perception {
 namespace {
 
-constexpr float kPhantom = 0;               // [log-odds] above it a verdict is "phantom"
-constexpr float kSettled = -5;              // [log-odds] below it no neighbour can make a phantom
-constexpr std::size_t kIntensityStep = 4;   // every fourth return tells as much
-constexpr float kBeyondDoubt = 8;           // [log-odds]
-constexpr double kShareBounds[] = {-7, 2};  // [log-odds] that weather may add
+constexpr float kPhantom = 0;              // [log-odds] above it a verdict is "phantom"
+constexpr float kSettled = -5;             // [log-odds] below it no neighbour can make a phantom
+constexpr std::size_t kIntensityStep = 4;  // every fourth return tells as much
+constexpr float kBeyondDoubt = 8;          // [log-odds]
 
 float sigmoid(float v) { return 1 / (1 + std::exp(-v)); }
-double logit(double p) { return std::log(p / (1 - p)); }
+
+PERCEPTION_WIDEST void markFrom(float least, const float* __restrict odds, std::size_t count,
+                                std::int32_t* __restrict marks) {
+  for (std::size_t s = 0; s < count; ++s) marks[s] = odds[s] >= least;
+}
 
 /// The places of odds not below `least`: their number.
 std::size_t findOpen(float least, const float* odds, std::size_t count, std::uint32_t* open) {
+  constexpr std::size_t kBlock = 1024;
+  std::array<std::int32_t, kBlock> marks;
   std::size_t found = 0;
-  for (std::size_t s = 0; s < count; ++s) {  // what is below is overwritten by the next
-    open[found] = static_cast<std::uint32_t>(s);
-    found += odds[s] >= least;
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    const std::size_t size = std::min(kBlock, count - first);
+    markFrom(least, odds + first, size, marks.data());
+    found += packPlaces(marks.data(), size, static_cast<std::uint32_t>(first), open + found);
   }
   return found;
 }
 
 /// Of ranges [m], how many are no farther than that; 0 is none.
-PERCEPTION_WIDER int countWithin(const float* ranges, std::size_t count, float far) {
+PERCEPTION_WIDEST int countWithin(const float* ranges, std::size_t count, float far) {
   int within = 0;
   for (std::size_t i = 0; i < count; ++i) within += (ranges[i] > 0) & (ranges[i] <= far);
   return within;
@@ -62,6 +68,36 @@ CountCurves::CountCurves(const TrustCurve& of_tight, const TrustCurve& of_wide,
 
 namespace {
 
+/// Log-odds of what the geometry says of some suspects; `near` and `high`: where the curves of
+/// range and height are read.
+PERCEPTION_WIDEST void weigh(const std::uint32_t* __restrict neighbours,
+                             const std::int32_t* __restrict near,
+                             const std::int32_t* __restrict high, std::size_t count, float bias,
+                             const float* __restrict of_range, const float* __restrict of_height,
+                             const float* __restrict tight, const float* __restrict wide,
+                             const float* __restrict beyond, float* __restrict odds) {
+  constexpr std::uint32_t kMost = NeighbourCounts::kMost;
+  constexpr int kBits = NeighbourCounts::kBits;
+  for (std::size_t s = 0; s < count; ++s) {
+    const std::uint32_t bits = neighbours[s];
+    const auto n = static_cast<std::int32_t>(bits % kMost);
+    const auto w = static_cast<std::int32_t>(bits >> kBits & (kMost - 1));
+    const auto b = static_cast<std::int32_t>(bits >> 2 * kBits & (kMost * kMost - 1));
+    odds[s] = bias + of_range[near[s]] + tight[n] + wide[w] + beyond[b] + of_height[high[s]];
+  }
+}
+
+/// The first pass, complete; the second is the same as yet.
+PERCEPTION_WIDEST void addIntensity(const float* __restrict geometry,
+                                    const std::uint32_t* __restrict cube, std::size_t count,
+                                    const float* __restrict ratios, float* __restrict first,
+                                    float* __restrict second) {
+  for (std::size_t s = 0; s < count; ++s) {
+    const auto bin = static_cast<std::int32_t>(cube[s] >> SuspectReturns::kBinShift);
+    first[s] = second[s] = geometry[s] + ratios[bin];
+  }
+}
+
 std::array<TrustCurve, kTrustFeatures> curvesOf(const TrustParams& params) {
   std::array<TrustCurve, kTrustFeatures> curves;
   for (std::size_t f = 0; f < kTrustFeatures; ++f)
@@ -77,17 +113,32 @@ PointTrust::PointTrust(const TrustParams& params)
       count_curves_(curve(TrustFeature::kTight), curve(TrustFeature::kWide),
                     curve(TrustFeature::kBeyond)),
       image_(params.column, params.row),
-      share_(params.fitted_share),
+      share_(params),
       cubes_(static_cast<float>(params.max_range)) {}
 
-// Every return into the image and into its cube, all of them trusted as yet.
-void PointTrust::placeReturns(const LidarCloud& cloud) {
+// Every return into the image; the near ones into their cubes, all of them trusted as yet.
+void PointTrust::placeReturns(const SensorFrame& frame, const LidarCloud& cloud) {
+  hears_intensity_ = params_.use_intensity && cloud.intensity.size() == cloud.size();
   cubes_.clear();
+  census_ = {};
+  suspects_.count = 0;
+  const HeightAboveGround height(frame.T_ego_sensor, frame.ground);
   const auto far = static_cast<float>(params_.max_range);
-  image_.fill(cloud, [&](std::size_t first, std::size_t count) {
-    cubes_.add(&cloud.x[first], &cloud.y[first], &cloud.z[first], &image_.ranges()[first], count,
-               far);
+  std::array<std::uint32_t, RangeImage::kBlock> bins{};
+  image_.fill(cloud, [&](const RangeImage::Block& block) {
+    if (hears_intensity_)
+      IntensityLaw::findBins(&cloud.intensity[block.first], block.count, bins.data());
+    count(block, bins.data());
+    suspects_.add(cloud, block, bins.data(), height, far, cubes_);
   });
+}
+
+void PointTrust::count(const RangeImage::Block& block, const std::uint32_t* bins) {
+  const auto far = static_cast<float>(params_.max_range);
+  for (std::size_t k = 0; k < block.count; k += kIntensityStep)
+    census_.returns[bins[k]] += (block.ranges[k] > 0) & (block.ranges[k] <= far);
+  census_.within_share_range +=
+      countWithin(block.ranges, block.count, static_cast<float>(params_.share_range));
 }
 
 NeighbourRules PointTrust::neighbourRules() const {
@@ -97,23 +148,23 @@ NeighbourRules PointTrust::neighbourRules() const {
 }
 
 // The first pass: who is no surface for sure, and what does the geometry say of it?
-void PointTrust::lookAround(const SensorFrame& frame, const LidarCloud& cloud) {
-  suspects_.reserve(cloud.size());
+void PointTrust::lookAround() {
+  suspects_.makeRoomForLooks();
+  neighbours_.count(image_, neighbourRules(), suspects_);
+  suspects_.clearSurfaces(static_cast<std::uint32_t>(params_.surface_neighbours));
   open_.resize(suspects_.index.size());
-  suspects_.count =
-      findSuspects(image_, neighbourRules(), suspects_.index.data(), suspects_.neighbours.data());
-  const HeightAboveGround height(frame.T_ego_sensor, frame.ground);
+  constexpr std::size_t kBlock = RangeImage::kBlock;
   const TrustCurve &of_range = curve(TrustFeature::kRange),
                    &of_height = curve(TrustFeature::kHeight);
-  const auto bias = static_cast<float>(params_.bias);
-  for (std::size_t s = 0; s < suspects_.count; ++s) {
-    const std::size_t i = suspects_.index[s];
-    const NeighbourCounts counts = suspects_.neighbours[s];
-    const float r = image_.ranges()[i], high = height.of(cloud.x[i], cloud.y[i], cloud.z[i]);
-    suspects_.range[s] = r, suspects_.height[s] = high;
-    suspects_.geometry[s] = bias + of_range.at(r) + count_curves_.tight[counts.tight()] +
-                            count_curves_.wide[counts.wide()] +
-                            count_curves_.beyond[counts.beyondAndFilled()] + of_height.at(high);
+  std::array<std::int32_t, kBlock> near, high;
+  for (std::size_t s = 0; s < suspects_.count; s += kBlock) {
+    const std::size_t count = std::min(kBlock, suspects_.count - s);
+    of_range.findPlaces(&suspects_.range[s], count, near.data());
+    of_height.findPlaces(&suspects_.height[s], count, high.data());
+    weigh(&suspects_.neighbours[s], near.data(), high.data(), count,
+          static_cast<float>(params_.bias), of_range.table(), of_height.table(),
+          count_curves_.tight.data(), count_curves_.wide.data(), count_curves_.beyond.data(),
+          &suspects_.geometry[s]);
   }
 }
 
@@ -130,109 +181,58 @@ void PointTrust::hearSensor(const LidarCloud& cloud) {
   }
 }
 
-double PointTrust::weatherLogOdds() const {
-  if (!params_.adapt_share) return 0;
-  const double change = logit(share_) - logit(params_.fitted_share);
-  return std::clamp(params_.share_gain * change, kShareBounds[0], kShareBounds[1]);
-}
-
-// Expectation maximisation of the share of this scan's returns near the sensor: a histogram of
-// log-odds does for its steps. `near`: returns within share_range, those that nobody suspects
-// included.
-void PointTrust::followWeather() {
-  if (!params_.adapt_share) return;
-  constexpr int kBins = 128;
-  constexpr float kPerLogOdds = 4, kMiddle = kBins / 2;
-  static const std::array<double, kBins> kSurfaceOdds = [] {  // at the middles of the bins
-    std::array<double, kBins> odds{};
-    for (int b = 0; b < kBins; ++b)
-      odds[static_cast<std::size_t>(b)] =
-          std::exp(-(b + 0.5 - static_cast<double>(kMiddle)) / static_cast<double>(kPerLogOdds));
-    return odds;
-  }();
-  const auto reach = static_cast<float>(params_.share_range);
-  const int near = countWithin(image_.ranges().data(), image_.ranges().size(), reach);
-  if (near == 0) return;
-  std::array<std::uint32_t, kBins> counts{};
-  for (std::size_t s = 0; s < suspects_.count; ++s) {
-    const float place = std::clamp(suspects_.second[s] * kPerLogOdds + kMiddle, 0.0F, kBins - 1.0F);
-    counts[static_cast<std::size_t>(place)] += suspects_.range[s] <= reach;
-  }
-  double share = started_ ? share_ : params_.fitted_share;
-  for (int step = 0; step < 30; ++step) {
-    const double against = std::exp(logit(params_.fitted_share) - logit(share));
-    double phantoms = 0;
-    for (std::size_t b = 0; b < kBins; ++b)
-      phantoms += static_cast<double>(counts[b]) / (1 + kSurfaceOdds[b] * against);
-    share = std::clamp(phantoms / near, params_.least_share, 0.9);
-  }
-  const double weight = started_ ? 1 / params_.share_memory : 1;
-  share_ += weight * (share - share_);
-  started_ = true;
-}
-
 // Asks what intensities are those of phantoms, by what the geometry says of these returns.
-void PointTrust::learnIntensity(const LidarCloud& cloud) {
-  IntensityLaw::findBins(cloud.intensity, bins_);
-  const auto far = static_cast<float>(params_.max_range);
-  std::array<std::uint32_t, IntensityLaw::kBins> returns{};
-  const std::vector<float>& ranges = image_.ranges();
-  for (std::size_t i = 0; i < cloud.size(); i += kIntensityStep)
-    returns[bins_[i]] += (ranges[i] > 0) & (ranges[i] <= far);
+void PointTrust::learnIntensity() {
   std::array<double, IntensityLaw::kBins> phantoms{};
-  const auto weather = static_cast<float>(weatherLogOdds());
+  const auto weather = static_cast<float>(share_.logOdds()), least = -kBeyondDoubt - weather;
   const std::size_t open =
-      findOpen(-kBeyondDoubt - weather, suspects_.geometry.data(), suspects_.count, open_.data());
+      findOpen(least, suspects_.geometry.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
-    const std::uint32_t i = suspects_.index[open_[k]];
-    if (i % kIntensityStep == 0)
-      phantoms[bins_[i]] += static_cast<double>(sigmoid(suspects_.geometry[open_[k]] + weather));
+    const std::uint32_t s = open_[k];
+    if (suspects_.index[s] % kIntensityStep == 0)
+      phantoms[suspects_.binOf(s)] += static_cast<double>(sigmoid(suspects_.geometry[s] + weather));
   }
   law_.forget(1 - 1 / params_.intensity_memory);
   for (std::size_t b = 0; b < IntensityLaw::kBins; ++b)
-    law_.add(b, kIntensityStep * phantoms[b], kIntensityStep * (returns[b] - phantoms[b]));
+    law_.add(b, kIntensityStep * phantoms[b], kIntensityStep * (census_.returns[b] - phantoms[b]));
 }
 
 // The first pass, complete: geometry and intensity.
-void PointTrust::weighIntensity(const LidarCloud& cloud) {
-  const bool used = params_.use_intensity && cloud.intensity.size() == cloud.size();
+void PointTrust::weighIntensity() {
   std::array<float, IntensityLaw::kBins> ratios{};
-  if (used) {
-    learnIntensity(cloud);
+  if (hears_intensity_) {
+    learnIntensity();
     ratios = law_.logRatios();
     for (float& ratio : ratios) ratio *= static_cast<float>(params_.intensity_gain);
   }
-  for (std::size_t s = 0; s < suspects_.count; ++s) {
-    const float more = used ? ratios[bins_[suspects_.index[s]]] : 0;
-    suspects_.first[s] = suspects_.second[s] = suspects_.geometry[s] + more;
-  }
+  addIntensity(suspects_.geometry.data(), suspects_.cube.data(), suspects_.count, ratios.data(),
+               suspects_.first.data(), suspects_.second.data());
 }
 
 // The second pass: what did the first make of the neighbours and of what else is within half a
 // metre?
-void PointTrust::askCompany(const LidarCloud& cloud) {
+void PointTrust::askCompany() {
   const std::size_t open =
       findOpen(kSettled, suspects_.first.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
     const std::uint32_t s = open_[k];
-    const std::size_t i = suspects_.index[s];
-    if (suspects_.first[s] > kPhantom) cubes_.doubt(cloud.x[i], cloud.y[i], cloud.z[i]);
+    if (suspects_.first[s] > kPhantom) cubes_.doubt(suspects_.cubeOf(s));
   }
   const auto own = static_cast<float>(params_.gain);
   const auto bias = static_cast<float>(params_.second_bias);
+  const TrustCurve& of_company = curve(TrustFeature::kCompany);
   for (std::size_t k = 0; k < open; ++k) {
     const std::uint32_t s = open_[k];
-    const std::size_t i = suspects_.index[s];
     const float first = suspects_.first[s];
-    suspects_.company[s] = cubes_.company(cloud.x[i], cloud.y[i], cloud.z[i], first > kPhantom);
-    suspects_.second[s] =
-        own * first + bias + curve(TrustFeature::kCompany).at(suspects_.company[s]);
+    const float company = cubes_.company(suspects_.corner[s], first > kPhantom);
+    suspects_.company[s] = company;
+    suspects_.second[s] = own * first + bias + of_company.at(company);
   }
 }
 
 void PointTrust::giveTrust(LidarCloud& cloud, TrustStats& stats) {
   cloud.trust.assign(cloud.size(), 1);
-  const auto weather = static_cast<float>(weatherLogOdds());
+  const auto weather = static_cast<float>(share_.logOdds());
   const std::size_t open =
       findOpen(-kBeyondDoubt - weather, suspects_.second.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
@@ -247,14 +247,14 @@ TrustStats PointTrust::apply(SensorFrame& frame) {
   TrustStats stats;
   auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud == nullptr) return stats;
-  placeReturns(*cloud);
-  lookAround(frame, *cloud);
+  placeReturns(frame, *cloud);
+  lookAround();
   hearSensor(*cloud);
-  weighIntensity(*cloud);
-  askCompany(*cloud);
-  followWeather();
+  weighIntensity();
+  askCompany();
+  share_.follow(suspects_, census_.within_share_range);
   stats.returns = cloud->size();
-  stats.share = share_;
+  stats.share = share_.value();
   giveTrust(*cloud, stats);
   return stats;
 }
@@ -267,7 +267,8 @@ std::vector<SuspectReturn> PointTrust::suspects() const {
 }
 
 std::size_t PointTrust::memoryBytes() const {
-  return image_.memoryBytes() + suspects_.memoryBytes() + bins_.capacity() + cubes_.memoryBytes();
+  return image_.memoryBytes() + neighbours_.memoryBytes() + suspects_.memoryBytes() +
+         cubes_.memoryBytes();
 }
 
 std::unique_ptr<PointFilter> makePointTrust(const TrustParams& params) {

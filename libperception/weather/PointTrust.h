@@ -4,8 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "libperception/weather/HeightAboveGround.h"
 #include "libperception/weather/IntensityLaw.h"
 #include "libperception/weather/Neighbours.h"
+#include "libperception/weather/PhantomShare.h"
 #include "libperception/weather/PointFilter.h"
 #include "libperception/weather/RangeImage.h"
 #include "libperception/weather/SurroundingCubes.h"
@@ -25,8 +27,7 @@ struct CountCurves {
 /// P(phantom) of every return from how it stands among its neighbours in the range image, its
 /// height above the ground, its intensity, the sensor's label and echoes. Two passes: in the second
 /// counts what the first made of the returns nearby, so that a dark car keeps its dark returns. The
-/// share of phantoms follows the weather (Saerens et al., Neural Computation 2002), so that nothing
-/// is doubted in clear air.
+/// share of phantoms follows the weather, so that nothing is doubted in clear air.
 class PointTrust final : public PointFilter {
  public:
   explicit PointTrust(const TrustParams& params);
@@ -35,22 +36,26 @@ class PointTrust final : public PointFilter {
 
   /// Of the last scan, for studies and fits.
   std::vector<SuspectReturn> suspects() const;
-  double share() const { return share_; }
+  double share() const { return share_.value(); }
   std::array<float, IntensityLaw::kBins> intensityLogRatios() const { return law_.logRatios(); }
   double rowPitch() const { return image_.rowPitch(); }  ///< [rad]
   std::size_t memoryBytes() const;
 
  private:
-  void placeReturns(const LidarCloud& cloud);
+  /// What is counted while the scan is read once.
+  struct Census {
+    int within_share_range = 0;                                ///< returns
+    std::array<std::uint32_t, IntensityLaw::kBins> returns{};  ///< every kIntensityStep'th, near
+  };
+  void placeReturns(const SensorFrame& frame, const LidarCloud& cloud);
+  void count(const RangeImage::Block& block, const std::uint32_t* bins);
   NeighbourRules neighbourRules() const;
-  void lookAround(const SensorFrame& frame, const LidarCloud& cloud);
+  void lookAround();
   void hearSensor(const LidarCloud& cloud);
-  void followWeather();
-  void learnIntensity(const LidarCloud& cloud);
-  void weighIntensity(const LidarCloud& cloud);
-  void askCompany(const LidarCloud& cloud);
+  void learnIntensity();
+  void weighIntensity();
+  void askCompany();
   void giveTrust(LidarCloud& cloud, TrustStats& stats);
-  double weatherLogOdds() const;
 
   const TrustCurve& curve(TrustFeature feature) const {
     return curves_[static_cast<std::size_t>(feature)];
@@ -61,9 +66,10 @@ class PointTrust final : public PointFilter {
   CountCurves count_curves_;
   RangeImage image_;
   IntensityLaw law_;
-  std::vector<std::uint8_t> bins_;  // of the law, of each return
-  double share_;                    // [-] of phantoms within share_range
-  bool started_ = false;
+  bool hears_intensity_ = false;  // this scan has it, and it is used
+  PhantomShare share_;
+  Census census_;
+  NeighbourCounter neighbours_;
   SuspectReturns suspects_;
   std::vector<std::uint32_t> open_;  // suspects that are still to be looked at
   SurroundingCubes cubes_;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
-#include "libperception/core/Lanes.h"
 #include "libperception/core/RoughBearing.h"
 #include "libperception/core/Wider.h"
 
@@ -25,56 +24,41 @@ struct PixelRules {
   std::int32_t columns, stride;
 };
 
-/// Of `count` points [m]: range [m], azimuth [rad], tangent of elevation.
-PERCEPTION_WIDER void findDirections(const float* __restrict x, const float* __restrict y,
-                                     const float* __restrict z, std::size_t count,
-                                     float* __restrict range, float* __restrict azimuth,
-                                     float* __restrict slope) {
+/// Ranges [m] of `count` points [m], 0 where there is none, and their pixels, then 0, too.
+PERCEPTION_WIDEST void findPixels(const float* __restrict x, const float* __restrict y,
+                                  const float* __restrict z, std::size_t count, const PixelRules k,
+                                  float* __restrict range, std::uint32_t* __restrict pixels) {
   for (std::size_t i = 0; i < count; ++i) {
     const float flat2 = x[i] * x[i] + y[i] * y[i];
     const float r = std::sqrt(flat2 + z[i] * z[i]);
-    azimuth[i] = roughBearing(x[i], y[i]);
-    slope[i] = z[i] / (std::sqrt(flat2) + 1e-6F);
-    range[i] = (r > kInstrument) & (r < 1e3F) ? r : 0.0F;  // NaN fails both
-  }
-}
-
-/// Pixels of directions; 0 where there is no range.
-PERCEPTION_WIDER void findPixels(const float* __restrict range, const float* __restrict azimuth,
-                                 const float* __restrict slope, std::size_t count, PixelRules k,
-                                 std::uint32_t* __restrict pixels) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto turn =
-        static_cast<std::int32_t>((azimuth[i] + static_cast<float>(kPi)) * k.per_radian);
+    const float slope = z[i] / (std::sqrt(flat2) + 1e-6F);
+    const std::int32_t seen = (r > kInstrument) & (r < 1e3F);  // NaN fails both
+    const auto turn = static_cast<std::int32_t>(
+        (roughBearing(x[i], y[i]) + static_cast<float>(kPi)) * k.per_radian);
     const std::int32_t column = turn < k.columns - 1 ? turn : k.columns - 1;
-    const float high = slope[i] < kSteepest ? slope[i] : kSteepest;
+    const float high = slope < kSteepest ? slope : kSteepest;
     const float up = (high > -kSteepest ? high : -kSteepest) + kSteepest;
     const std::int32_t row =
         static_cast<std::int32_t>(up * k.rows_per_slope) + RangeImage::kRowReach;
     const std::int32_t pixel = row * k.stride + column + RangeImage::kColumnReach;
-    pixels[i] = static_cast<std::uint32_t>(range[i] > 0 ? pixel : 0);
+    range[i] = seen != 0 ? r : 0.0F;
+    pixels[i] = static_cast<std::uint32_t>(seen != 0 ? pixel : 0);
   }
 }
 
 /// The first and the last pixel with a return.
 struct PixelSpan {
-  std::int32_t first, last;
+  std::uint32_t first, last;
 };
 
-PERCEPTION_WIDER PixelSpan widened(const std::uint32_t* pixels, std::size_t count, PixelSpan span) {
-  Int8 first = eight(span.first), last = eight(span.last);
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    Int8 some = eight(0);
-    std::memcpy(&some, pixels + i,
-                i + kLanes <= count ? sizeof some : (count - i) * sizeof *pixels);
-    last = larger(last, some);
-    first = smaller(first, some == 0 ? first : some);  // 0: no range
+PERCEPTION_WIDEST PixelSpan widened(const std::uint32_t* pixels, std::size_t count,
+                                    PixelSpan span) {
+  std::uint32_t before_first = span.first - 1, last = span.last;
+  for (std::size_t i = 0; i < count; ++i) {
+    before_first = std::min(before_first, pixels[i] - 1);  // no range: the largest number
+    last = std::max(last, pixels[i]);
   }
-  for (int k = 0; k < kLanes; ++k) {
-    span.first = std::min(span.first, first[k]);
-    span.last = std::max(span.last, last[k]);
-  }
-  return span;
+  return {before_first + 1, last};
 }
 
 }  // namespace
@@ -93,42 +77,44 @@ void RangeImage::layOut(double row) {
   stride_ = static_cast<std::ptrdiff_t>(columns_ + 2 * kColumnReach);
 }
 
-// Range and pixel of each return, block by block: directions never leave the nearest cache.
+// Block by block: what is known of a return never leaves the nearest cache.
 void RangeImage::place(const LidarCloud& cloud, const BlockVisitor& look) {
-  constexpr std::size_t kBlock = 1024;
-  std::array<float, kBlock> azimuth, slope;
+  std::array<float, kBlock> ranges;
+  std::array<std::uint32_t, kBlock> pixels;
   const PixelRules rules{per_radian_, rows_per_slope_, static_cast<std::int32_t>(columns_),
                          static_cast<std::int32_t>(stride_)};
-  ranges_.resize(cloud.size()), pixels_.resize(cloud.size());
-  PixelSpan span{static_cast<std::int32_t>(rows_ + kRowReach) * rules.stride, 0};
+  const auto stride = static_cast<std::uint32_t>(stride_);
+  PixelSpan span{static_cast<std::uint32_t>(rows_ + kRowReach) * stride, 0};
+  float* image = image_.data();
   for (std::size_t first = 0; first < cloud.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, cloud.size() - first);
-    findDirections(&cloud.x[first], &cloud.y[first], &cloud.z[first], count, &ranges_[first],
-                   azimuth.data(), slope.data());
-    findPixels(&ranges_[first], azimuth.data(), slope.data(), count, rules, &pixels_[first]);
-    span = widened(&pixels_[first], count, span);
-    if (look) look(first, count);
+    findPixels(&cloud.x[first], &cloud.y[first], &cloud.z[first], count, rules, ranges.data(),
+               pixels.data());
+    span = widened(pixels.data(), count, span);
+    for (std::size_t k = 0; k < count; ++k) image[pixels[k]] = ranges[k];
+    if (look) look({first, count, ranges.data(), pixels.data()});
   }
-  const auto stride = static_cast<std::int32_t>(stride_);
-  lowest_ = static_cast<std::size_t>(span.first / stride);
-  highest_ = static_cast<std::size_t>(span.last / stride);
+  image[0] = 0;
+  lowest_ = span.first / stride, highest_ = span.last / stride;
 }
 
 // Of the directions with a return, how many have one in the row above or below.
 double RangeImage::connectedShare(const LidarCloud& cloud, double row) const {
   RangeImage other(column_, row);
   other.layOut(row);
-  other.place(cloud);
-  std::vector<char> filled((other.rows_ + 2 * kRowReach) * static_cast<std::size_t>(other.stride_));
-  for (const std::uint32_t pixel : other.pixels_) filled[pixel] = 1;
-  filled[0] = 0;
+  other.wipe();
+  other.place(cloud, {});
   std::size_t all = 0, connected = 0;
-  const auto stride = static_cast<std::size_t>(other.stride_);
-  for (std::size_t p = stride + 1; p + stride + 1 < filled.size(); ++p) {
-    if (!filled[p]) continue;
-    ++all;
-    const char *below = &filled[p - stride], *above = &filled[p + stride];
-    connected += below[-1] || below[0] || below[1] || above[-1] || above[0] || above[1];
+  const auto filled = [](const float* pixel) {
+    return (pixel[-1] > 0) | (pixel[0] > 0) | (pixel[1] > 0);
+  };
+  for (std::size_t line = other.lowest_; line <= other.highest_; ++line) {
+    const float* pixel = other.image_.data() + static_cast<std::ptrdiff_t>(line) * other.stride_;
+    for (const float* end = pixel + other.stride_; pixel != end; ++pixel) {
+      if (!(*pixel > 0)) continue;
+      ++all;
+      connected += filled(pixel - other.stride_) || filled(pixel + other.stride_);
+    }
   }
   return all == 0 ? 0 : static_cast<double>(connected) / static_cast<double>(all);
 }
@@ -142,7 +128,7 @@ double RangeImage::findRow(const LidarCloud& cloud) const {
 // Rows without returns are empty already.
 void RangeImage::wipe() {
   const auto stride = static_cast<std::size_t>(stride_);
-  image_.resize((rows_ + 2 * kRowReach) * stride);
+  image_.resize((rows_ + 2 * kRowReach) * stride + kSlack);
   if (highest_ >= lowest_)
     std::fill_n(image_.begin() + static_cast<std::ptrdiff_t>(lowest_ * stride),
                 (highest_ + 1 - lowest_) * stride, 0.0F);
@@ -152,19 +138,13 @@ void RangeImage::fill(const LidarCloud& cloud, const BlockVisitor& look) {
   if (rows_ == 0) layOut(row_ > 0 ? row_ : findRow(cloud));
   wipe();
   place(cloud, look);
-  float* image = image_.data();
-  for (std::size_t i = 0; i < ranges_.size(); ++i) image[pixels_[i]] = ranges_[i];
-  image[0] = 0;
   for (std::size_t row = lowest_; row <= highest_; ++row) {
-    float* line = image + row * static_cast<std::size_t>(stride_);
+    float* line = image_.data() + row * static_cast<std::size_t>(stride_);
     std::copy(line + columns_, line + columns_ + kColumnReach, line);
     std::copy(line + kColumnReach, line + 2 * kColumnReach, line + kColumnReach + columns_);
   }
 }
 
-std::size_t RangeImage::memoryBytes() const {
-  return sizeof(float) * (ranges_.capacity() + image_.capacity()) +
-         sizeof(std::uint32_t) * pixels_.capacity();
-}
+std::size_t RangeImage::memoryBytes() const { return sizeof(float) * image_.capacity(); }
 
 }  // namespace perception

@@ -1,7 +1,6 @@
 #include "libperception/weather/SurroundingCubes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "libperception/core/Wider.h"
@@ -12,36 +11,34 @@ namespace {
 /// How cubes are numbered.
 struct CubeRules {
   float reach, bottom, per_metre;
-  float far;  ///< [m]
   std::int32_t side, layers;
+
+  std::int32_t along(float v) const {
+    const auto i = static_cast<std::int32_t>((v + reach) * per_metre);
+    return i < 0 ? 0 : i < side ? i : side - 1;
+  }
+  std::int32_t layer(float z) const {
+    const auto i = static_cast<std::int32_t>((z - bottom) * per_metre);
+    return i < 0 ? 0 : i < layers ? i : layers - 1;
+  }
+  std::int32_t column(std::int32_t x, std::int32_t y) const { return (x * side + y) * layers; }
 };
 
-/// ln(1 + count), from a table where counts are as usual.
-float logOfOneMore(std::uint32_t count) {
-  static const std::array<float, 1024> kLogs = [] {
-    std::array<float, 1024> logs{};
-    for (std::size_t n = 0; n < logs.size(); ++n) logs[n] = std::log(static_cast<float>(n + 1));
-    return logs;
-  }();
-  return count < kLogs.size() ? kLogs[count] : std::log(static_cast<float>(count) + 1);
-}
-
-inline float bounded(float v, float most) {
-  const float low = v > 0 ? v : 0;
-  return low < most ? low : most;
-}
-
-PERCEPTION_WIDER void findCubes(const float* __restrict x, const float* __restrict y,
-                                const float* __restrict z, const float* __restrict range,
-                                std::size_t count, CubeRules k, std::uint32_t* __restrict cube) {
-  const auto last = static_cast<float>(k.side - 1), top = static_cast<float>(k.layers - 1);
+/// Of each place the cube, and of the cubes a quarter of an edge to either side the numbers: 10
+/// bits and how many farther the upper ones are, 2 bits, along x and y; 5 and 2 bits upwards.
+PERCEPTION_WIDEST void findAll(const float* __restrict x, const float* __restrict y,
+                               const float* __restrict z, std::size_t count, const CubeRules k,
+                               float half, std::uint32_t* __restrict cubes,
+                               std::uint32_t* __restrict corners) {
   for (std::size_t i = 0; i < count; ++i) {
-    const auto cx = static_cast<std::int32_t>(bounded((x[i] + k.reach) * k.per_metre, last));
-    const auto cy = static_cast<std::int32_t>(bounded((y[i] + k.reach) * k.per_metre, last));
-    const auto cz = static_cast<std::int32_t>(bounded((z[i] - k.bottom) * k.per_metre, top));
-    const std::int32_t counts = (range[i] > 0) & (range[i] <= k.far);
-    cube[i] = static_cast<std::uint32_t>(counts != 0 ? (cx * k.side + cy) * k.layers + cz
-                                                     : k.side * k.side * k.layers);
+    const std::int32_t cube = k.column(k.along(x[i]), k.along(y[i])) + k.layer(z[i]);
+    const std::int32_t x0 = k.along(x[i] - half), y0 = k.along(y[i] - half);
+    const std::int32_t x1 = k.along(x[i] + half), y1 = k.along(y[i] + half);
+    const std::int32_t z0 = k.layer(z[i] - half), z1 = k.layer(z[i] + half);
+    const std::int32_t aside = x0 | (x1 - x0) << 10 | y0 << 12 | (y1 - y0) << 22;
+    cubes[i] = static_cast<std::uint32_t>(cube);
+    corners[i] = static_cast<std::uint32_t>(aside) | static_cast<std::uint32_t>(z0) << 24 |
+                 static_cast<std::uint32_t>(z1 - z0) << 29;
   }
 }
 
@@ -49,51 +46,27 @@ PERCEPTION_WIDER void findCubes(const float* __restrict x, const float* __restri
 
 SurroundingCubes::SurroundingCubes(float reach)
     : reach_(reach),
-      side_(2 * static_cast<int>(std::ceil(reach / kEdge))),
-      trusted_(columnAt(side_, 0) + 1),
-      doubted_(trusted_.size()) {}
-
-void SurroundingCubes::clear() {
-  std::fill(trusted_.begin(), trusted_.end(), 0U);
-  std::fill(doubted_.begin(), doubted_.end(), 0U);
+      side_(std::min(1024, 2 * static_cast<int>(std::ceil(reach / kEdge)))),
+      counts_(static_cast<std::size_t>(side_ * side_ * kLayers)) {
+  for (std::size_t n = 0; n < logs_.size(); ++n) logs_[n] = std::log(static_cast<float>(n + 1));
 }
 
-void SurroundingCubes::add(const float* x, const float* y, const float* z, const float* range,
-                           std::size_t count, float far) {
-  constexpr std::size_t kBlock = 512, kQuarter = kBlock / 4;
-  const CubeRules rules{reach_, kBottom, 1 / kEdge, far, side_, kLayers};
-  std::array<std::uint32_t, kBlock> cube;
-  std::uint32_t* trusted = trusted_.data();
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    const std::size_t size = std::min(kBlock, count - first);
-    findCubes(x + first, y + first, z + first, range + first, size, rules, cube.data());
-    // Neighbours in a scan share cubes; four places by turns do not wait for each other.
-    std::fill(cube.begin() + static_cast<std::ptrdiff_t>(size), cube.end(),
-              static_cast<std::uint32_t>(trusted_.size() - 1));
-    for (std::size_t k = 0; k < kQuarter; ++k)
-      ++trusted[cube[k]], ++trusted[cube[k + kQuarter]], ++trusted[cube[k + 2 * kQuarter]],
-          ++trusted[cube[k + 3 * kQuarter]];
-  }
+void SurroundingCubes::clear() { std::fill(counts_.begin(), counts_.end(), 0U); }
+
+void SurroundingCubes::locate(const float* x, const float* y, const float* z, std::size_t count,
+                              std::uint32_t* cubes, std::uint32_t* corners) const {
+  const CubeRules rules{reach_, kBottom, 1 / kEdge, side_, kLayers};
+  findAll(x, y, z, count, rules, kEdge / 2, cubes, corners);
 }
 
-float SurroundingCubes::company(float x, float y, float z, bool doubted) const {
-  constexpr float kHalf = kEdge / 2;
-  const int x0 = along(x - kHalf), x1 = along(x + kHalf);
-  const int y0 = along(y - kHalf), y1 = along(y + kHalf);
-  const auto z0 = static_cast<std::size_t>(layer(z - kHalf)),
-             z1 = static_cast<std::size_t>(layer(z + kHalf));
-  std::uint32_t trusted = 0, others = 0;
-  for (const std::size_t column :
-       {columnAt(x0, y0), columnAt(x0, y1), columnAt(x1, y0), columnAt(x1, y1)}) {
-    trusted += trusted_[column + z0] + trusted_[column + z1];
-    others += doubted_[column + z0] + doubted_[column + z1];
-  }
-  if (doubted) {
-    others -= std::min(others, 1U);
-  } else {
-    trusted -= std::min(trusted, 1U);
-  }
-  return logOfOneMore(trusted) - logOfOneMore(others);
+// Neighbours in a scan share cubes; four places by turns do not wait for each other.
+void SurroundingCubes::add(const std::uint32_t* cubes, std::size_t count, std::uint32_t mask) {
+  std::uint64_t* const counts = counts_.data();
+  const std::size_t quarter = count / 4;
+  const auto one = [&](std::size_t k) { ++counts[cubes[k] & mask]; };
+  for (std::size_t k = 0; k < quarter; ++k)
+    one(k), one(k + quarter), one(k + 2 * quarter), one(k + 3 * quarter);
+  for (std::size_t k = 4 * quarter; k < count; ++k) one(k);
 }
 
 }  // namespace perception

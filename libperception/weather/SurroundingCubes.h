@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,42 +14,46 @@ class SurroundingCubes {
   explicit SurroundingCubes(float reach);  ///< [m] horizontal, from the sensor
 
   void clear();
-  /// Some returns [m, sensor frame] and their ranges [m]: those up to `far` count as trusted.
-  void add(const float* x, const float* y, const float* z, const float* range, std::size_t count,
-           float far);
+  /// The cubes of some places [m, sensor frame], below 2^24, and, of each, which eight meet
+  /// nearest.
+  void locate(const float* x, const float* y, const float* z, std::size_t count,
+              std::uint32_t* cubes, std::uint32_t* corners) const;
+  /// Returns that count as trusted; `mask`: the bits of their cubes.
+  void add(const std::uint32_t* cubes, std::size_t count, std::uint32_t mask);
   /// One of the returns that were added is a phantom.
-  void doubt(float x, float y, float z) {
-    const std::size_t cube = columnAt(along(x), along(y)) + static_cast<std::size_t>(layer(z));
-    --trusted_[cube], ++doubted_[cube];
+  void doubt(std::uint32_t cube) { counts_[cube] += kDoubted - 1; }
+  /// ln((1 + trusted) / (1 + doubted)) of the others in the eight cubes at a corner, where a return
+  /// counts as `doubted` itself.
+  float company(std::uint32_t corner, bool doubted) const {
+    const std::uint32_t x0 = corner & 1023, x1 = x0 + (corner >> 10 & 3);
+    const std::uint32_t y0 = corner >> 12 & 1023, y1 = y0 + (corner >> 22 & 3);
+    const std::uint32_t low = corner >> 24 & 31, high = low + (corner >> 29);
+    const auto side = static_cast<std::uint32_t>(side_);
+    std::uint64_t sum = 0;
+    for (const std::uint32_t column :
+         {x0 * side + y0, x0 * side + y1, x1 * side + y0, x1 * side + y1})
+      sum += counts_[column * kLayers + low] + counts_[column * kLayers + high];
+    auto trusted = static_cast<std::uint32_t>(sum), others = static_cast<std::uint32_t>(sum >> 32);
+    others -= static_cast<std::uint32_t>(doubted && others > 0);  // not itself
+    trusted -= static_cast<std::uint32_t>(!doubted && trusted > 0);
+    return logOfOneMore(trusted) - logOfOneMore(others);
   }
-  /// ln((1 + trusted) / (1 + doubted)) of the others in the eight cubes that meet nearest to a
-  /// place where a return counts as `doubted` itself.
-  float company(float x, float y, float z, bool doubted) const;
-  std::size_t memoryBytes() const {
-    return (trusted_.capacity() + doubted_.capacity()) * sizeof(std::uint32_t);
-  }
+  std::size_t memoryBytes() const { return counts_.capacity() * sizeof counts_[0]; }
 
  private:
   static constexpr float kEdge = 0.5F;     // [m]
   static constexpr float kBottom = -4.5F;  // [m] of the lowest layer, below a roof lidar's road
-  static constexpr int kLayers = 24;
+  static constexpr std::uint64_t kDoubted = std::uint64_t{1} << 32;
+  static constexpr int kLayers = 24;  // fewer than 32, see company()
 
-  int along(float v) const {
-    const int i = static_cast<int>((v + reach_) * (1 / kEdge));
-    return i < 0 ? 0 : i < side_ ? i : side_ - 1;
-  }
-  static int layer(float z) {
-    const int i = static_cast<int>((z - kBottom) * (1 / kEdge));
-    return i < 0 ? 0 : i < kLayers ? i : kLayers - 1;
-  }
-
-  std::size_t columnAt(int x, int y) const {
-    return static_cast<std::size_t>((x * side_ + y) * kLayers);
+  float logOfOneMore(std::uint32_t count) const {
+    return count < logs_.size() ? logs_[count] : std::log(static_cast<float>(count) + 1);
   }
 
   float reach_;
   int side_;
-  std::vector<std::uint32_t> trusted_, doubted_;  // [returns] of each cube; the last: farther ones
+  std::vector<std::uint64_t> counts_;  // [returns] of each cube: trusted; above, doubted
+  std::array<float, 1024> logs_;       // ln(1 + count), where counts are as usual
 };
 
 }  // namespace perception

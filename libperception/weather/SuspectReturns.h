@@ -3,7 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "libperception/weather/Neighbours.h"
+#include "libperception/weather/HeightAboveGround.h"
+#include "libperception/weather/IntensityLaw.h"
+#include "libperception/weather/NeighbourCounts.h"
+#include "libperception/weather/RangeImage.h"
+#include "libperception/weather/SurroundingCubes.h"
 #include "libperception/weather/TrustParams.h"
 
 namespace perception {
@@ -16,36 +20,38 @@ struct SuspectReturn {
   float second = 0;  ///< [log-odds] of the second pass, without weather
 };
 
-/// The suspects of a scan, in its order: an array a number, so that loops over them are short. The
-/// arrays keep their memory: only the first `count` are of this scan.
+/// The suspects of a scan, in its order: an array a number, so that loops over them are short. At
+/// first all returns that are near enough. The arrays keep their memory: only the first `count` are
+/// of this scan.
 struct SuspectReturns {
   std::size_t count = 0;
-  std::vector<std::uint32_t> index;
-  std::vector<NeighbourCounts> neighbours;
-  std::vector<float> range, height;  ///< [m]
-  std::vector<float> geometry;       ///< [log-odds] without intensity and weather
-  std::vector<float> first, second;  ///< [log-odds]
-  std::vector<float> company;        ///< as TrustFeature::kCompany; of those that were asked
+  std::vector<std::uint32_t> index;       ///< in the cloud
+  std::vector<std::uint32_t> pixel;       ///< of the range image, before anyone is cleared
+  std::vector<std::uint32_t> cube;        ///< of SurroundingCubes; above, the bin of the intensity
+  std::vector<std::uint32_t> corner;      ///< of SurroundingCubes
+  std::vector<std::uint32_t> neighbours;  ///< bits of NeighbourCounts
+  std::vector<float> range, height;       ///< [m]
+  std::vector<float> geometry;            ///< [log-odds] without intensity and weather
+  std::vector<float> first, second;       ///< [log-odds]
+  std::vector<float> company;             ///< as TrustFeature::kCompany; of those that were asked
 
-  /// Room for that many.
-  void reserve(std::size_t most) {
-    if (most <= index.size()) return;
-    index.resize(most), neighbours.resize(most);
-    for (auto* numbers : {&range, &height, &geometry, &first, &second, &company})
-      numbers->resize(most);
-  }
-  SuspectReturn at(std::size_t s) const {
-    const auto share = [](std::uint32_t part, std::uint32_t whole) {
-      return whole > 0 ? static_cast<float>(part) / static_cast<float>(whole) : 1.0F;
-    };
-    const NeighbourCounts n = neighbours[s];
-    return {index[s],
-            {range[s], static_cast<float>(n.tight()), static_cast<float>(n.wide()),
-             share(n.beyond(), n.filled()), height[s], company[s]},
-            first[s],
-            second[s]};
-  }
-  std::size_t memoryBytes() const { return 8 * sizeof(float) * index.capacity(); }
+  static constexpr int kBinShift = 28;
+  std::uint32_t binOf(std::size_t s) const { return cube[s] >> kBinShift; }
+  std::uint32_t cubeOf(std::size_t s) const { return cube[s] & ((1U << kBinShift) - 1); }
+
+  /// Appends those of a block of the cloud that are near; `bins` of their intensities. Counts them
+  /// in their cubes.
+  void add(const LidarCloud& cloud, const RangeImage::Block& block, const std::uint32_t* bins,
+           const HeightAboveGround& height_above, float far, SurroundingCubes& cubes);
+  /// Clears those of which at least `surface` of the nearest pixels are of the same surface.
+  void clearSurfaces(std::uint32_t surface);
+  /// Room for what is found out about each of those that are there.
+  void makeRoomForLooks();
+  SuspectReturn at(std::size_t s) const;
+  std::size_t memoryBytes() const { return 11 * sizeof(float) * index.capacity(); }
+
+ private:
+  void makeRoom(std::size_t more);
 };
 
 }  // namespace perception

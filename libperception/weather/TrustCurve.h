@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace perception {
@@ -15,6 +16,9 @@ class TrustCurve {
     const float low = place > 0 ? place : 0;
     return table_[static_cast<std::size_t>(static_cast<int>(low < kLast ? low : kLast))];
   }
+  /// Of many, where at() looks in table().
+  void findPlaces(const float* values, std::size_t count, std::int32_t* places) const;
+  const float* table() const { return table_.data(); }
 
  private:
   static constexpr int kLast = 511;
