@@ -6,6 +6,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Chi2.h"
+#include "libperception/filter/Prediction.h"
 
 namespace perception {
 namespace {
@@ -114,6 +115,8 @@ Whereabouts whereaboutsOf(const Track& track, const FilterModel& model) {
   Whereabouts w;
   w.centre = around.centre;
   w.reach = around.spread + 2 * around.size + kMargin;
+  w.longest_sleep = kLongestSleep;
+  w.expires = track.stamp + std::min(timeToLive(track, model), kLongestSleep);
   double speed2 = 0;
   const auto move = [&](const Vector4& x, const Matrix4& P, bool oriented) {
     // The mean of v e^(i theta) grows by the covariance of both, at most var v / e (MotionModels).
@@ -123,6 +126,7 @@ Whereabouts whereaboutsOf(const Track& track, const FilterModel& model) {
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
     if (!track.live(j) || model.classes[j].motion == Motion::kStatic) continue;
+    if (!f.modes.empty()) w.longest_sleep = kLongestSleepOfModes;
     move(f.x, f.P, f.oriented);
     for (const ModeFilter& mode : f.modes) move(mode.x, mode.P, f.oriented);
   }
@@ -133,7 +137,7 @@ Whereabouts whereaboutsOf(const Track& track, const FilterModel& model) {
 bool concerns(const MeasurementScan& scan, const Track& track) {
   const Whereabouts& w = track.whereabouts;
   const double dt = scan.state.stamp - track.stamp;
-  return dt >= kLongestSleep - 1e-6 || w.reach == std::numeric_limits<double>::infinity() ||
+  return dt >= w.longest_sleep - 1e-6 || w.reach == std::numeric_limits<double>::infinity() ||
          scan.model->mayDetect(w.centre, w.reach + w.speed * dt, scan.state);
 }
 

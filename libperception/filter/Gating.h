@@ -47,9 +47,11 @@ class AxisBounds {
 /// Where a sensor may see the track: P_D is taken at the means of the class filters.
 Whereabouts whereaboutsOf(const Track& track, const FilterModel& model);
 
-/// A track that no scan concerns is left behind for at most this long [s]: more steps at once would
-/// cost at its end what they saved.
-inline constexpr double kLongestSleep = 0.5;
+/// A track that no scan concerns is left behind until one does, or until it has expired; at most
+/// for this long [s]. Its steps are taken when it wakes, and most never do.
+inline constexpr double kLongestSleep = 60;
+/// The same of tracks with motion modes: those mix once a step, and the step may not be long.
+inline constexpr double kLongestSleepOfModes = 0.5;
 
 /// False when the scan can say nothing of the track, since all its class filters, predicted, are
 /// out of view: it stays as it is for now.

@@ -82,4 +82,29 @@ void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
   updateExtentBy(innovation, f.extent);
 }
 
+void placeUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f) {
+  Matrix2 R = m.R + noise;
+  R.diagonal().array() += 1e-9;  // as innovationOf()
+  const Matrix2 S = f.P.topLeftCorner<2, 2>() + R;
+  const FixedFactors<2> factors(S);
+  if (!factors.positive()) return;
+  using Gain = Eigen::Matrix<double, 4, 2>;
+  const Gain K = factors.solve<4>(Eigen::Matrix<double, 2, 4>(f.P.topRows<2>())).transpose();
+  const Vector2 y = Vector2(m.z) - f.x.head<2>();
+  // Joseph form with H = (I 0): A = I - K H.
+  Matrix2 top = Matrix2::Identity() - K.topRows<2>();
+  const Matrix2 bottom = -K.bottomRows<2>();
+  Matrix4 AP;
+  AP.topRows<2>() = top * f.P.topRows<2>();
+  AP.bottomRows<2>() = bottom * f.P.topRows<2>() + f.P.bottomRows<2>();
+  Matrix4 P;
+  P.leftCols<2>() = AP.leftCols<2>() * top.transpose();
+  P.rightCols<2>() = AP.leftCols<2>() * bottom.transpose() + AP.rightCols<2>();
+  const Gain KR = K * R;
+  P += KR * K.transpose();
+  f.x += K * y;
+  if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
+  f.P = 0.5 * (P + P.transpose());
+}
+
 }  // namespace perception

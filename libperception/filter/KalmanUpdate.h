@@ -7,4 +7,8 @@ namespace perception {
 /// probabilities, and the extent. Left alone where S is no covariance.
 void kalmanUpdate(const Innovation& innovation, ClassFilter& f);
 
+/// The same of a filter of one Gaussian and a measurement of its place alone; `noise` [m^2] is the
+/// model's own.
+void placeUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f);
+
 }  // namespace perception

@@ -7,6 +7,7 @@
 #include "libperception/core/LogMath.h"
 #include "libperception/filter/AssignmentPrior.h"
 #include "libperception/filter/Gating.h"
+#include "libperception/filter/LikelihoodRow.h"
 #include "libperception/filter/Linearisation.h"
 #include "libperception/filter/MotionModels.h"
 #include "libperception/filter/PairDensity.h"
@@ -14,20 +15,6 @@
 
 namespace perception {
 namespace {
-
-constexpr double kMaxDetection = 0.999;  // P_D = 1 would make one miss a proof
-/// Share of the track's directions that nothing nearer hides.
-double visibilityOf(const Track& track, const MeasurementScan& scan, const FilterModel& model) {
-  if (!scan.horizon) return 1;
-  const auto c = static_cast<std::size_t>(track.likeliestClass());
-  const Vector2 d = track.bank[c].x.head<2>() - scan.state.T_world_sensor.translation().head<2>();
-  const double range = d.norm();
-  const double radius = 0.25 * (track.bank[c].extent.length + track.bank[c].extent.width);
-  if (range <= radius) return 1;
-  const double bearing = std::atan2(d.y(), d.x()), half = std::asin(radius / range);
-  return scan.horizon->visibility(bearing - half, bearing + half, range - radius,
-                                  model.params.hidden_tolerance);
-}
 
 /// What one track after the other needs again.
 struct Scratch {
@@ -38,8 +25,6 @@ struct Scratch {
   std::vector<AxisBounds> bounds;
   std::vector<ExpectedAxes> expected;  // by class; of filters without modes
   std::vector<double> log_detection;   // by class
-  std::vector<double> mixture;
-  std::vector<double> with_region;
   PairLikelihood pair;
 };
 
@@ -62,63 +47,40 @@ Density filterDensity(const Track& track, std::size_t filter, const Measurement&
 }
 
 /// Fills scratch.pair; returns by how much its least NIS exceeds the gate.
-double pairLikelihood(const Track& track, const std::vector<double>& detection_by_class,
-                      std::size_t k, const AxisList& axes, const MeasurementScan& scan,
-                      const FilterModel& model, double gate, Scratch& scratch) {
-  const Measurement& m = scan.measurements[k];
-  const std::size_t classes = track.bank.size();
+double pairLikelihood(const Track& track, const ClassValues& detection_by_class, std::size_t k,
+                      const AxisList& axes, const ScanTerms& terms, double gate, Scratch& scratch) {
+  const Measurement& m = terms.scan.measurements[k];
   PairLikelihood& pair = scratch.pair;
-  pair.measurement = k;
-  pair.log_prior = 0;
-  pair.log_by_class.assign(classes, kMinusInfinity);
-  pair.log_class_evidence.assign(classes, kMinusInfinity);
-  pair.nis.assign(classes, std::numeric_limits<double>::infinity());
+  PairTerms sum(track, k, terms, pair);
   double min_excess = std::numeric_limits<double>::infinity();
-  auto& mixture = scratch.mixture;
-  mixture.assign(classes, kMinusInfinity);
-  const RegionSeen* region = regionOf(track, scan, model);
-  auto& with_region = scratch.with_region;
-  with_region.assign(region ? classes : 0, kMinusInfinity);
+  const RegionSeen* region = regionOf(track, terms.scan, terms.model);
+  ClassValues with_region;
+  with_region.assign(region ? track.bank.size() : 0, kMinusInfinity);
   double log_region = 0;
-  const double label_exponent = scan.model->labelExponent();
-  const double detection_exponent = scan.model->detectionExponent();
   Density density;
   bool seen = false;  // a decided class: one filter stands for all
-  for (std::size_t j = 0; j < classes; ++j) {
-    const double detection = detection_by_class[j];
+  for (std::size_t j = 0; j < track.bank.size(); ++j) {
     const std::size_t filter = track.filterOf(j);
-    if (!scratch.predictions[filter].defined || detection <= 0) continue;
-    const ClassFilter& f = track.bank[filter];
+    if (!scratch.predictions[filter].defined || detection_by_class[j] <= 0) continue;
     if (track.sure < 0 || !seen) {
-      density = filterDensity(track, filter, m, axes, scan, model, region, scratch, log_region);
+      density = filterDensity(track, filter, m, axes, terms.scan, terms.model, region, scratch,
+                              log_region);
       seen = true;
     }
     if (density.log_density == kMinusInfinity) continue;
-    const double nis = density.nis, log_density = density.log_density;
-    const double label = logLabelOf(*scan.model, m, static_cast<ClassId>(j));
-    const double label_and_score = logLabelAndScore(*scan.model, m, static_cast<ClassId>(j));
-    const double heading = m.heading && f.oriented ? logHeadingRatio(*m.heading, f.x[3], f.P(3, 3),
-                                                                     model.params.heading)
-                                                   : 0;
-    pair.nis[j] = nis;
-    // The heading tells objects apart, but not classes: people have one, too, that no filter keeps.
-    pair.log_by_class[j] = log_density + label_and_score + scratch.log_detection[j] + heading;
-    pair.log_class_evidence[j] = model.params.kinematic_exponent * log_density +
-                                 label_exponent * label +
-                                 detection_exponent * scratch.log_detection[j];
-    mixture[j] = track.log_class[j] + pair.log_by_class[j];
-    if (region) with_region[j] = mixture[j] + log_region;
-    min_excess = std::min(min_excess, nis - gate);
+    sum.add(j, density, scratch.log_detection[j]);
+    if (region) with_region[j] = sum.mixture()[j] + log_region;
+    min_excess = std::min(min_excess, density.nis - gate);
   }
-  pair.log_likelihood = logSumExp(mixture);
-  if (pair.log_likelihood == kMinusInfinity) return min_excess;
-  if (region) pair.log_prior = logSumExp(with_region) - pair.log_likelihood;
-  if (model.params.shape_prior) pair.log_prior += logShape(track, m);
+  sum.finish();
+  if (region && pair.log_likelihood > kMinusInfinity)
+    pair.log_prior += logSumExp(with_region) - pair.log_likelihood;
   return min_excess;
 }
 
-TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& scan,
-                                  const FilterModel& model, const Gates& gates) {
+TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
+  const MeasurementScan& scan = terms.scan;
+  const FilterModel& model = terms.model;
   const std::size_t classes = track.bank.size();
   thread_local Scratch scratch;
   TrackLikelihoods row;
@@ -133,6 +95,10 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
   for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
     if (around.mayBeNear(scan.measurements[k])) near.push_back(k);
   }
+  if (takesPlaceRow(track, terms)) {
+    placeRow(track, near, terms, row);
+    return row;
+  }
   auto& kinematics = scratch.kinematics;
   kinematics.resize(classes);
   for (std::size_t j = 0; j < classes; ++j) {
@@ -142,8 +108,7 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
             ? kinematicsOf(model.classes[static_cast<ClassId>(filter)], track.bank[filter])
             : kinematics[0];
   }
-  const double visibility =
-      std::max(visibilityOf(track, scan, model), model.params.hidden_detection);
+  const double visibility = visibilityOf(track, scan, model);
   row.detection_by_class.resize(classes);
   for (std::size_t j = 0; j < classes; ++j) {
     const auto detection = [&](double visible) {
@@ -186,17 +151,16 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
       scratch.expected[j].set(track.bank[j], kinematics[j], predictions[j]);
   }
   const auto& kinds = scan.model->axes();
-  row.pairs.reserve(near.size());
   for (const std::size_t k : near) {
     const Measurement& m = scan.measurements[k];
     const AxisList axes(m, kinds.size());
-    const double gate = gates.quantile[static_cast<std::size_t>(axes.count)];
+    const double gate = terms.gates.quantile[static_cast<std::size_t>(axes.count)];
     if (std::all_of(bounds.begin(), bounds.end(),
                     [&](const AxisBounds& b) { return b.exclude(m, kinds, gate); }))
       continue;
     if (!coarselyNear(track, m)) continue;
     const double excess =
-        pairLikelihood(track, row.detection_by_class, k, axes, scan, model, gate, scratch);
+        pairLikelihood(track, row.detection_by_class, k, axes, terms, gate, scratch);
     if (excess <= 0 && scratch.pair.log_likelihood > kMinusInfinity)
       row.pairs.push_back(scratch.pair);
   }
@@ -204,15 +168,17 @@ TrackLikelihoods trackLikelihoods(const Track& track, const MeasurementScan& sca
   return row;
 }
 
-NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan,
-                            const FilterModel& model) {
+NewLikelihood newLikelihood(std::size_t k, const ScanTerms& terms) {
+  const MeasurementScan& scan = terms.scan;
+  const FilterModel& model = terms.model;
+  const Measurement& m = scan.measurements[k];
   const int classes = model.classes.size();
   NewLikelihood result;
   result.log_class.assign(static_cast<std::size_t>(classes), kMinusInfinity);
   for (ClassId j = 0; j < classes; ++j) {
-    result.log_class[static_cast<std::size_t>(j)] = std::log(model.classes[j].prior) +
-                                                    logLabelAndScore(*scan.model, m, j) +
-                                                    scan.model->logBirthDensity(m, j, scan.state);
+    result.log_class[static_cast<std::size_t>(j)] =
+        std::log(model.classes[j].prior) + terms.labelAndScore(k, static_cast<std::size_t>(j)) +
+        scan.model->logBirthDensity(m, j, scan.state);
   }
   result.log_birth = logNormalise(result.log_class);
   result.log_clutter =
@@ -230,16 +196,15 @@ NewLikelihood newLikelihood(const Measurement& m, const MeasurementScan& scan,
 LikelihoodTable likelihoodTable(const std::vector<Track>& predicted,
                                 const std::vector<char>& touched, const MeasurementScan& scan,
                                 const FilterModel& model) {
-  const Gates& gates = Gates::of(model.params.gate_probability);
+  const ScanTerms terms(scan, model);
   LikelihoodTable table;
   table.tracks.resize(predicted.size());
   table.news.resize(scan.measurements.size());
   parallelFor(predicted.size(), [&](std::size_t i) {
-    if (touched[i]) table.tracks[i] = trackLikelihoods(predicted[i], scan, model, gates);
+    if (touched[i]) table.tracks[i] = trackLikelihoods(predicted[i], terms);
   });
-  parallelFor(scan.measurements.size(), [&](std::size_t k) {
-    table.news[k] = newLikelihood(scan.measurements[k], scan, model);
-  });
+  parallelFor(scan.measurements.size(),
+              [&](std::size_t k) { table.news[k] = newLikelihood(k, terms); });
   return table;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "libperception/filter/ClassValues.h"
 #include "libperception/filter/FilterModel.h"
 #include "libperception/filter/Gating.h"
 #include "libperception/filter/Innovation.h"
@@ -14,18 +15,18 @@ struct PairLikelihood {
   std::size_t measurement = 0;
   double log_likelihood = 0;  ///< lhat: log sum_j p(class j) p(z, label, score, detected | class j)
   double log_prior = 0;       ///< of this cause against others, beside the likelihood
-  std::vector<double> log_by_class;  ///< l_j, the summands without the class probability
-  std::vector<double>
-      log_class_evidence;   ///< l_j with label and innovations tempered: for the class update only
-  std::vector<double> nis;  ///< normalised innovation squared of each class filter
+  ClassValues log_by_class;   ///< l_j, the summands without the class probability
+  ClassValues
+      log_class_evidence;  ///< l_j with label and innovations tempered: for the class update only
+  ClassValues nis;         ///< normalised innovation squared of each class filter
 };
 
 /// One predicted track against a scan.
 struct TrackLikelihoods {
   double detection = 0;  ///< P_D = sum_j p(class j) P_D(class j)
-  std::vector<double> detection_by_class;
+  ClassValues detection_by_class;
   bool in_view = false;  ///< some class could have been detected were it not hidden
-  std::vector<AxisPrediction> predictions;  ///< by class
+  std::vector<AxisPrediction> predictions;  ///< by class; none of a sensor that sees places alone
   std::vector<PairLikelihood> pairs;        ///< in order of measurement
 };
 

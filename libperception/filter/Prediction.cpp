@@ -128,6 +128,16 @@ TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model) {
   return odds;
 }
 
+double timeToLive(const Track& track, const FilterModel& model) {
+  const auto& p = model.params;
+  if (track.existence <= p.existence_min) return 0;
+  const double lives = std::log(track.existence / p.existence_min);
+  if (p.existence_decay > 0) return lives * p.existence_decay / 3;
+  const double in_view = std::max(track.last_in_view - track.stamp + kOutOfViewAfter, 0.0);
+  const double rest = lives - in_view / p.survival_in_view;
+  return rest > 0 ? in_view + rest * p.survival_out_of_view : lives * p.survival_in_view;
+}
+
 Track predictTrack(const Track& track, Stamp to, const FilterModel& model) {
   Track next = track;
   std::vector<GaussianStep> steps;

@@ -17,6 +17,9 @@ struct TrackOdds {
 };
 TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model);
 
+/// [s] in which the existence falls below what is kept (existence_min), if nobody sees the track.
+double timeToLive(const Track& track, const FilterModel& model);
+
 /// predictTrack() for those tracks that are `touched`, their Gaussians in batches (see BankBatch);
 /// the others stay empty. Equal up to rounding.
 std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,

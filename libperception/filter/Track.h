@@ -1,4 +1,6 @@
 #pragma once
+#include <tbb/scalable_allocator.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -38,6 +40,10 @@ struct ClassFilter {
       modes;  ///< of classes with several; x and P are then their mean and spread
 };
 
+/// One filter a class. Larger than what the C library keeps at hand, and made and given back many
+/// times a scan: TBB's allocator.
+using Bank = std::vector<ClassFilter, tbb::scalable_allocator<ClassFilter>>;
+
 /// How a sensor's last measurement of an object lay off its filter after the update: detectors err
 /// alike from one scan to the next.
 struct RegionSeen {
@@ -53,7 +59,10 @@ struct Whereabouts {
   Vector2 centre = Vector2::Zero();  ///< [m] world
   /// [m] radius of the disc at the track's time; without bounds until somebody asked.
   double reach = std::numeric_limits<double>::infinity();
-  double speed = 0;  ///< [m/s] of the fastest mean
+  double speed = 0;          ///< [m/s] of the fastest mean
+  double longest_sleep = 0;  ///< [s] for which it may be left behind, unseen
+  /// When nobody sees it until then, its existence has fallen below what is kept.
+  Stamp expires{std::numeric_limits<std::int64_t>::max()};
 };
 
 /// One object inside a hypothesis. Immutable once made: hypotheses share it.
@@ -65,7 +74,7 @@ struct Track {
   Stamp last_in_view;         ///< last time that a sensor could have seen it
   Stamp last_lane;            ///< last time that a lane spoke of its heading; 0 = never
   double existence = 0;       ///< probability that it is a real object
-  std::vector<ClassFilter> bank;  ///< one filter a class
+  Bank bank;                  ///< one filter a class
   ClassId sure = -1;  ///< the class that is decided: its filter alone is kept up to date; -1: all
   std::vector<double> log_class;  ///< log class probabilities, given existence; sum of exp is 1
   ScalarEstimate base_z, height;  ///< [m] lowest point, world; lowest to highest point

@@ -13,6 +13,7 @@
 #include "libperception/filter/ScalarUpdate.h"
 #include "libperception/filter/SizeEvidence.h"
 #include "libperception/measurement/ExtentUpdate.h"
+#include "libperception/measurement/PlaceSight.h"
 
 namespace perception {
 namespace {
@@ -189,11 +190,11 @@ std::optional<double> axisOf(const FilterModel& model, const Track& track) {
 
 }  // namespace
 
-Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLikelihood& pair,
+Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihood& pair,
                const MeasurementScan& scan, std::uint64_t scan_index, const FilterModel& model) {
   const Measurement& m = scan.measurements[pair.measurement];
-  Track track = predicted;
-  track.history = extendHistory(predicted.history, scan_index, pair.measurement);
+  Track track = std::move(predicted);
+  track.history = extendHistory(track.history, scan_index, pair.measurement);
   track.existence = model.params.existence_max;
   track.last_in_view = scan.state.stamp;
   track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
@@ -203,9 +204,11 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
       static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
   const ClassId live = track.sure < 0 ? best : track.sure;
   const Kinematics best_kinematics =
-      kinematicsOf(model.classes[live], predicted.bank[static_cast<std::size_t>(live)]);
+      kinematicsOf(model.classes[live], track.bank[static_cast<std::size_t>(live)]);
   if (m.heading) updateFacing(*m.heading, model.params, track);
-  const auto axes_seen = residual(*scan.model, m, m.z).size();
+  const PlaceSight* place =
+      row.predictions.empty() ? dynamic_cast<const PlaceSight*>(scan.model.get()) : nullptr;
+  const auto axes_seen = place ? 2 : residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ObjectClass& c = model.classes[j];
@@ -220,8 +223,12 @@ Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLi
     std::optional<BirthState> birth;
     if (is_lost || c.motion == Motion::kWheeled) birth = scan.model->birth(m, j, scan.state);
     if (!is_lost) {
-      const Kinematics k = kinematicsOf(c, f);
-      kalmanUpdate(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
+      if (place) {
+        placeUpdate(m, place->placeNoise(j), f);
+      } else {
+        const Kinematics k = kinematicsOf(c, f);
+        kalmanUpdate(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
+      }
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
     }

@@ -7,7 +7,7 @@ namespace perception {
 /// Pass 4 (SPEC 5.5). The predicted track after it caused the pair's measurement: every class
 /// filter, class posterior, extent, heights; existence becomes certain. `scan_index` counts scans
 /// and goes into the history.
-Track hitTrack(const Track& predicted, const TrackLikelihoods& row, const PairLikelihood& pair,
+Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihood& pair,
                const MeasurementScan& scan, std::uint64_t scan_index, const FilterModel& model);
 
 /// The predicted track after a scan without a measurement of it: existence and the classes that

@@ -62,6 +62,13 @@ bool Updates::keep(const Track& t) const {
          (f.x.head<2>() - ego).norm() <= model_.params.max_distance;
 }
 
+bool Updates::keepAsleep(const Track& t) const {
+  const Whereabouts& w = t.whereabouts;
+  const Vector2 ego = scan_.state.ego.T_world_ego.translation().head<2>();
+  const double far = model_.params.max_distance + w.reach + w.speed * (scan_.state.stamp - t.stamp);
+  return scan_.state.stamp < w.expires && (w.centre - ego).squaredNorm() <= far * far;
+}
+
 void Updates::store(Cell cell, Track&& track, const TrackHandle& before) {
   if (model_.history > 0) track.previous = before;
   if (model_.lanes) model_.lanes->apply(model_, track);
@@ -73,15 +80,21 @@ void Updates::store(Cell cell, Track&& track, const TrackHandle& before) {
 std::size_t Updates::make(std::uint64_t scan_index) {
   parallelFor(tracks_.before.size(), [&](std::size_t t) {
     if (!tracks_.touched[t]) {
-      made_[missCell(t)] = tracks_.before[t];
+      if (keepAsleep(*tracks_.before[t])) made_[missCell(t)] = tracks_.before[t];
       return;
     }
     const auto& row = table_.tracks[t];
     Track& predicted = tracks_.predicted[t];
+    Cell last = missCell(t);  // the miss is made after the hits
+    if (!wanted_[last]) {
+      for (Cell cell = first_[t] + 1; cell < first_[t + 1]; ++cell)
+        if (wanted_[cell]) last = cell;
+    }
     for (std::size_t p = 0; p < row.pairs.size(); ++p) {
       const Cell cell = first_[t] + 1 + static_cast<Cell>(p);
       if (!wanted_[cell]) continue;
-      Track hit = hitTrack(predicted, row, row.pairs[p], scan_, scan_index, model_);
+      Track hit = hitTrack(cell == last ? std::move(predicted) : predicted, row, row.pairs[p],
+                           scan_, scan_index, model_);
       if (model_.params.region_memory > 0)
         rememberRegion(scan_.measurements[row.pairs[p].measurement], scan_, model_, hit);
       store(cell, std::move(hit), tracks_.before[t]);

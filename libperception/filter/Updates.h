@@ -37,6 +37,8 @@ class Updates {
   Cell missCell(std::size_t track) const { return first_[track]; }
   Cell newCell(std::size_t k) const { return first_.back() + static_cast<Cell>(k); }
   bool keep(const Track& t) const;
+  /// The same of a track that the scan left behind, by its whereabouts.
+  bool keepAsleep(const Track& t) const;
   /// `before`: what the track was before the scan; null for a newborn.
   void store(Cell cell, Track&& track, const TrackHandle& before);
 

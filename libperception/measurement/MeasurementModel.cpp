@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
+#include "libperception/measurement/PlaceSight.h"
 
 namespace perception {
 
@@ -21,14 +22,19 @@ double logClutterLabelAndScore(const MeasurementModel& model, const Measurement&
 
 bool touchesSector(const Vector2& centre, double reach, double fov, double range,
                    const SensorState& sensor) {
+  return touchesSector(centre, reach, HalfAngle(0.5 * fov), range, sensor);
+}
+
+bool touchesSector(const Vector2& centre, double reach, const HalfAngle& half_fov, double range,
+                   const SensorState& sensor) {
   const Vector2 d = centre - sensor.T_world_sensor.translation().head<2>();
   const double distance = d.norm();
   if (distance - reach > range) return false;
-  if (fov >= kTwoPi || distance <= reach) return true;
+  if (half_fov.all || distance <= reach) return true;
   // Along the sector's edge on the centre's side and, positive outside, across it.
   const Vector2 forward = sensor.T_world_sensor.linear().col(0).head<2>().normalized();
   const double along = forward.dot(d), across = std::abs(forward.x() * d.y() - forward.y() * d.x());
-  const double c = std::cos(0.5 * fov), s = std::sin(0.5 * fov);
+  const double c = half_fov.cosine, s = half_fov.sine;
   const double beyond = across * c - along * s;
   return beyond <= 0 || (beyond <= reach && along * c + across * s >= 0);
 }

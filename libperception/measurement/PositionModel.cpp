@@ -2,13 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libperception/measurement/ExtentUpdate.h"
 
 namespace perception {
 namespace {
 constexpr double kSideSigma = 0.5;  // [m] of sides that tell none of their own
+
+Vector2 forwardOf(const SensorState& sensor) {
+  return sensor.T_world_sensor.linear().col(0).head<2>().normalized();
 }
+}  // namespace
+
+PositionModel::PositionModel(Params params)
+    : params_(std::move(params)), half_fov_(0.5 * params_.fov) {}
 
 const std::vector<AxisKind>& PositionModel::axes() const {
   static const std::vector<AxisKind> kinds{AxisKind::kLinear, AxisKind::kLinear};
@@ -28,26 +36,37 @@ void PositionModel::predict(const Kinematics* objects, const Extent*, std::size_
 }
 
 bool PositionModel::inView(const Vector2& position, const SensorState& sensor) const {
-  const Vector2 d = position - sensor.T_world_sensor.translation().head<2>();
+  return rangeInView(position - sensor.T_world_sensor.translation().head<2>(), forwardOf(sensor)) >=
+         0;
+}
+
+double PositionModel::rangeInView(const Vector2& d, const Vector2& forward) const {
   const double range = d.norm();
-  if (range > params_.range) return false;
-  if (params_.fov >= kTwoPi) return true;
-  const Vector2 forward = sensor.T_world_sensor.linear().col(0).head<2>().normalized();
-  return forward.dot(d) >= range * std::cos(0.5 * params_.fov);
+  if (range > params_.range) return -1;
+  return params_.fov >= kTwoPi || forward.dot(d) >= range * half_fov_.cosine ? range : -1;
 }
 
 double PositionModel::detectionProbability(ClassId c, const Kinematics& object, const Extent&,
                                            const SensorState& sensor, double visibility) const {
-  if (!inView(object.q.head<2>(), sensor)) return 0;
-  const ClassRow& row = params_.classes[static_cast<std::size_t>(c)];
-  const double range = (object.q.head<2>() - sensor.T_world_sensor.translation().head<2>()).norm();
-  const double far = (range - row.full_range) / (row.last_range - row.full_range);
-  return row.detection * (1 - std::clamp(far, 0.0, 1.0)) * visibility;
+  const double range = rangeInView(
+      object.q.head<2>() - sensor.T_world_sensor.translation().head<2>(), forwardOf(sensor));
+  return range < 0 ? 0
+                   : params_.classes[static_cast<std::size_t>(c)].detectionAt(range) * visibility;
+}
+
+void PositionModel::placeDetection(const Vector2* places, std::size_t count,
+                                   const SensorState& sensor, double* out) const {
+  const Vector2 origin = sensor.T_world_sensor.translation().head<2>();
+  const Vector2 forward = forwardOf(sensor);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double range = rangeInView(places[i] - origin, forward);
+    out[i] = range < 0 ? 0 : params_.classes[i].detectionAt(range);
+  }
 }
 
 bool PositionModel::mayDetect(const Vector2& position, double reach,
                               const SensorState& sensor) const {
-  return touchesSector(position, reach, params_.fov, params_.range, sensor);
+  return touchesSector(position, reach, half_fov_, params_.range, sensor);
 }
 
 double PositionModel::logLabelLikelihood(int label, ClassId c) const {

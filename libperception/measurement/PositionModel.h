@@ -1,11 +1,15 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
+
 #include "libperception/measurement/MeasurementModel.h"
+#include "libperception/measurement/PlaceSight.h"
 
 namespace perception {
 
 /// A sensor that sees an object's centre: z = (x, y) [m, world]. GPS receivers on the object, box
 /// centres, and the position-level scenes that the filter's association is studied on.
-class PositionModel : public MeasurementModel {
+class PositionModel : public MeasurementModel, public PlaceSight {
  public:
   struct ClassRow {
     double detection = 0.9;      ///< P(detected | in view, near)
@@ -15,6 +19,12 @@ class PositionModel : public MeasurementModel {
     Matrix2 noise =
         Matrix2::Identity();  ///< [m^2] covariance of z about the centre; Measurement::R is added
     Extent extent{};          ///< of newborn objects
+
+    /// P(detected | at this range [m] in view).
+    double detectionAt(double r) const {
+      const double far = (r - full_range) / (last_range - full_range);
+      return detection * (1 - std::clamp(far, 0.0, 1.0));
+    }
   };
   struct Params {
     std::vector<ClassRow> classes;       ///< in the order of the class table
@@ -26,7 +36,7 @@ class PositionModel : public MeasurementModel {
     double label_exponent = 1, detection_exponent = 1;  ///< SPEC 5.6
   };
 
-  explicit PositionModel(Params params) : params_(std::move(params)) {}
+  explicit PositionModel(Params params);
 
   const std::vector<AxisKind>& axes() const override;
   void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
@@ -35,6 +45,11 @@ class PositionModel : public MeasurementModel {
                               const SensorState& sensor, double visibility) const override;
   bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override;
   double logLabelLikelihood(int label, ClassId c) const override;
+  const Matrix2& placeNoise(ClassId c) const override {
+    return params_.classes[static_cast<std::size_t>(c)].noise;
+  }
+  void placeDetection(const Vector2* places, std::size_t count, const SensorState& sensor,
+                      double* out) const override;
   double labelExponent() const override { return params_.label_exponent; }
   double detectionExponent() const override { return params_.detection_exponent; }
   double logLabelClutter(int label) const override;
@@ -50,7 +65,11 @@ class PositionModel : public MeasurementModel {
   }  ///< [m^2]
 
  private:
+  /// |d| [m] of a place d from the sensor that looks `forward`; -1 when it is out of view.
+  double rangeInView(const Vector2& d, const Vector2& forward) const;
+
   Params params_;
+  HalfAngle half_fov_;
 };
 
 }  // namespace perception

@@ -16,6 +16,10 @@ namespace {
 /// [m/s] an object without a heading of its own points where it goes once it goes this fast.
 constexpr double kHeadingFromSpeed = 0.5;
 
+/// [s] up to which a track is predicted in one go; what the filter left behind for longer goes on
+/// from scene to scene.
+constexpr double kLongStep = 0.5;
+
 /// Mean and covariance of (x, y, vx, vy) over the classes (moment matching).
 struct Mixture {
   Vector4 mean = Vector4::Zero();
@@ -127,8 +131,27 @@ TrackHandle SceneFromPosterior::trackAt(const TrackHandle& track, Stamp stamp) c
   }
   if (track->existence < params_.min_existence) return nullptr;
   if (stamp <= track->stamp) return track;
-  auto predicted = std::make_shared<const Track>(predictTrack(*track, stamp, model_));
+  auto predicted =
+      std::make_shared<const Track>(predictTrack(latestOf(track, stamp), stamp, model_));
   return predicted->existence < params_.min_existence ? nullptr : predicted;
+}
+
+const Track& SceneFromPosterior::latestOf(const TrackHandle& track, Stamp stamp) const {
+  if (stamp - track->stamp <= kLongStep) return *track;
+  const auto known = sleepers_.find(track.get());
+  return known != sleepers_.end() && known->second.predicted->stamp <= stamp
+             ? *known->second.predicted
+             : *track;
+}
+
+void SceneFromPosterior::keepSleepers(const Hypothesis& hypothesis,
+                                      const std::vector<TrackHandle>& predicted) {
+  sleepers_.clear();
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    const TrackHandle& track = hypothesis.tracks[i];
+    if (predicted[i] && predicted[i]->stamp > track->stamp)
+      sleepers_[track.get()] = {track, predicted[i]};
+  }
 }
 
 Scene SceneFromPosterior::make(const Hypothesis& hypothesis, const EgoState& ego,
@@ -140,6 +163,7 @@ Scene SceneFromPosterior::make(const Hypothesis& hypothesis, const EgoState& ego
   std::vector<TrackHandle> tracks(hypothesis.tracks.size());
   parallelFor(tracks.size(),
               [&](std::size_t i) { tracks[i] = trackAt(hypothesis.tracks[i], ego.stamp); });
+  keepSleepers(hypothesis, tracks);
   for (const auto& track : tracks) {
     if (!track) continue;
     SceneObject object = objectOf(*track);

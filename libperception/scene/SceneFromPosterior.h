@@ -1,5 +1,7 @@
 #pragma once
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "libperception/core/ParamSet.h"
 #include "libperception/filter/FilterModel.h"
@@ -24,7 +26,8 @@ struct SceneParams {
 };
 
 /// Reduces the most probable hypothesis to a list of objects. Gives every track a small number at
-/// its first output, and keeps it; that is its only state.
+/// its first output, and keeps it; that, and how far tracks out of view were predicted, is its
+/// state.
 class SceneFromPosterior {
  public:
   SceneFromPosterior(FilterModel model, SceneParams params)
@@ -38,8 +41,17 @@ class SceneFromPosterior {
   std::uint64_t objectsSoFar() const { return numbers_.size(); }
 
  private:
+  /// A track that the filter left behind, and what the last scene made of it: the next goes on from
+  /// there.
+  struct Sleeper {
+    TrackHandle track, predicted;
+  };
+
   /// The track at that time; null when it is not believed in, then.
   TrackHandle trackAt(const TrackHandle& track, Stamp stamp) const;
+  /// What to predict it from: itself, or the last scene's prediction.
+  const Track& latestOf(const TrackHandle& track, Stamp stamp) const;
+  void keepSleepers(const Hypothesis& hypothesis, const std::vector<TrackHandle>& predicted);
   SceneObject objectOf(const Track& track);
   bool knowsPlace(const SceneObject& object) const;
   std::uint64_t numberOf(std::uint64_t track_id);
@@ -47,6 +59,7 @@ class SceneFromPosterior {
   FilterModel model_;
   SceneParams params_;
   std::unordered_map<std::uint64_t, std::uint64_t> numbers_;
+  std::unordered_map<const Track*, Sleeper> sleepers_;
 };
 
 }  // namespace perception
