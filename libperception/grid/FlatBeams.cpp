@@ -39,13 +39,16 @@ PERCEPTION_LANES std::int32_t followOne(const FlatBeam& beam, std::int32_t* way)
   const Float8 from = eight(beam.from), to = eight(beam.to);
   const auto first = static_cast<std::int32_t>(beam.on + beam.from);
   const auto last = std::min(static_cast<std::int32_t>(beam.on + beam.to), beam.cells - 1);
+  const Float8 end = eight(static_cast<float>(last)), aside = eight(beam.aside);
+  const Float8 on = eight(beam.on), across = eight(beam.across);
+  Float8 next = asFloats(first + firstEight());
   std::int32_t count = 0;
-  for (std::int32_t i = first; i <= last; i += kLanes, count += 2 * kLanes) {
-    const Float8 cell = smaller(asFloats(i + firstEight()), eight(static_cast<float>(last)));
+  for (std::int32_t i = first; i <= last; i += kLanes, count += 2 * kLanes, next += kLanes) {
+    const Float8 cell = smaller(next, end);
     const Int8 along = truncated(cell);
-    const Float8 begin = cell - beam.on;
-    const Int8 row0 = truncated(beam.aside + beam.across * larger(begin, from));
-    const Int8 row1 = truncated(beam.aside + beam.across * smaller(begin + 1, to));
+    const Float8 begin = cell - on;
+    const Int8 row0 = truncated(aside + across * larger(begin, from));
+    const Int8 row1 = truncated(aside + across * smaller(begin + 1, to));
     store8(beam.column + along * beam.step + row0 * beam.side, way + count);
     store8(beam.column + along * beam.step + row1 * beam.side, way + count + kLanes);
   }
