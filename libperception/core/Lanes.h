@@ -10,6 +10,27 @@ using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 constexpr int kLanes = 8;
 
+/// Four numbers at once, for loops that compare much: where registers hold four, comparisons of
+/// eight are taken apart. Such a loop is written once for `Float` and compiled for each.
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+/// What belongs to vectors of floats.
+template <class Float>
+struct LanesOf;
+template <>
+struct LanesOf<Float8> {
+  using Int = Int8;
+  static constexpr int kCount = 8;
+};
+template <>
+struct LanesOf<Float4> {
+  using Int = Int4;
+  static constexpr int kCount = 4;
+};
+template <class Float>
+using IntsOf = typename LanesOf<Float>::Int;
+
 // Always part of their caller, so that they are compiled as wide as it is, and nothing is handed
 // over.
 #pragma GCC diagnostic push
@@ -20,6 +41,31 @@ PERCEPTION_LANES Float8 eight(float v) { return Float8{v, v, v, v, v, v, v, v}; 
 PERCEPTION_LANES Int8 eight(std::int32_t v) { return Int8{v, v, v, v, v, v, v, v}; }
 PERCEPTION_LANES Int8 firstEight() { return Int8{0, 1, 2, 3, 4, 5, 6, 7}; }
 
+/// The same number in all lanes.
+template <class Float>
+PERCEPTION_LANES Float all(float v) {
+  if constexpr (sizeof(Float) == sizeof(Float8)) {
+    return eight(v);
+  } else {
+    return Float{v, v, v, v};
+  }
+}
+/// 0, 1, 2 and so on.
+template <class Float>
+PERCEPTION_LANES Float firstLanes() {
+  if constexpr (sizeof(Float) == sizeof(Float8)) {
+    return Float{0, 1, 2, 3, 4, 5, 6, 7};
+  } else {
+    return Float{0, 1, 2, 3};
+  }
+}
+
+template <class Float>
+PERCEPTION_LANES Float load(const float* from) {
+  Float v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
 PERCEPTION_LANES Float8 load8(const float* from) {
   Float8 v;
   std::memcpy(&v, from, sizeof v);
@@ -38,14 +84,20 @@ template <class Lanes>
 PERCEPTION_LANES Lanes smaller(const Lanes& a, const Lanes& b) {
   return a < b ? a : b;
 }
-PERCEPTION_LANES Float8 magnitude(const Float8& v) {
-  return reinterpret_cast<Float8>(reinterpret_cast<Int8>(v) &
-                                  eight(0x7FFFFFFF));  // without the sign
+template <class Float>
+PERCEPTION_LANES Float magnitude(const Float& v) {
+  return reinterpret_cast<Float>(reinterpret_cast<IntsOf<Float>>(v) &
+                                 0x7FFFFFFF);  // without the sign
 }
-PERCEPTION_LANES Int8 truncated(const Float8& v) { return __builtin_convertvector(v, Int8); }
+template <class Float>
+PERCEPTION_LANES IntsOf<Float> truncated(const Float& v) {
+  return __builtin_convertvector(v, IntsOf<Float>);
+}
 PERCEPTION_LANES Float8 asFloats(const Int8& v) { return __builtin_convertvector(v, Float8); }
-PERCEPTION_LANES Float8 roundedDown(const Float8& v) {
-  const Float8 whole = asFloats(truncated(v));
+PERCEPTION_LANES Float4 asFloats(const Int4& v) { return __builtin_convertvector(v, Float4); }
+template <class Float>
+PERCEPTION_LANES Float roundedDown(const Float& v) {
+  const Float whole = asFloats(truncated(v));
   return whole > v ? whole - 1 : whole;
 }
 

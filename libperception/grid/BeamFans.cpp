@@ -6,6 +6,7 @@
 
 #include "libperception/core/Lanes.h"
 #include "libperception/core/Wider.h"
+#include "libperception/grid/LayerBits.h"
 
 namespace perception {
 namespace {
@@ -27,39 +28,6 @@ struct Fan {
   std::int32_t step, side;     ///< from column to column along and aside
 };
 
-using Mask8x32 = std::uint32_t __attribute__((vector_size(32)));
-using Mask8x64 = std::uint64_t __attribute__((vector_size(64)));
-using Long8 = std::int64_t __attribute__((vector_size(64)));
-
-// A bit at the layer of each height. `kShifts`: by lane, which SSE2 has not; else the float of that
-// value is put together.
-template <bool kShifts>
-PERCEPTION_LANES Mask8x32 bitOf(const Int8& layer) {
-  if constexpr (kShifts)
-    return Mask8x32{1, 1, 1, 1, 1, 1, 1, 1} << reinterpret_cast<Mask8x32>(layer);
-  constexpr std::int32_t kBias = 127, kMantissa = 23;
-  const Int8 power = (layer + kBias) << kMantissa;
-  return __builtin_convertvector(reinterpret_cast<Float8>(power), Mask8x32);
-}
-template <bool kShifts>
-PERCEPTION_LANES void setBit(const Float8& z, Mask8x32& bit) {
-  bit = bitOf<kShifts>(truncated(z));
-}
-template <bool kShifts>
-PERCEPTION_LANES void setBit(const Float8& z, Mask8x64& bit) {
-  const Int8 layer = truncated(z), upper = layer > 31;
-  const Mask8x64 half = __builtin_convertvector(bitOf<kShifts>(layer & 31), Mask8x64);
-  const Long8 shifted = __builtin_convertvector(upper, Long8);
-  bit = (half & ~reinterpret_cast<Mask8x64>(shifted)) |
-        (half << 32 & reinterpret_cast<Mask8x64>(shifted));
-}
-PERCEPTION_LANES Mask8x32 where(const Int8& lanes, const Mask8x32& bits) {
-  return reinterpret_cast<Mask8x32>(lanes) & bits;
-}
-PERCEPTION_LANES Mask8x64 where(const Int8& lanes, const Mask8x64& bits) {
-  return reinterpret_cast<Mask8x64>(__builtin_convertvector(lanes, Long8)) & bits;
-}
-
 template <class Bits, class Mask>
 PERCEPTION_LANES void gather(Mask* masks, const Bits& bits) {
   Bits all;
@@ -70,100 +38,106 @@ PERCEPTION_LANES void gather(Mask* masks, const Bits& bits) {
 
 // For each group of cells along: where they begin and where the first row ends that a beam of the
 // fan may be in, as distances [cells] from the sensor.
+template <class Float>
 PERCEPTION_LANES void layOut(const Fan& fan, float* guides) {
-  for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
-    const Float8 begin = asFloats(i + firstEight()) - fan.along;
-    const Float8 low = fan.aside + fan.slope * larger(begin, eight(0.0F));
+  constexpr int kCount = LanesOf<Float>::kCount;
+  for (std::int32_t i = fan.first; i <= fan.last; i += kCount) {
+    const Float begin = static_cast<float>(i) + firstLanes<Float>() - fan.along;
+    const Float low = fan.aside + fan.slope * larger(begin, all<Float>(0));
     store8(begin, guides + 2 * i);
-    store8(roundedDown(low) + 1 - fan.aside, guides + 2 * i + kLanes);
+    store8(roundedDown(low) + 1 - fan.aside, guides + 2 * i + kCount);
   }
 }
 
 // The layers between the heights where the beam enters and leaves each row of a group of cells.
-template <bool kRises, bool kShifts, class Bits, class Mask>
+template <bool kRises, class Float, class Mask>
 PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sensor_height,
                                  const float* guides, Mask* gathered) {
-  const Float8 from = eight(beam.from), to = eight(beam.to);
-  const Float8 height = eight(sensor_height), up = eight(beam.up);
-  const Float8 per_across = eight(1 / (beam.across > kLevel ? beam.across : kLevel));
-  const auto first = static_cast<std::int32_t>(along + beam.from) / kLanes * kLanes;
+  using Layers = LayerBits<Float, Mask>;
+  constexpr int kCount = LanesOf<Float>::kCount;
+  const Float from = all<Float>(beam.from), to = all<Float>(beam.to);
+  const Float height = all<Float>(sensor_height), up = all<Float>(beam.up);
+  const Float per_across = all<Float>(1 / (beam.across > kLevel ? beam.across : kLevel));
+  const auto first = static_cast<std::int32_t>(along + beam.from) / kCount * kCount;
   const auto last = static_cast<std::int32_t>(along + beam.to);
-  for (std::int32_t i = first; i <= last; i += kLanes) {
-    const Float8 begin = load8(guides + 2 * i), border = load8(guides + 2 * i + kLanes);
-    const Float8 in = smaller(larger(begin, from), to);
-    const Float8 leave = smaller(larger(begin + 1, from), to);
-    const Float8 reached = border * per_across;
-    const Float8 t1 = smaller(larger(reached, in), leave);
-    const Float8 t2 = smaller(larger(reached + per_across, in), leave);
-    Bits b0, b1, b2, b3;
-    setBit<kShifts>(height + up * in, b0), setBit<kShifts>(height + up * t1, b1);
-    setBit<kShifts>(height + up * t2, b2), setBit<kShifts>(height + up * leave, b3);
+  for (std::int32_t i = first; i <= last; i += kCount) {
+    const Float begin = load<Float>(guides + 2 * i), border = load<Float>(guides + 2 * i + kCount);
+    const Float in = smaller(larger(begin, from), to);
+    const Float leave = smaller(larger(begin + 1, from), to);
+    const Float reached = border * per_across;
+    const Float t1 = smaller(larger(reached, in), leave);
+    const Float t2 = smaller(larger(reached + per_across, in), leave);
+    const auto b0 = Layers::at(height + up * in), b1 = Layers::at(height + up * t1);
+    const auto b2 = Layers::at(height + up * t2), b3 = Layers::at(height + up * leave);
     Mask* const rows = gathered + kRows * i;
-    gather(rows, where(in < t1, kRises ? b1 + b1 - b0 : b0 + b0 - b1));
-    gather(rows + kLanes, where(t1 < t2, kRises ? b2 + b2 - b1 : b1 + b1 - b2));
-    gather(rows + 2 * kLanes, where(t2 < leave, kRises ? b3 + b3 - b2 : b2 + b2 - b3));
+    gather(rows, Layers::where(in < t1, kRises ? b1 + b1 - b0 : b0 + b0 - b1));
+    gather(rows + kCount, Layers::where(t1 < t2, kRises ? b2 + b2 - b1 : b1 + b1 - b2));
+    gather(rows + 2 * kCount, Layers::where(t2 < leave, kRises ? b3 + b3 - b2 : b2 + b2 - b3));
   }
 }
 
 // No beam is in the cells beyond the window's end, of the last group: they mark nothing.
-template <class Mask>
+template <class Float, class Mask>
 PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, const Mask* gathered,
                                    Mask* crossed) {
+  constexpr int kCount = LanesOf<Float>::kCount;
   const std::ptrdiff_t side = fan.side;
-  for (std::int32_t i = fan.first; i <= fan.last; i += kLanes) {
-    const Int8 along = smaller(i + firstEight(), eight(fan.cells - 1));
-    const Int8 row = truncated(load8(guides + 2 * i + kLanes) + (fan.aside - 0.5F));
-    std::int32_t column[kLanes];
+  const Float end = all<Float>(static_cast<float>(fan.cells - 1));
+  for (std::int32_t i = fan.first; i <= fan.last; i += kCount) {
+    const auto along = truncated(smaller(static_cast<float>(i) + firstLanes<Float>(), end));
+    const auto row = truncated(load<Float>(guides + 2 * i + kCount) + (fan.aside - 0.5F));
+    std::int32_t column[kCount];
     store8(fan.column + along * fan.step + row * fan.side, column);
     const Mask* rows = gathered + kRows * i;
-    for (int k = 0; k < kLanes; ++k) {
+    for (int k = 0; k < kCount; ++k) {
       Mask* const first = crossed + column[k];
       first[0] |= rows[k];
-      first[side] |= rows[k + kLanes];
-      first[2 * side] |= rows[k + 2 * kLanes];
+      first[side] |= rows[k + kCount];
+      first[2 * side] |= rows[k + 2 * kCount];
     }
   }
 }
 
-template <bool kShifts, class Bits, class Mask>
+template <class Float, class Mask>
 PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
                                std::size_t count, float* guides, Mask* gathered, Mask* crossed) {
-  layOut(fan, guides);
-  const auto groups = static_cast<std::size_t>((fan.last - fan.first) / kLanes + 1);
-  std::memset(gathered + kRows * fan.first, 0, groups * kRows * sizeof(Bits));
+  constexpr int kCount = LanesOf<Float>::kCount;
+  layOut<Float>(fan, guides);
+  const auto groups = static_cast<std::size_t>((fan.last - fan.first) / kCount + 1);
+  std::memset(gathered + kRows * fan.first, 0, groups * kRows * kCount * sizeof(Mask));
   const float along = fan.along, height = fan.height;
   for (std::size_t k = 0; k < count; ++k) {
     const BeamStretch beam = beams[order[k]];
     if (beam.up >= 0) {
-      crossCells<true, kShifts, Bits>(beam, along, height, guides, gathered);
+      crossCells<true, Float>(beam, along, height, guides, gathered);
     } else {
-      crossCells<false, kShifts, Bits>(beam, along, height, guides, gathered);
+      crossCells<false, Float>(beam, along, height, guides, gathered);
     }
   }
-  markGathered(fan, guides, gathered, crossed);
+  markGathered<Float>(fan, guides, gathered, crossed);
 }
 
-// As PERCEPTION_WIDER, but each width has its own way to set bits.
+// As PERCEPTION_WIDER, but each width has its own vectors.
 PERCEPTION_TARGET("default")
 void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
                 std::size_t count, float* guides, std::uint32_t* gathered, std::uint32_t* crossed) {
-  crossFan<false, Mask8x32>(fan, beams, order, count, guides, gathered, crossed);
+  crossFan<Float4>(fan, beams, order, count, guides, gathered, crossed);
 }
 PERCEPTION_TARGET("default")
 void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
                 std::size_t count, float* guides, std::uint64_t* gathered, std::uint64_t* crossed) {
-  crossFan<false, Mask8x64>(fan, beams, order, count, guides, gathered, crossed);
+  crossFan<Float4>(fan, beams, order, count, guides, gathered, crossed);
 }
 #if PERCEPTION_HAS_WIDER
 PERCEPTION_TARGET("avx2")
 void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
                 std::size_t count, float* guides, std::uint32_t* gathered, std::uint32_t* crossed) {
-  crossFan<true, Mask8x32>(fan, beams, order, count, guides, gathered, crossed);
+  crossFan<Float8>(fan, beams, order, count, guides, gathered, crossed);
 }
 PERCEPTION_TARGET("avx2")
 void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
                 std::size_t count, float* guides, std::uint64_t* gathered, std::uint64_t* crossed) {
-  crossFan<true, Mask8x64>(fan, beams, order, count, guides, gathered, crossed);
+  crossFan<Float8>(fan, beams, order, count, guides, gathered, crossed);
 }
 #endif
 

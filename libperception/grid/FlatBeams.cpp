@@ -33,44 +33,62 @@ struct FlatBeam {
   std::int32_t cells;       ///< of the window
 };
 
-// The columns that it enters and leaves, eight cells along at a time; lanes beyond its end stay in
+// The columns that it enters and leaves, some cells along at a time; lanes beyond its end stay in
 // its last cell. Returns how many there are in `way`.
+template <class Float>
 PERCEPTION_LANES std::int32_t followOne(const FlatBeam& beam, std::int32_t* way) {
-  const Float8 from = eight(beam.from), to = eight(beam.to);
+  constexpr std::int32_t kCount = LanesOf<Float>::kCount;
+  const Float from = all<Float>(beam.from), to = all<Float>(beam.to);
   const auto first = static_cast<std::int32_t>(beam.on + beam.from);
   const auto last = std::min(static_cast<std::int32_t>(beam.on + beam.to), beam.cells - 1);
-  const Float8 end = eight(static_cast<float>(last)), aside = eight(beam.aside);
-  const Float8 on = eight(beam.on), across = eight(beam.across);
-  Float8 next = asFloats(first + firstEight());
+  const Float end = all<Float>(static_cast<float>(last)), aside = all<Float>(beam.aside);
+  const Float on = all<Float>(beam.on), across = all<Float>(beam.across);
+  Float next = static_cast<float>(first) + firstLanes<Float>();
   std::int32_t count = 0;
-  for (std::int32_t i = first; i <= last; i += kLanes, count += 2 * kLanes, next += kLanes) {
-    const Float8 cell = smaller(next, end);
-    const Int8 along = truncated(cell);
-    const Float8 begin = cell - on;
-    const Int8 row0 = truncated(aside + across * larger(begin, from));
-    const Int8 row1 = truncated(aside + across * smaller(begin + 1, to));
+  for (std::int32_t i = first; i <= last; i += kCount, count += 2 * kCount) {
+    const Float cell = smaller(next, end);
+    const auto along = truncated(cell);
+    const Float begin = cell - on;
+    const auto row0 = truncated(aside + across * larger(begin, from));
+    const auto row1 = truncated(aside + across * smaller(begin + 1, to));
     store8(beam.column + along * beam.step + row0 * beam.side, way + count);
-    store8(beam.column + along * beam.step + row1 * beam.side, way + count + kLanes);
+    store8(beam.column + along * beam.step + row1 * beam.side, way + count + kCount);
+    next += static_cast<float>(kCount);
   }
   return count;
 }
 
-PERCEPTION_WIDEST void crossAll(const BeamBlock& b, const WindowPlace origin, std::int32_t cells,
-                                std::int32_t* way, std::uint8_t* crossed) {
+template <class Float>
+PERCEPTION_LANES void crossAll(const BeamBlock& b, const WindowPlace& origin, std::int32_t cells,
+                               std::int32_t* way, std::uint8_t* crossed) {
   for (std::size_t i = 0; i < b.count; ++i) {
     if (!(b.from[i] < b.to[i])) continue;
     const bool along_x = b.face[i] < 2, back = b.face[i] % 2 != 0;
     const float on = along_x ? origin.x : origin.y;
     const std::int32_t step = along_x ? 1 : cells;
     const std::int32_t count =
-        followOne({back ? static_cast<float>(cells) - on : on, along_x ? origin.y : origin.x,
-                   b.across[i], b.from[i], b.to[i], back ? (cells - 1) * step : 0,
-                   back ? -step : step, along_x ? cells : 1, cells},
-                  way);
+        followOne<Float>({back ? static_cast<float>(cells) - on : on, along_x ? origin.y : origin.x,
+                          b.across[i], b.from[i], b.to[i], back ? (cells - 1) * step : 0,
+                          back ? -step : step, along_x ? cells : 1, cells},
+                         way);
     for (std::int32_t k = 0; k < count; k += kLanes)
-      for (std::int32_t j = 0; j < kLanes; ++j) crossed[static_cast<std::uint32_t>(way[k + j])] = 1;
+      for (std::int32_t j = k; j < k + kLanes; ++j) crossed[static_cast<std::uint32_t>(way[j])] = 1;
   }
 }
+
+// As PERCEPTION_WIDER, but each width has its own vectors.
+PERCEPTION_TARGET("default")
+void crossBeams(const BeamBlock& b, const WindowPlace& origin, std::int32_t cells,
+                std::int32_t* way, std::uint8_t* crossed) {
+  crossAll<Float4>(b, origin, cells, way, crossed);
+}
+#if PERCEPTION_HAS_WIDER
+PERCEPTION_TARGET("avx2")
+void crossBeams(const BeamBlock& b, const WindowPlace& origin, std::int32_t cells,
+                std::int32_t* way, std::uint8_t* crossed) {
+  crossAll<Float8>(b, origin, cells, way, crossed);
+}
+#endif
 
 }  // namespace
 
@@ -184,7 +202,7 @@ std::size_t FlatBeams::cross(const GridPoints& hits, const GridPoints& clear,
 
 void FlatBeams::crossBlock(std::uint8_t* crossed) {
   block_.prepare(origin_, cells_, 1, {});
-  crossAll(block_, origin_, cells_, way_.data(), crossed);
+  crossBeams(block_, origin_, cells_, way_.data(), crossed);
   block_.count = 0;
 }
 

@@ -1,0 +1,89 @@
+#pragma once
+#include <cstdint>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "libperception/core/Lanes.h"
+
+namespace perception {
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+/// Layers of several cells as bits, of 32 or 64 layers: for eight cells where AVX2 is, which shifts
+/// by lane, or four.
+template <class Float, class Mask>
+struct LayerBits;
+
+template <>
+struct LayerBits<Float8, std::uint32_t> {
+  using Bits = std::uint32_t __attribute__((vector_size(32)));
+  /// A bit at the layer of each height. [cells]
+  PERCEPTION_LANES static Bits at(const Float8& z) {
+    return Bits{1, 1, 1, 1, 1, 1, 1, 1} << reinterpret_cast<Bits>(truncated(z));
+  }
+  PERCEPTION_LANES static Bits where(const Int8& lanes, const Bits& bits) {
+    return reinterpret_cast<Bits>(lanes) & bits;
+  }
+};
+
+template <>
+struct LayerBits<Float8, std::uint64_t> {
+  using Bits = std::uint64_t __attribute__((vector_size(64)));
+  PERCEPTION_LANES static Bits at(const Float8& z) {
+    const Bits layer = __builtin_convertvector(truncated(z), Bits);
+    return Bits{1, 1, 1, 1, 1, 1, 1, 1} << layer;
+  }
+  PERCEPTION_LANES static Bits where(const Int8& lanes, const Bits& bits) {
+    using Long8 = std::int64_t __attribute__((vector_size(64)));
+    return reinterpret_cast<Bits>(__builtin_convertvector(lanes, Long8)) & bits;
+  }
+};
+
+template <>
+struct LayerBits<Float4, std::uint32_t> {
+  using Bits = std::uint32_t __attribute__((vector_size(16)));
+  PERCEPTION_LANES static Bits at(const Float4& z) { return power(truncated(z)); }
+  PERCEPTION_LANES static Bits where(const Int4& lanes, const Bits& bits) {
+    return reinterpret_cast<Bits>(lanes) & bits;
+  }
+  /// 2^layer by way of the float of that value. SSE2 turns 2^31, too great for it, into that bit.
+  PERCEPTION_LANES static Bits power(const Int4& layer) {
+    constexpr std::int32_t kBias = 127, kMantissa = 23;
+    const Int4 value = (layer + kBias) << kMantissa;
+#if defined(__SSE2__)
+    return reinterpret_cast<Bits>(_mm_cvttps_epi32(reinterpret_cast<__m128>(value)));
+#else
+    return __builtin_convertvector(reinterpret_cast<Float4>(value), Bits);
+#endif
+  }
+};
+
+template <>
+struct LayerBits<Float4, std::uint64_t> {
+  using Half = std::uint64_t __attribute__((vector_size(16)));
+  /// The first two cells, the last two.
+  struct Bits {
+    Half a, b;
+    PERCEPTION_LANES Bits operator+(const Bits& o) const { return {a + o.a, b + o.b}; }
+    PERCEPTION_LANES Bits operator-(const Bits& o) const { return {a - o.a, b - o.b}; }
+    PERCEPTION_LANES void operator|=(const Bits& o) { a |= o.a, b |= o.b; }
+  };
+  PERCEPTION_LANES static Bits at(const Float4& z) {
+    using Low = LayerBits<Float4, std::uint32_t>;
+    const Int4 layer = truncated(z), upper = layer > 31;
+    const Int4 bit = reinterpret_cast<Int4>(Low::power(layer & 31));
+    const Int4 low = bit & ~upper, high = bit & upper;
+    return {reinterpret_cast<Half>(__builtin_shufflevector(low, high, 0, 4, 1, 5)),
+            reinterpret_cast<Half>(__builtin_shufflevector(low, high, 2, 6, 3, 7))};
+  }
+  PERCEPTION_LANES static Bits where(const Int4& lanes, const Bits& bits) {
+    return {reinterpret_cast<Half>(__builtin_shufflevector(lanes, lanes, 0, 0, 1, 1)) & bits.a,
+            reinterpret_cast<Half>(__builtin_shufflevector(lanes, lanes, 2, 2, 3, 3)) & bits.b};
+  }
+};
+
+#pragma GCC diagnostic pop
+
+}  // namespace perception
