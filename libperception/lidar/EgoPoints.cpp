@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <numeric>
 
 namespace perception {
 
@@ -72,10 +71,12 @@ struct Rules {
   float near2, far2, front, rear, side, top;
 };
 
-/// Transforms and judges `count` points; no branches, so that the compiler makes vectors of it.
+/// Transforms and judges `count` points from the `first` on; no branches, so that the compiler
+/// makes vectors of it.
 PERCEPTION_WIDEST Verdicts judge(const float* __restrict px, const float* __restrict py,
-                                 const float* __restrict pz, std::size_t count, const Rules& rules,
-                                 float* __restrict ex, float* __restrict ey, float* __restrict ez,
+                                 const float* __restrict pz, std::uint32_t first, std::size_t count,
+                                 const Rules& rules, float* __restrict ex, float* __restrict ey,
+                                 float* __restrict ez, std::uint32_t* __restrict source,
                                  std::int32_t* __restrict keep) {
   const float r00 = rules.R(0, 0), r01 = rules.R(0, 1), r02 = rules.R(0, 2), tx = rules.t.x();
   const float r10 = rules.R(1, 0), r11 = rules.R(1, 1), r12 = rules.R(1, 2), ty = rules.t.y();
@@ -83,7 +84,7 @@ PERCEPTION_WIDEST Verdicts judge(const float* __restrict px, const float* __rest
   const float near2 = rules.near2, far2 = rules.far2, front = rules.front, rear = rules.rear,
               side = rules.side, top = rules.top;
   Verdicts all;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count); ++k) {
     const float range2 = px[k] * px[k] + py[k] * py[k] + pz[k] * pz[k];
     const float x = r00 * px[k] + r01 * py[k] + r02 * pz[k] + tx;
     const float y = r10 * px[k] + r11 * py[k] + r12 * pz[k] + ty;
@@ -94,7 +95,7 @@ PERCEPTION_WIDEST Verdicts judge(const float* __restrict px, const float* __rest
     const std::int32_t within = (horizontal2 >= near2) & (horizontal2 <= far2);
     const std::int32_t own = (x < front) & (x > rear) & (y < side) & (y > -side) & (z < top);
     const std::int32_t kept = has_range & within & (own ^ 1);
-    ex[k] = x, ey[k] = y, ez[k] = z, keep[k] = kept;
+    ex[k] = x, ey[k] = y, ez[k] = z, source[k] = first + k, keep[k] = kept;
     all.with_range += has_range, all.kept += kept;
   }
   return all;
@@ -161,7 +162,6 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
     const Places at(points, kept);
     if (stride == 1) {
       ask(*cloud, first + kBlock, kBlock);
-      std::iota(at.source, at.source + size, static_cast<std::uint32_t>(first));
     } else {
       for (std::size_t k = 0; k < size; k += kTaken) {
         const std::size_t i = index(first + k), taken = std::min(kTaken, size - k);
@@ -169,11 +169,14 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
         takeGroup(&cloud->x[i], taken, &block.px[k]);
         takeGroup(&cloud->y[i], taken, &block.py[k]);
         takeGroup(&cloud->z[i], taken, &block.pz[k]);
-        std::iota(at.source + k, at.source + k + taken, static_cast<std::uint32_t>(i));
       }
       px = block.px.data(), py = block.py.data(), pz = block.pz.data();
     }
-    const Verdicts all = judge(px, py, pz, size, rules, at.x, at.y, at.z, block.keep.data());
+    const Verdicts all = judge(px, py, pz, static_cast<std::uint32_t>(first), size, rules, at.x,
+                               at.y, at.z, at.source, block.keep.data());
+    if (stride > 1)
+      for (std::size_t k = 0; k < size; ++k)
+        at.source[k] = static_cast<std::uint32_t>(index(first + k));
     points.dropped += size - static_cast<std::size_t>(all.with_range);
     if (!cloud->label.empty())
       for (std::size_t k = 0; k < size; ++k)

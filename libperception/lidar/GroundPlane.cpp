@@ -3,10 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "libperception/core/Random.h"
-#include "libperception/core/RoughBearing.h"
 #include "libperception/core/Wider.h"
 
 namespace perception {
@@ -48,56 +46,11 @@ std::optional<Vector3> planeThrough(const Vector3& p, const Vector3& q, const Ve
   return Vector3(a, b, p.z() - a * p.x() - b * p.y());
 }
 
-/// Number i of height z as one number that is ordered by height, then by i.
-std::uint64_t byHeight(float z, std::uint32_t i) {
-  const float no_negative_zero = z + 0.0f;
-  std::uint32_t bits;
-  std::memcpy(&bits, &no_negative_zero, sizeof bits);
-  bits ^= (bits >> 31) != 0 ? 0xFFFFFFFFu : 0x80000000u;
-  return std::uint64_t{bits} << 32 | i;
-}
-
-/// The number that `place` others are below; changes their order.
-std::uint64_t nthOf(std::uint64_t* numbers, std::size_t count, std::size_t place) {
-  if (place >= 3) {
-    std::nth_element(numbers, numbers + place, numbers + count);
-    return numbers[place];
-  }
-  std::uint64_t lowest[3] = {~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}};
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint64_t second = std::max(lowest[0], numbers[k]);
-    const std::uint64_t third = std::max(lowest[1], second);
-    lowest[0] = std::min(lowest[0], numbers[k]), lowest[1] = std::min(lowest[1], second);
-    lowest[2] = std::min(lowest[2], third);
-  }
-  return lowest[place];
-}
-
-/// Polar cells about the vehicle, and which returns count.
-struct PolarCells {
-  float a, b, c, depth;        ///< the plane; [m] below it returns are mirrored
-  float near, far;             ///< [m]
-  float per_ring, per_sector;  ///< [1/m, 1/rad]
-  std::int32_t rings, sectors;
+/// Where and how far below the plane returns count as mirrored.
+struct MirrorRules {
+  float a, b, c, depth;  ///< the plane; [m] below it
+  float far;             ///< [m]
 };
-
-/// The cell of each point, rings x sectors where it is in none; no branches, so that the compiler
-/// makes vectors of it.
-PERCEPTION_WIDEST void findCells(const float* __restrict xs, const float* __restrict ys,
-                                 const float* __restrict zs, std::size_t count, const PolarCells k,
-                                 std::uint32_t* __restrict cell) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float x = xs[i], y = ys[i], range = std::sqrt(x * x + y * y);
-    const std::int32_t counts =
-        (range >= k.near) & (range < k.far) & (zs[i] >= k.a * x + k.b * y + k.c - k.depth);
-    const auto turn = static_cast<std::int32_t>((roughBearing(x, y) + 3.14159265f) * k.per_sector);
-    const std::int32_t sector = turn >= k.sectors ? 0 : turn;
-    const auto out = static_cast<std::int32_t>(range * k.per_ring);
-    const std::int32_t ring = out < k.rings - 1 ? out : k.rings - 1;
-    cell[i] =
-        static_cast<std::uint32_t>(counts != 0 ? sector * k.rings + ring : k.rings * k.sectors);
-  }
-}
 
 /// Of points within `far`, how many there are and how many lie `depth` below the plane.
 struct NearCounts {
@@ -105,7 +58,7 @@ struct NearCounts {
 };
 PERCEPTION_WIDEST NearCounts countNear(const float* __restrict x, const float* __restrict y,
                                        const float* __restrict z, std::size_t count,
-                                       const PolarCells k) {
+                                       const MirrorRules k) {
   const float far2 = k.far * k.far;
   NearCounts counts{0, 0};
   for (std::size_t i = 0; i < count; ++i) {
@@ -118,56 +71,16 @@ PERCEPTION_WIDEST NearCounts countNear(const float* __restrict x, const float* _
 
 }  // namespace
 
-GroundEstimator::Candidates GroundEstimator::candidates(const EgoPoints& points) const {
-  const int rings = static_cast<int>(std::ceil(params_.range_max / params_.ring));
-  const auto cells = static_cast<std::size_t>(rings * params_.sectors);
-  const PolarCells rules{static_cast<float>(plane_.a),
-                         static_cast<float>(plane_.b),
-                         static_cast<float>(plane_.c),
-                         plane_.measured ? static_cast<float>(params_.wet_depth) : 1e9f,
-                         static_cast<float>(params_.range_min),
-                         static_cast<float>(params_.range_max),
-                         static_cast<float>(1 / params_.ring),
-                         static_cast<float>(params_.sectors / kTwoPi),
-                         rings,
-                         params_.sectors};
-  std::vector<std::uint32_t> cell_of(points.size()), start(cells + 2, 0);
-  findCells(points.x.data(), points.y.data(), points.z.data(), points.size(), rules,
-            cell_of.data());
-  for (const std::uint32_t cell : cell_of) ++start[cell + 1];  // in no cell: in the last
-  start.pop_back();
-  for (std::size_t k = 1; k <= cells; ++k) start[k] += start[k - 1];
-  std::vector<std::uint64_t> sorted(start.back());
-  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (cell_of[i] != cells)
-      sorted[next[cell_of[i]]++] = byHeight(points.z[i], static_cast<std::uint32_t>(i));
-
-  Candidates result;
-  for (std::size_t k = 0; k < cells; ++k) {
-    const std::size_t count = start[k + 1] - start[k];
-    if (count < static_cast<std::size_t>(params_.cell_points)) continue;
-    std::uint64_t* first = sorted.data() + start[k];
-    const auto place = static_cast<std::size_t>(params_.quantile * static_cast<double>(count));
-    const auto i = static_cast<std::uint32_t>(nthOf(first, count, place));
-    result.x.push_back(points.x[i]), result.y.push_back(points.y[i]);
-    result.z.push_back(points.z[i]);
-  }
-  return result;
-}
-
 double GroundEstimator::mirroredShareOf(const EgoPoints& points) const {
-  PolarCells within{};
-  within.a = static_cast<float>(plane_.a), within.b = static_cast<float>(plane_.b);
-  within.c = static_cast<float>(plane_.c);
-  within.depth = static_cast<float>(params_.wet_depth);
-  within.far = static_cast<float>(params_.wet_range);
+  const MirrorRules within{static_cast<float>(plane_.a), static_cast<float>(plane_.b),
+                           static_cast<float>(plane_.c), static_cast<float>(params_.wet_depth),
+                           static_cast<float>(params_.wet_range)};
   const NearCounts counts =
       countNear(points.x.data(), points.y.data(), points.z.data(), points.size(), within);
   return counts.near == 0 ? 0 : static_cast<double>(counts.below) / counts.near;
 }
 
-std::optional<GroundPlane> GroundEstimator::fit(const Candidates& candidates,
+std::optional<GroundPlane> GroundEstimator::fit(const GroundCandidates& candidates,
                                                 const Stamp& stamp) const {
   const auto count = static_cast<std::uint32_t>(candidates.size());
   if (count < 6) return std::nullopt;
@@ -240,7 +153,15 @@ GroundPlane GroundEstimator::update(const SensorFrame& frame) {
     wet_ = froze_ = true;
     return plane_;
   }
-  const auto measured = fit(candidates(points), frame.stamp);
+  const CandidateRules rules{params_.sectors,
+                             params_.ring,
+                             params_.range_min,
+                             params_.range_max,
+                             params_.quantile,
+                             params_.cell_points,
+                             plane_,
+                             plane_.measured ? params_.wet_depth : 1e9};
+  const auto measured = fit(groundCandidates(points, rules), frame.stamp);
   if (!measured) return plane_;
   froze_ = false;
   const double alpha = plane_.measured ? params_.alpha : 1;

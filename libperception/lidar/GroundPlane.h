@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
-#include <vector>
 
 #include "libperception/core/ParamSet.h"
 #include "libperception/lidar/EgoPoints.h"
+#include "libperception/lidar/GroundCandidates.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -51,14 +51,8 @@ class GroundEstimator {
   double mirroredShare() const { return mirrored_share_; }
 
  private:
-  /// A low return of every polar cell.
-  struct Candidates {
-    std::vector<float> x, y, z;  ///< [m] ego frame
-    std::size_t size() const { return x.size(); }
-  };
-  Candidates candidates(const EgoPoints& points) const;
   double mirroredShareOf(const EgoPoints& points) const;
-  std::optional<GroundPlane> fit(const Candidates& candidates, const Stamp& stamp) const;
+  std::optional<GroundPlane> fit(const GroundCandidates& candidates, const Stamp& stamp) const;
 
   GroundParams params_;
   std::uint64_t seed_;

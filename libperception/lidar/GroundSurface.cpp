@@ -202,9 +202,10 @@ void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams
 
 namespace {
 
-PERCEPTION_WIDEST void subtractAll(const std::int32_t* __restrict cell,
-                                   const float* __restrict departure, std::size_t count,
-                                   float* __restrict heights) {
+// Look-ups by sixteen are slower than by eight.
+PERCEPTION_WIDER void subtractAll(const std::int32_t* __restrict cell,
+                                  const float* __restrict departure, std::size_t count,
+                                  float* __restrict heights) {
   for (std::size_t i = 0; i < count; ++i)
     heights[i] -= departure[cell[i] ^ (cell[i] >> 31)];  // not low: the complement
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libperception/lidar/Outline.h"
+#include "libperception/lidar/SplitGround.h"
 
 namespace perception {
 
@@ -147,34 +148,16 @@ void fillVertical(const ScanContext& scan, const Vector2& place, double lowest, 
   m.height = ScalarEstimate{highest - base, top_sigma * top_sigma + base_sigma * base_sigma};
 }
 
-/// Ground, obstacles and what is neither: mirrored in a wet road, above all that drives.
-void splitGround(const LidarCloud& cloud, const ObstacleParams& params, LidarDetections& found) {
+/// Places and heights of the obstacles, and trust in them.
+void takeObstacles(const LidarCloud& cloud, LidarDetections& found) {
   const EgoPoints& points = found.points;
-  const std::size_t count = points.size();
-  found.ground.assign(cloud.size(), 0);
-  const auto low = static_cast<float>(params.height_min),
-             high = static_cast<float>(params.height_max);
-  constexpr auto kGround = static_cast<std::uint8_t>(PointLabel::kGround);
-  const bool labelled = !cloud.label.empty(), trusted = cloud.trust.size() == cloud.size();
-  const auto least_trust = static_cast<float>(params.min_trust);
-  found.obstacles.resize(count);
-  std::size_t obstacles = 0;
-  for (std::size_t i = 0; i < count; ++i) {  // what is no obstacle is overwritten by the next
-    const std::uint32_t source = points.source[i];
-    const float height = found.height[i];
-    const bool ground = (std::abs(height) <= low) | (labelled && cloud.label[source] == kGround);
-    found.ground[source] = ground;
-    found.obstacles[obstacles] = static_cast<std::uint32_t>(i);
-    const bool phantom = trusted && cloud.trust[source] < least_trust;
-    obstacles += !ground & !phantom & (height > low) & (height < high);
-  }
-  found.obstacles.resize(obstacles);
+  const std::size_t obstacles = found.obstacles.size();
   found.x.resize(obstacles), found.y.resize(obstacles), found.above.resize(obstacles);
   for (std::size_t k = 0; k < obstacles; ++k) {
     const std::uint32_t i = found.obstacles[k];
     found.x[k] = points.x[i], found.y[k] = points.y[i], found.above[k] = found.height[i];
   }
-  if (!trusted) return;
+  if (cloud.trust.size() != cloud.size()) return;
   found.trust.resize(obstacles);
   for (std::size_t k = 0; k < obstacles; ++k)
     found.trust[k] = cloud.trust[points.source[found.obstacles[k]]];
@@ -330,7 +313,11 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   LidarDetections found(std::move(points), std::move(height), std::move(surface));
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud == nullptr) return found;
-  splitGround(*cloud, params_.obstacles, found);
+  const ObstacleParams& obstacles = params_.obstacles;
+  splitGround(*cloud, found.points, found.height,
+              {obstacles.height_min, obstacles.height_max, obstacles.min_trust}, found.ground,
+              found.obstacles);
+  takeObstacles(*cloud, found);
   found.clusters = findClusters(found.x, found.y, found.above, params_.clusters, found.trust);
   found.persons = findPersons(found.x, found.y, found.above, params_.persons, found.trust,
                               found.points.sensor.head<2>());

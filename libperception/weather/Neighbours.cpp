@@ -113,10 +113,10 @@ PERCEPTION_WIDER void countRow(const float* line, std::ptrdiff_t stride, std::si
 namespace {
 
 /// Reads the counts of what the image shows, and marks what it does not.
-PERCEPTION_WIDEST void lookUp(const float* __restrict shown, const std::uint32_t* __restrict counts,
-                              const std::uint32_t* __restrict pixel, const float* __restrict range,
-                              std::size_t count, std::uint32_t* __restrict of_return,
-                              std::int32_t* __restrict hidden) {
+PERCEPTION_WIDER void lookUp(const float* __restrict shown, const std::uint32_t* __restrict counts,
+                             const std::uint32_t* __restrict pixel, const float* __restrict range,
+                             std::size_t count, std::uint32_t* __restrict of_return,
+                             std::int32_t* __restrict hidden) {
   for (std::size_t k = 0; k < count; ++k) {
     const auto place = static_cast<std::int32_t>(pixel[k]);
     of_return[k] = counts[place];

@@ -70,12 +70,12 @@ namespace {
 
 /// Log-odds of what the geometry says of some suspects; `near` and `high`: where the curves of
 /// range and height are read.
-PERCEPTION_WIDEST void weigh(const std::uint32_t* __restrict neighbours,
-                             const std::int32_t* __restrict near,
-                             const std::int32_t* __restrict high, std::size_t count, float bias,
-                             const float* __restrict of_range, const float* __restrict of_height,
-                             const float* __restrict tight, const float* __restrict wide,
-                             const float* __restrict beyond, float* __restrict odds) {
+PERCEPTION_WIDER void weigh(const std::uint32_t* __restrict neighbours,
+                            const std::int32_t* __restrict near,
+                            const std::int32_t* __restrict high, std::size_t count, float bias,
+                            const float* __restrict of_range, const float* __restrict of_height,
+                            const float* __restrict tight, const float* __restrict wide,
+                            const float* __restrict beyond, float* __restrict odds) {
   constexpr std::uint32_t kMost = NeighbourCounts::kMost;
   constexpr int kBits = NeighbourCounts::kBits;
   for (std::size_t s = 0; s < count; ++s) {
@@ -88,10 +88,10 @@ PERCEPTION_WIDEST void weigh(const std::uint32_t* __restrict neighbours,
 }
 
 /// The first pass, complete; the second is the same as yet.
-PERCEPTION_WIDEST void addIntensity(const float* __restrict geometry,
-                                    const std::uint32_t* __restrict cube, std::size_t count,
-                                    const float* __restrict ratios, float* __restrict first,
-                                    float* __restrict second) {
+PERCEPTION_WIDER void addIntensity(const float* __restrict geometry,
+                                   const std::uint32_t* __restrict cube, std::size_t count,
+                                   const float* __restrict ratios, float* __restrict first,
+                                   float* __restrict second) {
   for (std::size_t s = 0; s < count; ++s) {
     const auto bin = static_cast<std::int32_t>(cube[s] >> SuspectReturns::kBinShift);
     first[s] = second[s] = geometry[s] + ratios[bin];

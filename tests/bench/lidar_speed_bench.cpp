@@ -20,6 +20,7 @@
 #include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/lidar/Linkage.h"
 #include "libperception/lidar/PersonResponse.h"
+#include "libperception/lidar/SplitGround.h"
 #include "tests/bench/LidarScans.h"
 
 namespace perception::bench {
@@ -119,10 +120,9 @@ std::vector<std::uint8_t> groundByUs(const SensorFrame& frame, const LidarParams
   const EgoPoints points = usablePoints(frame, params.points);
   std::vector<float> heights;
   const GroundSurface surface(plane, points, params.surface, &heights);
-  std::vector<std::uint8_t> ground(std::get<LidarCloud>(frame.data).size(), 0);
-  const auto low = static_cast<float>(params.obstacles.height_min);
-  for (std::size_t i = 0; i < heights.size(); ++i)
-    ground[points.source[i]] = std::abs(heights[i]) <= low;
+  std::vector<std::uint8_t> ground;
+  labelGround(points, heights, static_cast<float>(params.obstacles.height_min),
+              std::get<LidarCloud>(frame.data).size(), ground);
   return ground;
 }
 
