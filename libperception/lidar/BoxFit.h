@@ -4,6 +4,7 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/core/ParamSet.h"
+#include "libperception/lidar/Hull.h"
 #include "libperception/measurement/Measurement.h"
 
 namespace perception {
@@ -21,18 +22,6 @@ struct BoxParams {
 
   void visit(ParamVisitor& v);
 };
-
-/// Convex hull, counter-clockwise from the leftmost lowest point, without points on its sides.
-std::vector<Vector2> convexHull(std::vector<Vector2> points);
-
-/// Distance [m] from `place` to the hull (a polygon, a segment or a point); 0 inside.
-double distanceToHull(const std::vector<Vector2>& hull, const Vector2& place);
-
-/// Longest side [m] of the smallest enclosing rectangle and its area [m^2].
-struct HullSize {
-  double longest = 0, area = 0;
-};
-HullSize sizeOf(const std::vector<Vector2>& hull);
 
 /// L-shape fit by the closeness criterion (Zhang et al., IV 2017). Side a is the longer one; yaw is
 /// that of a line, in

@@ -1,0 +1,170 @@
+#include "libperception/lidar/LidarMeasurements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libperception/lidar/Outline.h"
+
+namespace perception {
+namespace {
+
+enum Label { kCarSized, kPersonSized, kUnstable };
+
+constexpr float kHides = 0.5f;  // [-] trust below which a return is more likely a flake than a wall
+
+/// Places of the ego frame's plane in the world, at the ground's height plus `above` [m].
+Vector3 toWorld(const ScanContext& scan, const Vector2& place, double above) {
+  const double ground = scan.found.surface.heightAt(place.x(), place.y());
+  return scan.frame.ego.T_world_ego * Vector3(place.x(), place.y(), ground + above);
+}
+
+/// Base and height of an object whose returns lie `lowest` to `highest` [m] above the ground at
+/// `place` (ego).
+void fillVertical(const ScanContext& scan, const Vector2& place, double lowest, double highest,
+                  bool partly_hidden, Measurement& m) {
+  constexpr double kStandsBelow =
+      0.5;  // [m] returns begin at height_min: lower ones are cut as ground
+  constexpr double kBaseSigma = 0.10;  // [m] of the local ground
+  constexpr double kTopSigma = 0.10;   // [m] of the highest return
+  constexpr double kBeamSpacing =
+      0.008;  // [rad] 0.4 deg, HDL-64's lower half: the top lies up to a beam higher
+  constexpr double kCutSigma = 1.5;  // [m] the top is not in the returns
+  const bool stands = lowest < kStandsBelow;
+  const double base = stands ? 0 : lowest;
+  const double base_sigma = stands ? std::hypot(kBaseSigma, scan.frame.ground.sigma) : 0.3;
+  m.base_z = ScalarEstimate{toWorld(scan, place, base).z(), base_sigma * base_sigma};
+
+  const Vector3 sensor = scan.found.points.sensor;
+  const double range = (place - sensor.head<2>()).norm();
+  const double ground = scan.found.surface.heightAt(place.x(), place.y());
+  const bool cut = highest > scan.params.obstacles.height_max - 0.15 ||
+                   (ground + highest - sensor.z()) / range > scan.top_slope - 2 * kBeamSpacing;
+  const double top_sigma =
+      cut ? kCutSigma : std::hypot(partly_hidden ? 0.3 : kTopSigma, 0.5 * kBeamSpacing * range);
+  m.height = ScalarEstimate{highest - base, top_sigma * top_sigma + base_sigma * base_sigma};
+}
+
+Outline outlineInWorld(const ScanContext& scan, const std::vector<Vector2>& hull, double above) {
+  std::vector<Vector2> places;
+  places.reserve(hull.size());
+  for (const Vector2& p : hull) places.push_back(toWorld(scan, p, above).head<2>());
+  Outline outline = outlineOf(places, scan.T_world_sensor);
+  markHiddenEdges(outline, scan.horizon, scan.T_world_sensor, scan.params.obstacles.hiding_margin,
+                  scan.params.obstacles.hiding_bin, scan.fov);
+  if (scan.params.obstacles.sparse_step > 0)
+    markSparseEdges(outline, places, scan.T_world_sensor, scan.params.obstacles.sparse_step,
+                    scan.params.clusters.near_threshold);
+  return outline;
+}
+
+void fillOutline(const ScanContext& scan, const Outline& outline, const OutlineNoise& noise,
+                 Measurement& m) {
+  fillFootprint(outline, std::hypot(noise.sigma_bearing, noise.sigma_edge / outline.left_range),
+                std::hypot(noise.sigma_bearing, noise.sigma_edge / outline.right_range),
+                noise.sigma_range + noise.range_share * outline.nearest, scan.frame.ego.uncertainty,
+                yawOf(scan.T_world_sensor), m);
+}
+
+}  // namespace
+
+std::shared_ptr<const Horizon> horizonOf(const LidarDetections& found, const Pose3& T_world_ego,
+                                         const Pose3& T_world_sensor,
+                                         const ObstacleParams& params) {
+  const auto bins =
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kTwoPi / params.hiding_bin)));
+  const Vector2 origin = T_world_sensor.translation().head<2>();
+  auto horizon = std::make_shared<Horizon>(origin, bins);
+  struct Bin {
+    float nearest2 = std::numeric_limits<float>::infinity(), second2 = nearest2;  ///< [m^2]
+  };
+  std::vector<Bin> nearest(bins);
+  const auto sx = static_cast<float>(found.points.sensor.x()),
+             sy = static_cast<float>(found.points.sensor.y());
+  const auto world_yaw = static_cast<float>(yawOf(T_world_ego) + 2 * kTwoPi);
+  const auto per_radian = static_cast<float>(static_cast<double>(bins) / kTwoPi);
+  for (std::size_t i = 0; i < found.x.size(); ++i) {
+    if (found.above[i] < static_cast<float>(params.hiding_min) ||
+        found.above[i] > static_cast<float>(params.hiding_max) ||
+        (!found.trust.empty() && found.trust[i] < kHides))
+      continue;
+    const float dx = found.x[i] - sx, dy = found.y[i] - sy, range2 = dx * dx + dy * dy;
+    Bin& bin =
+        nearest[static_cast<std::size_t>((roughBearing(dx, dy) + world_yaw) * per_radian) % bins];
+    if (range2 < bin.nearest2) {
+      bin.second2 = bin.nearest2, bin.nearest2 = range2;
+    } else if (range2 < bin.second2) {
+      bin.second2 = range2;
+    }
+  }
+  for (std::size_t k = 0; k < bins; ++k) {
+    if (!std::isfinite(nearest[k].second2)) continue;
+    const double bearing = (static_cast<double>(k) + 0.5) * kTwoPi / static_cast<double>(bins);
+    const double range = std::sqrt(static_cast<double>(nearest[k].second2));
+    horizon->add(origin + range * Vector2(std::cos(bearing), std::sin(bearing)));
+  }
+  return horizon;
+}
+
+/// A sample of the returns tells as much: the highest beam has its share of them.
+double topSlope(const LidarDetections& found) {
+  constexpr std::size_t kSample = 16000;
+  const EgoPoints& points = found.points;
+  const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
+             sz = static_cast<float>(points.sensor.z());
+  const std::size_t stride = 1 + points.size() / kSample;
+  float top = -std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    const float dx = points.x[i] - sx, dy = points.y[i] - sy;
+    top = std::max(top, (points.z[i] - sz) / std::sqrt(dx * dx + dy * dy));
+  }
+  return static_cast<double>(top);
+}
+
+Measurement measurementOf(const ScanContext& scan, const Cluster& cluster) {
+  Measurement m;
+  const auto lowest = static_cast<double>(cluster.lowest),
+             highest = static_cast<double>(cluster.highest);
+  const Outline outline = outlineInWorld(scan, cluster.hull, (lowest + highest) / 2);
+  fillOutline(scan, outline, cluster.stable ? scan.params.car_noise : scan.params.unstable_noise,
+              m);
+  m.label = cluster.stable ? kCarSized : kUnstable;
+
+  std::vector<Vector2> places;
+  places.reserve(cluster.points.size());
+  for (const std::uint32_t i : cluster.points)
+    places.emplace_back(static_cast<double>(scan.found.x[i]), static_cast<double>(scan.found.y[i]));
+  const Vector2 sensor = scan.found.points.sensor.head<2>();
+  m.sides = fitBox(places, sensor, !outline.left_hidden, !outline.right_hidden, scan.params.boxes);
+  const Vector2 centre = m.sides ? m.sides->centre : cluster.centroid;
+  m.position = toWorld(scan, centre, (lowest + highest) / 2).head<2>();
+  m.position_sigma = 1;
+  if (m.sides) {
+    m.sides->yaw = wrapAxis(m.sides->yaw + yawOf(scan.frame.ego.T_world_ego));
+    m.sides->yaw_sigma = std::hypot(m.sides->yaw_sigma, scan.frame.ego.uncertainty.sigma_yaw);
+    m.sides->centre = m.position;
+    m.position_sigma = std::clamp(m.sides->a / 3, 0.5, 2.0);
+    if (!cluster.stable)
+      m.sides->a_complete = m.sides->b_complete = false;  // its neighbour may be the same object
+  }
+  fillVertical(scan, centre, lowest, highest, outline.left_hidden || outline.right_hidden, m);
+  return m;
+}
+
+Measurement measurementOf(const ScanContext& scan, const PersonPeak& peak) {
+  Measurement m;
+  std::vector<Vector2> places;
+  for (const std::uint32_t i : peak.points)
+    places.emplace_back(static_cast<double>(scan.found.x[i]), static_cast<double>(scan.found.y[i]));
+  const auto lowest = static_cast<double>(peak.lowest), highest = static_cast<double>(peak.highest);
+  const Outline outline =
+      outlineInWorld(scan, convexHull(std::move(places)), (lowest + highest) / 2);
+  fillOutline(scan, outline, scan.params.person_noise, m);
+  m.label = kPersonSized;
+  m.position = toWorld(scan, peak.centre, (lowest + highest) / 2).head<2>();
+  m.position_sigma = 0.3;
+  fillVertical(scan, peak.centre, lowest, highest, outline.left_hidden || outline.right_hidden, m);
+  return m;
+}
+
+}  // namespace perception
