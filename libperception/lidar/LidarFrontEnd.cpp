@@ -1,10 +1,5 @@
 #include "libperception/lidar/LidarFrontEnd.h"
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <limits>
-
 #include "libperception/lidar/LidarMeasurements.h"
 #include "libperception/lidar/Overlaps.h"
 #include "libperception/lidar/SplitGround.h"

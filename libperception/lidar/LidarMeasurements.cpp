@@ -9,6 +9,7 @@
 namespace perception {
 namespace {
 
+/// As LidarFrontEnd::labels has them.
 enum Label { kCarSized, kPersonSized, kUnstable };
 
 constexpr float kHides = 0.5f;  // [-] trust below which a return is more likely a flake than a wall

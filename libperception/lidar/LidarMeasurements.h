@@ -21,7 +21,8 @@ struct ScanContext {
 std::shared_ptr<const Horizon> horizonOf(const LidarDetections& found, const Pose3& T_world_ego,
                                          const Pose3& T_world_sensor, const ObstacleParams& params);
 
-/// Tangent of the highest beam's elevation.
+/// Tangent of the highest beam's elevation. A sample of the returns tells as much: the highest beam
+/// has its share of them.
 double topSlope(const LidarDetections& found);
 
 /// What a detection is as a measurement, in the world.

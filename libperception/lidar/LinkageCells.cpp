@@ -27,7 +27,11 @@ void LinkageCells::place(const std::vector<float>& x, const std::vector<float>& 
   const std::uint32_t row_bits = bitsFor(up);
   wraps_ = across > std::int64_t{1} << column_bits_ || up > std::int64_t{1} << row_bits;
   column_mask_ = (1u << column_bits_) - 1, row_mask_ = (1u << row_bits) - 1;
-  table_.assign(std::size_t{1} << (column_bits_ + row_bits), kNone);
+  const std::size_t places = std::size_t{1} << (column_bits_ + row_bits);
+  thread_local std::vector<std::uint32_t> table;  // memory that every scan needs again
+  if (table.size() < places) table.resize(places);
+  table_ = table.data();
+  taken_.assign(places / 64, 0);
 
   constexpr std::size_t kBlock = 512;
   std::array<std::int32_t, kBlock> column, row;
@@ -53,17 +57,21 @@ void LinkageCells::place(const std::vector<float>& x, const std::vector<float>& 
 
 std::uint32_t LinkageCells::add(std::int32_t column, std::int32_t row) {
   const auto cell = static_cast<std::uint32_t>(columns.size());
-  std::uint32_t& slot = table_[slotOf(column, row)];
-  columns.push_back(column), rows.push_back(row), next_.push_back(slot);
-  slot = cell;
+  const std::size_t slot = slotOf(column, row);
+  columns.push_back(column), rows.push_back(row), next_.push_back(firstIn(slot));
+  table_[slot] = cell, taken_[slot / 64] |= std::uint64_t{1} << slot % 64;
   return cell;
 }
 
 std::vector<std::uint32_t> LinkageCells::number() {
   std::vector<std::uint32_t> order;
   order.reserve(columns.size());
-  for (std::uint32_t cell : table_)
-    for (; cell != kNone; cell = next_[cell]) order.push_back(cell);
+  for (std::size_t word = 0; word < taken_.size(); ++word)
+    for (std::uint64_t taken = taken_[word]; taken != 0; taken &= taken - 1) {
+      const std::size_t slot = 64 * word + static_cast<std::size_t>(__builtin_ctzll(taken));
+      for (std::uint32_t cell = table_[slot]; cell != kNone; cell = next_[cell])
+        order.push_back(cell);
+    }
   if (wraps_)
     std::sort(order.begin(), order.end(), [this](std::uint32_t i, std::uint32_t j) {
       return rows[i] < rows[j] || (rows[i] == rows[j] && columns[i] < columns[j]);

@@ -32,13 +32,17 @@ class LinkageCells {
  private:
   /// The cell there, or kNone.
   std::uint32_t find(std::int32_t column, std::int32_t row) const {
-    std::uint32_t cell = table_[slotOf(column, row)];
+    std::uint32_t cell = firstIn(slotOf(column, row));
     while (cell != kNone && (columns[cell] != column || rows[cell] != row)) cell = next_[cell];
     return cell;
   }
   std::size_t slotOf(std::int32_t column, std::int32_t row) const {
     return (static_cast<std::size_t>(static_cast<std::uint32_t>(row) & row_mask_) << column_bits_) |
            (static_cast<std::uint32_t>(column) & column_mask_);
+  }
+
+  std::uint32_t firstIn(std::size_t slot) const {
+    return (taken_[slot / 64] >> slot % 64 & 1) != 0 ? table_[slot] : kNone;
   }
 
   /// Bits of a table's side that holds `cells` cells: wraps beyond 1024 (360 m at 0.35 m).
@@ -61,7 +65,8 @@ class LinkageCells {
 
   bool wraps_ = false;
   std::uint32_t column_bits_ = 0, column_mask_ = 0, row_mask_ = 0;
-  std::vector<std::uint32_t> table_;  ///< first cell of each place
+  std::vector<std::uint64_t> taken_;  ///< a bit for each place that has a cell
+  std::uint32_t* table_ = nullptr;    ///< first cell of each such place; the others are left over
   std::vector<std::uint32_t> next_;   ///< further cell of the same place
 };
 
