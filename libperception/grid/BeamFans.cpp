@@ -82,10 +82,14 @@ PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, const Ma
                                    Mask* crossed) {
   constexpr int kCount = LanesOf<Float>::kCount;
   const std::ptrdiff_t side = fan.side;
+  // Lanes before and behind the beams stay beside the window: row and the next two are in margin().
+  constexpr std::int32_t kBefore = 2;
   const Float end = all<Float>(static_cast<float>(fan.cells - 1));
+  const Float lowest = all<Float>(0.5F), highest = end + (0.5F + kBefore);
   for (std::int32_t i = fan.first; i <= fan.last; i += kCount) {
     const auto along = truncated(smaller(static_cast<float>(i) + firstLanes<Float>(), end));
-    const auto row = truncated(load<Float>(guides + 2 * i + kCount) + (fan.aside - 0.5F));
+    const Float middle = load<Float>(guides + 2 * i + kCount) + (fan.aside - 0.5F + kBefore);
+    const auto row = truncated(smaller(larger(middle, lowest), highest)) - kBefore;
     std::int32_t column[kCount];
     store8(fan.column + along * fan.step + row * fan.side, column);
     const Mask* rows = gathered + kRows * i;

@@ -52,14 +52,16 @@ int missing(const std::set<int>& cells, const Vector3& from, const Vector3& to) 
   return -1;
 }
 
+/// `out`: [m] by which the sensor may be beside the window of 12 m; negative: inside.
 template <class Mask>
-void expectEveryCellOfLoneBeams() {
+void expectEveryCellOfLoneBeams(double out) {
   WindowMarks<Mask> marks(window(), kLayers);
   Rng random({7, 0, 0, 1});
   for (int i = 0; i < 300; ++i) {
     GridScan scan;
     scan.T_world_ground.translation() = Vector3(6, 6, 0);
-    scan.origin = {random.uniform(2, 10), random.uniform(2, 10), random.uniform(0.1, 3.9)};
+    scan.origin = {random.uniform(-out, 12 + out), random.uniform(-out, 12 + out),
+                   random.uniform(0.1, 3.9)};
     // Ends within the window and outside, above and below it, too.
     const Vector3 end(random.uniform(-10, 22), random.uniform(-10, 22), random.uniform(-3, 7));
     scan.hits.push_back(end);
@@ -76,8 +78,13 @@ void expectEveryCellOfLoneBeams() {
 }
 
 TEST(WindowMarks, ALoneBeamCrossesEveryCellOnItsWayAndNoOther) {
-  expectEveryCellOfLoneBeams<std::uint32_t>();
-  expectEveryCellOfLoneBeams<std::uint64_t>();
+  expectEveryCellOfLoneBeams<std::uint32_t>(-2);
+  expectEveryCellOfLoneBeams<std::uint64_t>(-2);
+}
+
+TEST(WindowMarks, ABeamOfASensorBesideTheWindowCrossesEveryCellOnItsWayAndNoOther) {
+  expectEveryCellOfLoneBeams<std::uint32_t>(6);
+  expectEveryCellOfLoneBeams<std::uint64_t>(6);
 }
 
 TEST(WindowMarks, BeamsThatShareTheirWayLeaveOutCornersAlone) {
