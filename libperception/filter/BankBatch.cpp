@@ -7,6 +7,7 @@
   namespace level {                                                                           \
   void predictConstantVelocity(unsigned long n, unsigned long s, const double* m, double* b); \
   void predictWheeled(unsigned long n, unsigned long s, const double* m, double* b);          \
+  void predictMoments(unsigned long n, unsigned long s, const double* m, double* b);          \
   void innovationDensity(int axes, unsigned long n, unsigned long s, const double* in,        \
                          double* bank, double* out);                                          \
   void innovationUpdate(int axes, unsigned long n, unsigned long s, const double* in,         \
@@ -50,6 +51,13 @@ void predictWheeled(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
   const auto kernel = level == SimdLevel::kAvx512 ? avx512::predictWheeled
                       : level == SimdLevel::kAvx2 ? avx2::predictWheeled
                                                   : sse2::predictWheeled;
+  kernel(countOf(part, bank), bank.padded(), motion[0] + part.first, bank[0] + part.first);
+}
+
+void predictMoments(const MotionBatch& motion, BankBatch& bank, SimdLevel level, BatchPart part) {
+  const auto kernel = level == SimdLevel::kAvx512 ? avx512::predictMoments
+                      : level == SimdLevel::kAvx2 ? avx2::predictMoments
+                                                  : sse2::predictMoments;
   kernel(countOf(part, bank), bank.padded(), motion[0] + part.first, bank[0] + part.first);
 }
 

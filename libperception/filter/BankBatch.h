@@ -64,6 +64,9 @@ void predictConstantVelocity(const MotionBatch& motion, BankBatch& bank, SimdLev
 /// [x, y, v, theta]; theta is not wrapped (SPEC 3.2).
 void predictWheeled(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
                     BatchPart part = {});
+/// The same by the moments of an uncertain heading.
+void predictMoments(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
+                    BatchPart part = {});
 
 /// Innovations of `axes` (1 to 3) values each: y, H = dh/dx row by row, upper triangle of R.
 struct InnovationBatch : Planes {

@@ -54,8 +54,10 @@ bool CRbpfTracker::process(const MeasurementScan& scan) {
   if (started_ && scan.state.stamp < stamp_) return false;
   // MRPT resamples with this thread's generator; assignment also clears what randomize() would
   // leave behind.
-  Rng seeds({seed_, scans_, 0, kResampling});
-  mrpt::random::getRandomGenerator() = mrpt::random::CRandomGenerator(seeds());
+  if (executor_.m_options.BETA > 0) {
+    Rng seeds({seed_, scans_, 0, kResampling});
+    mrpt::random::getRandomGenerator() = mrpt::random::CRandomGenerator(seeds());
+  }
   scan_ = &scan;
   mrpt::bayes::CParticleFilter::TParticleFilterStats pf_stats;
   executor_.executeOn(*this, nullptr, nullptr, &pf_stats);

@@ -7,6 +7,7 @@
 #include "libperception/core/Angle.h"
 #include "libperception/core/Chi2.h"
 #include "libperception/filter/Prediction.h"
+#include "libperception/measurement/PlaceSight.h"
 
 namespace perception {
 namespace {
@@ -110,11 +111,10 @@ bool AxisBounds::exclude(const Measurement& m, const std::vector<AxisKind>& kind
 }
 
 Whereabouts whereaboutsOf(const Track& track, const FilterModel& model) {
-  constexpr double kMargin = 1;  // [m] beyond the objects' own size
   const Surroundings around(track);
   Whereabouts w;
   w.centre = around.centre;
-  w.reach = around.spread + 2 * around.size + kMargin;
+  w.reach = around.spread + kSlack;
   w.longest_sleep = kLongestSleep;
   w.expires = track.stamp + std::min(timeToLive(track, model), kLongestSleep);
   double speed2 = 0;
@@ -134,11 +134,17 @@ Whereabouts whereaboutsOf(const Track& track, const FilterModel& model) {
   return w;
 }
 
-bool concerns(const MeasurementScan& scan, const Track& track) {
+bool seesPlacesAlone(const MeasurementScan& scan) {
+  return dynamic_cast<const PlaceSight*>(scan.model.get()) != nullptr;
+}
+
+bool concerns(const MeasurementScan& scan, const Track& track, bool places_alone) {
+  constexpr double kMargin = 1;  // [m] beyond the objects' own size
   const Whereabouts& w = track.whereabouts;
+  const double body = places_alone ? 0 : 2 * Surroundings(track).size + kMargin;
   const double dt = scan.state.stamp - track.stamp;
   return dt >= w.longest_sleep - 1e-6 || w.reach == std::numeric_limits<double>::infinity() ||
-         scan.model->mayDetect(w.centre, w.reach + w.speed * dt, scan.state);
+         scan.model->mayDetect(w.centre, w.reach + body + w.speed * dt, scan.state);
 }
 
 }  // namespace perception

@@ -53,8 +53,13 @@ inline constexpr double kLongestSleep = 60;
 /// The same of tracks with motion modes: those mix once a step, and the step may not be long.
 inline constexpr double kLongestSleepOfModes = 0.5;
 
+/// Whether the scan's sensor sees places alone: whatever size a track has, only where it is counts.
+bool seesPlacesAlone(const MeasurementScan& scan);
 /// False when the scan can say nothing of the track, since all its class filters, predicted, are
-/// out of view: it stays as it is for now.
-bool concerns(const MeasurementScan& scan, const Track& track);
+/// out of view: it stays as it is for now. `places_alone`: seesPlacesAlone().
+bool concerns(const MeasurementScan& scan, const Track& track, bool places_alone);
+inline bool concerns(const MeasurementScan& scan, const Track& track) {
+  return concerns(scan, track, seesPlacesAlone(scan));
+}
 
 }  // namespace perception

@@ -67,6 +67,7 @@ ScanTerms::ScanTerms(const MeasurementScan& s, const FilterModel& m)
       label_exponent(s.model->labelExponent()),
       detection_exponent(s.model->detectionExponent()),
       classes_(static_cast<std::size_t>(m.classes.size())) {
+  for (const ObjectClass& c : model.classes.classes) log_prior.push_back(std::log(c.prior));
   labels_.reserve(scan.measurements.size() * classes_);
   for (const Measurement& z : scan.measurements) {
     for (ClassId j = 0; j < model.classes.size(); ++j)

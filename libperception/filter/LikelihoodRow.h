@@ -25,6 +25,7 @@ class ScanTerms {
   const FilterModel& model;
   const Gates& gates;
   const double label_exponent, detection_exponent;
+  std::vector<double> log_prior;  ///< by class
 
  private:
   struct Labels {

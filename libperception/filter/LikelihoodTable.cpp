@@ -177,7 +177,8 @@ NewLikelihood newLikelihood(std::size_t k, const ScanTerms& terms) {
   result.log_class.assign(static_cast<std::size_t>(classes), kMinusInfinity);
   for (ClassId j = 0; j < classes; ++j) {
     result.log_class[static_cast<std::size_t>(j)] =
-        std::log(model.classes[j].prior) + terms.labelAndScore(k, static_cast<std::size_t>(j)) +
+        terms.log_prior[static_cast<std::size_t>(j)] +
+        terms.labelAndScore(k, static_cast<std::size_t>(j)) +
         scan.model->logBirthDensity(m, j, scan.state);
   }
   result.log_birth = logNormalise(result.log_class);

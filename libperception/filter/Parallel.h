@@ -1,4 +1,5 @@
 #pragma once
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <cstddef>
@@ -6,11 +7,12 @@
 namespace perception {
 
 /// f(0) ... f(n-1), each independent of the others, in any order and on any number of threads. Few
-/// items are done at once by the caller: waking threads would cost more.
+/// items, and all where there is one thread, are done by the caller: tasks would cost more.
 template <class Function>
 void parallelFor(std::size_t n, const Function& f) {
   constexpr std::size_t kWorthThreads = 24;
-  if (n < kWorthThreads) {
+  if (n < kWorthThreads ||
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) == 1) {
     for (std::size_t i = 0; i < n; ++i) f(i);
   } else {
     tbb::parallel_for(std::size_t{0}, n, f);

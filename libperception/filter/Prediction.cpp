@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "libperception/core/LogMath.h"
 #include "libperception/filter/BankBatch.h"
 #include "libperception/filter/MotionModels.h"
 #include "libperception/filter/Parallel.h"
@@ -24,7 +23,7 @@ constexpr std::size_t kChunk = 16;
 struct ClassChain {
   double dt = -1, time_constant = 0;  // [s]
   int classes = 0;
-  double log_keep = 0, log_uniform = 0;
+  double keep = 1, uniform = 0;
 
   static const ClassChain& over(double dt, const FilterModel& model) {
     thread_local ClassChain last;
@@ -32,8 +31,7 @@ struct ClassChain {
     const int classes = model.classes.size();
     if (last.dt != dt || last.time_constant != time_constant || last.classes != classes) {
       const double forget = -std::expm1(-dt / time_constant);
-      last = {dt, time_constant, classes, std::log1p(-forget),
-              std::log(forget / static_cast<double>(classes))};
+      last = {dt, time_constant, classes, 1 - forget, forget / static_cast<double>(classes)};
     }
     return last;
   }
@@ -51,7 +49,7 @@ void moveOdds(const Track& track, Stamp to, const FilterModel& model, double& ex
   const double decay = p.existence_decay;  // to 5 % = e^-3 in this time
   existence *= std::exp(decay > 0 ? -3 * dt / decay : -lives);
   const ClassChain& chain = ClassChain::over(dt, model);
-  for (double& lp : log_class) lp = logAddExp(lp + chain.log_keep, chain.log_uniform);
+  for (double& lp : log_class) lp = std::log(chain.keep * std::exp(lp) + chain.uniform);
 }
 
 /// All of the prediction but the motion of the Gaussians, which go to `steps`.
@@ -69,8 +67,7 @@ void beginTrack(Stamp to, const FilterModel& model, Track& next, std::vector<Gau
 }
 
 /// What moves one Gaussian, as planes of a MotionBatch.
-void putMotion(const GaussianStep& s, std::size_t i, MotionBatch& motion) {
-  const SpeedNoise n(s.damping, s.dt);
+void putMotion(const GaussianStep& s, const SpeedNoise& n, std::size_t i, MotionBatch& motion) {
   motion[MotionBatch::kKeep][i] = n.keep;
   motion[MotionBatch::kWay][i] = n.way;
   motion[MotionBatch::kPp][i] = s.psd * n.pp;
@@ -97,7 +94,9 @@ void takeGaussian(const BankBatch& bank, std::size_t i, const GaussianStep& s) {
     for (int c = r; c < 4; ++c) (*s.P)(r, c) = (*s.P)(c, r) = bank[plane++][i];
 }
 
-void moveBatch(const std::vector<GaussianStep>& steps, bool wheeled) {
+using Kernel = void (*)(const MotionBatch&, BankBatch&, SimdLevel, BatchPart);
+
+void moveBatch(const std::vector<GaussianStep>& steps, Kernel kernel) {
   if (steps.size() < kWorthBatch) {
     for (const auto& s : steps) predictGaussian(s);
     return;
@@ -107,15 +106,16 @@ void moveBatch(const std::vector<GaussianStep>& steps, bool wheeled) {
   const std::size_t parts = (steps.size() + BatchPart::kPart - 1) / BatchPart::kPart;
   parallelFor(parts, [&](std::size_t p) {
     const BatchPart part{p * BatchPart::kPart, std::min((p + 1) * BatchPart::kPart, steps.size())};
+    SpeedNoise noise(steps[part.first].damping, steps[part.first].dt);
     for (std::size_t i = part.first; i < part.end; ++i) {
-      putMotion(steps[i], i, motion);
+      // Most take the same step.
+      if (i > part.first &&
+          (steps[i].dt != steps[i - 1].dt || steps[i].damping != steps[i - 1].damping))
+        noise = SpeedNoise(steps[i].damping, steps[i].dt);
+      putMotion(steps[i], noise, i, motion);
       putGaussian(steps[i], i, bank);
     }
-    if (wheeled) {
-      predictWheeled(motion, bank, simdLevel(), part);
-    } else {
-      predictConstantVelocity(motion, bank, simdLevel(), part);
-    }
+    kernel(motion, bank, simdLevel(), part);
     for (std::size_t i = part.first; i < part.end; ++i) takeGaussian(bank, i, steps[i]);
   });
 }
@@ -161,18 +161,22 @@ std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,
       beginTrack(to, model, predicted[i], steps[chunk]);
     }
   });
-  std::vector<GaussianStep> free, wheeled;
+  std::vector<GaussianStep> free, wheeled, uncertain;
   for (const auto& chunk : steps) {
     for (const auto& s : chunk) {
-      if (needsSubSteps(s) || hasUncertainHeading(s)) {
+      if (needsSubSteps(s)) {
         predictGaussian(s);
       } else {
-        (s.oriented ? wheeled : free).push_back(s);
+        (!s.oriented ? free : hasUncertainHeading(s) ? uncertain : wheeled).push_back(s);
       }
     }
   }
-  moveBatch(free, false);
-  moveBatch(wheeled, true);
+  moveBatch(free, predictConstantVelocity);
+  moveBatch(wheeled, predictWheeled);
+  moveBatch(uncertain, predictMoments);
+  const auto& classes = model.classes.classes;
+  if (std::none_of(classes.begin(), classes.end(), [](const auto& c) { return c.modes() > 0; }))
+    return predicted;
   parallelFor(tracks.size(), [&](std::size_t i) {
     if (!touched[i]) return;
     for (auto& f : predicted[i].bank) combineModes(f);

@@ -161,8 +161,15 @@ std::vector<GroupAlternative> rankAlone(const std::vector<AssignmentProblem::Opt
 
 }  // namespace
 
-AssignmentRanking::AssignmentRanking(AssignmentProblem problem)
-    : problem_(std::move(problem)), root_(solveWhole(problem_)) {
+AssignmentRanking::AssignmentRanking(AssignmentProblem problem) : problem_(std::move(problem)) {
+  if (problem_.rows.size() == 1) {  // nobody competes
+    best_.column.assign(1, kNothing);
+    for (const auto& o : problem_.rows[0]) {
+      if (o.gain > best_.log_weight) best_.column[0] = o.column, best_.log_weight = o.gain;
+    }
+    return;
+  }
+  root_ = solveWhole(problem_);
   best_.log_weight = -root_.cost;
   best_.column.reserve(root_.column.size());
   for (const int c : root_.column) best_.column.push_back(c < problem_.columns ? c : kNothing);
@@ -170,6 +177,12 @@ AssignmentRanking::AssignmentRanking(AssignmentProblem problem)
 
 std::vector<RankedAssignment> AssignmentRanking::rank(std::size_t k, double span) const {
   const std::size_t n = problem_.rows.size();
+  if (n == 1) {
+    std::vector<RankedAssignment> out{best_};
+    for (auto& a : rankAlone(problem_.rows[0], best_.column[0], k, span))
+      out.push_back({std::move(a.column), best_.log_weight - a.loss});
+    return out;
+  }
   const AssignmentProblem problem = pruned(problem_, root_, span);
   const std::vector<int> group_of = groupsOf(problem);
   std::vector<std::vector<int>> members(n);  // of groups, by first row

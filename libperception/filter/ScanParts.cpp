@@ -88,10 +88,12 @@ void solveBest(const ScanParts& parts, const std::vector<TrackNumbers>& tracks,
   std::sort(v.columns.begin(), v.columns.end());
   AssignmentProblem problem;
   problem.columns = static_cast<int>(v.columns.size());
+  problem.rows.reserve(parts.measurements[v.part].size());
   for (const std::size_t m : parts.measurements[v.part]) {
     auto& row = problem.rows.emplace_back();
     const double other = likeliestOther(index, m).log_weight;
     if (other == kMinusInfinity) continue;
+    row.reserve(index.candidates(m).size());
     for (const auto& c : index.candidates(m)) {
       const auto it = std::lower_bound(v.columns.begin(), v.columns.end(), c.track);
       if (it == v.columns.end() || *it != c.track || c.log_odds == kMinusInfinity) continue;

@@ -6,6 +6,7 @@
 
 #include "libperception/core/LogMath.h"
 #include "libperception/filter/Association.h"
+#include "libperception/filter/Gating.h"
 #include "libperception/filter/LikelihoodTable.h"
 #include "libperception/filter/Numbering.h"
 #include "libperception/filter/Parallel.h"
@@ -101,8 +102,10 @@ ScanTracks tracksOf(const std::vector<const Hypothesis*>& hypotheses, const Meas
   out.of_hypothesis.reserve(hypotheses.size());
   for (const Hypothesis* h : hypotheses) out.of_hypothesis.push_back(numbers.of(h->tracks));
   out.touched.assign(out.before.size(), 0);
-  parallelFor(out.before.size(),
-              [&](std::size_t i) { out.touched[i] = concerns(scan, *out.before[i]); });
+  const bool places_alone = seesPlacesAlone(scan);
+  parallelFor(out.before.size(), [&](std::size_t i) {
+    out.touched[i] = concerns(scan, *out.before[i], places_alone);
+  });
   out.predicted = predictTracks(out.before, out.touched, scan.state.stamp, model);
   return out;
 }

@@ -50,6 +50,8 @@ void clampClasses(double epsilon, std::vector<double>& log_class) {
   logNormalise(log_class);
   if (epsilon <= 0) return;
   const double floor = std::log(epsilon);
+  if (std::none_of(log_class.begin(), log_class.end(), [&](double lp) { return lp < floor; }))
+    return;
   for (double& lp : log_class) lp = std::max(lp, floor);
   logNormalise(log_class);
 }

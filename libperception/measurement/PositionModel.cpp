@@ -16,7 +16,10 @@ Vector2 forwardOf(const SensorState& sensor) {
 }  // namespace
 
 PositionModel::PositionModel(Params params)
-    : params_(std::move(params)), half_fov_(0.5 * params_.fov) {}
+    : params_(std::move(params)),
+      half_fov_(0.5 * params_.fov),
+      log_clutter_(std::log(params_.clutter_per_scan / area())),
+      log_birth_(std::log(params_.births_per_scan / area())) {}
 
 const std::vector<AxisKind>& PositionModel::axes() const {
   static const std::vector<AxisKind> kinds{AxisKind::kLinear, AxisKind::kLinear};
@@ -79,11 +82,11 @@ double PositionModel::logLabelClutter(int label) const {
 }
 
 double PositionModel::logClutterDensity(const Measurement&, const SensorState&) const {
-  return std::log(params_.clutter_per_scan / area());
+  return log_clutter_;
 }
 
 double PositionModel::logBirthDensity(const Measurement&, ClassId, const SensorState&) const {
-  return std::log(params_.births_per_scan / area());
+  return log_birth_;
 }
 
 std::optional<BirthState> PositionModel::birth(const Measurement& m, ClassId c,

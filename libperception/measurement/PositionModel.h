@@ -70,6 +70,7 @@ class PositionModel : public MeasurementModel, public PlaceSight {
 
   Params params_;
   HalfAngle half_fov_;
+  double log_clutter_, log_birth_;
 };
 
 }  // namespace perception

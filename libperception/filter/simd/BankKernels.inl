@@ -17,6 +17,7 @@ using I = long long __attribute__((vector_size(PERCEPTION_SIMD_LANES * sizeof(do
 
 extern "C" {
 V PERCEPTION_SIMD_MATH(log)(V);
+V PERCEPTION_SIMD_MATH(exp)(V);
 }
 
 inline const V& at(const double* p) { return *reinterpret_cast<const V*>(p); }
@@ -127,6 +128,55 @@ void predictWheeled(Count n, Count s, const double* m, double* bank) {
     q.p22 = keep * keep * p22 + vv;
     q.p23 = keep * p23;
     q.p33 = p33 + yyy;
+    q.store(bank + i, s);
+  }
+}
+
+/// [x, y, v, theta] by the moments of an uncertain heading: predictUncertainHeading() of
+/// MotionModels.cpp, where they are derived, written out.
+void predictMoments(Count n, Count s, const double* m, double* bank) {
+  for (Count i = 0; i < n; i += kLanes) {
+    Lanes q(bank + i, s);
+    const double* own = m + i;
+    const V keep = at(own), way = at(own + s), pp = at(own + 2 * s), pv = at(own + 3 * s),
+            vv = at(own + 4 * s), slip = at(own + 5 * s), ypp = at(own + 6 * s),
+            ypy = at(own + 7 * s), yyy = at(own + 8 * s);
+    const V v = q.x2, cov = q.p23;
+    V cs, sn;
+    sineAndCosine(q.x3, sn, cs);
+    const V shrink = PERCEPTION_SIMD_MATH(exp)(-0.5 * q.p33);
+    const V ux = shrink * cs, uy = shrink * sn;
+    const V mx = v * ux - cov * uy, my = v * uy + cov * ux;
+    const V nx = -my, ny = mx;
+    const V shrink4 = shrink * shrink * shrink * shrink;
+    const V tx = shrink4 * (cs * cs - sn * sn), ty = 2 * shrink4 * cs * sn;
+    const V whole = v * v + q.p22, re = whole - 4 * cov * cov, im = 4 * v * cov;
+    const V sx = tx * re - ty * im, sy = tx * im + ty * re;
+    const V s00 = 0.5 * (whole + sx), s01 = 0.5 * sy, s11 = 0.5 * (whole - sx);  // E[V V']
+    const V a00 = ux * q.p22 + nx * cov, a01 = ux * cov + nx * q.p33;            // slope B
+    const V a10 = uy * q.p22 + ny * cov, a11 = uy * cov + ny * q.p33;
+    const V rest00 = s00 - mx * mx - (a00 * ux + a01 * nx);  // unexplained by the slope
+    const V rest01 = s01 - mx * my - (a00 * uy + a01 * ny);
+    const V rest11 = s11 - my * my - (a10 * uy + a11 * ny);
+    const V g02 = q.p02 + way * a00, g03 = q.p03 + way * a01;
+    const V g12 = q.p12 + way * a10, g13 = q.p13 + way * a11;
+    const V way2 = way * way;
+    q.p00 += way * (ux * q.p02 + nx * q.p03) + way * (g02 * ux + g03 * nx) +
+             pp * 0.5 * (1 + tx) + ypp * (whole - s00) + way2 * rest00 + slip;
+    q.p01 += way * (ux * q.p12 + nx * q.p13) + way * (g02 * uy + g03 * ny) + pp * 0.5 * ty -
+             ypp * s01 + way2 * rest01;
+    q.p11 += way * (uy * q.p12 + ny * q.p13) + way * (g12 * uy + g13 * ny) +
+             pp * 0.5 * (1 - tx) + ypp * (whole - s11) + way2 * rest11 + slip;
+    q.p02 = keep * g02 + pv * ux;
+    q.p12 = keep * g12 + pv * uy;
+    q.p03 = g03 + ypy * nx;
+    q.p13 = g13 + ypy * ny;
+    q.p22 = keep * keep * q.p22 + vv;
+    q.p23 = keep * cov;
+    q.p33 += yyy;
+    q.x0 += way * mx;
+    q.x1 += way * my;
+    q.x2 = keep * v;
     q.store(bank + i, s);
   }
 }
