@@ -45,9 +45,7 @@ Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
 }
 
 bool holds(const Footprint& f, const Vector2& p) {
-  const Vector2 d = p - f.centre;
-  if (d.squaredNorm() > f.corner2) return false;
-  const Vector2 own = rotate2(-f.yaw, d);
+  const Vector2 own = rotate2(-f.yaw, p - f.centre);
   return std::abs(own.x()) <= f.half.x() && std::abs(own.y()) <= f.half.y();
 }
 
@@ -78,6 +76,7 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
   }
   for (const std::size_t i : large) {
     for (const std::size_t j : there) {
+      if ((feet[j].centre - feet[i].centre).squaredNorm() > feet[i].corner2) continue;  // most
       if (!feet[i].fresh && !feet[j].fresh) continue;  // compared when one of them was
       if (feet[i].id == feet[j].id || !holds(feet[i], feet[j].centre)) continue;
       // Of two large ones that hold each other one entry is enough.

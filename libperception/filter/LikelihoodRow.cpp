@@ -158,6 +158,7 @@ void placeRow(const Track& track, const std::vector<std::size_t>& near, const Sc
       for (std::size_t j = 0; j < classes; ++j)
         log_detection[j] = std::log(row.detection_by_class[j]);
     }
+    if (row.pairs.empty()) row.pairs.reserve(2);  // most have no more
     PairLikelihood& pair = row.pairs.emplace_back();
     PairTerms sum(track, k, terms, pair);
     for (std::size_t j = 0; j < classes; ++j) {

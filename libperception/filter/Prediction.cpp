@@ -101,22 +101,24 @@ void moveBatch(const std::vector<GaussianStep>& steps, Kernel kernel) {
     for (const auto& s : steps) predictGaussian(s);
     return;
   }
-  BankBatch bank(steps.size());
-  MotionBatch motion(steps.size());
   const std::size_t parts = (steps.size() + BatchPart::kPart - 1) / BatchPart::kPart;
   parallelFor(parts, [&](std::size_t p) {
-    const BatchPart part{p * BatchPart::kPart, std::min((p + 1) * BatchPart::kPart, steps.size())};
-    SpeedNoise noise(steps[part.first].damping, steps[part.first].dt);
-    for (std::size_t i = part.first; i < part.end; ++i) {
+    // Of every thread one, small enough for the cache; what the last part left behind does no harm.
+    thread_local BankBatch bank(BatchPart::kPart);
+    thread_local MotionBatch motion(BatchPart::kPart);
+    const std::size_t first = p * BatchPart::kPart;
+    const std::size_t count = std::min(BatchPart::kPart, steps.size() - first);
+    const GaussianStep* own = &steps[first];
+    SpeedNoise noise(own->damping, own->dt);
+    for (std::size_t i = 0; i < count; ++i) {
       // Most take the same step.
-      if (i > part.first &&
-          (steps[i].dt != steps[i - 1].dt || steps[i].damping != steps[i - 1].damping))
-        noise = SpeedNoise(steps[i].damping, steps[i].dt);
-      putMotion(steps[i], noise, i, motion);
-      putGaussian(steps[i], i, bank);
+      if (i > 0 && (own[i].dt != own[i - 1].dt || own[i].damping != own[i - 1].damping))
+        noise = SpeedNoise(own[i].damping, own[i].dt);
+      putMotion(own[i], noise, i, motion);
+      putGaussian(own[i], i, bank);
     }
-    kernel(motion, bank, simdLevel(), part);
-    for (std::size_t i = part.first; i < part.end; ++i) takeGaussian(bank, i, steps[i]);
+    kernel(motion, bank, simdLevel(), {0, count});
+    for (std::size_t i = 0; i < count; ++i) takeGaussian(bank, i, own[i]);
   });
 }
 
