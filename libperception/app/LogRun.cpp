@@ -37,7 +37,7 @@ void LogRun::put(const Scene& scene) {
 void LogRun::writeExport(const Scene& scene) {
   if (!kitti_ && facts_.camera) {
     kitti_.emplace(files_.export_file + ".partial", setup_.model.classes, *facts_.camera,
-                   setup_.scene.road_user_from);
+                   KittiSelection{setup_.scene.road_user_from, setup_.scene.in_image});
     for (const auto& s : before_camera_) kitti_->write(s);
     before_camera_.clear();
   }

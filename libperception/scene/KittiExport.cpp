@@ -44,9 +44,9 @@ struct Outline {
 };
 
 // Image box of the 3D box, given in the camera's frame: its edges are cut at the near plane, the
-// result at the image.
+// result at the image, which must hold at least the given share of it.
 std::optional<ObjectDetection::ImageBox> project(const std::array<Vector3, 8>& corner,
-                                                 const CameraModel& camera) {
+                                                 const CameraModel& camera, double in_image) {
   Outline outline;
   for (std::size_t i = 0; i < 8; ++i) {
     if (corner[i].z() >= kNearPlane) outline.add(corner[i], camera);
@@ -61,6 +61,8 @@ std::optional<ObjectDetection::ImageBox> project(const std::array<Vector3, 8>& c
   box.x1 = std::max(outline.x1, 0.0), box.x2 = std::min(outline.x2, camera.width - 1.0);
   box.y1 = std::max(outline.y1, 0.0), box.y2 = std::min(outline.y2, camera.height - 1.0);
   if (!(box.x1 < box.x2 && box.y1 < box.y2)) return std::nullopt;
+  const double whole = (outline.x2 - outline.x1) * (outline.y2 - outline.y1);
+  if ((box.x2 - box.x1) * (box.y2 - box.y1) < in_image * whole) return std::nullopt;
   return box;
 }
 
@@ -108,14 +110,14 @@ void takeAsDisc(KittiObject& o) {
 
 std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& scene,
                                        const ClassTable& classes, const KittiCamera& camera,
-                                       double road_user_from) {
+                                       const KittiSelection& selection) {
   const Pose3 T_world_camera = scene.ego.T_world_ego * camera.T_ego_camera;
   const Pose3 T_reference_world =
       (T_world_camera * Eigen::Translation3d(camera.reference_in_camera)).inverse();
   KittiObject result;
   result.frame = scene.frame;
   result.id = object.id;
-  const Role role = roleOf(object, classes, road_user_from);
+  const Role role = roleOf(object, classes, selection.road_user_from);
   result.type = classes[role.class_id].kitti_type;
   result.length = object.length, result.width = object.width, result.height = object.height;
   result.bottom_centre = T_reference_world * object.position;
@@ -132,7 +134,7 @@ std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& s
 
   std::array<Vector3, 8> in_camera = corners(result);
   for (Vector3& corner : in_camera) corner += camera.reference_in_camera;
-  const auto box = project(in_camera, camera.camera);
+  const auto box = project(in_camera, camera.camera, selection.in_image);
   if (!box) return std::nullopt;
   result.box = *box;
   return result;
@@ -150,13 +152,13 @@ std::string kittiLine(const KittiObject& o) {
 }
 
 KittiExport::KittiExport(const std::string& path, const ClassTable& classes,
-                         const KittiCamera& camera, double road_user_from)
-    : file_(path), classes_(classes), camera_(camera), road_user_from_(road_user_from) {}
+                         const KittiCamera& camera, const KittiSelection& selection)
+    : file_(path), classes_(classes), camera_(camera), selection_(selection) {}
 
 void KittiExport::write(const Scene& scene) {
   if (scene.frame < 0) return;
   for (const SceneObject& object : scene.objects) {
-    if (const auto seen = kittiObject(object, scene, classes_, camera_, road_user_from_))
+    if (const auto seen = kittiObject(object, scene, classes_, camera_, selection_))
       file_.write(kittiLine(*seen));
   }
 }

@@ -38,13 +38,23 @@ struct KittiObject {
   double score = 0;       ///< log-odds that it exists and is no mere thing, within +-13.8
 };
 
-/// The object as KITTI sees it, as a road user when it exists and is one with a probability of at
-/// least `road_user_from`; empty when its box lies wholly outside the image. The box stands
-/// upright along the camera's y axis, as in KITTI, so that the image box is the one that a reader
-/// of the line computes.
+/// What of the objects becomes a line.
+struct KittiSelection {
+  /// An object that may be a mere thing is written as the road user that it may be when it exists
+  /// and is one with at least this probability.
+  double road_user_from = 0.5;
+  /// Share of its box's area, as the camera would see it without borders, that lies in the image:
+  /// objects with less are not written. 0: all that touch the image. KITTI labels what leaves the
+  /// image up to about a half; what is written beyond that counts as false there.
+  double in_image = 0;
+};
+
+/// The object as KITTI sees it; empty when the selection leaves it out. The box stands upright
+/// along the camera's y axis, as in KITTI, so that the image box is the one that a reader of the
+/// line computes.
 std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& scene,
                                        const ClassTable& classes, const KittiCamera& camera,
-                                       double road_user_from = 0.5);
+                                       const KittiSelection& selection = {});
 
 /// `frame id type 0 0 alpha x1 y1 x2 y2 h w l x y z rotation_y score`, with line feed; truncated
 /// and occluded are 0.
@@ -56,7 +66,7 @@ class KittiExport {
  public:
   /// Throws OutputError.
   KittiExport(const std::string& path, const ClassTable& classes, const KittiCamera& camera,
-              double road_user_from = 0.5);
+              const KittiSelection& selection = {});
   void write(const Scene& scene);
   void close();
 
@@ -64,7 +74,7 @@ class KittiExport {
   OutputFile file_;
   ClassTable classes_;
   KittiCamera camera_;
-  double road_user_from_;
+  KittiSelection selection_;
 };
 
 }  // namespace perception

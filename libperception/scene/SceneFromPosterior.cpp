@@ -57,6 +57,8 @@ void SceneParams::visit(ParamVisitor& v) {
          "class probability from which an object is classified");
   v.real("road_user_from", road_user_from, {0, 1}, "",
          "KITTI export: written as a road user from this probability on");
+  v.real("in_image", in_image, {0, 1}, "",
+         "KITTI export: share of its box that an object must have in the image");
   v.real(
       "place_within", place_within, {0, 100}, "",
       "of sqrt(length width): with a lidar, places that are less certain are not put out; 0: all "

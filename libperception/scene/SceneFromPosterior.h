@@ -17,6 +17,8 @@ struct SceneParams {
       0.95;  ///< class probability from which an object counts as classified (the paper's)
   double road_user_from = 0.5;  ///< KITTI export: an object that may be a mere thing is written as
                                 ///< the road user that it may be from this probability on
+  double in_image =
+      0;  ///< KITTI export: share of its image box that an object must have in the image
   /// Share of sqrt(length * width) to which a place must be known (deviations of x and y together):
   /// objects less certain are tracked, but not put out. 0: all are. Only
   /// where a lidar takes part: other sensors alone know few places so well.

@@ -62,7 +62,7 @@ TEST(KittiExport, AThingThatMayBeARoadUserIsWrittenAsSuchFromTheGivenProbability
   o.class_id = 1;
   o.class_probability = {0.25, 0.75};
   const auto as = [&](double from) {
-    return kittiObject(o, atOrigin({o}), pedestrianAndThing(), frontCamera(), from);
+    return kittiObject(o, atOrigin({o}), pedestrianAndThing(), frontCamera(), {from, 0});
   };
   ASSERT_TRUE(as(0.5) && as(0.19));
   EXPECT_EQ(as(0.5)->type, "Misc");
@@ -115,6 +115,29 @@ TEST(KittiExport, LeavesOutWhatLiesWhollyOutsideTheImage) {
   EXPECT_FALSE(seen(carAt(10, 40, 0)));  // far to the left
   EXPECT_FALSE(seen(carAt(10, -40, 1)));
   EXPECT_TRUE(seen(carAt(10, 9, 0)));  // partly in view
+}
+
+TEST(KittiExport, WritesWhatHasTheGivenShareOfItsBoxInTheImage) {
+  // A square of 2 m, 2 m high, 18 to 20 m ahead of the camera, its near face across the left edge:
+  // the image begins at 620 / 720 of the distance to the left.
+  SceneObject o = carAt(20, 0, 0);
+  o.length = o.width = 2, o.height = 2;
+  const double left = 620.0 / 720 * 18;
+  const auto in_image = [&](double y, double share) {
+    o.position.y() = y;
+    return kittiObject(o, atOrigin({o}), pedestrianAndCar(), frontCamera(), {0.5, share})
+        .has_value();
+  };
+  // Seen from the near left corner to the far right one, the box is as wide as these two lie apart.
+  const auto share = [&](double y) {
+    const double x1 = 620 - 720 * (y + 1) / 18, x2 = 620 - 720 * (y - 1) / 20;
+    return x2 / (x2 - x1);
+  };
+  for (const double y : {left - 0.5, left, left + 0.5}) {
+    EXPECT_TRUE(in_image(y, share(y) - 0.01)) << y;
+    EXPECT_FALSE(in_image(y, share(y) + 0.01)) << y;
+    EXPECT_TRUE(in_image(y, 0)) << y;
+  }
 }
 
 TEST(KittiExport, CutsABoxAtTheCameraAndAtTheImage) {
