@@ -10,6 +10,8 @@ namespace {
 
 // SPEC 7: the log-odds forget slowly and stay within bounds, 97 % of vehicles drive forward.
 constexpr double kMemory = 0.98, kLogOddsLimit = 6, kForward = 0.97, kReverseAt = -0.5;
+/// SPEC's limit stands for reversals that repeat; where these are modelled it may be twice as far.
+constexpr double kLimitWithRepeats = 12;
 constexpr double kLeastFlip = 1e-3;  // no detector is surer of front and back than this
 /// Share of detected axes that are not within their sigma of the object's but anywhere: 1 % of
 /// Geiger's on KITTI lie beyond 22.5 deg (VISION_NOTES 2).
@@ -17,6 +19,26 @@ constexpr double kStray = 0.01;
 
 double flipProbability(const HeadingSeen& seen) {
   return std::clamp(seen.flip_probability, kLeastFlip, 0.5);
+}
+
+struct BitEvidence {
+  double log_odds = 0;  // that theta is the heading and not its opposite
+  double limit = kLogOddsLimit;
+};
+
+BitEvidence evidenceOf(bool same, int last, const HeadingSeen& seen) {
+  const double p = flipProbability(seen), after_flip = std::max(seen.flip_repeats, p);
+  if (last == 0 || after_flip <= p) {
+    const double evidence = std::log((1 - p) / p);
+    return {same ? evidence : -evidence, after_flip > p ? kLimitWithRepeats : kLogOddsLimit};
+  }
+  // The chain's share of reversals stays p.
+  const double after_right = p * (1 - after_flip) / (1 - p);
+  const auto probability = [&](bool before_right, bool now_right) {
+    const double reversed = before_right ? after_right : after_flip;
+    return now_right ? 1 - reversed : reversed;
+  };
+  return {std::log(probability(last > 0, same) / probability(last < 0, !same)), kLimitWithRepeats};
 }
 
 /// log P(v | theta is the heading) / P(v | theta is its opposite).
@@ -57,11 +79,12 @@ HeadingBit firstHeadingBit(const HeadingSeen& seen) {
 }
 
 HeadingBit nextHeadingBit(const HeadingBit& bit, bool same, const HeadingSeen& seen) {
-  const double p = flipProbability(seen), evidence = std::log((1 - p) / p);
+  const BitEvidence evidence = evidenceOf(same, bit.last, seen);
   HeadingBit next = bit;
-  next.log_odds = std::clamp(kMemory * bit.log_odds + (same ? evidence : -evidence), -kLogOddsLimit,
-                             kLogOddsLimit);
+  next.log_odds =
+      std::clamp(kMemory * bit.log_odds + evidence.log_odds, -evidence.limit, evidence.limit);
   ++(same ? next.same : next.opposite);
+  next.last = same ? 1 : -1;
   return next;
 }
 

@@ -17,9 +17,10 @@ struct HeadingBit {
   int same = 0, opposite = 0;  ///< detections that agreed with theta, or not
   double lane = 0;             ///< what a lane gave to the log-odds
   double axis_log_odds = 0;    ///< that theta lies along the object at all; 0: no detector told
+  int last = 0;                ///< the last detection: 1 agreed with theta, -1 did not, 0: none yet
 
   bool measured() const { return same + opposite > 0; }
-  HeadingBit reversed() const { return {-log_odds, opposite, same, -lane, axis_log_odds}; }
+  HeadingBit reversed() const { return {-log_odds, opposite, same, -lane, axis_log_odds, -last}; }
 };
 
 /// A measured heading against theta.
@@ -37,7 +38,8 @@ double logHeadingRatio(const HeadingSeen& seen, double theta, double theta_varia
 
 /// The bit of a track that starts from, or is given its orientation by, this measurement.
 HeadingBit firstHeadingBit(const HeadingSeen& seen);
-/// The bit after one more detection.
+/// The bit after one more detection. Reversals that come in bursts (HeadingSeen::flip_repeats) are
+/// a chain of two states: what a detection says then depends on the one before.
 HeadingBit nextHeadingBit(const HeadingBit& bit, bool same, const HeadingSeen& seen);
 
 /// Log-odds that theta, with `theta_variance` [rad^2], lies along the object after one more

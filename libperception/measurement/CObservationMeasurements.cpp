@@ -48,17 +48,21 @@ std::optional<SidesSeen> readSides(CArchive& in) {
 
 void writeEvidence(CArchive& out, const Measurement& m) {
   out << m.heading.has_value();
-  if (m.heading) out << m.heading->yaw << m.heading->sigma << m.heading->flip_probability;
+  if (m.heading) {
+    out << m.heading->yaw << m.heading->sigma << m.heading->flip_probability
+        << m.heading->flip_repeats;
+  }
   if (m.sides) out << m.sides->a_sigma << m.sides->b_sigma;
   out.WriteAs<std::uint32_t>(m.log_class.size());
   for (const double lp : m.log_class) out << lp;
   out << m.log_clutter;
 }
 
-void readEvidence(CArchive& in, Measurement& m) {
+void readEvidence(CArchive& in, Measurement& m, std::uint8_t version) {
   if (archive::readFlag(in)) {
     m.heading.emplace();
     in >> m.heading->yaw >> m.heading->sigma >> m.heading->flip_probability;
+    if (version >= 2) in >> m.heading->flip_repeats;
   }
   if (m.sides) in >> m.sides->a_sigma >> m.sides->b_sigma;
   m.log_class.resize(archive::readCount(in, kMostNames, "classes"));
@@ -102,7 +106,7 @@ Measurement readMeasurement(CArchive& in, std::size_t labels, std::uint8_t versi
   m.base_z = readScalar(in);
   m.height = readScalar(in);
   m.sides = readSides(in);
-  if (version >= 1) readEvidence(in, m);
+  if (version >= 1) readEvidence(in, m, version);
   return m;
 }
 
@@ -119,7 +123,7 @@ std::vector<std::string> readNames(CArchive& in) {
 
 }  // namespace
 
-uint8_t CObservationMeasurements::serializeGetVersion() const { return 1; }
+uint8_t CObservationMeasurements::serializeGetVersion() const { return 2; }
 
 void CObservationMeasurements::serializeTo(CArchive& out) const {
   out << timestamp << sensorLabel << sensor_pose << model;
@@ -132,7 +136,7 @@ void CObservationMeasurements::serializeTo(CArchive& out) const {
 }
 
 void CObservationMeasurements::serializeFrom(CArchive& in, uint8_t version) {
-  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> timestamp;
   sensorLabel = archive::readText(in);
   in >> sensor_pose;

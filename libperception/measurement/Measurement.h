@@ -34,8 +34,8 @@ struct SidesSeen {
   double yaw_sigma = 0.2;                       ///< [rad]
   double a = 0, b = 0;                          ///< [m] seen length along and across yaw
   bool a_complete = false, b_complete = false;  ///< both ends of that side were seen
-  double a_sigma = 0, b_sigma = 0;  ///< [m] of complete sides; 0: the filter's side_sigma
-  Vector2 centre = Vector2::Zero();             ///< [m] of the box, world
+  double a_sigma = 0, b_sigma = 0;   ///< [m] of complete sides; 0: the filter's side_sigma
+  Vector2 centre = Vector2::Zero();  ///< [m] of the box, world
 };
 
 /// What a detector says of an object's heading. It may confuse front and back: the axis is measured
@@ -44,6 +44,9 @@ struct HeadingSeen {
   double yaw = 0;                 ///< [rad] world
   double sigma = 0.14;            ///< [rad] of the axis; SPEC 7: 8 deg
   double flip_probability = 0.2;  ///< in [0, 0.5]: 0.5 tells the axis alone
+  /// P(reversed | the detector's heading of this object before was reversed): reversals come in
+  /// bursts. No more than flip_probability: they do not.
+  double flip_repeats = 0;
 };
 
 /// z with covariance R under the scan's MeasurementModel, and what else the detection says of its

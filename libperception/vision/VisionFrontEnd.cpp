@@ -65,6 +65,8 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.angle("heading_sigma_deg", heading_sigma, {0.1, 90}, "of the detector's headings, as axes");
   v.real("heading_flip", heading_flip, {0, 0.5}, "",
          "share of its headings that are reversed; 0.5: they tell the axis alone");
+  v.real("heading_flip_repeats", heading_flip_repeats, {0, 0.99}, "",
+         "... after a reversed one of the same object: they come in bursts");
   v.path("heading_model", heading_model,
          "file of the heading head that told them: its measured errors replace both keys above");
 }
@@ -131,7 +133,7 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
     // (VISION_NOTES 3).
     m.heading = HeadingSeen{wrapAngle(bearing - *object.heading - kPi / 2),
                             std::hypot(detector_.heading_sigma, frame.ego.uncertainty.sigma_yaw),
-                            detector_.heading_flip};
+                            detector_.heading_flip, detector_.heading_flip_repeats};
   }
   if (box->range) m.height = ScalarEstimate{box->height, box->height_sigma * box->height_sigma};
   if (box->range && detector_.base) {

@@ -35,7 +35,8 @@ struct DetectorParams {
   double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error (SPEC
                                       ///< 4.2); KITTI's bank: 6.7 deg
   double heading_flip = 0.2;  ///< share of headings that confuse front and back; 0.5: axis alone
-  std::string heading_model;  ///< file of a HeadingHead, whose own errors then replace both
+  double heading_flip_repeats = 0;  ///< share of reversed ones after a reversed one
+  std::string heading_model;        ///< file of a HeadingHead, whose own errors then replace both
 
   void visit(ParamVisitor& v);
 };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Random.h"
@@ -10,7 +11,7 @@
 namespace perception {
 namespace {
 
-HeadingSeen seen(double yaw, double flip = 0.2) { return {yaw, 0.14, flip}; }
+HeadingSeen seen(double yaw, double flip = 0.2) { return {yaw, 0.14, flip, 0}; }
 
 TEST(HeadingResidual, IsFoldedOntoTheNearerDirection) {
   const auto same = headingResidual(seen(0.3), 0.1, HeadingMode::kSplit);
@@ -59,6 +60,39 @@ TEST(HeadingBit, OfLogOddsIsTheMajorityForConstantAccuracyAndUnknownSpeed) {
     if (std::abs(bit.same - bit.opposite) < 3) continue;
     EXPECT_EQ(asksForReversal(bit, 0, 1e6, HeadingMode::kSplit), bit.opposite > bit.same);
   }
+}
+
+TEST(HeadingBit, OfBurstsIsThePosteriorOfAChainOfTwoStates) {
+  // Both headings, all headings' detections under each: the log-odds are the ratio of the two
+  // products of the chain's probabilities (but for the slow forgetting).
+  const double p = 0.01, repeats = 0.4, after_right = p * (1 - repeats) / (1 - p);
+  HeadingSeen burst = seen(0, p);
+  burst.flip_repeats = repeats;
+  const std::vector<bool> same{true, true, false, false, true};
+  const auto likelihood = [&](bool theta_right) {
+    double l = same[0] == theta_right ? 1 - p : p;
+    for (std::size_t i = 1; i < same.size(); ++i) {
+      const double reversed = same[i - 1] == theta_right ? after_right : repeats;
+      l *= same[i] == theta_right ? 1 - reversed : reversed;
+    }
+    return l;
+  };
+  HeadingBit bit = firstHeadingBit(burst);
+  for (std::size_t i = 1; i < same.size(); ++i) bit = nextHeadingBit(bit, same[i], burst);
+  EXPECT_NEAR(bit.log_odds, std::log(likelihood(true) / likelihood(false)), 0.5);
+}
+
+TEST(HeadingBit, OutlivesABurstOfReversals) {
+  HeadingSeen burst = seen(0, 0.007);
+  const auto afterTwentyAndFour = [&] {
+    HeadingBit bit = firstHeadingBit(burst);
+    for (int i = 0; i < 20; ++i) bit = nextHeadingBit(bit, true, burst);
+    for (int i = 0; i < 4; ++i) bit = nextHeadingBit(bit, false, burst);
+    return bit;
+  };
+  EXPECT_TRUE(asksForReversal(afterTwentyAndFour(), 0, 1, HeadingMode::kSplit));
+  burst.flip_repeats = 0.4;
+  EXPECT_FALSE(asksForReversal(afterTwentyAndFour(), 0, 1, HeadingMode::kSplit));
 }
 
 TEST(HeadingBit, GivesWayToAClearSpeed) {
