@@ -109,7 +109,8 @@ GroundCandidates groundCandidates(const EgoPoints& points, const CandidateRules&
                          rings,
                          rules.sectors};
   const std::size_t count = points.size();
-  std::vector<std::uint32_t> step_of(count), counts((cells + 1) * kSteps, 0);
+  thread_local std::vector<std::uint32_t> step_of, counts;  // memory that every scan needs again
+  step_of.resize(count), counts.assign((cells + 1) * kSteps, 0);
   findSteps(points.x.data(), points.y.data(), points.z.data(), count, polar, step_of.data());
   // Neighbours in a scan share steps; four places of the scan by turns do not wait for each other.
   const std::size_t quarter = count / 4;
@@ -121,7 +122,9 @@ GroundCandidates groundCandidates(const EgoPoints& points, const CandidateRules&
   std::vector<std::uint32_t> wanted(cells + 1, kNoStep), number(cells + 1, 0);
   std::vector<Search> searches = searchesIn(counts, rules, wanted);
   for (std::uint32_t k = 0; k < searches.size(); ++k) number[searches[k].cell] = k;
-  std::vector<std::uint64_t> few(count);
+  std::size_t most = 0;
+  for (const Search& search : searches) most += counts[wanted[search.cell]];
+  std::vector<std::uint64_t> few(most);
   std::array<std::int32_t, kBlock> marks;
   std::array<std::uint32_t, kBlock + kPackSlack> found;
   for (std::size_t first = 0; first < count; first += kBlock) {
