@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Lanes.h"
@@ -22,6 +23,19 @@ PERCEPTION_WIDEST void findFarther(const std::int32_t* __restrict bearing,
                                    const float* __restrict range, const float* __restrict farthest,
                                    std::uint8_t* __restrict news) {
   for (std::size_t i = 0; i < kSize; ++i) news[i] = range[i] > farthest[bearing[i]];
+}
+
+// Of squares, which are not negative: their order is that of their bits.
+PERCEPTION_WIDEST float leastOf(const float* __restrict squares, std::size_t count) {
+  std::int32_t least = 0x7F7FFFFF;  // the greatest float
+  for (std::size_t i = 0; i < count; ++i) {
+    std::int32_t bits;
+    std::memcpy(&bits, squares + i, sizeof bits);
+    least = bits < least ? bits : least;
+  }
+  float square;
+  std::memcpy(&square, &least, sizeof square);
+  return square;
 }
 
 /// A beam of a block on its way, mirrored so that it grows along.
@@ -149,7 +163,7 @@ std::size_t FlatBeams::offerClear(const GridPoints& points, const WindowFrame& f
     not_finite += clear_.not_finite;
     offerPassing(clear_.bearing.data(), clear_.range.data(),
                  kClear | static_cast<std::uint32_t>(first));
-    findLeast();
+    if (news_.size() > 0) findLeast();
   }
   return not_finite;
 }
@@ -169,8 +183,7 @@ void FlatBeams::findLeast() {
   for (std::size_t turn = 0; turn < kQuadrants; ++turn) {
     const std::size_t begin = turn * bearings / kQuadrants;
     const std::size_t end = ((turn + 1) * bearings + kQuadrants - 1) / kQuadrants;
-    float least = *std::min_element(farthest_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                    farthest_.begin() + static_cast<std::ptrdiff_t>(end));
+    float least = leastOf(&farthest_[begin], end - begin);
     for (std::size_t k = 1; k <= kBeside; ++k)
       least = std::min({least, farthest_[(begin + bearings - k) % bearings],
                         farthest_[(end + k - 1) % bearings]});
