@@ -14,6 +14,7 @@
 #include <fstream>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -32,6 +33,16 @@ constexpr int kObjects = 66;
 
 /// What the heap holds [kB].
 double heapKb() { return static_cast<double>(mallinfo2().uordblks) / 1024; }
+
+/// What the banks hold, which have an allocator of their own [kB].
+double banksKb(const CRbpfTracker& tracker) {
+  std::set<const Track*> tracks;
+  for (const auto& particle : tracker.m_particles)
+    for (const auto& track : particle.d->tracks) tracks.insert(track.get());
+  std::size_t filters = 0;
+  for (const Track* track : tracks) filters += track->bank.capacity();
+  return static_cast<double>(filters * sizeof(ClassFilter)) / 1024;
+}
 
 struct Unit {
   std::string label;
@@ -200,7 +211,7 @@ Load runOnce(const std::vector<MeasurementScan>& scans, const FilterModel& model
     load.hypotheses += static_cast<double>(tracker.stats().hypotheses) / n;
     load.objects = static_cast<double>(tracker.mapHypothesis().tracks.size());
   }
-  load.kilobytes = heapKb() - before;
+  load.kilobytes = heapKb() - before + banksKb(tracker);
   return load;
 }
 
