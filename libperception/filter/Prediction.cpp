@@ -42,12 +42,7 @@ void moveOdds(const Track& track, Stamp to, const FilterModel& model, double& ex
               std::vector<double>& log_class) {
   const double dt = to - track.stamp;
   if (dt <= 0) return;
-  const auto& p = model.params;
-  const double until = track.last_in_view - track.stamp + kOutOfViewAfter;
-  const double in_view = std::clamp(until, 0.0, dt);
-  const double lives = in_view / p.survival_in_view + (dt - in_view) / p.survival_out_of_view;
-  const double decay = p.existence_decay;  // to 5 % = e^-3 in this time
-  existence *= std::exp(decay > 0 ? -3 * dt / decay : -lives);
+  existence = predictExistence(track, to, model);
   const ClassChain& chain = ClassChain::over(dt, model);
   for (double& lp : log_class) lp = std::log(chain.keep * std::exp(lp) + chain.uniform);
 }
@@ -123,6 +118,17 @@ void moveBatch(const std::vector<GaussianStep>& steps, Kernel kernel) {
 }
 
 }  // namespace
+
+double predictExistence(const Track& track, Stamp to, const FilterModel& model) {
+  const double dt = to - track.stamp;
+  if (dt <= 0) return track.existence;
+  const auto& p = model.params;
+  const double until = track.last_in_view - track.stamp + kOutOfViewAfter;
+  const double in_view = std::clamp(until, 0.0, dt);
+  const double lives = in_view / p.survival_in_view + (dt - in_view) / p.survival_out_of_view;
+  const double decay = p.existence_decay;  // to 5 % = e^-3 in this time
+  return track.existence * std::exp(decay > 0 ? -3 * dt / decay : -lives);
+}
 
 TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model) {
   TrackOdds odds{track.existence, track.log_class};

@@ -15,6 +15,7 @@ struct TrackOdds {
   double existence = 0;
   std::vector<double> log_class;
 };
+double predictExistence(const Track& track, Stamp to, const FilterModel& model);
 TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model);
 
 /// [s] in which the existence falls below what is kept (existence_min), if nobody sees the track.

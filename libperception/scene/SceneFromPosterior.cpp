@@ -131,11 +131,9 @@ TrackHandle SceneFromPosterior::trackAt(const TrackHandle& track, Stamp stamp) c
     const double existence = smoothed ? smoothed->existence : -1;
     return existence < params_.min_existence ? nullptr : std::make_shared<const Track>(*smoothed);
   }
-  if (track->existence < params_.min_existence) return nullptr;
+  if (predictExistence(*track, stamp, model_) < params_.min_existence) return nullptr;
   if (stamp <= track->stamp) return track;
-  auto predicted =
-      std::make_shared<const Track>(predictTrack(latestOf(track, stamp), stamp, model_));
-  return predicted->existence < params_.min_existence ? nullptr : predicted;
+  return std::make_shared<const Track>(predictTrack(latestOf(track, stamp), stamp, model_));
 }
 
 const Track& SceneFromPosterior::latestOf(const TrackHandle& track, Stamp stamp) const {
