@@ -5,7 +5,10 @@ Written from the description of AB3DMOT (Weng et al., IROS 2020, and its KITTI s
 table for what its papers do not print: fragmentations and identity switches on these sequences. That it is the same method
 shows in MOTA and HOTA, which are published for these boxes (85.8 / 70.2, 75.6 / 52.3, 82.0 / 67.0 on `dev`).
 
-  tests/bench/kitti_reference.py [--shared ../shared] [--out out/kitti_reference] [dev | train | SEQUENCE ...]
+  tests/bench/kitti_reference.py [--shared ../shared] [--out out/kitti_reference] [--in-image SHARE] [dev | train | SEQUENCE ...]
+
+--in-image .5 leaves out boxes that lie in the image with less than half of their area, as our own output does
+([scene] in_image): what that rule gives, and what the tracker.
 """
 import argparse
 import os
@@ -103,17 +106,36 @@ def velodyne_from_camera(path):
     return np.linalg.inv(rectify @ matrix(rows.get('Tr_velo_to_cam') or rows['Tr_velo_cam']))
 
 
+def share_in_image(values, projection, size=(1242, 375), near=0.1):
+    """Of a box (h w l x y z rotation_y, KITTI's frame): the share of the area of its image box that lies in the image."""
+    height, width, length, x, y, z, yaw = values
+    along, across = np.array([np.cos(yaw), 0, -np.sin(yaw)]), np.array([np.sin(yaw), 0, np.cos(yaw)])
+    corners = np.array([[x, y, z] + a * length / 2 * along + b * width / 2 * across - [0, c * height, 0]
+                        for a in (-1, 1) for b in (-1, 1) for c in (0, 1)])
+    corners[:, 2] = np.maximum(corners[:, 2], near)
+    u, v, w = projection @ np.c_[corners, np.ones(8)].T
+    low, high = np.array([(u / w).min(), (v / w).min()]), np.array([(u / w).max(), (v / w).max()])
+    inside = np.maximum(np.minimum(high, np.array(size) - 1) - np.maximum(low, 0), 0)
+    return inside.prod() / (high - low).prod()
+
+
 def moved(T, centre, yaw):
     direction = T[:3, :3] @ [np.cos(yaw), np.sin(yaw), 0]
     return T[:3, :3] @ centre + T[:3, 3], np.arctan2(direction[1], direction[0])
 
 
-def run(tools, data, number, cls, lines):
+def projection(path):
+    row = next(line.split() for line in open(path) if line.startswith('P2'))
+    return np.array(row[1:], float).reshape(3, 4)
+
+
+def run(tools, data, number, cls, lines, in_image):
     solver, measure, bound, min_hits, max_age = SETTINGS[cls]
     name = '%04d.txt' % number
     table = np.loadtxt(os.path.join(data, 'det_pointrcnn', cls, name), delimiter=',', ndmin=2).reshape(-1, 15)
     poses = [matrix(row) for row in np.loadtxt(os.path.join(data, 'velo_poses', name), ndmin=2)]
-    T_velo_cam = velodyne_from_camera(os.path.join(data, 'calib', name))
+    calibration = os.path.join(data, 'calib', name)
+    T_velo_cam, P = velodyne_from_camera(calibration), projection(calibration)
     tracks, count = [], 0
     for frame, pose in enumerate(poses):
         detections = []
@@ -143,6 +165,8 @@ def run(tools, data, number, cls, lines):
             ahead = back[:3, :3] @ [np.cos(t.x[3]), np.sin(t.x[3]), 0]
             values = [*t.detection['image'], height, width, length, centre[0], centre[1] + height / 2, centre[2],
                       np.arctan2(-ahead[2], ahead[0]), t.detection['score']]
+            if in_image > 0 and share_in_image(values[4:11], P) < in_image:
+                continue
             lines.append('%d %d %s 0 0 0 %s\n' % (frame, 100000 * list(SETTINGS).index(cls) + t.id, cls,
                                                   ' '.join('%.4f' % v for v in values)))
 
@@ -151,6 +175,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('--shared', default='../shared', help='folder with data/kitti_tracking and tools/mot_eval.py')
     parser.add_argument('--out', default='out/kitti_reference')
+    parser.add_argument('--in-image', type=float, default=0)
     parser.add_argument('sequences', nargs='*', default=['dev'])
     a = parser.parse_args()
     data, tools = os.path.join(a.shared, 'data', 'kitti_tracking'), os.path.join(a.shared, 'tools')
@@ -166,7 +191,7 @@ def main():
     for s in sequences:
         lines = []
         for cls in SETTINGS:
-            run(tools, data, s, cls, lines)
+            run(tools, data, s, cls, lines, a.in_image)
         with open(os.path.join(res, '%04d.txt' % s), 'w') as file:
             file.writelines(lines)
     rows = [kitti_detections.score_best(tools, os.path.join(data, 'label_02'), res, sequences, c, '3d') for c in SETTINGS]
