@@ -15,6 +15,7 @@ struct TrackOdds {
   double existence = 0;
   std::vector<double> log_class;
 };
+/// The existence alone.
 double predictExistence(const Track& track, Stamp to, const FilterModel& model);
 TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model);
 

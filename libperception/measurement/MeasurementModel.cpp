@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
-#include "libperception/measurement/PlaceSight.h"
 
 namespace perception {
 

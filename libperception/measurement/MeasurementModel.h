@@ -1,8 +1,10 @@
 #pragma once
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "libperception/core/Angle.h"
 #include "libperception/core/Kinematics.h"
 #include "libperception/core/ObjectClass.h"
 #include "libperception/measurement/Measurement.h"
@@ -111,6 +113,16 @@ double logLabelOf(const MeasurementModel& model, const Measurement& m, ClassId c
 /// `fov` [rad] and radius `range` [m] about the sensor's forward axis. Near the origin it may say
 /// true too often.
 bool touchesSector(const Vector2& centre, double reach, double fov, double range,
+                   const SensorState& sensor);
+/// Half of a field of view, its sine and cosine taken once.
+struct HalfAngle {
+  explicit HalfAngle(double angle)
+      : cosine(std::cos(angle)), sine(std::sin(angle)), all(angle >= kPi) {}
+  double cosine, sine;
+  bool all;  ///< the full circle
+};
+/// touchesSector() for a field of view that many discs are held against.
+bool touchesSector(const Vector2& centre, double reach, const HalfAngle& half_fov, double range,
                    const SensorState& sensor);
 
 /// z - h of the axes seen, angles wrapped, packed in axis order.

@@ -1,8 +1,6 @@
 #pragma once
-#include <cmath>
 #include <cstddef>
 
-#include "libperception/core/Angle.h"
 #include "libperception/core/ObjectClass.h"
 #include "libperception/measurement/Measurement.h"
 
@@ -20,16 +18,5 @@ class PlaceSight {
   virtual void placeDetection(const Vector2* places, std::size_t count, const SensorState& sensor,
                               double* out) const = 0;
 };
-
-/// Half of a field of view, its sine and cosine taken once.
-struct HalfAngle {
-  explicit HalfAngle(double angle)
-      : cosine(std::cos(angle)), sine(std::sin(angle)), all(angle >= kPi) {}
-  double cosine, sine;
-  bool all;  ///< the full circle
-};
-/// touchesSector() for a field of view that many discs are held against.
-bool touchesSector(const Vector2& centre, double reach, const HalfAngle& half_fov, double range,
-                   const SensorState& sensor);
 
 }  // namespace perception
