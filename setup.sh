@@ -55,7 +55,7 @@ test_packages=(
 bench_packages=(
   libopencv-video-dev    # cv::KalmanFilter, a peer
   python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti_*
-  libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar rib
+  libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar front end
   libnanoflann-dev       # the same by region growing
 )
 

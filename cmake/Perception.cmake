@@ -32,14 +32,16 @@ if(PERCEPTION_SANITIZE)
   target_link_options(perception_options INTERFACE -fsanitize=${PERCEPTION_SANITIZE})
 endif()
 
-# perception_module(NAME [FOLDER dir] LINK libs...): all of libperception/NAME/*.cpp as perception::NAME.
+# perception_module(NAME [FOLDER dir] LINK libs...): all sources below libperception/NAME as perception::NAME, but those
+# of simd/ kernels (see perception_simd) and of plugins.
 function(perception_module NAME)
   cmake_parse_arguments(ARG "" "FOLDER" "LINK" ${ARGN})
   if(NOT ARG_FOLDER)
     set(ARG_FOLDER libperception/${NAME})
   endif()
   list(REMOVE_ITEM ARG_LINK MRPT)
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${ARG_FOLDER}/*.cpp)
+  file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${ARG_FOLDER}/*.cpp)
+  list(FILTER SOURCES EXCLUDE REGEX "(/plugin/|Kernels(Sse2|Avx2|Avx512)[.]cpp$)")
   if(SOURCES)
     add_library(perception_${NAME} STATIC ${SOURCES})
     target_link_libraries(perception_${NAME} PUBLIC perception_options ${ARG_LINK})
@@ -63,15 +65,22 @@ function(perception_simd NAME STEM)
     COMPILE_OPTIONS "${MATH};-mavx512f;-mavx512dq;-mavx512vl;-mfma;-mprefer-vector-width=512")
 endfunction()
 
-# Every folder apps/X holds X_main.cpp and becomes the program build/bin/X.
-function(perception_apps)
-  file(GLOB MAINS CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/apps/*/*_main.cpp)
-  foreach(MAIN ${MAINS})
-    get_filename_component(DIR ${MAIN} DIRECTORY)
-    get_filename_component(APP ${DIR} NAME)
-    add_executable(${APP} ${MAIN})
-    target_link_libraries(${APP} PRIVATE perception::app)
-  endforeach()
+# perception_program(NAME [SOURCES stems below libperception...] LINK libs...): the program build/bin/perception-NAME from
+# apps/perception-NAME, and perception::app_NAME with its class, for tests. It builds what it runs and nothing else.
+function(perception_program NAME)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  set(PROGRAM perception-${NAME})
+  add_executable(${PROGRAM} ${CMAKE_SOURCE_DIR}/apps/${PROGRAM}/${PROGRAM}_main.cpp)
+  if(ARG_SOURCES)
+    list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/libperception/)
+    list(TRANSFORM ARG_SOURCES APPEND .cpp)
+    add_library(perception_app_${NAME} STATIC ${ARG_SOURCES})
+    target_link_libraries(perception_app_${NAME} PUBLIC perception::app ${ARG_LINK})
+    add_library(perception::app_${NAME} ALIAS perception_app_${NAME})
+    target_link_libraries(${PROGRAM} PRIVATE perception::app_${NAME})
+  else()
+    target_link_libraries(${PROGRAM} PRIVATE ${ARG_LINK})
+  endif()
 endfunction()
 
 # The observation classes and drivers as a plugin for stock MRPT tools (rawlog-edit -p, RawLogViewer -l, rawlog-grabber -p).

@@ -13,7 +13,7 @@ constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kCapitals = 21;     // [px] height of that font's capitals at scale 1
 constexpr double kFarthest = 20000;  // [px] OpenCV's integers overflow beyond
 
-cv::Scalar colourOf(const Colour& c) { return {double(c.r), double(c.g), double(c.b)}; }
+cv::Scalar colorOf(const Color& c) { return {double(c.r), double(c.g), double(c.b)}; }
 
 cv::Point fixedPoint(const Vector2& p) {
   const auto fixed = [](double v) {
@@ -47,21 +47,21 @@ struct Canvas::Impl {
 
   Vector2 local(const Vector2& p) const { return p - offset; }
 
-  // Draws through a copy where the colour is translucent.
+  // Draws through a copy where the color is translucent.
   template <class Draw>
-  void blend(const Colour& colour, cv::Rect box, Draw draw) {
+  void blend(const Color& color, cv::Rect box, Draw draw) {
     box &= cv::Rect(0, 0, view.cols, view.rows);
-    if (box.empty() || colour.alpha <= 0) return;
-    if (colour.alpha >= 1) return draw(view);
+    if (box.empty() || color.alpha <= 0) return;
+    if (color.alpha >= 1) return draw(view);
     cv::Mat below = view(box).clone();
     draw(view);
-    cv::addWeighted(view(box), colour.alpha, below, 1 - colour.alpha, 0, view(box));
+    cv::addWeighted(view(box), color.alpha, below, 1 - color.alpha, 0, view(box));
   }
 };
 
-Canvas::Canvas(int width, int height, const Colour& background) : impl_(new Impl) {
+Canvas::Canvas(int width, int height, const Color& background) : impl_(new Impl) {
   impl_->whole.create(height * kScale, width * kScale, CV_8UC3);
-  impl_->whole = colourOf(background);
+  impl_->whole = colorOf(background);
   unclip();
 }
 
@@ -94,29 +94,29 @@ void Canvas::paste(const Picture& picture, const Rect& to) {
   }
 }
 
-void Canvas::line(const Vector2& a, const Vector2& b, const Colour& colour, double thickness) {
+void Canvas::line(const Vector2& a, const Vector2& b, const Color& color, double thickness) {
   const cv::Point p = fixedPoint(impl_->local(a)), q = fixedPoint(impl_->local(b));
   const int stroke = strokeOf(thickness);
   cv::Rect box(cv::Point(std::min(p.x, q.x), std::min(p.y, q.y)) / (1 << kFraction) -
                    cv::Point(stroke + 2, stroke + 2),
                cv::Point(std::max(p.x, q.x), std::max(p.y, q.y)) / (1 << kFraction) +
                    cv::Point(stroke + 3, stroke + 3));
-  impl_->blend(colour, box, [&](cv::Mat& on) {
-    cv::line(on, p, q, colourOf(colour), stroke, cv::LINE_AA, kFraction);
+  impl_->blend(color, box, [&](cv::Mat& on) {
+    cv::line(on, p, q, colorOf(color), stroke, cv::LINE_AA, kFraction);
   });
 }
 
-void Canvas::dashedLine(const Vector2& a, const Vector2& b, const Colour& colour, double thickness,
+void Canvas::dashedLine(const Vector2& a, const Vector2& b, const Color& color, double thickness,
                         double dash) {
   const double length = (b - a).norm();
   if (!(length > 0) || length > kFarthest) return;
   const Vector2 along = (b - a) / length;
   for (double at = 0; at < length; at += 2 * dash) {
-    line(a + at * along, a + std::min(at + dash, length) * along, colour, thickness);
+    line(a + at * along, a + std::min(at + dash, length) * along, color, thickness);
   }
 }
 
-void Canvas::polygon(const std::vector<Vector2>& corners, const Colour& fill) {
+void Canvas::polygon(const std::vector<Vector2>& corners, const Color& fill) {
   std::vector<cv::Point> points;
   cv::Rect box;
   for (const Vector2& corner : corners) {
@@ -125,40 +125,40 @@ void Canvas::polygon(const std::vector<Vector2>& corners, const Colour& fill) {
     box = box.empty() ? one : box | one;
   }
   impl_->blend(fill, box, [&](cv::Mat& on) {
-    cv::fillConvexPoly(on, points, colourOf(fill), cv::LINE_AA, kFraction);
+    cv::fillConvexPoly(on, points, colorOf(fill), cv::LINE_AA, kFraction);
   });
 }
 
-void Canvas::rectangle(const Rect& r, const Colour& fill) {
+void Canvas::rectangle(const Rect& r, const Color& fill) {
   polygon({{r.x, r.y}, {r.right(), r.y}, {r.right(), r.bottom()}, {r.x, r.bottom()}}, fill);
 }
 
-void Canvas::disc(const Vector2& centre, double radius, const Colour& fill) {
-  const cv::Point at = fixedPoint(impl_->local(centre));
+void Canvas::disc(const Vector2& center, double radius, const Color& fill) {
+  const cv::Point at = fixedPoint(impl_->local(center));
   const int r = static_cast<int>(std::lround(radius * kScale * (1 << kFraction)));
   const cv::Point corner((r >> kFraction) + 2, (r >> kFraction) + 2);
   impl_->blend(fill, cv::Rect(at / (1 << kFraction) - corner, at / (1 << kFraction) + corner),
                [&](cv::Mat& on) {
-                 cv::circle(on, at, r, colourOf(fill), cv::FILLED, cv::LINE_AA, kFraction);
+                 cv::circle(on, at, r, colorOf(fill), cv::FILLED, cv::LINE_AA, kFraction);
                });
 }
 
-void Canvas::arrow(const Vector2& a, const Vector2& b, const Colour& colour, double thickness) {
+void Canvas::arrow(const Vector2& a, const Vector2& b, const Color& color, double thickness) {
   const double length = (b - a).norm();
   if (!(length > 0)) return;
   const Vector2 along = (b - a) / length, across(-along.y(), along.x());
   const double head = std::min(5 + 2 * thickness, length);  // [px]
-  line(a, b - head * along * 0.8, colour, thickness);
+  line(a, b - head * along * 0.8, color, thickness);
   polygon({b, b - head * along + 0.45 * head * across, b - head * along - 0.45 * head * across},
-          colour);
+          color);
 }
 
-void Canvas::text(const Vector2& at, const std::string& text, double size, const Colour& colour,
+void Canvas::text(const Vector2& at, const std::string& text, double size, const Color& color,
                   bool bold) {
   const Vector2 p = impl_->local(at) * kScale;
   cv::putText(impl_->view, text,
               {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))}, kFont,
-              fontScale(size), colourOf(colour), fontStroke(size, bold), cv::LINE_AA);
+              fontScale(size), colorOf(color), fontStroke(size, bold), cv::LINE_AA);
 }
 
 double Canvas::textWidth(const std::string& text, double size, bool bold) {

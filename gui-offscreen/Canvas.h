@@ -27,23 +27,23 @@ struct Rect {
 /// averaged at the end. Coordinates are pixels of the finished picture.
 class Canvas {
  public:
-  Canvas(int width, int height, const Colour& background = kPaper);
+  Canvas(int width, int height, const Color& background = kPaper);
   ~Canvas();
 
   /// Drawing outside of `area` has no effect until unclip().
   void clip(const Rect& area);
   void unclip();
   void paste(const Picture& picture, const Rect& to);
-  void line(const Vector2& a, const Vector2& b, const Colour& colour, double thickness);
-  void dashedLine(const Vector2& a, const Vector2& b, const Colour& colour, double thickness,
+  void line(const Vector2& a, const Vector2& b, const Color& color, double thickness);
+  void dashedLine(const Vector2& a, const Vector2& b, const Color& color, double thickness,
                   double dash);
-  void polygon(const std::vector<Vector2>& corners, const Colour& fill);
-  void rectangle(const Rect& rect, const Colour& fill);
-  void disc(const Vector2& centre, double radius, const Colour& fill);
+  void polygon(const std::vector<Vector2>& corners, const Color& fill);
+  void rectangle(const Rect& rect, const Color& fill);
+  void disc(const Vector2& center, double radius, const Color& fill);
   /// A line with a head at b.
-  void arrow(const Vector2& a, const Vector2& b, const Colour& colour, double thickness);
+  void arrow(const Vector2& a, const Vector2& b, const Color& color, double thickness);
   /// ASCII; (x, y) is the left end of the base line; `size` the height of capitals [px].
-  void text(const Vector2& at, const std::string& text, double size, const Colour& colour,
+  void text(const Vector2& at, const std::string& text, double size, const Color& color,
             bool bold = false);
   static double textWidth(const std::string& text, double size, bool bold = false);
 

@@ -33,10 +33,10 @@ class Legend {
     y_ -= 7;
     this->text(text);
   }
-  void boxRow(const Colour& colour, double fill, bool dashed, const std::string& label) {
+  void boxRow(const Color& color, double fill, bool dashed, const std::string& label) {
     const Rect r{at_.x + 3, y_ + 4, kSymbol - 6, kRow - 8};
-    canvas_.rectangle(r, colour.withAlpha(fill));
-    outline(r, colour, dashed, 2);
+    canvas_.rectangle(r, color.withAlpha(fill));
+    outline(r, color, dashed, 2);
     text(label);
   }
   void truthRow(const std::string& label) {
@@ -47,8 +47,8 @@ class Legend {
     canvas_.arrow(middle(2), middle(kSymbol - 2), kInk, 2);
     text(label);
   }
-  void lineRow(const Colour& colour, const std::string& label) {
-    canvas_.line(middle(2), middle(kSymbol - 2), colour, 1.5);
+  void lineRow(const Color& color, const std::string& label) {
+    canvas_.line(middle(2), middle(kSymbol - 2), color, 1.5);
     text(label);
   }
   void dashedRow(const std::string& label) {
@@ -68,25 +68,25 @@ class Legend {
     drawMeasurementMark(canvas_, middle(kSymbol / 2), modality);
     text(label);
   }
-  void dashedBoxRow(const Colour& colour, const std::string& label) {
-    outline({at_.x + 3, y_ + 4, kSymbol - 6, kRow - 8}, colour, true, 1.5);
+  void dashedBoxRow(const Color& color, const std::string& label) {
+    outline({at_.x + 3, y_ + 4, kSymbol - 6, kRow - 8}, color, true, 1.5);
     text(label);
   }
-  void squaresRow(const Colour& colour, const std::string& label) {
+  void squaresRow(const Color& color, const std::string& label) {
     for (const double x : {8.0, 14.0, 20.0}) {
-      canvas_.rectangle({at_.x + x, y_ + kRow / 2 - 3, 5, 5}, colour);
+      canvas_.rectangle({at_.x + x, y_ + kRow / 2 - 3, 5, 5}, color);
     }
     text(label);
   }
-  void pointsRow(const Colour& colour, const std::string& label) {
+  void pointsRow(const Color& color, const std::string& label) {
     for (int i = 0; i < 6; ++i) {
-      canvas_.disc(middle(6 + 4.5 * i) + Vector2(0, i % 2 ? 2 : -2), 1, colour);
+      canvas_.disc(middle(6 + 4.5 * i) + Vector2(0, i % 2 ? 2 : -2), 1, color);
     }
     text(label);
   }
-  void filledRow(const Colour& colour, const std::string& label) {
+  void filledRow(const Color& color, const std::string& label) {
     const Rect r{at_.x + 3, y_ + 5, kSymbol - 6, kRow - 10};
-    canvas_.rectangle(r, colour.withAlpha(0.85));
+    canvas_.rectangle(r, color.withAlpha(0.85));
     canvas_.arrow(middle(9), middle(kSymbol - 6), kPaper, 2);
     text(label);
   }
@@ -98,7 +98,7 @@ class Legend {
       const double share = i / (kSteps - 1.0);
       canvas_.rectangle(
           {bar.x + bar.width * i / kSteps, bar.y, bar.width / kSteps + 0.6, bar.height},
-          colourOfHeight(kHeightLow + share * (kHeightHigh - kHeightLow)));
+          colorOfHeight(kHeightLow + share * (kHeightHigh - kHeightLow)));
     }
     const std::string low = fmt::format("{:g} m", kHeightLow),
                       high = fmt::format("{:g} m", kHeightHigh);
@@ -110,13 +110,13 @@ class Legend {
 
  private:
   Vector2 middle(double x) const { return {at_.x + x, y_ + kRow / 2}; }
-  void outline(const Rect& r, const Colour& colour, bool dashed, double thickness) {
+  void outline(const Rect& r, const Color& color, bool dashed, double thickness) {
     const Vector2 c[] = {{r.x, r.y}, {r.right(), r.y}, {r.right(), r.bottom()}, {r.x, r.bottom()}};
     for (int i = 0; i < 4; ++i) {
       if (dashed) {
-        canvas_.dashedLine(c[i], c[(i + 1) % 4], colour, thickness, 4);
+        canvas_.dashedLine(c[i], c[(i + 1) % 4], color, thickness, 4);
       } else {
-        canvas_.line(c[i], c[(i + 1) % 4], colour, thickness);
+        canvas_.line(c[i], c[(i + 1) % 4], color, thickness);
       }
     }
   }
@@ -133,11 +133,11 @@ double drawLegend(Canvas& canvas, const SceneView& view, const Rect& at) {
   legend.head("Tracked objects");
   for (std::size_t i = 0; i < view.class_names.size(); ++i) {
     std::string name = view.class_names[i];
-    const Colour colour = colourOfClass(name, static_cast<int>(i));
+    const Color color = colorOfClass(name, static_cast<int>(i));
     std::replace(name.begin(), name.end(), '_', ' ');
-    legend.boxRow(colour, 0.45, false, name);
+    legend.boxRow(color, 0.45, false, name);
   }
-  const Colour any = colourOfClass(view.class_names.empty() ? "" : view.class_names[0], 0);
+  const Color any = colorOfClass(view.class_names.empty() ? "" : view.class_names[0], 0);
   legend.boxRow(any, 0.45, false, fmt::format("existence >= {:g}", kSureExistence));
   legend.boxRow(any, 0.12, true, "less certain to exist");
   legend.arrowRow("velocity: way of 1 s");
@@ -157,7 +157,7 @@ double drawLegend(Canvas& canvas, const SceneView& view, const Rect& at) {
     legend.squaresRow(kOccupied, "safety grid: occupied");
     legend.pointsRow(kGroundPoint, "ground");
     if (view.layers.trust) legend.pointsRow(kPhantom, "rain, snow or spray");
-    legend.pointsRow(colourOfHeight(1), "obstacle, by height:");
+    legend.pointsRow(colorOfHeight(1), "obstacle, by height:");
     legend.heightBar();
   }
   if (view.layers.radar) {

@@ -54,26 +54,26 @@ class Overlay {
     return Vector2(px->x() + at_.x, px->y() + at_.y);
   }
 
-  void line(const Vector3& a, const Vector3& b, const Colour& colour, double thickness,
+  void line(const Vector3& a, const Vector3& b, const Color& color, double thickness,
             bool dashed = false) {
     const Vector2 corner(at_.x, at_.y);
     for (const auto& [from, to] : camera_.projectLine(a, b)) {
       if (dashed) {
-        canvas_.dashedLine(from + corner, to + corner, colour, thickness, kDash);
+        canvas_.dashedLine(from + corner, to + corner, color, thickness, kDash);
       } else {
-        canvas_.line(from + corner, to + corner, colour, thickness);
+        canvas_.line(from + corner, to + corner, color, thickness);
       }
     }
   }
 
-  void box(const std::array<Vector3, 8>& c, const Colour& colour, double thickness, bool dashed) {
+  void box(const std::array<Vector3, 8>& c, const Color& color, double thickness, bool dashed) {
     const bool flat = camera_.kind == ViewKind::kTop;  // roof and floor coincide
     for (std::size_t i = 0; i < 4; ++i) {
       const std::size_t next = (i + 1) % 4;
-      line(c[i], c[next], colour, thickness, dashed);
+      line(c[i], c[next], color, thickness, dashed);
       if (flat) continue;
-      line(c[i + 4], c[next + 4], colour, thickness, dashed);
-      line(c[i], c[i + 4], colour, thickness, dashed);
+      line(c[i + 4], c[next + 4], color, thickness, dashed);
+      line(c[i], c[i + 4], color, thickness, dashed);
     }
   }
 
@@ -109,24 +109,24 @@ class Overlay {
   void drawTrail(const SceneObject& object) {
     const auto trail = view_.trails.find(object.id);
     if (trail == view_.trails.end()) return;
-    const Colour colour = colourOfClass(view_.className(object), object.class_id);
+    const Color color = colorOfClass(view_.className(object), object.class_id);
     const auto& places = trail->second;
     for (std::size_t i = 1; i < places.size(); ++i) {
-      line(T_ego_world_ * places[i - 1], T_ego_world_ * places[i], colour, 1.5);
+      line(T_ego_world_ * places[i - 1], T_ego_world_ * places[i], color, 1.5);
     }
   }
 
   void drawOutline(const SceneObject& object) {
-    const Colour colour = colourOfClass(view_.className(object), object.class_id);
+    const Color color = colorOfClass(view_.className(object), object.class_id);
     const auto corners = cornersOf(object);
     const bool muted = isMuted(view_.className(object));
-    box(corners, colour, muted ? 1.2 : 2, object.existence < kSureExistence);
+    box(corners, color, muted ? 1.2 : 2, object.existence < kSureExistence);
     // A bar across the front tells front from rear.
     if (!muted && object.has_yaw) {
       const auto inward = [&](std::size_t front, std::size_t rear) -> Vector3 {
         return corners[front] + 0.2 * (corners[rear] - corners[front]);
       };
-      line(inward(4, 7), inward(5, 6), colour, 2);
+      line(inward(4, 7), inward(5, 6), color, 2);
     }
   }
 
@@ -138,7 +138,7 @@ class Overlay {
     const Vector2 way = rotate2(-ego_yaw_, object.velocity) * kArrowTime;
     const auto a = pixel(from), b = pixel(from + Vector3(way.x(), way.y(), 0));
     if (!a || !b) return;
-    canvas_.arrow(*a, *b, colourOfClass(view_.className(object), object.class_id), 2);
+    canvas_.arrow(*a, *b, colorOfClass(view_.className(object), object.class_id), 2);
   }
 
   int drawLabels();
@@ -268,9 +268,9 @@ void Overlay::drawImagePoints() {
     const auto at = pixel(T_ego_world_ * point.place);
     if (!at || !at_.overlaps({at->x(), at->y(), 1, 1})) continue;
     const bool ground = point.height < kHeightLow;
-    const Colour c = point.trust < kTrusted ? kPhantom
-                     : ground               ? kGroundPoint
-                                            : colourOfHeight(point.height);
+    const Color c = point.trust < kTrusted ? kPhantom
+                    : ground               ? kGroundPoint
+                                           : colorOfHeight(point.height);
     canvas_.disc(*at, ground ? 0.5 : 1, c);
   }
 }
@@ -371,16 +371,16 @@ int Overlay::drawLabels() {
     }
     const Rect& r = *places[i];
     const bool muted = isMuted(view_.className(*labels[i].object));
-    const Colour colour =
-        colourOfClass(view_.className(*labels[i].object), labels[i].object->class_id);
+    const Color color =
+        colorOfClass(view_.className(*labels[i].object), labels[i].object->class_id);
     const Rect& o = wishes[i].object;
     // From the label's edge to the object's, where they stand apart.
     const Vector2 from(std::clamp(o.x + o.width / 2, r.x, r.right()),
                        std::clamp(o.y + o.height / 2, r.y, r.bottom()));
     const Vector2 to(std::clamp(from.x(), o.x, o.right()), std::clamp(from.y(), o.y, o.bottom()));
-    if ((to - from).norm() > 6) canvas_.line(from, to, colour, 1);
+    if ((to - from).norm() > 6) canvas_.line(from, to, color, 1);
     canvas_.rectangle(r, kPaper.withAlpha(muted ? 0.7 : 0.88));
-    canvas_.text({r.x + 3, r.bottom() - 3}, labels[i].text, labels[i].size, colour, !muted);
+    canvas_.text({r.x + 3, r.bottom() - 3}, labels[i].text, labels[i].size, color, !muted);
   }
   return left_out;
 }

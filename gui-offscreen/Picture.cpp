@@ -9,13 +9,13 @@
 
 namespace perception {
 
-std::size_t coloursOf(const Picture& picture) {
-  std::set<std::uint32_t> colours;
+std::size_t colorsOf(const Picture& picture) {
+  std::set<std::uint32_t> colors;
   for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3) {
-    colours.insert(static_cast<std::uint32_t>(picture.rgb[i] << 16 | picture.rgb[i + 1] << 8 |
-                                              picture.rgb[i + 2]));
+    colors.insert(static_cast<std::uint32_t>(picture.rgb[i] << 16 | picture.rgb[i + 1] << 8 |
+                                             picture.rgb[i + 2]));
   }
-  return colours.size();
+  return colors.size();
 }
 
 // Encoded in memory and written by our own file class: OpenCV's imwrite() says nothing of a full

@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// A colour picture in memory: rows from the top, three bytes a pixel.
+/// A color picture in memory: rows from the top, three bytes a pixel.
 struct Picture {
   int width = 0, height = 0;      ///< [px]
   std::vector<std::uint8_t> rgb;  ///< red, green, blue
@@ -15,8 +15,8 @@ struct Picture {
   }
 };
 
-/// Number of different colours; 1 = blank.
-std::size_t coloursOf(const Picture& picture);
+/// Number of different colors; 1 = blank.
+std::size_t colorsOf(const Picture& picture);
 
 /// Writes a PNG. Throws OutputError naming the path.
 void writePng(const std::string& path, const Picture& picture);

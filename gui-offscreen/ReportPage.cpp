@@ -45,7 +45,7 @@ std::string spaced(std::string name) {
   return escaped(name);
 }
 
-std::string css(const Colour& c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
+std::string css(const Color& c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
 
 /// One object over the run.
 struct Life {
@@ -244,7 +244,7 @@ void Page::timeline() {
   if (lives_.empty()) return;
   out_ +=
       "<h2>Who was there, and when</h2>\n<p>One row for each road user that was tracked, from "
-      "when it was first seen until it was lost; colour: its class at that time, pale while "
+      "when it was first seen until it was lost; color: its class at that time, pale while "
       "that was less than 95 % sure.";
   if (!content_.video.empty()) out_ += " A click goes to that time of the film.";
   if (left_out_ > 0)
@@ -253,11 +253,11 @@ void Page::timeline() {
   for (std::size_t c = 0; c < run_.class_names.size(); ++c) {
     if (isMuted(run_.class_names[c])) continue;
     out_ += fmt::format("<span><i style=\"background:{}\"></i>{}</span>",
-                        css(colourOfClass(run_.class_names[c], static_cast<int>(c))),
+                        css(colorOfClass(run_.class_names[c], static_cast<int>(c))),
                         spaced(run_.class_names[c]));
   }
   out_ += fmt::format("<span><i style=\"background:{}\"></i>something that stands</span>",
-                      css(colourOfClass("static-other", 0)));
+                      css(colorOfClass("static-other", 0)));
   const double height = kAxis + kRow * static_cast<double>(lives_.size()) + 4;
   const auto x = [&](double t) { return kLabelWidth + kChartWidth * t / end_; };
   out_ += fmt::format(
@@ -283,7 +283,7 @@ void Page::timeline() {
           "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" fill=\"{}\" "
           "fill-opacity=\"{}\"><title>{}: {}{}, {:.1f} to {:.1f} s</title></rect>\n",
           x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kRow - 4,
-          css(colourOfClass(nameOf(s.class_id), s.class_id)), s.sure ? "1" : "0.4", life.id,
+          css(colorOfClass(nameOf(s.class_id), s.class_id)), s.sure ? "1" : "0.4", life.id,
           s.sure ? "" : "probably ", spaced(nameOf(s.class_id)), s.from, s.to);
     }
     y += kRow;
@@ -346,7 +346,7 @@ void Page::objects() {
     out_ += fmt::format(
         "<tr><td>{}</td><td style=\"color:{}\">{}</td><td>{:.2f}</td><td>{:.1f} s</td>"
         "<td>{:.1f} s</td><td>{:.0f} km/h</td><td>{:.1f} m</td></tr>\n",
-        life.id, css(colourOfClass(nameOf(life.last_class), life.last_class)),
+        life.id, css(colorOfClass(nameOf(life.last_class), life.last_class)),
         spaced(nameOf(life.last_class)), life.probability, life.from(), life.to(),
         life.top_speed * 3.6, life.nearest);
   }

@@ -19,19 +19,19 @@ constexpr double kLetterGap = 0.3;  // [m] between an object's roof and its labe
 constexpr double kArrowTime = 1;    // [s] the arrow shows the way of so long
 constexpr double kStanding = 0.5;   // [m/s] below it there is no arrow
 
-mrpt::img::TColor colourOf(const Colour& c) { return {c.r, c.g, c.b, 255}; }
+mrpt::img::TColor colorOf(const Color& c) { return {c.r, c.g, c.b, 255}; }
 
 mrpt::math::TPoint3D pointOf(const Vector3& p) { return {p.x(), p.y(), p.z()}; }
 
 void addLabel(mrpt::opengl::COpenGLScene& scene, const SceneObject& object, const std::string& name,
-              const Vector3& place, const Colour& colour) {
+              const Vector3& place, const Color& color) {
   std::string text =
       isMuted(name) ? fmt::format("{}", object.id) : fmt::format("{} {}", object.id, name);
   const double speed = object.velocity.norm();
   if (!isMuted(name) && speed >= kStanding) text += fmt::format(" {:.0f} km/h", speed * 3.6);
   auto label = mrpt::opengl::CText3D::Create(text, "sans", kLetter);
   label->setName(fmt::format("label {}", object.id));
-  label->setColor_u8(colourOf(colour));
+  label->setColor_u8(colorOf(color));
   // Upright, to be read by who stands behind the vehicle.
   label->setPose(mrpt::poses::CPose3D(place.x(), place.y(), place.z() + object.height + kLetterGap,
                                       -kPi / 2, 0, kPi / 2));
@@ -39,7 +39,7 @@ void addLabel(mrpt::opengl::COpenGLScene& scene, const SceneObject& object, cons
 }
 
 void addMotion(mrpt::opengl::COpenGLScene& scene, const SceneView& view, const SceneObject& object,
-               const Pose3& T_ego_world, const Colour& colour) {
+               const Pose3& T_ego_world, const Color& color) {
   if (object.velocity.norm() >= kStanding) {
     const Vector3 from = object.position + Vector3(0, 0, object.height / 2);
     const Vector3 a = T_ego_world * from;
@@ -50,14 +50,14 @@ void addMotion(mrpt::opengl::COpenGLScene& scene, const SceneView& view, const S
                                               static_cast<float>(b.y()), static_cast<float>(b.z()),
                                               0.25F, 0.06F, 0.18F);
     arrow->setName(fmt::format("velocity {}", object.id));
-    arrow->setColor_u8(colourOf(colour));
+    arrow->setColor_u8(colorOf(color));
     scene.insert(arrow);
   }
   const auto trail = view.trails.find(object.id);
   if (trail == view.trails.end() || trail->second.size() < 2) return;
   auto path = mrpt::opengl::CSetOfLines::Create();
   path->setName(fmt::format("path {}", object.id));
-  path->setColor_u8(colourOf(colour));
+  path->setColor_u8(colorOf(color));
   for (std::size_t i = 1; i < trail->second.size(); ++i) {
     path->appendLine(pointOf(T_ego_world * trail->second[i - 1]),
                      pointOf(T_ego_world * trail->second[i]));
@@ -79,14 +79,14 @@ void addTruthAndMeasurements(mrpt::opengl::COpenGLScene& scene, const SceneView&
                              const Pose3& T_ego_world) {
   auto truth = mrpt::opengl::CSetOfLines::Create();
   truth->setName("truth");
-  truth->setColor_u8(colourOf(kInk));
+  truth->setColor_u8(colorOf(kInk));
   for (const TruthObject& o : view.truth) {
     addBoxLines(*truth, boxCorners(o.position, o.yaw, o.length, o.width, o.height), T_ego_world);
   }
   scene.insert(truth);
   auto outlines = mrpt::opengl::CSetOfLines::Create();
   outlines->setName("measurements");
-  outlines->setColor_u8(colourOf(kMeasurement));
+  outlines->setColor_u8(colorOf(kMeasurement));
   for (const ViewMeasurement& m : view.measurements) {
     for (std::size_t i = 0; i < m.outline.size(); ++i) {
       outlines->appendLine(pointOf(T_ego_world * m.outline[i]),
@@ -105,9 +105,9 @@ void writeSceneFile(const std::string& path, const SceneView& view, double range
   const Pose3 T_ego_world = view.scene.ego.T_world_ego.inverse();
   for (const SceneObject& object : view.scene.objects) {
     const std::string& name = view.className(object);
-    const Colour colour = colourOfClass(name, object.class_id);
-    addLabel(*scene, object, name, T_ego_world * object.position, colour);
-    addMotion(*scene, view, object, T_ego_world, colour);
+    const Color color = colorOfClass(name, object.class_id);
+    addLabel(*scene, object, name, T_ego_world * object.position, color);
+    addMotion(*scene, view, object, T_ego_world, color);
   }
   addTruthAndMeasurements(*scene, view, T_ego_world);
   const auto viewport = scene->getViewport();

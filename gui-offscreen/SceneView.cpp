@@ -21,11 +21,11 @@ constexpr double kGridStep = 10;      // [m] between the lines on the ground
 constexpr float kGridLevel = -0.05F;  // [m] below the ground's returns
 // [px] of the framebuffer, which has twice the picture's resolution.
 constexpr float kGroundPointSize = 2, kObstaclePointSize = 4;
-constexpr float kGroundHeight = 0.3F;  // [m] above which a return is an obstacle (SPEC 8.1)
+constexpr float kGroundHeight = 0.3F;  // [m] above which a return is an obstacle (method.md 8.1)
 
 std::uint8_t alphaByte(double alpha) { return static_cast<std::uint8_t>(std::lround(255 * alpha)); }
 
-mrpt::img::TColor colourOf(const Colour& c) { return {c.r, c.g, c.b, alphaByte(c.alpha)}; }
+mrpt::img::TColor colorOf(const Color& c) { return {c.r, c.g, c.b, alphaByte(c.alpha)}; }
 
 TPoint3Df pointOf(const Vector3& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
@@ -33,7 +33,7 @@ TPoint3Df pointOf(const Vector3& p) {
 
 void addGrid(mrpt::opengl::COpenGLScene& scene, double range) {
   auto lines = mrpt::opengl::CSetOfLines::Create();
-  lines->setColor_u8(colourOf(kGridLine));
+  lines->setColor_u8(colorOf(kGridLine));
   const double reach = std::ceil(3 * range / kGridStep) * kGridStep;
   for (double at = -reach; at <= reach; at += kGridStep) {
     lines->appendLine(-reach, at, kGridLevel, reach, at, kGridLevel);
@@ -47,9 +47,9 @@ void addPoints(mrpt::opengl::COpenGLScene& scene, const SceneView& view, const P
   auto obstacles = mrpt::opengl::CPointCloudColoured::Create();
   for (const ViewPoint& point : view.points) {
     const bool low = point.height < kGroundHeight;
-    const Colour c = point.trust < kTrusted ? kPhantom
-                     : low                  ? kGroundPoint
-                                            : colourOfHeight(point.height);
+    const Color c = point.trust < kTrusted ? kPhantom
+                    : low                  ? kGroundPoint
+                                           : colorOfHeight(point.height);
     const TPoint3Df p = pointOf(T_ego_world * point.place);
     (low ? ground : obstacles)
         ->push_back(p.x, p.y, p.z, static_cast<float>(c.r) / 255, static_cast<float>(c.g) / 255,
@@ -72,12 +72,12 @@ std::vector<Column> columnsOf(const std::vector<GridCell>& cells) {
   std::map<std::pair<std::int64_t, std::int64_t>, Column> columns;
   for (const GridCell& cell : cells) {
     const double size = cell.size.x();
-    const auto key = std::make_pair(std::llround(cell.centre.x() / size * 2),
-                                    std::llround(cell.centre.y() / size * 2));
-    const double low = cell.centre.z() - cell.size.z() / 2;
-    const double high = cell.centre.z() + cell.size.z() / 2;
+    const auto key = std::make_pair(std::llround(cell.center.x() / size * 2),
+                                    std::llround(cell.center.y() / size * 2));
+    const double low = cell.center.z() - cell.size.z() / 2;
+    const double high = cell.center.z() + cell.size.z() / 2;
     const auto [at, fresh] =
-        columns.try_emplace(key, Column{cell.centre.x(), cell.centre.y(), size, low, high});
+        columns.try_emplace(key, Column{cell.center.x(), cell.center.y(), size, low, high});
     at->second.low = std::min(at->second.low, low);
     at->second.high = std::max(at->second.high, high);
   }
@@ -87,19 +87,19 @@ std::vector<Column> columnsOf(const std::vector<GridCell>& cells) {
 }
 
 void addQuad(mrpt::opengl::CSetOfTriangles& triangles, const std::array<Vector3, 4>& corners,
-             const Colour& colour) {
+             const Color& color) {
   for (const auto& [b, c] : {std::make_pair(1, 2), std::make_pair(2, 3)}) {
     mrpt::opengl::TTriangle t;
     t.vertex(0) = pointOf(corners[0]);
     t.vertex(1) = pointOf(corners[static_cast<std::size_t>(b)]);
     t.vertex(2) = pointOf(corners[static_cast<std::size_t>(c)]);
-    t.setColor(colourOf(colour));
+    t.setColor(colorOf(color));
     t.computeNormals();
     triangles.insertTriangle(t);
   }
 }
 
-// From above as flat squares below the returns; from behind as low kerbs that hide nothing.
+// From above as flat squares below the returns; from behind as low curbs that hide nothing.
 void addOccupied(mrpt::opengl::COpenGLScene& scene, const SceneView& view,
                  const Pose3& T_ego_world) {
   constexpr double kLevel = 0.02;  // [m] above the grid's lines
@@ -121,10 +121,10 @@ void addOccupied(mrpt::opengl::COpenGLScene& scene, const SceneView& view,
   scene.insert(triangles);
 }
 
-mrpt::opengl::CBox::Ptr solidBox(double length, double width, double height, const Colour& colour) {
+mrpt::opengl::CBox::Ptr solidBox(double length, double width, double height, const Color& color) {
   auto box = mrpt::opengl::CBox::Create(mrpt::math::TPoint3D(-length / 2, -width / 2, 0),
                                         mrpt::math::TPoint3D(length / 2, width / 2, height));
-  box->setColor_u8(colourOf(colour));
+  box->setColor_u8(colorOf(color));
   return box;
 }
 
@@ -132,9 +132,9 @@ void addObjects(mrpt::opengl::COpenGLScene& scene, const SceneView& view,
                 const Pose3& T_ego_world) {
   constexpr double kMostOpaque = 0.45;
   for (const SceneObject& object : view.scene.objects) {
-    const Colour colour = colourOfClass(view.className(object), object.class_id)
-                              .withAlpha(kMostOpaque * object.existence * object.existence);
-    auto box = solidBox(object.length, object.width, object.height, colour);
+    const Color color = colorOfClass(view.className(object), object.class_id)
+                            .withAlpha(kMostOpaque * object.existence * object.existence);
+    auto box = solidBox(object.length, object.width, object.height, color);
     const Vector3 place = T_ego_world * object.position;
     box->setPose(mrpt::poses::CPose3D(place.x(), place.y(), place.z(),
                                       object.yaw + yawOf(T_ego_world), 0, 0));
@@ -175,13 +175,13 @@ std::map<std::uint64_t, std::vector<Vector3>> trailsUpTo(const std::vector<Scene
   return trails;
 }
 
-std::array<Vector3, 8> boxCorners(const Vector3& bottom_centre, double yaw, double length,
+std::array<Vector3, 8> boxCorners(const Vector3& bottom_center, double yaw, double length,
                                   double width, double height) {
   std::array<Vector3, 8> corners;
   constexpr int kForward[] = {1, 1, -1, -1}, kLeft[] = {1, -1, -1, 1};
   for (std::size_t i = 0; i < 8; ++i) {
     const Vector2 flat = rotate2(yaw, {kForward[i % 4] * length / 2, kLeft[i % 4] * width / 2});
-    corners[i] = bottom_centre + Vector3(flat.x(), flat.y(), i < 4 ? 0 : height);
+    corners[i] = bottom_center + Vector3(flat.x(), flat.y(), i < 4 ? 0 : height);
   }
   return corners;
 }

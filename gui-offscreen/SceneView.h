@@ -100,7 +100,7 @@ constexpr double kEgoMiddle = 0.8;
 
 /// The eight corners of a box on the ground: bottom front left, then clockwise seen from above,
 /// then the top ones alike.
-std::array<Vector3, 8> boxCorners(const Vector3& bottom_centre, double yaw, double length,
+std::array<Vector3, 8> boxCorners(const Vector3& bottom_center, double yaw, double length,
                                   double width, double height);
 
 /// The solid things as OpenGL objects in the ego frame: ground grid, returns, cells, boxes, the

@@ -17,7 +17,7 @@ constexpr double kTileShare = 0.6;  // of a view's edge
 constexpr int kCaption = 22;        // [px]
 constexpr double kTitleSize = 10, kCaptionSize = 9;  // [px] height of capitals
 constexpr double kTallestImage = 0.8;                // of a view's height: the strip of a camera
-constexpr Colour kNoImage{246, 246, 246};
+constexpr Color kNoImage{246, 246, 246};
 
 std::string instantText(const SceneView& view) {
   std::string text = fmt::format("t = {:.2f} s", view.t);

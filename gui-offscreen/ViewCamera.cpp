@@ -25,13 +25,13 @@ Vector2 pixelOf(const ViewCamera& camera, const Vector3& optical) {
     at = Vector2(std::atan2(optical.x(), optical.z()),
                  std::atan2(optical.y(), std::hypot(optical.x(), optical.z())));
   }
-  return camera.centre + Vector2(camera.focal * at.x(), camera.focal_y * at.y());
+  return camera.center + Vector2(camera.focal * at.x(), camera.focal_y * at.y());
 }
 
 // The view with a square pixel and its axis in the middle.
-void centreAxis(ViewCamera& camera, double focal) {
+void centerAxis(ViewCamera& camera, double focal) {
   camera.focal = camera.focal_y = focal;
-  camera.centre = Vector2(camera.width / 2.0, camera.height / 2.0);
+  camera.center = Vector2(camera.width / 2.0, camera.height / 2.0);
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ void centreAxis(ViewCamera& camera, double focal) {
 ViewCamera ViewCamera::top(double range, int width, int height) {
   ViewCamera camera{ViewKind::kTop, width, height};
   camera.range = range;
-  centreAxis(camera, height / ((1 + kBehind) * range) * kTopHeight);
+  centerAxis(camera, height / ((1 + kBehind) * range) * kTopHeight);
   camera.T_ego_camera.translation() = Vector3((1 - kBehind) / 2 * range, 0, kTopHeight);
   // Right of the picture is -y, down is -x, into the picture is -z.
   camera.T_ego_camera.linear() << 0, -1, 0, -1, 0, 0, 0, 0, -1;
@@ -51,7 +51,7 @@ ViewCamera ViewCamera::top(double range, int width, int height) {
 ViewCamera ViewCamera::driver(double range, int width, int height) {
   ViewCamera camera{ViewKind::kDriver, width, height};
   camera.range = range;
-  centreAxis(camera, width / 2.0 / std::tan(kDriverFieldOfView / 2));
+  centerAxis(camera, width / 2.0 / std::tan(kDriverFieldOfView / 2));
   camera.T_ego_camera.translation() = Vector3(-kDriverBack, 0, kDriverUp);
   const double c = std::cos(kDriverPitch), s = std::sin(kDriverPitch);
   camera.T_ego_camera.linear().col(0) = Vector3(0, -1, 0);
@@ -66,7 +66,7 @@ ViewCamera ViewCamera::image(const CameraModel& model, const Pose3& T_ego_camera
                     static_cast<int>(std::lround(model.height * scale))};
   camera.focal = model.fx * scale;
   camera.focal_y = model.fy * scale;
-  camera.centre = Vector2(model.cx, model.cy) * scale;
+  camera.center = Vector2(model.cx, model.cy) * scale;
   camera.projection = model.projection;
   camera.T_ego_camera = T_ego_camera;
   camera.near = kImageNear;

@@ -11,7 +11,7 @@ namespace perception {
 enum class ViewKind { kTop, kDriver, kCamera };
 
 /// A camera about the vehicle, in the ego frame: the same one draws the solid things in OpenGL and
-/// places text and lines on the picture. The top view is a pinhole, too, one kilometre up: 2 m of
+/// places text and lines on the picture. The top view is a pinhole, too, one kilometer up: 2 m of
 /// height shift a place by 0.2 % of its distance from the middle. Views of a camera of the vehicle
 /// are not rendered: they lie over its image.
 struct ViewCamera {
@@ -19,13 +19,13 @@ struct ViewCamera {
   int width = 0, height = 0;         ///< [px]
   double focal = 1;                  ///< [px]; equirectangular: [px/rad]
   double focal_y = 1;                ///< the same, down the picture
-  Vector2 centre = Vector2::Zero();  ///< [px] where the optical axis meets the picture
+  Vector2 center = Vector2::Zero();  ///< [px] where the optical axis meets the picture
   CameraModel::Projection projection = CameraModel::Projection::kPinhole;
   Pose3 T_ego_camera = Pose3::Identity();  ///< optical: x right, y down, z forward
   double near = 0.5, far = 500;            ///< [m] of what is drawn, along the optical axis
   double range = 40;                       ///< [m] ahead that the view shows
 
-  /// Forward is up; `range` metres ahead of the vehicle at the upper edge, 0.4 range behind it at
+  /// Forward is up; `range` meters ahead of the vehicle at the upper edge, 0.4 range behind it at
   /// the lower one.
   static ViewCamera top(double range, int width, int height);
   /// From above and behind the vehicle, looking ahead.

@@ -1,4 +1,4 @@
-#include "libperception/app/StudyApp.h"
+#include "studies/StudyApp.h"
 
 int main(int argc, char** argv) {
   perception::StudyApp app;

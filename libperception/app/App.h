@@ -1,9 +1,8 @@
 #pragma once
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/core/Error.h"
 
 namespace CLI {
@@ -12,21 +11,23 @@ class App;
 
 namespace perception {
 
-/// A program as a class, so that a test can run it in-process: public options, run(), public out_* members.
-/// `main` is: `int main(int argc, char** argv) { perception::TrackRawlogApp app; return perception::runApp(app, argc, argv); }`
+/// A program as a class, so that a test can run it in-process: public options, run(), public out_*
+/// members. `main` is: `int main(int argc, char** argv) { perception::TrackRawlogApp app; return
+/// perception::runApp(app, argc, argv); }`
 class App {
  public:
   virtual ~App() = default;
 
   // What every program understands; an app declares only those it uses.
-  std::string config_file;                ///< -c/--config
-  std::vector<std::string> inputs;        ///< -i/--input
-  std::string output;                     ///< -o/--output
-  std::vector<std::string> settings;      ///< --set section.key=value
-  int threads = 0;                        ///< --threads; 0 = as many as the machine has
-  bool strict = false;                    ///< --strict: damaged input is an error instead of a warning
-  bool print_config = false;              ///< --print-config: write the effective INI to standard output and stop
-  int verbosity = 0;                      ///< -v
+  std::string config_file;            ///< -c/--config
+  std::vector<std::string> inputs;    ///< -i/--input
+  std::string output;                 ///< -o/--output
+  std::vector<std::string> settings;  ///< --set section.key=value
+  int threads = 0;                    ///< --threads; 0 = as many as the machine has
+  bool strict = false;                ///< --strict: damaged input is an error instead of a warning
+  bool print_config =
+      false;          ///< --print-config: write the effective INI to standard output and stop
+  int verbosity = 0;  ///< -v
 
   virtual std::string name() const = 0;
   virtual std::string description() const = 0;
@@ -41,11 +42,12 @@ class App {
   void addConfigOptions(CLI::App& cli, bool required);  ///< -c, --set, --print-config
   void addInputOption(CLI::App& cli, bool required);
   void addOutputOption(CLI::App& cli, bool required);
-  void addRunOptions(CLI::App& cli);                    ///< --threads, --strict
+  void addRunOptions(CLI::App& cli);  ///< --threads, --strict
 
   /// The INI of -c with --set applied; faults are thrown by Config::finish().
   Config loadConfig() const;
-  /// After all sections were read: throws on faults; for --print-config prints and returns true (then return from run()).
+  /// After all sections were read: throws on faults; for --print-config prints and returns true
+  /// (then return from run()).
   bool configDone(const Config& config) const;
   /// A message for the person at the terminal (standard error) when verbosity >= level.
   void say(int level, const std::string& message) const;
@@ -59,25 +61,5 @@ class App {
 
 /// Parses, runs, turns exceptions into messages ("perception-track: error: ...") and exit codes.
 int runApp(App& app, int argc, const char* const* argv);
-
-/// True once SIGINT or SIGTERM has arrived; long loops look at it between frames and call stopIfAsked().
-bool stopAsked();
-/// Throws Error(kTryAgain) when stopAsked().
-void stopIfAsked();
-
-/// A progress bar with rate and time left on a terminal; silent elsewhere.
-class Progress {
- public:
-  /// `total` in the unit of update() (bytes, frames); 0 = unknown.
-  Progress(std::string what, std::uint64_t total);
-  ~Progress();
-  void update(std::uint64_t done, std::uint64_t items);  ///< items: counted for the rate (frames)
-
- private:
-  std::string what_;
-  std::uint64_t total_;
-  bool terminal_;
-  double started_ = 0, drawn_ = 0;
-};
 
 }  // namespace perception

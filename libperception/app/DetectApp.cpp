@@ -9,10 +9,11 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 
-#include "libperception/app/DetectPicture.h"
 #include "libperception/app/DetectResults.h"
-#include "libperception/app/KittiFiles.h"
-#include "libperception/app/OutputFolder.h"
+#include "libperception/importers/KittiFiles.h"
+#include "libperception/pictures/DetectPicture.h"
+#include "libperception/pipeline/OutputFolder.h"
+#include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/FromObservation.h"
@@ -262,7 +263,7 @@ void DetectApp::runLog(const ImageDetector& detector, const DetectCameraParams& 
   }
   if (out_images == 0)
     throw DataError(fmt::format("{}: no image{} in it that can be read{}", log,
-                                camera_label.empty() ? "" : " labelled " + camera_label,
+                                camera_label.empty() ? "" : " labeled " + camera_label,
                                 detector.hasBackend() ? "" : ", with boxes of the same time"));
   closeOutput(images, out);
 }
@@ -322,9 +323,9 @@ void DetectApp::report() const {
   fmt::print("{} images, {} boxes; {:.1f} ms an image\n", out_images, out_objects,
              out_images > 0 ? 1e3 * out_seconds / static_cast<double>(out_images) : 0.0);
   for (const LabelQuality& q : out_quality) {
-    if (q.labelled == 0) continue;
-    fmt::print("{:12} AP {:.3f}  recall {:.3f}  ({} labelled, {} right, {} wrong)", q.label,
-               q.average_precision, q.recall, q.labelled, q.right, q.wrong);
+    if (q.labeled == 0) continue;
+    fmt::print("{:12} AP {:.3f}  recall {:.3f}  ({} labeled, {} right, {} wrong)", q.label,
+               q.average_precision, q.recall, q.labeled, q.right, q.wrong);
     if (q.headings > 0)
       fmt::print("; heading: median {:.1f} deg, rms {:.1f} deg, {} flips of {}",
                  degrees(q.heading_median), degrees(q.heading_rms), q.flips, q.headings);

@@ -11,8 +11,8 @@
 #include "libperception/app/App.h"
 #include "libperception/app/DetectImages.h"
 #include "libperception/app/DetectLabels.h"
-#include "libperception/vision/DetectionQuality.h"
-#include "libperception/vision/ImageDetector.h"
+#include "libperception/detectors/DetectionQuality.h"
+#include "libperception/detectors/ImageDetector.h"
 
 namespace perception {
 
@@ -28,7 +28,7 @@ class DetectApp : public App {
       boxes_label;        ///< --label: sensorLabel of the boxes; empty: that of the images + _BOXES
   std::string calibrate;  ///< --calibrate: INI that gets the fitted logistics
   std::string kitti_folder;   ///< --export kitti:DIR
-  std::string train_heading;  ///< --train-heading: file of the head that is learnt from the labels
+  std::string train_heading;  ///< --train-heading: file of the head that is learned from the labels
   std::string heading_label = "Car";  ///< --heading-label: of the boxes to learn from
   bool pictures = false;              ///< --pictures
   int every = 1;                      ///< --every: of the log's images, one in so many
@@ -51,7 +51,7 @@ class DetectApp : public App {
     Raster image;
     ObjectDetections found;
     std::vector<double> raw;  ///< scores before calibration
-    std::vector<LabelledBox> truth;
+    std::vector<LabeledBox> truth;
   };
   void runImages(const ImageDetector& detector, const DetectCameraParams& camera);
   struct LogOutput;

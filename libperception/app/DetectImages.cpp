@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
-#include "libperception/app/ImportText.h"
 #include "libperception/core/Error.h"
+#include "libperception/importers/ImportText.h"
 
 namespace perception {
 namespace {

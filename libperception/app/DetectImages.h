@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {

@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-#include "libperception/app/KittiFiles.h"
 #include "libperception/core/Angle.h"
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/importers/KittiFiles.h"
 
 namespace perception {
 namespace {
@@ -21,9 +21,9 @@ std::string kindredOf(const std::string& type) {
   return "";
 }
 
-LabelledBox labelled(const std::string& type, const ObjectDetection::ImageBox& box, bool ignore,
-                     const LabelRules& rules) {
-  LabelledBox out;
+LabeledBox labeled(const std::string& type, const ObjectDetection::ImageBox& box, bool ignore,
+                   const LabelRules& rules) {
+  LabeledBox out;
   const std::string kindred = kindredOf(type);
   out.label = kindred.empty() ? type : kindred;
   out.box = box;
@@ -47,7 +47,7 @@ ImageLabels::ImageLabels(const std::string& path, LabelRules rules)
     bool ignore = table.has("ignore") && table.flag(row, table.column("ignore"));
     if (table.has("occluded"))
       ignore = ignore || table.integer(row, table.column("occluded")) > rules.max_occlusion;
-    LabelledBox box = labelled(
+    LabeledBox box = labeled(
         std::string(table.text(row, type)),
         {table.real(row, x1), table.real(row, y1), table.real(row, x2), table.real(row, y2)},
         ignore, rules);
@@ -57,17 +57,17 @@ ImageLabels::ImageLabels(const std::string& path, LabelRules rules)
   }
 }
 
-std::vector<LabelledBox> ImageLabels::of(const std::string& file_name) const {
+std::vector<LabeledBox> ImageLabels::of(const std::string& file_name) const {
   if (!folder_) {
     const auto found = by_image_.find(file_name);
-    return found == by_image_.end() ? std::vector<LabelledBox>{} : found->second;
+    return found == by_image_.end() ? std::vector<LabeledBox>{} : found->second;
   }
   const std::string path =
       (fs::path(path_) / (fs::path(file_name).stem().string() + ".txt")).string();
-  std::vector<LabelledBox> out;
+  std::vector<LabeledBox> out;
   for (const KittiLabel& l : readKittiObjectLabels(path, 0)) {
     const bool hidden = l.truncated > rules_.max_truncation || l.occluded > rules_.max_occlusion;
-    LabelledBox box = labelled(l.type, l.image_box, hidden, rules_);
+    LabeledBox box = labeled(l.type, l.image_box, hidden, rules_);
     if (!box.area) box.heading = wrapAngle(l.alpha);
     out.push_back(box);
   }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/vision/DetectionQuality.h"
+#include "libperception/detectors/DetectionQuality.h"
 
 namespace perception {
 
@@ -21,12 +21,12 @@ class ImageLabels {
   /// Throws DataError.
   ImageLabels(const std::string& path, LabelRules rules);
   /// Of the image with that file name; throws DataError where a folder lacks its file.
-  std::vector<LabelledBox> of(const std::string& file_name) const;
+  std::vector<LabeledBox> of(const std::string& file_name) const;
 
  private:
   std::string path_;
   LabelRules rules_;
-  std::map<std::string, std::vector<LabelledBox>> by_image_;  ///< of a CSV
+  std::map<std::string, std::vector<LabeledBox>> by_image_;  ///< of a CSV
   bool folder_ = false;
 };
 

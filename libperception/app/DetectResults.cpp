@@ -17,11 +17,11 @@ std::string kittiBoxLine(const ObjectDetection& o) {
 
 std::string qualityCsv(const std::vector<LabelQuality>& quality) {
   std::string table =
-      "label,labelled,right,wrong,average_precision,recall,headings,heading_median_deg,"
+      "label,labeled,right,wrong,average_precision,recall,headings,heading_median_deg,"
       "heading_rms_deg,flips,orientation_similarity\n";
   for (const LabelQuality& q : quality) {
     table += fmt::format("{},{},{},{},{:.4f},{:.4f},{},{:.2f},{:.2f},{},{:.4f}\n", q.label,
-                         q.labelled, q.right, q.wrong, q.average_precision, q.recall, q.headings,
+                         q.labeled, q.right, q.wrong, q.average_precision, q.recall, q.headings,
                          degrees(q.heading_median), degrees(q.heading_rms), q.flips,
                          q.orientation_similarity);
   }

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/vision/DetectionQuality.h"
-#include "libperception/vision/Detector.h"
+#include "libperception/detectors/DetectionQuality.h"
+#include "libperception/detectors/Detector.h"
 
 namespace perception {
 

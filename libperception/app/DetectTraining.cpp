@@ -3,8 +3,9 @@
 #include <filesystem>
 
 #include "libperception/app/DetectApp.h"
+#include "libperception/detectors/HeadingHead.h"
+#include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
-#include "libperception/vision/HeadingHead.h"
 
 namespace perception {
 
@@ -12,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kImagesAFold = 3;  // neighbours of a drive show the same objects
+constexpr int kImagesAFold = 3;  // neighbors of a drive show the same objects
 
 }  // namespace
 
@@ -27,7 +28,7 @@ void DetectApp::trainHeading() const {
     const auto image = readImage(file);
     if (!image) throw DataError(fmt::format("{}: not an image", file));
     ++fold;
-    for (const LabelledBox& l : truth.of(fs::path(file).filename().string())) {
+    for (const LabeledBox& l : truth.of(fs::path(file).filename().string())) {
       if (l.label != heading_label || l.ignore || l.area || !l.heading) continue;
       for (const bool mirrored : {false, true}) {
         HeadingExample e;

@@ -13,6 +13,7 @@
 #include "libperception/core/Angle.h"
 #include "libperception/core/Csv.h"
 #include "libperception/evaluation/Plots.h"
+#include "libperception/pipeline/Progress.h"
 #include "libperception/scene/MeasurementRun.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/scene/RunRecord.h"
@@ -128,7 +129,7 @@ void EvaluateApp::declareTruth(CLI::App& cli) {
 /// How outputs are matched with it, and what is reported.
 void EvaluateApp::declareFigures(CLI::App& cli) {
   cli.add_option("--tolerance", params.tolerance,
-                 "greatest distance of the centres of truth and estimate [m]")
+                 "greatest distance of the centers of truth and estimate [m]")
       ->capture_default_str()
       ->check(CLI::Range(0.01, 100.0));
   cli.add_option("--exclusion", params.exclusion,

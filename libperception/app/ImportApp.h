@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "libperception/app/App.h"
-#include "libperception/app/Importer.h"
+#include "libperception/importers/Importer.h"
 
 namespace perception {
 

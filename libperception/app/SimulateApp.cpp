@@ -8,8 +8,9 @@
 #include <future>
 
 #include "gui-offscreen/Picture.h"
-#include "libperception/app/ScenarioPictures.h"
 #include "libperception/core/GroundTruth.h"
+#include "libperception/pictures/ScenarioPictures.h"
+#include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/RawlogWriter.h"
 #include "libperception/simulation/Scenario.h"

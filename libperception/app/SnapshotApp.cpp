@@ -13,8 +13,9 @@
 #include "gui-offscreen/ContactSheet.h"
 #include "gui-offscreen/SceneFile.h"
 #include "gui-offscreen/VideoFile.h"
-#include "libperception/app/Pipeline.h"
 #include "libperception/grid/CGridExport.h"
+#include "libperception/pipeline/Pipeline.h"
+#include "libperception/pipeline/Progress.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/sensors/registerClasses.h"
 

@@ -7,8 +7,8 @@
 
 #include "gui-offscreen/Snapshot.h"
 #include "libperception/app/App.h"
-#include "libperception/app/SnapshotSensors.h"
 #include "libperception/core/GroundTruth.h"
+#include "libperception/pictures/SnapshotSensors.h"
 #include "libperception/scene/TrackedRun.h"
 
 namespace perception {

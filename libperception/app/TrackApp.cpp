@@ -8,7 +8,7 @@
 #include <map>
 #include <thread>
 
-#include "libperception/app/LogRun.h"
+#include "libperception/pipeline/LogRun.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libperception/app/App.h"
-#include "libperception/app/Pipeline.h"
+#include "libperception/pipeline/Pipeline.h"
 #include "libperception/scene/KittiExport.h"
 
 namespace perception {

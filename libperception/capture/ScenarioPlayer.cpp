@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/simulation/Scenario.h"
 

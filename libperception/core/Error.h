@@ -4,7 +4,8 @@
 
 namespace perception {
 
-/// What a program of ours says to the shell when it ends (sysexits; 3 is our own). Only 75 is worth another try.
+/// What a program of ours says to the shell when it ends (sysexits; 3 is our own). Only 75 is worth
+/// another try.
 enum class ExitCode : int {
   kOk = 0,
   kDataWarnings = 3,   ///< finished; part of the data was missing or bad, and the result says so
@@ -29,20 +30,23 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// A configuration that is wrong; the message holds every fault found, one a line, with file and line.
+/// A configuration that is wrong; the message holds every fault found, one a line, with file and
+/// line.
 class ConfigError : public Error {
  public:
   explicit ConfigError(const std::string& message) : Error(ExitCode::kBadConfig, message) {}
 };
 
-/// An input that is missing (kNoInput) or cannot be used (kBadInput); the message names path and position.
+/// An input that is missing (kNoInput) or cannot be used (kBadInput); the message names path and
+/// position.
 class DataError : public Error {
  public:
   explicit DataError(const std::string& message, ExitCode code = ExitCode::kBadInput)
       : Error(code, message) {}
 };
 
-/// An output that cannot be created (kCannotCreate) or written (kIoError); the message names the path.
+/// An output that cannot be created (kCannotCreate) or written (kIoError); the message names the
+/// path.
 class OutputError : public Error {
  public:
   explicit OutputError(const std::string& message, ExitCode code = ExitCode::kCannotCreate)

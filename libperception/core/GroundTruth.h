@@ -9,20 +9,22 @@
 
 namespace perception {
 
-/// One object of the truth at one instant: a line of FILE.truth.csv. World frame, SI units; NaN where unknown.
+/// One object of the truth at one instant: a line of FILE.truth.csv. World frame, SI units; NaN
+/// where unknown.
 struct TruthObject {
-  std::int64_t frame = -1;       ///< the log's frame number
-  double t = 0;                  ///< [s] since the log's first stamp
+  std::int64_t frame = -1;  ///< the log's frame number
+  double t = 0;             ///< [s] since the log's first stamp
   std::int64_t id = -1;
-  std::string type;              ///< class as in KITTI: Pedestrian, Cyclist, Car, Van, Truck, Misc, DontCare ...
-  Vector3 position = Vector3::Zero();  ///< [m] centre of the footprint, z = bottom
-  double yaw = 0;                ///< [rad]
+  std::string
+      type;  ///< class as in KITTI: Pedestrian, Cyclist, Car, Van, Truck, Misc, DontCare ...
+  Vector3 position = Vector3::Zero();        ///< [m] center of the footprint, z = bottom
+  double yaw = 0;                            ///< [rad]
   double length = 0, width = 0, height = 0;  ///< [m]
   double vx = std::numeric_limits<double>::quiet_NaN(), vy = vx;  ///< [m/s]
-  double truncated = 0;          ///< [0, 1] share outside the image
-  int occluded = 0;              ///< KITTI: 0 visible, 1 partly, 2 largely occluded, 3 unknown
-  int lidar_points = -1;         ///< returns inside the box; -1: the log has no lidar
-  bool ignore = false;           ///< DontCare and types that no class covers
+  double truncated = 0;   ///< [0, 1] share outside the image
+  int occluded = 0;       ///< KITTI: 0 visible, 1 partly, 2 largely occluded, 3 unknown
+  int lidar_points = -1;  ///< returns inside the box; -1: the log has no lidar
+  bool ignore = false;    ///< DontCare and types that no class covers
 };
 
 /// The truth of a log by instant.
@@ -34,7 +36,7 @@ struct GroundTruth {
   };
   std::vector<Instant> instants;  ///< in order of time
 
-  bool hasLidar() const;          ///< some object carries a count of lidar points
+  bool hasLidar() const;  ///< some object carries a count of lidar points
 };
 
 /// Reads FILE.truth.csv. Throws DataError with file, line and column.

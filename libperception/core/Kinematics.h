@@ -8,12 +8,14 @@ using Matrix4 = Eigen::Matrix<double, 4, 4>;
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix54 = Eigen::Matrix<double, 5, 4>;
 
-/// What any sensor can see of an object, whatever its motion model: n sensors + m models instead of n * m.
+/// What any sensor can see of an object, whatever its motion model: n sensors + m models instead of
+/// n * m.
 struct Kinematics {
   enum Index { kX, kY, kVx, kVy, kYaw };
-  Vector5 q = Vector5::Zero();       ///< x, y, vx, vy, yaw of the footprint's centre [m, m/s, rad], world
-  Matrix54 J = Matrix54::Zero();     ///< dq/dstate; columns beyond the state's size are zero
-  bool has_yaw = false;              ///< false: no orientation in the state (people, poles) or not known yet
+  Vector5 q =
+      Vector5::Zero();  ///< x, y, vx, vy, yaw of the footprint's center [m, m/s, rad], world
+  Matrix54 J = Matrix54::Zero();  ///< dq/dstate; columns beyond the state's size are zero
+  bool has_yaw = false;  ///< false: no orientation in the state (people, poles) or not known yet
 };
 
 /// Horizontal size of an object as an estimate: static parameters beside the state.

@@ -8,7 +8,7 @@
 
 namespace perception {
 
-/// A lane: its centre line in driving direction, world frame.
+/// A lane: its center line in driving direction, world frame.
 struct Lane {
   std::string name;
   std::vector<Vector2> points;  ///< [m] two or more, no two the same in a row
@@ -19,7 +19,7 @@ struct Lane {
 /// What a lane says of a place on it.
 struct LanePlace {
   double direction = 0;  ///< [rad] of driving, world
-  double offset = 0;     ///< [m] to the left of the centre line
+  double offset = 0;     ///< [m] to the left of the center line
   bool one_way = true;
   std::size_t lane = 0;  ///< index into LaneMap::lanes()
 };
@@ -29,7 +29,7 @@ class LaneMap {
  public:
   explicit LaneMap(std::vector<Lane> lanes);
   /// FILE.lanes.csv: `lane,x,y,width,one_way`, a line a point, the points of one lane together and
-  /// in driving direction; x, y and width in metres, world frame. Throws DataError with file and
+  /// in driving direction; x, y and width in meters, world frame. Throws DataError with file and
   /// line.
   static LaneMap fromFile(const std::string& path);
 

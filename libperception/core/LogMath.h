@@ -11,7 +11,8 @@ inline constexpr double kMinusInfinity = -std::numeric_limits<double>::infinity(
 /// log(exp(a) + exp(b)) without overflow; -inf is the log of zero.
 inline double logAddExp(double a, double b) {
   const double high = std::max(a, b);
-  return high == kMinusInfinity ? kMinusInfinity : high + std::log1p(std::exp(std::min(a, b) - high));
+  return high == kMinusInfinity ? kMinusInfinity
+                                : high + std::log1p(std::exp(std::min(a, b) - high));
 }
 
 /// log of the sum of exp over a range of doubles; -inf for an empty one.
@@ -25,9 +26,10 @@ double logSumExp(const Range& values) {
   return high + std::log(sum);
 }
 
-/// Shifts log probabilities so that they sum to one. All -inf becomes uniform. Returns the log of the sum before.
+/// Shifts log probabilities so that they sum to one. All -inf becomes uniform. Returns the log of
+/// the sum before.
 template <class Range>
-double logNormalise(Range& values) {
+double logNormalize(Range& values) {
   const double total = logSumExp(values);
   if (total == kMinusInfinity) {
     for (double& v : values) v = -std::log(static_cast<double>(std::size(values)));
@@ -38,6 +40,8 @@ double logNormalise(Range& values) {
 }
 
 inline double logit(double p) { return std::log(p / (1 - p)); }
-inline double sigmoid(double x) { return x >= 0 ? 1 / (1 + std::exp(-x)) : std::exp(x) / (1 + std::exp(x)); }
+inline double sigmoid(double x) {
+  return x >= 0 ? 1 / (1 + std::exp(-x)) : std::exp(x) / (1 + std::exp(x));
+}
 
 }  // namespace perception

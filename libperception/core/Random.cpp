@@ -11,9 +11,11 @@ namespace perception {
 Rng::result_type Rng::operator()() {
   if (used_ == words_.size()) {
     // The counter holds (scan, block, slot), the key (seed, purpose): no two streams share a block.
-    const std::uint64_t seed = key_.seed ^ (static_cast<std::uint64_t>(key_.purpose) * 0x9E3779B97F4A7C15ull);
-    const r123::Philox4x32::ctr_type counter = {
-        {static_cast<std::uint32_t>(key_.counter), static_cast<std::uint32_t>(key_.counter >> 32), key_.slot, block_++}};
+    const std::uint64_t seed =
+        key_.seed ^ (static_cast<std::uint64_t>(key_.purpose) * 0x9E3779B97F4A7C15ull);
+    const r123::Philox4x32::ctr_type counter = {{static_cast<std::uint32_t>(key_.counter),
+                                                 static_cast<std::uint32_t>(key_.counter >> 32),
+                                                 key_.slot, block_++}};
     const r123::Philox4x32::key_type key = {
         {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
     const auto block = r123::Philox4x32()(counter, key);

@@ -4,7 +4,8 @@
 
 namespace perception {
 
-/// Names one stream of random numbers. Streams of different keys are independent, whatever order they are used in.
+/// Names one stream of random numbers. Streams of different keys are independent, whatever order
+/// they are used in.
 struct RngKey {
   std::uint64_t seed = 0;     ///< of the whole run
   std::uint64_t counter = 0;  ///< which scan, frame, ...
@@ -15,8 +16,9 @@ struct RngKey {
   RngKey withPurpose(std::uint32_t p) const { return {seed, counter, slot, p}; }
 };
 
-/// Counter-based generator (Philox4x32-10, Salmon et al., SC 2011, from Random123): a function of key and index only,
-/// hence the same on every machine and for every number of threads. Also a UniformRandomBitGenerator.
+/// Counter-based generator (Philox4x32-10, Salmon et al., SC 2011, from Random123): a function of
+/// key and index only, hence the same on every machine and for every number of threads. Also a
+/// UniformRandomBitGenerator.
 class Rng {
  public:
   using result_type = std::uint32_t;
@@ -26,13 +28,13 @@ class Rng {
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return 0xffffffffu; }
 
-  double uniform();                              ///< in [0, 1), 53 bits
+  double uniform();  ///< in [0, 1), 53 bits
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  double normal();                               ///< mean 0, variance 1 (Box-Muller)
+  double normal();  ///< mean 0, variance 1 (Box-Muller)
   double normal(double mean, double sigma) { return mean + sigma * normal(); }
   double exponential(double mean);
   int poisson(double mean);
-  std::uint32_t below(std::uint32_t n);          ///< in [0, n), unbiased
+  std::uint32_t below(std::uint32_t n);  ///< in [0, n), unbiased
 
  private:
   RngKey key_;

@@ -9,7 +9,8 @@
 namespace perception {
 namespace {
 
-// Ranges of the paper's camera (SPEC 11, paper table on camera resolution, 2k images) [m].
+// Ranges of the paper's camera (method.md 11; table on camera resolution of [radecki2016], 2k
+// images) [m].
 constexpr double kCameraCarRange = 15, kCameraPersonRange = 10;
 
 // Truth objects of pooled runs are numbered run by run.
@@ -44,22 +45,22 @@ std::string sensorSet(const TrackedRun& run) {
   return {letters.begin(), letters.end()};
 }
 
-std::vector<Vector2> centres(const std::vector<SeenTruth>& truth) {
+std::vector<Vector2> centers(const std::vector<SeenTruth>& truth) {
   std::vector<Vector2> result;
-  for (const SeenTruth& t : truth) result.push_back(t.footprint.centre);
+  for (const SeenTruth& t : truth) result.push_back(t.footprint.center);
   return result;
 }
 
-std::vector<Vector2> centres(const std::vector<SeenEstimate>& estimates) {
+std::vector<Vector2> centers(const std::vector<SeenEstimate>& estimates) {
   std::vector<Vector2> result;
-  for (const SeenEstimate& e : estimates) result.push_back(e.footprint.centre);
+  for (const SeenEstimate& e : estimates) result.push_back(e.footprint.center);
   return result;
 }
 
-// Near an object of the truth: within `exclusion` of its centre or on its footprint (a tram is
+// Near an object of the truth: within `exclusion` of its center or on its footprint (a tram is
 // longer than that).
 bool isNear(const SeenTruth& truth, const Vector2& point, double exclusion) {
-  return (truth.footprint.centre - point).norm() <= exclusion ||
+  return (truth.footprint.center - point).norm() <= exclusion ||
          (closestPoint(truth.footprint, point) - point).norm() <= kOnFootprint;
 }
 
@@ -71,7 +72,7 @@ Match makeMatch(const SeenTruth& truth, const SeenEstimate& estimate) {
   match.class_id = e.class_id;
   match.classified = e.classified;
   match.probability = e.class_probability[static_cast<std::size_t>(e.class_id)];
-  match.distance = (estimate.footprint.centre - truth.footprint.centre).norm();
+  match.distance = (estimate.footprint.center - truth.footprint.center).norm();
   match.view = estimate.view;
   if (std::isfinite(t.vx) && std::isfinite(t.vy)) {
     match.speed_error = e.velocity.norm() - std::hypot(t.vx, t.vy);
@@ -154,7 +155,7 @@ class Evaluator {
   }
   bool anyNear(const std::vector<SeenTruth>& truth, const SeenEstimate& e) const {
     return std::any_of(truth.begin(), truth.end(), [&](const SeenTruth& t) {
-      return isNear(t, e.footprint.centre, options_.exclusion);
+      return isNear(t, e.footprint.center, options_.exclusion);
     });
   }
 
@@ -189,7 +190,7 @@ class Evaluator {
     }
     std::vector<bool> real(named.size(), false), served(truth.size(), false);
     const auto pairs =
-        match(centres(truth), centres(named), options_.tolerance, Pairing::kOneToOne);
+        match(centers(truth), centers(named), options_.tolerance, Pairing::kOneToOne);
     for (std::size_t t = 0; t < pairs.size(); ++t) {
       if (pairs[t] < 0) continue;
       real[static_cast<std::size_t>(pairs[t])] = true;
@@ -198,9 +199,9 @@ class Evaluator {
     for (std::size_t i = 0; i < named.size(); ++i) {
       bool unclear = false;
       for (std::size_t t = 0; t < truth.size() && !real[i]; ++t) {
-        const Vector2& centre = named[i].footprint.centre;
-        const bool twice = served[t] && isNear(truth[t], centre, options_.tolerance);
-        unclear = unclear || (isNear(truth[t], centre, options_.exclusion) && !twice);
+        const Vector2& center = named[i].footprint.center;
+        const bool twice = served[t] && isNear(truth[t], center, options_.tolerance);
+        unclear = unclear || (isNear(truth[t], center, options_.exclusion) && !twice);
       }
       if (unclear) continue;
       result_.existence.push_back(
@@ -220,22 +221,22 @@ class Evaluator {
     }
     std::vector<bool> paired(named.size(), false);
     for (const int e :
-         match(centres(counted), centres(named), options_.cutoff, Pairing::kOneToOne)) {
+         match(centers(counted), centers(named), options_.cutoff, Pairing::kOneToOne)) {
       if (e >= 0) paired[static_cast<std::size_t>(e)] = true;
     }
     std::vector<Vector2> set;
     for (std::size_t i = 0; i < named.size(); ++i) {
       if (paired[i] || (isNamedInSector(named[i]) && !anyNear(others, named[i]))) {
-        set.push_back(named[i].footprint.centre);
+        set.push_back(named[i].footprint.center);
       }
     }
     figures.estimates = set.size();
-    figures.gospa = gospa(centres(counted), set, options_.cutoff);
-    figures.ospa = ospa(centres(counted), set, options_.cutoff);
+    figures.gospa = gospa(centers(counted), set, options_.cutoff);
+    figures.ospa = ospa(centers(counted), set, options_.cutoff);
   }
 
   // Denominator B: the part of the sector that the sensor set can see. A lidar sees all of it;
-  // without lidar the camera's range holds (SPEC 11), also where radar helps.
+  // without lidar the camera's range holds (method.md 11), also where radar helps.
   bool inSensorRange(const SeenTruth& truth) const {
     const std::string& sensors = result_.sensors;
     if (sensors.empty() || sensors.find('L') != std::string::npos) return true;
@@ -249,7 +250,7 @@ class Evaluator {
     std::array<std::vector<int>, kPairings> pairs;
     for (int p = 0; p < kPairings; ++p) {
       pairs[static_cast<std::size_t>(p)] =
-          match(centres(counted), centres(estimates), options_.tolerance, static_cast<Pairing>(p));
+          match(centers(counted), centers(estimates), options_.tolerance, static_cast<Pairing>(p));
     }
     for (std::size_t i = 0; i < counted.size(); ++i) {
       const SeenTruth& truth = counted[i];

@@ -13,11 +13,11 @@
 
 namespace perception {
 
-/// How a run is judged; defaults: SPEC 11 and the paper.
+/// How a run is judged; defaults: method.md 11 and the paper.
 struct EvaluationOptions {
   SelectionOptions selection;
   AlignmentOptions alignment;
-  double tolerance = 2;  ///< [m] between the centres of a truth and its estimate
+  double tolerance = 2;  ///< [m] between the centers of a truth and its estimate
   double exclusion = 3;  ///< [m] an output this near to any truth is not a false object
   double cutoff = 2;     ///< [m] c of GOSPA and OSPA
   /// Classes that are neither right nor wrong to output: the truth does not label poles and walls.
@@ -34,7 +34,7 @@ struct Match {
   ClassId class_id = 0;
   bool classified = false;
   double probability = 0;  ///< of class_id
-  double distance = 0;     ///< [m] between the centres
+  double distance = 0;     ///< [m] between the centers
   GroundView view;
   std::optional<double> speed_error;  ///< [m/s] of the magnitudes; where the truth has a velocity
   std::optional<double> velocity_error;  ///< [m/s] magnitude of the difference of the vectors
@@ -49,7 +49,7 @@ struct TruthSample {
   std::string type;      ///< as in the truth
   ClassId class_id = 0;  ///< in Evaluation::class_names
   GroundView view;
-  bool in_sensor_range = true;                        ///< denominator B of SPEC 11
+  bool in_sensor_range = true;                        ///< denominator B of method.md 11
   std::array<std::optional<Match>, kPairings> match;  ///< by Pairing
 
   const std::optional<Match>& matched(Pairing p) const {

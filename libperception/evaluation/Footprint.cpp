@@ -19,16 +19,16 @@ Footprint makeFootprint(const Vector3& position, double yaw, double length, doub
 }
 
 Vector2 closestPoint(const Footprint& f, const Vector2& point) {
-  const Vector2 local = rotate2(-f.yaw, point - f.centre);
+  const Vector2 local = rotate2(-f.yaw, point - f.center);
   const Vector2 half(f.length / 2, f.width / 2);
-  return f.centre + rotate2(f.yaw, local.cwiseMax(-half).cwiseMin(half));
+  return f.center + rotate2(f.yaw, local.cwiseMax(-half).cwiseMin(half));
 }
 
 GroundView viewFrom(const Pose3& T_world_ego, const Footprint& footprint) {
   const Vector2 ego = T_world_ego.translation().head<2>();
-  const Vector2 centre = rotate2(-yawOf(T_world_ego), footprint.centre - ego);
-  return {(closestPoint(footprint, ego) - ego).norm(), centre.norm(),
-          wrapAngle(std::atan2(centre.y(), centre.x()))};
+  const Vector2 center = rotate2(-yawOf(T_world_ego), footprint.center - ego);
+  return {(closestPoint(footprint, ego) - ego).norm(), center.norm(),
+          wrapAngle(std::atan2(center.y(), center.x()))};
 }
 
 bool inSector(const GroundView& view, double range, double fov) {

@@ -6,7 +6,7 @@ namespace perception {
 /// The rectangle that an object covers of the ground, world frame. Sizes of 0 make it a line or a
 /// point.
 struct Footprint {
-  Vector2 centre = Vector2::Zero();  ///< [m]
+  Vector2 center = Vector2::Zero();  ///< [m]
   double yaw = 0;                    ///< [rad] of the length axis
   double length = 0, width = 0;      ///< [m]
 };
@@ -20,9 +20,9 @@ Vector2 closestPoint(const Footprint& footprint, const Vector2& point);
 /// Where an object stands as seen from the vehicle's origin, on the ground plane.
 struct GroundView {
   double closest_range =
-      0;               ///< [m] to the closest point of the footprint (the paper's range; SPEC 11)
-  double range = 0;    ///< [m] to the centre
-  double bearing = 0;  ///< [rad] of the centre, ego frame, left positive, in (-pi, pi]
+      0;  ///< [m] to the closest point of the footprint (the paper's range; method.md 11)
+  double range = 0;    ///< [m] to the center
+  double bearing = 0;  ///< [rad] of the center, ego frame, left positive, in (-pi, pi]
 };
 
 GroundView viewFrom(const Pose3& T_world_ego, const Footprint& footprint);

@@ -20,7 +20,7 @@ struct SeenObject {
   const TruthObject* object;
   ClassId class_id;  // -1: no class of the run
   Footprint footprint;
-  double reach;  // [m] from the centre to the corners
+  double reach;  // [m] from the center to the corners
 };
 
 bool isPersonSized(const SeenObject& seen, const FrontEndOptions& options) {
@@ -94,14 +94,14 @@ class ScanJudge {
   }
 
   // The nearest thing that the measurement lies on, or -1; of those it lies inside of, the one with
-  // the nearest centre.
+  // the nearest center.
   int thingUnder(const RecordedMeasurement& m, const std::vector<SeenObject>& things,
                  const Vector2& sensor) const {
     const double most = options_.margin + options_.deviations * std::max(m.sd_range, m.sd_across);
     int best = -1;
     double best_offset = 1, best_distance = 0;
     for (std::size_t i = 0; i < things.size(); ++i) {
-      const double distance = (things[i].footprint.centre - m.position).norm();
+      const double distance = (things[i].footprint.center - m.position).norm();
       if (distance > things[i].reach + most) continue;
       const double o = offset(m, things[i], sensor, options_);
       if (o > 1) continue;
@@ -161,7 +161,7 @@ class ScanJudge {
     if (thing.class_id < 0 || object.ignore) return;
     const auto c = static_cast<std::size_t>(thing.class_id);
     const GroundView view = viewFrom(scan.T_world_sensor, thing.footprint);
-    const double range = options_.centre_range ? view.range : view.closest_range;
+    const double range = options_.center_range ? view.range : view.closest_range;
     const bool in_view = range <= sensor_.class_range[c] && view.range >= sensor_.range_min &&
                          std::abs(view.bearing) <= 0.5 * sensor_.fov;
     if (!in_view || object.occluded > options_.selection.max_occluded) return;

@@ -16,12 +16,13 @@ struct FrontEndOptions {
   /// own.
   SelectionOptions selection;
   AlignmentOptions alignment;
-  double margin = 0.3;       ///< [m] a measurement so near to a footprint lies on it ...
-  double deviations = 2;     ///< ... beside so many standard deviations along and across the sight
-  double person_side = 1.2;  ///< [m] longest side below which a thing is person-sized (SPEC 8.2)
-  double overhead = 2.0;     ///< [m] above the vehicle's ground: crowns, bridges are no object
+  double margin = 0.3;    ///< [m] a measurement so near to a footprint lies on it ...
+  double deviations = 2;  ///< ... beside so many standard deviations along and across the sight
+  double person_side =
+      1.2;                ///< [m] longest side below which a thing is person-sized (method.md 8.2)
+  double overhead = 2.0;  ///< [m] above the vehicle's ground: crowns, bridges are no object
   std::vector<double> range_edges = {0, 10, 20, 30, 50, 70, 150};  ///< [m] of the range bins
-  bool centre_range = false;  ///< ranges of truth by the centre, not by the closest point
+  bool center_range = false;  ///< ranges of truth by the center, not by the closest point
   /// The truth holds what stands around, too (simulated logs), so that sizes can be judged.
   bool surroundings = false;
 };

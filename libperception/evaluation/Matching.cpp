@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "libperception/evaluation/Assignment.h"
+#include "libperception/core/Assignment.h"
 
 namespace perception {
 namespace {

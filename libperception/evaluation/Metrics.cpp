@@ -117,12 +117,12 @@ class TimelineBuilder {
 
 void addErrors(const Evaluation& evaluation, Pairing pairing, ClassId class_id,
                TrackingFigures& figures) {
-  Sum range, centre_range, bearing, position, speed, velocity, heading, reversed;
+  Sum range, center_range, bearing, position, speed, velocity, heading, reversed;
   for (const TruthSample& sample : evaluation.samples) {
     const auto& match = sample.matched(pairing);
     if (!isOf(sample, class_id) || !match) continue;
     range.add(match->view.closest_range - sample.view.closest_range);
-    centre_range.add(match->view.range - sample.view.range);
+    center_range.add(match->view.range - sample.view.range);
     bearing.add(wrapAngle(match->view.bearing - sample.view.bearing));
     position.add(match->distance);
     speed.add(match->speed_error);
@@ -131,7 +131,7 @@ void addErrors(const Evaluation& evaluation, Pairing pairing, ClassId class_id,
     if (match->heading_error) reversed.add(std::abs(*match->heading_error) > kPi / 2 ? 1.0 : 0.0);
   }
   figures.range_rms = range.rms();
-  figures.centre_range_rms = centre_range.rms();
+  figures.center_range_rms = center_range.rms();
   figures.bearing_rms = bearing.rms();
   figures.position_rms = position.rms();
   figures.speed_rms = speed.rms();
@@ -226,7 +226,7 @@ FalseObjectFigures falseObjectFigures(const Evaluation& evaluation, ClassId clas
 
 SetFigures setFigures(const Evaluation& evaluation, double cutoff) {
   SetFigures figures;
-  Sum value, localisation, missed, false_, ospa;
+  Sum value, localization, missed, false_, ospa;
   double squares = 0;
   std::size_t pairs = 0;
   for (const InstantFigures& instant : evaluation.instants) {
@@ -234,16 +234,16 @@ SetFigures setFigures(const Evaluation& evaluation, double cutoff) {
       continue;  // nothing to be right or wrong about
     ++figures.instants;
     value.add(instant.gospa.value());
-    localisation.add(instant.gospa.localisation);
+    localization.add(instant.gospa.localization);
     missed.add(instant.gospa.missed);
     false_.add(instant.gospa.false_);
     ospa.add(instant.ospa);
-    squares += instant.gospa.localisation;
+    squares += instant.gospa.localization;
     pairs += instant.gospa.pairs;
   }
   figures.gospa_mean = value.mean();
   figures.gospa_rms = value.rms();
-  figures.localisation = localisation.mean();
+  figures.localization = localization.mean();
   figures.missed = missed.mean();
   figures.false_ = false_.mean();
   const double one_object = cutoff * cutoff / 2;

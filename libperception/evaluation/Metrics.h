@@ -21,9 +21,9 @@ struct TrackingFigures {
   std::size_t returns = 0;                 ///< instants tracked: "Number of Returns"
   Figure tracked_a, tracked_b, tracked_c;  ///< returns over A, B, C
   Figure range_rms;                   ///< [m] to the closest point of the footprint (the paper's)
-  Figure centre_range_rms;            ///< [m] to the centre
-  Figure bearing_rms;                 ///< [rad] of the centre
-  Figure position_rms;                ///< [m] between the centres
+  Figure center_range_rms;            ///< [m] to the center
+  Figure bearing_rms;                 ///< [rad] of the center
+  Figure position_rms;                ///< [m] between the centers
   Figure speed_rms;                   ///< [m/s] magnitudes
   Figure velocity_rms;                ///< [m/s] vectors
   Figure heading_rms;                 ///< [rad]
@@ -80,7 +80,7 @@ FalseObjectFigures falseObjectFigures(const Evaluation& evaluation, ClassId clas
 struct SetFigures {
   std::size_t instants = 0;
   Figure gospa_mean, gospa_rms;          ///< [m] mean; root of the mean square
-  Figure localisation, missed, false_;   ///< [m^2] mean parts; they sum to gospa_rms^2
+  Figure localization, missed, false_;   ///< [m^2] mean parts; they sum to gospa_rms^2
   Figure missed_objects, false_objects;  ///< mean number an instant
   Figure localisation_rms;               ///< [m] of the pairs
   Figure ospa_mean;                      ///< [m]
@@ -100,10 +100,11 @@ struct Reliability {
 };
 Reliability reliability(const Evaluation& evaluation, Pairing pairing);
 /// The same of the existence probability: outputs as a named class inside the sector, and the share
-/// of them that some truth object is behind. An object that is put out twice is real once.
+/// of them that some truth object is behind. An object that is output twice is real once.
 Reliability existenceReliability(const Evaluation& evaluation);
 
-/// CLEAR MOT (Bernardin and Stiefelhagen 2008), one output to one truth object within the tolerance.
+/// CLEAR MOT (Bernardin and Stiefelhagen 2008), one output to one truth object within the
+/// tolerance.
 struct ClearFigures {
   std::size_t truth = 0;          ///< counted truth objects over all instants
   std::size_t misses = 0;         ///< of these without an output

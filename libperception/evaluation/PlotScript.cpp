@@ -40,7 +40,7 @@ void removeOldPictures(const std::string& dir) {
 
 }  // namespace
 
-namespace plot_colour {
+namespace plot_color {
 
 std::string ofRun(std::size_t i) {
   constexpr const char* kRuns[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
@@ -61,7 +61,7 @@ std::string ofClass(const std::string& name, std::size_t place) {
   return kOthers[place % std::size(kOthers)];
 }
 
-}  // namespace plot_colour
+}  // namespace plot_color
 
 PlotScript::PlotScript(const std::string& dir) : dir_(dir + "/plots") {
   std::error_code failed;

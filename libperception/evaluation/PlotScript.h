@@ -5,18 +5,18 @@
 
 namespace perception {
 
-/// Colours that people with colour-blindness can tell apart (Okabe and Ito).
-namespace plot_colour {
+/// Colors that people with color-blindness can tell apart (Okabe and Ito).
+namespace plot_color {
 inline constexpr const char* kGreen = "#009E73";
 inline constexpr const char* kOrange = "#E69F00";
 inline constexpr const char* kRed = "#C00000";
 inline constexpr const char* kBlue = "#0072B2";
-inline constexpr const char* kGrey = "#BBBBBB";
+inline constexpr const char* kGray = "#BBBBBB";
 /// Of the i-th run in a picture of several.
 std::string ofRun(std::size_t i);
 /// Of an object class, as in the pictures of scenes; `place` of others.
 std::string ofClass(const std::string& name, std::size_t place);
-}  // namespace plot_colour
+}  // namespace plot_color
 
 /// What came of the plots.
 struct PlotResult {

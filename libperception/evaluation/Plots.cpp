@@ -11,14 +11,14 @@
 namespace perception {
 namespace {
 
-using namespace plot_colour;
+using namespace plot_color;
 
 constexpr std::size_t kMinSamples = 5;        // fewer instants are no curve
 constexpr std::size_t kMaxOverviewRows = 60;  // more names cannot be read
-constexpr std::size_t kMaxNamedIds = 8;       // ids with a colour and a line in the legend
+constexpr std::size_t kMaxNamedIds = 8;       // ids with a color and a line in the legend
 
-constexpr const char* kIdColours[kMaxNamedIds] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                  "#E69F00", "#56B4E9", "#8B4513", "#F0E442"};
+constexpr const char* kIdColors[kMaxNamedIds] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                 "#E69F00", "#56B4E9", "#8B4513", "#F0E442"};
 
 constexpr const char* kOverviewHead = R"(
 set multiplot title {title} noenhanced font ',14'
@@ -36,7 +36,7 @@ set title {title} noenhanced
 set format x ''
 set ytics noenhanced ({names})
 set yrange [{rows}:-1]
-plot 'overview_objects.dat' using 1:($3==0?$2:1/0) with points pt 5 ps 0.9 lc rgb '{grey}' title 'not tracked', \
+plot 'overview_objects.dat' using 1:($3==0?$2:1/0) with points pt 5 ps 0.9 lc rgb '{gray}' title 'not tracked', \
  '' using 1:($3==1?$2:1/0) with points pt 5 ps 0.9 lc rgb '{green}' title 'tracked, class correct', \
  '' using 1:($3==2?$2:1/0) with points pt 5 ps 0.9 lc rgb '{orange}' title 'tracked, not classified', \
  '' using 1:($3==3?$2:1/0) with points pt 5 ps 0.9 lc rgb '{red}' title 'tracked, class wrong', \
@@ -70,7 +70,7 @@ set ylabel 'range to closest point (m)'
 set yrange [0:*]
 plot {range}
 set xlabel 'time since the log''s first stamp (s)'
-set ylabel 'bearing of centre (deg, left is +)'
+set ylabel 'bearing of center (deg, left is +)'
 set yrange [*:*]
 plot {bearing}
 unset multiplot
@@ -112,7 +112,7 @@ class PlotWriter {
       script_.add(fmt::format(
           kOverviewObjects, fmt::arg("size", 1 - split - 30 * pixel), fmt::arg("bottom", split),
           fmt::arg("title", gnuplotString(overviewScope(rows.size()))), fmt::arg("names", names),
-          fmt::arg("rows", rows.size()), fmt::arg("grey", kGrey), fmt::arg("green", kGreen),
+          fmt::arg("rows", rows.size()), fmt::arg("gray", kGray), fmt::arg("green", kGreen),
           fmt::arg("orange", kOrange), fmt::arg("red", kRed)));
     }
     script_.add(fmt::format(kOverviewInstants, fmt::arg("size", split), fmt::arg("orange", kOrange),
@@ -180,7 +180,7 @@ class PlotWriter {
         "'{}.dat' index 0 using 1:{} with lines lw 3 lc rgb 'black' title 'truth'", name, column);
     for (std::size_t i = 0; i < o.ids.size(); ++i) {
       plot += fmt::format(", \\\n '' index {} using 1:{} with points pt 7 ps 0.8 lc rgb '{}' ",
-                          i + 1, column, i < kMaxNamedIds ? kIdColours[i] : kGrey);
+                          i + 1, column, i < kMaxNamedIds ? kIdColors[i] : kGray);
       if (i < kMaxNamedIds) {
         plot += fmt::format("title 'estimate, id {}'", o.ids[i]);
       } else {

@@ -68,7 +68,7 @@ std::string markdownTable(const ReportTable& table) {
 
 std::string scope(const EvaluationOptions& o) {
   return fmt::format(
-      "Truth counts when its centre is within {:g} m of the vehicle and {:g} deg ahead (whole "
+      "Truth counts when its center is within {:g} m of the vehicle and {:g} deg ahead (whole "
       "angle), occluded <= "
       "{}, lidar points >= {} (where counted), and it is not marked as to be ignored.",
       o.selection.range, degrees(o.selection.fov), o.selection.max_occluded,
@@ -100,13 +100,13 @@ std::string textReport(const EvaluationReport& report) {
 
 std::string instantsCsv(const EvaluatedRun& run) {
   std::string text =
-      "frame,t,truth,estimates,gospa,localisation,missed,false,ospa,outputs,false_outputs\n";
+      "frame,t,truth,estimates,gospa,localization,missed,false,ospa,outputs,false_outputs\n";
   for (const InstantFigures& i : run.evaluation.instants) {
     const OutputCounts outputs = i.allOutputs();
-    const auto number = [](double value) { return fixedPlaces(value, kMetrePlaces); };
+    const auto number = [](double value) { return fixedPlaces(value, kMeterPlaces); };
     text +=
         fmt::format("{},{:.3f},{},{},{},{},{},{},{},{},{}\n", i.frame, i.t, i.truth, i.estimates,
-                    number(i.gospa.value()), number(i.gospa.localisation), number(i.gospa.missed),
+                    number(i.gospa.value()), number(i.gospa.localization), number(i.gospa.missed),
                     number(i.gospa.false_), number(i.ospa), outputs.named, outputs.false_);
   }
   return text;

@@ -52,7 +52,7 @@ ReportTable sideBySideTable(const EvaluationReport& report);
 
 std::string textReport(const EvaluationReport& report);
 std::string markdownReport(const EvaluationReport& report);
-/// A line an instant: frame,t,truth,estimates,gospa,localisation,missed,false,ospa,outputs,
+/// A line an instant: frame,t,truth,estimates,gospa,localization,missed,false,ospa,outputs,
 /// false_outputs; [m], its parts [m^2].
 std::string instantsCsv(const EvaluatedRun& run);
 /// Every figure of the tables, both pairings, by run; null where a table says n/a.

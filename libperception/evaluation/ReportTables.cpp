@@ -73,11 +73,11 @@ ReportTable paperTable(const EvaluationReport& report) {
   table.notes = {
       fmt::format("Object Tracked: share of the instants of counted truth objects at which the "
                   "closest estimate has its "
-                  "centre within {:g} m of the truth's; one estimate may serve several truths.",
+                  "center within {:g} m of the truth's; one estimate may serve several truths.",
                   report.options.tolerance),
       "Range Error, Bearing Error: rms over the tracked instants, of the range to the closest "
       "point of the footprint and of "
-      "the bearing of the centre.",
+      "the bearing of the center.",
       "Correct, Mis-Classification: share of the tracked instants at which a class has probability "
       ">= .95 and is right, "
       "wrong; the rest is unclassified.",
@@ -148,15 +148,15 @@ ReportTable trackedTable(const EvaluationReport& report) {
 
 ReportTable errorTable(const EvaluationReport& report) {
   ReportTable table = makeTable("Errors at tracked instants (rms)", {"Run", "Class", "Matching"},
-                                {"range (m)", "centre range (m)", "bearing (rad)", "position (m)",
+                                {"range (m)", "center range (m)", "bearing (rad)", "position (m)",
                                  "speed (m/s)", "velocity (m/s)", "heading (rad)", "reversed"});
   table.notes = {
-      "range: to the closest point of the footprint; centre range, bearing, position: of the "
-      "centre; on the ground plane.",
+      "range: to the closest point of the footprint; center range, bearing, position: of the "
+      "center; on the ground plane.",
       "speed: of the magnitudes; velocity: of the vectors; where the truth has a velocity.",
       "heading: where truth and estimate have one; reversed: share of these more than 90 deg off."};
   addPairedRows(report, table, [](const TrackingFigures& f) {
-    return Row{number(f.range_rms),    number(f.centre_range_rms), number(f.bearing_rms),
+    return Row{number(f.range_rms),    number(f.center_range_rms), number(f.bearing_rms),
                number(f.position_rms), number(f.speed_rms),        number(f.velocity_rms),
                number(f.heading_rms),  number(f.heading_reversed)};
   });
@@ -199,7 +199,7 @@ ReportTable falseObjectTable(const EvaluationReport& report) {
   table.notes = {
       fmt::format("Output as a named class (most probable class; not {}) inside the sector, no "
                   "truth of any type within "
-                  "{:g} m of its centre or under it, areas marked DontCare with a place included.",
+                  "{:g} m of its center or under it, areas marked DontCare with a place included.",
                   fmt::join(report.options.unnamed, ", "), report.options.exclusion),
       fmt::format(
           "Only within {:g} deg ahead: a truth that covers less (KITTI labels the camera's view, "
@@ -228,13 +228,13 @@ ReportTable setTable(const EvaluationReport& report) {
   const double cutoff = report.options.cutoff;
   ReportTable table = makeTable(
       "Distance between the sets of objects", {"Run"},
-      {"GOSPA mean (m)", "GOSPA rms (m)", "localisation (m2)", "missed (m2)", "false (m2)",
+      {"GOSPA mean (m)", "GOSPA rms (m)", "localization (m2)", "missed (m2)", "false (m2)",
        "missed objects", "false objects", "pair rms (m)", "OSPA mean (m)", "instants"});
   table.notes = {
       fmt::format(
-          "GOSPA with c = {0:g} m, p = 2, alpha = 2; OSPA with c = {0:g} m, p = 2; of the centres.",
+          "GOSPA with c = {0:g} m, p = 2, alpha = 2; OSPA with c = {0:g} m, p = 2; of the centers.",
           cutoff),
-      "localisation + missed + false = (GOSPA rms)^2; missed, false objects: mean number an "
+      "localization + missed + false = (GOSPA rms)^2; missed, false objects: mean number an "
       "instant.",
       "Truth: the counted objects. Estimates: of named classes only, since the truth does not "
       "label poles: those that pair with a",
@@ -244,7 +244,7 @@ ReportTable setTable(const EvaluationReport& report) {
   for (const EvaluatedRun& run : report.runs) {
     const SetFigures f = setFigures(run.evaluation, cutoff);
     table.rows.push_back(
-        {run.name, number(f.gospa_mean), number(f.gospa_rms), number(f.localisation),
+        {run.name, number(f.gospa_mean), number(f.gospa_rms), number(f.localization),
          number(f.missed), number(f.false_), number(f.missed_objects), number(f.false_objects),
          number(f.localisation_rms), number(f.ospa_mean), fmt::format("{}", f.instants)});
   }
@@ -275,7 +275,7 @@ ReportTable existenceTable(const EvaluatedRun& run) {
                                 {"probability"}, {"outputs", "mean stated", "real"});
   table.notes = {
       "Outputs as a named class inside the sector. real: paired one-to-one with a truth of any "
-      "type; an object put out twice is real once.",
+      "type; an object output twice is real once.",
       "Where the truth holds no poles and hedges (KITTI), one that is called a road user is not "
       "real "
       "here, though something stands there.",

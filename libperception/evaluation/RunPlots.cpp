@@ -12,7 +12,7 @@
 namespace perception {
 namespace {
 
-using namespace plot_colour;
+using namespace plot_color;
 
 constexpr const char* kReliability = R"(
 set title {title} noenhanced font ',12'
@@ -55,11 +55,11 @@ std::string keyName(const std::string& name, const Figure& error) {
 
 std::string timeRows(const EvaluatedRun& run) {
   std::string text =
-      "# t [s], GOSPA [m], OSPA [m], localisation, + missed, + false [m^2], truth, missed, false\n";
+      "# t [s], GOSPA [m], OSPA [m], localization, + missed, + false [m^2], truth, missed, false\n";
   for (const InstantFigures& i : run.evaluation.instants) {
     const Gospa& g = i.gospa;
     text += fmt::format("{:.3f} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f} {} {} {}\n", i.t, g.value(),
-                        i.ospa, g.localisation, g.localisation + g.missed, g.squared(), i.truth,
+                        i.ospa, g.localization, g.localization + g.missed, g.squared(), i.truth,
                         i.truth - g.pairs, i.estimates - g.pairs);
   }
   return text;
@@ -155,7 +155,7 @@ void drawSetDistance(const std::vector<const EvaluatedRun*>& runs, const Evaluat
       "plot 'set_distance_0.dat' using 1:6 with fillsteps fs solid 1 noborder lc rgb '{blue}' "
       "title 'false objects', '' using 1:5 with fillsteps fs solid 1 noborder lc rgb '{orange}' "
       "title 'missed objects', '' using 1:4 with fillsteps fs solid 1 noborder lc rgb '{green}' "
-      "title 'localisation'\nunset multiplot\nunset output\n",
+      "title 'localization'\nunset multiplot\nunset output\n",
       fmt::arg("most", 1.05 * top * top), fmt::arg("blue", kBlue), fmt::arg("orange", kOrange),
       fmt::arg("green", kGreen)));
 }

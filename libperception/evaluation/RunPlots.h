@@ -6,7 +6,7 @@
 
 namespace perception {
 
-/// timelines.png: a row a truth object, coloured by the class that it was called (pale where not
+/// timelines.png: a row a truth object, colored by the class that it was called (pale where not
 /// yet sure), a line where it was missed, a mark where its identity changed; below, the false
 /// objects.
 void drawTimelines(const EvaluatedRun& run, const EvaluationOptions& options, PlotScript& script);

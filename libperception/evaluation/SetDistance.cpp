@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/evaluation/Assignment.h"
+#include "libperception/core/Assignment.h"
 
 namespace perception {
 namespace {
@@ -41,7 +41,7 @@ Gospa gospa(const std::vector<Vector2>& truth, const std::vector<Vector2>& estim
   Gospa result;
   for (const double square : assignedSquares(truth, estimates, cutoff)) {
     if (square >= limit) continue;
-    result.localisation += square;
+    result.localization += square;
     ++result.pairs;
   }
   result.missed = limit / 2 * static_cast<double>(truth.size() - result.pairs);

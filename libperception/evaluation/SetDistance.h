@@ -9,16 +9,16 @@ namespace perception {
 /// GOSPA (Rahmathullah et al. 2017) with alpha = 2 and p = 2: the squared distance in its three
 /// parts, which add up.
 struct Gospa {
-  double localisation = 0;  ///< [m^2] sum of squared distances of the pairs closer than the cut-off
+  double localization = 0;  ///< [m^2] sum of squared distances of the pairs closer than the cut-off
   double missed = 0;        ///< [m^2] c^2 / 2 for each truth without estimate
   double false_ = 0;        ///< [m^2] c^2 / 2 for each estimate without truth
   std::size_t pairs = 0;
 
-  double squared() const { return localisation + missed + false_; }  ///< [m^2]
+  double squared() const { return localization + missed + false_; }  ///< [m^2]
   double value() const;                                              ///< [m]
 };
 
-/// Both sets: centres on the ground [m]; cut-off c [m].
+/// Both sets: centers on the ground [m]; cut-off c [m].
 Gospa gospa(const std::vector<Vector2>& truth, const std::vector<Vector2>& estimates,
             double cutoff);
 

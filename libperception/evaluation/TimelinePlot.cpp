@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-using namespace plot_colour;
+using namespace plot_color;
 
 constexpr std::size_t kMaxTruthRows = 60;  // more names cannot be read
 constexpr std::size_t kMaxFalseRows = 25;
@@ -36,7 +36,7 @@ struct Stretch {
 };
 
 // The usual time between two instants [s]: how wide a single one is drawn.
-double usualStep(const std::vector<InstantFigures>& instants) {
+double typicalStep(const std::vector<InstantFigures>& instants) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < instants.size(); ++i)
     steps.push_back(instants[i].t - instants[i - 1].t);
@@ -89,7 +89,7 @@ class TimelinePlot {
         evaluation_(run.evaluation),
         options_(options),
         script_(script),
-        stretches_(usualStep(run.evaluation.instants)) {}
+        stretches_(typicalStep(run.evaluation.instants)) {}
 
   void draw() {
     if (evaluation_.instants.empty()) return;
@@ -118,13 +118,13 @@ class TimelinePlot {
         run_.name, options_.selection.range, degrees(options_.selection.fov), options_.tolerance);
   }
 
-  void label(double row, const std::string& text, const std::string& colour) {
+  void label(double row, const std::string& text, const std::string& color) {
     labels_ += fmt::format(
         "set label {} at graph -0.008, first {:.2f} right noenhanced textcolor rgb '{}'\n",
-        gnuplotString(text), row, colour);
+        gnuplotString(text), row, color);
   }
 
-  std::string classColour(ClassId c) const {
+  std::string classColor(ClassId c) const {
     const auto i = static_cast<std::size_t>(c);
     return ofClass(evaluation_.class_names[i], i);
   }
@@ -140,7 +140,7 @@ class TimelinePlot {
     std::map<std::int64_t, double> row_of;
     for (const ObjectTimeline& line : lines) {
       row_of[line.id] = next_row_;
-      label(next_row_, fmt::format("{} {}", line.type, line.id), classColour(line.class_id));
+      label(next_row_, fmt::format("{} {}", line.type, line.id), classColor(line.class_id));
       next_row_ += 1;
     }
     std::map<std::int64_t, std::uint64_t> last_id;
@@ -196,7 +196,7 @@ class TimelinePlot {
     if (all == 0 || all > longest.size()) next_row_ += 1;
   }
 
-  // Colours that occur, below the axis; `y` in shares of the picture.
+  // Colors that occur, below the axis; `y` in shares of the picture.
   void addLegend(double y) {
     double x = 0.02;
     for (std::size_t c = 0; c < evaluation_.class_names.size(); ++c) {
@@ -206,12 +206,12 @@ class TimelinePlot {
       script_.add(fmt::format(
           "set label {} at screen {:.3f}, screen {:.4f} left noenhanced point pt 5 ps 1.6 lc rgb "
           "'{}' offset 1.2,0\n",
-          gnuplotString(name), x, y, classColour(k)));
+          gnuplotString(name), x, y, classColor(k)));
       x += 0.025 + 0.0075 * static_cast<double>(name.size());
     }
     script_.add(fmt::format(
         "set label 'pale: most probable, below .95   thin line: missed   black mark: another id   "
-        "names have the colour of the true class' at screen {:.3f}, screen {:.4f} left\n",
+        "names have the color of the true class' at screen {:.3f}, screen {:.4f} left\n",
         x + 0.01, y));
   }
 
@@ -228,12 +228,12 @@ class TimelinePlot {
         "using 1:3:($2-$1):(0) with vectors nohead lw 1.5 lc rgb '#555555'");
     for (std::size_t c = 0; c < evaluation_.class_names.size(); ++c) {
       const auto k = static_cast<ClassId>(c);
-      const std::string colour = classColour(k);
+      const std::string color = classColor(k);
       // Two hex digits in front are the transparency.
       add(fmt::format("timelines_{}_unsure.dat", c), stretches_.rows(2 * k),
-          fmt::format(bar, 0.36, "#A0" + colour.substr(1)));
+          fmt::format(bar, 0.36, "#A0" + color.substr(1)));
       add(fmt::format("timelines_{}.dat", c), stretches_.rows(2 * k + 1),
-          fmt::format(bar, 0.36, colour));
+          fmt::format(bar, 0.36, color));
     }
     add("timelines_switches.dat", switches_,
         "using 1:($2-0.5):(0):(1) with vectors nohead lw 3 lc rgb 'black'");

@@ -7,8 +7,8 @@
 namespace perception {
 namespace {
 
-// Truth types (KITTI) whose class has another name (FORMATS: Van counts as car; SPEC 2: a truck
-// moves like a bus).
+// Truth types (KITTI) whose class has another name (KITTI's Van counts as car; method.md 2.2: a
+// truck moves like a bus).
 constexpr std::array<std::pair<const char*, const char*>, 3> kClassOfType = {{
     {"van", "car"},
     {"truck", "bus"},

@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/core/ObjectClass.h"
 #include "libperception/evaluation/Footprint.h"
+#include "libperception/measurement/ObjectClass.h"
 
 namespace perception {
 
 /// Which truth objects count, ego frame.
 struct SelectionOptions {
-  double range = 20;  ///< [m] of the centre (paper: "20m semi-circle in front")
+  double range = 20;  ///< [m] of the center (paper: "20m semi-circle in front")
   double fov = kPi;   ///< [rad] whole opening angle of the sector ahead
   double complete_fov =
       kTwoPi;            ///< [rad] beyond it the truth lacks objects: no output there is false

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/filter/Step.h"
 
 namespace perception {
@@ -15,8 +15,9 @@ namespace perception {
 struct ParticleFilterParams {
   int pf_algorithm = 2;  ///< index into names(): only pfOptimalProposal is implemented
   int resampling_method =
-      3;              ///< MRPT's order: prMultinomial, prResidual, prStratified, prSystematic
-  double beta = 0.5;  ///< resample when the effective share of particles falls below it (SPEC 5.10)
+      3;  ///< MRPT's order: prMultinomial, prResidual, prStratified, prSystematic
+  double beta =
+      0.5;  ///< resample when the effective share of particles falls below it (method.md 5.10)
   int sample_size = 8;  ///< number of particles; 8 as in the paper
 
   void visit(ParamVisitor& v);
@@ -27,7 +28,7 @@ struct ParticleFilterParams {
 struct ScanStats : StepStats {
   double ess = 1;  ///< effective share of particles before resampling, in (0, 1]
   bool resampled = false;
-  double map_probability = 0;  ///< of the hypothesis that is put out
+  double map_probability = 0;  ///< of the hypothesis that is output
 };
 
 /// The joint association, tracking and classification filter as an MRPT particle-filter algorithm:

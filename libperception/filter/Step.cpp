@@ -5,14 +5,14 @@
 #include <utility>
 
 #include "libperception/core/LogMath.h"
-#include "libperception/filter/Association.h"
-#include "libperception/filter/Gating.h"
-#include "libperception/filter/LikelihoodTable.h"
-#include "libperception/filter/Numbering.h"
-#include "libperception/filter/Parallel.h"
-#include "libperception/filter/Prediction.h"
-#include "libperception/filter/RankedChildren.h"
-#include "libperception/filter/Updates.h"
+#include "libperception/filter/associate/Association.h"
+#include "libperception/filter/associate/RankedChildren.h"
+#include "libperception/filter/likelihood/Gating.h"
+#include "libperception/filter/likelihood/LikelihoodTable.h"
+#include "libperception/filter/predict/Prediction.h"
+#include "libperception/filter/state/IndexMap.h"
+#include "libperception/filter/state/Parallel.h"
+#include "libperception/filter/update/UpdateCache.h"
 
 namespace perception {
 namespace {
@@ -26,12 +26,12 @@ std::uint64_t keyOf(const T* p) {
 }
 
 /// The hypotheses before the scan, each distinct one once.
-struct Groups {
+struct DistinctHypotheses {
   std::vector<const Hypothesis*> hypotheses;  // in order of first appearance
   std::vector<std::size_t> of_slot;           // index of the slot's hypothesis
 
-  explicit Groups(const Posterior& before) {
-    Numbering numbers(before.hypotheses.size());
+  explicit DistinctHypotheses(const Posterior& before) {
+    IndexMap numbers(before.hypotheses.size());
     of_slot.reserve(before.hypotheses.size());
     for (const auto& h : before.hypotheses) {
       const auto [number, fresh] = numbers.numberOf(keyOf(h.get()));
@@ -50,9 +50,9 @@ struct Groups {
 };
 
 /// Numbers the tracks in order of first appearance, so never by address.
-class TrackNumbering {
+class TrackIndexMap {
  public:
-  TrackNumbering(const std::vector<const Hypothesis*>& hypotheses, std::vector<TrackHandle>& tracks)
+  TrackIndexMap(const std::vector<const Hypothesis*>& hypotheses, std::vector<TrackHandle>& tracks)
       : tracks_(tracks), by_key_(64) {
     for (const Hypothesis* h : hypotheses) {
       if (!h->tracks.table() || h->tracks.table() == table_) continue;
@@ -63,8 +63,8 @@ class TrackNumbering {
     if (table_ && one_table_) by_place_.assign(table_->size(), kNone);
   }
 
-  TrackNumbers of(const TrackList& list) {
-    TrackNumbers out;
+  TrackIndices of(const TrackList& list) {
+    TrackIndices out;
     out.reserve(list.size());
     for (const std::uint32_t place : list.places()) {
       std::uint32_t number = 0;
@@ -91,20 +91,20 @@ class TrackNumbering {
   const TrackTable* table_ = nullptr;
   bool one_table_ = true;  // as after a step; posteriors made by hand may have several
   std::vector<std::uint32_t> by_place_;
-  Numbering by_key_;
+  IndexMap by_key_;
 };
 
 /// Lists the distinct tracks and predicts those that the scan concerns.
 ScanTracks tracksOf(const std::vector<const Hypothesis*>& hypotheses, const MeasurementScan& scan,
                     const FilterModel& model) {
   ScanTracks out;
-  TrackNumbering numbers(hypotheses, out.before);
+  TrackIndexMap numbers(hypotheses, out.before);
   out.of_hypothesis.reserve(hypotheses.size());
   for (const Hypothesis* h : hypotheses) out.of_hypothesis.push_back(numbers.of(h->tracks));
   out.touched.assign(out.before.size(), 0);
-  const bool places_alone = seesPlacesAlone(scan);
+  const bool places_alone = isPositionOnly(scan);
   parallelFor(out.before.size(), [&](std::size_t i) {
-    out.touched[i] = concerns(scan, *out.before[i], places_alone);
+    out.touched[i] = mayBeInView(scan, *out.before[i], places_alone);
   });
   out.predicted = predictTracks(out.before, out.touched, scan.state.stamp, model);
   return out;
@@ -119,7 +119,7 @@ struct Child {
   double log_weight = 0;
 };
 
-std::vector<Child> sampleChildren(const Groups& groups, const ScanTracks& tracks,
+std::vector<Child> sampleChildren(const DistinctHypotheses& groups, const ScanTracks& tracks,
                                   const AssociationIndex& index, const RngKey& key) {
   const auto order = randomOrder(index.measurements(), Rng(key.withPurpose(kOrder)));
   std::vector<std::vector<SampledAssociation>> sampled(groups.hypotheses.size());
@@ -137,9 +137,10 @@ std::vector<Child> sampleChildren(const Groups& groups, const ScanTracks& tracks
 }
 
 /// The best `slots` children over all hypotheses.
-std::vector<Child> rankedChildren(const Groups& groups, const std::vector<double>& log_weights,
-                                  const ScanTracks& tracks, const AssociationIndex& index,
-                                  const FilterModel& model, std::size_t slots) {
+std::vector<Child> rankedChildren(const DistinctHypotheses& groups,
+                                  const std::vector<double>& log_weights, const ScanTracks& tracks,
+                                  const AssociationIndex& index, const FilterModel& model,
+                                  std::size_t slots) {
   const bool nearest = model.proposal == Proposal::kNearest;
   RankingLimits limits;
   limits.children = nearest ? 1 : static_cast<std::size_t>(model.params.ranked_children);
@@ -159,7 +160,7 @@ std::vector<Child> rankedChildren(const Groups& groups, const std::vector<double
 /// Children of equal history share a handle (sampled: slots stay) or become one (ranked).
 Posterior posteriorOf(std::vector<Child> children, std::vector<HypothesisHandle> handles,
                       const Posterior& before, bool sampled) {
-  Numbering numbers(children.size());  // by the hypotheses' keys
+  IndexMap numbers(children.size());  // by the hypotheses' keys
   Posterior after;
   if (sampled) {
     after.hypotheses.resize(before.hypotheses.size());
@@ -198,7 +199,7 @@ Posterior Posterior::empty(std::size_t n) {
 
 StepResult step(const Posterior& before, const MeasurementScan& scan, const FilterModel& model,
                 const RngKey& key, std::size_t slots) {
-  const Groups groups(before);
+  const DistinctHypotheses groups(before);
   ScanTracks tracks = tracksOf(groups.hypotheses, scan, model);
   const LikelihoodTable table = likelihoodTable(tracks.predicted, tracks.touched, scan, model);
   const AssociationIndex index(tracks.predicted, table, model);
@@ -207,12 +208,12 @@ StepResult step(const Posterior& before, const MeasurementScan& scan, const Filt
       sampled ? sampleChildren(groups, tracks, index, key)
               : rankedChildren(groups, before.log_weights, tracks, index, model, slots);
 
-  Updates updates(tracks, table, scan, model);
-  for (const Child& c : children) updates.want(c.parent, c.association);
+  UpdateCache updates(tracks, table, scan, model);
+  for (const Child& c : children) updates.request(c.parent, c.association);
   StepResult result;
-  result.stats.updates = updates.make(key.counter);
+  result.stats.updates = updates.compute(key.counter);
   std::vector<HypothesisHandle> handles(children.size());
-  parallelFor(children.size(), [&](std::size_t c) { handles[c] = updates.assemble(c); });
+  parallelFor(children.size(), [&](std::size_t c) { handles[c] = updates.hypothesis(c); });
   result.stats.measurements = scan.measurements.size();
   result.stats.distinct_tracks = tracks.before.size();
   for (std::size_t t = 0; t < tracks.before.size(); ++t) {
@@ -228,7 +229,7 @@ MapHypothesis mapHypothesis(const Posterior& posterior) {
     std::size_t first;
     double log_weight;
   };
-  Numbering numbers(posterior.hypotheses.size());
+  IndexMap numbers(posterior.hypotheses.size());
   std::vector<Group> groups;  // in order of first appearance
   for (std::size_t i = 0; i < posterior.hypotheses.size(); ++i) {
     const auto [number, fresh] = numbers.numberOf(posterior.hypotheses[i]->key);

@@ -1,7 +1,7 @@
 #pragma once
 #include "libperception/core/Random.h"
-#include "libperception/filter/FilterModel.h"
-#include "libperception/filter/Track.h"
+#include "libperception/filter/state/FilterModel.h"
+#include "libperception/filter/state/Track.h"
 
 namespace perception {
 
@@ -40,7 +40,7 @@ struct StepResult {
 StepResult step(const Posterior& before, const MeasurementScan& scan, const FilterModel& model,
                 const RngKey& key, std::size_t slots);
 
-/// The hypothesis of largest weight after slots of equal history are added up (SPEC 5.11).
+/// The hypothesis of largest weight after slots of equal history are added up (method.md 5.11).
 struct MapHypothesis {
   std::size_t slot = 0;      ///< of its first copy
   double probability = 0;    ///< summed weight of its copies

@@ -1,8 +1,8 @@
 #include "libperception/grid/BeamBlock.h"
 
-#include "libperception/core/Lanes.h"
-#include "libperception/core/Wider.h"
 #include "libperception/grid/BeamCover.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {

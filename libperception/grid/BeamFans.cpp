@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "libperception/core/Lanes.h"
-#include "libperception/core/Wider.h"
 #include "libperception/grid/LayerBits.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {

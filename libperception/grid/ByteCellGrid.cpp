@@ -46,7 +46,7 @@ std::vector<GridCell> ByteCellGrid::knownCells() const {
 
 void ByteCellGrid::restore(const std::vector<GridCell>& cells) {
   for (const GridCell& cell : cells)
-    if (const CellIndex index = indexOf(cell.centre); find(index)) add(index, cell.log_odds);
+    if (const CellIndex index = indexOf(cell.center); find(index)) add(index, cell.log_odds);
 }
 
 std::size_t ByteCellGrid::memoryBytes() const {

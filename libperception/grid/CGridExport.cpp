@@ -23,7 +23,7 @@ std::map<std::pair<int, int>, double> groundOf(const std::vector<GridCell>& cell
                                                double resolution, const Vector2& corner) {
   std::map<std::pair<int, int>, double> ground;
   for (const GridCell& cell : cells) {
-    const Vector2 place = (cell.centre.head<2>() - corner) / resolution;
+    const Vector2 place = (cell.center.head<2>() - corner) / resolution;
     const auto [at, fresh] = ground.try_emplace(
         {static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y()))},
         cell.log_odds);
@@ -51,7 +51,7 @@ void saveOctree(const SafetyGrid& grid, const std::string& file) {
   tree.setClampingThresMin(octomap::probability(grid.params().low));
   tree.setClampingThresMax(octomap::probability(grid.params().high));
   for (const GridCell& cell : grid.knownCells())
-    tree.setNodeValue(cell.centre.x(), cell.centre.y(), cell.centre.z(),
+    tree.setNodeValue(cell.center.x(), cell.center.y(), cell.center.z(),
                       static_cast<float>(cell.log_odds), true);
   tree.updateInnerOccupancy();
   tree.prune();
@@ -63,9 +63,9 @@ void saveGround(const SafetyGrid& grid, const std::string& file) {
   const auto cells = grid.knownCells();
   const double resolution = grid.params().resolution;
   Vector2 low(-1, -1), high(1, 1);  // [m] a small empty map when nothing is known
-  if (!cells.empty()) low = high = cells.front().centre.head<2>();
+  if (!cells.empty()) low = high = cells.front().center.head<2>();
   for (const GridCell& cell : cells) {
-    low = low.cwiseMin(cell.centre.head<2>()), high = high.cwiseMax(cell.centre.head<2>());
+    low = low.cwiseMin(cell.center.head<2>()), high = high.cwiseMax(cell.center.head<2>());
   }
   const Vector2 corner = low - Vector2::Constant(resolution / 2);
   high += Vector2::Constant(resolution / 2);

@@ -27,15 +27,15 @@ class CGridMrpt2d final : public ByteCellGrid {
   }
 
   CellIndex cornerOf(const Pose3& T_world_ground) const override {
-    const Vector3 centre = T_world_ground.translation();
-    return {evidence().indexOf(centre.x()) - cells() / 2,
-            evidence().indexOf(centre.y()) - cells() / 2, 0};
+    const Vector3 center = T_world_ground.translation();
+    return {evidence().indexOf(center.x()) - cells() / 2,
+            evidence().indexOf(center.y()) - cells() / 2, 0};
   }
 
   // In the middle of the slab above the vehicle's ground plane.
   GridCell describe(const CellIndex& cell, double log_odds) const override {
-    const double res = params().resolution, x = evidence().centreOf(cell.x);
-    const double y = evidence().centreOf(cell.y);
+    const double res = params().resolution, x = evidence().centerOf(cell.x);
+    const double y = evidence().centerOf(cell.y);
     const Vector3 origin = vehicle().translation(), up = vehicle().linear().col(2);
     const double ground =
         up.z() > 0.1 ? -(up.x() * (x - origin.x()) + up.y() * (y - origin.y())) / up.z() : 0;

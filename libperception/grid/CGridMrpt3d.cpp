@@ -29,14 +29,14 @@ class CGridMrpt3d final : public ByteCellGrid {
   }
 
   CellIndex cornerOf(const Pose3& T_world_ground) const override {
-    const Vector3 centre = T_world_ground.translation();
+    const Vector3 center = T_world_ground.translation();
     const double below = params().grade * params().size * std::sqrt(0.5) - params().z_min;
-    return {evidence().indexOf(centre.x()) - cells() / 2,
-            evidence().indexOf(centre.y()) - cells() / 2, evidence().indexOf(centre.z() - below)};
+    return {evidence().indexOf(center.x()) - cells() / 2,
+            evidence().indexOf(center.y()) - cells() / 2, evidence().indexOf(center.z() - below)};
   }
 
   GridCell describe(const CellIndex& cell, double log_odds) const override {
-    return {{evidence().centreOf(cell.x), evidence().centreOf(cell.y), evidence().centreOf(cell.z)},
+    return {{evidence().centerOf(cell.x), evidence().centerOf(cell.y), evidence().centerOf(cell.z)},
             Vector3::Constant(params().resolution),
             log_odds};
   }

@@ -127,7 +127,7 @@ void CSafetyGrid::getVisualizationInto(mrpt::opengl::CSetOfObjects& scene) const
   voxels->reserveVoxels(0, cells.size());
   mrpt::math::TPoint3D low(0, 0, 0), high(0, 0, 0);
   for (const GridCell& cell : cells) {
-    const mrpt::math::TPoint3D p(cell.centre.x(), cell.centre.y(), cell.centre.z());
+    const mrpt::math::TPoint3D p(cell.center.x(), cell.center.y(), cell.center.z());
     voxels->push_back_Voxel(0, {p, cell.size.x(), mrpt::img::TColor(220, 60, 40)});
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
@@ -147,7 +147,7 @@ void CSafetyGrid::serializeTo(mrpt::serialization::CArchive& out) const {
   const auto cells = grid_->knownCells();
   out << static_cast<uint64_t>(cells.size());
   for (const GridCell& cell : cells)
-    out << cell.centre.x() << cell.centre.y() << cell.centre.z() << cell.log_odds;
+    out << cell.center.x() << cell.center.y() << cell.center.z() << cell.log_odds;
 }
 
 void CSafetyGrid::serializeFrom(mrpt::serialization::CArchive& in, uint8_t version) {
@@ -168,7 +168,7 @@ void CSafetyGrid::serializeFrom(mrpt::serialization::CArchive& in, uint8_t versi
   std::vector<GridCell> cells;
   for (uint64_t i = 0; i < count; ++i) {
     GridCell cell;
-    in >> cell.centre.x() >> cell.centre.y() >> cell.centre.z() >> cell.log_odds;
+    in >> cell.center.x() >> cell.center.y() >> cell.center.z() >> cell.log_odds;
     cells.push_back(cell);
   }
   grid_ = makeSafetyGrid(p);

@@ -1,6 +1,6 @@
 #include "libperception/grid/ColumnRun.h"
 
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {

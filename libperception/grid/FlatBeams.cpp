@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "libperception/core/Angle.h"
-#include "libperception/core/Lanes.h"
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {
@@ -109,8 +109,8 @@ void crossBeams(const BeamBlock& b, const WindowPlace& origin, std::int32_t cell
 FlatBeams::FlatBeams(double step, int cells)
     : cells_(cells), way_(static_cast<std::size_t>(2 * (cells + kLanes))) {
   const auto bearings = static_cast<std::size_t>(std::ceil(kTwoPi / step));
-  rose_.per_radian = static_cast<float>(static_cast<double>(bearings) / kTwoPi);
-  rose_.count = static_cast<std::int32_t>(bearings);
+  bearing_bins_.per_radian = static_cast<float>(static_cast<double>(bearings) / kTwoPi);
+  bearing_bins_.count = static_cast<std::int32_t>(bearings);
   nearest_.resize(bearings + 1), farthest_.resize(bearings + 1);
   stops_.resize(bearings + 1), ends_.resize(bearings + 1);
 }
@@ -119,14 +119,14 @@ void FlatBeams::begin(const WindowPlace& origin) {
   std::fill(nearest_.begin(), nearest_.end(), kNone);
   std::fill(farthest_.begin(), farthest_.end(), 0.0F);
   origin_ = origin, origin_.z = kMiddle, origin_.low = origin_.high = 1;
-  rose_.x = origin.x, rose_.y = origin.y;
+  bearing_bins_.x = origin.x, bearing_bins_.y = origin.y;
 }
 
 void FlatBeams::offerHits(const FlatBlock& hits, std::size_t first) {
   std::uint8_t marks[kSize];
   findNearer(hits.bearing.data(), hits.stop.data(), nearest_.data(), marks);
-  news_.find(marks, kSize);
-  for (const std::size_t k : news_) {
+  relevant_.find(marks, kSize);
+  for (const std::size_t k : relevant_) {
     const auto bearing = static_cast<std::size_t>(hits.bearing[k]);
     const bool nearer = hits.stop[k] < nearest_[bearing];
     nearest_[bearing] = nearer ? hits.stop[k] : nearest_[bearing];
@@ -140,8 +140,8 @@ void FlatBeams::offerPassing(const std::int32_t* bearings, const float* ranges,
                              std::uint32_t first) {
   std::uint8_t marks[kSize];
   findFarther(bearings, ranges, farthest_.data(), marks);
-  news_.find(marks, kSize);
-  for (const std::size_t k : news_) {
+  relevant_.find(marks, kSize);
+  for (const std::size_t k : relevant_) {
     const auto bearing = static_cast<std::size_t>(bearings[k]);
     if (ranges[k] > farthest_[bearing])
       farthest_[bearing] = ranges[k], ends_[bearing] = first + static_cast<std::uint32_t>(k);
@@ -158,17 +158,17 @@ std::size_t FlatBeams::offerClear(const GridPoints& points, const WindowFrame& f
   findLeast();
   for (std::size_t first = 0; first < points.size(); first += kSize) {
     const std::size_t count = std::min(kSize, points.size() - first);
-    if (count == kSize && saysNothing(surveyClear(points, first, from, rose_))) continue;
-    clear_.place(points, first, count, from, rose_);
+    if (count == kSize && isRedundant(surveyClear(points, first, from, bearing_bins_))) continue;
+    clear_.place(points, first, count, from, bearing_bins_);
     not_finite += clear_.not_finite;
     offerPassing(clear_.bearing.data(), clear_.range.data(),
                  kClear | static_cast<std::uint32_t>(first));
-    if (news_.size() > 0) findLeast();
+    if (relevant_.size() > 0) findLeast();
   }
   return not_finite;
 }
 
-bool FlatBeams::saysNothing(const ClearSurvey& survey) const {
+bool FlatBeams::isRedundant(const ClearSurvey& survey) const {
   if (!survey.all_finite) return false;
   for (std::size_t q = 0; q < kQuadrants; ++q)
     if (survey.quadrants >> q & 1U && !(survey.farthest <= least_[q])) return false;
@@ -204,7 +204,7 @@ std::size_t FlatBeams::cross(const GridPoints& hits, const GridPoints& clear,
     const GridPoints& points = is_clear ? clear : hits;
     const std::size_t i = end & ~kClear;
     // On the ground heights play no part.
-    block_.add({*points.x(i) * from.per_metre + from.x, *points.y(i) * from.per_metre + from.y,
+    block_.add({*points.x(i) * from.per_meter + from.x, *points.y(i) * from.per_meter + from.y,
                 kMiddle, 1, 1});
     ++beams;
     if (block_.count == BeamBlock::kSize) crossBlock(crossed);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "libperception/grid/BeamBlock.h"
-#include "libperception/grid/Chosen.h"
 #include "libperception/grid/FlatBlock.h"
+#include "libperception/grid/SelectedIndices.h"
 
 namespace perception {
 
@@ -19,7 +19,7 @@ class FlatBeams {
 
   /// Forgets the last scan. `origin`: the sensor.
   void begin(const WindowPlace& origin);
-  const Rose& rose() const { return rose_; }
+  const BearingBins& bins() const { return bearing_bins_; }
   /// The scan's hits from `first` on.
   void offerHits(const FlatBlock& hits, std::size_t first);
   /// After the hits: points that stop no beam. Returns how many are no numbers.
@@ -38,11 +38,11 @@ class FlatBeams {
   static constexpr std::uint32_t kClear = 0x80000000;  // in ends_: the number is of a clear point
 
   void offerPassing(const std::int32_t* bearings, const float* ranges, std::uint32_t first);
-  bool saysNothing(const ClearSurvey& survey) const;
+  bool isRedundant(const ClearSurvey& survey) const;
   void findLeast();
   void crossBlock(std::uint8_t* crossed);
 
-  Rose rose_;
+  BearingBins bearing_bins_;
   // By bearing, and one for points without: squared ranges [cells^2] of the nearest point that
   // stops the beam and of the farthest that does not, and their numbers.
   std::vector<float> nearest_, farthest_;
@@ -51,7 +51,7 @@ class FlatBeams {
   int cells_;
   WindowPlace origin_{};
   ClearBlock clear_;
-  Chosen news_;
+  SelectedIndices relevant_;
   BeamBlock block_;
   std::vector<std::int32_t> way_;  // columns of a beam
 };

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "libperception/core/Lanes.h"
-#include "libperception/core/RoughBearing.h"
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/FastAtan2.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {
@@ -14,10 +14,10 @@ namespace {
 constexpr float kTrusted = 0.5F;  // a hit below does not end a beam: what lies behind was seen
 
 // Points in the sensor's own cell have the bearing behind the last one.
-PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, const Rose& rose) {
-  const auto bin = static_cast<std::int32_t>((roughBearing(dx, dy) + 3.1416F) * rose.per_radian);
-  const std::int32_t bounded = bin < rose.count ? bin : 0;
-  return range2 > 1 ? bounded : rose.count;
+PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, const BearingBins& bins) {
+  const auto bin = static_cast<std::int32_t>((fastAtan2(dx, dy) + 3.1416F) * bins.per_radian);
+  const std::int32_t bounded = bin < bins.count ? bin : 0;
+  return range2 > 1 ? bounded : bins.count;
 }
 
 PERCEPTION_LANES std::int32_t bitsOf(float v) {
@@ -38,18 +38,18 @@ struct BlockCounts {
 };
 
 PERCEPTION_WIDEST BlockCounts placeHits(const BlockPoints points, const PointOffset from,
-                                        const WindowRules k, const Rose rose,
+                                        const WindowRules k, const BearingBins bins,
                                         FlatBlock& __restrict out) {
   const float* __restrict xs = points.x, * __restrict ys = points.y, * __restrict zs = points.z;
   const auto row = static_cast<std::int32_t>(k.cells);
   const std::int32_t behind = row * row;
   BlockCounts counts{0, 0, 0};
   for (std::size_t i = 0; i < points.count; ++i) {
-    const float x = xs[i] * from.per_metre + from.x;
-    const float y = ys[i] * from.per_metre + from.y;
-    const float z = zs[i] * from.per_metre + from.z;
+    const float x = xs[i] * from.per_meter + from.x;
+    const float y = ys[i] * from.per_meter + from.y;
+    const float z = zs[i] * from.per_meter + from.z;
     const float above = k.slope_x * x + k.slope_y * y + k.slope_z * z + k.offset;
-    const float cx = x - k.centre_x, cy = y - k.centre_y;
+    const float cx = x - k.center_x, cy = y - k.center_y;
     const float wider = k.grade * std::sqrt(cx * cx + cy * cy);
     const float over = above - k.z_min + wider, under = k.z_max + wider - above;
     const std::int32_t in_slab = (over >= 0) & (under >= 0);
@@ -58,8 +58,8 @@ PERCEPTION_WIDEST BlockCounts placeHits(const BlockPoints points, const PointOff
     const std::int32_t column = static_cast<std::int32_t>(ky) * row + static_cast<std::int32_t>(kx);
     out.column[i] = marks != 0 ? column : behind;
     const float sum = x + y + z;
-    const float dx = x - rose.x, dy = y - rose.y, range2 = dx * dx + dy * dy;
-    out.bearing[i] = bearingOf(dx, dy, range2, rose);
+    const float dx = x - bins.x, dy = y - bins.y, range2 = dx * dx + dy * dy;
+    out.bearing[i] = bearingOf(dx, dy, range2, bins);
     out.range[i] = range2, out.stop[i] = in_slab != 0 ? range2 : FlatBlock::kNone;
     counts.hits += marks, counts.beside += 1 - in_slab;
     counts.not_finite |= bitsOf(sum - sum);  // zero of numbers
@@ -91,27 +91,28 @@ PERCEPTION_WIDEST void findPassing(FlatBlock& out) {
 }
 
 // Gives points that are no numbers the bearing behind the last one. Returns how many there are.
-std::size_t dropNotFinite(const BlockPoints& points, const Rose& rose, std::int32_t* bearing) {
+std::size_t dropNotFinite(const BlockPoints& points, const BearingBins& bins,
+                          std::int32_t* bearing) {
   std::size_t dropped = 0;
   for (std::size_t i = 0; i < points.count; ++i) {
     const float sum = points.x[i] + points.y[i] + points.z[i];
     if (sum - sum == 0) continue;
-    bearing[i] = rose.count, ++dropped;
+    bearing[i] = bins.count, ++dropped;
   }
   return dropped;
 }
 
 // Of points that only clear their bearing is all that matters. Not zero where some are no numbers.
 PERCEPTION_WIDEST std::int32_t placeClear(const BlockPoints points, const PointOffset from,
-                                          const Rose rose, std::int32_t* __restrict bearing,
+                                          const BearingBins bins, std::int32_t* __restrict bearing,
                                           float* __restrict range) {
   const float* __restrict xs = points.x, * __restrict ys = points.y, * __restrict zs = points.z;
   std::int32_t not_finite = 0;
   for (std::size_t i = 0; i < points.count; ++i) {
-    const float dx = xs[i] * from.per_metre + from.x - rose.x;
-    const float dy = ys[i] * from.per_metre + from.y - rose.y;
+    const float dx = xs[i] * from.per_meter + from.x - bins.x;
+    const float dy = ys[i] * from.per_meter + from.y - bins.y;
     const float sum = xs[i] + ys[i] + zs[i], range2 = dx * dx + dy * dy;
-    bearing[i] = bearingOf(dx, dy, range2, rose);
+    bearing[i] = bearingOf(dx, dy, range2, bins);
     range[i] = range2, not_finite |= bitsOf(sum - sum);
   }
   return not_finite;
@@ -123,12 +124,12 @@ struct SurveyBits {
 
 // Squares are not negative, so their order is that of their bits; no number is above them all.
 PERCEPTION_WIDEST void survey(const float* __restrict xs, const float* __restrict ys,
-                              const float* __restrict zs, const PointOffset from, const Rose rose,
-                              SurveyBits& out) {
+                              const float* __restrict zs, const PointOffset from,
+                              const BearingBins bins, SurveyBits& out) {
   SurveyBits s{0, 0, 0, -1, -1, 0};
   for (std::size_t i = 0; i < ClearBlock::kSize; ++i) {
-    const float dx = xs[i] * from.per_metre + from.x - rose.x;
-    const float dy = ys[i] * from.per_metre + from.y - rose.y;
+    const float dx = xs[i] * from.per_meter + from.x - bins.x;
+    const float dy = ys[i] * from.per_meter + from.y - bins.y;
     const float sum = xs[i] + ys[i] + zs[i];
     const std::int32_t range = bitsOf(dx * dx + dy * dy) & 0x7FFFFFFF;
     s.farthest = range > s.farthest ? range : s.farthest;
@@ -142,21 +143,21 @@ PERCEPTION_WIDEST void survey(const float* __restrict xs, const float* __restric
 }  // namespace
 
 void FlatBlock::place(const GridPoints& points, const float* weights, std::size_t first,
-                      std::size_t count, const WindowFrame& frame, const Rose& rose) {
+                      std::size_t count, const WindowFrame& frame, const BearingBins& bins) {
   const BlockPoints block{points.x(first), points.y(first), points.z(first), count};
-  const BlockCounts counts = placeHits(block, frame.offsetOf(points), frame.rules(), rose, *this);
+  const BlockCounts counts = placeHits(block, frame.offsetOf(points), frame.rules(), bins, *this);
   const std::int32_t passing = weights ? weigh(weights, count, *this) : counts.beside;
   hits = static_cast<std::size_t>(counts.hits), passes = passing != 0;
-  not_finite = counts.not_finite != 0 ? dropNotFinite(block, rose, bearing.data()) : 0;
+  not_finite = counts.not_finite != 0 ? dropNotFinite(block, bins, bearing.data()) : 0;
   const auto row = static_cast<std::int32_t>(frame.rules().cells);
   for (std::size_t i = count; i < kSize; ++i) {
     column[i] = row * row, mark[i] = 0;
-    bearing[i] = rose.count, range[i] = 0, stop[i] = kNone;
+    bearing[i] = bins.count, range[i] = 0, stop[i] = kNone;
   }
   if (passes) findPassing(*this);
 }
 
-// Neighbouring hits often mark the same column, and would wait for each other.
+// Neighboring hits often mark the same column, and would wait for each other.
 void FlatBlock::markColumns(bool weighted, std::uint8_t* weights) const {
   if (!weighted) {
     for (const std::int32_t i : column) weights[i] = kWhole;
@@ -171,17 +172,17 @@ void FlatBlock::markColumns(bool weighted, std::uint8_t* weights) const {
 }
 
 void ClearBlock::place(const GridPoints& points, std::size_t first, std::size_t count,
-                       PointOffset from, const Rose& rose) {
+                       PointOffset from, const BearingBins& bins) {
   const BlockPoints block{points.x(first), points.y(first), points.z(first), count};
-  const std::int32_t some = placeClear(block, from, rose, bearing.data(), range.data());
-  not_finite = some != 0 ? dropNotFinite(block, rose, bearing.data()) : 0;
-  for (std::size_t i = count; i < kSize; ++i) bearing[i] = rose.count, range[i] = 0;
+  const std::int32_t some = placeClear(block, from, bins, bearing.data(), range.data());
+  not_finite = some != 0 ? dropNotFinite(block, bins, bearing.data()) : 0;
+  for (std::size_t i = count; i < kSize; ++i) bearing[i] = bins.count, range[i] = 0;
 }
 
 ClearSurvey surveyClear(const GridPoints& points, std::size_t first, PointOffset from,
-                        const Rose& rose) {
+                        const BearingBins& bins) {
   SurveyBits bits{};
-  survey(points.x(first), points.y(first), points.z(first), from, rose, bits);
+  survey(points.x(first), points.y(first), points.z(first), from, bins, bits);
   ClearSurvey out;
   std::memcpy(&out.farthest, &bits.farthest, sizeof out.farthest);
   const unsigned falls_x = bits.any_x < 0, rises_x = bits.all_x >= 0;

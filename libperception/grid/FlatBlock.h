@@ -9,7 +9,7 @@
 namespace perception {
 
 /// Where bearings on the ground begin and how many there are.
-struct Rose {
+struct BearingBins {
   float x = 0, y = 0;      ///< [cells] the sensor
   float per_radian = 1;    ///< bearings
   std::int32_t count = 1;  ///< of the whole turn
@@ -26,7 +26,7 @@ struct FlatBlock {
 
   Lane<std::int32_t> column;   ///< [y][x]; behind the window's last one where a hit marks none
   Lane<std::int32_t> mark;     ///< its weight, of kWhole; only where hits come with weights
-  Lane<std::int32_t> bearing;  ///< Rose::count in the sensor's own cell
+  Lane<std::int32_t> bearing;  ///< BearingBins::count in the sensor's own cell
   Lane<float> range;           ///< [cells^2] squared
   Lane<float> stop;            ///< the same of a hit that stops its beam, or kNone
   Lane<float> pass;            ///< of a hit that does not, or 0; only where there is one
@@ -36,7 +36,7 @@ struct FlatBlock {
 
   /// Hits `first` to `first + count - 1`. `weights`: of these, or null where all are trusted.
   void place(const GridPoints& points, const float* weights, std::size_t first, std::size_t count,
-             const WindowFrame& frame, const Rose& rose);
+             const WindowFrame& frame, const BearingBins& bins);
   /// Raises the weights of columns to those of their hits. One byte behind the last column is
   /// anybody's.
   void markColumns(bool weighted, std::uint8_t* weights) const;
@@ -46,12 +46,12 @@ struct FlatBlock {
 struct ClearBlock {
   static constexpr std::size_t kSize = FlatBlock::kSize;
 
-  FlatBlock::Lane<std::int32_t> bearing;  ///< Rose::count in the sensor's own cell
+  FlatBlock::Lane<std::int32_t> bearing;  ///< BearingBins::count in the sensor's own cell
   FlatBlock::Lane<float> range;           ///< [cells^2] squared; 0 behind the last point
   std::size_t not_finite = 0;
 
   void place(const GridPoints& points, std::size_t first, std::size_t count, PointOffset from,
-             const Rose& rose);
+             const BearingBins& bins);
 };
 
 /// What can be told of a whole block of points without their bearings.
@@ -62,6 +62,6 @@ struct ClearSurvey {
 };
 /// Of ClearBlock::kSize points from `first` on.
 ClearSurvey surveyClear(const GridPoints& points, std::size_t first, PointOffset from,
-                        const Rose& rose);
+                        const BearingBins& bins);
 
 }  // namespace perception

@@ -2,9 +2,9 @@
 
 #include <cstring>
 
-#include "libperception/core/Lanes.h"
-#include "libperception/core/Wider.h"
 #include "libperception/grid/FlatBlock.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {

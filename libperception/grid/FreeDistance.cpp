@@ -25,8 +25,8 @@ ArcPlace arcPlace(const Corridor& corridor, double x, double y) {
   if (std::abs(corridor.curvature) < kStraight) return {x, y};
   const double side = corridor.curvature > 0 ? 1 : -1;  // a right turn is a mirrored left turn
   const double radius = 1 / std::abs(corridor.curvature);
-  const double to_centre = radius - side * y;
-  return {radius * std::atan2(x, to_centre), side * (radius - std::hypot(x, to_centre))};
+  const double to_center = radius - side * y;
+  return {radius * std::atan2(x, to_center), side * (radius - std::hypot(x, to_center))};
 }
 
 Vector2 onArc(const Corridor& corridor, const ArcPlace& place) {
@@ -42,7 +42,7 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
   result.distance = corridor.max;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
   for (const GridCell& cell : occupied) {
-    const Vector3 p = T_ego_world * cell.centre;
+    const Vector3 p = T_ego_world * cell.center;
     const double half = cell.size.x() / 2;
     const ArcPlace place = arcPlace(corridor, p.x(), p.y());
     if (std::abs(place.d) > corridor.width / 2 + half) continue;

@@ -8,7 +8,7 @@ namespace perception {
 
 /// One occupied cell. World frame.
 struct GridCell {
-  Vector3 centre = Vector3::Zero();  ///< [m]
+  Vector3 center = Vector3::Zero();  ///< [m]
   Vector3 size = Vector3::Zero();    ///< [m] edges
   double log_odds = 0;
 };

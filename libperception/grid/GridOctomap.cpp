@@ -34,11 +34,11 @@ class StampedTree : public octomap::OccupancyOcTreeBase<StampedNode> {
   std::string getTreeType() const override { return "OcTree"; }
 };
 
-constexpr octomap::key_type kMiddle = 32768;  // key of the tree's centre: 16 bits per axis
+constexpr octomap::key_type kMiddle = 32768;  // key of the tree's center: 16 bits per axis
 
 constexpr int kDepth = 16;  // levels of the tree below its root
 
-// Walks the tree along neighbouring keys: only the levels that differ are descended again, since
+// Walks the tree along neighboring keys: only the levels that differ are descended again, since
 // search() from the root for each cell would take the time of several scans.
 class TreeCursor {
  public:
@@ -79,7 +79,7 @@ class TreeCursor {
 constexpr std::uint32_t kLatestMs = 0x7fffffff;  // that a node can hold: 24 days
 constexpr double kForgotten = 0.1;               // [log-odds] of a cell that is as good as unknown
 constexpr std::int64_t kSweepMs = 1000;          // between removals of what is forgotten or outside
-constexpr std::int64_t kReach = 30000;           // cells from the centre at which the tree is moved
+constexpr std::int64_t kReach = 30000;           // cells from the center at which the tree is moved
 
 class GridOctomap final : public SafetyGrid {
  public:
@@ -116,9 +116,9 @@ class GridOctomap final : public SafetyGrid {
     for (const octomap::OcTreeKey& key : listed_) {
       const StampedNode* node = tree_->search(key);
       const double log_odds = node ? decayed(*node) : 0;
-      const Vector3 centre = centreOf(key);
-      if (log_odds > params().occupied && inWindow(centre)) {
-        cells.push_back({centre, Vector3::Constant(params().resolution), log_odds});
+      const Vector3 center = centerOf(key);
+      if (log_odds > params().occupied && inWindow(center)) {
+        cells.push_back({center, Vector3::Constant(params().resolution), log_odds});
       }
     }
     return cells;
@@ -127,10 +127,10 @@ class GridOctomap final : public SafetyGrid {
   std::vector<GridCell> knownCells() const override {
     std::vector<GridCell> cells;
     for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf) {
-      const Vector3 centre = centreOf(leaf.getKey());
+      const Vector3 center = centerOf(leaf.getKey());
       const double log_odds = decayed(*leaf);
-      if (leaf.getDepth() == kDepth && std::abs(log_odds) >= kForgotten && inWindow(centre))
-        cells.push_back({centre, Vector3::Constant(params().resolution), log_odds});
+      if (leaf.getDepth() == kDepth && std::abs(log_odds) >= kForgotten && inWindow(center))
+        cells.push_back({center, Vector3::Constant(params().resolution), log_odds});
     }
     return cells;
   }
@@ -138,10 +138,10 @@ class GridOctomap final : public SafetyGrid {
   void restore(const std::vector<GridCell>& cells) override {
     TreeCursor cursor(*tree_);
     for (const GridCell& cell : cells) {
-      if (!inWindow(cell.centre)) continue;
+      if (!inWindow(cell.center)) continue;
       const octomap::OcTreeKey key =
-          keyOf({evidence_.indexOf(cell.centre.x()), evidence_.indexOf(cell.centre.y()),
-                 evidence_.indexOf(cell.centre.z())});
+          keyOf({evidence_.indexOf(cell.center.x()), evidence_.indexOf(cell.center.y()),
+                 evidence_.indexOf(cell.center.z())});
       add(*cursor.at(key, true), key, cell.log_odds);
     }
   }
@@ -158,9 +158,9 @@ class GridOctomap final : public SafetyGrid {
 
   // Moves the clock and the window.
   void advance(const GridScan& scan, GridStats& stats) {
-    const Vector3 centre = scan.T_world_ground.translation();
-    const CellIndex cell = {evidence_.indexOf(centre.x()), evidence_.indexOf(centre.y()),
-                            evidence_.indexOf(centre.z())};
+    const Vector3 center = scan.T_world_ground.translation();
+    const CellIndex cell = {evidence_.indexOf(center.x()), evidence_.indexOf(center.y()),
+                            evidence_.indexOf(center.z())};
     if (!started_) {
       first_ = scan.stamp;
       anchor_ = cell;
@@ -169,19 +169,19 @@ class GridOctomap final : public SafetyGrid {
     const auto ms = static_cast<std::int64_t>(std::llround((scan.stamp - first_) * 1000));
     stats.late = ms < now_ms_;
     now_ms_ = std::max(now_ms_, ms);
-    centre_ = centre;
+    center_ = center;
     if (now_ms_ > kLatestMs || std::max({std::abs(cell.x - anchor_.x), std::abs(cell.y - anchor_.y),
                                          std::abs(cell.z - anchor_.z)}) > kReach) {
       restartAt(cell, scan.stamp);
     }
   }
 
-  // The keys and the cells' times are used up after hours or kilometres: a new tree around the
+  // The keys and the cells' times are used up after hours or kilometers: a new tree around the
   // vehicle, with what it remembers.
   void restartAt(const CellIndex& cell, Stamp stamp) {
     std::vector<GridCell> kept;
     for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf) {
-      kept.push_back({centreOf(leaf.getKey()), Vector3::Zero(), decayed(*leaf)});
+      kept.push_back({centerOf(leaf.getKey()), Vector3::Zero(), decayed(*leaf)});
     }
     listed_.clear();
     tree_ = newTree();
@@ -190,10 +190,10 @@ class GridOctomap final : public SafetyGrid {
     now_ms_ = swept_ms_ = 0;
     TreeCursor cursor(*tree_);
     for (const GridCell& old : kept) {
-      if (!inWindow(old.centre)) continue;
+      if (!inWindow(old.center)) continue;
       const octomap::OcTreeKey key =
-          keyOf({evidence_.indexOf(old.centre.x()), evidence_.indexOf(old.centre.y()),
-                 evidence_.indexOf(old.centre.z())});
+          keyOf({evidence_.indexOf(old.center.x()), evidence_.indexOf(old.center.y()),
+                 evidence_.indexOf(old.center.z())});
       add(*cursor.at(key, true), key, old.log_odds);
     }
   }
@@ -230,7 +230,7 @@ class GridOctomap final : public SafetyGrid {
     if (depth == kDepth) {
       const octomap::OcTreeKey key = keyOfCorner(corner);
       node.listed = 0;
-      if (std::abs(decayed(node)) < kForgotten || !inWindow(centreOf(key))) return true;
+      if (std::abs(decayed(node)) < kForgotten || !inWindow(centerOf(key))) return true;
       list(node, key);
       return false;
     }
@@ -258,22 +258,22 @@ class GridOctomap final : public SafetyGrid {
   }
 
   bool inWindow(const Vector3& place) const {
-    const Vector3 d = place - centre_;
+    const Vector3 d = place - center_;
     return std::max(std::abs(d.x()), std::abs(d.y())) <= params().size / 2;
   }
 
   // Relative to the anchor: keys have 16 bits, worlds may have coordinates of hundreds of
-  // kilometres.
+  // kilometers.
   octomap::OcTreeKey keyOf(const CellIndex& cell) const {
     const auto key = [](std::int64_t i) {
       return static_cast<octomap::key_type>(std::clamp<std::int64_t>(i + kMiddle, 0, 65535));
     };
     return {key(cell.x - anchor_.x), key(cell.y - anchor_.y), key(cell.z - anchor_.z)};
   }
-  Vector3 centreOf(const octomap::OcTreeKey& key) const {
-    return {evidence_.centreOf(key[0] - kMiddle + anchor_.x),
-            evidence_.centreOf(key[1] - kMiddle + anchor_.y),
-            evidence_.centreOf(key[2] - kMiddle + anchor_.z)};
+  Vector3 centerOf(const octomap::OcTreeKey& key) const {
+    return {evidence_.centerOf(key[0] - kMiddle + anchor_.x),
+            evidence_.centerOf(key[1] - kMiddle + anchor_.y),
+            evidence_.centerOf(key[2] - kMiddle + anchor_.z)};
   }
 
   ScanEvidence evidence_;
@@ -282,8 +282,8 @@ class GridOctomap final : public SafetyGrid {
   bool started_ = false;
   Stamp first_;                             // time 0 of the cells
   std::int64_t now_ms_ = 0, swept_ms_ = 0;  // since first_
-  CellIndex anchor_;                        // cell of the tree's centre
-  Vector3 centre_ = Vector3::Zero();        // [m] of the window, world
+  CellIndex anchor_;                        // cell of the tree's center
+  Vector3 center_ = Vector3::Zero();        // [m] of the window, world
 };
 
 }  // namespace

@@ -1,10 +1,10 @@
 #pragma once
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Angle.h"
-#include "libperception/core/ParamSet.h"
 
 namespace perception {
 
-/// How the safety grid remembers what the lidar saw: [grid]. Values of SPEC 8.4 unless said
+/// How the safety grid remembers what the lidar saw: [grid]. Values of method.md 8.4 unless said
 /// otherwise.
 struct GridParams {
   enum class BackEnd { kOctomap, kMrpt2d, kMrpt3d, kRolling, kRolling2d };
@@ -17,8 +17,8 @@ struct GridParams {
   double low = -2, high = 3.5;     ///< [log-odds] bounds of a cell
   double tau = 5;                  ///< [s] in which a cell forgets: log-odds decay with exp(-t/tau)
   double occupied = 1.5;           ///< [log-odds] above which a cell blocks
-  double z_min = 0.3, z_max = 3;   ///< [m] above the ground (SPEC 8.1): the slab that matters
-  double grade = 0.05;             ///< [-] by which the slab widens per metre of distance: the road
+  double z_min = 0.3, z_max = 3;   ///< [m] above the ground (method.md 8.1): the slab that matters
+  double grade = 0.05;             ///< [-] by which the slab widens per meter of distance: the road
                                    ///< ahead may leave the vehicle's plane (own choice)
   double ray_step = radians(0.5);  ///< [rad] one clearing ray per step of bearing and elevation;
                                    ///< hits are never thinned (own choice, for 10 Hz)

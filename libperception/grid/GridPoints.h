@@ -10,7 +10,7 @@ namespace perception {
 /// enough, wherever in the world it is.
 class GridPoints {
  public:
-  /// `p`: [m] world. The base is the first one that is a number, in whole metres: what has short
+  /// `p`: [m] world. The base is the first one that is a number, in whole meters: what has short
   /// coordinates keeps them.
   void push_back(const Vector3& p) {
     if (!based_ && p.allFinite()) base_ = p.array().round(), based_ = true;

@@ -50,7 +50,7 @@ class GridRolling final : public SafetyGrid {
         addEvidence(column, slot, count, turn);
         column += count;
       });
-    for (const auto& doubt : marks_.doubts()) takeDoubt(doubt, turn);
+    for (const auto& doubt : marks_.doubts()) applySoftHit(doubt, turn);
     return stats;
   }
 
@@ -78,8 +78,8 @@ class GridRolling final : public SafetyGrid {
 
   void restore(const std::vector<GridCell>& cells) override {
     for (const GridCell& cell : cells) {
-      const CellIndex index = {indexOf(cell.centre.x()), indexOf(cell.centre.y()),
-                               indexOf(cell.centre.z())};
+      const CellIndex index = {indexOf(cell.center.x()), indexOf(cell.center.y()),
+                               indexOf(cell.center.z())};
       if (!inWindow(index)) continue;
       const std::size_t slot = slotOf(index);
       update(slot, 0, 0);
@@ -98,7 +98,7 @@ class GridRolling final : public SafetyGrid {
   std::int64_t indexOf(double v) const {
     return static_cast<std::int64_t>(std::floor(v / params().resolution));
   }
-  double centreOf(std::int64_t i) const {
+  double centerOf(std::int64_t i) const {
     return (static_cast<double>(i) + 0.5) * params().resolution;
   }
   std::size_t slotOf(const CellIndex& cell) const { return square_.slotOf(cell.x, cell.y); }
@@ -121,7 +121,7 @@ class GridRolling final : public SafetyGrid {
           for (std::int64_t z = first_.z; z < first_.z + layers_; ++z) {
             const double v = valueOf(values[modulo(z, layers_)], slot);
             if (wanted(v))
-              cells.push_back({{centreOf(x), centreOf(y), centreOf(z)},
+              cells.push_back({{centerOf(x), centerOf(y), centerOf(z)},
                                Vector3::Constant(params().resolution),
                                v});
           }
@@ -133,10 +133,10 @@ class GridRolling final : public SafetyGrid {
 
   // Moves clock and window; what enters is unknown.
   void advance(const GridScan& scan, GridStats& stats) {
-    const Vector3 centre = scan.T_world_ground.translation();
+    const Vector3 center = scan.T_world_ground.translation();
     const double below = params().grade * params().size * std::sqrt(0.5) - params().z_min;
-    const CellIndex first = {indexOf(centre.x()) - cells_ / 2, indexOf(centre.y()) - cells_ / 2,
-                             indexOf(centre.z() - below + 1e-9)};
+    const CellIndex first = {indexOf(center.x()) - cells_ / 2, indexOf(center.y()) - cells_ / 2,
+                             indexOf(center.z() - below + 1e-9)};
     if (!started_) now_ = scan.stamp;
     stats.late = scan.stamp < now_;
     const double passed = std::max(0.0, scan.stamp - now_);
@@ -188,7 +188,7 @@ class GridRolling final : public SafetyGrid {
                   ages_);
   }
 
-  void takeDoubt(const typename WindowMarks<Mask>::Doubt& doubt, unsigned turn) {
+  void applySoftHit(const typename WindowMarks<Mask>::SoftHit& doubt, unsigned turn) {
     const std::int64_t x = doubt.column % cells_, y = doubt.column / cells_;
     const std::size_t slot = slotOf({first_.x + x, first_.y + y, 0});
     update(slot, 0, 0);

@@ -55,7 +55,7 @@ class GridRolling2d final : public SafetyGrid {
 
   void restore(const std::vector<GridCell>& cells) override {
     for (const GridCell& cell : cells) {
-      const std::int64_t x = indexOf(cell.centre.x()), y = indexOf(cell.centre.y());
+      const std::int64_t x = indexOf(cell.center.x()), y = indexOf(cell.center.y());
       if (!started_ || !square_.holds(first_, x, y)) continue;
       float& value = values_[square_.slotOf(x, y)];
       value = std::clamp(value + static_cast<float>(cell.log_odds),
@@ -74,7 +74,7 @@ class GridRolling2d final : public SafetyGrid {
         for (std::size_t i = slot; i < slot + count; ++i, ++x)
           if (const double v = valueOf(values_[i]); wanted(v))
             cells.push_back(
-                {centreOf(x, y), {params().resolution, params().resolution, height}, v});
+                {centerOf(x, y), {params().resolution, params().resolution, height}, v});
       });
     }
     return cells;
@@ -93,7 +93,7 @@ class GridRolling2d final : public SafetyGrid {
     return std::abs(v) < static_cast<float>(kForgotten) ? 0 : static_cast<double>(v);
   }
   // In the middle of the slab above the vehicle's ground plane.
-  Vector3 centreOf(std::int64_t x, std::int64_t y) const {
+  Vector3 centerOf(std::int64_t x, std::int64_t y) const {
     const double res = params().resolution;
     const Vector3 origin = T_world_ground_.translation(), up = T_world_ground_.linear().col(2);
     const double px = (static_cast<double>(x) + 0.5) * res;
@@ -104,8 +104,8 @@ class GridRolling2d final : public SafetyGrid {
   }
 
   void advance(const GridScan& scan, GridStats& stats) {
-    const Vector3 centre = scan.T_world_ground.translation();
-    const CellIndex first = {indexOf(centre.x()) - cells_ / 2, indexOf(centre.y()) - cells_ / 2, 0};
+    const Vector3 center = scan.T_world_ground.translation();
+    const CellIndex first = {indexOf(center.x()) - cells_ / 2, indexOf(center.y()) - cells_ / 2, 0};
     if (!started_) now_ = scan.stamp;
     stats.late = scan.stamp < now_;
     const double age = std::max(0.0, scan.stamp - now_);
@@ -126,7 +126,7 @@ class GridRolling2d final : public SafetyGrid {
       const std::size_t begin = block * FlatBlock::kSize;
       const std::size_t count = std::min(FlatBlock::kSize, scan.hits.size() - begin);
       hits_.place(scan.hits, judged_ ? &scan.weights[begin] : nullptr, begin, count, frame_,
-                  beams_.rose());
+                  beams_.bins());
       hits_.markColumns(judged_, weights_.data());
       beams_.offerHits(hits_, begin);
       stats.hits += hits_.hits, stats.not_finite += hits_.not_finite;

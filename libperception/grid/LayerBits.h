@@ -4,7 +4,7 @@
 #include <emmintrin.h>
 #endif
 
-#include "libperception/core/Lanes.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 

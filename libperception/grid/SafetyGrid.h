@@ -15,7 +15,7 @@ namespace perception {
 struct GridScan {
   Stamp stamp;
   Vector3 origin = Vector3::Zero();  ///< [m] the sensor
-  /// The vehicle on the ground: centre of the window, and z = 0 from which heights count.
+  /// The vehicle on the ground: center of the window, and z = 0 from which heights count.
   Pose3 T_world_ground = Pose3::Identity();
   GridPoints hits;             ///< obstacle returns
   std::vector<float> weights;  ///< [0, 1] of each hit: 1 - P(phantom); empty: all 1

@@ -54,23 +54,23 @@ const std::vector<CellEvidence>& ScanEvidence::collect(const GridScan& scan, Gri
 
 // The window's heights in the world: the slab over the whole window, tilted and widened.
 void ScanEvidence::placeWindow(const GridScan& scan) {
-  const Vector3 centre = scan.T_world_ground.translation();
+  const Vector3 center = scan.T_world_ground.translation();
   T_ground_world_ = scan.T_world_ground.inverse();
-  first_ = {indexOf(centre.x()) - cells_ / 2, indexOf(centre.y()) - cells_ / 2, 0};
+  first_ = {indexOf(center.x()) - cells_ / 2, indexOf(center.y()) - cells_ / 2, 0};
   layers_ = 1;
   if (!flat_) {
     const Vector3 up = scan.T_world_ground.linear().col(2);
     const double tilt = std::hypot(up.x(), up.y()) / std::max(0.5, up.z());  // at most 60 deg
     const double spread = (tilt + params_.grade) * params_.size * std::sqrt(0.5);
-    first_.z = indexOf(centre.z() + params_.z_min - spread);
-    layers_ = indexOf(centre.z() + params_.z_max + spread) - first_.z + 1;
+    first_.z = indexOf(center.z() + params_.z_min - spread);
+    layers_ = indexOf(center.z() + params_.z_max + spread) - first_.z + 1;
   }
   marks_.resize(static_cast<std::size_t>(cells_ * cells_ * layers_), 0);
 }
 
 bool ScanEvidence::isRelevant(const CellIndex& cell) const {
   const double z = T_ground_world_.linear().row(2).dot(
-                       Vector3(centreOf(cell.x), centreOf(cell.y), centreOf(cell.z))) +
+                       Vector3(centerOf(cell.x), centerOf(cell.y), centerOf(cell.z))) +
                    T_ground_world_.translation().z();
   return z >= params_.z_min && z <= params_.z_max;
 }

@@ -48,12 +48,12 @@ class ScanEvidence {
   std::int64_t indexOf(double coordinate) const {
     return static_cast<std::int64_t>(std::floor(coordinate / params_.resolution));
   }
-  double centreOf(std::int64_t index) const {
+  double centerOf(std::int64_t index) const {
     return (static_cast<double>(index) + 0.5) * params_.resolution;
   }
 
  private:
-  /// Chosen return of one direction.
+  /// SelectedIndices return of one direction.
   struct Ray {
     float range = 0;          ///< [m] 0: none
     std::uint32_t point = 0;  ///< place in the scan's hits, then its clear points

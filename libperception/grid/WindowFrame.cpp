@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {
@@ -20,12 +20,12 @@ PERCEPTION_WIDER std::int32_t placeAll(const float* __restrict xs, const float* 
   std::int32_t not_finite = 0;
   const float tall = k.layers > 0 ? 1 : 0, top = k.layers > 0 ? k.layers : 1;
   for (std::size_t i = 0; i < count; ++i) {
-    const float x = xs[i] * from.per_metre + from.x;
-    const float y = ys[i] * from.per_metre + from.y;
-    const float z = zs[i] * from.per_metre + from.z;
+    const float x = xs[i] * from.per_meter + from.x;
+    const float y = ys[i] * from.per_meter + from.y;
+    const float z = zs[i] * from.per_meter + from.z;
     out_x[i] = x, out_y[i] = y, out_z[i] = z;
     const float above = k.slope_x * x + k.slope_y * y + k.slope_z * z + k.offset;
-    const float dx = x - k.centre_x, dy = y - k.centre_y;
+    const float dx = x - k.center_x, dy = y - k.center_y;
     const float wider = k.grade * std::sqrt(dx * dx + dy * dy);
     const float over = above - k.z_min + wider, under = k.z_max + wider - above;
     low[i] = over, high[i] = under;
@@ -97,18 +97,18 @@ void PlacedBlock::leaveOut(std::size_t count, std::int32_t before) {
 
 WindowFrame::WindowFrame(const GridParams& params, const Pose3& T_world_ground,
                          const CellIndex& first, int cells, int layers)
-    : per_metre_(1 / params.resolution),
+    : per_meter_(1 / params.resolution),
       corner_{params.resolution * static_cast<double>(first.x),
               params.resolution * static_cast<double>(first.y),
               params.resolution * static_cast<double>(first.z)} {
   const Vector3 corner(corner_[0], corner_[1], corner_[2]);
-  const Vector3 centre = T_world_ground.translation() - corner;
+  const Vector3 center = T_world_ground.translation() - corner;
   const Vector3 up = T_world_ground.linear().col(2), slope = up * params.resolution;
   rules_.slope_x = static_cast<float>(slope.x()), rules_.slope_y = static_cast<float>(slope.y());
   rules_.slope_z = static_cast<float>(slope.z());
-  rules_.offset = static_cast<float>(-up.dot(centre));
-  rules_.centre_x = static_cast<float>(centre.x() * per_metre_);
-  rules_.centre_y = static_cast<float>(centre.y() * per_metre_);
+  rules_.offset = static_cast<float>(-up.dot(center));
+  rules_.center_x = static_cast<float>(center.x() * per_meter_);
+  rules_.center_y = static_cast<float>(center.y() * per_meter_);
   rules_.grade = static_cast<float>(params.grade * params.resolution);
   rules_.z_min = static_cast<float>(params.z_min), rules_.z_max = static_cast<float>(params.z_max);
   rules_.cells = static_cast<float>(cells), rules_.layers = static_cast<float>(layers);
@@ -125,9 +125,9 @@ void WindowFrame::place(const GridPoints& points, std::size_t first, std::size_t
 
 PointOffset WindowFrame::offsetOf(const GridPoints& points) const {
   const auto at = [&](int axis) {
-    return static_cast<float>((points.base()[axis] - corner_[axis]) * per_metre_);
+    return static_cast<float>((points.base()[axis] - corner_[axis]) * per_meter_);
   };
-  return {at(0), at(1), at(2), static_cast<float>(per_metre_)};
+  return {at(0), at(1), at(2), static_cast<float>(per_meter_)};
 }
 
 WindowPlace WindowFrame::place(const Vector3& point) const {

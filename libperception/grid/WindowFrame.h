@@ -5,10 +5,10 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/grid/BeamBlock.h"
-#include "libperception/grid/Chosen.h"
 #include "libperception/grid/GridParams.h"
 #include "libperception/grid/GridPoints.h"
 #include "libperception/grid/ScanEvidence.h"
+#include "libperception/grid/SelectedIndices.h"
 
 namespace perception {
 
@@ -27,7 +27,7 @@ struct PlacedBlock {
   std::size_t not_finite = 0;      ///< how many
 
   // What chooseHits() and chooseClear() make of them.
-  Chosen chosen;
+  SelectedIndices chosen;
   std::size_t hits = 0;        ///< of all
   Lane<std::int32_t> settled;  ///< the cell if it needs no further point, or kOutside
 
@@ -44,10 +44,10 @@ struct PlacedBlock {
   void leaveOut(std::size_t count, std::int32_t before);
 };
 
-/// What decides on a point, in cells from the window's corner and metres above the ground.
+/// What decides on a point, in cells from the window's corner and meters above the ground.
 struct WindowRules {
   float slope_x = 0, slope_y = 0, slope_z = 1, offset = 0;  ///< [m] of height per cell; [m]
-  float centre_x = 0, centre_y = 0;                         ///< [cells] of the vehicle
+  float center_x = 0, center_y = 0;                         ///< [cells] of the vehicle
   float z_min = 0, z_max = 0;                               ///< [m]
   float grade = 0;                                          ///< [m] per cell
   float cells = 0, layers = 0;
@@ -56,7 +56,7 @@ struct WindowRules {
 /// Where the base of some points is in a window [cells], and how fine its cells are.
 struct PointOffset {
   float x, y, z;
-  float per_metre;
+  float per_meter;
 };
 
 /// Where a window lies in the world, and the slab of heights that matter in it.
@@ -76,7 +76,7 @@ class WindowFrame {
   WindowPlace place(const Vector3& point) const;
 
  private:
-  double per_metre_ = 1;
+  double per_meter_ = 1;
   double corner_[3] = {0, 0, 0};  ///< [m]
   WindowRules rules_;
 };

@@ -17,7 +17,7 @@ WindowMarks<Mask>::WindowMarks(const GridParams& params, int layers)
 
 template <class Mask>
 void WindowMarks<Mask>::collect(const GridScan& scan, const CellIndex& first, GridStats& stats) {
-  doubts_.clear();
+  soft_hits_.clear();
   frame_ = WindowFrame(params_, scan.T_world_ground, first, cells_, layers_);
   rays_ = scan.origin.allFinite();
   const Vector3 origin = rays_ ? scan.origin : scan.T_world_ground.translation();
@@ -27,7 +27,7 @@ void WindowMarks<Mask>::collect(const GridScan& scan, const CellIndex& first, Gr
   takeHits(scan, stats);
   if (rays_) takeClear(scan, stats);
   fans_.mark(&crossed_[fans_.margin()]);
-  settleDoubts();
+  settleSoftHits();
 }
 
 template <class Mask>
@@ -66,7 +66,7 @@ bool WindowMarks<Mask>::takeHit(std::int32_t cell, float weight) {
     hit_[column] |= bit;
     return first;
   }
-  if (weight > 0) doubts_.push_back({column, layer, false, weight});
+  if (weight > 0) soft_hits_.push_back({column, layer, false, weight});
   return true;
 }
 
@@ -108,30 +108,30 @@ void WindowMarks<Mask>::castBeams() {
 
 // One entry a cell, without those that a trusted return has settled.
 template <class Mask>
-void WindowMarks<Mask>::settleDoubts() {
-  std::sort(doubts_.begin(), doubts_.end(), [](const Doubt& a, const Doubt& b) {
+void WindowMarks<Mask>::settleSoftHits() {
+  std::sort(soft_hits_.begin(), soft_hits_.end(), [](const SoftHit& a, const SoftHit& b) {
     if (a.column != b.column) return a.column < b.column;
     return a.layer != b.layer ? a.layer < b.layer : a.weight > b.weight;
   });
   std::size_t kept = 0;
-  for (const Doubt& doubt : doubts_) {
+  for (const SoftHit& doubt : soft_hits_) {
     if (hit_[doubt.column] >> doubt.layer & 1) continue;
-    if (kept > 0 && doubts_[kept - 1].column == doubt.column &&
-        doubts_[kept - 1].layer == doubt.layer)
+    if (kept > 0 && soft_hits_[kept - 1].column == doubt.column &&
+        soft_hits_[kept - 1].layer == doubt.layer)
       continue;
     const Mask bit = Mask{1} << doubt.layer;
-    doubts_[kept] = doubt;
+    soft_hits_[kept] = doubt;
     Mask& crossed = crossed_[fans_.margin() + doubt.column];
-    doubts_[kept++].crossed = (crossed & bit) != 0;
+    soft_hits_[kept++].crossed = (crossed & bit) != 0;
     crossed &= ~bit;
   }
-  doubts_.resize(kept);
+  soft_hits_.resize(kept);
 }
 
 template <class Mask>
 std::size_t WindowMarks<Mask>::memoryBytes() const {
   return (crossed_.capacity() + hit_.capacity()) * sizeof(Mask) +
-         doubts_.capacity() * sizeof(Doubt) + cover_.memoryBytes() + fans_.memoryBytes() +
+         soft_hits_.capacity() * sizeof(SoftHit) + cover_.memoryBytes() + fans_.memoryBytes() +
          sizeof *this;
 }
 

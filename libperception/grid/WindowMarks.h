@@ -20,7 +20,7 @@ class WindowMarks {
   static constexpr int kMostLayers = static_cast<int>(8 * sizeof(Mask));
 
   /// A cell with hits of which none is fully trusted.
-  struct Doubt {
+  struct SoftHit {
     std::uint32_t column = 0;
     std::uint8_t layer = 0;
     bool crossed = false;  ///< a beam went through
@@ -40,7 +40,7 @@ class WindowMarks {
   /// To be read and forgotten in one go: those of a column and the ones behind it.
   Mask* crossings(std::size_t column) { return &crossed_[fans_.margin() + column]; }
   Mask* hits(std::size_t column) { return hit_.data() + column; }
-  const std::vector<Doubt>& doubts() const { return doubts_; }  ///< by column and layer
+  const std::vector<SoftHit>& doubts() const { return soft_hits_; }  ///< by column and layer
   std::size_t memoryBytes() const;
 
  private:
@@ -55,7 +55,7 @@ class WindowMarks {
   }
   void finishBlock(GridStats& stats);
   void castBeams();
-  void settleDoubts();
+  void settleSoftHits();
 
   GridParams params_;
   int cells_, layers_;
@@ -68,7 +68,7 @@ class WindowMarks {
   BeamFans<Mask> fans_;
   std::vector<Mask> crossed_;  // with the margins of fans_
   std::vector<Mask> hit_;
-  std::vector<Doubt> doubts_;
+  std::vector<SoftHit> soft_hits_;
 };
 
 extern template class WindowMarks<std::uint32_t>;

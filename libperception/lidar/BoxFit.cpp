@@ -181,8 +181,8 @@ bool sideComplete(const Rectangle& r, double sensor_a, double sensor_b, bool low
 
 }  // namespace
 
-std::optional<SidesSeen> fitBox(const std::vector<Vector2>& points, const Vector2& sensor,
-                                bool left_open, bool right_open, const BoxParams& params) {
+std::optional<PartialBox> fitBox(const std::vector<Vector2>& points, const Vector2& sensor,
+                                 bool left_open, bool right_open, const BoxParams& params) {
   if (points.size() < 2) return std::nullopt;
   Direction direction = bestDirection(evenly(points, params.max_points), params);
   const std::vector<Vector2> kept = withoutStragglers(points, direction.yaw, params);
@@ -193,12 +193,12 @@ std::optional<SidesSeen> fitBox(const std::vector<Vector2>& points, const Vector
   const double a = r.a1 - r.a0, b = r.b1 - r.b0;
   if (a <= 0) return std::nullopt;
 
-  SidesSeen sides;
+  PartialBox sides;
   sides.yaw = wrapAxis(r.yaw);
-  sides.a = a, sides.b = b;
+  sides.length = a, sides.width = b;
   const double c = std::cos(r.yaw), s = std::sin(r.yaw);
-  const double centre_a = (r.a0 + r.a1) / 2, centre_b = (r.b0 + r.b1) / 2;
-  sides.centre = {c * centre_a - s * centre_b, s * centre_a + c * centre_b};
+  const double center_a = (r.a0 + r.a1) / 2, center_b = (r.b0 + r.b1) / 2;
+  sides.center = {c * center_a - s * center_b, s * center_a + c * center_b};
 
   // Direction known to an error at its end over half its length; a round cluster's is any in 90
   // degrees.
@@ -212,13 +212,13 @@ std::optional<SidesSeen> fitBox(const std::vector<Vector2>& points, const Vector
   // Which end is the left edge: seen from the sensor, left is counter-clockwise.
   const double sensor_a = c * sensor.x() + s * sensor.y(),
                sensor_b = c * sensor.y() - s * sensor.x();
-  const bool below = sensor_b < centre_b;  // looking towards +b, left is -a
-  sides.a_complete = sideComplete(r, sensor_a, sensor_b, below ? left_open : right_open,
-                                  below ? right_open : left_open, params.grazing);
-  const bool behind = sensor_a < centre_a;  // looking towards +a, left is +b
+  const bool below = sensor_b < center_b;  // looking towards +b, left is -a
+  sides.length_complete = sideComplete(r, sensor_a, sensor_b, below ? left_open : right_open,
+                                       below ? right_open : left_open, params.grazing);
+  const bool behind = sensor_a < center_a;  // looking towards +a, left is +b
   const Rectangle across{r.yaw, r.b0, r.b1, r.a0, r.a1};
-  sides.b_complete = sideComplete(across, sensor_b, sensor_a, behind ? right_open : left_open,
-                                  behind ? left_open : right_open, params.grazing);
+  sides.width_complete = sideComplete(across, sensor_b, sensor_a, behind ? right_open : left_open,
+                                      behind ? left_open : right_open, params.grazing);
   return sides;
 }
 

@@ -2,8 +2,8 @@
 #include <optional>
 #include <vector>
 
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Frames.h"
-#include "libperception/core/ParamSet.h"
 #include "libperception/lidar/Hull.h"
 #include "libperception/measurement/Measurement.h"
 
@@ -11,7 +11,7 @@ namespace perception {
 
 /// How boxes are laid about clusters: [sensor.LABEL.boxes].
 struct BoxParams {
-  double step = radians(2);           ///< [rad] of the search over 90 degrees (SPEC 8.2)
+  double step = radians(2);           ///< [rad] of the search over 90 degrees (method.md 8.2)
   double min_distance = 0.05;         ///< [m] d0 of the closeness criterion (Zhang: 0.01)
   int max_points = 400;               ///< of a cluster used in the search, evenly taken
   double straggler_share = 0.015;     ///< of the returns at each end, left out when ...
@@ -28,7 +28,7 @@ struct BoxParams {
 /// (-pi/2, pi/2]. `left_open`, `right_open`: nothing hides what continues beyond the outline's left
 /// and right edge as seen from `sensor`. All in one frame. Empty for fewer than two distinct
 /// points.
-std::optional<SidesSeen> fitBox(const std::vector<Vector2>& points, const Vector2& sensor,
-                                bool left_open, bool right_open, const BoxParams& params);
+std::optional<PartialBox> fitBox(const std::vector<Vector2>& points, const Vector2& sensor,
+                                 bool left_open, bool right_open, const BoxParams& params);
 
 }  // namespace perception

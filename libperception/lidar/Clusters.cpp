@@ -17,7 +17,7 @@ void ClusterParams::visit(ParamVisitor& v) {
   v.real("max_size", max_size, {1, 100}, "m", "largest dimension (paper)");
   v.real("min_side", min_side, {0, 10}, "m", "longest side from which a cluster is car-sized");
   v.real("min_area", min_area, {0, 50}, "m^2", "area from which a cluster is car-sized");
-  v.boolean("accept_unstable", accept_unstable, "clusters close to others, too, labelled unstable");
+  v.boolean("accept_unstable", accept_unstable, "clusters close to others, too, labeled unstable");
   v.real("unstable_max_size", unstable_max_size, {1, 100}, "m", "largest dimension of those");
   v.real("unstable_min_side", unstable_min_side, {0, 10}, "m", "smallest longest side of those");
   v.boolean("in_space", in_space,

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Frames.h"
-#include "libperception/core/ParamSet.h"
 
 namespace perception {
 
@@ -14,7 +14,8 @@ struct ClusterParams {
   int min_points = 7;           ///< (paper)
   double min_top = 1.0;         ///< [m] above ground that one return at least exceeds (paper)
   double max_size = 15;         ///< [m] the length of a bus (paper)
-  double min_side = 1.2;  ///< [m] a cluster is car-sized from this longest side on ... (SPEC 8.2)
+  double min_side =
+      1.2;  ///< [m] a cluster is car-sized from this longest side on ... (method.md 8.2)
   double min_area = 0.5;  ///< [m^2] ... or from this area on
   bool accept_unstable =
       true;  ///< also clusters that stand within far_threshold of others, under their own label

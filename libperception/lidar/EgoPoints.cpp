@@ -14,8 +14,9 @@ void PointParams::visit(ParamVisitor& v) {
   v.real("vehicle_rear", vehicle_rear, {0, 20}, "m", "own body behind the ego origin");
   v.real("vehicle_side", vehicle_side, {0, 5}, "m", "own body to each side of the ego origin");
   v.real("vehicle_top", vehicle_top, {0, 6}, "m", "own body above the ground");
-  v.boolean("only_objects", only_objects,
-            "returns that the scanner itself labels as object, where it labels at all (SPEC 1)");
+  v.boolean(
+      "only_objects", only_objects,
+      "returns that the scanner itself labels as object, where it labels at all (method.md 8.1)");
   v.integer("max_points", max_points, {1000, 100000000},
             "returns of a scan; larger scans are thinned evenly");
   v.require(range_min < range_max, "range_min must be below range_max");
@@ -26,7 +27,7 @@ namespace {
 constexpr float kBeyondAnyLidar2 = 1e3f * 1e3f;  // [m^2]
 constexpr std::size_t kBlock = 512;              // points that stay in the nearest cache
 constexpr std::size_t kAhead = 512;  // points by which far places of the scan are asked for early
-constexpr std::size_t kTaken = 16;   // neighbours of a line of the cache, taken together
+constexpr std::size_t kTaken = 16;   // neighbors of a line of the cache, taken together
 
 bool ownProcessingDropsIt(std::uint8_t label, bool only_objects) {
   if (only_objects) return label != static_cast<std::uint8_t>(PointLabel::kObject);
@@ -141,7 +142,7 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
   points.reach = params.range_max;
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud == nullptr || cloud->size() == 0) return points;
-  // A scan that is too large is thinned by whole groups of neighbours.
+  // A scan that is too large is thinned by whole groups of neighbors.
   const std::size_t stride =
       1 + (cloud->size() - 1) / static_cast<std::size_t>(std::max(params.max_points, 1));
   const auto index = [stride](std::size_t k) { return k / kTaken * kTaken * stride + k % kTaken; };

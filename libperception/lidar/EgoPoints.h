@@ -2,17 +2,18 @@
 #include <cstdint>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
-#include "libperception/core/RoughBearing.h"
-#include "libperception/core/Wider.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/FastAtan2.h"
 
 namespace perception {
 
 /// Which returns of a scan are worth looking at: [sensor.LABEL.points].
 struct PointParams {
   double range_min = 0.5;  ///< [m] horizontal, from the sensor: nearer is the instrument itself
-  double range_max = 80;   ///< [m] horizontal, from the sensor (SPEC 4.1: clusters to about 70 m)
+  double range_max =
+      80;  ///< [m] horizontal, from the sensor (clusters to about 70 m: [radecki2016])
   double vehicle_front =
       3.8;  ///< [m] own body ahead of the ego origin (below KITTI's lidar), mirrors' margin in it
   double vehicle_rear = 2.0;  ///< [m] behind it

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "libperception/core/Angle.h"
-#include "libperception/core/Pack.h"
+#include "libperception/simd/Compress.h"
 
 namespace perception {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 // A cell's returns are counted by height first, in steps, so that only those of the step that holds
 // the quantile need an order.
 constexpr std::int32_t kSteps = 64;
-constexpr float kStepsPerMetre = 33;    // fine where roads are; what is beyond shares the last step
+constexpr float kStepsPerMeter = 33;    // fine where roads are; what is beyond shares the last step
 constexpr float kLowestStep = -0.97f;   // [m] ego frame
 constexpr std::uint32_t kNoStep = ~0u;  // of a cell with too few returns
 constexpr std::size_t kBlock = 1024;    // points that stay in the nearest cache
@@ -36,12 +36,12 @@ PERCEPTION_WIDEST void findSteps(const float* __restrict xs, const float* __rest
     const float x = xs[i], y = ys[i], range = std::sqrt(x * x + y * y);
     const std::int32_t counts =
         (range >= k.near) & (range < k.far) & (zs[i] >= k.a * x + k.b * y + k.c - k.depth);
-    const auto turn = static_cast<std::int32_t>((roughBearing(x, y) + 3.14159265f) * k.per_sector);
+    const auto turn = static_cast<std::int32_t>((fastAtan2(x, y) + 3.14159265f) * k.per_sector);
     const std::int32_t sector = turn >= k.sectors ? 0 : turn;
     const auto out = static_cast<std::int32_t>(range * k.per_ring);
     const std::int32_t ring = out < k.rings - 1 ? out : k.rings - 1;
     const std::int32_t cell = counts != 0 ? sector * k.rings + ring : k.rings * k.sectors;
-    const float up = (zs[i] - kLowestStep) * kStepsPerMetre;
+    const float up = (zs[i] - kLowestStep) * kStepsPerMeter;
     const float bounded = up > 0 ? up : 0;
     const auto step = static_cast<std::int32_t>(bounded < kSteps - 1.0f ? bounded : kSteps - 1.0f);
     steps[i] = static_cast<std::uint32_t>(cell * kSteps + step);
@@ -112,7 +112,7 @@ GroundCandidates groundCandidates(const EgoPoints& points, const CandidateRules&
   thread_local std::vector<std::uint32_t> step_of, counts;  // memory that every scan needs again
   step_of.resize(count), counts.assign((cells + 1) * kSteps, 0);
   findSteps(points.x.data(), points.y.data(), points.z.data(), count, polar, step_of.data());
-  // Neighbours in a scan share steps; four places of the scan by turns do not wait for each other.
+  // Neighbors in a scan share steps; four places of the scan by turns do not wait for each other.
   const std::size_t quarter = count / 4;
   for (std::size_t i = 0; i < quarter; ++i)
     ++counts[step_of[i]], ++counts[step_of[i + quarter]], ++counts[step_of[i + 2 * quarter]],

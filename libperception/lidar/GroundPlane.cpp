@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "libperception/core/Random.h"
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 

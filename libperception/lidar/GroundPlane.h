@@ -1,14 +1,14 @@
 #pragma once
 #include <optional>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/lidar/EgoPoints.h"
 #include "libperception/lidar/GroundCandidates.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
 
-/// How the ground plane is found: [ground]. Values of SPEC 8.1 unless said otherwise.
+/// How the ground plane is found: [ground]. Values of method.md 8.1 unless said otherwise.
 struct GroundParams {
   int sectors = 36;
   double ring = 2;         ///< [m] depth of a polar cell
@@ -32,9 +32,9 @@ struct GroundParams {
   void visit(ParamVisitor& v);
 };
 
-/// Estimates the ground plane from scan to scan, in the ego frame (SPEC 8.1): candidates in polar
-/// cells, RANSAC with counter-based draws, least squares within three sigma, a temporal filter, and
-/// a guard against mirror images in wet roads, which pull planes down.
+/// Estimates the ground plane from scan to scan, in the ego frame (method.md 8.1): candidates in
+/// polar cells, RANSAC with counter-based draws, least squares within three sigma, a temporal
+/// filter, and a guard against mirror images in wet roads, which pull planes down.
 class GroundEstimator {
  public:
   explicit GroundEstimator(const GroundParams& params = {}, std::uint64_t seed = 0)

@@ -13,7 +13,7 @@ void SurfaceParams::visit(ParamVisitor& v) {
   v.integer("cell_points", cell_points, {1, 1000}, "returns that a cell needs");
   v.real("quantile", quantile, {0, 0.5}, "", "height of a cell's ground among its low returns");
   v.real("step", step, {0, 0.5}, "m", "change from one cell to the next outward");
-  v.real("slope", slope, {0, 0.3}, "", "further change per metre since the last cell with ground");
+  v.real("slope", slope, {0, 0.3}, "", "further change per meter since the last cell with ground");
   v.real("max_step", max_step, {0, 1}, "m", "largest change");
   v.real("bound_near", bound_near, {0, 1}, "m", "largest departure at the vehicle");
   v.real("bound_slope", bound_slope, {0, 0.2}, "", "growth of that bound with range");
@@ -27,7 +27,7 @@ constexpr float kLowReturns =
     1.0f;                           // [m] above the plane: higher returns say nothing of the ground
 constexpr float kSteepest = 0.10f;  // [-] slope of a ramp against the plane
 constexpr float kMirrorMargin =
-    0.30f;  // [m] below the lowest possible ground: mirrored in a wet road (SPEC 8.1)
+    0.30f;  // [m] below the lowest possible ground: mirrored in a wet road (method.md 8.1)
 
 float medianOfThree(float a, float b, float c) {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
@@ -78,7 +78,7 @@ PERCEPTION_WIDEST void placeAll(const float* __restrict x, const float* __restri
     const float range = std::sqrt(dx * dx + dy * dy);
     const float height = z[i] - (r.a * x[i] + r.b * y[i] + r.c);
     float sector = static_cast<float>(
-        static_cast<std::int32_t>((roughBearing(dx, dy) + 3.14159265f) * r.per_sector));
+        static_cast<std::int32_t>((fastAtan2(dx, dy) + 3.14159265f) * r.per_sector));
     sector -= sector >= r.sectors ? r.sectors : 0.0f;
     const float all_rings = range * r.per_ring;
     const float ring = all_rings < r.rings - 1 ? all_rings : r.rings - 1;
@@ -129,7 +129,7 @@ inline __attribute__((always_inline)) void add(float height, Lowest& cell) {
   cell = reinterpret_cast<Lowest>(reinterpret_cast<Whole4>(lowest) + Whole4{0, 0, 0, 1});
 }
 
-/// Heights into their cells. Neighbours in a scan share cells; eight places of the scan by turns do
+/// Heights into their cells. Neighbors in a scan share cells; eight places of the scan by turns do
 /// not wait for each other. What is not low goes into a cell of its own for each of them.
 PERCEPTION_WIDEST void addAll(const float* above, const std::int32_t* cell, std::size_t count,
                               Lowest* cells, std::size_t cell_count) {
@@ -190,7 +190,7 @@ void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams
       along[s * rings_ + k] = ground;
     }
   }
-  // A car's side that passed for ground stands alone among its neighbours.
+  // A car's side that passed for ground stands alone among its neighbors.
   departure_.resize(along.size());
   for (std::size_t s = 0; s < sectors_; ++s) {
     const std::size_t left = (s + 1) % sectors_, right = (s + sectors_ - 1) % sectors_;
@@ -222,7 +222,7 @@ double GroundSurface::heightAt(double x, double y) const {
   const std::size_t ring =
       std::min(static_cast<std::size_t>(std::sqrt(dx * dx + dy * dy) * inverse_ring_), rings_ - 1);
   const auto sector =
-      static_cast<std::size_t>((roughBearing(dx, dy) + 3.14159265f) * inverse_sector_) % sectors_;
+      static_cast<std::size_t>((fastAtan2(dx, dy) + 3.14159265f) * inverse_sector_) % sectors_;
   return plane_.heightAt(x, y) + static_cast<double>(departure_[sector * rings_ + ring]);
 }
 

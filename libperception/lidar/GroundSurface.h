@@ -1,22 +1,22 @@
 #pragma once
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/lidar/EgoPoints.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
 
 /// How far the ground may leave its plane: [sensor.LABEL.surface]. Own choices; real roads have
-/// crowns, kerbs, ramps.
+/// crowns, curbs, ramps.
 struct SurfaceParams {
   bool local = true;  ///< false: the plane alone, as in the paper
   int sectors = 120;
   double ring = 2;          ///< [m] depth of a cell
   int cell_points = 3;      ///< returns below which a cell tells nothing
   double quantile = 0.05;   ///< height of a cell's ground among its low returns, at most the third
-  double step = 0.15;       ///< [m] a kerb: change from one cell to the next outward
-  double slope = 0.05;      ///< [-] further change per metre since the last cell with ground
+  double step = 0.15;       ///< [m] a curb: change from one cell to the next outward
+  double slope = 0.05;      ///< [-] further change per meter since the last cell with ground
   double max_step = 0.25;   ///< [m] whatever the gap: below the underside of cars
   double bound_near = 0.2;  ///< [m] largest distance from the plane at the vehicle
   double bound_slope = 0.03;  ///< [-] growth of that bound with range
@@ -50,7 +50,7 @@ class GroundSurface {
   void subtract(const std::vector<std::int32_t>& cell, std::vector<float>& above) const;
 
   GroundPlane plane_;
-  float sensor_x_, sensor_y_;  ///< [m] centre of the cells, ego frame
+  float sensor_x_, sensor_y_;  ///< [m] center of the cells, ego frame
   std::size_t sectors_ = 1, rings_ = 1;
   float inverse_ring_ = 0, inverse_sector_ = 0;  ///< [1/m, 1/rad]
   std::vector<float> departure_;                 ///< [m] above the plane; [sector][ring]

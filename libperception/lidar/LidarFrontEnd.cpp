@@ -13,17 +13,16 @@ void ObstacleParams::visit(ParamVisitor& v) {
          "above ground up to which a return is an obstacle");
   v.real("min_trust", min_trust, {0, 1}, "",
          "in a return below which it is a phantom and no obstacle");
-  v.real("hiding_min", hiding_min, {0.1, 5}, "m",
+  v.real("occluder_min", occluder_min, {0.1, 5}, "m",
          "height from which returns hide what lies behind");
-  v.real("hiding_max", hiding_max, {0.2, 10}, "m", "height up to which they do");
-  v.angle("hiding_bin_deg", hiding_bin, {0.05, 10}, "width of a direction of the horizon");
-  v.real("hiding_margin", hiding_margin, {0, 5}, "m", "by which a hiding return is nearer");
-  v.angle(
-      "sparse_step_deg", sparse_step, {0, 5},
-      "bearing between neighbouring returns: a cluster's end is hidden where the next return of "
-      "the same side would be too far off to join; 0: not asked");
+  v.real("occluder_max", occluder_max, {0.2, 10}, "m", "height up to which they do");
+  v.angle("occluder_bin_deg", occluder_bin, {0.05, 10}, "width of a direction of the horizon");
+  v.real("occluder_margin", occluder_margin, {0, 5}, "m", "by which a hiding return is nearer");
+  v.angle("sparse_step_deg", sparse_step, {0, 5},
+          "bearing between neighboring returns: a cluster's end is hidden where the next return of "
+          "the same side would be too far off to join; 0: not asked");
   v.require(height_min < height_max, "height_min must be below height_max");
-  v.require(hiding_min < hiding_max, "hiding_min must be below hiding_max");
+  v.require(occluder_min < occluder_max, "occluder_min must be below occluder_max");
 }
 
 void OutlineNoise::visit(ParamVisitor& v) {
@@ -66,10 +65,10 @@ std::vector<std::string> LidarFrontEnd::labels(const ClusterParams& clusters) {
 }
 
 LidarFrontEnd::LidarFrontEnd(const LidarParams& params, const ClassTable& classes,
-                             const Sensing& sensing)
+                             const DetectionModel& detection_model)
     : params_(params),
-      fov_(sensing.params().fov),
-      model_(std::make_shared<FootprintModel>(classes, sensing)) {}
+      fov_(detection_model.params().fov),
+      model_(std::make_shared<FootprintModel>(classes, detection_model)) {}
 
 LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   EgoPoints points = usablePoints(frame, params_.points);
@@ -106,16 +105,16 @@ MeasurementScan LidarFrontEnd::extract(const SensorFrame& frame) const {
   MeasurementScan scan;
   scan.dropped_points = found.points.dropped + found.points.capped;
   scan.sensor = frame.sensor;
-  scan.modality = model_->sensing().params().modality;
+  scan.modality = model_->detection_model().params().modality;
   scan.frame = frame.frame;
   scan.state = {frame.stamp, frame.T_world_sensor(), frame.ego};
   scan.model = model_;
-  const auto horizon =
-      horizonOf(found, frame.ego.T_world_ego, scan.state.T_world_sensor, params_.obstacles);
-  scan.horizon = horizon;
+  const auto occlusion =
+      occlusionMapOf(found, frame.ego.T_world_ego, scan.state.T_world_sensor, params_.obstacles);
+  scan.occlusion = occlusion;
 
-  const ScanContext context{frame,    found, params_,        scan.state.T_world_sensor,
-                            *horizon, fov_,  topSlope(found)};
+  const ScanContext context{frame,      found, params_,        scan.state.T_world_sensor,
+                            *occlusion, fov_,  topSlope(found)};
   const Vector2 sensor = found.points.sensor.head<2>();
   const auto add = [&scan](Measurement m) {
     m.detection = static_cast<int>(scan.measurements.size());
@@ -142,12 +141,12 @@ std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& s
   if (params.clusters.accept_unstable)
     params.unstable_noise = config.read(section + ".noise.unstable", params.unstable_noise);
 
-  SensingParams defaults;  // lidar defaults of SPEC 2 and 5.3 are SensingParams' own
+  DetectionParams defaults;  // lidar defaults of method.md 2.3 and 5.3 are DetectionParams' own
   defaults.kind = "lidar";
   defaults.modality = Modality::kLidar;
-  const Sensing sensing =
-      Sensing::read(config, section, classes, LidarFrontEnd::labels(params.clusters), defaults);
-  return std::make_unique<LidarFrontEnd>(params, classes, sensing);
+  const DetectionModel detection_model = DetectionModel::read(
+      config, section, classes, LidarFrontEnd::labels(params.clusters), defaults);
+  return std::make_unique<LidarFrontEnd>(params, classes, detection_model);
 }
 
 }  // namespace perception

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/lidar/BoxFit.h"
 #include "libperception/lidar/Clusters.h"
 #include "libperception/lidar/EgoPoints.h"
@@ -17,14 +17,14 @@ namespace perception {
 
 /// Which returns are obstacles and which of them hide what lies behind: [sensor.LABEL.obstacles].
 struct ObstacleParams {
-  double height_min = 0.30;  ///< [m] above ground (paper)
-  double height_max = 3.0;   ///< [m] above ground (SPEC 8.1): beyond are bridges and crowns
-  double min_trust = 0.1;    ///< [0, 1] less: a phantom that joins no two obstacles (own choice)
-  double hiding_min = 1.0;   ///< [m] above ground that a hiding column reaches
-  double hiding_max = 2.2;   ///< [m] above ground; higher returns leave the view below them free
-  double hiding_bin = radians(0.4);  ///< [rad] of the horizon
-  double hiding_margin = 0.5;        ///< [m] by which a hiding return is nearer than what it hides
-  double sparse_step = 0;  ///< [rad] between neighbouring returns: ends that sparseness explains
+  double height_min = 0.30;   ///< [m] above ground (paper)
+  double height_max = 3.0;    ///< [m] above ground (method.md 8.1): beyond are bridges and crowns
+  double min_trust = 0.1;     ///< [0, 1] less: a phantom that joins no two obstacles (own choice)
+  double occluder_min = 1.0;  ///< [m] above ground that a hiding column reaches
+  double occluder_max = 2.2;  ///< [m] above ground; higher returns leave the view below them free
+  double occluder_bin = radians(0.4);  ///< [rad] of the horizon
+  double occluder_margin = 0.5;  ///< [m] by which a hiding return is nearer than what it hides
+  double sparse_step = 0;  ///< [rad] between neighboring returns: ends that sparseness explains
                            ///< are not seen; 0: the test is off
 
   void visit(ParamVisitor& v);
@@ -74,14 +74,18 @@ struct LidarDetections {
   GroundSurface surface;             ///< the local ground
 };
 
-/// The lidar rib: obstacle points, car-sized and person-sized groups among them, and their outlines
-/// as measurements. Labels: car_sized, person_sized and, where clusters.accept_unstable, unstable.
+/// The lidar front end: obstacle points, car-sized and person-sized groups among them, and their
+/// outlines as measurements. Labels: car_sized, person_sized and, where clusters.accept_unstable,
+/// unstable.
 class LidarFrontEnd final : public FrontEnd {
  public:
-  LidarFrontEnd(const LidarParams& params, const ClassTable& classes, const Sensing& sensing);
+  LidarFrontEnd(const LidarParams& params, const ClassTable& classes,
+                const DetectionModel& detection_model);
 
   MeasurementScan extract(const SensorFrame& frame) const override;
-  std::vector<std::string> labelNames() const override { return model_->sensing().labels(); }
+  std::vector<std::string> labelNames() const override {
+    return model_->detection_model().labels();
+  }
   /// A frame without a point cloud gives empty detections.
   LidarDetections detect(const SensorFrame& frame) const;
   /// Obstacle returns [m], ego frame.

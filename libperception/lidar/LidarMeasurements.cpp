@@ -51,8 +51,9 @@ Outline outlineInWorld(const ScanContext& scan, const std::vector<Vector2>& hull
   places.reserve(hull.size());
   for (const Vector2& p : hull) places.push_back(toWorld(scan, p, above).head<2>());
   Outline outline = outlineOf(places, scan.T_world_sensor);
-  markHiddenEdges(outline, scan.horizon, scan.T_world_sensor, scan.params.obstacles.hiding_margin,
-                  scan.params.obstacles.hiding_bin, scan.fov);
+  markHiddenEdges(outline, scan.occlusion, scan.T_world_sensor,
+                  scan.params.obstacles.occluder_margin, scan.params.obstacles.occluder_bin,
+                  scan.fov);
   if (scan.params.obstacles.sparse_step > 0)
     markSparseEdges(outline, places, scan.T_world_sensor, scan.params.obstacles.sparse_step,
                     scan.params.clusters.near_threshold);
@@ -69,13 +70,14 @@ void fillOutline(const ScanContext& scan, const Outline& outline, const OutlineN
 
 }  // namespace
 
-std::shared_ptr<const Horizon> horizonOf(const LidarDetections& found, const Pose3& T_world_ego,
-                                         const Pose3& T_world_sensor,
-                                         const ObstacleParams& params) {
+std::shared_ptr<const OcclusionMap> occlusionMapOf(const LidarDetections& found,
+                                                   const Pose3& T_world_ego,
+                                                   const Pose3& T_world_sensor,
+                                                   const ObstacleParams& params) {
   const auto bins =
-      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kTwoPi / params.hiding_bin)));
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kTwoPi / params.occluder_bin)));
   const Vector2 origin = T_world_sensor.translation().head<2>();
-  auto horizon = std::make_shared<Horizon>(origin, bins);
+  auto occlusion = std::make_shared<OcclusionMap>(origin, bins);
   struct Bin {
     float nearest2 = std::numeric_limits<float>::infinity(), second2 = nearest2;  ///< [m^2]
   };
@@ -85,13 +87,13 @@ std::shared_ptr<const Horizon> horizonOf(const LidarDetections& found, const Pos
   const auto world_yaw = static_cast<float>(yawOf(T_world_ego) + 2 * kTwoPi);
   const auto per_radian = static_cast<float>(static_cast<double>(bins) / kTwoPi);
   for (std::size_t i = 0; i < found.x.size(); ++i) {
-    if (found.above[i] < static_cast<float>(params.hiding_min) ||
-        found.above[i] > static_cast<float>(params.hiding_max) ||
+    if (found.above[i] < static_cast<float>(params.occluder_min) ||
+        found.above[i] > static_cast<float>(params.occluder_max) ||
         (!found.trust.empty() && found.trust[i] < kHides))
       continue;
     const float dx = found.x[i] - sx, dy = found.y[i] - sy, range2 = dx * dx + dy * dy;
     Bin& bin =
-        nearest[static_cast<std::size_t>((roughBearing(dx, dy) + world_yaw) * per_radian) % bins];
+        nearest[static_cast<std::size_t>((fastAtan2(dx, dy) + world_yaw) * per_radian) % bins];
     if (range2 < bin.nearest2) {
       bin.second2 = bin.nearest2, bin.nearest2 = range2;
     } else if (range2 < bin.second2) {
@@ -102,9 +104,9 @@ std::shared_ptr<const Horizon> horizonOf(const LidarDetections& found, const Pos
     if (!std::isfinite(nearest[k].second2)) continue;
     const double bearing = (static_cast<double>(k) + 0.5) * kTwoPi / static_cast<double>(bins);
     const double range = std::sqrt(static_cast<double>(nearest[k].second2));
-    horizon->add(origin + range * Vector2(std::cos(bearing), std::sin(bearing)));
+    occlusion->add(origin + range * Vector2(std::cos(bearing), std::sin(bearing)));
   }
-  return horizon;
+  return occlusion;
 }
 
 /// A sample of the returns tells as much: the highest beam has its share of them.
@@ -137,18 +139,19 @@ Measurement measurementOf(const ScanContext& scan, const Cluster& cluster) {
     places.emplace_back(static_cast<double>(scan.found.x[i]), static_cast<double>(scan.found.y[i]));
   const Vector2 sensor = scan.found.points.sensor.head<2>();
   m.sides = fitBox(places, sensor, !outline.left_hidden, !outline.right_hidden, scan.params.boxes);
-  const Vector2 centre = m.sides ? m.sides->centre : cluster.centroid;
-  m.position = toWorld(scan, centre, (lowest + highest) / 2).head<2>();
+  const Vector2 center = m.sides ? m.sides->center : cluster.centroid;
+  m.position = toWorld(scan, center, (lowest + highest) / 2).head<2>();
   m.position_sigma = 1;
   if (m.sides) {
     m.sides->yaw = wrapAxis(m.sides->yaw + yawOf(scan.frame.ego.T_world_ego));
     m.sides->yaw_sigma = std::hypot(m.sides->yaw_sigma, scan.frame.ego.uncertainty.sigma_yaw);
-    m.sides->centre = m.position;
-    m.position_sigma = std::clamp(m.sides->a / 3, 0.5, 2.0);
+    m.sides->center = m.position;
+    m.position_sigma = std::clamp(m.sides->length / 3, 0.5, 2.0);
     if (!cluster.stable)
-      m.sides->a_complete = m.sides->b_complete = false;  // its neighbour may be the same object
+      m.sides->length_complete = m.sides->width_complete =
+          false;  // its neighbor may be the same object
   }
-  fillVertical(scan, centre, lowest, highest, outline.left_hidden || outline.right_hidden, m);
+  fillVertical(scan, center, lowest, highest, outline.left_hidden || outline.right_hidden, m);
   return m;
 }
 
@@ -162,9 +165,9 @@ Measurement measurementOf(const ScanContext& scan, const PersonPeak& peak) {
       outlineInWorld(scan, convexHull(std::move(places)), (lowest + highest) / 2);
   fillOutline(scan, outline, scan.params.person_noise, m);
   m.label = kPersonSized;
-  m.position = toWorld(scan, peak.centre, (lowest + highest) / 2).head<2>();
+  m.position = toWorld(scan, peak.center, (lowest + highest) / 2).head<2>();
   m.position_sigma = 0.3;
-  fillVertical(scan, peak.centre, lowest, highest, outline.left_hidden || outline.right_hidden, m);
+  fillVertical(scan, peak.center, lowest, highest, outline.left_hidden || outline.right_hidden, m);
   return m;
 }
 

@@ -11,15 +11,17 @@ struct ScanContext {
   const LidarDetections& found;
   const LidarParams& params;
   Pose3 T_world_sensor;
-  const Horizon& horizon;
+  const OcclusionMap& occlusion;
   double fov;        ///< [rad]
   double top_slope;  ///< [-] tangent of the highest beam's elevation
 };
 
 /// The second nearest hiding return of every direction: a single one may be a flake, a drop or a
 /// twig.
-std::shared_ptr<const Horizon> horizonOf(const LidarDetections& found, const Pose3& T_world_ego,
-                                         const Pose3& T_world_sensor, const ObstacleParams& params);
+std::shared_ptr<const OcclusionMap> occlusionMapOf(const LidarDetections& found,
+                                                   const Pose3& T_world_ego,
+                                                   const Pose3& T_world_sensor,
+                                                   const ObstacleParams& params);
 
 /// Tangent of the highest beam's elevation. A sample of the returns tells as much: the highest beam
 /// has its share of them.

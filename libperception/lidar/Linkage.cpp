@@ -54,7 +54,7 @@ std::vector<Reach> reachesOf(double side, double threshold) {
   return reaches;
 }
 
-/// Neighbouring cells of a row that are joined already.
+/// Neighboring cells of a row that are joined already.
 struct Run {
   std::uint32_t first, last;  ///< cells
   std::uint32_t set;          ///< of the forest, when the run was made

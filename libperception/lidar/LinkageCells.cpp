@@ -17,10 +17,10 @@ void LinkageCells::place(const std::vector<float>& x, const std::vector<float>& 
   const auto [x_low, x_high] = std::minmax_element(x.begin(), x.end());
   const auto [y_low, y_high] = std::minmax_element(y.begin(), y.end());
   const double x0 = static_cast<double>(*x_low), y0 = static_cast<double>(*y_low);
-  const double per_metre = 1 / side;
-  const auto cells_along = [per_metre](float low, float high) {
+  const double per_meter = 1 / side;
+  const auto cells_along = [per_meter](float low, float high) {
     return 1 + static_cast<std::int64_t>((static_cast<double>(high) - static_cast<double>(low)) *
-                                         per_metre);
+                                         per_meter);
   };
   const std::int64_t across = cells_along(*x_low, *x_high), up = cells_along(*y_low, *y_high);
   column_bits_ = bitsFor(across);
@@ -41,11 +41,11 @@ void LinkageCells::place(const std::vector<float>& x, const std::vector<float>& 
   for (std::size_t first = 0; first < x.size(); first += kBlock) {
     const std::size_t size = std::min(kBlock, x.size() - first);
     for (std::size_t k = 0; k < size; ++k) {  // from the lowest on, so truncation is floor
-      column[k] = static_cast<std::int32_t>((static_cast<double>(x[first + k]) - x0) * per_metre);
-      row[k] = static_cast<std::int32_t>((static_cast<double>(y[first + k]) - y0) * per_metre);
+      column[k] = static_cast<std::int32_t>((static_cast<double>(x[first + k]) - x0) * per_meter);
+      row[k] = static_cast<std::int32_t>((static_cast<double>(y[first + k]) - y0) * per_meter);
     }
     for (std::size_t k = 0; k < size; ++k) {
-      if (column[k] != last_column || row[k] != last_row) {  // neighbours in a scan share cells
+      if (column[k] != last_column || row[k] != last_row) {  // neighbors in a scan share cells
         last_column = column[k], last_row = row[k];
         last = find(last_column, last_row);
         if (last == kNone) last = add(last_column, last_row);

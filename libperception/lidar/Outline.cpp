@@ -31,14 +31,14 @@ Outline outlineOf(const std::vector<Vector2>& hull, const Pose3& T_world_sensor)
   return outline;
 }
 
-void markHiddenEdges(Outline& outline, const Horizon& horizon, const Pose3& T_world_sensor,
+void markHiddenEdges(Outline& outline, const OcclusionMap& occlusion, const Pose3& T_world_sensor,
                      double margin, double step, double fov) {
   const double yaw = yawOf(T_world_sensor);
   // The edge's own bin holds its own returns: the two bins outside of it tell.
   const auto hiddenBeside = [&](double bearing, double range, double outward) {
     const bool at_border = fov < kTwoPi - 1e-6 && std::abs(bearing) > fov / 2 - 2 * step;
-    return at_border || horizon.nearest(yaw + bearing + outward) < range - margin ||
-           horizon.nearest(yaw + bearing + 2 * outward) < range - margin;
+    return at_border || occlusion.nearest(yaw + bearing + outward) < range - margin ||
+           occlusion.nearest(yaw + bearing + 2 * outward) < range - margin;
   };
   outline.left_hidden = hiddenBeside(outline.left, outline.left_range, step);
   outline.right_hidden = hiddenBeside(outline.right, outline.right_range, -step);

@@ -22,7 +22,7 @@ Outline outlineOf(const std::vector<Vector2>& hull, const Pose3& T_world_sensor)
 
 /// Marks edges beside which the horizon is nearer by more than `margin` [m], or that lie at the
 /// border of a field of view of `fov` [rad]; `step` [rad] is the horizon's bin.
-void markHiddenEdges(Outline& outline, const Horizon& horizon, const Pose3& T_world_sensor,
+void markHiddenEdges(Outline& outline, const OcclusionMap& occlusion, const Pose3& T_world_sensor,
                      double margin, double step, double fov);
 
 /// Marks edges that may be where returns only get too sparse: the side of the hull that ends there,
@@ -32,7 +32,7 @@ void markSparseEdges(Outline& outline, const std::vector<Vector2>& hull,
                      const Pose3& T_world_sensor, double step, double join);
 
 /// z and R of FootprintModel's axes from an outline: noise of the edges (standard deviations) and
-/// of the ego pose (J P J^T, SPEC 1: it moves all axes together, hence correlates them).
+/// of the ego pose (J P J^T, method.md 1.3: it moves all axes together, hence correlates them).
 void fillFootprint(const Outline& outline, double sigma_left, double sigma_right,
                    double sigma_range, const PoseUncertainty& pose, double sensor_yaw,
                    Measurement& m);

@@ -33,8 +33,8 @@ void settleOverlaps(LidarDetections& found, const PersonParams& params,
     const PersonPeak& peak = found.persons[p];
     for (std::size_t c = 0; c < found.clusters.size(); ++c) {
       Cluster& cluster = found.clusters[c];
-      if (drop_cluster[c] || about[c].exteriorDistance(peak.centre) >= params.hull_margin ||
-          distanceToHull(cluster.hull, peak.centre) >= params.hull_margin)
+      if (drop_cluster[c] || about[c].exteriorDistance(peak.center) >= params.hull_margin ||
+          distanceToHull(cluster.hull, peak.center) >= params.hull_margin)
         continue;
       const double longest = sizeOf(cluster.hull).longest;
       std::vector<std::uint32_t> shared;
@@ -43,7 +43,7 @@ void settleOverlaps(LidarDetections& found, const PersonParams& params,
       const double share = trustIn(found, shared) / trustIn(found, cluster.points);
       if (longest < cluster_params.min_side && share >= params.whole_share) {
         drop_cluster[c] = 1;
-      } else if (cluster.stable || peak.normalised < params.crowd_threshold ||
+      } else if (cluster.stable || peak.normalized < params.crowd_threshold ||
                  (longest < params.rider_size && share >= params.part_share)) {
         drop_peak[p] = 1;
       } else if (!shared.empty()) {

@@ -34,17 +34,17 @@ void PersonParams::visit(ParamVisitor& v) {
          "of a rider-sized cluster's returns in a peak: the peak is the middle of one object");
   v.real("rider_size", rider_size, {0, 10}, "m", "longest side of a rider-sized cluster");
   v.real("crowd_threshold", crowd_threshold, {0, 10}, "1/m^2",
-         "normalised response that counts beside something unstable");
+         "normalized response that counts beside something unstable");
 }
 
 namespace {
 
 /// The returns of the cells about some places, cell by cell.
-class Neighbourhoods {
+class Neighborhoods {
  public:
   /// Square blocks of cells that reach `reach` cells to each side of `middles`.
-  Neighbourhoods(const PersonResponse& response, const std::vector<std::uint32_t>& middles,
-                 std::size_t reach);
+  Neighborhoods(const PersonResponse& response, const std::vector<std::uint32_t>& middles,
+                std::size_t reach);
   /// Calls f with each return in the block about `middle`.
   template <class Function>
   void forEach(std::uint32_t middle, const Function& f) const;
@@ -55,8 +55,8 @@ class Neighbourhoods {
   std::vector<std::uint32_t> start_, returns_;
 };
 
-Neighbourhoods::Neighbourhoods(const PersonResponse& response,
-                               const std::vector<std::uint32_t>& middles, std::size_t reach)
+Neighborhoods::Neighborhoods(const PersonResponse& response,
+                             const std::vector<std::uint32_t>& middles, std::size_t reach)
     : columns_(response.columns()), reach_(reach), number_(response.values().size(), 0) {
   std::uint32_t count = 0;
   for (const std::uint32_t middle : middles)
@@ -76,7 +76,7 @@ Neighbourhoods::Neighbourhoods(const PersonResponse& response,
 }
 
 template <class Function>
-void Neighbourhoods::forEach(std::uint32_t middle, const Function& f) const {
+void Neighborhoods::forEach(std::uint32_t middle, const Function& f) const {
   for (std::size_t row = middle - reach_ * columns_; row <= middle + reach_ * columns_;
        row += columns_)
     for (std::size_t k = row - reach_; k <= row + reach_; ++k)
@@ -107,14 +107,14 @@ void dropCrowded(const PersonResponse& response, const PersonParams& params,
 }
 
 /// The peak at a cell, when its returns are person-sized.
-bool describe(const PersonResponse& response, const Neighbourhoods& near, std::uint32_t cell,
+bool describe(const PersonResponse& response, const Neighborhoods& near, std::uint32_t cell,
               const std::vector<float>& x, const std::vector<float>& y,
               const std::vector<float>& height, const std::vector<float>& weight,
               const PersonParams& params, PersonPeak& peak) {
-  const Vector2 centre = response.centre(cell);
+  const Vector2 center = response.center(cell);
   near.forEach(cell, [&](std::uint32_t i) {
-    const double dx = static_cast<double>(x[i]) - centre.x(),
-                 dy = static_cast<double>(y[i]) - centre.y();
+    const double dx = static_cast<double>(x[i]) - center.x(),
+                 dy = static_cast<double>(y[i]) - center.y();
     if (dx * dx + dy * dy <= params.radius * params.radius) peak.points.push_back(i);
   });
   if (peak.points.empty()) return false;
@@ -124,15 +124,15 @@ bool describe(const PersonResponse& response, const Neighbourhoods& near, std::u
   for (const std::uint32_t i : peak.points) {
     const double w = weight.empty() ? 1.0 : static_cast<double>(weight[i]);
     peak.weight += w;
-    peak.centre += w * Vector2(static_cast<double>(x[i]), static_cast<double>(y[i]));
+    peak.center += w * Vector2(static_cast<double>(x[i]), static_cast<double>(y[i]));
     peak.lowest = std::min(peak.lowest, height[i]);
     peak.highest = std::max(peak.highest, height[i]);
   }
   if (peak.weight < params.min_points - 1e-6) return false;
-  peak.centre /= peak.weight;
-  peak.normalised = peak.response / peak.weight;
+  peak.center /= peak.weight;
+  peak.normalized = peak.response / peak.weight;
   const auto span = static_cast<double>(peak.highest - peak.lowest);
-  return peak.normalised >= params.threshold && span >= params.min_span && span <= params.max_span;
+  return peak.normalized >= params.threshold && span >= params.min_span && span <= params.max_span;
 }
 
 /// Whether the returns have the shape of somebody upright: wide enough for shoulders, low enough
@@ -140,14 +140,14 @@ bool describe(const PersonResponse& response, const Neighbourhoods& near, std::u
 bool hasShape(const std::vector<float>& x, const std::vector<float>& y,
               const std::vector<float>& height, const PersonParams& params, const Vector2& sensor,
               PersonPeak& peak) {
-  const Vector2 sight = peak.centre - sensor;
+  const Vector2 sight = peak.center - sensor;
   const double range = std::max(sight.norm(), 1e-6);
   const Vector2 across(-sight.y() / range, sight.x() / range);
   std::vector<float> heights;
   double sum = 0, squares = 0;
   for (const std::uint32_t i : peak.points) {
     const double off =
-        across.dot(Vector2(static_cast<double>(x[i]), static_cast<double>(y[i])) - peak.centre);
+        across.dot(Vector2(static_cast<double>(x[i]), static_cast<double>(y[i])) - peak.center);
     sum += off, squares += off * off;
     heights.push_back(height[i]);
   }
@@ -178,7 +178,7 @@ std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vect
   std::vector<std::uint32_t> maxima = response.maxima(static_cast<float>(least));
   dropCrowded(response, params, maxima);
   const auto reach = static_cast<std::size_t>(params.radius / params.cell + 0.5);
-  const Neighbourhoods near(response, maxima, std::min(reach, response.margin() - 1));
+  const Neighborhoods near(response, maxima, std::min(reach, response.margin() - 1));
 
   std::vector<PersonPeak> candidates;
   for (const std::uint32_t cell : maxima) {
@@ -192,7 +192,7 @@ std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vect
       [](const PersonPeak& a, const PersonPeak& b) { return a.response > b.response; });
   for (PersonPeak& candidate : candidates) {
     const bool alone = std::none_of(peaks.begin(), peaks.end(), [&](const PersonPeak& stronger) {
-      return (stronger.centre - candidate.centre).norm() < params.separation;
+      return (stronger.center - candidate.center).norm() < params.separation;
     });
     if (alone) peaks.push_back(std::move(candidate));
   }

@@ -2,14 +2,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Angle.h"
 #include "libperception/core/Frames.h"
-#include "libperception/core/ParamSet.h"
 
 namespace perception {
 
 /// The person filter of the paper, a Laplacian of Gaussians over the returns:
-/// [sensor.LABEL.persons]. SPEC 8.3.
+/// [sensor.LABEL.persons]. method.md 8.3.
 struct PersonParams {
   enum class Kernel {
     kConsistent,  ///< second term r^4/(2 sigma^4): negative in the mean, as the text says
@@ -20,7 +20,7 @@ struct PersonParams {
   double sigma = 0.45;    ///< [m] (paper)
   double support = 2.25;  ///< [m] radius; the kernel is below 4e-4 beyond
   Kernel kernel = Kernel::kConsistent;
-  double threshold = 0.9;  ///< [1/m^2] normalised; a lone person has 1.45, a wall below .5
+  double threshold = 0.9;  ///< [1/m^2] normalized; a lone person has 1.45, a wall below .5
   double radius = 0.45;    ///< [m] about the peak: the person's returns
   int min_points = 4;      ///< returns within radius
   double min_span = 0.8;   ///< [m] lowest to highest return
@@ -40,19 +40,19 @@ struct PersonParams {
   double part_share =
       0.4;  ///< of a rider-sized cluster's returns in a peak: its middle, not a person
   double rider_size = 2.5;       ///< [m] longest side of what a rider and a cycle make
-  double crowd_threshold = 1.2;  ///< [1/m^2] normalised; of a person close to something unstable
+  double crowd_threshold = 1.2;  ///< [1/m^2] normalized; of a person close to something unstable
 
   void visit(ParamVisitor& v);
 };
 
-/// A person-sized group of returns, isolated from its neighbours. Indices are those of the arrays
+/// A person-sized group of returns, isolated from its neighbors. Indices are those of the arrays
 /// given.
 struct PersonPeak {
   std::vector<std::uint32_t> points;  ///< within `radius` of the peak, in the scan's order
-  Vector2 centre = Vector2::Zero();   ///< [m] mean of those
+  Vector2 center = Vector2::Zero();   ///< [m] mean of those
   double response = 0;                ///< of the filter, sum over returns
   double weight = 0;                  ///< of the returns within radius
-  double normalised = 0;              ///< response per return within radius
+  double normalized = 0;              ///< response per return within radius
   float lowest = 0, highest = 0;      ///< [m] above ground
   double width = 0;  ///< [m] across the line of sight, of an even spread with the same deviation
   double gap = 0;    ///< [m] largest between heights of returns

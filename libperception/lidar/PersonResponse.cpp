@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Lanes.h"
-#include "libperception/core/Wider.h"
 #include "libperception/lidar/PersonPeaks.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 
@@ -53,11 +53,11 @@ PERCEPTION_WIDER Spread spreadOf(const float* v, std::size_t count) {
 }
 
 PERCEPTION_WIDER void findCells(const float* __restrict x, const float* __restrict y,
-                                std::size_t count, double x0, double y0, double per_metre,
+                                std::size_t count, double x0, double y0, double per_meter,
                                 std::int32_t columns, std::uint32_t* __restrict cell) {
   for (std::size_t i = 0; i < count; ++i) {
-    const auto column = static_cast<std::int32_t>((static_cast<double>(x[i]) - x0) * per_metre);
-    const auto row = static_cast<std::int32_t>((static_cast<double>(y[i]) - y0) * per_metre);
+    const auto column = static_cast<std::int32_t>((static_cast<double>(x[i]) - x0) * per_meter);
+    const auto row = static_cast<std::int32_t>((static_cast<double>(y[i]) - y0) * per_meter);
     cell[i] = static_cast<std::uint32_t>(row * columns + column);
   }
 }
@@ -79,7 +79,7 @@ PERCEPTION_WIDER std::size_t firstGroupWith(const float* v, std::size_t begin, s
 void PersonResponse::place(const std::vector<float>& x, const std::vector<float>& y,
                            const std::vector<float>& weight) {
   const Spread x_bounds = spreadOf(x.data(), x.size()), y_bounds = spreadOf(y.data(), y.size());
-  const double margin = static_cast<double>(margin_) * cell_, per_metre = 1 / cell_;
+  const double margin = static_cast<double>(margin_) * cell_, per_meter = 1 / cell_;
   // Cells lie on multiples of their side, so that they do not depend on which return is the
   // outermost.
   x0_ = std::floor(static_cast<double>(x_bounds.lowest) / cell_) * cell_ - margin;
@@ -90,7 +90,7 @@ void PersonResponse::place(const std::vector<float>& x, const std::vector<float>
       static_cast<std::size_t>((static_cast<double>(y_bounds.highest) - y0_) / cell_) + 1 + margin_;
 
   cell_of_return_.resize(x.size());
-  findCells(x.data(), y.data(), x.size(), x0_, y0_, per_metre, static_cast<std::int32_t>(columns_),
+  findCells(x.data(), y.data(), x.size(), x0_, y0_, per_meter, static_cast<std::int32_t>(columns_),
             cell_of_return_.data());
   weights_ = std::vector<float>(columns_ * rows_);  // zeros, faster than assign()
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -106,7 +106,7 @@ namespace {
 /// The kernel's rows, padded with zeros to multiples of eight: whole vectors.
 struct KernelRows {
   struct Row {
-    std::ptrdiff_t offset;  ///< of its first cell from the centre, in the grid
+    std::ptrdiff_t offset;  ///< of its first cell from the center, in the grid
     std::size_t first;      ///< place in `weights`
     std::size_t eights;     ///< length in groups of eight
   };

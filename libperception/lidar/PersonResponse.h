@@ -11,8 +11,8 @@ struct PersonParams;
 /// The kernel L(r) [1/m^2].
 double personKernel(double r, const PersonParams& params);
 
-/// The person filter's response over the plane: at the centre of every square cell the sum of the
-/// kernel over the returns, each taken at its own cell's centre.
+/// The person filter's response over the plane: at the center of every square cell the sum of the
+/// kernel over the returns, each taken at its own cell's center.
 class PersonResponse {
  public:
   /// Places [m]; `weight` as for findPersons.
@@ -27,11 +27,11 @@ class PersonResponse {
   const std::vector<float>& weights() const { return weights_; }  ///< of the returns in each cell
   /// The cell of every return, in their order.
   const std::vector<std::uint32_t>& cellOfReturn() const { return cell_of_return_; }
-  Vector2 centre(std::size_t k) const {
+  Vector2 center(std::size_t k) const {
     return {x0_ + (static_cast<double>(k % columns_) + 0.5) * cell_,
             y0_ + (static_cast<double>(k / columns_) + 0.5) * cell_};
   }
-  /// Cells with at least `least` that are not below any of their eight neighbours (of equal ones
+  /// Cells with at least `least` that are not below any of their eight neighbors (of equal ones
   /// the first) and hold returns or lie beside returns; in the order of the grid. `least` > 0.
   std::vector<std::uint32_t> maxima(float least) const;
 

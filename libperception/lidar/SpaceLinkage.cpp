@@ -47,9 +47,9 @@ class Cubes {
     const auto lowest = [](const std::vector<float>& v) {
       return static_cast<double>(*std::min_element(v.begin(), v.end()));
     };
-    const double x0 = lowest(x), y0 = lowest(y), z0 = lowest(z), per_metre = 1 / side;
-    const auto cell = [per_metre](float v, double low) {
-      return static_cast<std::int64_t>((static_cast<double>(v) - low) * per_metre);
+    const double x0 = lowest(x), y0 = lowest(y), z0 = lowest(z), per_meter = 1 / side;
+    const auto cell = [per_meter](float v, double low) {
+      return static_cast<std::int64_t>((static_cast<double>(v) - low) * per_meter);
     };
     std::vector<Key> keys;
     keys.reserve(x.size());
@@ -86,7 +86,7 @@ class Cubes {
     }
   }
 
-  static constexpr std::int64_t kBorder = 64;  // squares, so that no neighbour's number is negative
+  static constexpr std::int64_t kBorder = 64;  // squares, so that no neighbor's number is negative
 };
 
 float squared(float v) { return v * v; }

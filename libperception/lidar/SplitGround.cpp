@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "libperception/core/Pack.h"
+#include "libperception/simd/Compress.h"
 
 namespace perception {
 namespace {

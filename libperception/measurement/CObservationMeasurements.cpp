@@ -29,20 +29,20 @@ std::optional<ScalarEstimate> readScalar(CArchive& in) {
   return s;
 }
 
-void writeSides(CArchive& out, const std::optional<SidesSeen>& s) {
+void writeSides(CArchive& out, const std::optional<PartialBox>& s) {
   out << s.has_value();
   if (!s) return;
-  out << s->yaw << s->yaw_sigma << s->a << s->b << s->a_complete << s->b_complete << s->centre.x()
-      << s->centre.y();
+  out << s->yaw << s->yaw_sigma << s->length << s->width << s->length_complete << s->width_complete
+      << s->center.x() << s->center.y();
 }
 
-std::optional<SidesSeen> readSides(CArchive& in) {
+std::optional<PartialBox> readSides(CArchive& in) {
   if (!archive::readFlag(in)) return {};
-  SidesSeen s;
-  in >> s.yaw >> s.yaw_sigma >> s.a >> s.b;
-  s.a_complete = archive::readFlag(in);
-  s.b_complete = archive::readFlag(in);
-  in >> s.centre.x() >> s.centre.y();
+  PartialBox s;
+  in >> s.yaw >> s.yaw_sigma >> s.length >> s.width;
+  s.length_complete = archive::readFlag(in);
+  s.width_complete = archive::readFlag(in);
+  in >> s.center.x() >> s.center.y();
   return s;
 }
 
@@ -50,9 +50,9 @@ void writeEvidence(CArchive& out, const Measurement& m) {
   out << m.heading.has_value();
   if (m.heading) {
     out << m.heading->yaw << m.heading->sigma << m.heading->flip_probability
-        << m.heading->flip_repeats;
+        << m.heading->flip_persistence;
   }
-  if (m.sides) out << m.sides->a_sigma << m.sides->b_sigma;
+  if (m.sides) out << m.sides->length_sigma << m.sides->width_sigma;
   out.WriteAs<std::uint32_t>(m.log_class.size());
   for (const double lp : m.log_class) out << lp;
   out << m.log_clutter;
@@ -62,9 +62,9 @@ void readEvidence(CArchive& in, Measurement& m, std::uint8_t version) {
   if (archive::readFlag(in)) {
     m.heading.emplace();
     in >> m.heading->yaw >> m.heading->sigma >> m.heading->flip_probability;
-    if (version >= 2) in >> m.heading->flip_repeats;
+    if (version >= 2) in >> m.heading->flip_persistence;
   }
-  if (m.sides) in >> m.sides->a_sigma >> m.sides->b_sigma;
+  if (m.sides) in >> m.sides->length_sigma >> m.sides->width_sigma;
   m.log_class.resize(archive::readCount(in, kMostNames, "classes"));
   for (double& lp : m.log_class) in >> lp;
   in >> m.log_clutter;

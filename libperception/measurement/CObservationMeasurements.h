@@ -11,8 +11,8 @@
 namespace perception {
 
 /// The measurements that a front end took from one sensor at one instant, as an entry of a rawlog:
-/// z with covariance R under a named measurement model. What a rib hands to the filter can so be
-/// recorded, looked at with the stock tools and played again.
+/// z with covariance R under a named measurement model. What a front end hands to the filter can so
+/// be recorded, looked at with the stock tools and played again.
 class CObservationMeasurements : public mrpt::obs::CObservation {
   DEFINE_SERIALIZABLE(CObservationMeasurements, perception)
  public:

@@ -6,7 +6,7 @@
 namespace perception {
 namespace {
 
-constexpr double kFloor = 0.1 * 0.1;  // [m^2]
+constexpr double kFloor = 0.1 * 0.1;    // [m^2]
 constexpr double kFloorShare = 1. / 9;  // as if no more than nine errors were independent
 
 void updateSide(double seen, bool complete, double own_sigma, double sigma, double& mean,
@@ -24,16 +24,16 @@ void updateSide(double seen, bool complete, double own_sigma, double sigma, doub
 
 }  // namespace
 
-Extent updateExtent(const Extent& extent, const SidesSeen& sides, double yaw, double sigma) {
+Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, double sigma) {
   const double angle =
       std::abs(wrapAxis(sides.yaw - yaw));  // of side a to the length axis, [0, pi/2]
   if (angle > radians(30) && angle < radians(60)) return extent;
   const bool a_is_length = angle < radians(45);
   Extent out = extent;
-  updateSide(sides.a, sides.a_complete, sides.a_sigma, sigma, a_is_length ? out.length : out.width,
-             a_is_length ? out.var_length : out.var_width);
-  updateSide(sides.b, sides.b_complete, sides.b_sigma, sigma, a_is_length ? out.width : out.length,
-             a_is_length ? out.var_width : out.var_length);
+  updateSide(sides.length, sides.length_complete, sides.length_sigma, sigma,
+             a_is_length ? out.length : out.width, a_is_length ? out.var_length : out.var_width);
+  updateSide(sides.width, sides.width_complete, sides.width_sigma, sigma,
+             a_is_length ? out.width : out.length, a_is_length ? out.var_width : out.var_length);
   return out;
 }
 

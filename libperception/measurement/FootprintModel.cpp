@@ -12,11 +12,12 @@ namespace perception {
 namespace {
 
 constexpr double kWidestClutter =
-    10;                               // [m] false measurements have any width up to this (SPEC 5.3)
+    10;  // [m] false measurements have any width up to this (method.md 4.1)
 constexpr double kWidestAngle = 0.5;  // [rad] the same where the range is not seen
 constexpr double kClearance = 0.05;   // [m] nearer than this the sensor is at the object
-constexpr double kSideSigma = 0.5;    // [m] a complete side as a measurement of the extent (SPEC 2)
-constexpr double kBoxSigma = 0.2;     // [m] of a seen box's faces
+constexpr double kSideSigma =
+    0.5;  // [m] a complete side as a measurement of the extent (method.md 5.13)
+constexpr double kBoxSigma = 0.2;  // [m] of a seen box's faces
 constexpr double kSureYaw =
     0.35;  // [rad] a box whose direction is less certain says nothing of the heading
 constexpr int kAngles = 8;  // of the average over unknown headings
@@ -59,7 +60,7 @@ void predictDisc(const Vector2& d, const Extent& extent, double forward, AxisPre
   out.H_extent.row(FootprintModel::kRange).setConstant(-0.25);
 }
 
-/// The oriented rectangle: extreme corners and exact nearest point (SPEC 4.1).
+/// The oriented rectangle: extreme corners and exact nearest point (method.md 4.1).
 void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double forward,
                       AxisPrediction& out) {
   const Vector2 u(std::cos(yaw), std::sin(yaw)), n = perpendicular(u);
@@ -85,7 +86,7 @@ void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double
   };
   Eigen::Matrix<double, 2, 5> dq;
   Matrix2 dextent;
-  // Angles from the centre's direction by their tangents; by themselves beside the object, where
+  // Angles from the center's direction by their tangents; by themselves beside the object, where
   // corners lie behind the sensor.
   const double middle = std::atan2(d.y(), d.x());
   const bool ahead = d.norm() > half.norm();
@@ -148,16 +149,17 @@ double widthDensity(const ObjectClass& c, double width, double noise) {
 }
 
 /// Log density per unit of the axes seen of a position that is uniform over the field of view,
-/// times that of the width `per_metre` [1/m] where both edges are seen (SPEC 5.3).
-double logUniform(const Measurement& m, const Sensing& sensing, const SensorState& s,
-                  double per_metre) {
-  const double range = rangeOf(m, s), area = sensing.area(), fov = sensing.params().fov;
+/// times that of the width `per_meter` [1/m] where both edges are seen (method.md 4.1).
+double logUniform(const Measurement& m, const DetectionModel& detection_model, const SensorState& s,
+                  double per_meter) {
+  const double range = rangeOf(m, s), area = detection_model.area(),
+               fov = detection_model.params().fov;
   const bool edges = seen(m, FootprintModel::kLeft) || seen(m, FootprintModel::kRight);
   const bool both = seen(m, FootprintModel::kLeft) && seen(m, FootprintModel::kRight);
   double density = 1;
   if (seen(m, FootprintModel::kRange)) {
     density = edges ? range / area : range * fov / area;
-    if (both) density *= range * per_metre;  // d(width) = range d(angle)
+    if (both) density *= range * per_meter;  // d(width) = range d(angle)
   } else {
     density = edges ? 1 / fov : 1;
     if (both) density /= kWidestAngle;
@@ -168,14 +170,14 @@ double logUniform(const Measurement& m, const Sensing& sensing, const SensorStat
 /// The heading (an axis) that a seen box gives an object of a wheeled class, when it is beyond
 /// doubt: a side longer than the class is wide lies along it; a complete side of the class's width
 /// with nothing longer is its front or rear.
-std::optional<ScalarEstimate> headingFromBox(const SidesSeen& box, const ObjectClass& c) {
+std::optional<ScalarEstimate> headingFromBox(const PartialBox& box, const ObjectClass& c) {
   if (box.yaw_sigma > kSureYaw) return std::nullopt;
-  const bool a_longer = box.a >= box.b;
-  const double longer = a_longer ? box.a : box.b;
+  const bool a_longer = box.length >= box.width;
+  const double longer = a_longer ? box.length : box.width;
   const double along = a_longer ? box.yaw : box.yaw + kPi / 2;
   const double variance = box.yaw_sigma * box.yaw_sigma;
   if (longer > c.width + 3 * c.width_sigma) return ScalarEstimate{wrapAngle(along), variance};
-  const bool complete = a_longer ? box.a_complete : box.b_complete;
+  const bool complete = a_longer ? box.length_complete : box.width_complete;
   const bool is_width = std::abs(longer - c.width) < 1.5 * c.width_sigma;
   const bool tells =
       c.length >
@@ -184,24 +186,25 @@ std::optional<ScalarEstimate> headingFromBox(const SidesSeen& box, const ObjectC
   return std::nullopt;
 }
 
-/// Centre and covariance of an object of known heading and size from the part of its box that was
+/// Center and covariance of an object of known heading and size from the part of its box that was
 /// seen: a complete side keeps its middle, an incomplete one is continued away from the sensor.
-void placeByBox(const SidesSeen& box, double yaw, const Extent& extent, const Vector2& sensor,
+void placeByBox(const PartialBox& box, double yaw, const Extent& extent, const Vector2& sensor,
                 BirthState& birth) {
   const bool a_is_length = std::abs(wrapAxis(box.yaw - yaw)) < kPi / 4;
-  const double side[2] = {a_is_length ? box.a : box.b, a_is_length ? box.b : box.a};
-  const bool complete[2] = {a_is_length ? box.a_complete : box.b_complete,
-                            a_is_length ? box.b_complete : box.a_complete};
+  const double side[2] = {a_is_length ? box.length : box.width,
+                          a_is_length ? box.width : box.length};
+  const bool complete[2] = {a_is_length ? box.length_complete : box.width_complete,
+                            a_is_length ? box.width_complete : box.length_complete};
   const double size[2] = {extent.length, extent.width};
   const double variance[2] = {extent.var_length, extent.var_width};
   const Vector2 u(std::cos(yaw), std::sin(yaw));
   const Vector2 axis[2] = {u, perpendicular(u)};
-  birth.position = box.centre;
+  birth.position = box.center;
   birth.covariance.setZero();
   for (int i = 0; i < 2; ++i) {
     double sigma2 = kBoxSigma * kBoxSigma;
     if (!complete[i]) {
-      const double away = axis[i].dot(box.centre - sensor) >= 0 ? 1 : -1;
+      const double away = axis[i].dot(box.center - sensor) >= 0 ? 1 : -1;
       birth.position += away * 0.5 * std::max(0.0, size[i] - side[i]) * axis[i];
       sigma2 += 0.25 * variance[i];
     }
@@ -211,8 +214,8 @@ void placeByBox(const SidesSeen& box, double yaw, const Extent& extent, const Ve
 
 }  // namespace
 
-FootprintModel::FootprintModel(ClassTable classes, Sensing sensing)
-    : classes_(std::move(classes)), sensing_(std::move(sensing)) {}
+FootprintModel::FootprintModel(ClassTable classes, DetectionModel detection_model)
+    : classes_(std::move(classes)), detection_model_(std::move(detection_model)) {}
 
 const std::vector<AxisKind>& FootprintModel::axes() const {
   static const std::vector<AxisKind> kinds{AxisKind::kAngle, AxisKind::kAngle, AxisKind::kLinear};
@@ -238,26 +241,27 @@ double FootprintModel::detectionProbability(ClassId c, const Kinematics& object,
                                             double visibility) const {
   const Vector2 d = object.q.head<2>() - sensorPosition(sensor);
   const double range = std::max(0.0, d.norm() - 0.25 * (extent.length + extent.width));
-  return sensing_.detection(c, range, std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor),
-                            visibility);
+  return detection_model_.detection(
+      c, range, std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor), visibility);
 }
 
 double FootprintModel::logClutterDensity(const Measurement& m, const SensorState& sensor) const {
-  return std::log(sensing_.params().clutter_per_scan) +
-         logUniform(m, sensing_, sensor, 1 / kWidestClutter);
+  return std::log(detection_model_.params().clutter_per_scan) +
+         logUniform(m, detection_model_, sensor, 1 / kWidestClutter);
 }
 
 double FootprintModel::logBirthDensity(const Measurement& m, ClassId c,
                                        const SensorState& sensor) const {
-  double per_metre = 1;
+  double per_meter = 1;
   if (seen(m, kLeft) && seen(m, kRight)) {
     const double range = rangeOf(m, sensor);
     const double width = range * wrapAngle(m.z[kLeft] - m.z[kRight]);
     const double noise = range * range * (m.R(kLeft, kLeft) + m.R(kRight, kRight));
     // No class is ruled out by a size alone: a thousandth of its objects have any width.
-    per_metre = 0.999 * widthDensity(classes_[c], width, noise) + 0.001 / kWidestClutter;
+    per_meter = 0.999 * widthDensity(classes_[c], width, noise) + 0.001 / kWidestClutter;
   }
-  return std::log(sensing_.params().births_per_scan) + logUniform(m, sensing_, sensor, per_metre);
+  return std::log(detection_model_.params().births_per_scan) +
+         logUniform(m, detection_model_, sensor, per_meter);
 }
 
 std::optional<BirthState> FootprintModel::birth(const Measurement& m, ClassId c,

@@ -9,7 +9,7 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/core/Time.h"
-#include "libperception/measurement/Horizon.h"
+#include "libperception/measurement/OcclusionMap.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -29,24 +29,24 @@ struct ScalarEstimate {
 
 /// Sides of a box about the returns: what was seen of the object's size and orientation. Not every
 /// side is complete.
-struct SidesSeen {
-  double yaw = 0;                               ///< [rad] direction of side a, world
-  double yaw_sigma = 0.2;                       ///< [rad]
-  double a = 0, b = 0;                          ///< [m] seen length along and across yaw
-  bool a_complete = false, b_complete = false;  ///< both ends of that side were seen
-  double a_sigma = 0, b_sigma = 0;   ///< [m] of complete sides; 0: the filter's side_sigma
-  Vector2 centre = Vector2::Zero();  ///< [m] of the box, world
+struct PartialBox {
+  double yaw = 0;                                        ///< [rad] direction of side a, world
+  double yaw_sigma = 0.2;                                ///< [rad]
+  double length = 0, width = 0;                          ///< [m] seen length along and across yaw
+  bool length_complete = false, width_complete = false;  ///< both ends of that side were seen
+  double length_sigma = 0, width_sigma = 0;  ///< [m] of complete sides; 0: the filter's side_sigma
+  Vector2 center = Vector2::Zero();          ///< [m] of the box, world
 };
 
 /// What a detector says of an object's heading. It may confuse front and back: the axis is measured
-/// with `sigma`, its direction is reversed with `flip_probability` (SPEC 7).
-struct HeadingSeen {
+/// with `sigma`, its direction is reversed with `flip_probability` (method.md 7).
+struct MeasuredHeading {
   double yaw = 0;                 ///< [rad] world
-  double sigma = 0.14;            ///< [rad] of the axis; SPEC 7: 8 deg
+  double sigma = 0.14;            ///< [rad] of the axis; method.md 7: 8 deg
   double flip_probability = 0.2;  ///< in [0, 0.5]: 0.5 tells the axis alone
   /// P(reversed | the detector's heading of this object before was reversed): reversals come in
   /// bursts. No more than flip_probability: they do not.
-  double flip_repeats = 0;
+  double flip_persistence = 0;
 };
 
 /// z with covariance R under the scan's MeasurementModel, and what else the detection says of its
@@ -66,9 +66,9 @@ struct Measurement {
   double position_sigma = 1;             ///< [m] how rough
   std::optional<ScalarEstimate> base_z;  ///< [m] lowest point of the object, world
   std::optional<ScalarEstimate> height;  ///< [m] lowest to highest point
-  std::optional<SidesSeen> sides;
-  std::optional<HeadingSeen> heading;  ///< of classes with a heading only
-  int detection = -1;                  ///< index of the detection in its frame
+  std::optional<PartialBox> sides;
+  std::optional<MeasuredHeading> heading;  ///< of classes with a heading only
+  int detection = -1;                      ///< index of the detection in its frame
 };
 
 /// Sensor and vehicle at the time of a scan.
@@ -85,7 +85,7 @@ struct MeasurementScan {
   std::int64_t frame = -1;  ///< the log's frame number
   SensorState state;
   std::shared_ptr<const MeasurementModel> model;
-  std::shared_ptr<const Horizon> horizon;  ///< what hides what; null: nothing is hidden
+  std::shared_ptr<const OcclusionMap> occlusion;  ///< what hides what; null: nothing is hidden
   std::vector<Measurement> measurements;
   std::size_t dropped =
       0;  ///< detections that could not be used: no such label, a box that is none

@@ -19,18 +19,18 @@ double logClutterLabelAndScore(const MeasurementModel& model, const Measurement&
   return m.log_class.empty() ? model.logLabelClutter(m.label) : m.log_clutter;
 }
 
-bool touchesSector(const Vector2& centre, double reach, double fov, double range,
+bool touchesSector(const Vector2& center, double reach, double fov, double range,
                    const SensorState& sensor) {
-  return touchesSector(centre, reach, HalfAngle(0.5 * fov), range, sensor);
+  return touchesSector(center, reach, HalfAngle(0.5 * fov), range, sensor);
 }
 
-bool touchesSector(const Vector2& centre, double reach, const HalfAngle& half_fov, double range,
+bool touchesSector(const Vector2& center, double reach, const HalfAngle& half_fov, double range,
                    const SensorState& sensor) {
-  const Vector2 d = centre - sensor.T_world_sensor.translation().head<2>();
+  const Vector2 d = center - sensor.T_world_sensor.translation().head<2>();
   const double distance = d.norm();
   if (distance - reach > range) return false;
   if (half_fov.all || distance <= reach) return true;
-  // Along the sector's edge on the centre's side and, positive outside, across it.
+  // Along the sector's edge on the center's side and, positive outside, across it.
   const Vector2 forward = sensor.T_world_sensor.linear().col(0).head<2>().normalized();
   const double along = forward.dot(d), across = std::abs(forward.x() * d.y() - forward.y() * d.x());
   const double c = half_fov.cosine, s = half_fov.sine;

@@ -6,8 +6,8 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Kinematics.h"
-#include "libperception/core/ObjectClass.h"
 #include "libperception/measurement/Measurement.h"
+#include "libperception/measurement/ObjectClass.h"
 
 namespace perception {
 
@@ -18,7 +18,7 @@ enum class AxisKind {
 };
 
 /// How a prediction is made linear along the aspect of an object, the heading as seen from the
-/// sensor (filter/Linearisation).
+/// sensor (filter/Linearization).
 enum class AspectLine {
   kNone,    ///< h does not depend on it, or is linear enough
   kChord,   ///< slope and spread from wide sigma points
@@ -48,7 +48,7 @@ struct RadialSpeed {
 
 /// Where a newborn object of one class stands, from one measurement.
 struct BirthState {
-  Vector2 position = Vector2::Zero();        ///< [m] centre, world
+  Vector2 position = Vector2::Zero();        ///< [m] center, world
   Matrix2 covariance = Matrix2::Identity();  ///< [m^2]
   std::optional<ScalarEstimate> yaw;         ///< [rad, rad^2] world; its direction or its opposite
   std::optional<ScalarEstimate> speed;       ///< [m/s] along yaw
@@ -64,7 +64,7 @@ class MeasurementModel {
   virtual ~MeasurementModel() = default;
 
   virtual const std::vector<AxisKind>& axes() const = 0;
-  /// Axes that correct the extent. A range tells of length only together with the centre's place,
+  /// Axes that correct the extent. A range tells of length only together with the center's place,
   /// whose correlation with the extent nobody keeps: it is left out there, but counts in S.
   virtual AxisMask extentAxes() const { return 0xff; }
   /// h, dh/dq, dh/dextent into out[0..count) of `count` objects, object i taken as one of class i %
@@ -85,7 +85,7 @@ class MeasurementModel {
   /// log P(label | class, detected).
   virtual double logLabelLikelihood(int label, ClassId c) const = 0;
   /// Exponent in (0, 1] of the label in the class update: labels of one object are not independent
-  /// (SPEC 5.6).
+  /// (method.md 5.6).
   virtual double labelExponent() const { return 1; }
   /// The same of detections and misses; where hundreds of them come, no table knows P_D to the
   /// percent that they would tell.
@@ -109,10 +109,10 @@ double logClutterLabelAndScore(const MeasurementModel& model, const Measurement&
 /// The part of logLabelAndScore() that tells classes apart.
 double logLabelOf(const MeasurementModel& model, const Measurement& m, ClassId c);
 
-/// Whether a disc of radius `reach` [m] about `centre` (world) touches the sector of full angle
+/// Whether a disc of radius `reach` [m] about `center` (world) touches the sector of full angle
 /// `fov` [rad] and radius `range` [m] about the sensor's forward axis. Near the origin it may say
 /// true too often.
-bool touchesSector(const Vector2& centre, double reach, double fov, double range,
+bool touchesSector(const Vector2& center, double reach, double fov, double range,
                    const SensorState& sensor);
 /// Half of a field of view, its sine and cosine taken once.
 struct HalfAngle {
@@ -122,7 +122,7 @@ struct HalfAngle {
   bool all;  ///< the full circle
 };
 /// touchesSector() for a field of view that many discs are held against.
-bool touchesSector(const Vector2& centre, double reach, const HalfAngle& half_fov, double range,
+bool touchesSector(const Vector2& center, double reach, const HalfAngle& half_fov, double range,
                    const SensorState& sensor);
 
 /// z - h of the axes seen, angles wrapped, packed in axis order.

@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "libperception/measurement/MeasurementModel.h"
-#include "libperception/measurement/PlaceSight.h"
+#include "libperception/measurement/PositionOnlyModel.h"
 
 namespace perception {
 
-/// A sensor that sees an object's centre: z = (x, y) [m, world]. GPS receivers on the object, box
-/// centres, and the position-level scenes that the filter's association is studied on.
-class PositionModel : public MeasurementModel, public PlaceSight {
+/// A sensor that sees an object's center: z = (x, y) [m, world]. GPS receivers on the object, box
+/// centers, and the position-level scenes that the filter's association is studied on.
+class PositionModel : public MeasurementModel, public PositionOnlyModel {
  public:
   struct ClassRow {
     double detection = 0.9;      ///< P(detected | in view, near)
@@ -17,7 +17,7 @@ class PositionModel : public MeasurementModel, public PlaceSight {
     double last_range = 2e9;     ///< [m] ... here
     std::vector<double> labels;  ///< P(label | class, detected); sums to 1
     Matrix2 noise =
-        Matrix2::Identity();  ///< [m^2] covariance of z about the centre; Measurement::R is added
+        Matrix2::Identity();  ///< [m^2] covariance of z about the center; Measurement::R is added
     Extent extent{};          ///< of newborn objects
 
     /// P(detected | at this range [m] in view).
@@ -33,7 +33,7 @@ class PositionModel : public MeasurementModel, public PlaceSight {
     double births_per_scan = 0.03;       ///< beta
     double range = 20;  ///< [m] of the field of view, a sector about the sensor's forward axis
     double fov = kPi;   ///< [rad] its full angle; 2 pi or more: a full disc
-    double label_exponent = 1, detection_exponent = 1;  ///< SPEC 5.6
+    double label_exponent = 1, detection_exponent = 1;  ///< method.md 5.6
   };
 
   explicit PositionModel(Params params);

@@ -14,8 +14,8 @@ namespace perception {
 
 enum class Modality : char { kCamera = 'C', kLidar = 'L', kRadar = 'R' };
 
-/// Standard deviations of the ego pose at one instant; they enlarge R of every measurement (SPEC
-/// 1).
+/// Standard deviations of the ego pose at one instant; they enlarge R of every measurement:
+/// method.md 1.3.
 struct PoseUncertainty {
   double sigma_xy = 0.05;             ///< [m]
   double sigma_yaw = radians(0.2);    ///< [rad]
@@ -74,7 +74,7 @@ struct CameraModel {
   Projection projection = Projection::kPinhole;
 };
 
-/// Pixels, rows from the top, interleaved blue, green, red (or grey alone).
+/// Pixels, rows from the top, interleaved blue, green, red (or gray alone).
 struct Raster {
   int width = 0, height = 0, channels = 3;
   std::vector<std::uint8_t> pixels;
@@ -110,7 +110,7 @@ struct ObjectDetection {
     double x1 = 0, y1 = 0, x2 = 0, y2 = 0;  ///< [px] left, top, right, bottom
   };
   struct SpaceBox {
-    Vector3 bottom_centre = Vector3::Zero();   ///< [m] sensor frame (x forward, y left, z up)
+    Vector3 bottom_center = Vector3::Zero();   ///< [m] sensor frame (x forward, y left, z up)
     double yaw = 0;                            ///< [rad] of the length axis, sensor frame
     double length = 0, width = 0, height = 0;  ///< [m]
   };

@@ -12,11 +12,11 @@ constexpr double kDoubleSigmas =
 
 constexpr double kBorderSigmas = 3;  // beyond the view by so many of a bearing's own deviations
 
-SensingParams radarDefaults() {
-  SensingParams p;
+DetectionParams radarDefaults() {
+  DetectionParams p;
   p.kind = "radar";
   p.modality = Modality::kRadar;
-  p.clutter_per_scan = 0.3;  // SPEC 5.3
+  p.clutter_per_scan = 0.3;  // method.md 5.3
   p.births_per_scan = 0.01;
   p.range_min = 1;
   p.range_max = 120;
@@ -60,8 +60,8 @@ std::vector<FlatReturn> flatten(const RadarReturns& data, const Pose3& T_level_s
   return out;
 }
 
-/// The echo of `first` that went to and fro once more between object and vehicle: twice its range,
-/// twice its rate, never stronger. Only where the rate tells it from another object.
+/// The echo of `first` that went as a double bounce once more between object and vehicle: twice its
+/// range, twice its rate, never stronger. Only where the rate tells it from another object.
 bool isDoubleBounce(const FlatReturn& r, const FlatReturn& first, const RadarParams& p) {
   if (!r.has_rate || !first.has_rate || r.amplitude > first.amplitude) return false;
   return std::abs(first.rate) > kDoubleSigmas * p.rate_sigma &&
@@ -154,8 +154,10 @@ std::vector<RadarTarget> radarTargets(const RadarReturns& data, const Pose3& T_l
   return targets;
 }
 
-RadarFrontEnd::RadarFrontEnd(RadarParams params, const ClassTable& classes, const Sensing& sensing)
-    : params_(params), model_(std::make_shared<const RadarModel>(classes, sensing, params.model)) {}
+RadarFrontEnd::RadarFrontEnd(RadarParams params, const ClassTable& classes,
+                             const DetectionModel& detection_model)
+    : params_(params),
+      model_(std::make_shared<const RadarModel>(classes, detection_model, params.model)) {}
 
 MeasurementScan RadarFrontEnd::extract(const SensorFrame& frame) const {
   const Pose3 sensor = frame.T_world_sensor();
@@ -170,7 +172,7 @@ MeasurementScan RadarFrontEnd::extract(const SensorFrame& frame) const {
   const auto* data = std::get_if<RadarReturns>(&frame.data);
   if (data == nullptr) return scan;
 
-  const SensingParams& view = model_->sensing().params();
+  const DetectionParams& view = model_->detection_model().params();
   const Vector2 velocity = sensorVelocity(scan.state);
   const auto& pose = frame.ego.uncertainty;
   const Vector3 pose_variance(pose.sigma_xy * pose.sigma_xy, pose.sigma_xy * pose.sigma_xy,
@@ -191,7 +193,7 @@ MeasurementScan RadarFrontEnd::extract(const SensorFrame& frame) const {
     m.z = Vector3(t.range, t.bearing, t.range_rate);
     m.seen = t.has_rate ? RadarModel::kAll : RadarModel::kNoRate;
     m.detection = t.strongest;
-    // The vehicle's pose by x, y, yaw (SPEC 1): a turned line of sight sees the own motion
+    // The vehicle's pose by x, y, yaw (method.md 1.3): a turned line of sight sees the own motion
     // elsewhere.
     const Eigen::RowVector3d bearing(-n.x() / t.range, -n.y() / t.range, -1);
     Eigen::Matrix3d J;
@@ -218,8 +220,9 @@ std::unique_ptr<FrontEnd> makeRadarFrontEnd(Config& config, const std::string& s
                                             const ClassTable& classes) {
   const std::string section = "sensor." + sensor_label;
   const auto radar = config.read<RadarParams>(section + ".radar");
-  const Sensing sensing = Sensing::read(config, section, classes, {"target"}, radarDefaults());
-  return std::make_unique<RadarFrontEnd>(radar, classes, sensing);
+  const DetectionModel detection_model =
+      DetectionModel::read(config, section, classes, {"target"}, radarDefaults());
+  return std::make_unique<RadarFrontEnd>(radar, classes, detection_model);
 }
 
 }  // namespace perception

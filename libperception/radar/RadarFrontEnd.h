@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "libperception/measurement/FrontEnd.h"
-#include "libperception/measurement/RadarModel.h"
+#include "libperception/radar/RadarModel.h"
 
 namespace perception {
 
 /// [sensor.LABEL.radar]: one unit's noise, mounting and clean-up. Defaults are of a modern 77 GHz
-/// unit (SPEC 4.3); DUC's Delphi had 5 m, 5 deg, 1 m/s.
+/// unit (method.md 4.3); DUC's Delphi had 5 m, 5 deg, 1 m/s.
 struct RadarParams {
   double range_sigma = 0.5;           ///< [m]
   double bearing_sigma = radians(2);  ///< [rad]
@@ -17,7 +17,7 @@ struct RadarParams {
   double own_speed_sigma = 0.1;       ///< [m/s] of the vehicle's velocity in any direction
   bool upside_down = false;  ///< the unit hangs on its head and its pose in the log does not say so
   // Returns of one object in one scan are one measurement. From the strongest on, each takes those
-  // within these distances (a cell of SPEC 9.9); a row of cars does not chain.
+  // within these distances (a cell of method.md 9.9); a row of cars does not chain.
   double merge_range = 0.75;       ///< [m]
   double merge_width = 1.0;        ///< [m] across the line of sight, at least bearing_sigma there
   double merge_rate = 0.5;         ///< [m/s]
@@ -37,14 +37,17 @@ struct RadarTarget {
   int returns = 0;
 };
 
-/// The radar rib: targets of one unit's scan under a RadarModel. Bad returns are dropped and
+/// The radar front end: targets of one unit's scan under a RadarModel. Bad returns are dropped and
 /// counted.
 class RadarFrontEnd final : public FrontEnd {
  public:
-  RadarFrontEnd(RadarParams params, const ClassTable& classes, const Sensing& sensing);
+  RadarFrontEnd(RadarParams params, const ClassTable& classes,
+                const DetectionModel& detection_model);
 
   MeasurementScan extract(const SensorFrame& frame) const override;
-  std::vector<std::string> labelNames() const override { return model_->sensing().labels(); }
+  std::vector<std::string> labelNames() const override {
+    return model_->detection_model().labels();
+  }
 
   const RadarParams& params() const { return params_; }
 

@@ -25,7 +25,7 @@ std::array<Vector3, 8> corners(const KittiObject& o) {
   const Vector3 right(std::sin(o.rotation_y), 0, std::cos(o.rotation_y));
   std::array<Vector3, 8> result;
   for (std::size_t i = 0; i < 8; ++i) {
-    result[i] = o.bottom_centre + ((i & 1) ? 0.5 : -0.5) * o.length * forward +
+    result[i] = o.bottom_center + ((i & 1) ? 0.5 : -0.5) * o.length * forward +
                 ((i & 2) ? 0.5 : -0.5) * o.width * right -
                 ((i & 4) ? o.height : 0) * Vector3::UnitY();
   }
@@ -99,11 +99,11 @@ bool headingKnown(const SceneObject& object) {
 // a square across the line of sight that is as broad as the disc looks.
 void takeAsDisc(KittiObject& o) {
   const double radius = 0.25 * (o.length + o.width);
-  const double range = std::hypot(o.bottom_centre.x(), o.bottom_centre.z());
+  const double range = std::hypot(o.bottom_center.x(), o.bottom_center.z());
   const double half = std::asin(std::min(0.9, radius / std::max(range, 1e-3)));
   // Half side a of the square with a / (range - a) = tan(half).
   o.length = o.width = 2 * range * std::tan(half) / (1 + std::tan(half));
-  o.rotation_y = wrapAngle(std::atan2(o.bottom_centre.x(), o.bottom_centre.z()) - kPi / 2);
+  o.rotation_y = wrapAngle(std::atan2(o.bottom_center.x(), o.bottom_center.z()) - kPi / 2);
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& s
   const Role role = roleOf(object, classes, selection.road_user_from);
   result.type = classes[role.class_id].kitti_type;
   result.length = object.length, result.width = object.width, result.height = object.height;
-  result.bottom_centre = T_reference_world * object.position;
+  result.bottom_center = T_reference_world * object.position;
   if (headingKnown(object)) {
     const Vector3 front =
         T_reference_world.linear() * Vector3(std::cos(object.yaw), std::sin(object.yaw), 0);
@@ -129,7 +129,7 @@ std::optional<KittiObject> kittiObject(const SceneObject& object, const Scene& s
     takeAsDisc(result);
   }
   result.alpha =
-      wrapAngle(result.rotation_y - std::atan2(result.bottom_centre.x(), result.bottom_centre.z()));
+      wrapAngle(result.rotation_y - std::atan2(result.bottom_center.x(), result.bottom_center.z()));
   result.score = logit(std::clamp(role.probability, kSurest, 1 - kSurest));
 
   std::array<Vector3, 8> in_camera = corners(result);
@@ -145,8 +145,8 @@ std::string kittiLine(const KittiObject& o) {
       fmt::format("{} {} {} 0 0 {}", o.frame, o.id, o.type, fixedPlaces(o.alpha, kRadianPlaces));
   for (const double v : {o.box.x1, o.box.y1, o.box.x2, o.box.y2})
     line += ' ' + fixedPlaces(v, kPixelPlaces);
-  for (const double v : {o.height, o.width, o.length}) line += ' ' + fixedPlaces(v, kMetrePlaces);
-  for (const double v : o.bottom_centre) line += ' ' + fixedPlaces(v, kMetrePlaces);
+  for (const double v : {o.height, o.width, o.length}) line += ' ' + fixedPlaces(v, kMeterPlaces);
+  for (const double v : o.bottom_center) line += ' ' + fixedPlaces(v, kMeterPlaces);
   line += ' ' + fixedPlaces(o.rotation_y, kRadianPlaces);
   return line + ' ' + fixedPlaces(o.score, kProbabilityPlaces) + '\n';
 }

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "libperception/core/ObjectClass.h"
+#include "libperception/measurement/ObjectClass.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/scene/Scene.h"
 
@@ -32,7 +32,7 @@ struct KittiObject {
   double alpha = 0;  ///< [rad] rotation_y minus the direction of sight, in (-pi, pi]
   ObjectDetection::ImageBox box;             ///< [px] of the 3D box, clipped to the image
   double length = 0, width = 0, height = 0;  ///< [m]
-  Vector3 bottom_centre =
+  Vector3 bottom_center =
       Vector3::Zero();    ///< [m] frame of the rectified camera 0 (x right, y down, z forward)
   double rotation_y = 0;  ///< [rad] about that frame's y axis; 0: the front looks along x
   double score = 0;       ///< log-odds that it exists and is no mere thing, within +-13.8

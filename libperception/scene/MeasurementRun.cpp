@@ -23,8 +23,8 @@ constexpr const char* kScansHeader =
 constexpr const char* kMeasurementsHeader =
     "sensor,frame,t,stamp,label,x,y,range,bearing,sd_range,sd_across,score,length,width,height\n";
 
-std::string metres(double value) {
-  return std::isfinite(value) ? fixedPlaces(value, kMetrePlaces) : "";
+std::string meters(double value) {
+  return std::isfinite(value) ? fixedPlaces(value, kMeterPlaces) : "";
 }
 std::string angle(double value) { return fixedPlaces(value, kRadianPlaces); }
 
@@ -180,7 +180,7 @@ RecordedScan recordScan(const MeasurementScan& scan, const RecordedSensor& senso
     r.bearing = wrapAngle(std::atan2(sight.y(), sight.x()) - forward);
     fillDeviations(scan, m, r);
     r.score = m.log_score_ratio;
-    if (m.sides) r.length = m.sides->a, r.width = m.sides->b;
+    if (m.sides) r.length = m.sides->length, r.width = m.sides->width;
     if (m.height) r.height = m.height->mean;
     const bool finite = r.position.allFinite() && std::isfinite(r.sd_range + r.sd_across + r.score);
     if (finite) {
@@ -205,9 +205,9 @@ MeasurementRunWriter::MeasurementRunWriter(const std::string& dir, const ClassTa
 void MeasurementRunWriter::writeSensor(const RecordedSensor& s) {
   for (std::size_t c = 0; c < s.class_range.size(); ++c) {
     sensors_.write(fmt::format("{},{},{},{},{},{},{},{}\n", s.label, static_cast<char>(s.modality),
-                               angle(s.fov), metres(s.range_min), metres(s.range_max),
+                               angle(s.fov), meters(s.range_min), meters(s.range_max),
                                fmt::join(s.labels, "|"), classes_[static_cast<ClassId>(c)].name,
-                               metres(s.class_range[c])));
+                               meters(s.class_range[c])));
   }
 }
 
@@ -218,15 +218,15 @@ void MeasurementRunWriter::write(const RecordedScan& scan, const RecordedSensor&
                   decimalSeconds(scan.stamp.ns - first_stamp.ns), decimalSeconds(scan.stamp.ns));
   const Vector3 ego = scan.T_world_ego.translation(), at = scan.T_world_sensor.translation();
   scans_.write(fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{}\n", instant, metres(ego.x()), metres(ego.y()),
-      metres(ego.z()), angle(yawOf(scan.T_world_ego)), metres(at.x()), metres(at.y()),
-      metres(at.z()), angle(yawOf(scan.T_world_sensor)), scan.dropped, scan.measurements.size()));
+      "{},{},{},{},{},{},{},{},{},{},{}\n", instant, meters(ego.x()), meters(ego.y()),
+      meters(ego.z()), angle(yawOf(scan.T_world_ego)), meters(at.x()), meters(at.y()),
+      meters(at.z()), angle(yawOf(scan.T_world_sensor)), scan.dropped, scan.measurements.size()));
   for (const RecordedMeasurement& m : scan.measurements) {
     measurements_.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", instant, m.label,
-                                    metres(m.position.x()), metres(m.position.y()), metres(m.range),
-                                    angle(m.bearing), metres(m.sd_range), metres(m.sd_across),
-                                    fixedPlaces(m.score, kMetrePlaces), metres(m.length),
-                                    metres(m.width), metres(m.height)));
+                                    meters(m.position.x()), meters(m.position.y()), meters(m.range),
+                                    angle(m.bearing), meters(m.sd_range), meters(m.sd_across),
+                                    fixedPlaces(m.score, kMeterPlaces), meters(m.length),
+                                    meters(m.width), meters(m.height)));
   }
 }
 

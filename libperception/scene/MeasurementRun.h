@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ObjectClass.h"
 #include "libperception/measurement/Measurement.h"
+#include "libperception/measurement/ObjectClass.h"
 #include "libperception/scene/OutputFile.h"
 
 namespace perception {

@@ -7,7 +7,7 @@ namespace perception {
 
 /// The decimal places of every result file: well below what any sensor resolves, so that rounding
 /// never matters.
-inline constexpr int kMetrePlaces = 4;   ///< [m], [m/s]: 0.1 mm
+inline constexpr int kMeterPlaces = 4;   ///< [m], [m/s]: 0.1 mm
 inline constexpr int kRadianPlaces = 6;  ///< [rad], [rad/s]: 0.05 mm at 50 m
 inline constexpr int kProbabilityPlaces = 6;
 

@@ -14,8 +14,9 @@ struct SensorRecord {
   std::string modality;      ///< "C", "L", "R"
   std::uint64_t frames = 0;  ///< processed
   std::uint64_t measurements = 0;
-  std::uint64_t dropped_points = 0;        ///< not finite, out of range
-  std::uint64_t dropped_measurements = 0;  ///< no measurement for the rib: no label, no box, ghost ...
+  std::uint64_t dropped_points = 0;  ///< not finite, out of range
+  std::uint64_t dropped_measurements =
+      0;  ///< no measurement for the front end: no label, no box, ghost ...
   std::uint64_t dropped_frames = 0;  ///< no stamp, cannot be decoded, older than the reorder window
 };
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ObjectClass.h"
+#include "libperception/measurement/ObjectClass.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -16,7 +16,7 @@ struct SceneObject {
   bool classified = false;  ///< its probability is at least .95
   std::vector<double> class_probability;  ///< in the order of the class table; sums to 1
   double existence = 0;                   ///< probability that the track is a real object
-  Vector3 position = Vector3::Zero();     ///< [m] centre of the footprint, z = base of the object
+  Vector3 position = Vector3::Zero();     ///< [m] center of the footprint, z = base of the object
   double yaw = 0;                         ///< [rad] direction of the length axis, front first
   bool has_yaw = false;                   ///< false: yaw is the direction of motion or 0
   Vector2 velocity = Vector2::Zero();     ///< [m/s]

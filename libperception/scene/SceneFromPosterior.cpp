@@ -5,10 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "libperception/filter/MotionModels.h"
-#include "libperception/filter/Parallel.h"
-#include "libperception/filter/Prediction.h"
-#include "libperception/filter/Smoothing.h"
+#include "libperception/filter/predict/Prediction.h"
+#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/Parallel.h"
+#include "libperception/filter/update/Smoothing.h"
 
 namespace perception {
 namespace {
@@ -29,9 +29,9 @@ struct Mixture {
 Mixture mixtureOf(const Track& track, const FilterModel& model, const std::vector<double>& p) {
   Mixture out;
   std::vector<Kinematics> kinematics;
-  if (track.sure >= 0) {
-    const ClassFilter& f = track.bank[static_cast<std::size_t>(track.sure)];
-    const Kinematics k = kinematicsOf(model.classes[track.sure], f);
+  if (track.decided_class >= 0) {
+    const ClassFilter& f = track.bank[static_cast<std::size_t>(track.decided_class)];
+    const Kinematics k = kinematicsOf(model.classes[track.decided_class], f);
     const Matrix4 J = k.J.topRows<4>();
     out.mean = k.q.head<4>();
     out.covariance = J * f.P * J.transpose();
@@ -52,17 +52,16 @@ Mixture mixtureOf(const Track& track, const FilterModel& model, const std::vecto
 }  // namespace
 
 void SceneParams::visit(ParamVisitor& v) {
-  v.real("min_existence", min_existence, {0, 1}, "", "objects below are not put out");
+  v.real("min_existence", min_existence, {0, 1}, "", "objects below are not output");
   v.real("classified_at", classified_at, {0.5, 1}, "",
          "class probability from which an object is classified");
   v.real("road_user_from", road_user_from, {0, 1}, "",
          "KITTI export: written as a road user from this probability on");
   v.real("in_image", in_image, {0, 1}, "",
          "KITTI export: share of its box that an object must have in the image");
-  v.real(
-      "place_within", place_within, {0, 100}, "",
-      "of sqrt(length width): with a lidar, places that are less certain are not put out; 0: all "
-      "are");
+  v.real("place_within", place_within, {0, 100}, "",
+         "of sqrt(length width): with a lidar, places that are less certain are not output; 0: all "
+         "are");
 }
 
 std::uint64_t SceneFromPosterior::numberOf(std::uint64_t track_id) {
@@ -97,10 +96,10 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   } else {
     o.speed = speed;
     o.sd_speed = std::sqrt(along.dot(velocity_covariance * along));
-    if (track.facing) {
+    if (track.body_heading) {
       o.has_yaw = true;
-      o.yaw = track.facing->mean;
-      o.sd_yaw = std::min(kPi, std::sqrt(track.facing->variance));
+      o.yaw = track.body_heading->mean;
+      o.sd_yaw = std::min(kPi, std::sqrt(track.body_heading->variance));
     } else if (speed >= kHeadingFromSpeed) {
       const Vector2 across(-along.y(), along.x());
       o.yaw = std::atan2(along.y(), along.x());

@@ -3,16 +3,16 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
-#include "libperception/filter/FilterModel.h"
-#include "libperception/filter/Track.h"
+#include "libperception/config/ParamSet.h"
+#include "libperception/filter/state/FilterModel.h"
+#include "libperception/filter/state/Track.h"
 #include "libperception/scene/Scene.h"
 
 namespace perception {
 
 /// [scene]: what of the posterior becomes the output.
 struct SceneParams {
-  double min_existence = 0.5;  ///< objects below are not put out (SPEC 5.11)
+  double min_existence = 0.5;  ///< objects below are not output (method.md 5.11)
   double classified_at =
       0.95;  ///< class probability from which an object counts as classified (the paper's)
   double road_user_from = 0.5;  ///< KITTI export: an object that may be a mere thing is written as
@@ -20,7 +20,7 @@ struct SceneParams {
   double in_image =
       0;  ///< KITTI export: share of its image box that an object must have in the image
   /// Share of sqrt(length * width) to which a place must be known (deviations of x and y together):
-  /// objects less certain are tracked, but not put out. 0: all are. Only
+  /// objects less certain are tracked, but not output. 0: all are. Only
   /// where a lidar takes part: other sensors alone know few places so well.
   double place_within = 0;
 

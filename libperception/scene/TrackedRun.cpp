@@ -34,7 +34,7 @@ class Line {
     text(fmt::format("{}", value));
   }
   void time(Stamp later, Stamp earlier) { text(decimalSeconds(later.ns - earlier.ns)); }
-  void metres(double value) { text(fixedPlaces(value, kMetrePlaces)); }
+  void meters(double value) { text(fixedPlaces(value, kMeterPlaces)); }
   void radians(double value) { text(fixedPlaces(value, kRadianPlaces)); }
   void probability(double value) { text(fixedPlaces(value, kProbabilityPlaces)); }
   const std::string& end() { return line_ += '\n'; }
@@ -68,16 +68,16 @@ std::string trackLine(const Scene& scene, const SceneObject& object, const Class
   line.integer(object.classified ? 1 : 0);
   for (const double p : object.class_probability) line.probability(p);
   line.probability(object.existence);
-  for (const double v : object.position) line.metres(v);
+  for (const double v : object.position) line.meters(v);
   line.radians(object.yaw);
   line.integer(object.has_yaw ? 1 : 0);
-  for (const double v : object.velocity) line.metres(v);
-  line.metres(object.speed);
-  for (const double v : {object.length, object.width, object.height}) line.metres(v);
-  line.metres(object.sd_x);
-  line.metres(object.sd_y);
+  for (const double v : object.velocity) line.meters(v);
+  line.meters(object.speed);
+  for (const double v : {object.length, object.width, object.height}) line.meters(v);
+  line.meters(object.sd_x);
+  line.meters(object.sd_y);
   line.radians(object.sd_yaw);
-  line.metres(object.sd_speed);
+  line.meters(object.sd_speed);
   for (const Modality m : kModalities) {
     const auto hit = object.last_hit.find(m);
     if (hit == object.last_hit.end()) {
@@ -93,9 +93,9 @@ std::string sceneLine(const Scene& scene, std::size_t objects, Stamp first_stamp
   Line line;
   addInstant(line, scene, first_stamp);
   const Pose3& pose = scene.ego.T_world_ego;
-  for (const double v : pose.translation()) line.metres(v);
+  for (const double v : pose.translation()) line.meters(v);
   for (const double v : {yawOf(pose), pitchOf(pose), rollOf(pose)}) line.radians(v);
-  for (const double v : scene.ego.velocity) line.metres(v);
+  for (const double v : scene.ego.velocity) line.meters(v);
   line.radians(scene.ego.yaw_rate);
   line.integer(objects);
   return line.end();

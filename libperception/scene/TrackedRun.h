@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ObjectClass.h"
+#include "libperception/measurement/ObjectClass.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/scene/Scene.h"
 

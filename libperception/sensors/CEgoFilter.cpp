@@ -5,7 +5,7 @@
 // Of MRPT's matrices only some sizes are in its library; what checks and prints Jacobians of eleven
 // axes (KF_options.debug_verify_analytic_jacobians) is not.
 namespace mrpt::math {
-using Matrix11 = CMatrixFixed<double, perception::kEgoSide, perception::kEgoSide>;
+using Matrix11 = CMatrixFixed<double, perception::kAccelBiasY, perception::kAccelBiasY>;
 
 template <>
 std::string MatrixVectorBase<double, Matrix11>::asString() const {
@@ -27,7 +27,7 @@ namespace perception {
 
 namespace {
 
-constexpr int kVehicle = kEgoSide;  // axes of MRPT's "vehicle"
+constexpr int kVehicle = kAccelBiasY;  // axes of MRPT's "vehicle"
 
 /// Rates of yaw, pitch and roll [rad/s] from the rates about the vehicle's axes.
 Vector3 angleRates(const EgoVector& x, const EgoInput& input) {
@@ -133,7 +133,7 @@ void CEgoFilter::predict(EgoEstimate& estimate, const EgoInput& input) {
   observation_ = {};
   moving_ = true;
   run(estimate);
-  for (const int axis : {kEgoSide, kEgoWheel})
+  for (const int axis : {kAccelBiasY, kEgoWheel})
     estimate.P(axis, axis) += input.dt * input.noise[axis];
 }
 

@@ -16,10 +16,10 @@ enum EgoAxis : int {
   kEgoSpeed,  ///< [m/s] of the rear axle, along the vehicle's x axis
   kEgoGyroX,
   kEgoGyroY,
-  kEgoGyroZ,  ///< [rad/s] biases of the gyros
-  kEgoAccel,  ///< [m/s^2] bias of the forward accelerometer
-  kEgoSide,   ///< [m/s^2] bias of the sideways accelerometer
-  kEgoWheel,  ///< [-] scale error: wheels read (1 + it) times the speed
+  kEgoGyroZ,    ///< [rad/s] biases of the gyros
+  kEgoAccel,    ///< [m/s^2] bias of the forward accelerometer
+  kAccelBiasY,  ///< [m/s^2] bias of the sideways accelerometer
+  kEgoWheel,    ///< [-] scale error: wheels read (1 + it) times the speed
   kEgoAxes
 };
 using EgoVector = Eigen::Matrix<double, kEgoAxes, 1>;
@@ -48,7 +48,7 @@ struct EgoInput {
   EgoVector noise = EgoVector::Zero();  ///< variance added a second, by axis
 };
 
-/// Up to three numbers that were seen of the state, linearised.
+/// Up to three numbers that were seen of the state, linearized.
 struct EgoObservation {
   int rows = 0;  ///< in use
   Eigen::Vector3d z = Eigen::Vector3d::Zero(), h = Eigen::Vector3d::Zero();
@@ -63,7 +63,7 @@ struct EgoObservation {
 ///
 /// MRPT parts a state into a vehicle, which moves, and landmarks, which stay and are only seen. The
 /// last two axes are such constants: they are the one landmark.
-class CEgoFilter final : private mrpt::bayes::CKalmanFilterCapable<kEgoSide, 3, 2, 1> {
+class CEgoFilter final : private mrpt::bayes::CKalmanFilterCapable<kAccelBiasY, 3, 2, 1> {
  public:
   CEgoFilter();
 

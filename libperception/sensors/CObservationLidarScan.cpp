@@ -40,7 +40,7 @@ struct RangeSummary {
   std::size_t valid = 0;
 };
 
-RangeSummary summarise(const LidarCloud& cloud) {
+RangeSummary summarize(const LidarCloud& cloud) {
   RangeSummary s;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double range = std::hypot(cloud.x[i], cloud.y[i], cloud.z[i]);
@@ -97,7 +97,7 @@ void CObservationLidarScan::serializeFrom(CArchive& in, uint8_t version) {
 
 void CObservationLidarScan::getDescriptionAsText(std::ostream& out) const {
   CObservation::getDescriptionAsText(out);
-  const RangeSummary s = summarise(cloud);
+  const RangeSummary s = summarize(cloud);
   out << fmt::format(
       "Lidar scan: {} points, {} with a range, {:.2f} to {:.2f} m, instrument's range {:.1f} m\n",
       cloud.size(), s.valid, s.nearest, s.farthest, cloud.max_range);
@@ -113,7 +113,7 @@ std::string CObservationLidarScan::exportTxtHeader() const {
 }
 
 std::string CObservationLidarScan::exportTxtDataRow() const {
-  const RangeSummary s = summarise(cloud);
+  const RangeSummary s = summarize(cloud);
   return fmt::format("{} {} {:.3f} {:.3f} {:.1f}", cloud.size(), s.valid, s.nearest, s.farthest,
                      cloud.max_range);
 }

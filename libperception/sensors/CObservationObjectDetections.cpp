@@ -29,7 +29,7 @@ void writeDetection(CArchive& out, const ObjectDetection& d) {
   out << d.space_box.has_value();
   if (d.space_box) {
     const auto& b = *d.space_box;
-    out << b.bottom_centre.x() << b.bottom_centre.y() << b.bottom_centre.z() << b.yaw << b.length
+    out << b.bottom_center.x() << b.bottom_center.y() << b.bottom_center.z() << b.yaw << b.length
         << b.width << b.height;
   }
   out << d.heading.has_value();
@@ -51,7 +51,7 @@ ObjectDetection readDetection(CArchive& in) {
   }
   if (archive::readFlag(in)) {
     auto& b = d.space_box.emplace();
-    in >> b.bottom_centre.x() >> b.bottom_centre.y() >> b.bottom_centre.z() >> b.yaw >> b.length >>
+    in >> b.bottom_center.x() >> b.bottom_center.y() >> b.bottom_center.z() >> b.yaw >> b.length >>
         b.width >> b.height;
   }
   if (archive::readFlag(in)) d.heading = in.ReadAs<double>();
@@ -124,7 +124,7 @@ void CObservationObjectDetections::getDescriptionAsText(std::ostream& out) const
       const auto& b = *d.space_box;
       out << fmt::format(
           "  box at ({:.2f}, {:.2f}, {:.2f}) m yaw {:.1f} deg, {:.2f} x {:.2f} x {:.2f} m",
-          b.bottom_centre.x(), b.bottom_centre.y(), b.bottom_centre.z(), degrees(b.yaw), b.length,
+          b.bottom_center.x(), b.bottom_center.y(), b.bottom_center.z(), degrees(b.yaw), b.length,
           b.width, b.height);
     }
     if (d.heading) out << fmt::format("  alpha {:.1f} deg", degrees(*d.heading));
@@ -149,8 +149,8 @@ std::string CObservationObjectDetections::exportTxtDataRow() const {
     if (d.space_box) {
       const auto& b = *d.space_box;
       row +=
-          fmt::format(" {:.3f} {:.3f} {:.3f} {:.4f} {:.3f} {:.3f} {:.3f}", b.bottom_centre.x(),
-                      b.bottom_centre.y(), b.bottom_centre.z(), b.yaw, b.length, b.width, b.height);
+          fmt::format(" {:.3f} {:.3f} {:.3f} {:.4f} {:.3f} {:.3f} {:.3f}", b.bottom_center.x(),
+                      b.bottom_center.y(), b.bottom_center.z(), b.yaw, b.length, b.width, b.height);
     } else {
       row += " nan nan nan nan nan nan nan";
     }

@@ -7,7 +7,7 @@
 namespace perception {
 
 /// What somebody's detector found at one instant: boxes in the image, boxes in space, or both, with
-/// scores. No MRPT class holds labelled boxes.
+/// scores. No MRPT class holds labeled boxes.
 class CObservationObjectDetections : public mrpt::obs::CObservation {
   DEFINE_SERIALIZABLE(CObservationObjectDetections, perception)
  public:

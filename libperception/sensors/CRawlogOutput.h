@@ -21,7 +21,7 @@ class CRawlogOutput final : public mrpt::serialization::CArchive {
 
   /// Writes the rest and the trailer, forces it to the disk and closes. Throws OutputError.
   void finish();
-  /// What the disk said, when a write failed: MRPT's serialisation turns exceptions that pass it
+  /// What the disk said, when a write failed: MRPT's serialization turns exceptions that pass it
   /// into its own type.
   const std::optional<OutputError>& failure() const { return failure_; }
   std::uint64_t bytesIn() const { return bytes_in_; }    ///< [bytes] before compression

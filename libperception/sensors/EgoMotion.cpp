@@ -86,13 +86,13 @@ void EgoMotion::start(EgoMotionState& state, Stamp stamp) const {
   variance[kEgoSpeed] = square(kAnySpeed);
   variance.segment<3>(kEgoGyroX).setConstant(square(params_.gyro_bias_sigma));
   variance[kEgoWheel] = square(params_.wheel_scale_sigma);
-  variance[kEgoAccel] = variance[kEgoSide] = square(params_.accel_bias_sigma);
+  variance[kEgoAccel] = variance[kAccelBiasY] = square(params_.accel_bias_sigma);
   state.estimate.P = variance.asDiagonal();
 }
 
 // ---- Motion.
 
-bool EgoMotion::standsAt(const EgoMotionState& state, Stamp stamp) const {
+bool EgoMotion::isStationary(const EgoMotionState& state, Stamp stamp) const {
   return state.wheels && stamp - state.wheels->first <= kHeld &&
          std::abs(state.wheels->second.speed) < kStanding;
 }
@@ -102,8 +102,8 @@ EgoInput EgoMotion::inputAt(const EgoMotionState& state, Stamp stamp) const {
   EgoVector& noise = input.noise;
   noise.segment<3>(kEgoGyroX).setConstant(square(params_.gyro_bias_walk));
   noise[kEgoWheel] = square(kScaleWalk);
-  noise[kEgoAccel] = noise[kEgoSide] = square(params_.accel_bias_walk);
-  if (standsAt(state, stamp)) {                   // nothing moves, whatever the gyros say
+  noise[kEgoAccel] = noise[kAccelBiasY] = square(params_.accel_bias_walk);
+  if (isStationary(state, stamp)) {               // nothing moves, whatever the gyros say
     noise[kEgoSpeed] = square(kAnyAcceleration);  // it may start at any time
     noise[kEgoYaw] = square(radians(0.01));
     return input;
@@ -146,7 +146,7 @@ void EgoMotion::advance(EgoMotionState& state, Stamp stamp) {
 }
 
 double EgoMotion::yawRate(const EgoMotionState& state) const {
-  if (standsAt(state, state.stamp)) return 0;
+  if (isStationary(state, state.stamp)) return 0;
   if (state.imu && state.stamp - state.imu->first <= kHeld && state.imu->second.gyro)
     return state.imu->second.rates.z() - state.estimate.x[kEgoGyroZ];
   if (state.wheels && state.stamp - state.wheels->first <= kHeld)
@@ -157,7 +157,7 @@ double EgoMotion::yawRate(const EgoMotionState& state) const {
 // ---- Readings.
 
 void EgoMotion::apply(EgoMotionState& state, const ImuReading& imu) {
-  if (imu.gyro && standsAt(state, state.stamp)) {
+  if (imu.gyro && isStationary(state, state.stamp)) {
     EgoObservation o;  // at rest the gyros show their biases
     o.rows = 3;
     o.z = imu.rates;
@@ -166,11 +166,11 @@ void EgoMotion::apply(EgoMotionState& state, const ImuReading& imu) {
     o.variance.setConstant(square(params_.gyro_noise) * kImuRate);
     filter_.update(state.estimate, o);
   }
-  if (imu.accelerometer) lookAtGravity(state, imu);
+  if (imu.accelerometer) updateAttitude(state, imu);
 }
 
 // The mean of a tenth of a second: single readings shake.
-void EgoMotion::lookAtGravity(EgoMotionState& state, const ImuReading& imu) {
+void EgoMotion::updateAttitude(EgoMotionState& state, const ImuReading& imu) {
   auto& sum = state.level;
   ++sum.count;
   sum.force += imu.force;
@@ -183,19 +183,19 @@ void EgoMotion::lookAtGravity(EgoMotionState& state, const ImuReading& imu) {
   sum = {};
   sum.begin = state.stamp;
   const EgoVector& x = state.estimate.x;
-  const bool stands = standsAt(state, state.stamp);
+  const bool stands = isStationary(state, state.stamp);
   const double rate = stands || !imu.gyro ? yawRate(state) : turning - x[kEgoGyroZ];
   const double cp = std::cos(x[kEgoPitch]), sp = std::sin(x[kEgoPitch]);
   const double cr = std::cos(x[kEgoRoll]), sr = std::sin(x[kEgoRoll]);
   EgoObservation side;  // turning and gravity
   side.rows = 1;
   side.z[0] = force.y();
-  side.h[0] = x[kEgoSpeed] * rate + kGravity * cp * sr + x[kEgoSide];
+  side.h[0] = x[kEgoSpeed] * rate + kGravity * cp * sr + x[kAccelBiasY];
   side.H(0, kEgoSpeed) = rate;
   side.H(0, kEgoGyroZ) = stands ? 0 : -x[kEgoSpeed];
   side.H(0, kEgoPitch) = -kGravity * sp * sr;
   side.H(0, kEgoRoll) = kGravity * cp * cr;
-  side.H(0, kEgoSide) = 1;
+  side.H(0, kAccelBiasY) = 1;
   side.variance[0] = square(params_.level_sigma) + square(params_.accel_noise) / time;
   filter_.update(state.estimate, side);
   if (!stands) return;

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/sensors/CEgoFilter.h"
 #include "libperception/sensors/EgoReadings.h"
 #include "libperception/sensors/GnssFix.h"
@@ -85,8 +85,8 @@ class EgoMotion {
   void start(State& state, Stamp stamp) const;
   void advance(State& state, Stamp stamp);
   EgoInput inputAt(const State& state, Stamp stamp) const;
-  void lookAtGravity(State& state, const ImuReading& imu);
-  bool standsAt(const State& state, Stamp stamp) const;
+  void updateAttitude(State& state, const ImuReading& imu);
+  bool isStationary(const State& state, Stamp stamp) const;
   void apply(State& state, const ImuReading& imu);
   void apply(State& state, const WheelReading& wheels);
   void apply(State& state, const GnssFix& fix);

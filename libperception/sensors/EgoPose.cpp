@@ -52,11 +52,11 @@ void EgoPoseParams::visit(ParamVisitor& v) {
   v.text("label", label,
          "label of the pose observations; empty: EGO_POSE, or the first pose label of the log");
   v.real("sigma_xy", minimum.sigma_xy, {0, 10}, "m",
-         "least standard deviation of the position (SPEC 1)");
+         "least standard deviation of the position (method.md 1.3)");
   v.angle("sigma_yaw_deg", minimum.sigma_yaw, {0, 45},
-          "least standard deviation of the heading (SPEC 1)");
+          "least standard deviation of the heading (method.md 1.3)");
   v.angle("sigma_pitch_deg", minimum.sigma_pitch, {0, 45},
-          "least standard deviation of the pitch (SPEC 1)");
+          "least standard deviation of the pitch (method.md 1.3)");
   v.real("extrapolation", extrapolation, {0, 5}, "s",
          "time beyond the last pose for which it is continued");
   v.real("max_speed", max_speed, {1, 1000}, "m/s",
@@ -78,7 +78,7 @@ EgoState EgoPose::parked(Stamp stamp, const PoseUncertainty& uncertainty) {
 }
 
 void EgoPose::clear() {
-  worlds_ += fusion_.state().relocations;
+  frame_epoch_ += fusion_.state().relocations;
   fusion_.clear();
   poses_.clear();
   relocated_.clear();
@@ -119,13 +119,13 @@ void EgoPose::add(const mrpt::obs::CObservation& observation) {
 
 bool EgoPose::isJump(const EgoState& pose) {
   const auto after = std::lower_bound(poses_.begin(), poses_.end(), pose.stamp, before);
-  const EgoState& neighbour = after == poses_.begin() ? *after : *std::prev(after);
+  const EgoState& neighbor = after == poses_.begin() ? *after : *std::prev(after);
   const auto tooFast = [this](const EgoState& a, const EgoState& b) {
     const double distance = (a.T_world_ego.translation() - b.T_world_ego.translation()).norm();
     // Two poses of nearly the same instant may differ by their noise.
     return distance > params_.max_speed * std::max(std::abs(a.stamp - b.stamp), 0.01);
   };
-  if (!tooFast(neighbour, pose)) {
+  if (!tooFast(neighbor, pose)) {
     relocated_.clear();
     return false;
   }
@@ -142,7 +142,7 @@ void EgoPose::add(const EgoState& pose) {
     ++rejected_other_;
     return;
   }
-  if (poses_.empty() && !fusion_.poses().empty()) ++worlds_;  // the log's own poses take over
+  if (poses_.empty() && !fusion_.poses().empty()) ++frame_epoch_;  // the log's own poses take over
   if (!poses_.empty()) {
     const auto place = std::lower_bound(poses_.begin(), poses_.end(), pose.stamp, before);
     const bool same_instant = place != poses_.end() && place->stamp == pose.stamp;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/sensors/EgoFusion.h"
 
@@ -20,7 +20,7 @@ struct EgoPoseParams {
   FusionParams fusion;
   std::string
       label;  ///< of the pose observations; empty: EGO_POSE, or the first label if there is none
-  PoseUncertainty minimum;     ///< SPEC 1; a log that claims less (or nothing) gets this
+  PoseUncertainty minimum;     ///< method.md 1.3; a log that claims less (or nothing) gets this
   double extrapolation = 0.2;  ///< [s] at most beyond the last pose
   double max_speed = 100;      ///< [m/s] a step that implies more is a jump
   double history = 10;         ///< [s] of poses that are kept
@@ -58,7 +58,7 @@ class EgoPose {
   Stamp latest() const { return poses().back().stamp; }
   /// How often the world of the poses became another one: when the first pose of the log took over
   /// from EgoFusion, or this one found its heading. What was placed in the old world is void.
-  std::uint64_t worlds() const { return worlds_ + fusion_.state().relocations; }
+  std::uint64_t frameEpoch() const { return frame_epoch_ + fusion_.state().relocations; }
   const EgoFusion& fusion() const { return fusion_; }
   /// Forgets everything, as after a jump of the clock.
   void clear();
@@ -83,7 +83,7 @@ class EgoPose {
   std::deque<EgoState> poses_;      ///< by stamp; velocities are not set
   std::deque<EgoState> relocated_;  ///< a run of rejected poses that agree with each other
   std::uint64_t accepted_ = 0, rejected_jumps_ = 0, rejected_other_ = 0;
-  std::uint64_t worlds_ = 0;
+  std::uint64_t frame_epoch_ = 0;
 };
 
 }  // namespace perception

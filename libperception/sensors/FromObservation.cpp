@@ -136,7 +136,7 @@ bool usable(const ObjectDetection& d) {
   }
   if (d.space_box) {
     const auto& b = *d.space_box;
-    if (!b.bottom_centre.allFinite() || !std::isfinite(b.yaw + b.length + b.width + b.height))
+    if (!b.bottom_center.allFinite() || !std::isfinite(b.yaw + b.length + b.width + b.height))
       return false;
     if (!(b.length > 0) || !(b.width > 0) || !(b.height > 0)) return false;
   }

@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Frames.h"
-#include "libperception/core/ParamSet.h"
 #include "libperception/core/Time.h"
 
 namespace perception {

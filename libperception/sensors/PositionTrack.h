@@ -16,8 +16,8 @@ struct PositionTrack {
   std::vector<Fix> fixes;
   std::size_t dropped = 0;  ///< lines without a valid fix, or not after the one before
 
-  /// Metres east and north of the first fix, on the tangent plane of the ellipsoid there (good to
-  /// centimetres over kilometres).
+  /// Meters east and north of the first fix, on the tangent plane of the ellipsoid there (good to
+  /// centimeters over kilometers).
   std::vector<Vector2> local() const;
 };
 

@@ -44,7 +44,7 @@ LidarCloud unproject(const mrpt::obs::CObservation3DRangeScan& scan, std::uint64
   LidarCloud cloud;
   const auto& ranges = scan.rangeImage;
   const auto& camera = scan.cameraParams;
-  const bool labelled = scan.hasPixelLabels();
+  const bool labeled = scan.hasPixelLabels();
   const bool lit = scan.hasIntensityImage && !scan.intensityImage.isExternallyStored() &&
                    scan.intensityImage.getChannelCount() == 1 &&
                    static_cast<int>(scan.intensityImage.getHeight()) == ranges.rows() &&
@@ -64,7 +64,7 @@ LidarCloud unproject(const mrpt::obs::CObservation3DRangeScan& scan, std::uint64
         cloud.intensity.push_back(scan.intensityImage.at<std::uint8_t>(static_cast<unsigned>(c),
                                                                        static_cast<unsigned>(r)));
       }
-      if (labelled)
+      if (labeled)
         cloud.label.push_back(static_cast<std::uint8_t>(labelAt(*scan.pixelLabels, r, c)));
     }
   }

@@ -23,7 +23,7 @@ class CRawlogInput;
 /// Reads a rawlog observation by observation, never as a whole, and says why it ended: MRPT's own
 /// readers take a torn, damaged or half-unknown log for a complete one. Both layouts are read:
 /// observations alone, and sensory frames with actions (wheel odometry inside an action becomes a
-/// CObservationOdometry that is labelled ODOMETRY).
+/// CObservationOdometry that is labeled ODOMETRY).
 ///
 /// A bit error inside gzip data shows at once where the data stop to make sense, at the latest with
 /// the check sum at the end of the file: observations given before that may be wrong, end() says

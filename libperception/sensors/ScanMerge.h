@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {

@@ -143,9 +143,9 @@ std::optional<ImageOutline> imageOutline(const World& world, std::size_t object,
   const std::vector<Pose3> poses = world.parts(object, t);
   const bool panorama = camera.projection == CameraModel::Projection::kEquirectangular;
   // A panorama's columns are counted from the object's middle: it is whole on the seam, too.
-  const Vector3 centre =
+  const Vector3 center =
       T_world_camera.inverse() * world.object(object, t).T_world_object.translation();
-  const double middle = std::atan2(centre.x(), centre.z());
+  const double middle = std::atan2(center.x(), center.z());
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Pose3 T_camera_part = T_world_camera.inverse() * poses[k];
     for (const auto& vertex : world.shape(object).parts[k].mesh.vertices) {

@@ -2,7 +2,7 @@
 #include <functional>
 #include <optional>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/simulation/SimulatedWeather.h"
@@ -23,8 +23,8 @@ struct CameraParams {
   double confusion = 0.03;            ///< share of detections with the label of another class
   double false_per_image = 0.05;      ///< boxes where nothing is
   bool heading = false;               ///< detector tells the orientation of vehicles
-  double heading_noise = radians(8);  ///< [rad] 16 bins of 22.5 deg and an error (SPEC 4.2)
-  double heading_flip = 0.1;          ///< share reversed by 180 deg (SPEC 4.2: p_f)
+  double heading_noise = radians(8);  ///< [rad] 16 bins of 22.5 deg and an error (method.md 7)
+  double heading_flip = 0.1;          ///< share reversed by 180 deg (method.md 7: p_f)
 
   void visit(ParamVisitor& v);
   CameraModel model() const;

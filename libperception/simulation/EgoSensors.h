@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
 

@@ -57,7 +57,7 @@ EncounterScene meeting(double separation, double pause, Rng& rng) {
   return scene;
 }
 
-/// Of EXPECTED B2.
+/// Of the busy scene of a Python prototype.
 EncounterScene busyStreet(Rng& rng) {
   constexpr double kDuration = 8;  // [s]
   const auto instants = static_cast<std::size_t>(kDuration / kStep);

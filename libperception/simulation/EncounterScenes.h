@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ObjectClass.h"
 #include "libperception/core/Random.h"
+#include "libperception/measurement/ObjectClass.h"
 #include "libperception/measurement/PositionModel.h"
 
 namespace perception {
@@ -23,7 +23,7 @@ struct EncounterScene {
 };
 
 /// By name: A (an oncoming car stops and passes), B (a crossing car), Cd (two pedestrians cross at
-/// d metres), D (four pedestrians in a crowd, two parked cars), Es_p (two meet at s metres, pause p
+/// d meters), D (four pedestrians in a crowd, two parked cars), Es_p (two meet at s meters, pause p
 /// seconds, pass or turn back), U (a busy street: eight parked cars, six pedestrians, three cars
 /// that drive by, 8 s). Throws Error(kUsage) for a name that is none.
 EncounterScene encounterScene(const std::string& name, Rng& rng);

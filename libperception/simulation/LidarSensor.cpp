@@ -28,7 +28,7 @@ constexpr std::array<Surface, 10> kSurfaces = {{{.17, .3, 0},    // road
                                                 {.35, .5, 0},    // leaf
                                                 {.35, .3, 0}}};  // grass
 
-constexpr double kRangeUnit = 0.09;  // [m] dR of SPEC 9: sigma = dR / sqrt(2 SNR)
+constexpr double kRangeUnit = 0.09;  // [m] dR of method.md (50): sigma = dR / sqrt(2 SNR)
 constexpr double kSpeckle = 0.12;    // relative spread of the echo's power, rough surfaces
 constexpr double kCoordinateUnit =
     1.0 / 512;                           // [m] HDL-64E: 2 mm; a power of two, as it packs well
@@ -37,7 +37,7 @@ constexpr std::size_t kGrain = 2048;     // beams a task
 constexpr int kSlices = 36;              // of a sweep: 10 deg of a turn each
 constexpr std::uint32_t kWeatherPurpose = 0x57EA0000;  // its own stream of random numbers
 
-double quantised(double value, double unit) { return std::round(value / unit) * unit; }
+double quantized(double value, double unit) { return std::round(value / unit) * unit; }
 
 /// The echo of one pulse; nothing when it stays below the threshold.
 struct Echo {
@@ -61,8 +61,8 @@ LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& dir
   return pulse;
 }
 
-// Hard target: P0 = rho_t exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2 (SPEC 9); the strongest
-// echo of the pulse is received.
+// Hard target: P0 = rho_t exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2, method.md (50); the
+// strongest echo of the pulse is received.
 Echo echoOf(const LidarPulse& pulse, const LidarParams& p, Rng& rng) {
   Echo echo;
   const bool surface = pulse.hit.object != BeamHit::kNothing && pulse.hit.range >= p.range_min;
@@ -97,7 +97,7 @@ struct Ray {
 
 // A beam whose rays meet several surfaces: those within one pulse's length are one echo at their
 // mean range, and the strongest echo counts with its share of the beam.
-LidarPulse joined(LidarPulse centre, const std::vector<Ray>& rays) {
+LidarPulse joined(LidarPulse center, const std::vector<Ray>& rays) {
   constexpr double kPulseLength = 0.75;  // [m] 5 ns there and back
   std::size_t best = 0;
   double best_power = -1;
@@ -108,17 +108,17 @@ LidarPulse joined(LidarPulse centre, const std::vector<Ray>& rays) {
     }
     if (power > best_power * (1 + 1e-12)) best = i, best_power = power;
   }
-  if (!(best_power > 0)) return centre;
+  if (!(best_power > 0)) return center;
   double range = 0, reflectivity = 0, lost = 0, count = 0, strongest = -1;
   for (const Ray& r : rays) {
     if (std::abs(r.hit.range - rays[best].hit.range) >= kPulseLength || r.power <= 0) continue;
     range += r.power * r.hit.range, reflectivity += r.reflectivity, lost += r.lost, ++count;
-    if (r.power > strongest) strongest = r.power, centre.hit = r.hit;
+    if (r.power > strongest) strongest = r.power, center.hit = r.hit;
   }
-  centre.hit.range = static_cast<float>(range / best_power);
-  centre.reflectivity = reflectivity / static_cast<double>(rays.size());
-  centre.lost = lost / count;
-  return centre;
+  center.hit.range = static_cast<float>(range / best_power);
+  center.reflectivity = reflectivity / static_cast<double>(rays.size());
+  center.lost = lost / count;
+  return center;
 }
 
 bool onEdge(const BeamHit& a, const BeamHit& b) {
@@ -143,14 +143,14 @@ LidarParams LidarParams::fourLayer() {
 void LidarParams::visit(ParamVisitor& v) {
   v.angle("azimuth_from_deg", azimuth_from, {-180, 180}, "right end of the view");
   v.angle("azimuth_to_deg", azimuth_to, {-180, 180}, "left end of the view");
-  v.angle("azimuth_step_deg", azimuth_step, {0.02, 10}, "between neighbouring beams");
+  v.angle("azimuth_step_deg", azimuth_step, {0.02, 10}, "between neighboring beams");
   v.angle("elevation_from_deg", elevation_from, {-90, 90}, "leaves lower rings out");
   v.angle("elevation_to_deg", elevation_to, {-90, 90}, "leaves higher rings out");
   v.integer("ring_step", ring_step, {1, 64}, "keeps every n-th ring");
   v.real("range_min", range_min, {0, 100}, "m", "nothing nearer");
   v.real("range_max", range_max, {1, 500}, "m", "nothing farther");
   v.real("reference_range", reference_range, {1, 2000}, "m",
-         "a 90 % surface is just seen (SPEC 9)");
+         "a 90 % surface is just seen (method.md 9)");
   v.real("range_noise", range_noise, {0, 1}, "m", "at the strongest echo");
   v.real("loss", loss, {0, 1}, "-", "share of pulses lost whatever they meet");
   v.angle("divergence_deg", divergence, {0, 2}, "width of the beam; 0: a ray without width");
@@ -234,10 +234,10 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
       const Echo& echo = echoes[i];
       if (!echo.received) continue;
       const Vector3 point = beam.direction * echo.range;
-      cloud.x.push_back(static_cast<float>(quantised(point.x(), kCoordinateUnit)));
-      cloud.y.push_back(static_cast<float>(quantised(point.y(), kCoordinateUnit)));
-      cloud.z.push_back(static_cast<float>(quantised(point.z(), kCoordinateUnit)));
-      cloud.intensity.push_back(static_cast<float>(quantised(echo.intensity, kIntensityUnit)));
+      cloud.x.push_back(static_cast<float>(quantized(point.x(), kCoordinateUnit)));
+      cloud.y.push_back(static_cast<float>(quantized(point.y(), kCoordinateUnit)));
+      cloud.z.push_back(static_cast<float>(quantized(point.z(), kCoordinateUnit)));
+      cloud.intensity.push_back(static_cast<float>(quantized(echo.intensity, kIntensityUnit)));
       cloud.ring.push_back(beam.ring);
       if (params_.sweep) cloud.time_offset.push_back(static_cast<float>(offset));
       if (params_.layout == LidarParams::Layout::kFourLayer) {
@@ -250,7 +250,7 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
   return result;
 }
 
-// Rays through the middle of all beams; beams whose neighbours meet something else get four more
+// Rays through the middle of all beams; beams whose neighbors meet something else get four more
 // rays on the rim of their section.
 std::vector<LidarPulse> LidarSensor::pulsesOf(const LidarCaster& caster, std::size_t slice,
                                               const Pose3& pose,

@@ -2,8 +2,8 @@
 #include <functional>
 #include <vector>
 
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Frames.h"
-#include "libperception/core/ParamSet.h"
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/simulation/SimulatedWeather.h"
@@ -20,14 +20,15 @@ struct LidarParams {
          azimuth_to = kPi;              ///< [rad] of the sensor's forward axis, to the left
   double azimuth_step = radians(0.18);  ///< [rad] 0.16 to 0.2 deg at 10 turns a second
   double elevation_from = -kPi / 2, elevation_to = kPi / 2;  ///< [rad] rings beyond are left out
-  int ring_step = 1;             ///< keeps every n-th ring, to thin a log
-  double range_min = 0.9;        ///< [m]
-  double range_max = 120;        ///< [m]
-  double reference_range = 200;  ///< [m] R_max of SPEC 9: a surface of 90 % is just seen there
-  double range_noise = 0.01;     ///< [m] at the strongest echo
-  double loss = 0.003;           ///< share of pulses that are lost whatever they meet
-  /// [rad] whole width of the beam (SPEC 9: 3 mrad). A beam on an edge returns the stronger of the
-  /// two surfaces, or their mean when they lie within one pulse. 0: a ray without width.
+  int ring_step = 1;       ///< keeps every n-th ring, to thin a log
+  double range_min = 0.9;  ///< [m]
+  double range_max = 120;  ///< [m]
+  double reference_range =
+      200;                    ///< [m] R_max of method.md (50): a surface of 90 % is just seen there
+  double range_noise = 0.01;  ///< [m] at the strongest echo
+  double loss = 0.003;        ///< share of pulses that are lost whatever they meet
+  /// [rad] whole width of the beam (method.md 9: 3 mrad). A beam on an edge returns the stronger of
+  /// the two surfaces, or their mean when they lie within one pulse. 0: a ray without width.
   double divergence = 0;
   double label_error = 0;  ///< share of wrong point labels (four layers: object, ground)
   bool sweep = false;      ///< beams at their own times while everything moves
@@ -42,7 +43,7 @@ struct LidarParams {
 /// Changes what a pulse meets; empty: clear air.
 using PulseHook = std::function<void(LidarPulse&, Rng&)>;
 
-/// Turns beams' hits into returns: the common lidar equation of SPEC 9, in clear air.
+/// Turns beams' hits into returns: the common lidar equation of method.md (50), in clear air.
 class LidarSensor {
  public:
   LidarSensor(const LidarParams& params, double rate);  ///< rate [1/s]

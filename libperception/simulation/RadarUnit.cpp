@@ -18,9 +18,9 @@ constexpr double kShadowed = 0.1;  // power beside a stronger target of the same
 /// How a kind of object answers. Radar cross sections at 77 GHz: usual figures of the literature;
 /// the reference is the car.
 struct RadarBody {
-  double cross_section;                ///< [m^2] of all its centres, seen from near by
+  double cross_section;                ///< [m^2] of all its centers, seen from near by
   double RadarUnitParams::*detection;  ///< share of scans in which it is resolved at all
-  bool vehicle;                        ///< centres on corners and sides; else one
+  bool vehicle;                        ///< centers on corners and sides; else one
 };
 constexpr double kCarSection = 10;  // [m^2] the reference of reference_range
 
@@ -47,8 +47,8 @@ RadarBody bodyOf(ObjectKind kind) {
   return {1, &P::surroundings, false};
 }
 
-/// A scattering centre in the object's frame and its share of the cross section.
-struct Centre {
+/// A scattering center in the object's frame and its share of the cross section.
+struct Center {
   Vector2 place;   // [m] footprint
   Vector2 normal;  // outward; zero: seen from everywhere
   double share;
@@ -56,26 +56,26 @@ struct Centre {
 
 // Corners (two faces meet: a wheel arch, the edge of a bumper) are strong and seen from most
 // directions; the middles of sides answer to a unit that stands before them.
-std::vector<Centre> centresOf(const RadarBody& body, double length, double width) {
+std::vector<Center> centersOf(const RadarBody& body, double length, double width) {
   if (!body.vehicle) return {{Vector2::Zero(), Vector2::Zero(), 1}};
-  std::vector<Centre> centres;
+  std::vector<Center> centers;
   const Vector2 half(.5 * length, .5 * width);
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 1.0}) {
       const Vector2 corner(x, y);
-      centres.push_back({half.cwiseProduct(corner), corner.normalized(), 0.25});
+      centers.push_back({half.cwiseProduct(corner), corner.normalized(), 0.25});
     }
   }
-  centres.push_back({{half.x(), 0}, Vector2::UnitX(), 0.3});
-  centres.push_back({{-half.x(), 0}, -Vector2::UnitX(), 0.3});
-  // Long sides have a centre every few metres: a bus is several targets.
+  centers.push_back({{half.x(), 0}, Vector2::UnitX(), 0.3});
+  centers.push_back({{-half.x(), 0}, -Vector2::UnitX(), 0.3});
+  // Long sides have a center every few meters: a bus is several targets.
   const int pieces = std::clamp(static_cast<int>(length / 4), 1, 12);
   for (int i = 0; i < pieces; ++i) {
     const double x = -half.x() + length * (i + .5) / pieces;
-    centres.push_back({{x, half.y()}, Vector2::UnitY(), 0.3 / pieces});
-    centres.push_back({{x, -half.y()}, -Vector2::UnitY(), 0.3 / pieces});
+    centers.push_back({{x, half.y()}, Vector2::UnitY(), 0.3 / pieces});
+    centers.push_back({{x, -half.y()}, -Vector2::UnitY(), 0.3 / pieces});
   }
-  return centres;
+  return centers;
 }
 
 double thresholdSnr(const RadarUnitParams& p) { return std::log(p.false_alarm) / std::log(.5) - 1; }
@@ -194,7 +194,7 @@ void RadarUnitParams::visit(ParamVisitor& v) {
   v.real("rate_noise", rate_noise, {0, 10}, "m/s", "standard deviation");
   v.real("person", person, {0, 1}, "-", "share of scans in which a near person is resolved");
   v.real("cyclist", cyclist, {0, 1}, "-", "the same of a cyclist");
-  v.real("vehicle", vehicle, {0, 1}, "-", "the same of cars, vans and busses");
+  v.real("vehicle", vehicle, {0, 1}, "-", "the same of cars, vans and buses");
   v.real("surroundings", surroundings, {0, 1}, "-", "the same of poles, walls and bushes");
   v.real("ground_per_scan", ground_per_scan, {0, 50}, "-", "echoes of the road");
   v.real("false_per_scan", false_per_scan, {0, 50}, "-", "targets where nothing is");
@@ -216,21 +216,22 @@ std::vector<RadarReflection> radarReflections(const LidarCaster& caster, double 
     const ObjectParams& object = world.scenario().objects[i];
     const RadarBody body = bodyOf(object.kind);
     const ObjectState state = world.object(i, t);
-    const Vector2 centre = state.T_world_object.translation().head<2>();
+    const Vector2 center = state.T_world_object.translation().head<2>();
     const double reach = .5 * std::hypot(object.length, object.width);
-    if ((centre - eye.head<2>()).norm() - reach > params.range_max) continue;
+    if ((center - eye.head<2>()).norm() - reach > params.range_max) continue;
     const Matrix2 turn = state.T_world_object.linear().topLeftCorner<2, 2>();
-    for (const Centre& c : centresOf(body, object.length, object.width)) {
+    for (const Center& c : centersOf(body, object.length, object.width)) {
       RadarReflection r;
       r.object = static_cast<int>(i);
       const Vector2 arm = turn * c.place;
-      r.position = centre + arm;
+      r.position = center + arm;
       look(r, state.velocity + state.yaw_rate * Vector2(-arm.y(), arm.x()), mount);
       if (!inView(r, params)) continue;
       const Vector2 towards = (eye.head<2>() - r.position) / r.range;
-      const double facing = c.normal.isZero() ? 1 : std::max(0.0, (turn * c.normal).dot(towards));
-      if (facing <= 0) continue;
-      const double share = c.share * facing * passing(caster, eye, r.position, r.object);
+      const double body_heading =
+          c.normal.isZero() ? 1 : std::max(0.0, (turn * c.normal).dot(towards));
+      if (body_heading <= 0) continue;
+      const double share = c.share * body_heading * passing(caster, eye, r.position, r.object);
       r.snr = snrOf(share * body.cross_section, r.range, params);
       if (r.snr > 0) reflections.push_back(r);
     }

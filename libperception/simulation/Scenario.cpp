@@ -4,7 +4,7 @@
 #include <array>
 #include <map>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Random.h"
 
 namespace perception {
@@ -15,7 +15,8 @@ struct KindRow {
   const char* name;
   const char* truth_type;
   bool road_user;
-  double length, width, height;  ///< [m] classes.ini (SPEC 2); van, pole, box, bush: usual ones
+  double length, width,
+      height;  ///< [m] classes.ini (method.md 2.2); van, pole, box, bush: usual ones
 };
 constexpr std::array<KindRow, 8> kKinds = {{{"car", "Car", true, 4.5, 1.8, 1.5},
                                             {"van", "Van", true, 5.2, 2.0, 2.1},
@@ -82,8 +83,8 @@ void RoadParams::visit(ParamVisitor& v) {
 }
 
 void LaneSection::visit(ParamVisitor& v) {
-  v.reals("x", x, -1, kPlace, "m", "of the centre line in driving direction, world");
-  v.reals("y", y, -1, kPlace, "m", "of the centre line in driving direction, world");
+  v.reals("x", x, -1, kPlace, "m", "of the center line in driving direction, world");
+  v.reals("y", y, -1, kPlace, "m", "of the center line in driving direction, world");
   v.real("width", width, {0.5, 20}, "m", "of the lane");
   v.boolean("one_way", one_way, "false: driven either way");
   v.require(x.size() == y.size() && x.size() >= 2, "x, y: expected two or more values of each");

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/core/Frames.h"
 #include "libperception/core/LaneMap.h"
 #include "libperception/simulation/CameraBoxes.h"
@@ -73,7 +73,7 @@ struct RoadParams {
 
 /// [lane.NAME]: a lane of a road, for the map that goes with the log.
 struct LaneSection {
-  std::vector<double> x, y;  ///< [m] centre line in driving direction, world
+  std::vector<double> x, y;  ///< [m] center line in driving direction, world
   double width = 3.5;        ///< [m]
   bool one_way = true;
 
@@ -88,7 +88,7 @@ struct ObjectParams {
   double base = 0;                                 ///< [m] height of its bottom above the road
   double reflectivity = 1;   ///< times the usual one of its materials: below 1 a dark car
   std::string party;         ///< objects of one name vary together from trial to trial; "": alone
-  WaypointParams waypoints;  ///< of the footprint's centre
+  WaypointParams waypoints;  ///< of the footprint's center
 
   void visit(ParamVisitor& v);
 };

@@ -77,9 +77,9 @@ void addCylinder(Mesh& mesh, const Vector3& a, const Vector3& b, double radius, 
   const Vector3 axis = (b - a).normalized();
   const Vector3 across = std::abs(axis.y()) < 0.9 ? Vector3::UnitY() : Vector3::UnitZ();
   const Vector3 u = (across - axis * axis.dot(across)).normalized(), w = u.cross(axis);
-  const auto rim = [&](const Vector3& centre, int k) -> Vector3 {
+  const auto rim = [&](const Vector3& center, int k) -> Vector3 {
     const double angle = kTwoPi * k / sides;
-    return centre + radius * (u * std::cos(angle) + aspect * w * std::sin(angle));
+    return center + radius * (u * std::cos(angle) + aspect * w * std::sin(angle));
   };
   for (int k = 0; k < sides; ++k) {
     addQuad(mesh, {rim(a, k), rim(a, k + 1), rim(b, k + 1), rim(b, k)}, material);
@@ -90,11 +90,11 @@ void addCylinder(Mesh& mesh, const Vector3& a, const Vector3& b, double radius, 
   }
 }
 
-void addEllipsoid(Mesh& mesh, const Vector3& centre, const Vector3& half_axes, Material material) {
+void addEllipsoid(Mesh& mesh, const Vector3& center, const Vector3& half_axes, Material material) {
   constexpr int kAround = 10, kUp = 6;
   const auto point = [&](int i, int j) -> Vector3 {
     const double around = kTwoPi * i / kAround, up = kPi * j / kUp - kPi / 2;
-    return centre + half_axes.cwiseProduct(Vector3(std::cos(up) * std::cos(around),
+    return center + half_axes.cwiseProduct(Vector3(std::cos(up) * std::cos(around),
                                                    std::cos(up) * std::sin(around), std::sin(up)));
   };
   for (int i = 0; i < kAround; ++i) {
@@ -245,12 +245,12 @@ Mesh bushMesh(const ObjectParams& o) {
     Rng rng({seed, 0, i, kLeafStream});
     Vector3 place(rng.normal(), rng.normal(), rng.normal());
     place *= std::cbrt(rng.uniform()) / place.norm();
-    const Vector3 centre = place.cwiseProduct(Vector3(.5 * o.length, .5 * o.width, .5 * o.height)) +
+    const Vector3 center = place.cwiseProduct(Vector3(.5 * o.length, .5 * o.width, .5 * o.height)) +
                            Vector3(0, 0, .5 * o.height);
     const Eigen::Matrix3d turn =
         makePose(0, 0, 0, rng.uniform(0, kTwoPi), std::asin(rng.uniform(-1, 1))).linear();
     const Vector3 u = turn.col(1) * (.5 * kLeafSide), v = turn.col(2) * (.5 * kLeafSide);
-    addQuad(mesh, {centre - u - v, centre + u - v, centre + u + v, centre - u + v},
+    addQuad(mesh, {center - u - v, center + u - v, center + u + v, center - u + v},
             Material::kLeaf);
   }
   return mesh;
@@ -292,21 +292,21 @@ Shape makeShape(const ObjectParams& o) {
   return {};
 }
 
-Pose3 partPose(const Shape& shape, const Part& part, double travelled, double speed) {
+Pose3 partPose(const Shape& shape, const Part& part, double traveled, double speed) {
   if (part.swing == 0) return Pose3::Identity();
   const double pace = std::min(1.0, speed / shape.full_pace);
-  const double angle = part.swing * pace * std::sin(kTwoPi * travelled / shape.cycle);
+  const double angle = part.swing * pace * std::sin(kTwoPi * traveled / shape.cycle);
   Pose3 pose = Pose3::Identity();
   pose.linear() = Eigen::AngleAxisd(angle, Vector3::UnitY()).toRotationMatrix();
   pose.translation() = part.pivot - pose.linear() * part.pivot;
   return pose;
 }
 
-Mesh makeRoad(const Vector2& centre, double half_side, double roughness) {
+Mesh makeRoad(const Vector2& center, double half_side, double roughness) {
   constexpr double kCell = 1;  // [m] bumps of the size of a patch of road
   Mesh mesh;
   const auto n = static_cast<std::uint32_t>(2 * std::ceil(half_side / kCell)) + 1;
-  const Vector2 corner = centre - Vector2::Constant(kCell * (n - 1) / 2);
+  const Vector2 corner = center - Vector2::Constant(kCell * (n - 1) / 2);
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::uint32_t j = 0; j < n; ++j) {
       Rng rng({0, i, j, kRoadStream});

@@ -32,7 +32,7 @@ struct Mesh {
 
 /// One rigid part of an object; legs and arms swing about an axis across the object.
 struct Part {
-  Mesh mesh;                        ///< object frame: x along heading, z = 0 bottom, centred
+  Mesh mesh;                        ///< object frame: x along heading, z = 0 bottom, centered
   Vector3 pivot = Vector3::Zero();  ///< [m] a point of the axis, object frame
   double swing = 0;  ///< [rad] amplitude at full pace; the sign tells left from right
 };
@@ -46,10 +46,10 @@ struct Shape {
 
 Shape makeShape(const ObjectParams& object);
 
-/// Pose of a part in the object's frame after `travelled` [m] at `speed` [m/s].
-Pose3 partPose(const Shape& shape, const Part& part, double travelled, double speed);
+/// Pose of a part in the object's frame after `traveled` [m] at `speed` [m/s].
+Pose3 partPose(const Shape& shape, const Part& part, double traveled, double speed);
 
-/// A square of road about `centre` with heights that vary smoothly; world frame, z = 0 on average.
-Mesh makeRoad(const Vector2& centre, double half_side, double roughness);
+/// A square of road about `center` with heights that vary smoothly; world frame, z = 0 on average.
+Mesh makeRoad(const Vector2& center, double half_side, double roughness);
 
 }  // namespace perception

@@ -23,11 +23,11 @@ struct LidarPulse {
   double reflectivity = 0;    ///< of the surface towards the sensor, incidence included
   double lost = 0;            ///< share of pulses that send nothing back: glass, mirrors
   double optical_depth = 0;   ///< one way to the surface: it weakens the echo by exp(-2 depth)
-  double threshold = 1;       ///< times the instrument's weakest echo (SPEC 9: P_min)
+  double threshold = 1;       ///< times the instrument's weakest echo (P_min of method.md (50))
   std::vector<Scatterer> scatterers;  ///< the strongest echo of a pulse is received
 };
 
-/// One scattering centre as a radar sees it, before cells are formed.
+/// One scattering center as a radar sees it, before cells are formed.
 struct RadarReflection {
   int object = -1;        ///< of the scenario; -1: the ground
   Vector2 position;       ///< [m] world

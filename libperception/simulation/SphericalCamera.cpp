@@ -15,7 +15,7 @@ constexpr std::uint32_t kFalseSlot = 1u << 20, kWeatherPurpose = 0x57EA0000;  //
 constexpr double kRangeEdge = 0.1;  // recall falls from all to none within +-10 % of the range
 constexpr double kHidden = 0.15, kClear = 0.5;  // visible share: not found below, all above
 
-/// What the detector makes of a kind: two labels (SPEC 2, camera columns).
+/// What the detector makes of a kind: two labels (method.md 2.3, camera columns).
 struct Answer {
   double SphericalCameraParams::*recall;
   double SphericalCameraParams::*range;
@@ -106,7 +106,7 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
 std::optional<ObjectDetection> falseBox(const LidarCaster& caster, double t,
                                         const SphericalCameraParams& p, const Pose3& T_world_camera,
                                         Rng& rng) {
-  constexpr double kOnThings = 0.5, kCars = 0.6;  // shares: on things; labelled Car
+  constexpr double kOnThings = 0.5, kCars = 0.6;  // shares: on things; labeled Car
   const CameraModel camera = p.model();
   ObjectDetection d;
   d.score = rng.uniform(0.3, 0.7);
@@ -160,7 +160,7 @@ void SphericalCameraParams::visit(ParamVisitor& v) {
   v.choiceOf("resolution", resolution, cameraResolutionNames(),
              "sets size, ranges and false boxes (paper)");
   if (resolution != before) setResolution(resolution);
-  v.real("car_range", car_range, {1, 300}, "m", "recall of cars and busses holds within");
+  v.real("car_range", car_range, {1, 300}, "m", "recall of cars and buses holds within");
   v.real("person_range", person_range, {1, 300}, "m", "recall of persons and cyclists");
   v.real("false_per_image", false_per_image, {0, 100}, "-", "boxes of no car or person");
   v.real("car_recall", car_recall, {0, 1}, "-", "paper: .85");

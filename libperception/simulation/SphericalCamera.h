@@ -1,5 +1,5 @@
 #pragma once
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/simulation/CameraBoxes.h"
@@ -18,12 +18,12 @@ struct SphericalCameraParams {
   double car_range = 15, person_range = 10;         ///< [m] recall holds within (paper)
   double false_per_image = 0.12;                    ///< boxes of no car or person, see .cpp
   double car_recall = 0.85, person_recall = 0.70;   ///< within range (paper, sunny)
-  double bus_recall = 0.60, cyclist_recall = 0.60;  ///< (SPEC 2)
+  double bus_recall = 0.60, cyclist_recall = 0.60;  ///< (method.md 2.3)
   double edge_noise = 0.05;             ///< of a box edge, as a share of the box's height
   bool heading = true;                  ///< orientation of cars
   int heading_bins = 16;                ///< of the observation angle (paper: 16 models); 0: none
-  double heading_noise = radians(4.7);  ///< [rad] before binning; with 16 bins 8 deg (SPEC 7)
-  double heading_flip = 0.2;            ///< share reversed by 180 deg (SPEC 4.2: p_f)
+  double heading_noise = radians(4.7);  ///< [rad] before binning; with 16 bins 8 deg (method.md 7)
+  double heading_flip = 0.2;            ///< share reversed by 180 deg (method.md 7: p_f)
 
   void setResolution(Resolution r);  ///< and all that depends on it
   void visit(ParamVisitor& v);

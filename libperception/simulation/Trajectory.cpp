@@ -14,7 +14,7 @@ constexpr double kRestSpeed = 0.02;  // [m/s] below it the direction of the velo
 constexpr double kFastest = 60;      // [m/s] faster than any road user of ours: a slip of the pen
 
 // Slopes that keep the cubic monotone between its values: weighted harmonic mean of the
-// neighbouring secants (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984); 0 at a turn back.
+// neighboring secants (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984); 0 at a turn back.
 std::vector<double> monotoneSlopes(const std::vector<double>& t, const std::vector<double>& v) {
   const std::size_t n = v.size();
   std::vector<double> slopes(n, 0.0);
@@ -84,7 +84,7 @@ Trajectory::Cubic Trajectory::evaluate(const std::vector<double>& values,
 void Trajectory::tabulate(double heading) {
   const auto n = static_cast<std::size_t>(std::ceil(duration() / kTableStep)) + 1;
   heading_.assign(n, heading);
-  travelled_.assign(n, 0);
+  traveled_.assign(n, 0);
   std::size_t first_motion = n;
   for (std::size_t i = 0; i < n; ++i) {
     const double t = std::min(t_.front() + static_cast<double>(i) * kTableStep, t_.back());
@@ -92,7 +92,7 @@ void Trajectory::tabulate(double heading) {
     const double speed = std::hypot(vx, vy);
     if (i > 0) {
       heading_[i] = heading_[i - 1];
-      travelled_[i] = travelled_[i - 1] + speed * kTableStep;
+      traveled_[i] = traveled_[i - 1] + speed * kTableStep;
     }
     if (speed <= kRestSpeed) continue;
     heading_[i] = std::atan2(vy, vx);
@@ -110,9 +110,9 @@ Motion2 Trajectory::at(double t) const {
   m.position = {x.value, y.value};
   m.velocity = {x.first, y.first};
   m.heading = heading_[i];
-  m.travelled = travelled_[i];
-  if (i + 1 < travelled_.size()) {
-    m.travelled += (place - static_cast<double>(i)) * (travelled_[i + 1] - travelled_[i]);
+  m.traveled = traveled_[i];
+  if (i + 1 < traveled_.size()) {
+    m.traveled += (place - static_cast<double>(i)) * (traveled_[i + 1] - traveled_[i]);
   }
   const double speed = m.velocity.norm();
   if (speed > kRestSpeed) {

@@ -12,7 +12,7 @@ struct Motion2 {
   Vector2 velocity = Vector2::Zero();  ///< [m/s] exact derivative of the position
   double heading = 0;                  ///< [rad] of the velocity; at rest the last (or first) one
   double yaw_rate = 0;                 ///< [rad/s] 0 at rest
-  double travelled = 0;                ///< [m] way since the first waypoint
+  double traveled = 0;                 ///< [m] way since the first waypoint
 };
 
 /// A smooth way through timed waypoints. Each coordinate is a monotone cubic of time (Fritsch and
@@ -39,9 +39,9 @@ class Trajectory {
                  double t) const;
   void tabulate(double heading);
 
-  std::vector<double> t_, x_, y_;            ///< [s, m, m] waypoints
-  std::vector<double> slope_x_, slope_y_;    ///< [m/s] at the waypoints
-  std::vector<double> heading_, travelled_;  ///< [rad, m] every kTableStep from t_.front()
+  std::vector<double> t_, x_, y_;           ///< [s, m, m] waypoints
+  std::vector<double> slope_x_, slope_y_;   ///< [m/s] at the waypoints
+  std::vector<double> heading_, traveled_;  ///< [rad, m] every kTableStep from t_.front()
 };
 
 }  // namespace perception

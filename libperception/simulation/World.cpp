@@ -14,9 +14,9 @@ constexpr double kRoadMargin =
 Mesh roadAround(const WaypointParams& way, double roughness) {
   const auto [x0, x1] = std::minmax_element(way.x.begin(), way.x.end());
   const auto [y0, y1] = std::minmax_element(way.y.begin(), way.y.end());
-  // Centred on whole metres: the bumps stay where they are when a waypoint moves a little.
-  const Vector2 centre(std::round(.5 * (*x0 + *x1)), std::round(.5 * (*y0 + *y1)));
-  return makeRoad(centre, kRoadMargin + .5 * std::max(*x1 - *x0, *y1 - *y0), roughness);
+  // Centered on whole meters: the bumps stay where they are when a waypoint moves a little.
+  const Vector2 center(std::round(.5 * (*x0 + *x1)), std::round(.5 * (*y0 + *y1)));
+  return makeRoad(center, kRoadMargin + .5 * std::max(*x1 - *x0, *y1 - *y0), roughness);
 }
 
 double distanceToLine(const Vector2& p, const RoadParams& road) {
@@ -78,7 +78,7 @@ EgoState World::ego(double t) const {
 ObjectState World::object(std::size_t object, double t) const {
   const Motion2 m = trajectories_[object].at(t);
   const double base = scenario_.objects[object].base;
-  return {makePose(m.position.x(), m.position.y(), base, m.heading), m.velocity, m.travelled,
+  return {makePose(m.position.x(), m.position.y(), base, m.heading), m.velocity, m.traveled,
           m.yaw_rate};
 }
 
@@ -87,7 +87,7 @@ std::vector<Pose3> World::parts(std::size_t index, double t) const {
   std::vector<Pose3> poses;
   for (const Part& part : shapes_[index].parts) {
     poses.push_back(state.T_world_object *
-                    partPose(shapes_[index], part, state.travelled, state.velocity.norm()));
+                    partPose(shapes_[index], part, state.traveled, state.velocity.norm()));
   }
   return poses;
 }

@@ -10,9 +10,9 @@ namespace perception {
 
 /// One object at one instant.
 struct ObjectState {
-  Pose3 T_world_object = Pose3::Identity();  ///< centre of the footprint, bottom, x along heading
+  Pose3 T_world_object = Pose3::Identity();  ///< center of the footprint, bottom, x along heading
   Vector2 velocity = Vector2::Zero();        ///< [m/s] world
-  double travelled = 0;                      ///< [m]
+  double traveled = 0;                       ///< [m]
   double yaw_rate = 0;                       ///< [rad/s]
 };
 

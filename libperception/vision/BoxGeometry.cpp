@@ -104,7 +104,7 @@ std::optional<ScalarEstimate> rangeByGround(const Vector3& lowest, const Vector3
   const double r = (*foot - origin).head<2>().norm();
   if (r > params.max_range) return std::nullopt;
   const double h = origin.z() - ground.heightAt(foot->x(), foot->y());
-  // sigma_r = (r^2 + h^2) / h * sigma_phi; phi: pixel, own pitch, pose pitch (VISION_NOTES 3).
+  // sigma_r = (r^2 + h^2) / h * sigma_phi; phi: pixel, own pitch, pose pitch: method.md (14).
   double sigma =
       (r * r + h * h) / h * std::hypot(seen.edge_sigma, seen.pitch_sigma) + params.range_floor;
   if (cut) sigma += params.cut_share * r;
@@ -173,7 +173,7 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
                                        const GroundPlane& ground,
                                        const PoseUncertainty& uncertainty,
                                        const BoxGeometryParams& params,
-                                       const std::optional<ScalarEstimate>& usual_height) {
+                                       const std::optional<ScalarEstimate>& height_prior) {
   if (!(box.x2 > box.x1) || !(box.y2 > box.y1) || camera.fx <= 0 || camera.fy <= 0)
     return std::nullopt;
   BoxOnGround out;
@@ -182,7 +182,7 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
 
   const Vector3 origin = T_ego_camera.translation();
   // The middle of the azimuths, not of the columns: those differ by up to 1.2 deg at a tile's edge
-  // (VISION_NOTES 3).
+  // (method.md 4.2).
   const double middle = 0.5 * (azimuth(box.x1, camera) + azimuth(box.x2, camera));
   const Vector3 lowest = ray(middle, box.y2, camera, T_ego_camera);
   const double box_height = box.y2 - box.y1;
@@ -195,8 +195,8 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
   seen.pitch_sigma = std::hypot(params.pitch_sigma, uncertainty.sigma_pitch);
 
   auto range = rangeByGround(lowest, origin, ground, seen, cut, params);
-  if (usual_height && !cut && box.y1 > params.border) {
-    const ScalarEstimate by_height = rangeByHeight(*usual_height, seen);
+  if (height_prior && !cut && box.y1 > params.border) {
+    const ScalarEstimate by_height = rangeByHeight(*height_prior, seen);
     range = range ? together(*range, by_height) : by_height;
   }
   if (!range) return out;

@@ -3,14 +3,14 @@
 #include <optional>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/measurement/Measurement.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
 
-/// [sensor.LABEL.geometry]: how well an image box says where its object stands (SPEC 4.2,
-/// VISION_NOTES 3).
+/// [sensor.LABEL.geometry]: how well an image box says where its object stands
+/// (method.md 4.2).
 struct BoxGeometryParams {
   double edge_sigma = 3;  ///< [px] of the left and right edge ...
   /// ... and of the box's width: sd .05 to .17 on KITTI (RRC), but the boxes of one object err
@@ -61,14 +61,14 @@ inline double middleBearing(double left, double right) {
 std::vector<std::size_t> joinSeam(const CameraModel& camera, double border,
                                   std::vector<ObjectDetection>& objects);
 
-/// The level frame of a camera: x forward along its optical axis, z up, at its optical centre, in
+/// The level frame of a camera: x forward along its optical axis, z up, at its optical center, in
 /// the ego frame.
 Pose3 levelFrame(const Pose3& T_ego_camera);
 
 /// `T_ego_camera` is optical (x right, y down, z forward). The ground holds in the ego frame, so
 /// the camera's pitch and roll against it are part of the geometry. In a panorama that closes, a
 /// box over the seam reaches beyond the image's width (or begins left of 0): its columns are
-/// angles. Empty when the box is none or lies behind the camera's horizon. `usual_height` [m] of
+/// angles. Empty when the box is none or lies behind the camera's horizon. `height_prior` [m] of
 /// what the label names tells the range, too, by the angle that the box is high, unless the ground
 /// contradicts it (a van among cars): it holds where pitch and slope spoil the ground's.
 std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
@@ -76,6 +76,6 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
                                        const GroundPlane& ground,
                                        const PoseUncertainty& uncertainty,
                                        const BoxGeometryParams& params,
-                                       const std::optional<ScalarEstimate>& usual_height = {});
+                                       const std::optional<ScalarEstimate>& height_prior = {});
 
 }  // namespace perception

@@ -5,7 +5,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/measurement/PoseNoise.h"
-#include "libperception/vision/HeadingHead.h"
+#include "libperception/vision/HeadingErrors.h"
 
 namespace perception {
 namespace {
@@ -19,13 +19,13 @@ std::optional<std::pair<std::string, std::string>> splitName(const std::string& 
   return std::pair{text.substr(0, equals), text.substr(equals + 1)};
 }
 
-SensingParams cameraDefaults() {
-  SensingParams p;
+DetectionParams cameraDefaults() {
+  DetectionParams p;
   p.kind = "boxes";
   p.modality = Modality::kCamera;
-  p.clutter_per_scan = 0.15;  // SPEC 5.3
+  p.clutter_per_scan = 0.15;  // method.md 5.3
   p.births_per_scan = 0.01;
-  p.label_exponent = 0.6;    // SPEC 5.6
+  p.label_exponent = 0.6;    // method.md 5.6
   p.detection_exponent = 1;  // what no image shows is no road user: walls, bushes
   p.fov = radians(90);
   p.range_min = 1;
@@ -48,15 +48,15 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.real("score_offset", score_offset, {-1e9, 1e9}, "",
          "score that is no evidence for or against an object");
   v.table("score_offset.", label_offsets, {-1e9, 1e9}, "", "the same for one label");
-  v.table("usual_height.", usual_heights, {0.1, 10}, "m",
+  v.table("height_prior.", height_priors, {0.1, 10}, "m",
           "of what a label names: its box's height tells the range, too");
-  v.table("usual_height_sigma.", usual_height_sigmas, {0.01, 5}, "m", "its spread over objects");
-  for (const auto* table : {&label_offsets, &usual_heights, &usual_height_sigmas}) {
+  v.table("height_prior_sigma.", height_prior_sigmas, {0.01, 5}, "m", "its spread over objects");
+  for (const auto* table : {&label_offsets, &height_priors, &height_prior_sigmas}) {
     for (const auto& row : *table)
       v.require(std::find(labels.begin(), labels.end(), row.first) != labels.end(),
                 row.first + ": no such label");
   }
-  v.real("hides_from", hides_from, {-1e9, 1e9}, "",
+  v.real("occluder_score", occluder_score, {-1e9, 1e9}, "",
          "score from which a box hides what stands behind it");
   v.boolean("base", base, "the lower edge measures the height of the ground at the object, too");
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
@@ -65,27 +65,29 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.angle("heading_sigma_deg", heading_sigma, {0.1, 90}, "of the detector's headings, as axes");
   v.real("heading_flip", heading_flip, {0, 0.5}, "",
          "share of its headings that are reversed; 0.5: they tell the axis alone");
-  v.real("heading_flip_repeats", heading_flip_repeats, {0, 0.99}, "",
+  v.real("heading_flip_persistence", heading_flip_persistence, {0, 0.99}, "",
          "... after a reversed one of the same object: they come in bursts");
   v.path("heading_model", heading_model,
          "file of the heading head that told them: its measured errors replace both keys above");
 }
 
 VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry,
-                               const ClassTable& classes, const Sensing& sensing)
+                               const ClassTable& classes, const DetectionModel& detection_model)
     : detector_(std::move(detector)),
       geometry_(geometry),
-      model_(std::make_shared<const FootprintModel>(classes, sensing)) {
+      model_(std::make_shared<const FootprintModel>(classes, detection_model)) {
   for (const auto& n : detector_.names) {
-    if (const auto pair = splitName(n)) label_of_[pair->first] = sensing.labelIndex(pair->second);
+    if (const auto pair = splitName(n))
+      label_of_[pair->first] = detection_model.labelIndex(pair->second);
   }
   constexpr double kHeightShare = 0.1;  // of the mean: spread where none is given
-  usual_height_.resize(sensing.labels().size());
-  for (const auto& [name, mean] : detector_.usual_heights) {
+  height_prior_.resize(detection_model.labels().size());
+  for (const auto& [name, mean] : detector_.height_priors) {
     double sigma = kHeightShare * mean;
-    for (const auto& [other, value] : detector_.usual_height_sigmas)
+    for (const auto& [other, value] : detector_.height_prior_sigmas)
       if (other == name) sigma = value;
-    usual_height_[static_cast<std::size_t>(sensing.labelIndex(name))] = {mean, sigma * sigma};
+    height_prior_[static_cast<std::size_t>(detection_model.labelIndex(name))] = {mean,
+                                                                                 sigma * sigma};
   }
 }
 
@@ -98,14 +100,14 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
   if (!object.image_box || label == label_of_.end() || label->second < 0) return std::nullopt;
   const auto box =
       boxOnGround(*object.image_box, camera, T_ego_camera, frame.ground, frame.ego.uncertainty,
-                  geometry_, usual_height_[static_cast<std::size_t>(label->second)]);
+                  geometry_, height_prior_[static_cast<std::size_t>(label->second)]);
   if (!box || (!box->left_seen && !box->right_seen && !box->range)) return std::nullopt;
 
   Measurement m;
   m.label = label->second;
   double offset = detector_.score_offset;
   for (const auto& [name, value] : detector_.label_offsets) {
-    if (model_->sensing().labelIndex(name) == m.label) offset = value;
+    if (model_->detection_model().labelIndex(name) == m.label) offset = value;
   }
   m.log_score_ratio = std::clamp(detector_.score_slope * (object.score - offset),
                                  -detector_.score_limit, detector_.score_limit);
@@ -130,10 +132,11 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
   m.position_sigma = box->range ? box->range_sigma : 0.5 * geometry_.max_range;
   if (object.heading && std::isfinite(*object.heading)) {
     // KITTI's alpha is the heading against the line of sight, clockwise from its right
-    // (VISION_NOTES 3).
-    m.heading = HeadingSeen{wrapAngle(bearing - *object.heading - kPi / 2),
-                            std::hypot(detector_.heading_sigma, frame.ego.uncertainty.sigma_yaw),
-                            detector_.heading_flip, detector_.heading_flip_repeats};
+    // (method.md 4.2).
+    m.heading =
+        MeasuredHeading{wrapAngle(bearing - *object.heading - kPi / 2),
+                        std::hypot(detector_.heading_sigma, frame.ego.uncertainty.sigma_yaw),
+                        detector_.heading_flip, detector_.heading_flip_persistence};
   }
   if (box->range) m.height = ScalarEstimate{box->height, box->height_sigma * box->height_sigma};
   if (box->range && detector_.base) {
@@ -147,17 +150,17 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
 }
 
 /// What the boxes hide, at the ranges that they tell; null: no box hides.
-std::shared_ptr<const Horizon> VisionFrontEnd::horizon(
+std::shared_ptr<const OcclusionMap> VisionFrontEnd::occlusion(
     const MeasurementScan& scan, const std::vector<ObjectDetection>& objects) const {
-  if (detector_.hides_from >= 1e9) return nullptr;
+  if (detector_.occluder_score >= 1e9) return nullptr;
   constexpr std::size_t kBins = 1440;           // a quarter of a degree
   constexpr double kStep = kTwoPi / kBins / 2;  // [rad] no bin of a box is left out
   const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
   const double forward = yawOf(scan.state.T_world_sensor);
-  auto result = std::make_shared<Horizon>(origin, kBins);
+  auto result = std::make_shared<OcclusionMap>(origin, kBins);
   for (const Measurement& m : scan.measurements) {
     if (m.seen != FootprintModel::kAll) continue;
-    if (objects[static_cast<std::size_t>(m.detection)].score < detector_.hides_from) continue;
+    if (objects[static_cast<std::size_t>(m.detection)].score < detector_.occluder_score) continue;
     const double width = wrapAngle(m.z[FootprintModel::kLeft] - m.z[FootprintModel::kRight]);
     for (double a = 0; a <= width; a += kStep) {
       const double bearing = forward + m.z[FootprintModel::kRight] + a;
@@ -192,7 +195,7 @@ MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
     m->detection = static_cast<int>(index[i]);
     scan.measurements.push_back(std::move(*m));
   }
-  scan.horizon = horizon(scan, detections->objects);
+  scan.occlusion = occlusion(scan, detections->objects);
   return scan;
 }
 
@@ -203,18 +206,19 @@ std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& 
   auto geometry = config.read<BoxGeometryParams>(section + ".geometry");
   if (!detector.heading_model.empty()) {
     try {
-      const HeadingHead head = HeadingHead::read(detector.heading_model);
-      detector.heading_sigma = head.axisSigma();
-      detector.heading_flip = std::min(0.5, head.flipShare());
+      const HeadingErrors errors = readHeadingErrors(detector.heading_model);
+      detector.heading_sigma = errors.axis_sigma;
+      detector.heading_flip = std::min(0.5, errors.flip_share);
     } catch (const DataError& e) {
       config.fault(section + ".detector", "heading_model", e.what());
     }
   }
-  const Sensing sensing =
-      Sensing::read(config, section, classes, detector.labels, cameraDefaults());
+  const DetectionModel detection_model =
+      DetectionModel::read(config, section, classes, detector.labels, cameraDefaults());
   // Of objects as far as they are seen; what stands farther may still be a box.
-  if (sensing.params().resolution > 0) geometry.max_range = 1.1 * sensing.params().range_max;
-  return std::make_unique<VisionFrontEnd>(detector, geometry, classes, sensing);
+  if (detection_model.params().resolution > 0)
+    geometry.max_range = 1.1 * detection_model.params().range_max;
+  return std::make_unique<VisionFrontEnd>(detector, geometry, classes, detection_model);
 }
 
 }  // namespace perception

@@ -27,43 +27,45 @@ struct DetectorParams {
   std::vector<std::pair<std::string, double>> label_offsets;  ///< score_offset of single labels
   double score_limit = 4;                                     ///< of that logarithm
   /// [m] of what a label names, mean and spread over objects: they tell the range, too.
-  std::vector<std::pair<std::string, double>> usual_heights, usual_height_sigmas;
+  std::vector<std::pair<std::string, double>> height_priors, height_prior_sigmas;
   bool base = false;  ///< the lower edge measures the height of the ground at the object, too
-  /// Score from which a box hides what stands behind it (the filter's hidden_detection and
-  /// hidden_tolerance say how much, and from where).
-  double hides_from = 1e9;
-  double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error (SPEC
-                                      ///< 4.2); KITTI's bank: 6.7 deg
+  /// Score from which a box hides what stands behind it (the filter's occluded_detection and
+  /// occlusion_tolerance say how much, and from where).
+  double occluder_score = 1e9;
+  double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error:
+                                      ///< method.md 7. KITTI's bank: 6.7 deg
   double heading_flip = 0.2;  ///< share of headings that confuse front and back; 0.5: axis alone
-  double heading_flip_repeats = 0;  ///< share of reversed ones after a reversed one
-  std::string heading_model;        ///< file of a HeadingHead, whose own errors then replace both
+  double heading_flip_persistence = 0;  ///< share of reversed ones after a reversed one
+  std::string heading_model;  ///< file of a HeadingHead, whose own errors then replace both
 
   void visit(ParamVisitor& v);
 };
 
-/// The camera rib for image boxes of any detector: bearings of the edges, range on the ground,
-/// height, label.
+/// The camera front end for image boxes of any detector: bearings of the edges, range on the
+/// ground, height, label.
 class VisionFrontEnd final : public FrontEnd {
  public:
   VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry, const ClassTable& classes,
-                 const Sensing& sensing);
+                 const DetectionModel& detection_model);
 
   /// Measurements under a FootprintModel whose sensor frame is the camera's level frame.
   MeasurementScan extract(const SensorFrame& frame) const override;
-  std::vector<std::string> labelNames() const override { return model_->sensing().labels(); }
+  std::vector<std::string> labelNames() const override {
+    return model_->detection_model().labels();
+  }
 
  private:
   std::optional<Measurement> measure(const ObjectDetection& object, const SensorFrame& frame,
                                      const CameraModel& camera, const Pose3& T_ego_camera,
                                      const SensorState& state) const;
 
-  std::shared_ptr<const Horizon> horizon(const MeasurementScan& scan,
-                                         const std::vector<ObjectDetection>& objects) const;
+  std::shared_ptr<const OcclusionMap> occlusion(const MeasurementScan& scan,
+                                                const std::vector<ObjectDetection>& objects) const;
 
   DetectorParams detector_;
   BoxGeometryParams geometry_;
   std::map<std::string, int> label_of_;
-  std::vector<std::optional<ScalarEstimate>> usual_height_;  ///< by label
+  std::vector<std::optional<ScalarEstimate>> height_prior_;  ///< by label
   std::shared_ptr<const FootprintModel> model_;
 };
 

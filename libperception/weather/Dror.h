@@ -1,20 +1,20 @@
 #pragma once
 #include <memory>
 
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Angle.h"
-#include "libperception/core/ParamSet.h"
 
 namespace perception {
 
 class PointFilter;
 
 /// Dynamic radius outlier removal (Charron et al., CRV 2018): [weather.dror]. A return is a phantom
-/// when fewer than `neighbours` others lie within max(radius_min, multiplier * range * azimuth).
+/// when fewer than `neighbors` others lie within max(radius_min, multiplier * range * azimuth).
 struct DrorParams {
-  double azimuth = radians(0.16);  ///< [rad] between beams (SPEC 9.6)
+  double azimuth = radians(0.16);  ///< [rad] between beams (method.md 9.6)
   double multiplier = 3;           ///< [-] (paper)
   double radius_min = 0.04;        ///< [m] (paper)
-  int neighbours = 3;              ///< (paper)
+  int neighbors = 3;               ///< (paper)
   double max_intensity = 1;        ///< [0, 1] brighter returns are no phantoms; 1: all may be
   double max_range = 1000;         ///< [m] farther ones, neither
 

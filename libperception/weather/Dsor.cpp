@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "libperception/weather/CloudVerdict.h"
-#include "libperception/weather/NeighbourTree.h"
+#include "libperception/weather/NeighborTree.h"
 
 namespace perception {
 
 void DsorParams::visit(ParamVisitor& v) {
-  v.integer("neighbours", neighbours, {1, 100}, "whose mean distance counts");
+  v.integer("neighbors", neighbors, {1, 100}, "whose mean distance counts");
   v.real("spread", spread, {0, 10}, "", "of the scan's deviation above its mean");
   v.real("range_factor", range_factor, {0.001, 10}, "1/m", "growth of the threshold with range");
 }
@@ -37,11 +37,11 @@ class Dsor final : public PointFilter {
 
  private:
   std::vector<double> meanDistances(const LidarCloud& cloud) const {
-    const NeighbourTree tree(cloud);
+    const NeighborTree tree(cloud);
     std::vector<double> distance(cloud.size(), 0);
     std::vector<float> squared;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-      tree.nearest(i, static_cast<std::size_t>(params_.neighbours), squared);
+      tree.nearest(i, static_cast<std::size_t>(params_.neighbors), squared);
       for (const float s : squared)
         distance[i] += static_cast<double>(std::sqrt(s)) / static_cast<double>(squared.size());
     }

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Lanes.h"
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {
 
 constexpr double kPrior = 50;           // [returns] that a bin's ratio must stand against
 constexpr float kBound = 4;             // [log-odds]
-constexpr double kFewestPhantoms = 20;  // [returns] below it nothing is learnt
+constexpr double kFewestPhantoms = 20;  // [returns] below it nothing is learned
 
 /// The number of binary digits of intensities as bytes: a float's exponent tells it.
 PERCEPTION_LANES Int8 digitsOf(const Float8& intensity) {

@@ -6,7 +6,7 @@
 
 namespace perception {
 
-/// What intensities phantoms and surfaces have, learnt from scan to scan from what the geometry
+/// What intensities phantoms and surfaces have, learned from scan to scan from what the geometry
 /// says: instruments scale them as they like, and some snow is dark and some is bright.
 class IntensityLaw {
  public:

@@ -2,16 +2,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "libperception/core/ParamSet.h"
+#include "libperception/config/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
 
-/// Mirror images in a wet road (SPEC 9.7): [weather.multipath].
+/// Mirror images in a wet road (method.md 9.7): [weather.multipath].
 struct MultipathParams {
   bool enabled = true;
-  double depth = 0.3;      ///< [m] below the ground plane (SPEC 9.7)
-  double tolerance = 0.4;  ///< [m] between the mirrored return and a real one (SPEC 9.7)
+  double depth = 0.3;      ///< [m] below the ground plane (method.md 9.7)
+  double tolerance = 0.4;  ///< [m] between the mirrored return and a real one (method.md 9.7)
   double max_range = 30;   ///< [m] beyond, the road may leave its plane by as much (own choice)
   double grade = 0.01;     ///< [-] growth of `depth` with range, for the same reason (own choice)
   int support = 3;         ///< real returns near the mirrored one (own choice)

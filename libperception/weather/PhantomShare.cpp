@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {

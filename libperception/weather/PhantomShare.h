@@ -5,7 +5,7 @@
 namespace perception {
 
 /// The share of phantoms among the returns near the sensor, which follows the weather by
-/// expectation maximisation from scan to scan (Saerens et al., Neural Computation 2002).
+/// expectation maximization from scan to scan (Saerens et al., Neural Computation 2002).
 class PhantomShare {
  public:
   explicit PhantomShare(const TrustParams& params);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/weather/Dror.h"
 #include "libperception/weather/Dsor.h"

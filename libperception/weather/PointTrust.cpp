@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Pack.h"
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Compress.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {
 
 constexpr float kPhantom = 0;              // [log-odds] above it a verdict is "phantom"
-constexpr float kSettled = -5;             // [log-odds] below it no neighbour can make a phantom
+constexpr float kSettled = -5;             // [log-odds] below it no neighbor can make a phantom
 constexpr std::size_t kIntensityStep = 4;  // every fourth return tells as much
 constexpr float kBeyondDoubt = 8;          // [log-odds]
 
@@ -57,7 +57,7 @@ bool isRainEcho(const LidarCloud& c, std::size_t i) {
 
 CountCurves::CountCurves(const TrustCurve& of_tight, const TrustCurve& of_wide,
                          const TrustCurve& of_beyond) {
-  constexpr std::uint32_t kMost = NeighbourCounts::kMost;
+  constexpr std::uint32_t kMost = NeighborCounts::kMost;
   for (std::uint32_t n = 0; n < kMost; ++n) {
     tight[n] = of_tight.at(static_cast<float>(n)), wide[n] = of_wide.at(static_cast<float>(n));
     for (std::uint32_t part = 0; part < kMost; ++part)
@@ -70,16 +70,16 @@ namespace {
 
 /// Log-odds of what the geometry says of some suspects; `near` and `high`: where the curves of
 /// range and height are read.
-PERCEPTION_WIDER void weigh(const std::uint32_t* __restrict neighbours,
+PERCEPTION_WIDER void weigh(const std::uint32_t* __restrict neighbors,
                             const std::int32_t* __restrict near,
                             const std::int32_t* __restrict high, std::size_t count, float bias,
                             const float* __restrict of_range, const float* __restrict of_height,
                             const float* __restrict tight, const float* __restrict wide,
                             const float* __restrict beyond, float* __restrict odds) {
-  constexpr std::uint32_t kMost = NeighbourCounts::kMost;
-  constexpr int kBits = NeighbourCounts::kBits;
+  constexpr std::uint32_t kMost = NeighborCounts::kMost;
+  constexpr int kBits = NeighborCounts::kBits;
   for (std::size_t s = 0; s < count; ++s) {
-    const std::uint32_t bits = neighbours[s];
+    const std::uint32_t bits = neighbors[s];
     const auto n = static_cast<std::int32_t>(bits % kMost);
     const auto w = static_cast<std::int32_t>(bits >> kBits & (kMost - 1));
     const auto b = static_cast<std::int32_t>(bits >> 2 * kBits & (kMost * kMost - 1));
@@ -141,17 +141,17 @@ void PointTrust::count(const RangeImage::Block& block, const std::uint32_t* bins
       countWithin(block.ranges, block.count, static_cast<float>(params_.share_range));
 }
 
-NeighbourRules PointTrust::neighbourRules() const {
+NeighborRules PointTrust::neighborRules() const {
   return {static_cast<float>(params_.max_range), static_cast<float>(params_.tight),
           static_cast<float>(params_.wide), static_cast<float>(params_.beyond),
-          params_.surface_neighbours};
+          params_.surface_neighbors};
 }
 
 // The first pass: who is no surface for sure, and what does the geometry say of it?
-void PointTrust::lookAround() {
+void PointTrust::countNeighbors() {
   suspects_.makeRoomForLooks();
-  neighbours_.count(image_, neighbourRules(), suspects_);
-  suspects_.clearSurfaces(static_cast<std::uint32_t>(params_.surface_neighbours));
+  neighbors_.count(image_, neighborRules(), suspects_);
+  suspects_.clearSurfaces(static_cast<std::uint32_t>(params_.surface_neighbors));
   open_.resize(suspects_.index.size());
   constexpr std::size_t kBlock = RangeImage::kBlock;
   const TrustCurve &of_range = curve(TrustFeature::kRange),
@@ -161,14 +161,14 @@ void PointTrust::lookAround() {
     const std::size_t count = std::min(kBlock, suspects_.count - s);
     of_range.findPlaces(&suspects_.range[s], count, near.data());
     of_height.findPlaces(&suspects_.height[s], count, high.data());
-    weigh(&suspects_.neighbours[s], near.data(), high.data(), count,
+    weigh(&suspects_.neighbors[s], near.data(), high.data(), count,
           static_cast<float>(params_.bias), of_range.table(), of_height.table(),
           count_curves_.tight.data(), count_curves_.wide.data(), count_curves_.beyond.data(),
           &suspects_.geometry[s]);
   }
 }
 
-void PointTrust::hearSensor(const LidarCloud& cloud) {
+void PointTrust::applySensorLabels(const LidarCloud& cloud) {
   if (cloud.label.empty() && cloud.echo.empty()) return;
   const auto rain = static_cast<std::uint8_t>(PointLabel::kRain);
   const auto dirt = static_cast<std::uint8_t>(PointLabel::kDirt);
@@ -209,9 +209,9 @@ void PointTrust::weighIntensity() {
                suspects_.first.data(), suspects_.second.data());
 }
 
-// The second pass: what did the first make of the neighbours and of what else is within half a
-// metre?
-void PointTrust::askCompany() {
+// The second pass: what did the first make of the neighbors and of what else is within half a
+// meter?
+void PointTrust::applyNeighborhood() {
   const std::size_t open =
       findOpen(kSettled, suspects_.first.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
@@ -230,7 +230,7 @@ void PointTrust::askCompany() {
   }
 }
 
-void PointTrust::giveTrust(LidarCloud& cloud, TrustStats& stats) {
+void PointTrust::writeTrust(LidarCloud& cloud, TrustStats& stats) {
   cloud.trust.assign(cloud.size(), 1);
   const auto weather = static_cast<float>(share_.logOdds());
   const std::size_t open =
@@ -248,14 +248,14 @@ TrustStats PointTrust::apply(SensorFrame& frame) {
   auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud == nullptr) return stats;
   placeReturns(frame, *cloud);
-  lookAround();
-  hearSensor(*cloud);
+  countNeighbors();
+  applySensorLabels(*cloud);
   weighIntensity();
-  askCompany();
+  applyNeighborhood();
   share_.follow(suspects_, census_.within_share_range);
   stats.returns = cloud->size();
   stats.share = share_.value();
-  giveTrust(*cloud, stats);
+  writeTrust(*cloud, stats);
   return stats;
 }
 
@@ -267,7 +267,7 @@ std::vector<SuspectReturn> PointTrust::suspects() const {
 }
 
 std::size_t PointTrust::memoryBytes() const {
-  return image_.memoryBytes() + neighbours_.memoryBytes() + suspects_.memoryBytes() +
+  return image_.memoryBytes() + neighbors_.memoryBytes() + suspects_.memoryBytes() +
          cubes_.memoryBytes();
 }
 

@@ -6,7 +6,7 @@
 
 #include "libperception/weather/HeightAboveGround.h"
 #include "libperception/weather/IntensityLaw.h"
-#include "libperception/weather/Neighbours.h"
+#include "libperception/weather/Neighbors.h"
 #include "libperception/weather/PhantomShare.h"
 #include "libperception/weather/PointFilter.h"
 #include "libperception/weather/RangeImage.h"
@@ -17,14 +17,14 @@
 
 namespace perception {
 
-/// The curves over counts of neighbours, read straight from the counts [log-odds].
+/// The curves over counts of neighbors, read straight from the counts [log-odds].
 struct CountCurves {
   CountCurves(const TrustCurve& of_tight, const TrustCurve& of_wide, const TrustCurve& of_beyond);
-  std::array<float, NeighbourCounts::kMost> tight, wide;
-  std::array<float, NeighbourCounts::kMost * NeighbourCounts::kMost> beyond;
+  std::array<float, NeighborCounts::kMost> tight, wide;
+  std::array<float, NeighborCounts::kMost * NeighborCounts::kMost> beyond;
 };
 
-/// P(phantom) of every return from how it stands among its neighbours in the range image, its
+/// P(phantom) of every return from how it stands among its neighbors in the range image, its
 /// height above the ground, its intensity, the sensor's label and echoes. Two passes: in the second
 /// counts what the first made of the returns nearby, so that a dark car keeps its dark returns. The
 /// share of phantoms follows the weather, so that nothing is doubted in clear air.
@@ -49,13 +49,13 @@ class PointTrust final : public PointFilter {
   };
   void placeReturns(const SensorFrame& frame, const LidarCloud& cloud);
   void count(const RangeImage::Block& block, const std::uint32_t* bins);
-  NeighbourRules neighbourRules() const;
-  void lookAround();
-  void hearSensor(const LidarCloud& cloud);
+  NeighborRules neighborRules() const;
+  void countNeighbors();
+  void applySensorLabels(const LidarCloud& cloud);
   void learnIntensity();
   void weighIntensity();
-  void askCompany();
-  void giveTrust(LidarCloud& cloud, TrustStats& stats);
+  void applyNeighborhood();
+  void writeTrust(LidarCloud& cloud, TrustStats& stats);
 
   const TrustCurve& curve(TrustFeature feature) const {
     return curves_[static_cast<std::size_t>(feature)];
@@ -69,7 +69,7 @@ class PointTrust final : public PointFilter {
   bool hears_intensity_ = false;  // this scan has it, and it is used
   PhantomShare share_;
   Census census_;
-  NeighbourCounter neighbours_;
+  NeighborCounter neighbors_;
   SuspectReturns suspects_;
   std::vector<std::uint32_t> open_;  // suspects that are still to be looked at
   SurroundingCubes cubes_;

@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
-#include "libperception/core/RoughBearing.h"
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/FastAtan2.h"
 
 namespace perception {
 namespace {
 
 constexpr float kSteepest = 1;       // tangent of elevation; steeper beams share the outermost rows
 constexpr float kInstrument = 0.3F;  // [m] nearer is the sensor's own window
-constexpr double kConnected = 0.6;   // share of pixels with a neighbour above or below
+constexpr double kConnected = 0.6;   // share of pixels with a neighbor above or below
 // [rad] 64 and 128 beams, 32, 16, and a few layers (Ibeo).
 const double kRows[] = {radians(0.35), radians(0.5), radians(0.7), radians(1.0),
                         radians(1.4),  radians(2.0), radians(3.0)};
@@ -33,8 +33,8 @@ PERCEPTION_WIDEST void findPixels(const float* __restrict x, const float* __rest
     const float r = std::sqrt(flat2 + z[i] * z[i]);
     const float slope = z[i] / (std::sqrt(flat2) + 1e-6F);
     const std::int32_t seen = (r > kInstrument) & (r < 1e3F);  // NaN fails both
-    const auto turn = static_cast<std::int32_t>(
-        (roughBearing(x[i], y[i]) + static_cast<float>(kPi)) * k.per_radian);
+    const auto turn =
+        static_cast<std::int32_t>((fastAtan2(x[i], y[i]) + static_cast<float>(kPi)) * k.per_radian);
     const std::int32_t column = turn < k.columns - 1 ? turn : k.columns - 1;
     const float high = slope < kSteepest ? slope : kSteepest;
     const float up = (high > -kSteepest ? high : -kSteepest) + kSteepest;

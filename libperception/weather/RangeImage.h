@@ -8,7 +8,7 @@
 
 namespace perception {
 
-/// A scan as a picture of ranges: a pixel a direction, so that the neighbours of a return are found
+/// A scan as a picture of ranges: a pixel a direction, so that the neighbors of a return are found
 /// without a search, at any range at the scale of the beams. The picture goes round; its margin
 /// holds the other end's columns.
 class RangeImage {
@@ -20,11 +20,11 @@ class RangeImage {
     const std::uint32_t* pixels;  ///< places in pixels(); 0 where there is no range
   };
   using BlockVisitor = std::function<void(const Block&)>;
-  static constexpr int kColumnReach = 4, kRowReach = 2;  ///< [px] of a return's neighbourhood
+  static constexpr int kColumnReach = 4, kRowReach = 2;  ///< [px] of a return's neighborhood
   static constexpr std::size_t kBlock = 960;             ///< [returns] no more in a block
 
   /// `column`, `row`: [rad] of a pixel (rows are even in the tangent of elevation). row = 0: found
-  /// from the first scan, the finest in which neighbouring beams lie in neighbouring rows.
+  /// from the first scan, the finest in which neighboring beams lie in neighboring rows.
   RangeImage(double column, double row);
 
   /// The last return of a direction stays. `look`, where given, is shown each block of returns when

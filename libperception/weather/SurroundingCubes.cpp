@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {
 
 /// How cubes are numbered.
 struct CubeRules {
-  float reach, bottom, per_metre;
+  float reach, bottom, per_meter;
   std::int32_t side, layers;
 
   std::int32_t along(float v) const {
-    const auto i = static_cast<std::int32_t>((v + reach) * per_metre);
+    const auto i = static_cast<std::int32_t>((v + reach) * per_meter);
     return i < 0 ? 0 : i < side ? i : side - 1;
   }
   std::int32_t layer(float z) const {
-    const auto i = static_cast<std::int32_t>((z - bottom) * per_metre);
+    const auto i = static_cast<std::int32_t>((z - bottom) * per_meter);
     return i < 0 ? 0 : i < layers ? i : layers - 1;
   }
   std::int32_t column(std::int32_t x, std::int32_t y) const { return (x * side + y) * layers; }
@@ -59,7 +59,7 @@ void SurroundingCubes::locate(const float* x, const float* y, const float* z, st
   findAll(x, y, z, count, rules, kEdge / 2, cubes, corners);
 }
 
-// Neighbours in a scan share cubes; four places by turns do not wait for each other.
+// Neighbors in a scan share cubes; four places by turns do not wait for each other.
 void SurroundingCubes::add(const std::uint32_t* cubes, std::size_t count, std::uint32_t mask) {
   std::uint64_t* const counts = counts_.data();
   const std::size_t quarter = count / 4;

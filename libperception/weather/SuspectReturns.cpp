@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "libperception/core/Pack.h"
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Compress.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {
@@ -27,7 +27,7 @@ PERCEPTION_WIDEST void describe(const float* __restrict x, const float* __restri
 
 PERCEPTION_WIDEST void markSuspects(const std::uint32_t* __restrict counts, std::size_t count,
                                     std::uint32_t surface, std::int32_t* __restrict marks) {
-  for (std::size_t s = 0; s < count; ++s) marks[s] = NeighbourCounts(counts[s]).around() < surface;
+  for (std::size_t s = 0; s < count; ++s) marks[s] = NeighborCounts(counts[s]).around() < surface;
 }
 
 }  // namespace
@@ -37,12 +37,12 @@ void SuspectReturns::makeRoom(std::size_t more) {
   if (least <= index.size()) return;
   const std::size_t room = least + least / 2;
   for (auto* numbers : {&index, &pixel, &cube, &corner}) numbers->resize(room);
-  for (auto* metres : {&range, &height}) metres->resize(room);
+  for (auto* meters : {&range, &height}) meters->resize(room);
 }
 
 void SuspectReturns::makeRoomForLooks() {
-  if (neighbours.size() == index.size()) return;
-  neighbours.resize(index.size());
+  if (neighbors.size() == index.size()) return;
+  neighbors.resize(index.size());
   for (auto* numbers : {&geometry, &first, &second, &company}) numbers->resize(index.size());
 }
 
@@ -73,12 +73,12 @@ void SuspectReturns::clearSurfaces(std::uint32_t surface) {
   std::size_t kept = 0;
   for (std::size_t done = 0; done < count; done += kBlock) {
     const std::size_t size = std::min(kBlock, count - done);
-    markSuspects(&neighbours[done], size, surface, marks.data());
+    markSuspects(&neighbors[done], size, surface, marks.data());
     kept += pack<6>(marks.data(), size,
                     {{{&index[done], &index[kept]},
                       {&cube[done], &cube[kept]},
                       {&corner[done], &corner[kept]},
-                      {&neighbours[done], &neighbours[kept]},
+                      {&neighbors[done], &neighbors[kept]},
                       {&range[done], &range[kept]},
                       {&height[done], &height[kept]}}});
   }
@@ -89,7 +89,7 @@ SuspectReturn SuspectReturns::at(std::size_t s) const {
   const auto share = [](std::uint32_t part, std::uint32_t whole) {
     return whole > 0 ? static_cast<float>(part) / static_cast<float>(whole) : 1.0F;
   };
-  const NeighbourCounts n(neighbours[s]);
+  const NeighborCounts n(neighbors[s]);
   return {index[s],
           {range[s], static_cast<float>(n.tight()), static_cast<float>(n.wide()),
            share(n.beyond(), n.filled()), height[s], company[s]},

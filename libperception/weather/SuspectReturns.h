@@ -5,7 +5,7 @@
 
 #include "libperception/weather/HeightAboveGround.h"
 #include "libperception/weather/IntensityLaw.h"
-#include "libperception/weather/NeighbourCounts.h"
+#include "libperception/weather/NeighborCounts.h"
 #include "libperception/weather/RangeImage.h"
 #include "libperception/weather/SurroundingCubes.h"
 #include "libperception/weather/TrustParams.h"
@@ -25,15 +25,15 @@ struct SuspectReturn {
 /// of this scan.
 struct SuspectReturns {
   std::size_t count = 0;
-  std::vector<std::uint32_t> index;       ///< in the cloud
-  std::vector<std::uint32_t> pixel;       ///< of the range image, before anyone is cleared
-  std::vector<std::uint32_t> cube;        ///< of SurroundingCubes; above, the bin of the intensity
-  std::vector<std::uint32_t> corner;      ///< of SurroundingCubes
-  std::vector<std::uint32_t> neighbours;  ///< bits of NeighbourCounts
-  std::vector<float> range, height;       ///< [m]
-  std::vector<float> geometry;            ///< [log-odds] without intensity and weather
-  std::vector<float> first, second;       ///< [log-odds]
-  std::vector<float> company;             ///< as TrustFeature::kCompany; of those that were asked
+  std::vector<std::uint32_t> index;      ///< in the cloud
+  std::vector<std::uint32_t> pixel;      ///< of the range image, before anyone is cleared
+  std::vector<std::uint32_t> cube;       ///< of SurroundingCubes; above, the bin of the intensity
+  std::vector<std::uint32_t> corner;     ///< of SurroundingCubes
+  std::vector<std::uint32_t> neighbors;  ///< bits of NeighborCounts
+  std::vector<float> range, height;      ///< [m]
+  std::vector<float> geometry;           ///< [log-odds] without intensity and weather
+  std::vector<float> first, second;      ///< [log-odds]
+  std::vector<float> company;            ///< as TrustFeature::kCompany; of those that were asked
 
   static constexpr int kBinShift = 28;
   std::uint32_t binOf(std::size_t s) const { return cube[s] >> kBinShift; }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "libperception/core/Wider.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {

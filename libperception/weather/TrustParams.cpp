@@ -20,17 +20,17 @@ const std::vector<CurveRow>& curveRows() {
        {0, -0.36, -1.56, -3.28, -4.46, -5.99, -6.05}},
       {TrustFeature::kTight,
        "tight_curve",
-       "at 0, 1, 2, 4, 8, 16 neighbours within `tight`",
+       "at 0, 1, 2, 4, 8, 16 neighbors within `tight`",
        {0, 1, 2, 4, 8, 16},
        {0, 0, -0.33, -1.05, -2.04, -2.89}},
       {TrustFeature::kWide,
        "wide_curve",
-       "at 0, 1, 2, 4, 8, 16, 30 neighbours within `wide`",
+       "at 0, 1, 2, 4, 8, 16, 30 neighbors within `wide`",
        {0, 1, 2, 4, 8, 16, 30},
        {0, -0.76, -1.46, -2.12, -2.87, -3.79, -4.71}},
       {TrustFeature::kBeyond,
        "beyond_curve",
-       "at shares 0, .1, .3, .6, .9, 1 of the neighbouring beams that pass behind",
+       "at shares 0, .1, .3, .6, .9, 1 of the neighboring beams that pass behind",
        {0, 0.1, 0.3, 0.6, 0.9, 1},
        {0, 1.86, 1.90, 3.59, 4.11, 3.09}},
       {TrustFeature::kHeight,
@@ -40,7 +40,7 @@ const std::vector<CurveRow>& curveRows() {
        {0, 0.49, 1.11, 4.94}},
       {TrustFeature::kCompany,
        "company_curve",
-       "at -4, -2, -1, 0, 1, 2, 4, 6: ln((1 + surfaces) / (1 + phantoms)) within half a metre",
+       "at -4, -2, -1, 0, 1, 2, 4, 6: ln((1 + surfaces) / (1 + phantoms)) within half a meter",
        {-4, -2, -1, 0, 1, 2, 4, 6},
        {0, -2.61, -3.17, -4.37, -5.92, -7.61, -9.12, -9.30}},
   };
@@ -62,10 +62,10 @@ void TrustParams::visit(ParamVisitor& v) {
   v.angle("column_deg", column, {0.05, 5}, "azimuth of a pixel of the range image");
   v.angle("row_deg", row, {0, 10}, "elevation of a pixel; 0: found from the first scan");
   v.real("max_range", max_range, {1, 200}, "m", "beyond it every return is trusted");
-  v.real("tight", tight, {0.001, 0.5}, "", "of the range: a neighbour of the same surface");
-  v.real("wide", wide, {0.001, 0.5}, "", "of the range: a neighbour");
+  v.real("tight", tight, {0.001, 0.5}, "", "of the range: a neighbor of the same surface");
+  v.real("wide", wide, {0.001, 0.5}, "", "of the range: a neighbor");
   v.real("beyond", beyond, {0.001, 2}, "", "of the range: a beam that passes behind");
-  v.integer("surface_neighbours", surface_neighbours, {1, 9},
+  v.integer("surface_neighbors", surface_neighbors, {1, 9},
             "of the eight nearest pixels within `tight` that make a surface");
   for (const CurveRow& row : curveRows())
     v.reals(row.key, curves[static_cast<std::size_t>(row.feature)],
@@ -74,8 +74,8 @@ void TrustParams::visit(ParamVisitor& v) {
   v.real("gain", gain, {0, 5}, "", "of the first pass in the second");
   v.real("second_bias", second_bias, {-20, 20}, "log-odds", "of the second pass");
   v.boolean("use_intensity", use_intensity, "learn which intensities phantoms have");
-  v.real("intensity_gain", intensity_gain, {0, 5}, "", "of the learnt log-likelihood ratio");
-  v.real("intensity_memory", intensity_memory, {1, 1e4}, "scans", "of the learnt intensities");
+  v.real("intensity_gain", intensity_gain, {0, 5}, "", "of the learned log-likelihood ratio");
+  v.real("intensity_memory", intensity_memory, {1, 1e4}, "scans", "of the learned intensities");
   v.boolean("adapt_share", adapt_share, "let the share of phantoms follow the weather");
   v.real("fitted_share", fitted_share, {1e-4, 0.9}, "",
          "of phantoms within share_range in the scans that the curves were fitted to");

@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
+#include "libperception/config/ParamSet.h"
 #include "libperception/core/Angle.h"
-#include "libperception/core/ParamSet.h"
 
 namespace perception {
 
@@ -18,20 +18,20 @@ struct TrustParams {
   double column = radians(0.2);  ///< [rad] of azimuth in a pixel of the range image
   double row = 0;                ///< [rad] of elevation in a pixel; 0: found from the first scan
   double max_range = 20;         ///< [m] beyond, flakes give hardly a return (WADS: 2 of 1000)
-  double tight = 0.02;           ///< [-] of the range, + 3 cm: a neighbour of the same surface
+  double tight = 0.02;           ///< [-] of the range, + 3 cm: a neighbor of the same surface
   double wide = 0.04;            ///< [-] of the range, + 3 cm
   double beyond = 0.1;           ///< [-] of the range, + 30 cm: a beam that passes behind
-  int surface_neighbours = 6;    ///< of the eight nearest within `tight`: a surface, no model asked
+  int surface_neighbors = 6;     ///< of the eight nearest within `tight`: a surface, no model asked
 
   std::array<std::vector<double>, kTrustFeatures> curves;  ///< [log-odds] at the knots
   double bias = -3.95;                                     ///< [log-odds] of the first pass
-  /// Second pass, which also asks what the neighbours turned out to be: [-] of the first pass's
+  /// Second pass, which also asks what the neighbors turned out to be: [-] of the first pass's
   /// log-odds, [log-odds].
   double gain = 0.32, second_bias = 4.75;
 
   bool use_intensity = true;
-  double intensity_gain = 0.8;   ///< [-] of the learnt log-likelihood ratio
-  double intensity_memory = 10;  ///< [scans] of the learnt intensities
+  double intensity_gain = 0.8;   ///< [-] of the learned log-likelihood ratio
+  double intensity_memory = 10;  ///< [scans] of the learned intensities
   bool adapt_share = true;       ///< the share of phantoms follows the weather
   double fitted_share = 0.1457;  ///< [-] of phantoms within share_range in the scans of the fit
   double share_range = 15;       ///< [m]

@@ -11,7 +11,8 @@
 #include <new>
 #include <stdexcept>
 
-#include "tests/core/ConfigFixture.h"
+#include "libperception/pipeline/Progress.h"
+#include "tests/config/ConfigFixture.h"
 
 namespace perception::test {
 namespace {

@@ -9,15 +9,15 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/app/DetectLabels.h"
-#include "libperception/app/KittiFiles.h"
 #include "libperception/core/Angle.h"
 #include "libperception/core/Csv.h"
+#include "libperception/detectors/VisionSimd.h"
+#include "libperception/detectors/dpm/HogFeatures.h"
+#include "libperception/importers/KittiFiles.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/RawlogWriter.h"
-#include "libperception/vision/HogFeatures.h"
-#include "libperception/vision/VisionSimd.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 160, kX = 96, kY = 64;  // [px] of the object
 
-// A board on grey: what the detector of these tests looks for.
+// A board on gray: what the detector of these tests looks for.
 cv::Mat picture(int shift) {
   cv::Mat image(kHeight, kWidth, CV_8UC3);
   cv::RNG random(5);
@@ -147,7 +147,7 @@ TEST(DetectApp, BoxesGoIntoTheLogBehindTheirImages) {
 }
 
 /// What a pinhole of `focal` [px] at `yaw` [rad, to the right] sees, painted into a panorama.
-void paint(const cv::Mat& image, double fx, double cx, double cy, double yaw, double horizon,
+void paint(const cv::Mat& image, double fx, double cx, double cy, double yaw, double occlusion,
            cv::Mat& panorama) {
   const double f = panorama.cols / kTwoPi, middle = 0.5 * panorama.cols - 0.5;
   for (int v = 0; v < panorama.rows; ++v) {
@@ -155,7 +155,7 @@ void paint(const cv::Mat& image, double fx, double cx, double cy, double yaw, do
       const double right = wrapAngle((u - middle) / f - yaw);
       if (std::abs(right) > radians(44)) continue;
       const int x = cvRound(fx * std::tan(right) + cx);
-      const int y = cvRound(fx * std::tan((v - horizon) / f) / std::cos(right) + cy);
+      const int y = cvRound(fx * std::tan((v - occlusion) / f) / std::cos(right) + cy);
       if (x >= 0 && y >= 0 && x < image.cols && y < image.rows)
         panorama.at<cv::Vec3b>(v, u) = image.at<cv::Vec3b>(y, x);
     }
@@ -223,7 +223,7 @@ TEST(DetectApp, CarsOfRealPicturesAreFoundInAPanoramaOfThem) {
     const double yaw = radians(180) + static_cast<double>(i) * radians(90);
     paint(cv::imread(data + "image_2/" + names[i] + ".png"), c.fx, c.cx, c.cy, yaw, kHorizon,
           panorama);
-    for (const LabelledBox& l : labels.of(names[i] + ".png")) {
+    for (const LabeledBox& l : labels.of(names[i] + ".png")) {
       if (l.label != "Car" || l.ignore || l.area) continue;
       const auto right = [&](double x) { return std::atan((x - c.cx) / c.fx); };
       const double middle = std::cos(0.5 * (right(l.box.x1) + right(l.box.x2)));
@@ -290,7 +290,7 @@ TEST(DetectApp, BankOfSixteenFindsCarsAndTheirHeadings) {
   const auto car = std::find_if(app.out_quality.begin(), app.out_quality.end(),
                                 [](const LabelQuality& q) { return q.label == "Car"; });
   ASSERT_NE(car, app.out_quality.end());
-  EXPECT_EQ(car->labelled, 21);
+  EXPECT_EQ(car->labeled, 21);
   EXPECT_GE(car->average_precision, 0.88);
   EXPECT_LE(degrees(car->heading_median), 6);
   EXPECT_LE(car->flips, 2);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/app/Pipeline.h"
-#include "libperception/filter/MotionModels.h"
 #include "libperception/filter/Step.h"
-#include "libperception/measurement/RadarModel.h"
+#include "libperception/filter/state/MotionModels.h"
+#include "libperception/pipeline/Pipeline.h"
+#include "libperception/radar/RadarModel.h"
 #include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/RadarUnit.h"
 #include "libperception/simulation/SphericalCamera.h"
@@ -112,8 +112,8 @@ TEST(PanoramaScenario, BoxesOfTheSuburbanLieWhereItIs) {
   const auto named = [](const auto& s) { return s.label == "CAMERA_PANO"; };
   const auto& sensors = world.scenario().sensors;
   const auto unit = std::find_if(sensors.begin(), sensors.end(), named);
-  const auto rib = std::find_if(setup.sensors.begin(), setup.sensors.end(), named);
-  ASSERT_TRUE(unit != sensors.end() && rib != setup.sensors.end());
+  const auto front_end = std::find_if(setup.sensors.begin(), setup.sensors.end(), named);
+  ASSERT_TRUE(unit != sensors.end() && front_end != setup.sensors.end());
   int boxes = 0, near = 0, reversed = 0;
   Vector3 nis = Vector3::Zero();
   for (std::uint64_t i = 0; i < 60; ++i) {
@@ -125,7 +125,7 @@ TEST(PanoramaScenario, BoxesOfTheSuburbanLieWhereItIs) {
     frame.T_ego_sensor = unit->T_ego_sensor() * opticalAxes();
     frame.data =
         detectPanorama(caster, t, unit->panorama, frame.T_world_sensor(), RngKey{6, i, 0, 0});
-    const auto scan = rib->front_end->extract(frame);
+    const auto scan = front_end->front_end->extract(frame);
     for (const TruthObject& o : world.truth(0, t)) {
       if (o.type != "Car") continue;
       Kinematics k;

@@ -80,7 +80,7 @@ TEST_F(SnapshotAppTest, DrawsOneInstantWithoutLog) {
   EXPECT_GT(fs::file_size(dir_ + "/new folder/a.png"), 5000U);
   EXPECT_EQ(app_->out_picture.width, 1280);
   EXPECT_EQ(app_->out_picture.height, 720);
-  EXPECT_GT(coloursOf(app_->out_picture), 100U);
+  EXPECT_GT(colorsOf(app_->out_picture), 100U);
 }
 
 TEST_F(SnapshotAppTest, LogAndTruthAddToThePicture) {
@@ -181,7 +181,7 @@ TEST_F(SnapshotAppTest, TwoRunsStandSideBySide) {
 
 TEST_F(SnapshotAppTest, CameraViewShowsTheDetectorsViewOfALogWithoutImages) {
   ASSERT_EQ(run({"--frame", "20", "--view", "camera", "-i", kDemoLog, "-o", dir_ + "/a.png"}), 0);
-  EXPECT_GT(coloursOf(app_->out_picture), 100U);
+  EXPECT_GT(colorsOf(app_->out_picture), 100U);
   EXPECT_EQ(run({"--frame", "20", "--view", "camera", "-o", dir_ + "/a.png"}), 64) << "no log";
   EXPECT_EQ(run({"--frame", "20", "--view", "camera", "--camera", "REAR", "-i", kDemoLog, "-o",
                  dir_ + "/a.png"}),
@@ -190,7 +190,7 @@ TEST_F(SnapshotAppTest, CameraViewShowsTheDetectorsViewOfALogWithoutImages) {
 }
 
 TEST_F(SnapshotAppTest, SiteSettingsDecideWhichReturnsAreDrawn) {
-  // The run's own INI, with a lidar that looks no farther than ten metres.
+  // The run's own INI, with a lidar that looks no farther than ten meters.
   std::ofstream(dir_ + "/near.ini") << "include = " PERCEPTION_SOURCE_DIR
                                        "/ini/demo.ini\n"
                                        "[sensor.LIDAR_TOP.points]\nrange_max = 10\n";

@@ -1,7 +1,7 @@
 # Every header compiles alone: the source beside it includes it first (architecture_tests holds that rule), and a header
 # without a source gets a generated one here, built with all the others. Only changed ones compile again.
 file(GLOB_RECURSE HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
-     ${CMAKE_SOURCE_DIR}/libperception/*.h ${CMAKE_SOURCE_DIR}/gui-offscreen/*.h)
+     ${CMAKE_SOURCE_DIR}/libperception/*.h ${CMAKE_SOURCE_DIR}/gui-offscreen/*.h ${CMAKE_SOURCE_DIR}/studies/*.h)
 set(HEADER_SOURCES)
 foreach(HEADER ${HEADERS})
   string(REGEX REPLACE "[.]h$" ".cpp" OWN_SOURCE ${HEADER})
@@ -13,5 +13,5 @@ foreach(HEADER ${HEADERS})
   list(APPEND HEADER_SOURCES ${SOURCE})
 endforeach()
 add_library(headers_alone OBJECT ${HEADER_SOURCES})
-target_link_libraries(headers_alone PRIVATE perception::app perception::capture)
+target_link_libraries(headers_alone PRIVATE perception::studies perception::importers perception::capture perception::gui-offscreen)
 target_compile_options(headers_alone PRIVATE -O0 -g0)

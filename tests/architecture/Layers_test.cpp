@@ -12,30 +12,47 @@ namespace {
 // What a module may include besides itself. The spine is core -> measurement -> filter -> scene.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"core", {}},
-    {"measurement", {"core"}},
-    {"filter", {"measurement", "core"}},
-    {"lidar", {"measurement", "core"}},
-    {"radar", {"measurement", "core"}},
-    {"vision", {"measurement", "core"}},
-    {"weather", {"measurement", "core"}},
-    {"scene", {"filter", "measurement", "core"}},
-    {"sensors", {"measurement", "core"}},
-    {"grid", {"core"}},
-    {"evaluation", {"scene", "measurement", "core"}},
-    {"simulation", {"sensors", "measurement", "core"}},
-    {"study", {"simulation", "evaluation", "scene", "filter", "sensors", "measurement", "core"}},
-    {"batch", {"scene", "evaluation", "core"}},
-    {"capture", {"simulation", "sensors", "measurement", "core"}},
-    {"gui-offscreen", {"scene", "grid", "measurement", "core"}},
+    {"config", {"core"}},
+    {"simd", {"core"}},
+    {"measurement", {"config", "core"}},
+    // Front ends and weather: no filter, no sensors.
+    {"lidar", {"measurement", "simd", "config", "core"}},
+    {"radar", {"measurement", "config", "core"}},
+    {"boxes3d", {"measurement", "config", "core"}},
+    {"vision", {"measurement", "config", "core"}},
+    {"weather", {"measurement", "simd", "config", "core"}},
+    {"detectors", {"measurement", "simd", "config", "core"}},
+    {"grid", {"simd", "config", "core"}},
+    {"filter", {"measurement", "simd", "config", "core"}},
+    {"scene", {"filter", "measurement", "config", "core"}},
+    {"sensors", {"measurement", "config", "core"}},
+    {"pipeline",
+     {"scene", "filter", "sensors", "grid", "weather", "lidar", "radar", "boxes3d", "vision",
+      "measurement", "config", "core"}},
+    {"evaluation", {"scene", "measurement", "config", "core"}},
+    {"gui-offscreen", {"scene", "grid", "measurement", "config", "core"}},
+    {"importers", {"sensors", "measurement", "config", "core"}},
+    {"simulation", {"sensors", "measurement", "config", "core"}},
+    {"capture", {"simulation", "sensors", "measurement", "config", "core"}},
+    {"calibration",
+     {"pipeline", "evaluation", "scene", "filter", "boxes3d", "sensors", "measurement", "config",
+      "core"}},
+    {"pictures",
+     {"pipeline", "gui-offscreen", "simulation", "scene", "grid", "lidar", "detectors", "sensors",
+      "measurement", "config", "core"}},
     {"app",
-     {"core", "measurement", "filter", "lidar", "radar", "vision", "weather", "scene", "sensors",
-      "grid", "evaluation", "simulation", "study", "batch", "gui-offscreen"}},
-    {"apps", {"app"}},
+     {"pictures", "pipeline", "calibration", "importers", "simulation", "detectors", "evaluation",
+      "gui-offscreen", "boxes3d", "scene", "grid", "sensors", "measurement", "config", "core"}},
+    {"studies",
+     {"app", "pipeline", "calibration", "simulation", "detectors", "evaluation", "scene", "filter",
+      "lidar", "sensors", "measurement", "config", "core"}},
+    {"apps", {"app", "studies"}},
 };
 
 // Where only classes of MRPT's own kind (files CXxx) may know MRPT.
-const std::set<std::string> kWithoutMrpt = {"core", "measurement", "filter", "scene",
-                                            "grid", "lidar",       "radar",  "vision"};
+const std::set<std::string> kWithoutMrpt = {
+    "core",  "config", "simd",    "measurement", "filter",  "scene",     "grid",
+    "lidar", "radar",  "boxes3d", "vision",      "weather", "detectors", "evaluation"};
 
 // Libraries that stay behind our own headers.
 const std::vector<std::string> kOnlyInSources = {"octomap/", "opencv2/", "GL/",     "GLES",
@@ -100,7 +117,7 @@ std::string faultOf(const SourceFile& file, const Include& include) {
 
 std::vector<SourceFile> ourSources() {
   std::vector<SourceFile> sources;
-  for (const char* folder : {"libperception", "gui-offscreen", "apps"}) {
+  for (const char* folder : {"libperception", "gui-offscreen", "studies", "apps"}) {
     for (SourceFile& file : filesBelow(folder)) {
       if (file.isHeader() || file.isSource()) sources.push_back(std::move(file));
     }

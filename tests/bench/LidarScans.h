@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/app/ImportClouds.h"
+#include "libperception/importers/ImportClouds.h"
 #include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/measurement/SensorFrame.h"
 
@@ -22,13 +22,13 @@ struct RecordedScan {
   std::vector<std::uint16_t> point_class;  ///< WADS numbers; empty: none
 };
 
-/// The lidar rib alone, without what a tracker has to know of it.
+/// The lidar front end alone, without what a tracker has to know of it.
 inline LidarFrontEnd frontEnd(const LidarParams& params) {
   ClassTable classes;
   classes.classes.resize(1);
-  return LidarFrontEnd(
-      params, classes,
-      Sensing(SensingParams{}, {ClassSensing{}}, LidarFrontEnd::labels(params.clusters)));
+  return LidarFrontEnd(params, classes,
+                       DetectionModel(DetectionParams{}, {ClassDetection{}},
+                                      LidarFrontEnd::labels(params.clusters)));
 }
 
 inline double cpuSeconds() {

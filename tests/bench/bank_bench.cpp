@@ -15,7 +15,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Random.h"
-#include "libperception/filter/BankBatch.h"
+#include "libperception/filter/state/BankBatch.h"
 
 namespace perception {
 namespace {
@@ -114,7 +114,7 @@ struct OurBank {
         bank[static_cast<std::size_t>(r)][i] = cs[i].x[r];
         for (int c = r; c < 4; ++c) bank[plane++][i] = cs[i].P(r, c);
       }
-      motion[MotionBatch::kKeep][i] = 1, motion[MotionBatch::kWay][i] = kDt;
+      motion[MotionBatch::kDecay][i] = 1, motion[MotionBatch::kEffectiveDt][i] = kDt;
       motion[MotionBatch::kPp][i] = kAccel * kDt * kDt * kDt / 3;
       motion[MotionBatch::kPv][i] = kAccel * kDt * kDt / 2;
       motion[MotionBatch::kVv][i] = kAccel * kDt;

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "libperception/app/KittiFiles.h"
+#include "libperception/importers/KittiFiles.h"
 #include "libperception/lidar/BoxFit.h"
 #include "libperception/lidar/GroundPlane.h"
 #include "libperception/lidar/LidarFrontEnd.h"
@@ -26,7 +26,7 @@ constexpr float kPersonSpan = 1.0F;        // [m] lowest to highest return
 
 enum class Kind { kVehicle, kPerson, kRider };
 
-/// Something labelled. Ego frame.
+/// Something labeled. Ego frame.
 struct Truth {
   Kind kind = Kind::kVehicle;
   std::vector<Vector2> outline;  ///< [m]
@@ -95,10 +95,10 @@ class KittiBoxes final : public Labels {
       truth.kind = kind->second;
       for (const Vector2& sign : {Vector2(1, 1), Vector2(-1, 1), Vector2(-1, -1), Vector2(1, -1)})
         truth.outline.push_back(
-            box.bottom_centre.head<2>() +
+            box.bottom_center.head<2>() +
             rotate2(box.yaw, {sign.x() * box.length / 2, sign.y() * box.width / 2}));
       const auto& cloud = std::get<LidarCloud>(scan.frame.data);
-      truth.counts = label.occluded <= 2 && box.bottom_centre.head<2>().norm() <= range &&
+      truth.counts = label.occluded <= 2 && box.bottom_center.head<2>().norm() <= range &&
                      returnsInside(*label.box, cloud, calibration_) >= kLeastReturns;
       truths.push_back(std::move(truth));
     }
@@ -127,15 +127,15 @@ class WadsClasses final : public Labels {
   std::string natureOf(const RecordedScan& scan, const std::vector<std::uint32_t>& returns,
                        const std::string&) const override {
     static const std::map<std::uint16_t, const char*> kNames = {
-        {0, "unlabelled"}, {10, "car"},   {20, "car"},           {30, "person"},
-        {40, "road"},      {50, "wall"},  {70, "bush"},          {80, "pole"},
-        {81, "sign"},      {99, "thing"}, {110, "falling snow"}, {111, "lying snow"}};
+        {0, "unlabeled"}, {10, "car"},   {20, "car"},           {30, "person"},
+        {40, "road"},     {50, "wall"},  {70, "bush"},          {80, "pole"},
+        {81, "sign"},     {99, "thing"}, {110, "falling snow"}, {111, "lying snow"}};
     std::map<std::uint16_t, std::size_t> votes;
     for (const std::uint32_t i : returns) ++votes[scan.point_class[i]];
     const auto most =
         std::max_element(votes.begin(), votes.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    return most == votes.end() ? "unlabelled" : kNames.at(most->first);
+    return most == votes.end() ? "unlabeled" : kNames.at(most->first);
   }
   double fov() const override { return kTwoPi; }
 
@@ -180,7 +180,7 @@ std::vector<Seen> detectionsOf(const RecordedScan& scan, const LidarDetections& 
   for (const PersonPeak& p : found.persons) {
     const bool tall = p.highest - p.lowest >= kPersonSpan;
     const std::string shape = tall ? "of a person's height" : "lower";
-    all.push_back({Seen::kPerson, p.centre, tall, labels.natureOf(scan, sources(p.points), shape)});
+    all.push_back({Seen::kPerson, p.center, tall, labels.natureOf(scan, sources(p.points), shape)});
   }
   return all;
 }

@@ -1,6 +1,6 @@
 // The engine of part models: a tile of 512 pixels and a whole panorama of 2048 x 1024 with 16 car
 // and 8 pedestrian orientations, against cv::dpm in the same run; what each shortcut costs in
-// average precision. The models and labelled images lie beside the project
+// average precision. The models and labeled images lie beside the project
 // (PERCEPTION_SHARED_DATA).
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "libperception/app/DetectLabels.h"
-#include "libperception/app/KittiFiles.h"
-#include "libperception/vision/ImageDetector.h"
+#include "libperception/detectors/ImageDetector.h"
+#include "libperception/importers/KittiFiles.h"
 
 namespace {
 
@@ -196,7 +196,7 @@ void costs(int threads) {
   fmt::print("peak memory with cv::dpm {}\n", memory());
 }
 
-/// Average precision and headings of the labelled images, CPU seconds an image on one core.
+/// Average precision and headings of the labeled images, CPU seconds an image on one core.
 void quality(const std::string& what, const DetectorSetup& setup) {
   const std::string folder = kData + "kitti_object13/";
   const ImageLabels labels(folder + "label_2", LabelRules{});

@@ -19,11 +19,11 @@
 #include <tuple>
 #include <vector>
 
-#include "libperception/app/Pipeline.h"
 #include "libperception/evaluation/Gnuplot.h"
 #include "libperception/evaluation/PlotScript.h"
 #include "libperception/filter/CRbpfTracker.h"
 #include "libperception/measurement/MeasurementModel.h"
+#include "libperception/pipeline/Pipeline.h"
 #include "tests/bench/CpuClock.h"
 
 namespace perception {
@@ -69,7 +69,7 @@ struct Object {
   }
 };
 
-/// Objects at least `spacing` metres apart in a disc of 60 m: people and vehicles by turns.
+/// Objects at least `spacing` meters apart in a disc of 60 m: people and vehicles by turns.
 std::vector<Object> street(const ClassTable& classes, double spacing, Rng& rng) {
   std::vector<Object> objects;
   while (objects.size() < kObjects) {
@@ -257,20 +257,20 @@ void draw(const std::vector<Load>& loads, const std::string& file) {
       "set xlabel 'particles'\nset ylabel 'CPU time a message [ms]'\nset key top left\n"
       "set xtics (1, 8, 64, 256, 1000)\nset arrow from 0.8,5 to 1300,5 nohead lc rgb '{}' dt 3\n"
       "set label 'limit 5 ms' at 0.9,5.7 left tc rgb '#555555'\n",
-      gnuplotString(name + ".png"), plot_colour::kGrey);
+      gnuplotString(name + ".png"), plot_color::kGray);
   for (const char* street : {"open", "crowded"}) {
     gp += fmt::format("set title '{}'\nplot ", std::string(street) == "open"
                                                    ? "open street: little ambiguity (4 m apart)"
                                                    : "crowded street: much ambiguity (1 m apart)");
     for (const char* proposal : {"sampled", "ranked"}) {
-      const char* colour =
-          std::string(proposal) == "sampled" ? plot_colour::kBlue : plot_colour::kOrange;
+      const char* color =
+          std::string(proposal) == "sampled" ? plot_color::kBlue : plot_color::kOrange;
       for (const auto& [column, label, dash] :
            {std::tuple{6, "p99", 1}, std::tuple{5, "median", 2}}) {
         gp += fmt::format(
             "{} using 3:((strcol(1) eq '{}' && strcol(2) eq '{}') ? ${} : NaN) with linespoints "
             "pt 7 lw 2 dt {} lc rgb '{}' title '{}, {}', ",
-            gnuplotString(name + ".csv"), street, proposal, column, dash, colour, proposal, label);
+            gnuplotString(name + ".csv"), street, proposal, column, dash, color, proposal, label);
       }
     }
     gp += "\n";

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/app/LogRecorder.h"
-#include "libperception/app/Pipeline.h"
+#include "libperception/pipeline/LogRecorder.h"
+#include "libperception/pipeline/Pipeline.h"
 #include "tests/bench/CpuClock.h"
 
 namespace perception {

@@ -22,7 +22,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/grid/SafetyGrid.h"
-#include "tests/support/LabelledScans.h"
+#include "tests/support/LabeledScans.h"
 
 namespace perception {
 namespace {
@@ -59,7 +59,7 @@ GridParams windowParams(GridParams::BackEnd back_end) {
   return params;
 }
 
-GridScan scanOf(const test::LabelledScan& scan, double t) {
+GridScan scanOf(const test::LabeledScan& scan, double t) {
   GridScan out;
   out.stamp = Stamp::fromSeconds(1000 + t);
   // Off the borders of cells, which two libraries may round to either side.
@@ -295,7 +295,7 @@ void memory(const std::vector<GridScan>& scans, const std::string& name) {
 std::vector<GridScan> recorded(const std::string& folder) {
   std::vector<GridScan> scans;
   const std::string dir = std::string(PERCEPTION_SHARED_DATA) + "/data/kitti_lidar_seq0000";
-  for (const auto& scan : test::labelledScans(dir, kSensorHeight, 1000, folder))
+  for (const auto& scan : test::labeledScans(dir, kSensorHeight, 1000, folder))
     scans.push_back(scanOf(scan, 0));
   return scans;
 }

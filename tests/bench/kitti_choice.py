@@ -54,7 +54,7 @@ class Sequence:
 
 
 def fitted(sequences):
-    """Weights of the logistic function (quadratic in the standardised features), and the function."""
+    """Weights of the logistic function (quadratic in the standardized features), and the function."""
     rows = [r for s in sequences for r in s.rows if r[0] + r[1]]
     right, both = np.array([r[0] for r in rows], float), np.array([r[0] + r[1] for r in rows], float)
     features = np.array([r[2] for r in rows])

@@ -93,7 +93,7 @@ def main():
         ' '.join('%04d' % s for s in a.sequences), frames, os.path.basename(a.config),
         ' ' + a.options if a.options else '', a.mode.upper(), MIN_IOU[a.mode])
     text += markdown('At the score of the best MOTA (per class, by looking at the truth)', best) + '\n'
-    text += markdown('All that is put out with a score of %g or more' % a.threshold, fixed) + '\n'
+    text += markdown('All that is output with a score of %g or more' % a.threshold, fixed) + '\n'
     text += 'CPU a frame, one thread: %.2f ms (%s).\n' % (
         sum(milliseconds.values()), ', '.join('%s %.2f' % kv for kv in milliseconds.items()))
     print(text)

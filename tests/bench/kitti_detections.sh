@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tracking of detectors' boxes on KITTI's tracking sequences, all classes at once: imports the sequences (once), tracks them
 # with ini/kitti-detections.ini and scores the result by CLEAR MOT, sAMOTA and HOTA (3D overlap of .25): at the threshold of
-# the best MOTA, as is the custom, and of all that is put out at one score, as a vehicle would use it. Leaves OUT/report.md,
+# the best MOTA, as is the custom, and of all that is output at one score, as a vehicle would use it. Leaves OUT/report.md,
 # OUT/res (KITTI's format) and OUT/run. Half a minute for `dev` on four cores.
 #   tests/bench/kitti_detections.sh [-t SCORE] [-m 2d] [-c INI] [-o OUT] [dev | train | SEQUENCE ...] [perception-track options]
 #   -m   2d: image boxes at an overlap of .5, for cameras alone (--sensors C --set run.output_sensor=rrc) [3d]

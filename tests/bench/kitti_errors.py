@@ -22,8 +22,8 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 CLASSES = ('Car', 'Pedestrian', 'Cyclist')
 EVERY_TYPE = ['car', 'van', 'truck', 'pedestrian', 'person', 'person_sitting', 'cyclist', 'tram', 'misc']
 MIN_IOU = 0.25
-SAME_PLACE = 2.0     # [m] between centres: a track or label that is about an object without overlapping it enough
-ON_TRACK = 1.0       # [m] between centres: a box that the track may have taken
+SAME_PLACE = 2.0     # [m] between centers: a track or label that is about an object without overlapping it enough
+ON_TRACK = 1.0       # [m] between centers: a box that the track may have taken
 CLOSE_BY = 6.0       # [m] around a track's life: boxes and labels drawn in its picture
 
 # Each error: whose it is, and what it is.
@@ -35,18 +35,18 @@ MISSED = {
     'low': ('decision', 'a track of its class overlaps it, score too low'),
     'thing': ('decision', 'a track that is called a thing overlaps it'),
     'class': ('decision', 'a track of another class overlaps it'),
-    'taken': ('association', 'the track that overlaps it is matched to a neighbour'),
-    'place': ('localisation', 'a track within 2 m overlaps it too little, as a box would not'),
-    'place, box': ('localisation', 'a track within 2 m overlaps it too little, no box overlaps it either'),
+    'taken': ('association', 'the track that overlaps it is matched to a neighbor'),
+    'place': ('localization', 'a track within 2 m overlaps it too little, as a box would not'),
+    'place, box': ('localization', 'a track within 2 m overlaps it too little, no box overlaps it either'),
 }
 FALSE = {
-    'clutter': ('clutter', 'on nothing labelled, with a box; a track that never was right'),
-    'clutter without box': ('coasting', 'on nothing labelled, no box; a track that never was right'),
+    'clutter': ('clutter', 'on nothing labeled, with a box; a track that never was right'),
+    'clutter without box': ('coasting', 'on nothing labeled, no box; a track that never was right'),
     'before': ('labels', 'before the first right frame of the track, with a box'),
-    'between': ('labels', 'between right frames, nothing labelled near, with a box'),
+    'between': ('labels', 'between right frames, nothing labeled near, with a box'),
     'after': ('labels', 'after the last right frame, with a box'),
-    'coasting': ('coasting', 'a track that was right in other frames, nothing labelled near, no box'),
-    'place': ('localisation', 'within 2 m of a missed object, too little overlap, with a box'),
+    'coasting': ('coasting', 'a track that was right in other frames, nothing labeled near, no box'),
+    'place': ('localization', 'within 2 m of a missed object, too little overlap, with a box'),
     'place, coasting': ('coasting', 'within 2 m of a missed object, too little overlap, no box'),
     'second': ('association', 'on an object that has its track already'),
     'sitting person': ('labels', 'on a sitting person (KITTI: Person), which the 3D rules do not excuse'),
@@ -89,7 +89,7 @@ class Detections:
 
 
 class Track:
-    """What a track did, or what became of a labelled object (`lost`), frame by frame."""
+    """What a track did, or what became of a labeled object (`lost`), frame by frame."""
 
     def __init__(self, sequence, cls, number, lost=False):
         self.sequence, self.cls, self.number, self.lost = sequence, cls, number, lost
@@ -209,12 +209,12 @@ def markdown(a, missed, false, totals):
         for key, (whose, _) in reasons.items():
             for c in CLASSES:
                 both[whose, c] += counts[key, c]
-    lines = ['**Both together, per 100 labelled objects**', '', '| whose | ' + ' | '.join(CLASSES) + ' |',
+    lines = ['**Both together, per 100 labeled objects**', '', '| whose | ' + ' | '.join(CLASSES) + ' |',
              '|---|' + '---|' * len(CLASSES)]
     for whose in dict.fromkeys(w for w, _ in list(MISSED.values()) + list(FALSE.values())):
         lines.append('| %s | %s |' % (whose, ' | '.join(
             '%.1f' % (100 * both[whose, c] / max(totals['objects', c], 1)) for c in CLASSES)))
-    return ('# What the errors are\n\nSequences %s; all output with a score of %g or more; labelled and counted: %s; found: '
+    return ('# What the errors are\n\nSequences %s; all output with a score of %g or more; labeled and counted: %s; found: '
             '%s.\n\n' % (' '.join('%04d' % s for s in a.sequences), a.threshold,
                          ', '.join('%d %s' % (totals['objects', c], c) for c in CLASSES),
                          ', '.join('%d %s' % (totals['right', c], c) for c in CLASSES)) +
@@ -261,12 +261,12 @@ class World:
 # What a panel's title says of its reasons, in words that stand alone.
 PLAIN = {
     'clutter': 'the detector marks a thing as this class', 'clutter without box': 'kept without boxes, never right',
-    'before': 'not labelled yet', 'between': 'not labelled meanwhile', 'after': 'not labelled any more',
+    'before': 'not labeled yet', 'between': 'not labeled meanwhile', 'after': 'not labeled any more',
     'coasting': 'kept after its object was gone', 'second': 'second track of one object',
     'sitting person': 'a person that sits: KITTI has another class for it', 'another type': 'a road user of another class',
     'none': 'the detector has no box on it', 'foreign': 'the detector has only boxes of another class',
     'weak': 'the detector has only doubtful boxes', 'no track': 'no track in spite of boxes', 'low': 'tracked, too little sure',
-    'thing': 'tracked, called a thing', 'class': 'tracked as another class', 'taken': 'its track stands for a neighbour',
+    'thing': 'tracked, called a thing', 'class': 'tracked as another class', 'taken': 'its track stands for a neighbor',
     'place, box': 'tracked too far off, no box on it',
 }
 
@@ -326,13 +326,13 @@ STYLES = (('foreign', 'with points pt 6 ps 0.5 lc rgb "#BBBBBB"'), ('box', 'with
           ('truth', 'with lines lw 3 lc rgb "black"'), ('right', 'with points pt 7 ps 0.6 lc rgb "#009E73"'),
           ('wrong', 'with points pt 7 ps 0.6 lc rgb "#C00000"'), ('ego', 'with lines lw 2 dt 2 lc rgb "#E69F00"'))
 KEY = {'foreign': 'doubtful box, or one of another class', 'box': 'box of the detector, same class',
-       'truth': 'ways of labelled objects', 'right': 'output and label agree', 'wrong': 'false output, or label that was missed',
+       'truth': 'ways of labeled objects', 'right': 'output and label agree', 'wrong': 'false output, or label that was missed',
        'ego': 'the vehicle'}
 
 
 def key_panel():
     """A panel that holds the key alone."""
-    text = ('set title "Boxes, tracks and labels from above, metres\\n(the vehicle is mostly out of the picture)" font ",9"\n'
+    text = ('set title "Boxes, tracks and labels from above, meters\\n(the vehicle is mostly out of the picture)" font ",9"\n'
             'unset border\nunset tics\nunset grid\nset key center center vertical spacing 1.6 font ",10"\n'
             'set xrange [0:1]\nset yrange [0:1]\nplot ')
     return text + ', '.join('1/0 %s title "%s"' % (style, KEY[k]) for k, style in STYLES) + '\n'

@@ -22,10 +22,10 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import kitti_detections  # noqa: E402
 
 SPLITS = {'dev': [1, 6, 10, 12, 13, 14, 19], 'train': [0, 2, 3, 4, 5, 7, 9, 11, 17, 20]}
-# class: solver, measure, its bound, hits before a track is put out, scans without a box that end it
+# class: solver, measure, its bound, hits before a track is output, scans without a box that end it
 SETTINGS = {'Car': ('optimal', 'giou', -0.2, 3, 2), 'Pedestrian': ('greedy', 'giou', -0.4, 1, 4),
             'Cyclist': ('optimal', 'distance', -2.0, 3, 4)}
-# A box is x y z yaw l w h in the world, z up, (x, y, z) its centre [m, rad]; a state adds vx vy vz [m a scan].
+# A box is x y z yaw l w h in the world, z up, (x, y, z) its center [m, rad]; a state adds vx vy vz [m a scan].
 
 
 class Track:
@@ -62,9 +62,9 @@ def camera_box(b):
 
 
 def similarity(tools, a, b, measure):
-    """[tracks x detections]: generalised 3D overlap (Rezatofighi et al., CVPR 2019), or minus the distance of the centres."""
+    """[tracks x detections]: generalized 3D overlap (Rezatofighi et al., CVPR 2019), or minus the distance of the centers."""
     import mot_eval
-    out = np.full((len(a), len(b)), -1.0)  # the least that generalised overlap can be
+    out = np.full((len(a), len(b)), -1.0)  # the least that generalized overlap can be
     for i, p in enumerate(a):
         for j, q in enumerate(b):
             distance = np.linalg.norm(p[:3] - q[:3])
@@ -119,9 +119,9 @@ def share_in_image(values, projection, size=(1242, 375), near=0.1):
     return inside.prod() / (high - low).prod()
 
 
-def moved(T, centre, yaw):
+def moved(T, center, yaw):
     direction = T[:3, :3] @ [np.cos(yaw), np.sin(yaw), 0]
-    return T[:3, :3] @ centre + T[:3, 3], np.arctan2(direction[1], direction[0])
+    return T[:3, :3] @ center + T[:3, 3], np.arctan2(direction[1], direction[0])
 
 
 def projection(path):
@@ -140,10 +140,10 @@ def run(tools, data, number, cls, lines, in_image):
     for frame, pose in enumerate(poses):
         detections = []
         for r in table[table[:, 0] == frame]:
-            centre = (T_velo_cam @ [r[10], r[11] - r[7] / 2, r[12], 1])[:3]
+            center = (T_velo_cam @ [r[10], r[11] - r[7] / 2, r[12], 1])[:3]
             ahead = T_velo_cam[:3, :3] @ [np.cos(r[13]), 0, -np.sin(r[13])]
-            centre, yaw = moved(pose, centre, np.arctan2(ahead[1], ahead[0]))
-            detections.append(dict(box=np.r_[centre, yaw, r[9], r[8], r[7]], image=r[2:6], score=r[6]))
+            center, yaw = moved(pose, center, np.arctan2(ahead[1], ahead[0]))
+            detections.append(dict(box=np.r_[center, yaw, r[9], r[8], r[7]], image=r[2:6], score=r[6]))
         for t in tracks:
             t.predict()
         similar = similarity(tools, [t.x for t in tracks], [d['box'] for d in detections], measure)
@@ -161,9 +161,9 @@ def run(tools, data, number, cls, lines, in_image):
             if t.hits < min_hits and frame + 1 > min_hits:
                 continue
             length, width, height = t.x[4:7]
-            centre = back[:3, :3] @ t.x[:3] + back[:3, 3]
+            center = back[:3, :3] @ t.x[:3] + back[:3, 3]
             ahead = back[:3, :3] @ [np.cos(t.x[3]), np.sin(t.x[3]), 0]
-            values = [*t.detection['image'], height, width, length, centre[0], centre[1] + height / 2, centre[2],
+            values = [*t.detection['image'], height, width, length, center[0], center[1] + height / 2, center[2],
                       np.arctan2(-ahead[2], ahead[0]), t.detection['score']]
             if in_image > 0 and share_in_image(values[4:11], P) < in_image:
                 continue

@@ -1,5 +1,5 @@
-// What the lidar rib gets right on real recordings with labels: ground per return in falling snow
-// (WADS) beside PCL's RANSAC. Detections: detection_study.
+// What the lidar front end gets right on real recordings with labels: ground per return in falling
+// snow (WADS) beside PCL's RANSAC. Detections: detection_study.
 #include <fmt/format.h>
 #include <pcl/ModelCoefficients.h>
 #include <pcl/sample_consensus/method_types.h>
@@ -17,19 +17,19 @@ namespace perception::bench {
 namespace {
 
 // Classes of WADS.
-constexpr std::uint16_t kUnlabelled = 0, kRoad = 40, kFallingSnow = 110, kLyingSnow = 111;
+constexpr std::uint16_t kUnlabeled = 0, kRoad = 40, kFallingSnow = 110, kLyingSnow = 111;
 const std::map<std::uint16_t, const char*> kNames = {
-    {0, "unlabelled"}, {10, "car"},          {20, "other vehicle"}, {30, "person"},
-    {40, "road"},      {50, "building"},     {70, "vegetation"},    {80, "pole"},
-    {81, "sign"},      {99, "other object"}, {110, "falling snow"}, {111, "lying snow"}};
+    {0, "unlabeled"}, {10, "car"},          {20, "other vehicle"}, {30, "person"},
+    {40, "road"},     {50, "building"},     {70, "vegetation"},    {80, "pole"},
+    {81, "sign"},     {99, "other object"}, {110, "falling snow"}, {111, "lying snow"}};
 
 // ---- ground ---------------------------------------------------------------------------------
 
-/// Returns labelled ground or not against what was said.
+/// Returns labeled ground or not against what was said.
 struct GroundScore {
   std::size_t hit = 0, missed = 0, wrong = 0;
   void add(std::uint16_t label, bool said) {
-    if (label == kUnlabelled || label == kFallingSnow) return;
+    if (label == kUnlabeled || label == kFallingSnow) return;
     const bool truth = label == kRoad || label == kLyingSnow;
     hit += truth && said, missed += truth && !said, wrong += !truth && said;
   }
@@ -101,7 +101,7 @@ void scoreGround(const std::vector<RecordedScan>& scans, const LidarFrontEnd& li
   wide.print("PCL RANSAC, 0.3 m");
   fmt::print("  taken for ground:");
   for (const auto& [label, count] : wrong)
-    if (label != kUnlabelled && label != kFallingSnow)
+    if (label != kUnlabeled && label != kFallingSnow)
       fmt::print(" {} {}", kNames.count(label) ? kNames.at(label) : "?", count);
   fmt::print("\n");
 }

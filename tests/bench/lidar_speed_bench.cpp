@@ -1,6 +1,6 @@
-// The lidar rib's steps beside the libraries that people use for them, on recorded scans: the same
-// input, the answers compared in the same run, scans outer, methods inner, order rotated, CPU clock
-// of one thread.
+// The lidar front end's steps beside the libraries that people use for them, on recorded scans: the
+// same input, the answers compared in the same run, scans outer, methods inner, order rotated, CPU
+// clock of one thread.
 //   lidar_speed_bench [every Nth scan of the 100 of the front view, default 10]
 #include <fmt/format.h>
 #include <pcl/ModelCoefficients.h>
@@ -81,9 +81,9 @@ LidarFrontEnd frontEnd() {
   params.points.vehicle_front = 2.4, params.points.vehicle_rear = 2.6;
   ClassTable classes;
   classes.classes.resize(1);
-  return LidarFrontEnd(
-      params, classes,
-      Sensing(SensingParams{}, {ClassSensing{}}, LidarFrontEnd::labels(params.clusters)));
+  return LidarFrontEnd(params, classes,
+                       DetectionModel(DetectionParams{}, {ClassDetection{}},
+                                      LidarFrontEnd::labels(params.clusters)));
 }
 
 // ---- ground ---------------------------------------------------------------------------------
@@ -276,18 +276,18 @@ void compareClusters(const std::vector<RecordedScan>& scans, const LidarFrontEnd
 
 // ---- persons --------------------------------------------------------------------------------
 
-/// Literal filter and literal maximum of the eight neighbours. Both methods count the returns in
+/// Literal filter and literal maximum of the eight neighbors. Both methods count the returns in
 /// cells first.
 void personsByOpenCv(const LidarDetections& found, const PersonResponse& grid,
                      const cv::Mat& kernel, cv::Mat& counts, cv::Mat& response, cv::Mat& highest) {
   counts.create(static_cast<int>(grid.rows()), static_cast<int>(grid.columns()), CV_32F);
   counts.setTo(0);
-  const Vector2 first = grid.centre(0);
-  const double per_metre = 1 / grid.cell();
+  const Vector2 first = grid.center(0);
+  const double per_meter = 1 / grid.cell();
   const double x0 = first.x() - grid.cell() / 2, y0 = first.y() - grid.cell() / 2;
   for (std::size_t i = 0; i < found.x.size(); ++i)
-    counts.at<float>(static_cast<int>((static_cast<double>(found.y[i]) - y0) * per_metre),
-                     static_cast<int>((static_cast<double>(found.x[i]) - x0) * per_metre)) += 1;
+    counts.at<float>(static_cast<int>((static_cast<double>(found.y[i]) - y0) * per_meter),
+                     static_cast<int>((static_cast<double>(found.x[i]) - x0) * per_meter)) += 1;
   cv::filter2D(counts, response, CV_32F, kernel, cv::Point(-1, -1), 0, cv::BORDER_CONSTANT);
   cv::dilate(response, highest, cv::Mat::ones(3, 3, CV_8U));
 }
@@ -360,7 +360,7 @@ void comparePersons(const std::vector<RecordedScan>& scans, const LidarFrontEnd&
   faults.check(worst < 1e-3, "responses differ");
 }
 
-/// What the rib costs as a whole, and where.
+/// What the front end costs as a whole, and where.
 void profile(const std::vector<RecordedScan>& scans, const LidarFrontEnd& lidar) {
   std::vector<double> ground, points, surface, clusters, persons, all;
   GroundEstimator estimator;
@@ -416,8 +416,9 @@ int main(int argc, char** argv) {
   const perception::LidarFrontEnd lidar = frontEnd();
   Faults faults;
   fmt::print(
-      "The rib as a whole, ms p50\n{:<20} {:>8} {:>7} {:>7} {:>8} {:>9} {:>8} | {:>7} {:>7}\n", "",
-      "returns", "plane", "points", "surface", "clusters", "persons", "extract", "p99");
+      "The front end as a whole, ms p50\n{:<20} {:>8} {:>7} {:>7} {:>8} {:>9} {:>8} | {:>7} "
+      "{:>7}\n",
+      "", "returns", "plane", "points", "surface", "clusters", "persons", "extract", "p99");
   for (const auto* scans : {&full, &front, &snow}) profile(*scans, lidar);
   for (const auto* scans : {&full, &front}) compareGround(*scans, lidar.params(), faults);
   for (const auto* scans : {&full, &front}) comparePersons(*scans, lidar, faults);

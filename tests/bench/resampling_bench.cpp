@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libperception/core/Random.h"
-#include "libperception/filter/Track.h"
+#include "libperception/filter/state/Track.h"
 #include "tests/bench/CpuClock.h"
 
 namespace perception {

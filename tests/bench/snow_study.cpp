@@ -65,7 +65,7 @@ void fog() {
 int run() {
   fog();
   const auto scans =
-      test::labelledScans(std::string(PERCEPTION_SHARED_DATA) + "/data/wads_snow", 2.17);
+      test::labeledScans(std::string(PERCEPTION_SHARED_DATA) + "/data/wads_snow", 2.17);
   if (scans.empty()) {
     fmt::print("no recordings\n");
     return 0;

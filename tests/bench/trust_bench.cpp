@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "libperception/weather/PointTrust.h"
-#include "tests/support/LabelledScans.h"
+#include "tests/support/LabeledScans.h"
 
 namespace perception {
 namespace {
@@ -27,7 +27,7 @@ double quantile(std::vector<double> values, double q) {
 }
 
 int run() {
-  auto scans = test::labelledScans(std::string(PERCEPTION_SHARED_DATA) + "/data/wads_snow", 2.17);
+  auto scans = test::labeledScans(std::string(PERCEPTION_SHARED_DATA) + "/data/wads_snow", 2.17);
   if (scans.empty()) {
     fmt::print("no recordings\n");
     return 0;

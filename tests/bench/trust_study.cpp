@@ -1,5 +1,5 @@
 // How well weather/PointTrust and the filters that it is compared with tell falling snow from
-// surfaces, on labelled scans: WADS sequence 36 (real snow) and SnowyKITTI (simulated snow on real
+// surfaces, on labeled scans: WADS sequence 36 (real snow) and SnowyKITTI (simulated snow on real
 // scans). Parameters come from WADS's odd scans, figures from its even ones.
 //   trust_study           the tables
 //   trust_study fit       fits the curves of [weather.trust] to the odd scans and prints them
@@ -13,26 +13,26 @@
 
 #include "libperception/lidar/GroundPlane.h"
 #include "libperception/weather/PointTrust.h"
-#include "tests/support/LabelledScans.h"
+#include "tests/support/LabeledScans.h"
 
 namespace perception {
 namespace {
 
-using test::LabelledScan;
+using test::LabeledScan;
 using test::PhantomScore;
 
 const std::string kData = std::string(PERCEPTION_SHARED_DATA) + "/data";
 double kRoadUserCost = 4;  // a lost return of a car or person weighs as much as four
 
-std::vector<LabelledScan> wads() { return test::labelledScans(kData + "/wads_snow", 2.17); }
-std::vector<LabelledScan> snowyKitti() { return test::labelledScans(kData + "/snowykitti", 1.73); }
+std::vector<LabeledScan> wads() { return test::labeledScans(kData + "/wads_snow", 2.17); }
+std::vector<LabeledScan> snowyKitti() { return test::labeledScans(kData + "/snowykitti", 1.73); }
 
-void measureGround(std::vector<LabelledScan>& scans) {
+void measureGround(std::vector<LabeledScan>& scans) {
   GroundEstimator ground;
-  for (LabelledScan& scan : scans) scan.frame.ground = ground.update(scan.frame);
+  for (LabeledScan& scan : scans) scan.frame.ground = ground.update(scan.frame);
 }
 
-bool isOdd(const LabelledScan& scan) { return scan.number % 2 == 1; }
+bool isOdd(const LabeledScan& scan) { return scan.number % 2 == 1; }
 
 // ----------------------------------------------------------------------------------------------
 // fit
@@ -104,20 +104,20 @@ float costOf(std::uint32_t label) {
 }
 
 /// Runs the model over all scans; `look` sees what it made of each odd one.
-void overOddScans(std::vector<LabelledScan>& scans, const TrustParams& params,
-                  const std::function<void(const LabelledScan&, const PointTrust&)>& look) {
+void overOddScans(std::vector<LabeledScan>& scans, const TrustParams& params,
+                  const std::function<void(const LabeledScan&, const PointTrust&)>& look) {
   PointTrust trust(params);
-  for (LabelledScan& scan : scans) {
+  for (LabeledScan& scan : scans) {
     trust.apply(scan.frame);
     if (isOdd(scan)) look(scan, trust);
   }
 }
 
-TrustParams fitted(std::vector<LabelledScan>& scans) {
+TrustParams fitted(std::vector<LabeledScan>& scans) {
   TrustParams params;
   params.adapt_share = false;
   std::size_t phantoms = 0, near = 0;
-  for (const LabelledScan& scan : scans) {
+  for (const LabeledScan& scan : scans) {
     if (!isOdd(scan)) continue;
     const auto& cloud = std::get<LidarCloud>(scan.frame.data);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -131,10 +131,10 @@ TrustParams fitted(std::vector<LabelledScan>& scans) {
   const Basis first({TrustFeature::kRange, TrustFeature::kTight, TrustFeature::kWide,
                      TrustFeature::kBeyond, TrustFeature::kHeight});
   std::vector<Logistic::Sample> samples;
-  overOddScans(scans, params, [&](const LabelledScan& scan, const PointTrust& trust) {
+  overOddScans(scans, params, [&](const LabeledScan& scan, const PointTrust& trust) {
     for (const SuspectReturn& s : trust.suspects()) {
       const std::uint32_t label = scan.labels[s.index];
-      if (label == test::kUnlabelled) continue;
+      if (label == test::kUnlabeled) continue;
       Logistic::Sample& sample = samples.emplace_back();
       sample.x = {1};
       first.append(s, sample.x);
@@ -150,10 +150,10 @@ TrustParams fitted(std::vector<LabelledScan>& scans) {
   samples.clear();
   for (const bool intensity : {true, false}) {
     params.use_intensity = intensity;
-    overOddScans(scans, params, [&](const LabelledScan& scan, const PointTrust& trust) {
+    overOddScans(scans, params, [&](const LabeledScan& scan, const PointTrust& trust) {
       for (const SuspectReturn& s : trust.suspects()) {
         const std::uint32_t label = scan.labels[s.index];
-        if (label == test::kUnlabelled || s.first < -5) continue;
+        if (label == test::kUnlabeled || s.first < -5) continue;
         Logistic::Sample& sample = samples.emplace_back();
         sample.x = {1, s.first};
         second.append(s, sample.x);
@@ -161,11 +161,11 @@ TrustParams fitted(std::vector<LabelledScan>& scans) {
       }
     });
   }
-  Logistic neighbours(static_cast<Eigen::Index>(second.size() + 2));
-  neighbours.fit(samples);
-  params.second_bias = neighbours[0];
-  params.gain = neighbours[1];
-  second.store(neighbours, 2, params);
+  Logistic neighbors(static_cast<Eigen::Index>(second.size() + 2));
+  neighbors.fit(samples);
+  params.second_bias = neighbors[0];
+  params.gain = neighbors[1];
+  second.store(neighbors, 2, params);
   params.use_intensity = params.adapt_share = true;
   return params;
 }
@@ -210,12 +210,12 @@ std::vector<Candidate> candidates(const TrustParams& trust) {
   return all;
 }
 
-void score(std::vector<LabelledScan>& scans, const Candidate& candidate, std::uint32_t phantom,
+void score(std::vector<LabeledScan>& scans, const Candidate& candidate, std::uint32_t phantom,
            bool even_only) {
   const auto filter = makePointFilter(candidate.params);
   PhantomScore known, all;
   double share = 0;
-  for (LabelledScan& scan : scans) {
+  for (LabeledScan& scan : scans) {
     SensorFrame frame = scan.frame;
     auto& cloud = std::get<LidarCloud>(frame.data);
     if (candidate.hide_intensity) cloud.intensity.clear();
@@ -229,17 +229,17 @@ void score(std::vector<LabelledScan>& scans, const Candidate& candidate, std::ui
   std::fflush(stdout);
 }
 
-/// Are the probabilities right? Of the even scans' labelled returns.
-void calibration(std::vector<LabelledScan>& scans, const TrustParams& params) {
+/// Are the probabilities right? Of the even scans' labeled returns.
+void calibration(std::vector<LabeledScan>& scans, const TrustParams& params) {
   PointTrust trust(params);
   std::vector<std::size_t> count(10, 0), snow(10, 0);
   std::vector<double> sum(10, 0);
-  for (LabelledScan& scan : scans) {
+  for (LabeledScan& scan : scans) {
     trust.apply(scan.frame);
     if (isOdd(scan)) continue;
     const auto& cloud = std::get<LidarCloud>(scan.frame.data);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (scan.labels[i] == test::kUnlabelled) continue;
+      if (scan.labels[i] == test::kUnlabeled) continue;
       const double p = 1 - static_cast<double>(cloud.trust[i]);
       const auto bin = std::min<std::size_t>(9, static_cast<std::size_t>(p * 10));
       ++count[bin], sum[bin] += p, snow[bin] += scan.labels[i] == test::kSnowLabel;
@@ -251,10 +251,10 @@ void calibration(std::vector<LabelledScan>& scans, const TrustParams& params) {
                count[b], double(snow[b]) / std::max<double>(1, double(count[b])));
 }
 
-void lostByClass(std::vector<LabelledScan>& scans, const TrustParams& params) {
+void lostByClass(std::vector<LabeledScan>& scans, const TrustParams& params) {
   PointTrust trust(params);
   std::map<std::uint32_t, std::pair<std::size_t, std::size_t>> lost;
-  for (LabelledScan& scan : scans) {
+  for (LabeledScan& scan : scans) {
     trust.apply(scan.frame);
     if (isOdd(scan)) continue;
     const auto& cloud = std::get<LidarCloud>(scan.frame.data);
@@ -272,9 +272,9 @@ void lostByClass(std::vector<LabelledScan>& scans, const TrustParams& params) {
   fmt::print("\nrow of the range image {:.2f} deg\n", degrees(trust.rowPitch()));
 }
 
-void tables(std::vector<LabelledScan>& scans, const TrustParams& params) {
+void tables(std::vector<LabeledScan>& scans, const TrustParams& params) {
   const char* head =
-      "| filter | F1 | precision | recall | car and person lost | F1, unlabelled as surface | "
+      "| filter | F1 | precision | recall | car and person lost | F1, unlabeled as surface | "
       "share "
       "|\n|---|---|---|---|---|---|---|\n";
   fmt::print("WADS 36, even scans, real falling snow\n\n{}", head);
@@ -289,7 +289,7 @@ void tables(std::vector<LabelledScan>& scans, const TrustParams& params) {
 
 /// Dry roads: nothing should be doubted. KITTI 0000, every fifth scan.
 void clearAir(const TrustParams& params) {
-  auto scans = test::labelledScans(kData + "/kitti_lidar_seq0000", 1.73, 1000, "velodyne_full");
+  auto scans = test::labeledScans(kData + "/kitti_lidar_seq0000", 1.73, 1000, "velodyne_full");
   measureGround(scans);
   fmt::print(
       "\nKITTI 0000, clear air, {} scans\n\n| filter | doubted | of the returns within 30 m and .3 "
@@ -300,7 +300,7 @@ void clearAir(const TrustParams& params) {
     const auto filter = makePointFilter(candidate.params);
     std::size_t all = 0, doubted = 0, obstacles = 0, doubted_obstacles = 0;
     double share = 0;
-    for (LabelledScan& scan : scans) {
+    for (LabeledScan& scan : scans) {
       SensorFrame frame = scan.frame;
       auto& cloud = std::get<LidarCloud>(frame.data);
       if (candidate.hide_intensity) cloud.intensity.clear();

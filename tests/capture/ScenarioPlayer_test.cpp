@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationComment.h>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/core/Error.h"
 #include "libperception/simulation/Scenario.h"
 

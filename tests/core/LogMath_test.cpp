@@ -28,14 +28,14 @@ TEST(LogMath, SumOfARangeIsTheRepeatedAddition) {
 TEST(LogMath, NormalisedSumsToOneAndReturnsTheSumBefore) {
   std::array<double, 3> values = {-2000, -2001, -2003};
   const double before = logSumExp(values);
-  EXPECT_DOUBLE_EQ(logNormalise(values), before);
+  EXPECT_DOUBLE_EQ(logNormalize(values), before);
   EXPECT_NEAR(std::exp(values[0]) + std::exp(values[1]) + std::exp(values[2]), 1, 1e-12);
   EXPECT_NEAR(values[0] - values[1], 1, 1e-12);
 }
 
 TEST(LogMath, NothingLikelyBecomesUniform) {
   std::vector<double> values(4, kMinusInfinity);
-  EXPECT_EQ(logNormalise(values), kMinusInfinity);
+  EXPECT_EQ(logNormalize(values), kMinusInfinity);
   for (const double v : values) EXPECT_DOUBLE_EQ(v, std::log(0.25));
 }
 

@@ -87,7 +87,7 @@ TEST(Random, UniformNumbersFillTheUnitIntervalEvenly) {
   expectChi2(statisticOf(counts, std::vector<double>(kBins, kDraws / kBins)), kBins - 1);
 }
 
-// First numbers of neighbouring streams, pairwise: a table of independent rows and columns.
+// First numbers of neighboring streams, pairwise: a table of independent rows and columns.
 template <class KeyOf>
 double pairStatistic(KeyOf key_of) {
   constexpr std::size_t kBins = 16, kDraws = 51200;
@@ -99,7 +99,7 @@ double pairStatistic(KeyOf key_of) {
   return statisticOf(counts, std::vector<double>(kBins * kBins, double{kDraws} / (kBins * kBins)));
 }
 
-TEST(Random, NeighbouringKeysAreIndependent) {
+TEST(Random, NeighboringKeysAreIndependent) {
   // Pairs (i, i + 1) overlap, yet both numbers are uniform and independent: 255 degrees of freedom
   // hold to a percent.
   expectChi2(pairStatistic([](std::uint32_t i) { return RngKey{i, 1, 1, 1}; }), 255);

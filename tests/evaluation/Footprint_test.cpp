@@ -37,7 +37,7 @@ TEST(Footprint, AgreesWithADenselySampledBorder) {
     const double s = i / 2000.0 - 0.5;
     for (const Vector2& p : {Vector2(s * 5, .75), Vector2(s * 5, -.75), Vector2(2.5, s * 1.5),
                              Vector2(-2.5, s * 1.5)}) {
-      best = std::min(best, (box.centre + rotate2(box.yaw, p) - from).norm());
+      best = std::min(best, (box.center + rotate2(box.yaw, p) - from).norm());
     }
   }
   EXPECT_NEAR((closestPoint(box, from) - from).norm(), best, 1e-5);

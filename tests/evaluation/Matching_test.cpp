@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "libperception/evaluation/Assignment.h"
+#include "libperception/core/Assignment.h"
 
 namespace perception {
 namespace {

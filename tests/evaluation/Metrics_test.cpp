@@ -36,14 +36,13 @@ TEST(Metrics, MotaCountsMissesFalseObjectsAndSwitches) {
   options.exclusion = options.tolerance;
   // Four instants of one car: tracked, missed, another id, and that one twice; a stray output in
   // the first, 2.5 m beside the car.
-  const Evaluation e =
-      compare({{makeObject(1, 10, 0), makeObject(5, 10, 2.5)},
-               {},
-               {makeObject(2, 10, 0)},
-               {makeObject(2, 10, 0), makeObject(3, 10, 1)}},
-              {makeTruth(0, 1, 10, 0), makeTruth(1, 1, 10, 0), makeTruth(2, 1, 10, 0),
-               makeTruth(3, 1, 10, 0)},
-              options);
+  const Evaluation e = compare({{makeObject(1, 10, 0), makeObject(5, 10, 2.5)},
+                                {},
+                                {makeObject(2, 10, 0)},
+                                {makeObject(2, 10, 0), makeObject(3, 10, 1)}},
+                               {makeTruth(0, 1, 10, 0), makeTruth(1, 1, 10, 0),
+                                makeTruth(2, 1, 10, 0), makeTruth(3, 1, 10, 0)},
+                               options);
   const ClearFigures f = clearFigures(e);
   EXPECT_EQ(f.truth, 4u);
   EXPECT_EQ(f.misses, 1u);
@@ -100,7 +99,7 @@ TEST(Metrics, TheSensorSetIsWhatHitAnObject) {
 }
 
 TEST(Metrics, RangeErrorIsOfTheClosestPointsOfTheFootprints) {
-  // The same near side, but the estimate is 2 m longer: closest points agree, centres are 1 m
+  // The same near side, but the estimate is 2 m longer: closest points agree, centers are 1 m
   // apart.
   TruthObject truth = makeTruth(0, 1, 12, 0);
   truth.length = 4;
@@ -110,7 +109,7 @@ TEST(Metrics, RangeErrorIsOfTheClosestPointsOfTheFootprints) {
   estimate.width = 2;
   const TrackingFigures f = trackingFigures(compare({{estimate}}, {truth}), Pairing::kClosest);
   EXPECT_NEAR(*f.range_rms, 0, kTiny);
-  EXPECT_NEAR(*f.centre_range_rms, 1, kTiny);
+  EXPECT_NEAR(*f.center_range_rms, 1, kTiny);
   EXPECT_NEAR(*f.position_rms, 1, kTiny);
 }
 
@@ -300,7 +299,7 @@ TEST(SetFigures, PartsSumToTheMeanSquare) {
   const SetFigures f = setFigures(e, 2);
   EXPECT_EQ(f.instants, 2u);  // in the third there is nothing
   EXPECT_NEAR(*f.gospa_mean, (std::sqrt(3.0) + std::sqrt(2.0)) / 2, kTiny);
-  EXPECT_NEAR(*f.localisation + *f.missed + *f.false_, *f.gospa_rms * *f.gospa_rms, kTiny);
+  EXPECT_NEAR(*f.localization + *f.missed + *f.false_, *f.gospa_rms * *f.gospa_rms, kTiny);
   EXPECT_NEAR(*f.missed_objects, 0.5, kTiny);
   EXPECT_NEAR(*f.false_objects, 0.5, kTiny);
   EXPECT_NEAR(*f.localisation_rms, 1, kTiny);
@@ -400,7 +399,7 @@ TEST(WholeRun, MadeOfTheTruthIsPerfect) {
     EXPECT_GT(f.active, 60u);
     for (const Figure& one : {f.tracked_a, f.tracked_b, f.tracked_c, f.correct}) EXPECT_EQ(one, 1);
     for (const Figure& zero :
-         {f.range_rms, f.centre_range_rms, f.bearing_rms, f.position_rms, f.speed_rms,
+         {f.range_rms, f.center_range_rms, f.bearing_rms, f.position_rms, f.speed_rms,
           f.velocity_rms, f.heading_rms, f.heading_reversed, f.mis, f.unclassified}) {
       EXPECT_EQ(zero, 0);
     }
@@ -412,7 +411,7 @@ TEST(WholeRun, MadeOfTheTruthIsPerfect) {
   EXPECT_EQ(falseObjectFigures(e).per_instant, 0);
 }
 
-TEST(WholeRun, ShiftedByAMetreHasExactlyThatError) {
+TEST(WholeRun, ShiftedByAMeterHasExactlyThatError) {
   const Evaluation e = runOfTheTruth({0.6, -0.8});
   const TrackingFigures f = trackingFigures(e, Pairing::kOneToOne);
   EXPECT_EQ(f.tracked_a, 1);
@@ -420,7 +419,7 @@ TEST(WholeRun, ShiftedByAMetreHasExactlyThatError) {
   EXPECT_NEAR(*f.velocity_rms, 0, kTiny);
   EXPECT_NEAR(*f.heading_rms, 0, kTiny);
   EXPECT_LE(*f.range_rms, 1);
-  EXPECT_LE(*f.centre_range_rms, 1);
+  EXPECT_LE(*f.center_range_rms, 1);
   const SetFigures sets = setFigures(e, 2);
   EXPECT_NEAR(*sets.localisation_rms, 1, kTiny);
   EXPECT_EQ(sets.missed, 0);
@@ -442,7 +441,7 @@ TEST(WholeRun, ShiftedAlongTheLineOfSightIsARangeError) {
   const TrackingFigures across = trackingFigures(compare({{estimate}}, {truth}), Pairing::kClosest);
   EXPECT_NEAR(*across.bearing_rms, std::atan(0.1), kTiny);
   EXPECT_NEAR(*across.range_rms, 0, kTiny);  // the near side still reaches the axis at 8 m
-  EXPECT_NEAR(*across.centre_range_rms, std::sqrt(101.0) - 10, kTiny);
+  EXPECT_NEAR(*across.center_range_rms, std::sqrt(101.0) - 10, kTiny);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 TEST(Gospa, AgreesWithAHandCalculation) {
   // One pair at 1 m, one truth missed, two false: 1 + 2 + 2 * 2 = 7.
   const Gospa g = gospa({{0, 0}, {10, 0}}, {{1, 0}, {30, 0}, {50, 0}}, 2);
-  EXPECT_DOUBLE_EQ(g.localisation, 1);
+  EXPECT_DOUBLE_EQ(g.localization, 1);
   EXPECT_DOUBLE_EQ(g.missed, 2);
   EXPECT_DOUBLE_EQ(g.false_, 4);
   EXPECT_EQ(g.pairs, 1u);

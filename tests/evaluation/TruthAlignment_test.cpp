@@ -39,7 +39,7 @@ TEST(TruthAlignment, PrefersFrameNumbersToTimes) {
   EXPECT_EQ(a.truth_without_scene, 1u);
 }
 
-TEST(TruthAlignment, InterpolatesBetweenNeighbours) {
+TEST(TruthAlignment, InterpolatesBetweenNeighbors) {
   const auto truth = makeGroundTruth({truthAt(1.0, 1, 10, 3.1), truthAt(1.1, 1, 12, -3.1)});
   const auto a = alignTruth(sceneAt(1.025), truth, {});
   ASSERT_EQ(a.instants.size(), 1u);
@@ -72,7 +72,7 @@ TEST(TruthAlignment, NeverInterpolatesOverAGap) {
   EXPECT_EQ(alignTruth(sceneAt(1.5), truth, {}).scenes_without_truth, 1u);
 }
 
-TEST(TruthAlignment, AnObjectOfOneNeighbourComesFromTheNearerOnly) {
+TEST(TruthAlignment, AnObjectOfOneNeighborComesFromTheNearerOnly) {
   const auto truth = makeGroundTruth({truthAt(1.0, 1, 10), truthAt(1.1, 2, 20)});
   const auto a = alignTruth(sceneAt(1.02), truth, {});
   ASSERT_EQ(a.instants.at(0).objects.size(), 1u);

@@ -8,21 +8,21 @@
 #include <memory>
 #include <string>
 
+#include "libperception/config/Config.h"
 #include "libperception/core/Angle.h"
 #include "libperception/core/Chi2.h"
-#include "libperception/core/Config.h"
 #include "libperception/core/Random.h"
-#include "libperception/filter/LikelihoodTable.h"
-#include "libperception/filter/Linearisation.h"
-#include "libperception/filter/MotionModels.h"
+#include "libperception/filter/likelihood/LikelihoodTable.h"
+#include "libperception/filter/likelihood/Linearization.h"
+#include "libperception/filter/state/MotionModels.h"
 #include "libperception/measurement/FootprintModel.h"
 #include "libperception/measurement/PositionModel.h"
-#include "libperception/measurement/RadarModel.h"
+#include "libperception/radar/RadarModel.h"
 
 namespace perception {
 namespace {
 
-/// Of 2000 busses under a radar 1.3 % are lost, where a particle filter loses none: a fault of the
+/// Of 2000 buses under a radar 1.3 % are lost, where a particle filter loses none: a fault of the
 /// Gaussian that this number of runs is too small to find.
 constexpr int kRuns = 200, kSteps = 30;
 constexpr double kDt = 0.1;  // [s]
@@ -33,7 +33,7 @@ ClassTable shipped() {
 }
 
 /// Noise of one kind of sensor: deviations of its axes for people and things, and for vehicles,
-/// whose corners are round (SPEC 4.1); a lidar's box tells the long axis, too.
+/// whose corners are round (method.md 4.1); a lidar's box tells the long axis, too.
 struct Sensor {
   const char* name;
   std::shared_ptr<const MeasurementModel> model;
@@ -42,7 +42,7 @@ struct Sensor {
 };
 
 std::vector<Sensor> sensorsOf(const ClassTable& classes) {
-  std::vector<ClassSensing> rows(classes.classes.size());
+  std::vector<ClassDetection> rows(classes.classes.size());
   for (auto& r : rows) r.labels = {{"thing", 1.0}};
   PositionModel::Params position;
   position.classes.resize(classes.classes.size());
@@ -53,16 +53,16 @@ std::vector<Sensor> sensorsOf(const ClassTable& classes) {
   position.clutter_labels = {1};
   position.range = 200;
   position.fov = kTwoPi;
-  const Sensing sensing(SensingParams{}, rows, {"thing"});
+  const DetectionModel detection_model(DetectionParams{}, rows, {"thing"});
   const std::vector<double> radar{0.5, radians(2), 0.15};
-  return {
-      {"position", std::make_shared<PositionModel>(position), {0, 0}, {0, 0}},
-      {"footprint",
-       std::make_shared<FootprintModel>(classes, sensing),
-       {radians(0.5), radians(0.5), 0.15},
-       {radians(1), radians(1), 0.4},
-       0.25},
-      {"radar", std::make_shared<RadarModel>(classes, sensing, RadarModelParams{}), radar, radar}};
+  return {{"position", std::make_shared<PositionModel>(position), {0, 0}, {0, 0}},
+          {"footprint",
+           std::make_shared<FootprintModel>(classes, detection_model),
+           {radians(0.5), radians(0.5), 0.15},
+           {radians(1), radians(1), 0.4},
+           0.25},
+          {"radar", std::make_shared<RadarModel>(classes, detection_model, RadarModelParams{}),
+           radar, radar}};
 }
 
 template <class Matrix>
@@ -192,7 +192,7 @@ TEST_P(Consistency, OfEveryClass) {
     EXPECT_LE(sums.lost, kRuns / 100) << sensor.name << ", " << classes[id].name;
     ASSERT_GT(sums.nees_dof, kRuns) << classes[id].name;
     // 99.9 % intervals of the chi-square sums, by the normal limit (hundreds of degrees);
-    // linearised sensors get 3 % for their curvature, and radars, whose wide sigma points are on
+    // linearized sensors get 3 % for their curvature, and radars, whose wide sigma points are on
     // the safe side, 3 % more.
     const double curved = 0.03 * static_cast<double>(GetParam());
     const double nis = sums.nis / sums.nis_dof, nees = sums.nees / sums.nees_dof;

@@ -22,7 +22,7 @@ using test::positionScan;
 /// Tiny scenes full of ambiguity: births, clutter, misses, two classes.
 struct TinyScene {
   const char* name;
-  std::vector<std::vector<test::LabelledPoint>> scans;
+  std::vector<std::vector<test::LabeledPoint>> scans;
   double dt;
 };
 
@@ -62,7 +62,7 @@ std::vector<std::uint64_t> keyOf(const Hypothesis& h) {
   return key;
 }
 
-/// Self-normalised importance estimates with their standard errors.
+/// Self-normalized importance estimates with their standard errors.
 struct Estimate {
   std::map<std::vector<std::uint64_t>, double> probability, variance;
 };
@@ -70,7 +70,7 @@ struct Estimate {
 Estimate estimate(const Posterior& posterior) {
   const auto& hypotheses = posterior.hypotheses;
   std::vector<double> log_weights = posterior.log_weights;
-  logNormalise(log_weights);
+  logNormalize(log_weights);
   Estimate e;
   std::vector<std::vector<std::uint64_t>> keys;
   for (const auto& h : hypotheses) keys.push_back(keyOf(*h));
@@ -118,7 +118,7 @@ TEST_P(ExactEnumeration, IsWhatTheSampledPosteriorConvergesTo) {
   }
   EXPECT_GT(covered, 0.99) << scene.name;
 
-  // The mean weight is an unbiased estimate of the evidence (Poisson normalisers left out in both).
+  // The mean weight is an unbiased estimate of the evidence (Poisson normalizers left out in both).
   const double log_mean = logSumExp(log_weights) - std::log(static_cast<double>(n));
   double spread = 0;
   for (const double lw : log_weights) spread += std::pow(std::exp(lw - log_mean) - 1, 2);
@@ -190,7 +190,7 @@ TEST_P(ExactEnumeration, IsMissedByFewRankedHypothesesByTheDroppedMassAtMost) {
     dropped_before = dropped;
     for (std::size_t i = 0; i < p.hypotheses.size(); ++i) {
       const double truth = exact.histories.at(keyOf(*p.hypotheses[i])).probability;
-      // Weights are exact before they are normalised.
+      // Weights are exact before they are normalized.
       EXPECT_NEAR(std::exp(p.log_weights[i] - exact.log_evidence), truth, 1e-10);
       EXPECT_LE(std::abs(std::exp(p.log_weights[i] - total) - truth), dropped + 1e-10);
     }

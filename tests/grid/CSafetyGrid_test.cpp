@@ -79,7 +79,7 @@ TEST_P(CSafetyGridOf, WritesFilesThatOctoMapAndMrptRead) {
   const std::string prefix = (std::filesystem::path(folder.path()) / "grid").string();
   map.saveMetricMapRepresentationToFile(prefix);
   const bool flat = map.grid().occupiedCells().front().size.z() > 1;
-  const double z = flat ? map.grid().occupiedCells().front().centre.z() : 1.5;
+  const double z = flat ? map.grid().occupiedCells().front().center.z() : 1.5;
 
   const std::unique_ptr<octomap::AbstractOcTree> read(
       octomap::AbstractOcTree::read(prefix + ".ot"));

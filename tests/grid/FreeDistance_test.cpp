@@ -13,7 +13,7 @@ const auto kAllKnown = [](const Vector3&) { return -1.0; };
 
 GridCell cellAt(double x, double y) { return {{x, y, 1}, Vector3::Constant(0.2), 3}; }
 
-TEST(ArcPlace, QuarterTurnLeftEndsBesideTheCentre) {
+TEST(ArcPlace, QuarterTurnLeftEndsBesideTheCenter) {
   Corridor corridor;
   corridor.curvature = 0.1;
   const ArcPlace place = arcPlace(corridor, 10, 10);

@@ -180,11 +180,11 @@ void expectWhatIsPlain(const GridScan& scan) {
   EXPECT_EQ(stats.rays, plain.ends.size());
   const Crossed crossed = crossedBy(scan, plain);
   const double hit = window().hit, miss = window().miss;
-  const Cell centre = cellOf(scan.T_world_ground.translation());
+  const Cell center = cellOf(scan.T_world_ground.translation());
   const int half = static_cast<int>(kEdge / kCell) / 2;
   int hits = 0, misses = 0;
-  for (int y = centre.second - half; y < centre.second + half; ++y)
-    for (int x = centre.first - half; x < centre.first + half; ++x) {
+  for (int y = center.second - half; y < center.second + half; ++y)
+    for (int x = center.first - half; x < center.first + half; ++x) {
       const double v = grid->logOdds({(x + 0.5) * kCell, (y + 0.5) * kCell, 1});
       const auto found = plain.weights.find({x, y});
       const double w = found == plain.weights.end() ? 0 : found->second;
@@ -236,7 +236,7 @@ TEST(GridRolling2d, WhatStaysInTheWindowIsKeptAsItRolls) {
   GridScan scan = randomScan(41, true);
   grid->insert(scan);
   std::map<Cell, double> expected;
-  for (const GridCell& cell : grid->knownCells()) expected[cellOf(cell.centre)] = cell.log_odds;
+  for (const GridCell& cell : grid->knownCells()) expected[cellOf(cell.center)] = cell.log_odds;
   ASSERT_FALSE(expected.empty());
   Rng random({42, 0, 0, 1});
   GridScan nothing;
@@ -246,15 +246,15 @@ TEST(GridRolling2d, WhatStaysInTheWindowIsKeptAsItRolls) {
         Vector3(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), 0);
     nothing.origin = nothing.T_world_ground.translation();
     grid->insert(nothing);
-    const Cell centre = cellOf(nothing.T_world_ground.translation());
+    const Cell center = cellOf(nothing.T_world_ground.translation());
     const int half = static_cast<int>(kEdge / kCell) / 2;
     for (auto it = expected.begin(); it != expected.end();) {
-      const int dx = it->first.first - centre.first, dy = it->first.second - centre.second;
+      const int dx = it->first.first - center.first, dy = it->first.second - center.second;
       it =
           dx < -half || dy < -half || dx >= half || dy >= half ? expected.erase(it) : std::next(it);
     }
     std::map<Cell, double> known;
-    for (const GridCell& cell : grid->knownCells()) known[cellOf(cell.centre)] = cell.log_odds;
+    for (const GridCell& cell : grid->knownCells()) known[cellOf(cell.center)] = cell.log_odds;
     EXPECT_EQ(known, expected);
   }
 }

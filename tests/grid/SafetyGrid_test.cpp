@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/core/Error.h"
 #include "libperception/core/Random.h"
 
@@ -25,7 +25,7 @@ GridScan scanAt(double t, double x = 0, double y = 0) {
   return scan;
 }
 
-/// The lidar's beams against a wall across the road `wall` metres ahead (none: infinity), 8 m wide
+/// The lidar's beams against a wall across the road `wall` meters ahead (none: infinity), 8 m wide
 /// and 2 m high, and the ground.
 GridScan sceneWithWall(double t, double wall, double x = 0, double step_deg = 0.5) {
   GridScan scan = scanAt(t, x);
@@ -178,7 +178,7 @@ TEST_P(SafetyGridContract, PointsThatAreNoNumbersAreCountedAndIgnored) {
   const auto a = clean->occupiedCells(), b = dirty->occupiedCells();
   ASSERT_EQ(a.size(), b.size());
   ASSERT_FALSE(a.empty());
-  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].centre, b[i].centre);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].center, b[i].center);
 }
 
 TEST_P(SafetyGridContract, ALateScanIsReportedAndTakenAtTheLastTime) {

@@ -70,9 +70,9 @@ void expectEveryCellOfLoneBeams(double out) {
     EXPECT_EQ(cells.count(cellOf(end)), 0U) << "the end itself is not crossed";
     const Vector3 d = (end - scan.origin).normalized();
     for (const int cell : cells) {
-      const Vector3 centre(cell / kLayers % kCells * 0.2 + 0.1, cell / kLayers / kCells * 0.2 + 0.1,
+      const Vector3 center(cell / kLayers % kCells * 0.2 + 0.1, cell / kLayers / kCells * 0.2 + 0.1,
                            cell % kLayers * 0.2 + 0.1);
-      EXPECT_LT((centre - scan.origin).cross(d).norm(), 0.1 * std::sqrt(3.0) + 1e-3);
+      EXPECT_LT((center - scan.origin).cross(d).norm(), 0.1 * std::sqrt(3.0) + 1e-3);
     }
   }
 }

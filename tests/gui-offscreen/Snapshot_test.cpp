@@ -104,7 +104,7 @@ TEST(Snapshot, IsNotBlankAndHasTheStatedSize) {
   EXPECT_EQ(picture.height, 720);
   EXPECT_GT(picture.width, 2 * 1000);
   EXPECT_EQ(picture.rgb.size(), static_cast<std::size_t>(picture.width * picture.height) * 3);
-  EXPECT_GT(coloursOf(picture), 100U);
+  EXPECT_GT(colorsOf(picture), 100U);
   EXPECT_EQ(snapshot().labelsLeftOut(), 0);
 }
 
@@ -254,7 +254,7 @@ TEST(Snapshot, ObjectsAtAbsurdPlacesDoNoHarm) {
   view.scene.objects = {objectAt(1, 1, 1e7, -1e7), objectAt(2, 0, 100, 40),
                         objectAt(3, 1, 100, 50)};
   view.scene.objects[1].velocity = Vector2(1e4, 0);
-  EXPECT_GT(coloursOf(snapshot().picture(view)), 100U);
+  EXPECT_GT(colorsOf(snapshot().picture(view)), 100U);
 }
 
 TEST(ContactSheet, HoldsEveryTile) {
@@ -268,8 +268,8 @@ TEST(ContactSheet, HoldsEveryTile) {
   std::size_t area = 0;
   for (const Picture& tile : tiles) area += tile.rgb.size();
   EXPECT_GT(sheet.rgb.size(), area);
-  EXPECT_GT(coloursOf(sheet), 20U);
-  EXPECT_GT(coloursOf(contactSheet({}, emptyView())), 1U) << "a legend alone";
+  EXPECT_GT(colorsOf(sheet), 20U);
+  EXPECT_GT(colorsOf(contactSheet({}, emptyView())), 1U) << "a legend alone";
 }
 
 TEST(Trails, HoldTheLastSecondsOfTheSceneShown) {

@@ -8,7 +8,7 @@ namespace perception {
 namespace {
 
 /// Returns on those sides of a rectangle that face a sensor at the origin.
-std::vector<Vector2> facingSides(const Vector2& centre, double yaw, double length, double width,
+std::vector<Vector2> facingSides(const Vector2& center, double yaw, double length, double width,
                                  double noise = 0.01) {
   std::vector<Vector2> points;
   Rng rng(RngKey{3, 0, 0, 12});
@@ -19,8 +19,8 @@ std::vector<Vector2> facingSides(const Vector2& centre, double yaw, double lengt
     for (double t = -0.5; t <= 0.5; t += 0.02)
       points.push_back(middle + t * size * along + rng.normal(0, noise) * normal);
   };
-  side(centre + width / 2 * v, u, length, v), side(centre - width / 2 * v, u, length, -v);
-  side(centre + length / 2 * u, v, width, u), side(centre - length / 2 * u, v, width, -u);
+  side(center + width / 2 * v, u, length, v), side(center - width / 2 * v, u, length, -v);
+  side(center + length / 2 * u, v, width, u), side(center - length / 2 * u, v, width, -u);
   return points;
 }
 
@@ -62,12 +62,12 @@ TEST(Hull, DistanceIsZeroInsideAndEuclideanOutside) {
 TEST(BoxFit, FindsDirectionAndSizeOfAnLShape) {
   for (int k = 0; k < 18; ++k) {
     const double yaw = radians(10.0 * k - 85);
-    const Vector2 centre(12, 5);
+    const Vector2 center(12, 5);
     if (std::abs(wrapAxis(yaw - std::atan2(5, 12))) < radians(8)) continue;  // shows its rear alone
-    const auto sides = fitBox(facingSides(centre, yaw, 4.4, 1.8), Vector2::Zero(), true, true, {});
+    const auto sides = fitBox(facingSides(center, yaw, 4.4, 1.8), Vector2::Zero(), true, true, {});
     ASSERT_TRUE(sides);
     EXPECT_NEAR(degrees(wrapAxis(sides->yaw - yaw)), 0, 1.5) << k;
-    EXPECT_NEAR(sides->a, 4.4, 0.15) << k;
+    EXPECT_NEAR(sides->length, 4.4, 0.15) << k;
     EXPECT_LT(std::abs(degrees(wrapAxis(sides->yaw - yaw))), 3 * degrees(sides->yaw_sigma)) << k;
   }
 }
@@ -76,10 +76,10 @@ TEST(BoxFit, BothSidesOfAFreeCornerAreComplete) {
   const auto sides =
       fitBox(facingSides({12, 5}, radians(60), 4.4, 1.8), Vector2::Zero(), true, true, {});
   ASSERT_TRUE(sides);
-  EXPECT_TRUE(sides->a_complete);
-  EXPECT_TRUE(sides->b_complete);
-  EXPECT_NEAR(sides->b, 1.8, 0.15);
-  EXPECT_NEAR((sides->centre - Vector2(12, 5)).norm(), 0, 0.15);
+  EXPECT_TRUE(sides->length_complete);
+  EXPECT_TRUE(sides->width_complete);
+  EXPECT_NEAR(sides->width, 1.8, 0.15);
+  EXPECT_NEAR((sides->center - Vector2(12, 5)).norm(), 0, 0.15);
 }
 
 TEST(BoxFit, AHiddenEdgeLeavesItsSideOpen) {
@@ -88,8 +88,8 @@ TEST(BoxFit, AHiddenEdgeLeavesItsSideOpen) {
   const auto left_hidden = fitBox(points, Vector2::Zero(), false, true, {});
   const auto right_hidden = fitBox(points, Vector2::Zero(), true, false, {});
   ASSERT_TRUE(left_hidden && right_hidden);
-  EXPECT_FALSE(left_hidden->a_complete);
-  EXPECT_FALSE(right_hidden->a_complete);
+  EXPECT_FALSE(left_hidden->length_complete);
+  EXPECT_FALSE(right_hidden->length_complete);
 }
 
 TEST(BoxFit, ACarSeenFromBehindShowsItsWidthAlone) {
@@ -97,9 +97,9 @@ TEST(BoxFit, ACarSeenFromBehindShowsItsWidthAlone) {
       facingSides({15, 0}, 0, 4.4, 1.8);  // rear only: one side across the line of sight
   const auto sides = fitBox(points, Vector2::Zero(), true, true, {});
   ASSERT_TRUE(sides);
-  EXPECT_NEAR(sides->a, 1.8, 0.1);
-  EXPECT_TRUE(sides->a_complete);
-  EXPECT_FALSE(sides->b_complete);
+  EXPECT_NEAR(sides->length, 1.8, 0.1);
+  EXPECT_TRUE(sides->length_complete);
+  EXPECT_FALSE(sides->width_complete);
   EXPECT_NEAR(std::abs(degrees(sides->yaw)), 90, 2);
 }
 
@@ -123,7 +123,7 @@ TEST(BoxFit, ABollardBesideACarDoesNotWidenIt) {
   points.push_back(Vector2(12, 5) + rotate2(radians(60), {-2, 1.4}));
   const auto sides = fitBox(points, Vector2::Zero(), true, true, {});
   ASSERT_TRUE(sides);
-  EXPECT_NEAR(sides->b, 1.8, 0.15);
+  EXPECT_NEAR(sides->width, 1.8, 0.15);
   EXPECT_NEAR(degrees(sides->yaw), 60, 1.5);
 }
 

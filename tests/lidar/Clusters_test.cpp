@@ -36,7 +36,7 @@ TEST(Clusters, AnIsolatedCarIsStable) {
   EXPECT_FLOAT_EQ(clusters[0].highest, 1.4f);
 }
 
-TEST(Clusters, ANeighbourWithinTheFarThresholdMakesBothUnstable) {
+TEST(Clusters, ANeighborWithinTheFarThresholdMakesBothUnstable) {
   const Returns two = Returns().row(10, 0, 10, 0.4f, 1.4f).row(10, 0.8f, 10, 0.4f, 1.4f);
   EXPECT_TRUE(two.find(paperOnly()).empty());
   const auto clusters = two.find();
@@ -52,7 +52,7 @@ TEST(Clusters, NeedSevenReturns) {
   EXPECT_EQ(Returns().row(10, 0, 7, 0.4f, 1.4f).find(paperOnly()).size(), 1u);
 }
 
-TEST(Clusters, NeedOneReturnAboveOneMetre) {
+TEST(Clusters, NeedOneReturnAboveOneMeter) {
   EXPECT_EQ(Returns().row(10, 0, 10, 0.4f, 1.0f).find(paperOnly()).size(), 0u);
   EXPECT_EQ(Returns().row(10, 0, 10, 0.4f, 1.01f).find(paperOnly()).size(), 1u);
 }

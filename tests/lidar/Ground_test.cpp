@@ -103,7 +103,7 @@ TEST(GroundEstimator, MirroredReturnsDoNotPullThePlaneDown) {
     addMirrored(frame, k % 2 == 0 ? 0.2 : 0.03);
     plane = estimator.update(frame);
   }
-  EXPECT_NEAR(plane.c, 0, 0.05);  // SPEC 12, U8: below 5 cm
+  EXPECT_NEAR(plane.c, 0, 0.05);  // method.md 8.1: below 5 cm
   EXPECT_NEAR(plane.a, 0, 0.002);
 }
 
@@ -172,7 +172,7 @@ TEST(RoughBearing, IsGoodForSectors) {
     const double angle = radians(k * 0.1 - 180);
     const float x = static_cast<float>(7 * std::cos(angle)),
                 y = static_cast<float>(7 * std::sin(angle));
-    EXPECT_NEAR(wrapAngle(static_cast<double>(roughBearing(x, y)) - angle), 0, 3e-4);
+    EXPECT_NEAR(wrapAngle(static_cast<double>(fastAtan2(x, y)) - angle), 0, 3e-4);
   }
 }
 

@@ -13,8 +13,8 @@
 namespace perception {
 namespace {
 
-/// One labelled object, in the lidar's frame.
-struct Labelled {
+/// One labeled object, in the lidar's frame.
+struct Labeled {
   int id = -1;
   std::string type;
   Vector3 bottom = Vector3::Zero();                   ///< [m]
@@ -49,14 +49,14 @@ Eigen::Matrix4d cameraFromLidar(const std::string& path) {
   return R * T;
 }
 
-std::map<int, std::vector<Labelled>> readLabels(const std::string& path,
-                                                const Eigen::Matrix4d& T_camera_lidar) {
-  std::map<int, std::vector<Labelled>> labels;
+std::map<int, std::vector<Labeled>> readLabels(const std::string& path,
+                                               const Eigen::Matrix4d& T_camera_lidar) {
+  std::map<int, std::vector<Labeled>> labels;
   const Eigen::Matrix4d inverse = T_camera_lidar.inverse();
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
-    Labelled object;
+    Labeled object;
     int frame = 0;
     double skip = 0, x = 0, y = 0, z = 0, rotation = 0;
     words >> frame >> object.id >> object.type;
@@ -69,7 +69,7 @@ std::map<int, std::vector<Labelled>> readLabels(const std::string& path,
   return labels;
 }
 
-int returnsWithin(const LidarCloud& cloud, const Labelled& object) {
+int returnsWithin(const LidarCloud& cloud, const Labeled& object) {
   int count = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vector3 d = Vector3(static_cast<double>(cloud.x[i]), static_cast<double>(cloud.y[i]),
@@ -94,9 +94,9 @@ TEST(KittiRecall, EveryObjectWithin20mIsSeen) {
   params.points.vehicle_rear = 2.6;  // the origin lies below the lidar
   ClassTable classes;
   classes.classes.resize(1);
-  const LidarFrontEnd lidar(
-      params, classes,
-      Sensing(SensingParams{}, {ClassSensing{}}, LidarFrontEnd::labels(params.clusters)));
+  const LidarFrontEnd lidar(params, classes,
+                            DetectionModel(DetectionParams{}, {ClassDetection{}},
+                                           LidarFrontEnd::labels(params.clusters)));
   GroundEstimator ground;
 
   int active = 0, seen = 0;
@@ -113,7 +113,7 @@ TEST(KittiRecall, EveryObjectWithin20mIsSeen) {
     const MeasurementScan scan = lidar.extract(frame);
     const auto objects = labels.find(k);
     if (objects == labels.end()) continue;
-    for (const Labelled& object : objects->second) {
+    for (const Labeled& object : objects->second) {
       if (object.bottom.head<2>().norm() > 20 || object.bottom.x() < 0 ||
           returnsWithin(cloud, object) < 20)
         continue;

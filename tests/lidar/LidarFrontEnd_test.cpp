@@ -19,9 +19,9 @@ using test::SpinningLidar;
 LidarFrontEnd frontEnd(const LidarParams& params = {}) {
   ClassTable classes;
   classes.classes.resize(1);
-  return LidarFrontEnd(
-      params, classes,
-      Sensing(SensingParams{}, {ClassSensing{}}, LidarFrontEnd::labels(params.clusters)));
+  return LidarFrontEnd(params, classes,
+                       DetectionModel(DetectionParams{}, {ClassDetection{}},
+                                      LidarFrontEnd::labels(params.clusters)));
 }
 
 /// A car ahead to the left, a person ahead to the right, both alone.
@@ -41,7 +41,7 @@ const Measurement* withLabel(const MeasurementScan& scan, int label) {
 std::vector<Vector2> corners(const test::SolidBox& box) {
   std::vector<Vector2> result;
   for (const Vector2& sign : {Vector2(1, 1), Vector2(-1, 1), Vector2(-1, -1), Vector2(1, -1)})
-    result.push_back(box.centre +
+    result.push_back(box.center +
                      rotate2(box.yaw, {sign.x() * box.length / 2, sign.y() * box.width / 2}));
   return result;
 }
@@ -54,7 +54,7 @@ TEST(LidarFrontEnd, SeesACarAndAPersonAndNothingElse) {
   EXPECT_LT((car->position - Vector2(14, 4)).norm(), 0.5);
   EXPECT_LT((person->position - Vector2(10, -3)).norm(), 0.4);
   EXPECT_EQ(scan.modality, Modality::kLidar);
-  EXPECT_TRUE(scan.model && scan.horizon);
+  EXPECT_TRUE(scan.model && scan.occlusion);
 }
 
 TEST(LidarFrontEnd, MeasuresTheOutlineWithinItsNoise) {
@@ -82,7 +82,7 @@ TEST(LidarFrontEnd, GivesSizeDirectionBaseAndHeight) {
   const Measurement *car = withLabel(scan, 0), *person = withLabel(scan, 1);
   ASSERT_TRUE(car && person && car->sides && car->base_z && car->height && person->height);
   EXPECT_NEAR(wrapAxis(car->sides->yaw - 0.5), 0, 2 * car->sides->yaw_sigma);
-  EXPECT_NEAR(car->sides->a, 4.4, 0.3);
+  EXPECT_NEAR(car->sides->length, 4.4, 0.3);
   EXPECT_NEAR(car->base_z->mean, 0, 0.1);
   EXPECT_NEAR(car->height->mean, 1.5, 2 * std::sqrt(car->height->variance));
   EXPECT_NEAR(person->height->mean, 1.75, 2 * std::sqrt(person->height->variance));
@@ -115,11 +115,11 @@ TEST(LidarFrontEnd, AnEdgeBehindATallerObjectIsNotSeen) {
   ASSERT_TRUE(car && car->sides);
   EXPECT_FALSE(car->seen >> FootprintModel::kLeft & 1);
   EXPECT_TRUE(car->seen >> FootprintModel::kRight & 1);
-  EXPECT_FALSE(car->sides->a_complete);
+  EXPECT_FALSE(car->sides->length_complete);
   // And the horizon says so: what stands behind the box is hidden, what stands beside it is not.
   const double bearing = std::atan2(1.5, 10);
-  EXPECT_LT(scan.horizon->visibility(bearing - 0.03, bearing + 0.03, 25, 1), 0.05);
-  EXPECT_GT(scan.horizon->visibility(-0.5, -0.4, 25, 1), 0.95);
+  EXPECT_LT(scan.occlusion->visibility(bearing - 0.03, bearing + 0.03, 25, 1), 0.05);
+  EXPECT_GT(scan.occlusion->visibility(-0.5, -0.4, 25, 1), 0.95);
 }
 
 TEST(LidarFrontEnd, ObjectsCloseTogetherAreUnstableOrLeftOut) {
@@ -206,7 +206,7 @@ TEST(LidarFrontEnd, PhantomsJoinNothingAndHideNothing) {
     EXPECT_EQ(snowy.measurements[i].label, clear.measurements[i].label);
     EXPECT_LT((snowy.measurements[i].z - clear.measurements[i].z).norm(), 0.01);
   }
-  EXPECT_GT(snowy.horizon->visibility(0.1, 0.2, 10, 1), 0.95);
+  EXPECT_GT(snowy.occlusion->visibility(0.1, 0.2, 10, 1), 0.95);
 }
 
 TEST(LidarFrontEnd, FramesWithoutPointsGiveNothing) {

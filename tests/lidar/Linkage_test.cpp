@@ -65,7 +65,7 @@ TEST(Linkage, EqualsEveryPairAtBothThresholds) {
   }
 }
 
-TEST(Linkage, EqualsEveryPairOnALatticeAtTheThreshold) {  // every neighbour lies exactly at, or
+TEST(Linkage, EqualsEveryPairOnALatticeAtTheThreshold) {  // every neighbor lies exactly at, or
                                                           // just above, 0.5 m
   for (const float pitch : {0.5f, std::nextafter(0.5f, 1.0f), 0.25f, 0.3535534f}) {
     Plane p;

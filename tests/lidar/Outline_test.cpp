@@ -38,20 +38,20 @@ TEST(Outline, ReachesAcrossTheRearwardDirection) {
 TEST(Outline, AnEdgeBesideSomethingNearerIsHidden) {
   const Pose3 sensor = Pose3::Identity();
   const double step = radians(0.4);
-  Horizon horizon(Vector2::Zero(), 900);
+  OcclusionMap occlusion(Vector2::Zero(), 900);
   Outline outline = outlineOf(kSquare, sensor);
   const double beyond = outline.left + step;
-  horizon.add(5 * Vector2(std::cos(beyond), std::sin(beyond)));
-  horizon.add(30 * Vector2(std::cos(-beyond), std::sin(-beyond)));  // behind: hides nothing
-  markHiddenEdges(outline, horizon, sensor, 0.5, step, kTwoPi);
+  occlusion.add(5 * Vector2(std::cos(beyond), std::sin(beyond)));
+  occlusion.add(30 * Vector2(std::cos(-beyond), std::sin(-beyond)));  // behind: hides nothing
+  markHiddenEdges(outline, occlusion, sensor, 0.5, step, kTwoPi);
   EXPECT_TRUE(outline.left_hidden);
   EXPECT_FALSE(outline.right_hidden);
 }
 
 TEST(Outline, AnEdgeAtTheBorderOfTheViewIsHidden) {
-  const Horizon horizon(Vector2::Zero(), 900);
+  const OcclusionMap occlusion(Vector2::Zero(), 900);
   Outline outline = outlineOf(kSquare, Pose3::Identity());
-  markHiddenEdges(outline, horizon, Pose3::Identity(), 0.5, radians(0.4),
+  markHiddenEdges(outline, occlusion, Pose3::Identity(), 0.5, radians(0.4),
                   2 * (outline.left + radians(0.1)));
   EXPECT_TRUE(outline.left_hidden && outline.right_hidden);
 }

@@ -28,7 +28,7 @@ struct Returns {
   }
 };
 
-/// Integral of the kernel over the plane or, with `line`, along a line through its centre.
+/// Integral of the kernel over the plane or, with `line`, along a line through its center.
 double integral(const PersonParams& params, bool line) {
   double sum = 0;
   for (double r = 5e-5; r < 10; r += 1e-4)
@@ -36,7 +36,7 @@ double integral(const PersonParams& params, bool line) {
   return sum;
 }
 
-TEST(PersonKernel, HasTheFiguresOfBothReadings) {  // SPEC 8.3
+TEST(PersonKernel, HasTheFiguresOfBothReadings) {  // method.md 8.3
   PersonParams consistent, printed;
   printed.kernel = PersonParams::Kernel::kPrinted;
   EXPECT_NEAR(personKernel(0, consistent), 1.808, 5e-4);
@@ -62,9 +62,9 @@ TEST(PersonPeaks, ALonePersonIsFoundWhereItStands) {
   returns.person(12.1, -3.2, 30, 1);
   const auto peaks = returns.find();
   ASSERT_EQ(peaks.size(), 1u);
-  EXPECT_NEAR(peaks[0].centre.x(), 12.1 - 0.13, 0.1);  // the mean of a half circle's returns
-  EXPECT_NEAR(peaks[0].centre.y(), -3.2, 0.1);
-  EXPECT_GT(peaks[0].normalised, 1.3);
+  EXPECT_NEAR(peaks[0].center.x(), 12.1 - 0.13, 0.1);  // the mean of a half circle's returns
+  EXPECT_NEAR(peaks[0].center.y(), -3.2, 0.1);
+  EXPECT_GT(peaks[0].normalized, 1.3);
   EXPECT_EQ(peaks[0].points.size(), 30u);
 }
 
@@ -78,12 +78,12 @@ TEST(PersonPeaks, ResponseIsTheSumOfTheKernelOverTheReturnsCells) {
   const auto peaks = returns.find(params);
   ASSERT_FALSE(peaks.empty());
   for (const PersonPeak& peak : peaks) {
-    // The peak's cell centre is the one whose literal sum is the response.
+    // The peak's cell center is the one whose literal sum is the response.
     double best = 1e9;
     for (int column = -4; column <= 4; ++column)
       for (int row = -4; row <= 4; ++row) {
-        const double cx = (std::floor(peak.centre.x() / 0.25) + column + 0.5) * 0.25;
-        const double cy = (std::floor(peak.centre.y() / 0.25) + row + 0.5) * 0.25;
+        const double cx = (std::floor(peak.center.x() / 0.25) + column + 0.5) * 0.25;
+        const double cy = (std::floor(peak.center.y() / 0.25) + row + 0.5) * 0.25;
         double sum = 0;
         for (std::size_t i = 0; i < returns.x.size(); ++i) {
           const double px = (std::floor(static_cast<double>(returns.x[i]) / 0.25) + 0.5) * 0.25;
@@ -102,7 +102,7 @@ TEST(PersonPeaks, WallsAndFieldsHaveNone) {
   for (int i = 0; i < 100; ++i)
     for (int level = 0; level < 4; ++level) wall.add(10, -5 + 0.1 * i, 0.4 + 0.4 * level);
   for (const PersonPeak& peak : wall.find())
-    EXPECT_GT(std::abs(peak.centre.y()), 4.3);  // its ends at most
+    EXPECT_GT(std::abs(peak.center.y()), 4.3);  // its ends at most
   Returns field;
   Rng rng(RngKey{9, 0, 0, 11});
   for (int i = 0; i < 20000; ++i)
@@ -151,7 +151,7 @@ TEST(PersonPeaks, WeightsCountAsReturns) {
   ASSERT_EQ(whole.size(), 1u);
   ASSERT_EQ(weighted.size(), 1u);
   EXPECT_NEAR(weighted[0].response, whole[0].response / 2, 1e-3);
-  EXPECT_NEAR(weighted[0].normalised, whole[0].normalised, 1e-4);
+  EXPECT_NEAR(weighted[0].normalized, whole[0].normalized, 1e-4);
   EXPECT_NEAR(weighted[0].weight, 15, 1e-6);
   // 30 returns of which three are of surfaces: fewer than min_points.
   EXPECT_TRUE(findPersons(returns.x, returns.y, returns.height, params, none).empty());

@@ -27,13 +27,13 @@ ClassTable classes() {
 }
 
 FootprintModel model() {
-  SensingParams p;
+  DetectionParams p;
   p.clutter_per_scan = 0.7;
   p.births_per_scan = 0.2;
   p.range_min = 1;
   p.range_max = 60;
   p.fov = radians(120);
-  return FootprintModel(classes(), Sensing(p, {{}, {}}, {"car_sized", "person_sized"}));
+  return FootprintModel(classes(), DetectionModel(p, {{}, {}}, {"car_sized", "person_sized"}));
 }
 
 SensorState sensorAt(double x, double y, double yaw) {
@@ -183,13 +183,13 @@ TEST(FootprintModel, BirthDensityTellsAPersonFromAVehicleByWidth) {
 TEST(FootprintModel, ARearViewStandsAcrossAndTheCarLiesBehindIt) {
   const FootprintModel f = model();
   Measurement m = measurementOf(0.045, -0.045, 20, 7);
-  SidesSeen sides;
+  PartialBox sides;
   sides.yaw = kPi / 2;  // the seen side runs across the line of sight
   sides.yaw_sigma = 0.05;
-  sides.a = 1.8;
-  sides.b = 0.2;
-  sides.a_complete = true;
-  sides.centre = {20.1, 0};
+  sides.length = 1.8;
+  sides.width = 0.2;
+  sides.length_complete = true;
+  sides.center = {20.1, 0};
   m.sides = sides;
   const auto birth = f.birth(m, 0, sensorAt(0, 0, 0));
   ASSERT_TRUE(birth && birth->yaw);
@@ -202,12 +202,12 @@ TEST(FootprintModel, ARearViewStandsAcrossAndTheCarLiesBehindIt) {
 TEST(FootprintModel, ALongSideIsTheLength) {
   const FootprintModel f = model();
   Measurement m = measurementOf(0.1, -0.1, 20, 7);
-  SidesSeen sides;
+  PartialBox sides;
   sides.yaw = 0.3;
   sides.yaw_sigma = 0.05;
-  sides.a = 4.2;
-  sides.b = 0.3;
-  sides.centre = {20, 0};
+  sides.length = 4.2;
+  sides.width = 0.3;
+  sides.center = {20, 0};
   m.sides = sides;
   const auto birth = f.birth(m, 0, sensorAt(0, 0, 0));
   ASSERT_TRUE(birth && birth->yaw);

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "libperception/core/Random.h"
-#include "libperception/filter/MotionModels.h"
 #include "libperception/filter/Step.h"
+#include "libperception/filter/state/MotionModels.h"
 #include "libperception/radar/RadarFrontEnd.h"
 
 namespace perception {
@@ -43,14 +43,14 @@ struct Drive {
 
   void run(double seconds, std::uint64_t seed, RadarParams params) {
     const FilterModel model = carsAndOthers();
-    SensingParams s;
+    DetectionParams s;
     s.modality = Modality::kRadar;
     s.births_per_scan = 0.05, s.clutter_per_scan = 0.5;
     s.range_max = 120, s.fov = radians(90);
-    std::vector<ClassSensing> rows(2);
+    std::vector<ClassDetection> rows(2);
     rows[1].detection = 0.3;
     params.bearing_sigma = bearing_sigma;
-    const RadarFrontEnd rib(params, model.classes, Sensing(s, rows, {"target"}));
+    const RadarFrontEnd front_end(params, model.classes, DetectionModel(s, rows, {"target"}));
     Rng rng({seed, 1, 0, 0});
     Posterior posterior = Posterior::empty(8);
     for (std::uint64_t i = 0; 0.1 * static_cast<double>(i) <= seconds; ++i) {
@@ -86,7 +86,8 @@ struct Drive {
         returns.returns.push_back(r);
       }
       frame.data = returns;
-      posterior = step(posterior, rib.extract(frame), model, RngKey{seed, i, 0, 0}, 8).posterior;
+      posterior =
+          step(posterior, front_end.extract(frame), model, RngKey{seed, i, 0, 0}, 8).posterior;
       judge(model, posterior, t);
     }
   }

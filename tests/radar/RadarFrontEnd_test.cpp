@@ -23,9 +23,9 @@ fov_deg = 360
 std::unique_ptr<FrontEnd> frontEnd(const std::string& keys = "") {
   Config config = Config::fromText(kIni + keys, "radar.ini");
   const ClassTable classes = readClassTable(config);
-  auto rib = makeRadarFrontEnd(config, "RADAR", classes);
+  auto front_end = makeRadarFrontEnd(config, "RADAR", classes);
   config.finish();
-  return rib;
+  return front_end;
 }
 
 RadarReturn target(double range, double bearing, double rate, double amplitude = 10) {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "libperception/core/Random.h"
-#include "libperception/filter/MotionModels.h"
 #include "libperception/filter/Step.h"
+#include "libperception/filter/state/MotionModels.h"
 #include "libperception/radar/RadarFrontEnd.h"
 
 namespace perception {
@@ -35,13 +35,13 @@ struct Start {
 /// unit sees it ten times a second from 70 m on, for three seconds.
 Start startOf(bool with_rate, std::uint64_t seed) {
   const FilterModel model = carsAndPosts();
-  SensingParams s;
+  DetectionParams s;
   s.modality = Modality::kRadar;
   s.births_per_scan = 0.1, s.clutter_per_scan = 0.01;
   s.range_max = 120, s.fov = radians(60);
   RadarParams p;
   if (!with_rate) p.model.min_birth_speed = 0;
-  const RadarFrontEnd rib(p, model.classes, Sensing(s, {{}, {}}, {"target"}));
+  const RadarFrontEnd front_end(p, model.classes, DetectionModel(s, {{}, {}}, {"target"}));
   Rng rng({seed, 0, 0, 0});
   Posterior posterior = Posterior::empty(4);
   Start result;
@@ -61,7 +61,8 @@ Start startOf(bool with_rate, std::uint64_t seed) {
     r.range_rate = d.normalized().dot(Vector2(-22, 0)) + p.rate_sigma * rng.normal();
     r.has_rate = with_rate;
     frame.data = RadarReturns{{r}, 0};
-    posterior = step(posterior, rib.extract(frame), model, RngKey{seed, i, 0, 0}, 4).posterior;
+    posterior =
+        step(posterior, front_end.extract(frame), model, RngKey{seed, i, 0, 0}, 4).posterior;
     double speed = 0, existence = 0;
     for (const auto& track : posterior.hypotheses[mapHypothesis(posterior).slot]->tracks) {
       if (track->existence < existence) continue;
@@ -78,7 +79,7 @@ Start startOf(bool with_rate, std::uint64_t seed) {
 }
 
 TEST(RangeRateStart, OncomingCarsHaveTheirSpeedWithinAFifthOfASecond) {
-  // SPEC 12, U12: 1.0 s by positions alone, .2 s with the range rate at birth.
+  // method.md 4.3: .6 s and more by positions alone, .2 s with the range rate at birth.
   const int runs = 20;
   std::vector<double> with, without;
   for (int seed = 1; seed <= runs; ++seed) {

@@ -24,11 +24,11 @@ ClassTable classes() {
   return {{car}};
 }
 
-RadarFrontEnd rib(const RadarParams& params = {}) {
-  SensingParams s;
+RadarFrontEnd makeFrontEnd(const RadarParams& params = {}) {
+  DetectionParams s;
   s.modality = Modality::kRadar;
   s.range_max = 200, s.fov = radians(120);
-  return RadarFrontEnd(params, classes(), Sensing(s, {{}}, {"target"}));
+  return RadarFrontEnd(params, classes(), DetectionModel(s, {{}}, {"target"}));
 }
 
 double medianOf(std::vector<double> values) {
@@ -73,7 +73,7 @@ TEST(Comma2k19, StillObjectsCloseAtOwnSpeed) {
   // least spread.
   constexpr double kAge = 0.05;  // [s]
   std::vector<double> still, along_track;
-  const auto front_end = rib();
+  const auto radar = makeFrontEnd();
   for (const auto& row : returns) {
     const double t = row[0] - kAge;
     SensorFrame frame;
@@ -86,7 +86,7 @@ TEST(Comma2k19, StillObjectsCloseAtOwnSpeed) {
     r.range = std::hypot(row[1], row[2]), r.bearing = std::atan2(row[2], row[1]);
     r.range_rate = row[3];
     frame.data = RadarReturns{{r}, 0};
-    const auto scan = front_end.extract(frame);
+    const auto scan = radar.extract(frame);
     ASSERT_EQ(scan.measurements.size(), 1u);
     const double over_ground = groundSpeed(scan.measurements[0], scan.state).mean;
     if (std::abs(over_ground) < 2) still.push_back(over_ground);
@@ -111,7 +111,7 @@ TEST(Comma2k19, StillObjectsCloseAtOwnSpeed) {
 
 // ---------------------------------------------------------------- View-of-Delft: 3+1D radar
 
-struct Labelled {
+struct Labeled {
   std::string type;
   Vector3 bottom = Vector3::Zero();  ///< [m] lidar frame
   double yaw = 0, length = 0, width = 0, height = 0;
@@ -122,7 +122,7 @@ struct VodFrame {
   RadarReturns returns;
   std::vector<double> compensated;     ///< [m/s] range rates with the own motion taken out
   Vector2 velocity = Vector2::Zero();  ///< [m/s] of the radar, lidar frame
-  std::vector<Labelled> objects;
+  std::vector<Labeled> objects;
 };
 
 Pose3 readCalibration(const std::string& path) {
@@ -169,7 +169,7 @@ VodFrame readVod(const std::string& number) {
   std::ifstream labels(folder + "label_2/" + number + ".txt");
   for (std::string line; std::getline(labels, line);) {
     std::istringstream words(line);
-    Labelled o;
+    Labeled o;
     double skip = 0, x = 0, y = 0, z = 0, rotation = 0;
     words >> o.type;
     for (int i = 0; i < 7; ++i) words >> skip;
@@ -182,7 +182,7 @@ VodFrame readVod(const std::string& number) {
   return frame;
 }
 
-/// How many labelled objects, moved to the left by `aside` [m], have a target inside the gate of
+/// How many labeled objects, moved to the left by `aside` [m], have a target inside the gate of
 /// the model (range and bearing).
 struct Share {
   int objects = 0, associated = 0;
@@ -201,8 +201,8 @@ Share associated(double aside) {
     frame.ego.velocity = vod.velocity;
     frame.T_ego_sensor = vod.T_lidar_radar;
     frame.data = vod.returns;
-    const auto scan = rib(params).extract(frame);
-    for (const Labelled& o : vod.objects) {
+    const auto scan = makeFrontEnd(params).extract(frame);
+    for (const Labeled& o : vod.objects) {
       Kinematics k;
       k.q << o.bottom.x(), o.bottom.y() + aside, 0, 0, o.yaw;
       k.has_yaw = true;
@@ -224,7 +224,7 @@ Share associated(double aside) {
   return share;
 }
 
-TEST(ViewOfDelft, NineInTenLabelledObjectsHaveATarget) {
+TEST(ViewOfDelft, NineInTenLabeledObjectsHaveATarget) {
   const Share share = associated(0);
   if (share.objects == 0) GTEST_SKIP() << "no View-of-Delft frames in " PERCEPTION_SHARED_DATA;
   EXPECT_EQ(share.objects, 39);

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "libperception/filter/MotionModels.h"
 #include "libperception/filter/Step.h"
+#include "libperception/filter/state/MotionModels.h"
 #include "libperception/measurement/PositionModel.h"
 #include "libperception/radar/RadarFrontEnd.h"
 
@@ -85,17 +85,17 @@ std::shared_ptr<const PositionModel> positionModel(const ClassTable& classes) {
 }
 
 std::unique_ptr<FrontEnd> radar(const ClassTable& classes, const Noise& noise) {
-  SensingParams s;
+  DetectionParams s;
   s.modality = Modality::kRadar;
   s.clutter_per_scan = 1e-3;
   s.births_per_scan = 0.1;
   s.range_max = 100, s.fov = kTwoPi;
-  std::vector<ClassSensing> rows(static_cast<std::size_t>(classes.size()));
+  std::vector<ClassDetection> rows(static_cast<std::size_t>(classes.size()));
   for (auto& row : rows) row.detection = 0.99;
   RadarParams p;
   p.range_sigma = noise.range, p.bearing_sigma = noise.bearing, p.rate_sigma = noise.rate;
   p.own_speed_sigma = 0;
-  return std::make_unique<RadarFrontEnd>(p, classes, Sensing(s, rows, {"target"}));
+  return std::make_unique<RadarFrontEnd>(p, classes, DetectionModel(s, rows, {"target"}));
 }
 
 /// Root mean square of x, y [m], vx, vy [m/s] over all rows from the first on, and how often no
@@ -108,7 +108,7 @@ struct Result {
 Result track(const std::vector<Row>& rows, const Noise& noise) {
   const FilterModel model = pointModel();
   const auto position = positionModel(model.classes);
-  const auto rib = radar(model.classes, noise);
+  const auto front_end = radar(model.classes, noise);
   Posterior posterior = Posterior::empty(8);
   Result result;
   std::uint64_t id = 0;
@@ -123,7 +123,7 @@ Result track(const std::vector<Row>& rows, const Noise& noise) {
       RadarReturn r;
       r.range = row.z[0], r.bearing = row.z[1], r.range_rate = row.z[2];
       frame.data = RadarReturns{{r}, 0};
-      scan = rib->extract(frame);
+      scan = front_end->extract(frame);
     } else {
       scan.model = position;
       scan.state = {frame.stamp, Pose3::Identity(), frame.ego};

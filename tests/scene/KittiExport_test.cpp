@@ -89,7 +89,7 @@ TEST(KittiExport, ACarAheadIsWhereKittiSaysItIs) {
   const auto o = seen(carAt(21, 2, 0));
   ASSERT_TRUE(o);
   EXPECT_EQ(o->type, "Car");
-  EXPECT_TRUE(o->bottom_centre.isApprox(Vector3(-2, 1.65, 20), 1e-12));
+  EXPECT_TRUE(o->bottom_center.isApprox(Vector3(-2, 1.65, 20), 1e-12));
   // Heading away from the camera along z: rotation_y = -pi/2.
   EXPECT_NEAR(o->rotation_y, -kPi / 2, 1e-12);
   EXPECT_NEAR(o->alpha, -kPi / 2 + std::atan2(2, 20), 1e-12);
@@ -161,7 +161,7 @@ TEST(KittiExport, TurningTheWorldChangesNothing) {
   scene.ego.T_world_ego = T_world_ego;
   const auto after = kittiObject(moved, scene, pedestrianAndCar(), frontCamera());
   ASSERT_TRUE(before && after);
-  EXPECT_TRUE(before->bottom_centre.isApprox(after->bottom_centre, 1e-10));
+  EXPECT_TRUE(before->bottom_center.isApprox(after->bottom_center, 1e-10));
   EXPECT_NEAR(before->rotation_y, after->rotation_y, 1e-10);
   EXPECT_NEAR(before->box.x1, after->box.x1, 1e-7);
   EXPECT_NEAR(before->box.y2, after->box.y2, 1e-7);
@@ -175,7 +175,7 @@ TEST(KittiExport, TheOffsetOfCameraZeroMovesTheBoxInSpaceButNotInTheImage) {
              reference = kittiObject(car, atOrigin({car}), pedestrianAndCar(), camera);
   ASSERT_TRUE(own && reference);
   EXPECT_TRUE(
-      (own->bottom_centre - reference->bottom_centre).isApprox(KittiCamera::kittiOffset(), 1e-9));
+      (own->bottom_center - reference->bottom_center).isApprox(KittiCamera::kittiOffset(), 1e-9));
   EXPECT_NEAR(own->box.x1, reference->box.x1, 1e-9);
 }
 
@@ -291,7 +291,7 @@ TEST(KittiExport, RealLabelsComeBackFromTheWorldAsTheyWere) {
       const auto o = kittiObject(object, scene, pedestrianAndCar(), camera);
       if (!o) continue;
       ++labels;
-      worst_position = std::max(worst_position, (o->bottom_centre - place).norm());
+      worst_position = std::max(worst_position, (o->bottom_center - place).norm());
       worst_rotation = std::max(worst_rotation, std::abs(wrapAngle(o->rotation_y - label.ry)));
       // Nearer, KITTI's alpha depends on where on the vehicle one stands.
       if (label.z > 10)

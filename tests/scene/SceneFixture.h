@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "libperception/core/ObjectClass.h"
+#include "libperception/measurement/ObjectClass.h"
 #include "libperception/scene/Scene.h"
 
 namespace perception::test {

@@ -172,11 +172,11 @@ TEST(FrameNumber, IsReadFromTheCommentOnly) {
 
 TEST(FromObservation, DropsAndCountsRadarReturnsThatAreNone) {
   const auto o = someReturns();
-  RadarReturn nowhere = o->scan.returns[0], spoilt = o->scan.returns[0];
+  RadarReturn nowhere = o->scan.returns[0], corrupted = o->scan.returns[0];
   nowhere.range = 0;
-  spoilt.range_rate = std::numeric_limits<double>::quiet_NaN();
+  corrupted.range_rate = std::numeric_limits<double>::quiet_NaN();
   o->scan.returns.push_back(nowhere);
-  o->scan.returns.push_back(spoilt);
+  o->scan.returns.push_back(corrupted);
   DecodeCounts counts;
   const auto frame = frameFromObservation(*o, &counts);
   ASSERT_TRUE(frame);

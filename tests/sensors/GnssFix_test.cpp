@@ -112,7 +112,7 @@ TEST(GnssFix, CartesianPositionsAreTheSamePlace) {
   pzs.cartesian_x = (n + 92) * std::cos(la) * std::cos(lo);
   pzs.cartesian_y = (n + 92) * std::cos(la) * std::sin(lo);
   pzs.cartesian_z = (n * (1 - e2) + 92) * std::sin(la);
-  // Five metres a second to the north.
+  // Five meters a second to the north.
   pzs.cartesian_vx = -5 * std::sin(la) * std::cos(lo);
   pzs.cartesian_vy = -5 * std::sin(la) * std::sin(lo);
   pzs.cartesian_vz = 5 * std::cos(la);
@@ -162,7 +162,7 @@ TEST(EgoReadings, InertialUnitIsTurnedIntoTheVehicle) {
   const auto reading = imuReading(imu);
   ASSERT_TRUE(reading && reading->gyro && reading->accelerometer);
   EXPECT_TRUE(reading->rates.isApprox(Vector3(0, 0.1, 0.5), 1e-9));
-  // Two metres ahead the turning is felt as -w^2 r along x: taken off.
+  // Two meters ahead the turning is felt as -w^2 r along x: taken off.
   EXPECT_NEAR(reading->force.x(), 2 * (0.5 * 0.5 + 0.1 * 0.1), 1e-9);
   EXPECT_NEAR(reading->force.y(), 3, 1e-9);
   imu.set(mrpt::obs::IMU_WZ, std::numeric_limits<double>::quiet_NaN());

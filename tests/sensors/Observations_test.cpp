@@ -15,7 +15,7 @@ namespace {
 
 using namespace perception::testing;
 
-std::string serialised(const mrpt::serialization::CSerializable& object) {
+std::string serialized(const mrpt::serialization::CSerializable& object) {
   registerPerceptionClasses();
   mrpt::io::CMemoryStream stream;
   mrpt::serialization::archiveFrom(stream).WriteObject(object);
@@ -29,7 +29,7 @@ mrpt::serialization::CSerializable::Ptr parsed(const std::string& bytes) {
 
 template <class Class>
 std::shared_ptr<Class> roundTrip(const Class& object) {
-  return std::dynamic_pointer_cast<Class>(parsed(serialised(object)));
+  return std::dynamic_pointer_cast<Class>(parsed(serialized(object)));
 }
 
 TEST(CObservationLidarScan, ComesBackBitForBit) {
@@ -49,15 +49,15 @@ TEST(CObservationLidarScan, ComesBackBitForBit) {
   EXPECT_EQ(back->cloud.pulse_width, scan->cloud.pulse_width);
   EXPECT_EQ(back->cloud.label, scan->cloud.label);
   EXPECT_EQ(back->cloud.max_range, 120);
-  EXPECT_EQ(serialised(*back), serialised(*scan));
+  EXPECT_EQ(serialized(*back), serialized(*scan));
 }
 
 TEST(CObservationLidarScan, ArraysThatAreNotThereTakeNoRoom) {
   auto scan = fullScan(1000);
-  const std::size_t full = serialised(*scan).size();
+  const std::size_t full = serialized(*scan).size();
   scan->cloud.ring.clear();
   scan->cloud.time_offset.clear();
-  const std::size_t less = serialised(*scan).size();
+  const std::size_t less = serialized(*scan).size();
   EXPECT_EQ(full - less, 1000 * (sizeof(std::uint16_t) + sizeof(float)));
   const auto back = roundTrip(*scan);
   EXPECT_TRUE(back->cloud.ring.empty());
@@ -67,14 +67,14 @@ TEST(CObservationLidarScan, ArraysThatAreNotThereTakeNoRoom) {
 TEST(CObservationLidarScan, RefusesToWriteArraysOfDifferentSize) {
   auto scan = fullScan(10);
   scan->cloud.ring.pop_back();
-  EXPECT_THROW(serialised(*scan), std::exception);
+  EXPECT_THROW(serialized(*scan), std::exception);
 }
 
 TEST(CObservationLidarScan, ReadsIntoAnUsedObjectWithoutRemains) {
   auto used = fullScan(50);
   auto plain = fullScan(20);
   plain->cloud.label.clear();
-  const std::string bytes = serialised(*plain);
+  const std::string bytes = serialized(*plain);
   mrpt::io::CMemoryStream stream(bytes.data(), bytes.size());
   auto archive = mrpt::serialization::archiveFrom(stream);
   archive.ReadObject(used.get());
@@ -92,7 +92,7 @@ TEST(CObservationObjectDetections, ComesBackBitForBit) {
   EXPECT_EQ(first.score, 8.25);
   EXPECT_EQ(first.class_scores, o->detections.objects[0].class_scores);
   EXPECT_EQ(first.image_box->x2, 110);
-  EXPECT_EQ(first.space_box->bottom_centre, Vector3(12, 3, -1.7));
+  EXPECT_EQ(first.space_box->bottom_center, Vector3(12, 3, -1.7));
   EXPECT_EQ(first.space_box->length, 4.5);
   EXPECT_EQ(first.heading, -1.5);
   EXPECT_FALSE(back->detections.objects[1].space_box);
@@ -100,14 +100,14 @@ TEST(CObservationObjectDetections, ComesBackBitForBit) {
   EXPECT_EQ(back->detections.camera.width, 1242);
   EXPECT_EQ(back->detections.camera.fy, 722.5);
   EXPECT_TRUE(back->detections.T_ego_camera->isApprox(*o->detections.T_ego_camera, 1e-12));
-  EXPECT_EQ(serialised(*back), serialised(*o));
+  EXPECT_EQ(serialized(*back), serialized(*o));
 }
 
 TEST(CObservationObjectDetections, KnowsAPanoramaFromAPinholeCamera) {
   const auto o = someDetections();
-  const std::size_t pinhole = serialised(*o).size();
+  const std::size_t pinhole = serialized(*o).size();
   o->detections.camera.projection = CameraModel::Projection::kEquirectangular;
-  EXPECT_EQ(serialised(*o).size(), pinhole + 1);  // pinhole logs stay as they were
+  EXPECT_EQ(serialized(*o).size(), pinhole + 1);  // pinhole logs stay as they were
   const auto back = roundTrip(*o);
   EXPECT_EQ(back->detections.camera.projection, CameraModel::Projection::kEquirectangular);
   EXPECT_EQ(back->detections.objects.size(), 2U);
@@ -131,7 +131,7 @@ TEST(CObservationRadarScan, ComesBackBitForBit) {
   EXPECT_FALSE(back->scan.returns[1].elevation);
   EXPECT_EQ(back->scan.max_range, 90);
   EXPECT_EQ(back->sensorLabel, "RADAR_1");
-  EXPECT_EQ(serialised(*back), serialised(*o));
+  EXPECT_EQ(serialized(*back), serialized(*o));
 }
 
 TEST(CObservationMeasurements, ComesBackBitForBit) {
@@ -144,19 +144,19 @@ TEST(CObservationMeasurements, ComesBackBitForBit) {
   ASSERT_EQ(back->measurements.size(), 2U);
   EXPECT_EQ(back->measurements[0].z, o->measurements[0].z);
   EXPECT_EQ(back->measurements[0].R, o->measurements[0].R);
-  EXPECT_EQ(back->measurements[0].sides->a_complete, true);
-  EXPECT_EQ(back->measurements[0].sides->centre, Vector2(11.5, 5.5));
+  EXPECT_EQ(back->measurements[0].sides->length_complete, true);
+  EXPECT_EQ(back->measurements[0].sides->center, Vector2(11.5, 5.5));
   EXPECT_EQ(back->measurements[1].height->mean, 1.6);
   ASSERT_TRUE(back->measurements[0].heading);
   EXPECT_EQ(back->measurements[0].heading->flip_probability, 0.05);
-  EXPECT_EQ(back->measurements[0].sides->a_sigma, 0.25);
+  EXPECT_EQ(back->measurements[0].sides->length_sigma, 0.25);
   EXPECT_EQ(back->measurements[0].log_class, (std::vector<double>{-0.5, 1.5}));
   EXPECT_EQ(back->measurements[0].log_clutter, -0.7);
   EXPECT_FALSE(back->measurements[1].heading);
   EXPECT_FALSE(back->measurements[1].sides);
   EXPECT_NEAR(back->sensor_pose.z(), 1.73, 1e-9);  // the vehicle's own pose is not part of it
   EXPECT_NEAR(back->sensor_pose.x(), 0, 1e-9);
-  EXPECT_EQ(serialised(*back), serialised(*o));
+  EXPECT_EQ(serialized(*back), serialized(*o));
 }
 
 TEST(Observations, DescriptionAndTextExportNameTheNumbers) {
@@ -190,7 +190,7 @@ long peakMemory() {
 }
 
 TEST(Observations, HostileCountsTakeNoMemory) {
-  std::string bytes = serialised(*fullScan(5));
+  std::string bytes = serialized(*fullScan(5));
   // The count of points stands before the flags (1 byte), the arrays and the end mark (1 byte).
   const std::size_t count_at = bytes.size() - 1 - 5 * (4 * 6 + 2 + 1 + 1) - 1 - 4;
   std::uint32_t count = 0;
@@ -207,8 +207,8 @@ TEST(Observations, HostileCountsTakeNoMemory) {
 
 TEST(Observations, RandomMutationsNeverCrash) {
   std::mt19937 random(20260705);
-  const std::string originals[] = {serialised(*fullScan(20)), serialised(*someDetections()),
-                                   serialised(*someMeasurements())};
+  const std::string originals[] = {serialized(*fullScan(20)), serialized(*someDetections()),
+                                   serialized(*someMeasurements())};
   int refused = 0;
   for (int round = 0; round < 300; ++round) {
     std::string bytes = originals[round % 3];
@@ -230,7 +230,7 @@ TEST(Observations, RandomMutationsNeverCrash) {
 
 TEST(Observations, TruncatedPayloadIsRefusedEverywhere) {
   for (const std::string& whole :
-       {serialised(*fullScan(4)), serialised(*someDetections()), serialised(*someMeasurements())}) {
+       {serialized(*fullScan(4)), serialized(*someDetections()), serialized(*someMeasurements())}) {
     for (std::size_t size = 0; size < whole.size(); ++size) {
       EXPECT_THROW(parsed(whole.substr(0, size)), std::exception) << size;
     }

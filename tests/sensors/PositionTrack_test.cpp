@@ -59,7 +59,7 @@ TEST(PositionTrack, ReadsGpx) {
   EXPECT_NEAR(track.fixes[1].t, 1582977600.5, 1e-6);
 }
 
-TEST(PositionTrack, LocalMetresAreThoseOfTheEllipsoid) {
+TEST(PositionTrack, LocalMetersAreThoseOfTheEllipsoid) {
   PositionTrack track;
   track.fixes = {{0, 0, 0}, {1, 0, 1.0 / 3600}, {2, 1.0 / 3600, 0}};
   const auto p = track.local();

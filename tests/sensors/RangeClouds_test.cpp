@@ -146,7 +146,7 @@ TEST(RangeClouds, RotatingScanOfAnUnknownModelIsRejected) {
   const auto cloud = rotatingCloud(scan, no_range);
   ASSERT_TRUE(cloud);
   ASSERT_EQ(cloud->size(), 1U);
-  EXPECT_EQ(no_range, 1U);  // half a metre is below the instrument's range
+  EXPECT_EQ(no_range, 1U);  // half a meter is below the instrument's range
   EXPECT_NEAR(cloud->z[0], 3 * std::sin(radians(-15)), 1e-5);
   scan.rowCount = 12;
   EXPECT_FALSE(rotatingCloud(scan, no_range));
@@ -165,7 +165,7 @@ TEST(RangeClouds, RealRotatingScanAgreesWithItsPackets) {
   const auto& a = std::get<LidarCloud>(image->data);
   const auto& b = std::get<LidarCloud>(packet->data);
   EXPECT_GT(a.size(), 10000U);
-  // Every hundredth point of the image has one of the packets' within half a metre (a column is
+  // Every hundredth point of the image has one of the packets' within half a meter (a column is
   // 2.2 cm at 10 m; MRPT spreads them evenly over a turn that is not even).
   std::size_t near = 0, looked = 0;
   for (std::size_t i = 0; i < a.size(); i += 100) {

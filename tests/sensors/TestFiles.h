@@ -124,15 +124,15 @@ inline std::shared_ptr<CObservationMeasurements> someMeasurements(Stamp stamp = 
   m.log_score_ratio = 1.25;
   m.position = {11, 5};
   m.base_z = ScalarEstimate{-1.7, 0.04};
-  m.sides = SidesSeen{0.3, 0.1, 4.2, 1.7, true, false, 0, 0, {11.5, 5.5}};
+  m.sides = PartialBox{0.3, 0.1, 4.2, 1.7, true, false, 0, 0, {11.5, 5.5}};
   m.detection = 3;
   scan.measurements = {m, m};
   scan.measurements[1].label = 0;
   scan.measurements[1].seen = 4;
   scan.measurements[1].sides.reset();
   scan.measurements[1].height = ScalarEstimate{1.6, 0.01};
-  scan.measurements[0].heading = HeadingSeen{0.4, 0.1, 0.05};
-  scan.measurements[0].sides->a_sigma = 0.25;
+  scan.measurements[0].heading = MeasuredHeading{0.4, 0.1, 0.05};
+  scan.measurements[0].sides->length_sigma = 0.25;
   scan.measurements[0].log_class = {-0.5, 1.5};
   scan.measurements[0].log_clutter = -0.7;
   return std::dynamic_pointer_cast<CObservationMeasurements>(measurementsObservation(

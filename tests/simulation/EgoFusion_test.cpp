@@ -261,7 +261,7 @@ TEST(EgoFusion, HeadingIsFoundOnTheWayAndThePastIsTurnedIntoTheWorld) {
     const double t = *toStamp(o->timestamp) - kStart;
     if (found < 0 && ego.fusion().state().heading_known) {
       found = t;
-      EXPECT_EQ(ego.worlds(), 1U);
+      EXPECT_EQ(ego.frameEpoch(), 1U);
       break;
     }
   }

@@ -40,7 +40,7 @@ TEST(LidarCaster, RangeToASmoothRoadIsTheAnalyticOne) {
 }
 
 TEST(LidarCaster, TurnedObjectsShowTheirTurnedFaces) {
-  // A square turned by 45 deg: its nearest edge stands sqrt(2)/2 * 4 m before its centre.
+  // A square turned by 45 deg: its nearest edge stands sqrt(2)/2 * 4 m before its center.
   const World world(scenarioOf(
       kStanding + kRoofLidar +
       parked("block", "box", 20, 0, "length = 4\nwidth = 4\nheight = 5\nheading_deg = 45")));

@@ -71,13 +71,14 @@ TEST(LidarSensor, RangeNoiseHasItsSpread) {
     sum += error, squares += error * error, ++n;
   }
   ASSERT_GT(n, 1000);
-  // SPEC 9 adds .09 m / sqrt(2 SNR) with SNR = .4/.9 (200/15)^2 = 79: sigma = hypot(.05, .0072).
+  // method.md (50) adds .09 m / sqrt(2 SNR) with SNR = .4/.9 (200/15)^2 = 79: sigma = hypot(.05,
+  // .0072).
   const double sigma = std::hypot(0.05, 0.0072);
   EXPECT_NEAR(sum / n, 0, 4 * sigma / std::sqrt(n));
   EXPECT_NEAR(std::sqrt(squares / n), sigma, 4 * sigma / std::sqrt(2.0 * n));
 }
 
-TEST(LidarSensor, PedestrianAtTwentyMetresGetsPlausibleReturns) {
+TEST(LidarSensor, PedestrianAtTwentyMetersGetsPlausibleReturns) {
   // The box .5 m by 1.7 m spans 8 columns of .18 deg and 14.6 rings of 1/3 deg: 117 beams; a body
   // fills about half of it.
   const auto scan = scanOf(parked("man", "pedestrian", 20, 0));

@@ -36,19 +36,19 @@ std::vector<fs::path> inisOf(const std::string& folder) {
 
 /// An oriented rectangle on the ground [m].
 struct Footprint {
-  Vector2 centre;
+  Vector2 center;
   double heading, length, width;
   std::array<Vector2, 4> corners() const {
     const Vector2 u(std::cos(heading), std::sin(heading)), n(-u.y(), u.x());
     const Vector2 a = .5 * length * u, b = .5 * width * n;
-    return {Vector2(centre + a + b), Vector2(centre + a - b), Vector2(centre - a - b),
-            Vector2(centre - a + b)};
+    return {Vector2(center + a + b), Vector2(center + a - b), Vector2(center - a - b),
+            Vector2(center - a + b)};
   }
 };
 
 // Separating axes of two rectangles.
 bool overlap(const Footprint& p, const Footprint& q) {
-  if ((p.centre - q.centre).norm() >
+  if ((p.center - q.center).norm() >
       .5 * (std::hypot(p.length, p.width) + std::hypot(q.length, q.width))) {
     return false;
   }

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/simulation/Scenario.h"
 
 namespace perception::test {

@@ -58,10 +58,10 @@ TEST(Trajectory, KeepsItsHeadingAtRest) {
   EXPECT_EQ(parked.at(3).heading, 0.7);
 }
 
-TEST(Trajectory, TravelledIsTheLengthOfTheWay) {
+TEST(Trajectory, TraveledIsTheLengthOfTheWay) {
   const Trajectory way({0, 1, 2, 3}, {0, 3, 6, 9}, {0, 4, 8, 12}, 0);
-  EXPECT_NEAR(way.at(3).travelled, 15, 0.05);
-  EXPECT_NEAR(way.at(1).travelled, 5, 0.05);
+  EXPECT_NEAR(way.at(3).traveled, 15, 0.05);
+  EXPECT_NEAR(way.at(1).traveled, 5, 0.05);
 }
 
 TEST(Trajectory, NamesWhatIsWrong) {

@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include "libperception/filter/Track.h"
+#include "libperception/filter/state/Track.h"
 
 namespace perception::test {
 namespace {

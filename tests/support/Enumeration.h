@@ -17,11 +17,11 @@ struct ExactPosterior {
     Vector2 mean = Vector2::Zero();  ///< of the position, mixture over classes
   };
   struct History {
-    double probability = 0;                          ///< normalised over all histories
+    double probability = 0;                          ///< normalized over all histories
     std::map<std::uint64_t, TrackPosterior> tracks;  ///< by history hash of the track
   };
   double log_evidence =
-      0;  ///< log p(all measurements), up to the Poisson normalisers exp(-kappa - beta)
+      0;  ///< log p(all measurements), up to the Poisson normalizers exp(-kappa - beta)
   /// By the sorted hashes of its tracks' histories; births and clutter are not told apart (both are
   /// "new").
   std::map<std::vector<std::uint64_t>, History> histories;

@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include "libperception/filter/FilterModel.h"
+#include "libperception/filter/state/FilterModel.h"
 #include "libperception/measurement/PositionModel.h"
 
 namespace perception::test {
@@ -63,13 +63,13 @@ inline PositionModel::Params linearSensor() {
   return p;
 }
 
-struct LabelledPoint {
+struct LabeledPoint {
   double x, y;
   int label;
 };
 
 inline MeasurementScan positionScan(const std::shared_ptr<const PositionModel>& model, double t,
-                                    const std::vector<LabelledPoint>& points) {
+                                    const std::vector<LabeledPoint>& points) {
   MeasurementScan scan;
   scan.sensor = "POSITION";
   scan.model = model;

@@ -12,7 +12,7 @@
 #include "libperception/lidar/GroundPlane.h"
 #include "libperception/lidar/GroundSurface.h"
 #include "libperception/weather/PointFilter.h"
-#include "tests/support/LabelledScans.h"
+#include "tests/support/LabeledScans.h"
 
 namespace perception::test {
 
@@ -38,8 +38,8 @@ class SnowRun {
     std::size_t count = 0;
     const Vector2 own = frame_.ego.T_world_ego.translation().head<2>();
     for (const GridCell& cell : grid_->occupiedCells()) {
-      if ((cell.centre.head<2>() - own).norm() > range) continue;
-      const auto found = history_.find(keyOf(cell.centre));
+      if ((cell.center.head<2>() - own).norm() > range) continue;
+      const auto found = history_.find(keyOf(cell.center));
       count += found != history_.end() && found->second.snow > 0 && found->second.other == 0;
     }
     return count;
@@ -48,7 +48,7 @@ class SnowRun {
     const auto found = history_.find(keyOf(place));
     return found != history_.end() && found->second.snow > 0;
   }
-  /// Centres of the cells with two and more returns of cars and persons in the last scan.
+  /// Centers of the cells with two and more returns of cars and persons in the last scan.
   const std::vector<Vector3>& roadUserCells() const { return road_users_; }
   std::size_t clusters() const { return clusters_; }
   std::size_t snowClusters() const { return snow_clusters_; }  ///< mostly of falling snow
@@ -152,13 +152,13 @@ struct SnowComparison {
   double kept() const { return user_cells_kept / std::max(1.0, user_cells); }
 };
 
-inline SnowComparison compareInSnow(const std::vector<LabelledScan>& scans,
+inline SnowComparison compareInSnow(const std::vector<LabeledScan>& scans,
                                     const WeatherParams& weather, GridParams grid) {
   WeatherParams off = weather;
   off.filter = "off";
   SnowRun plain(off, grid), trusted(weather, grid);
   SnowComparison sum;
-  for (const LabelledScan& scan : scans) {
+  for (const LabeledScan& scan : scans) {
     plain.add(scan.frame, scan.labels), trusted.add(scan.frame, scan.labels);
     ++sum.scans;
     sum.plain_cells += static_cast<double>(plain.snowCells(15));

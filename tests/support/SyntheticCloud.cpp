@@ -17,7 +17,7 @@ double hitGround(const GroundPlane& ground, const Vector3& o, const Vector3& d) 
 }
 
 double hitBox(const SolidBox& box, const Vector3& o, const Vector3& d) {
-  const Vector2 o2 = rotate2(-box.yaw, o.head<2>() - box.centre),
+  const Vector2 o2 = rotate2(-box.yaw, o.head<2>() - box.center),
                 d2 = rotate2(-box.yaw, d.head<2>());
   const double origin[3] = {o2.x(), o2.y(), o.z()}, along[3] = {d2.x(), d2.y(), d.z()};
   const double low[3] = {-box.length / 2, -box.width / 2, box.bottom};
@@ -31,7 +31,7 @@ double hitBox(const SolidBox& box, const Vector3& o, const Vector3& d) {
 }
 
 double hitCylinder(const SolidCylinder& cylinder, const Vector3& o, const Vector3& d) {
-  const Vector2 o2 = o.head<2>() - cylinder.centre, d2 = d.head<2>();
+  const Vector2 o2 = o.head<2>() - cylinder.center, d2 = d.head<2>();
   const double a = d2.squaredNorm(), b = o2.dot(d2),
                c = o2.squaredNorm() - cylinder.radius * cylinder.radius;
   const double root = b * b - a * c;

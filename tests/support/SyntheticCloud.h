@@ -8,7 +8,7 @@ namespace perception::test {
 
 /// An upright box on the ground; all in the ego frame.
 struct SolidBox {
-  Vector2 centre = Vector2::Zero();  ///< [m]
+  Vector2 center = Vector2::Zero();  ///< [m]
   double yaw = 0;                    ///< [rad] of its length
   double length = 1, width = 1;      ///< [m]
   double bottom = 0, top = 1;        ///< [m]
@@ -16,7 +16,7 @@ struct SolidBox {
 
 /// An upright cylinder; ego frame.
 struct SolidCylinder {
-  Vector2 centre = Vector2::Zero();  ///< [m]
+  Vector2 center = Vector2::Zero();  ///< [m]
   double radius = 0.25;              ///< [m]
   double bottom = 0, top = 1.7;      ///< [m]
 };

@@ -72,7 +72,7 @@ TEST(BoxGeometry, RangeIsAsUncertainAsPitchMakesIt) {
   PoseUncertainty sure;
   sure.sigma_pitch = 0;
   const Pose3 pose = cameraPose(2.5);
-  // VISION_NOTES: one degree of pitch is .5 m at 8 m and 1.6 m at 15 m for a camera at 2.5 m.
+  // method.md 4.2: one degree of pitch is .5 m at 8 m and 1.6 m at 15 m for a camera at 2.5 m.
   const auto at = [&](double range) {
     return boxOnGround(boardBox(range + 0.3, 0.5, -0.5, 1, pose), kCamera, pose, {}, sure, p)
         ->range_sigma;
@@ -128,14 +128,14 @@ TEST(BoxGeometry, RefusesABoxThatIsNone) {
 TEST(VisionFrontEnd, SureBoxesHideWhatStandsBehindThem) {
   Config config = Config::fromText(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = constant-velocity\n"
-      "[sensor.A]\nkind = boxes\nmodality = C\n[sensor.A.detector]\nhides_from = 0.5\n",
+      "[sensor.A]\nkind = boxes\nmodality = C\n[sensor.A.detector]\noccluder_score = 0.5\n",
       "a.ini");
   const ClassTable classes = readClassTable(config);
   const auto front_end = makeVisionFrontEnd(config, "A", classes);
   SensorFrame frame;
   frame.sensor = "A";
   frame.T_ego_sensor = cameraPose(1.65);
-  const auto horizonAt = [&](double score) {
+  const auto occlusionAt = [&](double score) {
     ObjectDetections detections;
     detections.camera = kCamera;
     ObjectDetection o;
@@ -144,9 +144,9 @@ TEST(VisionFrontEnd, SureBoxesHideWhatStandsBehindThem) {
     o.image_box = boardBox(12, 0.4, -0.4, 1.7, frame.T_ego_sensor);
     detections.objects.push_back(o);
     frame.data = detections;
-    return front_end->extract(frame).horizon;
+    return front_end->extract(frame).occlusion;
   };
-  const auto sure = horizonAt(0.9), doubtful = horizonAt(0.3);
+  const auto sure = occlusionAt(0.9), doubtful = occlusionAt(0.3);
   ASSERT_TRUE(sure && doubtful);
   EXPECT_EQ(sure->visibility(-0.02, 0.02, 15, 0.5), 0);
   EXPECT_EQ(sure->visibility(-0.02, 0.02, 11, 0.5), 1);

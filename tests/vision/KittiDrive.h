@@ -13,7 +13,7 @@
 
 namespace perception {
 
-/// A labelled object of a KITTI tracking sequence (truth by hand; real recordings).
+/// A labeled object of a KITTI tracking sequence (truth by hand; real recordings).
 struct KittiTruth {
   std::string type;
   int occluded = 0;

@@ -6,12 +6,12 @@
 
 namespace perception {
 
-/// One image box against the labelled object that it overlaps by half or more.
+/// One image box against the labeled object that it overlaps by half or more.
 struct BoxResidual {
   bool person = false;
-  double truth_range = 0;           ///< [m] to the nearest point of the labelled footprint
-  Vector3 error = Vector3::Zero();  ///< z - h of left, right [rad], range [m]
-  Vector3 sigma = Vector3::Zero();  ///< as stated by the rib
+  double truth_range = 0;                     ///< [m] to the nearest point of the labeled footprint
+  Vector3 error = Vector3::Zero();            ///< z - h of left, right [rad], range [m]
+  Vector3 sigma = Vector3::Zero();            ///< as stated by the front end
   double height_error = 0, height_sigma = 0;  ///< [m]
   double box_angle = 0;                       ///< [rad] between its edges
   AxisMask seen = 0;
@@ -19,7 +19,7 @@ struct BoxResidual {
   double heading_sigma = 0;             ///< [rad] of the axis, as stated
 };
 
-/// The plane ahead (z = a x + c) on which a drive's labelled objects stand: what a measured ground
+/// The plane ahead (z = a x + c) on which a drive's labeled objects stand: what a measured ground
 /// would give on average.
 inline GroundPlane groundOf(const KittiDrive& drive) {
   double n = 0, sx = 0, sz = 0, sxx = 0, sxz = 0;
@@ -38,8 +38,8 @@ inline GroundPlane groundOf(const KittiDrive& drive) {
   return ground;
 }
 
-/// All boxes of a drive that lie on a labelled object which is neither cut off nor largely hidden.
-inline std::vector<BoxResidual> boxResiduals(const KittiDrive& drive, const FrontEnd& rib,
+/// All boxes of a drive that lie on a labeled object which is neither cut off nor largely hidden.
+inline std::vector<BoxResidual> boxResiduals(const KittiDrive& drive, const FrontEnd& front_end,
                                              const GroundPlane& ground) {
   std::vector<BoxResidual> out;
   for (const auto& [number, boxes] : drive.boxes) {
@@ -50,7 +50,7 @@ inline std::vector<BoxResidual> boxResiduals(const KittiDrive& drive, const Fron
     frame.T_ego_sensor = drive.T_ego_camera;
     frame.ground = ground;
     frame.data = ObjectDetections{drive.camera, boxes, std::nullopt};
-    const MeasurementScan scan = rib.extract(frame);
+    const MeasurementScan scan = front_end.extract(frame);
     for (const Measurement& m : scan.measurements) {
       const auto& detection = boxes[static_cast<std::size_t>(m.detection)];
       const auto best = std::max_element(truth->second.begin(), truth->second.end(),

@@ -7,8 +7,8 @@
 namespace perception {
 namespace {
 
-/// The rib as ini/kitti.ini sets it up: the defaults.
-std::unique_ptr<FrontEnd> rib() {
+/// The front end as ini/kitti.ini sets it up: the defaults.
+std::unique_ptr<FrontEnd> makeFrontEnd() {
   Config config = Config::fromText(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = constant-velocity\n"
       "[sensor.rrc]\nkind = boxes\nmodality = C\n[sensor.rrc.detector]\nmin_score = 0.5\n",
@@ -17,12 +17,12 @@ std::unique_ptr<FrontEnd> rib() {
   return makeVisionFrontEnd(config, "rrc", classes);
 }
 
-/// Residuals of thirteen drives by hand-labelled truth: some 6,000 boxes of cars and of people
+/// Residuals of thirteen drives by hand-labeled truth: some 6,000 boxes of cars and of people
 /// each.
 const std::vector<BoxResidual>& residuals() {
   static const std::vector<BoxResidual> all = [] {
     const std::string folder = std::string(PERCEPTION_SHARED_DATA) + "/data/kitti_tracking/";
-    const auto front_end = rib();
+    const auto front_end = makeFrontEnd();
     std::vector<BoxResidual> out;
     for (const char* sequence : {"0000", "0001", "0003", "0004", "0005", "0009", "0010", "0011",
                                  "0012", "0013", "0014", "0017", "0019"}) {
@@ -105,13 +105,13 @@ TEST(KittiResiduals, GroundRangeIsAsGoodAsTheGroundAllows) {
 }
 
 TEST(KittiResiduals, HeadingsOfGeigersDetectorAreWhatTheFilterIsTold) {
-  // VISION_NOTES 2: axis rms 6.7 deg (oblique views 11), front and back confused in .7 %.
+  // method.md 8.8: axis rms 6.7 deg (oblique views 11), front and back confused in .7 %.
   const std::string folder = std::string(PERCEPTION_SHARED_DATA) + "/data/kitti_tracking/";
   double count = 0, flips = 0, square = 0, near = 0, nis = 0;
   for (const char* sequence : {"0010", "0011"}) {
     KittiDrive drive = readKittiDrive(folder, sequence);
     drive.boxes = readKittiOrientedBoxes(folder + "det_dpm/Car/" + sequence + ".txt");
-    for (const BoxResidual& r : boxResiduals(drive, *rib(), groundOf(drive))) {
+    for (const BoxResidual& r : boxResiduals(drive, *makeFrontEnd(), groundOf(drive))) {
       if (!r.heading_error) continue;
       const double axis = wrapAxis(*r.heading_error);
       count += 1, square += axis * axis, nis += std::pow(axis / r.heading_sigma, 2);

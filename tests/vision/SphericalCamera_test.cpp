@@ -34,24 +34,24 @@ ObjectDetection::ImageBox personBox(double x, double y, const CameraModel& camer
                                     const Pose3& T_ego_camera) {
   const Pose3 T = T_ego_camera.inverse();
   const Vector3 middle = T * Vector3(x, y, 0.85);
-  const double centre = std::atan2(middle.x(), middle.z());
+  const double center = std::atan2(middle.x(), middle.z());
   double left = 10, right = -10, top = 10, bottom = -10;
   for (int i = 0; i < 720; ++i) {
     const double a = radians(0.5 * i);
     for (const double z : {0.0, 1.7}) {
       const Vector3 p = T * Vector3(x + 0.3 * std::cos(a), y + 0.3 * std::sin(a), z);
-      const double off = wrapAngle(std::atan2(p.x(), p.z()) - centre);
+      const double off = wrapAngle(std::atan2(p.x(), p.z()) - center);
       const double phi = std::atan2(p.y(), std::hypot(p.x(), p.z()));
       left = std::min(left, off), right = std::max(right, off);
       top = std::min(top, phi), bottom = std::max(bottom, phi);
     }
   }
-  const double u = centre * camera.fx + camera.cx;
+  const double u = center * camera.fx + camera.cx;
   return {u + left * camera.fx, top * camera.fy + camera.cy, u + right * camera.fx,
           bottom * camera.fy + camera.cy};
 }
 
-std::unique_ptr<FrontEnd> rib(const std::string& keys = "") {
+std::unique_ptr<FrontEnd> front_end(const std::string& keys = "") {
   Config config = Config::fromText(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = constant-velocity\n"
       "[sensor.PANO]\nkind = boxes\nmodality = C\nfov_deg = 360\n[sensor.PANO.detector]\n" +
@@ -79,7 +79,7 @@ ObjectDetection detection(const std::string& label, const ObjectDetection::Image
 }
 
 TEST(SphericalCamera, RecoversBearingsAndRangeAllAround) {
-  // VISION_NOTES 3 as bars: the chain itself costs less than 1 % of the range to 30 m.
+  // method.md 4.2 as bars: the chain itself costs less than 1 % of the range to 30 m.
   Rng rng({6, 0, 0, 0});
   const CameraModel camera = panorama(8192);
   const Pose3 pose = cameraPose();
@@ -121,7 +121,8 @@ TEST(SphericalCamera, PitchIsInTheRange) {
     return boxOnGround(personBox(0.3, range + 0.3, camera, pose), camera, pose, {}, sure, p)
         ->range_sigma;
   };
-  EXPECT_NEAR(sigma(8), 0.49, 0.02);  // VISION_NOTES: a degree is .5 m at 8 m, 1.6 at 15, 6.3 at 30
+  EXPECT_NEAR(sigma(8), 0.49,
+              0.02);  // method.md 4.2: a degree is .5 m at 8 m, 1.6 at 15, 6.3 at 30
   EXPECT_NEAR(sigma(15), 1.61, 0.04);
   EXPECT_NEAR(sigma(30), 6.33, 0.1);
 }
@@ -130,14 +131,14 @@ TEST(SphericalCamera, AnObjectOnTheSeamIsOneMeasurement) {
   const CameraModel camera = panorama(2048);
   const auto whole = personBox(-8, -0.02, camera, cameraPose());  // behind the vehicle
   ASSERT_GT(whole.x2, camera.width);
-  const auto joined = rib()->extract(frameOf({detection("person", whole)}, camera));
+  const auto joined = front_end()->extract(frameOf({detection("person", whole)}, camera));
   ASSERT_EQ(joined.measurements.size(), 1u);
   // The same from a detector that works on the flat picture and cuts at its borders.
   auto left = whole, right = whole;
   left.x2 = camera.width - 1;
   right.x1 = 0, right.x2 -= camera.width;
   right.y1 += 2;
-  const auto halves = rib()->extract(
+  const auto halves = front_end()->extract(
       frameOf({detection("person", right, 0.9), detection("car", {900, 500, 1100, 700}),
                detection("person", left, 0.8)},
               camera));
@@ -177,15 +178,16 @@ TEST(SphericalCamera, ObservationAngleBecomesTheHeadingInTheWorld) {
     d.heading = wrapAngle(-heading - kPi / 2 + bearing);
     SensorFrame frame = frameOf({d}, camera);
     frame.ego.T_world_ego = makePose(50, -20, 0, ego_yaw);
-    const auto scan = rib("heading_sigma_deg = 10\nheading_flip = 0.3\n")->extract(frame);
+    const auto scan = front_end("heading_sigma_deg = 10\nheading_flip = 0.3\n")->extract(frame);
     ASSERT_EQ(scan.measurements.size(), 1u);
     ASSERT_TRUE(scan.measurements[0].heading);
-    const HeadingSeen& seen = *scan.measurements[0].heading;
+    const MeasuredHeading& seen = *scan.measurements[0].heading;
     EXPECT_NEAR(wrapAngle(seen.yaw - heading - ego_yaw), 0, 1e-6);
     EXPECT_NEAR(seen.sigma, std::hypot(radians(10), radians(0.2)), 1e-9);
     EXPECT_EQ(seen.flip_probability, 0.3);
   }
-  const auto without = rib()->extract(frameOf({detection("Car", {900, 500, 1100, 700})}, camera));
+  const auto without =
+      front_end()->extract(frameOf({detection("Car", {900, 500, 1100, 700})}, camera));
   EXPECT_FALSE(without.measurements.at(0).heading);
 }
 

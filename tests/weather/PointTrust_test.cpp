@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "libperception/core/Config.h"
+#include "libperception/config/Config.h"
 #include "libperception/core/Error.h"
 #include "libperception/core/Random.h"
 
@@ -151,7 +151,7 @@ TEST(PointTrust, BelievesTheSensorsOwnRainLabelAndTheFirstOfTwoEchoes) {
     return 1 - scene.cloud().trust[scene.sources.size() - 2];
   };
   const float plain = doubtOf([](LidarCloud&) {});
-  const float labelled = doubtOf([](LidarCloud& c) {
+  const float labeled = doubtOf([](LidarCloud& c) {
     c.label.assign(c.size(), static_cast<std::uint8_t>(PointLabel::kUnknown));
     c.label[c.size() - 2] = static_cast<std::uint8_t>(PointLabel::kRain);
   });
@@ -164,7 +164,7 @@ TEST(PointTrust, BelievesTheSensorsOwnRainLabelAndTheFirstOfTwoEchoes) {
     c.echo.back() = 1;
     c.intensity[c.size() - 2] = 0.9F;
   });
-  EXPECT_GT(labelled, plain);
+  EXPECT_GT(labeled, plain);
   EXPECT_GT(first_echo, plain);
   EXPECT_FLOAT_EQ(brighter, plain);
 }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "libperception/weather/PointTrust.h"
-#include "tests/support/LabelledScans.h"
+#include "tests/support/LabeledScans.h"
 
 namespace perception {
 namespace {
@@ -14,7 +14,7 @@ std::string data(const std::string& set) {
 }
 
 /// Flat ground at the mounting height: the study measures it.
-PhantomScore scoreOf(std::vector<test::LabelledScan> scans, std::uint32_t phantom,
+PhantomScore scoreOf(std::vector<test::LabeledScan> scans, std::uint32_t phantom,
                      const TrustParams& params) {
   const auto trust = makePointTrust(params);
   PhantomScore score;
@@ -27,7 +27,7 @@ PhantomScore scoreOf(std::vector<test::LabelledScan> scans, std::uint32_t phanto
 }
 
 TEST(PointTrustOnWads, TellsRealSnowAndKeepsCarsAndPersons) {
-  const auto scans = test::labelledScans(data("wads_snow"), 2.17, 8);
+  const auto scans = test::labeledScans(data("wads_snow"), 2.17, 8);
   if (scans.empty()) GTEST_SKIP() << "no wads_snow";
   const PhantomScore score = scoreOf(scans, test::kSnowLabel, {});
   EXPECT_GT(score.f1(), 0.96);
@@ -35,7 +35,7 @@ TEST(PointTrustOnWads, TellsRealSnowAndKeepsCarsAndPersons) {
 }
 
 TEST(PointTrustOnWads, TellsRealSnowWithoutIntensity) {
-  auto scans = test::labelledScans(data("wads_snow"), 2.17, 8);
+  auto scans = test::labeledScans(data("wads_snow"), 2.17, 8);
   if (scans.empty()) GTEST_SKIP() << "no wads_snow";
   TrustParams params;
   params.use_intensity = false;
@@ -45,13 +45,13 @@ TEST(PointTrustOnWads, TellsRealSnowWithoutIntensity) {
 }
 
 TEST(PointTrustOnSnowyKitti, TellsSimulatedSnowWithTheSameParameters) {
-  const auto scans = test::labelledScans(data("snowykitti"), 1.73);
+  const auto scans = test::labeledScans(data("snowykitti"), 1.73);
   if (scans.empty()) GTEST_SKIP() << "no snowykitti";
   EXPECT_GT(scoreOf(scans, 1, {}).f1(), 0.90);
 }
 
 TEST(PointTrustOnKitti, DoubtsHardlyAReturnInClearAir) {
-  auto scans = test::labelledScans(data("kitti_lidar_seq0000"), 1.73, 1000, "velodyne_full");
+  auto scans = test::labeledScans(data("kitti_lidar_seq0000"), 1.73, 1000, "velodyne_full");
   if (scans.empty()) GTEST_SKIP() << "no kitti_lidar_seq0000";
   const auto trust = makePointTrust({});
   std::size_t returns = 0, doubted = 0;

@@ -11,7 +11,7 @@ class InRealSnow : public testing::Test {
  protected:
   void SetUp() override {
     const auto scans =
-        test::labelledScans(std::string(PERCEPTION_SHARED_DATA) + "/data/wads_snow", 2.17, 8);
+        test::labeledScans(std::string(PERCEPTION_SHARED_DATA) + "/data/wads_snow", 2.17, 8);
     if (scans.empty()) GTEST_SKIP() << "no wads_snow";
     WeatherParams weather;
     weather.filter = "trust";

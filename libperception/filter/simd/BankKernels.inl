@@ -1,10 +1,10 @@
-// The arithmetic of BankBatch, compiled once a SIMD level into a namespace of its own. No header may
-// be included here that has inline functions: the linker would take one level's copy for all.
+// The arithmetic of BankBatch, compiled once a SIMD level into a namespace of its own. No header
+// may be included here that has inline functions: the linker would take one level's copy for all.
 // Written in vectors of the compiler (vector_size), with log of libmvec. Padding lanes are
 // computed along and ignored.
 //
-// Before inclusion: PERCEPTION_SIMD_NAMESPACE, PERCEPTION_SIMD_LANES, and PERCEPTION_SIMD_MATH(f), the
-// name of libmvec's function f for so many lanes.
+// Before inclusion: PERCEPTION_SIMD_NAMESPACE, PERCEPTION_SIMD_LANES, and PERCEPTION_SIMD_MATH(f),
+// the name of libmvec's function f for so many lanes.
 
 namespace perception {
 namespace PERCEPTION_SIMD_NAMESPACE {
@@ -31,21 +31,21 @@ inline void sineAndCosine(const V& x, V& sine, V& cosine) {
   const V turns = shifted - kShift;
   const V r = (x - turns * 1.57079632679489655800) - turns * 6.12323399573676603587e-17;
   const V z = r * r;
-  const V s = r + r * z *
-                      (-1.66666666666666324348e-01 +
-                       z * (8.33333333332248946124e-03 +
-                            z * (-1.98412698298579493134e-04 +
-                                 z * (2.75573137070700676789e-06 +
-                                      z * (-2.50507602534068634195e-08 +
-                                           z * 1.58969099521155010221e-10)))));
-  const V c = 1 - 0.5 * z +
-              z * z *
-                  (4.16666666666666019037e-02 +
-                   z * (-1.38888888888741095749e-03 +
-                        z * (2.48015872894767294178e-05 +
-                             z * (-2.75573143513906633035e-07 +
-                                  z * (2.08757232129817482790e-09 +
-                                       z * -1.13596475577881948265e-11)))));
+  const V s =
+      r + r * z *
+              (-1.66666666666666324348e-01 +
+               z * (8.33333333332248946124e-03 +
+                    z * (-1.98412698298579493134e-04 +
+                         z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 +
+                                                                z * 1.58969099521155010221e-10)))));
+  const V c =
+      1 - 0.5 * z +
+      z * z *
+          (4.16666666666666019037e-02 +
+           z * (-1.38888888888741095749e-03 +
+                z * (2.48015872894767294178e-05 +
+                     z * (-2.75573143513906633035e-07 +
+                          z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
   const I quadrant = reinterpret_cast<I>(shifted);
   const I odd = (quadrant & 1) != 0;
   const V sine_size = odd ? c : s, cosine_size = odd ? s : c;
@@ -58,9 +58,19 @@ struct Lanes {
   V x0, x1, x2, x3, p00, p01, p02, p03, p11, p12, p13, p22, p23, p33;
 
   Lanes(const double* b, Count s)
-      : x0(at(b)), x1(at(b + s)), x2(at(b + 2 * s)), x3(at(b + 3 * s)), p00(at(b + 4 * s)),
-        p01(at(b + 5 * s)), p02(at(b + 6 * s)), p03(at(b + 7 * s)), p11(at(b + 8 * s)),
-        p12(at(b + 9 * s)), p13(at(b + 10 * s)), p22(at(b + 11 * s)), p23(at(b + 12 * s)),
+      : x0(at(b)),
+        x1(at(b + s)),
+        x2(at(b + 2 * s)),
+        x3(at(b + 3 * s)),
+        p00(at(b + 4 * s)),
+        p01(at(b + 5 * s)),
+        p02(at(b + 6 * s)),
+        p03(at(b + 7 * s)),
+        p11(at(b + 8 * s)),
+        p12(at(b + 9 * s)),
+        p13(at(b + 10 * s)),
+        p22(at(b + 11 * s)),
+        p23(at(b + 12 * s)),
         p33(at(b + 13 * s)) {}
 
   void store(double* b, Count s) const {
@@ -75,24 +85,24 @@ void predictConstantVelocity(Count n, Count s, const double* m, double* bank) {
   for (Count i = 0; i < n; i += kLanes) {
     Lanes b(bank + i, s);
     const double* own = m + i;
-    const V keep = at(own), way = at(own + s), pp = at(own + 2 * s) + at(own + 5 * s),
+    const V decay = at(own), dt_eff = at(own + s), pp = at(own + 2 * s) + at(own + 5 * s),
             pv = at(own + 3 * s), vv = at(own + 4 * s);
-    b.x0 += way * b.x2;
-    b.x1 += way * b.x3;
-    b.x2 *= keep;
-    b.x3 *= keep;
-    const V g02 = b.p02 + way * b.p22, g03 = b.p03 + way * b.p23;
-    const V g12 = b.p12 + way * b.p23, g13 = b.p13 + way * b.p33;
-    b.p00 += way * (b.p02 + g02) + pp;
-    b.p01 += way * (b.p12 + g03);
-    b.p11 += way * (b.p13 + g13) + pp;
-    b.p02 = keep * g02 + pv;
-    b.p03 = keep * g03;
-    b.p12 = keep * g12;
-    b.p13 = keep * g13 + pv;
-    b.p22 = keep * keep * b.p22 + vv;
-    b.p23 *= keep * keep;
-    b.p33 = keep * keep * b.p33 + vv;
+    b.x0 += dt_eff * b.x2;
+    b.x1 += dt_eff * b.x3;
+    b.x2 *= decay;
+    b.x3 *= decay;
+    const V g02 = b.p02 + dt_eff * b.p22, g03 = b.p03 + dt_eff * b.p23;
+    const V g12 = b.p12 + dt_eff * b.p23, g13 = b.p13 + dt_eff * b.p33;
+    b.p00 += dt_eff * (b.p02 + g02) + pp;
+    b.p01 += dt_eff * (b.p12 + g03);
+    b.p11 += dt_eff * (b.p13 + g13) + pp;
+    b.p02 = decay * g02 + pv;
+    b.p03 = decay * g03;
+    b.p12 = decay * g12;
+    b.p13 = decay * g13 + pv;
+    b.p22 = decay * decay * b.p22 + vv;
+    b.p23 *= decay * decay;
+    b.p33 = decay * decay * b.p33 + vv;
     b.store(bank + i, s);
   }
 }
@@ -101,16 +111,16 @@ void predictWheeled(Count n, Count s, const double* m, double* bank) {
   for (Count i = 0; i < n; i += kLanes) {
     Lanes q(bank + i, s);
     const double* own = m + i;
-    const V keep = at(own), way = at(own + s), pp = at(own + 2 * s), pv = at(own + 3 * s),
+    const V decay = at(own), dt_eff = at(own + s), pp = at(own + 2 * s), pv = at(own + 3 * s),
             vv = at(own + 4 * s), slip = at(own + 5 * s), ypp = at(own + 6 * s),
             ypy = at(own + 7 * s), yyy = at(own + 8 * s);
     const V v = q.x2;
     V cs, sn;
     sineAndCosine(q.x3, sn, cs);
-    const V a = way * cs, b = -way * v * sn, d = way * sn, e = way * v * cs;
+    const V a = dt_eff * cs, b = -dt_eff * v * sn, d = dt_eff * sn, e = dt_eff * v * cs;
     q.x0 += a * v;
     q.x1 += d * v;
-    q.x2 = keep * v;
+    q.x2 = decay * v;
     const V p22 = q.p22, p23 = q.p23, p33 = q.p33;
     const V g02 = q.p02 + a * p22 + b * p23, g03 = q.p03 + a * p23 + b * p33;
     const V g12 = q.p12 + d * p22 + e * p23, g13 = q.p13 + d * p23 + e * p33;
@@ -121,12 +131,12 @@ void predictWheeled(Count n, Count s, const double* m, double* bank) {
     q.p00 = g00 + a * g02 + b * g03 + pp * cs * cs + ypp * n0 * n0 + slip;
     q.p01 = g01 + d * g02 + e * g03 + pp * cs * sn + ypp * n0 * n1;
     q.p11 = g11 + d * g12 + e * g13 + pp * sn * sn + ypp * n1 * n1 + slip;
-    q.p02 = keep * g02 + pv * cs;
-    q.p12 = keep * g12 + pv * sn;
+    q.p02 = decay * g02 + pv * cs;
+    q.p12 = decay * g12 + pv * sn;
     q.p03 = g03 + ypy * n0;
     q.p13 = g13 + ypy * n1;
-    q.p22 = keep * keep * p22 + vv;
-    q.p23 = keep * p23;
+    q.p22 = decay * decay * p22 + vv;
+    q.p23 = decay * p23;
     q.p33 = p33 + yyy;
     q.store(bank + i, s);
   }
@@ -138,7 +148,7 @@ void predictMoments(Count n, Count s, const double* m, double* bank) {
   for (Count i = 0; i < n; i += kLanes) {
     Lanes q(bank + i, s);
     const double* own = m + i;
-    const V keep = at(own), way = at(own + s), pp = at(own + 2 * s), pv = at(own + 3 * s),
+    const V decay = at(own), dt_eff = at(own + s), pp = at(own + 2 * s), pv = at(own + 3 * s),
             vv = at(own + 4 * s), slip = at(own + 5 * s), ypp = at(own + 6 * s),
             ypy = at(own + 7 * s), yyy = at(own + 8 * s);
     const V v = q.x2, cov = q.p23;
@@ -158,25 +168,25 @@ void predictMoments(Count n, Count s, const double* m, double* bank) {
     const V rest00 = s00 - mx * mx - (a00 * ux + a01 * nx);  // unexplained by the slope
     const V rest01 = s01 - mx * my - (a00 * uy + a01 * ny);
     const V rest11 = s11 - my * my - (a10 * uy + a11 * ny);
-    const V g02 = q.p02 + way * a00, g03 = q.p03 + way * a01;
-    const V g12 = q.p12 + way * a10, g13 = q.p13 + way * a11;
-    const V way2 = way * way;
-    q.p00 += way * (ux * q.p02 + nx * q.p03) + way * (g02 * ux + g03 * nx) +
-             pp * 0.5 * (1 + tx) + ypp * (whole - s00) + way2 * rest00 + slip;
-    q.p01 += way * (ux * q.p12 + nx * q.p13) + way * (g02 * uy + g03 * ny) + pp * 0.5 * ty -
-             ypp * s01 + way2 * rest01;
-    q.p11 += way * (uy * q.p12 + ny * q.p13) + way * (g12 * uy + g13 * ny) +
-             pp * 0.5 * (1 - tx) + ypp * (whole - s11) + way2 * rest11 + slip;
-    q.p02 = keep * g02 + pv * ux;
-    q.p12 = keep * g12 + pv * uy;
+    const V g02 = q.p02 + dt_eff * a00, g03 = q.p03 + dt_eff * a01;
+    const V g12 = q.p12 + dt_eff * a10, g13 = q.p13 + dt_eff * a11;
+    const V dt_eff2 = dt_eff * dt_eff;
+    q.p00 += dt_eff * (ux * q.p02 + nx * q.p03) + dt_eff * (g02 * ux + g03 * nx) +
+             pp * 0.5 * (1 + tx) + ypp * (whole - s00) + dt_eff2 * rest00 + slip;
+    q.p01 += dt_eff * (ux * q.p12 + nx * q.p13) + dt_eff * (g02 * uy + g03 * ny) + pp * 0.5 * ty -
+             ypp * s01 + dt_eff2 * rest01;
+    q.p11 += dt_eff * (uy * q.p12 + ny * q.p13) + dt_eff * (g12 * uy + g13 * ny) +
+             pp * 0.5 * (1 - tx) + ypp * (whole - s11) + dt_eff2 * rest11 + slip;
+    q.p02 = decay * g02 + pv * ux;
+    q.p12 = decay * g12 + pv * uy;
     q.p03 = g03 + ypy * nx;
     q.p13 = g13 + ypy * ny;
-    q.p22 = keep * keep * q.p22 + vv;
-    q.p23 = keep * cov;
+    q.p22 = decay * decay * q.p22 + vv;
+    q.p23 = decay * cov;
     q.p33 += yyy;
-    q.x0 += way * mx;
-    q.x1 += way * my;
-    q.x2 = keep * v;
+    q.x0 += dt_eff * mx;
+    q.x1 += dt_eff * my;
+    q.x2 = decay * v;
     q.store(bank + i, s);
   }
 }
@@ -194,9 +204,9 @@ void innovate(Count n, Count s, const double* in, double* bank, double* out) {
       for (int c = 0; c < 4; ++c) H[a][c] = at(in + static_cast<Count>(kAxes + 4 * a + c) * s + i);
     }
     const V P[4][4] = {{q.p00, q.p01, q.p02, q.p03},
-                            {q.p01, q.p11, q.p12, q.p13},
-                            {q.p02, q.p12, q.p22, q.p23},
-                            {q.p03, q.p13, q.p23, q.p33}};
+                       {q.p01, q.p11, q.p12, q.p13},
+                       {q.p02, q.p12, q.p22, q.p23},
+                       {q.p03, q.p13, q.p23, q.p33}};
     for (int a = 0; a < kAxes; ++a)
       for (int c = 0; c < 4; ++c)
         W[a][c] = H[a][0] * P[0][c] + H[a][1] * P[1][c] + H[a][2] * P[2][c] + H[a][3] * P[3][c];

@@ -1,0 +1,160 @@
+#include "libperception/app/CalibrateApp.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "libperception/app/StudyFolder.h"
+#include "libperception/boxes3d/PositionFrontEnd.h"
+#include "libperception/calibration/BoxEvidenceStudy.h"
+#include "libperception/calibration/DetectorStudy.h"
+#include "libperception/calibration/TemperingStudy.h"
+#include "libperception/pipeline/LogRecorder.h"
+#include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/registerClasses.h"
+
+namespace perception {
+namespace {
+
+/// LOG.truth.csv beside LOG.rawlog.
+GroundTruth truthBeside(const std::string& log) {
+  return readGroundTruth(std::filesystem::path(log).replace_extension(".truth.csv").string());
+}
+
+bool hasSpaceBoxes(const ObjectDetections& detections) {
+  return std::any_of(detections.objects.begin(), detections.objects.end(),
+                     [](const auto& o) { return o.space_box.has_value(); });
+}
+
+}  // namespace
+
+struct CalibrateApp::Task {
+  const char* name;
+  const char* description;
+  StudyReport (CalibrateApp::*run)();
+  bool search = false;  ///< tracks again and again, in a sector where truth counts
+};
+
+const CalibrateApp::Task CalibrateApp::kTasks[] = {
+    {"tempering", "how far labels and innovations count in the class update",
+     &CalibrateApp::tempering, true},
+    {"boxes", "what the scores of a 3D detector's boxes say of objects, fitted",
+     &CalibrateApp::boxes},
+    {"detector", "detection, labels, clutter and noise of detectors, counted",
+     &CalibrateApp::detector},
+};
+
+std::string CalibrateApp::description() const {
+  return "Lines for a vehicle's INI from rawlogs with truth (LOG.truth.csv beside LOG.rawlog).";
+}
+
+void CalibrateApp::declare(CLI::App& cli) {
+  cli.require_subcommand(1);
+  for (const Task& t : kTasks) {
+    CLI::App* sub = cli.add_subcommand(t.name, t.description);
+    sub->add_option("-i,--input", inputs, "Rawlogs, LOG.truth.csv beside")->required();
+    sub->add_option("-c,--config", config_file, "INI of the vehicle")->required();
+    sub->add_option("-o,--output", output, "Folder of the report")->required();
+    sub->add_option("--set", settings, "section.key=value: overrides the INI");
+    sub->add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
+    sub->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
+    sub->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
+        ->check(CLI::Range(0, 4096));
+    if (t.search) {
+      sub->add_option("--runs", rounds, "Rounds of the search; 0 = its own number")
+          ->check(CLI::Range(0, 1000000));
+      sub->add_option("--range", truth_range, "Truth counts up to this distance [m]")
+          ->capture_default_str()
+          ->check(CLI::Range(0.1, 1e4));
+      sub->add_option("--fov-deg", truth_fov, "Whole angle ahead in which truth counts [deg]")
+          ->capture_default_str()
+          ->check(CLI::Range(0.1, 360.0));
+    }
+    sub->callback([this, name = std::string(t.name)] { task = name; });
+  }
+}
+
+void CalibrateApp::run() {
+  const auto t = std::find_if(std::begin(kTasks), std::end(kTasks),
+                              [&](const Task& x) { return x.name == task; });
+  if (t == std::end(kTasks)) throw Error(ExitCode::kUsage, "no task '" + task + "'");
+  std::optional<tbb::global_control> limit;
+  if (threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  out_report = (this->*t->run)();
+  for (const std::string& fault : writeStudyReport(out_report, output)) warn(fault);
+  fmt::print("{}\nReport: {}/report.md\n", markdownOf(out_report), output);
+}
+
+StudyReport CalibrateApp::tempering() {
+  TemperingParams params;
+  params.seed = seed;
+  if (rounds > 0) params.rounds = rounds;
+  params.evaluation.selection.min_points = 5;  // posts are thin
+  params.evaluation.selection.range = truth_range;
+  params.evaluation.selection.fov = radians(truth_fov);
+  std::vector<TemperingLog> logs;
+  for (const std::string& file : inputs) {
+    Config config = loadConfig();
+    logs.push_back({recordLog(file, config, seconds), truthBeside(file)});
+    params.particles = logs.back().log.particles.sample_size;
+  }
+  return temperingStudy(params, logs);
+}
+
+StudyReport CalibrateApp::boxes() {
+  registerPerceptionClasses();
+  std::vector<BoxLog> logs;
+  std::string sensor;
+  for (const std::string& file : inputs) {
+    std::map<Stamp, ObjectDetections> seen;
+    Config config = loadConfig();
+    const RecordedLog log =
+        recordLog(file, config, seconds, [&](mrpt::obs::CObservation& observation) {
+          const auto* boxes = dynamic_cast<CObservationObjectDetections*>(&observation);
+          const auto stamp = toStamp(observation.timestamp);
+          if (!boxes || !hasSpaceBoxes(boxes->detections) || !stamp) return;
+          sensor = observation.sensorLabel;
+          seen[*stamp] = boxes->detections;
+        });
+    logs.push_back(boxLog(log, sensor, seen, truthBeside(file)));
+  }
+  std::map<std::string, std::string> names;
+  for (const std::string& name :
+       loadConfig().read<PositionParams>("sensor." + sensor + ".positions").names) {
+    const auto equals = name.find('=');
+    names[name.substr(0, equals)] = name.substr(equals + 1);
+  }
+  return boxEvidenceStudy(sensor, logs, names);
+}
+
+StudyReport CalibrateApp::detector() {
+  registerPerceptionClasses();
+  Config config = loadConfig();
+  const PipelineSetup setup = PipelineSetup::read(config);
+  DetectorStudyInput input;
+  input.classes = setup.model.classes;
+  std::map<std::string, std::size_t> labels;
+  for (const PipelineSetup::Sensor& sensor : setup.sensors) {
+    if (!sensor.active) continue;
+    input.labels[sensor.label] = sensor.front_end->labelNames();
+    labels[sensor.label] = input.labels[sensor.label].size();
+  }
+  std::map<std::string, DetectorCounts> counts;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    Config own = loadConfig();
+    const RecordedLog recorded = recordLog(inputs[i], own, seconds);
+    input.simulated = input.simulated || recorded.simulated;
+    input.logs += (i ? ", " : "") + recorded.name;
+    countDetections(recorded, truthBeside(inputs[i]), i, labels, counts);
+  }
+  return detectorStudy(input, counts);
+}
+
+}  // namespace perception

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "libperception/app/App.h"
+#include "libperception/evaluation/StudyReport.h"
+#include "libperception/pipeline/RecordedLog.h"
+
+namespace perception {
+
+/// perception-calibrate: lines for a vehicle's INI from rawlogs with truth, each with its counts.
+class CalibrateApp : public App {
+ public:
+  std::string task;                          ///< the subcommand
+  std::uint64_t seed = 1;                    ///< --seed
+  int rounds = 0;                            ///< tempering: --runs; 0 = its own number
+  double seconds = 0;                        ///< of every log; 0 = all
+  double truth_range = 30, truth_fov = 360;  ///< tempering: where truth counts [m, deg]
+
+  StudyReport out_report;
+
+  std::string name() const override { return "perception-calibrate"; }
+  std::string description() const override;
+  void declare(CLI::App& cli) override;
+  void run() override;
+
+ private:
+  struct Task;
+  static const Task kTasks[];
+
+  StudyReport tempering();
+  StudyReport boxes();
+  StudyReport detector();
+};
+
+}  // namespace perception

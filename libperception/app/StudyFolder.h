@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "libperception/evaluation/StudyReport.h"
+
+namespace perception {
+
+/// Writes report.md, the tables as CSV, further files, and the plots with their scripts and data
+/// into the folder `output`; whole or not at all. Returns what could not be plotted and why. Throws
+/// OutputError.
+std::vector<std::string> writeStudyReport(const StudyReport& report, const std::string& output);
+
+}  // namespace perception

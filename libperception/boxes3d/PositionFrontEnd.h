@@ -1,0 +1,118 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libperception/boxes3d/BoxFeatures.h"
+#include "libperception/config/Config.h"
+#include "libperception/measurement/DetectionModel.h"
+#include "libperception/measurement/FrontEnd.h"
+#include "libperception/measurement/PositionModel.h"
+
+namespace perception {
+
+/// [sensor.LABEL.positions]: what boxes in space, or points, are worth. Tables "key.LABEL" hold for
+/// one label.
+struct PositionParams {
+  using Table = std::vector<std::pair<std::string, double>>;
+  std::vector<std::string> labels{"object"};        ///< the columns of the class tables
+  std::vector<std::string> names{"object=object"};  ///< the detector's class = one of the labels
+  double min_score = -1e9;
+  double sigma = 0.3;      ///< [m] of the center, each axis
+  double range_share = 0;  ///< [-] of the distance, added to sigma
+  double clutter_sigma_growth =
+      0;  ///< [-] by which both grow for a box that is surely clutter, by its score
+
+  /// Score as evidence: P(object | score, range) = 1 / (1 + exp(-slope (score - offset) + fade
+  /// range)), counted on recordings with truth.
+  double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
+  double score_offset = 0;
+  double score_fade = 0;  ///< [1/m]
+  Table label_slopes, label_offsets, label_fades;
+  /// What else a box shows (BoxFeatures): "FEATURE.LABEL", the weight in these log-odds ...
+  Table weights;
+  /// ... and "length.LABEL", "length_sigma.LABEL" ..., what such boxes usually measure [m].
+  Table usual;
+  /// log of (objects / clutter) among all boxes of that count; it turns the odds into
+  /// p(score | object) / p(score | clutter).
+  double score_balance = 0;
+  Table label_balances;
+  double score_limit = 6;  ///< bound of that logarithm
+  std::vector<std::string> clutter_like{
+      "static-other"};  ///< classes whose boxes score like clutter
+  /// Share of that logarithm for classes that the label is not the name of: a walker whom the
+  /// detector also calls a cyclist scores low as one.
+  double off_label_score_weight = 0.5;
+  /// [m] boxes of different labels nearer than this are of one object, and the surest stands for
+  /// them; 0: off. (On KITTI's training sequences the surest box names 96 % of pedestrians and of
+  /// cyclists right.)
+  double group_distance = 0;
+
+  /// P(object) from which a box hides what stands behind it; 1: no box does.
+  double occluder_probability = 1;
+
+  bool sizes = false;  ///< length, width, height and direction of the box are measured, too
+  double axis_sigma = radians(10);                   ///< [rad] of that direction as an axis
+  double heading_flip = 0.5;                         ///< share of reversed directions
+  double length_sigma = 0.3, width_sigma = 0.3;      ///< [m]
+  double height_sigma = 0.3, base_sigma = 0.3;       ///< [m]
+  Table length_excess, width_excess, height_excess;  ///< [m] by which a label's boxes are too large
+
+  void visit(ParamVisitor& v);
+};
+
+/// Boxes in space as measurements of their centers: 3D detectors, GPS receivers on objects, sensors
+/// that give points. Boxes are in the sensor's frame.
+class PositionFrontEnd final : public FrontEnd {
+ public:
+  PositionFrontEnd(PositionParams params, const ClassTable& classes,
+                   const DetectionModel& detection_model);
+
+  MeasurementScan extract(const SensorFrame& frame) const override;
+  std::vector<std::string> labelNames() const override { return params_.labels; }
+
+ private:
+  /// What is known of one label.
+  struct Label {
+    BoxEvidence evidence;
+    SizePrior usual;
+    double balance = 0;
+    double length_excess = 0, width_excess = 0, height_excess = 0;
+    /// By class: log p(label | class); share of the score's evidence that it takes.
+    std::vector<double> log_label, score_share;
+    double log_clutter = 0;
+  };
+  struct Candidate {
+    const ObjectDetection* object;
+    std::size_t index;
+    int label;
+    double log_odds = 0;  ///< of an object, by score, range and features
+  };
+
+  std::vector<std::vector<Candidate>> groups(const ObjectDetections& detections,
+                                             const Pose3& T_ego_sensor,
+                                             MeasurementScan& scan) const;
+  Measurement measure(const std::vector<Candidate>& group, const SensorFrame& frame,
+                      const SensorState& state) const;
+  void addEvidence(const Candidate& c, Measurement& m) const;
+  void addBox(const Candidate& c, const SensorFrame& frame, const SensorState& state,
+              Measurement& m) const;
+  double clutterProbability(const Candidate& c) const;
+  std::shared_ptr<const OcclusionMap> occlusion(const std::vector<std::vector<Candidate>>& groups,
+                                                const SensorState& state) const;
+  double logScoreRatio(const Candidate& c) const;
+
+  PositionParams params_;
+  Modality modality_;
+  std::map<std::string, int> label_of_;
+  std::vector<Label> labels_;
+  std::shared_ptr<const PositionModel> model_;
+};
+
+/// Reads [sensor.LABEL], [sensor.LABEL.class.NAME] and [sensor.LABEL.positions].
+std::unique_ptr<FrontEnd> makePositionFrontEnd(Config& config, const std::string& sensor_label,
+                                               const ClassTable& classes);
+
+}  // namespace perception

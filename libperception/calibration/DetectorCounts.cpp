@@ -1,0 +1,213 @@
+#include "libperception/calibration/DetectorCounts.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "libperception/core/Angle.h"
+#include "libperception/evaluation/TruthSelection.h"
+#include "libperception/measurement/FootprintModel.h"
+
+namespace perception {
+namespace {
+
+constexpr double kWider = 4;                  // [-] of the stated deviations: a match, not a gate
+constexpr double kFarthest = 9.0;             // [-] normalized distance at those, three deviations
+constexpr double kAbout = 2;                  // [m] of a labeled object: no clutter
+constexpr double kLag = 1, kLagSlack = 0.06;  // [s] at which errors are said to be repeated
+constexpr int kSeenAtMost = 2;                // KITTI's occlusion: 3 is unknown
+
+/// A labeled object in a sensor's view.
+struct Candidate {
+  const TruthObject* truth;
+  ClassId class_id;
+  Kinematics kinematics;
+  Extent extent;
+  AxisPrediction seen;
+  double range;
+};
+
+Kinematics kinematicsOf(const TruthObject& o) {
+  Kinematics k;
+  k.q << o.position.x(), o.position.y(), 0, 0, o.yaw;
+  k.has_yaw = true;
+  return k;
+}
+
+/// Labeled objects of the model's classes, with what the sensor should measure of each.
+std::vector<Candidate> candidates(const MeasurementScan& scan, const GroundTruth::Instant& instant,
+                                  const std::vector<std::string>& classes) {
+  std::vector<Candidate> out;
+  const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
+  for (const TruthObject& o : instant.objects) {
+    const ClassId c = classOfTruth(o.type, classes);
+    if (isArea(o) || c < 0 || !std::isfinite(o.length) || !o.position.allFinite()) continue;
+    Candidate k{&o, c, kinematicsOf(o), {o.length, o.width, 0, 0}, {}, 0};
+    k.range = (o.position.head<2>() - origin).norm();
+    scan.model->predict(&k.kinematics, &k.extent, 1, scan.state, &k.seen);
+    if (k.seen.defined) out.push_back(std::move(k));
+  }
+  return out;
+}
+
+double normalisedDistance(const MeasurementModel& model, const Measurement& m,
+                          const AxisVector& h) {
+  const AxisVector y = residual(model, m, h);
+  AxisMatrix R(y.size(), y.size());
+  Eigen::Index row = 0;
+  for (Eigen::Index i = 0; i < m.z.size(); ++i) {
+    if (!(m.seen >> i & 1)) continue;
+    Eigen::Index column = 0;
+    for (Eigen::Index j = 0; j < m.z.size(); ++j)
+      if (m.seen >> j & 1) R(row, column++) = m.R(i, j);
+    ++row;
+  }
+  return y.dot((kWider * kWider * R).llt().solve(y));
+}
+
+/// Index of the candidate that each measurement lies on, or -1.
+std::vector<int> match(const MeasurementScan& scan, const std::vector<Candidate>& objects) {
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      const double d = normalisedDistance(*scan.model, scan.measurements[k], objects[i].seen.h);
+      if (d < kFarthest) pairs.emplace_back(d, k, i);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<int> of(scan.measurements.size(), -1);
+  std::vector<char> taken(objects.size(), 0);
+  for (const auto& [d, k, i] : pairs) {
+    if (of[k] >= 0 || taken[i]) continue;
+    of[k] = static_cast<int>(i);
+    taken[i] = 1;
+  }
+  return of;
+}
+
+/// The errors of one detection that lies on an object.
+void addErrors(const MeasurementScan& scan, const Measurement& m, const Candidate& object,
+               DetectorError base, std::vector<DetectorError>& out) {
+  const auto add = [&](const char* quantity, double error, double sigma) {
+    base.quantity = quantity, base.error = error, base.sigma = sigma;
+    if (std::isfinite(error) && sigma > 0) out.push_back(base);
+  };
+  const TruthObject& truth = *object.truth;
+  if (scan.model->axes().size() == FootprintModel::kAxes) {
+    constexpr const char* kNames[] = {"left", "right", "range"};
+    for (int axis = 0; axis < FootprintModel::kAxes; ++axis) {
+      if (!(m.seen >> axis & 1)) continue;
+      const double error = m.z[axis] - object.seen.h[axis];
+      const bool angle = scan.model->axes()[static_cast<std::size_t>(axis)] == AxisKind::kAngle;
+      add(kNames[axis], angle ? wrapAngle(error) : error, std::sqrt(m.R(axis, axis)));
+    }
+  } else if (m.z.size() == 2 && m.seen == 3) {  // a place: along and across the line of sight
+    const Vector2 sight =
+        truth.position.head<2>() - scan.state.T_world_sensor.translation().head<2>();
+    const Vector2 along = sight.normalized(), across(-along.y(), along.x());
+    const Vector2 d = m.z - object.seen.h;
+    const Matrix2 R = m.R;
+    add("range", along.dot(d), std::sqrt(along.dot(R * along)));
+    add("across", across.dot(d), std::sqrt(across.dot(R * across)));
+  }
+  if (m.height) add("height", m.height->mean - truth.height, std::sqrt(m.height->variance));
+  if (m.base_z) add("base", m.base_z->mean - truth.position.z(), std::sqrt(m.base_z->variance));
+  if (m.sides && m.sides->length_sigma > 0) {
+    add("length", m.sides->length - truth.length, m.sides->length_sigma);
+    add("width", m.sides->width - truth.width, m.sides->width_sigma);
+  }
+  if (m.heading) add("axis", wrapAxis(m.heading->yaw - truth.yaw), m.heading->sigma);
+}
+
+bool nearLabeled(const Measurement& m, const GroundTruth::Instant& instant) {
+  return std::any_of(instant.objects.begin(), instant.objects.end(), [&](const TruthObject& o) {
+    return std::isfinite(o.length) && o.position.allFinite() &&
+           (o.position.head<2>() - m.position).norm() < std::max(kAbout, 0.5 * o.length);
+  });
+}
+
+}  // namespace
+
+void countDetections(const RecordedLog& log, const GroundTruth& truth, std::size_t log_index,
+                     const std::map<std::string, std::size_t>& labels,
+                     std::map<std::string, DetectorCounts>& counts) {
+  std::vector<std::string> classes;
+  for (const ObjectClass& c : log.model.classes.classes) classes.push_back(c.name);
+  std::map<std::int64_t, const GroundTruth::Instant*> instants;
+  for (const auto& instant : truth.instants) instants[instant.frame] = &instant;
+  std::map<std::string, std::set<std::int64_t>> met;
+  for (const RecordedLog::Entry& entry : log.entries) {
+    if (entry.kind != RecordedLog::Entry::kScan) continue;
+    const MeasurementScan& scan = *entry.scan;
+    const auto columns = labels.find(scan.sensor);
+    const auto instant = instants.find(scan.frame);
+    if (columns == labels.end() || instant == instants.end()) continue;
+    DetectorCounts& sum = counts[scan.sensor];
+    sum.sensor = scan.sensor, sum.modality = scan.modality;
+    sum.clutter.resize(columns->second);
+    ++sum.scans;
+    if (sum.label.empty()) {
+      for (ClassId c = 0; c < log.model.classes.size(); ++c) {
+        sum.label.emplace_back();
+        for (std::size_t l = 0; l < columns->second; ++l)
+          sum.label.back().push_back(
+              std::exp(scan.model->logLabelLikelihood(static_cast<int>(l), c)));
+      }
+    }
+    const auto objects = candidates(scan, *instant->second, classes);
+    const auto of = match(scan, objects);
+    std::vector<int> label_of(objects.size(), -1);
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const Measurement& m = scan.measurements[k];
+      if (of[k] < 0) {
+        if (!nearLabeled(m, *instant->second)) ++sum.clutter[static_cast<std::size_t>(m.label)];
+        continue;
+      }
+      const Candidate& o = objects[static_cast<std::size_t>(of[k])];
+      label_of[static_cast<std::size_t>(of[k])] = m.label;
+      if (o.truth->occluded > kSeenAtMost) continue;
+      addErrors(scan, m, o,
+                {o.class_id, "", o.range, 0, 1, log_index, o.truth->id, instant->second->t},
+                sum.errors);
+    }
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      const Candidate& o = objects[i];
+      const double stated =
+          scan.model->detectionProbability(o.class_id, o.kinematics, o.extent, scan.state, 1);
+      if (stated <= 0 || o.truth->occluded > kSeenAtMost || o.truth->ignore) continue;
+      sum.chances.push_back({o.class_id, o.truth->occluded, o.range, label_of[i], stated});
+      if (met[scan.sensor].insert(o.truth->id).second) ++sum.first_seen;
+    }
+  }
+}
+
+ErrorFigures figuresOf(const std::vector<const DetectorError*>& errors) {
+  ErrorFigures f;
+  f.count = errors.size();
+  if (errors.empty()) return f;
+  std::map<std::pair<std::size_t, std::int64_t>, std::vector<const DetectorError*>> by_object;
+  for (const DetectorError* e : errors) {
+    f.mean += e->error, f.rms += e->error * e->error, f.stated += e->sigma * e->sigma;
+    f.nis += std::pow(e->error / e->sigma, 2);
+    by_object[{e->log, e->object}].push_back(e);
+  }
+  const double n = static_cast<double>(f.count);
+  f.mean /= n, f.nis /= n;
+  f.rms = std::sqrt(f.rms / n), f.stated = std::sqrt(f.stated / n);
+  double product = 0, pairs = 0;
+  for (const auto& [key, own] : by_object) {
+    std::size_t later = 0;
+    for (const DetectorError* e : own) {
+      while (later < own.size() && own[later]->t < e->t + kLag - kLagSlack) ++later;
+      if (later == own.size()) break;
+      if (own[later]->t > e->t + kLag + kLagSlack) continue;
+      product += (e->error / e->sigma) * (own[later]->error / own[later]->sigma), pairs += 1;
+    }
+  }
+  if (pairs > 0 && f.nis > 0) f.repeated = product / pairs / f.nis;
+  return f;
+}
+
+}  // namespace perception

@@ -1,0 +1,206 @@
+#include "libperception/calibration/DetectorStudy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <set>
+
+#include "libperception/core/Error.h"
+
+namespace perception {
+namespace {
+
+constexpr std::array<double, 5> kRanges{0, 10, 20, 40, 80};  // [m] borders of the tables
+constexpr std::size_t kFewest = 20;  // below it nothing is said: one in twenty is 5 %
+
+std::string percent(std::size_t part, std::size_t whole) {
+  return whole < kFewest ? "n/a"
+                         : fmt::format("{:.1f}", 100.0 * static_cast<double>(part) /
+                                                     static_cast<double>(whole));
+}
+
+std::string span(std::size_t r) { return fmt::format("{:.0f}-{:.0f}", kRanges[r], kRanges[r + 1]); }
+
+struct Share {
+  std::size_t seen = 0, all = 0;
+  double stated = 0;
+};
+
+template <typename Pick>
+Share shareOf(const DetectorCounts& counts, ClassId c, Pick pick) {
+  Share s;
+  for (const DetectorChance& k : counts.chances) {
+    if (k.class_id != c || !pick(k)) continue;
+    ++s.all, s.seen += k.label >= 0, s.stated += k.stated;
+  }
+  return s;
+}
+
+void addDetection(const DetectorCounts& counts, const ClassTable& classes, StudyTable& table) {
+  for (ClassId c = 0; c < classes.size(); ++c) {
+    for (std::size_t r = 0; r + 1 < kRanges.size(); ++r) {
+      const auto within = [&](const DetectorChance& k) {
+        return k.range >= kRanges[r] && k.range < kRanges[r + 1];
+      };
+      const Share all = shareOf(counts, c, within);
+      if (all.all < kFewest) continue;
+      std::vector<std::string> row = {counts.sensor, classes[c].name, span(r),
+                                      fmt::format("{}", all.all)};
+      for (int o = 0; o <= 2; ++o) {
+        const Share s =
+            shareOf(counts, c, [&](const auto& k) { return within(k) && k.occluded == o; });
+        row.push_back(percent(s.seen, s.all));
+      }
+      row.push_back(percent(all.seen, all.all));
+      row.push_back(fmt::format("{:.1f}", 100 * all.stated / static_cast<double>(all.all)));
+      table.rows.push_back(std::move(row));
+    }
+  }
+}
+
+void addNoise(const DetectorCounts& counts, const ClassTable& classes, StudyTable& table) {
+  std::vector<std::string> quantities;
+  for (const DetectorError& e : counts.errors) {
+    if (std::find(quantities.begin(), quantities.end(), e.quantity) == quantities.end())
+      quantities.push_back(e.quantity);
+  }
+  for (ClassId c = 0; c < classes.size(); ++c) {
+    for (const std::string& q : quantities) {
+      for (std::size_t r = 0; r + 1 < kRanges.size(); ++r) {
+        std::vector<const DetectorError*> some;
+        for (const DetectorError& e : counts.errors) {
+          if (e.class_id == c && e.quantity == q && e.range >= kRanges[r] &&
+              e.range < kRanges[r + 1])
+            some.push_back(&e);
+        }
+        if (some.size() < kFewest) continue;
+        const ErrorFigures f = figuresOf(some);
+        table.rows.push_back({counts.sensor, classes[c].name, q, span(r),
+                              fmt::format("{}", f.count), fmt::format("{:.4f}", f.mean),
+                              fmt::format("{:.4f}", f.rms), fmt::format("{:.4f}", f.stated),
+                              fmt::format("{:.2f}", f.nis), fmt::format("{:.2f}", f.repeated)});
+      }
+    }
+  }
+}
+
+struct LabelCounts {
+  std::vector<std::size_t> of;  ///< by label
+  std::size_t all = 0;
+};
+
+LabelCounts labelsOf(const DetectorCounts& counts, ClassId c, std::size_t labels) {
+  LabelCounts out{std::vector<std::size_t>(labels, 0), 0};
+  for (const DetectorChance& k : counts.chances) {
+    if (k.class_id != c || k.label < 0) continue;
+    ++out.of[static_cast<std::size_t>(k.label)], ++out.all;
+  }
+  return out;
+}
+
+void addLabels(const DetectorCounts& counts, const ClassTable& classes,
+               const std::vector<std::string>& labels, StudyTable& table) {
+  for (ClassId c = 0; c < classes.size(); ++c) {
+    const LabelCounts n = labelsOf(counts, c, labels.size());
+    if (n.all < kFewest) continue;
+    for (std::size_t l = 0; l < labels.size(); ++l) {
+      table.rows.push_back(
+          {counts.sensor, classes[c].name, labels[l], fmt::format("{}", n.of[l]),
+           percent(n.of[l], n.all),
+           fmt::format("{:.1f}", 100 * counts.label[static_cast<std::size_t>(c)][l])});
+    }
+  }
+}
+
+/// Share with half a count on either side, so that what never happened stays possible.
+double smoothed(std::size_t part, std::size_t whole) {
+  return (static_cast<double>(part) + 0.5) / (static_cast<double>(whole) + 1);
+}
+
+std::string iniOf(const DetectorCounts& counts, const ClassTable& classes,
+                  const std::vector<std::string>& labels) {
+  const double scans = static_cast<double>(std::max<std::size_t>(counts.scans, 1));
+  const std::size_t clutter =
+      std::accumulate(counts.clutter.begin(), counts.clutter.end(), std::size_t{0});
+  std::string text = fmt::format(
+      "[sensor.{}]\nclutter_per_scan = {:.3g}   ; {} detections on nothing labeled in {} scans\n"
+      "births_per_scan = {:.3g}   ; {} objects came into view\n",
+      counts.sensor, static_cast<double>(clutter) / scans, clutter, counts.scans,
+      static_cast<double>(counts.first_seen) / scans, counts.first_seen);
+  for (std::size_t l = 0; l < labels.size(); ++l) {
+    text += fmt::format("clutter_label.{} = {:.3f}   ; {}\n", labels[l],
+                        smoothed(counts.clutter[l], clutter), counts.clutter[l]);
+  }
+  for (ClassId c = 0; c < classes.size(); ++c) {
+    const Share visible = shareOf(counts, c, [](const auto& k) { return k.occluded <= 1; });
+    if (visible.all < kFewest) continue;
+    const Share hidden = shareOf(counts, c, [](const auto& k) { return k.occluded == 2; });
+    text += fmt::format(
+        "[sensor.{}.class.{}]\ndetection = {:.2f}   ; {} of {} not or partly hidden; {} of {} "
+        "largely hidden\n",
+        counts.sensor, classes[c].name, smoothed(visible.seen, visible.all), visible.seen,
+        visible.all, hidden.seen, hidden.all);
+    const LabelCounts n = labelsOf(counts, c, labels.size());
+    for (std::size_t l = 0; l < labels.size() && n.all >= kFewest; ++l) {
+      text += fmt::format("label.{} = {:.3f}   ; {} of {}\n", labels[l], smoothed(n.of[l], n.all),
+                          n.of[l], n.all);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+StudyReport detectorStudy(const DetectorStudyInput& input,
+                          const std::map<std::string, DetectorCounts>& counts) {
+  if (counts.empty()) throw DataError("no scan of a detector stands beside labeled objects");
+  StudyReport report;
+  report.title = "What detectors see of labeled objects";
+  report.data = fmt::format("{}logs {}", input.simulated ? "simulated " : "", input.logs);
+  StudyTable scans{"scans",
+                   "Scans, clutter and newly seen objects",
+                   {"sensor", "scans", "on nothing labeled", "a scan", "came into view", "a scan"},
+                   {}};
+  StudyTable detection{"detection",
+                       "Labeled objects in view that have a detection (%)",
+                       {"sensor", "class", "range (m)", "objects", "in full view", "partly hidden",
+                        "largely hidden", "all", "the INI, unhidden"},
+                       {}};
+  StudyTable labels{"labels",
+                    "Labels of detections on objects (%)",
+                    {"sensor", "class", "label", "detections", "share", "the INI"},
+                    {}};
+  StudyTable noise{"noise",
+                   "Errors of detections on objects against what is stated",
+                   {"sensor", "class", "quantity", "range (m)", "detections", "mean", "rms",
+                    "stated", "NIS", "repeated after 1 s"},
+                   {}};
+  std::string ini = fmt::format("; Counted by perception-study detector on {}.\n", input.logs);
+  for (const auto& [sensor, c] : counts) {
+    const auto& names = input.labels.at(sensor);
+    const std::size_t clutter = std::accumulate(c.clutter.begin(), c.clutter.end(), std::size_t{0});
+    const double n = static_cast<double>(std::max<std::size_t>(c.scans, 1));
+    scans.rows.push_back({sensor, fmt::format("{}", c.scans), fmt::format("{}", clutter),
+                          fmt::format("{:.3f}", static_cast<double>(clutter) / n),
+                          fmt::format("{}", c.first_seen),
+                          fmt::format("{:.3f}", static_cast<double>(c.first_seen) / n)});
+    addDetection(c, input.classes, detection);
+    addLabels(c, input.classes, names, labels);
+    addNoise(c, input.classes, noise);
+    ini += iniOf(c, input.classes, names);
+  }
+  report.tables = {std::move(scans), std::move(detection), std::move(labels), std::move(noise)};
+  report.files.emplace_back("detector.ini", ini);
+  report.remarks = {
+      "`detector.ini` holds the counted keys; scores are fitted by `perception-study boxes`.",
+      "NIS: mean of (error / stated deviation)^2, 1 when the noise is honest, less when cautious. "
+      "Repeated: correlation of one object's errors a second apart; a filter takes them for "
+      "independent, so stated deviations must be larger than the errors where it is high.",
+      "Areas that the truth does not label (DontCare) cannot be told from clutter, nor objects "
+      "that nobody labeled. Bearings in rad, lengths in m, axes in rad."};
+  return report;
+}
+
+}  // namespace perception

@@ -1,0 +1,151 @@
+#include "libperception/detectors/Detector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "libperception/core/Error.h"
+
+namespace perception {
+namespace {
+
+constexpr const char* kModelPrefix = "model.";
+
+std::unique_ptr<Detector> makeNothing(const DetectorSetup&) { return nullptr; }
+
+double valueOf(const std::vector<std::pair<std::string, double>>& table, const std::string& name,
+               double otherwise) {
+  for (const auto& [key, value] : table) {
+    if (key == name) return value;
+  }
+  return otherwise;
+}
+
+}  // namespace
+
+void DetectorModelParams::visit(ParamVisitor& v) {
+  v.text("file", file, "of the model, relative to [detector] folder");
+  v.text("label", label, "class name of its boxes; empty: the model's own");
+  v.words("names", names, "networks: INDEX=LABEL of the classes that are wanted (COCO: 2=Car)");
+  v.real("threshold", threshold, {-1e9, 1e9}, "score", "weaker boxes are dropped");
+  v.real("low", low, {0.1, 20}, "m", "height of the lowest objects");
+  v.real("high", high, {0.1, 20}, "m", "height of the highest ones");
+  v.require(low < high, "low: must be below high");
+  v.real("slope", slope, {0, 1e3}, "1/score",
+         "P(object | score) = 1 / (1 + exp(-slope (score - even_score))); 0: not calibrated");
+  v.real("even_score", even_score, {-1e9, 1e9}, "score",
+         "of a box that is as likely right as wrong");
+  v.table("slope.", label_slope, {0, 1e3}, "1/score", "the same for one label");
+  v.table("even_score.", label_even_score, {-1e9, 1e9}, "score", "the same for one label");
+}
+
+double DetectorModelParams::slopeOf(const std::string& name) const {
+  return valueOf(label_slope, name, slope);
+}
+
+double DetectorModelParams::evenScoreOf(const std::string& name) const {
+  return valueOf(label_even_score, name, even_score);
+}
+
+void DpmParams::visit(ParamVisitor& v) {
+  v.integer("levels_per_octave", options.levels_per_octave, {1, 20},
+            "scales from one size to its half (voc-release: 10)");
+  v.real("enlarge", options.enlarge, {1, 4}, "",
+         "size of the first image searched: 2 finds cars of 16 to 20 px");
+  v.real("outside", options.outside, {0, 1}, "",
+         "share of an object's sides that may lie beyond the image");
+  v.integer("window", options.window, {0, 12}, "cells of a part by which it may move");
+  v.real("overlap", options.overlap, {0, 1}, "", "share of the weaker box in the better one");
+}
+
+const std::vector<std::string>& OnnxParams::layoutNames() {
+  static const std::vector<std::string> names{"auto", "yolox", "yolov5", "yolov8"};
+  return names;
+}
+
+void OnnxParams::visit(ParamVisitor& v) {
+  v.integer("input", input, {0, 4096}, "side of the square input in pixels; 0: as the file says");
+  v.choice("layout", layout, layoutNames(), "of the output; auto: by its shape");
+  v.real("overlap", overlap, {0, 1}, "", "intersection over union of boxes of one object");
+  v.boolean("windows", windows, "long images also in overlapping squares of their shorter side");
+  v.real("window_overlap", window_overlap, {0, 0.9}, "",
+         "share of a square that the next sees, too");
+}
+
+void HogParams::visit(ParamVisitor& v) {
+  v.real("enlarge", enlarge, {0.5, 4}, "", "of the image: the detector knows people of 96 px");
+  v.real("overlap", overlap, {0, 1}, "", "intersection over union of boxes of one object");
+}
+
+void DetectorSetup::visit(ParamVisitor& v) {
+  std::vector<std::string> names;
+  for (const auto& row : detectorBackends()) names.emplace_back(row.name);
+  v.choice("backend", backend, names, "what finds the boxes; file: they are in the log already");
+  v.path("folder", folder, "of the models' files");
+  v.boolean("ground_gate", ground_gate,
+            "look only where objects of the models' heights can stand, if the camera's place is "
+            "known");
+  v.angle("ground_slope_sigma_deg", ground_slope_sigma, {0, 20},
+          "how far pitch and slope of the road may be off");
+}
+
+DetectorSetup DetectorSetup::read(Config& config) {
+  auto setup = config.read<DetectorSetup>("detector");
+  for (const std::string& section : config.sectionsWithPrefix(kModelPrefix)) {
+    setup.models.emplace_back(section.substr(std::string(kModelPrefix).size()),
+                              config.read<DetectorModelParams>(section));
+  }
+  for (const std::string& section : config.sectionsWithPrefix("heading."))
+    setup.headings.push_back(config.read<HeadingHeadParams>(section));
+  setup.dpm = config.read<DpmParams>("dpm");
+  setup.onnx = config.read<OnnxParams>("onnx");
+  setup.hog = config.read<HogParams>("hog");
+  const std::string name = setup.backendName();
+  if (setup.models.empty() && name != "hog" && name != "file")
+    config.fault("detector", "backend", name + " needs a [model.NAME] section");
+  for (const auto& [key, model] : setup.models) {
+    if (model.file.empty() && name != "hog" && name != "file")
+      config.fault(kModelPrefix + key, "", "file: missing");
+  }
+  return setup;
+}
+
+std::string DetectorSetup::backendName() const {
+  return detectorBackends()[static_cast<std::size_t>(backend)].name;
+}
+
+std::string DetectorSetup::pathOf(const DetectorModelParams& model) const {
+  return (std::filesystem::path(folder) / model.file).string();
+}
+
+const std::vector<DetectorBackend>& detectorBackends() {
+  static const std::vector<DetectorBackend> rows{{"dpm", &makeDpmDetector},
+                                                 {"cvdpm", &makeCvDpmDetector},
+                                                 {"onnx", &makeOnnxDetector},
+                                                 {"hog", &makeHogDetector},
+                                                 {"file", &makeNothing}};
+  return rows;
+}
+
+std::unique_ptr<Detector> makeDetector(const DetectorSetup& setup) {
+  return detectorBackends()[static_cast<std::size_t>(setup.backend)].make(setup);
+}
+
+std::size_t calibrateScores(const DetectorSetup& setup, std::vector<ObjectDetection>& objects) {
+  std::size_t kept = 0;
+  for (ObjectDetection& object : objects) {
+    const DetectorModelParams* model = nullptr;
+    for (const auto& [name, m] : setup.models) {
+      if (m.slopeOf(object.label) > 0 && (m.label.empty() || m.label == object.label)) model = &m;
+    }
+    if (model == nullptr) {
+      ++kept;
+      continue;
+    }
+    object.score = model->slopeOf(object.label) * (object.score - model->evenScoreOf(object.label));
+  }
+  return kept;
+}
+
+}  // namespace perception

@@ -1,0 +1,42 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "libperception/detectors/Detector.h"
+#include "libperception/detectors/Panorama.h"
+
+namespace perception {
+
+/// A detector for any camera: ordinary pictures as they are, panoramas of the full circle through
+/// their eight tiles.
+class ImageDetector {
+ public:
+  explicit ImageDetector(DetectorSetup setup);
+
+  /// Boxes in pixels of the image, each object once. `T_ego_camera` (optical frame), when known,
+  /// says where objects can stand. Without `camera.projection` = equirectangular the image is an
+  /// ordinary picture. Scores are the back end's own.
+  ObjectDetections detect(const Raster& image, const CameraModel& camera,
+                          const std::optional<Pose3>& T_ego_camera,
+                          const GroundPlane& ground = {}) const;
+  /// Headings by the heads of the setup, of boxes of any origin.
+  void addHeadings(const Raster& image, const CameraModel& camera,
+                   std::vector<ObjectDetection>& objects) const;
+  const DetectorSetup& setup() const { return setup_; }
+  bool hasBackend() const { return detector_ != nullptr; }
+
+ private:
+  std::optional<GroundGate> gateOf(const CameraModel& camera,
+                                   const std::optional<Pose3>& T_ego_camera,
+                                   const GroundPlane& ground) const;
+  const Panorama& panorama(int width) const;
+
+  DetectorSetup setup_;
+  std::unique_ptr<Detector> detector_;
+  std::vector<HeadingHead> heads_;  ///< as setup_.headings
+  mutable std::mutex mutex_;
+  mutable std::map<int, Panorama> panoramas_;  ///< by width
+};
+
+}  // namespace perception

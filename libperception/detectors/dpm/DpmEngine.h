@@ -1,0 +1,58 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "libperception/detectors/GroundGate.h"
+#include "libperception/detectors/dpm/DpmModel.h"
+#include "libperception/measurement/SensorFrame.h"
+#include "libperception/simd/Simd.h"
+
+namespace perception {
+
+struct DpmBank;
+
+/// How densely and where an engine looks.
+struct DpmOptions {
+  int levels_per_octave = 5;  ///< voc-release: 10
+  double enlarge = 1;         ///< [1, 4] size of the first image searched, for objects far away
+  double outside = 0.4;       ///< share of an object's sides that may lie beyond the image
+  int window = 4;             ///< [cells of a part] how far a part may move; voc-release5: 4
+  double overlap = 0.5;       ///< of the weaker box: more is the same object (voc-release)
+};
+
+/// What an engine looks for with one model.
+struct DpmTarget {
+  DpmModel model;
+  double threshold = -1;       ///< score from which on a place is reported
+  double low = 0.5, high = 3;  ///< [m] heights of the objects, with a ground to stand on
+};
+
+/// A place where a model fits.
+struct DpmDetection {
+  int target = 0, component = 0;
+  double score = 0;
+  ObjectDetection::ImageBox box;  ///< [px] may reach beyond the image
+  std::optional<double> heading;  ///< [rad] KITTI's alpha, between the components' own
+};
+
+/// Finds deformable part models in images: all components of all classes on one feature pyramid,
+/// parts convolved exactly by Fourier transform of 16 x 16 patches (Dubout and Fleuret, ECCV 2012),
+/// only where the ground allows objects. The result is the same for any number of threads.
+class DpmEngine {
+ public:
+  DpmEngine(std::vector<DpmTarget> targets, DpmOptions options, SimdLevel level = simdLevel());
+  ~DpmEngine();
+  DpmEngine(DpmEngine&&) noexcept;
+
+  /// One box an object and target, best first.
+  std::vector<DpmDetection> detect(const Raster& image, const SearchRegion& region = {}) const;
+  /// All places at or above the thresholds, before suppression.
+  std::vector<DpmDetection> places(const Raster& image, const SearchRegion& region = {}) const;
+  const std::vector<DpmTarget>& targets() const;
+
+ private:
+  std::unique_ptr<const DpmBank> bank_;
+};
+
+}  // namespace perception

@@ -1,0 +1,168 @@
+#include "libperception/filter/associate/Association.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "libperception/core/LogMath.h"
+
+namespace perception {
+namespace {
+
+/// Where the hypothesis keeps each distinct track; -1: not at all.
+std::vector<int> placesOf(const TrackIndices& tracks, const AssociationIndex& index) {
+  std::vector<int> place(index.tracks(), -1);
+  for (std::size_t i = 0; i < tracks.size(); ++i) place[tracks[i]] = static_cast<int>(i);
+  return place;
+}
+
+double logAllMissed(const TrackIndices& tracks, const AssociationIndex& index) {
+  double sum = 0;
+  for (const std::uint32_t t : tracks) sum += index.logMiss(t);
+  return sum;
+}
+
+/// What a measurement may come from in one hypothesis, with normalized probabilities.
+struct Choices {
+  std::vector<int> cause;
+  std::vector<double> log_odds;
+  double total = kMinusInfinity;
+
+  void gather(std::size_t k, const AssociationIndex& index, const std::vector<int>& place,
+              const std::vector<int>& taken_by) {
+    cause.clear();
+    log_odds.clear();
+    for (const auto& o : index.others(k))
+      cause.push_back(o.cause), log_odds.push_back(o.log_weight);
+    for (const auto& c : index.candidates(k)) {
+      const int p = place[c.track];
+      if (p < 0 || taken_by[static_cast<std::size_t>(p)] >= 0) continue;
+      cause.push_back(p);
+      log_odds.push_back(c.log_odds);
+    }
+    total = logSumExp(log_odds);
+  }
+
+  std::size_t draw(Rng& rng) const {
+    double u = rng.uniform();
+    std::size_t chosen = 0;
+    for (; chosen + 1 < log_odds.size(); ++chosen) {
+      u -= std::exp(log_odds[chosen] - total);
+      if (u < 0) break;
+    }
+    return chosen;
+  }
+};
+
+/// Slots that drew alike so far.
+struct Branch {
+  SampledAssociation sampled;
+  std::vector<int> taken_by;  // by place of a track: its measurement or -1
+
+  void take(std::size_t k, int cause) {
+    sampled.association.cause[k] = cause;
+    if (cause >= 0) taken_by[static_cast<std::size_t>(cause)] = static_cast<int>(k);
+  }
+};
+
+/// The slots of `branch` part by what they draw for measurement k; parts beyond the first go to
+/// `out`.
+void split(std::size_t k, const Choices& choices, std::vector<Rng>& rngs, Branch& branch,
+           std::vector<Branch>& out) {
+  branch.sampled.association.log_weight += choices.total;
+  if (choices.cause.size() == 1) {
+    branch.take(k, choices.cause[0]);
+    return;
+  }
+  std::vector<std::vector<std::uint32_t>> parts(choices.cause.size());
+  for (const std::uint32_t i : branch.sampled.slots) parts[choices.draw(rngs[i])].push_back(i);
+  std::size_t first = 0;
+  while (parts[first].empty()) ++first;
+  for (std::size_t c = first + 1; c < parts.size(); ++c) {
+    if (parts[c].empty()) continue;
+    out.push_back(branch);
+    out.back().sampled.slots = std::move(parts[c]);
+    out.back().take(k, choices.cause[c]);
+  }
+  branch.sampled.slots = std::move(parts[first]);
+  branch.take(k, choices.cause[first]);
+}
+
+}  // namespace
+
+AssociationIndex::AssociationIndex(const std::vector<Track>& predicted,
+                                   const LikelihoodTable& table, const FilterModel& model)
+    : by_measurement_(table.births.size()), others_(table.births.size()) {
+  const bool decays = model.params.existence_decay > 0;
+  log_miss_.reserve(predicted.size());
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    const double r = predicted[i].existence;
+    // With exponential decay (DUC) existence neither weighs nor is weighed by detections.
+    log_miss_.push_back(decays ? 0 : std::log1p(-r * table.tracks[i].detection));
+    for (const auto& pair : table.tracks[i].pairs) {
+      const double log_odds =
+          pair.log_likelihood + pair.log_prior + (decays ? 0 : std::log(r) - log_miss_.back());
+      by_measurement_[pair.measurement].push_back({i, log_odds});
+    }
+  }
+  for (std::size_t k = 0; k < table.births.size(); ++k) {
+    const auto& n = table.births[k];
+    if (model.params.sampled_births) {
+      others_[k] = {{Association::kClutter, n.log_clutter}, {Association::kNew, n.log_birth}};
+    } else {
+      others_[k] = {{Association::kNew, n.log_new}};
+    }
+  }
+}
+
+std::vector<SampledAssociation> sampleAssociations(const TrackIndices& tracks,
+                                                   const AssociationIndex& index,
+                                                   const std::vector<std::size_t>& order,
+                                                   std::vector<std::uint32_t> slots,
+                                                   const RngKey& key) {
+  const std::vector<int> place = placesOf(tracks, index);
+  std::vector<std::uint32_t> streams = slots;  // a branch names slots by their index in here
+  std::vector<Rng> rngs;
+  rngs.reserve(streams.size());
+  for (const std::uint32_t s : streams) rngs.emplace_back(key.withSlot(s));
+  std::iota(slots.begin(), slots.end(), 0u);
+
+  std::vector<Branch> branches(1);
+  Branch& root = branches.front();
+  root.sampled.association.cause.assign(index.measurements(), Association::kNew);
+  root.sampled.association.log_weight = logAllMissed(tracks, index);
+  root.sampled.slots = std::move(slots);
+  root.taken_by.assign(tracks.size(), -1);
+  Choices choices;
+  for (const std::size_t k : order) {
+    const std::size_t before = branches.size();
+    for (std::size_t b = 0; b < before; ++b) {
+      choices.gather(k, index, place, branches[b].taken_by);
+      if (choices.total == kMinusInfinity)
+        continue;  // impossible under every cause: clutter of an unmodeled kind, no evidence
+      Branch branch = std::move(branches[b]);
+      split(k, choices, rngs, branch, branches);
+      branches[b] = std::move(branch);
+    }
+  }
+  std::vector<SampledAssociation> out;
+  out.reserve(branches.size());
+  for (Branch& b : branches) {
+    for (std::uint32_t& s : b.sampled.slots) s = streams[s];
+    for (int& c : b.sampled.association.cause)
+      if (c >= 0) c = static_cast<int>(tracks[static_cast<std::size_t>(c)]);
+    out.push_back(std::move(b.sampled));
+  }
+  return out;
+}
+
+std::vector<std::size_t> randomOrder(std::size_t n, Rng rng) {
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = n; i > 1; --i)
+    std::swap(order[i - 1], order[rng.below(static_cast<std::uint32_t>(i))]);
+  return order;
+}
+
+}  // namespace perception

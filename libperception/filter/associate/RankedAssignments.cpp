@@ -1,0 +1,228 @@
+#include "libperception/filter/associate/RankedAssignments.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "libperception/filter/associate/RankedSums.h"
+
+namespace perception {
+namespace {
+
+constexpr int kNothing = RankedAssignment::kNothing;
+/// Dual variables are exact up to rounding: what is this little beyond the limit stays in.
+constexpr double kRounding = 1e-9;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// The whole problem: columns of tracks first, then each row's "nothing".
+AssignmentNode solveWhole(const AssignmentProblem& problem) {
+  AssignmentSolver solver;
+  const int n = static_cast<int>(problem.rows.size());
+  solver.begin(problem.columns + n);
+  for (int r = 0; r < n; ++r) {
+    for (const auto& o : problem.rows[at(r)]) solver.addOption(o.column, -o.gain);
+    solver.addOption(problem.columns + r, 0);
+    solver.endRow();
+  }
+  return solver.solve();
+}
+
+/// A problem without the options that no assignment within the span can have.
+AssignmentProblem pruned(const AssignmentProblem& problem, const AssignmentNode& root,
+                         double span) {
+  AssignmentProblem out;
+  out.columns = problem.columns;
+  out.rows.resize(problem.rows.size());
+  for (std::size_t r = 0; r < problem.rows.size(); ++r) {
+    for (const auto& o : problem.rows[r]) {
+      const double reduced = -o.gain - root.u[r] - root.v[at(o.column)];
+      if (reduced <= span + kRounding) out.rows[r].push_back(o);
+    }
+  }
+  return out;
+}
+
+/// Rows that compete for columns, directly or through others: by row the first row of its group.
+std::vector<int> groupsOf(const AssignmentProblem& problem) {
+  const std::size_t n = problem.rows.size();
+  std::vector<int> parent(n), owner(at(problem.columns), -1);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto find = [&](int r) {
+    while (parent[at(r)] != r) r = parent[at(r)] = parent[at(parent[at(r)])];
+    return r;
+  };
+  for (std::size_t r = 0; r < n; ++r) {
+    for (const auto& option : problem.rows[r]) {
+      int& o = owner[at(option.column)];
+      if (o < 0) {
+        o = static_cast<int>(r);
+      } else {
+        const int one = find(o), other = find(static_cast<int>(r));
+        parent[at(std::max(one, other))] = std::min(one, other);
+      }
+    }
+  }
+  for (std::size_t r = 0; r < n; ++r) parent[r] = find(static_cast<int>(r));
+  return parent;
+}
+
+/// Murty: take the best assignment of a set, split the rest of the set by the first row in which
+/// they differ from it. All but the first of the best `k` within the limit.
+std::vector<AssignmentNode> rankOthers(AssignmentSolver& solver, AssignmentNode root, std::size_t k,
+                                       double span) {
+  std::vector<AssignmentNode> out;
+  std::vector<AssignmentNode> open;  // by cost, ties by age; never more than can still come out
+  const double limit = root.cost + span;
+  AssignmentNode node = std::move(root), child;
+  while (out.size() + 1 < k) {
+    const std::size_t wanted = k - 1 - out.size();
+    for (int r = node.fixed; r < solver.rows(); ++r) {
+      const double bound = open.size() < wanted ? limit : std::min(limit, open.back().cost);
+      if (!solver.solveChild(node, r, bound, child)) continue;
+      const auto place =
+          std::upper_bound(open.begin(), open.end(), child.cost,
+                           [](double cost, const AssignmentNode& n) { return cost < n.cost; });
+      if (open.size() >= wanted && place == open.end()) continue;
+      open.insert(place, std::move(child));
+      if (open.size() > wanted) open.pop_back();
+      child = AssignmentNode();
+    }
+    if (open.empty()) break;
+    node = open.front();
+    open.erase(open.begin());
+    out.push_back(node);
+  }
+  return out;
+}
+
+/// The alternatives of several rows that compete: losses and, by row, columns of the problem.
+struct GroupAlternative {
+  double loss;
+  std::vector<int> column;
+};
+
+std::vector<GroupAlternative> rankGroup(const AssignmentProblem& problem,
+                                        const AssignmentNode& whole, const std::vector<int>& rows,
+                                        std::size_t k, double span) {
+  std::vector<int> columns;
+  for (const int r : rows)
+    for (const auto& option : problem.rows[at(r)]) columns.push_back(option.column);
+  std::sort(columns.begin(), columns.end());
+  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+  const int tracks = static_cast<int>(columns.size()), n = static_cast<int>(rows.size());
+  const auto own = [&](int column, int row) {
+    if (column >= problem.columns) return tracks + row;
+    return static_cast<int>(std::lower_bound(columns.begin(), columns.end(), column) -
+                            columns.begin());
+  };
+  AssignmentSolver solver;
+  solver.begin(tracks + n);
+  AssignmentNode root;
+  root.v.resize(at(tracks + n));
+  for (int c = 0; c < tracks; ++c) root.v[at(c)] = whole.v[at(columns[at(c)])];
+  for (int i = 0; i < n; ++i) {
+    const int row = rows[at(i)];
+    for (const auto& o : problem.rows[at(row)]) {
+      solver.addOption(own(o.column, i), -o.gain);
+      if (whole.column[at(row)] == o.column) root.cost -= o.gain;
+    }
+    solver.addOption(tracks + i, 0);
+    solver.endRow();
+    root.column.push_back(own(whole.column[at(row)], i));
+    root.u.push_back(whole.u[at(row)]);
+    root.v[at(tracks + i)] = whole.v[at(problem.columns + row)];
+  }
+  const double least = root.cost;
+  std::vector<GroupAlternative> out;
+  for (const auto& node : rankOthers(solver, std::move(root), k, span)) {
+    out.push_back({node.cost - least, {}});
+    for (const int c : node.column)
+      out.back().column.push_back(c < tracks ? columns[at(c)] : kNothing);
+  }
+  return out;
+}
+
+/// The alternatives of a row whose options nobody else wants.
+std::vector<GroupAlternative> rankAlone(const std::vector<AssignmentProblem::Option>& options,
+                                        int best, std::size_t k, double span) {
+  double gain = 0;
+  for (const auto& o : options)
+    if (o.column == best) gain = o.gain;
+  std::vector<GroupAlternative> out;
+  if (best != kNothing) out.push_back({gain, {kNothing}});
+  for (const auto& o : options)
+    if (o.column != best) out.push_back({gain - o.gain, {o.column}});
+  std::stable_sort(out.begin(), out.end(),
+                   [](const auto& x, const auto& y) { return x.loss < y.loss; });
+  while (!out.empty() && (out.back().loss > span || out.size() >= k)) out.pop_back();
+  return out;
+}
+
+}  // namespace
+
+AssignmentRanking::AssignmentRanking(AssignmentProblem problem) : problem_(std::move(problem)) {
+  if (problem_.rows.size() == 1) {  // nobody competes
+    best_.column.assign(1, kNothing);
+    for (const auto& o : problem_.rows[0]) {
+      if (o.gain > best_.log_weight) best_.column[0] = o.column, best_.log_weight = o.gain;
+    }
+    return;
+  }
+  root_ = solveWhole(problem_);
+  best_.log_weight = -root_.cost;
+  best_.column.reserve(root_.column.size());
+  for (const int c : root_.column) best_.column.push_back(c < problem_.columns ? c : kNothing);
+}
+
+std::vector<RankedAssignment> AssignmentRanking::rank(std::size_t k, double span) const {
+  const std::size_t n = problem_.rows.size();
+  if (n == 1) {
+    std::vector<RankedAssignment> out{best_};
+    for (auto& a : rankAlone(problem_.rows[0], best_.column[0], k, span))
+      out.push_back({std::move(a.column), best_.log_weight - a.loss});
+    return out;
+  }
+  const AssignmentProblem problem = pruned(problem_, root_, span);
+  const std::vector<int> group_of = groupsOf(problem);
+  std::vector<std::vector<int>> members(n);  // of groups, by first row
+  for (std::size_t r = 0; r < n; ++r) members[at(group_of[r])].push_back(static_cast<int>(r));
+
+  struct Group {
+    int row;  // its first
+    std::vector<GroupAlternative> alternatives;
+  };
+  std::vector<Group> groups;
+  RankedSums sums(k);
+  for (std::size_t r = 0; r < n; ++r) {
+    if (members[r].empty()) continue;
+    const bool alone = members[r].size() == 1;
+    auto found = alone ? rankAlone(problem.rows[r], best_.column[r], k, span)
+                       : rankGroup(problem, root_, members[r], k, span);
+    if (found.empty()) continue;
+    std::vector<double> losses;
+    for (const auto& a : found) losses.push_back(a.loss);
+    sums.join(static_cast<std::uint32_t>(groups.size()), losses.data(), losses.size(), span);
+    groups.push_back({static_cast<int>(r), std::move(found)});
+  }
+
+  std::vector<RankedAssignment> out;
+  out.reserve(sums.sums().size());
+  for (const RankedSums::Sum& sum : sums.sums()) {
+    out.push_back(best_);
+    out.back().log_weight -= sum.loss;
+    sums.forEachChange(sum, [&](std::uint32_t g, std::uint32_t alternative) {
+      const auto& columns = groups[g].alternatives[alternative].column;
+      const auto& rows = members[at(groups[g].row)];
+      for (std::size_t i = 0; i < rows.size(); ++i) out.back().column[at(rows[i])] = columns[i];
+    });
+  }
+  return out;
+}
+
+std::vector<RankedAssignment> rankedAssignments(const AssignmentProblem& problem, std::size_t k,
+                                                double span) {
+  return AssignmentRanking(problem).rank(k, span);
+}
+
+}  // namespace perception

@@ -1,0 +1,176 @@
+#include "libperception/filter/likelihood/LikelihoodRow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/LogMath.h"
+#include "libperception/filter/likelihood/AssignmentPrior.h"
+#include "libperception/filter/likelihood/Gating.h"
+
+namespace perception {
+namespace {
+
+constexpr AxisMask kPlaceSeen = 3;  // x and y
+
+/// What a class filter expects of z: its covariance, the measurement's own left out.
+struct ExpectedPlace {
+  double x, y, xx, xy, yy;
+};
+
+double shareNotHidden(const Track& track, const MeasurementScan& scan, const FilterModel& model) {
+  if (!scan.occlusion) return 1;
+  const auto c = static_cast<std::size_t>(track.likeliestClass());
+  const Vector2 d = track.bank[c].x.head<2>() - scan.state.T_world_sensor.translation().head<2>();
+  const double range = d.norm();
+  const double radius = 0.25 * (track.bank[c].extent.length + track.bank[c].extent.width);
+  if (range <= radius) return 1;
+  const double bearing = std::atan2(d.y(), d.x()), half = std::asin(radius / range);
+  return scan.occlusion->visibility(bearing - half, bearing + half, range - radius,
+                                    model.params.occlusion_tolerance);
+}
+
+/// P_D by class; false: nothing can be detected.
+bool setDetection(const Track& track, const std::vector<Vector2>& places, const ScanTerms& terms,
+                  TrackLikelihoods& row) {
+  auto& detection = row.detection_by_class;
+  detection.resize(places.size());
+  terms.place()->placeDetection(places.data(), places.size(), terms.scan.state, detection.begin());
+  row.in_view = std::any_of(detection.begin(), detection.end(), [](double d) { return d > 0; });
+  if (!row.in_view) return false;
+  const double visibility = visibilityOf(track, terms.scan, terms.model);
+  for (std::size_t j = 0; j < places.size(); ++j) {
+    detection[j] = std::min(kMaxDetection, detection[j] * visibility);
+    if (detection[j] > 0) row.detection += std::exp(track.log_class[j]) * detection[j];
+  }
+  return row.detection > 0;
+}
+
+/// N(z - h; 0, S) without its logarithm.
+struct PlaceResidual {
+  double nis = std::numeric_limits<double>::infinity(), determinant = 0;
+};
+
+PlaceResidual residualOf(const ExpectedPlace& e, const Measurement& m) {
+  const double xx = e.xx + m.R(0, 0), xy = e.xy + m.R(1, 0), yy = e.yy + m.R(1, 1);
+  const double l = xy / xx, rest = yy - l * xy;
+  if (!(xx > 0) || !(rest > 0)) return {};
+  const double dx = m.z[0] - e.x, dy = (m.z[1] - e.y) - l * dx;
+  return {dx * dx / xx + dy * dy / rest, xx * rest};
+}
+
+}  // namespace
+
+ScanTerms::ScanTerms(const MeasurementScan& s, const FilterModel& m)
+    : scan(s),
+      model(m),
+      gates(Gates::of(m.params.gate_probability)),
+      label_exponent(s.model->labelExponent()),
+      detection_exponent(s.model->detectionExponent()),
+      classes_(static_cast<std::size_t>(m.classes.size())) {
+  for (const ObjectClass& c : model.classes.classes) log_prior.push_back(std::log(c.prior));
+  labels_.reserve(scan.measurements.size() * classes_);
+  for (const Measurement& z : scan.measurements) {
+    for (ClassId j = 0; j < model.classes.size(); ++j)
+      labels_.push_back({logLabelOf(*scan.model, z, j), logLabelAndScore(*scan.model, z, j)});
+  }
+  const bool place = std::all_of(scan.measurements.begin(), scan.measurements.end(),
+                                 [](const Measurement& z) { return z.seen == kPlaceSeen; });
+  if (place && model.params.region_memory <= 0)
+    place_ = dynamic_cast<const PositionOnlyModel*>(scan.model.get());
+}
+
+double visibilityOf(const Track& track, const MeasurementScan& scan, const FilterModel& model) {
+  return std::max(shareNotHidden(track, scan, model), model.params.occluded_detection);
+}
+
+PairTerms::PairTerms(const Track& track, std::size_t measurement, const ScanTerms& terms,
+                     PairLikelihood& pair)
+    : track_(track), terms_(terms), m_(terms.scan.measurements[measurement]), pair_(pair) {
+  const std::size_t classes = track.bank.size();
+  pair.measurement = measurement;
+  pair.log_prior = 0;
+  pair.log_by_class.assign(classes, kMinusInfinity);
+  pair.log_class_evidence.assign(classes, kMinusInfinity);
+  pair.nis.assign(classes, std::numeric_limits<double>::infinity());
+  mixture_.assign(classes, kMinusInfinity);
+}
+
+void PairTerms::add(std::size_t j, const Density& density, double log_detection) {
+  const ClassFilter& f = track_.bank[track_.filterOf(j)];
+  const double heading = m_.heading && f.oriented ? logHeadingRatio(*m_.heading, f.x[3], f.P(3, 3),
+                                                                    terms_.model.params.heading)
+                                                  : 0;
+  const std::size_t k = pair_.measurement;
+  pair_.nis[j] = density.nis;
+  // The heading tells objects apart, but not classes: people have one, too, that no filter keeps.
+  pair_.log_by_class[j] =
+      density.log_density + terms_.labelAndScore(k, j) + log_detection + heading;
+  pair_.log_class_evidence[j] = terms_.model.params.kinematic_exponent * density.log_density +
+                                terms_.label_exponent * terms_.label(k, j) +
+                                terms_.detection_exponent * log_detection;
+  mixture_[j] = track_.log_class[j] + pair_.log_by_class[j];
+}
+
+void PairTerms::finish() {
+  pair_.log_likelihood = logSumExp(mixture_);
+  if (pair_.log_likelihood > kMinusInfinity && terms_.model.params.shape_prior)
+    pair_.log_prior += logShape(track_, m_);
+}
+
+bool takesPlaceRow(const Track& track, const ScanTerms& terms) {
+  return terms.place() && std::all_of(track.bank.begin(), track.bank.end(),
+                                      [](const ClassFilter& f) { return f.modes.empty(); });
+}
+
+void positionRow(const Track& track, const std::vector<std::size_t>& near, const ScanTerms& terms,
+                 TrackLikelihoods& row) {
+  const std::size_t classes = track.bank.size();
+  thread_local std::vector<Vector2> places;
+  thread_local std::vector<ExpectedPlace> expected;
+  thread_local std::vector<PlaceResidual> residuals;
+  thread_local ClassValues log_detection;
+  places.resize(classes);
+  for (std::size_t j = 0; j < classes; ++j) places[j] = track.bank[track.filterOf(j)].x.head<2>();
+  if (!setDetection(track, places, terms, row) || near.empty()) return;
+  expected.resize(classes);
+  for (std::size_t j = 0; j < classes; ++j) {
+    const std::size_t filter = track.filterOf(j);
+    const Matrix4& P = track.bank[filter].P;
+    const Matrix2& noise = terms.place()->placeNoise(static_cast<ClassId>(filter));
+    constexpr double kRegular = 1e-9;  // stays invertible whatever the sensor says (method.md 4)
+    expected[j] = {places[j].x(), places[j].y(), P(0, 0) + noise(0, 0) + kRegular,
+                   P(1, 0) + noise(1, 0), P(1, 1) + noise(1, 1) + kRegular};
+  }
+  residuals.resize(classes);
+  log_detection.resize(0);
+  const double gate = terms.gates.quantile[2];
+  for (const std::size_t k : near) {
+    const Measurement& m = terms.scan.measurements[k];
+    bool passes = false;
+    for (std::size_t j = 0; j < classes; ++j) {
+      if (row.detection_by_class[j] <= 0) continue;
+      residuals[j] = residualOf(expected[j], m);
+      passes = passes || residuals[j].nis <= gate;
+    }
+    if (!passes || !coarseGate(track, m)) continue;
+    if (log_detection.empty()) {
+      log_detection.resize(classes);
+      for (std::size_t j = 0; j < classes; ++j)
+        log_detection[j] = std::log(row.detection_by_class[j]);
+    }
+    if (row.pairs.empty()) row.pairs.reserve(2);  // most have no more
+    PairLikelihood& pair = row.pairs.emplace_back();
+    PairTerms sum(track, k, terms, pair);
+    for (std::size_t j = 0; j < classes; ++j) {
+      if (row.detection_by_class[j] <= 0 || residuals[j].determinant <= 0) continue;
+      constexpr double kTwoLogTwoPi = 2 * 1.8378770664093454836;
+      const PlaceResidual& r = residuals[j];
+      const double log_density = -0.5 * (r.nis + std::log(r.determinant) + kTwoLogTwoPi);
+      sum.add(j, {log_density, r.nis}, log_detection[j]);
+    }
+    sum.finish();
+    if (pair.log_likelihood == kMinusInfinity) row.pairs.pop_back();
+  }
+}
+
+}  // namespace perception

@@ -1,0 +1,56 @@
+#pragma once
+#include <vector>
+
+#include "libperception/filter/likelihood/Gating.h"
+#include "libperception/filter/likelihood/Innovation.h"
+#include "libperception/filter/state/ClassValues.h"
+#include "libperception/filter/state/FilterModel.h"
+#include "libperception/filter/state/Track.h"
+#include "libperception/measurement/MeasurementModel.h"
+
+namespace perception {
+
+/// One gated pair of track and measurement: its likelihood and what the update will need again.
+struct PairLikelihood {
+  std::size_t measurement = 0;
+  double log_likelihood = 0;  ///< lhat: log sum_j p(class j) p(z, label, score, detected | class j)
+  double log_prior = 0;       ///< of this cause against others, beside the likelihood
+  ClassValues log_by_class;   ///< l_j, the summands without the class probability
+  ClassValues
+      log_class_evidence;  ///< l_j with label and innovations tempered: for the class update only
+  ClassValues nis;         ///< normalized innovation squared of each class filter
+};
+
+/// One predicted track against a scan.
+struct TrackLikelihoods {
+  double detection = 0;  ///< P_D = sum_j p(class j) P_D(class j)
+  ClassValues detection_by_class;
+  bool in_view = false;  ///< some class could have been detected were it not hidden
+  std::vector<AxisPrediction> predictions;  ///< by class; none of a sensor that sees places alone
+  std::vector<PairLikelihood> pairs;        ///< in order of measurement
+};
+
+/// One measurement as the first of a new object or as clutter.
+struct BirthLikelihood {
+  double log_birth = 0, log_clutter = 0;  ///< log densities per scan and unit of the axes seen
+  double log_new = 0;                     ///< log(birth + clutter)
+  double existence = 0;                   ///< birth / (birth + clutter)
+  std::vector<double> log_class;          ///< class posterior of the newborn
+};
+
+/// Pass 2: every distinct track against every gated measurement, once (method.md 5.2, 5.3).
+struct LikelihoodTable {
+  std::vector<TrackLikelihoods> tracks;
+  std::vector<BirthLikelihood> births;
+};
+
+/// `touched`: rows of the other tracks stay empty.
+LikelihoodTable likelihoodTable(const std::vector<Track>& predicted,
+                                const std::vector<char>& touched, const MeasurementScan& scan,
+                                const FilterModel& model);
+
+/// The same with all rows.
+LikelihoodTable likelihoodTable(const std::vector<Track>& predicted, const MeasurementScan& scan,
+                                const FilterModel& model);
+
+}  // namespace perception

@@ -1,0 +1,98 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "libperception/simd/Simd.h"
+
+namespace perception {
+
+/// Numbers of many filters, one plane a quantity, each plane contiguous and padded to whole
+/// vectors.
+class Planes {
+ public:
+  Planes(std::size_t size, std::size_t planes);
+  std::size_t size() const { return size_; }
+  std::size_t padded() const { return padded_; }
+  double* operator[](std::size_t plane) { return values_.data() + offset_ + plane * padded_; }
+  const double* operator[](std::size_t plane) const {
+    return values_.data() + offset_ + plane * padded_;
+  }
+  Planes(const Planes&) = delete;  // the copy's values would be aligned elsewhere
+  Planes& operator=(const Planes&) = delete;
+  Planes(Planes&&) = default;
+  Planes& operator=(Planes&&) = default;
+
+ private:
+  std::size_t size_, padded_;
+  std::vector<double> values_;  ///< with room to align
+  std::size_t offset_;          ///< of the first aligned value
+};
+
+/// Many four-state Gaussians as a structure of arrays: what a bank of class filters is to the
+/// processor. Planes 0-3: x; 4-13: the upper triangle of P, row by row.
+struct BankBatch : Planes {
+  explicit BankBatch(std::size_t size) : Planes(size, 14) {}
+};
+
+/// What moves each Gaussian of a batch by its own time step (see predictClassFilter).
+struct MotionBatch : Planes {
+  enum Plane {
+    kDecay,        ///< share of the speed that stays
+    kEffectiveDt,  ///< [s] way per initial speed
+    kPp,           ///< [m^2] position noise along the motion: psd times the integrals of the step
+    kPv,           ///< [m^2/s]
+    kVv,           ///< [m^2/s^2]
+    kSlip,         ///< [m^2] position noise in all directions
+    kYawPp,        ///< [s^2 rad^2] yaw-rate noise: times v^2 a position noise across the motion
+    kYawPy,        ///< [s rad^2]
+    kYawYy,        ///< [rad^2]
+    kPlanes
+  };
+  explicit MotionBatch(std::size_t size) : Planes(size, kPlanes) {}
+};
+
+/// A part of a batch: whole vectors, so that parts may be worked on at once or one after the other
+/// while they are in the cache. `first` is a multiple of kPart, and so is `end` but at the last.
+struct BatchPart {
+  static constexpr std::size_t kPart = 64;
+  std::size_t first = 0, end = static_cast<std::size_t>(-1);  ///< the default: all
+};
+
+/// [x, y, vx, vy] at constant velocity (method.md 3.1).
+void predictConstantVelocity(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
+                             BatchPart part = {});
+/// [x, y, v, theta]; theta is not wrapped (method.md 3.2).
+void predictWheeled(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
+                    BatchPart part = {});
+/// The same by the moments of an uncertain heading.
+void predictMoments(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
+                    BatchPart part = {});
+
+/// Innovations of `axes` (1 to 3) values each: y, H = dh/dx row by row, upper triangle of R.
+struct InnovationBatch : Planes {
+  InnovationBatch(std::size_t size, int n) : Planes(size, planesOf(n)), axes(n) {}
+  static std::size_t planesOf(int n) {
+    return static_cast<std::size_t>(n + 4 * n + n * (n + 1) / 2);
+  }
+  std::size_t y(int a) const { return static_cast<std::size_t>(a); }
+  std::size_t H(int a, int i) const { return static_cast<std::size_t>(axes + 4 * a + i); }
+  /// a <= b
+  std::size_t R(int a, int b) const {
+    return static_cast<std::size_t>(5 * axes + a * axes - a * (a - 1) / 2 + b - a);
+  }
+  int axes;
+};
+
+/// Plane 0: log N(y; 0, H P H' + R), plane 1: its normalized square (NIS).
+struct DensityBatch : Planes {
+  explicit DensityBatch(std::size_t size) : Planes(size, 2) {}
+};
+
+/// Densities alone: for the many pairs that no hypothesis takes.
+void innovationDensity(const BankBatch& bank, const InnovationBatch& innovation,
+                       DensityBatch& density, SimdLevel level, BatchPart part = {});
+/// The same and the Kalman update of every Gaussian.
+void innovationUpdate(const InnovationBatch& innovation, BankBatch& bank, DensityBatch& density,
+                      SimdLevel level, BatchPart part = {});
+
+}  // namespace perception

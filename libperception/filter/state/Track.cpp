@@ -1,0 +1,41 @@
+#include "libperception/filter/state/Track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "libperception/filter/state/IndexMap.h"
+
+namespace perception {
+
+ClassId Track::likeliestClass() const {
+  return static_cast<ClassId>(std::max_element(log_class.begin(), log_class.end()) -
+                              log_class.begin());
+}
+
+TrackList::TrackList(TrackTable tracks) : places_(tracks.size()) {
+  std::iota(places_.begin(), places_.end(), 0u);
+  table_ = std::make_shared<const TrackTable>(std::move(tracks));
+}
+
+std::uint64_t historyKey(const Track& track) {
+  return mixBits(track.history + 0x9E3779B97F4A7C15ull);
+}
+
+Hypothesis::Hypothesis(TrackTable t) : tracks(std::move(t)) {
+  for (const auto& track : tracks) key += historyKey(*track);
+}
+
+std::uint64_t extendHistory(std::uint64_t history, std::uint64_t scan, std::size_t measurement) {
+  return mixBits(history ^ (birthId(scan, measurement) + 0x9E3779B97F4A7C15ull));
+}
+
+std::vector<double> classProbabilities(const Track& track) {
+  std::vector<double> p(track.log_class.size());
+  std::transform(track.log_class.begin(), track.log_class.end(), p.begin(),
+                 [](double lp) { return std::exp(lp); });
+  return p;
+}
+
+}  // namespace perception

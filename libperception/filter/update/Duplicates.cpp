@@ -1,0 +1,133 @@
+#include "libperception/filter/update/Duplicates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/Frames.h"
+#include "libperception/filter/state/MotionModels.h"
+
+namespace perception {
+namespace {
+
+constexpr double kUnseen = 0.25;  // [s] a track not hit for so long gives way to a fresh one
+constexpr std::uint32_t kAbsent = static_cast<std::uint32_t>(-1);
+/// A track of less sure class (.95) has no footprint that others must respect.
+const double kLogSureClass = std::log(0.95);
+
+struct Footprint {
+  std::uint64_t id = 0;
+  Vector2 center, half;  // [m]
+  double corner2 = 0;    // [m^2] square of the distance from the center to a corner
+  double yaw = 0;        // [rad]
+  double area = 0;       // [m^2] of a track whose class is sure, else 0
+  Stamp last_hit;
+  bool fresh = true;  // of this scan
+};
+
+/// Of tracks that the scan left behind where they have gone meanwhile.
+Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
+  const ClassId best = t.likeliestClass();
+  const ClassFilter& f = t.bank[static_cast<std::size_t>(best)];
+  Footprint out;
+  out.id = t.id;
+  out.center = f.x.head<2>();
+  out.fresh = t.stamp == now;
+  if (!out.fresh)
+    out.center += (now - t.stamp) * kinematicsOf(model.classes[best], f).q.segment<2>(2);
+  out.half = f.oriented ? Vector2(0.5 * f.extent.length, 0.5 * f.extent.width)
+                        : Vector2::Constant(0.25 * (f.extent.length + f.extent.width));
+  out.corner2 = out.half.squaredNorm() + 1e-6;
+  out.yaw = f.oriented ? f.x[3] : 0;
+  const bool sure = t.log_class[static_cast<std::size_t>(best)] >= kLogSureClass;
+  out.area = sure ? 4 * out.half.x() * out.half.y() : 0;
+  out.last_hit = *std::max_element(t.last_hit.begin(), t.last_hit.end());
+  return out;
+}
+
+bool holds(const Footprint& f, const Vector2& p) {
+  const Vector2 own = rotate2(-f.yaw, p - f.center);
+  return std::abs(own.x()) <= f.half.x() && std::abs(own.y()) <= f.half.y();
+}
+
+/// The younger one's state under the older one's identity.
+TrackHandle takeOver(const Track& older, const Track& younger) {
+  Track t = younger;
+  t.id = older.id;
+  t.birth = older.birth;
+  t.log_class = older.log_class;
+  t.previous = older.previous;
+  for (std::size_t i = 0; i < t.hits.size(); ++i) t.hits[i] += older.hits[i];
+  return std::make_shared<const Track>(std::move(t));
+}
+
+}  // namespace
+
+DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackTable& tracks)
+    : cells_(tracks.size()) {
+  const double least = model.params.merge_area;
+  if (least <= 0) return;
+  std::vector<Footprint> feet(tracks.size());
+  std::vector<std::size_t> there, large;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!tracks[i]) continue;
+    feet[i] = footprintOf(*tracks[i], model, now);
+    there.push_back(i);
+    if (feet[i].area >= least) large.push_back(i);
+  }
+  for (const std::size_t i : large) {
+    for (const std::size_t j : there) {
+      if ((feet[j].center - feet[i].center).squaredNorm() > feet[i].corner2) continue;  // most
+      if (!feet[i].fresh && !feet[j].fresh) continue;  // compared when one of them was
+      if (feet[i].id == feet[j].id || !holds(feet[i], feet[j].center)) continue;
+      // Of two large ones that hold each other one entry is enough.
+      if (feet[j].area >= least && j < i && holds(feet[j], feet[i].center)) continue;
+      const bool first = feet[i].id < feet[j].id;
+      const std::size_t older = first ? i : j, younger = first ? j : i;
+      Conflict conflict{older, younger, nullptr};
+      if (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now)
+        conflict.replacement = takeOver(*tracks[older], *tracks[younger]);
+      conflicts_.push_back(std::move(conflict));
+    }
+  }
+  std::sort(conflicts_.begin(), conflicts_.end(), [&](const Conflict& a, const Conflict& b) {
+    const auto ia = tracks[a.older]->id, ib = tracks[b.older]->id;
+    if (ia != ib) return ia < ib;
+    const auto ja = tracks[a.younger]->id, jb = tracks[b.younger]->id;
+    if (ja != jb) return ja < jb;
+    return a.older != b.older ? a.older < b.older : a.younger < b.younger;
+  });
+  if (conflicts_.empty()) return;
+  involved_.assign(cells_, kAbsent);
+  for (const Conflict& c : conflicts_) {
+    for (const std::size_t cell : {c.older, c.younger}) {
+      std::uint32_t& number = involved_[cell];
+      if (number == kAbsent) number = static_cast<std::uint32_t>(involved_count_++);
+    }
+  }
+}
+
+std::vector<std::uint32_t> DuplicateTable::merged(std::vector<std::uint32_t> cells) const {
+  if (conflicts_.empty()) return cells;
+  std::vector<std::uint32_t> place(involved_count_, kAbsent);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::uint32_t number = involved_[cells[i]];
+    if (number != kAbsent) place[number] = static_cast<std::uint32_t>(i);
+  }
+  for (std::size_t c = 0; c < conflicts_.size(); ++c) {
+    const Conflict& conflict = conflicts_[c];
+    std::uint32_t& younger = place[involved_[conflict.younger]];
+    const std::uint32_t older = place[involved_[conflict.older]];
+    if (older == kAbsent || younger == kAbsent) continue;
+    cells[younger] = kAbsent;
+    younger = kAbsent;
+    if (conflict.replacement) cells[older] = static_cast<std::uint32_t>(cells_ + c);
+  }
+  cells.erase(std::remove(cells.begin(), cells.end(), kAbsent), cells.end());
+  return cells;
+}
+
+void DuplicateTable::appendReplacements(TrackTable& tracks) const {
+  for (const Conflict& c : conflicts_) tracks.push_back(c.replacement);
+}
+
+}  // namespace perception

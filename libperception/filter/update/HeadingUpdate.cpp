@@ -1,0 +1,94 @@
+#include "libperception/filter/update/HeadingUpdate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/Angle.h"
+#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/update/ScalarUpdate.h"
+
+namespace perception {
+namespace {
+
+/// Standard deviations from which a speed is beyond doubt, and with it the axis along which the
+/// object moves.
+constexpr double kSureSpeed = 3;
+
+bool movesAlongItsAxis(const ClassFilter& f, const FilterParams& p) {
+  return std::abs(f.x[2]) > std::max(p.orient_min_speed, kSureSpeed * std::sqrt(f.P(2, 2)));
+}
+
+}  // namespace
+
+void useHeading(const MeasuredHeading& seen, const FilterParams& params, ClassFilter& f,
+                bool may_mirror) {
+  const HeadingMode mode = params.heading;
+  if (mode == HeadingMode::kIgnored) return;
+  const double sigma2 = seen.sigma * seen.sigma;
+  if (!f.oriented) {
+    const bool wide = mode == HeadingMode::kWide;
+    orientAlong(seen.yaw, wide ? headingResidual(seen, seen.yaw, mode).variance : sigma2, f);
+    f.heading = firstFrontBack(seen);
+    return;
+  }
+  const HeadingResidual r = headingResidual(seen, f.x[3], mode);
+  if (may_mirror && mode == HeadingMode::kSplit) {
+    f.heading.axis_log_odds = nextAxisLogOdds(f.heading, seen, f.x[3], f.P(3, 3));
+    if (f.heading.axis_log_odds < 0 && !movesAlongItsAxis(f, params)) {
+      reorient(seen.yaw, sigma2, f);
+      f.heading = firstFrontBack(seen);
+      return;
+    }
+  }
+  if (r.y * r.y >= kYawGate * (f.P(3, 3) + r.variance)) return;
+  updateYaw(r.y, r.variance, f);
+  f.heading = nextFrontBack(f.heading, r.same, seen);
+}
+
+void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
+                 const FilterParams& p, ClassFilter& f) {
+  const double box_extra = p.shape_yaw_sigma * p.shape_yaw_sigma;
+  if (!f.oriented) {
+    const double v = f.x.tail<2>().norm();
+    const double sigma_v = std::sqrt(0.5 * (f.P(2, 2) + f.P(3, 3)));
+    if (v >= p.orient_min_speed && sigma_v <= p.orient_max_sigma * v) {
+      orientByVelocity(f);
+    } else if (birth && birth->yaw) {
+      orientByAxis(birth->yaw->mean, birth->yaw->variance + box_extra, f);
+    }
+  } else if (birth && birth->yaw) {  // the box's long axis, front and back alike
+    const double y = wrapAxis(birth->yaw->mean - f.x[3]);
+    const double variance = birth->yaw->variance + box_extra;
+    if (y * y < kYawGate * (f.P(3, 3) + variance)) updateYaw(y, variance, f);
+  }
+  if (m.heading) useHeading(*m.heading, p, f, !m.sides);
+  if (!f.oriented) return;
+  const bool clearly_back = f.x[2] < -p.orient_min_speed && f.x[2] * f.x[2] > 4 * f.P(2, 2);
+  const bool back = f.heading.measured() ? asksForReversal(f.heading, f.x[2], f.P(2, 2), p.heading)
+                                         : clearly_back;
+  if (back) reverse(f);
+}
+
+void updateBodyHeading(const MeasuredHeading& seen, const FilterParams& params, Track& track) {
+  const HeadingMode mode = params.heading;
+  if (mode == HeadingMode::kIgnored) return;
+  if (!track.body_heading) {
+    track.body_heading = {seen.yaw, seen.sigma * seen.sigma};
+    track.body_heading_bit = firstFrontBack(seen);
+    return;
+  }
+  const HeadingResidual r = headingResidual(seen, track.body_heading->mean, mode);
+  if (r.y * r.y < kYawGate * (track.body_heading->variance + r.variance)) {
+    scalarUpdate({track.body_heading->mean + r.y, r.variance}, *track.body_heading);
+  } else {  // people turn on the spot
+    track.body_heading = {seen.yaw, seen.sigma * seen.sigma};
+  }
+  track.body_heading_bit = nextFrontBack(track.body_heading_bit, r.same, seen);
+  if (asksForReversal(track.body_heading_bit, 0, 1, mode)) {
+    track.body_heading->mean += kPi;
+    track.body_heading_bit = track.body_heading_bit.reversed();
+  }
+  track.body_heading->mean = wrapAngle(track.body_heading->mean);
+}
+
+}  // namespace perception

@@ -1,0 +1,110 @@
+#include "libperception/filter/update/KalmanUpdate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "libperception/core/Angle.h"
+#include "libperception/core/LogMath.h"
+#include "libperception/filter/state/FixedAxes.h"
+#include "libperception/filter/state/MotionModels.h"
+
+namespace perception {
+namespace {
+
+constexpr double kLogLeastMode = -14;  // log probability, about 1e-6
+
+/// The extent is a static part of the state whose correlation with the rest is left out: seen edges
+/// measure it, too. The floor of its variance keeps systematic errors (rounded corners, mirrors)
+/// from making it certain.
+void updateExtentBy(const Innovation& innovation, Extent& e) {
+  constexpr double kFloor = 0.1 * 0.1;  // [m^2]
+  if (innovation.H_extent.isZero(0)) return;
+  const Vector2 variance(e.var_length, e.var_width);
+  Vector2 change = Vector2::Zero();
+  Matrix2 gain = Matrix2::Zero();
+  withAxes(innovation.y.size(), [&](auto n) {
+    const Eigen::Matrix<double, n, 2> HV =
+        fixedRows<n, 2>(innovation.H_extent) * variance.asDiagonal();
+    const FixedFactors<n> S(fixedRows<n, n>(innovation.S));
+    if (!S.positive()) return;
+    change = HV.transpose() * S.template solve<1>(fixedRows<n, 1>(innovation.y));
+    gain = HV.transpose() * S.template solve<2>(HV);
+  });
+  e.length = std::max(0.1, e.length + change.x());
+  e.width = std::max(0.1, e.width + change.y());
+  e.var_length = std::max(std::min(kFloor, e.var_length), e.var_length - gain(0, 0));
+  e.var_width = std::max(std::min(kFloor, e.var_width), e.var_width - gain(1, 1));
+}
+
+/// Kalman update of one Gaussian in Joseph form (method.md 4); returns the log density of y up to a
+/// constant.
+double gaussianUpdate(const AxisVector& y, const AxisMatrix& S, const Innovation& innovation,
+                      Vector4& x, Matrix4& P) {
+  double log_density = kMinusInfinity;
+  withAxes(y.size(), [&](auto n) {
+    const auto H = fixedRows<n, 4>(innovation.H);
+    const Eigen::Matrix<double, n, 1> fixed_y = fixedRows<n, 1>(y);
+    const FixedFactors<n> factors(fixedRows<n, n>(S));
+    if (!factors.positive()) return;
+    const Eigen::Matrix<double, n, 4> HP = H * P;
+    const Eigen::Matrix<double, 4, n> K = factors.template solve<4>(HP).transpose();
+    const Matrix4 I_KH = Matrix4::Identity() - K * H;
+    x += K * fixed_y;
+    P = (I_KH * P * I_KH.transpose() + K * fixedRows<n, n>(innovation.R) * K.transpose()).eval();
+    P = (0.5 * (P + P.transpose())).eval();
+    log_density = -0.5 * (factors.normSquared(fixed_y) + std::log(factors.determinant()));
+  });
+  return log_density;
+}
+
+}  // namespace
+
+void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
+  if (f.modes.empty()) {
+    gaussianUpdate(innovation.y, innovation.S, innovation, f.x, f.P);
+    if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
+  } else {
+    std::vector<double> log_mode;
+    for (auto& mode : f.modes) {
+      const AxisVector y = innovation.residualOf(mode, f);
+      const AxisMatrix S = innovation.covarianceOf(mode.P);
+      log_mode.push_back(mode.log_probability + gaussianUpdate(y, S, innovation, mode.x, mode.P));
+      if (f.oriented) mode.x[3] = wrapAngle(mode.x[3]);
+    }
+    logNormalize(log_mode);
+    for (std::size_t i = 0; i < log_mode.size(); ++i) {
+      // A floor keeps a mode able to come back within a few scans.
+      f.modes[i].log_probability = std::max(log_mode[i], kLogLeastMode);
+    }
+    combineModes(f);
+  }
+  updateExtentBy(innovation, f.extent);
+}
+
+void placeUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f) {
+  Matrix2 R = m.R + noise;
+  R.diagonal().array() += 1e-9;  // as innovationOf()
+  const Matrix2 S = f.P.topLeftCorner<2, 2>() + R;
+  const FixedFactors<2> factors(S);
+  if (!factors.positive()) return;
+  using Gain = Eigen::Matrix<double, 4, 2>;
+  const Gain K = factors.solve<4>(Eigen::Matrix<double, 2, 4>(f.P.topRows<2>())).transpose();
+  const Vector2 y = Vector2(m.z) - f.x.head<2>();
+  // Joseph form with H = (I 0): A = I - K H.
+  Matrix2 top = Matrix2::Identity() - K.topRows<2>();
+  const Matrix2 bottom = -K.bottomRows<2>();
+  Matrix4 AP;
+  AP.topRows<2>() = top * f.P.topRows<2>();
+  AP.bottomRows<2>() = bottom * f.P.topRows<2>() + f.P.bottomRows<2>();
+  Matrix4 P;
+  P.leftCols<2>() = AP.leftCols<2>() * top.transpose();
+  P.rightCols<2>() = AP.leftCols<2>() * bottom.transpose() + AP.rightCols<2>();
+  const Gain KR = K * R;
+  P += KR * K.transpose();
+  f.x += K * y;
+  if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
+  f.P = 0.5 * (P + P.transpose());
+}
+
+}  // namespace perception

@@ -1,0 +1,112 @@
+#include "libperception/filter/update/SizeEvidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/Angle.h"
+
+namespace perception {
+namespace {
+
+/// Returns lie within the object, so an estimate has a bias of its own [m].
+constexpr double kHeightBias = 0.2, kSideBias = 0.3;
+/// Sides of one object seen again and again have errors alike: the variance stays above [m^2].
+constexpr double kSideFloor = 0.1 * 0.1;
+/// Of a class's objects have any size (two cars taken for one, half a car): no size is a proof.
+constexpr double kShareOfAnySize = 0.05;
+constexpr double kLargest = 15;  // [m] of those
+/// A side tells length or width when it lies this close to the axis or across it.
+constexpr double kAlong = radians(30);
+
+double logNormal(double d, double variance) {
+  return -0.5 * (d * d / variance + std::log(variance));
+}
+
+double logHeight(const ObjectClass& c, const ScalarEstimate& height) {
+  return logNormal(height.mean - c.height,
+                   c.height_sigma * c.height_sigma + kHeightBias * kHeightBias + height.variance);
+}
+
+double logSide(const ScalarEstimate& side, double mean, double sigma) {
+  const double variance = sigma * sigma + kSideBias * kSideBias + side.variance;
+  const double density = std::exp(logNormal(side.mean - mean, variance)) / std::sqrt(kTwoPi);
+  return std::log((1 - kShareOfAnySize) * density + kShareOfAnySize / kLargest);
+}
+
+double logSides(const ObjectClass& c, const Track& track) {
+  return logSide(track.length, c.length, c.length_sigma) +
+         logSide(track.width, c.width, c.width_sigma);
+}
+
+void update(const ScalarEstimate& z, double floor, ScalarEstimate& x) {
+  const double gain = x.variance / (x.variance + z.variance);
+  x.mean += gain * (z.mean - x.mean);
+  x.variance = std::max(std::min(x.variance, floor), x.variance * (1 - gain));
+}
+
+/// Complete sides into length and width. False: none.
+bool seeSides(const PartialBox& sides, double axis, double default_sigma, Track& track) {
+  const double angle = std::abs(wrapAxis(sides.yaw - axis));  // [0, pi/2]
+  if (angle > kAlong && angle < kPi / 2 - kAlong) return false;
+  const bool a_is_length = angle <= kAlong;
+  const auto see = [&](double size, double sigma, ScalarEstimate& x) {
+    const double s = sigma > 0 ? sigma : default_sigma;
+    update({size, s * s}, kSideFloor, x);
+  };
+  if (sides.length_complete)
+    see(sides.length, sides.length_sigma, a_is_length ? track.length : track.width);
+  if (sides.width_complete)
+    see(sides.width, sides.width_sigma, a_is_length ? track.width : track.length);
+  return sides.length_complete || sides.width_complete;
+}
+
+ScalarEstimate mixtureOf(const ClassTable& classes, double ObjectClass::*mean,
+                         double ObjectClass::*sigma) {
+  double sum = 0, square = 0;
+  for (const auto& c : classes.classes) {
+    sum += c.prior * c.*mean;
+    square += c.prior * (c.*mean * c.*mean + c.*sigma * c.*sigma);
+  }
+  return {sum, square - sum * sum};
+}
+
+}  // namespace
+
+void startSizes(const FilterModel& model, Track& track) {
+  double height = 0, height_variance = 0;
+  for (const auto& c : model.classes.classes) {
+    height += c.prior * c.height;
+    height_variance += c.prior * c.height_sigma * c.height_sigma;
+  }
+  track.height = {height, height_variance + 0.25};
+  track.length = mixtureOf(model.classes, &ObjectClass::length, &ObjectClass::length_sigma);
+  track.width = mixtureOf(model.classes, &ObjectClass::width, &ObjectClass::width_sigma);
+}
+
+void updateSizes(const Measurement& m, std::optional<double> axis, const FilterModel& model,
+                 Track& track) {
+  const auto& p = model.params;
+  const auto count = [&](double exponent, const auto& evidence, const auto& see) {
+    if (exponent <= 0) {
+      see();
+      return;
+    }
+    for (ClassId j = 0; j < model.classes.size(); ++j)
+      track.log_class[static_cast<std::size_t>(j)] -= exponent * evidence(model.classes[j]);
+    see();
+    for (ClassId j = 0; j < model.classes.size(); ++j)
+      track.log_class[static_cast<std::size_t>(j)] += exponent * evidence(model.classes[j]);
+  };
+  if (m.height) {
+    count(
+        p.height_exponent, [&](const ObjectClass& c) { return logHeight(c, track.height); },
+        [&] { update(*m.height, 0, track.height); });
+  }
+  if (m.sides && axis) {
+    count(
+        p.side_exponent, [&](const ObjectClass& c) { return logSides(c, track); },
+        [&] { seeSides(*m.sides, *axis, p.side_sigma, track); });
+  }
+}
+
+}  // namespace perception

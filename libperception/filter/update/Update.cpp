@@ -1,0 +1,302 @@
+#include "libperception/filter/update/Update.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "libperception/core/Chi2.h"
+#include "libperception/core/LogMath.h"
+#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/update/HeadingUpdate.h"
+#include "libperception/filter/update/KalmanUpdate.h"
+#include "libperception/filter/update/ScalarUpdate.h"
+#include "libperception/filter/update/SizeEvidence.h"
+#include "libperception/measurement/ExtentUpdate.h"
+#include "libperception/measurement/PositionOnlyModel.h"
+
+namespace perception {
+namespace {
+
+/// A class filter this surprised by its own object's measurement (one true pair in 10^5) starts
+/// anew from it: an extended filter that has lost its object would never come back, and its class
+/// could never win again.
+constexpr double kLostProbability = 1 - 1e-5;
+
+/// What one true pair in a hundred exceeds surprises a decided class.
+constexpr double kSurprisingProbability = 0.99;
+
+/// Chi-square quantiles by number of axes.
+struct Quantiles {
+  explicit Quantiles(double probability) {
+    for (int n = 1; n <= kMaxAxes; ++n)
+      of[static_cast<std::size_t>(n)] = chi2Quantile(probability, n);
+  }
+  std::array<double, kMaxAxes + 1> of{};
+};
+
+double lostNis(Eigen::Index axes) {
+  static const Quantiles quantiles(kLostProbability);
+  return quantiles.of[static_cast<std::size_t>(axes)];
+}
+
+double surprisingNis(Eigen::Index axes) {
+  static const Quantiles quantiles(kSurprisingProbability);
+  return quantiles.of[static_cast<std::size_t>(axes)];
+}
+
+/// Floor and renormalization of the class posterior (method.md 5.6).
+void clampClasses(double epsilon, std::vector<double>& log_class) {
+  logNormalize(log_class);
+  if (epsilon <= 0) return;
+  const double floor = std::log(epsilon);
+  if (std::none_of(log_class.begin(), log_class.end(), [&](double lp) { return lp < floor; }))
+    return;
+  for (double& lp : log_class) lp = std::max(lp, floor);
+  logNormalize(log_class);
+}
+
+double speedSigma(const ObjectClass& c, const FilterModel& model) {
+  return std::min(model.params.start_speed_sigma, std::max(0.5 * c.max_speed, 0.1));
+}
+
+/// A newborn's velocity, with what a range rate says of it (method.md 4.3).
+void takeRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
+  const auto measure = [&](const Vector2& u, double speed, double variance) {
+    const Vector2 Pu = f.P.bottomRightCorner<2, 2>() * u;
+    const Vector2 K = Pu / (u.dot(Pu) + variance);
+    f.x.tail<2>() += K * (speed - u.dot(f.x.tail<2>()));
+    f.P.bottomRightCorner<2, 2>() -= K * Pu.transpose();
+  };
+  measure(seen.direction, seen.along.mean, seen.along.variance);
+  if (seen.across_sigma)
+    measure({-seen.direction.y(), seen.direction.x()}, 0, *seen.across_sigma * *seen.across_sigma);
+}
+
+/// The class's filter from one measurement. Wheeled objects start without heading unless the box
+/// shows it.
+ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const FilterModel& model) {
+  ClassFilter f;
+  f.x.head<2>() = birth.position;
+  f.P.topLeftCorner<2, 2>() = birth.covariance;
+  f.extent = birth.extent;
+  if (c.motion == Motion::kStatic) return f;
+  const double sigma = speedSigma(c, model);
+  f.P(2, 2) = f.P(3, 3) = sigma * sigma;
+  if (birth.radial_speed) takeRadialSpeed(*birth.radial_speed, f);
+  startModes(c, f);
+  if (c.motion == Motion::kWheeled && birth.yaw) {
+    const double extra = model.params.shape_yaw_sigma;
+    orientByAxis(birth.yaw->mean, birth.yaw->variance + extra * extra, f);
+    if (birth.speed) {
+      f.x[2] = birth.speed->mean;
+      f.P(2, 2) = birth.speed->variance;
+      startModes(c, f);
+    }
+  }
+  return f;
+}
+
+/// The direction of a class's length axis [rad], when something tells it.
+std::optional<double> lengthAxis(const ObjectClass& c, const ClassFilter& f, const Track& track,
+                                 const PartialBox& sides) {
+  if (f.oriented) return f.x[3];
+  if (c.motion == Motion::kStatic) return sides.yaw;
+  if (c.motion == Motion::kConstantVelocity && track.body_heading) return track.body_heading->mean;
+  return {};
+}
+
+/// The filter of another class from a decided one's: the same place and velocity.
+ClassFilter converted(const ObjectClass& from, const ClassFilter& source, const ObjectClass& to,
+                      const Extent& extent) {
+  ClassFilter f;
+  const Kinematics k = kinematicsOf(from, source);
+  const Matrix4 J = k.J.topRows<4>();
+  f.extent = extent;
+  f.x = k.q.head<4>();
+  f.P = J * source.P * J.transpose();
+  if (to.motion == Motion::kStatic) {
+    f.x.tail<2>().setZero();
+    f.P.rightCols<2>().setZero();
+    f.P.bottomRows<2>().setZero();
+    return f;
+  }
+  if (from.motion == Motion::kStatic) {
+    const double sigma = 0.5 * std::min(to.max_speed, 1.0);  // [m/s] it stood until now
+    f.P(2, 2) = f.P(3, 3) = sigma * sigma;
+  }
+  if (to.motion == Motion::kWheeled && source.oriented) {
+    f.x = source.x, f.P = source.P;
+    f.oriented = true;
+    f.heading = source.heading;
+  }
+  startModes(to, f);
+  return f;
+}
+
+/// Decides a class that has become sure, or takes the decision back.
+void decideClass(const FilterModel& model, bool surprised, Track& track) {
+  if (model.params.decide_class <= 0) return;
+  const ClassId best = track.likeliestClass();
+  const bool sure = !surprised && std::exp(track.log_class[static_cast<std::size_t>(best)]) >=
+                                      model.params.decide_class;
+  if (track.decided_class >= 0 && (!sure || best != track.decided_class)) {
+    for (ClassId j = 0; j < model.classes.size(); ++j) {
+      ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
+      if (j != track.decided_class) {
+        f = converted(model.classes[track.decided_class],
+                      track.bank[static_cast<std::size_t>(track.decided_class)], model.classes[j],
+                      f.extent);
+      }
+    }
+    track.decided_class = -1;
+  } else if (sure) {
+    track.decided_class = best;
+  }
+}
+
+/// A filter that lost the object: from the measurement, with the velocity of the class that
+/// explains it best.
+ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best,
+                          const FilterModel& model) {
+  ClassFilter f = startFilter(c, birth, model);
+  if (c.motion != Motion::kStatic && !f.oriented) {
+    f.x.tail<2>() = best.q.segment<2>(2);
+    startModes(c, f);
+  }
+  return f;
+}
+
+/// Evidence of the speed: none up to the class's max_speed, then a Gaussian tail (no pedestrian
+/// walks at 5 m/s).
+double logSpeed(const ObjectClass& c, const ClassFilter& f, const FilterModel& model) {
+  if (c.motion == Motion::kStatic || model.params.speed_slack <= 0) return 0;
+  const double speed = f.oriented ? std::abs(f.x[2]) : f.x.tail<2>().norm();
+  const double variance = f.oriented ? f.P(2, 2) : 0.5 * (f.P(2, 2) + f.P(3, 3));
+  const double excess = speed - c.max_speed, slack = model.params.speed_slack * c.max_speed;
+  return excess <= 0 ? 0 : -0.5 * excess * excess / (slack * slack + variance);
+}
+
+/// The length axis [rad] that the likeliest class with a heading gives the object.
+std::optional<double> axisOf(const FilterModel& model, const Track& track) {
+  std::optional<double> axis;
+  double best = kMinusInfinity;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    const ClassFilter& f = track.bank[track.filterOf(i)];
+    if (!track.live(j) || !f.oriented || track.log_class[i] <= best) continue;
+    best = track.log_class[i];
+    axis = f.x[3];
+  }
+  return axis;
+}
+
+}  // namespace
+
+Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihood& pair,
+               const MeasurementScan& scan, std::uint64_t scan_index, const FilterModel& model) {
+  const Measurement& m = scan.measurements[pair.measurement];
+  Track track = std::move(predicted);
+  track.history = extendHistory(track.history, scan_index, pair.measurement);
+  track.existence = model.params.existence_max;
+  track.last_in_view = scan.state.stamp;
+  track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
+  ++track.hits[modalityIndex(scan.modality)];
+
+  const auto best =
+      static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
+  const ClassId live = track.decided_class < 0 ? best : track.decided_class;
+  const Kinematics best_kinematics =
+      kinematicsOf(model.classes[live], track.bank[static_cast<std::size_t>(live)]);
+  if (m.heading) updateBodyHeading(*m.heading, model.params, track);
+  const PositionOnlyModel* place =
+      row.predictions.empty() ? dynamic_cast<const PositionOnlyModel*>(scan.model.get()) : nullptr;
+  const auto axes_seen = place ? 2 : residual(*scan.model, m, m.z).size();
+  const double lost = lostNis(axes_seen);
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const ObjectClass& c = model.classes[j];
+    const auto i = static_cast<std::size_t>(j);
+    ClassFilter& f = track.bank[track.filterOf(i)];
+    if (!track.live(j)) {
+      track.log_class[i] +=
+          pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
+      continue;
+    }
+    const bool is_lost = !(pair.nis[i] < lost);
+    std::optional<BirthState> birth;
+    if (is_lost || c.motion == Motion::kWheeled) birth = scan.model->birth(m, j, scan.state);
+    if (!is_lost) {
+      if (place) {
+        placeUpdate(m, place->placeNoise(j), f);
+      } else {
+        const Kinematics k = kinematicsOf(c, f);
+        kalmanUpdate(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
+      }
+    } else if (birth) {
+      f = restartFilter(c, *birth, best_kinematics, model);
+    }
+    if (c.motion == Motion::kWheeled) findHeading(m, birth, model.params, f);
+    if (m.sides) {
+      if (const auto yaw = lengthAxis(c, f, track, *m.sides))
+        f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
+    }
+    track.log_class[i] +=
+        pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
+  }
+  if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
+  updateSizes(m, axisOf(model, track), model, track);
+  clampClasses(model.params.class_epsilon, track.log_class);
+  decideClass(model, pair.nis[static_cast<std::size_t>(best)] > surprisingNis(axes_seen), track);
+  return track;
+}
+
+Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementScan& scan,
+                const FilterModel& model) {
+  Track track = std::move(predicted);
+  if (row.in_view) track.last_in_view = scan.state.stamp;
+  if (row.detection <= 0 || model.params.existence_decay > 0) return track;
+  const double r = track.existence;
+  track.existence = r * (1 - row.detection) / (1 - r * row.detection);
+  for (std::size_t j = 0; j < track.log_class.size(); ++j) {
+    // Misses of one object are no more independent than its labels.
+    track.log_class[j] += scan.model->detectionExponent() * std::log1p(-row.detection_by_class[j]);
+  }
+  clampClasses(model.params.class_epsilon, track.log_class);
+  decideClass(model, false, track);
+  return track;
+}
+
+Track newTrack(const BirthLikelihood& births, std::size_t measurement, const MeasurementScan& scan,
+               std::uint64_t scan_index, const FilterModel& model) {
+  const Measurement& m = scan.measurements[measurement];
+  Track track;
+  track.id = birthId(scan_index, measurement);
+  track.history = extendHistory(0, scan_index, measurement);
+  track.birth = track.stamp = track.last_in_view = scan.state.stamp;
+  track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
+  track.hits[modalityIndex(scan.modality)] = 1;
+  track.existence = std::min(births.existence, model.params.existence_max);
+  track.log_class = births.log_class;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const ObjectClass& c = model.classes[j];
+    const auto birth = scan.model->birth(m, j, scan.state);
+    if (birth) {
+      track.bank.push_back(startFilter(c, *birth, model));
+    } else {
+      track.bank.emplace_back();
+      track.log_class[static_cast<std::size_t>(j)] = kMinusInfinity;
+      track.existence = 0;  // no state: cannot be tracked
+    }
+    if (birth && m.heading && c.motion == Motion::kWheeled)
+      useHeading(*m.heading, model.params, track.bank.back());
+  }
+  if (m.heading) updateBodyHeading(*m.heading, model.params, track);
+  track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
+  if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
+  startSizes(model, track);
+  updateSizes(m, axisOf(model, track), model, track);
+  clampClasses(model.params.class_epsilon, track.log_class);
+  return track;
+}
+
+}  // namespace perception

@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+
+#include "libperception/core/Error.h"
+#include "libperception/importers/ImportText.h"
+#include "libperception/importers/Importer.h"
+#include "libperception/importers/KittiImport.h"
+
+namespace perception {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kLidarLabel = "LIDAR_TOP";
+constexpr const char* kImageLabel = "CAMERA_LEFT";
+constexpr const char* kBoxesLabel = "LABELLED_BOXES";
+/// Frames that stand alone are so far apart in time [Hz] and place [m] that no object of one is one
+/// of the next.
+constexpr double kAloneRate = 0.1, kAloneDistance = 500;
+
+/// Single frames in the layout of KITTI's object benchmark: image_2, calib, label_2, velodyne.
+class ImagesImporter final : public Importer {
+ public:
+  void declare(CLI::App& cli) override {
+    cli.add_option("--dir", dir_,
+                   "folder with image_2/ and calib/, and where there are label_2/ and velodyne/")
+        ->required();
+    cli.add_flag("--label-boxes", label_boxes_,
+                 "the labels' image boxes as detections LABELLED_BOXES: a detector without fault");
+  }
+  void prepare(ImportOptions& options) override {
+    alone_ = options.rate <= 0;
+    if (alone_) options.rate = kAloneRate;
+    if (kRepeatRate < 2 * options.rate * options.repeat)
+      failUsage(
+          "--repeat is too large for --rate: frames follow each other at --rate, each shown at 200 "
+          "Hz");
+  }
+  void run(ImportLog& log) override;
+
+ private:
+  struct Frame {
+    FrameFile file;
+    Pose3 T_world_ego = Pose3::Identity();
+    KittiCalibration calibration;
+    std::optional<LidarCloud> cloud;
+    std::vector<KittiLabel> labels;
+  };
+  Frame read(const FrameFile& file, ImportLog& log) const;
+  void write(const Frame& frame, Stamp stamp, bool last, ImportLog& log) const;
+  std::string path(const char* folder) const { return (fs::path(dir_) / folder).string(); }
+
+  std::string dir_;
+  bool label_boxes_ = false;
+  bool alone_ = true;  ///< frames of different places; else a sequence of a standing vehicle
+};
+
+ImagesImporter::Frame ImagesImporter::read(const FrameFile& file, ImportLog& log) const {
+  Frame frame;
+  frame.file = file;
+  const std::string calibration = fileOfStem(path("calib"), file.stem, {".txt"});
+  if (calibration.empty()) {
+    throw DataError(
+        fmt::format("{}/{}.txt: no calibration for {}", path("calib"), file.stem, file.path),
+        ExitCode::kNoInput);
+  }
+  frame.calibration = readKittiCalibration(calibration);
+  if (fs::exists(path("label_2"))) {
+    const std::string labels = fileOfStem(path("label_2"), file.stem, {".txt"});
+    if (labels.empty()) {
+      log.missing("labels", path("label_2"), file.number);
+    } else {
+      frame.labels = readKittiObjectLabels(labels, file.number);
+      for (KittiLabel& label : frame.labels) label.id += 1000 * file.number;  // no two are one
+    }
+    log.expectTruth();
+  }
+  if (fs::exists(path("velodyne"))) {
+    const std::string scan = fileOfStem(path("velodyne"), file.stem, {".bin", ".bin.gz"});
+    if (scan.empty()) {
+      log.missing("scan", path("velodyne"), file.number);
+    } else {
+      frame.cloud = readKittiScan(scan);
+    }
+  }
+  return frame;
+}
+
+void ImagesImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog& log) const {
+  const KittiCalibration& calibration = frame.calibration;
+  const Pose3 T_ego_velo = levelVelodyne(calibration);
+  const Pose3 T_ego_camera =
+      T_ego_velo * calibration.T_cam0_velo.inverse() * calibration.T_cam0_cam2;
+  log.ego(stamp, frame.T_world_ego);
+  if (last) log.frame(stamp, frame.file.number);
+  SensorFrame out;
+  out.stamp = stamp;
+  if (frame.cloud) {
+    out.sensor = kLidarLabel;
+    out.T_ego_sensor = T_ego_velo;
+    out.data = *frame.cloud;
+    log.sensor(out);
+  }
+  if (label_boxes_) {
+    ObjectDetections found;
+    found.camera = calibration.camera;
+    for (const KittiLabel& label : frame.labels) {
+      if (label.type == "DontCare") continue;
+      ObjectDetection& object = found.objects.emplace_back();
+      object.label = label.type;
+      object.score = 1;
+      object.image_box = label.image_box;
+      object.heading = wrapAngle(label.alpha);
+    }
+    out.sensor = kBoxesLabel;
+    out.T_ego_sensor = T_ego_camera;
+    out.data = std::move(found);
+    log.sensor(out);
+  }
+  if (!last) return;  // number, image and truth stand at the last showing
+  ImportedImage image;
+  image.label = kImageLabel;
+  image.path = frame.file.path;
+  image.stamp = stamp;
+  image.camera = calibration.camera;
+  image.T_ego_camera = T_ego_camera;
+  log.image(image, frame.file.number);
+  for (const KittiLabel& label : frame.labels)
+    log.truth(stamp, truthOf(label, calibration, frame.T_world_ego * T_ego_velo, frame.cloud));
+}
+
+void ImagesImporter::run(ImportLog& log) {
+  const auto files = frameFiles(path("image_2"), {".png", ".jpg", ".jpeg"});
+  std::int64_t place = 0;  // numbers of single frames are no times
+  for (const FrameFile& file : files) {
+    if (!log.options().wants(file.number)) continue;
+    Frame frame = read(file, log);
+    if (alone_) frame.T_world_ego = makePose(kAloneDistance * static_cast<double>(place), 0, 0, 0);
+    const Stamp begin = stampAtRate(kUndatedStart, place++, log.options().rate);
+    const int repeat = log.options().repeat;
+    if (alone_) log.ego(begin + -kStillPoses, frame.T_world_ego);
+    for (int k = 0; k < repeat; ++k)
+      write(frame, stampAtRate(begin, k, kRepeatRate), k + 1 == repeat, log);
+    if (alone_)
+      log.ego(stampAtRate(begin, repeat - 1, kRepeatRate) + kStillPoses, frame.T_world_ego);
+    log.progress(place, static_cast<std::int64_t>(files.size()));
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Importer> makeImagesImporter() { return std::make_unique<ImagesImporter>(); }
+
+}  // namespace perception

@@ -1,0 +1,278 @@
+#include "libperception/importers/ImportText.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "libperception/core/Error.h"
+
+namespace perception {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+template <class Number>
+bool parseWhole(std::string_view s, Number& value) {
+  const auto result = std::from_chars(s.data(), s.data() + s.size(), value);
+  return result.ec == std::errc() && result.ptr == s.data() + s.size();
+}
+
+bool endsWith(const std::string& text, const std::string& ending) {
+  return text.size() > ending.size() &&
+         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+/// Days since 1970-01-01 in the proleptic Gregorian calendar (Howard Hinnant's algorithm).
+std::int64_t daysSince1970(std::int64_t year, std::int64_t month, std::int64_t day) {
+  const std::int64_t y = year - (month <= 2 ? 1 : 0), era = y / 400, of_era = y - 400 * era;
+  const std::int64_t of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
+  return era * 146097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719468;
+}
+
+/// The digits of text[begin, begin + count) as a number in [least, most].
+bool field(std::string_view text, std::size_t begin, std::size_t count, std::int64_t least,
+           std::int64_t most, std::int64_t& value) {
+  return begin + count <= text.size() && parseWhole(text.substr(begin, count), value) &&
+         value >= least && value <= most;
+}
+
+}  // namespace
+
+TextRow::TextRow(const std::string& path, std::size_t line, std::string_view text,
+                 const char* separators)
+    : path_(path), line_(line) {
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
+    if (end > begin) fields_.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+bool TextRow::isNumber(std::size_t i) const {
+  double value = 0;
+  return parse(at(i), value);
+}
+
+double TextRow::real(std::size_t i) const {
+  double value = 0;
+  if (!parse(at(i), value) || !std::isfinite(value)) fail(i, "a number");
+  return value;
+}
+
+std::int64_t TextRow::integer(std::size_t i) const {
+  const double value = real(i);
+  if (value != std::floor(value) || std::abs(value) > 1e9) fail(i, "a whole number");
+  return static_cast<std::int64_t>(value);
+}
+
+std::int64_t TextRow::frame(std::size_t i) const {
+  const std::int64_t value = integer(i);
+  if (value < 0) fail(i, "a frame number of at least 0");
+  return value;
+}
+
+Eigen::Matrix<double, 3, 4> TextRow::matrix34(std::size_t first) const {
+  expect(size() == first + 12, fmt::format("{}", first + 12));
+  Eigen::Matrix<double, 3, 4> m;
+  for (std::size_t i = 0; i < 12; ++i) {
+    m(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = real(first + i);
+  }
+  return m;
+}
+
+Pose3 TextRow::pose34(std::size_t first) const { return rigid(matrix34(first)); }
+
+Pose3 TextRow::rotation33(std::size_t first) const {
+  expect(size() == first + 9, fmt::format("{}", first + 9));
+  Eigen::Matrix<double, 3, 4> m = Eigen::Matrix<double, 3, 4>::Zero();
+  for (std::size_t i = 0; i < 9; ++i) {
+    m(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) = real(first + i);
+  }
+  return rigid(m);
+}
+
+/// A rigid motion from numbers of limited precision; their rotation is made exactly orthonormal.
+Pose3 TextRow::rigid(const Eigen::Matrix<double, 3, 4>& m) const {
+  const Eigen::Matrix3d r = m.leftCols<3>();
+  if (!(r * r.transpose()).isIdentity(1e-2) || r.determinant() < 0)
+    failLine("the 3x3 part is no rotation");
+  Pose3 pose = Pose3::Identity();
+  pose.linear() = Eigen::Quaterniond(r).normalized().toRotationMatrix();
+  pose.translation() = m.col(3);
+  return pose;
+}
+
+void TextRow::expect(bool holds, const std::string& expected) const {
+  if (!holds)
+    throw DataError(fmt::format("{}:{}: {} fields, expected {}", path_, line_, size(), expected));
+}
+
+void TextRow::fail(std::size_t i, const std::string& expected) const {
+  throw DataError(fmt::format("{}:{}: field {}: found '{}', expected {}", path_, line_, i + 1,
+                              at(i), expected));
+}
+
+void TextRow::failLine(const std::string& message) const {
+  throw DataError(fmt::format("{}:{}: {}", path_, line_, message));
+}
+
+bool TextRow::parse(std::string_view s, double& value) {
+  if (!s.empty() && s.front() == '+') s.remove_prefix(1);
+  return parseWhole(s, value);
+}
+
+std::string_view TextRow::at(std::size_t i) const {
+  if (i >= fields_.size()) failLine(fmt::format("field {} is missing", i + 1));
+  return fields_[i];
+}
+
+std::string readBytes(const std::string& path, std::size_t most) {
+  if (fs::is_directory(path)) throw DataError(path + ": a folder, expected a file");
+  const gzFile file = gzopen(path.c_str(), "rb");  // reads plain files, too
+  if (file == nullptr)
+    throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);
+  std::string bytes;
+  int got = 0;
+  do {
+    const std::size_t begin = bytes.size();
+    bytes.resize(begin + (1U << 20));
+    got = gzread(file, bytes.data() + begin, 1U << 20);
+    bytes.resize(begin + static_cast<std::size_t>(std::max(got, 0)));
+  } while (got > 0 && bytes.size() <= most);
+  // A cut gzip file shows only when it is closed.
+  const int closed = gzclose(file);
+  if (got < 0 || closed != Z_OK) throw DataError(fmt::format("{}: bad or cut gzip data", path));
+  if (bytes.size() > most)
+    throw DataError(fmt::format("{}: more than {} bytes, expected one frame", path, most));
+  return bytes;
+}
+
+void forEachRow(const std::string& path, const char* separators,
+                const std::function<void(const TextRow&)>& use) {
+  const std::string bytes = readBytes(path, std::size_t{1} << 30);
+  const std::string_view text(bytes);
+  for (std::size_t begin = 0, number = 1; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const TextRow row(path, number, text.substr(begin, end - begin), separators);
+    if (row.size() > 0) use(row);
+    begin = end + 1;
+  }
+}
+
+void requireFolder(const std::string& path) {
+  if (!fs::exists(path))
+    throw DataError(fmt::format("{}: no such folder", path), ExitCode::kNoInput);
+  if (!fs::is_directory(path)) throw DataError(fmt::format("{}: not a folder", path));
+}
+
+std::vector<FrameFile> frameFiles(const std::string& dir, const std::vector<std::string>& endings) {
+  requireFolder(dir);
+  std::vector<FrameFile> files;
+  bool numbers = true;
+  for (const auto& entry : fs::directory_iterator(dir)) {
+    const std::string name = entry.path().filename().string();
+    for (const std::string& ending : endings) {
+      if (!endsWith(name, ending)) continue;
+      FrameFile file{0, name.substr(0, name.size() - ending.size()), entry.path().string()};
+      numbers = numbers && parseWhole(std::string_view(file.stem), file.number) &&
+                file.number >= 0 && file.number <= 1'000'000'000;
+      files.push_back(std::move(file));
+      break;
+    }
+  }
+  if (files.empty()) {
+    throw DataError(fmt::format("{}: no file that ends in {}", dir, fmt::join(endings, ", ")),
+                    ExitCode::kNoInput);
+  }
+  std::sort(files.begin(), files.end(), [numbers](const FrameFile& a, const FrameFile& b) {
+    return numbers && a.number != b.number ? a.number < b.number : a.path < b.path;
+  });
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!numbers) files[i].number = static_cast<std::int64_t>(i);
+    if (i > 0 && files[i].number == files[i - 1].number)
+      throw DataError(fmt::format("{} and {}: two files of one frame", files[i - 1].path,
+                                  fs::path(files[i].path).filename().string()));
+  }
+  return files;
+}
+
+std::string fileOfStem(const std::string& dir, const std::string& stem,
+                       const std::vector<std::string>& endings) {
+  for (const std::string& ending : endings) {
+    const fs::path path = fs::path(dir) / (stem + ending);
+    if (fs::exists(path)) return path.string();
+  }
+  return {};
+}
+
+std::vector<StampedPose> readTumPoses(const std::string& path) {
+  std::vector<StampedPose> poses;
+  forEachRow(path, kSpaces, [&](const TextRow& row) {
+    if (row.text(0).front() == '#') return;
+    row.expect(row.size() == 8, "8: t x y z qx qy qz qw");
+    const Eigen::Quaterniond q(row.real(7), row.real(4), row.real(5), row.real(6));
+    if (std::abs(q.norm() - 1) > 1e-2) row.failLine("qx qy qz qw is no unit quaternion");
+    StampedPose& p = poses.emplace_back();
+    p.stamp = stampOfSeconds(row.text(0)).value_or(Stamp::fromSeconds(row.real(0)));
+    p.pose.linear() = q.normalized().toRotationMatrix();
+    p.pose.translation() = Vector3(row.real(1), row.real(2), row.real(3));
+  });
+  if (poses.empty()) throw DataError(fmt::format("{}: no pose in it", path));
+  return poses;
+}
+
+Pose3 interpolate(const Pose3& a, const Pose3& b, double share) {
+  Pose3 pose = Pose3::Identity();
+  pose.translation() = (1 - share) * a.translation() + share * b.translation();
+  pose.linear() = Eigen::Quaterniond(a.linear())
+                      .slerp(share, Eigen::Quaterniond(b.linear()))
+                      .toRotationMatrix();
+  return pose;
+}
+
+std::optional<Stamp> stampOfSeconds(std::string_view text) {
+  const std::size_t dot = std::min(text.find('.'), text.size());
+  std::int64_t seconds = 0, fraction = 0;
+  if (!parseWhole(text.substr(0, dot), seconds) || seconds < 0 || seconds > 9'000'000'000)
+    return {};
+  std::string digits(dot < text.size() ? text.substr(dot + 1, 9) : std::string_view());
+  digits.resize(9, '0');
+  if (!std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; }) ||
+      !parseWhole(std::string_view(digits), fraction))
+    return {};
+  return Stamp{seconds * 1'000'000'000 + fraction};
+}
+
+std::optional<Stamp> stampOfDay(std::string_view text) {
+  std::int64_t year = 0, month = 0, day = 0;
+  if (text.size() != 10 || text[4] != '-' || text[7] != '-') return {};
+  if (!field(text, 0, 4, 1970, 2105, year) || !field(text, 5, 2, 1, 12, month) ||
+      !field(text, 8, 2, 1, 31, day))
+    return {};
+  return Stamp{daysSince1970(year, month, day) * 86400 * 1'000'000'000};
+}
+
+std::optional<Stamp> stampOfDate(std::string_view text) {
+  if (text.size() < 19 || text[13] != ':' || text[16] != ':') return {};
+  const auto day = stampOfDay(text.substr(0, 10));
+  std::int64_t hour = 0, minute = 0;
+  const auto seconds = stampOfSeconds(text.substr(17));
+  if (!day || !seconds || !field(text, 11, 2, 0, 23, hour) || !field(text, 14, 2, 0, 59, minute))
+    return {};
+  return Stamp{day->ns + (hour * 60 + minute) * 60 * 1'000'000'000 + seconds->ns};
+}
+
+Stamp stampAtRate(Stamp first, std::int64_t k, double rate) {
+  const double ticks = std::round(static_cast<double>(k) / rate * (1e9 / kTickNs));
+  return {first.ns + static_cast<std::int64_t>(ticks) * kTickNs};
+}
+
+}  // namespace perception

@@ -1,0 +1,36 @@
+#include "libperception/importers/Importer.h"
+
+#include "libperception/core/Error.h"
+
+namespace perception {
+
+std::vector<ImporterRow>& importers() {
+  static std::vector<ImporterRow> rows = {
+      {"kitti", "one sequence of the KITTI tracking benchmark", kUsesRate | kUsesImages,
+       &makeKittiImporter},
+      {"clouds", "a folder of point clouds (.bin .pcd .ply .csv), with stamps and poses", kUsesRate,
+       &makeCloudsImporter},
+      {"images", "single frames of the KITTI object benchmark: images, labels, scans",
+       kUsesRate | kUsesImages | kUsesRepeat, &makeImagesImporter},
+      {"vod", "View of Delft: radar points, lidar, image, labels, poses",
+       kUsesRate | kUsesImages | kUsesRepeat, &makeVodImporter},
+      {"radiate", "RADIATE: Navtech radar, lidar, camera, GPS, annotations", kUsesImages,
+       &makeRadiateImporter},
+      {"wads", "WADS: lidar scans in falling snow with a class per point", kUsesRate,
+       &makeWadsImporter},
+      {"snowykitti", "SnowyKITTI: KITTI scans with simulated snow, labeled per point", kUsesRate,
+       &makeSnowyKittiImporter},
+      {"comma2k19", "comma2k19: tracks of a car's radar, ego motion, GNSS", 0,
+       &makeComma2k19Importer},
+      {"udacity", "Udacity's radar and laser measurements of one object (simulated)", 0,
+       &makeUdacityImporter},
+      {"nmea", "a GPS receiver's NMEA 0183 log: the vehicle's own way, or an object's", 0,
+       &makeNmeaImporter},
+      {"gpx", "a GPX track: the vehicle's own way, or an object's", 0, &makeGpxImporter},
+  };
+  return rows;
+}
+
+void failUsage(const std::string& message) { throw Error(ExitCode::kUsage, message); }
+
+}  // namespace perception

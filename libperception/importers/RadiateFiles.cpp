@@ -1,0 +1,103 @@
+#include "libperception/importers/RadiateFiles.h"
+
+#include <fmt/format.h>
+#include <mrpt/containers/yaml.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "libperception/core/Error.h"
+#include "libperception/importers/ImportText.h"
+
+namespace perception {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// RADIATE's class names in KITTI's terms; others are kept as they are.
+std::string typeOf(const std::string& name) {
+  static const std::map<std::string, std::string> kTypes = {{"car", "Car"},
+                                                            {"van", "Van"},
+                                                            {"truck", "Truck"},
+                                                            {"bus", "Bus"},
+                                                            {"bicycle", "Cyclist"},
+                                                            {"pedestrian", "Pedestrian"},
+                                                            {"motorbike", "Motorbike"}};
+  const auto row = kTypes.find(name);
+  return row == kTypes.end() ? name : row->second;
+}
+
+}  // namespace
+
+FrameTimes readRadiateTimes(const fs::path& path) {
+  FrameTimes times;
+  const std::string name = path.string();
+  forEachRow(name, kSpaces, [&](const TextRow& row) {
+    row.expect(row.size() == 4, "4: Frame: N Time: SECONDS");
+    const auto stamp = stampOfSeconds(row.text(3));
+    if (!stamp) row.fail(3, "seconds since 1970");
+    times[row.frame(1)] = *stamp;
+  });
+  if (times.empty()) throw DataError(name + ": no time in it");
+  return times;
+}
+
+std::map<std::int64_t, std::vector<RadiateAnnotation>> readRadiateAnnotations(
+    const std::string& path) {
+  const auto fault = [&](const std::string& what) { throw DataError(path + ": " + what); };
+  const auto json = nlohmann::json::parse(readBytes(path), nullptr, false);
+  if (!json.is_array()) fault("no JSON list of objects");
+  std::map<std::int64_t, std::vector<RadiateAnnotation>> by_frame;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const auto& object = json[i];
+    const std::string place = fmt::format("object {}", i);
+    if (!object.is_object() || !object.contains("id") || !object["id"].is_number_integer() ||
+        !object.contains("class_name") || !object["class_name"].is_string() ||
+        !object.contains("bboxes") || !object["bboxes"].is_array())
+      fault(place + ": expected id, class_name and bboxes");
+    for (std::size_t k = 0; k < object["bboxes"].size(); ++k) {
+      const auto& box = object["bboxes"][k];
+      if (box.is_array() && box.empty()) continue;  // not there in this frame
+      const bool good = box.is_object() && box.contains("position") && box["position"].is_array() &&
+                        box["position"].size() == 4 && box.contains("rotation") &&
+                        box["rotation"].is_number() &&
+                        std::all_of(box["position"].begin(), box["position"].end(),
+                                    [](const auto& v) { return v.is_number(); });
+      if (!good)
+        fault(fmt::format("{}, box {}: expected position [x, y, w, h] and rotation", place, k));
+      const auto& p = box["position"];
+      by_frame[static_cast<std::int64_t>(k) + 1].push_back(
+          {object["id"].get<std::int64_t>(), typeOf(object["class_name"].get<std::string>()),
+           p[0].get<double>(), p[1].get<double>(), p[2].get<double>(), p[3].get<double>(),
+           box["rotation"].get<double>()});
+    }
+  }
+  return by_frame;
+}
+
+RadiateCalibration readRadiateCalibration(const std::string& path) {
+  if (!fs::exists(path)) throw DataError(path + ": no such file", ExitCode::kNoInput);
+  RadiateCalibration c;
+  try {
+    const auto yaml = mrpt::containers::yaml::FromFile(path);
+    const auto place = [&](const char* name) {
+      const auto t = yaml[name]["T"];
+      return Vector3(t(0).as<double>(), t(1).as<double>(), t(2).as<double>());
+    };
+    c.lidar = place("lidar_calib");
+    c.camera = place("left_cam_calib");
+    const auto camera = yaml["left_cam_calib"];
+    c.model.fx = camera["fx"].as<double>(), c.model.fy = camera["fy"].as<double>();
+    c.model.cx = camera["cx"].as<double>(), c.model.cy = camera["cy"].as<double>();
+    for (const char* name : {"k1", "k2", "p1", "p2", "k3"})
+      c.distortion.push_back(camera[name].as<double>());
+  } catch (const std::exception& e) {
+    std::string what = e.what();
+    throw DataError(fmt::format("{}: expected lidar_calib and left_cam_calib with T, fx ...: {}",
+                                path, what.substr(0, what.find('\n'))));
+  }
+  return c;
+}
+
+}  // namespace perception

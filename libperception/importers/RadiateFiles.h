@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// Stamps by frame.
+using FrameTimes = std::map<std::int64_t, Stamp>;
+
+/// A sequence's times: "Frame: 000018 Time: 1574859771.700975000". Throws DataError.
+FrameTimes readRadiateTimes(const std::filesystem::path& path);
+
+/// A box of the annotations, in pixels of Navtech_Cartesian.
+struct RadiateAnnotation {
+  std::int64_t id = 0;
+  std::string type;
+  double x = 0, y = 0, width = 0, length = 0;  ///< [px] top left corner and size before turning
+  double rotation = 0;                         ///< [deg] counter-clockwise about the center
+};
+
+/// The annotations by frame, from 1 on. Throws DataError.
+std::map<std::int64_t, std::vector<RadiateAnnotation>> readRadiateAnnotations(
+    const std::string& path);
+
+/// calib.yaml: translations from the radar, x right, y ahead, z up.
+struct RadiateCalibration {
+  Vector3 lidar = Vector3::Zero(), camera = Vector3::Zero();  ///< [m] right, ahead, up of the radar
+  CameraModel model;
+  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3
+};
+
+/// Throws DataError: missing (kNoInput), or without what is needed.
+RadiateCalibration readRadiateCalibration(const std::string& path);
+
+}  // namespace perception

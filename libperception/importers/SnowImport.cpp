@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "libperception/core/Error.h"
+#include "libperception/importers/ImportClouds.h"
+#include "libperception/importers/ImportText.h"
+#include "libperception/importers/Importer.h"
+#include "libperception/importers/KittiImport.h"
+
+namespace perception {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kLidarLabel = "LIDAR_TOP";
+const std::vector<std::string> kScans = {".bin", ".bin.gz"};
+const std::vector<std::string> kLabels = {".label", ".label.gz"};
+
+/// A data set of scans with a class per point, in SemanticKITTI's layout: DIR/velodyne, DIR/labels,
+/// DIR/poses.txt.
+struct SnowDataSet {
+  double lidar_height;                         ///< [m] above the ground
+  double max_range;                            ///< [m] of the instrument
+  std::map<std::uint32_t, const char*> names;  ///< of the labels, for the report
+};
+
+/// Height: median of the points labeled road within 15 m, 2.14 to 2.23 m over scans 042223 to
+/// 042241. Range: the README's. Names: WADS's semantic classes.
+const SnowDataSet kWads = {2.17,
+                           200,
+                           {{0, "unlabeled"},
+                            {10, "car"},
+                            {20, "other vehicle"},
+                            {30, "person"},
+                            {40, "road"},
+                            {50, "building"},
+                            {70, "vegetation"},
+                            {80, "pole"},
+                            {81, "sign"},
+                            {99, "other object"},
+                            {110, "falling snow"},
+                            {111, "lying snow"}}};
+const SnowDataSet kSnowyKitti = {
+    kKittiVelodyneHeight, 120, {{0, "surface"}, {1, "snow (simulated)"}}};
+
+/// Scans of such a set; its labels, which no sensor would know, go beside the log and not into it.
+class SnowImporter final : public Importer {
+ public:
+  explicit SnowImporter(const SnowDataSet& set) : set_(set) {}
+  void declare(CLI::App& cli) override {
+    cli.add_option("--dir", dir_, "folder with velodyne/, labels/ and, where known, poses.txt")
+        ->required();
+    cli.add_option("--lidar-height", height_, "[m] of the lidar above the ground")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+  }
+  void prepare(ImportOptions& options) override {
+    if (options.rate <= 0) options.rate = 10;  // both sets' README
+  }
+  void run(ImportLog& log) override;
+
+ private:
+  void keepLabels(const FrameFile& scan, std::size_t points, const std::string& folder,
+                  ImportLog& log);
+
+  const SnowDataSet& set_;
+  std::string dir_;
+  double height_ = set_.lidar_height;
+  std::map<std::uint32_t, std::uint64_t> counts_;  ///< points by label
+};
+
+/// The label file, as it is, into FILE_Labels beside the log.
+void SnowImporter::keepLabels(const FrameFile& scan, std::size_t points, const std::string& folder,
+                              ImportLog& log) {
+  const std::string labels = (fs::path(dir_) / "labels").string();
+  const std::string path = fileOfStem(labels, scan.stem, kLabels);
+  if (path.empty()) return log.missing("labels", labels, scan.number);
+  const std::string bytes = readBytes(path);
+  if (bytes.size() != 4 * points) {
+    throw DataError(fmt::format("{}: {} bytes, expected 4 (uint32) for each of the {} points of {}",
+                                path, bytes.size(), points, scan.path));
+  }
+  for (std::size_t i = 0; i < points; ++i) {
+    std::uint32_t label = 0;
+    std::memcpy(&label, bytes.data() + 4 * i, 4);
+    ++counts_[label & 0xFFFF];  // the upper half is an instance
+  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const fs::path to = fs::path(folder) / fs::path(path).filename();
+  if (!error) fs::copy_file(path, to, fs::copy_options::overwrite_existing, error);
+  if (error) throw OutputError(fmt::format("{}: cannot copy: {}", to.string(), error.message()));
+}
+
+void SnowImporter::run(ImportLog& log) {
+  const auto files = frameFiles((fs::path(dir_) / "velodyne").string(), kScans);
+  const std::string poses_file = (fs::path(dir_) / "poses.txt").string();
+  std::vector<Pose3> poses;
+  if (fs::exists(poses_file)) {
+    poses = readKittiPoses(poses_file, "kitti");
+    if (poses.size() != files.size()) {
+      throw DataError(fmt::format("{}: {} poses, expected one for each of {} scans", poses_file,
+                                  poses.size(), files.size()));
+    }
+  }
+  const Pose3 T_ego_lidar = makePose(0, 0, height_, 0);
+  const std::string folder =
+      fs::path(log.options().output).replace_extension().string() + "_Labels";
+  CloudFormat format;
+  format.intensity_max = 255;  // both sets' README
+  format.max_range = set_.max_range;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const FrameFile& file = files[i];
+    if (!log.options().wants(file.number)) continue;
+    const Stamp stamp =
+        stampAtRate(kUndatedStart, file.number - files.front().number, log.options().rate);
+    if (!poses.empty())
+      log.ego(stamp, T_ego_lidar * poses.front().inverse() * poses[i] * T_ego_lidar.inverse());
+    log.frame(stamp, file.number);
+    SensorFrame scan;
+    scan.sensor = kLidarLabel;
+    scan.stamp = stamp;
+    scan.T_ego_sensor = T_ego_lidar;
+    LidarCloud cloud = readCloudFile(file.path, format);
+    keepLabels(file, cloud.size(), folder, log);
+    scan.data = std::move(cloud);
+    log.sensor(scan);
+    log.progress(static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(files.size()));
+  }
+  if (poses.empty()) log.note("no poses.txt: the vehicle's motion is not known");
+  for (const auto& [label, count] : counts_) {
+    const auto name = set_.names.find(label);
+    log.note(fmt::format("label {} ({}): {} points", label,
+                         name == set_.names.end() ? "?" : name->second, count));
+  }
+  if (!counts_.empty()) log.note("labels, one uint32 a point: " + folder);
+}
+
+}  // namespace
+
+std::unique_ptr<Importer> makeWadsImporter() { return std::make_unique<SnowImporter>(kWads); }
+std::unique_ptr<Importer> makeSnowyKittiImporter() {
+  return std::make_unique<SnowImporter>(kSnowyKitti);
+}
+
+}  // namespace perception

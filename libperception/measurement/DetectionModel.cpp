@@ -1,0 +1,301 @@
+#include "libperception/measurement/DetectionModel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/LogMath.h"
+#include "libperception/measurement/CameraResolution.h"
+
+namespace perception {
+namespace {
+
+/// What a class looks like to a kind of sensor when the INI says nothing: the table of
+/// method.md 2.3. A lidar that also reports clusters that are not stable (closer than 1 m to
+/// something) divides its rows further; the shares of these are tuned on KITTI's streets. Labels
+/// that a sensor does not have drop out, and the rest is normalized.
+struct DefaultRow {
+  const char* class_name;
+  Modality modality;
+  double detection;
+  std::vector<std::pair<std::string, double>> labels;
+};
+
+const std::vector<DefaultRow>& defaultRows() {
+  static const std::vector<DefaultRow> rows = {
+      {"pedestrian",
+       Modality::kLidar,
+       0.88,
+       {{"car_sized", 0.10}, {"person_sized", 0.85}, {"unstable", 0.05}}},
+      {"cyclist",
+       Modality::kLidar,
+       0.88,
+       {{"car_sized", 0.60}, {"person_sized", 0.20}, {"unstable", 0.20}}},
+      {"car",
+       Modality::kLidar,
+       0.91,
+       {{"car_sized", 0.45}, {"person_sized", 0.03}, {"unstable", 0.52}}},
+      {"bus",
+       Modality::kLidar,
+       0.95,
+       {{"car_sized", 0.45}, {"person_sized", 0.03}, {"unstable", 0.52}}},
+      {"static-other",
+       Modality::kLidar,
+       0.85,
+       {{"car_sized", 0.20}, {"person_sized", 0.50}, {"unstable", 0.30}}},
+      {"pedestrian", Modality::kCamera, 0.70, {{"car", 0.02}, {"person", 0.98}}},
+      {"cyclist", Modality::kCamera, 0.60, {{"car", 0.20}, {"person", 0.80}}},
+      {"car", Modality::kCamera, 0.85, {{"car", 0.98}, {"person", 0.02}}},
+      {"bus", Modality::kCamera, 0.60, {{"car", 0.97}, {"person", 0.03}}},
+      {"static-other", Modality::kCamera, 0.03, {{"car", 0.33}, {"person", 0.67}}},
+      {"pedestrian", Modality::kRadar, 0.05, {}},
+      {"cyclist", Modality::kRadar, 0.3, {}},
+      {"car", Modality::kRadar, 0.9, {}},
+      {"bus", Modality::kRadar, 0.95, {}},
+      {"static-other", Modality::kRadar, 0.3, {}},
+  };
+  return rows;
+}
+
+ClassDetection defaultSensing(const std::string& class_name, Modality modality,
+                              const std::vector<std::string>& labels) {
+  ClassDetection row;
+  for (const auto& d : defaultRows()) {
+    if (class_name != d.class_name || modality != d.modality) continue;
+    row.detection = d.detection;
+    double sum = 0;
+    for (const auto& l : d.labels) {
+      if (std::find(labels.begin(), labels.end(), l.first) == labels.end()) continue;
+      row.labels.push_back(l);
+      sum += l.second;
+    }
+    for (auto& l : row.labels) l.second /= sum;
+  }
+  return row;
+}
+
+/// A label that no row mentions still happens now and then.
+constexpr double kLeastLabel = 0.005;
+
+/// Probabilities in the order of `labels`: the given ones, the others sharing what is left; sums
+/// to 1.
+std::vector<double> completeRow(const std::vector<std::pair<std::string, double>>& given,
+                                const std::vector<std::string>& labels) {
+  std::vector<double> row(labels.size(), -1);
+  double sum = 0;
+  std::size_t missing = labels.size();
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    for (const auto& [name, p] : given) {
+      if (name != labels[i]) continue;
+      row[i] = p;
+      sum += p;
+      --missing;
+    }
+  }
+  const double share = missing > 0 ? std::max(0.0, 1 - sum) / static_cast<double>(missing) : 0;
+  double total = 0;
+  for (double& p : row) {
+    p = std::max(p < 0 ? share : p, kLeastLabel);
+    total += p;
+  }
+  for (double& p : row) p /= total;
+  return row;
+}
+
+void checkRow(Config& config, const std::string& section,
+              const std::vector<std::pair<std::string, double>>& row, const std::string& prefix,
+              const std::vector<std::string>& labels) {
+  double sum = 0;
+  std::string known;
+  for (const auto& l : labels) known += (known.empty() ? "" : ", ") + l;
+  for (const auto& [name, p] : row) {
+    if (std::find(labels.begin(), labels.end(), name) == labels.end()) {
+      config.fault(section, prefix + name, "no label of this sensor; its labels are: " + known);
+    }
+    sum += p;
+  }
+  const bool complete = row.size() == labels.size();
+  if (sum > 1.02 || (complete && sum < 0.98)) {
+    config.fault(section, "", "the " + prefix + "* probabilities must sum to 1 (within .02)");
+  }
+}
+
+}  // namespace
+
+void DetectionParams::visit(ParamVisitor& v) {
+  v.text("kind", kind, "front end by name: lidar, boxes, radar");
+  static constexpr char kLetters[] = {'C', 'L', 'R'};
+  int index = 0;
+  for (int i = 0; i < 3; ++i) index = kLetters[i] == static_cast<char>(modality) ? i : index;
+  v.choice("modality", index, {"C", "L", "R"}, "camera, lidar, radar");
+  modality = static_cast<Modality>(kLetters[index]);
+  v.real("clutter_per_scan", clutter_per_scan, {1e-9, 1e4}, "",
+         "expected number of false measurements a scan (kappa)");
+  v.real("births_per_scan", births_per_scan, {1e-9, 1e4}, "",
+         "expected number of new objects a scan (beta)");
+  v.real("range_min", range_min, {0, 1000}, "m", "nearest objects that it sees");
+  v.real("range_max", range_max, {1, 100000}, "m", "farthest objects that it sees");
+  v.require(range_min < range_max, "range_min must lie below range_max");
+  v.angle("fov_deg", fov, {1, 360},
+          "full horizontal field of view about the sensor's forward axis");
+  v.real("label_exponent", label_exponent, {0.001, 1}, "",
+         "tempers labels in the class update: 1 = independent labels");
+  v.real("detection_exponent", detection_exponent, {1e-3, 1}, "",
+         "tempers detections and misses in the class update");
+  std::vector<std::string> resolutions = cameraResolutionNames();
+  resolutions.insert(resolutions.begin(), "none");
+  v.choice("resolution", resolution, resolutions,
+           "panoramas of the paper's detector (kind = boxes): sets range_max, clutter_per_scan, "
+           "births_per_scan and the ranges of all classes, over the keys for these");
+  v.require(resolution == 0 || kind == "boxes", "resolution: of cameras, kind = boxes");
+  takeResolution();
+  std::vector<double> numbers;
+  if (pose) {
+    const Vector3 t = pose->translation();
+    numbers = {t.x(),
+               t.y(),
+               t.z(),
+               degrees(yawOf(*pose)),
+               degrees(pitchOf(*pose)),
+               degrees(rollOf(*pose))};
+  }
+  v.reals("pose", numbers, -1, {-1000, 1000}, "m, deg",
+          "x, y, z, yaw, pitch, roll on the vehicle; wins over the log's");
+  v.require(numbers.empty() || numbers.size() == 6,
+            "pose: expected six numbers x, y, z [m], yaw, pitch, roll [deg]");
+  if (numbers.size() == 6) {
+    pose = makePose(numbers[0], numbers[1], numbers[2], radians(numbers[3]), radians(numbers[4]),
+                    radians(numbers[5]));
+  }
+  v.table("clutter_label.", clutter_labels, {0, 1}, "",
+          "P(label | clutter); labels not named share the rest");
+  v.table(
+      "precision.", precision, {0.5, 1}, "",
+      "the paper's mode: P(label | its class) = precision, else 1 - precision; one key a label");
+}
+
+void DetectionParams::takeResolution() {
+  if (resolution == 0) return;
+  const CameraResolution& row = cameraResolutions()[static_cast<std::size_t>(resolution) - 1];
+  // Of the panorama at 2k, whose figures method.md 5.3 gives, births grow with the range's border.
+  constexpr double kBirths = 0.01, kRange = 15;  // [1/scan], [m]
+  range_max = 1.2 * row.car_range;
+  clutter_per_scan = row.false_per_image;
+  births_per_scan = kBirths * row.car_range / kRange;
+}
+
+void ClassDetection::visit(ParamVisitor& v) {
+  v.real("detection", detection, {0, 1}, "", "P(detected) in view, near, not hidden");
+  v.real("full_range", full_range, {0.1, 1e4}, "m",
+         "up to which that holds; falls to 0 at last_range");
+  v.real("last_range", last_range, {0.1, 1e4}, "m",
+         "where it is 0; at most the sensor's range_max");
+  v.table("label.", labels, {0, 1}, "",
+          "P(label | this class, detected); labels not named share the rest");
+}
+
+DetectionModel DetectionModel::read(Config& config, const std::string& section,
+                                    const ClassTable& classes,
+                                    const std::vector<std::string>& labels,
+                                    const DetectionParams& defaults) {
+  const auto params = config.read<DetectionParams>(section, defaults);
+  checkRow(config, section, params.clutter_labels, "clutter_label.", labels);
+  for (const auto& [name, p] : params.precision) {
+    if (std::find(labels.begin(), labels.end(), name) == labels.end())
+      config.fault(section, "precision." + name, "no label of this sensor");
+  }
+  if (!params.precision.empty() && params.precision.size() != labels.size())
+    config.fault(section, "", "precision.*: expected one for each label of this sensor");
+  const std::string prefix = section + ".class.";
+  for (const auto& s : config.sectionsWithPrefix(prefix)) {
+    if (classes.find(s.substr(prefix.size())) < 0)
+      config.fault(s, "", "no such class in the class table");
+  }
+  std::vector<ClassDetection> rows;
+  for (const auto& c : classes.classes) {
+    const std::string row_section = prefix + c.name;
+    ClassDetection row = defaultSensing(c.name, params.modality, labels);
+    row = config.read<ClassDetection>(row_section, row);
+    checkRow(config, row_section, row.labels, "label.", labels);
+    rows.push_back(std::move(row));
+  }
+  return DetectionModel(params, std::move(rows), labels);
+}
+
+DetectionModel::DetectionModel(DetectionParams params, std::vector<ClassDetection> classes,
+                               std::vector<std::string> labels)
+    : params_(std::move(params)), classes_(std::move(classes)), labels_(std::move(labels)) {
+  for (const auto& c : classes_) {
+    std::vector<double> row = completeRow(c.labels, labels_);
+    for (double& p : row) p = std::log(p);
+    log_labels_.push_back(std::move(row));
+  }
+  if (params_.precision.size() == labels_.size() && !labels_.empty()) takePrecision();
+  if (params_.resolution > 0) takeResolution();
+  log_clutter_labels_ = completeRow(params_.clutter_labels, labels_);
+  for (double& p : log_clutter_labels_) p = std::log(p);
+}
+
+void DetectionModel::takePrecision() {
+  constexpr double kLeast = 1e-3;  // the paper clamps probabilities (method.md 5.6)
+  const auto table = log_labels_;
+  for (std::size_t c = 0; c < table.size(); ++c) {
+    const auto own = std::max_element(table[c].begin(), table[c].end()) - table[c].begin();
+    for (const auto& [name, p] : params_.precision) {
+      const int label = labelIndex(name);
+      if (label < 0) continue;
+      log_labels_[c][static_cast<std::size_t>(label)] =
+          std::log(std::max(kLeast, label == own ? p : 1 - p));
+    }
+  }
+}
+
+// Recall falls from all to none within 10 % of the paper's range; what the detector calls a car is
+// seen as far as cars are.
+void DetectionModel::takeResolution() {
+  const CameraResolution& resolution =
+      cameraResolutions()[static_cast<std::size_t>(params_.resolution) - 1];
+  for (std::size_t c = 0; c < classes_.size(); ++c) {
+    const bool vehicle =
+        labelIndex("car") >= 0 && labelOf(static_cast<ClassId>(c)) == labelIndex("car");
+    const double range = vehicle ? resolution.car_range : resolution.person_range;
+    classes_[c].full_range = 0.9 * range;
+    classes_[c].last_range = 1.1 * range;
+  }
+}
+
+int DetectionModel::labelOf(ClassId c) const {
+  const auto& row = log_labels_[static_cast<std::size_t>(c)];
+  return static_cast<int>(std::max_element(row.begin(), row.end()) - row.begin());
+}
+
+int DetectionModel::labelIndex(const std::string& name) const {
+  const auto it = std::find(labels_.begin(), labels_.end(), name);
+  return it == labels_.end() ? -1 : static_cast<int>(it - labels_.begin());
+}
+
+double DetectionModel::logLabel(int label, ClassId c) const {
+  return log_labels_[static_cast<std::size_t>(c)][static_cast<std::size_t>(label)];
+}
+
+double DetectionModel::detection(ClassId c, double range, double bearing, double visibility) const {
+  const auto& row = classes_[static_cast<std::size_t>(c)];
+  if (range < params_.range_min || range >= params_.range_max) return 0;
+  // At the borders of the view detections fade out instead of ending: over the last 5 % of range,
+  // the last 2 degrees.
+  const double last = std::min(row.last_range, params_.range_max);
+  const double full = std::min(row.full_range, 0.95 * last);
+  const double by_range = std::clamp((last - range) / (last - full), 0.0, 1.0);
+  double by_angle = 1;
+  if (params_.fov < kTwoPi) {
+    by_angle =
+        std::clamp((0.5 * params_.fov - std::abs(wrapAngle(bearing))) / radians(2), 0.0, 1.0);
+  }
+  return row.detection * by_range * by_angle * std::clamp(visibility, 0.0, 1.0);
+}
+
+double DetectionModel::area() const {
+  return 0.5 * params_.fov *
+         (params_.range_max * params_.range_max - params_.range_min * params_.range_min);
+}
+
+}  // namespace perception

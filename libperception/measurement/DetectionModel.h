@@ -1,0 +1,84 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libperception/measurement/Measurement.h"
+#include "libperception/measurement/ObjectClass.h"
+
+namespace perception {
+
+/// What every sensor has: [sensor.LABEL]. Rates are per scan over the whole field of view.
+struct DetectionParams {
+  std::string kind = "lidar";  ///< front end by name
+  Modality modality = Modality::kLidar;
+  double clutter_per_scan = 0.6;         ///< kappa: false measurements
+  double births_per_scan = 0.03;         ///< beta: first measurements of new objects
+  double range_min = 0, range_max = 70;  ///< [m] of the objects' nearest points
+  double fov = kTwoPi;              ///< [rad] full horizontal angle about the sensor's forward axis
+  double label_exponent = 0.3;      ///< (0, 1] tempers labels in the class update (method.md 5.6)
+  double detection_exponent = 0.1;  ///< (0, 1] tempers detections and misses there
+  std::optional<Pose3> pose;        ///< on the vehicle; when given it wins over the log's
+  std::vector<std::pair<std::string, double>>
+      clutter_labels;  ///< P(label | clutter); the rest shares evenly
+  /// Panoramas of the paper: a row of cameraResolutions(), 1, 2 ...; 0: none. Sets range_max,
+  /// clutter, births and every class's ranges, over what the INI says of them.
+  int resolution = 0;
+  /// The paper's reading of labels in place of the class tables: a label's precision p is
+  /// P(label | its class), 1 - p is P(label | any other class) (method.md 5.6). Empty: the tables.
+  std::vector<std::pair<std::string, double>> precision;
+
+  void visit(ParamVisitor& v);
+  void takeResolution();
+};
+
+/// How the sensor sees one class: [sensor.LABEL.class.NAME].
+struct ClassDetection {
+  double detection = 0.9;  ///< P(detected | in view, not hidden, near)
+  double full_range =
+      1e3;  ///< [m] up to which that holds; from there it falls linearly to 0 at last_range
+  double last_range = 1e4;                             ///< [m] at most the sensor's range_max
+  std::vector<std::pair<std::string, double>> labels;  ///< P(label | class, detected), normalized
+
+  void visit(ParamVisitor& v);
+};
+
+/// The tables of one sensor, checked against the class table and the front end's labels.
+class DetectionModel {
+ public:
+  /// `defaults` gives each class's row where the INI has no section for it (may be shorter than the
+  /// table).
+  static DetectionModel read(Config& config, const std::string& section, const ClassTable& classes,
+                             const std::vector<std::string>& labels,
+                             const DetectionParams& defaults);
+  DetectionModel(DetectionParams params, std::vector<ClassDetection> classes,
+                 std::vector<std::string> labels);
+
+  const DetectionParams& params() const { return params_; }
+  const ClassDetection& row(ClassId c) const { return classes_[static_cast<std::size_t>(c)]; }
+  const std::vector<std::string>& labels() const { return labels_; }
+  /// Index of a label name or -1.
+  int labelIndex(const std::string& name) const;
+  double logLabel(int label, ClassId c) const;
+  /// The label that is the name of the class: the likeliest of its row.
+  int labelOf(ClassId c) const;
+  double logLabelClutter(int label) const {
+    return log_clutter_labels_[static_cast<std::size_t>(label)];
+  }
+  /// P_D of a class at a range from the sensor [m] and a bearing off its forward axis [rad].
+  double detection(ClassId c, double range, double bearing, double visibility) const;
+  double area() const;  ///< [m^2] of the field of view
+
+ private:
+  void takePrecision();
+  void takeResolution();
+
+  DetectionParams params_;
+  std::vector<ClassDetection> classes_;
+  std::vector<std::string> labels_;
+  std::vector<std::vector<double>> log_labels_;  ///< [class][label]
+  std::vector<double> log_clutter_labels_;
+};
+
+}  // namespace perception

@@ -1,0 +1,58 @@
+#include "libperception/measurement/ObjectClass.h"
+
+#include <numeric>
+
+namespace perception {
+
+void ObjectClass::visit(ParamVisitor& v) {
+  v.choiceOf("motion", motion, {"constant-velocity", "wheeled", "static"}, "how it moves");
+  v.real("accel_psd", accel_psd, {0, 100}, "m^2/s^3", "white acceleration, power spectral density");
+  v.reals("mode_accel_psd", mode_accel_psd, -1, {0, 100}, "m^2/s^3",
+          "one a motion mode, in place of accel_psd; empty: a single model");
+  v.reals("mode_damping", mode_damping, -1, {0, 100}, "1/s",
+          "one a mode: at which the speed decays");
+  v.reals("mode_sojourn", mode_sojourn, -1, {0.01, 1e4}, "s", "one a mode: mean time in it");
+  v.require(mode_damping.size() == modes() && mode_sojourn.size() == modes() && modes() != 1,
+            "mode_accel_psd, mode_damping, mode_sojourn: expected one number a mode in each, two "
+            "modes or more");
+  v.real("yaw_rate_psd", yaw_rate_psd, {0, 10}, "rad^2/s", "white yaw rate (wheeled)");
+  v.real("position_psd", position_psd, {0, 10}, "m^2/s",
+         "slip and model mismatch; all the noise of a static object");
+  v.real("length", length, {0.05, 40}, "m", "mean length");
+  v.real("width", width, {0.05, 10}, "m", "mean width");
+  v.real("height", height, {0.05, 10}, "m", "mean height");
+  v.real("length_sigma", length_sigma, {0.001, 20}, "m", "spread of the length over objects");
+  v.real("width_sigma", width_sigma, {0.001, 10}, "m", "spread of the width over objects");
+  v.real("height_sigma", height_sigma, {0.001, 10}, "m", "spread of the height over objects");
+  v.real("prior", prior, {1e-6, 1}, "", "share among newborn objects");
+  v.real("max_speed", max_speed, {0, 100}, "m/s", "largest plausible speed");
+  v.boolean("reported", reported, "false: neither true nor false in an evaluation");
+  v.text("kitti_type", kitti_type, "type in KITTI exports");
+}
+
+ClassId ClassTable::find(const std::string& name) const {
+  for (ClassId c = 0; c < size(); ++c) {
+    if ((*this)[c].name == name) return c;
+  }
+  return -1;
+}
+
+ClassTable readClassTable(Config& config) {
+  const std::string prefix = "class.";
+  ClassTable table;
+  for (const auto& section : config.sectionsWithPrefix(prefix)) {
+    table.classes.push_back(config.read<ObjectClass>(section));
+    table.classes.back().name = section.substr(prefix.size());
+  }
+  if (table.classes.empty()) {
+    config.fault("", "", "no [class.NAME] section: include classes.ini");
+    return table;
+  }
+  const double total =
+      std::accumulate(table.classes.begin(), table.classes.end(), 0.0,
+                      [](double sum, const ObjectClass& c) { return sum + c.prior; });
+  for (auto& c : table.classes) c.prior /= total;
+  return table;
+}
+
+}  // namespace perception

@@ -1,0 +1,14 @@
+#pragma once
+#include <vector>
+
+#include "gui-offscreen/Picture.h"
+#include "libperception/detectors/DetectionQuality.h"
+
+namespace perception {
+
+/// The image with the detector's boxes, what it takes them for and how sure it is, an arrow for
+/// each heading, and the labels as dashed boxes. `calibrated`: scores are log-odds.
+Picture detectionPicture(const Raster& image, const std::vector<ObjectDetection>& objects,
+                         const std::vector<LabeledBox>& truth, bool calibrated);
+
+}  // namespace perception

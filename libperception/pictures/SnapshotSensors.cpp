@@ -1,0 +1,320 @@
+#include "libperception/pictures/SnapshotSensors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "libperception/sensors/CameraImages.h"
+#include "libperception/sensors/Conversions.h"
+
+namespace perception {
+namespace {
+
+constexpr double kPoseGap =
+    1.5;  // [s] between scenes over which the vehicle's place is interpolated
+constexpr double kLastScan = 0.5;  // [s] after which returns are too old to be drawn
+constexpr double kLastImage = 1;   // [s]
+constexpr double kLookAhead = 3;   // [s] of log in which every sensor has spoken
+constexpr double kMirrored =
+    -0.3;                      // [m] lower returns are mirror images in a wet road (method.md 8.1)
+constexpr double kSteers = 2;  // [m/s] below it yaw rate and speed tell no curvature
+constexpr double kSharpest = 0.2;  // [1/m] of a car's steering
+
+// The vehicle on the ground plane: z = 0 is the ground.
+Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
+  return T_world_ego * makePose(0, 0, plane.c, 0, -std::atan(plane.a), std::atan(plane.b));
+}
+
+Corridor laneOf(const EgoState& ego, double vehicle_front) {
+  Corridor lane;
+  lane.T_world_ego = ego.T_world_ego;
+  lane.from = vehicle_front;
+  const double speed = ego.velocity.norm();
+  if (speed > kSteers) lane.curvature = std::clamp(ego.yaw_rate / speed, -kSharpest, kSharpest);
+  return lane;
+}
+
+bool hasImageBoxes(const ObjectDetections& detections) {
+  if (detections.camera.width <= 0) return false;
+  return detections.objects.empty() || detections.objects.front().image_box.has_value();
+}
+
+// The camera of a frame, if it has one; an image is loaded where the log does not tell its size.
+std::optional<CameraModel> cameraOf(const SensorFrame& frame) {
+  if (const auto* boxes = std::get_if<ObjectDetections>(&frame.data)) {
+    if (hasImageBoxes(*boxes)) return boxes->camera;
+  }
+  const auto* image = std::get_if<CameraImage>(&frame.data);
+  if (!image) return std::nullopt;
+  CameraModel camera = image->camera;
+  if (camera.width <= 0 || camera.height <= 0) {
+    const auto raster = image->load ? image->load() : std::nullopt;
+    if (!raster) return std::nullopt;
+    camera.width = raster->width;
+    camera.height = raster->height;
+  }
+  if (!(camera.fx > 0) || !(camera.fy > 0)) return std::nullopt;
+  return camera;
+}
+
+Picture pictureOf(const Raster& raster) {
+  Picture picture{raster.width, raster.height, {}};
+  const auto pixels =
+      static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height);
+  const auto channels = static_cast<std::size_t>(raster.channels);
+  if (raster.pixels.size() < pixels * channels || channels == 0) return {};
+  picture.rgb.resize(pixels * 3);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      picture.rgb[3 * i + c] = raster.pixels[i * channels + (channels >= 3 ? 2 - c : 0)];
+    }
+  }
+  return picture;
+}
+
+// The seen sides as a rectangle on the ground.
+std::vector<Vector3> outlineOf(const PartialBox& sides, double z) {
+  const auto corners =
+      boxCorners({sides.center.x(), sides.center.y(), z}, sides.yaw, sides.length, sides.width, 0);
+  return {corners.begin(), corners.begin() + 4};
+}
+
+}  // namespace
+
+SnapshotSensors::SnapshotSensors(const std::string& log, const TrackedRun& run,
+                                 SnapshotSensorParams params)
+    : log_(log),
+      reader_(log),
+      run_(run),
+      params_(std::move(params)),
+      grid_(makeSafetyGrid(params_.grid)) {
+  lookAhead(log);
+}
+
+// A camera with images goes before one that has a detector's boxes alone.
+void SnapshotSensors::lookAhead(const std::string& log) {
+  RawlogReader reader(log);
+  std::optional<Stamp> first;
+  bool images = false;
+  std::string chosen = params_.camera;
+  while (const auto observation = reader.next()) {
+    const auto frame = frameOf(*observation);
+    if (!frame) continue;
+    if (!first) first = frame->stamp;
+    const bool late = frame->stamp - *first > kLookAhead;
+    if (late && (params_.camera.empty() || layers_.camera)) break;
+    layers_.lidar = layers_.lidar || std::holds_alternative<LidarCloud>(frame->data);
+    layers_.radar = layers_.radar || std::holds_alternative<RadarReturns>(frame->data);
+    if (const auto* boxes = std::get_if<ObjectDetections>(&frame->data)) {
+      layers_.detector_boxes = layers_.detector_boxes || hasImageBoxes(*boxes);
+    }
+    if (const auto* cloud = std::get_if<LidarCloud>(&frame->data)) {
+      layers_.trust = layers_.trust || !cloud->trust.empty();
+    }
+    const bool image = std::holds_alternative<CameraImage>(frame->data);
+    const bool wanted = params_.camera.empty() ? !layers_.camera || (image && !images)
+                                               : frame->sensor == params_.camera;
+    if (!wanted) continue;
+    if (const auto camera = cameraOf(*frame)) {
+      layers_.camera = camera;
+      images = images || image;
+      chosen = frame->sensor;
+    }
+  }
+  params_.camera = chosen;
+  layers_.trust = layers_.trust || (layers_.lidar && params_.weather.filter != "off");
+  layers_.measurements = !params_.sensors.empty() && !params_.no_measurements;
+}
+
+std::optional<SensorFrame> SnapshotSensors::frameOf(
+    const mrpt::obs::CObservation& observation) const {
+  return frameFromObservation(observation, nullptr, imagesBeside(log_));
+}
+
+void SnapshotSensors::advanceTo(Stamp stamp) {
+  now_ = stamp;
+  while (true) {
+    if (!next_) next_ = reader_.next();
+    if (!next_) return;
+    if (isSensorData(*next_)) {
+      const auto at = toStamp(next_->timestamp);
+      if (at && *at > stamp) return;
+      if (at && stamp - *at <= std::max(params_.memory, kLastImage)) {
+        if (auto frame = frameOf(*next_)) take(std::move(*frame));
+      }
+    }
+    next_.reset();
+  }
+}
+
+std::optional<EgoState> SnapshotSensors::egoAt(Stamp stamp) const {
+  const auto after = std::lower_bound(run_.scenes.begin(), run_.scenes.end(), stamp,
+                                      [](const Scene& s, Stamp t) { return s.stamp < t; });
+  if (after == run_.scenes.end()) return std::nullopt;
+  if (after->stamp == stamp) return after->ego;
+  if (after == run_.scenes.begin()) return std::nullopt;
+  const EgoState &a = std::prev(after)->ego, &b = after->ego;
+  const double gap = after->stamp - std::prev(after)->stamp;
+  if (gap > kPoseGap) return std::nullopt;
+  const double share = (stamp - std::prev(after)->stamp) / gap;
+  EgoState ego = a;
+  ego.stamp = stamp;
+  ego.T_world_ego.translation() +=
+      share * (b.T_world_ego.translation() - a.T_world_ego.translation());
+  ego.T_world_ego.linear() = Eigen::Quaterniond(a.T_world_ego.linear())
+                                 .slerp(share, Eigen::Quaterniond(b.T_world_ego.linear()))
+                                 .toRotationMatrix();
+  return ego;
+}
+
+const PipelineSetup::Sensor* SnapshotSensors::sensorOf(const std::string& label) const {
+  for (const auto& sensor : params_.sensors) {
+    if (sensor.label == label || sensor.scan.merges(label)) return &sensor;
+  }
+  return nullptr;
+}
+
+// Of the site's lidar of that label, else the defaults.
+SnapshotSensors::LidarSettings SnapshotSensors::settingsOf(const std::string& label) const {
+  const auto* sensor = sensorOf(label);
+  const auto* lidar =
+      sensor ? dynamic_cast<const LidarFrontEnd*>(sensor->front_end.get()) : nullptr;
+  if (!lidar) return {};
+  return {lidar->params().points, lidar->params().surface, lidar->params().obstacles};
+}
+
+void SnapshotSensors::take(SensorFrame frame) {
+  const auto ego = egoAt(frame.stamp);
+  if (!ego) return;
+  frame.ego = *ego;
+  if (const auto* sensor = sensorOf(frame.sensor)) {
+    if (sensor->params.pose) frame.T_ego_sensor = *sensor->params.pose;
+  }
+  if (std::holds_alternative<LidarCloud>(frame.data)) takeLidar(frame);
+  frame.ground = ground_;
+  ++frames_;
+  std::string label = frame.sensor;
+  last_.insert_or_assign(std::move(label), std::move(frame));
+}
+
+void SnapshotSensors::takeLidar(SensorFrame& frame) {
+  const auto seed = lidars_.size();
+  Lidar& lidar = lidars_
+                     .try_emplace(frame.sensor, Lidar{GroundEstimator(params_.ground, seed),
+                                                      makePointFilter(params_.weather),
+                                                      {}})
+                     .first->second;
+  ground_ = frame.ground = lidar.ground.update(frame);
+  if (lidar.weather) lidar.weather->apply(frame);
+  const LidarSettings settings = settingsOf(frame.sensor);
+  const EgoPoints points = usablePoints(frame, settings.points);
+  const std::vector<float> heights =
+      GroundSurface(frame.ground, points, settings.surface).heightsAbove(points);
+
+  const std::vector<float>& trust = std::get<LidarCloud>(frame.data).trust;
+  const ObstacleParams& obstacles = settings.obstacles;
+  GridScan scan;
+  scan.stamp = frame.stamp;
+  scan.origin = frame.T_world_sensor().translation();
+  scan.T_world_ground = groundPose(frame.ego.T_world_ego, frame.ground);
+  lidar.points.clear();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector3 place = frame.ego.T_world_ego * Vector3(points.x[i], points.y[i], points.z[i]);
+    const bool hit = heights[i] > obstacles.height_min && heights[i] < obstacles.height_max;
+    const float trusted = trust.empty() ? 1.0F : trust[points.source[i]];
+    if (heights[i] > kMirrored) {
+      (hit ? scan.hits : scan.clear).push_back(place);
+      if (hit && !trust.empty()) scan.weights.push_back(trusted);
+    }
+    lidar.points.push_back({place, heights[i], trusted});
+  }
+  grid_->insert(scan);
+  ++scans_;
+}
+
+// What a still thing would show is taken off: the sensor's own motion, lever arm included.
+void SnapshotSensors::addRadar(const SensorFrame& frame, SceneView& view) const {
+  const Pose3 T = frame.T_world_sensor();
+  const Vector3 arm = T.translation() - frame.ego.T_world_ego.translation();
+  const Vector2 own = frame.ego.velocity + frame.ego.yaw_rate * Vector2(-arm.y(), arm.x());
+  for (const RadarReturn& r : std::get<RadarReturns>(frame.data).returns) {
+    const double elevation = r.elevation.value_or(0);
+    const Vector3 ray(std::cos(elevation) * std::cos(r.bearing),
+                      std::cos(elevation) * std::sin(r.bearing), std::sin(elevation));
+    const Vector3 u = T.linear() * ray;
+    const Vector2 flat = Vector2(u.x(), u.y()).normalized();
+    ViewRadarReturn shown;
+    shown.place = T.translation() + r.range * u;
+    shown.has_rate = r.has_rate;
+    shown.radial_velocity = (r.range_rate + own.dot(flat)) * flat;
+    view.radar.push_back(shown);
+  }
+}
+
+void SnapshotSensors::addMeasurements(const SensorFrame& frame, SceneView& view) const {
+  if (!layers_.measurements) return;
+  const auto* sensor = sensorOf(frame.sensor);
+  if (!sensor || !sensor->active || !sensor->front_end) return;
+  const MeasurementScan scan = sensor->front_end->extract(frame);
+  const double z = view.scene.ego.T_world_ego.translation().z();
+  for (const Measurement& m : scan.measurements) {
+    ViewMeasurement shown{scan.modality, {m.position.x(), m.position.y(), z}, {}};
+    if (m.sides) shown.outline = outlineOf(*m.sides, z);
+    view.measurements.push_back(std::move(shown));
+  }
+}
+
+void SnapshotSensors::addImage(SceneView& view) {
+  if (!layers_.camera) return;
+  const auto shown = last_.find(params_.camera);
+  if (shown == last_.end() || now_ - shown->second.stamp > kLastImage) return;
+  const SensorFrame& frame = shown->second;
+  ViewImage image;
+  image.sensor = frame.sensor;
+  image.camera = *layers_.camera;
+  image.T_world_camera = frame.T_world_sensor();
+  image.age = now_ - frame.stamp;
+  if (const auto* source = std::get_if<CameraImage>(&frame.data)) {
+    if (const auto raster = source->load ? source->load() : std::nullopt) {
+      image.picture = pictureOf(*raster);
+    } else {
+      image.missing = true;
+      if (missing_image_.empty()) missing_image_ = source->source;
+    }
+  }
+  // Boxes of any detector that worked on images of this size.
+  for (const auto& [label, other] : last_) {
+    const auto* found = std::get_if<ObjectDetections>(&other.data);
+    if (!found || !hasImageBoxes(*found) || now_ - other.stamp > kLastScan) continue;
+    if (found->camera.width != image.camera.width) continue;
+    if (label == frame.sensor && found->T_ego_camera) {
+      image.T_world_camera = frame.ego.T_world_ego * *found->T_ego_camera;
+    }
+    for (const ObjectDetection& object : found->objects) {
+      if (object.image_box) image.boxes.push_back({*object.image_box, object.label});
+    }
+  }
+  view.image = std::move(image);
+}
+
+void SnapshotSensors::fill(SceneView& view) {
+  view.layers = layers_;
+  for (const auto& [label, frame] : last_) {
+    if (now_ - frame.stamp > kLastScan) continue;
+    const auto lidar = lidars_.find(label);
+    if (lidar != lidars_.end()) {
+      view.points.insert(view.points.end(), lidar->second.points.begin(),
+                         lidar->second.points.end());
+    }
+    if (std::holds_alternative<RadarReturns>(frame.data)) addRadar(frame, view);
+    addMeasurements(frame, view);
+  }
+  addImage(view);
+  view.occupied = grid_->occupiedCells();
+  if (lidars_.empty()) return;
+  view.corridor = laneOf(view.scene.ego, settingsOf(lidars_.begin()->first).points.vehicle_front);
+  view.free = grid_->freeDistance(*view.corridor);
+}
+
+}  // namespace perception

@@ -1,0 +1,90 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gui-offscreen/SceneView.h"
+#include "libperception/grid/SafetyGrid.h"
+#include "libperception/lidar/GroundPlane.h"
+#include "libperception/lidar/LidarFrontEnd.h"
+#include "libperception/pipeline/Pipeline.h"
+#include "libperception/scene/TrackedRun.h"
+#include "libperception/sensors/FromObservation.h"
+#include "libperception/sensors/RawlogReader.h"
+
+namespace perception {
+
+/// How the sensors of a log are drawn.
+struct SnapshotSensorParams {
+  GridParams grid;
+  GroundParams ground;
+  WeatherParams weather;
+  double memory = 5;  ///< [s] lidar scans so long before an instant fill the grid
+  bool no_measurements = false;
+  std::string camera;  ///< label of the camera that is shown; empty: the first one with images
+  /// The site's sensors: which returns count, what the front ends take. Others are drawn with
+  /// default settings and without measurements.
+  std::vector<PipelineSetup::Sensor> sensors;
+};
+
+/// What the sensors of a log have seen up to an instant, for pictures of a run: the lidars' last
+/// returns and the safety grid over the seconds before, the radars' last returns, the last image,
+/// what the front ends took of them. The vehicle's places are the run's.
+class SnapshotSensors {
+ public:
+  /// Reads the first seconds of the log for layers(). The run must outlive this.
+  SnapshotSensors(const std::string& log, const TrackedRun& run, SnapshotSensorParams params);
+
+  /// Reads on to `stamp`, which must not go back.
+  void advanceTo(Stamp stamp);
+  /// Adds what was seen at the last instant.
+  void fill(SceneView& view);
+
+  const ViewLayers& layers() const { return layers_; }
+  const SafetyGrid& grid() const { return *grid_; }  ///< as of the last instant
+  const RawlogReader& reader() const { return reader_; }
+  std::uint64_t scans() const { return scans_; }    ///< put into the grid so far
+  std::uint64_t frames() const { return frames_; }  ///< of any sensor, at the run's times
+  /// Where the first image lay that was to be drawn and could not be loaded; empty: none.
+  const std::string& missingImage() const { return missing_image_; }
+
+ private:
+  struct Lidar {
+    GroundEstimator ground;
+    std::unique_ptr<PointFilter> weather;
+    std::vector<ViewPoint> points;  ///< of the last scan
+  };
+  struct LidarSettings {
+    PointParams points;
+    SurfaceParams surface;
+    ObstacleParams obstacles;
+  };
+
+  void lookAhead(const std::string& log);
+  std::optional<SensorFrame> frameOf(const mrpt::obs::CObservation& observation) const;
+  std::optional<EgoState> egoAt(Stamp stamp) const;
+  const PipelineSetup::Sensor* sensorOf(const std::string& label) const;
+  LidarSettings settingsOf(const std::string& label) const;
+  void take(SensorFrame frame);
+  void takeLidar(SensorFrame& frame);
+  void addRadar(const SensorFrame& frame, SceneView& view) const;
+  void addMeasurements(const SensorFrame& frame, SceneView& view) const;
+  void addImage(SceneView& view);
+
+  std::string log_;
+  RawlogReader reader_;
+  const TrackedRun& run_;
+  SnapshotSensorParams params_;
+  ViewLayers layers_;
+  std::unique_ptr<SafetyGrid> grid_;
+  std::map<std::string, Lidar> lidars_;      ///< by label
+  std::map<std::string, SensorFrame> last_;  ///< last frame by label; images and boxes, too
+  GroundPlane ground_;                       ///< newest, ego frame
+  std::shared_ptr<mrpt::obs::CObservation> next_;
+  std::uint64_t scans_ = 0, frames_ = 0;
+  std::string missing_image_;
+  Stamp now_;
+};
+
+}  // namespace perception

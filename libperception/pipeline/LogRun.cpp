@@ -1,0 +1,137 @@
+#include "libperception/pipeline/LogRun.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "libperception/core/Error.h"
+#include "libperception/pipeline/Progress.h"
+#include "libperception/scene/OutputFile.h"
+
+namespace perception {
+namespace fs = std::filesystem;
+
+LogRun::LogRun(const PipelineSetup& setup, LogRunFiles files)
+    : setup_(setup),
+      files_(std::move(files)),
+      reader_(files_.log),
+      folder_(files_.dir),
+      pipeline_(setup_, events_, timing_),
+      object_events_(pipeline_.setup().model.classes, events_) {
+  written_to_ = fs::path(folder_.pathFor("tracks.csv")).parent_path().string();
+  folder_.pathFor("scenes.csv");  // TrackedRunWriter writes both
+  if (!setup_.run.write_measurements) return;
+  for (const char* name : {"measurements.csv", "scans.csv", "sensors.csv"}) folder_.pathFor(name);
+  recorder_.emplace(written_to_, pipeline_);
+  pipeline_.observe(&*recorder_);
+}
+
+void LogRun::put(const Scene& scene) {
+  if (!writer_) writer_.emplace(written_to_, setup_.model.classes, *pipeline_.firstStamp());
+  writer_->write(scene);
+  object_events_.add(scene);
+  ++record.scenes;
+  if (!files_.export_file.empty()) writeExport(scene);
+}
+
+void LogRun::writeExport(const Scene& scene) {
+  if (!kitti_ && facts_.camera) {
+    kitti_.emplace(files_.export_file + ".partial", setup_.model.classes, *facts_.camera,
+                   KittiSelection{setup_.scene.road_user_from, setup_.scene.in_image});
+    for (const auto& s : before_camera_) kitti_->write(s);
+    before_camera_.clear();
+  }
+  kitti_ ? kitti_->write(scene) : before_camera_.push_back(scene);
+}
+
+void LogRun::read(const std::function<void(const Scene&)>& keep) {
+  const auto take = [&](bool end) {
+    while (const auto scene = pipeline_.next(end)) {
+      put(*scene);
+      keep(*scene);
+    }
+  };
+  {
+    Progress progress(files_.log, reader_.fileBytes());
+    std::uint64_t count = 0;
+    while (const auto observation = [&] {
+      const auto scope = timing_.stage("read");
+      return reader_.next();
+    }()) {
+      stopIfAsked();
+      facts_.look(*observation);
+      pipeline_.add(*observation);
+      take(false);
+      progress.update(reader_.bytesRead(), ++count);
+    }
+  }
+  take(true);
+  pipeline_.finish();
+}
+
+std::vector<std::string> LogRun::finish(bool strict) {
+  std::vector<std::string> said;
+  if (reader_.end() != RawlogReader::End::kClean) {
+    if (strict) throw DataError(reader_.endMessage());
+    events_.warn(reader_.lastStamp(), event_kind::kLogDamaged, reader_.endMessage());
+    record.warnings.push_back(reader_.endMessage());
+    said.push_back(reader_.endMessage());
+  }
+  if (record.scenes == 0) {
+    throw DataError(files_.log +
+                    ": no scene came of it: the log holds no frame of a sensor in use (" +
+                    setup_.run.sensors + ")");
+  }
+  if (!files_.export_file.empty() && !kitti_) {
+    throw DataError(files_.log +
+                    ": --export kitti needs a camera model, and the log's detections carry none");
+  }
+  for (const auto& [kind, n] : events_.counts()) record.events[kind] = n;
+  if (events_.warnings() > record.warnings.size()) {
+    const auto more = events_.warnings() - record.warnings.size();
+    record.warnings.push_back(fmt::format("{} warnings in events.jsonl", more));
+    said.push_back(
+        fmt::format("{}: {} warnings, see {}/events.jsonl", files_.log, more, files_.dir));
+  }
+  return said;
+}
+
+void LogRun::fillRecord() {
+  record.input = files_.log;
+  record.input_bytes = reader_.fileBytes();
+  record.input_entries = reader_.entries();
+  record.input_end = nameOf(reader_.end());
+  record.input_end_detail = reader_.end() == RawlogReader::End::kClean ? "" : reader_.endMessage();
+  record.simulated = facts_.simulated;
+  record.seed = setup_.run.seed;
+  record.sensors_used = setup_.run.sensors;
+  record.association =
+      RunParams::associationNames()[static_cast<std::size_t>(setup_.run.association)];
+  record.particles = setup_.particles.sample_size;
+  record.first_stamp = *pipeline_.firstStamp();
+  record.last_stamp = pipeline_.lastStamp();
+  record.tracks = object_events_.objects();
+  record.sensors = pipeline_.sensorRecords();
+}
+
+double LogRun::realTimeFactor() const {
+  return logSeconds() / std::max(timing_.wallSeconds(), 1e-9);
+}
+
+void LogRun::commit(const std::string& effective_ini, int threads) {
+  fillRecord();
+  writer_->close();
+  if (recorder_) recorder_->close();
+  events_.write(folder_.pathFor("events.jsonl"), record.first_stamp);
+  writeFile(folder_.pathFor("effective.ini"), effective_ini);
+  timing_.write(folder_.pathFor("timing.json"), logSeconds(), threads);
+  writeRunRecord(folder_.pathFor("done.json"), record);
+  if (kitti_) {
+    kitti_->close();
+    fs::rename(files_.export_file + ".partial", files_.export_file);
+  }
+  folder_.commit();
+}
+
+}  // namespace perception

@@ -1,0 +1,62 @@
+#include "libperception/pipeline/LogWatchers.h"
+
+#include <fmt/format.h>
+#include <mrpt/obs/CObservationComment.h>
+
+#include "libperception/pipeline/LogRecorder.h"
+#include "libperception/sensors/FromObservation.h"
+
+namespace perception {
+
+void LogFacts::look(const mrpt::obs::CObservation& observation) {
+  if (const auto* comment = dynamic_cast<const mrpt::obs::CObservationComment*>(&observation)) {
+    simulated = simulated || comment->text.rfind("simulated log", 0) == 0;
+  }
+  if (camera || !isSensorData(observation)) return;
+  const auto frame = frameFromObservation(observation);
+  const auto* detections = frame ? std::get_if<ObjectDetections>(&frame->data) : nullptr;
+  if (!detections || detections->camera.width <= 0) return;
+  // Boxes in space come in another sensor's frame: the camera's pose is only known from pure
+  // image detections.
+  for (const auto& o : detections->objects) {
+    if (o.space_box || !o.image_box) return;
+  }
+  if (detections->objects.empty()) return;
+  camera = KittiCamera{detections->camera, frame->T_ego_sensor,
+                       simulated ? Vector3(Vector3::Zero()) : KittiCamera::kittiOffset()};
+}
+
+void ObjectEvents::add(const Scene& scene) {
+  std::set<std::uint64_t> now;
+  for (const auto& o : scene.objects) {
+    now.insert(o.id);
+    const std::string& name = classes_[o.class_id].name;
+    if (born_.insert(o.id).second) {
+      events_.add(scene.stamp, event_kind::kTrackBorn, fmt::format("object {}", o.id),
+                  {{"id", o.id}, {"class", name}});
+    }
+    if (o.classified && classified_.insert(o.id).second) {
+      events_.add(scene.stamp, event_kind::kTrackConfirmed,
+                  fmt::format("object {} is a {}", o.id, name), {{"id", o.id}, {"class", name}});
+    }
+  }
+  for (const auto id : last_) {
+    if (now.count(id) == 0)
+      events_.add(scene.stamp, event_kind::kTrackLost, fmt::format("object {}", id), {{"id", id}});
+  }
+  last_ = std::move(now);
+}
+
+void MeasurementRecorder::onScan(const MeasurementScan& scan) {
+  const auto known = sensors_.find(scan.sensor);
+  const RecordedSensor& sensor = known != sensors_.end() ? known->second : add(scan);
+  writer_.write(recordScan(scan, sensor), sensor, *pipeline_.firstStamp());
+}
+
+const RecordedSensor& MeasurementRecorder::add(const MeasurementScan& scan) {
+  RecordedSensor sensor = describeSensor(pipeline_.setup(), scan);
+  writer_.writeSensor(sensor);
+  return sensors_.emplace(scan.sensor, std::move(sensor)).first->second;
+}
+
+}  // namespace perception

@@ -1,0 +1,57 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "libperception/pipeline/Pipeline.h"
+#include "libperception/scene/EventLog.h"
+#include "libperception/scene/KittiExport.h"
+#include "libperception/scene/MeasurementRun.h"
+
+namespace perception {
+
+/// Watches a log go by for what the results need besides scenes: is it simulated, which camera do
+/// exports use.
+struct LogFacts {
+  bool simulated = false;
+  std::optional<KittiCamera> camera;
+
+  void look(const mrpt::obs::CObservation& observation);
+};
+
+/// Says in events.jsonl when objects come and go, and counts them.
+class ObjectEvents {
+ public:
+  ObjectEvents(const ClassTable& classes, EventLog& events) : classes_(classes), events_(events) {}
+
+  void add(const Scene& scene);
+  std::size_t objects() const { return born_.size(); }  ///< so far
+
+ private:
+  const ClassTable& classes_;
+  EventLog& events_;
+  std::set<std::uint64_t> born_, classified_, last_;
+};
+
+/// Records what the front ends hand to the filter.
+class MeasurementRecorder : public PipelineObserver {
+ public:
+  MeasurementRecorder(const std::string& dir, const Pipeline& pipeline)
+      : pipeline_(pipeline), writer_(dir, pipeline.setup().model.classes) {}
+
+  void onScan(const MeasurementScan& scan) override;
+  void close() { writer_.close(); }
+
+ private:
+  const RecordedSensor& add(const MeasurementScan& scan);
+
+  const Pipeline& pipeline_;
+  MeasurementRunWriter writer_;
+  std::map<std::string, RecordedSensor> sensors_;
+};
+
+}  // namespace perception

@@ -1,0 +1,19 @@
+#pragma once
+#include <cmath>
+
+namespace perception {
+
+/// atan2(y, x) within 3e-4 rad [rad], without a call or a branch, so that loops over returns become
+/// vectors: for choosing sectors, not for measuring. Abramowitz and Stegun 4.4.49, four terms.
+inline float fastAtan2(float x, float y) {
+  const float ax = std::abs(x), ay = std::abs(y);
+  const float high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
+  const float t = low / (high + 1e-30f), s = t * t;
+  float angle =
+      t * (0.9998660f + s * (-0.3302995f + s * (0.1801410f + s * (-0.0851330f + s * 0.0208351f))));
+  angle = ay > ax ? 1.57079633f - angle : angle;
+  angle = x < 0 ? 3.14159265f - angle : angle;
+  return y < 0 ? -angle : angle;
+}
+
+}  // namespace perception

@@ -1,3 +1,0 @@
-#define PERCEPTION_SIMD_NAMESPACE avx2
-#define PERCEPTION_SIMD_LANES 8
-#include "libperception/vision/simd/VisionKernels.inl"

@@ -1,3 +1,0 @@
-#define PERCEPTION_SIMD_NAMESPACE sse2
-#define PERCEPTION_SIMD_LANES 4
-#include "libperception/vision/simd/VisionKernels.inl"

@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libperception/evaluation/StudyReport.h"
+#include "libperception/simulation/EncounterScenes.h"
+#include "studies/EncounterRuns.h"
+
+namespace perception {
+
+/// Encounters with one configuration for all: who keeps identities apart, and at what error.
+struct AssociationParams {
+  int seeds = 400;  ///< scenes 1 ... seeds
+};
+
+/// A scene of the study.
+struct AssociationScene {
+  std::string label, scene;
+  EncounterConditions conditions;
+};
+const std::vector<AssociationScene>& associationScenes();
+
+/// A way to associate, with a number of particles or hypotheses.
+struct AssociationMethod {
+  std::string label;
+  Proposal proposal = Proposal::kSampled;
+  int particles = 8;
+};
+
+/// The one configuration: interacting walking modes, the posterior exact but for the gate.
+FilterModel associationModel(Proposal proposal);
+
+struct AssociationFigures {
+  int runs = 0, swaps = 0;
+  double gospa = 0, tracked = 0;  ///< means over runs
+};
+AssociationFigures runAssociation(const AssociationScene& scene, const AssociationMethod& method,
+                                  int seeds);
+
+StudyReport associationStudy(const AssociationParams& params);
+
+}  // namespace perception

@@ -1,0 +1,418 @@
+#include "studies/GpsStudy.h"
+
+#include <fmt/format.h>
+#include <nlopt.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "libperception/core/Angle.h"
+#include "libperception/core/Error.h"
+#include "libperception/core/Random.h"
+#include "libperception/evaluation/Gnuplot.h"
+#include "libperception/sensors/PositionTrack.h"
+
+namespace perception {
+namespace {
+
+constexpr std::uint32_t kPurpose = 0x5730;
+constexpr std::size_t kTrainingSections = 60;  // a class, for the process noises
+constexpr double kLeastDensity = -15;          // log: a jump of the receiver is not the class's
+constexpr int kEvaluations = 150;              // of the optimizer
+constexpr double kMaxBias = 12;                // log likelihood
+constexpr std::size_t kModes = 4;
+
+struct Published {
+  double accel, rotation_deg, percent;
+};
+/// The paper's tables of process noises and of classification rates.
+constexpr Published kPaper[kModes] = {{0.04, 0, 100}, {0.31, 15, 50}, {0.6, 15, 99}, {0.4, 15, 99}};
+
+std::string userOf(const std::string& stem) {
+  const auto first = stem.find('_');
+  if (first == std::string::npos) return stem;
+  return stem.substr(first + 1, stem.find('_', first + 1) - first - 1);
+}
+
+/// Starts of sections whose mean step is long enough.
+std::vector<std::size_t> movingStarts(const std::vector<Vector2>& p, std::size_t n, double least) {
+  std::vector<double> way(p.size(), 0);
+  for (std::size_t i = 1; i < p.size(); ++i) way[i] = way[i - 1] + (p[i] - p[i - 1]).norm();
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i + n <= p.size(); ++i) {
+    if ((way[i + n - 1] - way[i]) / static_cast<double>(n - 1) >= least) out.push_back(i);
+  }
+  return out;
+}
+
+std::vector<Vector2> sectionOf(const GpsTrack& t, std::size_t start, int n) {
+  const auto from = t.p.begin() + static_cast<std::ptrdiff_t>(start);
+  return {from, from + n};
+}
+
+/// Covariance of a receiver at rest.
+Matrix2 stationaryNoise(const std::string& path) {
+  const auto p = readPositionTrack(path).local();
+  if (p.size() < 30) throw DataError(path + ": fewer than 30 fixes: expected a receiver at rest");
+  Vector2 mean = Vector2::Zero();
+  for (const auto& x : p) mean += x / static_cast<double>(p.size());
+  Matrix2 R = Matrix2::Zero();
+  for (const auto& x : p)
+    R += (x - mean) * (x - mean).transpose() / (static_cast<double>(p.size()) - 1);
+  return R;
+}
+
+/// Sections for the noises: evenly over all that the users have of the class.
+std::vector<std::vector<Vector2>> trainingSections(const std::vector<GpsTrack>& tracks, int mode,
+                                                   const std::string& without,
+                                                   const GpsParams& params) {
+  std::vector<std::pair<const GpsTrack*, std::size_t>> all;
+  for (const auto& t : tracks) {
+    if (t.mode != mode || t.user == without) continue;
+    for (const auto s : t.starts) all.push_back({&t, s});
+  }
+  std::vector<std::vector<Vector2>> out;
+  const std::size_t n = std::min(kTrainingSections, all.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& [track, start] = all[(2 * i + 1) * all.size() / (2 * n)];
+    out.push_back(sectionOf(*track, start, params.section));
+  }
+  return out;
+}
+
+struct NoiseProblem {
+  const std::vector<std::vector<Vector2>>* sections;
+  Matrix2 R;
+  PaperClass object_class;
+};
+
+void setNoise(const double* log_sigma, PaperClass& c) {
+  c.accel_sigma = std::exp(log_sigma[0]);
+  if (c.wheeled) c.rotation_sigma = std::exp(log_sigma[1]);
+}
+
+double logLikelihood(unsigned, const double* log_sigma, double*, void* data) {
+  auto& problem = *static_cast<NoiseProblem*>(data);
+  setNoise(log_sigma, problem.object_class);
+  double sum = 0;
+  for (const auto& section : *problem.sections) {
+    const auto trace = runPaperFilter(problem.object_class, section, 1.0, problem.R);
+    for (std::size_t k = 2; k < trace.log_density.size(); ++k)
+      sum += std::max(trace.log_density[k],
+                      kLeastDensity);  // a jump of the receiver is not the class's
+  }
+  return sum;
+}
+
+/// Process noises of maximum likelihood (NLopt's Nelder-Mead).
+PaperClass fitNoise(bool wheeled, const std::vector<std::vector<Vector2>>& sections,
+                    const Matrix2& R) {
+  NoiseProblem problem{&sections, R, {}};
+  problem.object_class.wheeled = wheeled;
+  if (sections.empty()) return problem.object_class;
+  const unsigned n = wheeled ? 2 : 1;
+  nlopt_opt optimizer = nlopt_create(NLOPT_LN_NELDERMEAD, n);
+  const double low[2] = {std::log(1e-3), std::log(radians(0.1))};
+  const double high[2] = {std::log(10.0), std::log(radians(180))};
+  double x[2] = {std::log(0.5), std::log(radians(15))}, best = 0;
+  nlopt_set_lower_bounds(optimizer, low);
+  nlopt_set_upper_bounds(optimizer, high);
+  nlopt_set_max_objective(optimizer, logLikelihood, &problem);
+  nlopt_set_maxeval(optimizer, kEvaluations);
+  nlopt_set_xtol_rel(optimizer, 1e-4);
+  nlopt_optimize(optimizer, x, &best);
+  nlopt_destroy(optimizer);
+  setNoise(x, problem.object_class);
+  return problem.object_class;
+}
+
+std::vector<SpeedRegimes> learnRegimes(const std::vector<GpsTrack>& tracks,
+                                       const std::set<std::string>& without) {
+  std::vector<SpeedRegimes> out(kModes);
+  for (std::size_t mode = 0; mode < kModes; ++mode) {
+    std::map<std::string, std::vector<std::vector<int>>> by_user;
+    for (const auto& t : tracks) {
+      if (t.mode == static_cast<int>(mode) && without.count(t.user) == 0)
+        by_user[t.user].push_back(t.bins);
+    }
+    for (const auto& [user, bins] : by_user) out[mode].add(bins);
+    out[mode].finish();
+  }
+  return out;
+}
+
+std::vector<double> regimeScores(const std::vector<SpeedRegimes>& regimes, const GpsTrack& t,
+                                 std::size_t start, int section) {
+  std::vector<double> out;
+  for (const auto& r : regimes)
+    out.push_back(r.logLikelihood(t.bins, start, static_cast<std::size_t>(section) - 1));
+  return out;
+}
+
+/// The least bias at which pedestrians of training users are found, each judged without himself.
+double pedestrianBias(const std::vector<GpsTrack>& tracks, const std::vector<std::string>& users,
+                      const std::string& without, const GpsParams& params) {
+  std::vector<double> margins;  // pedestrian sections: log likelihood missing to be called one
+  for (const auto& held_out : users) {
+    if (held_out == without) continue;
+    const auto regimes = learnRegimes(tracks, {without, held_out});
+    for (const auto& t : tracks) {
+      if (t.user != held_out || t.mode != 0) continue;
+      for (std::size_t i = 0; i < t.starts.size(); i += 5) {
+        const auto s = regimeScores(regimes, t, t.starts[i], params.section);
+        margins.push_back(*std::max_element(s.begin() + 1, s.end()) - s[0]);
+      }
+    }
+  }
+  if (margins.empty()) return 0;
+  std::sort(margins.begin(), margins.end());
+  const auto index =
+      static_cast<std::size_t>(params.pedestrian_recall * static_cast<double>(margins.size() - 1));
+  return std::clamp(margins[index], 0.0, kMaxBias);
+}
+
+int called(const std::vector<double>& score) {
+  return static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());
+}
+
+int classify(const GpsExperiment& e, const GpsModel& model, const GpsTrack& t, std::size_t start,
+             const GpsParams& params, GpsRule rule) {
+  if (rule == GpsRule::kRegimes) {
+    auto score = regimeScores(model.regimes, t, start, params.section);
+    score[0] += model.pedestrian_bias;
+    return called(score);
+  }
+  std::vector<double> score;
+  const auto z = sectionOf(t, start, params.section);
+  for (const auto& filter : model.filters) {
+    const auto trace = runPaperFilter(filter, z, 1.0, e.R);
+    double nis = 0, log_density = 0;
+    for (std::size_t k = 0; k < trace.nis.size(); ++k) nis += trace.nis[k];
+    for (std::size_t k = 2; k < trace.nis.size(); ++k) log_density += trace.log_density[k];
+    score.push_back(rule == GpsRule::kChi2
+                        ? logChi2Density(nis, 2 * static_cast<double>(trace.nis.size()))
+                        : log_density);
+  }
+  return called(score);
+}
+
+StudyTable noiseTable(const GpsExperiment& e) {
+  StudyTable t;
+  t.name = "process_noise";
+  t.title =
+      "Process noises by maximum likelihood (mean over left-out users; variances in (m/s^2)^2, "
+      "standard deviations in deg/s) beside the paper's";
+  t.columns = {"class", "acceleration", "paper", "rotation", "paper"};
+  for (std::size_t m = 0; m < kModes; ++m) {
+    double accel = 0, rotation = 0;
+    for (const auto& model : e.models) {
+      accel += std::pow(model.filters[m].accel_sigma, 2) / static_cast<double>(e.models.size());
+      rotation += degrees(model.filters[m].rotation_sigma) / static_cast<double>(e.models.size());
+    }
+    const bool wheeled = m > 0;
+    t.rows.push_back({gpsModes()[m], fmt::format("{:.3f}", accel),
+                      fmt::format("{}", kPaper[m].accel),
+                      wheeled ? fmt::format("{:.1f}", rotation) : "-",
+                      wheeled ? fmt::format("{}", kPaper[m].rotation_deg) : "-"});
+  }
+  return t;
+}
+
+StudyTable confusionTable(const GpsResult& r, const std::string& name, const std::string& title) {
+  StudyTable t;
+  t.name = name;
+  t.title = title;
+  t.columns = {"truth \\ called"};
+  for (const auto& mode : gpsModes()) t.columns.push_back(mode);
+  for (std::size_t m = 0; m < kModes; ++m) {
+    std::vector<std::string> row{gpsModes()[m]};
+    for (const double share : r.confusion[m]) row.push_back(fmt::format("{:.3f}", share));
+    t.rows.push_back(row);
+  }
+  return t;
+}
+
+StudyPlot accuracyPlot(const std::vector<std::pair<std::string, GpsResult>>& results) {
+  StudyPlot plot;
+  plot.name = "accuracy";
+  plot.caption =
+      "Share of sections called right, by class and rule; users tested are unknown to "
+      "the models.";
+  std::string data;
+  for (std::size_t m = 0; m < kModes; ++m) {
+    data += gpsModes()[m];
+    for (const auto& [name, r] : results) data += fmt::format(" {:.4f}", r.right[m]);
+    data += '\n';
+  }
+  plot.data = {{"accuracy.dat", data}};
+  plot.script =
+      "set style data histograms\nset style histogram clustered gap 1\n"
+      "set style fill solid 0.8\nset grid ytics\nset yrange [0:1.05]\n"
+      "set ylabel 'share right'\nset key outside top center horizontal\nplot ";
+  for (std::size_t i = 0; i < results.size(); ++i)
+    plot.script += fmt::format("{}'accuracy.dat' using {}:xtic(1) title {} noenhanced",
+                               i ? ", " : "", i + 2, gnuplotString(results[i].first));
+  plot.script += '\n';
+  return plot;
+}
+
+}  // namespace
+
+const std::vector<std::string>& gpsModes() {
+  static const std::vector<std::string> modes = {"pedestrian", "cyclist", "car", "bus"};
+  return modes;
+}
+
+std::vector<GpsTrack> readGpsTracks(const GpsParams& params) {
+  namespace fs = std::filesystem;
+  std::vector<GpsTrack> out;
+  for (std::size_t mode = 0; mode < kModes; ++mode) {
+    const fs::path folder = fs::path(params.folder) / gpsModes()[mode];
+    if (!fs::is_directory(folder))
+      throw DataError(folder.string() +
+                          ": no such folder: expected one for each of pedestrian, "
+                          "cyclist, car, bus",
+                      ExitCode::kNoInput);
+    std::vector<std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    for (const auto& file : files) {
+      const auto read = readPositionTrack(file);
+      GpsTrack t;
+      t.mode = static_cast<int>(mode);
+      t.user = userOf(read.name);
+      t.p = read.local();
+      for (const auto& fix : read.fixes) t.t.push_back(fix.t);
+      t.bins = SpeedRegimes::binsOf(t.t, t.p);
+      t.starts = movingStarts(t.p, static_cast<std::size_t>(params.section), params.least_step);
+      out.push_back(std::move(t));
+    }
+    const bool any = std::any_of(out.begin(), out.end(), [&](const GpsTrack& t) {
+      return t.mode == static_cast<int>(mode) && !t.starts.empty();
+    });
+    if (!any)
+      throw DataError(
+          fmt::format("{}: no section of {} moving fixes", folder.string(), params.section));
+  }
+  return out;
+}
+
+GpsExperiment prepareGps(const GpsParams& params) {
+  GpsExperiment e;
+  e.R << 1.2, 0.1, 0.1, 1.2;  // the paper's receiver [m^2]
+  if (!params.stationary.empty()) e.R = stationaryNoise(params.stationary);
+  e.tracks = readGpsTracks(params);
+  std::set<std::string> users;
+  for (const auto& t : e.tracks) users.insert(t.user);
+  e.users.assign(users.begin(), users.end());
+  if (e.users.size() < 2)
+    throw DataError(params.folder +
+                    ": one user only: expected files CLASS_USER_....csv of two "
+                    "users or more, since each is tested by models of the others");
+  e.models.resize(e.users.size());
+  tbb::parallel_for(std::size_t{0}, e.users.size(), [&](std::size_t u) {
+    GpsModel& model = e.models[u];
+    for (std::size_t mode = 0; mode < kModes; ++mode) {
+      const auto sections = trainingSections(e.tracks, static_cast<int>(mode), e.users[u], params);
+      model.filters.push_back(fitNoise(mode > 0, sections, e.R));
+    }
+    model.regimes = learnRegimes(e.tracks, {e.users[u]});
+    model.pedestrian_bias = pedestrianBias(e.tracks, e.users, e.users[u], params);
+  });
+  return e;
+}
+
+GpsResult runGps(const GpsExperiment& e, const GpsParams& params, GpsRule rule) {
+  const auto draws = static_cast<std::size_t>(params.draws);
+  std::vector<std::vector<std::vector<double>>> counts(
+      draws, std::vector<std::vector<double>>(kModes, std::vector<double>(kModes, 0)));
+  tbb::parallel_for(std::size_t{0}, draws * kModes, [&](std::size_t job) {
+    const std::size_t draw = job / kModes, mode = job % kModes;
+    std::vector<std::pair<std::size_t, std::size_t>> sections;
+    for (std::size_t k = 0; k < e.tracks.size(); ++k) {
+      if (e.tracks[k].mode != static_cast<int>(mode)) continue;
+      for (const auto s : e.tracks[k].starts) sections.push_back({k, s});
+    }
+    Rng rng({params.seed, draw, static_cast<std::uint32_t>(mode), kPurpose});
+    for (int i = 0; i < params.sections; ++i) {
+      const auto& [k, start] = sections[rng.below(static_cast<std::uint32_t>(sections.size()))];
+      const GpsTrack& track = e.tracks[k];
+      const auto user = std::lower_bound(e.users.begin(), e.users.end(), track.user);
+      const auto& model = e.models[static_cast<std::size_t>(user - e.users.begin())];
+      const int c = classify(e, model, track, start, params, rule);
+      counts[draw][mode][static_cast<std::size_t>(c)] += 1.0 / params.sections;
+    }
+  });
+  GpsResult r;
+  r.confusion.assign(kModes, std::vector<double>(kModes, 0));
+  std::vector<double> balanced(draws, 0);
+  for (std::size_t d = 0; d < draws; ++d) {
+    for (std::size_t m = 0; m < kModes; ++m) {
+      balanced[d] += counts[d][m][m] / static_cast<double>(kModes);
+      for (std::size_t c = 0; c < kModes; ++c)
+        r.confusion[m][c] += counts[d][m][c] / static_cast<double>(draws);
+    }
+    r.balanced += balanced[d] / static_cast<double>(draws);
+  }
+  for (const double b : balanced)
+    r.deviation += std::pow(b - r.balanced, 2) / std::max(1.0, static_cast<double>(draws) - 1);
+  r.deviation = std::sqrt(r.deviation);
+  for (std::size_t m = 0; m < kModes; ++m) r.right.push_back(r.confusion[m][m]);
+  return r;
+}
+
+StudyReport gpsStudy(const GpsParams& params) {
+  const GpsExperiment e = prepareGps(params);
+  StudyReport report;
+  report.title = "Travel modes told apart by positions";
+  report.data = fmt::format(
+      "{} recordings of {} users in {}, {} draws of {} sections of {} fixes a class, every user "
+      "judged by models of the others, seed {}; R = [{:.2f} {:.2f}; {:.2f} {:.2f}] m^2{}",
+      e.tracks.size(), e.users.size(), std::filesystem::path(params.folder).filename().string(),
+      params.draws, params.sections, params.section, params.seed, e.R(0, 0), e.R(0, 1), e.R(1, 0),
+      e.R(1, 1), params.stationary.empty() ? " (the paper's receiver)" : " (receiver at rest)");
+  const std::vector<std::pair<std::string, GpsResult>> results = {
+      {"chi-square (paper's rule)", runGps(e, params, GpsRule::kChi2)},
+      {"sequential likelihood", runGps(e, params, GpsRule::kSequential)},
+      {"speed regimes", runGps(e, params, GpsRule::kRegimes)}};
+  StudyTable summary;
+  summary.name = "summary";
+  summary.title = "Share of sections called right";
+  summary.columns = {"rule"};
+  for (const auto& mode : gpsModes()) summary.columns.push_back(mode);
+  summary.columns.push_back("balanced (deviation over draws)");
+  std::vector<std::string> published{"published in the paper (other data)"};
+  for (const auto& p : kPaper) published.push_back(fmt::format("{:.2f}", p.percent / 100));
+  published.push_back("");
+  summary.rows.push_back(published);
+  for (const auto& [name, r] : results) {
+    std::vector<std::string> row{name};
+    for (const double right : r.right) row.push_back(fmt::format("{:.3f}", right));
+    row.push_back(fmt::format("{:.3f} ({:.3f})", r.balanced, r.deviation));
+    summary.rows.push_back(row);
+  }
+  report.tables = {summary, noiseTable(e),
+                   confusionTable(results[0].second, "confusion_chi2", "The paper's rule"),
+                   confusionTable(results[2].second, "confusion_regimes", "Speed regimes")};
+  report.plots = {accuracyPlot(results)};
+  const auto& c = results[2].second.confusion;
+  report.remarks = {
+      fmt::format("Cars and buses share roads, limits and jams: {:.0f} % of the cars' sections are "
+                  "called bus and {:.0f} % of the buses' car. What tells them apart, dwelling at "
+                  "stops every few hundred meters, takes longer than {} s to show.",
+                  100 * c[2][3], 100 * c[3][2], params.section),
+      "The speed regimes are a Markov chain over speeds per class: how fast, how steadily, how "
+      "often at rest. White acceleration with one variance has no speed at all, so a slow car is "
+      "as likely as a slow walker.",
+      fmt::format("Pedestrians are favoured by the least log likelihood that finds {:.0f} % of the "
+                  "sections of training users, each held out in turn: they are whom a vehicle must "
+                  "not miss.",
+                  100 * params.pedestrian_recall)};
+  return report;
+}
+
+}  // namespace perception

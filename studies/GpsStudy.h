@@ -1,0 +1,72 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/evaluation/StudyReport.h"
+#include "studies/PaperFilters.h"
+#include "studies/SpeedRegimes.h"
+
+namespace perception {
+
+/// Travel modes told apart by positions alone, once a second (the paper's GPS experiment).
+struct GpsParams {
+  std::string folder;  ///< holds pedestrian/, cyclist/, car/, bus/ with .nmea, .gpx or .csv files
+  std::string stationary;  ///< recording of a receiver at rest, for R; empty: the paper's R
+  int section = 50;        ///< fixes a section
+  int sections = 100;      ///< drawn a class
+  int draws = 20;
+  double least_step = 0.25;         ///< [m] sections that move less on average are left out (paper)
+  double pedestrian_recall = 0.97;  ///< of held-out training users, sets what favours pedestrians
+  std::uint64_t seed = 1;
+};
+
+/// One recording.
+struct GpsTrack {
+  int mode = 0;                     ///< index into gpsModes()
+  std::string user;                 ///< from the file's name: CLASS_USER_...; else the name itself
+  std::vector<double> t;            ///< [s]
+  std::vector<Vector2> p;           ///< [m]
+  std::vector<int> bins;            ///< of SpeedRegimes, one fewer
+  std::vector<std::size_t> starts;  ///< of sections that move enough
+};
+
+/// pedestrian, cyclist, car, bus.
+const std::vector<std::string>& gpsModes();
+/// Throws DataError naming folder or file.
+std::vector<GpsTrack> readGpsTracks(const GpsParams& params);
+
+/// What is learned from a set of users.
+struct GpsModel {
+  std::vector<PaperClass> filters;    ///< by mode, noises by maximum likelihood
+  std::vector<SpeedRegimes> regimes;  ///< by mode
+  double pedestrian_bias = 0;         ///< added to the pedestrian's log likelihood
+};
+
+/// How a section is classified.
+enum class GpsRule {
+  kChi2,        ///< the paper's: chi-square density of the filters' innovations
+  kSequential,  ///< sequential likelihood of the same filters
+  kRegimes,     ///< likelihood of the speed regimes, pedestrians favoured
+};
+
+struct GpsResult {
+  std::vector<std::vector<double>> confusion;  ///< [truth][called], shares over all draws
+  double balanced = 0, deviation = 0;  ///< mean and deviation of balanced accuracy over draws
+  std::vector<double> right;           ///< by mode
+};
+
+/// The experiment: every user's sections are judged by models that never saw that user.
+struct GpsExperiment {
+  std::vector<GpsTrack> tracks;
+  std::vector<std::string> users;
+  std::vector<GpsModel> models;  ///< by user: learned from the others
+  Matrix2 R;
+};
+GpsExperiment prepareGps(const GpsParams& params);
+GpsResult runGps(const GpsExperiment& experiment, const GpsParams& params, GpsRule rule);
+
+StudyReport gpsStudy(const GpsParams& params);
+
+}  // namespace perception

@@ -1,0 +1,36 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "studies/LabelsStudy.h"
+
+namespace perception {
+
+/// A way to track.
+struct LabelMethod {
+  const char* name;
+  bool per_class;
+  bool takes_unlabeled;  ///< per class: boxes without a label go to every class's tracker
+};
+inline constexpr LabelMethod kJointTracker = {"joint", false, true};
+inline constexpr LabelMethod kTrackerPerClass = {"tracker per class", true, false};
+inline constexpr LabelMethod kTrackerPerClassAll = {"tracker per class, unlabeled to all", true,
+                                                    true};
+
+/// A row of the study: a damage, a way to track, and how it fared.
+struct LabelCondition {
+  LabelNoise damage;
+  LabelMethod method;
+  LabelScore score;  ///< over all logs
+
+  std::string labels() const;  ///< as in the tables
+};
+
+/// Tables, pictures and remarks of the study of labels; `where`: its logs, for titles.
+void describeLabels(const LabelsParams& params, const std::vector<LabelCondition>& conditions,
+                    const std::string& where, StudyReport& report);
+
+/// Adds counts; the figures follow.
+void addClear(const ClearFigures& part, ClearFigures& sum);
+
+}  // namespace perception

@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "libperception/evaluation/StudyReport.h"
+#include "studies/PaperFilters.h"
+
+namespace perception {
+
+/// The paper's simulation of a walker and a cyclist told apart by their filters' innovations
+/// (method.md 4.5).
+struct MonteCarloParams {
+  int repeats = 100;     ///< experiments ...
+  int iterations = 100;  ///< ... of so many tracks a class (the paper: one of 100)
+  int steps = 50;        ///< measurements a track, at 1 Hz
+  bool noise_per_track =
+      false;  ///< measurement sigma drawn from U(.5, 1.7) m and known to the filter
+  std::uint64_t seed = 1;
+};
+
+/// Figures of one experiment of `iterations` tracks a class, or means over several.
+struct MonteCarloFigures {
+  double nis[2][2] = {};  ///< [track: cyclist, pedestrian][filter]: mean NIS
+  double chi2[2] = {};    ///< share of tracks that the chi-square density gets right
+  double least[2] = {};   ///< ... that the smallest mean NIS gets right
+  double sequential[2] =
+      {};  ///< ... that the sequential likelihood from the third measurement on does
+};
+
+struct MonteCarloResult {
+  std::vector<MonteCarloFigures> experiments;
+  MonteCarloFigures mean, deviation;  ///< over experiments
+  std::vector<std::vector<double>>
+      traces[2];  ///< first experiment: [track][iteration][filter] mean NIS
+  /// Shares right after so many measurements: [cyclist, pedestrian].
+  struct ByCount {
+    int count = 0;
+    double chi2[2] = {}, sequential[2] = {};
+  };
+  std::vector<ByCount> by_count;
+};
+
+MonteCarloResult runMonteCarlo(const MonteCarloParams& params);
+/// Runs it with fixed noise and with noise drawn per track.
+StudyReport monteCarloStudy(MonteCarloParams params);
+
+}  // namespace perception

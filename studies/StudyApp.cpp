@@ -1,0 +1,242 @@
+#include "studies/StudyApp.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "libperception/app/StudyFolder.h"
+#include "libperception/pipeline/LogRecorder.h"
+#include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/registerClasses.h"
+#include "studies/AssociationStudy.h"
+#include "studies/EgoStudy.h"
+#include "studies/GpsStudy.h"
+#include "studies/HeadingStudy.h"
+#include "studies/LabelsStudy.h"
+#include "studies/LogParticlesStudy.h"
+#include "studies/MonteCarloStudy.h"
+#include "studies/ParticlesStudy.h"
+#include "studies/PersonFilterStudy.h"
+
+namespace perception {
+namespace {
+
+struct Study {
+  const char* name;
+  const char* description;
+  StudyReport (*run)(StudyApp& app);
+  bool recordings = false;  ///< reads a folder of them
+  bool log = false;         ///< takes a rawlog
+  bool scenario = false;    ///< reads a scenario INI
+  bool labels = false;      ///< reads rawlogs with detections and truth
+  bool scan = false;        ///< takes a scan of a rawlog
+  void (*declare)(CLI::App& cli, ResolutionOptions& options) = nullptr;  ///< options of its own
+};
+
+const Study kStudies[] = {
+    {"monte-carlo", "walkers and cyclists told apart by their filters' innovations (simulated)",
+     [](StudyApp& app) {
+       MonteCarloParams p;
+       p.seed = app.seed;
+       if (app.runs > 0) p.repeats = app.runs;
+       return monteCarloStudy(p);
+     }},
+    {"association", "identities through encounters, by proposal and particles (simulated)",
+     [](StudyApp& app) {
+       AssociationParams p;
+       if (app.runs > 0) p.seeds = app.runs;
+       return associationStudy(p);
+     }},
+    {"particles", "numbers of objects by particles and births, in a simulated street or a rawlog",
+     [](StudyApp& app) {
+       if (!app.log.empty()) return app.particlesOfLog();
+       ParticlesParams p;
+       if (app.runs > 0) p.scenes = app.runs;
+       return particlesStudy(p);
+     },
+     false, true},
+    {"heading", "headings that confuse front and back (simulated)",
+     [](StudyApp& app) {
+       HeadingParams p;
+       p.seed = app.seed;
+       if (app.runs > 0) p.runs = app.runs;
+       return headingStudy(p);
+     }},
+    {"ego", "the vehicle's own pose from satellites, inertial unit and wheels (simulated)",
+     [](StudyApp& app) {
+       EgoStudyParams p;
+       Config config = Config::fromFile(app.scenario);
+       p.scenario = readScenario(config);
+       config.finish();
+       p.name = std::filesystem::path(app.scenario).stem().string();
+       p.seed = app.seed;
+       if (app.runs > 0) p.runs = app.runs;
+       return egoStudy(p);
+     },
+     false, false, true},
+    {"gps", "travel modes told apart by positions once a second (recordings)",
+     [](StudyApp& app) {
+       GpsParams p;
+       p.seed = app.seed;
+       p.folder = app.folder;
+       p.stationary = app.stationary;
+       if (app.runs > 0) p.draws = app.runs;
+       return gpsStudy(p);
+     },
+     true},
+    {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
+     [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, false, true},
+    {"resolution", "what a panorama's resolution is worth: the paper's tables of its camera",
+     [](StudyApp& app) {
+       app.resolution.seed = app.seed;
+       return resolutionStudy(app.resolution);
+     },
+     false, false, false, false, false, &declareResolution},
+    {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
+     [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
+};
+
+/// --range [m] and --fov-deg [deg] of what counts.
+void addSector(CLI::App& sub, const char* range_help, const char* fov_help, double& range,
+               double& fov_deg) {
+  sub.add_option("--range", range, range_help)->capture_default_str()->check(CLI::Range(0.1, 1e4));
+  sub.add_option("--fov-deg", fov_deg, fov_help)
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 360.0));
+}
+
+/// LOG.truth.csv beside LOG.rawlog.
+GroundTruth truthBeside(const std::string& log) {
+  return readGroundTruth(std::filesystem::path(log).replace_extension(".truth.csv").string());
+}
+
+}  // namespace
+
+std::string StudyApp::description() const {
+  return "Experiments about the method: each writes a report with tables and plots.";
+}
+
+void StudyApp::declare(CLI::App& cli) {
+  cli.require_subcommand(1);
+  for (const Study& s : kStudies) {
+    CLI::App* sub = cli.add_subcommand(s.name, s.description);
+    sub->add_option("-o,--output", output, "Folder of the report")->required();
+    sub->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
+    sub->add_option("--runs", runs, "Experiments or simulated runs; 0 = the study's own number")
+        ->check(CLI::Range(0, 1000000));
+    sub->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
+        ->check(CLI::Range(0, 4096));
+    if (s.recordings) declareRecordings(*sub);
+    if (s.log) declareLog(*sub);
+    if (s.labels) declareLabels(*sub);
+    if (s.declare) s.declare(*sub, resolution);
+    if (s.scan) sub->add_option("--log", log, "Rawlog whose first lidar scan is filtered");
+    if (s.scenario) {
+      sub->add_option("-c,--config", scenario,
+                      "Scenario INI with sensors of kind gnss, imu, wheels")
+          ->required()
+          ->check(CLI::ExistingFile);
+    }
+    sub->callback([this, name = std::string(s.name)] { study = name; });
+  }
+}
+
+void StudyApp::declareRecordings(CLI::App& sub) {
+  sub.add_option("-i,--input", folder,
+                 "Folder with pedestrian/, cyclist/, car/, bus/, each with CLASS_USER_....nmea, "
+                 ".gpx or .csv files")
+      ->required();
+  sub.add_option("--stationary", stationary,
+                 "Recording of a receiver at rest: its covariance is R");
+}
+
+void StudyApp::declareLog(CLI::App& sub) {
+  sub.add_option("--log", log, "Rawlog to be tracked, instead of simulated positions");
+  sub.add_option("-c,--config", config_file, "INI of the vehicle, for --log");
+  sub.add_option("--duc", duc_config, "INI of the tracker without classification, for --log");
+  sub.add_option("--set", settings, "section.key=value: overrides both INIs");
+  sub.add_option("-t,--truth", truth_file, "Truth of the log");
+  sub.add_option("--counts", counts, "Numbers of particles, for --log (else the paper's)")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 100000));
+  sub.add_option("--seconds", seconds, "Of the log; 0 = all")->check(CLI::Range(0.0, 1e6));
+  addSector(sub, "Objects count up to this distance [m]",
+            "Whole angle ahead in which they count [deg]", range, fov_deg);
+}
+
+void StudyApp::declareLabels(CLI::App& sub) {
+  sub.add_option("-i,--input", inputs, "Rawlogs with boxes of a detector, LOG.truth.csv beside")
+      ->required();
+  sub.add_option("-c,--config", config_file, "INI whose sensors take boxes without a label, too")
+      ->required();
+  sub.add_option("--set", settings, "section.key=value: overrides the INI");
+  sub.add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
+  addSector(sub, "Truth counts up to this distance [m]",
+            "Whole angle ahead in which truth counts [deg]", labels_range, labels_fov_deg);
+}
+
+void StudyApp::run() {
+  const auto s = std::find_if(std::begin(kStudies), std::end(kStudies),
+                              [&](const Study& x) { return x.name == study; });
+  if (s == std::end(kStudies)) throw Error(ExitCode::kUsage, "no study '" + study + "'");
+  std::optional<tbb::global_control> limit;
+  if (threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  out_report = s->run(*this);
+  for (const std::string& fault : writeStudyReport(out_report, output)) warn(fault);
+  fmt::print("{}\nReport: {}/report.md\n", markdownOf(out_report), output);
+}
+
+RecordedLog StudyApp::record(const std::string& config) {
+  config_file = config;
+  Config loaded = loadConfig();
+  say(1, fmt::format("{}: seen with {}", log, config));
+  return recordLog(log, loaded, seconds);
+}
+
+StudyReport StudyApp::particlesOfLog() {
+  if (config_file.empty()) throw Error(ExitCode::kUsage, "--log needs -c/--config");
+  LogParticlesParams params;
+  params.seed = seed;
+  if (!counts.empty()) params.counts = counts;
+  params.evaluation.selection.range = range;
+  params.evaluation.selection.fov = radians(fov_deg);
+  std::optional<GroundTruth> truth;
+  if (!truth_file.empty()) truth = readGroundTruth(truth_file);
+  const RecordedLog joint = record(config_file);
+  std::optional<RecordedLog> duc;
+  if (!duc_config.empty()) duc = record(duc_config);
+  return logParticlesStudy(params, joint, duc ? &*duc : nullptr, truth ? &*truth : nullptr);
+}
+
+StudyReport StudyApp::labelsOfLogs() {
+  registerPerceptionClasses();
+  LabelsParams params;
+  params.seed = seed;
+  params.evaluation.selection.range = labels_range;
+  params.evaluation.selection.fov = radians(labels_fov_deg);
+  std::vector<LabeledLog> logs;
+  for (const std::string& file : inputs) {
+    LabeledLog entry;
+    entry.name = std::filesystem::path(file).stem().string();
+    entry.truth = truthBeside(file);
+    entry.record = [this, file](const LabeledLog::Edit& edit) {
+      Config config = loadConfig();
+      return recordLog(file, config, seconds, [&](mrpt::obs::CObservation& observation) {
+        auto* boxes = dynamic_cast<CObservationObjectDetections*>(&observation);
+        const auto stamp = toStamp(observation.timestamp);
+        if (boxes && stamp) edit(boxes->detections, *stamp);
+      });
+    };
+    logs.push_back(std::move(entry));
+  }
+  return labelsStudy(params, logs);
+}
+
+}  // namespace perception

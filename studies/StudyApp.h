@@ -1,0 +1,49 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "libperception/app/App.h"
+#include "libperception/evaluation/StudyReport.h"
+#include "libperception/pipeline/RecordedLog.h"
+#include "studies/ResolutionStudy.h"
+
+namespace perception {
+
+/// perception-study: experiments about the method, each a report with tables and plots.
+class StudyApp : public App {
+ public:
+  std::string study;                 ///< the name of the experiment
+  std::uint64_t seed = 1;            ///< --seed
+  int runs = 0;                      ///< --runs; 0 = the study's own number
+  std::string folder;                ///< gps: recordings by class
+  std::string stationary;            ///< gps: recording of a receiver at rest
+  std::string log;                   ///< particles: a rawlog instead of simulated positions
+  std::string duc_config;            ///< particles: --duc, INI of DUC's tracker
+  std::string truth_file;            ///< particles: --truth of the log
+  std::vector<int> counts;           ///< particles: of the log; empty = the paper's
+  double seconds = 0;                ///< particles: of the log; 0 = all
+  double range = 30, fov_deg = 360;  ///< particles: where objects of a log count [m, deg]
+  std::string scenario;              ///< ego: INI of the scenario
+  ResolutionOptions resolution;      ///< resolution: all of its options
+  double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
+
+  StudyReport out_report;
+
+  std::string name() const override { return "perception-study"; }
+  std::string description() const override;
+  void declare(CLI::App& cli) override;
+  void run() override;
+
+  /// The study of a log, for --log.
+  StudyReport particlesOfLog();
+  /// Labels of a detector, on the logs of -i.
+  StudyReport labelsOfLogs();
+
+ private:
+  void declareRecordings(CLI::App& sub);
+  void declareLog(CLI::App& sub);
+  void declareLabels(CLI::App& sub);
+  RecordedLog record(const std::string& config);
+};
+
+}  // namespace perception

@@ -1,0 +1,147 @@
+#include "libperception/filter/likelihood/LikelihoodRow.h"
+
+#include <gtest/gtest.h>
+
+#include "libperception/core/Random.h"
+#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/update/Update.h"
+#include "tests/support/FilterWorld.h"
+
+namespace perception {
+namespace {
+
+/// A PositionModel that does not say that it sees places alone.
+class GeneralModel final : public MeasurementModel {
+ public:
+  explicit GeneralModel(PositionModel m) : m_(std::move(m)) {}
+  const std::vector<AxisKind>& axes() const override { return m_.axes(); }
+  void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
+               const SensorState& sensor, AxisPrediction* out) const override {
+    m_.predict(objects, extents, count, sensor, out);
+  }
+  double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
+                              const SensorState& sensor, double visibility) const override {
+    return m_.detectionProbability(c, object, extent, sensor, visibility);
+  }
+  double logLabelLikelihood(int label, ClassId c) const override {
+    return m_.logLabelLikelihood(label, c);
+  }
+  double logLabelClutter(int label) const override { return m_.logLabelClutter(label); }
+  double logClutterDensity(const Measurement& m, const SensorState& sensor) const override {
+    return m_.logClutterDensity(m, sensor);
+  }
+  double logBirthDensity(const Measurement& m, ClassId c,
+                         const SensorState& sensor) const override {
+    return m_.logBirthDensity(m, c, sensor);
+  }
+  std::optional<BirthState> birth(const Measurement& m, ClassId c,
+                                  const SensorState& sensor) const override {
+    return m_.birth(m, c, sensor);
+  }
+
+ private:
+  PositionModel m_;
+};
+
+struct World {
+  FilterModel model = test::exactModel(test::linearClasses());
+  PositionModel::Params sensor = test::linearSensor();
+
+  World() {
+    ObjectClass car = model.classes[0];
+    car.name = "car";
+    car.motion = Motion::kWheeled;
+    car.yaw_rate_psd = 0.0685;
+    model.classes.classes.push_back(car);
+    model.params.gate_probability = 0.999;
+    sensor.classes.push_back(sensor.classes[0]);
+    sensor.classes[2].full_range = 5;
+    sensor.classes[2].last_range = 60;
+    sensor.fov = radians(200);
+    sensor.range = 25;
+  }
+
+  Track track(Rng& rng) const {
+    Track t;
+    t.existence = 0.9;
+    const Vector2 place(rng.normal(8, 8), rng.normal(0, 8));
+    for (int j = 0; j < 3; ++j) {
+      ClassFilter f;
+      Matrix4 root;
+      for (int i = 0; i < 16; ++i) root(i / 4, i % 4) = rng.normal(0, 0.4);
+      f.P = root * root.transpose();
+      f.x << place.x() + rng.normal(0, 0.3), place.y() + rng.normal(0, 0.3), rng.normal(),
+          rng.normal();
+      t.bank.push_back(f);
+      t.log_class.push_back(std::log(1. / 3));
+    }
+    t.bank[2].oriented = true;
+    t.decided_class = rng.uniform() < 0.2 ? 2 : -1;
+    return t;
+  }
+};
+
+/// The same scan, seen by either model.
+MeasurementScan scanOf(const World& w, const std::vector<Track>& tracks, Rng& rng, bool general) {
+  MeasurementScan scan;
+  const PositionModel model(w.sensor);
+  if (general) {
+    scan.model = std::make_shared<const GeneralModel>(model);
+  } else {
+    scan.model = std::make_shared<const PositionModel>(model);
+  }
+  for (const Track& t : tracks) {
+    Measurement m;
+    m.z = Vector2(t.bank[0].x[0] + rng.normal(0, 0.5), t.bank[0].x[1] + rng.normal(0, 0.5));
+    m.R = 0.02 * Matrix2::Identity();
+    m.R(0, 1) = m.R(1, 0) = 0.005;
+    m.seen = 3;
+    m.position = m.z;
+    m.heading = MeasuredHeading{rng.uniform(-3, 3), 0.1, 0.1};
+    scan.measurements.push_back(m);
+  }
+  auto occlusion = std::make_shared<OcclusionMap>(Vector2(0, 0), 360);
+  for (int i = 0; i < 100; ++i) occlusion->add({rng.normal(0, 15), rng.normal(0, 15)});
+  scan.occlusion = occlusion;
+  return scan;
+}
+
+bool alike(double a, double b) { return a == b || std::abs(a - b) < 1e-9; }  // -inf, too
+
+TEST(PlaceRow, IsThatOfTheGeneralWayAndSoIsTheUpdate) {
+  const World w;
+  Rng rng({21, 0, 0, 0});
+  int pairs = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    std::vector<Track> tracks;
+    for (int i = 0; i < 10; ++i) tracks.push_back(w.track(rng));
+    Rng a = rng, b = rng;
+    const MeasurementScan scan = scanOf(w, tracks, a, false), same = scanOf(w, tracks, b, true);
+    rng = a;
+    const LikelihoodTable place = likelihoodTable(tracks, scan, w.model);
+    const LikelihoodTable general = likelihoodTable(tracks, same, w.model);
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      const TrackLikelihoods &p = place.tracks[i], &g = general.tracks[i];
+      ASSERT_EQ(p.in_view, g.in_view);
+      ASSERT_NEAR(p.detection, g.detection, 1e-12);
+      ASSERT_EQ(p.pairs.size(), g.pairs.size());
+      ASSERT_TRUE(p.predictions.empty());
+      for (std::size_t n = 0; n < p.pairs.size(); ++n, ++pairs) {
+        ASSERT_EQ(p.pairs[n].measurement, g.pairs[n].measurement);
+        ASSERT_NEAR(p.pairs[n].log_likelihood, g.pairs[n].log_likelihood, 1e-9);
+        const Track hit = hitTrack(tracks[i], p, p.pairs[n], scan, 1, w.model);
+        const Track usual = hitTrack(tracks[i], g, g.pairs[n], same, 1, w.model);
+        for (std::size_t j = 0; j < 3; ++j) {
+          ASSERT_TRUE(alike(p.pairs[n].log_class_evidence[j], g.pairs[n].log_class_evidence[j]));
+          ASSERT_TRUE(alike(hit.log_class[j], usual.log_class[j]));
+          ASSERT_LT((hit.bank[j].x - usual.bank[j].x).norm(), 1e-9);
+          ASSERT_LT((hit.bank[j].P - usual.bank[j].P).norm(), 1e-9);
+        }
+      }
+    }
+  }
+  EXPECT_GT(pairs, 100);
+}
+
+}  // namespace
+}  // namespace perception

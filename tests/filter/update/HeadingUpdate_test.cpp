@@ -1,0 +1,89 @@
+#include "libperception/filter/update/HeadingUpdate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libperception/core/Angle.h"
+#include "libperception/core/Random.h"
+#include "libperception/filter/state/MotionModels.h"
+
+namespace perception {
+namespace {
+
+constexpr double kSigma = 0.13;  // [rad] of the detector's axis
+
+/// A car at (10, 0) that stands, or drives along its axis with a speed known to 0.3 m/s.
+ClassFilter car(double theta, double v = 0) {
+  ClassFilter f;
+  f.x << 10, 0, v, theta;
+  f.P = Vector4(0.04, 0.04, v != 0 ? 0.09 : 1.0, 0.01).asDiagonal();
+  f.oriented = true;
+  return f;
+}
+
+MeasuredHeading seen(double yaw) { return {yaw, kSigma, 0.05}; }
+
+/// The axis' error [rad] after `n` headings of `yaw`, the axis kept as certain as edges keep it.
+double after(int n, double yaw, ClassFilter& f) {
+  for (int i = 0; i < n; ++i) {
+    f.P(3, 3) = 0.03;
+    useHeading(seen(yaw), {}, f);
+  }
+  return std::abs(wrapAxis(f.x[3] - yaw));
+}
+
+TEST(HeadingUpdate, ComesBackFromAnAxisThatTheDetectorDenies) {
+  ClassFilter f = car(0);
+  ASSERT_LT(after(5, 0, f), 0.01);
+  EXPECT_GT(after(1, 0.8, f), 0.7) << "one stray box moves nothing";
+  EXPECT_LT(after(1, 0.8, f), 0.05) << "a detector that insists is believed";
+  EXPECT_EQ(f.heading.same, 1) << "of the new axis nothing older is known";
+}
+
+TEST(HeadingUpdate, AnAxisThatNoDetectorToldGivesWayToTheFirst) {
+  ClassFilter f = car(0);
+  EXPECT_LT(after(1, 0.8, f), 1e-9);
+}
+
+TEST(HeadingUpdate, AClearMotionHoldsItsAxis) {
+  ClassFilter f = car(0, 8);
+  EXPECT_GT(after(20, 0.8, f), 0.7);
+  EXPECT_NEAR(f.x[2], 8, 1e-9);
+}
+
+TEST(HeadingUpdate, ReversedHeadingsAreNoOtherAxis) {
+  ClassFilter f = car(0.3);
+  for (int i = 0; i < 20; ++i) after(1, i % 3 == 0 ? 0.3 + kPi : 0.3, f);
+  EXPECT_NEAR(f.x[3], 0.3, 0.02);
+  EXPECT_GT(f.heading.axis_log_odds, 4);
+}
+
+TEST(HeadingUpdate, StrayAxesOfADetectorAreLeftOut) {
+  // One axis in a hundred is anywhere: the track must be better than the detector's own boxes.
+  Rng rng({11, 0, 0, 0});
+  ClassFilter f = car(0);
+  double square = 0, own = 0;
+  constexpr int kBoxes = 20000;
+  for (int i = 0; i < kBoxes; ++i) {
+    const bool stray = rng.uniform() < 0.01;
+    const double yaw = stray ? rng.uniform(-kPi / 2, kPi / 2) : rng.normal(0, kSigma);
+    f.P(3, 3) += 0.0002;
+    useHeading(seen(yaw), {}, f);
+    square += std::pow(wrapAxis(f.x[3]), 2), own += std::pow(wrapAxis(yaw), 2);
+  }
+  EXPECT_LT(std::sqrt(square / kBoxes), 0.5 * std::sqrt(own / kBoxes));
+}
+
+TEST(HeadingUpdate, ReorientingKeepsTheVelocityAlong) {
+  ClassFilter f = car(0, 4);
+  reorient(kPi / 3, 0.02, f);
+  EXPECT_NEAR(f.x[2], 4 * std::cos(kPi / 3), 1e-9);
+  EXPECT_NEAR(f.x[3], kPi / 3, 1e-12);
+  EXPECT_NEAR(f.P(3, 3), 0.02, 1e-12);
+  // Var of the speed along: that of v along it, and of theta's part across times v^2.
+  EXPECT_NEAR(f.P(2, 2), 0.25 * 0.09 + 0.75 * 16 * 0.01, 1e-9);
+}
+
+}  // namespace
+}  // namespace perception

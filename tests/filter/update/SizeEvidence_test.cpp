@@ -1,0 +1,100 @@
+#include "libperception/filter/update/SizeEvidence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libperception/config/Config.h"
+#include "libperception/core/LogMath.h"
+
+namespace perception {
+namespace {
+
+FilterModel shipped() {
+  FilterModel model;
+  Config config = Config::fromFile(PERCEPTION_SOURCE_DIR "/ini/classes.ini");
+  model.classes = readClassTable(config);
+  model.params.side_exponent = 1;
+  model.params.height_exponent = 1;
+  return model;
+}
+
+Track newborn(const FilterModel& model) {
+  Track track;
+  track.log_class.assign(static_cast<std::size_t>(model.classes.size()), 0);
+  startSizes(model, track);
+  return track;
+}
+
+Measurement box(double a, double b) {
+  Measurement m;
+  m.sides = PartialBox{};
+  m.sides->yaw = 0.1;
+  m.sides->length = a, m.sides->width = b;
+  m.sides->length_complete = m.sides->width_complete = true;
+  return m;
+}
+
+double odds(const FilterModel& model, const Track& track, const char* a, const char* b) {
+  return track.log_class[static_cast<std::size_t>(model.classes.find(a))] -
+         track.log_class[static_cast<std::size_t>(model.classes.find(b))];
+}
+
+TEST(SizeEvidence, ACarsBoxIsNoBus) {
+  const FilterModel model = shipped();
+  Track track = newborn(model);
+  updateSizes(box(4.4, 1.8), 0.0, model, track);
+  EXPECT_GT(odds(model, track, "car", "bus"), 2);
+  EXPECT_GT(odds(model, track, "car", "pedestrian"), 2);
+  Track coach = newborn(model);
+  updateSizes(box(11.5, 2.5), 0.0, model, coach);
+  EXPECT_GT(odds(model, coach, "bus", "car"), 2);
+}
+
+TEST(SizeEvidence, SidesFollowTheAxis) {
+  const FilterModel model = shipped();
+  Track along = newborn(model), across = newborn(model);
+  updateSizes(box(4.4, 1.8), 0.0, model, along);
+  updateSizes(box(1.8, 4.4), kPi / 2, model, across);
+  EXPECT_NEAR(along.length.mean, across.length.mean, 1e-12);
+  EXPECT_NEAR(odds(model, along, "car", "bus"), odds(model, across, "car", "bus"), 1e-12);
+}
+
+TEST(SizeEvidence, CountsASizeOnceHoweverOftenItIsSeen) {
+  const FilterModel model = shipped();
+  Track track = newborn(model);
+  for (int i = 0; i < 20; ++i) updateSizes(box(4.4, 1.8), 0.0, model, track);
+  const double after_twenty = odds(model, track, "car", "bus");
+  for (int i = 0; i < 500; ++i) updateSizes(box(4.4, 1.8), 0.0, model, track);
+  EXPECT_NEAR(odds(model, track, "car", "bus"), after_twenty, 0.1);
+}
+
+TEST(SizeEvidence, OrderDoesNotMatter) {
+  const FilterModel model = shipped();
+  Track one = newborn(model), other = newborn(model);
+  for (const double length : {4.2, 4.6, 5.0}) updateSizes(box(length, 1.8), 0.0, model, one);
+  for (const double length : {5.0, 4.2, 4.6}) updateSizes(box(length, 1.8), 0.0, model, other);
+  EXPECT_NEAR(odds(model, one, "car", "bus"), odds(model, other, "car", "bus"), 1e-9);
+}
+
+TEST(SizeEvidence, WithoutAnAxisOrACompleteSideNothingIsSaid) {
+  const FilterModel model = shipped();
+  Track track = newborn(model);
+  updateSizes(box(4.4, 1.8), {}, model, track);
+  Measurement open = box(4.4, 1.8);
+  open.sides->length_complete = open.sides->width_complete = false;
+  updateSizes(open, 0.0, model, track);
+  updateSizes(box(4.4, 1.8), kPi / 4, model, track);  // neither along nor across
+  for (const double lp : track.log_class) EXPECT_EQ(lp, 0);
+}
+
+TEST(SizeEvidence, NoSizeIsAProof) {
+  const FilterModel model = shipped();
+  Track track = newborn(model);
+  updateSizes(box(80, 40), 0.0, model, track);
+  const double worst = 2 * std::log(15 / 0.05);  // two sides, each at worst of any size
+  for (const double lp : track.log_class) EXPECT_GT(lp, -worst - 2);
+}
+
+}  // namespace
+}  // namespace perception

@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libperception/core/Error.h"
+#include "libperception/pipeline/Pipeline.h"
+
+namespace perception {
+namespace {
+
+TEST(SiteInis, AllLoadWithoutAFault) {
+  for (const char* name :
+       {"demo.ini", "kitti.ini", "kitti_object.ini", "vod.ini", "wads.ini", "radiate.ini",
+        "comma2k19.ini", "udacity.ini", "gps_object.ini", "skynet.ini", "skynet_duc.ini",
+        "gnss_gap.ini", "kitti-detections.ini", "kitti-detections-unlabelled.ini"}) {
+    Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + name);
+    PipelineSetup::read(config);
+    EXPECT_NO_THROW(config.finish()) << name;
+  }
+}
+
+TEST(SiteInis, ThePapersVehicleHasEightRadarsAndAPanorama) {
+  Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/skynet.ini");
+  const PipelineSetup setup = PipelineSetup::read(config);
+  const auto count = [&](Modality m) {
+    return std::count_if(setup.sensors.begin(), setup.sensors.end(),
+                         [&](const auto& s) { return s.active && s.params.modality == m; });
+  };
+  EXPECT_EQ(count(Modality::kRadar), 8);
+  EXPECT_GE(count(Modality::kCamera), 1);
+  EXPECT_GE(count(Modality::kLidar), 1);
+}
+
+TEST(SiteInis, AHeadingAsOneWideGaussianIsASensorSet) {
+  const auto setupOf = [](const std::string& sensors) {
+    Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/skynet.ini");
+    config.set("run.sensors=" + sensors);
+    const PipelineSetup setup = PipelineSetup::read(config);
+    config.finish();
+    return setup;
+  };
+  EXPECT_EQ(setupOf("C+R").model.params.heading, HeadingMode::kSplit);
+  const PipelineSetup wide = setupOf("C/H+R");
+  EXPECT_EQ(wide.model.params.heading, HeadingMode::kWide);
+  for (const auto& s : wide.sensors)
+    EXPECT_EQ(s.active, s.params.modality != Modality::kLidar) << s.label;
+  for (const char* wrong : {"C/R", "H+R", "C+", "", "C/H/R"})
+    EXPECT_THROW(setupOf(wrong), ConfigError) << wrong;
+}
+
+TEST(SiteInis, PlacesMustBeKnownToHalfTheSizeOnlyWhereALidarTakesPart) {
+  const auto placeWithin = [](const std::string& sensors) {
+    Config config =
+        Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/kitti-detections.ini");
+    config.set("run.sensors=" + sensors);
+    return PipelineSetup::read(config).scene.place_within;
+  };
+  EXPECT_EQ(placeWithin("L"), 0.5);
+  EXPECT_EQ(placeWithin("C+L"), 0.5);
+  EXPECT_EQ(placeWithin("C"), 0);
+}
+
+}  // namespace
+}  // namespace perception

@@ -1,0 +1,195 @@
+#include "studies/StudyApp.h"
+
+#include <gtest/gtest.h>
+#include <mrpt/obs/CObservationImage.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "libperception/app/TrackApp.h"
+#include "libperception/pipeline/LogRecorder.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/RawlogWriter.h"
+#include "studies/LogParticlesStudy.h"
+#include "tests/support/TemporaryFolder.h"
+
+namespace perception {
+namespace {
+
+TEST(StudyApp, LeavesAReportWithTablesAndPlots) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.path() + "/heading";
+  StudyApp app;
+  const char* argv[] = {"perception-study", "heading", "-o", out.c_str(), "--runs", "4"};
+  ASSERT_EQ(runApp(app, 6, argv), 0);
+  for (const char* name : {"report.md", "camera.csv", "camera_and_radar.csv", "heading_camera.png"})
+    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
+  std::ifstream file(out + "/report.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  EXPECT_NE(text.str().find("Data: simulated"), std::string::npos);
+}
+
+// A few seconds of the demo's log.
+RecordedLog demoLog(double seconds) {
+  Config config = Config::fromFile(PERCEPTION_SOURCE_DIR "/ini/demo.ini");
+  return recordLog(PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog", config, seconds);
+}
+
+TEST(RecordedLog, ReplaysWhatPerceptionTrackMakesOfTheLog) {
+  TrackApp track;
+  track.config_file = PERCEPTION_SOURCE_DIR "/ini/demo.ini";
+  track.inputs = {PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog"};
+  const test::TemporaryFolder folder;
+  track.output = folder.path() + "/run";
+  track.settings = {"run.association=sampled", "particle_filter.sampleSize=6"};
+  track.keep_scenes = true;
+  testing::internal::CaptureStdout();
+  track.run();
+  testing::internal::GetCapturedStdout();
+
+  const TrackedRun run = replay(demoLog(0), {Proposal::kSampled, 6, 1, false});
+  ASSERT_EQ(run.scenes.size(), track.out_scenes.size());
+  std::size_t objects = 0;
+  for (std::size_t k = 0; k < run.scenes.size(); ++k) {
+    const Scene &a = run.scenes[k], &b = track.out_scenes[k];
+    ASSERT_EQ(a.objects.size(), b.objects.size()) << k;
+    for (std::size_t i = 0; i < a.objects.size(); ++i, ++objects) {
+      EXPECT_EQ(a.objects[i].id, b.objects[i].id);
+      EXPECT_EQ(a.objects[i].position, b.objects[i].position);
+    }
+  }
+  EXPECT_GT(objects, 100u);
+}
+
+TEST(RecordedLog, EndsAfterTheSecondsAskedFor) {
+  const RecordedLog log = demoLog(2);
+  EXPECT_TRUE(log.simulated);
+  const TrackedRun run = replay(log, {});
+  EXPECT_NEAR(run.scenes.back().stamp - run.first_stamp, 2, 0.25);
+}
+
+TEST(LogParticlesStudy, DoesNotDependOnTheThreads) {
+  const RecordedLog log = demoLog(3);
+  LogParticlesParams params;
+  params.counts = {1, 8};
+  const StudyReport many = logParticlesStudy(params, log, nullptr, nullptr);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const StudyReport single = logParticlesStudy(params, log, nullptr, nullptr);
+  EXPECT_EQ(markdownOf(many), markdownOf(single));
+}
+
+TEST(StudyApp, CountsTheParticlesThatALogNeeds) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.path() + "/particles";
+  StudyApp app;
+  const char* argv[] = {"perception-study",
+                        "particles",
+                        "-o",
+                        out.c_str(),
+                        "--log",
+                        PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog",
+                        "-c",
+                        PERCEPTION_SOURCE_DIR "/ini/demo.ini",
+                        "--truth",
+                        PERCEPTION_SOURCE_DIR "/rawlogs/demo.truth.csv",
+                        "--seconds",
+                        "3"};
+  testing::internal::CaptureStdout();
+  const int code = runApp(app, 12, argv);
+  testing::internal::GetCapturedStdout();
+  ASSERT_EQ(code, 0);
+  for (const char* name : {"report.md", "counts.csv", "tracking.csv", "cdf.csv", "errors.png"})
+    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
+  ASSERT_EQ(app.out_report.tables.size(), 3u);
+  // The reference stands first and has no error against itself.
+  EXPECT_EQ(app.out_report.tables[0].rows[0][0], "joint, 50");
+  EXPECT_EQ(app.out_report.tables[0].rows[0][2], "0.00");
+  EXPECT_EQ(app.out_report.tables[0].rows[3][1], "3.80 / 1.80");
+}
+
+TEST(StudyApp, EgoReportsErrorsThroughAGapOfSatellites) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.path() + "/ego";
+  const std::string scenario = std::string(PERCEPTION_SOURCE_DIR) + "/ini/scenarios/gnss_gap.ini";
+  StudyApp app;
+  const char* argv[] = {"perception-study", "ego",    "-c", scenario.c_str(), "-o",
+                        out.c_str(),        "--runs", "3"};
+  ASSERT_EQ(runApp(app, 8, argv), 0);
+  for (const char* name : {"report.md", "phases.csv", "ego.png"})
+    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
+  ASSERT_EQ(app.out_report.tables.size(), 1U);
+  const auto& rows = app.out_report.tables[0].rows;
+  ASSERT_EQ(rows.size(), 3U);  // before, in and after the gap
+  EXPECT_EQ(rows[1][2], "gap of 10 s");
+  EXPECT_LT(std::stod(rows[1][4]), 2);  // [m] the worst of all
+  EXPECT_LT(std::stod(rows[1][7]), 2);  // [deg]
+}
+
+const StudyTable& tableOf(const StudyReport& report, const std::string& name) {
+  const auto found = std::find_if(report.tables.begin(), report.tables.end(),
+                                  [&](const StudyTable& t) { return t.name == name; });
+  if (found == report.tables.end()) throw std::runtime_error("no table " + name);
+  return *found;
+}
+
+TEST(StudyApp, ResolutionTracksEverySensorSetOfThePaper) {
+  const test::TemporaryFolder folder;
+  const std::string ini = std::string(PERCEPTION_SOURCE_DIR) + "/ini/";
+  const std::string out = folder.path() + "/resolution", site = ini + "skynet.ini",
+                    scenario = ini + "scenarios/C.ini";
+  StudyApp app;
+  const char* argv[] = {
+      "perception-study", "resolution", "-c", site.c_str(), "--scenario", scenario.c_str(),
+      "--seconds",        "2",          "-o", out.c_str(),  "--set",      "run.without=IBEO"};
+  ASSERT_EQ(runApp(app, 12, argv), 0);
+  for (const char* name : {"report.md", "recall_precision.csv", "recall.png", "tracking_rate.png"})
+    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
+  std::vector<std::string> sets;
+  for (const auto& row : tableOf(app.out_report, "tracking_rate").rows) sets.push_back(row[0]);
+  EXPECT_EQ(sets,
+            (std::vector<std::string>{"C-1k+R", "C-2k+R", "C-4k+R", "C-8k+R", "L+R", "C-8k+L+R"}));
+  const auto& seen = tableOf(app.out_report, "detection_rate").rows;
+  EXPECT_GT(std::stod(seen[3][1]), std::stod(seen[0][1]));  // 8k sees more than 1k
+}
+
+TEST(StudyApp, ResolutionTakesTheImagesOfALog) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "hog.ini")
+      << "[detector]\nbackend = hog\n[model.people]\nlabel = Pedestrian\nthreshold = 0\n";
+  {
+    RawlogWriter log(folder / "panorama.rawlog");
+    for (int i = 0; i < 2; ++i) {
+      mrpt::obs::CObservationImage image;
+      image.timestamp = fromStamp(Stamp{1317038400000000000LL + i * 100000000LL});
+      image.sensorLabel = "CAMERA";
+      image.image = mrpt::img::CImage(2048, 1024, mrpt::img::CH_RGB);
+      log.write(image);
+    }
+    log.close();
+  }
+  StudyApp app;
+  const std::string site = std::string(PERCEPTION_SOURCE_DIR) + "/ini/skynet.ini",
+                    log = folder / "panorama.rawlog", hog = folder / "hog.ini",
+                    out = folder / "out";
+  const char* argv[] = {"perception-study", "resolution", "-c",        site.c_str(), "--log",
+                        log.c_str(),        "--detector", hog.c_str(), "-o",         out.c_str()};
+  ASSERT_EQ(runApp(app, 10, argv), 0);
+  const auto& rows = tableOf(app.out_report, "tracking_rate").rows;
+  ASSERT_EQ(rows.size(), 2U);  // nothing is enlarged to 4k
+  EXPECT_EQ(rows[0][0], "C-1k");
+  EXPECT_EQ(rows[1][0], "C-2k");
+}
+
+TEST(StudyApp, UnknownStudiesAreAUsageError) {
+  StudyApp app;
+  const char* argv[] = {"perception-study", "tea-leaves", "-o", "nowhere"};
+  EXPECT_EQ(runApp(app, 4, argv), static_cast<int>(ExitCode::kUsage));
+}
+
+}  // namespace
+}  // namespace perception
