@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <map>
 
-#include "gui-offscreen/Palette.h"
 #include "gui-offscreen/ReportStyle.h"
+#include "libperception/scene/ClassColors.h"
 
 namespace perception {
 namespace {
@@ -44,8 +44,6 @@ std::string spaced(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return escaped(name);
 }
-
-std::string css(const Color& c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
 
 /// One object over the run.
 struct Life {
@@ -253,11 +251,11 @@ void Page::timeline() {
   for (std::size_t c = 0; c < run_.class_names.size(); ++c) {
     if (isMuted(run_.class_names[c])) continue;
     out_ += fmt::format("<span><i style=\"background:{}\"></i>{}</span>",
-                        css(colorOfClass(run_.class_names[c], static_cast<int>(c))),
+                        hexOf(colorOfClass(run_.class_names[c], static_cast<int>(c))),
                         spaced(run_.class_names[c]));
   }
   out_ += fmt::format("<span><i style=\"background:{}\"></i>something that stands</span>",
-                      css(colorOfClass("static-other", 0)));
+                      hexOf(colorOfClass("static-other", 0)));
   const double height = kAxis + kRow * static_cast<double>(lives_.size()) + 4;
   const auto x = [&](double t) { return kLabelWidth + kChartWidth * t / end_; };
   out_ += fmt::format(
@@ -283,7 +281,7 @@ void Page::timeline() {
           "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" fill=\"{}\" "
           "fill-opacity=\"{}\"><title>{}: {}{}, {:.1f} to {:.1f} s</title></rect>\n",
           x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kRow - 4,
-          css(colorOfClass(nameOf(s.class_id), s.class_id)), s.sure ? "1" : "0.4", life.id,
+          hexOf(colorOfClass(nameOf(s.class_id), s.class_id)), s.sure ? "1" : "0.4", life.id,
           s.sure ? "" : "probably ", spaced(nameOf(s.class_id)), s.from, s.to);
     }
     y += kRow;
@@ -346,7 +344,7 @@ void Page::objects() {
     out_ += fmt::format(
         "<tr><td>{}</td><td style=\"color:{}\">{}</td><td>{:.2f}</td><td>{:.1f} s</td>"
         "<td>{:.1f} s</td><td>{:.0f} km/h</td><td>{:.1f} m</td></tr>\n",
-        life.id, css(colorOfClass(nameOf(life.last_class), life.last_class)),
+        life.id, hexOf(colorOfClass(nameOf(life.last_class), life.last_class)),
         spaced(nameOf(life.last_class)), life.probability, life.from(), life.to(),
         life.top_speed * 3.6, life.nearest);
   }

@@ -15,6 +15,8 @@
 namespace perception {
 namespace {
 
+using namespace plot_color;
+
 constexpr std::size_t kLargestError = 20;  // objects, of the distributions
 
 // One row of the study.
@@ -211,14 +213,16 @@ StudyPlot errorPlot(const std::vector<Method>& methods, const std::vector<Counte
       "number of objects'\nset xrange [0:21]\nset yrange [0:*]\nset key outside right\nplot ",
       gnuplotString("Numbers of objects against those of 50 particles, " + where));
   if (!duc.empty())
-    plot.script += "'errors_duc.dat' with linespoints lw 2 pt 7 lc rgb '#D55E00' title 'DUC', ";
-  plot.script +=
-      "'errors_joint.dat' using 1:2 with linespoints lw 2 pt 5 lc rgb '#0072B2' title 'joint', "
-      "'' using 1:3 with linespoints lw 2 pt 9 lc rgb '#009E73' title 'joint, classified', "
-      "'errors_paper.dat' using 1:2 with linespoints dt 2 pt 6 lc rgb '#D55E00' title 'paper: "
+    plot.script += fmt::format(
+        "'errors_duc.dat' with linespoints lw 2 pt 7 lc rgb '{}' title 'DUC', ", kVermilion);
+  plot.script += fmt::format(
+      "'errors_joint.dat' using 1:2 with linespoints lw 2 pt 5 lc rgb '{0}' title 'joint', "
+      "'' using 1:3 with linespoints lw 2 pt 9 lc rgb '{1}' title 'joint, classified', "
+      "'errors_paper.dat' using 1:2 with linespoints dt 2 pt 6 lc rgb '{2}' title 'paper: "
       "DUC', "
-      "'' using 1:3 with linespoints dt 2 pt 4 lc rgb '#0072B2' title 'paper: joint', "
-      "'' using 1:4 with linespoints dt 2 pt 8 lc rgb '#009E73' title 'paper: joint, classified'\n";
+      "'' using 1:3 with linespoints dt 2 pt 4 lc rgb '{0}' title 'paper: joint', "
+      "'' using 1:4 with linespoints dt 2 pt 8 lc rgb '{1}' title 'paper: joint, classified'\n",
+      kBlue, kGreen, kVermilion);
   return plot;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
+#include "libperception/scene/ClassColors.h"
 
 namespace perception {
 namespace {
@@ -113,10 +114,10 @@ StudyPlot traces(const MonteCarloResult& r) {
   for (const char* kind : {"cyclist", "pedestrian"}) {
     plot.script += fmt::format(
         "set title 'simulated tracks of {0}s'\nset xlabel 'iteration'\n"
-        "plot 'traces_{0}.dat' using 1:2 with lines lc rgb '#1f4fbf' lw 2 title 'cyclist filter', "
-        "'' using 1:3 with lines lc rgb '#2a9d3a' lw 2 title 'pedestrian filter', "
+        "plot 'traces_{0}.dat' using 1:2 with lines lc rgb '{2}' lw 2 title 'cyclist filter', "
+        "'' using 1:3 with lines lc rgb '{3}' lw 2 title 'pedestrian filter', "
         "{1} with lines lc rgb 'black' dt 2 lw 2 title '{1}'\n",
-        kind, kMedian);
+        kind, kMedian, hexOf(colorOfClass("cyclist", 0)), hexOf(colorOfClass("pedestrian", 0)));
   }
   plot.script += "unset multiplot\n";
   plot.height = 800;

@@ -40,29 +40,6 @@ void removeOldPictures(const std::string& dir) {
 
 }  // namespace
 
-namespace plot_color {
-
-std::string ofRun(std::size_t i) {
-  constexpr const char* kRuns[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                   "#E69F00", "#56B4E9", "#8B4513", "#000000"};
-  return kRuns[i % std::size(kRuns)];
-}
-
-std::string ofClass(const std::string& name, std::size_t place) {
-  constexpr const char* kByName[][2] = {{"pedestrian", "#D55E00"},
-                                        {"cyclist", "#009E73"},
-                                        {"car", "#0072B2"},
-                                        {"bus", "#CC79A7"},
-                                        {"static-other", "#737373"}};
-  constexpr const char* kOthers[] = {"#E69F00", "#56B4E9", "#000000"};
-  for (const auto& row : kByName) {
-    if (name == row[0]) return row[1];
-  }
-  return kOthers[place % std::size(kOthers)];
-}
-
-}  // namespace plot_color
-
 PlotScript::PlotScript(const std::string& dir) : dir_(dir + "/plots") {
   std::error_code failed;
   fs::create_directories(dir_, failed);

@@ -3,19 +3,17 @@
 #include <string>
 #include <vector>
 
+#include "libperception/scene/ClassColors.h"
+
 namespace perception {
 
-/// Colors that people with color-blindness can tell apart (Okabe and Ito).
+/// Colors of libperception/scene/ClassColors.h, as gnuplot takes them.
 namespace plot_color {
-inline constexpr const char* kGreen = "#009E73";
-inline constexpr const char* kOrange = "#E69F00";
-inline constexpr const char* kRed = "#C00000";
-inline constexpr const char* kBlue = "#0072B2";
-inline constexpr const char* kGray = "#BBBBBB";
+inline const std::string kGreen = hexOf(okabe_ito::kGreen), kOrange = hexOf(okabe_ito::kOrange),
+                         kBlue = hexOf(okabe_ito::kBlue), kVermilion = hexOf(okabe_ito::kVermilion);
+inline const std::string kRed = hexOf({192, 0, 0}), kGray = hexOf({187, 187, 187});
 /// Of the i-th run in a picture of several.
-std::string ofRun(std::size_t i);
-/// Of an object class, as in the pictures of scenes; `place` of others.
-std::string ofClass(const std::string& name, std::size_t place);
+inline std::string ofRun(std::size_t i) { return hexOf(colorOfCurve(i)); }
 }  // namespace plot_color
 
 /// What came of the plots.

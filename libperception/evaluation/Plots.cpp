@@ -15,10 +15,7 @@ using namespace plot_color;
 
 constexpr std::size_t kMinSamples = 5;        // fewer instants are no curve
 constexpr std::size_t kMaxOverviewRows = 60;  // more names cannot be read
-constexpr std::size_t kMaxNamedIds = 8;       // ids with a color and a line in the legend
-
-constexpr const char* kIdColors[kMaxNamedIds] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                 "#E69F00", "#56B4E9", "#8B4513", "#F0E442"};
+constexpr std::size_t kMaxNamedIds = 7;       // ids with a line in the legend; black is the truth's
 
 constexpr const char* kOverviewHead = R"(
 set multiplot title {title} noenhanced font ',14'
@@ -180,7 +177,7 @@ class PlotWriter {
         "'{}.dat' index 0 using 1:{} with lines lw 3 lc rgb 'black' title 'truth'", name, column);
     for (std::size_t i = 0; i < o.ids.size(); ++i) {
       plot += fmt::format(", \\\n '' index {} using 1:{} with points pt 7 ps 0.8 lc rgb '{}' ",
-                          i + 1, column, i < kMaxNamedIds ? kIdColors[i] : kGray);
+                          i + 1, column, i < kMaxNamedIds ? ofRun(i) : kGray);
       if (i < kMaxNamedIds) {
         plot += fmt::format("title 'estimate, id {}'", o.ids[i]);
       } else {

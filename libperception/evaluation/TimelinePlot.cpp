@@ -10,8 +10,6 @@
 namespace perception {
 namespace {
 
-using namespace plot_color;
-
 constexpr std::size_t kMaxTruthRows = 60;  // more names cannot be read
 constexpr std::size_t kMaxFalseRows = 25;
 
@@ -125,8 +123,7 @@ class TimelinePlot {
   }
 
   std::string classColor(ClassId c) const {
-    const auto i = static_cast<std::size_t>(c);
-    return ofClass(evaluation_.class_names[i], i);
+    return hexOf(colorOfClass(evaluation_.class_names[static_cast<std::size_t>(c)], c));
   }
 
   void addTruth() {

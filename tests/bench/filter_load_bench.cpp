@@ -263,7 +263,7 @@ void draw(const std::vector<Load>& loads, const std::string& file) {
                                                    ? "open street: little ambiguity (4 m apart)"
                                                    : "crowded street: much ambiguity (1 m apart)");
     for (const char* proposal : {"sampled", "ranked"}) {
-      const char* color =
+      const std::string color =
           std::string(proposal) == "sampled" ? plot_color::kBlue : plot_color::kOrange;
       for (const auto& [column, label, dash] :
            {std::tuple{6, "p99", 1}, std::tuple{5, "median", 2}}) {
