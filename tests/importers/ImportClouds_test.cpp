@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "libperception/app/TrackApp.h"
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportClouds.h"
 #include "tests/importers/ImportFixture.h"
@@ -227,20 +226,11 @@ TEST_F(CloudsImport, FramesBeforeAGapKeepTheirPlace) {
   ASSERT_EQ(import("clouds", with({"--stamps", file("stamps.txt"), "--poses", file("poses.txt")})),
             0)
       << error_;
-  const std::string ini = std::string(PERCEPTION_SOURCE_DIR) + "/ini/kitti.ini";
-  const std::vector<std::string> words = {
-      "perception-track", "-c", ini, "-i", file("out.rawlog"), "-o", file("run"), "--sensors", "L"};
-  std::vector<const char*> argv;
-  for (const auto& word : words) argv.push_back(word.c_str());
-  TrackApp app;
-  app.keep_scenes = true;
-  ::testing::internal::CaptureStdout();
-  ASSERT_EQ(runApp(app, static_cast<int>(argv.size()), argv.data()), 0);
-  ::testing::internal::GetCapturedStdout();
-  ASSERT_EQ(app.out_scenes.size(), 3u);
+  const std::vector<Scene> scenes = track("kitti.ini", "L");
+  ASSERT_EQ(scenes.size(), 3u);
   const double places[] = {0, 1, 300};
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(app.out_scenes[i].ego.T_world_ego.translation().x(), places[i], 1e-6) << i;
+    EXPECT_NEAR(scenes[i].ego.T_world_ego.translation().x(), places[i], 1e-6) << i;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libperception/app/ImportApp.h"
+#include "libperception/app/TrackApp.h"
 #include "libperception/sensors/EgoPose.h"
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/RawlogReader.h"
@@ -41,16 +42,20 @@ class ImportRun : public ::testing::Test {
   int import(const std::string& format, std::vector<std::string> more) {
     std::vector<std::string> words = {"perception-import", format, "-o", file("out.rawlog")};
     words.insert(words.end(), more.begin(), more.end());
-    std::vector<const char*> argv;
-    for (const auto& word : words) argv.push_back(word.c_str());
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
     ImportApp app;
-    const int code = runApp(app, static_cast<int>(argv.size()), argv.data());
+    const int code = runQuietly(app, words);
     result_ = app.out_result;
-    ::testing::internal::GetCapturedStdout();
-    error_ = ::testing::internal::GetCapturedStderr();
     return code;
+  }
+  /// Tracks out.rawlog with a site of ini/; the scenes.
+  std::vector<Scene> track(const std::string& ini, const std::string& sensors) {
+    TrackApp app;
+    app.keep_scenes = true;
+    const int code = runQuietly(
+        app, {"perception-track", "-c", std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + ini, "-i",
+              file("out.rawlog"), "-o", file("run"), "--sensors", sensors, "--threads", "2"});
+    EXPECT_TRUE(code == 0 || code == 3) << error_;
+    return app.out_scenes;
   }
   /// The import ends with `code`, a message that holds `text`, and without any output.
   void expectFault(int code, const std::string& text, const std::string& format,
@@ -92,6 +97,17 @@ class ImportRun : public ::testing::Test {
       if (const auto n = frameNumber(*o)) numbers.push_back(*n);
     }
     return numbers;
+  }
+
+  int runQuietly(App& app, const std::vector<std::string>& words) {
+    std::vector<const char*> argv;
+    for (const auto& word : words) argv.push_back(word.c_str());
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    const int code = runApp(app, static_cast<int>(argv.size()), argv.data());
+    ::testing::internal::GetCapturedStdout();
+    error_ = ::testing::internal::GetCapturedStderr();
+    return code;
   }
 
   TemporaryFolder folder_;

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 
-#include "libperception/app/TrackApp.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/radar/RadarFrontEnd.h"
 #include "tests/importers/ImportFixture.h"
@@ -21,24 +20,6 @@ class RealImport : public test::ImportRun {
  protected:
   static std::string data(const std::string& path) {
     return std::string(PERCEPTION_SHARED_DATA) + "/data/" + path;
-  }
-  /// Tracks out.rawlog; the scenes.
-  std::vector<Scene> track(const std::string& ini, const std::string& sensors) {
-    const std::string config = std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + ini;
-    const std::vector<std::string> words = {
-        "perception-track", "-c",    config,      "-i", file("out.rawlog"), "-o", file("run"),
-        "--sensors",        sensors, "--threads", "2"};
-    std::vector<const char*> argv;
-    for (const auto& word : words) argv.push_back(word.c_str());
-    TrackApp app;
-    app.keep_scenes = true;
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    const int code = runApp(app, static_cast<int>(argv.size()), argv.data());
-    ::testing::internal::GetCapturedStdout();
-    const std::string error = ::testing::internal::GetCapturedStderr();
-    EXPECT_TRUE(code == 0 || code == 3) << error;
-    return app.out_scenes;
   }
 };
 

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationImage.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +10,10 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 
-#include "libperception/app/ImportApp.h"
 #include "libperception/importers/KittiFiles.h"
 #include "libperception/importers/KittiImport.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
-#include "libperception/sensors/EgoPose.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/RawlogReader.h"
+#include "tests/importers/ImportFixture.h"
 
 namespace perception {
 namespace {
@@ -43,45 +39,19 @@ constexpr const char* kLabels =
     "1 5 Car 1 0 -1.57 550 150 650 220 1.5 2 4 0 1.73 9 -1.5707963\n"
     "2 7 Tram 0 2 0 550 150 650 220 3 2.5 12 5 1.73 20 0\n";
 
-class ImportTest : public ::testing::Test {
+class ImportTest : public test::ImportRun {
  protected:
   ImportTest() {
-    std::string name = (fs::temp_directory_path() / "perception-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) folder_ = name;
     write("calib.txt", kCalibration);
     write("poses.txt", kPoses);
     write("labels.txt", kLabels);
   }
-  ~ImportTest() override { fs::remove_all(folder_); }
 
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  void write(const std::string& name, const std::string& content) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-  }
   /// Runs `perception-import kitti` with calibration, poses, output and more; gives the exit code.
   int import(std::vector<std::string> more = {}, const std::string& poses = "poses.txt") {
-    std::vector<std::string> words = {"perception-import", "kitti", "--calib",
-                                      file("calib.txt"),   "-o",    file("out.rawlog")};
+    more.insert(more.end(), {"--calib", file("calib.txt")});
     if (!poses.empty()) more.insert(more.end(), {"--poses", file(poses)});
-    words.insert(words.end(), more.begin(), more.end());
-    std::vector<const char*> argv;
-    for (const auto& word : words) argv.push_back(word.c_str());
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    ImportApp app;
-    const int code = runApp(app, static_cast<int>(argv.size()), argv.data());
-    result_ = app.out_result;
-    ::testing::internal::GetCapturedStdout();
-    error_ = ::testing::internal::GetCapturedStderr();
-    return code;
-  }
-  std::vector<mrpt::obs::CObservation::Ptr> readLog() const {
-    RawlogReader reader(file("out.rawlog"));
-    std::vector<mrpt::obs::CObservation::Ptr> all;
-    while (auto o = reader.next()) all.push_back(o);
-    EXPECT_EQ(reader.end(), RawlogReader::End::kClean);
-    return all;
+    return ImportRun::import("kitti", more);
   }
   std::vector<Pose3> egoPoses() const {
     EgoPose ego;
@@ -92,10 +62,6 @@ class ImportTest : public ::testing::Test {
     }
     return poses;
   }
-
-  fs::path folder_;
-  ImportResult result_;
-  std::string error_;
 };
 
 TEST_F(ImportTest, WorldIsTheEgoFrameOfTheFirstPose) {
@@ -281,7 +247,8 @@ TEST_F(ImportTest, ImagesAreEmbeddedOrStandBesideTheLog) {
       if (embedded) {
         EXPECT_EQ(image->image.getWidth(), 600U);
       } else {
-        EXPECT_TRUE(fs::exists(folder_ / "out_Images" / image->image.getExternalStorageFile()));
+        EXPECT_TRUE(
+            fs::exists(fs::path(folder_ / "out_Images") / image->image.getExternalStorageFile()));
       }
     }
   }
