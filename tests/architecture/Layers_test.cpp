@@ -49,6 +49,16 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"apps", {"app", "studies"}},
 };
 
+// Floors of the filter: a folder may include those before it; Step and CRbpfTracker (filter itself)
+// stand on top.
+const std::vector<std::string> kFloorsOfFilter = {"libperception/filter/simd",
+                                                  "libperception/filter/state",
+                                                  "libperception/filter/predict",
+                                                  "libperception/filter/likelihood",
+                                                  "libperception/filter/associate",
+                                                  "libperception/filter/update",
+                                                  "libperception/filter"};
+
 // Where only classes of MRPT's own kind (files CXxx) may know MRPT.
 const std::set<std::string> kWithoutMrpt = {
     "core",  "config", "simd",    "measurement", "filter",  "scene",     "grid",
@@ -82,6 +92,18 @@ bool isMrptClassFile(const SourceFile& file) {
   return name.size() > 2 && name[0] == 'C' && std::isupper(static_cast<unsigned char>(name[1]));
 }
 
+// Why an include within the filter breaks the order of its floors, or nothing.
+std::string faultOfFloors(const SourceFile& file, const Include& include) {
+  const auto floorOf = [](const std::string& path) {
+    const std::string folder = path.substr(0, path.rfind('/'));
+    return std::find(kFloorsOfFilter.begin(), kFloorsOfFilter.end(), folder);
+  };
+  const auto from = floorOf(file.path), to = floorOf(include.path);
+  if (from == kFloorsOfFilter.end()) return "the folder is no floor of the filter";
+  if (to > from) return *from + " must not include " + *to;
+  return "";
+}
+
 // Why the include breaks a rule, or nothing.
 std::string faultOf(const SourceFile& file, const Include& include) {
   const std::string module = moduleOf(file.path);
@@ -94,7 +116,7 @@ std::string faultOf(const SourceFile& file, const Include& include) {
     }
     if (other != module && !allowed->second.count(other))
       return module + " must not include " + other;
-    return "";
+    return module == "filter" && other == module ? faultOfFloors(file, include) : "";
   }
   if (beginsWith(include.path, "mrpt/")) {
     if (std::count(include.path.begin(), include.path.end(), '/') == 1 &&
@@ -169,6 +191,15 @@ TEST(Layers, TheCheckerFindsWhatIsForbidden) {
       "core must not include measurement");
   EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "# include \"libperception/scene/Scene.h\""),
             "filter must not include scene");
+  EXPECT_EQ(faultOfLine("libperception/filter/state/A.h",
+                        "#include \"libperception/filter/likelihood/Gating.h\""),
+            "libperception/filter/state must not include libperception/filter/likelihood");
+  EXPECT_EQ(
+      faultOfLine("libperception/filter/update/A.h", "#include \"libperception/filter/Step.h\""),
+      "libperception/filter/update must not include libperception/filter");
+  EXPECT_EQ(
+      faultOfLine("libperception/filter/newcomer/A.h", "#include \"libperception/filter/Step.h\""),
+      "the folder is no floor of the filter");
   EXPECT_EQ(faultOfLine("libperception/scene/A.cpp", "#include \"Scene.h\""),
             "is no path from the root of the repository");
   EXPECT_EQ(faultOfLine("libperception/app/A.cpp", "#include <mrpt/obs.h>"),
@@ -186,6 +217,9 @@ TEST(Layers, TheCheckerFindsWhatIsForbidden) {
 }
 
 TEST(Layers, TheCheckerAllowsWhatIsAllowed) {
+  EXPECT_EQ(faultOfLine("libperception/filter/update/A.h",
+                        "#include \"libperception/filter/state/Track.h\""),
+            "");
   EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "#include \"libperception/core/Angle.h\""),
             "");
   EXPECT_EQ(
