@@ -20,7 +20,7 @@ struct Module {
 inline const std::vector<Module>& modules() {
   static const std::vector<Module> all = {
       {"core", "poses, angles, time, random numbers, errors, truth files", {}, true},
-      {"config", "INI files: strict, documented parameters", {"core"}},
+      {"config", "strict INI files, each key documented", {"core"}},
       {"simd", "loops over returns for several vector widths", {}},
       {"measurement",
        "the common language: frames, measurements z and R, measurement models h, object classes",
@@ -68,7 +68,7 @@ inline const std::vector<Module>& modules() {
       {"simulation", "scenarios to rawlogs", {"sensors", "measurement", "config", "core"}},
       {"capture", "drivers for MRPT's recorder", {"simulation", "sensors", "config", "core"}},
       {"calibration",
-       "parameters by maximum likelihood",
+       "fits parameters by their likelihood",
        {"pipeline", "evaluation", "boxes3d", "measurement", "core"}},
       {"pictures",
        "pictures of scenarios, detections, sensors",

@@ -40,8 +40,8 @@ Lines wrapped(const std::string& text, std::size_t width) {
   return lines;
 }
 
-constexpr int kLeft = 150, kSpineWidth = 200, kBoxWidth = 138, kBoxHeight = 96, kGap = 8,
-              kFloor = 118, kTop = 74, kWidth = 1400;
+constexpr int kLeft = 150, kSpineWidth = 200, kBoxWidth = 138, kBoxHeight = 106, kGap = 8,
+              kFloor = 128, kTop = 74, kWidth = 1400;
 
 std::string attribute(const char* name, int value) {
   return std::string(" ") + name + "=\"" + std::to_string(value) + "\"";
@@ -67,13 +67,13 @@ std::string boxOf(const Module& module, int x, int y) {
   std::string svg = box(x, y, width, kBoxHeight, module.spine ? "on" : "beside");
   svg += text(x + 8, y + 19, "name", module.name);
   int line = y + 36;
-  const std::size_t letters = static_cast<std::size_t>(width) / 7;
+  const std::size_t letters = static_cast<std::size_t>(width) * 10 / 65;
   for (const std::string& part : wrapped(module.what, letters)) {
     svg += text(x + 8, line, "what", part);
     line += 13;
   }
   const std::string below = joinedBy(nearestBelow(module), ", ");
-  const Lines uses = wrapped(below.empty() ? "" : "on " + below, letters);
+  const Lines uses = wrapped(below.empty() ? "" : "on " + below, letters + 2);
   line = y + kBoxHeight - 7 - 12 * (static_cast<int>(uses.size()) - 1);
   for (const std::string& part : uses) {
     svg += text(x + 8, line, "uses", part);
