@@ -47,7 +47,7 @@ struct Table {
   CsvTable::Column t;
 };
 
-/// WGS 84 position of an ECEF point (Bowring 1976; below a millimeter at the ground).
+/// WGS 84 position of an ECEF point ([bowring1976]; below a millimeter at the ground).
 GpsFix geodetic(const Vector3& p) {
   constexpr double a = 6378137.0, f = 1 / 298.257223563;
   constexpr double b = a * (1 - f), e2 = f * (2 - f), ep2 = e2 / (1 - e2);

@@ -11,8 +11,8 @@ struct RadarPictureParams {
   int beams = 400;         ///< of one turn (RADIATE's polar pictures)
   double range = 100;      ///< [m] of the radar (RADIATE's paper)
   double nearest = 3;      ///< [m] the vehicle's own roof and the antenna's ringing
-  /// The strongest echoes of each beam stand for the picture, as in CFEAR radar odometry (Adolfsson
-  /// et al., IROS 2021: k = 12, 60 of 255), here of those that are a maximum.
+  /// The strongest echoes of each beam stand for the picture, as in CFEAR radar odometry
+  /// [adolfsson2021] (k = 12, 60 of 255), here of those that are a maximum.
   int strongest = 12;
   int least_power = 60;  ///< [0, 255]
   /// An echo stands for its surroundings: one reflector lights the beams and cells around it.

@@ -167,8 +167,7 @@ Part limb(const Vector3& from, const Vector3& to, double radius, double swing, M
   return part;
 }
 
-// Proportions of the standing body (Drillis and Contini 1966): hip .53, shoulder .82, chin .87 of
-// the height.
+// Proportions of the standing body [drillis1966]: hip .53, shoulder .82, chin .87 of the height.
 Shape pedestrianShape(double w, double h) {
   Shape shape;
   Part trunk;

@@ -14,7 +14,7 @@ constexpr double kRestSpeed = 0.02;  // [m/s] below it the direction of the velo
 constexpr double kFastest = 60;      // [m/s] faster than any road user of ours: a slip of the pen
 
 // Slopes that keep the cubic monotone between its values: weighted harmonic mean of the
-// neighboring secants (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984); 0 at a turn back.
+// neighboring secants [fritsch1984]; 0 at a turn back.
 std::vector<double> monotoneSlopes(const std::vector<double>& t, const std::vector<double>& v) {
   const std::size_t n = v.size();
   std::vector<double> slopes(n, 0.0);

@@ -15,8 +15,8 @@ struct Motion2 {
   double traveled = 0;                 ///< [m] way since the first waypoint
 };
 
-/// A smooth way through timed waypoints. Each coordinate is a monotone cubic of time (Fritsch and
-/// Butland 1984), so nothing overshoots: two waypoints at one place are a pause, waypoints on a
+/// A smooth path through timed waypoints. Each coordinate is a monotone cubic of time
+/// [fritsch1984], so nothing overshoots: two waypoints at one place are a pause, waypoints on a
 /// line are driven on the line. Before the first and after the last waypoint it stands still.
 class Trajectory {
  public:

@@ -1,53 +1,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
+#include "tests/architecture/Modules.h"
 #include "tests/architecture/SourceTree.h"
 
 namespace perception::test {
 namespace {
 
-// What a module may include besides itself. The spine is core -> measurement -> filter -> scene.
-const std::map<std::string, std::set<std::string>> kMayInclude = {
-    {"core", {}},
-    {"config", {"core"}},
-    {"simd", {"core"}},
-    {"measurement", {"config", "core"}},
-    // Front ends and weather: no filter, no sensors.
-    {"lidar", {"measurement", "simd", "config", "core"}},
-    {"radar", {"measurement", "config", "core"}},
-    {"boxes3d", {"measurement", "config", "core"}},
-    {"vision", {"measurement", "config", "core"}},
-    {"weather", {"measurement", "simd", "config", "core"}},
-    {"detectors", {"measurement", "simd", "config", "core"}},
-    {"grid", {"simd", "config", "core"}},
-    {"filter", {"measurement", "simd", "config", "core"}},
-    {"scene", {"filter", "measurement", "config", "core"}},
-    {"sensors", {"measurement", "config", "core"}},
-    {"pipeline",
-     {"scene", "filter", "sensors", "grid", "weather", "lidar", "radar", "boxes3d", "vision",
-      "measurement", "config", "core"}},
-    {"evaluation", {"scene", "measurement", "config", "core"}},
-    {"gui-offscreen", {"scene", "grid", "measurement", "config", "core"}},
-    {"importers", {"sensors", "measurement", "config", "core"}},
-    {"simulation", {"sensors", "measurement", "config", "core"}},
-    {"capture", {"simulation", "sensors", "measurement", "config", "core"}},
-    {"calibration",
-     {"pipeline", "evaluation", "scene", "filter", "boxes3d", "sensors", "measurement", "config",
-      "core"}},
-    {"pictures",
-     {"pipeline", "gui-offscreen", "simulation", "scene", "grid", "lidar", "detectors", "sensors",
-      "measurement", "config", "core"}},
-    {"app",
-     {"pictures", "pipeline", "calibration", "importers", "simulation", "detectors", "evaluation",
-      "gui-offscreen", "boxes3d", "scene", "grid", "sensors", "measurement", "config", "core"}},
-    {"studies",
-     {"app", "pipeline", "calibration", "simulation", "detectors", "evaluation", "scene", "filter",
-      "lidar", "sensors", "measurement", "config", "core"}},
-    {"apps", {"app", "studies"}},
-};
+// Floors of the filter: a folder may include those before it; Step and CRbpfTracker (filter itself)
+// stand on top.
+const std::vector<std::string> kFloorsOfFilter = {"libperception/filter/simd",
+                                                  "libperception/filter/state",
+                                                  "libperception/filter/predict",
+                                                  "libperception/filter/likelihood",
+                                                  "libperception/filter/associate",
+                                                  "libperception/filter/update",
+                                                  "libperception/filter"};
 
 // Where only classes of MRPT's own kind (files CXxx) may know MRPT.
 const std::set<std::string> kWithoutMrpt = {
@@ -82,19 +52,31 @@ bool isMrptClassFile(const SourceFile& file) {
   return name.size() > 2 && name[0] == 'C' && std::isupper(static_cast<unsigned char>(name[1]));
 }
 
+// Why an include within the filter breaks the order of its floors, or nothing.
+std::string faultOfFloors(const SourceFile& file, const Include& include) {
+  const auto floorOf = [](const std::string& path) {
+    const std::string folder = path.substr(0, path.rfind('/'));
+    return std::find(kFloorsOfFilter.begin(), kFloorsOfFilter.end(), folder);
+  };
+  const auto from = floorOf(file.path), to = floorOf(include.path);
+  if (from == kFloorsOfFilter.end()) return "the folder is no floor of the filter";
+  if (to > from) return *from + " must not include " + *to;
+  return "";
+}
+
 // Why the include breaks a rule, or nothing.
 std::string faultOf(const SourceFile& file, const Include& include) {
   const std::string module = moduleOf(file.path);
-  const auto allowed = kMayInclude.find(module);
-  if (allowed == kMayInclude.end()) return "the module is not in the table of layers";
+  const Module* rule = moduleNamed(module);
+  if (rule == nullptr) return "the module is not in the table of layers";
   if (include.quoted) {
     const std::string other = moduleOf(include.path);
     if (!std::filesystem::exists(std::filesystem::path(PERCEPTION_SOURCE_DIR) / include.path)) {
       return "is no path from the root of the repository";
     }
-    if (other != module && !allowed->second.count(other))
+    if (other != module && !rule->may_include.count(other))
       return module + " must not include " + other;
-    return "";
+    return module == "filter" && other == module ? faultOfFloors(file, include) : "";
   }
   if (beginsWith(include.path, "mrpt/")) {
     if (std::count(include.path.begin(), include.path.end(), '/') == 1 &&
@@ -169,6 +151,15 @@ TEST(Layers, TheCheckerFindsWhatIsForbidden) {
       "core must not include measurement");
   EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "# include \"libperception/scene/Scene.h\""),
             "filter must not include scene");
+  EXPECT_EQ(faultOfLine("libperception/filter/state/A.h",
+                        "#include \"libperception/filter/likelihood/Gating.h\""),
+            "libperception/filter/state must not include libperception/filter/likelihood");
+  EXPECT_EQ(
+      faultOfLine("libperception/filter/update/A.h", "#include \"libperception/filter/Step.h\""),
+      "libperception/filter/update must not include libperception/filter");
+  EXPECT_EQ(
+      faultOfLine("libperception/filter/newcomer/A.h", "#include \"libperception/filter/Step.h\""),
+      "the folder is no floor of the filter");
   EXPECT_EQ(faultOfLine("libperception/scene/A.cpp", "#include \"Scene.h\""),
             "is no path from the root of the repository");
   EXPECT_EQ(faultOfLine("libperception/app/A.cpp", "#include <mrpt/obs.h>"),
@@ -186,6 +177,9 @@ TEST(Layers, TheCheckerFindsWhatIsForbidden) {
 }
 
 TEST(Layers, TheCheckerAllowsWhatIsAllowed) {
+  EXPECT_EQ(faultOfLine("libperception/filter/update/A.h",
+                        "#include \"libperception/filter/state/Track.h\""),
+            "");
   EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "#include \"libperception/core/Angle.h\""),
             "");
   EXPECT_EQ(
@@ -198,16 +192,27 @@ TEST(Layers, TheCheckerAllowsWhatIsAllowed) {
 }
 
 TEST(Layers, TheTableHasNoCycle) {
-  // Each module may be removed once all that it includes are removed.
-  std::set<std::string> done;
-  for (std::size_t before = 1; before != done.size();) {
-    before = done.size();
-    for (const auto& [module, needs] : kMayInclude) {
-      if (std::includes(done.begin(), done.end(), needs.begin(), needs.end())) done.insert(module);
+  for (const Module& module : modules()) {
+    // The order of the table is one in which every module follows all that it may include.
+    for (const std::string& other : module.may_include) {
+      const Module* found = moduleNamed(other);
+      EXPECT_TRUE(found != nullptr && found < &module) << module.name << ": " << other;
     }
-    if (done.size() == kMayInclude.size()) break;
   }
-  EXPECT_EQ(done.size(), kMayInclude.size());
+}
+
+// Otherwise docs/structure.svg would show more than there is.
+TEST(Layers, WhatThePictureSaysIsUsed) {
+  std::set<std::pair<std::string, std::string>> used;
+  for (const SourceFile& file : ourSources()) {
+    for (const Include& include : includesOf(file)) {
+      if (include.quoted) used.insert({moduleOf(file.path), moduleOf(include.path)});
+    }
+  }
+  for (const Module& module : modules()) {
+    for (const std::string& other : nearestBelow(module))
+      EXPECT_EQ(used.count({module.name, other}), 1u) << module.name << ": " << other;
+  }
 }
 
 }  // namespace

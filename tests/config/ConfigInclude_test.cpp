@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A working folder with ini/site.ini, ini/common/classes.ini ...
+/// A working folder with ini/site.ini and what it includes.
 class ConfigInclude : public ::testing::Test {
  protected:
   ConfigInclude() : inside_(folder_.path()) { fs::create_directories("ini/common"); }

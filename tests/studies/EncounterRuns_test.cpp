@@ -59,7 +59,7 @@ TEST(Encounters, AreRepeatedToTheBit) {
 }
 
 TEST(WilsonUpper, IsTheBoundOfTheBook) {
-  // 10 of 100: Brown, Cai and DasGupta 2001 give (.055, .174).
+  // 10 of 100: [brown2001] gives (.055, .174).
   EXPECT_NEAR(wilsonUpper(10, 100), 0.1744, 5e-4);
   EXPECT_NEAR(wilsonUpper(0, 100), 0.0370, 5e-4);
 }

@@ -1,0 +1,111 @@
+#pragma once
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace perception::test {
+
+/// A module: a folder below libperception, or one beside it.
+struct Module {
+  std::string name;
+  std::string what;                   ///< what it does, for docs/structure.svg
+  std::set<std::string> may_include;  ///< other modules
+  bool spine = false;                 ///< core, measurement, filter, scene and what runs them
+  int stage = 0;                      ///< order in which data pass from log to scene; 0: none
+};
+
+/// Who may include whom, each module behind all that it may include. Layers_test holds it, and
+/// docs/structure.svg is drawn from it.
+inline const std::vector<Module>& modules() {
+  static const std::vector<Module> all = {
+      {"core", "poses, angles, time, random numbers, errors, truth files", {}, true},
+      {"config", "strict INI files, each key documented", {"core"}},
+      {"simd", "loops over returns for several vector widths", {}},
+      {"measurement",
+       "the common language: frames, measurements z and R, measurement models h, object classes",
+       {"config", "core"},
+       true},
+      // Front ends and weather: no filter, no sensors.
+      {"weather",
+       "trust: is a return rain or snow?",
+       {"measurement", "simd", "config", "core"},
+       false,
+       2},
+      {"lidar",
+       "ground, clusters, person peaks",
+       {"measurement", "simd", "config", "core"},
+       false,
+       3},
+      {"radar", "targets with range rate", {"measurement", "core"}, false, 3},
+      {"vision", "image boxes as outlines", {"measurement", "config", "core"}, false, 3},
+      {"boxes3d", "boxes in space as positions", {"measurement", "config", "core"}, false, 3},
+      {"detectors", "finds boxes in images", {"measurement", "simd", "config", "core"}},
+      {"grid", "safety grid: free distance", {"simd", "config", "core"}},
+      {"filter",
+       "hypotheses of associations, a bank of class filters for every track",
+       {"measurement", "simd", "config", "core"},
+       true,
+       4},
+      {"sensors",
+       "reads logs, decodes, finds the pose",
+       {"measurement", "config", "core"},
+       false,
+       1},
+      {"scene",
+       "the posterior as one list of objects; result files",
+       {"filter", "measurement", "config", "core"},
+       true,
+       5},
+      {"pipeline",
+       "runs one log: reader, weather, front ends, filter, scene, grid",
+       {"scene", "filter", "sensors", "grid", "weather", "lidar", "radar", "boxes3d", "vision",
+        "measurement", "config", "core"},
+       true},
+      {"evaluation", "tracks against truth", {"scene", "measurement", "core"}},
+      {"gui-offscreen", "pictures, films, pages", {"scene", "grid", "measurement", "core"}},
+      {"importers", "other recordings to rawlogs", {"sensors", "measurement", "core"}},
+      {"simulation", "scenarios to rawlogs", {"sensors", "measurement", "config", "core"}},
+      {"capture", "drivers for MRPT's recorder", {"simulation", "sensors", "config", "core"}},
+      {"calibration",
+       "fits parameters by their likelihood",
+       {"pipeline", "evaluation", "boxes3d", "measurement", "core"}},
+      {"pictures",
+       "pictures of scenarios, detections, sensors",
+       {"pipeline", "gui-offscreen", "simulation", "scene", "grid", "lidar", "detectors", "sensors",
+        "core"}},
+      {"app",
+       "command lines: one class for every program",
+       {"pictures", "pipeline", "calibration", "importers", "simulation", "detectors", "evaluation",
+        "gui-offscreen", "boxes3d", "scene", "grid", "sensors", "measurement", "config", "core"}},
+      {"studies",
+       "experiments about the method",
+       {"app", "pipeline", "simulation", "detectors", "evaluation", "scene", "filter", "lidar",
+        "sensors", "measurement", "config", "core"}},
+      {"apps", "a short main for every program", {"app", "studies"}},
+  };
+  return all;
+}
+
+/// Null where the table has no such module.
+inline const Module* moduleNamed(const std::string& name) {
+  for (const Module& module : modules()) {
+    if (module.name == name) return &module;
+  }
+  return nullptr;
+}
+
+/// What the module includes, without what comes with another of them.
+inline std::vector<std::string> nearestBelow(const Module& module) {
+  std::vector<std::string> near;
+  for (const Module& other : modules()) {
+    if (module.may_include.count(other.name) == 0) continue;
+    const bool comes_along = std::any_of(
+        module.may_include.begin(), module.may_include.end(),
+        [&](const auto& name) { return moduleNamed(name)->may_include.count(other.name) != 0; });
+    if (!comes_along) near.push_back(other.name);
+  }
+  return near;
+}
+
+}  // namespace perception::test
