@@ -35,7 +35,6 @@ packages=(
   libtinyxml2-dev        # GPX files
   liblzf-dev             # compressed PCD files
   zlib1g-dev             # rawlogs are gzip files; check sums
-  libnanoflann-dev       # kd-tree of the point filters that ours is compared with
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG
@@ -56,7 +55,7 @@ bench_packages=(
   libopencv-video-dev    # cv::KalmanFilter, a peer
   python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti_*
   libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar front end
-  libnanoflann-dev       # the same by region growing
+  libnanoflann-dev       # the same by region growing; kd-tree of snow filters, peers of the trust in returns
 )
 
 say() { printf '\n== %s\n' "$*"; }

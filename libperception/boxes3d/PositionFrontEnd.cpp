@@ -58,33 +58,6 @@ bool usable(const ObjectDetection::SpaceBox& box) {
          box.width > 0 && box.height > 0;
 }
 
-/// The usual box's parts by their names in the INI.
-struct SizePriorPart {
-  const char* name;
-  double SizePrior::*value;
-};
-constexpr SizePriorPart kSizePriorParts[] = {
-    {"length", &SizePrior::length},
-    {"width", &SizePrior::width},
-    {"height", &SizePrior::height},
-    {"base", &SizePrior::base},
-    {"length_sigma", &SizePrior::length_sigma},
-    {"width_sigma", &SizePrior::width_sigma},
-    {"height_sigma", &SizePrior::height_sigma},
-    {"base_sigma", &SizePrior::base_sigma},
-};
-
-/// "PART.LABEL" with one of the parts and one of the labels.
-template <typename Parts, typename Name>
-bool isPartOfLabel(const std::string& key, const Parts& parts, Name name,
-                   const std::vector<std::string>& labels) {
-  return std::any_of(std::begin(parts), std::end(parts), [&](const auto& part) {
-    return std::any_of(labels.begin(), labels.end(), [&](const std::string& label) {
-      return key == std::string(name(part)) + "." + label;
-    });
-  });
-}
-
 /// A label's entry of a table or the value that holds for all.
 double entry(const PositionParams::Table& table, const std::string& label, double otherwise) {
   for (const auto& [name, value] : table) {
@@ -126,20 +99,6 @@ void PositionParams::visit(ParamVisitor& v) {
   table("score_offset.", label_offsets, "", "the same for one label");
   table("score_fade.", label_fades, "1/m", "the same for one label");
   table("score_balance.", label_balances, "", "the same for one label");
-  v.table("weight.", weights, {-1e3, 1e3}, "",
-          "... weight of FEATURE.LABEL in the same log-odds: length, width, height, base (squared "
-          "misfits), slope, neighbor");
-  for (const auto& row : weights)
-    v.require(isPartOfLabel(
-                  row.first, kBoxFeatureNames, [](auto n) { return n; }, labels),
-              "weight." + row.first + ": not FEATURE.LABEL");
-  v.table("usual.", usual, {-100, 100}, "m",
-          "PART.LABEL: what such boxes measure: length, length_sigma, width ... base_sigma");
-  for (const auto& row : usual)
-    v.require(isPartOfLabel(
-                  row.first, kSizePriorParts, [](const auto& p) { return p.name; }, labels) &&
-                  (row.first.find("_sigma") == std::string::npos || row.second > 0),
-              "usual." + row.first + ": not PART.LABEL, or a spread of 0");
   v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log evidence");
   v.words("clutter_like", clutter_like, "classes whose boxes score like clutter");
   v.real("off_label_score_weight", off_label_score_weight, {0, 1}, "",
@@ -172,15 +131,9 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
   for (std::size_t l = 0; l < params_.labels.size(); ++l) {
     const std::string& name = params_.labels[l];
     Label label;
-    label.evidence.slope = entry(params_.label_slopes, name, params_.score_slope);
-    label.evidence.offset = entry(params_.label_offsets, name, params_.score_offset);
-    label.evidence.fade = entry(params_.label_fades, name, params_.score_fade);
-    for (std::size_t i = 0; i < kBoxFeatures; ++i)
-      label.evidence.weights[i] =
-          entry(params_.weights, std::string(kBoxFeatureNames[i]) + "." + name, 0);
-    for (const SizePriorPart& part : kSizePriorParts)
-      label.usual.*part.value =
-          entry(params_.usual, std::string(part.name) + "." + name, label.usual.*part.value);
+    label.odds.slope = entry(params_.label_slopes, name, params_.score_slope);
+    label.odds.offset = entry(params_.label_offsets, name, params_.score_offset);
+    label.odds.fade = entry(params_.label_fades, name, params_.score_fade);
     label.balance = entry(params_.label_balances, name, params_.score_balance);
     label.length_excess = entry(params_.length_excess, name, 0);
     label.width_excess = entry(params_.width_excess, name, 0);
@@ -203,7 +156,7 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
 
 double PositionFrontEnd::clutterProbability(const Candidate& c) const {
   const Label& label = labels_[static_cast<std::size_t>(c.label)];
-  return label.evidence.slope > 0 ? 1 / (1 + std::exp(c.log_odds)) : 0;
+  return label.odds.slope > 0 ? 1 / (1 + std::exp(c.log_odds)) : 0;
 }
 
 /// The faces of the boxes that surely stand there.
@@ -233,12 +186,12 @@ std::shared_ptr<const OcclusionMap> PositionFrontEnd::occlusion(
 
 double PositionFrontEnd::logScoreRatio(const Candidate& c) const {
   const Label& label = labels_[static_cast<std::size_t>(c.label)];
-  if (label.evidence.slope <= 0) return 0;
+  if (label.odds.slope <= 0) return 0;
   return std::clamp(c.log_odds - label.balance, -params_.score_limit, params_.score_limit);
 }
 
 std::vector<std::vector<PositionFrontEnd::Candidate>> PositionFrontEnd::groups(
-    const ObjectDetections& detections, const Pose3& T_ego_sensor, MeasurementScan& scan) const {
+    const ObjectDetections& detections, MeasurementScan& scan) const {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < detections.objects.size(); ++i) {
     const ObjectDetection& object = detections.objects[i];
@@ -250,12 +203,9 @@ std::vector<std::vector<PositionFrontEnd::Candidate>> PositionFrontEnd::groups(
         model_->inView((scan.state.T_world_sensor * object.space_box->bottom_center).head<2>(),
                        scan.state);
     if (good) {
-      const Label& known = labels_[static_cast<std::size_t>(label->second)];
+      const ScoreOdds& odds = labels_[static_cast<std::size_t>(label->second)].odds;
       const double range = object.space_box->bottom_center.head<2>().norm();
-      candidates.push_back(
-          {&object, i, label->second,
-           known.evidence.logOdds(object.score, range,
-                                  boxFeatures(detections, i, known.usual, T_ego_sensor))});
+      candidates.push_back({&object, i, label->second, odds.logOdds(object.score, range)});
     } else {
       ++scan.dropped;
     }
@@ -346,7 +296,7 @@ MeasurementScan PositionFrontEnd::extract(const SensorFrame& frame) const {
   scan.state = {frame.stamp, frame.T_world_sensor(), frame.ego};
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
   if (!detections) return scan;
-  const auto found = groups(*detections, frame.T_ego_sensor, scan);
+  const auto found = groups(*detections, scan);
   scan.occlusion = occlusion(found, scan.state);
   for (const auto& group : found) scan.measurements.push_back(measure(group, frame, scan.state));
   return scan;

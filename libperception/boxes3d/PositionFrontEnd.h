@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/boxes3d/BoxFeatures.h"
+#include "libperception/boxes3d/ScoreOdds.h"
 #include "libperception/config/Config.h"
 #include "libperception/measurement/DetectionModel.h"
 #include "libperception/measurement/FrontEnd.h"
@@ -31,10 +31,6 @@ struct PositionParams {
   double score_offset = 0;
   double score_fade = 0;  ///< [1/m]
   Table label_slopes, label_offsets, label_fades;
-  /// What else a box shows (BoxFeatures): "FEATURE.LABEL", the weight in these log-odds ...
-  Table weights;
-  /// ... and "length.LABEL", "length_sigma.LABEL" ..., what such boxes usually measure [m].
-  Table usual;
   /// log of (objects / clutter) among all boxes of that count; it turns the odds into
   /// p(score | object) / p(score | clutter).
   double score_balance = 0;
@@ -76,8 +72,7 @@ class PositionFrontEnd final : public FrontEnd {
  private:
   /// What is known of one label.
   struct Label {
-    BoxEvidence evidence;
-    SizePrior usual;
+    ScoreOdds odds;
     double balance = 0;
     double length_excess = 0, width_excess = 0, height_excess = 0;
     /// By class: log p(label | class); share of the score's evidence that it takes.
@@ -88,11 +83,10 @@ class PositionFrontEnd final : public FrontEnd {
     const ObjectDetection* object;
     std::size_t index;
     int label;
-    double log_odds = 0;  ///< of an object, by score, range and features
+    double log_odds = 0;  ///< of an object, by score and range
   };
 
   std::vector<std::vector<Candidate>> groups(const ObjectDetections& detections,
-                                             const Pose3& T_ego_sensor,
                                              MeasurementScan& scan) const;
   Measurement measure(const std::vector<Candidate>& group, const SensorFrame& frame,
                       const SensorState& state) const;

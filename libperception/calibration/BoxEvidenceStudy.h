@@ -3,9 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "libperception/boxes3d/BoxFeatures.h"
+#include "libperception/boxes3d/ScoreOdds.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/evaluation/StudyReport.h"
+#include "libperception/measurement/SensorFrame.h"
 #include "libperception/pipeline/RecordedLog.h"
 
 namespace perception {
@@ -13,12 +14,7 @@ namespace perception {
 /// One box of a detector and what it turned out to be.
 struct JudgedBox {
   std::string label;  ///< the detector's class name
-  double score = 0;
-  double range = 0;  ///< [m] of its center
-  ObjectDetection::SpaceBox box;
-  double base = 0;                 ///< [m] lower face above the vehicle's ground
-  double neighbor = 0, slope = 0;  ///< features that need no usual box
-  bool object = false;             ///< on an object of the label's class; else on nothing labeled
+  BoxSample sample;   ///< `object`: on an object of the label's class; else on nothing labeled
 };
 
 /// All boxes of a log that can be judged: not those on objects of another class.
@@ -33,9 +29,8 @@ struct BoxLog {
 BoxLog boxLog(const RecordedLog& log, const std::string& sensor,
               const std::map<Stamp, ObjectDetections>& detections, const GroundTruth& truth);
 
-/// Fits P(object | box) of every label by score and range alone and with features; each log is
-/// also judged by what was fitted on the others. Features that do not lower the loss on logs left
-/// out are not taken over into the INI section that it writes.
+/// Fits P(object | score, range) of every label; each log is also judged by what was fitted on the
+/// others. Writes the section for the vehicle's INI.
 /// `names`: the INI's label of each of the detector's class names; those without stay as they are.
 StudyReport boxEvidenceStudy(const std::string& sensor, const std::vector<BoxLog>& logs,
                              const std::map<std::string, std::string>& names);

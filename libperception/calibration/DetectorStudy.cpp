@@ -194,7 +194,7 @@ StudyReport detectorStudy(const DetectorStudyInput& input,
   report.tables = {std::move(scans), std::move(detection), std::move(labels), std::move(noise)};
   report.files.emplace_back("detector.ini", ini);
   report.remarks = {
-      "`detector.ini` holds the counted keys; scores are fitted by `perception-study boxes`.",
+      "`detector.ini` holds the counted keys; scores are fitted by `perception-calibrate boxes`.",
       "NIS: mean of (error / stated deviation)^2, 1 when the noise is honest, less when cautious. "
       "Repeated: correlation of one object's errors a second apart; a filter takes them for "
       "independent, so stated deviations must be larger than the errors where it is high.",

@@ -65,7 +65,7 @@ const std::vector<std::string>& OnnxParams::layoutNames() {
 }
 
 void OnnxParams::visit(ParamVisitor& v) {
-  v.integer("input", input, {0, 4096}, "side of the square input in pixels; 0: as the file says");
+  v.integer("input", input, {32, 4096}, "side of the network's square input in pixels");
   v.choice("layout", layout, layoutNames(), "of the output; auto: by its shape");
   v.real("overlap", overlap, {0, 1}, "", "intersection over union of boxes of one object");
   v.boolean("windows", windows, "long images also in overlapping squares of their shorter side");

@@ -38,9 +38,9 @@ struct DpmParams {
   void visit(ParamVisitor& v);
 };
 
-/// [onnx]: what a network's file does not tell.
+/// [onnx]: what cv::dnn does not tell of a network.
 struct OnnxParams {
-  int input = 0;          ///< [px] side of the square input; 0: as the file says
+  int input = 416;        ///< [px] side of the square input (YOLOX-Nano, [ge2021])
   int layout = 0;         ///< of the output, a place in layoutNames(); 0: by its shape
   double overlap = 0.45;  ///< of boxes of one class that are one object (intersection over union)
   bool windows = true;    ///< long images also in squares of their shorter side

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <opencv2/core.hpp>
@@ -12,7 +13,6 @@
 #include "libperception/core/Error.h"
 #include "libperception/detectors/CvRaster.h"
 #include "libperception/detectors/Detector.h"
-#include "libperception/detectors/OnnxFile.h"
 #include "libperception/detectors/OnnxOutput.h"
 #include "libperception/detectors/Suppression.h"
 
@@ -27,21 +27,25 @@ constexpr double kCut = 0.03;     // of its width: a box so near to its window's
 class OnnxDetector final : public Detector {
  public:
   explicit OnnxDetector(const DetectorSetup& setup)
-      : params_(setup.onnx), model_(setup.models.front().second), path_(setup.pathOf(model_)) {
+      : params_(setup.onnx),
+        model_(setup.models.front().second),
+        path_(setup.pathOf(model_)),
+        side_(params_.input) {
     if (setup.models.size() != 1)
       throw ConfigError("[detector] backend = onnx: exactly one [model.NAME] section");
     readNames();
-    const OnnxFile file = readOnnxFile(path_);
-    side_ = params_.input > 0 ? params_.input : sideOf(file);
+    if (!std::filesystem::exists(path_))
+      throw DataError(fmt::format("{}: no such file (a network)", path_), ExitCode::kNoInput);
     try {
       net_ = cv::dnn::readNetFromONNX(path_);
       net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
       run(cv::Mat::zeros(side_, side_, CV_8UC3));  // an export that cannot run says so at once
     } catch (const cv::Exception& e) {
       throw DataError(fmt::format(
-          "{}: cv::dnn {} cannot run this network (opset {}): {}. Export it with a fixed input "
-          "size, opset 12 or lower and simplified, without suppression of boxes inside",
-          path_, CV_VERSION, file.opset, e.err));
+          "{}: cv::dnn {} cannot run this network at an input of {} px ([onnx] input): {}. Export "
+          "it with a fixed input size, opset 12 or lower and simplified, without suppression of "
+          "boxes inside",
+          path_, CV_VERSION, side_, e.err));
     }
     layout_ = layoutOf();
   }
@@ -124,20 +128,6 @@ class OnnxDetector final : public Detector {
       throw ConfigError("[model] names: which of the network's classes are wanted? (2=Car, ...)");
   }
 
-  int sideOf(const OnnxFile& file) const {
-    if (file.input.size() != 4 || (file.input[1] != 3 && file.input[1] != -1))
-      throw DataError(fmt::format("{}: expected an input of 1 x 3 x S x S", path_));
-    if (file.input[2] < 0 || file.input[3] < 0)
-      throw DataError(fmt::format(
-          "{}: its input size is left open, which cv::dnn {} cannot run. Export it with a fixed "
-          "size (dynamic = False, opset 12, simplify = True), or name the size: [onnx] input",
-          path_, CV_VERSION));
-    if (file.input[2] != file.input[3])
-      throw DataError(fmt::format("{}: input of {} x {}, expected a square", path_, file.input[3],
-                                  file.input[2]));
-    return static_cast<int>(file.input[2]);
-  }
-
   /// The first output, 1 x A x B.
   cv::Mat run(const cv::Mat& input) const {
     const bool yolox = layout_ == OnnxLayout::kYolox;
@@ -169,7 +159,7 @@ class OnnxDetector final : public Detector {
   OnnxParams params_;
   DetectorModelParams model_;
   std::string path_;
-  int side_ = 0;
+  int side_ = 0;  // [px] of the square input
   OnnxLayout layout_ = OnnxLayout::kUnknown;
   std::map<int, std::string> names_;
   mutable std::mutex one_at_a_time_;

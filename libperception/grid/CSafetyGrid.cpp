@@ -24,7 +24,7 @@ IMPLEMENTS_SERIALIZABLE(CSafetyGrid, CMetricMap, perception)
 
 namespace {
 
-const char* const kBackEndNames[] = {"octomap", "mrpt2d", "mrpt3d", "rolling", "rolling2d"};
+const char* const kBackEndNames[] = {"octomap", "mrpt2d", "rolling", "rolling2d"};
 
 Pose3 toPose(const mrpt::poses::CPose3D& pose) {
   Pose3 T = Pose3::Identity();
@@ -136,7 +136,8 @@ void CSafetyGrid::getVisualizationInto(mrpt::opengl::CSetOfObjects& scene) const
   scene.insert(voxels);
 }
 
-uint8_t CSafetyGrid::serializeGetVersion() const { return 0; }
+// 0 had other back ends.
+uint8_t CSafetyGrid::serializeGetVersion() const { return 1; }
 
 void CSafetyGrid::serializeTo(mrpt::serialization::CArchive& out) const {
   const GridParams& p = grid_->params();
@@ -151,7 +152,7 @@ void CSafetyGrid::serializeTo(mrpt::serialization::CArchive& out) const {
 }
 
 void CSafetyGrid::serializeFrom(mrpt::serialization::CArchive& in, uint8_t version) {
-  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version != 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   GridParams p;
   uint8_t back_end = 0;
   in >> back_end >> p.resolution >> p.size >> p.hit >> p.miss >> p.low >> p.high >> p.tau >>

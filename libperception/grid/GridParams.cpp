@@ -3,8 +3,8 @@
 namespace perception {
 
 void GridParams::visit(ParamVisitor& v) {
-  v.choiceOf("back_end", back_end, {"octomap", "mrpt2d", "mrpt3d", "rolling", "rolling2d"},
-             "octomap, mrpt3d, rolling: cells in space; mrpt2d, rolling2d: of the ground, cheaper; "
+  v.choiceOf("back_end", back_end, {"octomap", "mrpt2d", "rolling", "rolling2d"},
+             "octomap, rolling: cells in space; mrpt2d, rolling2d: of the ground, cheaper; "
              "rolling and rolling2d for real time");
   v.real("resolution", resolution, {0.05, 2}, "m", "edge of a cell (method.md 8.4)");
   v.real("size", size, {5, 400}, "m", "edge of the window around the vehicle (method.md 8.4)");

@@ -7,7 +7,7 @@ namespace perception {
 /// How the safety grid remembers what the lidar saw: [grid]. Values of method.md 8.4 unless said
 /// otherwise.
 struct GridParams {
-  enum class BackEnd { kOctomap, kMrpt2d, kMrpt3d, kRolling, kRolling2d };
+  enum class BackEnd { kOctomap, kMrpt2d, kRolling, kRolling2d };
 
   BackEnd back_end = BackEnd::kOctomap;
   double resolution = 0.2;         ///< [m] edge of a cell

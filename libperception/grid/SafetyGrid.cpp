@@ -1,7 +1,6 @@
 #include "libperception/grid/SafetyGrid.h"
 
 #include "libperception/grid/CGridMrpt2d.h"
-#include "libperception/grid/CGridMrpt3d.h"
 #include "libperception/grid/GridOctomap.h"
 #include "libperception/grid/GridRolling.h"
 
@@ -15,7 +14,6 @@ struct BackEndRow {
 
 constexpr BackEndRow kBackEnds[] = {{GridParams::BackEnd::kOctomap, &makeGridOctomap},
                                     {GridParams::BackEnd::kMrpt2d, &makeGridMrpt2d},
-                                    {GridParams::BackEnd::kMrpt3d, &makeGridMrpt3d},
                                     {GridParams::BackEnd::kRolling, &makeGridRolling},
                                     {GridParams::BackEnd::kRolling2d, &makeGridRolling2d}};
 

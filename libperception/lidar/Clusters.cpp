@@ -20,9 +20,6 @@ void ClusterParams::visit(ParamVisitor& v) {
   v.boolean("accept_unstable", accept_unstable, "clusters close to others, too, labeled unstable");
   v.real("unstable_max_size", unstable_max_size, {1, 100}, "m", "largest dimension of those");
   v.real("unstable_min_side", unstable_min_side, {0, 10}, "m", "smallest longest side of those");
-  v.boolean("in_space", in_space,
-            "distances in space instead of seen from above: branches and signs over an object are "
-            "not joined to it");
   v.require(near_threshold < far_threshold, "near_threshold must be below far_threshold");
 }
 
@@ -95,9 +92,7 @@ void describeCluster(const std::vector<float>& x, const std::vector<float>& y,
 std::vector<Cluster> findClusters(const std::vector<float>& x, const std::vector<float>& y,
                                   const std::vector<float>& height, const ClusterParams& params,
                                   const std::vector<float>& weight) {
-  const DoubleLinkage linkage =
-      params.in_space ? linkTwiceInSpace(x, y, height, params.near_threshold, params.far_threshold)
-                      : linkTwice(x, y, params.near_threshold, params.far_threshold);
+  const DoubleLinkage linkage = linkTwice(x, y, params.near_threshold, params.far_threshold);
   const std::vector<std::uint32_t>& group = linkage.near.group;
   const std::vector<Candidate> candidates = candidatesOf(x, y, height, weight, linkage.near);
 

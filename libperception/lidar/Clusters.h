@@ -22,7 +22,6 @@ struct ClusterParams {
   double unstable_max_size =
       8;  ///< [m] of those: longer ones are hedges and walls more often than buses
   double unstable_min_side = 1.2;  ///< [m]
-  bool in_space = false;  ///< thresholds also count height: what hangs over an object is not joined
 
   void visit(ParamVisitor& v);
 };

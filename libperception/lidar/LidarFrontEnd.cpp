@@ -18,9 +18,6 @@ void ObstacleParams::visit(ParamVisitor& v) {
   v.real("occluder_max", occluder_max, {0.2, 10}, "m", "height up to which they do");
   v.angle("occluder_bin_deg", occluder_bin, {0.05, 10}, "width of a direction of the horizon");
   v.real("occluder_margin", occluder_margin, {0, 5}, "m", "by which a hiding return is nearer");
-  v.angle("sparse_step_deg", sparse_step, {0, 5},
-          "bearing between neighboring returns: a cluster's end is hidden where the next return of "
-          "the same side would be too far off to join; 0: not asked");
   v.require(height_min < height_max, "height_min must be below height_max");
   v.require(occluder_min < occluder_max, "occluder_min must be below occluder_max");
 }

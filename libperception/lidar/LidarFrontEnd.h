@@ -24,8 +24,6 @@ struct ObstacleParams {
   double occluder_max = 2.2;  ///< [m] above ground; higher returns leave the view below them free
   double occluder_bin = radians(0.4);  ///< [rad] of the horizon
   double occluder_margin = 0.5;  ///< [m] by which a hiding return is nearer than what it hides
-  double sparse_step = 0;  ///< [rad] between neighboring returns: ends that sparseness explains
-                           ///< are not seen; 0: the test is off
 
   void visit(ParamVisitor& v);
 };

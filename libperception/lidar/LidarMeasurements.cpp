@@ -54,9 +54,6 @@ Outline outlineInWorld(const ScanContext& scan, const std::vector<Vector2>& hull
   markHiddenEdges(outline, scan.occlusion, scan.T_world_sensor,
                   scan.params.obstacles.occluder_margin, scan.params.obstacles.occluder_bin,
                   scan.fov);
-  if (scan.params.obstacles.sparse_step > 0)
-    markSparseEdges(outline, places, scan.T_world_sensor, scan.params.obstacles.sparse_step,
-                    scan.params.clusters.near_threshold);
   return outline;
 }
 

@@ -31,10 +31,4 @@ Partition farPartition(const DoubleLinkage& linkage);
 DoubleLinkage linkTwice(const std::vector<float>& x, const std::vector<float>& y,
                         double near_threshold, double far_threshold);
 
-/// The same in space: what hangs over something else farther than a threshold is not joined to it
-/// from above. Points spread less than 1000 km and, in z, 10 km at thresholds of 0.3 m.
-DoubleLinkage linkTwiceInSpace(const std::vector<float>& x, const std::vector<float>& y,
-                               const std::vector<float>& z, double near_threshold,
-                               double far_threshold);
-
 }  // namespace perception

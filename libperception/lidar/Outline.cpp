@@ -17,8 +17,8 @@ Outline outlineOf(const std::vector<Vector2>& hull, const Pose3& T_world_sensor)
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Vector2 d = hull[i] - sensor, side = hull[(i + 1) % hull.size()] - hull[i];
     const double off = wrapAngle(std::atan2(d.y(), d.x()) - axis);
-    if (off > left) left = off, outline.left_range = d.norm(), outline.left_corner = i;
-    if (off < right) right = off, outline.right_range = d.norm(), outline.right_corner = i;
+    if (off > left) left = off, outline.left_range = d.norm();
+    if (off < right) right = off, outline.right_range = d.norm();
     const double length2 = side.squaredNorm();
     const double along = length2 > 0 ? std::min(1.0, std::max(0.0, -d.dot(side) / length2)) : 0;
     const Vector2 closest = d + along * side;
@@ -42,37 +42,6 @@ void markHiddenEdges(Outline& outline, const OcclusionMap& occlusion, const Pose
   };
   outline.left_hidden = hiddenBeside(outline.left, outline.left_range, step);
   outline.right_hidden = hiddenBeside(outline.right, outline.right_range, -step);
-}
-
-namespace {
-
-/// [m] from a side's end to where it would be met one step of bearing farther; `along`: towards the
-/// end, `sight`: from the sensor to the end.
-double nextReturn(const Vector2& along, const Vector2& sight, double step) {
-  const double cross = std::abs(sight.x() * along.y() - sight.y() * along.x());
-  const double grazing = std::atan2(cross, sight.dot(along));  // 0: the side leads straight away
-  if (grazing <= step) return std::numeric_limits<double>::infinity();
-  return sight.norm() * std::sin(step) / std::sin(grazing - step);
-}
-
-}  // namespace
-
-void markSparseEdges(Outline& outline, const std::vector<Vector2>& hull,
-                     const Pose3& T_world_sensor, double step, double join) {
-  constexpr double kLeast = 0.5;  // [m] of a side whose direction tells anything
-  const Vector2 sensor = T_world_sensor.translation().head<2>();
-  // The near side runs counter-clockwise from the left edge to the right one.
-  const auto isSparse = [&](std::size_t end, std::size_t other_end, std::size_t way) {
-    std::size_t from = end;
-    while (from != other_end && (hull[from] - hull[end]).norm() < kLeast)
-      from = (from + way) % hull.size();
-    const Vector2 along = hull[end] - hull[from];
-    return along.norm() > 0 && nextReturn(along, hull[end] - sensor, step) > join;
-  };
-  if (hull.size() < 2) return;
-  const std::size_t left = outline.left_corner, right = outline.right_corner;
-  outline.left_hidden = outline.left_hidden || isSparse(left, right, 1);
-  outline.right_hidden = outline.right_hidden || isSparse(right, left, hull.size() - 1);
 }
 
 void fillFootprint(const Outline& outline, double sigma_left, double sigma_right,

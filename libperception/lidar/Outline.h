@@ -9,10 +9,9 @@ namespace perception {
 /// The edges of a group of returns as the sensor sees them, in the world's horizontal plane.
 struct Outline {
   double left = 0, right = 0;  ///< [rad] bearings, counter-clockwise off the sensor's forward axis
-  double left_range = 0, right_range = 0;         ///< [m] of the edges
-  double nearest = 0;                             ///< [m] range of the nearest point
-  Vector2 nearest_direction = Vector2::UnitX();   ///< unit vector to it, world
-  std::size_t left_corner = 0, right_corner = 0;  ///< of the hull: its edges
+  double left_range = 0, right_range = 0;        ///< [m] of the edges
+  double nearest = 0;                            ///< [m] range of the nearest point
+  Vector2 nearest_direction = Vector2::UnitX();  ///< unit vector to it, world
   bool left_hidden = false,
        right_hidden = false;  ///< something nearer stands just outside the edge
 };
@@ -24,12 +23,6 @@ Outline outlineOf(const std::vector<Vector2>& hull, const Pose3& T_world_sensor)
 /// border of a field of view of `fov` [rad]; `step` [rad] is the horizon's bin.
 void markHiddenEdges(Outline& outline, const OcclusionMap& occlusion, const Pose3& T_world_sensor,
                      double margin, double step, double fov);
-
-/// Marks edges that may be where returns only get too sparse: the side of the hull that ends there,
-/// went it on, would give its next return, `step` [rad] farther, more than `join` [m] away. The end
-/// of a hedge that is seen at a grazing angle drives along with the vehicle.
-void markSparseEdges(Outline& outline, const std::vector<Vector2>& hull,
-                     const Pose3& T_world_sensor, double step, double join);
 
 /// z and R of FootprintModel's axes from an outline: noise of the edges (standard deviations) and
 /// of the ego pose (J P J^T, method.md 1.3: it moves all axes together, hence correlates them).

@@ -6,9 +6,6 @@
 
 #include "libperception/config/Config.h"
 #include "libperception/measurement/SensorFrame.h"
-#include "libperception/weather/Dror.h"
-#include "libperception/weather/Dsor.h"
-#include "libperception/weather/Lior.h"
 #include "libperception/weather/Multipath.h"
 #include "libperception/weather/TrustParams.h"
 
@@ -31,23 +28,17 @@ class PointFilter {
   virtual TrustStats apply(SensorFrame& frame) = 0;
 };
 
-/// [weather] and the sections of its filters.
+/// [weather], [weather.trust] and [weather.multipath].
 struct WeatherParams {
-  std::string filter = "off";  ///< a row of pointFilterNames()
-  TrustParams trust;           ///< [weather.trust]
-  DrorParams dror;             ///< [weather.dror]
-  DsorParams dsor;             ///< [weather.dsor]
-  LiorParams lior;             ///< [weather.lior]
-  MultipathParams multipath;   ///< [weather.multipath]
+  std::string filter = "off";  ///< or "trust" (docs/decisions/lidar.md)
+  TrustParams trust;
+  MultipathParams multipath;
 
   static WeatherParams read(Config& config);
   void visit(ParamVisitor& v);  ///< [weather] alone
 };
 
-/// "off" and the filters that there are.
-const std::vector<std::string>& pointFilterNames();
-
-/// The filter that the parameters name, followed by the test for mirror images; empty when off.
+/// The model of [weather.trust], followed by the test for mirror images; empty when off.
 std::unique_ptr<PointFilter> makePointFilter(const WeatherParams& params);
 
 }  // namespace perception

@@ -200,9 +200,8 @@ std::string whyMissed(const LidarDetections& found, const Truth& truth) {
 
 /// All scans of a recording; `rows`: the paper's rule, clusters of both kinds, persons.
 std::array<Row, 3> score(const std::vector<RecordedScan>& scans, const Labels& labels, bool trust,
-                         double range, bool in_space = false) {
+                         double range) {
   LidarParams params;
-  params.clusters.in_space = in_space;
   params.points.vehicle_front = params.points.vehicle_rear = 2.6;  // [m] both vehicles
   const LidarFrontEnd lidar = frontEnd(params);
   WeatherParams weather;
@@ -286,16 +285,11 @@ int run() {
   const KittiBoxes boxes;
   const WadsClasses point_classes;
   for (const double range : {20.0, 70.0})
-    for (const bool in_space : {false, true})
-      print(fmt::format("KITTI, {:.0f} m{}", range, in_space ? ", in space" : ""),
-            score(front, boxes, false, range, in_space));
-  for (const double range : {20.0, 50.0}) {
+    print(fmt::format("KITTI, {:.0f} m", range), score(front, boxes, false, range));
+  for (const double range : {20.0, 50.0})
     for (const bool trust : {false, true})
       print(fmt::format("WADS, {:.0f} m{}", range, trust ? ", trust" : ""),
             score(snow, point_classes, trust, range));
-    print(fmt::format("WADS, {:.0f} m, trust, in space", range),
-          score(snow, point_classes, true, range, true));
-  }
   return 0;
 }
 

@@ -77,7 +77,7 @@ int run() {
       "without | with "
       "| all clusters | with |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  const char* names[] = {"octomap", "mrpt2d", "mrpt3d", "rolling", "rolling2d"};
+  const char* names[] = {"octomap", "mrpt2d", "rolling", "rolling2d"};
   for (const auto back_end : {GridParams::BackEnd::kRolling, GridParams::BackEnd::kOctomap,
                               GridParams::BackEnd::kRolling2d})
     for (const bool intensity : {true, false}) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libperception/weather/PointTrust.h"
+#include "tests/bench/SnowFilters.h"
 #include "tests/support/LabeledScans.h"
 
 namespace perception {
@@ -33,7 +34,7 @@ int run() {
     return 0;
   }
   const auto trust = makePointTrust(TrustParams{});
-  const auto dror = makeDror(DrorParams{});
+  const auto dror = bench::makeDror({});
   std::vector<double> ours, peer, ratio;
   test::PhantomScore our_score, peer_score;
   double returns = 0;

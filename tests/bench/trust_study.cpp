@@ -13,6 +13,7 @@
 
 #include "libperception/lidar/GroundPlane.h"
 #include "libperception/weather/PointTrust.h"
+#include "tests/bench/SnowFilters.h"
 #include "tests/support/LabeledScans.h"
 
 namespace perception {
@@ -187,39 +188,39 @@ void printParams(const TrustParams& p) {
 
 struct Candidate {
   std::string name;
-  WeatherParams params;
+  std::unique_ptr<PointFilter> filter;
   bool hide_intensity = false;
 };
 
 std::vector<Candidate> candidates(const TrustParams& trust) {
   std::vector<Candidate> all;
-  const auto add = [&](const std::string& name, const std::string& filter) -> Candidate& {
-    Candidate& c = all.emplace_back();
-    c.name = name, c.params.filter = filter, c.params.trust = trust;
-    c.params.multipath.enabled = false;
-    return c;
+  const auto add = [&](const std::string& name, std::unique_ptr<PointFilter> filter,
+                       bool hide_intensity = false) {
+    all.push_back({name, std::move(filter), hide_intensity});
   };
-  add("trust", "trust");
-  add("trust, intensity hidden", "trust").hide_intensity = true;
-  add("trust, share not adapted", "trust").params.trust.adapt_share = false;
-  add("DSOR", "dsor");
-  add("DROR", "dror");
-  auto& zero = add("DROR of zero intensity within 20 m", "dror");
-  zero.params.dror.max_intensity = 0, zero.params.dror.max_range = 20;
-  add("LIOR", "lior");
+  TrustParams fixed_share = trust;
+  fixed_share.adapt_share = false;
+  bench::DrorParams dark_and_near;
+  dark_and_near.max_intensity = 0, dark_and_near.max_range = 20;
+  add("trust", makePointTrust(trust));
+  add("trust, intensity hidden", makePointTrust(trust), true);
+  add("trust, share not adapted", makePointTrust(fixed_share));
+  add("DSOR", bench::makeDsor({}));
+  add("DROR", bench::makeDror({}));
+  add("DROR of zero intensity within 20 m", bench::makeDror(dark_and_near));
+  add("LIOR", bench::makeLior({}));
   return all;
 }
 
 void score(std::vector<LabeledScan>& scans, const Candidate& candidate, std::uint32_t phantom,
            bool even_only) {
-  const auto filter = makePointFilter(candidate.params);
   PhantomScore known, all;
   double share = 0;
   for (LabeledScan& scan : scans) {
     SensorFrame frame = scan.frame;
     auto& cloud = std::get<LidarCloud>(frame.data);
     if (candidate.hide_intensity) cloud.intensity.clear();
-    share = filter->apply(frame).share;
+    share = candidate.filter->apply(frame).share;
     if (even_only && isOdd(scan)) continue;
     known.add(scan, cloud.trust, phantom);
     all.add(scan, cloud.trust, phantom, true);
@@ -297,14 +298,13 @@ void clearAir(const TrustParams& params) {
       "3 m above ground | share |\n|---|---|---|---|\n",
       scans.size());
   for (const Candidate& candidate : candidates(params)) {
-    const auto filter = makePointFilter(candidate.params);
     std::size_t all = 0, doubted = 0, obstacles = 0, doubted_obstacles = 0;
     double share = 0;
     for (LabeledScan& scan : scans) {
       SensorFrame frame = scan.frame;
       auto& cloud = std::get<LidarCloud>(frame.data);
       if (candidate.hide_intensity) cloud.intensity.clear();
-      share = filter->apply(frame).share;
+      share = candidate.filter->apply(frame).share;
       for (std::size_t i = 0; i < cloud.size(); ++i) {
         const float above = cloud.z[i] + 1.73F;
         const bool obstacle = std::hypot(cloud.x[i], cloud.y[i]) < 30 && above > 0.3F && above < 3;

@@ -11,7 +11,6 @@
 #include "libperception/core/Error.h"
 #include "libperception/detectors/DetectionQuality.h"
 #include "libperception/detectors/ImageDetector.h"
-#include "libperception/detectors/OnnxFile.h"
 #include "libperception/detectors/OnnxOutput.h"
 #include "libperception/detectors/Suppression.h"
 #include "libperception/detectors/VisionSimd.h"
@@ -164,47 +163,35 @@ TEST(OnnxOutput, EveryLayoutGivesTheSameBox) {
   expectBox(decodeOnnxOutput(v8.data(), {4 + kClasses, kCells}, OnnxLayout::kYolov8, kSide, 0.1));
 }
 
-// A message of protocol buffers by hand: field number, length, bytes.
-std::string field(int number, const std::string& bytes) {
-  return std::string{static_cast<char>(number << 3 | 2), static_cast<char>(bytes.size())} + bytes;
-}
-
-std::string onnxWithInput(const std::vector<int>& dims) {
-  std::string shape;
-  for (const int d : dims) {
-    const std::string open = field(2, "N");
-    std::string value{static_cast<char>(1 << 3)};
-    for (unsigned rest = static_cast<unsigned>(std::max(d, 0)); value.size() == 1 || rest > 0;
-         rest >>= 7)
-      value += static_cast<char>((rest & 0x7F) | (rest > 0x7F ? 0x80 : 0));
-    shape += field(1, d < 0 ? open : value);
-  }
-  const std::string type = field(1, field(2, shape));
-  const std::string graph = field(11, field(1, "images") + field(2, type));
-  return field(7, graph) + field(8, std::string{static_cast<char>(2 << 3), 17});
-}
-
-TEST(OnnxFile, TellsAnInputThatWasLeftOpen) {
+TEST(OnnxDetector, RefusesWhatIsNoNetwork) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "fixed.onnx") << onnxWithInput({1, 3, 640, 640});
-  std::ofstream(folder / "open.onnx") << onnxWithInput({-1, 3, -1, -1});
-  EXPECT_EQ(readOnnxFile(folder / "fixed.onnx").input, (std::vector<std::int64_t>{1, 3, 640, 640}));
-  EXPECT_EQ(readOnnxFile(folder / "fixed.onnx").opset, 17);
-  EXPECT_EQ(readOnnxFile(folder / "open.onnx").input[2], -1);
   DetectorSetup setup;
   setup.backend = 2;
   DetectorModelParams model;
-  model.file = folder / "open.onnx";
+  model.file = folder / "no.onnx";
   model.names = {"2=Car"};
   setup.models = {{"net", model}};
+  EXPECT_THROW(makeDetector(setup), DataError);  // there is no such file
+  std::ofstream(folder / "no.onnx") << "this is no network";
+  EXPECT_THROW(makeDetector(setup), DataError);
+}
+
+TEST(OnnxDetector, RefusesAnInputSizeThatTheNetworkCannotTake) {
+  const std::string shared = PERCEPTION_SHARED_DATA;
+  DetectorModelParams net;
+  net.file = shared + "/models/yolox_nano.onnx";
+  net.names = {"2=Car"};
+  if (!std::filesystem::exists(net.file)) GTEST_SKIP() << "no " << net.file;
+  DetectorSetup setup;
+  setup.backend = 2;
+  setup.models = {{"net", net}};
+  setup.onnx.input = 100;  // it takes 416, or another multiple of its stride
   try {
     makeDetector(setup);
-    FAIL() << "an input of any size was accepted";
+    FAIL() << "another size was accepted";
   } catch (const DataError& e) {
-    EXPECT_NE(std::string(e.what()).find("fixed size"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("input"), std::string::npos) << e.what();
   }
-  std::ofstream(folder / "no.onnx") << "this is no network";
-  EXPECT_THROW(readOnnxFile(folder / "no.onnx"), DataError);
 }
 
 // A long street, 1242 x 375, shown to a network of 416 x 416.

@@ -111,7 +111,7 @@ TEST_P(CSafetyGridOf, IsDrawn) {
 
 INSTANTIATE_TEST_SUITE_P(BackEnds, CSafetyGridOf,
                          testing::Values(GridParams::BackEnd::kOctomap,
-                                         GridParams::BackEnd::kMrpt2d, GridParams::BackEnd::kMrpt3d,
+                                         GridParams::BackEnd::kMrpt2d,
                                          GridParams::BackEnd::kRolling,
                                          GridParams::BackEnd::kRolling2d));
 

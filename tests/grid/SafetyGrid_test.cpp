@@ -234,13 +234,13 @@ TEST_P(SafetyGridContract, MemoryStaysFlatWhileTheVehicleDrives) {
 }
 
 std::string nameOf(const testing::TestParamInfo<GridParams::BackEnd>& info) {
-  static const char* const kNames[] = {"octomap", "mrpt2d", "mrpt3d", "rolling", "rolling2d"};
+  static const char* const kNames[] = {"octomap", "mrpt2d", "rolling", "rolling2d"};
   return kNames[static_cast<std::size_t>(info.param)];
 }
 
 INSTANTIATE_TEST_SUITE_P(BackEnds, SafetyGridContract,
                          testing::Values(GridParams::BackEnd::kOctomap,
-                                         GridParams::BackEnd::kMrpt2d, GridParams::BackEnd::kMrpt3d,
+                                         GridParams::BackEnd::kMrpt2d,
                                          GridParams::BackEnd::kRolling,
                                          GridParams::BackEnd::kRolling2d),
                          nameOf);
@@ -260,7 +260,6 @@ TEST_P(SpaceGrid, BridgeDoesNotBlockTheRoadBelow) {
 
 INSTANTIATE_TEST_SUITE_P(BackEnds, SpaceGrid,
                          testing::Values(GridParams::BackEnd::kOctomap,
-                                         GridParams::BackEnd::kMrpt3d,
                                          GridParams::BackEnd::kRolling),
                          nameOf);
 

@@ -94,17 +94,6 @@ TEST(Clusters, SeenFromAboveABranchOverACarIsPartOfIt) {
   EXPECT_EQ(clusters[0].points.size(), 23u);
 }
 
-TEST(Clusters, InSpaceABranchOverACarIsAnotherCluster) {
-  ClusterParams params;
-  params.in_space = true;
-  const auto clusters = carBelowBranch().find(params);
-  ASSERT_EQ(clusters.size(), 2u);
-  EXPECT_EQ(clusters[0].points.size(), 11u);
-  EXPECT_FLOAT_EQ(clusters[0].highest, 1.4f);
-  EXPECT_EQ(clusters[1].points.size(), 12u);
-  EXPECT_FLOAT_EQ(clusters[1].lowest, 2.11f);
-}
-
 TEST(Clusters, NoReturnsNoClusters) { EXPECT_TRUE(Returns().find().empty()); }
 
 }  // namespace

@@ -14,8 +14,8 @@ struct Plane {
   std::vector<float> x, y;
 };
 
-/// Connected components by looking at every pair; `z`, where given, counts, too.
-Partition everyPair(const Plane& p, double threshold, const std::vector<float>& z = {}) {
+/// Connected components by looking at every pair.
+Partition everyPair(const Plane& p, double threshold) {
   std::vector<std::uint32_t> root(p.x.size());
   std::iota(root.begin(), root.end(), 0u);
   const auto t2 = static_cast<float>(threshold * threshold);
@@ -24,8 +24,7 @@ Partition everyPair(const Plane& p, double threshold, const std::vector<float>& 
     for (std::size_t i = 0; i < root.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         const float dx = p.x[i] - p.x[j], dy = p.y[i] - p.y[j];
-        const float dz = z.empty() ? 0 : z[i] - z[j];
-        if (dx * dx + dy * dy + dz * dz > t2 || root[i] == root[j]) continue;
+        if (dx * dx + dy * dy > t2 || root[i] == root[j]) continue;
         root[i] = root[j] = std::min(root[i], root[j]);
         changed = true;
       }
@@ -117,51 +116,6 @@ TEST(Linkage, TakesNoPointsOneAndFarOnes) {
   EXPECT_EQ(linkTwice({}, {}, 0.5, 1.0).near.count, 0u);
   EXPECT_EQ(linkTwice({3}, {4}, 0.5, 1.0).far_count, 1u);
   EXPECT_EQ(linkTwice({-1e6f, 1e6f, 1e6f}, {0, 0, 0}, 0.5, 1.0).near.count, 2u);
-}
-
-TEST(SpaceLinkage, EqualsEveryPairAtBothThresholds) {
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    const Plane p = randomPlane(seed, 400, 3 + 0.5 * static_cast<double>(seed));
-    Rng rng(RngKey{seed, 0, 0, 8});
-    std::vector<float> z;
-    for (std::size_t i = 0; i < p.x.size(); ++i)
-      z.push_back(static_cast<float>(rng.uniform(0, 0.2 * static_cast<double>(seed))));
-    const DoubleLinkage linkage = linkTwiceInSpace(p.x, p.y, z, 0.5, 1.0);
-    ASSERT_EQ(linkage.near.group, everyPair(p, 0.5, z).group) << seed;
-    ASSERT_EQ(farPartition(linkage).group, everyPair(p, 1.0, z).group) << seed;
-  }
-}
-
-TEST(SpaceLinkage, EqualsEveryPairOnALatticeAtTheThreshold) {
-  for (const float pitch : {0.5f, std::nextafter(0.5f, 1.0f), 0.25f, 0.2886751f}) {
-    Plane p;
-    std::vector<float> z;
-    for (int i = 0; i < 7; ++i)
-      for (int j = 0; j < 7; ++j)
-        for (int k = 0; k < 7; ++k) {
-          p.x.push_back(static_cast<float>(i) * pitch),
-              p.y.push_back(static_cast<float>(j) * pitch);
-          z.push_back(static_cast<float>(k) * pitch);
-        }
-    const DoubleLinkage linkage = linkTwiceInSpace(p.x, p.y, z, 0.5, 1.0);
-    EXPECT_EQ(linkage.near.group, everyPair(p, 0.5, z).group) << pitch;
-    EXPECT_EQ(farPartition(linkage).group, everyPair(p, 1.0, z).group) << pitch;
-  }
-}
-
-TEST(SpaceLinkage, OnOneLevelEqualsThePlane) {
-  const Plane p = randomPlane(3, 2000, 20);
-  const std::vector<float> z(p.x.size(), 1.3f);
-  const DoubleLinkage flat = linkTwice(p.x, p.y, 0.5, 1.0);
-  const DoubleLinkage space = linkTwiceInSpace(p.x, p.y, z, 0.5, 1.0);
-  EXPECT_EQ(space.near.group, flat.near.group);
-  EXPECT_EQ(farPartition(space).group, farPartition(flat).group);
-}
-
-TEST(SpaceLinkage, TakesNoPointsOneAndFarOnes) {
-  EXPECT_EQ(linkTwiceInSpace({}, {}, {}, 0.5, 1.0).near.count, 0u);
-  EXPECT_EQ(linkTwiceInSpace({3}, {4}, {5}, 0.5, 1.0).far_count, 1u);
-  EXPECT_EQ(linkTwiceInSpace({-4e5f, 4e5f, 4e5f}, {0, 0, 0}, {0, 2, 2}, 0.5, 1.0).near.count, 2u);
 }
 
 }  // namespace

@@ -56,27 +56,6 @@ TEST(Outline, AnEdgeAtTheBorderOfTheViewIsHidden) {
   EXPECT_TRUE(outline.left_hidden && outline.right_hidden);
 }
 
-/// A hedge of 1 m depth, 3 m to the left, from `x0` to `x1` [m] ahead.
-std::vector<Vector2> hedge(double x0, double x1) { return {{x0, 3}, {x1, 3}, {x1, 4}, {x0, 4}}; }
-
-TEST(Outline, AHedgesFarEndIsSparseWhereTheNextReturnIsTooFarToJoin) {
-  const double step = radians(0.2), join = 0.5;
-  // The next return of the near side stands range^2 * step / 3 m farther, about: 0.5 m at 20.7 m.
-  for (const double end : {12.0, 19.5, 22.0, 30.0}) {
-    const auto hull = hedge(5, end);
-    Outline outline = outlineOf(hull, Pose3::Identity());
-    markSparseEdges(outline, hull, Pose3::Identity(), step, join);
-    EXPECT_EQ(outline.right_hidden, end > 20.7) << end;
-    EXPECT_FALSE(outline.left_hidden) << end;  // the face at its near end is met head-on
-  }
-}
-
-TEST(Outline, ACarsRearAheadIsNotSparse) {
-  Outline outline = outlineOf(kSquare, Pose3::Identity());
-  markSparseEdges(outline, kSquare, Pose3::Identity(), radians(0.2), 0.5);
-  EXPECT_FALSE(outline.left_hidden || outline.right_hidden);
-}
-
 TEST(Outline, CovarianceIsNoisePlusPoseByNumericDerivatives) {
   const PoseUncertainty pose;
   const Pose3 sensor = makePose(1, 2, 1.7, 0.4);
