@@ -58,12 +58,12 @@ bool usable(const ObjectDetection::SpaceBox& box) {
          box.width > 0 && box.height > 0;
 }
 
-/// A label's entry of a table or the value that holds for all.
-double entry(const PositionParams::Table& table, const std::string& label, double otherwise) {
+/// A label's entry of a table; 0 where it has none.
+double entry(const PositionParams::Table& table, const std::string& label) {
   for (const auto& [name, value] : table) {
     if (name == label) return value;
   }
-  return otherwise;
+  return 0;
 }
 
 }  // namespace
@@ -84,29 +84,18 @@ void PositionParams::visit(ParamVisitor& v) {
                 prefix + row.first + ": no such label");
     }
   };
-  v.real("min_score", min_score, {-1e9, 1e9}, "", "boxes below are dropped");
   v.real("sigma", sigma, {0.001, 1e3}, "m", "of the center, each axis");
   v.real("range_share", range_share, {0, 1}, "", "of the distance, added to sigma");
   v.real("clutter_sigma_growth", clutter_sigma_growth, {0, 100}, "",
          "by which both grow for a box that is clutter by its score");
-  v.real("score_slope", score_slope, {0, 1e3}, "1/score",
-         "P(object | score) = 1 / (1 + exp(-slope (score - offset) + fade range)); 0: no evidence");
-  v.real("score_offset", score_offset, {-1e9, 1e9}, "", "... score of even odds near by");
-  v.real("score_fade", score_fade, {-10, 10}, "1/m", "... by which the odds fall with the range");
-  v.real("score_balance", score_balance, {-50, 50}, "",
-         "... log of objects / clutter where that was counted");
-  table("score_slope.", label_slopes, "1/score", "the same for one label");
-  table("score_offset.", label_offsets, "", "the same for one label");
-  table("score_fade.", label_fades, "1/m", "the same for one label");
-  table("score_balance.", label_balances, "", "the same for one label");
-  v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log evidence");
-  v.words("clutter_like", clutter_like, "classes whose boxes score like clutter");
-  v.real("off_label_score_weight", off_label_score_weight, {0, 1}, "",
-         "of that evidence for classes that the label is not the name of");
+  table("score_slope.", score_slope, "1/score",
+        "by label: P(object | score) = 1 / (1 + exp(-slope (score - offset) + fade range)); none: "
+        "scores are no evidence");
+  table("score_offset.", score_offset, "", "... score of even odds near by");
+  table("score_fade.", score_fade, "1/m", "... by which the odds fall with the range");
+  table("score_balance.", score_balance, "", "... log of objects / clutter in that count");
   v.real("group_distance", group_distance, {0, 10}, "m",
          "boxes of different labels nearer than this are of one object; 0: off");
-  v.real("occluder_probability", occluder_probability, {0, 1}, "",
-         "P(object) from which a box hides what stands behind it; 1: no box does");
   v.boolean("sizes", sizes, "length, width, height and direction of the boxes are measured, too");
   v.angle("axis_sigma_deg", axis_sigma, {0.1, 90}, "of that direction as an axis");
   v.real("heading_flip", heading_flip, {0, 0.5}, "", "share of reversed directions");
@@ -117,6 +106,12 @@ void PositionParams::visit(ParamVisitor& v) {
   table("length_excess.", length_excess, "m", "by which a label's boxes are too long");
   table("width_excess.", width_excess, "m", "... too wide");
   table("height_excess.", height_excess, "m", "... too high");
+  v.expert();
+  v.real("min_score", min_score, {-1e9, 1e9}, "", "boxes below are dropped");
+  v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log evidence");
+  v.words("clutter_like", clutter_like, "classes whose boxes score like clutter");
+  v.real("off_label_score_weight", off_label_score_weight, {0, 1}, "",
+         "of that evidence for classes that the label is not the name of");
 }
 
 PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& classes,
@@ -131,13 +126,13 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
   for (std::size_t l = 0; l < params_.labels.size(); ++l) {
     const std::string& name = params_.labels[l];
     Label label;
-    label.odds.slope = entry(params_.label_slopes, name, params_.score_slope);
-    label.odds.offset = entry(params_.label_offsets, name, params_.score_offset);
-    label.odds.fade = entry(params_.label_fades, name, params_.score_fade);
-    label.balance = entry(params_.label_balances, name, params_.score_balance);
-    label.length_excess = entry(params_.length_excess, name, 0);
-    label.width_excess = entry(params_.width_excess, name, 0);
-    label.height_excess = entry(params_.height_excess, name, 0);
+    label.odds.slope = entry(params_.score_slope, name);
+    label.odds.offset = entry(params_.score_offset, name);
+    label.odds.fade = entry(params_.score_fade, name);
+    label.balance = entry(params_.score_balance, name);
+    label.length_excess = entry(params_.length_excess, name);
+    label.width_excess = entry(params_.width_excess, name);
+    label.height_excess = entry(params_.height_excess, name);
     // A label that is no class's name ("unknown") speaks for all road users alike.
     bool names_a_class = false;
     for (ClassId c = 0; c < classes.size(); ++c)
@@ -157,31 +152,6 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
 double PositionFrontEnd::clutterProbability(const Candidate& c) const {
   const Label& label = labels_[static_cast<std::size_t>(c.label)];
   return label.odds.slope > 0 ? 1 / (1 + std::exp(c.log_odds)) : 0;
-}
-
-/// The faces of the boxes that surely stand there.
-std::shared_ptr<const OcclusionMap> PositionFrontEnd::occlusion(
-    const std::vector<std::vector<Candidate>>& groups, const SensorState& state) const {
-  if (params_.occluder_probability >= 1) return nullptr;
-  constexpr std::size_t kBins = 720;  // half a degree
-  constexpr double kStep = 0.1;       // [m] between points of an outline: half a degree at 11 m
-  auto result = std::make_shared<OcclusionMap>(state.T_world_sensor.translation().head<2>(), kBins);
-  for (const auto& group : groups) {
-    const ObjectDetection::SpaceBox& box = *group.front().object->space_box;
-    if (1 - clutterProbability(group.front()) < params_.occluder_probability) continue;
-    const Vector2 along(std::cos(box.yaw), std::sin(box.yaw)), across(-along.y(), along.x());
-    const auto side = [&](const Vector2& direction, double length, const Vector2& offset) {
-      for (double s = -0.5 * length; s <= 0.5 * length; s += kStep) {
-        const Vector2 p = box.bottom_center.head<2>() + offset + s * direction;
-        result->add((state.T_world_sensor * Vector3(p.x(), p.y(), 0)).head<2>());
-      }
-    };
-    for (const double sign : {-0.5, 0.5}) {
-      side(along, box.length, sign * box.width * across);
-      side(across, box.width, sign * box.length * along);
-    }
-  }
-  return result;
 }
 
 double PositionFrontEnd::logScoreRatio(const Candidate& c) const {
@@ -297,7 +267,6 @@ MeasurementScan PositionFrontEnd::extract(const SensorFrame& frame) const {
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
   if (!detections) return scan;
   const auto found = groups(*detections, scan);
-  scan.occlusion = occlusion(found, scan.state);
   for (const auto& group : found) scan.measurements.push_back(measure(group, frame, scan.state));
   return scan;
 }

@@ -13,47 +13,39 @@
 
 namespace perception {
 
-/// [sensor.LABEL.positions]: what boxes in space, or points, are worth. Tables "key.LABEL" hold for
-/// one label.
+/// [sensor.LABEL.positions]: measurements of boxes in space, or points. Tables "key.LABEL" hold for
+/// one label; a label without an entry has 0.
 struct PositionParams {
   using Table = std::vector<std::pair<std::string, double>>;
   std::vector<std::string> labels{"object"};        ///< the columns of the class tables
   std::vector<std::string> names{"object=object"};  ///< the detector's class = one of the labels
-  double min_score = -1e9;
-  double sigma = 0.3;      ///< [m] of the center, each axis
-  double range_share = 0;  ///< [-] of the distance, added to sigma
-  double clutter_sigma_growth =
-      0;  ///< [-] by which both grow for a box that is surely clutter, by its score
+  double min_score = -1e9;                          ///< boxes below are dropped: none
+  double sigma = 0.3;               ///< [m] of the center, each axis (method.md 8.9, assumed)
+  double range_share = 0;           ///< [-] of the distance, added to sigma (method.md 8.9)
+  double clutter_sigma_growth = 0;  ///< [-] by which both grow for a box that is surely clutter, by
+                                    ///< its score (method.md 8.9)
 
-  /// Score as evidence: P(object | score, range) = 1 / (1 + exp(-slope (score - offset) + fade
-  /// range)), counted on recordings with truth.
-  double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
-  double score_offset = 0;
-  double score_fade = 0;  ///< [1/m]
-  Table label_slopes, label_offsets, label_fades;
-  /// log of (objects / clutter) among all boxes of that count; it turns the odds into
-  /// p(score | object) / p(score | clutter).
-  double score_balance = 0;
-  Table label_balances;
-  double score_limit = 6;  ///< bound of that logarithm
-  std::vector<std::string> clutter_like{
-      "static-other"};  ///< classes whose boxes score like clutter
+  /// Score as evidence, method.md (49), counted on recordings with truth: P(object | score, range)
+  /// = 1 / (1 + exp(-slope (score - offset) + fade range)), [1/score], [score], [1/m]; slope 0:
+  /// scores are no evidence. balance: log of (objects / clutter) in that count; it turns the odds
+  /// into p(score | object) / p(score | clutter).
+  Table score_slope, score_offset, score_fade, score_balance;
+  double score_limit = 6;  ///< bound of that logarithm (method.md (49), assumed)
+  /// Classes whose boxes score like clutter (method.md 8.9, assumed).
+  std::vector<std::string> clutter_like{"static-other"};
   /// Share of that logarithm for classes that the label is not the name of: a walker whom the
-  /// detector also calls a cyclist scores low as one.
+  /// detector also calls a cyclist scores low as one (method.md 8.9, assumed).
   double off_label_score_weight = 0.5;
   /// [m] boxes of different labels nearer than this are of one object, and the surest stands for
   /// them; 0: off. (On KITTI's training sequences the surest box names 96 % of pedestrians and of
   /// cyclists right.)
   double group_distance = 0;
 
-  /// P(object) from which a box hides what stands behind it; 1: no box does.
-  double occluder_probability = 1;
-
   bool sizes = false;  ///< length, width, height and direction of the box are measured, too
-  double axis_sigma = radians(10);                   ///< [rad] of that direction as an axis
-  double heading_flip = 0.5;                         ///< share of reversed directions
-  double length_sigma = 0.3, width_sigma = 0.3;      ///< [m]
-  double height_sigma = 0.3, base_sigma = 0.3;       ///< [m]
+  double axis_sigma = radians(10);                   ///< [rad] of that direction as axis (assumed)
+  double heading_flip = 0.5;                         ///< reversed directions: nothing is known
+  double length_sigma = 0.3, width_sigma = 0.3;      ///< [m] (assumed)
+  double height_sigma = 0.3, base_sigma = 0.3;       ///< [m] (assumed)
   Table length_excess, width_excess, height_excess;  ///< [m] by which a label's boxes are too large
 
   void visit(ParamVisitor& v);
@@ -94,8 +86,6 @@ class PositionFrontEnd final : public FrontEnd {
   void addBox(const Candidate& c, const SensorFrame& frame, const SensorState& state,
               Measurement& m) const;
   double clutterProbability(const Candidate& c) const;
-  std::shared_ptr<const OcclusionMap> occlusion(const std::vector<std::vector<Candidate>>& groups,
-                                                const SensorState& state) const;
   double logScoreRatio(const Candidate& c) const;
 
   PositionParams params_;

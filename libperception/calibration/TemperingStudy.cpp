@@ -183,6 +183,17 @@ ClassCalibration calibrate(const std::vector<const TemperingLog*>& logs, const E
           static_cast<double>(all.correct) / n, static_cast<double>(all.wrong) / n, all.samples};
 }
 
+namespace {
+
+/// Those of independent evidence.
+Exponents exactExponents(Exponents e) {
+  e.kinematic = 1;
+  for (auto& s : e.sensors) s.label = 1;
+  return e;
+}
+
+}  // namespace
+
 StudyReport temperingStudy(const TemperingParams& params, const std::vector<TemperingLog>& given) {
   if (given.size() < 2) throw DataError("two logs are needed: one to fit on, one to score on");
   std::vector<TemperingLog> logs = given;
@@ -199,10 +210,7 @@ StudyReport temperingStudy(const TemperingParams& params, const std::vector<Temp
   report.title = "How far labels and innovations count in the class update";
   report.data = fmt::format("{}logs {}", simulated ? "simulated " : "", names);
 
-  const Exponents start = exponentsOf(logs[0].log);
-  Exponents ones = start;
-  ones.kinematic = 1;
-  for (auto& s : ones.sensors) s.label = 1;
+  const Exponents start = exponentsOf(logs[0].log), ones = exactExponents(start);
   StudyTable table{"tempering",
                    "Class posterior on the logs that the exponents were not fitted on",
                    {"part", "exponents", "mean log P(true class)", "ECE", "correct", "wrong",

@@ -13,7 +13,7 @@ struct TemperingParams {
   Proposal proposal = Proposal::kRanked;
   int particles = 8;
   std::uint64_t seed = 1;
-  int rounds = 2;                ///< of the search, one exponent after the other
+  int rounds = 2;                ///< of the search, one exponent after the other (assumed)
   EvaluationOptions evaluation;  ///< where truth counts
 };
 

@@ -71,7 +71,7 @@ class DetectionQuality {
 };
 
 /// P(right | score) = 1 / (1 + exp(-slope (score - even_score))) by maximum likelihood, with two
-/// boxes' worth of prior (Platt 1999: targets a little off 0 and 1). Empty when all are right or
+/// boxes' worth of prior ([platt1999]: targets a little off 0 and 1). Empty when all are right or
 /// all are wrong.
 struct Logistic {
   double slope = 0, even_score = 0;

@@ -19,7 +19,7 @@ struct DetectorModelParams {
   std::string label;               ///< class name of its boxes; empty: the model's own
   std::vector<std::string> names;  ///< networks: INDEX=LABEL of the classes that are wanted
   double threshold = -1e9;         ///< [score] weaker boxes are dropped
-  double low = 0.5, high = 4;      ///< [m] heights of its objects, with a ground to stand on
+  double low = 0.5, high = 4;      ///< [m] heights of its objects on the ground (assumed)
   /// P(object | score) = 1 / (1 + exp(-slope (score - even_score))): written by --calibrate.
   double slope = 0;       ///< [1/score]; 0: not calibrated
   double even_score = 0;  ///< score of a box that is as likely right as wrong
@@ -31,7 +31,7 @@ struct DetectorModelParams {
   double evenScoreOf(const std::string& name) const;
 };
 
-/// [dpm]: how densely the engine of part models looks.
+/// [dpm]: how densely the engine of part models searches.
 struct DpmParams {
   DpmOptions options;
 
@@ -40,11 +40,11 @@ struct DpmParams {
 
 /// [onnx]: what cv::dnn does not tell of a network.
 struct OnnxParams {
-  int input = 416;        ///< [px] side of the square input (YOLOX-Nano, [ge2021])
-  int layout = 0;         ///< of the output, a place in layoutNames(); 0: by its shape
-  double overlap = 0.45;  ///< of boxes of one class that are one object (intersection over union)
-  bool windows = true;    ///< long images also in squares of their shorter side
-  double window_overlap = 0.5;  ///< share of a square that the next one sees, too
+  int input = 416;              ///< [px] side of the square input (YOLOX-Nano, [ge2021])
+  int layout = 0;               ///< of the output, a place in layoutNames(); 0: by its shape
+  double overlap = 0.45;        ///< intersection over union of boxes that are one object (assumed)
+  bool windows = true;          ///< long images also in squares of their shorter side
+  double window_overlap = 0.5;  ///< share of a square that the next one sees, too (assumed)
 
   static const std::vector<std::string>& layoutNames();
   void visit(ParamVisitor& v);
@@ -52,8 +52,8 @@ struct OnnxParams {
 
 /// [hog]: OpenCV's detector of people.
 struct HogParams {
-  double enlarge = 1.5;  ///< of the image: it knows people of 96 px and more
-  double overlap = 0.5;
+  double enlarge = 1.5;  ///< of the image: it knows people of 96 px and more (assumed)
+  double overlap = 0.5;  ///< intersection over union of boxes of one object (assumed)
 
   void visit(ParamVisitor& v);
 };
@@ -62,8 +62,8 @@ struct HogParams {
 struct DetectorSetup {
   int backend = 0;          ///< a place in detectorBackends()
   std::string folder;       ///< of the models' files
-  bool ground_gate = true;  ///< look only where objects can stand, when the camera's place is known
-  double ground_slope_sigma = radians(1.2);  ///< [rad] of the road and of the vehicle's pitch
+  bool ground_gate = true;  ///< search only where objects can stand, if the camera's place is known
+  double ground_slope_sigma = radians(1.2);  ///< [rad] of road and pitch (method.md 8.8)
   std::vector<std::pair<std::string, DetectorModelParams>> models;  ///< by name, as in the INI
   std::vector<HeadingHeadParams> headings;                          ///< [heading.NAME]
   DpmParams dpm;

@@ -83,6 +83,7 @@ double nextNumber(std::istream& in, const std::string& path, const char* expecte
 
 void HeadingHeadParams::visit(ParamVisitor& v) {
   v.path("file", file, "of a head, as written by perception-detect --train-heading");
+  v.expert();
   v.boolean("replace", replace, "also where the detector has a heading of its own");
 }
 
@@ -162,15 +163,15 @@ HeadingHead HeadingHead::train(std::string label, const std::vector<HeadingExamp
     head.fit(examples, fold);
     for (const HeadingExample& e : examples) {
       if (e.fold != fold) continue;
-      const double told = head.heading(e.features);
-      double error = std::abs(wrapAngle(told - e.heading));
+      const double predicted = head.heading(e.features);
+      double error = std::abs(wrapAngle(predicted - e.heading));
       if (error > kPi / 2) {
         ++flips;
         error = kPi - error;
       }
       squares += error * error;
       const auto truth = static_cast<std::size_t>(binOf(e.heading));
-      head.confusion_[truth][static_cast<std::size_t>(binOf(told))] += 1;
+      head.confusion_[truth][static_cast<std::size_t>(binOf(predicted))] += 1;
       ++rows[truth];
     }
   }

@@ -9,7 +9,7 @@
 
 namespace perception {
 
-/// [heading.NAME]: a head that tells headings of boxes whose detector does not.
+/// [heading.NAME]: a head that estimates headings of boxes whose detector does not.
 struct HeadingHeadParams {
   std::string file;
   bool replace = false;  ///< also where the detector has a heading of its own
@@ -24,9 +24,9 @@ struct HeadingExample {
   int fold = 0;        ///< examples of one image share a fold
 };
 
-/// Tells the heading of an object from its box: HOG of 10 x 6 cells, a linear score for each of 16
-/// orientations, the best one refined between its neighbors. It knows how wrong it is from images
-/// that it did not learn from.
+/// Estimates the heading of an object from its box: HOG of 10 x 6 cells, a linear score for each of
+/// 16 orientations, the best one refined between its neighbors. It knows how wrong it is from
+/// images that it did not learn from.
 class HeadingHead {
  public:
   static constexpr int kBins = 16;
@@ -54,7 +54,7 @@ class HeadingHead {
   double flipShare() const { return flip_share_; }  ///< front taken for back
   int examples() const { return examples_; }
   using Confusion = std::array<std::array<double, kBins>, kBins>;
-  const Confusion& confusion() const { return confusion_; }  ///< [true][told], rows sum to 1
+  const Confusion& confusion() const { return confusion_; }  ///< [true][predicted], rows sum to 1
 
  private:
   void fit(const std::vector<HeadingExample>& examples, int left_out);

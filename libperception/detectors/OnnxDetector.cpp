@@ -56,7 +56,7 @@ class OnnxDetector final : public Detector {
     std::vector<ObjectDetection> out;
     const std::lock_guard<std::mutex> lock(one_at_a_time_);
     const cv::Size whole(image.width, image.height);
-    for (const cv::Rect& window : windowsOf(whole)) look(pixels, window, region, out);
+    for (const cv::Rect& window : windowsOf(whole)) detectIn(pixels, window, region, out);
     return suppressed(std::move(out), params_.overlap);
   }
 
@@ -79,8 +79,8 @@ class OnnxDetector final : public Detector {
   }
 
   /// The boxes of one window, those left out that it cuts: others show them whole.
-  void look(const cv::Mat& pixels, const cv::Rect& window, const SearchRegion& region,
-            std::vector<ObjectDetection>& out) const {
+  void detectIn(const cv::Mat& pixels, const cv::Rect& window, const SearchRegion& region,
+                std::vector<ObjectDetection>& out) const {
     const double scale = std::min(static_cast<double>(side_) / window.width,
                                   static_cast<double>(side_) / window.height);
     cv::Mat input(side_, side_, CV_8UC3, cv::Scalar::all(114));  // the gray that they learned with

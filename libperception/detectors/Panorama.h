@@ -8,8 +8,8 @@ namespace perception {
 
 /// A spherical image (equirectangular, width = 2 height, the full circle) cut into rectilinear
 /// tiles for detectors that know ordinary pictures only: eight tiles of 90 degrees, 45 degrees
-/// apart, each a quarter as wide as the panorama, as in the paper (1k to 8k: tiles of 256 to 2048
-/// pixels). Every object of less than 45 degrees is whole in one tile at least. method.md 8.8.
+/// apart, each a quarter as wide as the panorama, as in [radecki2016] (1k to 8k: tiles of 256 to
+/// 2048 pixels). Every object of less than 45 degrees is whole in one tile at least. method.md 8.8.
 class Panorama {
  public:
   static constexpr int kTiles = 8;

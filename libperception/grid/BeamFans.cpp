@@ -121,29 +121,20 @@ PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const s
   markGathered<Float>(fan, guides, gathered, crossed);
 }
 
-// As PERCEPTION_WIDER, but each width has its own vectors.
-PERCEPTION_TARGET("default")
-void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
-                std::size_t count, float* guides, std::uint32_t* gathered, std::uint32_t* crossed) {
-  crossFan<Float4>(fan, beams, order, count, guides, gathered, crossed);
-}
-PERCEPTION_TARGET("default")
-void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
-                std::size_t count, float* guides, std::uint64_t* gathered, std::uint64_t* crossed) {
-  crossFan<Float4>(fan, beams, order, count, guides, gathered, crossed);
-}
+// As PERCEPTION_WIDER, but each width has its own vectors. A template cannot have targets.
+#define PERCEPTION_CROSS_FAN(TARGET, Float, Mask)                                       \
+  PERCEPTION_TARGET(TARGET)                                                             \
+  void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order, \
+                  std::size_t count, float* guides, Mask* gathered, Mask* crossed) {    \
+    crossFan<Float>(fan, beams, order, count, guides, gathered, crossed);               \
+  }
+PERCEPTION_CROSS_FAN("default", Float4, std::uint32_t)
+PERCEPTION_CROSS_FAN("default", Float4, std::uint64_t)
 #if PERCEPTION_HAS_WIDER
-PERCEPTION_TARGET("avx2")
-void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
-                std::size_t count, float* guides, std::uint32_t* gathered, std::uint32_t* crossed) {
-  crossFan<Float8>(fan, beams, order, count, guides, gathered, crossed);
-}
-PERCEPTION_TARGET("avx2")
-void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
-                std::size_t count, float* guides, std::uint64_t* gathered, std::uint64_t* crossed) {
-  crossFan<Float8>(fan, beams, order, count, guides, gathered, crossed);
-}
+PERCEPTION_CROSS_FAN("avx2", Float8, std::uint32_t)
+PERCEPTION_CROSS_FAN("avx2", Float8, std::uint64_t)
 #endif
+#undef PERCEPTION_CROSS_FAN
 
 }  // namespace
 

@@ -26,7 +26,7 @@ class CSafetyGrid : public mrpt::maps::CMetricMap {
   /// PREFIX.ot, .bt, .gridmap.gz and .png.
   void saveMetricMapRepresentationToFile(const std::string& prefix) const override;
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& scene) const override;
-  /// The drift of a pose is told by other maps: a short memory of what stands around is none.
+  /// No map to localize with: it forgets within seconds.
   double internal_computeObservationLikelihood(const mrpt::obs::CObservation&,
                                                const mrpt::poses::CPose3D&) const override {
     return 0;

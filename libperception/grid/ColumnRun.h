@@ -18,7 +18,7 @@ struct ColumnRun {
   bool judged;    ///< as in LogOddsColumn::update()
 };
 
-/// Brings the columns that the scan says something of to its time and adds that.
+/// Brings the columns that the scan has evidence of to its time and adds that evidence.
 void updateColumns(const LogOddsColumn& rules, const ColumnRun<std::uint32_t>& run,
                    ColumnAges& ages);
 void updateColumns(const LogOddsColumn& rules, const ColumnRun<std::uint64_t>& run,

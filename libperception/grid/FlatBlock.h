@@ -38,7 +38,7 @@ struct FlatBlock {
   void place(const GridPoints& points, const float* weights, std::size_t first, std::size_t count,
              const WindowFrame& frame, const BearingBins& bins);
   /// Raises the weights of columns to those of their hits. One byte behind the last column is
-  /// anybody's.
+  /// undefined.
   void markColumns(bool weighted, std::uint8_t* weights) const;
 };
 
@@ -54,7 +54,7 @@ struct ClearBlock {
              const BearingBins& bins);
 };
 
-/// What can be told of a whole block of points without their bearings.
+/// Bounds of a whole block of points, without their bearings.
 struct ClearSurvey {
   float farthest = 0;      ///< [cells^2] squared range; or no number
   unsigned quadrants = 0;  ///< a bit for each that may hold one: 1 where x falls, + 2 where y does

@@ -12,16 +12,16 @@ struct GridParams {
   BackEnd back_end = BackEnd::kOctomap;
   double resolution = 0.2;         ///< [m] edge of a cell
   double size = 80;                ///< [m] edge of the window around the vehicle
-  double hit = 0.85;               ///< [log-odds] a scan with a return in the cell
-  double miss = -0.4;              ///< [log-odds] a scan with a beam through the cell
-  double low = -2, high = 3.5;     ///< [log-odds] bounds of a cell
+  double hit = 0.85;               ///< [log-odds] a scan with a return in the cell [hornung2013]
+  double miss = -0.4;              ///< [log-odds] a scan with a beam through the cell [hornung2013]
+  double low = -2, high = 3.5;     ///< [log-odds] bounds of a cell [hornung2013]
   double tau = 5;                  ///< [s] in which a cell forgets: log-odds decay with exp(-t/tau)
   double occupied = 1.5;           ///< [log-odds] above which a cell blocks
   double z_min = 0.3, z_max = 3;   ///< [m] above the ground (method.md 8.1): the slab that matters
   double grade = 0.05;             ///< [-] by which the slab widens per meter of distance: the road
-                                   ///< ahead may leave the vehicle's plane (own choice)
+                                   ///< ahead may leave the vehicle's plane (assumed)
   double ray_step = radians(0.5);  ///< [rad] one clearing ray per step of bearing and elevation;
-                                   ///< hits are never thinned (own choice, for 10 Hz)
+                                   ///< hits are never thinned (assumed, for 10 Hz)
 
   void visit(ParamVisitor& v);
 };

@@ -33,10 +33,10 @@ class GridRolling2d final : public SafetyGrid {
     judged_ = scan.weights.size() == scan.hits.size();
     rays_ = scan.origin.allFinite();
     beams_.begin(frame_.place(rays_ ? scan.origin : scan.T_world_ground.translation()));
-    takeHits(scan, stats);
+    addHits(scan, stats);
     stats.not_finite += beams_.offerClear(scan.clear, frame_);
     if (rays_) stats.rays += beams_.cross(scan.hits, scan.clear, frame_, crossed_.data());
-    takeEvidence();
+    applyEvidence();
     return stats;
   }
 
@@ -120,7 +120,7 @@ class GridRolling2d final : public SafetyGrid {
   }
 
   // Last ones first: scans begin with their highest beams, and what these see is farther off.
-  void takeHits(const GridScan& scan, GridStats& stats) {
+  void addHits(const GridScan& scan, GridStats& stats) {
     const std::size_t blocks = (scan.hits.size() + FlatBlock::kSize - 1) / FlatBlock::kSize;
     for (std::size_t block = blocks; block-- > 0;) {
       const std::size_t begin = block * FlatBlock::kSize;
@@ -133,7 +133,7 @@ class GridRolling2d final : public SafetyGrid {
     }
   }
 
-  void takeEvidence() {
+  void applyEvidence() {
     FlatEvidence row{weights_.data(),
                      crossed_.data(),
                      keep_,

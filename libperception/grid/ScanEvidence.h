@@ -53,7 +53,7 @@ class ScanEvidence {
   }
 
  private:
-  /// SelectedIndices return of one direction.
+  /// The return chosen for one direction.
   struct Ray {
     float range = 0;          ///< [m] 0: none
     std::uint32_t point = 0;  ///< place in the scan's hits, then its clear points

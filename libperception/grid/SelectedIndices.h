@@ -6,8 +6,7 @@
 
 namespace perception {
 
-/// The places of a few marks among many, without a branch for each: which are marked is anybody's
-/// guess.
+/// The places of a few marks among many, without a branch for each: no branch could be predicted.
 class SelectedIndices {
  public:
   static constexpr std::size_t kMost = 256;  ///< marks

@@ -24,14 +24,14 @@ void WindowMarks<Mask>::collect(const GridScan& scan, const CellIndex& first, Gr
   origin_ = frame_.place(origin);
   cover_.begin(origin_.z);
   fans_.begin(origin_);
-  takeHits(scan, stats);
-  if (rays_) takeClear(scan, stats);
+  addHits(scan, stats);
+  if (rays_) addClear(scan, stats);
   fans_.mark(&crossed_[fans_.margin()]);
   settleSoftHits();
 }
 
 template <class Mask>
-void WindowMarks<Mask>::takeHits(const GridScan& scan, GridStats& stats) {
+void WindowMarks<Mask>::addHits(const GridScan& scan, GridStats& stats) {
   const bool weighted = scan.weights.size() == scan.hits.size();
   std::int32_t last = PlacedBlock::kOutside, settled = last;
   for (std::size_t begin = 0; begin < scan.hits.size(); begin += PlacedBlock::kSize) {
@@ -45,7 +45,7 @@ void WindowMarks<Mask>::takeHits(const GridScan& scan, GridStats& stats) {
       bool wanted = cell != PlacedBlock::kNotFinite;
       if (cell >= 0) {
         if (placed_.in_slab[k] != 0)
-          wanted = takeHit(cell, weighted ? scan.weights[begin + k] : 1.0F);
+          wanted = addHit(cell, weighted ? scan.weights[begin + k] : 1.0F);
         wanted = wanted && cell != last;
         last = cell;
       }
@@ -57,7 +57,7 @@ void WindowMarks<Mask>::takeHits(const GridScan& scan, GridStats& stats) {
 
 // Whether its beam says anything new.
 template <class Mask>
-bool WindowMarks<Mask>::takeHit(std::int32_t cell, float weight) {
+bool WindowMarks<Mask>::addHit(std::int32_t cell, float weight) {
   const auto column = static_cast<std::uint32_t>(cell / PlacedBlock::kLayers);
   const auto layer = static_cast<std::uint8_t>(cell % PlacedBlock::kLayers);
   if (weight >= PlacedBlock::kFullWeight || !std::isfinite(weight)) {  // no verdict: believe it
@@ -71,7 +71,7 @@ bool WindowMarks<Mask>::takeHit(std::int32_t cell, float weight) {
 }
 
 template <class Mask>
-void WindowMarks<Mask>::takeClear(const GridScan& scan, GridStats& stats) {
+void WindowMarks<Mask>::addClear(const GridScan& scan, GridStats& stats) {
   std::int32_t settled = PlacedBlock::kOutside;
   for (std::size_t begin = 0; begin < scan.clear.size(); begin += PlacedBlock::kSize) {
     const std::size_t count = std::min(PlacedBlock::kSize, scan.clear.size() - begin);

@@ -47,9 +47,9 @@ class WindowMarks {
   std::size_t columns() const {
     return static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_);
   }
-  void takeHits(const GridScan& scan, GridStats& stats);
-  bool takeHit(std::int32_t cell, float weight);
-  void takeClear(const GridScan& scan, GridStats& stats);
+  void addHits(const GridScan& scan, GridStats& stats);
+  bool addHit(std::int32_t cell, float weight);
+  void addClear(const GridScan& scan, GridStats& stats);
   void addBeam(std::size_t k) {
     if (rays_) beams_.add(placed_.at(k));
   }

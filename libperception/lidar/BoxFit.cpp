@@ -8,19 +8,6 @@
 
 namespace perception {
 
-void BoxParams::visit(ParamVisitor& v) {
-  v.angle("step_deg", step, {0.1, 15}, "of the search for the box's direction");
-  v.real("min_distance", min_distance, {0.001, 1}, "m", "d0 of the closeness criterion");
-  v.integer("max_points", max_points, {10, 100000}, "of a cluster used in the search");
-  v.real("straggler_share", straggler_share, {0, 0.2}, "",
-         "of the returns at each end that may stand off the others");
-  v.real("straggler_gap", straggler_gap, {0, 2}, "m", "that parts them from the rest");
-  v.real("corner_sigma", corner_sigma, {0.001, 1}, "m", "by which a side's end may be off");
-  v.angle("yaw_sigma_min_deg", yaw_sigma_min, {0.1, 45}, "of the longest, clearest side");
-  v.angle("grazing_deg", grazing, {0, 60},
-          "a side seen at less than that shows no reliable length");
-}
-
 namespace {
 
 /// Four floats that the compiler keeps in one register, on every x86-64.
@@ -130,8 +117,8 @@ std::vector<Vector2> evenly(const std::vector<Vector2>& points, int limit) {
 
 /// Without the few points that stand off the others along or across yaw: a bollard beside a car, a
 /// mirror's tip.
-std::vector<Vector2> withoutStragglers(const std::vector<Vector2>& points, double yaw,
-                                       const BoxParams& params) {
+std::vector<Vector2> withoutOutliers(const std::vector<Vector2>& points, double yaw,
+                                     const BoxParams& params) {
   const double c = std::cos(yaw), s = std::sin(yaw);
   std::vector<double> along, across;
   for (const Vector2& p : points)
@@ -139,7 +126,7 @@ std::vector<Vector2> withoutStragglers(const std::vector<Vector2>& points, doubl
   // Without the few lowest and highest values that a gap parts from the rest.
   const auto bounds = [&params](std::vector<double> values) {
     const auto few =
-        static_cast<std::size_t>(params.straggler_share * static_cast<double>(values.size()));
+        static_cast<std::size_t>(params.outlier_share * static_cast<double>(values.size()));
     const std::size_t last = values.size() - 1;
     const auto tail = static_cast<std::ptrdiff_t>(std::min(few + 1, values.size()));
     // Only the ends need an order.
@@ -149,9 +136,8 @@ std::vector<Vector2> withoutStragglers(const std::vector<Vector2>& points, doubl
     std::sort(values.end() - tail, values.end());
     double low = values.front(), high = values.back();
     for (std::size_t i = 0; i < few; ++i) {
-      if (values[i + 1] - values[i] > params.straggler_gap) low = values[i + 1];
-      if (values[last - i] - values[last - i - 1] > params.straggler_gap)
-        high = values[last - i - 1];
+      if (values[i + 1] - values[i] > params.outlier_gap) low = values[i + 1];
+      if (values[last - i] - values[last - i - 1] > params.outlier_gap) high = values[last - i - 1];
     }
     return std::make_pair(low, high);
   };
@@ -185,7 +171,7 @@ std::optional<PartialBox> fitBox(const std::vector<Vector2>& points, const Vecto
                                  bool left_open, bool right_open, const BoxParams& params) {
   if (points.size() < 2) return std::nullopt;
   Direction direction = bestDirection(evenly(points, params.max_points), params);
-  const std::vector<Vector2> kept = withoutStragglers(points, direction.yaw, params);
+  const std::vector<Vector2> kept = withoutOutliers(points, direction.yaw, params);
   if (kept.size() < points.size())
     direction = bestDirection(evenly(kept, params.max_points), params);
   Rectangle r = rectangleAlong(kept, direction.yaw);

@@ -9,17 +9,13 @@
 namespace perception {
 
 void ClusterParams::visit(ParamVisitor& v) {
-  v.real("near_threshold", near_threshold, {0.05, 5}, "m", "single linkage (paper)");
-  v.real("far_threshold", far_threshold, {0.1, 10}, "m",
-         "second single linkage; the same set is stable (paper)");
-  v.integer("min_points", min_points, {1, 10000}, "returns that a cluster needs (paper)");
-  v.real("min_top", min_top, {0, 5}, "m", "height that one return must exceed (paper)");
-  v.real("max_size", max_size, {1, 100}, "m", "largest dimension (paper)");
-  v.real("min_side", min_side, {0, 10}, "m", "longest side from which a cluster is car-sized");
-  v.real("min_area", min_area, {0, 50}, "m^2", "area from which a cluster is car-sized");
+  v.integer("min_points", min_points, {1, 10000}, "returns that a cluster needs");
+  v.real("min_top", min_top, {0, 5}, "m", "height that one return must exceed");
   v.boolean("accept_unstable", accept_unstable, "clusters close to others, too, labeled unstable");
-  v.real("unstable_max_size", unstable_max_size, {1, 100}, "m", "largest dimension of those");
-  v.real("unstable_min_side", unstable_min_side, {0, 10}, "m", "smallest longest side of those");
+  v.expert();
+  v.real("near_threshold", near_threshold, {0.05, 5}, "m", "single linkage");
+  v.real("far_threshold", far_threshold, {0.1, 10}, "m",
+         "second single linkage; the same set is stable");
   v.require(near_threshold < far_threshold, "near_threshold must be below far_threshold");
 }
 

@@ -7,21 +7,19 @@
 
 namespace perception {
 
-/// The double threshold clustering of the paper ("Lidar Segmentation"): [sensor.LABEL.clusters].
+/// The double threshold clustering of [radecki2016], method.md 8.2: [sensor.LABEL.clusters].
 struct ClusterParams {
-  double near_threshold = 0.5;  ///< [m] horizontal (paper)
-  double far_threshold = 1.0;   ///< [m] horizontal (paper)
-  int min_points = 7;           ///< (paper)
-  double min_top = 1.0;         ///< [m] above ground that one return at least exceeds (paper)
-  double max_size = 15;         ///< [m] the length of a bus (paper)
-  double min_side =
-      1.2;  ///< [m] a cluster is car-sized from this longest side on ... (method.md 8.2)
-  double min_area = 0.5;  ///< [m^2] ... or from this area on
-  bool accept_unstable =
-      true;  ///< also clusters that stand within far_threshold of others, under their own label
-  double unstable_max_size =
-      8;  ///< [m] of those: longer ones are hedges and walls more often than buses
-  double unstable_min_side = 1.2;  ///< [m]
+  double near_threshold = 0.5;  ///< [m] horizontal [radecki2016]
+  double far_threshold = 1.0;   ///< [m] horizontal [radecki2016]
+  int min_points = 7;           ///< [radecki2016]
+  double min_top = 1.0;         ///< [m] above ground that one return exceeds [radecki2016]
+  double max_size = 15;         ///< [m] the length of a bus [radecki2016]
+  double min_side = 1.2;        ///< [m] car-sized from this longest side on ... (method.md 8.2)
+  double min_area = 0.5;        ///< [m^2] ... or from this area on (method.md 8.2)
+  /// Also clusters within far_threshold of others, under their own label (docs/decisions/lidar.md).
+  bool accept_unstable = true;
+  double unstable_max_size = 8;    ///< [m] longer: rather hedges and walls than buses (assumed)
+  double unstable_min_side = 1.2;  ///< [m] as min_side
 
   void visit(ParamVisitor& v);
 };

@@ -7,35 +7,32 @@
 namespace perception {
 
 void PointParams::visit(ParamVisitor& v) {
-  v.real("range_min", range_min, {0, 10}, "m", "horizontal range below which returns are dropped");
-  v.real("range_max", range_max, {5, 300}, "m",
-         "horizontal range beyond which returns are dropped");
   v.real("vehicle_front", vehicle_front, {0, 20}, "m", "own body ahead of the ego origin");
   v.real("vehicle_rear", vehicle_rear, {0, 20}, "m", "own body behind the ego origin");
+  v.boolean("only_objects", only_objects,
+            "only returns that the scanner itself labels as object, where it labels at all");
+  v.expert();
+  v.real("range_max", range_max, {5, 300}, "m",
+         "horizontal range beyond which returns are dropped");
   v.real("vehicle_side", vehicle_side, {0, 5}, "m", "own body to each side of the ego origin");
   v.real("vehicle_top", vehicle_top, {0, 6}, "m", "own body above the ground");
-  v.boolean(
-      "only_objects", only_objects,
-      "returns that the scanner itself labels as object, where it labels at all (method.md 8.1)");
-  v.integer("max_points", max_points, {1000, 100000000},
-            "returns of a scan; larger scans are thinned evenly");
-  v.require(range_min < range_max, "range_min must be below range_max");
+  v.require(range_min < range_max, "range_max must be above 0.5 m");
 }
 
 namespace {
 
 constexpr float kBeyondAnyLidar2 = 1e3f * 1e3f;  // [m^2]
 constexpr std::size_t kBlock = 512;              // points that stay in the nearest cache
-constexpr std::size_t kAhead = 512;  // points by which far places of the scan are asked for early
+constexpr std::size_t kAhead = 512;  // points by which far places of the scan are fetched early
 constexpr std::size_t kTaken = 16;   // neighbors of a line of the cache, taken together
 
-bool ownProcessingDropsIt(std::uint8_t label, bool only_objects) {
+bool isDroppedByLabel(std::uint8_t label, bool only_objects) {
   if (only_objects) return label != static_cast<std::uint8_t>(PointLabel::kObject);
   return label == static_cast<std::uint8_t>(PointLabel::kRain) ||
          label == static_cast<std::uint8_t>(PointLabel::kDirt);
 }
 
-/// Verdicts on one block of a cloud, and its points where they do not lie side by side.
+/// Marks of one block of a cloud, and its points where they do not lie side by side.
 struct Block {
   std::array<float, kBlock> px, py, pz;   ///< [m] sensor frame, when the cloud is thinned
   std::array<std::int32_t, kBlock> keep;  ///< 0 or 1
@@ -52,7 +49,7 @@ struct Places {
   std::uint32_t* source;
 };
 
-struct Verdicts {
+struct BlockCounts {
   std::int32_t kept = 0, with_range = 0;  ///< numbers
 };
 
@@ -74,17 +71,18 @@ struct Rules {
 
 /// Transforms and judges `count` points from the `first` on; no branches, so that the compiler
 /// makes vectors of it.
-PERCEPTION_WIDEST Verdicts judge(const float* __restrict px, const float* __restrict py,
-                                 const float* __restrict pz, std::uint32_t first, std::size_t count,
-                                 const Rules& rules, float* __restrict ex, float* __restrict ey,
-                                 float* __restrict ez, std::uint32_t* __restrict source,
-                                 std::int32_t* __restrict keep) {
+PERCEPTION_WIDEST BlockCounts judge(const float* __restrict px, const float* __restrict py,
+                                    const float* __restrict pz, std::uint32_t first,
+                                    std::size_t count, const Rules& rules, float* __restrict ex,
+                                    float* __restrict ey, float* __restrict ez,
+                                    std::uint32_t* __restrict source,
+                                    std::int32_t* __restrict keep) {
   const float r00 = rules.R(0, 0), r01 = rules.R(0, 1), r02 = rules.R(0, 2), tx = rules.t.x();
   const float r10 = rules.R(1, 0), r11 = rules.R(1, 1), r12 = rules.R(1, 2), ty = rules.t.y();
   const float r20 = rules.R(2, 0), r21 = rules.R(2, 1), r22 = rules.R(2, 2), tz = rules.t.z();
   const float near2 = rules.near2, far2 = rules.far2, front = rules.front, rear = rules.rear,
               side = rules.side, top = rules.top;
-  Verdicts all;
+  BlockCounts all;
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count); ++k) {
     const float range2 = px[k] * px[k] + py[k] * py[k] + pz[k] * pz[k];
     const float x = r00 * px[k] + r01 * py[k] + r02 * pz[k] + tx;
@@ -114,7 +112,7 @@ std::size_t squeeze(const Block& block, std::size_t size, const Places& at) {
 }
 
 /// Most groups are whole: no call is needed to copy them.
-void takeGroup(const float* from, std::size_t count, float* to) {
+void copyGroup(const float* from, std::size_t count, float* to) {
   if (count == kTaken) {
     std::memcpy(to, from, kTaken * sizeof *to);
   } else {
@@ -127,8 +125,8 @@ void resize(EgoPoints& points, std::size_t size) {
   points.source.resize(size);
 }
 
-/// Asks for what is needed next: fetching by itself stops at every page.
-void ask(const LidarCloud& cloud, std::size_t first, std::size_t count) {
+/// Fetches what is needed next: the processor itself stops at every page.
+void prefetch(const LidarCloud& cloud, std::size_t first, std::size_t count) {
   for (const auto* axis : {&cloud.x, &cloud.y, &cloud.z})
     for (std::size_t k = first; k < std::min(first + count, axis->size()); k += kTaken)
       __builtin_prefetch(axis->data() + k);
@@ -162,26 +160,26 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
     resize(points, kept + size);
     const Places at(points, kept);
     if (stride == 1) {
-      ask(*cloud, first + kBlock, kBlock);
+      prefetch(*cloud, first + kBlock, kBlock);
     } else {
       for (std::size_t k = 0; k < size; k += kTaken) {
         const std::size_t i = index(first + k), taken = std::min(kTaken, size - k);
-        ask(*cloud, index(first + k + kAhead), 1);
-        takeGroup(&cloud->x[i], taken, &block.px[k]);
-        takeGroup(&cloud->y[i], taken, &block.py[k]);
-        takeGroup(&cloud->z[i], taken, &block.pz[k]);
+        prefetch(*cloud, index(first + k + kAhead), 1);
+        copyGroup(&cloud->x[i], taken, &block.px[k]);
+        copyGroup(&cloud->y[i], taken, &block.py[k]);
+        copyGroup(&cloud->z[i], taken, &block.pz[k]);
       }
       px = block.px.data(), py = block.py.data(), pz = block.pz.data();
     }
-    const Verdicts all = judge(px, py, pz, static_cast<std::uint32_t>(first), size, rules, at.x,
-                               at.y, at.z, at.source, block.keep.data());
+    const BlockCounts all = judge(px, py, pz, static_cast<std::uint32_t>(first), size, rules, at.x,
+                                  at.y, at.z, at.source, block.keep.data());
     if (stride > 1)
       for (std::size_t k = 0; k < size; ++k)
         at.source[k] = static_cast<std::uint32_t>(index(first + k));
     points.dropped += size - static_cast<std::size_t>(all.with_range);
     if (!cloud->label.empty())
       for (std::size_t k = 0; k < size; ++k)
-        if (ownProcessingDropsIt(cloud->label[index(first + k)], params.only_objects))
+        if (isDroppedByLabel(cloud->label[index(first + k)], params.only_objects))
           block.keep[k] = 0;
     const bool whole = cloud->label.empty() && static_cast<std::size_t>(all.kept) == size;
     kept += whole ? size : squeeze(block, size, at);

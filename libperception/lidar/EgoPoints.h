@@ -9,19 +9,15 @@
 
 namespace perception {
 
-/// Which returns of a scan are worth looking at: [sensor.LABEL.points].
+/// Which returns of a scan are used: [sensor.LABEL.points].
 struct PointParams {
-  double range_min = 0.5;  ///< [m] horizontal, from the sensor: nearer is the instrument itself
-  double range_max =
-      80;  ///< [m] horizontal, from the sensor (clusters to about 70 m: [radecki2016])
-  double vehicle_front =
-      3.8;  ///< [m] own body ahead of the ego origin (below KITTI's lidar), mirrors' margin in it
-  double vehicle_rear = 2.0;  ///< [m] behind it
-  double vehicle_side = 1.3;  ///< [m] to each side of it
-  double vehicle_top = 2.2;   ///< [m] above the ground
-  bool only_objects = false;  ///< of scanners that label their returns: what they call an object
-  int max_points =
-      1000000;  ///< of a scan; of larger ones every second, third, ... (own choice: 5 x HDL-128)
+  double range_min = 0.5;  ///< [m] horizontal, from the sensor: nearer is the instrument (assumed)
+  double range_max = 80;  ///< [m] horizontal, from the sensor; clusters to about 70 m [radecki2016]
+  /// [m] own body ahead of the ego origin (assumed: below KITTI's lidar), behind it, to each side
+  /// and above the ground.
+  double vehicle_front = 3.8, vehicle_rear = 2.0, vehicle_side = 1.3, vehicle_top = 2.2;
+  bool only_objects = false;  ///< only returns that the scanner labels as object (method.md 8.1)
+  int max_points = 1000000;   ///< larger scans are thinned evenly (assumed: 5 x HDL-128)
 
   void visit(ParamVisitor& v);
 };

@@ -10,25 +10,9 @@
 namespace perception {
 
 void GroundParams::visit(ParamVisitor& v) {
-  v.integer("sectors", sectors, {4, 720}, "polar cells around the vehicle");
-  v.real("ring", ring, {0.2, 20}, "m", "depth of a polar cell");
-  v.real("range_min", range_min, {0, 20}, "m", "nearest ground used");
-  v.real("range_max", range_max, {5, 200}, "m", "farthest ground used");
-  v.real("quantile", quantile, {0, 0.5}, "", "height of a cell's candidate among its returns");
-  v.integer("cell_points", cell_points, {1, 1000}, "returns that a cell needs");
-  v.real("tolerance", tolerance, {0.01, 0.5}, "m", "of a RANSAC inlier");
-  v.integer("iterations", iterations, {1, 10000}, "of RANSAC");
-  v.angle("max_tilt_deg", max_tilt, {0.1, 30}, "largest tilt against the vehicle");
-  v.real("max_offset", max_offset, {0.01, 3}, "m", "largest height at the ego origin");
-  v.real("min_inliers", min_inliers, {0.01, 1}, "", "share of the candidates that a plane needs");
-  v.real("alpha", alpha, {0.001, 1}, "", "weight of a new plane against the last");
-  v.real("wet_depth", wet_depth, {0.05, 2}, "m", "returns that far below the plane are mirrored");
-  v.real("wet_share", wet_share, {0.001, 1}, "",
-         "share of mirrored returns that freezes the plane");
-  v.real("wet_range", wet_range, {5, 100}, "m", "range within which that share is taken");
-  v.real("freeze", freeze, {0, 60}, "s", "for which a wet road holds the plane");
-  v.integer("max_points", max_points, {1000, 100000000}, "returns of a scan used, evenly taken");
-  v.require(range_min < range_max, "range_min must be below range_max");
+  v.expert();
+  v.real("max_offset", max_offset, {0.01, 3}, "m",
+         "largest height of the ground at the ego origin");
 }
 
 namespace {

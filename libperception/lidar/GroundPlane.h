@@ -11,23 +11,22 @@ namespace perception {
 /// How the ground plane is found: [ground]. Values of method.md 8.1 unless said otherwise.
 struct GroundParams {
   int sectors = 36;
-  double ring = 2;         ///< [m] depth of a polar cell
-  double range_min = 2.5;  ///< [m] clear of the own body
-  double range_max =
-      50;  ///< [m] farther ground is seen too flatly and seldom belongs to the same plane
-  double quantile = 0.10;   ///< height of a cell's candidate among its returns
-  int cell_points = 5;      ///< fewer returns give no candidate
-  double tolerance = 0.10;  ///< [m] of a RANSAC inlier
-  int iterations = 200;
+  double ring = 2;               ///< [m] depth of a polar cell
+  double range_min = 2.5;        ///< [m] clear of the own body
+  double range_max = 50;         ///< [m] beyond, the ground seldom lies in the same plane
+  double quantile = 0.10;        ///< height of a cell's candidate among its returns
+  int cell_points = 5;           ///< fewer returns give no candidate
+  double tolerance = 0.10;       ///< [m] of a RANSAC inlier
+  int iterations = 200;          ///< of RANSAC
   double max_tilt = radians(5);  ///< [rad] against the ego frame
   double max_offset = 0.3;       ///< [m] at the ego origin: error of mounting height and suspension
-  double min_inliers = 0.25;     ///< share of candidates below which there is no plane (own choice)
-  double alpha = 0.1;            ///< weight of a new plane
+  double min_inliers = 0.25;     ///< share of candidates below which there is no plane (assumed)
+  double alpha = 0.1;            ///< weight of a new plane against the last
   double wet_depth = 0.30;       ///< [m] below the plane: a mirrored return
-  double wet_share = 0.05;  ///< of the returns within wet_range that are mirrored: the road is wet
-  double wet_range = 20;    ///< [m] beyond it a change of pitch looks the same (own choice)
+  double wet_share = 0.05;  ///< mirrored share of returns within wet_range that tells a wet road
+  double wet_range = 20;    ///< [m] beyond, a change of pitch looks the same (assumed)
   double freeze = 2;        ///< [s] for which a wet road holds the plane
-  int max_points = 16000;   ///< of a scan used, evenly taken: some 20 a cell (own choice)
+  int max_points = 16000;   ///< of a scan used, evenly taken: some 20 a cell (assumed)
 
   void visit(ParamVisitor& v);
 };

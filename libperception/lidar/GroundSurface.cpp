@@ -7,16 +7,8 @@
 namespace perception {
 
 void SurfaceParams::visit(ParamVisitor& v) {
-  v.boolean("local", local, "follow the ground's departures from its plane");
-  v.integer("sectors", sectors, {8, 720}, "cells around the sensor");
-  v.real("ring", ring, {0.2, 20}, "m", "depth of a cell");
-  v.integer("cell_points", cell_points, {1, 1000}, "returns that a cell needs");
-  v.real("quantile", quantile, {0, 0.5}, "", "height of a cell's ground among its low returns");
-  v.real("step", step, {0, 0.5}, "m", "change from one cell to the next outward");
-  v.real("slope", slope, {0, 0.3}, "", "further change per meter since the last cell with ground");
-  v.real("max_step", max_step, {0, 1}, "m", "largest change");
-  v.real("bound_near", bound_near, {0, 1}, "m", "largest departure at the vehicle");
-  v.real("bound_slope", bound_slope, {0, 0.2}, "", "growth of that bound with range");
+  v.expert();
+  v.boolean("local", local, "follow the ground's departures from its plane; false: [radecki2016]");
 }
 
 namespace {

@@ -7,13 +7,13 @@
 
 namespace perception {
 
-/// How far the ground may leave its plane: [sensor.LABEL.surface]. Own choices; real roads have
-/// crowns, curbs, ramps.
+/// How far the ground may leave its plane: [sensor.LABEL.surface]. Assumed (method.md 8.1): real
+/// roads have crowns, curbs, ramps.
 struct SurfaceParams {
-  bool local = true;  ///< false: the plane alone, as in the paper
+  bool local = true;  ///< false: the plane alone, as [radecki2016]
   int sectors = 120;
   double ring = 2;          ///< [m] depth of a cell
-  int cell_points = 3;      ///< returns below which a cell tells nothing
+  int cell_points = 3;      ///< returns that a cell needs
   double quantile = 0.05;   ///< height of a cell's ground among its low returns, at most the third
   double step = 0.15;       ///< [m] a curb: change from one cell to the next outward
   double slope = 0.05;      ///< [-] further change per meter since the last cell with ground
@@ -39,7 +39,7 @@ class GroundSurface {
 
  private:
   /// Heights of all points above the plane [m], and their cells, [sector][ring]; the complement of
-  /// it where a point is too high or too low to tell of the ground.
+  /// it where a point is too high or too low to be of the ground.
   void place(const EgoPoints& points, const SurfaceParams& params, std::vector<float>& above,
              std::vector<std::int32_t>& cell) const;
   std::vector<float> lowestOf(const std::vector<float>& above,

@@ -8,38 +8,34 @@ namespace perception {
 
 void ObstacleParams::visit(ParamVisitor& v) {
   v.real("height_min", height_min, {0.05, 2}, "m",
-         "above ground from which a return is an obstacle (paper)");
-  v.real("height_max", height_max, {0.5, 10}, "m",
-         "above ground up to which a return is an obstacle");
-  v.real("min_trust", min_trust, {0, 1}, "",
-         "in a return below which it is a phantom and no obstacle");
+         "above ground from which a return is an obstacle");
   v.real("occluder_min", occluder_min, {0.1, 5}, "m",
          "height from which returns hide what lies behind");
-  v.real("occluder_max", occluder_max, {0.2, 10}, "m", "height up to which they do");
-  v.angle("occluder_bin_deg", occluder_bin, {0.05, 10}, "width of a direction of the horizon");
-  v.real("occluder_margin", occluder_margin, {0, 5}, "m", "by which a hiding return is nearer");
+  v.expert();
+  v.real("height_max", height_max, {0.5, 10}, "m",
+         "above ground up to which a return is an obstacle");
+  v.real("occluder_max", occluder_max, {0.2, 10}, "m", "height up to which returns hide");
   v.require(height_min < height_max, "height_min must be below height_max");
   v.require(occluder_min < occluder_max, "occluder_min must be below occluder_max");
 }
 
 void OutlineNoise::visit(ParamVisitor& v) {
+  v.expert();
   v.real("sigma_edge", sigma_edge, {0.001, 5}, "m", "of an edge, across the line of sight");
   v.angle("sigma_bearing_deg", sigma_bearing, {0, 20},
           "of an edge's bearing, beside sigma_edge / range");
   v.real("sigma_range", sigma_range, {0.001, 5}, "m", "of the nearest point's range");
-  v.real("range_share", range_share, {0, 0.5}, "", "further sigma as a share of the range");
 }
 
 LidarParams::LidarParams() {
-  car_noise = {0.25, radians(0.3), 0.25, 0};
-  person_noise = {0.20, radians(0.3), 0.20, 0};
-  unstable_noise = {0.25, radians(0.3), 0.40, 0};
+  person_noise = {0.20, radians(0.3), 0.20};
+  unstable_noise = {0.25, radians(0.3), 0.40};
 }
 
 namespace {
 
 /// Places and heights of the obstacles, and trust in them.
-void takeObstacles(const LidarCloud& cloud, LidarDetections& found) {
+void gatherObstacles(const LidarCloud& cloud, LidarDetections& found) {
   const EgoPoints& points = found.points;
   const std::size_t obstacles = found.obstacles.size();
   found.x.resize(obstacles), found.y.resize(obstacles), found.above.resize(obstacles);
@@ -78,7 +74,7 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   splitGround(*cloud, found.points, found.height,
               {obstacles.height_min, obstacles.height_max, obstacles.min_trust}, found.ground,
               found.obstacles);
-  takeObstacles(*cloud, found);
+  gatherObstacles(*cloud, found);
   found.clusters = findClusters(found.x, found.y, found.above, params_.clusters, found.trust);
   found.persons = findPersons(found.x, found.y, found.above, params_.persons, found.trust,
                               found.points.sensor.head<2>());
@@ -132,7 +128,6 @@ std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& s
   params.obstacles = config.read(section + ".obstacles", params.obstacles);
   params.clusters = config.read(section + ".clusters", params.clusters);
   params.persons = config.read(section + ".persons", params.persons);
-  params.boxes = config.read(section + ".boxes", params.boxes);
   params.car_noise = config.read(section + ".noise.car_sized", params.car_noise);
   params.person_noise = config.read(section + ".noise.person_sized", params.person_noise);
   if (params.clusters.accept_unstable)

@@ -17,25 +17,23 @@ namespace perception {
 
 /// Which returns are obstacles and which of them hide what lies behind: [sensor.LABEL.obstacles].
 struct ObstacleParams {
-  double height_min = 0.30;   ///< [m] above ground (paper)
-  double height_max = 3.0;    ///< [m] above ground (method.md 8.1): beyond are bridges and crowns
-  double min_trust = 0.1;     ///< [0, 1] less: a phantom that joins no two obstacles (own choice)
-  double occluder_min = 1.0;  ///< [m] above ground that a hiding column reaches
-  double occluder_max = 2.2;  ///< [m] above ground; higher returns leave the view below them free
-  double occluder_bin = radians(0.4);  ///< [rad] of the horizon
-  double occluder_margin = 0.5;  ///< [m] by which a hiding return is nearer than what it hides
+  double height_min = 0.30;   ///< [m] above ground [radecki2016]
+  double height_max = 3.0;    ///< [m] above ground: bridges and crowns beyond (method.md 8.1)
+  double min_trust = 0.1;     ///< [0, 1] less: a phantom that joins no obstacles (assumed)
+  double occluder_min = 1.0;  ///< [m] above ground that a hiding column reaches (assumed)
+  double occluder_max = 2.2;  ///< [m] higher returns leave the view below them (assumed)
+  double occluder_bin = radians(0.4);  ///< [rad] of the horizon (assumed)
+  double occluder_margin = 0.5;        ///< [m] nearer than what it hides (method.md 8.6)
 
   void visit(ParamVisitor& v);
 };
 
-/// Noise of one kind of detection about FootprintModel's outline: [sensor.LABEL.noise.NAME]. An
-/// edge's bearing has sigma_bearing (+) sigma_edge / range, the nearest point's range sigma_range +
-/// range_share * range.
+/// Noise of one kind of detection about FootprintModel's outline: [sensor.LABEL.noise.NAME], tuned
+/// on KITTI 0000. An edge's bearing has sigma_bearing (+) sigma_edge / range.
 struct OutlineNoise {
   double sigma_edge = 0.25;             ///< [m] across the line of sight
   double sigma_bearing = radians(0.3);  ///< [rad]
-  double sigma_range = 0.25;            ///< [m]
-  double range_share = 0;               ///< [-]
+  double sigma_range = 0.25;            ///< [m] of the nearest point
 
   void visit(ParamVisitor& v);
 };
@@ -50,7 +48,7 @@ struct LidarParams {
   BoxParams boxes;
   OutlineNoise car_noise, person_noise, unstable_noise;
 
-  /// The values for this world (tuned on KITTI 0000, see OutlineNoise's places).
+  /// Noise of persons and unstable clusters, tuned on KITTI 0000.
   LidarParams();
 };
 
@@ -99,7 +97,7 @@ class LidarFrontEnd final : public FrontEnd {
 };
 
 /// Reads [sensor.LABEL], [sensor.LABEL.class.NAME], [sensor.LABEL.points], .surface, .obstacles,
-/// .clusters, .persons, .boxes and .noise.{car_sized, person_sized, unstable}.
+/// .clusters, .persons and .noise.{car_sized, person_sized, unstable}.
 std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& sensor_label,
                                             const ClassTable& classes);
 

@@ -61,8 +61,7 @@ void fillOutline(const ScanContext& scan, const Outline& outline, const OutlineN
                  Measurement& m) {
   fillFootprint(outline, std::hypot(noise.sigma_bearing, noise.sigma_edge / outline.left_range),
                 std::hypot(noise.sigma_bearing, noise.sigma_edge / outline.right_range),
-                noise.sigma_range + noise.range_share * outline.nearest, scan.frame.ego.uncertainty,
-                yawOf(scan.T_world_sensor), m);
+                noise.sigma_range, scan.frame.ego.uncertainty, yawOf(scan.T_world_sensor), m);
 }
 
 }  // namespace

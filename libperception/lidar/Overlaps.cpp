@@ -41,10 +41,10 @@ void settleOverlaps(LidarDetections& found, const PersonParams& params,
       std::set_intersection(peak.points.begin(), peak.points.end(), cluster.points.begin(),
                             cluster.points.end(), std::back_inserter(shared));
       const double share = trustIn(found, shared) / trustIn(found, cluster.points);
-      if (longest < cluster_params.min_side && share >= params.whole_share) {
+      if (longest < cluster_params.min_side && share >= params.replace_share) {
         drop_cluster[c] = 1;
       } else if (cluster.stable || peak.normalized < params.crowd_threshold ||
-                 (longest < params.rider_size && share >= params.part_share)) {
+                 (longest < params.rider_size && share >= params.drop_share)) {
         drop_peak[p] = 1;
       } else if (!shared.empty()) {
         std::vector<std::uint32_t> rest;

@@ -9,32 +9,12 @@
 namespace perception {
 
 void PersonParams::visit(ParamVisitor& v) {
-  v.real("cell", cell, {0.05, 1}, "m", "of the grid (paper)");
-  v.real("sigma", sigma, {0.1, 2}, "m", "of the Gaussian (paper)");
-  v.real("support", support, {0.5, 10}, "m", "radius beyond which the kernel counts as zero");
-  v.choiceOf("kernel", kernel, {"consistent", "printed"},
-             "second term with sigma^4, or sigma^2 as the paper prints it");
-  v.real("threshold", threshold, {0, 10}, "1/m^2", "response per return near the peak");
-  v.real("radius", radius, {0.1, 3}, "m", "about the peak: the person's returns");
-  v.integer("min_points", min_points, {1, 1000}, "returns within radius");
+  v.integer("min_points", min_points, {1, 1000}, "returns within 0.45 m of the peak");
   v.real("min_span", min_span, {0, 3}, "m", "least height from lowest to highest return");
-  v.real("max_span", max_span, {0.5, 5}, "m", "largest height from lowest to highest return");
-  v.real("max_top", max_top, {0.5, 5}, "m", "highest return above ground");
-  v.real("max_bottom", max_bottom, {0, 5}, "m", "lowest return above ground");
-  v.real("min_width", min_width, {0, 2}, "m", "across the line of sight; posts are narrower");
-  v.integer("width_points", width_points, {1, 1000}, "returns from which the width is known");
-  v.real("max_gap", max_gap, {0, 5}, "m", "between heights of returns, or if more:");
-  v.angle("gap_angle_deg", gap_angle, {0, 10}, "the gap's angle as seen from the sensor");
-  v.real("separation", separation, {0, 5}, "m", "radius of non-maximum suppression");
-  v.real("hull_margin", hull_margin, {0, 3}, "m",
-         "about accepted clusters in which peaks compete with them");
-  v.real("whole_share", whole_share, {0, 1}, "",
-         "of a cluster's returns in a peak: the cluster is a person");
-  v.real("part_share", part_share, {0, 1}, "",
-         "of a rider-sized cluster's returns in a peak: the peak is the middle of one object");
-  v.real("rider_size", rider_size, {0, 10}, "m", "longest side of a rider-sized cluster");
-  v.real("crowd_threshold", crowd_threshold, {0, 10}, "1/m^2",
-         "normalized response that counts beside something unstable");
+  v.expert();
+  v.choiceOf("kernel", kernel, {"consistent", "printed"},
+             "second term with sigma^4, or sigma^2 as [radecki2016] prints it");
+  v.real("threshold", threshold, {0, 10}, "1/m^2", "response per return near the peak");
 }
 
 namespace {

@@ -8,38 +8,38 @@
 
 namespace perception {
 
-/// The person filter of the paper, a Laplacian of Gaussians over the returns:
-/// [sensor.LABEL.persons]. method.md 8.3.
+/// The person filter of [radecki2016], a Laplacian of Gaussians over the returns (method.md 8.3):
+/// [sensor.LABEL.persons].
 struct PersonParams {
   enum class Kernel {
     kConsistent,  ///< second term r^4/(2 sigma^4): negative in the mean, as the text says
     kPrinted      ///< r^4/(2 sigma^2), as the formula says
   };
 
-  double cell = 0.25;     ///< [m] (paper)
-  double sigma = 0.45;    ///< [m] (paper)
-  double support = 2.25;  ///< [m] radius; the kernel is below 4e-4 beyond
+  double cell = 0.25;     ///< [m] [radecki2016]
+  double sigma = 0.45;    ///< [m] [radecki2016]
+  double support = 2.25;  ///< [m] radius; the kernel is below 4e-4 beyond (assumed)
   Kernel kernel = Kernel::kConsistent;
-  double threshold = 0.9;  ///< [1/m^2] normalized; a lone person has 1.45, a wall below .5
-  double radius = 0.45;    ///< [m] about the peak: the person's returns
-  int min_points = 4;      ///< returns within radius
-  double min_span = 0.8;   ///< [m] lowest to highest return
-  double max_span = 2.2;   ///< [m]
-  // What the paper leaves to the filter. Measured on KITTI 0000 and WADS: people keep clear of
-  // these bounds but for two that touch others, and nine in ten trunks, posts and hedge corners do
-  // not.
+  double threshold =
+      0.9;                ///< [1/m^2] normalized; a lone person has 1.45, a wall below .5 (assumed)
+  double radius = 0.45;   ///< [m] about the peak: the person's returns (sigma)
+  int min_points = 4;     ///< returns within radius (method.md 8.3)
+  double min_span = 0.8;  ///< [m] lowest to highest return (method.md 8.3)
+  double max_span = 2.2;  ///< [m] (method.md 8.3)
+  // Bounds beyond [radecki2016], tuned on KITTI 0000 and WADS: people keep clear of them but for
+  // two that touch others, and nine in ten trunks, posts and hedge corners do not.
   double max_top = 2.1;           ///< [m] above ground: a tall person with a hat
   double max_bottom = 1.0;        ///< [m] above ground: what begins higher is a crown
   double min_width = 0.22;        ///< [m] across the line of sight; posts have .10 to .20
   int width_points = 8;           ///< returns from which the width is known
   double max_gap = 0.5;           ///< [m] between heights of returns, or, if more ...
   double gap_angle = radians(1);  ///< [rad] ... that as seen from the sensor: sparse layers
-  double separation = 0.75;       ///< [m] radius of non-maximum suppression
-  double hull_margin = 0.3;       ///< [m] about clusters in which peaks compete with them
-  double whole_share = 0.7;       ///< of a short cluster's returns in a peak: it is a person
-  double part_share =
-      0.4;  ///< of a rider-sized cluster's returns in a peak: its middle, not a person
-  double rider_size = 2.5;       ///< [m] longest side of what a rider and a cycle make
+  // Peaks in clusters (method.md 8.3), assumed.
+  double separation = 0.75;    ///< [m] radius of non-maximum suppression
+  double hull_margin = 0.3;    ///< [m] about clusters in which peaks compete with them
+  double replace_share = 0.7;  ///< of a short cluster's returns in a peak: the peak replaces it
+  double drop_share = 0.4;  ///< of a rider-sized cluster's returns in a peak: the peak is dropped
+  double rider_size = 2.5;  ///< [m] longest side of what a rider and a cycle make
   double crowd_threshold = 1.2;  ///< [1/m^2] normalized; of a person close to something unstable
 
   void visit(ParamVisitor& v);

@@ -23,8 +23,8 @@ PERCEPTION_WIDEST void markObstacles(const float* __restrict heights, std::size_
 }
 
 /// Takes back what the sensor itself calls ground and what is a phantom.
-void takeBack(const LidarCloud& cloud, const std::uint32_t* source, std::size_t count,
-              float least_trust, std::int32_t* marks) {
+void unmark(const LidarCloud& cloud, const std::uint32_t* source, std::size_t count,
+            float least_trust, std::int32_t* marks) {
   constexpr auto kGround = static_cast<std::uint8_t>(PointLabel::kGround);
   if (!cloud.label.empty())
     for (std::size_t k = 0; k < count; ++k) marks[k] &= cloud.label[source[k]] != kGround;
@@ -65,7 +65,7 @@ void splitGround(const LidarCloud& cloud, const EgoPoints& points,
   for (std::size_t first = 0; first < heights.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, heights.size() - first);
     markObstacles(&heights[first], count, low, high, marks.data());
-    takeBack(cloud, &points.source[first], count, least_trust, marks.data());
+    unmark(cloud, &points.source[first], count, least_trust, marks.data());
     obstacles.resize(found + count + kPackSlack);
     found += packPlaces(marks.data(), count, static_cast<std::uint32_t>(first), &obstacles[found]);
   }

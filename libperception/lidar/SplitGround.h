@@ -17,7 +17,7 @@ struct SplitRules {
 void labelGround(const EgoPoints& points, const std::vector<float>& heights, float low,
                  std::size_t returns, std::vector<std::uint8_t>& ground);
 
-/// Labels the ground, the sensor's own verdict included, and finds the obstacles, places in
+/// Labels the ground, the sensor's own label included, and finds the obstacles, places in
 /// `points`: neither are what is mirrored in a wet road and what hangs above all that drives.
 void splitGround(const LidarCloud& cloud, const EgoPoints& points,
                  const std::vector<float>& heights, const SplitRules& rules,

@@ -8,12 +8,8 @@
 namespace perception {
 
 void MultipathParams::visit(ParamVisitor& v) {
+  v.expert();
   v.boolean("enabled", enabled, "look for mirror images in a wet road");
-  v.real("depth", depth, {0.05, 5}, "m", "below the ground plane");
-  v.real("tolerance", tolerance, {0.05, 5}, "m", "between mirrored and real return");
-  v.real("max_range", max_range, {1, 200}, "m", "up to which mirror images are looked for");
-  v.real("grade", grade, {0, 0.2}, "", "growth of `depth` with range");
-  v.integer("support", support, {1, 100}, "real returns near the mirrored one");
 }
 
 namespace {

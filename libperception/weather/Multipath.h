@@ -12,9 +12,9 @@ struct MultipathParams {
   bool enabled = true;
   double depth = 0.3;      ///< [m] below the ground plane (method.md 9.7)
   double tolerance = 0.4;  ///< [m] between the mirrored return and a real one (method.md 9.7)
-  double max_range = 30;   ///< [m] beyond, the road may leave its plane by as much (own choice)
-  double grade = 0.01;     ///< [-] growth of `depth` with range, for the same reason (own choice)
-  int support = 3;         ///< real returns near the mirrored one (own choice)
+  double max_range = 30;   ///< [m] beyond, the road may leave its plane by as much (assumed)
+  double grade = 0.01;     ///< [-] growth of `depth` with range, for the same reason (assumed)
+  int support = 3;         ///< real returns near the mirrored one (assumed)
 
   void visit(ParamVisitor& v);
 };

@@ -5,12 +5,12 @@
 namespace perception {
 
 /// The share of phantoms among the returns near the sensor, which follows the weather by
-/// expectation maximization from scan to scan (Saerens et al., Neural Computation 2002).
+/// expectation maximization from scan to scan [saerens2002].
 class PhantomShare {
  public:
   explicit PhantomShare(const TrustParams& params);
 
-  /// A scan, of which `near` returns lie within share_range, those that nobody suspects included.
+  /// A scan, of which `near` returns lie within share_range, those that are no suspects included.
   void follow(const SuspectReturns& suspects, int near);
   /// [log-odds] that the weather adds to what was fitted.
   double logOdds() const;

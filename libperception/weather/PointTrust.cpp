@@ -41,7 +41,7 @@ PERCEPTION_WIDEST int countWithin(const float* ranges, std::size_t count, float 
   return within;
 }
 
-/// The first of two echoes of a pulse is rain when it is weaker or shorter (paper).
+/// The first of two echoes of a pulse is rain when it is weaker or shorter.
 bool isRainEcho(const LidarCloud& c, std::size_t i) {
   if (i + 1 >= c.size() || c.echo[i] != 0 || c.echo[i + 1] != 1) return false;
   const float dot = c.x[i] * c.x[i + 1] + c.y[i] * c.y[i + 1] + c.z[i] * c.z[i + 1];
@@ -118,7 +118,7 @@ PointTrust::PointTrust(const TrustParams& params)
 
 // Every return into the image; the near ones into their cubes, all of them trusted as yet.
 void PointTrust::placeReturns(const SensorFrame& frame, const LidarCloud& cloud) {
-  hears_intensity_ = params_.use_intensity && cloud.intensity.size() == cloud.size();
+  uses_intensity_ = params_.use_intensity && cloud.intensity.size() == cloud.size();
   cubes_.clear();
   census_ = {};
   suspects_.count = 0;
@@ -126,7 +126,7 @@ void PointTrust::placeReturns(const SensorFrame& frame, const LidarCloud& cloud)
   const auto far = static_cast<float>(params_.max_range);
   std::array<std::uint32_t, RangeImage::kBlock> bins{};
   image_.fill(cloud, [&](const RangeImage::Block& block) {
-    if (hears_intensity_)
+    if (uses_intensity_)
       IntensityLaw::findBins(&cloud.intensity[block.first], block.count, bins.data());
     count(block, bins.data());
     suspects_.add(cloud, block, bins.data(), height, far, cubes_);
@@ -149,7 +149,7 @@ NeighborRules PointTrust::neighborRules() const {
 
 // The first pass: who is no surface for sure, and what does the geometry say of it?
 void PointTrust::countNeighbors() {
-  suspects_.makeRoomForLooks();
+  suspects_.makeRoomForResults();
   neighbors_.count(image_, neighborRules(), suspects_);
   suspects_.clearSurfaces(static_cast<std::uint32_t>(params_.surface_neighbors));
   open_.resize(suspects_.index.size());
@@ -200,7 +200,7 @@ void PointTrust::learnIntensity() {
 // The first pass, complete: geometry and intensity.
 void PointTrust::weighIntensity() {
   std::array<float, IntensityLaw::kBins> ratios{};
-  if (hears_intensity_) {
+  if (uses_intensity_) {
     learnIntensity();
     ratios = law_.logRatios();
     for (float& ratio : ratios) ratio *= static_cast<float>(params_.intensity_gain);
@@ -220,13 +220,13 @@ void PointTrust::applyNeighborhood() {
   }
   const auto own = static_cast<float>(params_.gain);
   const auto bias = static_cast<float>(params_.second_bias);
-  const TrustCurve& of_company = curve(TrustFeature::kCompany);
+  const TrustCurve& of_surroundings = curve(TrustFeature::kSurroundings);
   for (std::size_t k = 0; k < open; ++k) {
     const std::uint32_t s = open_[k];
     const float first = suspects_.first[s];
-    const float company = cubes_.company(suspects_.corner[s], first > kPhantom);
-    suspects_.company[s] = company;
-    suspects_.second[s] = own * first + bias + of_company.at(company);
+    const float surroundings = cubes_.surroundings(suspects_.corner[s], first > kPhantom);
+    suspects_.surroundings[s] = surroundings;
+    suspects_.second[s] = own * first + bias + of_surroundings.at(surroundings);
   }
 }
 

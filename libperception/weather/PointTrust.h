@@ -66,7 +66,7 @@ class PointTrust final : public PointFilter {
   CountCurves count_curves_;
   RangeImage image_;
   IntensityLaw law_;
-  bool hears_intensity_ = false;  // this scan has it, and it is used
+  bool uses_intensity_ = false;  // this scan has it, and it is used
   PhantomShare share_;
   Census census_;
   NeighborCounter neighbors_;

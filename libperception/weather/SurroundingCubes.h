@@ -8,7 +8,7 @@
 namespace perception {
 
 /// Counts trusted and doubted returns in cubes about the sensor: a dark return within a car's body
-/// has other company than a flake of the same brightness.
+/// stands among other returns than a flake of the same brightness.
 class SurroundingCubes {
  public:
   explicit SurroundingCubes(float reach);  ///< [m] horizontal, from the sensor
@@ -24,7 +24,7 @@ class SurroundingCubes {
   void doubt(std::uint32_t cube) { counts_[cube] += kDoubted - 1; }
   /// ln((1 + trusted) / (1 + doubted)) of the others in the eight cubes at a corner, where a return
   /// counts as `doubted` itself.
-  float company(std::uint32_t corner, bool doubted) const {
+  float surroundings(std::uint32_t corner, bool doubted) const {
     const std::uint32_t x0 = corner & 1023, x1 = x0 + (corner >> 10 & 3);
     const std::uint32_t y0 = corner >> 12 & 1023, y1 = y0 + (corner >> 22 & 3);
     const std::uint32_t low = corner >> 24 & 31, high = low + (corner >> 29);
@@ -44,7 +44,7 @@ class SurroundingCubes {
   static constexpr float kEdge = 0.5F;     // [m]
   static constexpr float kBottom = -4.5F;  // [m] of the lowest layer, below a roof lidar's road
   static constexpr std::uint64_t kDoubted = std::uint64_t{1} << 32;
-  static constexpr int kLayers = 24;  // fewer than 32, see company()
+  static constexpr int kLayers = 24;  // fewer than 32, see surroundings()
 
   float logOfOneMore(std::uint32_t count) const {
     return count < logs_.size() ? logs_[count] : std::log(static_cast<float>(count) + 1);

@@ -40,10 +40,10 @@ void SuspectReturns::makeRoom(std::size_t more) {
   for (auto* meters : {&range, &height}) meters->resize(room);
 }
 
-void SuspectReturns::makeRoomForLooks() {
+void SuspectReturns::makeRoomForResults() {
   if (neighbors.size() == index.size()) return;
   neighbors.resize(index.size());
-  for (auto* numbers : {&geometry, &first, &second, &company}) numbers->resize(index.size());
+  for (auto* numbers : {&geometry, &first, &second, &surroundings}) numbers->resize(index.size());
 }
 
 void SuspectReturns::add(const LidarCloud& cloud, const RangeImage::Block& block,
@@ -92,7 +92,7 @@ SuspectReturn SuspectReturns::at(std::size_t s) const {
   const NeighborCounts n(neighbors[s]);
   return {index[s],
           {range[s], static_cast<float>(n.tight()), static_cast<float>(n.wide()),
-           share(n.beyond(), n.filled()), height[s], company[s]},
+           share(n.beyond(), n.filled()), height[s], surroundings[s]},
           first[s],
           second[s]};
 }

@@ -12,7 +12,7 @@
 
 namespace perception {
 
-/// A return that may be a phantom, and how it looks.
+/// A return that may be a phantom, and its features.
 struct SuspectReturn {
   std::uint32_t index = 0;                       ///< in the cloud
   std::array<float, kTrustFeatures> features{};  ///< [m], counts or shares, as TrustFeature
@@ -26,14 +26,14 @@ struct SuspectReturn {
 struct SuspectReturns {
   std::size_t count = 0;
   std::vector<std::uint32_t> index;      ///< in the cloud
-  std::vector<std::uint32_t> pixel;      ///< of the range image, before anyone is cleared
+  std::vector<std::uint32_t> pixel;      ///< of the range image, before any is cleared
   std::vector<std::uint32_t> cube;       ///< of SurroundingCubes; above, the bin of the intensity
   std::vector<std::uint32_t> corner;     ///< of SurroundingCubes
   std::vector<std::uint32_t> neighbors;  ///< bits of NeighborCounts
   std::vector<float> range, height;      ///< [m]
   std::vector<float> geometry;           ///< [log-odds] without intensity and weather
   std::vector<float> first, second;      ///< [log-odds]
-  std::vector<float> company;            ///< as TrustFeature::kCompany; of those that were asked
+  std::vector<float> surroundings;  ///< as TrustFeature::kSurroundings; of those of the second pass
 
   static constexpr int kBinShift = 28;
   std::uint32_t binOf(std::size_t s) const { return cube[s] >> kBinShift; }
@@ -45,8 +45,8 @@ struct SuspectReturns {
            const HeightAboveGround& height_above, float far, SurroundingCubes& cubes);
   /// Clears those of which at least `surface` of the nearest pixels are of the same surface.
   void clearSurfaces(std::uint32_t surface);
-  /// Room for what is found out about each of those that are there.
-  void makeRoomForLooks();
+  /// Room for the results of each of those that are there.
+  void makeRoomForResults();
   SuspectReturn at(std::size_t s) const;
   std::size_t memoryBytes() const { return 11 * sizeof(float) * index.capacity(); }
 

@@ -147,7 +147,7 @@ TrustParams fitted(std::vector<LabeledScan>& scans) {
   params.bias = geometry[0];
   first.store(geometry, 1, params);
 
-  const Basis second({TrustFeature::kCompany});
+  const Basis second({TrustFeature::kSurroundings});
   samples.clear();
   for (const bool intensity : {true, false}) {
     params.use_intensity = intensity;
@@ -173,7 +173,7 @@ TrustParams fitted(std::vector<LabeledScan>& scans) {
 
 void printParams(const TrustParams& p) {
   const char* names[kTrustFeatures] = {"kRange",  "kTight",  "kWide",
-                                       "kBeyond", "kHeight", "kCompany"};
+                                       "kBeyond", "kHeight", "kSurroundings"};
   for (std::size_t f = 0; f < kTrustFeatures; ++f) {
     std::string line;
     for (const double v : p.curves[f]) line += fmt::format("{}{:.2f}", line.empty() ? "" : ", ", v);

@@ -34,9 +34,9 @@ PositionParams params() {
   PositionParams p;
   p.labels = {"person", "cyclist"};
   p.names = {"Pedestrian=person", "Cyclist=cyclist"};
-  p.score_slope = 2;
-  p.score_offset = 1;
-  p.score_balance = -0.5;
+  p.score_slope = {{"person", 2}, {"cyclist", 2}};
+  p.score_offset = {{"person", 1}, {"cyclist", 1}};
+  p.score_balance = {{"person", -0.5}, {"cyclist", -0.5}};
   p.off_label_score_weight = 0.25;
   p.group_distance = 0.8;
   p.sizes = true;
@@ -75,6 +75,9 @@ TEST(PositionFrontEnd, ALabelThatIsNoClassesNameSpeaksForAllRoadUsersAlike) {
   PositionParams p = params();
   p.labels = {"person", "cyclist", "unknown"};
   p.names.push_back("unknown=unknown");
+  p.score_slope.emplace_back("unknown", 2);
+  p.score_offset.emplace_back("unknown", 1);
+  p.score_balance.emplace_back("unknown", -0.5);
   const DetectionModel two = detection_model();
   const DetectionModel three(two.params(), {two.row(0), two.row(1), two.row(2)}, p.labels);
   SensorFrame frame;
@@ -91,7 +94,7 @@ TEST(PositionFrontEnd, ALabelThatIsNoClassesNameSpeaksForAllRoadUsersAlike) {
 
 TEST(PositionFrontEnd, OddsFallWithTheRangeAndStayWithinTheLimit) {
   PositionParams p = params();
-  p.score_fade = 0.05;
+  p.score_fade = {{"person", 0.05}};
   const auto scan =
       extract(p, {boxAt("Pedestrian", 2.0, 10, 0), boxAt("Pedestrian", 100.0, 30, 0)});
   ASSERT_EQ(scan.measurements.size(), 2U);
@@ -135,17 +138,6 @@ TEST(PositionFrontEnd, BoxesTellSizesAxisAndHeights) {
   EXPECT_NEAR(m.heading->yaw, 0.3, 1e-12);
   EXPECT_NEAR(m.base_z->mean, 0.2, 1e-12);
   EXPECT_NEAR(m.height->mean, 1.7, 1e-12);
-}
-
-TEST(PositionFrontEnd, SureBoxesHideWhatStandsBehindThem) {
-  PositionParams p = params();
-  EXPECT_FALSE(extract(p, {boxAt("Cyclist", 9, 10, 0)}).occlusion);
-  p.occluder_probability = 0.7;
-  const auto scan = extract(p, {boxAt("Cyclist", 9, 10, 0), boxAt("Cyclist", -9, 10, 8)});
-  ASSERT_TRUE(scan.occlusion);
-  EXPECT_EQ(scan.occlusion->visibility(-0.01, 0.01, 15, 0.5), 0);
-  EXPECT_EQ(scan.occlusion->visibility(-0.01, 0.01, 8, 0.5), 1);
-  EXPECT_EQ(scan.occlusion->visibility(0.66, 0.68, 20, 0.5), 1) << "an unsure box hides nothing";
 }
 
 TEST(PositionFrontEnd, UnknownLabelsAndBrokenBoxesAreCounted) {

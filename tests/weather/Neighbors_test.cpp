@@ -65,7 +65,7 @@ TEST(NeighborCounter, CountsAsALiteralLoopDoesAlsoForEchoesThatTheImageDoesNotSh
     near.add(cloud, block, bins.data(), HeightAboveGround(Pose3::Identity(), {}), kRules.far,
              cubes);
   });
-  near.makeRoomForLooks();
+  near.makeRoomForResults();
   NeighborCounter counter;
   counter.count(image, kRules, near);
   ASSERT_GT(near.count, 10000U);
@@ -90,7 +90,7 @@ TEST(SuspectReturns, ThoseOfASurfaceAreCleared) {
     suspects.add(cloud, block, bins.data(), HeightAboveGround(Pose3::Identity(), {}), 20, cubes);
   });
   ASSERT_EQ(suspects.count, 100U);
-  suspects.makeRoomForLooks();
+  suspects.makeRoomForResults();
   for (std::size_t s = 0; s < 100; ++s)
     suspects.neighbors[s] = (s % 3 == 0 ? 6U : 5U) << 4 * NeighborCounts::kBits;
   suspects.clearSurfaces(6);

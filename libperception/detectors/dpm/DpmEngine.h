@@ -12,16 +12,16 @@ namespace perception {
 
 struct DpmBank;
 
-/// How densely and where an engine looks.
+/// How densely and where an engine searches.
 struct DpmOptions {
-  int levels_per_octave = 5;  ///< voc-release: 10
+  int levels_per_octave = 5;  ///< method.md 8.8; [girshick2012]: 10
   double enlarge = 1;         ///< [1, 4] size of the first image searched, for objects far away
-  double outside = 0.4;       ///< share of an object's sides that may lie beyond the image
-  int window = 4;             ///< [cells of a part] how far a part may move; voc-release5: 4
-  double overlap = 0.5;       ///< of the weaker box: more is the same object (voc-release)
+  double outside = 0.4;       ///< share of an object's sides beyond the image (assumed)
+  int window = 4;             ///< [cells of a part] how far a part may move [girshick2012]
+  double overlap = 0.5;       ///< of the weaker box: more is the same object (method.md 8.8)
 };
 
-/// What an engine looks for with one model.
+/// What an engine searches for with one model.
 struct DpmTarget {
   DpmModel model;
   double threshold = -1;       ///< score from which on a place is reported
@@ -37,7 +37,7 @@ struct DpmDetection {
 };
 
 /// Finds deformable part models in images: all components of all classes on one feature pyramid,
-/// parts convolved exactly by Fourier transform of 16 x 16 patches (Dubout and Fleuret, ECCV 2012),
+/// parts convolved exactly by Fourier transform of 16 x 16 patches [dubout2012],
 /// only where the ground allows objects. The result is the same for any number of threads.
 class DpmEngine {
  public:

@@ -31,7 +31,7 @@ struct DpmComponent {
   std::vector<DpmPart> parts;
 };
 
-/// A mixture of deformable part models (Felzenszwalb et al., PAMI 2010), star shaped, of one class.
+/// A mixture of deformable part models [felzenszwalb2010], star shaped, of one class.
 struct DpmModel {
   std::string class_name;
   int cell = 8;              ///< [px] side of a cell (sbin)

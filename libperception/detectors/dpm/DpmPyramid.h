@@ -31,7 +31,7 @@ struct DpmLevel {
   Span part_x, part_y;  ///< [part cells] that patches read
   FeatureMap roots, parts;
   const FeatureMap* part_map = nullptr;
-  AlignedFloats spectra;  ///< kDpmSpectrumStride a patch; not set where nobody looks
+  AlignedFloats spectra;  ///< kDpmSpectrumStride a patch; not set where nothing is searched
 };
 
 /// Patches lie so far apart that equal frequencies of several do not fall on the same lines of the
