@@ -392,7 +392,7 @@ void drawMeasurementMark(Canvas& canvas, const Vector2& at, Modality modality) {
   const auto corner = [&](double angle) -> Vector2 {
     return at + kSize * Vector2(std::sin(angle), -std::cos(angle));
   };
-  const int corners = modality == Modality::kCamera ? 3 : modality == Modality::kRadar ? 4 : 12;
+  const int corners = rowOf(modality).mark_corners;
   for (int i = 0; i < corners; ++i) {
     canvas.line(corner(kTwoPi * i / corners), corner(kTwoPi * (i + 1) / corners), kMeasurement,
                 1.5);

@@ -19,7 +19,7 @@ class ResolutionStreams::Stream : public PipelineObserver {
   Stream(const ResolutionSite& site, const std::string& letters, int resolution, bool log_odds) {
     run.name = letters;
     run.resolution = resolution;
-    run.lidar = letters.find('L') != std::string::npos;
+    run.lidar = letters.find(letterOf(Modality::kLidar)) != std::string::npos;
     Config config = Config::fromFile(site.file);
     const std::string section = "sensor." + site.camera;
     if (resolution >= 0) {
@@ -79,12 +79,12 @@ class ResolutionStreams::Stream : public PipelineObserver {
 
 ResolutionStreams::ResolutionStreams(const ResolutionSite& site, const std::set<char>& letters,
                                      const std::vector<int>& resolutions, bool log_odds) {
-  const std::string radar = letters.count('R') ? "+R" : "";
+  const std::string radar = letters.count(letterOf(Modality::kRadar)) ? "+R" : "";
   const auto add = [&](const std::string& set, int resolution) {
     streams_.push_back(std::make_unique<Stream>(site, set, resolution, log_odds));
   };
   for (const int r : resolutions) add("C" + radar, r);
-  if (!letters.count('L')) return;
+  if (!letters.count(letterOf(Modality::kLidar))) return;
   add("L" + radar, -1);
   if (!resolutions.empty()) add("C+L" + radar, resolutions.back());
 }

@@ -92,7 +92,7 @@ ResolutionData simulated(const ResolutionOptions& options) {
         sensors.push_back(std::move(copy));
       }
     } else if (const auto* used = inUse(site, s.label)) {
-      letters.insert(static_cast<char>(used->params.modality));
+      letters.insert(letterOf(used->params.modality));
       sensors.push_back(s);
     }
   }
@@ -143,7 +143,7 @@ LogContent lookInto(const ResolutionOptions& options, const PipelineSetup& site,
     if (!content.resolutions.empty() && now && first && *now - *first > kLook) break;
     const auto* used = inUse(site, o->sensorLabel);
     if (used && used->label != options.site.camera)
-      content.letters.insert(static_cast<char>(used->params.modality));
+      content.letters.insert(letterOf(used->params.modality));
     if (!content.resolutions.empty()) continue;
     if (images && images->isOurs(*o)) {
       if (images->load(*o)) content.resolutions = images->resolutions(), content.images = true;
@@ -199,7 +199,7 @@ ResolutionData recorded(const ResolutionOptions& options) {
   ResolutionData data;
   data.source = "log " + fs::path(options.log).stem().string();
   data.camera = options.site.camera;
-  data.lidar = content.letters.count('L') ? lidarOf(site) : "";
+  data.lidar = content.letters.count(letterOf(Modality::kLidar)) ? lidarOf(site) : "";
   data.runs = streams.finish();
   const fs::path beside =
       fs::path(options.log).parent_path() / (fs::path(options.log).stem().string() + ".truth.csv");

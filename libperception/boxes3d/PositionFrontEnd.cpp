@@ -257,18 +257,11 @@ Measurement PositionFrontEnd::measure(const std::vector<Candidate>& group, const
   return m;
 }
 
-MeasurementScan PositionFrontEnd::extract(const SensorFrame& frame) const {
-  MeasurementScan scan;
-  scan.sensor = frame.sensor;
-  scan.modality = modality_;
-  scan.frame = frame.frame;
-  scan.model = model_;
-  scan.state = {frame.stamp, frame.T_world_sensor(), frame.ego};
+void PositionFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const {
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
-  if (!detections) return scan;
+  if (!detections) return;
   const auto found = groups(*detections, scan);
   for (const auto& group : found) scan.measurements.push_back(measure(group, frame, scan.state));
-  return scan;
 }
 
 std::unique_ptr<FrontEnd> makePositionFrontEnd(Config& config, const std::string& sensor_label,

@@ -58,8 +58,12 @@ class PositionFrontEnd final : public FrontEnd {
   PositionFrontEnd(PositionParams params, const ClassTable& classes,
                    const DetectionModel& detection_model);
 
-  MeasurementScan extract(const SensorFrame& frame) const override;
   std::vector<std::string> labelNames() const override { return params_.labels; }
+
+ protected:
+  Modality modality() const override { return modality_; }
+  std::shared_ptr<const MeasurementModel> model() const override { return model_; }
+  void fill(const SensorFrame& frame, MeasurementScan& scan) const override;
 
  private:
   /// What is known of one label.

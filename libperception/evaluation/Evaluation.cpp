@@ -39,7 +39,7 @@ std::string sensorSet(const TrackedRun& run) {
   std::set<char> letters;
   for (const Scene& scene : run.scenes) {
     for (const SceneObject& object : scene.objects) {
-      for (const auto& hit : object.last_hit) letters.insert(static_cast<char>(hit.first));
+      for (const auto& hit : object.last_hit) letters.insert(letterOf(hit.first));
     }
   }
   return {letters.begin(), letters.end()};
@@ -239,7 +239,8 @@ class Evaluator {
   // without lidar the camera's range holds (method.md 11), also where radar helps.
   bool inSensorRange(const SeenTruth& truth) const {
     const std::string& sensors = result_.sensors;
-    if (sensors.empty() || sensors.find('L') != std::string::npos) return true;
+    const auto covers = [](char letter) { return findModality(letter)->covers_sector; };
+    if (sensors.empty() || std::any_of(sensors.begin(), sensors.end(), covers)) return true;
     const std::string& name = result_.class_names[static_cast<std::size_t>(truth.class_id)];
     const bool person = name == "pedestrian" || name == "cyclist";
     return truth.view.range <= (person ? kCameraPersonRange : kCameraCarRange);

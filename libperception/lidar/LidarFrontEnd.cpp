@@ -93,15 +93,9 @@ std::vector<Vector3> LidarFrontEnd::obstaclePoints(const SensorFrame& frame) con
   return points;
 }
 
-MeasurementScan LidarFrontEnd::extract(const SensorFrame& frame) const {
+void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const {
   const LidarDetections found = detect(frame);
-  MeasurementScan scan;
   scan.dropped_points = found.points.dropped + found.points.capped;
-  scan.sensor = frame.sensor;
-  scan.modality = model_->detection_model().params().modality;
-  scan.frame = frame.frame;
-  scan.state = {frame.stamp, frame.T_world_sensor(), frame.ego};
-  scan.model = model_;
   const auto occlusion =
       occlusionMapOf(found, frame.ego.T_world_ego, scan.state.T_world_sensor, params_.obstacles);
   scan.occlusion = occlusion;
@@ -116,7 +110,6 @@ MeasurementScan LidarFrontEnd::extract(const SensorFrame& frame) const {
   for (const Cluster& cluster : found.clusters)
     if (distanceToHull(cluster.hull, sensor) > 0) add(measurementOf(context, cluster));
   for (const PersonPeak& peak : found.persons) add(measurementOf(context, peak));
-  return scan;
 }
 
 std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& sensor_label,

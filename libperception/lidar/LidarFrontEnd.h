@@ -78,7 +78,6 @@ class LidarFrontEnd final : public FrontEnd {
   LidarFrontEnd(const LidarParams& params, const ClassTable& classes,
                 const DetectionModel& detection_model);
 
-  MeasurementScan extract(const SensorFrame& frame) const override;
   std::vector<std::string> labelNames() const override {
     return model_->detection_model().labels();
   }
@@ -89,6 +88,11 @@ class LidarFrontEnd final : public FrontEnd {
 
   const LidarParams& params() const { return params_; }
   static std::vector<std::string> labels(const ClusterParams& clusters);
+
+ protected:
+  Modality modality() const override { return model_->detection_model().params().modality; }
+  std::shared_ptr<const MeasurementModel> model() const override { return model_; }
+  void fill(const SensorFrame& frame, MeasurementScan& scan) const override;
 
  private:
   LidarParams params_;

@@ -127,7 +127,7 @@ uint8_t CObservationMeasurements::serializeGetVersion() const { return 2; }
 
 void CObservationMeasurements::serializeTo(CArchive& out) const {
   out << timestamp << sensorLabel << sensor_pose << model;
-  out.WriteAs<std::uint8_t>(static_cast<char>(modality));
+  out.WriteAs<std::uint8_t>(letterOf(modality));
   out << frame;
   writeNames(out, axes);
   writeNames(out, labels);
@@ -142,10 +142,8 @@ void CObservationMeasurements::serializeFrom(CArchive& in, uint8_t version) {
   in >> sensor_pose;
   model = archive::readText(in);
   modality = static_cast<Modality>(in.ReadAs<std::uint8_t>());
-  if (modality != Modality::kCamera && modality != Modality::kLidar &&
-      modality != Modality::kRadar) {
-    throw std::runtime_error("a modality that is none of C, L, R");
-  }
+  if (findModality(letterOf(modality)) == nullptr)
+    throw std::runtime_error("a modality that is none of " + modalityLetters());
   in >> frame;
   axes = readNames(in);
   labels = readNames(in);
@@ -158,7 +156,7 @@ void CObservationMeasurements::serializeFrom(CArchive& in, uint8_t version) {
 void CObservationMeasurements::getDescriptionAsText(std::ostream& out) const {
   CObservation::getDescriptionAsText(out);
   out << fmt::format("Measurements of model {}, modality {}, frame {}: {}\n", model,
-                     static_cast<char>(modality), frame, measurements.size());
+                     letterOf(modality), frame, measurements.size());
   for (const auto& m : measurements) {
     const auto label = static_cast<std::size_t>(m.label);
     out << fmt::format("  {}", label < labels.size() ? labels[label] : "-");

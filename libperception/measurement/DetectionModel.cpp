@@ -9,68 +9,23 @@
 namespace perception {
 namespace {
 
-/// What a class looks like to a kind of sensor when the INI says nothing: the table of
-/// method.md 2.3. A lidar that also reports clusters that are not stable (closer than 1 m to
-/// something) divides its rows further; the shares of these are tuned on KITTI's streets. Labels
-/// that a sensor does not have drop out, and the rest is normalized.
-struct DefaultRow {
-  const char* class_name;
-  Modality modality;
-  double detection;
-  std::vector<std::pair<std::string, double>> labels;
-};
-
-const std::vector<DefaultRow>& defaultRows() {
-  static const std::vector<DefaultRow> rows = {
-      {"pedestrian",
-       Modality::kLidar,
-       0.88,
-       {{"car_sized", 0.10}, {"person_sized", 0.85}, {"unstable", 0.05}}},
-      {"cyclist",
-       Modality::kLidar,
-       0.88,
-       {{"car_sized", 0.60}, {"person_sized", 0.20}, {"unstable", 0.20}}},
-      {"car",
-       Modality::kLidar,
-       0.91,
-       {{"car_sized", 0.45}, {"person_sized", 0.03}, {"unstable", 0.52}}},
-      {"bus",
-       Modality::kLidar,
-       0.95,
-       {{"car_sized", 0.45}, {"person_sized", 0.03}, {"unstable", 0.52}}},
-      {"static-other",
-       Modality::kLidar,
-       0.85,
-       {{"car_sized", 0.20}, {"person_sized", 0.50}, {"unstable", 0.30}}},
-      {"pedestrian", Modality::kCamera, 0.70, {{"car", 0.02}, {"person", 0.98}}},
-      {"cyclist", Modality::kCamera, 0.60, {{"car", 0.20}, {"person", 0.80}}},
-      {"car", Modality::kCamera, 0.85, {{"car", 0.98}, {"person", 0.02}}},
-      {"bus", Modality::kCamera, 0.60, {{"car", 0.97}, {"person", 0.03}}},
-      {"static-other", Modality::kCamera, 0.03, {{"car", 0.33}, {"person", 0.67}}},
-      {"pedestrian", Modality::kRadar, 0.05, {}},
-      {"cyclist", Modality::kRadar, 0.3, {}},
-      {"car", Modality::kRadar, 0.9, {}},
-      {"bus", Modality::kRadar, 0.95, {}},
-      {"static-other", Modality::kRadar, 0.3, {}},
+/// A row of the tables by modality, for a sensor of these labels: labels that it does not have drop
+/// out, and the rest is normalized.
+ClassDetection withLabels(ClassDetection row, const std::vector<std::string>& labels) {
+  const auto missing = [&](const auto& l) {
+    return std::find(labels.begin(), labels.end(), l.first) == labels.end();
   };
-  return rows;
+  row.labels.erase(std::remove_if(row.labels.begin(), row.labels.end(), missing), row.labels.end());
+  double sum = 0;
+  for (const auto& l : row.labels) sum += l.second;
+  for (auto& l : row.labels) l.second /= sum;
+  return row;
 }
 
-ClassDetection defaultSensing(const std::string& class_name, Modality modality,
-                              const std::vector<std::string>& labels) {
-  ClassDetection row;
-  for (const auto& d : defaultRows()) {
-    if (class_name != d.class_name || modality != d.modality) continue;
-    row.detection = d.detection;
-    double sum = 0;
-    for (const auto& l : d.labels) {
-      if (std::find(labels.begin(), labels.end(), l.first) == labels.end()) continue;
-      row.labels.push_back(l);
-      sum += l.second;
-    }
-    for (auto& l : row.labels) l.second /= sum;
-  }
-  return row;
+const std::string kTablePrefix = "detection.";
+
+std::string tableSection(Modality modality, const std::string& class_name) {
+  return kTablePrefix + rowOf(modality).name + "." + class_name;
 }
 
 /// A label that no row mentions still happens now and then.
@@ -123,11 +78,15 @@ void checkRow(Config& config, const std::string& section,
 
 void DetectionParams::visit(ParamVisitor& v) {
   v.text("kind", kind, "front end by name: lidar, boxes, radar");
-  static constexpr char kLetters[] = {'C', 'L', 'R'};
-  int index = 0;
-  for (int i = 0; i < 3; ++i) index = kLetters[i] == static_cast<char>(modality) ? i : index;
-  v.choice("modality", index, {"C", "L", "R"}, "camera, lidar, radar");
-  modality = static_cast<Modality>(kLetters[index]);
+  std::vector<std::string> letters;
+  std::string names;
+  for (const ModalityRow& row : modalities()) {
+    letters.emplace_back(1, letterOf(row.letter));
+    names += (names.empty() ? "" : ", ") + row.name;
+  }
+  int index = static_cast<int>(modalityIndex(modality));
+  v.choice("modality", index, letters, names.c_str());
+  modality = modalities()[static_cast<std::size_t>(index)].letter;
   v.real("clutter_per_scan", clutter_per_scan, {1e-9, 1e4}, "",
          "expected number of false measurements a scan (kappa)");
   v.real("births_per_scan", births_per_scan, {1e-9, 1e4}, "",
@@ -193,6 +152,19 @@ void ClassDetection::visit(ParamVisitor& v) {
           "P(label | this class, detected); labels not named share the rest");
 }
 
+void checkDetectionTables(Config& config, const ClassTable& classes) {
+  for (const auto& section : config.sectionsWithPrefix(kTablePrefix)) {
+    config.read<ClassDetection>(section);
+    const auto isRow = [&](const ModalityRow& m) {
+      return std::any_of(classes.classes.begin(), classes.classes.end(), [&](const ObjectClass& c) {
+        return section == tableSection(m.letter, c.name);
+      });
+    };
+    if (std::none_of(modalities().begin(), modalities().end(), isRow))
+      config.fault(section, "", "not [detection.MODALITY.CLASS] of a known modality and class");
+  }
+}
+
 DetectionModel DetectionModel::read(Config& config, const std::string& section,
                                     const ClassTable& classes,
                                     const std::vector<std::string>& labels,
@@ -213,10 +185,10 @@ DetectionModel DetectionModel::read(Config& config, const std::string& section,
   std::vector<ClassDetection> rows;
   for (const auto& c : classes.classes) {
     const std::string row_section = prefix + c.name;
-    ClassDetection row = defaultSensing(c.name, params.modality, labels);
-    row = config.read<ClassDetection>(row_section, row);
+    const auto table = config.read<ClassDetection>(tableSection(params.modality, c.name));
+    const auto row = config.read<ClassDetection>(row_section, withLabels(table, labels));
     checkRow(config, row_section, row.labels, "label.", labels);
-    rows.push_back(std::move(row));
+    rows.push_back(row);
   }
   return DetectionModel(params, std::move(rows), labels);
 }

@@ -33,9 +33,10 @@ struct DetectionParams {
   void takeResolution();
 };
 
-/// How the sensor sees one class: [sensor.LABEL.class.NAME].
+/// How a sensor sees one class: [sensor.LABEL.class.NAME], over [detection.MODALITY.NAME] of
+/// classes.ini (method.md 2.3), over these values, which hold for a class that stands in neither.
 struct ClassDetection {
-  double detection = 0.9;  ///< P(detected | in view, not hidden, near)
+  double detection = 0.9;  ///< P(detected | in view, not occluded, near)
   double full_range =
       1e3;  ///< [m] up to which that holds; from there it falls linearly to 0 at last_range
   double last_range = 1e4;                             ///< [m] at most the sensor's range_max
@@ -44,11 +45,14 @@ struct ClassDetection {
   void visit(ParamVisitor& v);
 };
 
+/// Reads all [detection.MODALITY.CLASS], so that those of modalities without a sensor are no
+/// faults, either; other names of sections are.
+void checkDetectionTables(Config& config, const ClassTable& classes);
+
 /// The tables of one sensor, checked against the class table and the front end's labels.
 class DetectionModel {
  public:
-  /// `defaults` gives each class's row where the INI has no section for it (may be shorter than the
-  /// table).
+  /// `defaults` are the front end's for [sensor.LABEL].
   static DetectionModel read(Config& config, const std::string& section, const ClassTable& classes,
                              const std::vector<std::string>& labels,
                              const DetectionParams& defaults);

@@ -1,5 +1,7 @@
 #include "libperception/measurement/ObjectClass.h"
 
+#include "libperception/measurement/DetectionModel.h"
+
 #include <numeric>
 
 namespace perception {
@@ -52,6 +54,7 @@ ClassTable readClassTable(Config& config) {
       std::accumulate(table.classes.begin(), table.classes.end(), 0.0,
                       [](double sum, const ObjectClass& c) { return sum + c.prior; });
   for (auto& c : table.classes) c.prior /= total;
+  checkDetectionTables(config, table);
   return table;
 }
 

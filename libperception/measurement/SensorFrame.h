@@ -9,10 +9,9 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/core/Time.h"
+#include "libperception/measurement/Modality.h"
 
 namespace perception {
-
-enum class Modality : char { kCamera = 'C', kLidar = 'L', kRadar = 'R' };
 
 /// Standard deviations of the ego pose at one instant; they enlarge R of every measurement:
 /// method.md 1.3.

@@ -7,6 +7,7 @@
 
 #include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/FromObservation.h"
 
 namespace perception {
 namespace {

@@ -159,61 +159,63 @@ RadarFrontEnd::RadarFrontEnd(RadarParams params, const ClassTable& classes,
     : params_(params),
       model_(std::make_shared<const RadarModel>(classes, detection_model, params.model)) {}
 
-MeasurementScan RadarFrontEnd::extract(const SensorFrame& frame) const {
+Pose3 RadarFrontEnd::measuringPose(const SensorFrame& frame) const {
   const Pose3 sensor = frame.T_world_sensor();
   const Vector3 origin = sensor.translation();
-  const double forward = yawOf(sensor);
-  MeasurementScan scan;
-  scan.sensor = frame.sensor;
-  scan.modality = Modality::kRadar;
-  scan.frame = frame.frame;
-  scan.model = model_;
-  scan.state = {frame.stamp, makePose(origin.x(), origin.y(), origin.z(), forward), frame.ego};
-  const auto* data = std::get_if<RadarReturns>(&frame.data);
-  if (data == nullptr) return scan;
+  return makePose(origin.x(), origin.y(), origin.z(), yawOf(sensor));
+}
 
+void RadarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const {
+  const auto* data = std::get_if<RadarReturns>(&frame.data);
+  if (data == nullptr) return;
+  const Pose3 T_level_sensor = scan.state.T_world_sensor.inverse() * frame.T_world_sensor();
+  for (const RadarTarget& t : radarTargets(*data, T_level_sensor, params_, scan.dropped)) {
+    if (auto m = measure(t, scan.state)) {
+      scan.measurements.push_back(std::move(*m));
+    } else {
+      ++scan.dropped;
+    }
+  }
+}
+
+std::optional<Measurement> RadarFrontEnd::measure(const RadarTarget& t,
+                                                  const SensorState& state) const {
+  // The bearing's own error carries returns past the border of the view: without those the rest
+  // would lie too far inside on average.
   const DetectionParams& view = model_->detection_model().params();
-  const Vector2 velocity = sensorVelocity(scan.state);
-  const auto& pose = frame.ego.uncertainty;
+  if (t.range > view.range_max ||
+      std::abs(t.bearing) > 0.5 * view.fov + kBorderSigmas * params_.bearing_sigma)
+    return std::nullopt;
+  const Vector2 velocity = sensorVelocity(state);
+  const auto& pose = state.ego.uncertainty;
   const Vector3 pose_variance(pose.sigma_xy * pose.sigma_xy, pose.sigma_xy * pose.sigma_xy,
                               pose.sigma_yaw * pose.sigma_yaw);
   const double own2 = params_.own_speed_sigma * params_.own_speed_sigma;
-  for (const RadarTarget& t :
-       radarTargets(*data, scan.state.T_world_sensor.inverse() * sensor, params_, scan.dropped)) {
-    // The bearing's own error carries returns past the border of the view: without those the rest
-    // would lie too far inside on average.
-    if (t.range > view.range_max ||
-        std::abs(t.bearing) > 0.5 * view.fov + kBorderSigmas * params_.bearing_sigma) {
-      ++scan.dropped;
-      continue;
-    }
-    const Vector2 u(std::cos(forward + t.bearing), std::sin(forward + t.bearing));
-    const Vector2 n(-u.y(), u.x());
-    Measurement m;
-    m.z = Vector3(t.range, t.bearing, t.range_rate);
-    m.seen = t.has_rate ? RadarModel::kAll : RadarModel::kNoRate;
-    m.detection = t.strongest;
-    // The vehicle's pose by x, y, yaw (method.md 1.3): a turned line of sight sees the own motion
-    // elsewhere.
-    const Eigen::RowVector3d bearing(-n.x() / t.range, -n.y() / t.range, -1);
-    Eigen::Matrix3d J;
-    J.row(RadarModel::kRange) << -u.x(), -u.y(), 0;
-    J.row(RadarModel::kBearing) = bearing;
-    J.row(RadarModel::kRate) << -n.dot(velocity) * bearing.head<2>(), 0;
-    m.R = J * pose_variance.asDiagonal() * J.transpose();
-    m.R(0, 0) += params_.range_sigma * params_.range_sigma + t.range_spread * t.range_spread;
-    m.R(1, 1) +=
-        params_.bearing_sigma * params_.bearing_sigma + t.bearing_spread * t.bearing_spread;
-    m.R(2, 2) += params_.rate_sigma * params_.rate_sigma + own2;
-    if (!t.has_rate) {
-      m.z[RadarModel::kRate] = 0;
-      m.R.row(RadarModel::kRate).setZero(), m.R.col(RadarModel::kRate).setZero();
-    }
-    m.position = origin.head<2>() + t.range * u;
-    m.position_sigma = std::sqrt(std::max(m.R(0, 0), t.range * t.range * m.R(1, 1)));
-    scan.measurements.push_back(std::move(m));
+  const double forward = yawOf(state.T_world_sensor);
+  const Vector2 u(std::cos(forward + t.bearing), std::sin(forward + t.bearing));
+  const Vector2 n(-u.y(), u.x());
+  Measurement m;
+  m.z = Vector3(t.range, t.bearing, t.range_rate);
+  m.seen = t.has_rate ? RadarModel::kAll : RadarModel::kNoRate;
+  m.detection = t.strongest;
+  // The vehicle's pose by x, y, yaw (method.md 1.3): a turned line of sight sees the own motion
+  // elsewhere.
+  const Eigen::RowVector3d bearing(-n.x() / t.range, -n.y() / t.range, -1);
+  Eigen::Matrix3d J;
+  J.row(RadarModel::kRange) << -u.x(), -u.y(), 0;
+  J.row(RadarModel::kBearing) = bearing;
+  J.row(RadarModel::kRate) << -n.dot(velocity) * bearing.head<2>(), 0;
+  m.R = J * pose_variance.asDiagonal() * J.transpose();
+  m.R(0, 0) += params_.range_sigma * params_.range_sigma + t.range_spread * t.range_spread;
+  m.R(1, 1) += params_.bearing_sigma * params_.bearing_sigma + t.bearing_spread * t.bearing_spread;
+  m.R(2, 2) += params_.rate_sigma * params_.rate_sigma + own2;
+  if (!t.has_rate) {
+    m.z[RadarModel::kRate] = 0;
+    m.R.row(RadarModel::kRate).setZero(), m.R.col(RadarModel::kRate).setZero();
   }
-  return scan;
+  m.position = state.T_world_sensor.translation().head<2>() + t.range * u;
+  m.position_sigma = std::sqrt(std::max(m.R(0, 0), t.range * t.range * m.R(1, 1)));
+  return m;
 }
 
 std::unique_ptr<FrontEnd> makeRadarFrontEnd(Config& config, const std::string& sensor_label,

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,14 +45,21 @@ class RadarFrontEnd final : public FrontEnd {
   RadarFrontEnd(RadarParams params, const ClassTable& classes,
                 const DetectionModel& detection_model);
 
-  MeasurementScan extract(const SensorFrame& frame) const override;
   std::vector<std::string> labelNames() const override {
     return model_->detection_model().labels();
   }
 
   const RadarParams& params() const { return params_; }
 
+ protected:
+  Modality modality() const override { return model_->detection_model().params().modality; }
+  std::shared_ptr<const MeasurementModel> model() const override { return model_; }
+  Pose3 measuringPose(const SensorFrame& frame) const override;
+  void fill(const SensorFrame& frame, MeasurementScan& scan) const override;
+
  private:
+  std::optional<Measurement> measure(const RadarTarget& target, const SensorState& state) const;
+
   RadarParams params_;
   std::shared_ptr<const RadarModel> model_;
 };

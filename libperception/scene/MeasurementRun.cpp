@@ -85,8 +85,9 @@ std::int64_t nanoseconds(const CsvTable& table, std::size_t row, const char* col
 Modality modalityOf(const CsvTable& table, std::size_t row) {
   const auto c = table.column("modality");
   const auto text = table.text(row, c);
-  if (text != "C" && text != "L" && text != "R") table.fault(row, c, "C, L or R");
-  return static_cast<Modality>(text[0]);
+  const ModalityRow* m = text.size() == 1 ? findModality(text[0]) : nullptr;
+  if (m == nullptr) table.fault(row, c, "one of " + modalityLetters());
+  return m->letter;
 }
 
 std::vector<std::string> split(std::string_view text) {
@@ -204,7 +205,7 @@ MeasurementRunWriter::MeasurementRunWriter(const std::string& dir, const ClassTa
 
 void MeasurementRunWriter::writeSensor(const RecordedSensor& s) {
   for (std::size_t c = 0; c < s.class_range.size(); ++c) {
-    sensors_.write(fmt::format("{},{},{},{},{},{},{},{}\n", s.label, static_cast<char>(s.modality),
+    sensors_.write(fmt::format("{},{},{},{},{},{},{},{}\n", s.label, letterOf(s.modality),
                                angle(s.fov), meters(s.range_min), meters(s.range_max),
                                fmt::join(s.labels, "|"), classes_[static_cast<ClassId>(c)].name,
                                meters(s.class_range[c])));

@@ -11,7 +11,7 @@ namespace perception {
 /// What one sensor contributed to a run.
 struct SensorRecord {
   std::string label;
-  std::string modality;      ///< "C", "L", "R"
+  std::string modality;      ///< its letter: "C", "L", "R"
   std::uint64_t frames = 0;  ///< processed
   std::uint64_t measurements = 0;
   std::uint64_t dropped_points = 0;  ///< not finite, out of range

@@ -112,9 +112,9 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   o.length = f.extent.length;
   o.width = f.extent.width;
   o.height = track.height.mean;
-  for (const auto modality : {Modality::kCamera, Modality::kLidar, Modality::kRadar}) {
-    const Stamp hit = track.last_hit[modalityIndex(modality)];
-    if (hit.ns != 0) o.last_hit[modality] = hit;
+  const auto& rows = modalities();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (track.last_hit[i].ns != 0) o.last_hit[rows[i].letter] = track.last_hit[i];
   }
   return o;
 }

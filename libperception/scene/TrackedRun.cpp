@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -15,12 +14,11 @@
 namespace perception {
 namespace {
 
-constexpr std::array<Modality, 3> kModalities = {Modality::kCamera, Modality::kLidar,
-                                                 Modality::kRadar};
-
 std::string tracksPath(const std::string& dir) { return dir + "/tracks.csv"; }
 std::string scenesPath(const std::string& dir) { return dir + "/scenes.csv"; }
-std::string lastHitColumn(Modality m) { return fmt::format("last_hit_{}", static_cast<char>(m)); }
+std::string lastHitColumn(const ModalityRow& m) {
+  return fmt::format("last_hit_{}", letterOf(m.letter));
+}
 
 // A line of fields separated by commas.
 class Line {
@@ -55,7 +53,7 @@ std::string tracksHeader(const ClassTable& classes) {
   for (const ObjectClass& c : classes.classes) line.text("p_" + c.name);
   line.text(
       "existence,x,y,z,yaw,has_yaw,vx,vy,speed,length,width,height,sd_x,sd_y,sd_yaw,sd_speed");
-  for (const Modality m : kModalities) line.text(lastHitColumn(m));
+  for (const ModalityRow& m : modalities()) line.text(lastHitColumn(m));
   return line.end();
 }
 
@@ -78,8 +76,8 @@ std::string trackLine(const Scene& scene, const SceneObject& object, const Class
   line.meters(object.sd_y);
   line.radians(object.sd_yaw);
   line.meters(object.sd_speed);
-  for (const Modality m : kModalities) {
-    const auto hit = object.last_hit.find(m);
+  for (const ModalityRow& m : modalities()) {
+    const auto hit = object.last_hit.find(m.letter);
     if (hit == object.last_hit.end()) {
       line.text("");
     } else {
@@ -171,10 +169,10 @@ SceneObject readObject(const Table& row, const std::vector<std::string>& classes
   o.length = row.real("length"), o.width = row.real("width"), o.height = row.real("height");
   o.sd_x = row.real("sd_x"), o.sd_y = row.real("sd_y");
   o.sd_yaw = row.real("sd_yaw"), o.sd_speed = row.real("sd_speed");
-  for (const Modality m : kModalities) {
+  for (const ModalityRow& m : modalities()) {
     const std::string name = lastHitColumn(m);
     if (row.text(name.c_str()).empty()) continue;
-    o.last_hit[m] = Stamp{first_stamp.ns + row.nanoseconds(name.c_str())};
+    o.last_hit[m.letter] = Stamp{first_stamp.ns + row.nanoseconds(name.c_str())};
   }
   return o;
 }

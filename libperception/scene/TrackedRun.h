@@ -18,8 +18,8 @@ namespace perception {
 ///             sd_x,sd_y,sd_yaw,sd_speed,last_hit_C,last_hit_L,last_hit_R
 /// scenes.csv: frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects
 /// t and last_hit_*: seconds since the log's first stamp; stamp: seconds since 1970; all three
-/// exact to the nanosecond. last_hit_* is empty when that modality has never seen the object.
-/// Decimal places: NumberFormat.h.
+/// exact to the nanosecond. last_hit_* is empty when that modality has never seen the object; a
+/// column a row of modalities(), whichever sensors were in use. Decimal places: NumberFormat.h.
 class TrackedRunWriter {
  public:
   /// Opens DIR/tracks.csv and DIR/scenes.csv; DIR must be there. Throws OutputError.

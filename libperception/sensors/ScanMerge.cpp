@@ -24,7 +24,10 @@ void ScanParams::visit(ParamVisitor& v) {
           "labels of the scanners that are one sensor, * for any end; empty: its own label");
   v.real("merge_window", merge_window, {0, 1}, "s",
          "from the first scan to the last one of a merged frame; at most [run] reorder_window");
-  v.boolean("ground", ground, "the road is estimated from its returns, for itself and the others");
+  v.choiceOf(
+      "ground", ground, {"false", "true", "only"},
+      "the ground plane is estimated from its returns, for itself and the others; only: that "
+      "and no measurements, whether or not the sensor is in use");
 }
 
 bool ScanParams::merges(const std::string& label) const {

@@ -9,9 +9,14 @@ namespace perception {
 
 /// How scans become frames of one lidar: in [sensor.LABEL], kind = lidar.
 struct ScanParams {
+  enum class Ground {
+    kNo,
+    kYes,  ///< where the sensor is in use
+    kOnly  ///< and nothing else: also where the sensor is not in use, no measurements
+  };
   std::vector<std::string> merge;  ///< labels of the scanners that are one sensor; empty: its own
   double merge_window = 0.05;      ///< [s] from the first scan to the last one of a merged frame
-  bool ground = true;              ///< the road is estimated from its returns
+  Ground ground = Ground::kYes;    ///< is the ground plane estimated from its returns?
 
   void visit(ParamVisitor& v);
   /// Does an observation of that label belong to the merged sensor? A trailing * stands for any

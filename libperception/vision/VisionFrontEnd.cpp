@@ -19,6 +19,12 @@ std::optional<std::pair<std::string, std::string>> splitName(const std::string& 
   return std::pair{text.substr(0, equals), text.substr(equals + 1)};
 }
 
+/// On the vehicle: of the image boxes where they say so, else of the sensor.
+Pose3 poseOfCamera(const SensorFrame& frame) {
+  const auto* detections = std::get_if<ObjectDetections>(&frame.data);
+  return detections && detections->T_ego_camera ? *detections->T_ego_camera : frame.T_ego_sensor;
+}
+
 DetectionParams cameraDefaults() {
   DetectionParams p;
   p.kind = "boxes";
@@ -171,17 +177,14 @@ std::shared_ptr<const OcclusionMap> VisionFrontEnd::occlusion(
   return result;
 }
 
-MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
-  MeasurementScan scan;
-  scan.sensor = frame.sensor;
-  scan.modality = Modality::kCamera;
-  scan.frame = frame.frame;
-  scan.model = model_;
+Pose3 VisionFrontEnd::measuringPose(const SensorFrame& frame) const {
+  return frame.ego.T_world_ego * levelFrame(poseOfCamera(frame));
+}
+
+void VisionFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const {
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
-  const Pose3 T_ego_camera =
-      detections && detections->T_ego_camera ? *detections->T_ego_camera : frame.T_ego_sensor;
-  scan.state = {frame.stamp, frame.ego.T_world_ego * levelFrame(T_ego_camera), frame.ego};
-  if (!detections) return scan;
+  if (!detections) return;
+  const Pose3 T_ego_camera = poseOfCamera(frame);
   std::vector<ObjectDetection> objects = detections->objects;
   const auto index = joinSeam(detections->camera, geometry_.border, objects);
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -196,7 +199,6 @@ MeasurementScan VisionFrontEnd::extract(const SensorFrame& frame) const {
     scan.measurements.push_back(std::move(*m));
   }
   scan.occlusion = occlusion(scan, detections->objects);
-  return scan;
 }
 
 std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& sensor_label,

@@ -48,11 +48,16 @@ class VisionFrontEnd final : public FrontEnd {
   VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry, const ClassTable& classes,
                  const DetectionModel& detection_model);
 
-  /// Measurements under a FootprintModel whose sensor frame is the camera's level frame.
-  MeasurementScan extract(const SensorFrame& frame) const override;
   std::vector<std::string> labelNames() const override {
     return model_->detection_model().labels();
   }
+
+ protected:
+  Modality modality() const override { return model_->detection_model().params().modality; }
+  std::shared_ptr<const MeasurementModel> model() const override { return model_; }
+  /// The camera's level frame.
+  Pose3 measuringPose(const SensorFrame& frame) const override;
+  void fill(const SensorFrame& frame, MeasurementScan& scan) const override;
 
  private:
   std::optional<Measurement> measure(const ObjectDetection& object, const SensorFrame& frame,

@@ -35,21 +35,67 @@ std::string faultsOf(const std::string& ini) {
   return "";
 }
 
-TEST(DetectionModel, StartsFromTheTableOfTheKindOfSensor) {
-  Config config = Config::fromText("[sensor.A]\nmodality = L\n", "a.ini");
+const char* const kTables = R"(
+[detection.lidar.pedestrian]
+detection = 0.88
+label.car_sized = 0.10
+label.person_sized = 0.85
+label.unstable = 0.05
+[detection.lidar.car]
+detection = 0.91
+label.car_sized = 0.45
+label.person_sized = 0.03
+label.unstable = 0.52
+[detection.camera.pedestrian]
+detection = 0.70
+label.person = 0.98
+[detection.camera.car]
+detection = 0.85
+label.car = 0.98
+)";
+
+TEST(DetectionModel, StartsFromTheTableOfItsModality) {
+  Config config = Config::fromText("[sensor.A]\nmodality = L\n" + std::string(kTables), "a.ini");
   const DetectionModel s = read(config);
   EXPECT_NEAR(s.detection(0, 10, 0, 1), 0.88, 1e-12);
   EXPECT_NEAR(s.detection(1, 10, 0, 1), 0.91, 1e-12);
   // Two labels: the default rows' shares of a third one are spread over these.
   EXPECT_NEAR(std::exp(s.logLabel(0, 0)), 0.10 / 0.95, 1e-9);
-  // A class without a row: every label alike.
+  // A class without a row: P_D .9, every label alike.
+  EXPECT_NEAR(s.detection(2, 10, 0, 1), 0.9, 1e-12);
   EXPECT_NEAR(std::exp(s.logLabel(0, 2)), 0.5, 1e-9);
+}
+
+TEST(DetectionModel, ItsOwnRowsWinOverTheTableOfItsModality) {
+  Config config = Config::fromText(
+      "[sensor.A]\nmodality = L\n[sensor.A.class.car]\ndetection = 0.5\n" + std::string(kTables),
+      "a.ini");
+  const DetectionModel s = read(config);
+  EXPECT_NEAR(s.detection(1, 10, 0, 1), 0.5, 1e-12);
+  EXPECT_NEAR(std::exp(s.logLabel(0, 1)), 0.45 / 0.48, 1e-9);
+}
+
+TEST(DetectionModel, TablesAreOfKnownModalitiesAndClasses) {
+  const auto faults = [](const std::string& section) {
+    Config config = Config::fromText("[" + section + "]\ndetection = 0.5\n", "a.ini");
+    checkDetectionTables(config, classes());
+    try {
+      config.finish();
+    } catch (const ConfigError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(faults("detection.radar.tram"), "");
+  for (const char* wrong : {"detection.sonar.tram", "detection.radar.horse", "detection.radar"})
+    EXPECT_NE(faults(wrong).find("known modality and class"), std::string::npos) << wrong;
 }
 
 TEST(DetectionModel, ThePapersPrecisionStandsForTheTableOfLabels) {
   Config config = Config::fromText(
       "[sensor.A]\nmodality = L\nprecision.car_sized = 0.51\nprecision.person_sized = 0.55\n"
-      "[sensor.A.class.car]\nlabel.car_sized = 0.9\n",
+      "[sensor.A.class.car]\nlabel.car_sized = 0.9\n"
+      "[sensor.A.class.pedestrian]\nlabel.person_sized = 0.9\n",
       "a.ini");
   const DetectionModel s = read(config);
   EXPECT_NEAR(s.logLabel(0, 1), std::log(0.51), 1e-12);
@@ -101,8 +147,10 @@ TEST(DetectionModel, ReportsWhatCannotBe) {
 TEST(DetectionModel, TheResolutionOfAPanoramaSetsItsRanges) {
   Config config = Config::fromText(
       "[sensor.A]\nkind = boxes\nmodality = C\nresolution = 8k\nrange_max = 18\n"
-      "[sensor.A.class.pedestrian]\nfull_range = 9\nlast_range = 11\n",
+      "[sensor.A.class.pedestrian]\nfull_range = 9\nlast_range = 11\n" +
+          std::string(kTables),
       "a.ini");
+  checkDetectionTables(config, classes());
   const DetectionModel s =
       DetectionModel::read(config, "sensor.A", classes(), {"car", "person"}, {});
   EXPECT_NO_THROW(config.finish());

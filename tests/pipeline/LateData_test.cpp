@@ -11,6 +11,7 @@
 #include "libperception/pipeline/FrameQueue.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/registerClasses.h"
 

@@ -9,10 +9,10 @@ namespace perception {
 namespace {
 
 TEST(SiteInis, AllLoadWithoutAFault) {
-  for (const char* name :
-       {"demo.ini", "kitti.ini", "kitti_object.ini", "vod.ini", "wads.ini", "radiate.ini",
-        "comma2k19.ini", "udacity.ini", "gps_object.ini", "skynet.ini", "skynet_duc.ini",
-        "gnss_gap.ini", "kitti-detections.ini", "kitti-detections-unlabelled.ini"}) {
+  for (const char* name : {"demo.ini", "kitti.ini", "kitti_object.ini", "vod.ini", "wads.ini",
+                           "radiate.ini", "comma2k19.ini", "udacity.ini", "gps_object.ini",
+                           "skynet.ini", "skynet_duc.ini", "skynet_paper.ini", "gnss_gap.ini",
+                           "kitti-detections.ini", "kitti-detections-unlabelled.ini"}) {
     Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + name);
     PipelineSetup::read(config);
     EXPECT_NO_THROW(config.finish()) << name;
@@ -29,6 +29,21 @@ TEST(SiteInis, ThePapersVehicleHasEightRadarsAndAPanorama) {
   EXPECT_EQ(count(Modality::kRadar), 8);
   EXPECT_GE(count(Modality::kCamera), 1);
   EXPECT_GE(count(Modality::kLidar), 1);
+}
+
+TEST(SiteInis, ThePapersSetUpClustersTheBumpersLidarsAboveTheRoofLidarsGround) {
+  Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/skynet_paper.ini");
+  const PipelineSetup setup = PipelineSetup::read(config);
+  EXPECT_EQ(setup.particles.sample_size, 8);
+  EXPECT_EQ(setup.model.proposal, Proposal::kSampled);
+  EXPECT_GT(setup.model.params.decide_class, 0);
+  const auto lidar = [&](const char* label) { return setup.sensors[*setup.sensorOf(label)]; };
+  EXPECT_FALSE(lidar("LIDAR_TOP").active);
+  EXPECT_TRUE(lidar("LIDAR_TOP").gives_ground);
+  EXPECT_TRUE(lidar("IBEO").active);
+  EXPECT_FALSE(lidar("IBEO").gives_ground);
+  EXPECT_EQ(lidar("IBEO").params.precision.size(), 2U);
+  EXPECT_EQ(setup.sensors[*setup.sensorOf("IBEO")].front_end->labelNames().size(), 2U);
 }
 
 TEST(SiteInis, AHeadingAsOneWideGaussianIsASensorSet) {

@@ -85,11 +85,11 @@ struct Track {
   /// Where an object whose class has no heading in its state (people) looks: [rad] world, once a
   /// detector told.
   std::optional<ScalarEstimate> body_heading;
-  FrontBackAmbiguity body_heading_bit;  ///< of it: front or back
-  std::array<Stamp, 3> last_hit{};      ///< by modality (modalityIndex); 0 = never
-  std::array<int, 3> hits{};            ///< by modality
-  std::vector<RegionSeen> regions;      ///< by sensor, where the model asks for them
-  ReachableDisc reachable;              ///< made from the rest when a scan is done with it
+  FrontBackAmbiguity body_heading_bit;            ///< of it: front or back
+  std::array<Stamp, kMostModalities> last_hit{};  ///< by modality (modalityIndex); 0 = never
+  std::array<int, kMostModalities> hits{};        ///< by modality
+  std::vector<RegionSeen> regions;                ///< by sensor, where the model asks for them
+  ReachableDisc reachable;  ///< made from the rest when a scan is done with it
   /// What it was before its last scan, for as long as somebody keeps that; only where the model
   /// asks for a history.
   std::weak_ptr<const Track> previous;
@@ -168,10 +168,6 @@ std::uint64_t historyKey(const Track& track);
 
 /// What a particle holds. Never null.
 using HypothesisHandle = std::shared_ptr<const Hypothesis>;
-
-inline std::size_t modalityIndex(Modality m) {
-  return m == Modality::kLidar ? 0 : m == Modality::kCamera ? 1 : 2;
-}
 
 /// The history after one more association; `scan` counts scans, `measurement` is its index in that
 /// scan.

@@ -1,0 +1,16 @@
+#include "libperception/measurement/FrontEnd.h"
+
+namespace perception {
+
+MeasurementScan FrontEnd::extract(const SensorFrame& frame) const {
+  MeasurementScan scan;
+  scan.sensor = frame.sensor;
+  scan.modality = modality();
+  scan.frame = frame.frame;
+  scan.state = {frame.stamp, measuringPose(frame), frame.ego};
+  scan.model = model();
+  fill(frame, scan);
+  return scan;
+}
+
+}  // namespace perception

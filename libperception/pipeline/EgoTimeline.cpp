@@ -1,0 +1,64 @@
+#include "libperception/pipeline/EgoTimeline.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace perception {
+namespace {
+
+/// [m/s] growth of the position's deviation while no pose comes; assumed.
+constexpr double kGapDrift = 1.0;
+
+}  // namespace
+
+bool EgoTimeline::changedFrame(Stamp stamp) {
+  const bool changed = std::exchange(frame_epoch_, pose_.frameEpoch()) != pose_.frameEpoch();
+  if (!changed || !last_seen_) return false;
+  events_.add(stamp, event_kind::kEgoGap, "the world's frame is known now: tracks start anew");
+  return true;
+}
+
+bool EgoTimeline::isBlindGap(Stamp stamp) {
+  if (!pose_.empty() || !last_seen_) return false;
+  const double gap = stamp - *last_seen_;
+  if (gap <= params_.blind_gap) return false;
+  events_.warn(stamp, event_kind::kEgoGap,
+               fmt::format("nothing seen for {:.3f} s, and nothing tells how the vehicle moved: "
+                           "tracks start anew",
+                           gap));
+  return true;
+}
+
+EgoState EgoTimeline::at(Stamp stamp) {
+  if (pose_.empty()) {
+    if (!none_reported_)
+      events_.warn(stamp, event_kind::kEgoGap,
+                   "no ego pose yet: the vehicle is taken to stand still");
+    none_reported_ = true;
+    return EgoPose::parked(stamp, params_.minimum);
+  }
+  if (const auto state = pose_.at(stamp)) {
+    in_gap_ = false;
+    return *state;
+  }
+  EgoState state = pose_.at(pose_.latest()).value_or(EgoPose::parked(stamp, params_.minimum));
+  const double gap = stamp - state.stamp;
+  if (!in_gap_) {
+    events_.warn(stamp, event_kind::kEgoGap,
+                 fmt::format("no ego pose for {:.3f} s: extrapolated", gap));
+  }
+  in_gap_ = true;
+  state.T_world_ego.translation().head<2>() += gap * state.velocity;
+  state.uncertainty.sigma_xy += kGapDrift * std::abs(gap);
+  state.stamp = stamp;
+  return state;
+}
+
+void EgoTimeline::clear() {
+  pose_.clear();
+  last_seen_.reset();
+}
+
+}  // namespace perception

@@ -1,0 +1,51 @@
+#include "libperception/pipeline/ScanMaker.h"
+
+#include <cmath>
+
+namespace perception {
+namespace {
+
+/// [s] for which what one sensor sees occluded holds for the others, too; assumed: two scans of a
+/// lidar.
+constexpr double kOcclusionMapAge = 0.2;
+
+}  // namespace
+
+ScanMaker::ScanMaker(const PipelineSetup& setup, RunTiming& timing)
+    : setup_(setup), timing_(timing) {
+  for (const auto& sensor : setup.sensors) {
+    Lidar lidar;
+    if (sensor.gives_ground) {
+      lidar.ground = std::make_unique<GroundEstimator>(setup.ground, setup.run.seed);
+      if (sensor.active) lidar.weather = makePointFilter(setup.weather);
+    }
+    lidars_.push_back(std::move(lidar));
+  }
+}
+
+void ScanMaker::addGround(std::size_t sensor, SensorFrame& frame) {
+  const auto& estimator = lidars_[sensor].ground;
+  if (estimator && std::holds_alternative<LidarCloud>(frame.data)) {
+    const auto scope = timing_.stage("ground");
+    ground_ = estimator->update(frame);
+  }
+  frame.ground = ground_;
+}
+
+MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
+  if (lidars_[sensor].weather) {
+    const auto scope = timing_.stage("weather");
+    lidars_[sensor].weather->apply(frame);
+  }
+  const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
+  MeasurementScan scan = setup_.sensors[sensor].front_end->extract(frame);
+  if (scan.occlusion) {
+    occlusion_ = scan.occlusion;
+    occlusion_stamp_ = frame.stamp;
+  } else if (occlusion_ && std::abs(frame.stamp - occlusion_stamp_) <= kOcclusionMapAge) {
+    scan.occlusion = occlusion_;
+  }
+  return scan;
+}
+
+}  // namespace perception
