@@ -83,7 +83,7 @@ std::vector<Seen> sense(const std::vector<CarState>& path, bool radar, double fl
 
 ObjectClass carClass() {
   ObjectClass c;
-  c.motion = Motion::kWheeled;
+  c.motion = findMotionModel("wheeled");
   c.accel_psd = 0.6;
   c.yaw_rate_psd = radians(15) * radians(15);
   c.position_psd = 0.01;

@@ -141,8 +141,8 @@ double widthDensity(const ObjectClass& c, double width, double noise) {
     const double angle = (i + 0.5) * (kPi / 2) / kAngles;
     const double s = std::sin(angle), k = std::cos(angle);
     const double mean =
-        c.motion == Motion::kWheeled ? c.length * s + c.width * k : 0.5 * (c.length + c.width);
-    const double spread = c.motion == Motion::kWheeled ? l2 * s * s + w2 * k * k : 0.25 * (l2 + w2);
+        c.motion->has_heading ? c.length * s + c.width * k : 0.5 * (c.length + c.width);
+    const double spread = c.motion->has_heading ? l2 * s * s + w2 * k * k : 0.25 * (l2 + w2);
     sum += normalDensity(width - mean, spread + noise);
   }
   return sum / kAngles;
@@ -272,7 +272,7 @@ std::optional<BirthState> FootprintModel::birth(const Measurement& m, ClassId c,
                   object_class.length_sigma * object_class.length_sigma,
                   object_class.width_sigma * object_class.width_sigma};
   const Vector2 origin = sensorPosition(sensor);
-  if (m.sides && object_class.motion == Motion::kWheeled) {
+  if (m.sides && object_class.motion->has_heading) {
     birth.yaw = headingFromBox(*m.sides, object_class);
     if (birth.yaw) {
       birth.extent = updateExtent(birth.extent, *m.sides, birth.yaw->mean, kSideSigma);
@@ -280,7 +280,7 @@ std::optional<BirthState> FootprintModel::birth(const Measurement& m, ClassId c,
       return birth;
     }
   }
-  if (m.sides && object_class.motion == Motion::kStatic) {
+  if (m.sides && !object_class.motion->moves) {
     birth.extent = updateExtent(birth.extent, *m.sides, m.sides->yaw, kSideSigma);
   }
   // Without a heading: a disc behind its nearest point, as far off as half of length or width may

@@ -5,9 +5,24 @@
 #include <numeric>
 
 namespace perception {
+namespace {
+
+void visitMotion(ParamVisitor& v, const MotionModel*& motion) {
+  const auto& models = motionModels();
+  std::vector<std::string> names;
+  int index = 0;
+  for (const MotionModel& m : models) {
+    if (&m == motion) index = static_cast<int>(names.size());
+    names.push_back(m.name);
+  }
+  v.choice("motion", index, names, "how it moves");
+  motion = &models[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
 
 void ObjectClass::visit(ParamVisitor& v) {
-  v.choiceOf("motion", motion, {"constant-velocity", "wheeled", "static"}, "how it moves");
+  visitMotion(v, motion);
   v.real("accel_psd", accel_psd, {0, 100}, "m^2/s^3", "white acceleration, power spectral density");
   v.reals("mode_accel_psd", mode_accel_psd, -1, {0, 100}, "m^2/s^3",
           "one a motion mode, in place of accel_psd; empty: a single model");

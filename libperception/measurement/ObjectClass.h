@@ -4,19 +4,17 @@
 #include <vector>
 
 #include "libperception/config/Config.h"
+#include "libperception/measurement/MotionModel.h"
 
 namespace perception {
 
 using ClassId = int;  ///< index into ClassTable
 
-/// How an object of a class moves; see filter/MotionModels.
-enum class Motion { kConstantVelocity, kWheeled, kStatic };
-
 /// One kind of object: [class.NAME] of classes.ini. Defaults are the paper's and those of
 /// method.md 2.2.
 struct ObjectClass {
-  std::string name;  ///< from the section's title
-  Motion motion = Motion::kStatic;
+  std::string name;                                       ///< from the section's title
+  const MotionModel* motion = findMotionModel("static");  ///< never null
   double accel_psd = 0.5;  ///< [m^2/s^3] white acceleration along the track (q_a or q_v)
   /// Interacting motion modes in place of `accel_psd` (method.md 3.6), one entry a mode; empty: one
   /// mode.

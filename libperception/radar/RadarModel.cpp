@@ -194,7 +194,7 @@ double RadarModel::logBirthDensity(const Measurement& m, ClassId c,
     const double least =
         std::max(params_.min_birth_speed, params_.min_birth_sigmas * std::sqrt(speed.variance));
     if (params_.min_birth_speed > 0 && std::abs(speed.mean) < least) return kMinusInfinity;
-    const double max = classes_[c].motion == Motion::kStatic ? 0 : classes_[c].max_speed;
+    const double max = classes_[c].motion->moves ? classes_[c].max_speed : 0;
     rate = (1 - kShareOfAnySpeed) * speedDensity(speed.mean, max, speed.variance) +
            kShareOfAnySpeed / params_.rate_span;
   } else if (params_.min_birth_speed > 0) {
@@ -214,8 +214,8 @@ std::optional<BirthState> RadarModel::birth(const Measurement& m, ClassId c,
   // Behind its nearest point by half of what it is deep, whichever way it points; the reflecting
   // point lies anywhere on its width.
   const double radius = 0.25 * (e.length + e.width);
-  const ScalarEstimate half = object_class.motion == Motion::kWheeled ? halfDepth(e.length, e.width)
-                                                                      : ScalarEstimate{radius, 0};
+  const ScalarEstimate half =
+      object_class.motion->has_heading ? halfDepth(e.length, e.width) : ScalarEstimate{radius, 0};
   const double rho = m.z[kRange] + half.mean;
   const Vector2 away = lineOfSight(m, sensor), across = perpendicular(away);
   const double along_variance =
@@ -224,7 +224,7 @@ std::optional<BirthState> RadarModel::birth(const Measurement& m, ClassId c,
   birth.position = sensorPosition(sensor) + rho * away;
   birth.covariance =
       along_variance * away * away.transpose() + across_variance * across * across.transpose();
-  if (hasRate(m) && object_class.motion != Motion::kStatic) {
+  if (hasRate(m) && object_class.motion->moves) {
     RadialSpeed speed;
     speed.direction = away;
     speed.along = groundSpeed(m, sensor);

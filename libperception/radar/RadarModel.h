@@ -68,7 +68,7 @@ class RadarModel final : public MeasurementModel {
   double edgeShare(double bearing) const;
   /// Whether object i of a batch has a length axis: batches hold whole banks.
   bool isWheeled(std::size_t i) const {
-    return classes_.classes[i % classes_.classes.size()].motion == Motion::kWheeled;
+    return classes_.classes[i % classes_.classes.size()].motion->has_heading;
   }
 
   ClassTable classes_;

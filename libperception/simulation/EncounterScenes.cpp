@@ -224,14 +224,14 @@ EncounterScene encounterScene(const std::string& name, Rng& rng) {
 ClassTable encounterClasses(double pedestrian_psd) {
   ObjectClass pedestrian;
   pedestrian.name = "pedestrian";
-  pedestrian.motion = Motion::kConstantVelocity;
+  pedestrian.motion = findMotionModel("constant-velocity");
   pedestrian.accel_psd = pedestrian_psd;
   pedestrian.position_psd = 0;
   pedestrian.prior = 0.5;
   pedestrian.max_speed = 3;  // newborns: sigma 1.5 m/s
   ObjectClass car;
   car.name = "car";
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   car.accel_psd = 0.6;
   car.yaw_rate_psd = radians(15) * radians(15);
   car.position_psd = 1e-4;

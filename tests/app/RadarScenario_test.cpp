@@ -69,7 +69,7 @@ Played play(double from, double to) {
     for (const auto& track : best.tracks) {
       const auto c = track->likeliestClass();
       if (track->existence < 0.5 || !setup.model.classes[c].reported) continue;
-      if (setup.model.classes[c].motion == Motion::kStatic) continue;
+      if (!setup.model.classes[c].motion->moves) continue;
       named.push_back(
           kinematicsOf(setup.model.classes[c], track->bank[std::size_t(c)]).q.head<4>());
       const Vector2 at = named.back().head<2>();

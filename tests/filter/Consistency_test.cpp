@@ -113,21 +113,21 @@ void runTrack(const ClassTable& classes, ClassId id, const Sensor& sensor, Rng& 
   const double bearing = rng.uniform(-kPi, kPi), range = rng.uniform(15, 30);
   f.x.head<2>() = range * Vector2(std::cos(bearing), std::sin(bearing));
   f.P.diagonal() << 0.2, 0.2, 0, 0;
-  f.oriented = c.motion == Motion::kWheeled;
+  f.oriented = c.motion->has_heading;
   const double speed = std::min(5.0, 0.4 * c.max_speed);
   if (f.oriented) {
     f.x.tail<2>() << speed, rng.uniform(-kPi, kPi);
     f.P.diagonal().tail<2>() << 0.3, 0.01;
-  } else if (c.motion == Motion::kConstantVelocity) {
+  } else if (c.motion->moves) {
     f.x.tail<2>() << rng.normal(), rng.normal();
     f.P.diagonal().tail<2>() << 0.3, 0.3;
   }
   f.extent = {c.length, c.width, 0, 0};  // known: extents have a test of their own
   ClassFilter truth = f;
   truth.x += drawn(f.P, rng);
-  const auto& sigma = c.motion == Motion::kWheeled ? sensor.vehicle_sigma : sensor.sigma;
+  const auto& sigma = c.motion->has_heading ? sensor.vehicle_sigma : sensor.sigma;
   const SensorState state;
-  const std::size_t states = c.motion == Motion::kStatic ? 2 : 4;
+  const std::size_t states = !c.motion->moves ? 2 : 4;
   for (int k = 0; k < kSteps; ++k) {
     moveTruth(c, truth, rng);
     predictClassFilter(c, kDt, f);

@@ -108,7 +108,7 @@ TEST_F(RealImport, Comma2k19sStillObjectsCloseAtOwnSpeed) {
   EXPECT_EQ(result_.radar_scans, 1200);
   ObjectClass car;
   car.name = "car";
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   const ClassTable classes{{car}};
   DetectionParams view;
   view.modality = Modality::kRadar;

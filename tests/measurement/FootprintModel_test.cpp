@@ -13,14 +13,14 @@ namespace {
 ClassTable classes() {
   ObjectClass car;
   car.name = "car";
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   car.length = 4.5;
   car.width = 1.8;
   car.length_sigma = 0.6;
   car.width_sigma = 0.2;
   ObjectClass person;
   person.name = "pedestrian";
-  person.motion = Motion::kConstantVelocity;
+  person.motion = findMotionModel("constant-velocity");
   person.length = person.width = 0.5;
   person.length_sigma = person.width_sigma = 0.1;
   return {{car, person}};

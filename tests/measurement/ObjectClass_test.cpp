@@ -23,9 +23,9 @@ TEST(ObjectClass, TheShippedTableHasTheClassesInOrder) {
     EXPECT_EQ(table.find(names[c]), c);
   }
   EXPECT_EQ(table.find("tram"), -1);
-  EXPECT_EQ(table[0].motion, Motion::kConstantVelocity);
-  EXPECT_EQ(table[2].motion, Motion::kWheeled);
-  EXPECT_EQ(table[4].motion, Motion::kStatic);
+  EXPECT_EQ(table[0].motion, findMotionModel("constant-velocity"));
+  EXPECT_EQ(table[2].motion, findMotionModel("wheeled"));
+  EXPECT_EQ(table[4].motion, findMotionModel("static"));
   EXPECT_TRUE(table[3].reported);
   EXPECT_FALSE(table[4].reported);
 }
@@ -55,6 +55,14 @@ TEST(ObjectClass, AnotherClassNeedsNoCode) {
   EXPECT_EQ(faultsOf(config), "");
   EXPECT_EQ(table[table.find("tram")].length, 30);
   EXPECT_EQ(table[table.find("car")].length, 4.2);
+}
+
+TEST(ObjectClass, AMotionOfNoRowIsAFaultThatNamesTheRows) {
+  Config config = Config::fromText("[class.tram]\nmotion = rail\n", "t.ini");
+  readClassTable(config);
+  EXPECT_EQ(faultsOf(config),
+            "t.ini:2: [class.tram] motion: found 'rail', expected one of constant-velocity, "
+            "wheeled, static");
 }
 
 TEST(ObjectClass, NoneAtAllIsAFault) {

@@ -14,12 +14,12 @@ namespace {
 ClassTable classes() {
   ObjectClass car;
   car.name = "car";
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   car.length = 4.5, car.width = 1.8, car.length_sigma = 0.6, car.width_sigma = 0.2;
   car.max_speed = 40;
   ObjectClass post;
   post.name = "static-other";
-  post.motion = Motion::kStatic;
+  post.motion = findMotionModel("static");
   return {{car, post}};
 }
 

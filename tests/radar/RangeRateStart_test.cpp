@@ -15,12 +15,12 @@ FilterModel carsAndPosts() {
   FilterModel model;
   ObjectClass car, post;
   car.name = "car";
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   car.accel_psd = 1, car.yaw_rate_psd = 0.0685, car.position_psd = 0.01;
   car.length = 4.5, car.width = 1.8, car.length_sigma = 0.675, car.width_sigma = 0.27;
   car.max_speed = 50, car.prior = 0.5;
   post.name = "static-other";
-  post.motion = Motion::kStatic;
+  post.motion = findMotionModel("static");
   post.prior = 0.5;
   model.classes.classes = {car, post};
   return model;

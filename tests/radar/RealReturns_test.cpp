@@ -20,7 +20,7 @@ std::string data(const std::string& path) {
 ClassTable classes() {
   ObjectClass car;
   car.name = "car";
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   return {{car}};
 }
 

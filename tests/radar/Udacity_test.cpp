@@ -45,21 +45,21 @@ std::vector<Row> readRows(const std::string& name) {
 /// The moving classes of classes.ini, as points: what is seen has no size.
 FilterModel pointModel() {
   FilterModel model;
-  const auto add = [&](const char* name, Motion motion, double accel, double yaw,
+  const auto add = [&](const char* name, const char* motion, double accel, double yaw,
                        double max_speed) {
     ObjectClass c;
     c.name = name;
-    c.motion = motion;
+    c.motion = findMotionModel(motion);
     c.accel_psd = accel, c.yaw_rate_psd = yaw, c.max_speed = max_speed;
-    c.position_psd = motion == Motion::kWheeled ? 0.01 : 0;
+    c.position_psd = c.motion->has_heading ? 0.01 : 0;
     c.length = c.width = 0.05, c.length_sigma = c.width_sigma = 0.001;
     c.prior = 0.25;
     model.classes.classes.push_back(c);
   };
-  add("pedestrian", Motion::kConstantVelocity, 0.5, 0, 3);
-  add("cyclist", Motion::kWheeled, 0.5, 0.0685, 15);
-  add("car", Motion::kWheeled, 1.0, 0.0685, 50);
-  add("bus", Motion::kWheeled, 0.4, 0.0195, 35);
+  add("pedestrian", "constant-velocity", 0.5, 0, 3);
+  add("cyclist", "wheeled", 0.5, 0.0685, 15);
+  add("car", "wheeled", 1.0, 0.0685, 50);
+  add("bus", "wheeled", 0.4, 0.0195, 35);
   return model;
 }
 

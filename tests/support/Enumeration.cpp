@@ -36,7 +36,7 @@ KalmanRun runKalman(const Chain& chain, ClassId j, const std::vector<Measurement
   run.x << first.z[0], first.z[1], 0, 0;
   run.P.setZero();
   run.P.topLeftCorner<2, 2>() = noise(first);
-  if (c.motion == Motion::kConstantVelocity) {
+  if (c.motion->moves) {
     const double sigma = std::min(model.params.start_speed_sigma, 0.5 * c.max_speed);
     run.P(2, 2) = run.P(3, 3) = sigma * sigma;
   }
@@ -45,7 +45,7 @@ KalmanRun runKalman(const Chain& chain, ClassId j, const std::vector<Measurement
   for (std::size_t i = 1; i < chain.seen.size(); ++i) {
     const auto& scan = scans[chain.born + i];
     const double dt = scan.state.stamp - scans[chain.born + i - 1].state.stamp;
-    if (c.motion == Motion::kConstantVelocity) {
+    if (c.motion->moves) {
       Matrix4 F = Matrix4::Identity();
       F(0, 2) = F(1, 3) = dt;
       Matrix4 Q = Matrix4::Zero();

@@ -13,14 +13,14 @@ inline ClassTable linearClasses() {
   ClassTable table;
   ObjectClass walker;
   walker.name = "pedestrian";
-  walker.motion = Motion::kConstantVelocity;
+  walker.motion = findMotionModel("constant-velocity");
   walker.accel_psd = 0.5;
   walker.position_psd = 0;
   walker.prior = 0.6;
   walker.max_speed = 4;
   ObjectClass pole;
   pole.name = "static-other";
-  pole.motion = Motion::kStatic;
+  pole.motion = findMotionModel("static");
   pole.position_psd = 1e-3;
   pole.prior = 0.4;
   pole.max_speed = 0;

@@ -118,17 +118,19 @@ ReachableDisc whereaboutsOf(const Track& track, const FilterModel& model) {
   w.longest_deferral = kLongestSleep;
   w.expires = track.stamp + std::min(timeToLive(track, model), kLongestSleep);
   double speed2 = 0;
-  const auto move = [&](const Vector4& x, const Matrix4& P, bool oriented) {
-    // The mean of v e^(i theta) grows by the covariance of both, at most var v / e (MotionModels).
-    const double own = oriented ? x[2] * x[2] + P(2, 2) / std::exp(1.0) : x.tail<2>().squaredNorm();
-    speed2 = std::max(speed2, own);
-  };
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
-    if (!track.live(j) || model.classes[j].motion == Motion::kStatic) continue;
+    const MotionModel& motion = *model.classes[j].motion;
+    if (!track.live(j) || !motion.moves) continue;
+    const auto move = [&](const Vector4& x, const Matrix4& P) {
+      // The mean of v e^(i theta) grows by the covariance of both, at most var v / e (MotionModel).
+      const double own = f.oriented ? x[2] * x[2] + P(2, 2) / std::exp(1.0)
+                                    : motion.kinematics(x, false).q.segment<2>(2).squaredNorm();
+      speed2 = std::max(speed2, own);
+    };
     if (!f.modes.empty()) w.longest_deferral = kLongestSleepOfModes;
-    move(f.x, f.P, f.oriented);
-    for (const ModeFilter& mode : f.modes) move(mode.x, mode.P, f.oriented);
+    move(f.x, f.P);
+    for (const ModeFilter& mode : f.modes) move(mode.x, mode.P);
   }
   w.speed = std::sqrt(speed2);
   return w;

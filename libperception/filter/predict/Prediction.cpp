@@ -1,7 +1,9 @@
 #include "libperception/filter/predict/Prediction.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "libperception/filter/state/BankBatch.h"
@@ -55,7 +57,7 @@ void beginTrack(Stamp to, const FilterModel& model, Track& next, std::vector<Gau
   next.stamp = to;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     if (next.live(j))
-      beginPrediction(model.classes[j], dt, next.bank[static_cast<std::size_t>(j)], steps);
+      listSteps(model.classes[j], dt, next.bank[static_cast<std::size_t>(j)], steps);
   }
   next.base_z.variance += model.params.base_walk * dt;
   if (next.body_heading) next.body_heading->variance += model.params.body_heading_walk * dt;
@@ -90,6 +92,16 @@ void takeGaussian(const BankBatch& bank, std::size_t i, const GaussianStep& s) {
 }
 
 using Kernel = void (*)(const MotionBatch&, BankBatch&, SimdLevel, BatchPart);
+constexpr std::pair<BatchKernel, Kernel> kKernels[] = {
+    {BatchKernel::kConstantVelocity, predictConstantVelocity},
+    {BatchKernel::kWheeled, predictWheeled},
+    {BatchKernel::kMoments, predictMoments}};
+using KernelSteps = std::array<std::vector<GaussianStep>, std::size(kKernels) + 1>;  // by kernel
+
+BatchKernel kernelOf(const GaussianStep& s) {
+  const auto kernel = s.object_class->motion->kernel;
+  return kernel ? kernel(s) : BatchKernel::kNone;
+}
 
 void moveBatch(const std::vector<GaussianStep>& steps, Kernel kernel) {
   if (steps.size() < kWorthBatch) {
@@ -159,29 +171,33 @@ std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,
                                  const std::vector<char>& touched, Stamp to,
                                  const FilterModel& model) {
   std::vector<Track> predicted(tracks.size());
-  std::vector<std::vector<GaussianStep>> steps((tracks.size() + kChunk - 1) / kChunk);
+  std::vector<KernelSteps> steps((tracks.size() + kChunk - 1) / kChunk);
   parallelFor(steps.size(), [&](std::size_t chunk) {
-    steps[chunk].reserve(kChunk * static_cast<std::size_t>(model.classes.size()));
+    std::vector<GaussianStep> own;
+    own.reserve(kChunk * static_cast<std::size_t>(model.classes.size()));
     const std::size_t end = std::min((chunk + 1) * kChunk, tracks.size());
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
       if (!touched[i]) continue;
       predicted[i] = *tracks[i];
-      beginTrack(to, model, predicted[i], steps[chunk]);
+      beginTrack(to, model, predicted[i], own);
     }
-  });
-  std::vector<GaussianStep> free, wheeled, uncertain;
-  for (const auto& chunk : steps) {
-    for (const auto& s : chunk) {
-      if (needsSubSteps(s)) {
+    for (const auto& s : own) {
+      const BatchKernel kernel = kernelOf(s);
+      if (kernel == BatchKernel::kNone) {
         predictGaussian(s);
       } else {
-        (!s.oriented ? free : hasUncertainHeading(s) ? uncertain : wheeled).push_back(s);
+        steps[chunk][static_cast<std::size_t>(kernel)].push_back(s);
       }
     }
+  });
+  for (const auto& [kernel, move] : kKernels) {
+    std::vector<GaussianStep> all;
+    for (const auto& chunk : steps) {
+      const auto& own = chunk[static_cast<std::size_t>(kernel)];
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    moveBatch(all, move);
   }
-  moveBatch(free, predictConstantVelocity);
-  moveBatch(wheeled, predictWheeled);
-  moveBatch(uncertain, predictMoments);
   const auto& classes = model.classes.classes;
   if (std::none_of(classes.begin(), classes.end(), [](const auto& c) { return c.modes() > 0; }))
     return predicted;

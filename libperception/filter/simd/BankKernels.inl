@@ -143,7 +143,7 @@ void predictWheeled(Count n, Count s, const double* m, double* bank) {
 }
 
 /// [x, y, v, theta] by the moments of an uncertain heading: predictUncertainHeading() of
-/// MotionModels.cpp, where they are derived, written out.
+/// MotionModel.cpp, where they are derived, written out.
 void predictMoments(Count n, Count s, const double* m, double* bank) {
   for (Count i = 0; i < n; i += kLanes) {
     Lanes q(bank + i, s);

@@ -20,13 +20,13 @@ void LanePrior::apply(const FilterModel& model, Track& track) const {
   if (track.stamp - track.last_lane < params_.interval) return;
   double wheeled = 0;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
-    if (model.classes[j].motion == Motion::kWheeled)
+    if (model.classes[j].motion->has_heading)
       wheeled += std::exp(track.log_class[static_cast<std::size_t>(j)]);
   }
   if (wheeled < 0.5) return;  // who crosses on foot is not to become a cyclist along the lane
   bool spoke = false;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
-    if (model.classes[j].motion == Motion::kWheeled && track.live(j))
+    if (model.classes[j].motion->has_heading && track.live(j))
       spoke = apply(model, track.bank[static_cast<std::size_t>(j)]) || spoke;
   }
   if (spoke) track.last_lane = track.stamp;

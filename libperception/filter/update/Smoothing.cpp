@@ -35,8 +35,7 @@ Vector4 difference(const Vector4& a, const Vector4& b, bool oriented) {
 JointPrediction predictJointly(const ObjectClass& c, double dt, const ClassFilter& before) {
   ClassFilter f = before;
   std::vector<GaussianStep> steps;
-  beginPrediction(c, dt, f, steps);
-  if (steps.empty()) return {f.x, f.P, before.P};  // static
+  listSteps(c, dt, f, steps);
   Matrix4 F;
   if (f.modes.empty()) {
     predictGaussian(steps[0], &F);

@@ -80,12 +80,12 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   f.x.head<2>() = birth.position;
   f.P.topLeftCorner<2, 2>() = birth.covariance;
   f.extent = birth.extent;
-  if (c.motion == Motion::kStatic) return f;
+  if (!c.motion->moves) return f;
   const double sigma = speedSigma(c, model);
   f.P(2, 2) = f.P(3, 3) = sigma * sigma;
   if (birth.radial_speed) takeRadialSpeed(*birth.radial_speed, f);
   startModes(c, f);
-  if (c.motion == Motion::kWheeled && birth.yaw) {
+  if (c.motion->has_heading && birth.yaw) {
     const double extra = model.params.shape_yaw_sigma;
     orientByAxis(birth.yaw->mean, birth.yaw->variance + extra * extra, f);
     if (birth.speed) {
@@ -101,8 +101,8 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
 std::optional<double> lengthAxis(const ObjectClass& c, const ClassFilter& f, const Track& track,
                                  const PartialBox& sides) {
   if (f.oriented) return f.x[3];
-  if (c.motion == Motion::kStatic) return sides.yaw;
-  if (c.motion == Motion::kConstantVelocity && track.body_heading) return track.body_heading->mean;
+  if (!c.motion->moves) return sides.yaw;
+  if (!c.motion->has_heading && track.body_heading) return track.body_heading->mean;
   return {};
 }
 
@@ -115,17 +115,17 @@ ClassFilter converted(const ObjectClass& from, const ClassFilter& source, const 
   f.extent = extent;
   f.x = k.q.head<4>();
   f.P = J * source.P * J.transpose();
-  if (to.motion == Motion::kStatic) {
+  if (!to.motion->moves) {
     f.x.tail<2>().setZero();
     f.P.rightCols<2>().setZero();
     f.P.bottomRows<2>().setZero();
     return f;
   }
-  if (from.motion == Motion::kStatic) {
+  if (!from.motion->moves) {
     const double sigma = 0.5 * std::min(to.max_speed, 1.0);  // [m/s] it stood until now
     f.P(2, 2) = f.P(3, 3) = sigma * sigma;
   }
-  if (to.motion == Motion::kWheeled && source.oriented) {
+  if (to.motion->has_heading && source.oriented) {
     f.x = source.x, f.P = source.P;
     f.oriented = true;
     f.heading = source.heading;
@@ -160,7 +160,7 @@ void decideClass(const FilterModel& model, bool surprised, Track& track) {
 ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best,
                           const FilterModel& model) {
   ClassFilter f = startFilter(c, birth, model);
-  if (c.motion != Motion::kStatic && !f.oriented) {
+  if (c.motion->moves && !f.oriented) {
     f.x.tail<2>() = best.q.segment<2>(2);
     startModes(c, f);
   }
@@ -170,7 +170,7 @@ ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const K
 /// Evidence of the speed: none up to the class's max_speed, then a Gaussian tail (no pedestrian
 /// walks at 5 m/s).
 double logSpeed(const ObjectClass& c, const ClassFilter& f, const FilterModel& model) {
-  if (c.motion == Motion::kStatic || model.params.speed_slack <= 0) return 0;
+  if (!c.motion->moves || model.params.speed_slack <= 0) return 0;
   const double speed = f.oriented ? std::abs(f.x[2]) : f.x.tail<2>().norm();
   const double variance = f.oriented ? f.P(2, 2) : 0.5 * (f.P(2, 2) + f.P(3, 3));
   const double excess = speed - c.max_speed, slack = model.params.speed_slack * c.max_speed;
@@ -224,7 +224,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     }
     const bool is_lost = !(pair.nis[i] < lost);
     std::optional<BirthState> birth;
-    if (is_lost || c.motion == Motion::kWheeled) birth = scan.model->birth(m, j, scan.state);
+    if (is_lost || c.motion->has_heading) birth = scan.model->birth(m, j, scan.state);
     if (!is_lost) {
       if (place) {
         placeUpdate(m, place->placeNoise(j), f);
@@ -235,7 +235,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
     }
-    if (c.motion == Motion::kWheeled) findHeading(m, birth, model.params, f);
+    if (c.motion->has_heading) findHeading(m, birth, model.params, f);
     if (m.sides) {
       if (const auto yaw = lengthAxis(c, f, track, *m.sides))
         f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
@@ -287,7 +287,7 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
       track.log_class[static_cast<std::size_t>(j)] = kMinusInfinity;
       track.existence = 0;  // no state: cannot be tracked
     }
-    if (birth && m.heading && c.motion == Motion::kWheeled)
+    if (birth && m.heading && c.motion->has_heading)
       useHeading(*m.heading, model.params, track.bank.back());
   }
   if (m.heading) updateBodyHeading(*m.heading, model.params, track);

@@ -81,7 +81,7 @@ FilterModel threeClassModel() {
   FilterModel model = test::exactModel(test::linearClasses());
   ObjectClass car = model.classes[0];
   car.name = "car";
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   car.yaw_rate_psd = 0.0685;
   model.classes.classes.push_back(car);
   return model;

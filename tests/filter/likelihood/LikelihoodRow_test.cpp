@@ -50,7 +50,7 @@ struct World {
   World() {
     ObjectClass car = model.classes[0];
     car.name = "car";
-    car.motion = Motion::kWheeled;
+    car.motion = findMotionModel("wheeled");
     car.yaw_rate_psd = 0.0685;
     model.classes.classes.push_back(car);
     model.params.gate_probability = 0.999;

@@ -19,7 +19,7 @@ namespace {
 ObjectClass bus() {
   ObjectClass c;
   c.name = "bus";
-  c.motion = Motion::kWheeled;
+  c.motion = findMotionModel("wheeled");
   c.length = 11, c.width = 2.5;
   return c;
 }

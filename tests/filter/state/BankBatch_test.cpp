@@ -27,7 +27,7 @@ ClassFilter randomFilter(Rng& rng, bool oriented) {
   Matrix4 A;
   for (int i = 0; i < 16; ++i) A(i / 4, i % 4) = rng.normal();
   f.P = 0.1 * A * A.transpose() + 0.05 * Matrix4::Identity();
-  if (oriented) {  // a heading sure enough for batches (hasUncertainHeading)
+  if (oriented) {  // a heading sure enough for batches (BatchKernel::kWheeled)
     f.P.row(3) *= 0.05, f.P.col(3) *= 0.05;
   }
   f.x << rng.normal(0, 20), rng.normal(0, 20), rng.normal(0, 5), rng.uniform(-3, 3);
@@ -54,13 +54,13 @@ void expectEqual(const Vector4& x, const Matrix4& P, const BankBatch& bank, std:
 
 TEST(BankBatch, PredictsAsTheScalarModels) {
   ObjectClass walker;
-  walker.motion = Motion::kConstantVelocity;
+  walker.motion = findMotionModel("constant-velocity");
   ObjectClass car = walker;
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   const double dt = 0.13;
   for (const SimdLevel level : levels()) {
     for (const auto& c : {walker, car}) {
-      const bool wheeled = c.motion == Motion::kWheeled;
+      const bool wheeled = c.motion->has_heading;
       Rng rng({7, 0, 0, 0});
       BankBatch bank(kSize);
       MotionBatch motion(kSize);
@@ -135,7 +135,7 @@ TEST(PredictTracks, IsPredictTrackInBatches) {
   model.classes = test::linearClasses();
   ObjectClass car = model.classes[0];
   car.name = "car";
-  car.motion = Motion::kWheeled;
+  car.motion = findMotionModel("wheeled");
   car.mode_accel_psd = {0.5, 3};
   car.mode_damping = {0, 1};
   car.mode_sojourn = {4, 1};
@@ -149,7 +149,7 @@ TEST(PredictTracks, IsPredictTrackInBatches) {
     t.existence = 0.9;
     t.log_class = {std::log(0.2), std::log(0.3), std::log(0.5)};
     for (const auto& c : model.classes.classes) {
-      t.bank.push_back(randomFilter(rng, c.motion == Motion::kWheeled && i % 3 > 0));
+      t.bank.push_back(randomFilter(rng, c.motion->has_heading && i % 3 > 0));
       startModes(c, t.bank.back());
     }
     tracks.push_back(std::make_shared<const Track>(t));

@@ -15,7 +15,7 @@ namespace {
 ObjectClass wheeled() {
   ObjectClass c;
   c.name = "car";
-  c.motion = Motion::kWheeled;
+  c.motion = findMotionModel("wheeled");
   c.accel_psd = 1.0;
   c.yaw_rate_psd = 0.0685;
   c.position_psd = 0.01;
@@ -183,9 +183,8 @@ TEST(MotionModels, CovariancesStayPositiveOverTenThousandSteps) {
   Rng rng({4, 0, 0, 0});
   for (const auto& c : {wheeled(), test::linearClasses()[0], test::linearClasses()[1]}) {
     ClassFilter f = orientedFilter(0, 0, 3, 1);
-    if (c.motion != Motion::kWheeled) f.oriented = false;
-    if (c.motion == Motion::kStatic)
-      f.P.bottomRightCorner<2, 4>().setZero(), f.P.rightCols<2>().setZero();
+    if (!c.motion->has_heading) f.oriented = false;
+    if (!c.motion->moves) f.P.bottomRightCorner<2, 4>().setZero(), f.P.rightCols<2>().setZero();
     for (int i = 0; i < 10000; ++i) {
       predictClassFilter(c, rng.uniform(0.01, 0.4), f);
       // A position fix, so that the covariance does not just grow.

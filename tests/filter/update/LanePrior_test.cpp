@@ -16,7 +16,7 @@ struct Street {
   FilterModel model = test::exactModel(test::linearClasses());
   LaneParams params;
 
-  Street() { model.classes.classes[0].motion = Motion::kWheeled; }
+  Street() { model.classes.classes[0].motion = findMotionModel("wheeled"); }
   LanePrior lanes() const {
     return LanePrior(LaneMap({{"east", {{-100, 0}, {100, 0}}, 4, true},
                               {"any", {{-100, 20}, {100, 20}}, 4, false},

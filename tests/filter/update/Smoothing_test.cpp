@@ -209,7 +209,7 @@ struct Drive {
 
   explicit Drive(std::uint64_t seed) {
     auto& car = h.model.classes.classes[0];
-    car.motion = Motion::kWheeled;
+    car.motion = findMotionModel("wheeled");
     car.accel_psd = 1;
     car.position_psd = 0.01;
     car.max_speed = 40;
