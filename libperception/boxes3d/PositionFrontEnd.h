@@ -19,7 +19,7 @@ struct PositionParams {
   using Table = std::vector<std::pair<std::string, double>>;
   std::vector<std::string> labels{"object"};        ///< the columns of the class tables
   std::vector<std::string> names{"object=object"};  ///< the detector's class = one of the labels
-  double min_score = -1e9;                          ///< boxes below are dropped: none
+  double min_score = -1e9;                          ///< boxes below are dropped: none (assumed)
   double sigma = 0.3;               ///< [m] of the center, each axis (method.md 8.9, assumed)
   double range_share = 0;           ///< [-] of the distance, added to sigma (method.md 8.9)
   double clutter_sigma_growth = 0;  ///< [-] by which both grow for a box that is surely clutter, by
@@ -43,7 +43,7 @@ struct PositionParams {
 
   bool sizes = false;  ///< length, width, height and direction of the box are measured, too
   double axis_sigma = radians(10);                   ///< [rad] of that direction as axis (assumed)
-  double heading_flip = 0.5;                         ///< reversed directions: nothing is known
+  double heading_flip = 0.5;                         ///< reversed directions: unknown (assumed)
   double length_sigma = 0.3, width_sigma = 0.3;      ///< [m] (assumed)
   double height_sigma = 0.3, base_sigma = 0.3;       ///< [m] (assumed)
   Table length_excess, width_excess, height_excess;  ///< [m] by which a label's boxes are too large

@@ -18,7 +18,7 @@ struct DetectorModelParams {
   std::string file;                ///< relative to [detector] folder
   std::string label;               ///< class name of its boxes; empty: the model's own
   std::vector<std::string> names;  ///< networks: INDEX=LABEL of the classes that are wanted
-  double threshold = -1e9;         ///< [score] weaker boxes are dropped
+  double threshold = -1e9;         ///< [score] weaker boxes are dropped: none (assumed)
   double low = 0.5, high = 4;      ///< [m] heights of its objects on the ground (assumed)
   /// P(object | score) = 1 / (1 + exp(-slope (score - even_score))): written by --calibrate.
   double slope = 0;       ///< [1/score]; 0: not calibrated
@@ -43,7 +43,7 @@ struct OnnxParams {
   int input = 416;              ///< [px] side of the square input (YOLOX-Nano, [ge2021])
   int layout = 0;               ///< of the output, a place in layoutNames(); 0: by its shape
   double overlap = 0.45;        ///< intersection over union of boxes that are one object (assumed)
-  bool windows = true;          ///< long images also in squares of their shorter side
+  bool windows = true;          ///< long images also in squares (measured on KITTI: ini/detectors)
   double window_overlap = 0.5;  ///< share of a square that the next one sees, too (assumed)
 
   static const std::vector<std::string>& layoutNames();
@@ -62,7 +62,7 @@ struct HogParams {
 struct DetectorSetup {
   int backend = 0;          ///< a place in detectorBackends()
   std::string folder;       ///< of the models' files
-  bool ground_gate = true;  ///< search only where objects can stand, if the camera's place is known
+  bool ground_gate = true;  ///< search only where objects can stand (method.md 8.8)
   double ground_slope_sigma = radians(1.2);  ///< [rad] of road and pitch (method.md 8.8)
   std::vector<std::pair<std::string, DetectorModelParams>> models;  ///< by name, as in the INI
   std::vector<HeadingHeadParams> headings;                          ///< [heading.NAME]

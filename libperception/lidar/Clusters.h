@@ -16,7 +16,7 @@ struct ClusterParams {
   double max_size = 15;         ///< [m] the length of a bus [radecki2016]
   double min_side = 1.2;        ///< [m] car-sized from this longest side on ... (method.md 8.2)
   double min_area = 0.5;        ///< [m^2] ... or from this area on (method.md 8.2)
-  /// Also clusters within far_threshold of others, under their own label (docs/decisions/lidar.md).
+  /// Also clusters within far_threshold of others, under their own label (measured on KITTI 0000).
   bool accept_unstable = true;
   double unstable_max_size = 8;    ///< [m] longer: rather hedges and walls than buses (assumed)
   double unstable_min_side = 1.2;  ///< [m] as min_side

@@ -28,8 +28,8 @@ struct ObstacleParams {
   void visit(ParamVisitor& v);
 };
 
-/// Noise of one kind of detection about FootprintModel's outline: [sensor.LABEL.noise.NAME], tuned
-/// on KITTI 0000. An edge's bearing has sigma_bearing (+) sigma_edge / range.
+/// Noise of one kind of detection about FootprintModel's outline: [sensor.LABEL.noise.NAME]. An
+/// edge's bearing has sigma_bearing (+) sigma_edge / range. Tuned on KITTI 0000.
 struct OutlineNoise {
   double sigma_edge = 0.25;             ///< [m] across the line of sight
   double sigma_bearing = radians(0.3);  ///< [rad]

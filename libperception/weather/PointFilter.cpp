@@ -31,10 +31,10 @@ class WithMultipath final : public PointFilter {
 }  // namespace
 
 void WeatherParams::visit(ParamVisitor& v) {
-  bool trusted = filter == "trust";
-  v.choiceOf("filter", trusted, {"off", "trust"},
+  bool filter_on = filter == "trust";
+  v.choiceOf("filter", filter_on, {"off", "trust"},
              "how far each lidar return is trusted; trust: the model of [weather.trust]");
-  filter = trusted ? "trust" : "off";
+  filter = filter_on ? "trust" : "off";
 }
 
 WeatherParams WeatherParams::read(Config& config) {

@@ -15,7 +15,7 @@ struct DpmBank;
 /// How densely and where an engine searches.
 struct DpmOptions {
   int levels_per_octave = 5;  ///< method.md 8.8; [girshick2012]: 10
-  double enlarge = 1;         ///< [1, 4] size of the first image searched, for objects far away
+  double enlarge = 1;         ///< [1, 4] size of the first image searched (assumed)
   double outside = 0.4;       ///< share of an object's sides beyond the image (assumed)
   int window = 4;             ///< [cells of a part] how far a part may move [girshick2012]
   double overlap = 0.5;       ///< of the weaker box: more is the same object (method.md 8.8)
@@ -24,8 +24,8 @@ struct DpmOptions {
 /// What an engine searches for with one model.
 struct DpmTarget {
   DpmModel model;
-  double threshold = -1;       ///< score from which on a place is reported
-  double low = 0.5, high = 3;  ///< [m] heights of the objects, with a ground to stand on
+  double threshold = -1;       ///< score from which on a place is reported (assumed)
+  double low = 0.5, high = 3;  ///< [m] heights of the objects on the ground (assumed)
 };
 
 /// A place where a model fits.
