@@ -13,9 +13,6 @@ namespace {
 // images) [m].
 constexpr double kCameraCarRange = 15, kCameraPersonRange = 10;
 
-// Truth objects of pooled runs are numbered run by run.
-constexpr std::int64_t kIdsOfARun = 1000000;
-
 // [m] Rounding of a point of the rectangle itself.
 constexpr double kOnFootprint = 1e-6;
 
@@ -45,15 +42,10 @@ std::string sensorSet(const TrackedRun& run) {
   return {letters.begin(), letters.end()};
 }
 
-std::vector<Vector2> centers(const std::vector<SeenTruth>& truth) {
+template <class Seen>  // SeenTruth or SeenEstimate
+std::vector<Vector2> centers(const std::vector<Seen>& seen) {
   std::vector<Vector2> result;
-  for (const SeenTruth& t : truth) result.push_back(t.footprint.center);
-  return result;
-}
-
-std::vector<Vector2> centers(const std::vector<SeenEstimate>& estimates) {
-  std::vector<Vector2> result;
-  for (const SeenEstimate& e : estimates) result.push_back(e.footprint.center);
+  for (const Seen& s : seen) result.push_back(s.footprint.center);
   return result;
 }
 
@@ -278,14 +270,17 @@ class Evaluator {
 
 }  // namespace
 
+OutputCounts& OutputCounts::operator+=(const OutputCounts& other) {
+  named += other.named;
+  false_ += other.false_;
+  classified_named += other.classified_named;
+  classified_false += other.classified_false;
+  return *this;
+}
+
 OutputCounts InstantFigures::allOutputs() const {
   OutputCounts sum;
-  for (const OutputCounts& counts : outputs) {
-    sum.named += counts.named;
-    sum.false_ += counts.false_;
-    sum.classified_named += counts.classified_named;
-    sum.classified_false += counts.classified_false;
-  }
+  for (const OutputCounts& counts : outputs) sum += counts;
   return sum;
 }
 
@@ -298,39 +293,6 @@ Evaluation evaluate(const TrackedRun& run, const GroundTruth& truth,
   Evaluation evaluation = evaluator.take();
   evaluation.alignment = std::move(alignment);
   return evaluation;
-}
-
-Evaluation pooled(const std::vector<const Evaluation*>& parts) {
-  Evaluation sum;
-  std::int64_t run = 0;
-  for (const Evaluation* part : parts) {
-    if (run == 0) {
-      sum.class_names = part->class_names;
-      sum.named = part->named;
-      sum.sensors = part->sensors;
-    } else if (part->class_names != sum.class_names || part->named != sum.named) {
-      throw DataError("runs with different classes cannot be pooled");
-    }
-    const std::size_t first = sum.instants.size();
-    sum.instants.insert(sum.instants.end(), part->instants.begin(), part->instants.end());
-    for (TruthSample sample : part->samples) {
-      sample.instant += first;
-      if (sample.id >= 0) sample.id = run * kIdsOfARun + sample.id % kIdsOfARun;
-      sum.samples.push_back(std::move(sample));
-    }
-    for (ExistenceSample sample : part->existence) {
-      sample.instant += first;
-      sum.existence.push_back(sample);
-    }
-    sum.alignment.by_frame += part->alignment.by_frame;
-    sum.alignment.by_time += part->alignment.by_time;
-    sum.alignment.assumed_empty += part->alignment.assumed_empty;
-    sum.alignment.scenes_without_truth += part->alignment.scenes_without_truth;
-    sum.alignment.truth_without_scene += part->alignment.truth_without_scene;
-    for (std::size_t u = 0; u < sum.truth_use.size(); ++u) sum.truth_use[u] += part->truth_use[u];
-    ++run;
-  }
-  return sum;
 }
 
 }  // namespace perception

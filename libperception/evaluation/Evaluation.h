@@ -13,7 +13,7 @@
 
 namespace perception {
 
-/// How a run is judged; defaults: method.md 11 and the paper.
+/// How a run is judged; defaults: method.md 11 and [radecki2016].
 struct EvaluationOptions {
   SelectionOptions selection;
   AlignmentOptions alignment;
@@ -61,6 +61,8 @@ struct TruthSample {
 struct OutputCounts {
   std::size_t named = 0, false_ = 0;                       ///< by the most probable class
   std::size_t classified_named = 0, classified_false = 0;  ///< of these, probability >= .95
+
+  OutputCounts& operator+=(const OutputCounts& other);
 };
 
 /// An output as a named class inside the sector that has no truth anywhere near.

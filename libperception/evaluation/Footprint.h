@@ -20,7 +20,7 @@ Vector2 closestPoint(const Footprint& footprint, const Vector2& point);
 /// Where an object stands as seen from the vehicle's origin, on the ground plane.
 struct GroundView {
   double closest_range =
-      0;  ///< [m] to the closest point of the footprint (the paper's range; method.md 11)
+      0;  ///< [m] to the closest point of the footprint (the range of [radecki2016]; method.md 11)
   double range = 0;    ///< [m] to the center
   double bearing = 0;  ///< [rad] of the center, ego frame, left positive, in (-pi, pi]
 };

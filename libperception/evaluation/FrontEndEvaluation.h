@@ -31,7 +31,7 @@ struct FrontEndOptions {
 struct LabelMeaning {
   std::vector<std::string> classes;  ///< that it names; empty: none, any road user is right
   enum class Size { kAny, kPerson, kVehicle } size = Size::kAny;
-  bool primary = true;  ///< false: not one of the paper's labels
+  bool primary = true;  ///< false: not one of the labels of [radecki2016]
   bool sized = true;    ///< false: it is no statement about size (camera detectors)
 };
 /// car_sized, unstable, person_sized (lidar), car, person (cameras) and names of classes.
@@ -42,7 +42,7 @@ struct RecallCounts {
   std::size_t in_view = 0;
   std::size_t found = 0;          ///< some measurement lies on it
   std::size_t named = 0;          ///< one whose label names its class
-  std::size_t named_primary = 0;  ///< one with a label of the paper that names its class
+  std::size_t named_primary = 0;  ///< one with such a label that names its class
   std::size_t measurements = 0;   ///< that lie on it: more than found where objects fall apart
 
   RecallCounts& operator+=(const RecallCounts& other);

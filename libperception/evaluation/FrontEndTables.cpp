@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <set>
 
-#include "libperception/evaluation/Report.h"
+#include "libperception/evaluation/ReportCells.h"
 #include "libperception/scene/NumberFormat.h"
 
 namespace perception {
 namespace {
-
-using Row = std::vector<std::string>;
-
-constexpr const char* kNotAvailable = "n/a";
 
 std::string percent(std::size_t part, std::size_t whole) {
   if (whole == 0) return kNotAvailable;
@@ -36,15 +32,6 @@ std::vector<Named> allOf(const EvaluationReport& report) {
     for (const FrontEndEvaluation& f : run.front_ends) all.push_back({run.name, &f});
   }
   return all;
-}
-
-ReportTable makeTable(std::string title, Row labels, const Row& numbers) {
-  ReportTable table;
-  table.title = std::move(title);
-  table.labels = labels.size();
-  table.header = std::move(labels);
-  table.header.insert(table.header.end(), numbers.begin(), numbers.end());
-  return table;
 }
 
 // Measurements of all labels that speak of this size, the paper's labels alone or all.

@@ -15,8 +15,8 @@ enum class Pairing {
 inline constexpr int kPairings = 2;
 
 /// For each truth the place of its estimate or -1. Centers on the ground [m], one frame for both; a
-/// pair is at most `tolerance` [m] apart (2 m in the paper). Of equally close estimates the first
-/// is taken.
+/// pair is at most `tolerance` [m] apart (2 m in [radecki2016]). Of equally close estimates the
+/// first is taken.
 std::vector<int> match(const std::vector<Vector2>& truth, const std::vector<Vector2>& estimates,
                        double tolerance, Pairing pairing);
 

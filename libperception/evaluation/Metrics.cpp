@@ -1,13 +1,10 @@
 #include "libperception/evaluation/Metrics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace perception {
 namespace {
-
-constexpr std::size_t kReliabilityBins = 10;
 
 Figure ratio(std::size_t part, std::size_t whole) {
   if (whole == 0) return {};
@@ -38,41 +35,6 @@ class Sum {
 bool isOf(const TruthSample& sample, ClassId class_id) {
   return class_id < 0 || sample.class_id == class_id;
 }
-
-// Sorts stated probabilities into bins of equal width.
-class ReliabilityBuilder {
- public:
-  void add(double probability, bool right) {
-    const double place = std::max(probability, 0.0) * static_cast<double>(kReliabilityBins);
-    const std::size_t bin = std::min(static_cast<std::size_t>(place), kReliabilityBins - 1);
-    stated_[bin].add(probability);
-    right_[bin].add(right ? 1.0 : 0.0);
-    ++counts_[bin];
-  }
-
-  Reliability finish() const {
-    Reliability result;
-    double error = 0, total = 0;
-    for (std::size_t b = 0; b < kReliabilityBins; ++b) {
-      ReliabilityBin bin;
-      bin.low = static_cast<double>(b) / kReliabilityBins;
-      bin.high = static_cast<double>(b + 1) / kReliabilityBins;
-      bin.count = counts_[b];
-      bin.mean_probability = stated_[b].mean();
-      bin.correct = right_[b].mean();
-      const auto n = static_cast<double>(bin.count);
-      if (bin.count) error += n * std::abs(*bin.mean_probability - *bin.correct);
-      total += n;
-      result.bins.push_back(bin);
-    }
-    if (total > 0) result.calibration_error = error / total;
-    return result;
-  }
-
- private:
-  std::array<Sum, kReliabilityBins> stated_, right_;
-  std::array<std::size_t, kReliabilityBins> counts_{};
-};
 
 // Follows one truth object through its active instants.
 class TimelineBuilder {
@@ -209,12 +171,8 @@ FalseObjectFigures falseObjectFigures(const Evaluation& evaluation, ClassId clas
   FalseObjectFigures figures;
   figures.instants = evaluation.instants.size();
   for (const InstantFigures& instant : evaluation.instants) {
-    const OutputCounts counts =
+    figures.counts +=
         class_id < 0 ? instant.allOutputs() : instant.outputs[static_cast<std::size_t>(class_id)];
-    figures.counts.named += counts.named;
-    figures.counts.false_ += counts.false_;
-    figures.counts.classified_named += counts.classified_named;
-    figures.counts.classified_false += counts.classified_false;
   }
   figures.per_instant = ratio(figures.counts.false_, figures.instants);
   figures.share = ratio(figures.counts.false_, figures.counts.named);
@@ -249,25 +207,9 @@ SetFigures setFigures(const Evaluation& evaluation, double cutoff) {
   const double one_object = cutoff * cutoff / 2;
   if (figures.missed) figures.missed_objects = *figures.missed / one_object;
   if (figures.false_) figures.false_objects = *figures.false_ / one_object;
-  if (pairs > 0) figures.localisation_rms = std::sqrt(squares / static_cast<double>(pairs));
+  if (pairs > 0) figures.localization_rms = std::sqrt(squares / static_cast<double>(pairs));
   figures.ospa_mean = ospa.mean();
   return figures;
-}
-
-Reliability reliability(const Evaluation& evaluation, Pairing pairing) {
-  ReliabilityBuilder builder;
-  for (const TruthSample& sample : evaluation.samples) {
-    const auto& match = sample.matched(pairing);
-    if (match) builder.add(match->probability, match->class_id == sample.class_id);
-  }
-  return builder.finish();
-}
-
-Reliability existenceReliability(const Evaluation& evaluation) {
-  ReliabilityBuilder builder;
-  for (const ExistenceSample& sample : evaluation.existence)
-    builder.add(sample.probability, sample.real);
-  return builder.finish();
 }
 
 void ClearFigures::setMota() {

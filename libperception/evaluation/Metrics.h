@@ -20,14 +20,14 @@ struct TrackingFigures {
       0;  ///< active from each object's first to its last tracked instant (denominator C)
   std::size_t returns = 0;                 ///< instants tracked: "Number of Returns"
   Figure tracked_a, tracked_b, tracked_c;  ///< returns over A, B, C
-  Figure range_rms;                   ///< [m] to the closest point of the footprint (the paper's)
-  Figure center_range_rms;            ///< [m] to the center
-  Figure bearing_rms;                 ///< [rad] of the center
-  Figure position_rms;                ///< [m] between the centers
-  Figure speed_rms;                   ///< [m/s] magnitudes
-  Figure velocity_rms;                ///< [m/s] vectors
-  Figure heading_rms;                 ///< [rad]
-  Figure heading_reversed;            ///< share of headings more than 90 deg off
+  Figure range_rms;         ///< [m] to the closest point of the footprint, as in [radecki2016]
+  Figure center_range_rms;  ///< [m] to the center
+  Figure bearing_rms;       ///< [rad] of the center
+  Figure position_rms;      ///< [m] between the centers
+  Figure speed_rms;         ///< [m/s] magnitudes
+  Figure velocity_rms;      ///< [m/s] vectors
+  Figure heading_rms;       ///< [rad]
+  Figure heading_reversed;  ///< share of headings more than 90 deg off
   Figure correct, mis, unclassified;  ///< shares of the returns; they sum to 1
   std::size_t id_switches =
       0;  ///< the matched id is another one than at the object's last tracked instant
@@ -82,7 +82,7 @@ struct SetFigures {
   Figure gospa_mean, gospa_rms;          ///< [m] mean; root of the mean square
   Figure localization, missed, false_;   ///< [m^2] mean parts; they sum to gospa_rms^2
   Figure missed_objects, false_objects;  ///< mean number an instant
-  Figure localisation_rms;               ///< [m] of the pairs
+  Figure localization_rms;               ///< [m] of the pairs
   Figure ospa_mean;                      ///< [m]
 };
 SetFigures setFigures(const Evaluation& evaluation, double cutoff);

@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// A row of the paper's tables of tracking results: the fractions and errors of one condition.
+/// A row of [radecki2016]'s tables of tracking results: the fractions and errors of one condition.
 struct PaperTrackingRow {
   const char* table;      ///< short name, as given to --paper: sunny, particles, pedestrian ...
   const char* condition;  ///< weather, number of particles or kind of object
@@ -17,7 +17,7 @@ struct PaperTrackingRow {
   int returns;            ///< Number of Returns
 };
 
-/// A row of the paper's table of recall and precision, with the precision by size that its text
+/// A row of [radecki2016]'s table of recall and precision, with the precision by size that its text
 /// gives. All in [0, 1]; empty: not published.
 struct PaperFrontEndRow {
   const char* sensor;
@@ -26,7 +26,7 @@ struct PaperFrontEndRow {
   std::optional<double> person_recall, person_size_precision, person_precision;
 };
 
-/// A row of the paper's second particle study: rms errors in numbers of objects against 50
+/// A row of [radecki2016]'s second particle study: rms errors in numbers of objects against 50
 /// particles.
 struct PaperParticlesRow {
   int particles;
@@ -34,8 +34,8 @@ struct PaperParticlesRow {
   double all, classified;  ///< configuration 2: with classification
 };
 
-/// A row of the paper's two tables of rates: objects detected per sensor return, objects tracked on
-/// average.
+/// A row of [radecki2016]'s two tables of rates: objects detected per sensor return, objects
+/// tracked on average.
 struct PaperRateRow {
   const char* sensors;
   bool tracked;  ///< else detected

@@ -41,9 +41,7 @@ void removeOldPictures(const std::string& dir) {
 }  // namespace
 
 PlotScript::PlotScript(const std::string& dir) : dir_(dir + "/plots") {
-  std::error_code failed;
-  fs::create_directories(dir_, failed);
-  if (failed) throw OutputError(fmt::format("{}: cannot be created: {}", dir_, failed.message()));
+  createFolder(dir_);
   removeOldPictures(dir_);
 }
 

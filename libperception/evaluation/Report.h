@@ -29,7 +29,7 @@ struct EvaluationReport {
   std::string reference;  ///< path of the run that object counts are compared with; may be empty
   EvaluationOptions options;
   std::vector<EvaluatedRun> runs;
-  std::vector<PaperTrackingRow> paper;  ///< rows of the paper to stand beside ours
+  std::vector<PaperTrackingRow> paper;  ///< rows of [radecki2016] to stand beside ours
   std::vector<std::string> plots;       ///< file names beside the report, for Markdown
 };
 
@@ -42,10 +42,10 @@ struct ReportTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// The tables of the report; the paper's table, its columns in its order, comes first.
+/// The tables of the report; the one with the columns of [radecki2016], in its order, comes first.
 std::vector<ReportTable> reportTables(const EvaluationReport& report);
 
-/// Tables of the front ends, beside the paper's; none where no front end was asked for.
+/// Tables of the front ends, beside those of [radecki2016]; none where no front end was asked for.
 std::vector<ReportTable> frontEndTables(const EvaluationReport& report);
 /// Every figure a row, every run a column; conditions with mean, deviation and range over trials.
 ReportTable sideBySideTable(const EvaluationReport& report);

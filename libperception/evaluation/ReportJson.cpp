@@ -67,7 +67,7 @@ Json json(const SetFigures& f) {
           {"false_m2", json(f.false_)},
           {"missed_objects", json(f.missed_objects)},
           {"false_objects", json(f.false_objects)},
-          {"pair_rms_m", json(f.localisation_rms)},
+          {"pair_rms_m", json(f.localization_rms)},
           {"ospa_mean_m", json(f.ospa_mean)},
           {"instants", f.instants}};
 }

@@ -2,38 +2,15 @@
 
 #include <algorithm>
 
-#include "libperception/evaluation/Report.h"
+#include "libperception/evaluation/ReportCells.h"
 #include "libperception/scene/NumberFormat.h"
 
 namespace perception {
 namespace {
 
-using Row = std::vector<std::string>;
-
-constexpr const char* kNotAvailable = "n/a";
-
-std::string number(const Figure& figure, int places = 3) {
-  return figure ? fixedPlaces(*figure, places) : kNotAvailable;
-}
-
-// A count of what there is a truth for; without any truth it is unknown, not 0.
-std::string countOf(std::size_t count, bool known) {
-  return known ? fmt::format("{}", count) : kNotAvailable;
-}
-
-const char* nameOf(Pairing pairing) {
-  return pairing == Pairing::kClosest ? "closest" : "one-to-one";
-}
-
-constexpr Pairing kAllPairings[] = {Pairing::kClosest, Pairing::kOneToOne};
-
 bool hasTruth(const Evaluation& evaluation, ClassId c) {
   return std::any_of(evaluation.samples.begin(), evaluation.samples.end(),
                      [c](const TruthSample& s) { return s.class_id == c; });
-}
-
-std::string className(const Evaluation& evaluation, ClassId c) {
-  return c < 0 ? "all" : evaluation.class_names[static_cast<std::size_t>(c)];
 }
 
 // -1 (all), then every class that the counted truth has.
@@ -43,16 +20,6 @@ std::vector<ClassId> classesWithTruth(const Evaluation& evaluation) {
     if (hasTruth(evaluation, c)) classes.push_back(c);
   }
   return classes;
-}
-
-ReportTable makeTable(std::string title, std::vector<std::string> labels,
-                      std::vector<std::string> numbers) {
-  ReportTable table;
-  table.title = std::move(title);
-  table.labels = labels.size();
-  table.header = std::move(labels);
-  table.header.insert(table.header.end(), numbers.begin(), numbers.end());
-  return table;
 }
 
 // The paper's rows, in the columns of paperTable().
@@ -173,24 +140,6 @@ ReportTable classificationTable(const EvaluationReport& report) {
   return table;
 }
 
-ReportTable confusionTable(const EvaluatedRun& run, Pairing pairing) {
-  std::vector<std::string> numbers = run.evaluation.class_names;
-  numbers.insert(numbers.end(), {"unclassified", "missed"});
-  ReportTable table = makeTable(
-      fmt::format("Truth type against estimated class, {} matching: {}", nameOf(pairing), run.name),
-      {"Truth type"}, numbers);
-  table.notes = {
-      "Instants. A class: probability >= .95; unclassified: tracked without; missed: not tracked."};
-  for (const auto& [type, counts] : confusion(run.evaluation, pairing).by_type) {
-    Row row = {type};
-    for (const std::size_t n : counts.classified) row.push_back(fmt::format("{}", n));
-    row.push_back(fmt::format("{}", counts.unclassified));
-    row.push_back(fmt::format("{}", counts.missed));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
 ReportTable falseObjectTable(const EvaluationReport& report) {
   ReportTable table = makeTable(
       "False objects", {"Run", "Estimated class"},
@@ -246,65 +195,7 @@ ReportTable setTable(const EvaluationReport& report) {
     table.rows.push_back(
         {run.name, number(f.gospa_mean), number(f.gospa_rms), number(f.localization),
          number(f.missed), number(f.false_), number(f.missed_objects), number(f.false_objects),
-         number(f.localisation_rms), number(f.ospa_mean), fmt::format("{}", f.instants)});
-  }
-  return table;
-}
-
-void addBins(const Reliability& r, ReportTable& table) {
-  for (const ReliabilityBin& bin : r.bins) {
-    table.rows.push_back({fmt::format("{:.1f}-{:.1f}", bin.low, bin.high),
-                          fmt::format("{}", bin.count), number(bin.mean_probability),
-                          number(bin.correct)});
-  }
-}
-
-ReportTable reliabilityTable(const EvaluatedRun& run) {
-  const Reliability r = reliability(run.evaluation, Pairing::kOneToOne);
-  ReportTable table = makeTable("Reliability of the class probability: " + run.name,
-                                {"probability"}, {"instants", "mean stated", "correct"});
-  table.notes = {"One-to-one matched outputs by the probability of their most probable class.",
-                 "mean |stated - correct|, weighted by instants: " + number(r.calibration_error)};
-  addBins(r, table);
-  return table;
-}
-
-ReportTable existenceTable(const EvaluatedRun& run) {
-  const Reliability r = existenceReliability(run.evaluation);
-  ReportTable table = makeTable("Reliability of the existence probability: " + run.name,
-                                {"probability"}, {"outputs", "mean stated", "real"});
-  table.notes = {
-      "Outputs as a named class inside the sector. real: paired one-to-one with a truth of any "
-      "type; an object output twice is real once.",
-      "Where the truth holds no poles and hedges (KITTI), one that is called a road user is not "
-      "real "
-      "here, though something stands there.",
-      "Outputs near a truth that they are not paired with are left out. A run writes objects from "
-      "[scene] min_existence on: set it to 0 to see the whole range, and --min-existence 0.5 here.",
-      "mean |stated - real|, weighted by outputs: " + number(r.calibration_error)};
-  addBins(r, table);
-  return table;
-}
-
-ReportTable objectTable(const EvaluatedRun& run) {
-  ReportTable table = makeTable(
-      "Truth objects: " + run.name, {"Id", "Type"},
-      {"first active (s)", "last active (s)", "active", "tracked, closest", "tracked, one-to-one",
-       "first tracked (s)", "time to first (s)", "id switches", "fragmentations", "ids used"});
-  table.notes = {
-      "active: instants at which the object counts; times: seconds since the log's first stamp.",
-      "From 'first tracked' on: one-to-one matching."};
-  const auto closest = objectTimelines(run.evaluation, Pairing::kClosest);
-  const auto single = objectTimelines(run.evaluation, Pairing::kOneToOne);
-  for (std::size_t i = 0; i < single.size(); ++i) {
-    const ObjectTimeline& o = single[i];
-    const bool tracked = o.returns > 0;
-    table.rows.push_back({fmt::format("{}", o.id), o.type, fixedPlaces(o.first_active, 2),
-                          fixedPlaces(o.last_active, 2), fmt::format("{}", o.active),
-                          number(closest[i].tracked), number(o.tracked), number(o.first_tracked, 2),
-                          number(o.time_to_first_track, 2), countOf(o.id_switches, tracked),
-                          countOf(o.fragmentations, tracked),
-                          tracked ? fmt::format("{}", fmt::join(o.ids, " ")) : kNotAvailable});
+         number(f.localization_rms), number(f.ospa_mean), fmt::format("{}", f.instants)});
   }
   return table;
 }

@@ -19,8 +19,8 @@ void drawSetDistance(const std::vector<const EvaluatedRun*>& runs, const Evaluat
 void drawReliability(const std::vector<const EvaluatedRun*>& runs, bool existence,
                      PlotScript& script);
 
-/// comparison.png: the paper's figures of every run or condition as bars, range over the trials and
-/// the paper's values where it has that condition.
+/// comparison.png: the figures of [radecki2016] of every run or condition as bars, range over the
+/// trials and its values where it has that condition.
 void drawComparison(const EvaluationReport& report, PlotScript& script);
 
 }  // namespace perception

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/evaluation/Report.h"
+#include "libperception/evaluation/ReportCells.h"
 #include "libperception/scene/NumberFormat.h"
 
 namespace perception {
@@ -20,7 +20,7 @@ struct FigureRow {
 TrackingFigures closest(const Evaluation& e) { return trackingFigures(e, Pairing::kClosest); }
 TrackingFigures single(const Evaluation& e) { return trackingFigures(e, Pairing::kOneToOne); }
 Figure none(const PaperTrackingRow&) { return {}; }
-Figure countOf(std::size_t n) { return static_cast<double>(n); }
+Figure figureOf(std::size_t n) { return static_cast<double>(n); }
 
 using Options = EvaluationOptions;
 using Paper = PaperTrackingRow;
@@ -43,12 +43,12 @@ const FigureRow kRows[] = {
     {"Unclassified", 3, [](const Evaluation& e, const Options&) { return closest(e).unclassified; },
      [](const Paper& p) { return Figure(1 - p.correct - p.mis); }},
     {"Number of Returns", 0,
-     [](const Evaluation& e, const Options&) { return countOf(closest(e).returns); },
-     [](const Paper& p) { return countOf(static_cast<std::size_t>(p.returns)); }},
+     [](const Evaluation& e, const Options&) { return figureOf(closest(e).returns); },
+     [](const Paper& p) { return figureOf(static_cast<std::size_t>(p.returns)); }},
     {"Object Tracked, one-to-one", 3,
      [](const Evaluation& e, const Options&) { return single(e).tracked_a; }, none},
     {"id switches", 0,
-     [](const Evaluation& e, const Options&) { return countOf(single(e).id_switches); }, none},
+     [](const Evaluation& e, const Options&) { return figureOf(single(e).id_switches); }, none},
     {"position error (m)", 3,
      [](const Evaluation& e, const Options&) { return single(e).position_rms; }, none},
     {"velocity error (m/s)", 3,
@@ -70,14 +70,10 @@ const FigureRow kRows[] = {
      none},
 };
 
-std::string text(const Figure& figure, int places) {
-  return figure ? fixedPlaces(*figure, places) : "n/a";
-}
-
 // Pooled value, then mean, standard deviation and range over the trials.
 std::string cellOf(const EvaluatedRun& run, const FigureRow& row,
                    const EvaluationOptions& options) {
-  const std::string value = text(row.of(run.evaluation, options), row.places);
+  const std::string value = number(row.of(run.evaluation, options), row.places);
   std::vector<double> trials;
   for (const EvaluatedRun& trial : run.trials) {
     if (const Figure f = row.of(trial.evaluation, options)) trials.push_back(*f);
@@ -113,7 +109,7 @@ ReportTable sideBySideTable(const EvaluationReport& report) {
     for (const EvaluatedRun& run : report.runs) cells.push_back(cellOf(run, row, report.options));
     for (const PaperTrackingRow& paper : report.paper) {
       const Figure f = row.paper(paper);
-      cells.push_back(f ? text(f, row.places) : "");
+      cells.push_back(f ? number(f, row.places) : "");
     }
     table.rows.push_back(std::move(cells));
   }

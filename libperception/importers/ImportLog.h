@@ -125,7 +125,8 @@ std::string truthFileOf(const std::string& rawlog);
 /// FILE_Images, where MRPT's programs look for what a log does not hold itself.
 std::string imageFolderOf(const std::string& rawlog);
 
-/// Types of the truth that a class of ours covers; to report others is neither right nor wrong.
+/// Types of the truth that a class of ours covers; an output of another type is neither right nor
+/// wrong.
 bool coveredType(const std::string& type);
 
 /// Returns of a cloud inside a box, both in the sensor frame.

@@ -11,7 +11,7 @@
 
 namespace perception {
 
-/// The fields of one line of somebody's text file; every complaint is a DataError that names file,
+/// The fields of one line of a text file; every complaint is a DataError that names file,
 /// line and field. Numbers are read whatever the locale. Valid while path and text live.
 class TextRow {
  public:

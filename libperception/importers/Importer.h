@@ -11,14 +11,14 @@ class App;
 
 namespace perception {
 
-/// One foreign format: its own options, and the import. Throws Error (kUsage), DataError (with file
+/// A format of others: its own options, and the import. Throws Error (kUsage), DataError (with file
 /// and line), OutputError.
 class Importer {
  public:
   virtual ~Importer() = default;
   /// The options beside those of ImportOptions.
   virtual void declare(CLI::App& cli) = 0;
-  /// Before the log is opened: the format's own defaults for what the person did not say.
+  /// Before the log is opened: the format's own defaults for what the command line does not say.
   virtual void prepare(ImportOptions&) {}
   virtual void run(ImportLog& log) = 0;
 };

@@ -12,6 +12,7 @@
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
+#include "libperception/importers/KittiDetections.h"
 #include "libperception/importers/KittiFiles.h"
 
 namespace perception {
@@ -22,27 +23,6 @@ namespace {
 
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
-/// One detector's boxes, by frame.
-struct Detector {
-  std::string name;
-  KittiDetectionLayout layout{};
-  std::map<std::int64_t, std::vector<KittiLabel>> by_frame;
-};
-
-/// The layout goes by the name of the detector, or by what stands before its first dash
-/// (kitti2d-mine).
-const KittiDetectionLayout& layoutOf(const std::string& name) {
-  const std::string base = name.substr(0, name.find('-'));
-  std::string known;
-  for (const auto& layout : kittiDetectionLayouts()) {
-    if (layout.name == base) return layout;
-    known += (known.empty() ? "" : ", ") + std::string(layout.name);
-  }
-  failUsage(fmt::format(
-      "--detections: unknown detector '{}', expected one of {} (or one of these and '-anything')",
-      name, known));
-}
-
 /// The whole import of one sequence.
 class Import {
  public:
@@ -54,12 +34,10 @@ class Import {
   void checkParams() const;
   void readAll();
   void readPoses();
-  void readDetections();
   Stamp stampOf(std::int64_t frame) const;
   Pose3 egoAt(std::int64_t frame) const;
   void writeFrame(std::int64_t frame);
   std::optional<LidarCloud> readScan(std::int64_t frame);
-  void writeDetections(std::int64_t frame);
   void writeImage(std::int64_t frame);
   void addTruth(std::int64_t frame, const std::optional<LidarCloud>& cloud);
 
@@ -71,7 +49,7 @@ class Import {
   Pose3 T_ego_pose_ = Pose3::Identity();  ///< of the frame that the poses are of
   std::vector<Pose3> poses_;              ///< of that frame, in the frame of the file
   std::int64_t last_ = 0;
-  std::vector<Detector> detectors_;
+  KittiDetections detections_;
   std::map<std::int64_t, std::vector<KittiLabel>> labels_;
 };
 
@@ -110,24 +88,10 @@ void Import::readPoses() {
   }
 }
 
-void Import::readDetections() {
-  for (const auto& wanted : params_.detections) {
-    const KittiDetectionLayout& layout = layoutOf(wanted.name);
-    auto detector = std::find_if(detectors_.begin(), detectors_.end(),
-                                 [&](const Detector& d) { return d.name == wanted.name; });
-    if (detector == detectors_.end()) {
-      detector = detectors_.insert(detectors_.end(), Detector{wanted.name, layout, {}});
-    }
-    for (auto& d : readKittiDetections(wanted.file, layout.name, wanted.class_name)) {
-      detector->by_frame[d.frame].push_back(std::move(d));
-    }
-  }
-}
-
 void Import::readAll() {
   calibration_ = readKittiCalibration(params_.calibration);
   readPoses();
-  readDetections();
+  for (const auto& wanted : params_.detections) detections_.add(wanted);
   if (!params_.labels.empty()) {
     for (auto& label : readKittiLabels(params_.labels))
       labels_[label.frame].push_back(std::move(label));
@@ -179,39 +143,9 @@ void Import::writeFrame(std::int64_t frame) {
     scan.data = *cloud;
     log_.sensor(scan);
   }
-  writeDetections(frame);
+  detections_.write(frame, stamp, calibration_, T_ego_velo_, log_);
   if (!params_.images_dir.empty()) writeImage(frame);
   if (!params_.labels.empty()) addTruth(frame, cloud);
-}
-
-void Import::writeDetections(std::int64_t frame) {
-  const Pose3 T_ego_camera =
-      T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
-  for (const Detector& detector : detectors_) {
-    ObjectDetections found;
-    found.camera = calibration_.camera;
-    if (detector.layout.space_boxes) found.T_ego_camera = T_ego_camera;
-    const auto here = detector.by_frame.find(frame);
-    if (here != detector.by_frame.end()) {
-      for (const KittiLabel& d : here->second) {
-        ObjectDetection& object = found.objects.emplace_back();
-        object.label = d.type;
-        object.score = d.score;
-        if (d.image_box.x2 > d.image_box.x1 && d.image_box.y2 > d.image_box.y1)
-          object.image_box = d.image_box;
-        if (detector.layout.space_boxes && d.box)
-          object.space_box = boxInVelodyne(*d.box, calibration_);
-        if (detector.layout.has_alpha && std::abs(d.alpha) <= 2 * kPi)
-          object.heading = wrapAngle(d.alpha);
-      }
-    }
-    SensorFrame out;  // also without any object: that nothing was seen is news
-    out.sensor = detector.name;
-    out.stamp = stampOf(frame);
-    out.T_ego_sensor = detector.layout.space_boxes ? T_ego_velo_ : T_ego_camera;
-    out.data = std::move(found);
-    log_.sensor(out);
-  }
 }
 
 void Import::writeImage(std::int64_t frame) {
@@ -251,13 +185,12 @@ class KittiImporter final : public Importer {
   void declare(CLI::App& cli) override;
   void prepare(ImportOptions& options) override;
   void run(ImportLog& log) override {
-    for (const std::string& text : detections_) params_.detections.push_back(detectionsOf(text));
+    for (const std::string& text : detections_)
+      params_.detections.push_back(kittiDetectionsOf(text));
     Import(params_, log).run();
   }
 
  private:
-  static KittiImportParams::Detections detectionsOf(const std::string& text);
-
   KittiImportParams params_;
   std::vector<std::string> detections_;  ///< NAME:CLASS=FILE
 };
@@ -289,17 +222,6 @@ void KittiImporter::prepare(ImportOptions& options) {
   if (options.images == ImportOptions::Images::kReference)
     options.images = ImportOptions::Images::kCopy;
   if (options.rate <= 0) options.rate = 10;
-}
-
-KittiImportParams::Detections KittiImporter::detectionsOf(const std::string& text) {
-  const auto colon = text.find(':');
-  const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
-  if (colon == std::string::npos || equals == std::string::npos || colon == 0 ||
-      equals <= colon + 1 || equals + 1 == text.size()) {
-    failUsage(fmt::format("--detections '{}': expected NAME:CLASS=FILE", text));
-  }
-  return {text.substr(0, colon), text.substr(colon + 1, equals - colon - 1),
-          text.substr(equals + 1)};
 }
 
 }  // namespace

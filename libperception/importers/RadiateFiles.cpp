@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/importers/ImportClock.h"
+#include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportText.h"
 
 namespace perception {
@@ -98,6 +101,37 @@ RadiateCalibration readRadiateCalibration(const std::string& path) {
                                 path, what.substr(0, what.find('\n'))));
   }
   return c;
+}
+
+LidarCloud readRadiateScan(const std::string& path) {
+  CloudFormat format;
+  format.columns = {"x", "y", "z", "intensity", "ring"};
+  format.intensity_max = 255;
+  format.max_range = 100;  // [m] HDL-32E, data sheet
+  return readCloudFile(path, format);
+}
+
+std::vector<GpsFix> readRadiateFixes(const fs::path& dir, std::size_t& dropped) {
+  const FrameTimes times = readRadiateTimes(dir / "GPS_IMU_Twist.txt");
+  const CsvTable gps = CsvTable::fromFile((dir / "gps.csv").string());
+  std::vector<GpsFix> all;
+  for (std::size_t i = 0; i < gps.rows(); ++i) {
+    const auto time = times.find(gps.integer(i, gps.column("frame")));
+    if (time == times.end()) continue;
+    all.push_back({time->second, gps.real(i, gps.column("lat_deg")),
+                   gps.real(i, gps.column("lon_deg")), gps.real(i, gps.column("alt_m"))});
+  }
+  std::vector<GpsFix> fixes = steadyFixes(all, dropped);
+  if (fixes.empty()) throw DataError((dir / "gps.csv").string() + ": no fix with a time");
+  return fixes;
+}
+
+std::string radiateAnnotationFile(const fs::path& dir) {
+  for (const char* name :
+       {"annotations_18frames.json", "annotations/annotations.json", "annotations.json"}) {
+    if (fs::exists(dir / name)) return (dir / name).string();
+  }
+  return {};
 }
 
 }  // namespace perception

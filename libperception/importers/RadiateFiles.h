@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libperception/importers/ImportGps.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -14,6 +15,15 @@ using FrameTimes = std::map<std::int64_t, Stamp>;
 
 /// A sequence's times: "Frame: 000018 Time: 1574859771.700975000". Throws DataError.
 FrameTimes readRadiateTimes(const std::filesystem::path& path);
+
+/// A scan of the lidar. Throws DataError.
+LidarCloud readRadiateScan(const std::string& path);
+
+/// The fixes with a time, those left out while their clock was set back counted. Throws DataError.
+std::vector<GpsFix> readRadiateFixes(const std::filesystem::path& dir, std::size_t& dropped);
+
+/// The annotations of a sequence's folder; empty: none.
+std::string radiateAnnotationFile(const std::filesystem::path& dir);
 
 /// A box of the annotations, in pixels of Navtech_Cartesian.
 struct RadiateAnnotation {

@@ -11,7 +11,6 @@
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportClock.h"
-#include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportRadarPicture.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
@@ -26,6 +25,7 @@ namespace {
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kRadarLabel = "RADAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
+const std::vector<std::string> kScanEndings = {".csv", ".csv.gz"};
 /// [s] Radar frames that are older than the first fix by less go on with its velocity.
 constexpr double kBeforeFirstPose = 1;
 /// [s] of lidar scans that find the shift of the GPS clock.
@@ -48,22 +48,6 @@ struct RadiateParams {
   bool radar_images = false;  ///< also as images
 };
 
-/// Frames without a time are left out.
-void warnOfUntimed(const std::vector<std::int64_t>& frames, const std::string& dir,
-                   ImportLog& log) {
-  if (frames.empty()) return;
-  log.warn(fmt::format("{}: no time in {}.txt for {} frames (first: {}): left out", dir, dir,
-                       frames.size(), frames.front()));
-}
-
-CloudFormat lidarFormat() {
-  CloudFormat format;
-  format.columns = {"x", "y", "z", "intensity", "ring"};
-  format.intensity_max = 255;
-  format.max_range = 100;  // [m] HDL-32E, data sheet
-  return format;
-}
-
 /// RADIATE: a sequence's folder.
 class RadiateImporter final : public Importer {
  public:
@@ -72,11 +56,15 @@ class RadiateImporter final : public Importer {
 
  private:
   fs::path path(const char* name) const { return fs::path(params_.dir) / name; }
-  std::string annotationFile() const;
+  struct TimedFile {
+    FrameFile file;
+    Stamp stamp;
+  };
+  std::vector<TimedFile> timedFiles(const char* folder, const std::vector<std::string>& endings,
+                                    const FrameTimes& times, bool wanted, ImportLog& log) const;
   void addRadar(ImportLog& log);
   void addLidar(ImportLog& log);
   void addImages(ImportLog& log);
-  std::vector<GpsFix> readFixes(ImportLog& log) const;
   double gpsShift(const std::vector<GpsFix>& fixes, ImportLog& log) const;
   void addGps(ImportLog& log);
   void addTruth(ImportLog& log);
@@ -117,14 +105,6 @@ void RadiateImporter::declare(CLI::App& cli) {
   cli.add_flag("--radar-images", params_.radar_images, "the radar's pictures as images, too");
 }
 
-std::string RadiateImporter::annotationFile() const {
-  for (const char* name :
-       {"annotations_18frames.json", "annotations/annotations.json", "annotations.json"}) {
-    if (fs::exists(path(name))) return path(name).string();
-  }
-  return {};
-}
-
 std::optional<Pose3> RadiateImporter::egoAt(Stamp stamp) const {
   if (poses_.size() < 2) return {};
   if (stamp < poses_.front().stamp && poses_.front().stamp - stamp <= kBeforeFirstPose) {
@@ -134,21 +114,37 @@ std::optional<Pose3> RadiateImporter::egoAt(Stamp stamp) const {
   return poseBetween(poses_, stamp);
 }
 
-void RadiateImporter::addRadar(ImportLog& log) {
-  const std::string dir = path("Navtech_Cartesian").string();
-  const auto files = frameFiles(dir, {".png"});
+/// The files with a time; the others are left out with a warning. `wanted`: of the frames that are
+/// wanted alone.
+std::vector<RadiateImporter::TimedFile> RadiateImporter::timedFiles(
+    const char* folder, const std::vector<std::string>& endings, const FrameTimes& times,
+    bool wanted, ImportLog& log) const {
+  const std::string dir = path(folder).string();
+  std::vector<TimedFile> timed;
   std::vector<std::int64_t> untimed;
-  for (const FrameFile& file : files) {
-    if (!log.options().wants(file.number)) continue;
-    const auto time = radar_times_.find(file.number);
-    if (time == radar_times_.end()) {
+  for (const FrameFile& file : frameFiles(dir, endings)) {
+    if (wanted && !log.options().wants(file.number)) continue;
+    const auto time = times.find(file.number);
+    if (time == times.end()) {
       untimed.push_back(file.number);
-      continue;
+    } else {
+      timed.push_back({file, time->second});
     }
-    const Stamp stamp = radarStamp(time->second);
+  }
+  if (!untimed.empty()) {
+    log.warn(fmt::format("{}: no time in {}.txt for {} frames (first: {}): left out", dir, dir,
+                         untimed.size(), untimed.front()));
+  }
+  return timed;
+}
+
+void RadiateImporter::addRadar(ImportLog& log) {
+  for (const auto& [file, time] :
+       timedFiles("Navtech_Cartesian", {".png"}, radar_times_, true, log)) {
+    const Stamp stamp = radarStamp(time);
     if (!first_) first_ = stamp;
     last_ = stamp;
-    log.at(stamp, [this, stamp, file, &log] {
+    log.at(stamp, [this, stamp, file = file, &log] {
       log.frame(stamp, file.number);
       SensorFrame out;
       out.sensor = kRadarLabel;
@@ -165,82 +161,47 @@ void RadiateImporter::addRadar(ImportLog& log) {
       }
     });
   }
-  warnOfUntimed(untimed, dir, log);
-  if (!first_) throw DataError(dir + ": none of the wanted frames", ExitCode::kNoInput);
+  if (!first_)
+    throw DataError(path("Navtech_Cartesian").string() + ": none of the wanted frames",
+                    ExitCode::kNoInput);
   first_ = *first_ + -0.5;
   last_ = last_ + 0.5;
 }
 
 void RadiateImporter::addLidar(ImportLog& log) {
-  const std::string dir = path("velo_lidar").string();
   const FrameTimes times = readRadiateTimes(path("velo_lidar.txt"));
-  std::vector<std::int64_t> untimed;
-  for (const FrameFile& file : frameFiles(dir, {".csv", ".csv.gz"})) {
-    const auto time = times.find(file.number);
-    if (time == times.end()) {
-      untimed.push_back(file.number);
-      continue;
-    }
-    const Stamp stamp = time->second;
+  for (const auto& [file, stamp] : timedFiles("velo_lidar", kScanEndings, times, false, log)) {
     if (!inside(stamp)) continue;
-    log.at(stamp, [this, stamp, file, &log] {
+    log.at(stamp, [this, stamp = stamp, file = file, &log] {
       SensorFrame out;
       out.sensor = kLidarLabel;
       out.stamp = stamp;
       out.T_ego_sensor = T_ego_lidar_;
-      out.data = readCloudFile(file.path, lidarFormat());
+      out.data = readRadiateScan(file.path);
       log.sensor(out);
     });
   }
-  warnOfUntimed(untimed, dir, log);
 }
 
 void RadiateImporter::addImages(ImportLog& log) {
   if (!fs::exists(path("zed_left"))) return;
-  const std::string dir = path("zed_left").string();
   const FrameTimes times = readRadiateTimes(path("zed_left.txt"));
   // Optical axes: x right, y down, z ahead; the calibration's turn of a degree is left out, since
   // its order is not documented.
   Pose3 T_ego_camera = makePose(calibration_.camera.y(), -calibration_.camera.x(),
                                 radar_height_ + calibration_.camera.z(), 0);
   T_ego_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  std::vector<std::int64_t> untimed;
-  for (const FrameFile& file : frameFiles(dir, {".png", ".jpg"})) {
-    const auto time = times.find(file.number);
-    if (time == times.end()) {
-      untimed.push_back(file.number);
-      continue;
-    }
-    if (!inside(time->second)) continue;
+  for (const auto& [file, stamp] : timedFiles("zed_left", {".png", ".jpg"}, times, false, log)) {
+    if (!inside(stamp)) continue;
     ImportedImage image;
     image.label = kImageLabel;
     image.path = file.path;
-    image.stamp = time->second;
+    image.stamp = stamp;
     image.camera = calibration_.model;
     image.T_ego_camera = T_ego_camera;
     image.distortion = calibration_.distortion;
-    log.at(image.stamp, [image, file, &log] { log.image(image, file.number); });
+    log.at(image.stamp, [image, number = file.number, &log] { log.image(image, number); });
   }
-  warnOfUntimed(untimed, dir, log);
-}
-
-std::vector<GpsFix> RadiateImporter::readFixes(ImportLog& log) const {
-  const FrameTimes times = readRadiateTimes(path("GPS_IMU_Twist.txt"));
-  const CsvTable gps = CsvTable::fromFile(path("gps.csv").string());
-  std::vector<GpsFix> all;
-  for (std::size_t i = 0; i < gps.rows(); ++i) {
-    const auto time = times.find(gps.integer(i, gps.column("frame")));
-    if (time == times.end()) continue;
-    all.push_back({time->second, gps.real(i, gps.column("lat_deg")),
-                   gps.real(i, gps.column("lon_deg")), gps.real(i, gps.column("alt_m"))});
-  }
-  std::size_t dropped = 0;
-  std::vector<GpsFix> fixes = steadyFixes(all, dropped);
-  if (fixes.empty()) throw DataError(path("gps.csv").string() + ": no fix with a time");
-  if (dropped > 0)
-    log.warn(fmt::format("{}: {} fixes left out while their clock was set back",
-                         path("gps.csv").string(), dropped));
-  return fixes;
 }
 
 /// The shift of the GPS clock that makes the scans in the middle of the wanted part agree.
@@ -249,10 +210,10 @@ double RadiateImporter::gpsShift(const std::vector<GpsFix>& fixes, ImportLog& lo
   const double at_once = times.begin()->second - fixes.front().stamp;
   const Stamp middle = *first_ + (last_ - *first_) / 2;
   std::vector<StampedScan> scans;
-  for (const FrameFile& file : frameFiles(path("velo_lidar").string(), {".csv", ".csv.gz"})) {
+  for (const FrameFile& file : frameFiles(path("velo_lidar").string(), kScanEndings)) {
     const auto time = times.find(file.number);
     if (time == times.end() || std::abs(time->second - middle) > kShiftScans / 2) continue;
-    const LidarCloud cloud = readCloudFile(file.path, lidarFormat());
+    const LidarCloud cloud = readRadiateScan(file.path);
     auto& scan = scans.emplace_back(time->second, std::vector<Vector3>());
     for (std::size_t i = 0; i < cloud.size(); ++i)
       scan.second.push_back(T_ego_lidar_ * Vector3(cloud.x[i], cloud.y[i], cloud.z[i]));
@@ -267,7 +228,11 @@ double RadiateImporter::gpsShift(const std::vector<GpsFix>& fixes, ImportLog& lo
 
 void RadiateImporter::addGps(ImportLog& log) {
   if (!fs::exists(path("gps.csv"))) return;
-  std::vector<GpsFix> fixes = readFixes(log);
+  std::size_t dropped = 0;
+  std::vector<GpsFix> fixes = readRadiateFixes(params_.dir, dropped);
+  if (dropped > 0)
+    log.warn(fmt::format("{}: {} fixes left out while their clock was set back",
+                         path("gps.csv").string(), dropped));
   const double shift = params_.gps_shift ? *params_.gps_shift : gpsShift(fixes, log);
   for (GpsFix& fix : fixes) fix.stamp = fix.stamp + shift;
   poses_ = posesOfFixes(fixes);
@@ -292,7 +257,7 @@ void RadiateImporter::addGps(ImportLog& log) {
 }
 
 void RadiateImporter::addTruth(ImportLog& log) {
-  const std::string file = annotationFile();
+  const std::string file = radiateAnnotationFile(params_.dir);
   if (file.empty()) return;
   log.expectTruth();
   const cv::Mat picture = cv::imread(

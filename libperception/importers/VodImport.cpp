@@ -1,11 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/LU>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "libperception/core/Error.h"
@@ -13,6 +10,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/KittiFiles.h"
+#include "libperception/importers/VodFiles.h"
 
 namespace perception {
 
@@ -40,79 +38,6 @@ constexpr Part kRadarCalibration{"calib_radar", "radar/training/calib"};
 constexpr Part kImages{"image_2", "lidar/training/image_2"};
 constexpr Part kLabels{"label_2", "lidar/training/label_2"};
 constexpr Part kPoses{"pose", "lidar/training/pose"};
-
-/// One point of the radar file.
-struct RadarPoint {
-  float x, y, z, rcs, rate, rate_compensated, time;
-};
-static_assert(sizeof(RadarPoint) == 28, "7 float32 a point");
-
-std::vector<RadarPoint> readRadar(const std::string& path) {
-  const std::string bytes = readBytes(path);
-  if (bytes.size() % sizeof(RadarPoint) != 0) {
-    throw DataError(fmt::format(
-        "{}: {} bytes, expected 28 a point (float32 x, y, z, RCS, v_r, v_r_compensated, time)",
-        path, bytes.size()));
-  }
-  std::vector<RadarPoint> points(bytes.size() / sizeof(RadarPoint));
-  std::memcpy(points.data(), bytes.data(), bytes.size());
-  return points;
-}
-
-/// In a still world the vehicle stands, too: rates over ground then.
-RadarReturns returnsOf(const std::vector<RadarPoint>& points, bool still) {
-  RadarReturns out;
-  for (const RadarPoint& p : points) {
-    const double flat = std::hypot(p.x, p.y);
-    RadarReturn& r = out.returns.emplace_back();
-    r.range = std::hypot(flat, static_cast<double>(p.z));
-    r.bearing = std::atan2(p.y, p.x);
-    r.elevation = std::atan2(static_cast<double>(p.z), flat);
-    r.range_rate = still ? p.rate_compensated : p.rate;
-    r.amplitude = p.rcs;
-  }
-  return out;
-}
-
-/// [m/s] Of the radar in its own frame, which v_r - v_r_compensated = -(u, velocity) tells.
-Vector2 ownVelocity(const std::vector<RadarPoint>& points) {
-  Matrix2 a = Matrix2::Zero();
-  Vector2 b = Vector2::Zero();
-  for (const RadarPoint& p : points) {
-    const double range = std::hypot(std::hypot(p.x, p.y), static_cast<double>(p.z));
-    if (!(range > 0) || !std::isfinite(range + p.rate + p.rate_compensated)) continue;
-    const Vector2 u(p.x / range, p.y / range);
-    a += u * u.transpose();
-    b -= u * static_cast<double>(p.rate - p.rate_compensated);
-  }
-  if (!(a.determinant() > 1e-6)) return Vector2::Zero();
-  return a.inverse() * b;
-}
-
-/// odomToCamera of a pose file (one JSON object a line): the camera's pose in the odometry's frame.
-Pose3 readPose(const std::string& path) {
-  Pose3 pose = Pose3::Identity();
-  bool found = false;
-  std::size_t line = 0;
-  const std::string bytes = readBytes(path);
-  for (std::size_t begin = 0; begin < bytes.size() && !found; ++line) {
-    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
-    const auto json =
-        nlohmann::json::parse(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
-                              bytes.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-    begin = end + 1;
-    if (!json.is_object() || !json.contains("odomToCamera")) continue;
-    const auto& values = json["odomToCamera"];
-    if (!values.is_array() || values.size() != 16) break;
-    std::string text;
-    for (std::size_t i = 0; i < 12; ++i)
-      text += (values[i].is_number() ? values[i].dump() : "?") + " ";
-    pose = TextRow(path, line + 1, text, kSpaces).pose34(0);
-    found = true;
-  }
-  if (!found) throw DataError(path + ": no odomToCamera of 16 numbers, expected a VoD pose");
-  return pose;
-}
 
 /// A label's box in the lidar's frame: its rotation turns about the lidar's -z axis.
 ObjectDetection::SpaceBox boxOf(const KittiBox& box, const Pose3& T_lidar_camera) {
@@ -145,7 +70,7 @@ class VodImporter final : public Importer {
     Pose3 T_cam_radar = Pose3::Identity();
     std::optional<Pose3> T_odom_camera;
     std::optional<LidarCloud> cloud;
-    std::vector<RadarPoint> radar;
+    std::vector<VodRadarPoint> radar;
     bool has_radar = false;
     std::vector<KittiLabel> labels;
     std::string image;
@@ -205,11 +130,11 @@ VodImporter::Frame VodImporter::read(const FrameFile& f, ImportLog& log) const {
   const std::string radar = optional(kRadar, "radar scan", {".bin", ".bin.gz"});
   if (!radar.empty()) {
     frame.T_cam_radar = need(kRadarCalibration).T_cam0_velo;
-    frame.radar = readRadar(radar);
+    frame.radar = readVodRadar(radar);
     frame.has_radar = true;
   }
   const std::string pose = optional(kPoses, "pose", {".json"});
-  if (!pose.empty()) frame.T_odom_camera = readPose(pose);
+  if (!pose.empty()) frame.T_odom_camera = readVodPose(pose);
   const std::string labels = optional(kLabels, "labels", {".txt"});
   if (!labels.empty()) frame.labels = readKittiObjectLabels(labels, f.number);
   frame.image = optional(kImages, "image", {".jpg", ".png"});

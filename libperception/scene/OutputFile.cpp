@@ -45,6 +45,12 @@ void OutputFile::fail(int reason) const {
       ExitCode::kIoError);
 }
 
+void createFolder(const std::string& path) {
+  std::error_code failed;
+  if (!path.empty()) std::filesystem::create_directories(path, failed);
+  if (failed) throw OutputError(fmt::format("{}: cannot be created: {}", path, failed.message()));
+}
+
 void writeFile(const std::string& path, std::string_view text) {
   OutputFile file(path);
   file.write(text);

@@ -28,6 +28,10 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
+/// Creates a folder and those above it; nothing for an empty path. Throws OutputError
+/// (kCannotCreate).
+void createFolder(const std::string& path);
+
 /// Writes a whole file at once. Throws OutputError.
 void writeFile(const std::string& path, std::string_view text);
 

@@ -302,7 +302,7 @@ TEST(SetFigures, PartsSumToTheMeanSquare) {
   EXPECT_NEAR(*f.localization + *f.missed + *f.false_, *f.gospa_rms * *f.gospa_rms, kTiny);
   EXPECT_NEAR(*f.missed_objects, 0.5, kTiny);
   EXPECT_NEAR(*f.false_objects, 0.5, kTiny);
-  EXPECT_NEAR(*f.localisation_rms, 1, kTiny);
+  EXPECT_NEAR(*f.localization_rms, 1, kTiny);
   EXPECT_NEAR(*f.ospa_mean, (std::sqrt(5.0 / 2) + 2) / 2, kTiny);
 }
 
@@ -421,7 +421,7 @@ TEST(WholeRun, ShiftedByAMeterHasExactlyThatError) {
   EXPECT_LE(*f.range_rms, 1);
   EXPECT_LE(*f.center_range_rms, 1);
   const SetFigures sets = setFigures(e, 2);
-  EXPECT_NEAR(*sets.localisation_rms, 1, kTiny);
+  EXPECT_NEAR(*sets.localization_rms, 1, kTiny);
   EXPECT_EQ(sets.missed, 0);
   EXPECT_EQ(sets.false_, 0);
   EXPECT_NEAR(*sets.ospa_mean, 1, kTiny);

@@ -1,0 +1,45 @@
+#include "libperception/core/Error.h"
+#include "libperception/evaluation/Evaluation.h"
+
+namespace perception {
+namespace {
+
+// Truth objects of pooled runs are numbered run by run.
+constexpr std::int64_t kIdsOfARun = 1000000;
+
+}  // namespace
+
+Evaluation pooled(const std::vector<const Evaluation*>& parts) {
+  Evaluation sum;
+  std::int64_t run = 0;
+  for (const Evaluation* part : parts) {
+    if (run == 0) {
+      sum.class_names = part->class_names;
+      sum.named = part->named;
+      sum.sensors = part->sensors;
+    } else if (part->class_names != sum.class_names || part->named != sum.named) {
+      throw DataError("runs with different classes cannot be pooled");
+    }
+    const std::size_t first = sum.instants.size();
+    sum.instants.insert(sum.instants.end(), part->instants.begin(), part->instants.end());
+    for (TruthSample sample : part->samples) {
+      sample.instant += first;
+      if (sample.id >= 0) sample.id = run * kIdsOfARun + sample.id % kIdsOfARun;
+      sum.samples.push_back(std::move(sample));
+    }
+    for (ExistenceSample sample : part->existence) {
+      sample.instant += first;
+      sum.existence.push_back(sample);
+    }
+    sum.alignment.by_frame += part->alignment.by_frame;
+    sum.alignment.by_time += part->alignment.by_time;
+    sum.alignment.assumed_empty += part->alignment.assumed_empty;
+    sum.alignment.scenes_without_truth += part->alignment.scenes_without_truth;
+    sum.alignment.truth_without_scene += part->alignment.truth_without_scene;
+    for (std::size_t u = 0; u < sum.truth_use.size(); ++u) sum.truth_use[u] += part->truth_use[u];
+    ++run;
+  }
+  return sum;
+}
+
+}  // namespace perception

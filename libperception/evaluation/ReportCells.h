@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "libperception/evaluation/Report.h"
+
+namespace perception {
+
+using Row = std::vector<std::string>;
+
+inline constexpr const char* kNotAvailable = "n/a";
+inline constexpr Pairing kAllPairings[] = {Pairing::kClosest, Pairing::kOneToOne};
+
+/// A table without rows whose first columns are words.
+ReportTable makeTable(std::string title, Row labels, const Row& numbers);
+
+/// With so many places, or n/a.
+std::string number(const Figure& figure, int places = 3);
+/// A count of what there is a truth for; without any truth it is unknown, not 0.
+std::string countOf(std::size_t count, bool known);
+const char* nameOf(Pairing pairing);
+/// -1 is called all.
+std::string className(const Evaluation& evaluation, ClassId c);
+
+// Tables of one run.
+ReportTable confusionTable(const EvaluatedRun& run, Pairing pairing);
+ReportTable reliabilityTable(const EvaluatedRun& run);
+ReportTable existenceTable(const EvaluatedRun& run);
+ReportTable objectTable(const EvaluatedRun& run);
+
+}  // namespace perception

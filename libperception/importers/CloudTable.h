@@ -1,0 +1,72 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libperception/importers/ImportText.h"
+
+namespace perception {
+
+/// One column of numbers as a file stores it.
+struct CloudColumn {
+  std::string name;
+  char kind = 'F';       ///< F float, I signed, U unsigned
+  std::size_t size = 4;  ///< [bytes] of a number
+  std::size_t count = 1;
+  std::size_t bytes() const { return size * count; }
+  /// Whether numbers of this kind and size can be read.
+  bool isKnown() const;
+  /// The number that stands there, little-endian.
+  double numberAt(const char* bytes) const;
+};
+
+/// Columns of numbers, whatever the file was.
+struct CloudTable {
+  std::vector<CloudColumn> columns;
+  std::size_t rows = 0;
+  std::vector<std::vector<double>> values;  ///< [column][row]; of columns of several the first
+
+  void resize(std::size_t n) {
+    rows = n;
+    values.assign(columns.size(), std::vector<double>(n));
+  }
+  std::size_t rowBytes() const;
+};
+
+/// Lines of a text, with their numbers.
+class TextLines {
+ public:
+  TextLines(const std::string& path, std::string_view text) : path_(path), text_(text) {}
+  /// The next line without its end; empty at the end of the text.
+  std::optional<std::string_view> next();
+  std::string_view rest() const { return text_.substr(std::min(at_, text_.size())); }
+  /// Throws DataError with file and line.
+  [[noreturn]] void fail(const std::string& message) const;
+  TextRow row(std::string_view line, const char* separators = kSpaces) const {
+    return TextRow(path_, number_, line, separators);
+  }
+
+ private:
+  const std::string& path_;
+  std::string_view text_;
+  std::size_t at_ = 0, number_ = 0;
+};
+
+/// Row after row of binary numbers, each with all its columns; `swapped`: big-endian.
+void readRows(std::string_view data, bool swapped, CloudTable& table);
+/// Rows of text with the table's columns; "nan" is a number.
+void readTextRows(TextLines& lines, const char* separators, CloudTable& table);
+
+/// Throws DataError: more points than any scanner has.
+void checkCount(const std::string& path, std::size_t points);
+/// Throws DataError: fewer bytes than expected.
+void checkSize(const std::string& path, std::size_t got, std::size_t expected);
+
+/// PCD of PCL 0.7 (ascii, binary, binary_compressed) and PLY (ascii, binary of both byte orders).
+CloudTable readPcd(const std::string& path, const std::string& bytes);
+CloudTable readPly(const std::string& path, const std::string& bytes);
+
+}  // namespace perception

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// One point of the radar file.
+struct VodRadarPoint {
+  float x, y, z, rcs, rate, rate_compensated, time;
+};
+static_assert(sizeof(VodRadarPoint) == 28, "7 float32 a point");
+
+/// Throws DataError.
+std::vector<VodRadarPoint> readVodRadar(const std::string& path);
+
+/// `still`: in a still world the vehicle stands, too, and rates are those over ground.
+RadarReturns returnsOf(const std::vector<VodRadarPoint>& points, bool still);
+
+/// [m/s] Of the radar in its own frame, which v_r - v_r_compensated = -(u, velocity) tells.
+Vector2 ownVelocity(const std::vector<VodRadarPoint>& points);
+
+/// odomToCamera of a pose file (one JSON object a line): the camera's pose in the odometry's frame.
+/// Throws DataError.
+Pose3 readVodPose(const std::string& path);
+
+}  // namespace perception
