@@ -6,17 +6,16 @@
 #include <cmath>
 
 #include "gui-offscreen/LabelLayout.h"
+#include "gui-offscreen/ViewPen.h"
 
 namespace perception {
 namespace {
 
 constexpr double kReach = 90, kMutedReach = 4;  // [px] from an object to its label
-constexpr double kAxisStep = 10;                // [m]
 constexpr double kLabelSize = 8.5;              // [px] height of capitals
 constexpr double kSmallSize = 7.5;              // [px]
 constexpr double kArrowTime = 1;                // [s] the speed arrow shows the way of so long
 constexpr double kStanding = 0.5;               // [m/s] below it there is no arrow
-constexpr double kDash = 4;                     // [px]
 constexpr double kImageReach = 1.5;  // of the range: farther objects crowd at the horizon
 
 /// Draws what is given in the ego frame.
@@ -27,15 +26,14 @@ class Overlay {
         view_(view),
         camera_(camera),
         at_(at),
+        pen_(canvas, camera, at),
         T_ego_world_(view.scene.ego.T_world_ego.inverse()),
         ego_yaw_(yawOf(view.scene.ego.T_world_ego)) {}
 
   int draw() {
     canvas_.clip(at_);
     if (camera_.kind == ViewKind::kCamera) return drawOnImage();
-    drawAxes();
-    drawFreeDistance();
-    drawVehicle();
+    taken_ = drawSurroundings(pen_, view_);
     for (const ViewRadarReturn& point : view_.radar) drawRadar(point);
     for (const SceneObject& object : view_.scene.objects) drawTrail(object);
     for (const SceneObject& object : view_.scene.objects) drawOutline(object);
@@ -48,50 +46,17 @@ class Overlay {
   }
 
  private:
-  std::optional<Vector2> pixel(const Vector3& p) const {
-    const auto px = camera_.project(p);
-    if (!px) return std::nullopt;
-    return Vector2(px->x() + at_.x, px->y() + at_.y);
-  }
-
-  void line(const Vector3& a, const Vector3& b, const Color& color, double thickness,
-            bool dashed = false) {
-    const Vector2 corner(at_.x, at_.y);
-    for (const auto& [from, to] : camera_.projectLine(a, b)) {
-      if (dashed) {
-        canvas_.dashedLine(from + corner, to + corner, color, thickness, kDash);
-      } else {
-        canvas_.line(from + corner, to + corner, color, thickness);
-      }
-    }
-  }
-
-  void box(const std::array<Vector3, 8>& c, const Color& color, double thickness, bool dashed) {
-    const bool flat = camera_.kind == ViewKind::kTop;  // roof and floor coincide
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::size_t next = (i + 1) % 4;
-      line(c[i], c[next], color, thickness, dashed);
-      if (flat) continue;
-      line(c[i + 4], c[next + 4], color, thickness, dashed);
-      line(c[i], c[i + 4], color, thickness, dashed);
-    }
-  }
+  std::optional<Vector2> pixel(const Vector3& p) const { return pen_.pixel(p); }
 
   std::array<Vector3, 8> cornersOf(const SceneObject& o) const {
     return boxCorners(T_ego_world_ * o.position, o.yaw - ego_yaw_, o.length, o.width, o.height);
   }
 
-  void drawAxes();
-  void axisText(const Vector3& place, const std::string& text);
-  void drawScale();
-  void drawFreeDistance();
-  void drawVehicle();
-
   void drawTruth(const TruthObject& o) {
     const auto corners =
         boxCorners(T_ego_world_ * o.position, o.yaw - ego_yaw_, o.length, o.width, o.height);
-    box(corners, kPaper, 3, false);  // a rim, so that it stands out on outlines, too
-    box(corners, kInk, 1.2, false);
+    pen_.box(corners, kPaper, 3, false);  // a rim, so that it stands out on outlines, too
+    pen_.box(corners, kInk, 1.2, false);
   }
 
   int drawOnImage();
@@ -112,7 +77,7 @@ class Overlay {
     const Color color = colorOfClass(view_.className(object), object.class_id);
     const auto& places = trail->second;
     for (std::size_t i = 1; i < places.size(); ++i) {
-      line(T_ego_world_ * places[i - 1], T_ego_world_ * places[i], color, 1.5);
+      pen_.line(T_ego_world_ * places[i - 1], T_ego_world_ * places[i], color, 1.5);
     }
   }
 
@@ -120,13 +85,13 @@ class Overlay {
     const Color color = colorOfClass(view_.className(object), object.class_id);
     const auto corners = cornersOf(object);
     const bool muted = isMuted(view_.className(object));
-    box(corners, color, muted ? 1.2 : 2, object.existence < kSureExistence);
+    pen_.box(corners, color, muted ? 1.2 : 2, object.existence < kSureExistence);
     // A bar across the front tells front from rear.
     if (!muted && object.has_yaw) {
       const auto inward = [&](std::size_t front, std::size_t rear) -> Vector3 {
         return corners[front] + 0.2 * (corners[rear] - corners[front]);
       };
-      line(inward(4, 7), inward(5, 6), color, 2);
+      pen_.line(inward(4, 7), inward(5, 6), color, 2);
     }
   }
 
@@ -149,97 +114,11 @@ class Overlay {
   const SceneView& view_;
   const ViewCamera& camera_;
   Rect at_;
+  ViewPen pen_;
   Pose3 T_ego_world_;
   double ego_yaw_;
   std::vector<Rect> taken_;  // by text that is there already
 };
-
-void Overlay::axisText(const Vector3& place, const std::string& text) {
-  const auto at = pixel(place);
-  if (!at) return;
-  const double width = Canvas::textWidth(text, kSmallSize);
-  const Rect rect{at->x() - width / 2 - 2, at->y() - kSmallSize / 2 - 2, width + 4, kSmallSize + 4};
-  if (!at_.contains(rect)) return;
-  for (const Rect& other : taken_) {
-    if (other.overlaps(rect)) return;
-  }
-  canvas_.rectangle(rect, kPaper.withAlpha(0.75));
-  canvas_.text({rect.x + 2, rect.bottom() - 2}, text, kSmallSize, kMutedInk);
-  taken_.push_back(rect);
-}
-
-// Top: distances ahead along the left edge, to the sides along the lower edge. Driver: distances
-// ahead along the lane.
-void Overlay::drawAxes() {
-  drawScale();
-  if (camera_.kind == ViewKind::kDriver) {
-    for (double x = kAxisStep; x <= 6 * kAxisStep; x += kAxisStep) {
-      axisText({x, -3, 0}, fmt::format("{:.0f} m", x));
-    }
-    return;
-  }
-  const double scale = camera_.scaleAt({0, 0, 0});
-  const double left = at_.width / 2 / scale - 26 / scale;
-  const double lowest = camera_.T_ego_camera.translation().x() - (at_.height / 2 - 12) / scale;
-  for (double x = -10 * kAxisStep; x <= 10 * kAxisStep; x += kAxisStep) {
-    axisText({x, left, 0}, fmt::format("x {:.0f} m", x));
-  }
-  for (double y = -10 * kAxisStep; y <= 10 * kAxisStep; y += kAxisStep) {
-    axisText({lowest, y, 0}, fmt::format("y {:.0f} m", y));
-  }
-}
-
-void Overlay::drawScale() {
-  if (camera_.kind != ViewKind::kTop) return;
-  const double length = kAxisStep * camera_.scaleAt({0, 0, 0});
-  const Rect box{at_.right() - length - 24, at_.bottom() - 52, length + 16, 26};
-  canvas_.rectangle(box, kPaper.withAlpha(0.8));
-  taken_.push_back(box);
-  const Vector2 a(box.x + 8, box.bottom() - 6), b(box.right() - 8, box.bottom() - 6);
-  canvas_.line(a, b, kInk, 1.5);
-  for (const Vector2& end : {a, b}) {
-    canvas_.line(end - Vector2(0, 4), end + Vector2(0, 4), kInk, 1.5);
-  }
-  const std::string text = fmt::format("{:.0f} m", kAxisStep);
-  canvas_.text({(a.x() + b.x() - Canvas::textWidth(text, kSmallSize)) / 2, box.y + 3 + kSmallSize},
-               text, kSmallSize, kInk);
-}
-
-// The lane as it is steered up to the first occupied cell, and a bar where it ends.
-void Overlay::drawFreeDistance() {
-  if (!view_.corridor) return;
-  constexpr double kPiece = 2;  // [m] drawn straight, and of gap
-  const Corridor& lane = *view_.corridor;
-  const auto place = [&](double s, double d) -> Vector3 {
-    const Vector2 p = onArc(lane, {s, d});
-    return {p.x(), p.y(), 0};
-  };
-  const double half = lane.width / 2, end = view_.free.distance;
-  for (const double d : {half, -half}) {
-    for (double s = lane.from; s < end; s += 2 * kPiece) {
-      line(place(s, d), place(std::min(s + kPiece, end), d), kMutedInk, 1.2);
-    }
-  }
-  if (view_.free.blocked) line(place(end, half), place(end, -half), kInk, 3);
-}
-
-void Overlay::drawVehicle() {
-  const auto a = pixel({kEgoMiddle - 1, 0, 1.6}), b = pixel({kEgoMiddle + 1.8, 0, 1.6});
-  if (camera_.kind == ViewKind::kTop && a && b) canvas_.arrow(*a, *b, kPaper, 2);
-  const auto corners = boxCorners({kEgoMiddle, 0, 0}, 0, 4.4, 1.8, 1.6);
-  Rect frame;
-  for (const Vector3& corner : corners) {
-    const auto p = pixel(corner);
-    if (!p) return;
-    if (frame.width == 0) frame = {p->x(), p->y(), 1, 1};
-    const double right = std::max(frame.right(), p->x()), low = std::max(frame.bottom(), p->y());
-    frame.x = std::min(frame.x, p->x());
-    frame.y = std::min(frame.y, p->y());
-    frame.width = right - frame.x;
-    frame.height = low - frame.y;
-  }
-  taken_.push_back(frame);
-}
 
 // A camera of the vehicle: its image or, where the log has none, the lidar's returns in its place;
 // boxes from far to near.
@@ -283,7 +162,7 @@ void Overlay::drawDetectorBoxes() {
     const Vector2 c[] = {{b.x1, b.y1}, {b.x2, b.y1}, {b.x2, b.y2}, {b.x1, b.y2}};
     for (int i = 0; i < 4; ++i) {
       canvas_.dashedLine(corner + scale * c[i], corner + scale * c[(i + 1) % 4], kDetectorBox, 1.5,
-                         kDash);
+                         ViewPen::kDash);
     }
   }
 }
@@ -303,8 +182,8 @@ void Overlay::drawRadar(const ViewRadarReturn& point) {
 void Overlay::drawMeasurement(const ViewMeasurement& measurement) {
   const auto& outline = measurement.outline;
   for (std::size_t i = 0; i < outline.size(); ++i) {
-    line(T_ego_world_ * outline[i], T_ego_world_ * outline[(i + 1) % outline.size()], kMeasurement,
-         1.2);
+    pen_.line(T_ego_world_ * outline[i], T_ego_world_ * outline[(i + 1) % outline.size()],
+              kMeasurement, 1.2);
   }
   const auto at = pixel(T_ego_world_ * measurement.place);
   if (at) drawMeasurementMark(canvas_, *at, measurement.modality);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "libperception/core/Error.h"
+#include "libperception/measurement/SensorFrame.h"
 #include "libperception/scene/OutputFile.h"
 
 namespace perception {
@@ -30,6 +31,21 @@ void writePng(const std::string& path, const Picture& picture) {
     throw OutputError(path + ": the picture cannot be encoded", ExitCode::kIoError);
   }
   writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+Picture pictureOf(const Raster& raster) {
+  Picture picture{raster.width, raster.height, {}};
+  const auto pixels =
+      static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height);
+  const auto channels = static_cast<std::size_t>(raster.channels);
+  if (raster.pixels.size() < pixels * channels || channels == 0) return {};
+  picture.rgb.resize(pixels * 3);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      picture.rgb[3 * i + c] = raster.pixels[i * channels + (channels >= 3 ? 2 - c : 0)];
+    }
+  }
+  return picture;
 }
 
 }  // namespace perception

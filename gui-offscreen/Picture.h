@@ -21,4 +21,8 @@ std::size_t colorsOf(const Picture& picture);
 /// Writes a PNG. Throws OutputError naming the path.
 void writePng(const std::string& path, const Picture& picture);
 
+struct Raster;
+/// Gray or color, without a transparency; empty for an image that is none.
+Picture pictureOf(const Raster& raster);
+
 }  // namespace perception

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <map>
 
+#include "gui-offscreen/HtmlText.h"
+#include "gui-offscreen/ObjectLives.h"
 #include "gui-offscreen/ReportStyle.h"
 #include "libperception/scene/ClassColors.h"
 
@@ -17,86 +19,10 @@ constexpr double kShortest = 0.5;      // [s] objects seen for less have no row
 constexpr std::size_t kMostRows = 80;  // of the timeline; the longest seen stay
 constexpr double kLabelWidth = 130, kChartWidth = 900, kRow = 16, kAxis = 24;  // [px]
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-std::string spaced(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return escaped(name);
-}
-
-/// One object over the run.
-struct Life {
-  std::uint64_t id = 0;
-  /// A stretch of time with one class.
-  struct Stretch {
-    double from = 0, to = 0;  // [s] of the log
-    ClassId class_id = 0;
-    bool sure = false;
-  };
-  std::vector<Stretch> stretches;
-  ClassId last_class = 0;
-  double probability = 0;               // of that class, at the end
-  double top_speed = 0, nearest = 1e9;  // [m/s], [m] from the ego origin
-  double from() const { return stretches.front().from; }
-  double to() const { return stretches.back().to; }
-};
-
-// Gaps of more than two scene periods part a stretch.
-std::vector<Life> livesOf(const TrackedRun& run) {
-  std::map<std::uint64_t, Life> lives;
-  double period = 0.1;
-  if (run.scenes.size() > 1) {
-    period = (run.scenes.back().stamp - run.scenes.front().stamp) /
-             static_cast<double>(run.scenes.size() - 1);
-  }
-  for (const Scene& scene : run.scenes) {
-    const double t = scene.stamp - run.first_stamp;
-    for (const SceneObject& o : scene.objects) {
-      Life& life = lives[o.id];
-      life.id = o.id;
-      const bool goes_on = !life.stretches.empty() && life.last_class == o.class_id &&
-                           life.stretches.back().sure == o.classified &&
-                           t - life.stretches.back().to < 2.5 * period;
-      if (!goes_on) life.stretches.push_back({t, t, o.class_id, o.classified});
-      life.stretches.back().to = t + period;
-      life.last_class = o.class_id;
-      const auto c = static_cast<std::size_t>(o.class_id);
-      life.probability = c < o.class_probability.size() ? o.class_probability[c] : 0;
-      life.top_speed = std::max(life.top_speed, o.velocity.norm());
-      life.nearest = std::min(life.nearest,
-                              (o.position - scene.ego.T_world_ego.translation()).head<2>().norm());
-    }
-  }
-  std::vector<Life> list;
-  for (auto& [id, life] : lives) list.push_back(std::move(life));
-  return list;
-}
-
 class Page {
  public:
   explicit Page(const ReportContent& content) : content_(content), run_(*content.run) {
-    for (Life& life : livesOf(run_)) {
+    for (ObjectLife& life : objectLives(run_)) {
       if (isMuted(nameOf(life.last_class))) {
         ++still_;
       } else if (life.to() - life.from() < kShortest) {
@@ -105,7 +31,7 @@ class Page {
         lives_.push_back(std::move(life));
       }
     }
-    std::stable_sort(lives_.begin(), lives_.end(), [](const Life& a, const Life& b) {
+    std::stable_sort(lives_.begin(), lives_.end(), [](const ObjectLife& a, const ObjectLife& b) {
       return a.to() - a.from() > b.to() - b.from();
     });
     if (lives_.size() > kMostRows) {
@@ -113,7 +39,7 @@ class Page {
       lives_.resize(kMostRows);
     }
     std::stable_sort(lives_.begin(), lives_.end(),
-                     [](const Life& a, const Life& b) { return a.from() < b.from(); });
+                     [](const ObjectLife& a, const ObjectLife& b) { return a.from() < b.from(); });
     end_ = run_.scenes.empty() ? 1 : run_.scenes.back().stamp - run_.first_stamp + 0.1;
   }
 
@@ -158,7 +84,7 @@ class Page {
 
   const ReportContent& content_;
   const TrackedRun& run_;
-  std::vector<Life> lives_;  // rows of the timeline, by first sight
+  std::vector<ObjectLife> lives_;  // rows of the timeline, by first sight
   std::size_t still_ = 0, brief_ = 0, left_out_ = 0;
   double end_ = 1;  // [s] of the time axis
   std::string out_;
@@ -272,11 +198,11 @@ void Page::timeline() {
         x(t), kAxis - 4, height, t);
   }
   double y = kAxis;
-  for (const Life& life : lives_) {
+  for (const ObjectLife& life : lives_) {
     const std::string name = spaced(nameOf(life.last_class));
     out_ += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\">{} {}</text>\n",
                         kLabelWidth - 8, y + 12, life.id, name);
-    for (const Life::Stretch& s : life.stretches) {
+    for (const ObjectLife::Stretch& s : life.stretches) {
       out_ += fmt::format(
           "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" fill=\"{}\" "
           "fill-opacity=\"{}\"><title>{}: {}{}, {:.1f} to {:.1f} s</title></rect>\n",
@@ -340,7 +266,7 @@ void Page::objects() {
       "<h2>The road users one by one</h2>\n<table>\n<tr><th>number</th><th>class at the end</th>"
       "<th>its probability</th><th>seen from</th><th>to</th><th>top speed</th><th>nearest</th>"
       "</tr>\n";
-  for (const Life& life : lives_) {
+  for (const ObjectLife& life : lives_) {
     out_ += fmt::format(
         "<tr><td>{}</td><td style=\"color:{}\">{}</td><td>{:.2f}</td><td>{:.1f} s</td>"
         "<td>{:.1f} s</td><td>{:.0f} km/h</td><td>{:.1f} m</td></tr>\n",
@@ -373,22 +299,5 @@ void Page::provenance() {
 }  // namespace
 
 std::string htmlPage(const ReportContent& content) { return Page(content).html(); }
-
-std::string base64(const std::string& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t k) -> std::uint32_t {
-      return k < bytes.size() ? static_cast<std::uint8_t>(bytes[k]) : 0;
-    };
-    const std::uint32_t bits = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    text += kDigits[bits >> 18];
-    text += kDigits[bits >> 12 & 63];
-    text += i + 1 < bytes.size() ? kDigits[bits >> 6 & 63] : '=';
-    text += i + 2 < bytes.size() ? kDigits[bits & 63] : '=';
-  }
-  return text;
-}
 
 }  // namespace perception

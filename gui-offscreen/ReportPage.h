@@ -28,7 +28,4 @@ struct ReportContent {
 /// tracked and when, and how that compares with the truth.
 std::string htmlPage(const ReportContent& content);
 
-/// RFC 4648, section 4.
-std::string base64(const std::string& bytes);
-
 }  // namespace perception

@@ -40,7 +40,7 @@ struct ViewMeasurement {
   std::vector<Vector3> outline;     ///< [m] world, about what was seen; may be empty
 };
 
-/// A camera of the vehicle: its last image and what somebody's detector found in it.
+/// A camera of the vehicle: its last image and what a detector found in it.
 struct ViewImage {
   struct Box {
     ObjectDetection::ImageBox box;  ///< [px]

@@ -10,10 +10,10 @@
 
 namespace perception {
 
-/// Travel modes told apart by positions alone, once a second (the paper's GPS experiment).
+/// Travel modes told apart by positions alone, once a second (the GPS experiment of [radecki2016]).
 struct GpsParams {
   std::string folder;  ///< holds pedestrian/, cyclist/, car/, bus/ with .nmea, .gpx or .csv files
-  std::string stationary;  ///< recording of a receiver at rest, for R; empty: the paper's R
+  std::string stationary;  ///< recording of a receiver at rest, for R; empty: R of [radecki2016]
   int section = 50;        ///< fixes a section
   int sections = 100;      ///< drawn a class
   int draws = 20;
@@ -46,9 +46,9 @@ struct GpsModel {
 
 /// How a section is classified.
 enum class GpsRule {
-  kChi2,        ///< the paper's: chi-square density of the filters' innovations
+  kChi2,        ///< [radecki2016]: chi-square density of the filters' innovations
   kSequential,  ///< sequential likelihood of the same filters
-  kRegimes,     ///< likelihood of the speed regimes, pedestrians favoured
+  kRegimes,     ///< likelihood of the speed regimes, pedestrians favored
 };
 
 struct GpsResult {

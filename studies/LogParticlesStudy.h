@@ -6,41 +6,18 @@
 #include "libperception/evaluation/Evaluation.h"
 #include "libperception/evaluation/StudyReport.h"
 #include "libperception/pipeline/RecordedLog.h"
+#include "studies/ObjectCounts.h"
 
 namespace perception {
 
-/// The paper's second particle study on a log: how many particles its objects need, with the
-/// tracker of the DARPA Urban Challenge and with joint classification.
+/// The second particle study of [radecki2016] on a log: how many particles its objects need, with
+/// the tracker of the DARPA Urban Challenge and with joint classification.
 struct LogParticlesParams {
-  std::vector<int> counts = {1, 4, 8, 12, 16, 20};  ///< the paper's
-  int reference = 50;                               ///< the paper's benchmark
+  std::vector<int> counts = {1, 4, 8, 12, 16, 20};  ///< [radecki2016]
+  int reference = 50;                               ///< [radecki2016]
   std::uint64_t seed = 1;
   EvaluationOptions evaluation;  ///< its sector is where objects count
 };
-
-/// A tracked log reduced to what the study compares.
-struct CountedRun {
-  std::vector<int> all,
-      classified;  ///< objects in the sector by scene; classified: as a class that is named
-  double mean_cars = 0, mean_persons = 0;  ///< classified ones a scene
-  std::optional<Evaluation> evaluation;    ///< where there is a truth
-  /// True things of any type that count, by instant with a truth, and those of them with an output
-  /// of their own, of whatever class.
-  std::vector<int> things, held;
-};
-
-/// Errors against a reference run and the truth.
-struct CountErrors {
-  double all = 0, classified = 0;    ///< rms against the reference
-  std::optional<double> truth;       ///< rms of outputs that count against truth objects that do
-  std::optional<double> truth_bias;  ///< mean of the same difference
-  std::optional<double> unheld;      ///< rms number of true things without an output
-  std::vector<double> cdf_all, cdf_classified;  ///< share of scenes with an error of at most i
-};
-
-CountedRun countObjects(const TrackedRun& run, const GroundTruth* truth,
-                        const EvaluationOptions& options);
-CountErrors compareCounts(const CountedRun& run, const CountedRun& reference);
 
 /// `duc`: the same log as seen by DUC's configuration; may be null.
 StudyReport logParticlesStudy(const LogParticlesParams& params, const RecordedLog& joint,

@@ -11,7 +11,7 @@ namespace perception {
 /// (method.md 4.5).
 struct MonteCarloParams {
   int repeats = 100;     ///< experiments ...
-  int iterations = 100;  ///< ... of so many tracks a class (the paper: one of 100)
+  int iterations = 100;  ///< ... of so many tracks a class ([radecki2016]: one of 100)
   int steps = 50;        ///< measurements a track, at 1 Hz
   bool noise_per_track =
       false;  ///< measurement sigma drawn from U(.5, 1.7) m and known to the filter

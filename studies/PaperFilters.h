@@ -31,8 +31,8 @@ FilterTrace runPaperFilter(const PaperClass& object_class, const std::vector<Vec
 std::vector<Vector2> simulatePaperTrack(const PaperClass& object_class, double speed, int steps,
                                         double dt, const Matrix2& R, Rng& rng);
 
-/// log of the chi-square density of `dof` degrees of freedom at x > 0: the paper's "highest chi2
-/// probability" (method.md 4.5: the density, not the tail).
+/// log of the chi-square density of `dof` degrees of freedom at x > 0: [radecki2016]'s "highest
+/// chi2 probability" (method.md 4.5: the density, not the tail).
 double logChi2Density(double x, double dof);
 
 }  // namespace perception

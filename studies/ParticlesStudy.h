@@ -9,7 +9,7 @@
 namespace perception {
 
 /// How many particles a busy street needs, with births that are drawn (DUC) and with newborns that
-/// may be clutter (the paper's second particle study: [radecki2016]).
+/// may be clutter (the second particle study of [radecki2016]).
 struct ParticlesParams {
   int scenes = 40;
 };

@@ -12,8 +12,8 @@
 
 namespace perception {
 
-/// The images of a log brought down to the paper's resolutions, and a detector's boxes in them. A
-/// panorama takes the size of the row; another camera as many pixels a radian as that has.
+/// The images of a log brought down to the resolutions of [radecki2016], and a detector's boxes in
+/// them. A panorama takes the size of the row; another camera as many pixels a radian as that has.
 class ResolutionImages {
  public:
   /// `detector`: INI of perception-detect; `label` of the images, empty: of all. Throws

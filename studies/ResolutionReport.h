@@ -12,7 +12,7 @@ namespace perception {
 
 /// A sensor set on the log: what its front ends found, and what was tracked.
 struct ResolutionRun {
-  std::string name;     ///< as in the paper: C-2k+R
+  std::string name;     ///< as in [radecki2016]: C-2k+R
   int resolution = -1;  ///< of its camera, a place in cameraResolutions(); -1: no camera
   bool lidar = false, radar = false;
   MeasurementRun measurements;
@@ -29,8 +29,8 @@ struct ResolutionData {
   std::vector<std::string> remarks;
 };
 
-/// The paper's four tables of its camera beside ours, with plots: sizes and ranges; recall and
-/// precision, over the range and by its quarters; detections an image; objects tracked.
+/// The four tables of the camera in [radecki2016] beside ours, with plots: sizes and ranges; recall
+/// and precision, over the range and by its quarters; detections an image; objects tracked.
 StudyReport resolutionReport(const ResolutionData& data);
 
 }  // namespace perception

@@ -17,8 +17,8 @@ struct ResolutionSite {
   std::vector<std::string> settings;   ///< section.key=value
 };
 
-/// All sensor sets of one world side by side, in the order of the paper's table of rates, each with
-/// a pipeline of its own: C-1k+R ..., L+R, C+L+R at the best resolution.
+/// All sensor sets of one world side by side, in the order of the table of rates of [radecki2016],
+/// each with a pipeline of its own: C-1k+R ..., L+R, C+L+R at the best resolution.
 class ResolutionStreams {
  public:
   /// `letters` (C, L, R) of the sensors that there are besides the camera, `resolutions` of that;

@@ -20,7 +20,7 @@ class StudyApp : public App {
   std::string log;                   ///< particles: a rawlog instead of simulated positions
   std::string duc_config;            ///< particles: --duc, INI of DUC's tracker
   std::string truth_file;            ///< particles: --truth of the log
-  std::vector<int> counts;           ///< particles: of the log; empty = the paper's
+  std::vector<int> counts;           ///< particles: of the log; empty = those of [radecki2016]
   double seconds = 0;                ///< particles: of the log; 0 = all
   double range = 30, fov_deg = 360;  ///< particles: where objects of a log count [m, deg]
   std::string scenario;              ///< ego: INI of the scenario

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <system_error>
 #include <utility>
@@ -143,6 +144,12 @@ int runApp(App& app, int argc, const char* const* argv) {
   const StopSignals listening;
   const MemoryLimit limit;  // logs are not believed: a forged size must not take the machine
   return static_cast<int>(runGuarded(app));
+}
+
+std::string lastFolderOf(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path normal = fs::absolute(path).lexically_normal();
+  return (normal.has_filename() ? normal.filename() : normal.parent_path().filename()).string();
 }
 
 }  // namespace perception

@@ -62,4 +62,7 @@ class App {
 /// Parses, runs, turns exceptions into messages ("perception-track: error: ...") and exit codes.
 int runApp(App& app, int argc, const char* const* argv);
 
+/// The last folder of the path: a run's name in tables and titles.
+std::string lastFolderOf(const std::string& path);
+
 }  // namespace perception

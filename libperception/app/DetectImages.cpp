@@ -22,8 +22,8 @@ const std::vector<std::string> kImageEndings{".png", ".jpg", ".jpeg", ".bmp"};
 void DetectCameraParams::visit(ParamVisitor& v) {
   v.real("height", height, {0, 10}, "m", "of the camera over the ground; 0: not known");
   v.angle("pitch_deg", pitch, {-45, 45}, "of the camera, down");
-  v.real("focal", focal, {0, 1e5}, "px", "focal length; 0: from field_of_view_deg");
   v.angle("field_of_view_deg", field_of_view, {1, 170}, "across the image");
+  v.expert();
   v.real("horizon", horizon, {0, 1e5}, "px",
          "row of the horizon at pitch 0, of panoramas, too; 0: the middle");
   v.choice(
@@ -101,8 +101,7 @@ CameraModel cameraOf(const Raster& image, const DetectCameraParams& params,
   camera.height = image.height;
   camera.cx = 0.5 * image.width - 0.5;
   camera.cy = params.horizon > 0 ? params.horizon : 0.5 * image.height - 0.5;
-  camera.fx = camera.fy =
-      params.focal > 0 ? params.focal : 0.5 * image.width / std::tan(0.5 * params.field_of_view);
+  camera.fx = camera.fy = 0.5 * image.width / std::tan(0.5 * params.field_of_view);
   return camera;
 }
 

@@ -12,10 +12,9 @@ namespace perception {
 struct DetectCameraParams {
   double height = 0;                   ///< [m] over the ground; 0: not known
   double pitch = 0;                    ///< [rad] nose down
-  double focal = 0;                    ///< [px]; 0: from field_of_view
-  double field_of_view = radians(80);  ///< [rad] across
+  double field_of_view = radians(80);  ///< [rad] across; assumed, as wide as KITTI's cameras
   double horizon = 0;                  ///< [px] row at pitch 0, of panoramas, too; 0: the middle
-  int panorama = 0;                    ///< auto (width = 2 height, no calibration), yes, no
+  int panorama = 0;  ///< auto (width = 2 height, no calibration), yes, no: a fact of the picture
 
   void visit(ParamVisitor& v);
 };

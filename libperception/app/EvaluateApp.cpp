@@ -1,17 +1,13 @@
 #include "libperception/app/EvaluateApp.h"
 
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <set>
-#include <system_error>
 
 #include "libperception/core/Angle.h"
-#include "libperception/core/Csv.h"
 #include "libperception/evaluation/Plots.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/MeasurementRun.h"
@@ -20,52 +16,8 @@
 #include "libperception/scene/TrackedRun.h"
 
 namespace perception {
-namespace {
 
 namespace fs = std::filesystem;
-
-// The last folder of the path; a run's name in the tables.
-std::string lastPart(const std::string& path) {
-  const fs::path normal = fs::absolute(path).lexically_normal();
-  return (normal.has_filename() ? normal.filename() : normal.parent_path().filename()).string();
-}
-
-// Short names where they tell the runs apart, else the paths as given.
-std::vector<std::string> namesOf(const std::vector<std::string>& runs) {
-  std::vector<std::string> names;
-  std::set<std::string> distinct;
-  for (const std::string& run : runs) {
-    names.push_back(lastPart(run));
-    distinct.insert(names.back());
-  }
-  return distinct.size() == runs.size() ? names : runs;
-}
-
-// Folders that a shell pattern stands for, in order of their names.
-std::vector<std::string> foldersOf(const std::string& pattern) {
-  std::vector<std::string> folders;
-  glob_t found{};
-  if (glob(pattern.c_str(), GLOB_ONLYDIR, nullptr, &found) == 0) {
-    for (std::size_t i = 0; i < found.gl_pathc; ++i) {
-      if (fs::is_directory(found.gl_pathv[i])) folders.emplace_back(found.gl_pathv[i]);
-    }
-  }
-  globfree(&found);
-  return folders;
-}
-
-void replaceAll(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-}
-
-void createFolder(const std::string& dir) {
-  std::error_code failed;
-  fs::create_directories(dir, failed);
-  if (failed) throw OutputError(fmt::format("{}: cannot be created: {}", dir, failed.message()));
-}
-
-}  // namespace
 
 std::string EvaluateApp::description() const {
   return "Holds tracked runs against the truth of their log: the paper's table, GOSPA, false "
@@ -198,69 +150,13 @@ EvaluationReport EvaluateApp::emptyReport() const {
   return report;
 }
 
-std::vector<EvaluateApp::Entry> EvaluateApp::manifestEntries() const {
-  const CsvTable table = CsvTable::fromFile(manifest);
-  const fs::path folder = fs::path(manifest).parent_path();
-  const auto condition = table.column("condition"), run = table.column("run"),
-             truth = table.column("truth");
-  std::vector<Entry> result;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (table.text(row, condition).empty()) table.fault(row, condition, "the name of a condition");
-    result.push_back({std::string(table.text(row, condition)),
-                      (folder / table.text(row, run)).string(),
-                      (folder / table.text(row, truth)).string()});
-  }
-  if (result.empty()) throw DataError(manifest + ": no run in it");
-  return result;
-}
-
-std::string EvaluateApp::truthOf(const std::string& dir) const {
-  std::string path = truth_file;
-  if (path.find("{log}") != std::string::npos) {
-    replaceAll(path, "{log}", fs::path(readRunRecord(dir + "/done.json").input).stem().string());
-  }
-  replaceAll(path, "{run}", lastPart(dir));
-  return path;
-}
-
-// What was asked for, in its order.
-std::vector<EvaluateApp::Entry> EvaluateApp::entries() const {
-  if (!manifest.empty()) {
-    if (!runs.empty() || !truth_file.empty())
-      throw Error(ExitCode::kUsage, "--manifest names runs and truths: no -r, no -t beside it");
-    return manifestEntries();
-  }
-  if (runs.empty()) throw Error(ExitCode::kUsage, "-r/--run or --manifest is needed");
-  if (truth_file.empty()) throw Error(ExitCode::kUsage, "-t/--truth is needed");
-  std::vector<Entry> result;
-  for (const std::string& run : runs) {
-    const auto equals = run.find('=');
-    // A path with a '=' in it is none of a condition; C/H+R=... is one.
-    const auto slash = run.find('/');
-    const bool in_folder = slash < equals && (slash == 0 || fs::exists(run.substr(0, slash)));
-    const bool conditional =
-        equals != std::string::npos && equals > 0 && !fs::exists(run) && !in_folder;
-    if (!conditional) {
-      result.push_back({"", run, truthOf(run)});
-      continue;
-    }
-    const std::string condition = run.substr(0, equals), pattern = run.substr(equals + 1);
-    const std::vector<std::string> folders = foldersOf(pattern);
-    if (folders.empty())
-      throw DataError(fmt::format("{}: no folder of that name", pattern), ExitCode::kNoInput);
-    for (const std::string& folder : folders)
-      result.push_back({condition, folder, truthOf(folder)});
-  }
-  return result;
-}
-
 const GroundTruth& EvaluateApp::truth(const std::string& path) {
   const auto known = truths_.find(path);
   return known != truths_.end() ? known->second
                                 : truths_.emplace(path, readGroundTruth(path)).first->second;
 }
 
-void EvaluateApp::evaluateFrontEnds(const Entry& entry, const GroundTruth& truth,
+void EvaluateApp::evaluateFrontEnds(const RunEntry& entry, const GroundTruth& truth,
                                     EvaluatedRun& run) {
   if (front_ends.empty()) return;
   if (!fs::exists(entry.dir + "/measurements.csv")) {
@@ -277,7 +173,7 @@ void EvaluateApp::evaluateFrontEnds(const Entry& entry, const GroundTruth& truth
     run.front_ends.push_back(evaluateFrontEnd(measurements, pattern, truth, options));
 }
 
-EvaluatedRun EvaluateApp::evaluateEntry(const Entry& entry, const std::string& name) {
+EvaluatedRun EvaluateApp::evaluateEntry(const RunEntry& entry, const std::string& name) {
   stopIfAsked();
   const GroundTruth& known = truth(entry.truth);
   const TrackedRun run = readTrackedRun(entry.dir);
@@ -290,17 +186,17 @@ EvaluatedRun EvaluateApp::evaluateEntry(const Entry& entry, const std::string& n
 }
 
 void EvaluateApp::evaluateRuns() {
-  const std::vector<Entry> all = entries();
+  const std::vector<RunEntry> all = runEntries(runs, truth_file, manifest);
   std::vector<std::string> dirs;
-  for (const Entry& entry : all) dirs.push_back(entry.dir);
-  const std::vector<std::string> names = namesOf(dirs);
+  for (const RunEntry& entry : all) dirs.push_back(entry.dir);
+  const std::vector<std::string> names = namesOfRuns(dirs);
   std::vector<EvaluatedRun> evaluated;
   for (std::size_t i = 0; i < all.size(); ++i) evaluated.push_back(evaluateEntry(all[i], names[i]));
   pool(all, std::move(evaluated));
 }
 
 // Runs of one condition become one, at the place of the first of them.
-void EvaluateApp::pool(const std::vector<Entry>& entries, std::vector<EvaluatedRun> evaluated) {
+void EvaluateApp::pool(const std::vector<RunEntry>& entries, std::vector<EvaluatedRun> evaluated) {
   std::vector<std::pair<std::string, std::vector<EvaluatedRun>>> groups;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::string& condition = entries[i].condition;

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "libperception/app/App.h"
+#include "libperception/app/RunList.h"
 #include "libperception/evaluation/Report.h"
 
 namespace perception {
 
-/// perception-evaluate: holds tracked runs against the truth of their log and reports the paper's
-/// table and more.
+/// perception-evaluate: holds tracked runs against the truth of their log and reports the
+/// table of [radecki2016] and more.
 class EvaluateApp : public App {
  public:
   std::vector<std::string> runs;  ///< -r: folders of perception-track, or CONDITION=PATTERN of such
@@ -18,7 +19,7 @@ class EvaluateApp : public App {
   std::string
       reference;  ///< --reference: a run whose number of objects the others are compared with
   std::vector<std::string> front_ends;  ///< --front-end: labels of sensors, or patterns of them
-  std::vector<std::string> paper;       ///< --paper: tables of the paper to stand beside ours
+  std::vector<std::string> paper;       ///< --paper: tables of [radecki2016] to stand beside ours
   EvaluationOptions params;
   double fov_deg = 180, complete_fov_deg = 360;
   bool surroundings = false;  ///< --surroundings: the truth holds poles and hedges, too
@@ -38,20 +39,12 @@ class EvaluateApp : public App {
   void declareInputs(CLI::App& cli);
   void declareTruth(CLI::App& cli);
   void declareFigures(CLI::App& cli);
-  /// One run to be evaluated; of no condition: for itself.
-  struct Entry {
-    std::string condition, dir, truth;
-  };
-
   std::string command() const;
   EvaluationReport emptyReport() const;
-  std::vector<Entry> entries() const;
-  std::vector<Entry> manifestEntries() const;
-  std::string truthOf(const std::string& dir) const;
-  EvaluatedRun evaluateEntry(const Entry& entry, const std::string& name);
-  void evaluateFrontEnds(const Entry& entry, const GroundTruth& truth, EvaluatedRun& run);
+  EvaluatedRun evaluateEntry(const RunEntry& entry, const std::string& name);
+  void evaluateFrontEnds(const RunEntry& entry, const GroundTruth& truth, EvaluatedRun& run);
   void evaluateRuns();
-  void pool(const std::vector<Entry>& entries, std::vector<EvaluatedRun> runs);
+  void pool(const std::vector<RunEntry>& entries, std::vector<EvaluatedRun> runs);
   const GroundTruth& truth(const std::string& path);
   void warnOfGaps(const EvaluatedRun& run, const std::string& truth);
   void addPaperRows();

@@ -7,15 +7,16 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
 
 #include "gui-offscreen/ContactSheet.h"
 #include "gui-offscreen/SceneFile.h"
 #include "gui-offscreen/VideoFile.h"
 #include "libperception/grid/CGridExport.h"
+#include "libperception/pictures/RunScenes.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/pipeline/Progress.h"
+#include "libperception/scene/OutputFile.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -24,10 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kTrail = 2;             // [s]
-constexpr double kNearestScene = 0.51;   // [s] from --time: half the period of a scene a second
-constexpr double kNearestTruth = 0.06;   // [s] half the period of 10 Hz, and rounding
-constexpr double kUnknownSize = 0.3;     // [m] of truth without a size
 constexpr std::size_t kSheetTiles = 36;  // on the contact sheet of --every
 constexpr double kSlowestFilm = 1;       // [s] a picture at most
 
@@ -37,28 +34,6 @@ struct ViewRow {
 };
 constexpr ViewRow kViews[] = {
     {"top", ViewKind::kTop}, {"driver", ViewKind::kDriver}, {"camera", ViewKind::kCamera}};
-
-void createFolder(const fs::path& dir) {
-  std::error_code failed;
-  if (!dir.empty()) fs::create_directories(dir, failed);
-  if (failed) {
-    throw OutputError(fmt::format("{}: cannot be created: {}", dir.string(), failed.message()));
-  }
-}
-
-std::string lastPart(const std::string& path) {
-  const fs::path normal = fs::absolute(path).lexically_normal();
-  return (normal.has_filename() ? normal.filename() : normal.parent_path().filename()).string();
-}
-
-// `count` of `all`, evenly spread, the first and the last among them.
-std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t count) {
-  if (all.size() <= count) return all;
-  if (count == 1) return {all[all.size() / 2]};
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * (all.size() - 1) / (count - 1)]);
-  return chosen;
-}
 
 }  // namespace
 
@@ -140,35 +115,9 @@ Config SnapshotApp::readSite(const std::string& run_dir) {
 
 bool SnapshotApp::readConfig() { return configDone(readSite(run_dirs[0])); }
 
-std::size_t SnapshotApp::sceneAt(const TrackedRun& run, double t) const {
-  const auto off = [&](std::size_t i) {
-    return std::abs(run.scenes[i].stamp - run.first_stamp - t);
-  };
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < run.scenes.size(); ++i) {
-    if (off(i) < off(best)) best = i;
-  }
-  if (off(best) > kNearestScene) {
-    throw Error(ExitCode::kUsage,
-                fmt::format("--time {:g}: {} has scenes from {:.2f} to {:.2f} s, none near", t,
-                            run.dir, run.scenes.front().stamp - run.first_stamp,
-                            run.scenes.back().stamp - run.first_stamp));
-  }
-  return best;
-}
-
-std::size_t SnapshotApp::sceneOf(const TrackedRun& run, std::int64_t number) const {
-  for (std::size_t i = 0; i < run.scenes.size(); ++i) {
-    if (run.scenes[i].frame == number) return i;
-  }
-  throw Error(ExitCode::kUsage,
-              fmt::format("--frame {}: {} has no scene of it (first {}, last {})", number, run.dir,
-                          run.scenes.front().frame, run.scenes.back().frame));
-}
-
 std::vector<std::size_t> SnapshotApp::chooseScenes(const TrackedRun& run) const {
   if (time) return {sceneAt(run, *time)};
-  if (frame) return {sceneOf(run, *frame)};
+  if (frame) return {sceneOfFrame(run, *frame)};
   std::vector<std::size_t> chosen;
   if (!video.empty()) {
     for (std::size_t i = 0; i < run.scenes.size(); ++i) {
@@ -191,7 +140,7 @@ std::vector<std::size_t> SnapshotApp::chooseScenes(const TrackedRun& run) const 
 std::string SnapshotApp::titleOf(std::size_t index) {
   if (index < titles.size()) return titles[index];
   const std::string& dir = run_dirs[index];
-  const std::string run = lastPart(dir);
+  const std::string run = lastFolderOf(dir);
   const fs::path record_file = fs::path(dir) / "done.json";
   if (!fs::exists(record_file)) {
     warn(fmt::format("{}: no done.json: the run did not finish", dir));
@@ -203,14 +152,8 @@ std::string SnapshotApp::titleOf(std::size_t index) {
 }
 
 SceneView SnapshotApp::viewOf(const Shown& shown, std::size_t index) const {
-  const TrackedRun& run = shown.run;
-  SceneView result;
+  SceneView result = viewOfScene(shown.run, index, truth_ ? &*truth_ : nullptr);
   result.run_name = shown.name;
-  result.scene = run.scenes[index];
-  result.t = result.scene.stamp - run.first_stamp;
-  result.class_names = run.class_names;
-  result.trails = trailsUpTo(run.scenes, index, kTrail);
-  addTruth(result);
   if (shown.sensors) {
     shown.sensors->advanceTo(result.scene.stamp);
     shown.sensors->fill(result);
@@ -230,13 +173,8 @@ std::vector<SceneView> SnapshotApp::viewsOf(std::size_t index) {
   for (const Shown& shown : shown_) {
     std::size_t nearest = index;
     if (&shown != &shown_[0]) {
-      const auto& scenes = shown.run.scenes;
-      const auto off = [&](std::size_t i) { return std::abs(scenes[i].stamp - stamp); };
-      nearest = 0;
-      for (std::size_t i = 1; i < scenes.size(); ++i) {
-        if (off(i) < off(nearest)) nearest = i;
-      }
-      if (off(nearest) > kNearestScene) {
+      nearest = nearestScene(shown.run, stamp);
+      if (std::abs(shown.run.scenes[nearest].stamp - stamp) > kNearestScene) {
         throw DataError(fmt::format("{}: no scene at the times of {}: not of the same log?",
                                     shown.run.dir, shown_[0].run.dir));
       }
@@ -244,31 +182,6 @@ std::vector<SceneView> SnapshotApp::viewsOf(std::size_t index) {
     views.push_back(viewOf(shown, nearest));
   }
   return views;
-}
-
-// By frame number where both have one, else by time.
-void SnapshotApp::addTruth(SceneView& result) const {
-  if (!truth_) return;
-  result.has_truth = true;
-  const GroundTruth::Instant* best = nullptr;
-  for (const GroundTruth::Instant& instant : truth_->instants) {
-    if (instant.frame >= 0 && result.scene.frame >= 0) {
-      if (instant.frame == result.scene.frame) best = &instant;
-    } else if (std::abs(instant.t - result.t) <=
-               (best ? std::abs(best->t - result.t) : kNearestTruth)) {
-      best = &instant;
-    }
-  }
-  if (!best) return;
-  for (const TruthObject& object : best->objects) {
-    if (!object.position.allFinite() || object.ignore) continue;
-    TruthObject& drawn = result.truth.emplace_back(object);
-    // What the truth leaves open is drawn small: radars' labels have no height, points no size.
-    for (double* size : {&drawn.length, &drawn.width, &drawn.height}) {
-      if (!(*size > 0)) *size = kUnknownSize;
-    }
-    if (!std::isfinite(drawn.yaw)) drawn.yaw = 0;
-  }
 }
 
 std::string SnapshotApp::fileFor(const SceneView& shown) const {
@@ -366,7 +279,7 @@ void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
   const std::vector<std::size_t> on_sheet =
       !sheet ? std::vector<std::size_t>{}
              : spread(chosen, contact > 0 ? chosen.size() : kSheetTiles);
-  createFolder(every > 0 ? fs::path(output) : fs::path(output).parent_path());
+  createFolder(every > 0 ? output : fs::path(output).parent_path().string());
   Snapshot snapshot(params);
   std::vector<Picture> tiles;
   std::vector<SceneView> views;
@@ -391,12 +304,12 @@ void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
     write(path, contactSheet(tiles, views[0]));
   }
   if (!scene_file.empty()) {
-    createFolder(fs::path(scene_file).parent_path());
+    createFolder(fs::path(scene_file).parent_path().string());
     writeSceneFile(scene_file, views[0], params.range);
     out_files.push_back(scene_file);
   }
   for (const std::string& file : grid_files) {
-    createFolder(fs::path(file).parent_path());
+    createFolder(fs::path(file).parent_path().string());
     saveGrid(shown_[0].sensors->grid(), file);
     out_files.push_back(file);
   }
@@ -411,7 +324,7 @@ void SnapshotApp::drawVideo(const std::vector<std::size_t>& chosen) {
   std::sort(gaps.begin(), gaps.end());
   const double gap =
       gaps.empty() ? kSlowestFilm : std::clamp(gaps[gaps.size() / 2], 1e-2, kSlowestFilm);
-  createFolder(fs::path(video).parent_path());
+  createFolder(fs::path(video).parent_path().string());
   VideoFile film(video, 1 / gap);
   Snapshot snapshot(params);
   Progress progress("filming", chosen.size());

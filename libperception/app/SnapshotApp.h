@@ -52,12 +52,9 @@ class SnapshotApp : public App {
   void readRuns();
   void readViews();
   std::vector<std::size_t> chooseScenes(const TrackedRun& run) const;
-  std::size_t sceneAt(const TrackedRun& run, double t) const;
-  std::size_t sceneOf(const TrackedRun& run, std::int64_t number) const;
   std::string titleOf(std::size_t run);
   std::vector<SceneView> viewsOf(std::size_t index);
   SceneView viewOf(const Shown& shown, std::size_t index) const;
-  void addTruth(SceneView& view) const;
   std::string fileFor(const SceneView& view) const;
   void drawPictures(const std::vector<std::size_t>& chosen);
   void drawVideo(const std::vector<std::size_t>& chosen);

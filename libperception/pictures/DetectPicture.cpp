@@ -58,13 +58,7 @@ void drawName(Canvas& canvas, const ObjectDetection& o, bool calibrated, const C
 
 Picture detectionPicture(const Raster& image, const std::vector<ObjectDetection>& objects,
                          const std::vector<LabeledBox>& truth, bool calibrated) {
-  Picture picture{image.width, image.height, {}};
-  picture.rgb.resize(static_cast<std::size_t>(image.width * image.height) * 3);
-  const auto step = static_cast<std::size_t>(image.channels);
-  for (std::size_t i = 0; i < picture.rgb.size() / 3; ++i) {
-    for (std::size_t c = 0; c < 3; ++c)
-      picture.rgb[3 * i + c] = image.pixels[step * i + (step >= 3 ? 2 - c : 0)];
-  }
+  const Picture picture = pictureOf(image);
   Canvas canvas(image.width, image.height);
   canvas.paste(picture, canvas.area());
   for (const LabeledBox& t : truth) {

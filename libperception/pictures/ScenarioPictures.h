@@ -8,7 +8,7 @@
 namespace perception {
 
 /// What each sensor of a vehicle covers, one panel a modality with its own scale, the vehicle in
-/// the middle body_heading right (as the paper's figure); names, ranges and rates below.
+/// the middle driving to the right (as the figure of [radecki2016]); names, ranges and rates below.
 Picture coveragePicture(const std::vector<SensorParams>& sensors, const std::string& title);
 
 /// A scenario as a reader of the INI would draw it.

@@ -59,21 +59,6 @@ std::optional<CameraModel> cameraOf(const SensorFrame& frame) {
   return camera;
 }
 
-Picture pictureOf(const Raster& raster) {
-  Picture picture{raster.width, raster.height, {}};
-  const auto pixels =
-      static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height);
-  const auto channels = static_cast<std::size_t>(raster.channels);
-  if (raster.pixels.size() < pixels * channels || channels == 0) return {};
-  picture.rgb.resize(pixels * 3);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      picture.rgb[3 * i + c] = raster.pixels[i * channels + (channels >= 3 ? 2 - c : 0)];
-    }
-  }
-  return picture;
-}
-
 // The seen sides as a rectangle on the ground.
 std::vector<Vector3> outlineOf(const PartialBox& sides, double z) {
   const auto corners =

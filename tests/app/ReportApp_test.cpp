@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "gui-offscreen/HtmlText.h"
 #include "libperception/scene/RunRecord.h"
 
 namespace perception {

@@ -1,0 +1,88 @@
+#include "libperception/pictures/RunScenes.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "libperception/core/Error.h"
+
+namespace perception {
+namespace {
+
+constexpr double kTrail = 2;            // [s]
+constexpr double kNearestTruth = 0.06;  // [s] half the period of 10 Hz, and rounding
+constexpr double kUnknownSize = 0.3;    // [m] of truth without a size
+
+void addTruth(const GroundTruth& truth, SceneView& result) {
+  result.has_truth = true;
+  const GroundTruth::Instant* best = nullptr;
+  for (const GroundTruth::Instant& instant : truth.instants) {
+    if (instant.frame >= 0 && result.scene.frame >= 0) {
+      if (instant.frame == result.scene.frame) best = &instant;
+    } else if (std::abs(instant.t - result.t) <=
+               (best ? std::abs(best->t - result.t) : kNearestTruth)) {
+      best = &instant;
+    }
+  }
+  if (!best) return;
+  for (const TruthObject& object : best->objects) {
+    if (!object.position.allFinite() || object.ignore) continue;
+    TruthObject& drawn = result.truth.emplace_back(object);
+    // What the truth leaves open is drawn small: radars' labels have no height, points no size.
+    for (double* size : {&drawn.length, &drawn.width, &drawn.height}) {
+      if (!(*size > 0)) *size = kUnknownSize;
+    }
+    if (!std::isfinite(drawn.yaw)) drawn.yaw = 0;
+  }
+}
+
+}  // namespace
+
+std::size_t nearestScene(const TrackedRun& run, Stamp stamp) {
+  const auto off = [&](std::size_t i) { return std::abs(run.scenes[i].stamp - stamp); };
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < run.scenes.size(); ++i) {
+    if (off(i) < off(best)) best = i;
+  }
+  return best;
+}
+
+std::size_t sceneAt(const TrackedRun& run, double t) {
+  const std::size_t best = nearestScene(run, run.first_stamp + t);
+  if (std::abs(run.scenes[best].stamp - run.first_stamp - t) > kNearestScene) {
+    throw Error(ExitCode::kUsage,
+                fmt::format("--time {:g}: {} has scenes from {:.2f} to {:.2f} s, none near", t,
+                            run.dir, run.scenes.front().stamp - run.first_stamp,
+                            run.scenes.back().stamp - run.first_stamp));
+  }
+  return best;
+}
+
+std::size_t sceneOfFrame(const TrackedRun& run, std::int64_t number) {
+  for (std::size_t i = 0; i < run.scenes.size(); ++i) {
+    if (run.scenes[i].frame == number) return i;
+  }
+  throw Error(ExitCode::kUsage,
+              fmt::format("--frame {}: {} has no scene of it (first {}, last {})", number, run.dir,
+                          run.scenes.front().frame, run.scenes.back().frame));
+}
+
+std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t count) {
+  if (all.size() <= count) return all;
+  if (count == 1) return {all[all.size() / 2]};
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * (all.size() - 1) / (count - 1)]);
+  return chosen;
+}
+
+SceneView viewOfScene(const TrackedRun& run, std::size_t index, const GroundTruth* truth) {
+  SceneView view;
+  view.scene = run.scenes[index];
+  view.t = view.scene.stamp - run.first_stamp;
+  view.class_names = run.class_names;
+  view.trails = trailsUpTo(run.scenes, index, kTrail);
+  if (truth) addTruth(*truth, view);
+  return view;
+}
+
+}  // namespace perception
