@@ -121,10 +121,6 @@ class HeadingTrack {
     filter_.P(3, 3) = headingResidual(heading(z[2]), z[2], method_.mode).variance;
     filter_.oriented = true;
     filter_.heading = firstFrontBack(heading(z[2]));
-    if (method_.mode == HeadingMode::kIgnored) {  // as if it came towards the sensor
-      filter_.x[3] = wrapAngle(z[0] + kPi);
-      filter_.P(3, 3) = kPi * kPi / 3;
-    }
     last_ = t;
     alive_ = true;
   }
@@ -164,10 +160,9 @@ class HeadingTrack {
     H(2, 3) = 1;
     HeadingResidual heading_residual = headingResidual(heading(z[2]), f.x[3], method_.mode);
     if (method_.naive) heading_residual.y = wrapAngle(z[2] - f.x[3]);
-    const bool ignored = method_.mode == HeadingMode::kIgnored;
-    const Vector3 y(wrapAngle(z[0] - b), z[1] - r, ignored ? 0 : heading_residual.y);
+    const Vector3 y(wrapAngle(z[0] - b), z[1] - r, heading_residual.y);
     const Vector3 R(kBearingSigma * kBearingSigma, std::pow(0.06 * z[1] + 0.2, 2),
-                    ignored ? 1e12 : heading_residual.variance);
+                    heading_residual.variance);
     if (joint<3>(H, y, R, f) > kGate) {
       ++rejected_;
       return;
@@ -245,10 +240,8 @@ HeadingFigures oneRun(const HeadingMethod& method, bool radar, double flip, std:
 
 const std::vector<HeadingMethod>& headingMethods() {
   static const std::vector<HeadingMethod> methods = {
-      {"no heading", HeadingMode::kIgnored, false},
       {"every heading right", HeadingMode::kSplit, true},
       {"one wide Gaussian (C/H)", HeadingMode::kWide, false},
-      {"split, majority (paper)", HeadingMode::kCounting, false},
       {"split, log-odds and driving direction", HeadingMode::kSplit, false},
   };
   return methods;

@@ -1,6 +1,6 @@
 // The arithmetic of BankBatch, compiled once a SIMD level into a namespace of its own. No header
 // may be included here that has inline functions: the linker would take one level's copy for all.
-// Written in vectors of the compiler (vector_size), with log of libmvec. Padding lanes are
+// Written in vectors of the compiler (vector_size), with exp of libmvec. Padding lanes are
 // computed along and ignored.
 //
 // Before inclusion: PERCEPTION_SIMD_NAMESPACE, PERCEPTION_SIMD_LANES, and PERCEPTION_SIMD_MATH(f),
@@ -16,7 +16,6 @@ using V = double __attribute__((vector_size(PERCEPTION_SIMD_LANES * sizeof(doubl
 using I = long long __attribute__((vector_size(PERCEPTION_SIMD_LANES * sizeof(double))));
 
 extern "C" {
-V PERCEPTION_SIMD_MATH(log)(V);
 V PERCEPTION_SIMD_MATH(exp)(V);
 }
 
@@ -189,83 +188,6 @@ void predictMoments(Count n, Count s, const double* m, double* bank) {
     q.x2 = decay * v;
     q.store(bank + i, s);
   }
-}
-
-constexpr double kLogTwoPi = 1.8378770664093454836;
-
-/// S = H P H' + R by Cholesky factors, the solved innovation, and with kUpdate the new x and P.
-template <int kAxes, bool kUpdate>
-void innovate(Count n, Count s, const double* in, double* bank, double* out) {
-  for (Count i = 0; i < n; i += kLanes) {
-    Lanes q(bank + i, s);
-    V y[kAxes], H[kAxes][4], L[kAxes][kAxes], W[kAxes][4];
-    for (int a = 0; a < kAxes; ++a) {
-      y[a] = at(in + static_cast<Count>(a) * s + i);
-      for (int c = 0; c < 4; ++c) H[a][c] = at(in + static_cast<Count>(kAxes + 4 * a + c) * s + i);
-    }
-    const V P[4][4] = {{q.p00, q.p01, q.p02, q.p03},
-                       {q.p01, q.p11, q.p12, q.p13},
-                       {q.p02, q.p12, q.p22, q.p23},
-                       {q.p03, q.p13, q.p23, q.p33}};
-    for (int a = 0; a < kAxes; ++a)
-      for (int c = 0; c < 4; ++c)
-        W[a][c] = H[a][0] * P[0][c] + H[a][1] * P[1][c] + H[a][2] * P[2][c] + H[a][3] * P[3][c];
-    int r = 5 * kAxes;
-    V det = V{} + 1;
-    for (int a = 0; a < kAxes; ++a)
-      for (int c = a; c < kAxes; ++c, ++r)
-        L[c][a] = W[a][0] * H[c][0] + W[a][1] * H[c][1] + W[a][2] * H[c][2] + W[a][3] * H[c][3] +
-                  at(in + static_cast<Count>(r) * s + i);
-    V nis{};
-    // S = L D L': unit lower triangle, no square roots.
-    V D[kAxes], inverses[kAxes];
-    for (int a = 0; a < kAxes; ++a) {
-      for (int k = 0; k < a; ++k) L[a][a] -= L[a][k] * L[a][k] * D[k];
-      D[a] = L[a][a];
-      const V inverse = inverses[a] = 1 / D[a];
-      for (int c = a + 1; c < kAxes; ++c) {
-        for (int k = 0; k < a; ++k) L[c][a] -= L[c][k] * L[a][k] * D[k];
-        L[c][a] *= inverse;
-      }
-      // y and W through the same elimination.
-      for (int k = 0; k < a; ++k) {
-        y[a] -= L[a][k] * y[k];
-        if (kUpdate)
-          for (int c = 0; c < 4; ++c) W[a][c] -= L[a][k] * W[k][c];
-      }
-      nis += y[a] * y[a] * inverse;
-      det *= D[a];
-    }
-    at(out + i) = -0.5 * (nis + PERCEPTION_SIMD_MATH(log)(det) + kAxes * kLogTwoPi);
-    at(out + s + i) = nis;
-    if constexpr (!kUpdate) continue;
-    V dx[4] = {}, dP[10] = {};
-    for (int a = 0; a < kAxes; ++a) {
-      int k = 0;
-      for (int c = 0; c < 4; ++c) {
-        const V gain = W[a][c] * inverses[a];
-        dx[c] += gain * y[a];
-        for (int d = c; d < 4; ++d, ++k) dP[k] += gain * W[a][d];
-      }
-    }
-    q.x0 += dx[0], q.x1 += dx[1], q.x2 += dx[2], q.x3 += dx[3];
-    q.p00 -= dP[0], q.p01 -= dP[1], q.p02 -= dP[2], q.p03 -= dP[3];
-    q.p11 -= dP[4], q.p12 -= dP[5], q.p13 -= dP[6];
-    q.p22 -= dP[7], q.p23 -= dP[8], q.p33 -= dP[9];
-    q.store(bank + i, s);
-  }
-}
-
-void innovationDensity(int axes, Count n, Count s, const double* in, double* bank, double* out) {
-  if (axes == 1) innovate<1, false>(n, s, in, bank, out);
-  if (axes == 2) innovate<2, false>(n, s, in, bank, out);
-  if (axes == 3) innovate<3, false>(n, s, in, bank, out);
-}
-
-void innovationUpdate(int axes, Count n, Count s, const double* in, double* bank, double* out) {
-  if (axes == 1) innovate<1, true>(n, s, in, bank, out);
-  if (axes == 2) innovate<2, true>(n, s, in, bank, out);
-  if (axes == 3) innovate<3, true>(n, s, in, bank, out);
 }
 
 }  // namespace PERCEPTION_SIMD_NAMESPACE

@@ -8,10 +8,6 @@
   void predictConstantVelocity(unsigned long n, unsigned long s, const double* m, double* b); \
   void predictWheeled(unsigned long n, unsigned long s, const double* m, double* b);          \
   void predictMoments(unsigned long n, unsigned long s, const double* m, double* b);          \
-  void innovationDensity(int axes, unsigned long n, unsigned long s, const double* in,        \
-                         double* bank, double* out);                                          \
-  void innovationUpdate(int axes, unsigned long n, unsigned long s, const double* in,         \
-                        double* bank, double* out);                                           \
   }
 
 namespace perception {
@@ -59,25 +55,6 @@ void predictMoments(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
                       : level == SimdLevel::kAvx2 ? avx2::predictMoments
                                                   : sse2::predictMoments;
   kernel(countOf(part, bank), bank.padded(), motion[0] + part.first, bank[0] + part.first);
-}
-
-void innovationDensity(const BankBatch& bank, const InnovationBatch& innovation,
-                       DensityBatch& density, SimdLevel level, BatchPart part) {
-  const auto kernel = level == SimdLevel::kAvx512 ? avx512::innovationDensity
-                      : level == SimdLevel::kAvx2 ? avx2::innovationDensity
-                                                  : sse2::innovationDensity;
-  // The kernel shares its code with the update and does not write to the bank.
-  kernel(innovation.axes, countOf(part, bank), bank.padded(), innovation[0] + part.first,
-         const_cast<double*>(bank[0]) + part.first, density[0] + part.first);
-}
-
-void innovationUpdate(const InnovationBatch& innovation, BankBatch& bank, DensityBatch& density,
-                      SimdLevel level, BatchPart part) {
-  const auto kernel = level == SimdLevel::kAvx512 ? avx512::innovationUpdate
-                      : level == SimdLevel::kAvx2 ? avx2::innovationUpdate
-                                                  : sse2::innovationUpdate;
-  kernel(innovation.axes, countOf(part, bank), bank.padded(), innovation[0] + part.first,
-         bank[0] + part.first, density[0] + part.first);
 }
 
 }  // namespace perception

@@ -68,31 +68,4 @@ void predictWheeled(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
 void predictMoments(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
                     BatchPart part = {});
 
-/// Innovations of `axes` (1 to 3) values each: y, H = dh/dx row by row, upper triangle of R.
-struct InnovationBatch : Planes {
-  InnovationBatch(std::size_t size, int n) : Planes(size, planesOf(n)), axes(n) {}
-  static std::size_t planesOf(int n) {
-    return static_cast<std::size_t>(n + 4 * n + n * (n + 1) / 2);
-  }
-  std::size_t y(int a) const { return static_cast<std::size_t>(a); }
-  std::size_t H(int a, int i) const { return static_cast<std::size_t>(axes + 4 * a + i); }
-  /// a <= b
-  std::size_t R(int a, int b) const {
-    return static_cast<std::size_t>(5 * axes + a * axes - a * (a - 1) / 2 + b - a);
-  }
-  int axes;
-};
-
-/// Plane 0: log N(y; 0, H P H' + R), plane 1: its normalized square (NIS).
-struct DensityBatch : Planes {
-  explicit DensityBatch(std::size_t size) : Planes(size, 2) {}
-};
-
-/// Densities alone: for the many pairs that no hypothesis takes.
-void innovationDensity(const BankBatch& bank, const InnovationBatch& innovation,
-                       DensityBatch& density, SimdLevel level, BatchPart part = {});
-/// The same and the Kalman update of every Gaussian.
-void innovationUpdate(const InnovationBatch& innovation, BankBatch& bank, DensityBatch& density,
-                      SimdLevel level, BatchPart part = {});
-
 }  // namespace perception

@@ -62,7 +62,6 @@ HeadingResidual headingResidual(const MeasuredHeading& seen, double theta, Headi
 
 double logHeadingRatio(const MeasuredHeading& seen, double theta, double theta_variance,
                        HeadingMode mode) {
-  if (mode == HeadingMode::kIgnored) return 0;
   const HeadingResidual r = headingResidual(seen, theta, mode);
   const double variance = r.variance + theta_variance;
   const double nearer = 0.5 * (std::log(kTwoPi / variance) - r.y * r.y / variance);
@@ -100,16 +99,7 @@ double nextAxisLogOdds(const FrontBackAmbiguity& bit, const MeasuredHeading& see
 }
 
 bool asksForReversal(const FrontBackAmbiguity& bit, double v, double v_variance, HeadingMode mode) {
-  switch (mode) {
-    case HeadingMode::kSplit:
-      return bit.log_odds + logForward(v, v_variance) < kReverseAt;
-    case HeadingMode::kCounting:
-      return bit.opposite > bit.same;
-    case HeadingMode::kWide:
-    case HeadingMode::kIgnored:
-      break;
-  }
-  return false;
+  return mode == HeadingMode::kSplit && bit.log_odds + logForward(v, v_variance) < kReverseAt;
 }
 
 }  // namespace perception

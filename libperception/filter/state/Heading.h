@@ -3,12 +3,10 @@
 
 namespace perception {
 
-/// How a measured heading that may be reversed is used (method.md 7). [filter] heading.
+/// How a measured heading that may be reversed is used (method.md 7).
 enum class HeadingMode {
-  kSplit,     ///< axis and bit apart, the bit as log-odds with a prior that objects drive forward
-  kCounting,  ///< axis and bit apart, the bit by majority of the detections (the paper)
-  kWide,      ///< one Gaussian wide enough for reversals (the paper's baseline C/H)
-  kIgnored,
+  kSplit,  ///< axis and bit apart, the bit as log-odds with a prior that objects drive forward
+  kWide,   ///< one Gaussian wide enough for reversals: C/H of [radecki2016], `[run] sensors` = C/H
 };
 
 /// What is known of an oriented object's direction along its axis: front or back.

@@ -23,7 +23,6 @@ bool movesAlongItsAxis(const ClassFilter& f, const FilterParams& p) {
 void useHeading(const MeasuredHeading& seen, const FilterParams& params, ClassFilter& f,
                 bool may_mirror) {
   const HeadingMode mode = params.heading;
-  if (mode == HeadingMode::kIgnored) return;
   const double sigma2 = seen.sigma * seen.sigma;
   if (!f.oriented) {
     const bool wide = mode == HeadingMode::kWide;
@@ -71,7 +70,6 @@ void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
 
 void updateBodyHeading(const MeasuredHeading& seen, const FilterParams& params, Track& track) {
   const HeadingMode mode = params.heading;
-  if (mode == HeadingMode::kIgnored) return;
   if (!track.body_heading) {
     track.body_heading = {seen.yaw, seen.sigma * seen.sigma};
     track.body_heading_bit = firstFrontBack(seen);

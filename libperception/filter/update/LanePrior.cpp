@@ -10,10 +10,12 @@ namespace perception {
 
 void LaneParams::visit(ParamVisitor& v) {
   v.path("file", file, "FILE.lanes.csv in the log's world frame; empty: no prior");
+  v.expert();
   v.angle("sigma_deg", sigma, {0.5, 90}, "spread of headings about the lane's direction");
   v.real("forward", forward, {0.5, 0.999}, "",
          "share that faces the driving direction; .5: axis only");
-  v.real("interval", interval, {0.01, 1e6}, "s", "a lane speaks of an object at most so often");
+  v.real("interval", interval, {0.01, 1e6}, "s",
+         "an object takes evidence from lanes at most so often");
 }
 
 void LanePrior::apply(const FilterModel& model, Track& track) const {

@@ -11,10 +11,13 @@ namespace perception {
 
 /// [lanes]: a map of lanes as a prior of headings (method.md 5.16).
 struct LaneParams {
-  std::string file;            ///< FILE.lanes.csv; empty: no prior
-  double sigma = radians(10);  ///< [rad] spread of headings about the lane's direction
-  double forward = 0.95;       ///< share of wheeled objects that face the driving direction
-  double interval = 1;         ///< [s] a lane speaks of an object's heading at most so often
+  std::string file;  ///< FILE.lanes.csv; empty: no prior
+  /// [rad] spread of headings about the lane's direction (method.md 5.16; assumed)
+  double sigma = radians(10);
+  /// Share of wheeled objects that face the driving direction (assumed).
+  double forward = 0.95;
+  /// [s] an object takes evidence from lanes at most so often (assumed).
+  double interval = 1;
 
   void visit(ParamVisitor& v);
 };
@@ -31,7 +34,7 @@ class LanePrior {
   void apply(const FilterModel& model, Track& track) const;
 
  private:
-  bool apply(const FilterModel& model, ClassFilter& filter) const;  ///< whether the lane spoke
+  bool apply(const FilterModel& model, ClassFilter& filter) const;  ///< whether it took evidence
 
   LaneMap map_;
   LaneParams params_;

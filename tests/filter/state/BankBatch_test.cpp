@@ -87,49 +87,6 @@ TEST(BankBatch, PredictsAsTheScalarModels) {
   }
 }
 
-TEST(BankBatch, UpdatesAsTheTextbook) {
-  for (const SimdLevel level : levels()) {
-    for (int axes = 1; axes <= 3; ++axes) {
-      Rng rng({8, 0, 0, 0});
-      BankBatch bank(kSize);
-      InnovationBatch in(kSize, axes);
-      DensityBatch alone(kSize), density(kSize);
-      std::vector<Vector4> x;
-      std::vector<Matrix4> P;
-      std::vector<double> log_density, nis;
-      for (std::size_t i = 0; i < kSize; ++i) {
-        const ClassFilter f = randomFilter(rng, false);
-        put(f, i, bank);
-        Eigen::VectorXd y(axes);
-        Eigen::MatrixXd H(axes, 4), A(axes, axes);
-        for (int a = 0; a < axes; ++a) {
-          in[in.y(a)][i] = y[a] = rng.normal();
-          for (int c = 0; c < 4; ++c) in[in.H(a, c)][i] = H(a, c) = rng.normal();
-          for (int c = 0; c < axes; ++c) A(a, c) = rng.normal();
-        }
-        const Eigen::MatrixXd R = A * A.transpose() + 0.1 * Eigen::MatrixXd::Identity(axes, axes);
-        for (int a = 0; a < axes; ++a)
-          for (int c = a; c < axes; ++c) in[in.R(a, c)][i] = R(a, c);
-        const Eigen::MatrixXd S = H * f.P * H.transpose() + R;
-        const Eigen::MatrixXd K = f.P * H.transpose() * S.inverse();
-        x.push_back(f.x + K * y);
-        P.push_back(f.P - K * S * K.transpose());
-        nis.push_back(y.dot(S.inverse() * y));
-        log_density.push_back(
-            -0.5 * (nis.back() + std::log(S.determinant()) + axes * std::log(2 * std::acos(-1.0))));
-      }
-      innovationDensity(bank, in, alone, level);
-      innovationUpdate(in, bank, density, level);
-      for (std::size_t i = 0; i < kSize; ++i) {
-        expectEqual(x[i], P[i], bank, i);
-        EXPECT_NEAR(density[0][i], log_density[i], 1e-8);
-        EXPECT_NEAR(density[1][i], nis[i], 1e-8 * (1 + nis[i]));
-        EXPECT_NEAR(alone[0][i], log_density[i], 1e-8);
-      }
-    }
-  }
-}
-
 TEST(PredictTracks, IsPredictTrackInBatches) {
   FilterModel model;
   model.classes = test::linearClasses();
