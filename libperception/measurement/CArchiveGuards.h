@@ -10,7 +10,7 @@
 
 namespace perception::archive {
 
-// Reading of our observation classes from files that nobody has checked: no count is believed
+// Reading of our observation classes from unchecked files: no count is believed
 // before it is compared with what is plausible, no memory is taken before the bytes for it have
 // been read, and no short read is accepted (mrpt::serialization::CArchive::ReadBuffer accepts one
 // in silence).

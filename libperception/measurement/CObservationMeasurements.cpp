@@ -166,7 +166,7 @@ void CObservationMeasurements::getDescriptionAsText(std::ostream& out) const {
       if (m.seen >> i & 1) {
         out << fmt::format("  {} {:.4f} +- {:.4f}", axis, m.z[i], std::sqrt(m.R(i, i)));
       } else {
-        out << fmt::format("  {} hidden", axis);
+        out << fmt::format("  {} not seen", axis);
       }
     }
     out << '\n';

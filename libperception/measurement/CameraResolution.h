@@ -4,12 +4,13 @@
 
 namespace perception {
 
-/// A row of the paper's table of panorama resolutions. Ranges: recall and precision hold within.
+/// A row of the table of [radecki2016] of panorama resolutions. Ranges: recall and precision hold
+/// within.
 struct CameraResolution {
   const char* name;
   int width, height;               ///< [px] of the whole sphere
   double car_range, person_range;  ///< [m]
-  /// Boxes of no car or person an image: from the paper's detections per image (cars
+  /// Boxes of no car or person an image: from the detections per image of [radecki2016] (cars
   /// .46/1.53/4.52/8.12, persons .15/.45/5.98/27.31) and its precision (95 and 90 %).
   double false_per_image;
 };

@@ -106,7 +106,13 @@ void DetectionParams::visit(ParamVisitor& v) {
            "panoramas of the paper's detector (kind = boxes): sets range_max, clutter_per_scan, "
            "births_per_scan and the ranges of all classes, over the keys for these");
   v.require(resolution == 0 || kind == "boxes", "resolution: of cameras, kind = boxes");
-  takeResolution();
+  applyResolution();
+  v.table("clutter_label.", clutter_labels, {0, 1}, "",
+          "P(label | clutter); labels not named share the rest");
+  v.table(
+      "precision.", precision, {0.5, 1}, "",
+      "the paper's mode: P(label | its class) = precision, else 1 - precision; one key a label");
+  v.expert();
   std::vector<double> numbers;
   if (pose) {
     const Vector3 t = pose->translation();
@@ -125,14 +131,9 @@ void DetectionParams::visit(ParamVisitor& v) {
     pose = makePose(numbers[0], numbers[1], numbers[2], radians(numbers[3]), radians(numbers[4]),
                     radians(numbers[5]));
   }
-  v.table("clutter_label.", clutter_labels, {0, 1}, "",
-          "P(label | clutter); labels not named share the rest");
-  v.table(
-      "precision.", precision, {0.5, 1}, "",
-      "the paper's mode: P(label | its class) = precision, else 1 - precision; one key a label");
 }
 
-void DetectionParams::takeResolution() {
+void DetectionParams::applyResolution() {
   if (resolution == 0) return;
   const CameraResolution& row = cameraResolutions()[static_cast<std::size_t>(resolution) - 1];
   // Of the panorama at 2k, whose figures method.md 5.3 gives, births grow with the range's border.
@@ -143,7 +144,7 @@ void DetectionParams::takeResolution() {
 }
 
 void ClassDetection::visit(ParamVisitor& v) {
-  v.real("detection", detection, {0, 1}, "", "P(detected) in view, near, not hidden");
+  v.real("detection", detection, {0, 1}, "", "P(detected) in view, near, not occluded");
   v.real("full_range", full_range, {0.1, 1e4}, "m",
          "up to which that holds; falls to 0 at last_range");
   v.real("last_range", last_range, {0.1, 1e4}, "m",
@@ -201,13 +202,13 @@ DetectionModel::DetectionModel(DetectionParams params, std::vector<ClassDetectio
     for (double& p : row) p = std::log(p);
     log_labels_.push_back(std::move(row));
   }
-  if (params_.precision.size() == labels_.size() && !labels_.empty()) takePrecision();
-  if (params_.resolution > 0) takeResolution();
+  if (params_.precision.size() == labels_.size() && !labels_.empty()) applyPrecision();
+  if (params_.resolution > 0) applyResolution();
   log_clutter_labels_ = completeRow(params_.clutter_labels, labels_);
   for (double& p : log_clutter_labels_) p = std::log(p);
 }
 
-void DetectionModel::takePrecision() {
+void DetectionModel::applyPrecision() {
   constexpr double kLeast = 1e-3;  // the paper clamps probabilities (method.md 5.6)
   const auto table = log_labels_;
   for (std::size_t c = 0; c < table.size(); ++c) {
@@ -223,7 +224,7 @@ void DetectionModel::takePrecision() {
 
 // Recall falls from all to none within 10 % of the paper's range; what the detector calls a car is
 // seen as far as cars are.
-void DetectionModel::takeResolution() {
+void DetectionModel::applyResolution() {
   const CameraResolution& resolution =
       cameraResolutions()[static_cast<std::size_t>(params_.resolution) - 1];
   for (std::size_t c = 0; c < classes_.size(); ++c) {

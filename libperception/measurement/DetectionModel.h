@@ -13,24 +13,24 @@ namespace perception {
 struct DetectionParams {
   std::string kind = "lidar";  ///< front end by name
   Modality modality = Modality::kLidar;
-  double clutter_per_scan = 0.6;         ///< kappa: false measurements
-  double births_per_scan = 0.03;         ///< beta: first measurements of new objects
-  double range_min = 0, range_max = 70;  ///< [m] of the objects' nearest points
+  double clutter_per_scan = 0.6;         ///< kappa: false measurements (method.md 5.3)
+  double births_per_scan = 0.03;         ///< beta: first measurements of new objects (5.3)
+  double range_min = 0, range_max = 70;  ///< [m] of the objects' nearest points [radecki2016]
   double fov = kTwoPi;              ///< [rad] full horizontal angle about the sensor's forward axis
   double label_exponent = 0.3;      ///< (0, 1] tempers labels in the class update (method.md 5.6)
-  double detection_exponent = 0.1;  ///< (0, 1] tempers detections and misses there
+  double detection_exponent = 0.1;  ///< (0, 1] tempers detections and misses there (5.6)
   std::optional<Pose3> pose;        ///< on the vehicle; when given it wins over the log's
   std::vector<std::pair<std::string, double>>
       clutter_labels;  ///< P(label | clutter); the rest shares evenly
-  /// Panoramas of the paper: a row of cameraResolutions(), 1, 2 ...; 0: none. Sets range_max,
+  /// Panoramas of [radecki2016]: a row of cameraResolutions(), 1, 2 ...; 0: none. Sets range_max,
   /// clutter, births and every class's ranges, over what the INI says of them.
   int resolution = 0;
-  /// The paper's reading of labels in place of the class tables: a label's precision p is
+  /// [radecki2016]'s reading of labels in place of the class tables: a label's precision p is
   /// P(label | its class), 1 - p is P(label | any other class) (method.md 5.6). Empty: the tables.
   std::vector<std::pair<std::string, double>> precision;
 
   void visit(ParamVisitor& v);
-  void takeResolution();
+  void applyResolution();
 };
 
 /// How a sensor sees one class: [sensor.LABEL.class.NAME], over [detection.MODALITY.NAME] of
@@ -75,8 +75,8 @@ class DetectionModel {
   double area() const;  ///< [m^2] of the field of view
 
  private:
-  void takePrecision();
-  void takeResolution();
+  void applyPrecision();
+  void applyResolution();
 
   DetectionParams params_;
   std::vector<ClassDetection> classes_;

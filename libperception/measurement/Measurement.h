@@ -52,8 +52,8 @@ struct MeasuredHeading {
 /// z with covariance R under the scan's MeasurementModel, and what else the detection says of its
 /// object.
 struct Measurement {
-  AxisVector z;                ///< one value an axis of the model; hidden axes hold 0
-  AxisMatrix R;                ///< covariance of z, pose uncertainty included; hidden rows hold 0
+  AxisVector z;                ///< one value an axis of the model; axes not seen hold 0
+  AxisMatrix R;                ///< covariance of z, pose uncertainty included; rows not seen hold 0
   AxisMask seen = 0;           ///< which axes count, in likelihood, clutter and birth density alike
   int label = 0;               ///< index into the model's labels
   double log_score_ratio = 0;  ///< log p(score | object) / p(score | clutter)
@@ -85,7 +85,7 @@ struct MeasurementScan {
   std::int64_t frame = -1;  ///< the log's frame number
   SensorState state;
   std::shared_ptr<const MeasurementModel> model;
-  std::shared_ptr<const OcclusionMap> occlusion;  ///< what hides what; null: nothing is hidden
+  std::shared_ptr<const OcclusionMap> occlusion;  ///< what occludes what; null: nothing
   std::vector<Measurement> measurements;
   std::size_t dropped =
       0;  ///< detections that could not be used: no such label, a box that is none

@@ -65,7 +65,7 @@ class MeasurementModel {
 
   virtual const std::vector<AxisKind>& axes() const = 0;
   /// Axes that correct the extent. A range tells of length only together with the center's place,
-  /// whose correlation with the extent nobody keeps: it is left out there, but counts in S.
+  /// whose correlation with the extent is not kept: it is left out there, but counts in S.
   virtual AxisMask extentAxes() const { return 0xff; }
   /// h, dh/dq, dh/dextent into out[0..count) of `count` objects, object i taken as one of class i %
   /// classes: batches hold whole banks.
@@ -74,7 +74,7 @@ class MeasurementModel {
   /// Whether, and how, h of an object with a heading follows the side that it shows the sensor.
   virtual AspectLine aspectLine() const { return AspectLine::kNone; }
   /// P(detected | class, state), in [0, 1]: 0 outside the field of view; `visibility` in [0, 1] is
-  /// the share not hidden.
+  /// the share not occluded.
   virtual double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                                       const SensorState& sensor, double visibility) const = 0;
   /// False when nothing within `reach` [m] of `position` (world) could be detected: a cheap bound.

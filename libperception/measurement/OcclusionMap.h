@@ -6,21 +6,21 @@
 
 namespace perception {
 
-/// For every direction around a sensor the range of the nearest thing that hides what lies behind
-/// it. Objects whose directions are hidden are not expected to be detected (negative information,
-/// method.md 5.8).
+/// For every direction around a sensor the range of the nearest thing that occludes what lies
+/// behind it. Objects whose directions are occluded are not expected to be detected (negative
+/// information, method.md 5.8).
 class OcclusionMap {
  public:
   /// `bins` equal sectors about the vertical axis through `origin` (world), the first starting at
   /// world yaw 0.
   OcclusionMap(const Vector2& origin, std::size_t bins);
 
-  /// A hiding return at `point` (world).
+  /// An occluding return at `point` (world).
   void add(const Vector2& point);
   /// Share in [0, 1] of the directions between the two bearings (world yaw, counter-clockwise from
-  /// `cw` to `ccw`, [rad]) in which nothing nearer than `range` - `tolerance` [m] hides.
+  /// `cw` to `ccw`, [rad]) in which nothing nearer than `range` - `tolerance` [m] occludes.
   double visibility(double bearing_cw, double bearing_ccw, double range, double tolerance) const;
-  /// [m] nearest hiding range in the direction (world yaw); infinity where nothing hides.
+  /// [m] nearest occluding range in the direction (world yaw); infinity where there is none.
   double nearest(double bearing) const;
 
  private:

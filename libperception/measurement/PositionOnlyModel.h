@@ -13,7 +13,7 @@ class PositionOnlyModel {
   virtual ~PositionOnlyModel() = default;
   /// Covariance [m^2] of z about the place of an object of class c; Measurement::R is added.
   virtual const Matrix2& placeNoise(ClassId c) const = 0;
-  /// detectionProbability() of an object of class i at places[i], nothing hidden, for all i below
+  /// detectionProbability() of an object of class i at places[i], nothing occluded, for all i below
   /// `count`.
   virtual void placeDetection(const Vector2* places, std::size_t count, const SensorState& sensor,
                               double* out) const = 0;

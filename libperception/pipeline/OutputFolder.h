@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// A folder of results whose files are whole or absent: they are written into a hidden folder
+/// A folder of results whose files are whole or absent: they are written into a dot folder
 /// inside it and renamed into place by commit(). Until then results of an earlier run stay as they
 /// are; without commit() nothing is left, the folder itself included when it was made here. One run
 /// at a time writes into a folder (lock of the same host).

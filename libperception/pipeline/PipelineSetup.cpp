@@ -141,13 +141,10 @@ void RunParams::visit(ParamVisitor& v) {
          "scenes at its scans; empty: the first lidar in use, else the first sensor");
   v.real("output_rate", output_rate, {0, 1000}, "Hz",
          "scenes at a fixed rate instead; 0: at scans; --rate wins");
+  v.expert();
   v.real("output_lag", output_lag, {0, 10}, "s",
          "scenes come so late, smoothed by what was seen meanwhile; 0: at once");
   v.real("reorder_window", reorder_window, {0, 10}, "s", "how late an observation may come");
-  v.real("sensor_timeout", sensor_timeout, {0.01, 1e4}, "s",
-         "silence after which a sensor counts as lost");
-  v.real("clock_jump", clock_jump, {0.1, 1e6}, "s",
-         "step of the clock that starts anew (back) or is reported (forward)");
   v.boolean("write_measurements", write_measurements,
             "what the front ends found goes into measurements.csv, scans.csv and sensors.csv; "
             "--measurements wins");

@@ -28,18 +28,17 @@ std::vector<FrontEndRow>& frontEnds();
 
 /// [run]: what is run on a log, and when scenes are output.
 struct RunParams {
-  unsigned long long seed = 1;
-  std::string sensors = "C+L+R";     ///< modalities in use: letters joined by +
-  std::vector<std::string> without;  ///< labels of sensors that are left out all the same
-  Proposal association = Proposal::kSampled;
-  std::string
-      output_sensor;  ///< scenes at its scans; empty: the first lidar in use, else the first sensor
-  double output_rate = 0;  ///< [Hz] instead: scenes at a fixed rate; 0 = at scans
-  double output_lag =
-      0;  ///< [s] scenes come so late, smoothed by what was seen meanwhile; 0: at once
-  double reorder_window = 0.2;      ///< [s] how late an observation may come (method.md 1.2)
-  double sensor_timeout = 1;        ///< [s] of silence after which a sensor counts as lost
-  double clock_jump = 5;            ///< [s] back: a new epoch; forward: a gap worth an event
+  unsigned long long seed = 1;                ///< any number will do
+  std::string sensors = "C+L+R";              ///< modalities in use: letters joined by +
+  std::vector<std::string> without;           ///< labels of sensors that are left out all the same
+  Proposal association = Proposal::kSampled;  ///< method.md 5.4, [radecki2016]
+  /// Scenes at its scans; empty: the first lidar in use, else the first sensor.
+  std::string output_sensor;
+  double output_rate = 0;       ///< [Hz] instead: scenes at a fixed rate; 0: at scans
+  double output_lag = 0;        ///< [s] scenes come so late, smoothed (method.md 5.17); 0: at once
+  double reorder_window = 0.2;  ///< [s] how late an observation may come (method.md 1.2)
+  double sensor_timeout = 1;    ///< [s] of silence after which a sensor is lost; assumed
+  double clock_jump = 5;        ///< [s] back: a new epoch; forward: an event; assumed
   bool write_measurements = false;  ///< what the front ends found goes into the results, too
 
   static const std::vector<std::string>& associationNames();  ///< in the order of Proposal

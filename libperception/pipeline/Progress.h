@@ -5,7 +5,7 @@
 namespace perception {
 
 /// Listens to SIGINT and SIGTERM while it lives: the first one asks the run to end at the next
-/// frame, the second one kills as if nobody listened.
+/// frame, the second one kills as without this.
 class StopSignals {
  public:
   StopSignals();

@@ -123,17 +123,17 @@ void RadarParams::visit(ParamVisitor& v) {
   v.angle("bearing_sigma_deg", bearing_sigma, {0.01, 45}, "noise of a return's bearing");
   v.real("rate_sigma", rate_sigma, {0.01, 20}, "m/s", "noise of a return's range rate");
   v.real("own_speed_sigma", own_speed_sigma, {0, 20}, "m/s", "of the vehicle's own velocity");
-  v.boolean("upside_down", upside_down,
-            "the unit hangs on its head and the log's pose does not say so: bearings change sign");
   v.real("merge_range", merge_range, {0, 20}, "m",
          "returns so near to a stronger one in range ...");
   v.real("merge_width", merge_width, {0, 20}, "m",
-         "... and across the line of sight (at least bearing_sigma there) ...");
-  v.real("merge_rate", merge_rate, {0, 50}, "m/s", "... and in range rate are of the same object");
+         "... and across the line of sight (at least bearing_sigma there) are of the same object");
   v.boolean(
       "drop_double_bounce", drop_double_bounce,
       "drop returns at twice the range and rate of a stronger one (object - vehicle - object)");
-  model.visit(v);
+  model.visit(v);  // its last keys are for experts
+  v.real("merge_rate", merge_rate, {0, 50}, "m/s", "merge_range, in range rate");
+  v.boolean("upside_down", upside_down,
+            "the unit hangs on its head and the log's pose does not say so: bearings change sign");
 }
 
 std::vector<RadarTarget> radarTargets(const RadarReturns& data, const Pose3& T_level_sensor,

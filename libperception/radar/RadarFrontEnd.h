@@ -10,15 +10,15 @@
 namespace perception {
 
 /// [sensor.LABEL.radar]: one unit's noise, mounting and clean-up. Defaults are of a modern 77 GHz
-/// unit (method.md 4.3); DUC's Delphi had 5 m, 5 deg, 1 m/s.
+/// unit, assumed (method.md 4.3); DUC's Delphi had 5 m, 5 deg, 1 m/s [cornell2007].
 struct RadarParams {
   double range_sigma = 0.5;           ///< [m]
   double bearing_sigma = radians(2);  ///< [rad]
   double rate_sigma = 0.15;           ///< [m/s]
-  double own_speed_sigma = 0.1;       ///< [m/s] of the vehicle's velocity in any direction
+  double own_speed_sigma = 0.1;       ///< [m/s] of the vehicle's velocity in any direction; assumed
   bool upside_down = false;  ///< the unit hangs on its head and its pose in the log does not say so
   // Returns of one object in one scan are one measurement. From the strongest on, each takes those
-  // within these distances (a cell of method.md 9.9); a row of cars does not chain.
+  // within these distances (a cell of method.md 9.9; assumed, 8.7); a row of cars does not chain.
   double merge_range = 0.75;       ///< [m]
   double merge_width = 1.0;        ///< [m] across the line of sight, at least bearing_sigma there
   double merge_rate = 0.5;         ///< [m/s]

@@ -61,21 +61,15 @@ ScalarEstimate groundSpeed(const Measurement& m, const SensorState& sensor) {
 }
 
 void RadarModelParams::visit(ParamVisitor& v) {
-  v.real("rate_span", rate_span, {1, 1000}, "m/s", "over which the range rates of clutter spread");
+  v.real("occluded_detection", occluded_detection, {0, 1}, "",
+         "share of P_D left for objects that a lidar finds occluded");
+  v.expert();
   v.real("standing_share", standing_share, {0, 1}, "",
          "of the returns of no object those that stand: posts, rails, the road");
   v.real("min_birth_speed", min_birth_speed, {0, 50}, "m/s",
          "over ground, along the line of sight: returns below it only update; 0: all may start");
-  v.real("min_birth_sigmas", min_birth_sigmas, {0, 10}, "",
-         "and returns so few of its own deviations from standing only update; 0: the plain rule");
   v.angle("birth_heading_sigma_deg", birth_heading_sigma, {1, 90},
           "of a newborn's course about the line of sight (DUC: 30); 90: nothing is known");
-  v.real("occluded_detection", occluded_detection, {0, 1}, "",
-         "share of P_D left for objects that a lidar finds hidden");
-  v.angle("view_edge_deg", view_edge, {0.1, 20},
-          "deviation of the border of the view, over which detections fade");
-  v.real("depth_share", depth_share, {0, 1}, "",
-         "of the object's depth along the line of sight, added to the range's deviation");
 }
 
 RadarModel::RadarModel(ClassTable classes, DetectionModel detection_model, RadarModelParams params)
@@ -141,7 +135,7 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
 
 double RadarModel::detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                                         const SensorState& sensor, double visibility) const {
-  const double hidden = 1 - std::clamp(visibility, 0.0, 1.0);
+  const double occluded = 1 - std::clamp(visibility, 0.0, 1.0);
   // What reaches into the view answers: the edge next to the axis counts, not the center.
   const Vector2 d = object.q.head<2>() - sensorPosition(sensor);
   const double middle = wrapAngle(std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor));
@@ -155,7 +149,7 @@ double RadarModel::detectionProbability(ClassId c, const Kinematics& object, con
   }
   const double range = std::max(0.0, d.norm() - 0.25 * (extent.length + extent.width));
   return edgeShare(bearing) *
-         detection_model().detection(c, range, 0, 1 - hidden * (1 - params_.occluded_detection));
+         detection_model().detection(c, range, 0, 1 - occluded * (1 - params_.occluded_detection));
 }
 
 double RadarModel::edgeShare(double bearing) const {

@@ -4,24 +4,28 @@
 namespace perception {
 
 /// What a radar unit's model needs besides the tables of [sensor.LABEL]; a part of
-/// [sensor.LABEL.radar].
+/// [sensor.LABEL.radar]. Sources: method.md 4.3.
 struct RadarModelParams {
-  double rate_span = 53.6;      ///< [m/s] over which the range rates of clutter spread (DUC's unit)
-  double standing_share = 0.8;  ///< of clutter: posts, rails, the road (View of Delft: .83 of all
-                                ///< returns); the others have any rate
-  double min_birth_speed =
-      0.5;  ///< [m/s] over ground along the line of sight: returns below it
-            ///< may be of anything that stands and start no objects (method.md 4.3)
-  double min_birth_sigmas = 3;  ///< ... nor those within so many of its own deviations of standing:
-                                ///< an uncertain bearing turns own motion into the return's
-  double birth_heading_sigma = radians(90);  ///< [rad] of a newborn's course about the line of
-                                             ///< sight: DUC 30 deg; 90 deg tells nothing
-  double occluded_detection = 0.5;  ///< share of P_D that is left for objects that a lidar finds
-                                    ///< hidden: radar sees past and below vehicles, through snow
-  double view_edge = radians(2);    ///< [rad] deviation of the border of the view: detections fade
-                                    ///< there, a beam has no sharp end
-  double depth_share = 0.15;        ///< of the object's depth along the line of sight, added to the
-                                    ///< range's deviation: returns come from wheels and inside, too
+  double rate_span = 53.6;  ///< [m/s] over which range rates of clutter spread [cornell2007]
+  /// Of clutter: posts, rails, the road (View of Delft: .83 of all returns [palffy2022]); the
+  /// others have any rate.
+  double standing_share = 0.8;
+  /// [m/s] over ground along the line of sight: returns below it may be of anything that stands and
+  /// start no objects; assumed.
+  double min_birth_speed = 0.5;
+  /// ... nor those within so many of its own deviations of standing: an uncertain bearing turns own
+  /// motion into the return's; tuned on simulated drives.
+  double min_birth_sigmas = 3;
+  /// [rad] of a newborn's course about the line of sight: 30 deg [cornell2007]; 90 deg: unknown.
+  double birth_heading_sigma = radians(90);
+  /// Share of P_D that is left for objects that a lidar finds occluded: radar sees past and below
+  /// vehicles, through snow; assumed.
+  double occluded_detection = 0.5;
+  /// [rad] deviation of the border of the view: detections fade there; assumed.
+  double view_edge = radians(2);
+  /// Of the object's depth along the line of sight, added to the range's deviation: returns come
+  /// from wheels and inside, too; assumed.
+  double depth_share = 0.15;
 
   void visit(ParamVisitor& v);
 };

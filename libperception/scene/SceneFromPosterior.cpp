@@ -53,8 +53,6 @@ Mixture mixtureOf(const Track& track, const FilterModel& model, const std::vecto
 
 void SceneParams::visit(ParamVisitor& v) {
   v.real("min_existence", min_existence, {0, 1}, "", "objects below are not output");
-  v.real("classified_at", classified_at, {0.5, 1}, "",
-         "class probability from which an object is classified");
   v.real("road_user_from", road_user_from, {0, 1}, "",
          "KITTI export: written as a road user from this probability on");
   v.real("in_image", in_image, {0, 1}, "",

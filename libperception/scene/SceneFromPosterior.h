@@ -13,15 +13,16 @@ namespace perception {
 /// [scene]: what of the posterior becomes the output.
 struct SceneParams {
   double min_existence = 0.5;  ///< objects below are not output (method.md 5.11)
-  double classified_at =
-      0.95;  ///< class probability from which an object counts as classified (the paper's)
-  double road_user_from = 0.5;  ///< KITTI export: an object that may be a mere thing is written as
-                                ///< the road user that it may be from this probability on
-  double in_image =
-      0;  ///< KITTI export: share of its image box that an object must have in the image
+  /// Class probability from which an object counts as classified [radecki2016].
+  double classified_at = 0.95;
+  /// KITTI export: an object that may be a mere thing is written as the road user that it may be
+  /// from this probability on; even odds.
+  double road_user_from = 0.5;
+  /// KITTI export: share of its image box that an object must have in the image; 0: any.
+  double in_image = 0;
   /// Share of sqrt(length * width) to which a place must be known (deviations of x and y together):
-  /// objects less certain are tracked, but not output. 0: all are. Only
-  /// where a lidar takes part: other sensors alone know few places so well.
+  /// objects less certain are tracked, but not output. 0: all are. Only where a sensor takes part
+  /// that covers the sector (ModalityRow): others know few places so well.
   double place_within = 0;
 
   void visit(ParamVisitor& v);

@@ -120,13 +120,6 @@ void BoxGeometryParams::visit(ParamVisitor& v) {
   v.real("bottom_share", bottom_share, {0, 1}, "", "of the box's height, added to bottom_sigma");
   v.angle("pitch_sigma_deg", pitch_sigma, {0, 10},
           "of the line of sight against the ground, beside the pose's own");
-  v.real("range_floor", range_floor, {0, 20}, "m", "added to the range's deviation");
-  v.real("border", border, {0, 100}, "px",
-         "edges this near to the image's border are cut off by it");
-  v.real(
-      "border_share", border_share, {0, 1}, "",
-      "of an upright box's height: a lower edge so near to the border may be of a cut-off person");
-  v.real("cut_share", cut_share, {0, 5}, "", "of the range, added to its deviation for such a box");
   v.real("max_range", max_range, {1, 500}, "m", "beyond it the ground range is not used");
 }
 

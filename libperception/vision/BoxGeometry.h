@@ -12,24 +12,27 @@ namespace perception {
 /// [sensor.LABEL.geometry]: how well an image box says where its object stands
 /// (method.md 4.2).
 struct BoxGeometryParams {
-  double edge_sigma = 3;  ///< [px] of the left and right edge ...
+  double edge_sigma = 3;  ///< [px] of the left and right edge; assumed ...
   /// ... and of the box's width: sd .05 to .17 on KITTI (RRC), but the boxes of one object err
-  /// alike for seconds, and a filter that takes them for independent must doubt them more.
+  /// alike for seconds, and a filter that takes them for independent must doubt them more. Tuned on
+  /// KITTI.
   double edge_share = 0.4;
-  double bottom_sigma = 4;  ///< [px] of the lower edge
-  double bottom_share =
-      0.05;  ///< of the box's height, added to it: detectors of people stop above a cycle's wheels
-  double pitch_sigma =
-      radians(0.5);  ///< [rad] of the line of sight against the ground, beside the pose's own
-  double range_floor = 0.2;  ///< [m] added to the range's deviation
-  double border = 10;        ///< [px] an edge this near to the image's border is cut off by it
+  double bottom_sigma = 4;  ///< [px] of the lower edge; assumed
+  /// Of the box's height, added to it: detectors of people stop above a cycle's wheels; tuned on
+  /// KITTI.
+  double bottom_share = 0.05;
+  /// [rad] of the line of sight against the ground, beside the pose's own; assumed.
+  double pitch_sigma = radians(0.5);
+  double range_floor = 0.2;  ///< [m] added to the range's deviation; assumed
+  double border = 10;        ///< [px] an edge this near to the image's border is cut off; assumed
   /// Where feet are out of the picture, detectors end the box above its border: a lower edge within
-  /// this share of the height of an upright box (higher than wide) of it may be such a one ...
+  /// this share of the height of an upright box (higher than wide) of it may be such a one; tuned
+  /// on KITTI ...
   double border_share = 0.2;
   /// ... and its range is doubted by this share more. KITTI (RRC): people within 5 m stand .57 of
   /// their range too far, cars do not.
   double cut_share = 0.4;
-  double max_range = 60;  ///< [m] beyond it the ground says nothing
+  double max_range = 60;  ///< [m] beyond it the ground says nothing; assumed
 
   void visit(ParamVisitor& v);
 };
@@ -70,7 +73,7 @@ Pose3 levelFrame(const Pose3& T_ego_camera);
 /// box over the seam reaches beyond the image's width (or begins left of 0): its columns are
 /// angles. Empty when the box is none or lies behind the camera's horizon. `height_prior` [m] of
 /// what the label names tells the range, too, by the angle that the box is high, unless the ground
-/// contradicts it (a van among cars): it holds where pitch and slope spoil the ground's.
+/// contradicts it (a van among cars): it holds where pitch and slope make the ground's wrong.
 std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
                                        const CameraModel& camera, const Pose3& T_ego_camera,
                                        const GroundPlane& ground,

@@ -67,14 +67,16 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.boolean("base", base, "the lower edge measures the height of the ground at the object, too");
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
          "log-odds of an object per unit of score; 0: no evidence");
-  v.real("score_limit", score_limit, {0, 50}, "", "bound of these log-odds");
   v.angle("heading_sigma_deg", heading_sigma, {0.1, 90}, "of the detector's headings, as axes");
   v.real("heading_flip", heading_flip, {0, 0.5}, "",
          "share of its headings that are reversed; 0.5: they tell the axis alone");
   v.real("heading_flip_persistence", heading_flip_persistence, {0, 0.99}, "",
          "... after a reversed one of the same object: they come in bursts");
+  v.expert();
+  v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log-odds");
   v.path("heading_model", heading_model,
-         "file of the heading head that told them: its measured errors replace both keys above");
+         "file of the heading head that told them: its measured errors replace heading_sigma_deg "
+         "and heading_flip");
 }
 
 VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry,

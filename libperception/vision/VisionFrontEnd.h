@@ -21,11 +21,11 @@ struct DetectorParams {
       "Car=car",   "Van=car",           "Truck=car",      "car=car",       "bus=car",
       "truck=car", "Pedestrian=person", "Cyclist=person", "person=person", "bicycle=person"};
   double min_score = -1e9;  ///< boxes below are not looked at
-  double score_offset =
-      0;  ///< log p(score | object) / p(score | clutter) = slope (score - offset), clamped
+  /// log p(score | object) / p(score | clutter) = slope (score - offset), clamped (method.md 8.8).
+  double score_offset = 0;
   double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
   std::vector<std::pair<std::string, double>> label_offsets;  ///< score_offset of single labels
-  double score_limit = 4;                                     ///< of that logarithm
+  double score_limit = 4;                                     ///< of that logarithm; assumed
   /// [m] of what a label names, mean and spread over objects: they tell the range, too.
   std::vector<std::pair<std::string, double>> height_priors, height_prior_sigmas;
   bool base = false;  ///< the lower edge measures the height of the ground at the object, too
@@ -34,7 +34,8 @@ struct DetectorParams {
   double occluder_score = 1e9;
   double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error:
                                       ///< method.md 7. KITTI's bank: 6.7 deg
-  double heading_flip = 0.2;  ///< share of headings that confuse front and back; 0.5: axis alone
+  double heading_flip = 0.2;  ///< share of headings that confuse front and back, assumed; 0.5: axis
+                              ///< alone
   double heading_flip_persistence = 0;  ///< share of reversed ones after a reversed one
   std::string heading_model;  ///< file of a HeadingHead, whose own errors then replace both
 

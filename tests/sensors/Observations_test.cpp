@@ -168,7 +168,7 @@ TEST(Observations, DescriptionAndTextExportNameTheNumbers) {
             std::string::npos);
   EXPECT_NE(someMeasurements()->asString().find("car_sized  left 0.1000 +- 0.1000"),
             std::string::npos);
-  EXPECT_NE(someMeasurements()->asString().find("left hidden"), std::string::npos);
+  EXPECT_NE(someMeasurements()->asString().find("left not seen"), std::string::npos);
   for (const mrpt::obs::CObservation::Ptr& o :
        {mrpt::obs::CObservation::Ptr(fullScan(3)), mrpt::obs::CObservation::Ptr(someDetections()),
         mrpt::obs::CObservation::Ptr(someMeasurements()),
