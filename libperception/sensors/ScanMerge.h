@@ -10,8 +10,9 @@ namespace perception {
 /// How scans become frames of one lidar: in [sensor.LABEL], kind = lidar.
 struct ScanParams {
   std::vector<std::string> merge;  ///< labels of the scanners that are one sensor; empty: its own
-  double merge_window = 0.05;      ///< [s] from the first scan to the last one of a merged frame
-  bool ground = true;              ///< the road is estimated from its returns
+  double merge_window =
+      0.05;            ///< [s] from the first scan to the last one of a merged frame (assumed)
+  bool ground = true;  ///< the road is estimated from its returns (method.md 8.1)
 
   void visit(ParamVisitor& v);
   /// Does an observation of that label belong to the merged sensor? A trailing * stands for any
