@@ -3,7 +3,8 @@
 #   ./setup.sh build   installs what is needed and builds the programs into build/bin
 #   ./setup.sh demo    the same, then tracks, evaluates and draws the simulated log rawlogs/demo.rawlog
 #   ./setup.sh bench   builds the benchmarks against other libraries and runs them one after the other
-#   ./setup.sh test    the same with the tests, and runs them: all of them, and the core ones once more with sanitizers
+#   ./setup.sh test    the same with the tests, and runs them: all of them, and the core ones once more with sanitizers;
+#                      before them clang-format on all sources and clang-tidy on a few
 # As root or with sudo that asks nothing; a second run installs nothing. JOBS=N sets the number of compilers at once.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
@@ -48,6 +49,7 @@ packages=(
 test_packages=(
   libgtest-dev           # tests
   mrpt-apps              # rawlog-edit, rawlog-grabber: stock MRPT must read and record our logs
+  clang-format-14 clang-tidy-14  # .clang-format, .clang-tidy
   locales                # definition of a locale with decimal comma: it must not change a byte
 )
 
@@ -111,7 +113,7 @@ number() { sed -n 's/.*"'"$2"'": *\(-\{0,1\}[0-9][0-9.e+-]*\).*/\1/p' "$1" | hea
 
 demo() {
   installPackages "${packages[@]}"
-  build release OFF
+  build release OFF --target perception-track perception-evaluate perception-snapshot perception-report
   local dir=out/demo log=rawlogs/demo.rawlog truth=rawlogs/demo.truth.csv
   say "Tracking the simulated log $log"
   run perception-track -c ini/demo.ini -i "$log" -o "$dir"
@@ -176,12 +178,33 @@ runTests() {
   return "$code"
 }
 
+# sources FOLDERS...: our sources and headers below them
+sources() { find "$@" -name '*.cpp' -o -name '*.h' | LC_ALL=C sort; }
+
+checkFormat() {
+  say "Checking the format"
+  sources libperception gui-offscreen studies apps tests | xargs -n 40 -P "$(jobs)" clang-format-14 --dry-run -Werror
+}
+
+# Core, config and what the last commit changed: some 4 s a source. Tests stay out, clang cannot read g++'s precompiled
+# headers; so do loops that use g++'s vectors.
+checkHabits() {
+  say "Checking with clang-tidy"
+  local changed
+  changed=$(git diff --name-only --diff-filter=d HEAD~1 -- libperception gui-offscreen studies apps 2>/dev/null |
+    grep -E '[.]cpp$' | xargs -r grep -L '/simd/' | head -n 30 || true)
+  { sources libperception/core libperception/config | grep -E '[.]cpp$'; printf '%s' "$changed"; } | sort -u |
+    xargs -n 1 -P "$(jobs)" clang-tidy-14 --quiet -p build 2>&1 | { grep -vE '^[0-9]+ warnings? generated' || true; }
+}
+
 tests() {
   installPackages "${packages[@]}" "${test_packages[@]}"
   makeCommaLocale
   closing="" skipped=""
   local failed=0
+  checkFormat || failed=1
   build release ON
+  checkHabits || failed=1
   runTests release build || failed=1
   local checked=() module
   for module in core measurement filter sensors; do

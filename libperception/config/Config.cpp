@@ -94,7 +94,7 @@ std::string Config::Impl::unknownSection(const std::string& name) const {
 
 std::string Config::Impl::unknownKey(const ConfigSection& section, const std::string& key) const {
   constexpr std::size_t kMostListed = 12;
-  const std::string start = fmt::format("[{}] {}: unknown key", section.name, key);
+  std::string start = fmt::format("[{}] {}: unknown key", section.name, key);
   const std::string nearest = nearestWord(key, section.known);
   if (!nearest.empty()) return fmt::format("{}, did you mean {}?", start, inQuotes(nearest));
   for (const auto& other : read) {

@@ -11,7 +11,7 @@ struct Bounds {
 
 /// Visits the keys of one INI section's struct. A struct that is a section has
 ///   void visit(ParamVisitor& v) { v.real("near_threshold", near_threshold, {0.05, 5}, "m", "single
-///   linkage (paper)"); }
+///   linkage"); }
 /// and its default member values are the defaults. The same visit loads, checks, saves and
 /// documents.
 class ParamVisitor {

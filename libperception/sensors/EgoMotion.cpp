@@ -35,28 +35,24 @@ double square(double x) { return x * x; }
 }  // namespace
 
 void FusionParams::visit(ParamVisitor& v) {
-  v.text("gnss_label", gnss_label, "label of the receivers' observations; empty: all");
-  v.text("imu_label", imu_label, "label of the inertial unit's observations; empty: all");
-  v.text("wheels_label", wheels_label, "label of the wheels' odometry; empty: all");
   gnss.visit(v);
   v.angle("gyro_noise_deg", gyro_noise, {1e-6, 10}, "angle random walk, in one second");
   v.angle("gyro_bias_sigma_deg", gyro_bias_sigma, {0, 20}, "rate of a gyro at rest, per second");
-  v.angle("gyro_bias_walk_deg", gyro_bias_walk, {0, 1}, "its change in one second");
   v.real("accel_noise", accel_noise, {1e-6, 10}, "m/s", "velocity random walk, in one second");
   v.real("accel_bias_sigma", accel_bias_sigma, {0, 5}, "m/s^2", "bias of the accelerometer");
-  v.real("accel_bias_walk", accel_bias_walk, {0, 1}, "m/s^2", "its change in one second");
   v.real("wheel_sigma", wheel_sigma, {0.001, 5}, "m/s", "of one reading of the wheels");
   v.real("wheel_scale_sigma", wheel_scale_sigma, {0, 0.5}, "-", "their scale: tyres, pressure");
-  v.real("slip", slip, {0, 5}, "m", "way in one second that no wheel and no model explains");
-  v.real("level_sigma", level_sigma, {0.01, 10}, "m/s^2",
-         "sideways force beside turning and gravity");
   v.real("heading_wait", heading_wait, {0, 600}, "s",
          "for a heading, before the world stays the frame of the start");
-  v.real("late", late, {0, 10}, "s", "at most an observation of these sensors may come late");
   v.reals("origin", origin, -1, {-1e4, 1e4}, "deg, deg, m",
           "latitude, longitude, height of the world's origin; empty: the first fix");
   v.require(origin.empty() || origin.size() == 3,
             "origin: expected latitude, longitude and height");
+  v.expert();
+  v.text("gnss_label", gnss_label, "label of the receivers' observations; empty: all");
+  v.text("imu_label", imu_label, "label of the inertial unit's observations; empty: all");
+  v.text("wheels_label", wheels_label, "label of the wheels' odometry; empty: all");
+  v.real("late", late, {0, 10}, "s", "at most an observation of these sensors may come late");
 }
 
 Vector3 EgoMotionState::toWorld(const Vector3& enu) const {

@@ -57,14 +57,14 @@ void EgoPoseParams::visit(ParamVisitor& v) {
           "least standard deviation of the heading (method.md 1.3)");
   v.angle("sigma_pitch_deg", minimum.sigma_pitch, {0, 45},
           "least standard deviation of the pitch (method.md 1.3)");
-  v.real("extrapolation", extrapolation, {0, 5}, "s",
-         "time beyond the last pose for which it is continued");
   v.real("max_speed", max_speed, {1, 1000}, "m/s",
          "a pose that implies more is rejected as a jump");
-  v.real("history", history, {1, 600}, "s", "poses kept, at least the longest delay of any sensor");
+  fusion.visit(v);
+  v.expert();
+  v.real("extrapolation", extrapolation, {0, 5}, "s",
+         "time beyond the last pose for which it is continued");
   v.real("blind_gap", blind_gap, {0.1, 1e6}, "s",
          "without any scan, in a log that does not tell the vehicle's motion: tracks start anew");
-  fusion.visit(v);
 }
 
 EgoPose::EgoPose(EgoPoseParams params)

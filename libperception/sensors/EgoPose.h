@@ -21,12 +21,12 @@ struct EgoPoseParams {
   std::string
       label;  ///< of the pose observations; empty: EGO_POSE, or the first label if there is none
   PoseUncertainty minimum;     ///< method.md 1.3; a log that claims less (or nothing) gets this
-  double extrapolation = 0.2;  ///< [s] at most beyond the last pose
-  double max_speed = 100;      ///< [m/s] a step that implies more is a jump
-  double history = 10;         ///< [s] of poses that are kept
+  double extrapolation = 0.2;  ///< [s] at most beyond the last pose (assumed: two poses at 10 Hz)
+  double max_speed = 100;      ///< [m/s] a step that implies more is a jump (assumed)
+  double history = 10;         ///< [s] of poses that are kept (assumed)
   /// [s] without any scan, while nothing tells how the vehicle moves, after which tracks start
   /// anew: at 5 m/s another bush stands then where one was, and the pair looks like a runner
-  /// (own choice).
+  /// (assumed).
   double blind_gap = 2;
 
   void visit(ParamVisitor& v);

@@ -199,10 +199,6 @@ std::optional<GnssFix> bestOf(const CObservationGPS& o, const GnssParams& params
 void GnssParams::visit(ParamVisitor& v) {
   v.real("gnss_sigma", sigma, {0.001, 100}, "m",
          "of a plain fix at HDOP 1, where a receiver does not say it");
-  v.real("gnss_rtk_sigma", rtk_sigma, {0.001, 10}, "m", "of a fixed RTK solution");
-  v.real("gnss_height_factor", height_factor, {0.1, 100}, "-",
-         "heights are so much worse than east and north");
-  v.real("gnss_velocity_sigma", velocity_sigma, {0.001, 100}, "m/s", "of Doppler speed and course");
 }
 
 std::optional<GnssFix> gnssFix(const CObservationGPS& observation, const GnssParams& params) {

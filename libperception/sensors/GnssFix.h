@@ -9,7 +9,8 @@
 
 namespace perception {
 
-/// What a satellite receiver is believed, where its messages do not say it themselves: in [ego].
+/// Standard deviations of a satellite receiver whose messages do not state them: in [ego]. Figures
+/// of receivers' data sheets, assumed (method.md 1.4).
 struct GnssParams {
   double sigma = 1.5;           ///< [m] of a plain fix at HDOP 1, east and north each
   double rtk_sigma = 0.03;      ///< [m] of a fixed RTK solution

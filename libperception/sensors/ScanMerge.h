@@ -15,8 +15,9 @@ struct ScanParams {
     kOnly  ///< and nothing else: also where the sensor is not in use, no measurements
   };
   std::vector<std::string> merge;  ///< labels of the scanners that are one sensor; empty: its own
-  double merge_window = 0.05;      ///< [s] from the first scan to the last one of a merged frame
-  Ground ground = Ground::kYes;    ///< is the ground plane estimated from its returns?
+  double merge_window =
+      0.05;  ///< [s] from the first scan to the last one of a merged frame (assumed)
+  Ground ground = Ground::kYes;  ///< is the road estimated from its returns? (method.md 8.1)
 
   void visit(ParamVisitor& v);
   /// Does an observation of that label belong to the merged sensor? A trailing * stands for any

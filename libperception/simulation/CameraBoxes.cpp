@@ -106,15 +106,11 @@ void CameraParams::visit(ParamVisitor& v) {
   v.integer("height", height, {16, 20000}, "of the image, pixels");
   v.angle("fov_deg", fov, {5, 150}, "horizontal");
   v.real("recall", recall, {0, 1}, "-", "of objects that are wholly visible and large");
-  v.real("min_pixels", min_pixels, {1, 5000}, "px", "box height below which nothing is found");
-  v.real("full_pixels", full_pixels, {1, 5000}, "px", "box height of full recall");
-  v.real("edge_noise", edge_noise, {0, 1}, "-", "of box edges, share of the box's height");
   v.real("confusion", confusion, {0, 1}, "-", "share of wrong labels");
   v.real("false_per_image", false_per_image, {0, 100}, "-", "boxes where nothing is");
-  v.boolean("heading", heading, "detector tells the orientation of vehicles");
-  v.angle("heading_noise_deg", heading_noise, {0, 180}, "of that orientation");
   v.real("heading_flip", heading_flip, {0, 1}, "-", "share reversed by 180 deg");
-  v.require(min_pixels < full_pixels, "min_pixels: expected less than full_pixels");
+  v.expert();
+  v.boolean("heading", heading, "detector tells the orientation of vehicles");
 }
 
 CameraModel CameraParams::model() const {

@@ -12,8 +12,9 @@ namespace perception {
 class LidarCaster;
 class World;
 
-/// A camera with somebody's detector behind it, in a [sensor.LABEL] section. Defaults: a recent
-/// image detector on KITTI's camera; the paper's DPM is weaker (recall, orientation).
+/// A camera with an image detector behind it, in a [sensor.LABEL] section. Defaults: a recent
+/// detector on KITTI's camera [geiger2012], rates assumed; the part models of [radecki2016] are
+/// weaker (recall, orientation).
 struct CameraParams {
   int width = 1242, height = 375;            ///< [px] KITTI
   double fov = radians(81);                  ///< [rad] horizontal; KITTI: f = 721 px
@@ -42,7 +43,7 @@ Pose3 opticalAxes();
 /// KITTI's alpha: rotation about the optical y axis, seen along the line of sight.
 double observationAngle(const Pose3& T_camera_object);
 
-/// Changes what a detector has to go by; empty: clear air by day.
+/// Changes what a detector sees; empty: clear air by day.
 using CameraHook = std::function<void(CameraLook&, Rng&)>;
 
 /// Empty when the object lies outside the image. `T_world_camera`: optical frame. In a panorama

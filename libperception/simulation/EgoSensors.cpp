@@ -60,15 +60,15 @@ std::shared_ptr<Class> observationAt(const EgoMount& mount, const EgoTruth& trut
 void GnssUnitParams::visit(ParamVisitor& v) {
   v.real("sigma", sigma, {0, 100}, "m", "of a fix, east and north each, independent");
   v.real("height_sigma", height_sigma, {0, 100}, "m", "of its height");
-  v.real("velocity_sigma", velocity_sigma, {0, 10}, "m/s", "of its velocity, east and north each");
-  v.boolean("velocity", velocity, "speed and course (RMC) beside the position (GGA)");
   v.real("delay", delay, {0, 5}, "s", "a fix comes so late into the log, with its own stamp");
   v.reals("gap_from", gap_from, -1, {0, 3600}, "s", "beginnings of times without satellites");
   v.reals("gap_to", gap_to, -1, {0, 3600}, "s", "their ends");
-  v.real("latitude", latitude, {-89, 89}, "deg", "of the scene's origin, north");
-  v.real("longitude", longitude, {-180, 180}, "deg", "of the scene's origin, east");
   v.real("height", height, {-500, 9000}, "m", "of the scene's origin above the ellipsoid");
   v.require(gap_from.size() == gap_to.size(), "gap_from, gap_to: expected as many of each");
+  v.expert();
+  v.boolean("velocity", velocity, "speed and course (RMC) beside the position (GGA)");
+  v.real("latitude", latitude, {-89, 89}, "deg", "of the scene's origin, north");
+  v.real("longitude", longitude, {-180, 180}, "deg", "of the scene's origin, east");
 }
 
 void ImuUnitParams::visit(ParamVisitor& v) {
@@ -76,13 +76,11 @@ void ImuUnitParams::visit(ParamVisitor& v) {
   v.angle("gyro_bias_deg", gyro_bias, {0, 20}, "per second: deviation of an axis' bias");
   v.real("accel_noise", accel_noise, {0, 10}, "m/s", "velocity random walk, in one second");
   v.real("accel_bias", accel_bias, {0, 5}, "m/s^2", "deviation of an axis' bias");
-  v.real("vibration", vibration, {0, 10}, "m/s^2", "of engine and road, across and upwards");
 }
 
 void WheelUnitParams::visit(ParamVisitor& v) {
   v.real("sigma", sigma, {0, 5}, "m/s", "of one reading");
   v.real("scale", scale, {0, 0.5}, "-", "deviation of the scale: tyres, pressure");
-  v.angle("yaw_rate_sigma_deg", yaw_rate_sigma, {0, 50}, "per second, of one reading");
 }
 
 std::shared_ptr<mrpt::obs::CObservation> gnssObservation(const GnssUnitParams& params,

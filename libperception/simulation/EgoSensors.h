@@ -12,7 +12,8 @@
 
 namespace perception {
 
-/// A satellite receiver: [sensor.LABEL] kind = gnss.
+/// A satellite receiver: [sensor.LABEL] kind = gnss. Noise of a plain receiver (assumed, as
+/// GnssParams).
 struct GnssUnitParams {
   double sigma = 1.5;           ///< [m] east and north each, of every fix alone
   double height_sigma = 3;      ///< [m]
@@ -27,7 +28,8 @@ struct GnssUnitParams {
   void visit(ParamVisitor& v);
 };
 
-/// Three gyros and three accelerometers: kind = imu. Biases are drawn once a log.
+/// Three gyros and three accelerometers: kind = imu. Biases are drawn once a log. Figures of MEMS
+/// data sheets, assumed (method.md 1.4).
 struct ImuUnitParams {
   double gyro_noise = radians(0.05);  ///< [rad/sqrt(s)] angle random walk
   double gyro_bias = radians(0.5);    ///< [rad/s] deviation of each axis' bias
@@ -38,7 +40,7 @@ struct ImuUnitParams {
   void visit(ParamVisitor& v);
 };
 
-/// The speed of the rear axle: kind = wheels. The scale is drawn once a log.
+/// The speed of the rear axle: kind = wheels. The scale is drawn once a log. Assumed.
 struct WheelUnitParams {
   double sigma = 0.05;                   ///< [m/s] of one reading
   double scale = 0.02;                   ///< [-] deviation of the scale: tyres, pressure
@@ -47,7 +49,7 @@ struct WheelUnitParams {
   void visit(ParamVisitor& v);
 };
 
-/// Where a sensor of the vehicle's own motion sits, and how often it speaks.
+/// Where a sensor of the vehicle's own motion is mounted, and its rate.
 struct EgoMount {
   std::string label;
   Pose3 T_ego_sensor = Pose3::Identity();

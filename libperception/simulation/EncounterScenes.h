@@ -38,7 +38,7 @@ struct EncounterConditions {
 
 /// Pedestrian and car with the noise values of that study; `pedestrian_psd` [m^2/s^3].
 ClassTable encounterClasses(double pedestrian_psd = 0.25);
-/// The two sensors; P_D, kappa and label tables after the paper's recall and precision.
+/// The two sensors; P_D, kappa and label tables after recall and precision of [radecki2016].
 std::shared_ptr<const PositionModel> encounterLidar(const EncounterConditions& conditions);
 std::shared_ptr<const PositionModel> encounterCamera(const EncounterConditions& conditions);
 

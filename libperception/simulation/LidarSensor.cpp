@@ -146,18 +146,16 @@ void LidarParams::visit(ParamVisitor& v) {
   v.angle("azimuth_step_deg", azimuth_step, {0.02, 10}, "between neighboring beams");
   v.angle("elevation_from_deg", elevation_from, {-90, 90}, "leaves lower rings out");
   v.angle("elevation_to_deg", elevation_to, {-90, 90}, "leaves higher rings out");
-  v.integer("ring_step", ring_step, {1, 64}, "keeps every n-th ring");
   v.real("range_min", range_min, {0, 100}, "m", "nothing nearer");
   v.real("range_max", range_max, {1, 500}, "m", "nothing farther");
   v.real("reference_range", reference_range, {1, 2000}, "m",
          "a 90 % surface is just seen (method.md 9)");
-  v.real("range_noise", range_noise, {0, 1}, "m", "at the strongest echo");
-  v.real("loss", loss, {0, 1}, "-", "share of pulses lost whatever they meet");
   v.angle("divergence_deg", divergence, {0, 2}, "width of the beam; 0: a ray without width");
-  v.real("label_error", label_error, {0, 1}, "-", "share of wrong point labels (lidar4)");
-  v.boolean("sweep", sweep, "beams at their own times while everything moves");
   v.require(azimuth_from < azimuth_to, "azimuth_from_deg: expected less than azimuth_to_deg");
   v.require(range_min < range_max, "range_min: expected less than range_max");
+  v.expert();
+  v.integer("ring_step", ring_step, {1, 64}, "keeps every n-th ring");
+  v.boolean("sweep", sweep, "beams at their own times while everything moves");
 }
 
 // HDL-64E: 32 upper lasers from +2 to -8.33 deg at 1/3 deg, 32 lower ones from -8.83 at 1/2 deg.

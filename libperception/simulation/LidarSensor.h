@@ -12,7 +12,8 @@ namespace perception {
 
 class LidarCaster;
 
-/// A scanning lidar in a [sensor.LABEL] section. Defaults: HDL-64E (data sheet, KITTI's pattern).
+/// A scanning lidar in a [sensor.LABEL] section. Defaults: HDL-64E (data sheet, KITTI's pattern),
+/// loss and label errors assumed.
 struct LidarParams {
   enum class Layout { kHdl64, kFourLayer };
   Layout layout = Layout::kHdl64;  ///< elevations of the beams; from the sensor's kind

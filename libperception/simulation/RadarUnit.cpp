@@ -188,22 +188,12 @@ void RadarUnitParams::visit(ParamVisitor& v) {
   v.real("range_max", range_max, {2, 500}, "m", "nothing farther");
   v.real("reference_range", reference_range, {1, 1000}, "m",
          "a car gives an echo every second scan");
-  v.real("false_alarm", false_alarm, {1e-12, 0.1}, "-", "of one cell: sets the threshold");
-  v.real("range_noise", range_noise, {0, 20}, "m", "standard deviation");
-  v.angle("bearing_noise_deg", bearing_noise, {0, 20}, "standard deviation");
-  v.real("rate_noise", rate_noise, {0, 10}, "m/s", "standard deviation");
-  v.real("person", person, {0, 1}, "-", "share of scans in which a near person is resolved");
-  v.real("cyclist", cyclist, {0, 1}, "-", "the same of a cyclist");
-  v.real("vehicle", vehicle, {0, 1}, "-", "the same of cars, vans and buses");
-  v.real("surroundings", surroundings, {0, 1}, "-", "the same of poles, walls and bushes");
   v.real("ground_per_scan", ground_per_scan, {0, 50}, "-", "echoes of the road");
-  v.real("false_per_scan", false_per_scan, {0, 50}, "-", "targets where nothing is");
-  v.real("double_bounce", double_bounce, {0, 1}, "-",
-         "share of near returns seen at twice the range");
   v.integer("max_targets", max_targets, {1, 1000}, "the strongest are kept");
+  v.require(range_min < range_max, "range_min: expected less than range_max");
+  v.expert();
   v.boolean("upside_down", upside_down,
             "hangs on its head: bearings are mirrored, the pose is not");
-  v.require(range_min < range_max, "range_min: expected less than range_max");
 }
 
 std::vector<RadarReflection> radarReflections(const LidarCaster& caster, double t,

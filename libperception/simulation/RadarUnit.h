@@ -13,7 +13,7 @@ class LidarCaster;
 
 /// An automotive radar that hands over a list of targets, in a [sensor.LABEL] section. View after
 /// the Delphi units of Cornell's 2007 vehicle (15 deg: [cornell2007]), noise of a modern unit
-/// (method.md 4.3).
+/// (method.md 4.3); the rest is assumed.
 struct RadarUnitParams {
   double fov = radians(15);               ///< [rad] whole width of the view
   double range_min = 1, range_max = 150;  ///< [m]
@@ -25,10 +25,10 @@ struct RadarUnitParams {
   double person = 0.05, cyclist = 0.3, vehicle = 0.9;  ///< P_D near by (method.md 2.3)
   double surroundings = 0.3;  ///< the same of poles, walls and bushes (method.md 2.3: static-other)
   double ground_per_scan = 0.1;  ///< echoes of the road itself, curbs, manhole covers
-  double false_per_scan = 0.02;  ///< targets that are nothing ("few false positives": paper)
+  double false_per_scan = 0.02;  ///< targets that are nothing ("few false positives" [radecki2016])
   double double_bounce = 0.01;   ///< share of near returns that come again at twice the range
   int max_targets = 20;          ///< the unit tracks no more
-  bool upside_down = false;      ///< hangs on its head and does not say so: bearings are mirrored
+  bool upside_down = false;  ///< mounted so, and its pose does not say it: bearings are mirrored
 
   void visit(ParamVisitor& v);
 };

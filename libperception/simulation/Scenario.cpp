@@ -50,7 +50,7 @@ void ScenarioParams::visit(ParamVisitor& v) {
   v.text("description", description, "one line for the log's first comment");
   v.real("duration", duration, {0.1, 3600}, "s", "length of the log");
   v.real("rate", rate, {0.1, 100}, "1/s", "frame numbers and instants of the truth");
-  v.integer("start_utc", start_utc, {1, 2147483647}, "stamp of t = 0 in seconds since 1970");
+  v.expert();
   v.real("ground_roughness", ground_roughness, {0, 0.2}, "m", "spread of the road's height");
 }
 
@@ -64,10 +64,10 @@ void WaypointParams::visit(ParamVisitor& v) {
 }
 
 void PoseParams::visit(ParamVisitor& v) {
-  v.real("pose_rate", rate, {0, 1000}, "1/s", "of the pose estimator (paper: 100 Hz); 0: none");
+  v.real("pose_rate", rate, {0, 1000}, "1/s",
+         "of the pose estimator ([radecki2016]: 100 Hz); 0: none");
   v.real("pose_sigma_xy", sigma_xy, {0, 10}, "m", "slow error of the reported pose");
   v.angle("pose_sigma_yaw_deg", sigma_yaw, {0, 10}, "slow error of the reported heading");
-  v.real("pose_correlation", correlation, {0.01, 1000}, "s", "time constant of that error");
 }
 
 void EgoParams::visit(ParamVisitor& v) {
@@ -86,8 +86,9 @@ void LaneSection::visit(ParamVisitor& v) {
   v.reals("x", x, -1, kPlace, "m", "of the center line in driving direction, world");
   v.reals("y", y, -1, kPlace, "m", "of the center line in driving direction, world");
   v.real("width", width, {0.5, 20}, "m", "of the lane");
-  v.boolean("one_way", one_way, "false: driven either way");
   v.require(x.size() == y.size() && x.size() >= 2, "x, y: expected two or more values of each");
+  v.expert();
+  v.boolean("one_way", one_way, "false: driven either way");
 }
 
 void ObjectParams::visit(ParamVisitor& v) {

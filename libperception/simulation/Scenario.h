@@ -23,12 +23,12 @@ bool isRoadUser(ObjectKind kind);
 /// KITTI's word: Car, Van, Truck (a bus), Cyclist, Pedestrian, Misc.
 const char* truthType(ObjectKind kind);
 
-/// [scenario]: what holds for the whole log.
+/// [scenario]: what holds for the whole log. Defaults assumed.
 struct ScenarioParams {
   std::string description;
   double duration = 20;            ///< [s]
   double rate = 10;                ///< [1/s] frames: numbers in the log and instants of the truth
-  int start_utc = 1577836800;      ///< [s] since 1970, stamp of t = 0: 2020-01-01T00:00:00Z
+  int start_utc = 1577836800;      ///< [s] since 1970, stamp of t = 0: 2020-01-01 (assumed)
   double ground_roughness = 0.01;  ///< [m] standard deviation of the road's height
 
   void visit(ParamVisitor& v);
@@ -44,9 +44,10 @@ struct WaypointParams {
   Trajectory trajectory() const { return {t, x, y, heading}; }
 };
 
-/// What the vehicle's pose estimator says, in [ego]; the part of [ego] that a vehicle INI may hold.
+/// The vehicle's pose estimator, in [ego]; the part of [ego] that a vehicle INI may hold. Errors
+/// assumed.
 struct PoseParams {
-  double rate = 100;        ///< [1/s] (paper: 100 Hz); 0: the log holds no poses
+  double rate = 100;        ///< [1/s] (100 Hz [radecki2016]); 0: the log holds no poses
   double sigma_xy = 0;      ///< [m] error of the reported pose: slowly varying
   double sigma_yaw = 0;     ///< [rad]
   double correlation = 10;  ///< [s] time constant of that error
@@ -63,6 +64,7 @@ struct EgoParams {
 };
 
 /// [road.NAME]: asphalt along a line; with roads the rest of the ground is grass and pavement.
+/// Width assumed: two lanes.
 struct RoadParams {
   std::string name;          ///< from the section's title
   std::vector<double> x, y;  ///< [m] middle line
@@ -71,7 +73,8 @@ struct RoadParams {
   void visit(ParamVisitor& v);
 };
 
-/// [lane.NAME]: a lane of a road, for the map that goes with the log.
+/// [lane.NAME]: a lane of a road, for the map that goes with the log. Width
+/// assumed.
 struct LaneSection {
   std::vector<double> x, y;  ///< [m] center line in driving direction, world
   double width = 3.5;        ///< [m]
@@ -80,7 +83,7 @@ struct LaneSection {
   void visit(ParamVisitor& v);
 };
 
-/// [object.NAME]: one thing of the scene.
+/// [object.NAME]: one thing of the scene. Size of a car (method.md 2.2).
 struct ObjectParams {
   std::string name;  ///< from the section's title
   ObjectKind kind = ObjectKind::kCar;
@@ -104,7 +107,7 @@ enum class SensorKind {
   kWheels
 };
 
-/// [sensor.LABEL]: one sensor of the vehicle.
+/// [sensor.LABEL]: one sensor of the vehicle. Defaults: KITTI's Velodyne [geiger2012].
 struct SensorParams {
   std::string label;  ///< from the section's title
   SensorKind kind = SensorKind::kLidar64;

@@ -158,20 +158,12 @@ void SphericalCameraParams::setResolution(Resolution r) {
 void SphericalCameraParams::visit(ParamVisitor& v) {
   const Resolution before = resolution;
   v.choiceOf("resolution", resolution, cameraResolutionNames(),
-             "sets size, ranges and false boxes (paper)");
+             "sets size, ranges and false boxes [radecki2016]");
   if (resolution != before) setResolution(resolution);
-  v.real("car_range", car_range, {1, 300}, "m", "recall of cars and buses holds within");
-  v.real("person_range", person_range, {1, 300}, "m", "recall of persons and cyclists");
   v.real("false_per_image", false_per_image, {0, 100}, "-", "boxes of no car or person");
-  v.real("car_recall", car_recall, {0, 1}, "-", "paper: .85");
-  v.real("person_recall", person_recall, {0, 1}, "-", "paper: .70");
-  v.real("bus_recall", bus_recall, {0, 1}, "-", "found as a car");
-  v.real("cyclist_recall", cyclist_recall, {0, 1}, "-", "found as a person, mostly");
-  v.real("edge_noise", edge_noise, {0, 1}, "-", "of box edges, share of the box's height");
-  v.boolean("heading", heading, "detector tells the orientation of cars");
-  v.integer("heading_bins", heading_bins, {0, 360}, "of the observation angle; 0: none");
-  v.angle("heading_noise_deg", heading_noise, {0, 180}, "of the orientation, before binning");
   v.real("heading_flip", heading_flip, {0, 1}, "-", "share reversed by 180 deg");
+  v.expert();
+  v.boolean("heading", heading, "detector tells the orientation of cars");
 }
 
 CameraModel SphericalCameraParams::model() const {

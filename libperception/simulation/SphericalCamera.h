@@ -8,20 +8,21 @@ namespace perception {
 
 class LidarCaster;
 
-/// A panoramic camera with the paper's detector of cars and persons behind it, in a [sensor.LABEL]
+/// A panoramic camera with the detector of [radecki2016] for cars and persons, in a [sensor.LABEL]
 /// section: boxes in pixels of the equirectangular panorama. `resolution` sets size, ranges and
-/// false boxes (paper's tables of resolutions and of detections per image).
+/// false boxes (tables of resolutions and of detections per image in [radecki2016]). Edge noise is
+/// assumed.
 struct SphericalCameraParams {
   enum class Resolution { k1k, k2k, k4k, k8k };
   Resolution resolution = Resolution::k2k;
   int width = 2048, height = 1024;                  ///< [px]
-  double car_range = 15, person_range = 10;         ///< [m] recall holds within (paper)
+  double car_range = 15, person_range = 10;         ///< [m] recall holds within [radecki2016]
   double false_per_image = 0.12;                    ///< boxes of no car or person, see .cpp
-  double car_recall = 0.85, person_recall = 0.70;   ///< within range (paper, sunny)
+  double car_recall = 0.85, person_recall = 0.70;   ///< within range, sunny [radecki2016]
   double bus_recall = 0.60, cyclist_recall = 0.60;  ///< (method.md 2.3)
-  double edge_noise = 0.05;             ///< of a box edge, as a share of the box's height
-  bool heading = true;                  ///< orientation of cars
-  int heading_bins = 16;                ///< of the observation angle (paper: 16 models); 0: none
+  double edge_noise = 0.05;  ///< of a box edge, as a share of the box's height
+  bool heading = true;       ///< orientation of cars
+  int heading_bins = 16;     ///< of the observation angle (16 models [radecki2016]); 0: none
   double heading_noise = radians(4.7);  ///< [rad] before binning; with 16 bins 8 deg (method.md 7)
   double heading_flip = 0.2;            ///< share reversed by 180 deg (method.md 7: p_f)
 

@@ -22,7 +22,7 @@ struct Citable {
 // Results of the programs and placeholders of explanations: no files of the tree.
 const Names kResults = {"report.md", "errors.md"};
 const std::regex& placeholder() {
-  static const std::regex pattern(R"re((^|/)(X|XApp|NAME|perception-NAME|site)([./]|$))re");
+  static const std::regex pattern(R"re((^|/)(X|XApp|NAME|MODULE|perception-NAME|site)([./]|$))re");
   return pattern;
 }
 

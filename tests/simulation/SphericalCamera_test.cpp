@@ -127,11 +127,11 @@ TEST(SphericalCamera, RecallAndRangeAreThePapers) {
 TEST(SphericalCamera, OneKeySetsTheResolution) {
   const Scenario s = scenarioOf(kStanding +
                                 "[sensor.PANO]\nkind = spherical_camera\nresolution = 8k\n"
-                                "person_range = 35\n");
+                                "false_per_image = 35\n");
   const SphericalCameraParams& p = s.sensors.at(0).panorama;
   EXPECT_EQ(p.width, 8000);
   EXPECT_EQ(p.car_range, 70);
-  EXPECT_EQ(p.person_range, 35) << "a key of the file wins";
+  EXPECT_EQ(p.false_per_image, 35) << "a key of the file wins";
 }
 
 TEST(SphericalCamera, FalseBoxesHaveTheirRate) {
