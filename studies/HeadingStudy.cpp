@@ -267,6 +267,19 @@ HeadingFigures runHeading(const HeadingMethod& method, bool radar, double flip_p
   return sum;
 }
 
+namespace {
+
+std::vector<std::string> rowOf(double flip_probability, const std::string& method,
+                               const HeadingFigures& f) {
+  return {fmt::format("{:.2f}", flip_probability), method,
+          fmt::format("{:.3f}", f.tracked),        fmt::format("{:.3f}", f.position_rms),
+          fmt::format("{:.3f}", f.heading_rms),    fmt::format("{:.3f}", f.right_way),
+          fmt::format("{:.2f}", f.velocity_rms),   fmt::format("{:.2f}", f.lost),
+          fmt::format("{:.2f}", f.rejected)};
+}
+
+}  // namespace
+
 StudyReport headingStudy(const HeadingParams& params) {
   StudyReport report;
   report.title = "Headings that confuse front and back";
@@ -303,11 +316,7 @@ StudyReport headingStudy(const HeadingParams& params) {
       std::string data;
       for (const double p : params.flip_probabilities) {
         const auto f = runHeading(method, radar, p, params);
-        t.rows.push_back({fmt::format("{:.2f}", p), method.label, fmt::format("{:.3f}", f.tracked),
-                          fmt::format("{:.3f}", f.position_rms),
-                          fmt::format("{:.3f}", f.heading_rms), fmt::format("{:.3f}", f.right_way),
-                          fmt::format("{:.2f}", f.velocity_rms), fmt::format("{:.2f}", f.lost),
-                          fmt::format("{:.2f}", f.rejected)});
+        t.rows.push_back(rowOf(p, method.label, f));
         data += fmt::format("{} {:.4f} {:.4f}\n", p, f.tracked, f.right_way);
       }
       plot.data.push_back({file, data});
@@ -323,9 +332,6 @@ StudyReport headingStudy(const HeadingParams& params) {
     report.tables.push_back(t);
     report.plots.push_back(plot);
   }
-  report.remarks = {
-      "Reversing a track is an exact symmetry: it changes neither position nor velocity, so "
-      "majority and log-odds differ in the heading alone."};
   return report;
 }
 

@@ -102,9 +102,9 @@ ScanTracks tracksOf(const std::vector<const Hypothesis*>& hypotheses, const Meas
   out.of_hypothesis.reserve(hypotheses.size());
   for (const Hypothesis* h : hypotheses) out.of_hypothesis.push_back(numbers.of(h->tracks));
   out.touched.assign(out.before.size(), 0);
-  const bool places_alone = isPositionOnly(scan);
+  const bool position_only = isPositionOnly(scan);
   parallelFor(out.before.size(), [&](std::size_t i) {
-    out.touched[i] = mayBeInView(scan, *out.before[i], places_alone);
+    out.touched[i] = mayBeInView(scan, *out.before[i], position_only);
   });
   out.predicted = predictTracks(out.before, out.touched, scan.state.stamp, model);
   return out;

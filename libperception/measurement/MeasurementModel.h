@@ -56,6 +56,8 @@ struct BirthState {
   Extent extent;
 };
 
+class PositionOnlyModel;
+
 /// How one kind of sensor sees one kind of object. Batched, so that no virtual call stands in the
 /// inner loop. Labels, detection and clutter are per class and per scan as in [sensor.LABEL]; all
 /// densities are per unit of the axes seen.
@@ -64,6 +66,9 @@ class MeasurementModel {
   virtual ~MeasurementModel() = default;
 
   virtual const std::vector<AxisKind>& axes() const = 0;
+  /// Of a model whose z is the object's position and nothing else: itself, for the shorter way to
+  /// the same numbers (method.md 4.4); null: any other model.
+  virtual const PositionOnlyModel* positionOnly() const { return nullptr; }
   /// Axes that correct the extent. A range tells of length only together with the center's place,
   /// whose correlation with the extent is not kept: it is left out there, but counts in S.
   virtual AxisMask extentAxes() const { return 0xff; }

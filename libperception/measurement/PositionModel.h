@@ -39,6 +39,7 @@ class PositionModel : public MeasurementModel, public PositionOnlyModel {
   explicit PositionModel(Params params);
 
   const std::vector<AxisKind>& axes() const override;
+  const PositionOnlyModel* positionOnly() const override { return this; }
   void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                const SensorState& sensor, AxisPrediction* out) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,

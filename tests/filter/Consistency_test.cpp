@@ -141,7 +141,7 @@ void runTrack(const ClassTable& classes, ClassId id, const Sensor& sensor, Rng& 
     };
     const AxisPrediction seen = look(truth);
     AxisPrediction predicted = look(f);
-    lineariseAlongAspect(c, f, kinematicsOf(c, f), *sensor.model, state, predicted);
+    linearizeAlongAspect(c, f, kinematicsOf(c, f), *sensor.model, state, predicted);
     if (!seen.defined || !predicted.defined || truth.x.head<2>().norm() < 8) return;
     Measurement m;
     const auto axes = seen.h.size();

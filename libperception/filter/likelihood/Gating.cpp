@@ -110,13 +110,13 @@ bool AxisBounds::exclude(const Measurement& m, const std::vector<AxisKind>& kind
   return false;
 }
 
-ReachableDisc whereaboutsOf(const Track& track, const FilterModel& model) {
+ReachableDisc reachableDiscOf(const Track& track, const FilterModel& model) {
   const BoundingDisc around(track);
   ReachableDisc w;
   w.center = around.center;
   w.reach = around.spread + kSlack;
-  w.longest_deferral = kLongestSleep;
-  w.expires = track.stamp + std::min(timeToLive(track, model), kLongestSleep);
+  w.longest_deferral = kLongestDeferral;
+  w.expires = track.stamp + std::min(timeToLive(track, model), kLongestDeferral);
   double speed2 = 0;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ClassFilter& f = track.bank[static_cast<std::size_t>(j)];
@@ -128,7 +128,7 @@ ReachableDisc whereaboutsOf(const Track& track, const FilterModel& model) {
                                     : motion.kinematics(x, false).q.segment<2>(2).squaredNorm();
       speed2 = std::max(speed2, own);
     };
-    if (!f.modes.empty()) w.longest_deferral = kLongestSleepOfModes;
+    if (!f.modes.empty()) w.longest_deferral = kLongestDeferralOfModes;
     move(f.x, f.P);
     for (const ModeFilter& mode : f.modes) move(mode.x, mode.P);
   }
@@ -136,14 +136,12 @@ ReachableDisc whereaboutsOf(const Track& track, const FilterModel& model) {
   return w;
 }
 
-bool isPositionOnly(const MeasurementScan& scan) {
-  return dynamic_cast<const PositionOnlyModel*>(scan.model.get()) != nullptr;
-}
+bool isPositionOnly(const MeasurementScan& scan) { return scan.model->positionOnly() != nullptr; }
 
-bool mayBeInView(const MeasurementScan& scan, const Track& track, bool places_alone) {
+bool mayBeInView(const MeasurementScan& scan, const Track& track, bool position_only) {
   constexpr double kMargin = 1;  // [m] beyond the objects' own size
   const ReachableDisc& w = track.reachable;
-  const double body = places_alone ? 0 : 2 * BoundingDisc(track).size + kMargin;
+  const double body = position_only ? 0 : 2 * BoundingDisc(track).size + kMargin;
   const double dt = scan.state.stamp - track.stamp;
   return dt >= w.longest_deferral - 1e-6 || w.reach == std::numeric_limits<double>::infinity() ||
          scan.model->mayDetect(w.center, w.reach + body + w.speed * dt, scan.state);

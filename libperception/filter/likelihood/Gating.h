@@ -45,19 +45,19 @@ class AxisBounds {
 };
 
 /// Where a sensor may see the track: P_D is taken at the means of the class filters.
-ReachableDisc whereaboutsOf(const Track& track, const FilterModel& model);
+ReachableDisc reachableDiscOf(const Track& track, const FilterModel& model);
 
 /// A track that no scan concerns is left behind until one does, or until it has expired; at most
 /// for this long [s]. Its steps are taken when it wakes, and most never do.
-inline constexpr double kLongestSleep = 60;
+inline constexpr double kLongestDeferral = 60;
 /// The same of tracks with motion modes: those mix once a step, and the step may not be long.
-inline constexpr double kLongestSleepOfModes = 0.5;
+inline constexpr double kLongestDeferralOfModes = 0.5;
 
 /// Whether the scan's sensor sees places alone: whatever size a track has, only where it is counts.
 bool isPositionOnly(const MeasurementScan& scan);
 /// False when the scan can say nothing of the track, since all its class filters, predicted, are
-/// out of view: it stays as it is for now. `places_alone`: isPositionOnly().
-bool mayBeInView(const MeasurementScan& scan, const Track& track, bool places_alone);
+/// out of view: it stays as it is for now. `position_only`: isPositionOnly().
+bool mayBeInView(const MeasurementScan& scan, const Track& track, bool position_only);
 inline bool mayBeInView(const MeasurementScan& scan, const Track& track) {
   return mayBeInView(scan, track, isPositionOnly(scan));
 }

@@ -75,8 +75,7 @@ ScanTerms::ScanTerms(const MeasurementScan& s, const FilterModel& m)
   }
   const bool place = std::all_of(scan.measurements.begin(), scan.measurements.end(),
                                  [](const Measurement& z) { return z.seen == kPlaceSeen; });
-  if (place && model.params.region_memory <= 0)
-    place_ = dynamic_cast<const PositionOnlyModel*>(scan.model.get());
+  if (place && model.params.region_memory <= 0) place_ = scan.model->positionOnly();
 }
 
 double visibilityOf(const Track& track, const MeasurementScan& scan, const FilterModel& model) {
@@ -117,7 +116,7 @@ void PairTerms::finish() {
     pair_.log_prior += logShape(track_, m_);
 }
 
-bool takesPlaceRow(const Track& track, const ScanTerms& terms) {
+bool takesPositionRow(const Track& track, const ScanTerms& terms) {
   return terms.place() && std::all_of(track.bank.begin(), track.bank.end(),
                                       [](const ClassFilter& f) { return f.modes.empty(); });
 }

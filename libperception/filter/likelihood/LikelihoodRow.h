@@ -65,6 +65,6 @@ double visibilityOf(const Track& track, const MeasurementScan& scan, const Filte
 void positionRow(const Track& track, const std::vector<std::size_t>& near, const ScanTerms& terms,
                  TrackLikelihoods& row);
 /// Whether positionRow() may make it.
-bool takesPlaceRow(const Track& track, const ScanTerms& terms);
+bool takesPositionRow(const Track& track, const ScanTerms& terms);
 
 }  // namespace perception

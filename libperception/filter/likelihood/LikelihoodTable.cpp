@@ -78,27 +78,9 @@ double pairLikelihood(const Track& track, const ClassValues& detection_by_class,
   return min_excess;
 }
 
-TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
-  const MeasurementScan& scan = terms.scan;
-  const FilterModel& model = terms.model;
+/// What sensors can see of each class filter; a class that another one stands for shares its.
+void setKinematics(const Track& track, const FilterModel& model, Scratch& scratch) {
   const std::size_t classes = track.bank.size();
-  thread_local Scratch scratch;
-  TrackLikelihoods row;
-  const BoundingDisc around(track);
-  // Out of view: the scan says nothing of it.
-  if (!scan.model->mayDetect(around.center, around.spread + 2 * around.size + 1, scan.state)) {
-    row.detection_by_class.assign(classes, 0);
-    return row;
-  }
-  auto& near = scratch.near;
-  near.clear();
-  for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
-    if (around.mayBeNear(scan.measurements[k])) near.push_back(k);
-  }
-  if (takesPlaceRow(track, terms)) {
-    positionRow(track, near, terms, row);
-    return row;
-  }
   auto& kinematics = scratch.kinematics;
   kinematics.resize(classes);
   for (std::size_t j = 0; j < classes; ++j) {
@@ -108,14 +90,20 @@ TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
             ? kinematicsOf(model.classes[static_cast<ClassId>(filter)], track.bank[filter])
             : kinematics[0];
   }
-  const double visibility = visibilityOf(track, scan, model);
-  row.detection_by_class.resize(classes);
-  for (std::size_t j = 0; j < classes; ++j) {
+}
+
+/// P_D by class and of the mixture (method.md (25)), and whether the track is in view at all.
+void setDetection(const Track& track, const ScanTerms& terms, const Scratch& scratch,
+                  TrackLikelihoods& row) {
+  const MeasurementScan& scan = terms.scan;
+  const double visibility = visibilityOf(track, scan, terms.model);
+  row.detection_by_class.resize(track.bank.size());
+  for (std::size_t j = 0; j < track.bank.size(); ++j) {
     const auto detection = [&](double visible) {
       return std::min(kMaxDetection,
-                      scan.model->detectionProbability(static_cast<ClassId>(j), kinematics[j],
-                                                       track.bank[track.filterOf(j)].extent,
-                                                       scan.state, visible));
+                      scan.model->detectionProbability(
+                          static_cast<ClassId>(j), scratch.kinematics[j],
+                          track.bank[track.filterOf(j)].extent, scan.state, visible));
     };
     row.detection_by_class[j] = detection(visibility);
     if (row.detection_by_class[j] > 0) {
@@ -125,37 +113,48 @@ TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
       row.in_view = detection(1) > 0;
     }
   }
-  if (near.empty() || row.detection <= 0) return row;
+}
+
+/// h and its derivatives for the whole bank, linearized along the aspect (method.md 4.6), and the
+/// bounds that exclude measurements axis by axis.
+void predictBank(const Track& track, const ScanTerms& terms, const TrackLikelihoods& row,
+                 Scratch& scratch) {
+  const MeasurementScan& scan = terms.scan;
+  const std::size_t classes = track.bank.size();
   auto& extents = scratch.extents;
   auto& predictions = scratch.predictions;
-  auto& bounds = scratch.bounds;
   extents.resize(classes);
   predictions.resize(classes);
-  for (AxisPrediction& p : predictions) {  // models leave alone what they have nothing to say of
+  for (AxisPrediction& p : predictions) {  // a model may leave an undefined prediction untouched
     p.defined = false;
     p.R_model.resize(0, 0);
   }
-  bounds.clear();
+  scratch.bounds.clear();
   scratch.expected.resize(classes);
   scratch.log_detection.resize(classes);
   for (std::size_t j = 0; j < classes; ++j)
     scratch.log_detection[j] = std::log(row.detection_by_class[j]);
   for (std::size_t j = 0; j < classes; ++j) extents[j] = track.bank[track.filterOf(j)].extent;
-  scan.model->predict(kinematics.data(), extents.data(), classes, scan.state, predictions.data());
+  scan.model->predict(scratch.kinematics.data(), extents.data(), classes, scan.state,
+                      predictions.data());
   for (std::size_t j = 0; j < classes; ++j) {
     if (track.filterOf(j) != j) continue;
-    lineariseAlongAspect(model.classes[static_cast<ClassId>(j)], track.bank[j], kinematics[j],
-                         *scan.model, scan.state, predictions[j]);
-    bounds.emplace_back(track.bank[j], kinematics[j], predictions[j]);
+    linearizeAlongAspect(terms.model.classes[static_cast<ClassId>(j)], track.bank[j],
+                         scratch.kinematics[j], *scan.model, scan.state, predictions[j]);
+    scratch.bounds.emplace_back(track.bank[j], scratch.kinematics[j], predictions[j]);
     if (predictions[j].defined && track.bank[j].modes.empty())
-      scratch.expected[j].set(track.bank[j], kinematics[j], predictions[j]);
+      scratch.expected[j].set(track.bank[j], scratch.kinematics[j], predictions[j]);
   }
-  const auto& kinds = scan.model->axes();
-  for (const std::size_t k : near) {
-    const Measurement& m = scan.measurements[k];
+}
+
+/// The pairs inside the gate.
+void setPairs(const Track& track, const ScanTerms& terms, Scratch& scratch, TrackLikelihoods& row) {
+  const auto& kinds = terms.scan.model->axes();
+  for (const std::size_t k : scratch.near) {
+    const Measurement& m = terms.scan.measurements[k];
     const AxisList axes(m, kinds.size());
     const double gate = terms.gates.quantile[static_cast<std::size_t>(axes.count)];
-    if (std::all_of(bounds.begin(), bounds.end(),
+    if (std::all_of(scratch.bounds.begin(), scratch.bounds.end(),
                     [&](const AxisBounds& b) { return b.exclude(m, kinds, gate); }))
       continue;
     if (!coarseGate(track, m)) continue;
@@ -164,7 +163,32 @@ TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
     if (excess <= 0 && scratch.pair.log_likelihood > kMinusInfinity)
       row.pairs.push_back(scratch.pair);
   }
-  if (!row.pairs.empty()) row.predictions = predictions;
+}
+
+TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
+  const MeasurementScan& scan = terms.scan;
+  thread_local Scratch scratch;
+  TrackLikelihoods row;
+  const BoundingDisc around(track);
+  // Out of view: the scan says nothing of it.
+  if (!scan.model->mayDetect(around.center, around.spread + 2 * around.size + 1, scan.state)) {
+    row.detection_by_class.assign(track.bank.size(), 0);
+    return row;
+  }
+  scratch.near.clear();
+  for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
+    if (around.mayBeNear(scan.measurements[k])) scratch.near.push_back(k);
+  }
+  if (takesPositionRow(track, terms)) {
+    positionRow(track, scratch.near, terms, row);
+    return row;
+  }
+  setKinematics(track, terms.model, scratch);
+  setDetection(track, terms, scratch, row);
+  if (scratch.near.empty() || row.detection <= 0) return row;
+  predictBank(track, terms, row, scratch);
+  setPairs(track, terms, scratch, row);
+  if (!row.pairs.empty()) row.predictions = scratch.predictions;
   return row;
 }
 

@@ -38,7 +38,7 @@ AxisVector difference(const AxisVector& h, const AxisVector& reference,
 
 }  // namespace
 
-void lineariseAlongAspect(const ObjectClass& c, const ClassFilter& filter,
+void linearizeAlongAspect(const ObjectClass& c, const ClassFilter& filter,
                           const Kinematics& kinematics, const MeasurementModel& model,
                           const SensorState& sensor, AxisPrediction& prediction) {
   const AspectLine line = model.aspectLine();

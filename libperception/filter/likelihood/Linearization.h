@@ -15,7 +15,7 @@ namespace perception {
 /// `prediction` is h at the filter's mean, with `kinematics`, on entry. Filters without heading,
 /// models that do not see the aspect, and headings known to within 5 cm of the outline stay as they
 /// are.
-void lineariseAlongAspect(const ObjectClass& c, const ClassFilter& filter,
+void linearizeAlongAspect(const ObjectClass& c, const ClassFilter& filter,
                           const Kinematics& kinematics, const MeasurementModel& model,
                           const SensorState& sensor, AxisPrediction& prediction);
 

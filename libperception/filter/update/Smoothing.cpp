@@ -105,7 +105,7 @@ void smoothScalar(double d, double later_variance, double walk, ScalarEstimate& 
   e.variance += gain * gain * (later_variance - predicted);
 }
 
-void smoothFacing(const Track& newer, double walk, Track& track) {
+void smoothBodyHeading(const Track& newer, double walk, Track& track) {
   if (!newer.body_heading) return;
   if (!track.body_heading) {
     track.body_heading = {newer.body_heading->mean, newer.body_heading->variance + walk};
@@ -146,7 +146,7 @@ Track smoothedBefore(const Track& filtered, const Track& newer, const FilterMode
   track.existence = newer.existence + (1 - newer.existence) * std::min(1.0, gone_since);
   smoothScalar(newer.base_z.mean - track.base_z.mean, newer.base_z.variance,
                model.params.base_walk * dt, track.base_z);
-  smoothFacing(newer, model.params.body_heading_walk * dt, track);
+  smoothBodyHeading(newer, model.params.body_heading_walk * dt, track);
   const ClassId best = track.likeliestClass();
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const auto i = static_cast<std::size_t>(j);

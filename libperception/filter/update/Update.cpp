@@ -61,7 +61,7 @@ double speedSigma(const ObjectClass& c, const FilterModel& model) {
 }
 
 /// A newborn's velocity, with what a range rate says of it (method.md 4.3).
-void takeRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
+void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
   const auto measure = [&](const Vector2& u, double speed, double variance) {
     const Vector2 Pu = f.P.bottomRightCorner<2, 2>() * u;
     const Vector2 K = Pu / (u.dot(Pu) + variance);
@@ -83,7 +83,7 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   if (!c.motion->moves) return f;
   const double sigma = speedSigma(c, model);
   f.P(2, 2) = f.P(3, 3) = sigma * sigma;
-  if (birth.radial_speed) takeRadialSpeed(*birth.radial_speed, f);
+  if (birth.radial_speed) applyRadialSpeed(*birth.radial_speed, f);
   startModes(c, f);
   if (c.motion->has_heading && birth.yaw) {
     const double extra = model.params.shape_yaw_sigma;
@@ -209,8 +209,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   const Kinematics best_kinematics =
       kinematicsOf(model.classes[live], track.bank[static_cast<std::size_t>(live)]);
   if (m.heading) updateBodyHeading(*m.heading, model.params, track);
-  const PositionOnlyModel* place =
-      row.predictions.empty() ? dynamic_cast<const PositionOnlyModel*>(scan.model.get()) : nullptr;
+  const PositionOnlyModel* place = row.predictions.empty() ? scan.model->positionOnly() : nullptr;
   const auto axes_seen = place ? 2 : residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
   for (ClassId j = 0; j < model.classes.size(); ++j) {

@@ -73,7 +73,7 @@ void UpdateCache::store(Cell cell, Track&& track, const TrackHandle& before) {
   if (model_.history > 0) track.previous = before;
   if (model_.lanes) model_.lanes->apply(model_, track);
   if (!keep(track)) return;
-  track.reachable = whereaboutsOf(track, model_);
+  track.reachable = reachableDiscOf(track, model_);
   computed_[cell] = std::make_shared<const Track>(std::move(track));
 }
 

@@ -99,9 +99,9 @@ TEST(MayBeInView, EveryScanThatCouldSeeThePredictedTrack) {
   constexpr int kTrials = 4000;
   for (int trial = 0; trial < kTrials; ++trial) {
     Track t = threeClasses(rng);
-    t.reachable = whereaboutsOf(t, model);
-    const bool short_sleep = trial % 2 == 0;  // the longer, the wider the bound
-    const double dt = rng.uniform(0, 0.999 * (short_sleep ? 0.5 : kLongestSleep));
+    t.reachable = reachableDiscOf(t, model);
+    const bool short_deferral = trial % 2 == 0;  // the longer, the wider the bound
+    const double dt = rng.uniform(0, 0.999 * (short_deferral ? 0.5 : kLongestDeferral));
     MeasurementScan scan = test::positionScan(sensor, dt, {});
     scan.state.T_world_sensor = makePose(0, 0, 0, rng.uniform(-kPi, kPi), 0, 0);
     const Track later = predictTrack(t, scan.state.stamp, model);
@@ -112,8 +112,8 @@ TEST(MayBeInView, EveryScanThatCouldSeeThePredictedTrack) {
     const TrackLikelihoods row = likelihoodTable({later}, scan, model).tracks[0];
     const bool seen = row.in_view || row.detection > 0 || !row.pairs.empty();
     ASSERT_TRUE(mayBeInView(scan, t) || !seen) << trial;
-    deferred += short_sleep && !mayBeInView(scan, t);
-    unseen += short_sleep && !seen;
+    deferred += short_deferral && !mayBeInView(scan, t);
+    unseen += short_deferral && !seen;
   }
   EXPECT_GT(deferred, unseen / 2);
 }
@@ -127,9 +127,9 @@ TEST(MayBeInView, WhateverIsNotPlacedYetOrLeftBehindForLong) {
   Track t = threeClasses(rng);
   t.bank[0].x[0] = t.bank[1].x[0] = t.bank[2].x[0] = 500;
   EXPECT_TRUE(mayBeInView(test::positionScan(sensor, 0.1, {}), t));
-  t.reachable = whereaboutsOf(t, model);
+  t.reachable = reachableDiscOf(t, model);
   EXPECT_FALSE(mayBeInView(test::positionScan(sensor, 0.1, {}), t));
-  EXPECT_TRUE(mayBeInView(test::positionScan(sensor, kLongestSleep, {}), t));
+  EXPECT_TRUE(mayBeInView(test::positionScan(sensor, kLongestDeferral, {}), t));
 }
 
 TEST(MayBeInView, WhateverHasMotionModesAfterHalfASecond) {
@@ -141,9 +141,9 @@ TEST(MayBeInView, WhateverHasMotionModesAfterHalfASecond) {
   Track t = threeClasses(rng);
   for (ClassFilter& f : t.bank) f.x[0] = 500;
   t.bank[0].modes.push_back({0, t.bank[0].x, t.bank[0].P});
-  t.reachable = whereaboutsOf(t, model);
+  t.reachable = reachableDiscOf(t, model);
   EXPECT_FALSE(mayBeInView(test::positionScan(sensor, 0.4, {}), t));
-  EXPECT_TRUE(mayBeInView(test::positionScan(sensor, kLongestSleepOfModes, {}), t));
+  EXPECT_TRUE(mayBeInView(test::positionScan(sensor, kLongestDeferralOfModes, {}), t));
 }
 
 TEST(ReachableDisc, ExpireWhenThePredictedExistenceIsTooSmall) {
@@ -157,7 +157,7 @@ TEST(ReachableDisc, ExpireWhenThePredictedExistenceIsTooSmall) {
     model.params.survival_in_view = rng.uniform(0.1, 10);
     model.params.survival_out_of_view = rng.uniform(0.1, 10);
     model.params.existence_decay = trial % 3 == 0 ? 3 : 0;
-    const Stamp expires = whereaboutsOf(t, model).expires;
+    const Stamp expires = reachableDiscOf(t, model).expires;
     EXPECT_NEAR(predictOdds(t, expires, model).existence, 0.01, 1e-6) << trial;
   }
 }

@@ -51,7 +51,7 @@ AxisPrediction plain(const ClassFilter& f, const MeasurementModel& model) {
 
 AxisPrediction linearized(const ClassFilter& f, const MeasurementModel& model) {
   AxisPrediction p = plain(f, model);
-  lineariseAlongAspect(bus(), f, kinematicsOf(bus(), f), model, {}, p);
+  linearizeAlongAspect(bus(), f, kinematicsOf(bus(), f), model, {}, p);
   return p;
 }
 
