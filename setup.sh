@@ -186,7 +186,7 @@ checkFormat() {
   sources libperception gui-offscreen studies apps tests | xargs -n 40 -P "$(jobs)" clang-format-14 --dry-run -Werror
 }
 
-# Core, config and what the last commit changed: some 4 s a source. Tests stay out, clang cannot read g++'s precompiled
+# Core, config and what the last commit changed: 2 to 7 s a source. Tests stay out, clang cannot read g++'s precompiled
 # headers; so do loops that use g++'s vectors.
 checkHabits() {
   say "Checking with clang-tidy"
