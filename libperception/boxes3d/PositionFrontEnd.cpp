@@ -108,8 +108,6 @@ void PositionParams::visit(ParamVisitor& v) {
   table("height_excess.", height_excess, "m", "... too high");
   v.expert();
   v.real("min_score", min_score, {-1e9, 1e9}, "", "boxes below are dropped");
-  v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log evidence");
-  v.words("clutter_like", clutter_like, "classes whose boxes score like clutter");
   v.real("off_label_score_weight", off_label_score_weight, {0, 1}, "",
          "of that evidence for classes that the label is not the name of");
 }

@@ -9,7 +9,6 @@ void GridParams::visit(ParamVisitor& v) {
              "rolling and rolling2d for real time");
   v.real("resolution", resolution, {0.05, 2}, "m", "edge of a cell");
   v.real("size", size, {5, 400}, "m", "edge of the window around the vehicle");
-  v.real("tau", tau, {0.1, 3600}, "s", "in which a cell forgets");
   v.real("occupied", occupied, {0, 3.4}, "log-odds", "above which a cell blocks");
   v.require(size >= 10 * resolution, "size must be at least ten cells");
 }

@@ -130,10 +130,11 @@ void RadarParams::visit(ParamVisitor& v) {
   v.boolean(
       "drop_double_bounce", drop_double_bounce,
       "drop returns at twice the range and rate of a stronger one (object - vehicle - object)");
-  model.visit(v);  // its last keys are for experts
-  v.real("merge_rate", merge_rate, {0, 50}, "m/s", "merge_range, in range rate");
-  v.boolean("upside_down", upside_down,
-            "the unit hangs on its head and the log's pose does not say so: bearings change sign");
+  model.visit(v);
+  v.expert();
+  v.boolean(
+      "upside_down", upside_down,
+      "the unit is mounted upside down and the log's pose does not say so: bearings change sign");
 }
 
 std::vector<RadarTarget> radarTargets(const RadarReturns& data, const Pose3& T_level_sensor,

@@ -16,7 +16,8 @@ struct RadarParams {
   double bearing_sigma = radians(2);  ///< [rad]
   double rate_sigma = 0.15;           ///< [m/s]
   double own_speed_sigma = 0.1;       ///< [m/s] of the vehicle's velocity in any direction; assumed
-  bool upside_down = false;  ///< the unit hangs on its head and its pose in the log does not say so
+  bool upside_down =
+      false;  ///< the unit is mounted upside down and its pose in the log does not say so
   // Returns of one object in one scan are one measurement. From the strongest on, each takes those
   // within these distances (a cell of method.md 9.9; assumed, 8.7); a row of cars does not chain.
   double merge_range = 0.75;       ///< [m]

@@ -64,8 +64,6 @@ void RadarModelParams::visit(ParamVisitor& v) {
   v.real("occluded_detection", occluded_detection, {0, 1}, "",
          "share of P_D left for objects that a lidar finds occluded");
   v.expert();
-  v.real("standing_share", standing_share, {0, 1}, "",
-         "of the returns of no object those that stand: posts, rails, the road");
   v.real("min_birth_speed", min_birth_speed, {0, 50}, "m/s",
          "over ground, along the line of sight: returns below it only update; 0: all may start");
   v.angle("birth_heading_sigma_deg", birth_heading_sigma, {1, 90},

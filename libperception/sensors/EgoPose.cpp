@@ -61,8 +61,6 @@ void EgoPoseParams::visit(ParamVisitor& v) {
          "a pose that implies more is rejected as a jump");
   fusion.visit(v);
   v.expert();
-  v.real("extrapolation", extrapolation, {0, 5}, "s",
-         "time beyond the last pose for which it is continued");
   v.real("blind_gap", blind_gap, {0.1, 1e6}, "s",
          "without any scan, in a log that does not tell the vehicle's motion: tracks start anew");
 }

@@ -38,11 +38,8 @@ const std::vector<double>& TrustParams::knotsOf(TrustFeature feature) {
 
 void TrustParams::visit(ParamVisitor& v) {
   v.expert();
-  v.angle("row_deg", row, {0, 10},
-          "elevation of a pixel of the range image; 0: found from the first scan");
   v.real("max_range", max_range, {1, 200}, "m", "beyond it every return is trusted");
   v.boolean("use_intensity", use_intensity, "learn which intensities phantoms have");
-  v.boolean("adapt_share", adapt_share, "let the share of phantoms follow the weather");
 }
 
 }  // namespace perception
