@@ -187,29 +187,15 @@ EvaluatedRun EvaluateApp::evaluateEntry(const RunEntry& entry, const std::string
 
 void EvaluateApp::evaluateRuns() {
   const std::vector<RunEntry> all = runEntries(runs, truth_file, manifest);
-  std::vector<std::string> dirs;
-  for (const RunEntry& entry : all) dirs.push_back(entry.dir);
+  std::vector<std::string> dirs, conditions;
+  for (const RunEntry& entry : all) {
+    dirs.push_back(entry.dir);
+    conditions.push_back(entry.condition);
+  }
   const std::vector<std::string> names = namesOfRuns(dirs);
   std::vector<EvaluatedRun> evaluated;
   for (std::size_t i = 0; i < all.size(); ++i) evaluated.push_back(evaluateEntry(all[i], names[i]));
-  pool(all, std::move(evaluated));
-}
-
-// Runs of one condition become one, at the place of the first of them.
-void EvaluateApp::pool(const std::vector<RunEntry>& entries, std::vector<EvaluatedRun> evaluated) {
-  std::vector<std::pair<std::string, std::vector<EvaluatedRun>>> groups;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const std::string& condition = entries[i].condition;
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
-      return !condition.empty() && g.first == condition;
-    });
-    if (group == groups.end()) group = groups.insert(groups.end(), {condition, {}});
-    group->second.push_back(std::move(evaluated[i]));
-  }
-  for (auto& [condition, members] : groups) {
-    out_report.runs.push_back(condition.empty() ? std::move(members.front())
-                                                : pooledRun(condition, std::move(members)));
-  }
+  out_report.runs = pooledByCondition(conditions, std::move(evaluated));
 }
 
 void EvaluateApp::addPaperRows() {

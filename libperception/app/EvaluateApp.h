@@ -44,7 +44,6 @@ class EvaluateApp : public App {
   EvaluatedRun evaluateEntry(const RunEntry& entry, const std::string& name);
   void evaluateFrontEnds(const RunEntry& entry, const GroundTruth& truth, EvaluatedRun& run);
   void evaluateRuns();
-  void pool(const std::vector<RunEntry>& entries, std::vector<EvaluatedRun> runs);
   const GroundTruth& truth(const std::string& path);
   void warnOfGaps(const EvaluatedRun& run, const std::string& truth);
   void addPaperRows();

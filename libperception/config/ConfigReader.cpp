@@ -7,51 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "libperception/config/ConfigText.h"
 #include "libperception/config/IniValue.h"
 #include "libperception/core/Angle.h"
 
 namespace perception {
 namespace {
-
-// "a number in 0 .. 5 [m]", as the second half of "found X, expected Y".
-std::string expectedNumber(const char* kind, Bounds allowed, const std::string& unit) {
-  const std::string range = rangeText(allowed);
-  const bool one_sided = !range.empty() && (range[0] == '>' || range[0] == '<');
-  return fmt::format("{}{}{}{}", kind,
-                     range.empty() ? ""
-                     : one_sided   ? " "
-                                   : " in ",
-                     range, unit.empty() ? "" : " [" + unit + "]");
-}
-
-// What people are used to write elsewhere.
-std::string hint(std::string_view text) {
-  std::string with_point(text);
-  const auto comma = with_point.find(',');
-  if (comma != std::string::npos) {
-    with_point[comma] = '.';
-    if (parseReal(with_point)) return " (the decimal mark is a point)";
-  }
-  return text.find("//") != std::string_view::npos ? " (comments start with ; or #)" : "";
-}
-
-// "[m] 0.05 .. 5: what it is": unit, what is allowed, purpose.
-std::string comment(const std::string& unit, const std::string& allowed, const char* doc) {
-  std::string text = unit.empty() ? "" : "[" + unit + "]";
-  if (!allowed.empty()) text += (text.empty() ? "" : " ") + allowed + ":";
-  text += (text.empty() ? "" : " ") + std::string(doc);
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
-template <class Values, class Format>
-std::string listText(const Values& values, Format format) {
-  std::string text;
-  for (const auto& value : values) text += (text.empty() ? "" : ", ") + format(value);
-  return text;
-}
-
-std::string sameWord(const std::string& word) { return word; }
 
 using Rows = std::vector<std::pair<std::string, double>>;
 
@@ -60,6 +21,7 @@ auto findRow(AnyRows& rows, const std::string& name) {
   return std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.first == name; });
 }
 
+/// Fills a struct from a section; see makeConfigReader().
 class ConfigReader final : public ParamVisitor {
  public:
   ConfigReader(const IniDocument& document, const IniSection* given, ConfigSection& section,

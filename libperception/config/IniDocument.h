@@ -61,12 +61,14 @@ class IniDocument {
   std::string resolved(const std::string& path, const IniPlace& place) const;
 
  private:
+  /// A file, text or option that lines come from.
   struct Source {
     std::string name;           ///< path as given, or the option
     std::string folder;         ///< relative paths of this source start here; "": working folder
     std::string identity;       ///< canonical path; "": not a file
     std::vector<int> includes;  ///< sources
   };
+  /// A title (without key) or a key with its value, as read.
   struct Line {
     std::string section, key, value;
     IniPlace place;

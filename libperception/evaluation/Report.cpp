@@ -92,6 +92,25 @@ EvaluatedRun pooledRun(std::string name, std::vector<EvaluatedRun> trials) {
   return run;
 }
 
+std::vector<EvaluatedRun> pooledByCondition(const std::vector<std::string>& conditions,
+                                            std::vector<EvaluatedRun> runs) {
+  std::vector<std::pair<std::string, std::vector<EvaluatedRun>>> groups;
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    const std::string& condition = conditions[i];
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
+      return !condition.empty() && g.first == condition;
+    });
+    if (group == groups.end()) group = groups.insert(groups.end(), {condition, {}});
+    group->second.push_back(std::move(runs[i]));
+  }
+  std::vector<EvaluatedRun> pooled_runs;
+  for (auto& [condition, members] : groups) {
+    pooled_runs.push_back(condition.empty() ? std::move(members.front())
+                                            : pooledRun(condition, std::move(members)));
+  }
+  return pooled_runs;
+}
+
 std::string textReport(const EvaluationReport& report) {
   std::string text = report.command + "\n" + scope(report.options) + "\n\n";
   for (const ReportTable& table : reportTables(report)) text += textTable(table) + "\n";

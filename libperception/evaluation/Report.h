@@ -22,6 +22,11 @@ struct EvaluatedRun {
 /// The runs of one condition as one; they stay in `trials`. Throws DataError when they cannot be.
 EvaluatedRun pooledRun(std::string name, std::vector<EvaluatedRun> trials);
 
+/// Runs of one condition become one, at the place of the first of them; `conditions` holds that of
+/// every run, "": it stays on its own. Throws DataError.
+std::vector<EvaluatedRun> pooledByCondition(const std::vector<std::string>& conditions,
+                                            std::vector<EvaluatedRun> runs);
+
 /// All that a report tells.
 struct EvaluationReport {
   std::string command;    ///< the command line with every option that a figure depends on

@@ -15,6 +15,7 @@ namespace perception {
 /// a frame with x forward instead of its optical one.
 class FootprintModel : public MeasurementModel {
  public:
+  /// Rows of z.
   enum Axis { kLeft, kRight, kRange, kAxes };
   static constexpr AxisMask kAll = 7;
 

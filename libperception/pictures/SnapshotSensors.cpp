@@ -12,8 +12,6 @@
 namespace perception {
 namespace {
 
-constexpr double kPoseGap =
-    1.5;  // [s] between scenes over which the vehicle's place is interpolated
 constexpr double kLastScan = 0.5;  // [s] after which returns are too old to be drawn
 constexpr double kLastImage = 1;   // [s]
 constexpr double kLookAhead = 3;   // [s] of log in which every sensor has spoken
@@ -134,26 +132,6 @@ void SnapshotSensors::advanceTo(Stamp stamp) {
   }
 }
 
-std::optional<EgoState> SnapshotSensors::egoAt(Stamp stamp) const {
-  const auto after = std::lower_bound(run_.scenes.begin(), run_.scenes.end(), stamp,
-                                      [](const Scene& s, Stamp t) { return s.stamp < t; });
-  if (after == run_.scenes.end()) return std::nullopt;
-  if (after->stamp == stamp) return after->ego;
-  if (after == run_.scenes.begin()) return std::nullopt;
-  const EgoState &a = std::prev(after)->ego, &b = after->ego;
-  const double gap = after->stamp - std::prev(after)->stamp;
-  if (gap > kPoseGap) return std::nullopt;
-  const double share = (stamp - std::prev(after)->stamp) / gap;
-  EgoState ego = a;
-  ego.stamp = stamp;
-  ego.T_world_ego.translation() +=
-      share * (b.T_world_ego.translation() - a.T_world_ego.translation());
-  ego.T_world_ego.linear() = Eigen::Quaterniond(a.T_world_ego.linear())
-                                 .slerp(share, Eigen::Quaterniond(b.T_world_ego.linear()))
-                                 .toRotationMatrix();
-  return ego;
-}
-
 const PipelineSetup::Sensor* SnapshotSensors::sensorOf(const std::string& label) const {
   for (const auto& sensor : params_.sensors) {
     if (sensor.label == label || sensor.scan.merges(label)) return &sensor;
@@ -171,7 +149,7 @@ SnapshotSensors::LidarSettings SnapshotSensors::settingsOf(const std::string& la
 }
 
 void SnapshotSensors::take(SensorFrame frame) {
-  const auto ego = egoAt(frame.stamp);
+  const auto ego = egoAt(run_, frame.stamp);
   if (!ego) return;
   frame.ego = *ego;
   if (const auto* sensor = sensorOf(frame.sensor)) {

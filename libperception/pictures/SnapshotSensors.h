@@ -50,11 +50,13 @@ class SnapshotSensors {
   const std::string& missingImage() const { return missing_image_; }
 
  private:
+  /// What goes on from scan to scan of one lidar.
   struct Lidar {
     GroundEstimator ground;
     std::unique_ptr<PointFilter> weather;
     std::vector<ViewPoint> points;  ///< of the last scan
   };
+  /// Which of a lidar's returns count, and as what.
   struct LidarSettings {
     PointParams points;
     SurfaceParams surface;
@@ -63,7 +65,6 @@ class SnapshotSensors {
 
   void lookAhead(const std::string& log);
   std::optional<SensorFrame> frameOf(const mrpt::obs::CObservation& observation) const;
-  std::optional<EgoState> egoAt(Stamp stamp) const;
   const PipelineSetup::Sensor* sensorOf(const std::string& label) const;
   LidarSettings settingsOf(const std::string& label) const;
   void take(SensorFrame frame);

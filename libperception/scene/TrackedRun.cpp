@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "libperception/core/Csv.h"
@@ -13,6 +14,9 @@
 
 namespace perception {
 namespace {
+
+constexpr double kPoseGap =
+    1.5;  // [s] between scenes over which the vehicle's place is interpolated
 
 std::string tracksPath(const std::string& dir) { return dir + "/tracks.csv"; }
 std::string scenesPath(const std::string& dir) { return dir + "/scenes.csv"; }
@@ -241,6 +245,26 @@ TrackedRun readTrackedRun(const std::string& dir) {
     tracks.fault("stamp", "no further line: scenes.csv has no scene for it");
   }
   return run;
+}
+
+std::optional<EgoState> egoAt(const TrackedRun& run, Stamp stamp) {
+  const auto after = std::lower_bound(run.scenes.begin(), run.scenes.end(), stamp,
+                                      [](const Scene& s, Stamp t) { return s.stamp < t; });
+  if (after == run.scenes.end()) return std::nullopt;
+  if (after->stamp == stamp) return after->ego;
+  if (after == run.scenes.begin()) return std::nullopt;
+  const EgoState &a = std::prev(after)->ego, &b = after->ego;
+  const double gap = after->stamp - std::prev(after)->stamp;
+  if (gap > kPoseGap) return std::nullopt;
+  const double share = (stamp - std::prev(after)->stamp) / gap;
+  EgoState ego = a;
+  ego.stamp = stamp;
+  ego.T_world_ego.translation() +=
+      share * (b.T_world_ego.translation() - a.T_world_ego.translation());
+  ego.T_world_ego.linear() = Eigen::Quaterniond(a.T_world_ego.linear())
+                                 .slerp(share, Eigen::Quaterniond(b.T_world_ego.linear()))
+                                 .toRotationMatrix();
+  return ego;
 }
 
 }  // namespace perception

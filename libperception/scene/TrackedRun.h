@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,5 +52,9 @@ struct TrackedRun {
 /// Throws DataError naming file, line and column; a tracks.csv that was cut does not fit scenes.csv
 /// and is found.
 TrackedRun readTrackedRun(const std::string& dir);
+
+/// The vehicle at an instant, between scenes on the way from one to the next; nothing before the
+/// first scene, after the last one, or where scenes lie too far apart.
+std::optional<EgoState> egoAt(const TrackedRun& run, Stamp stamp);
 
 }  // namespace perception

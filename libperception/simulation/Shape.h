@@ -1,34 +1,12 @@
 #pragma once
-#include <array>
-#include <cstdint>
 #include <vector>
 
 #include "libperception/core/Frames.h"
+#include "libperception/simulation/Mesh.h"
 
 namespace perception {
 
 struct ObjectParams;
-
-/// What a surface is made of, as a lidar sees it.
-enum class Material : std::uint8_t {
-  kRoad,
-  kPaint,
-  kGlass,
-  kTyre,
-  kCloth,
-  kSkin,
-  kMetal,
-  kWall,
-  kLeaf,
-  kGrass
-};
-
-/// A rigid surface of triangles. Single precision: the ray caster's.
-struct Mesh {
-  std::vector<std::array<float, 3>> vertices;           ///< [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices
-  std::vector<Material> materials;                      ///< one a triangle
-};
 
 /// One rigid part of an object; legs and arms swing about an axis across the object.
 struct Part {

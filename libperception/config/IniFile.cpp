@@ -1,0 +1,55 @@
+#include "libperception/config/IniFile.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+namespace perception {
+namespace {
+
+constexpr std::size_t kLargestFile =
+    4u << 20;  // [bytes] a rawlog given as INI is told apart by its size
+
+/// Closes a C file.
+struct Closer {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+}  // namespace
+
+std::string readWhole(const std::string& path, std::string& content) {
+  const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rbe"));
+  if (!file) return fmt::format("cannot be read: {}", std::strerror(errno));
+  char block[1 << 14];
+  std::size_t count = 0;
+  errno = 0;
+  while ((count = std::fread(block, 1, sizeof block, file.get())) > 0) {
+    content.append(block, count);
+    if (content.size() > kLargestFile) {
+      return fmt::format("has more than {} bytes, expected a configuration file", kLargestFile);
+    }
+  }
+  if (std::ferror(file.get())) return fmt::format("cannot be read: {}", std::strerror(errno));
+  return "";
+}
+
+std::string folderOf(const std::string& path) {
+  return std::filesystem::path(path).parent_path().string();
+}
+
+std::string joined(const std::string& folder, const std::string& path) {
+  return folder.empty() ? path : (std::filesystem::path(folder) / path).string();
+}
+
+std::string identityOf(const std::string& path) {
+  std::error_code error;
+  const auto canonical = std::filesystem::canonical(path, error);
+  return error ? path : canonical.string();
+}
+
+}  // namespace perception

@@ -1,0 +1,51 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "libperception/core/Frames.h"
+#include "libperception/core/Time.h"
+#include "libperception/sensors/CEgoFilter.h"
+#include "libperception/sensors/EgoReadings.h"
+#include "libperception/sensors/GnssFix.h"
+
+namespace perception {
+
+/// All that the estimate depends on: a value, so that the filter can go back to it.
+struct EgoMotionState {
+  /// A fix while the heading is not known, and where the vehicle thought to be then.
+  struct Reference {
+    Stamp stamp;
+    Vector3 enu;      ///< [m]
+    Vector2 place;    ///< [m] frame of the start
+    double yaw;       ///< [rad] frame of the start
+    Vector3 antenna;  ///< [m] on the vehicle
+    double sigma;     ///< [m]
+  };
+
+  bool started = false;
+  Stamp first, stamp;
+  EgoEstimate estimate;
+  std::optional<std::pair<Stamp, ImuReading>> imu;
+  std::optional<std::pair<Stamp, WheelReading>> wheels;
+  bool had_wheels = false;
+  /// Of inertial readings since gravity was last looked at.
+  struct {
+    std::optional<Stamp> begin;
+    int count = 0;
+    Vector3 force = Vector3::Zero();  ///< [m/s^2] sum
+    double turning = 0;               ///< [rad/s] sum of yaw rates as measured
+  } level;
+  bool heading_known = false;
+  std::optional<Reference> reference, last_fix;
+  std::optional<Geodetic> origin;           ///< of east, north, up
+  double world_turn = 0;                    ///< [rad] of the world's x axis from east
+  Vector3 world_shift = Vector3::Zero();    ///< [m] origin of the world in east, north, up
+  Pose3 T_world_start = Pose3::Identity();  ///< where the frame of the start came to lie
+  std::uint64_t relocations = 0, fixes = 0, rejected_fixes = 0;
+  int rejected_in_row = 0, rejected_heights_in_row = 0;
+
+  Vector3 toWorld(const Vector3& enu) const;
+};
+
+}  // namespace perception
