@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <map>
 
 #include "gui-offscreen/HtmlText.h"
 #include "gui-offscreen/ObjectLives.h"
 #include "gui-offscreen/ReportStyle.h"
+#include "gui-offscreen/ReportTimeline.h"
 #include "libperception/scene/ClassColors.h"
 
 namespace perception {
@@ -17,13 +15,13 @@ namespace {
 
 constexpr double kShortest = 0.5;      // [s] objects seen for less have no row
 constexpr std::size_t kMostRows = 80;  // of the timeline; the longest seen stay
-constexpr double kLabelWidth = 130, kChartWidth = 900, kRow = 16, kAxis = 24;  // [px]
 
+/// The page as it is written, part by part.
 class Page {
  public:
   explicit Page(const ReportContent& content) : content_(content), run_(*content.run) {
     for (ObjectLife& life : objectLives(run_)) {
-      if (isMuted(nameOf(life.last_class))) {
+      if (isMuted(nameOfClass(run_, life.last_class))) {
         ++still_;
       } else if (life.to() - life.from() < kShortest) {
         ++brief_;
@@ -61,10 +59,6 @@ class Page {
   }
 
  private:
-  std::string nameOf(ClassId c) const {
-    const auto i = static_cast<std::size_t>(c);
-    return c >= 0 && i < run_.class_names.size() ? run_.class_names[i] : "?";
-  }
   std::string title() const {
     return fmt::format("{}{}", content_.record.input,
                        content_.record.simulated ? " (simulated)" : "");
@@ -182,39 +176,7 @@ void Page::timeline() {
   }
   out_ += fmt::format("<span><i style=\"background:{}\"></i>something that stands</span>",
                       hexOf(colorOfClass("static-other", 0)));
-  const double height = kAxis + kRow * static_cast<double>(lives_.size()) + 4;
-  const auto x = [&](double t) { return kLabelWidth + kChartWidth * t / end_; };
-  out_ += fmt::format(
-      "</p>\n<svg id=\"timeline\" viewBox=\"0 0 {:.0f} {:.0f}\" data-left=\"{:.0f}\" "
-      "data-width=\"{:.0f}\" data-end=\"{:.3f}\" data-start=\"{:.3f}\">\n",
-      kLabelWidth + kChartWidth + 10, height, kLabelWidth, kChartWidth, end_,
-      run_.scenes.empty() ? 0 : run_.scenes.front().stamp - run_.first_stamp);
-  const double step = end_ > 120 ? 20 : end_ > 40 ? 5 : end_ > 15 ? 2 : 1;  // [s]
-  for (double t = 0; t <= end_; t += step) {
-    out_ += fmt::format(
-        "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" "
-        "y2=\"{2:.0f}\"/><text x=\"{0:.1f}\" y=\"14\" "
-        "text-anchor=\"middle\">{3:g} s</text>\n",
-        x(t), kAxis - 4, height, t);
-  }
-  double y = kAxis;
-  for (const ObjectLife& life : lives_) {
-    const std::string name = spaced(nameOf(life.last_class));
-    out_ += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\">{} {}</text>\n",
-                        kLabelWidth - 8, y + 12, life.id, name);
-    for (const ObjectLife::Stretch& s : life.stretches) {
-      out_ += fmt::format(
-          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" fill=\"{}\" "
-          "fill-opacity=\"{}\"><title>{}: {}{}, {:.1f} to {:.1f} s</title></rect>\n",
-          x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kRow - 4,
-          hexOf(colorOfClass(nameOf(s.class_id), s.class_id)), s.sure ? "1" : "0.4", life.id,
-          s.sure ? "" : "probably ", spaced(nameOf(s.class_id)), s.from, s.to);
-    }
-    y += kRow;
-  }
-  out_ +=
-      fmt::format("<line id=\"now\" y1=\"{:.0f}\" y2=\"{:.0f}\" x1=\"-9\" x2=\"-9\"/>\n</svg>\n",
-                  kAxis - 6, height);
+  out_ += "</p>\n" + timelineChart(run_, lives_, end_);
 }
 
 void Page::pictures() {
@@ -270,8 +232,8 @@ void Page::objects() {
     out_ += fmt::format(
         "<tr><td>{}</td><td style=\"color:{}\">{}</td><td>{:.2f}</td><td>{:.1f} s</td>"
         "<td>{:.1f} s</td><td>{:.0f} km/h</td><td>{:.1f} m</td></tr>\n",
-        life.id, hexOf(colorOfClass(nameOf(life.last_class), life.last_class)),
-        spaced(nameOf(life.last_class)), life.probability, life.from(), life.to(),
+        life.id, hexOf(colorOfClass(nameOfClass(run_, life.last_class), life.last_class)),
+        spaced(nameOfClass(run_, life.last_class)), life.probability, life.from(), life.to(),
         life.top_speed * 3.6, life.nearest);
   }
   out_ += "</table>\n";

@@ -51,6 +51,7 @@ enum class GpsRule {
   kRegimes,     ///< likelihood of the speed regimes, pedestrians favored
 };
 
+/// How often which class was called what, and how much that scatters.
 struct GpsResult {
   std::vector<std::vector<double>> confusion;  ///< [truth][called], shares over all draws
   double balanced = 0, deviation = 0;  ///< mean and deviation of balanced accuracy over draws

@@ -15,6 +15,7 @@ struct HeadingParams {
   std::uint64_t seed = 1;
 };
 
+/// A way to take headings.
 struct HeadingMethod {
   std::string label;
   HeadingMode mode = HeadingMode::kSplit;
@@ -22,6 +23,7 @@ struct HeadingMethod {
 };
 const std::vector<HeadingMethod>& headingMethods();
 
+/// What became of the track, mean over the runs.
 struct HeadingFigures {
   double tracked = 0;             ///< share of instants in view with an estimate within 2 m
   double position_rms = 0;        ///< [m] of those

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,5 +34,11 @@ void describeLabels(const LabelsParams& params, const std::vector<LabelCondition
 
 /// Adds counts; the figures follow.
 void addClear(const ClearFigures& part, ClearFigures& sum);
+ClearFigures sumOf(const std::vector<ClearFigures>& parts);
+/// Share of the objects with a k-th measurement that then have an output of the right class; of one
+/// label, or of all (-1). Empty: there are none.
+std::optional<double> rightShare(const LabelScore& score, std::size_t k, int label = -1);
+/// [%] as in tables and data of plots.
+std::string percent(const std::optional<double>& value);
 
 }  // namespace perception

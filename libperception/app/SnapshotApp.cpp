@@ -28,13 +28,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kSheetTiles = 36;  // on the contact sheet of --every
 constexpr double kSlowestFilm = 1;       // [s] a picture at most
 
-struct ViewRow {
-  const char* name;
-  ViewKind kind;
-};
-constexpr ViewRow kViews[] = {
-    {"top", ViewKind::kTop}, {"driver", ViewKind::kDriver}, {"camera", ViewKind::kCamera}};
-
 }  // namespace
 
 std::string SnapshotApp::description() const {
@@ -118,21 +111,8 @@ bool SnapshotApp::readConfig() { return configDone(readSite(run_dirs[0])); }
 std::vector<std::size_t> SnapshotApp::chooseScenes(const TrackedRun& run) const {
   if (time) return {sceneAt(run, *time)};
   if (frame) return {sceneOfFrame(run, *frame)};
-  std::vector<std::size_t> chosen;
-  if (!video.empty()) {
-    for (std::size_t i = 0; i < run.scenes.size(); ++i) {
-      const double t = run.scenes[i].stamp - run.first_stamp;
-      if (t >= video_from && t <= video_to) chosen.push_back(i);
-    }
-    if (chosen.empty()) throw Error(ExitCode::kUsage, "--from, --to: no scene between them");
-    return chosen;
-  }
-  Stamp due = run.scenes.front().stamp;
-  for (std::size_t i = 0; i < run.scenes.size(); ++i) {
-    if (run.scenes[i].stamp < due) continue;
-    chosen.push_back(i);
-    while (every > 0 && due <= run.scenes[i].stamp) due = due + every;
-  }
+  if (!video.empty()) return scenesBetween(run, video_from, video_to);
+  const std::vector<std::size_t> chosen = scenesEvery(run, every);
   return every > 0 ? chosen : spread(chosen, static_cast<std::size_t>(contact));
 }
 
@@ -151,37 +131,8 @@ std::string SnapshotApp::titleOf(std::size_t index) {
   return fmt::format("{}{}, run {}", log, record.simulated ? " (simulated)" : "", run);
 }
 
-SceneView SnapshotApp::viewOf(const Shown& shown, std::size_t index) const {
-  SceneView result = viewOfScene(shown.run, index, truth_ ? &*truth_ : nullptr);
-  result.run_name = shown.name;
-  if (shown.sensors) {
-    shown.sensors->advanceTo(result.scene.stamp);
-    shown.sensors->fill(result);
-    // Not in the legend when it is not in the picture.
-    const auto& views = params.views;
-    if (std::find(views.begin(), views.end(), ViewKind::kCamera) == views.end()) {
-      result.layers.camera.reset();
-    }
-  }
-  return result;
-}
-
-// The first run's scene and, of the others, those nearest to its time.
-std::vector<SceneView> SnapshotApp::viewsOf(std::size_t index) {
-  const Stamp stamp = shown_[0].run.scenes[index].stamp;
-  std::vector<SceneView> views;
-  for (const Shown& shown : shown_) {
-    std::size_t nearest = index;
-    if (&shown != &shown_[0]) {
-      nearest = nearestScene(shown.run, stamp);
-      if (std::abs(shown.run.scenes[nearest].stamp - stamp) > kNearestScene) {
-        throw DataError(fmt::format("{}: no scene at the times of {}: not of the same log?",
-                                    shown.run.dir, shown_[0].run.dir));
-      }
-    }
-    views.push_back(viewOf(shown, nearest));
-  }
-  return views;
+std::vector<SceneView> SnapshotApp::viewsOf(std::size_t index) const {
+  return viewsOfRuns(shown_, index, truth_ ? &*truth_ : nullptr, params.views);
 }
 
 std::string SnapshotApp::fileFor(const SceneView& shown) const {
@@ -197,37 +148,16 @@ void SnapshotApp::write(const std::string& path, Picture picture) {
   say(1, path);
 }
 
-void SnapshotApp::readViews() {
-  const std::string list = view == "both"  ? "top+driver"
-                           : view == "all" ? "top+driver+camera"
-                                           : view;
-  params.views.clear();
-  std::size_t from = 0;
-  while (from <= list.size()) {
-    const std::size_t to = std::min(list.find('+', from), list.size());
-    const std::string name = list.substr(from, to - from);
-    const auto named = std::find_if(std::begin(kViews), std::end(kViews),
-                                    [&](const auto& row) { return name == row.name; });
-    if (named == std::end(kViews)) {
-      throw Error(ExitCode::kUsage, fmt::format("--view {}: expected top, driver, camera joined by "
-                                                "+, both or all",
-                                                view));
-    }
-    params.views.push_back(named->kind);
-    from = to + 1;
-  }
-}
-
 void SnapshotApp::readRuns() {
   shown_.clear();
   for (std::size_t i = 0; i < run_dirs.size(); ++i) {
-    Shown shown{readTrackedRun(run_dirs[i]), titleOf(i), nullptr};
+    ShownRun shown{readTrackedRun(run_dirs[i]), titleOf(i), nullptr};
     if (shown.run.scenes.empty()) throw DataError(run_dirs[i] + ": the run holds no scene");
     shown_.push_back(std::move(shown));
   }
   if (inputs.empty()) return;
   for (std::size_t i = 0; i < shown_.size(); ++i) {
-    Shown& shown = shown_[i];
+    ShownRun& shown = shown_[i];
     if (i > 0) readSite(run_dirs[i]).finish();
     shown.sensors = std::make_unique<SnapshotSensors>(inputs[0], shown.run, sensors);
   }
@@ -247,7 +177,7 @@ void SnapshotApp::run() {
     throw Error(ExitCode::kUsage, "--grid: the safety grid comes from the log's scans: -i");
   }
   if (contact > 0 && run_dirs.size() > 1) throw Error(ExitCode::kUsage, "--contact: of one run");
-  readViews();
+  params.views = viewsNamed(view);
   registerPerceptionClasses();
   readRuns();
   const auto camera = std::find(params.views.begin(), params.views.end(), ViewKind::kCamera);

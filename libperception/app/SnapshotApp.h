@@ -1,12 +1,12 @@
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "gui-offscreen/Snapshot.h"
 #include "libperception/app/App.h"
+#include "libperception/app/SnapshotViews.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/pictures/SnapshotSensors.h"
 #include "libperception/scene/TrackedRun.h"
@@ -41,27 +41,19 @@ class SnapshotApp : public App {
   void run() override;
 
  private:
-  /// A run that is drawn.
-  struct Shown {
-    TrackedRun run;
-    std::string name;
-    std::unique_ptr<SnapshotSensors> sensors;  ///< where there is a log
-  };
   bool readConfig();  ///< true: only the configuration was asked for
   Config readSite(const std::string& run_dir);
   void readRuns();
-  void readViews();
   std::vector<std::size_t> chooseScenes(const TrackedRun& run) const;
   std::string titleOf(std::size_t run);
-  std::vector<SceneView> viewsOf(std::size_t index);
-  SceneView viewOf(const Shown& shown, std::size_t index) const;
+  std::vector<SceneView> viewsOf(std::size_t index) const;
   std::string fileFor(const SceneView& view) const;
   void drawPictures(const std::vector<std::size_t>& chosen);
   void drawVideo(const std::vector<std::size_t>& chosen);
   void write(const std::string& path, Picture picture);
   void reportLog();
 
-  std::vector<Shown> shown_;
+  std::vector<ShownRun> shown_;
   std::optional<GroundTruth> truth_;
 };
 

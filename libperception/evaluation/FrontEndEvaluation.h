@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "libperception/evaluation/FrontEndCounts.h"
 #include "libperception/evaluation/TruthAlignment.h"
 #include "libperception/evaluation/TruthSelection.h"
 #include "libperception/scene/MeasurementRun.h"
@@ -36,28 +37,6 @@ struct LabelMeaning {
 };
 /// car_sized, unstable, person_sized (lidar), car, person (cameras) and names of classes.
 LabelMeaning meaningOf(const std::string& label, const std::vector<std::string>& class_names);
-
-/// Truth objects in a sensor's view, over all scans.
-struct RecallCounts {
-  std::size_t in_view = 0;
-  std::size_t found = 0;          ///< some measurement lies on it
-  std::size_t named = 0;          ///< one whose label names its class
-  std::size_t named_primary = 0;  ///< one with such a label that names its class
-  std::size_t measurements = 0;   ///< that lie on it: more than found where objects fall apart
-
-  RecallCounts& operator+=(const RecallCounts& other);
-};
-
-/// Measurements of one label, over all scans.
-struct PrecisionCounts {
-  std::size_t measurements = 0;
-  std::size_t right_class = 0;            ///< on an object of a class that the label names
-  std::size_t right_size = 0;             ///< on anything of the size that the label says
-  std::map<std::string, std::size_t> on;  ///< by kind of thing; kNothing: nothing of the truth
-
-  PrecisionCounts& operator+=(const PrecisionCounts& other);
-};
-inline constexpr const char* kNothing = "nothing in the truth";
 
 /// Recall and precision of one front end, or several that are taken together.
 struct FrontEndEvaluation {

@@ -103,6 +103,28 @@ RadiateCalibration readRadiateCalibration(const std::string& path) {
   return c;
 }
 
+std::vector<TimedFile> timedFiles(const std::filesystem::path& folder,
+                                  const std::vector<std::string>& endings, const FrameTimes& times,
+                                  bool wanted, ImportLog& log) {
+  const std::string dir = folder.string();
+  std::vector<TimedFile> timed;
+  std::vector<std::int64_t> untimed;
+  for (const FrameFile& file : frameFiles(dir, endings)) {
+    if (wanted && !log.options().wants(file.number)) continue;
+    const auto time = times.find(file.number);
+    if (time == times.end()) {
+      untimed.push_back(file.number);
+    } else {
+      timed.push_back({file, time->second});
+    }
+  }
+  if (!untimed.empty()) {
+    log.warn(fmt::format("{}: no time in {}.txt for {} frames (first: {}): left out", dir, dir,
+                         untimed.size(), untimed.front()));
+  }
+  return timed;
+}
+
 LidarCloud readRadiateScan(const std::string& path) {
   CloudFormat format;
   format.columns = {"x", "y", "z", "intensity", "ring"};

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "libperception/importers/ImportGps.h"
+#include "libperception/importers/ImportLog.h"
+#include "libperception/importers/ImportText.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -15,6 +17,18 @@ using FrameTimes = std::map<std::int64_t, Stamp>;
 
 /// A sequence's times: "Frame: 000018 Time: 1574859771.700975000". Throws DataError.
 FrameTimes readRadiateTimes(const std::filesystem::path& path);
+
+/// A file of a frame with its time.
+struct TimedFile {
+  FrameFile file;
+  Stamp stamp;
+};
+
+/// The files of a folder with a time; the others are left out with a warning. `wanted`: of the
+/// frames that are wanted alone.
+std::vector<TimedFile> timedFiles(const std::filesystem::path& folder,
+                                  const std::vector<std::string>& endings, const FrameTimes& times,
+                                  bool wanted, ImportLog& log);
 
 /// A scan of the lidar. Throws DataError.
 LidarCloud readRadiateScan(const std::string& path);

@@ -56,12 +56,6 @@ class RadiateImporter final : public Importer {
 
  private:
   fs::path path(const char* name) const { return fs::path(params_.dir) / name; }
-  struct TimedFile {
-    FrameFile file;
-    Stamp stamp;
-  };
-  std::vector<TimedFile> timedFiles(const char* folder, const std::vector<std::string>& endings,
-                                    const FrameTimes& times, bool wanted, ImportLog& log) const;
   void addRadar(ImportLog& log);
   void addLidar(ImportLog& log);
   void addImages(ImportLog& log);
@@ -114,33 +108,9 @@ std::optional<Pose3> RadiateImporter::egoAt(Stamp stamp) const {
   return poseBetween(poses_, stamp);
 }
 
-/// The files with a time; the others are left out with a warning. `wanted`: of the frames that are
-/// wanted alone.
-std::vector<RadiateImporter::TimedFile> RadiateImporter::timedFiles(
-    const char* folder, const std::vector<std::string>& endings, const FrameTimes& times,
-    bool wanted, ImportLog& log) const {
-  const std::string dir = path(folder).string();
-  std::vector<TimedFile> timed;
-  std::vector<std::int64_t> untimed;
-  for (const FrameFile& file : frameFiles(dir, endings)) {
-    if (wanted && !log.options().wants(file.number)) continue;
-    const auto time = times.find(file.number);
-    if (time == times.end()) {
-      untimed.push_back(file.number);
-    } else {
-      timed.push_back({file, time->second});
-    }
-  }
-  if (!untimed.empty()) {
-    log.warn(fmt::format("{}: no time in {}.txt for {} frames (first: {}): left out", dir, dir,
-                         untimed.size(), untimed.front()));
-  }
-  return timed;
-}
-
 void RadiateImporter::addRadar(ImportLog& log) {
   for (const auto& [file, time] :
-       timedFiles("Navtech_Cartesian", {".png"}, radar_times_, true, log)) {
+       timedFiles(path("Navtech_Cartesian"), {".png"}, radar_times_, true, log)) {
     const Stamp stamp = radarStamp(time);
     if (!first_) first_ = stamp;
     last_ = stamp;
@@ -170,7 +140,8 @@ void RadiateImporter::addRadar(ImportLog& log) {
 
 void RadiateImporter::addLidar(ImportLog& log) {
   const FrameTimes times = readRadiateTimes(path("velo_lidar.txt"));
-  for (const auto& [file, stamp] : timedFiles("velo_lidar", kScanEndings, times, false, log)) {
+  for (const auto& [file, stamp] :
+       timedFiles(path("velo_lidar"), kScanEndings, times, false, log)) {
     if (!inside(stamp)) continue;
     log.at(stamp, [this, stamp = stamp, file = file, &log] {
       SensorFrame out;
@@ -191,7 +162,8 @@ void RadiateImporter::addImages(ImportLog& log) {
   Pose3 T_ego_camera = makePose(calibration_.camera.y(), -calibration_.camera.x(),
                                 radar_height_ + calibration_.camera.z(), 0);
   T_ego_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  for (const auto& [file, stamp] : timedFiles("zed_left", {".png", ".jpg"}, times, false, log)) {
+  for (const auto& [file, stamp] :
+       timedFiles(path("zed_left"), {".png", ".jpg"}, times, false, log)) {
     if (!inside(stamp)) continue;
     ImportedImage image;
     image.label = kImageLabel;

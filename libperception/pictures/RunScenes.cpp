@@ -67,6 +67,27 @@ std::size_t sceneOfFrame(const TrackedRun& run, std::int64_t number) {
                           run.scenes.front().frame, run.scenes.back().frame));
 }
 
+std::vector<std::size_t> scenesBetween(const TrackedRun& run, double from, double to) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < run.scenes.size(); ++i) {
+    const double t = run.scenes[i].stamp - run.first_stamp;
+    if (t >= from && t <= to) chosen.push_back(i);
+  }
+  if (chosen.empty()) throw Error(ExitCode::kUsage, "--from, --to: no scene between them");
+  return chosen;
+}
+
+std::vector<std::size_t> scenesEvery(const TrackedRun& run, double every) {
+  std::vector<std::size_t> chosen;
+  Stamp due = run.scenes.front().stamp;
+  for (std::size_t i = 0; i < run.scenes.size(); ++i) {
+    if (run.scenes[i].stamp < due) continue;
+    chosen.push_back(i);
+    while (every > 0 && due <= run.scenes[i].stamp) due = due + every;
+  }
+  return chosen;
+}
+
 std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t count) {
   if (all.size() <= count) return all;
   if (count == 1) return {all[all.size() / 2]};

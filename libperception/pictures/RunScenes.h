@@ -17,6 +17,10 @@ std::size_t nearestScene(const TrackedRun& run, Stamp stamp);
 std::size_t sceneAt(const TrackedRun& run, double t);
 /// The scene of a frame number. Throws Error (kUsage): there is none.
 std::size_t sceneOfFrame(const TrackedRun& run, std::int64_t number);
+/// The scenes between two times since the log's first stamp [s]. Throws Error (kUsage): none.
+std::vector<std::size_t> scenesBetween(const TrackedRun& run, double from, double to);
+/// A scene every so many seconds [s], the first among them; 0: all. The run has one at least.
+std::vector<std::size_t> scenesEvery(const TrackedRun& run, double every);
 /// `count` of `all`, evenly spread, the first and the last among them.
 std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t count);
 

@@ -1,0 +1,58 @@
+#include "gui-offscreen/ReportTimeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gui-offscreen/HtmlText.h"
+#include "libperception/scene/ClassColors.h"
+
+namespace perception {
+namespace {
+
+constexpr double kLabelWidth = 130, kChartWidth = 900, kRow = 16, kAxis = 24;  // [px]
+
+}  // namespace
+
+std::string nameOfClass(const TrackedRun& run, ClassId c) {
+  const auto i = static_cast<std::size_t>(c);
+  return c >= 0 && i < run.class_names.size() ? run.class_names[i] : "?";
+}
+
+std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& lives, double end) {
+  const double height = kAxis + kRow * static_cast<double>(lives.size()) + 4;
+  const auto x = [&](double t) { return kLabelWidth + kChartWidth * t / end; };
+  std::string out = fmt::format(
+      "<svg id=\"timeline\" viewBox=\"0 0 {:.0f} {:.0f}\" data-left=\"{:.0f}\" "
+      "data-width=\"{:.0f}\" data-end=\"{:.3f}\" data-start=\"{:.3f}\">\n",
+      kLabelWidth + kChartWidth + 10, height, kLabelWidth, kChartWidth, end,
+      run.scenes.empty() ? 0 : run.scenes.front().stamp - run.first_stamp);
+  const double step = end > 120 ? 20 : end > 40 ? 5 : end > 15 ? 2 : 1;  // [s]
+  for (double t = 0; t <= end; t += step) {
+    out += fmt::format(
+        "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" "
+        "y2=\"{2:.0f}\"/><text x=\"{0:.1f}\" y=\"14\" "
+        "text-anchor=\"middle\">{3:g} s</text>\n",
+        x(t), kAxis - 4, height, t);
+  }
+  double y = kAxis;
+  for (const ObjectLife& life : lives) {
+    const std::string name = spaced(nameOfClass(run, life.last_class));
+    out += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\">{} {}</text>\n",
+                       kLabelWidth - 8, y + 12, life.id, name);
+    for (const ObjectLife::Stretch& s : life.stretches) {
+      out += fmt::format(
+          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" fill=\"{}\" "
+          "fill-opacity=\"{}\"><title>{}: {}{}, {:.1f} to {:.1f} s</title></rect>\n",
+          x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kRow - 4,
+          hexOf(colorOfClass(nameOfClass(run, s.class_id), s.class_id)), s.sure ? "1" : "0.4",
+          life.id, s.sure ? "" : "probably ", spaced(nameOfClass(run, s.class_id)), s.from, s.to);
+    }
+    y += kRow;
+  }
+  out += fmt::format("<line id=\"now\" y1=\"{:.0f}\" y2=\"{:.0f}\" x1=\"-9\" x2=\"-9\"/>\n</svg>\n",
+                     kAxis - 6, height);
+  return out;
+}
+
+}  // namespace perception

@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/measurement/CameraResolution.h"
+#include "studies/ResolutionFigures.h"
+#include "studies/ResolutionReport.h"
+
+namespace perception {
+
+/// What tables and plots share of one camera run.
+struct CameraFigures {
+  const ResolutionRun* run;
+  DetectionCounts detections;
+  std::optional<RangeRates> rates;
+};
+
+/// The row of a run's camera.
+const CameraResolution& rowOf(const ResolutionRun& run);
+/// [m] of a row for a kind: 0 car, 1 person.
+double rangeOf(const CameraResolution& row, int kind);
+
+/// Recall over the range, a curve a resolution; `where`: the logs, for titles.
+StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::string& where);
+/// Ours and the paper's of a table of rates, side by side.
+StudyPlot ratePlot(const StudyTable& table, const std::string& what, const std::string& where);
+
+}  // namespace perception
