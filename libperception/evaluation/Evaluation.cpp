@@ -231,7 +231,10 @@ class Evaluator {
   // without lidar the camera's range holds (method.md 11), also where radar helps.
   bool inSensorRange(const SeenTruth& truth) const {
     const std::string& sensors = result_.sensors;
-    const auto covers = [](char letter) { return findModality(letter)->covers_sector; };
+    const auto covers = [](char letter) {
+      const auto* row = findModality(letter);  // null: the sign between letters
+      return row && row->covers_sector;
+    };
     if (sensors.empty() || std::any_of(sensors.begin(), sensors.end(), covers)) return true;
     const std::string& name = result_.class_names[static_cast<std::size_t>(truth.class_id)];
     const bool person = name == "pedestrian" || name == "cyclist";
