@@ -245,7 +245,7 @@ StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::strin
   return plot;
 }
 
-/// Ours and the paper's of a table of rates, side by side.
+/// Ours and [radecki2016]'s of a table of rates, side by side.
 StudyPlot ratePlot(const StudyTable& table, const std::string& what, const std::string& where) {
   StudyPlot plot;
   plot.name = table.name;
