@@ -207,7 +207,7 @@ tests() {
   checkHabits || failed=1
   runTests release build || failed=1
   local checked=() module
-  for module in core measurement filter sensors; do
+  for module in core config measurement filter sensors; do
     if compgen -G "tests/$module/*_test.cpp" >/dev/null; then checked+=("$module"); fi
   done
   build asan ON --target "${checked[@]/%/_tests}"

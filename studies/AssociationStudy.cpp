@@ -35,7 +35,7 @@ FilterModel associationModel(Proposal proposal) {
   FilterModel model;
   model.classes = encounterClasses();
   ObjectClass& pedestrian = model.classes.classes[0];
-  pedestrian.mode_accel_psd = {0.04, 0.5};  // walking (the paper's .04) and stopping or turning
+  pedestrian.mode_accel_psd = {0.04, 0.5};  // walking ([radecki2016]'s .04) and stopping or turning
   pedestrian.mode_damping = {0, 3};
   pedestrian.mode_sojourn = {4, 1.5};  // method.md 3.6
   model.params.kinematic_exponent = 1;

@@ -187,7 +187,7 @@ std::vector<GpsTrack> readGpsTracks(const GpsParams& params) {
 
 GpsExperiment prepareGps(const GpsParams& params) {
   GpsExperiment e;
-  e.R << 1.2, 0.1, 0.1, 1.2;  // the paper's receiver [m^2]
+  e.R << 1.2, 0.1, 0.1, 1.2;  // [radecki2016]'s receiver [m^2]
   if (!params.stationary.empty()) e.R = stationaryNoise(params.stationary);
   e.tracks = readGpsTracks(params);
   std::set<std::string> users;

@@ -23,7 +23,7 @@ struct Method {
   ReplayMethod replay;
   std::string note;           // behind the number of particles
   std::size_t reference = 0;  // its reference's place among the methods
-  bool in_curves = false;     // one of the paper's counts
+  bool in_curves = false;     // one of [radecki2016]'s counts
 
   std::string label() const { return fmt::format("{}, {}{}", family, replay.particles, note); }
 };
@@ -32,7 +32,7 @@ std::string number(const std::optional<double>& value, int places) {
   return value ? fmt::format("{:.{}f}", *value, places) : "n/a";
 }
 
-// The reference first, then the paper's counts, then the reference with another seed.
+// The reference first, then [radecki2016]'s counts, then the reference with another seed.
 void addFamily(const LogParticlesParams& params, const std::string& family, const RecordedLog& log,
                std::vector<Method>& methods) {
   const std::size_t reference = methods.size();
@@ -182,7 +182,7 @@ StudyPlot cdfPlot(const std::string& name, const std::string& title, const std::
   return plot;
 }
 
-// Errors over the number of particles, the paper's beside them.
+// Errors over the number of particles, [radecki2016]'s beside them.
 StudyPlot errorPlot(const std::vector<Method>& methods, const std::vector<CountedRun>& runs,
                     const std::string& where) {
   StudyPlot plot;

@@ -15,7 +15,7 @@ namespace {
 enum { kCyclist, kPedestrian };
 constexpr std::uint32_t kPurpose = 0x5710;
 const int kCounts[] = {5, 10, 15, 20, 30, 40, 50};
-constexpr double kMedian = 1.986;  // the paper's dashed line: median of chi-square(100) over 50
+constexpr double kMedian = 1.986;  // [radecki2016]'s dashed line: median of chi-square(100) over 50
 
 /// method.md 4.5: accelerations are variances (.31, .04), the rotation a deviation per step.
 PaperClass classOf(int kind) {
@@ -49,7 +49,7 @@ struct Track {
 Track makeTrack(const MonteCarloParams& p, int kind, std::uint64_t number) {
   Rng rng({p.seed, number, static_cast<std::uint32_t>(kind), kPurpose});
   Matrix2 R;
-  R << 1.2, 0.1, 0.1, 1.2;  // the paper's GPS receiver [m^2]
+  R << 1.2, 0.1, 0.1, 1.2;  // [radecki2016]'s GPS receiver [m^2]
   if (p.noise_per_track) R = std::pow(rng.uniform(0.5, 1.7), 2) * Matrix2::Identity();
   const double speed = std::abs(rng.normal(kind == kCyclist ? 4.0 : 2.0, 0.5));  // method.md 4.5
   const auto z = simulatePaperTrack(classOf(kind), speed, p.steps, 1.0, R, rng);

@@ -70,7 +70,7 @@ Pose3 cameraPose(double height, double pitch) {
 }
 
 bool isPanorama(const Raster& image, int choice, bool calibrated) {
-  constexpr int kLeastWidth = 1024;  // [px] the smallest of the paper's panoramas
+  constexpr int kLeastWidth = 1024;  // [px] the smallest of [radecki2016]'s panoramas
   return choice == 1 || (choice == 0 && !calibrated && image.width >= kLeastWidth &&
                          std::abs(image.width - 2 * image.height) <= 1);
 }

@@ -9,7 +9,7 @@
 namespace perception {
 namespace {
 
-// Ranges of the paper's camera (method.md 11; table on camera resolution of [radecki2016], 2k
+// Ranges of [radecki2016]'s camera (method.md 11; table on camera resolution of [radecki2016], 2k
 // images) [m].
 constexpr double kCameraCarRange = 15, kCameraPersonRange = 10;
 

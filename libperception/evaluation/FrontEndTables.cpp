@@ -34,7 +34,7 @@ std::vector<Named> allOf(const EvaluationReport& report) {
   return all;
 }
 
-// Measurements of all labels that speak of this size, the paper's labels alone or all.
+// Measurements of all labels that speak of this size, [radecki2016]'s labels alone or all.
 PrecisionCounts precisionOf(const FrontEndEvaluation& f, LabelMeaning::Size size, bool primary) {
   PrecisionCounts sum;
   for (const auto& entry : f.labels) {

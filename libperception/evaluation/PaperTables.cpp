@@ -4,7 +4,7 @@
 
 namespace perception {
 
-// The numbers are printed in the paper; nothing here is computed or rounded by us.
+// The numbers are printed in [radecki2016]; nothing here is computed or rounded by us.
 
 const std::vector<PaperTrackingRow>& paperTrackingRows() {
   static const std::vector<PaperTrackingRow> rows = {

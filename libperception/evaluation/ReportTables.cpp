@@ -22,7 +22,7 @@ std::vector<ClassId> classesWithTruth(const Evaluation& evaluation) {
   return classes;
 }
 
-// The paper's rows, in the columns of paperTable().
+// [radecki2016]'s rows, in the columns of paperTable().
 void addPaperRows(const EvaluationReport& report, ReportTable& table) {
   for (const PaperTrackingRow& row : report.paper) {
     table.rows.push_back({fmt::format("paper: {}, {}", row.sensors, row.condition), "all",

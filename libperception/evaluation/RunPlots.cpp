@@ -65,7 +65,7 @@ std::string timeRows(const EvaluatedRun& run) {
   return text;
 }
 
-// A figure of a comparison: how it is got and where the paper has it.
+// A figure of a comparison: how it is got and where [radecki2016] has it.
 struct Compared {
   const char* title;
   Figure (*of)(const Evaluation&);
@@ -87,7 +87,7 @@ const Compared kCompared[] = {
      [](const Evaluation& e) { return falseObjectFigures(e).per_instant; }, nullptr},
 };
 
-// The paper's row of that sensor set: the condition is called by it, or ends in it.
+// [radecki2016]'s row of that sensor set: the condition is called by it, or ends in it.
 const PaperTrackingRow* paperRowOf(const std::vector<PaperTrackingRow>& rows,
                                    const std::string& name) {
   for (const PaperTrackingRow& row : rows) {

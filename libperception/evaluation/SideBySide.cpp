@@ -9,7 +9,7 @@
 namespace perception {
 namespace {
 
-// A row of the table: a figure of a run, and where the paper has it.
+// A row of the table: a figure of a run, and where [radecki2016] has it.
 struct FigureRow {
   const char* name;
   int places;

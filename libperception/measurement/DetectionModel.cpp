@@ -209,7 +209,7 @@ DetectionModel::DetectionModel(DetectionParams params, std::vector<ClassDetectio
 }
 
 void DetectionModel::applyPrecision() {
-  constexpr double kLeast = 1e-3;  // the paper clamps probabilities (method.md 5.6)
+  constexpr double kLeast = 1e-3;  // [radecki2016] clamps probabilities (method.md 5.6)
   const auto table = log_labels_;
   for (std::size_t c = 0; c < table.size(); ++c) {
     const auto own = std::max_element(table[c].begin(), table[c].end()) - table[c].begin();
@@ -222,8 +222,8 @@ void DetectionModel::applyPrecision() {
   }
 }
 
-// Recall falls from all to none within 10 % of the paper's range; what the detector calls a car is
-// seen as far as cars are.
+// Recall falls from all to none within 10 % of [radecki2016]'s range; what the detector calls a
+// car is seen as far as cars are.
 void DetectionModel::applyResolution() {
   const CameraResolution& resolution =
       cameraResolutions()[static_cast<std::size_t>(params_.resolution) - 1];

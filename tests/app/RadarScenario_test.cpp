@@ -19,7 +19,7 @@ std::string ini(const std::string& name) {
   return std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + name;
 }
 
-/// The paper's scenario A (simulated) by its eight radars alone, with the site INI of the vehicle.
+/// [radecki2016]'s scenario A (simulated) by its eight radars alone, with the vehicle's site INI.
 struct Played {
   int in_view = 0;    ///< scans while the Suburban moved within 40 m in front
   int tracked = 0;    ///< of these with an object within 2 m of it

@@ -1,7 +1,7 @@
 // Recall and precision of the lidar's detections, by size and by class, on recordings with labels:
 // KITTI tracking 0000 (boxes) and WADS 36 in falling snow (a class per return; objects are groups
-// of such returns), without and with point trust, beside the paper's figures. What is missed and
-// what the false ones are is counted by kind. Markdown.
+// of such returns), without and with point trust, beside [radecki2016]'s figures. What is missed
+// and what the false ones are is counted by kind. Markdown.
 #include <fmt/format.h>
 
 #include <map>
@@ -198,7 +198,7 @@ std::string whyMissed(const LidarDetections& found, const Truth& truth) {
   return top <= 1 ? "lower than 1 m" : "joined to something else";
 }
 
-/// All scans of a recording; `rows`: the paper's rule, clusters of both kinds, persons.
+/// All scans of a recording; `rows`: [radecki2016]'s rule, clusters of both kinds, persons.
 std::array<Row, 3> score(const std::vector<RecordedScan>& scans, const Labels& labels, bool trust,
                          double range) {
   LidarParams params;

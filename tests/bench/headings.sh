@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The paper's camera headings, split into axis and direction (C+R), beside one wide Gaussian (C/H+R): scenarios A, B and C
-# with camera and radars alone, five trials of four seeds each (SEEDS="1 2" for others). Ten encounters, as in scenarios.sh,
+# [radecki2016]'s camera headings, split into axis and direction (C+R), beside one wide Gaussian (C/H+R): scenarios A, B
+# and C with camera and radars alone, five trials of four seeds each (SEEDS="1 2" for others). Ten encounters, as in scenarios.sh,
 # cannot tell the two apart. Leaves OUT/pooled/report.md. About two minutes on four cores.
 #   tests/bench/headings.sh [OUT, default out/headings]
 set -euo pipefail
@@ -9,7 +9,7 @@ readonly out=${1:-out/headings} bin=${PERCEPTION_BIN:-build/bin}
 export out bin
 mkdir -p "$out"
 
-# The paper's vehicle without its lidars.
+# [radecki2016]'s vehicle without its lidars.
 awk '/^\[/ { keep = !/^\[sensor\.(LIDAR|IBEO)/ } keep' ini/vehicles/skynet.ini >"$out/vehicle.ini"
 
 for scene in A B C; do for seed in ${SEEDS:-61 62 63 64}; do for trial in 1 2 3 4 5; do echo "$scene $seed $trial"; done; done; done |

@@ -100,7 +100,7 @@ TEST(Panorama, TilesShowWhatThePanoramaHoldsInTheirDirection) {
 TEST(Panorama, RefusesOtherSizes) {
   EXPECT_THROW(Panorama(1000 + 1), DataError);
   EXPECT_THROW(Panorama(0), DataError);
-  const Panorama panorama(8000);  // the full panorama of the paper
+  const Panorama panorama(8000);  // the full panorama of [radecki2016]
   EXPECT_EQ(panorama.tileCamera().width, 2000);
   Raster other{1024, 512, 3, std::vector<std::uint8_t>(1024 * 512 * 3)};
   EXPECT_TRUE(panorama.tile(other, 0).pixels.empty());

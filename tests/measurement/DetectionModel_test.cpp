@@ -101,7 +101,7 @@ TEST(DetectionModel, ThePapersPrecisionStandsForTheTableOfLabels) {
   EXPECT_NEAR(s.logLabel(0, 1), std::log(0.51), 1e-12);
   EXPECT_NEAR(s.logLabel(0, 0), std::log(0.49), 1e-12);
   EXPECT_NEAR(s.logLabel(1, 0), std::log(0.55), 1e-12);
-  // The paper: a car is known after some 74 clusters, a person after 15 (posterior .95).
+  // [radecki2016]: a car is known after some 74 clusters, a person after 15 (posterior .95).
   EXPECT_NEAR(std::log(19) / (s.logLabel(0, 1) - s.logLabel(0, 0)), 73.6, 0.1);
   EXPECT_NEAR(std::log(19) / (s.logLabel(1, 0) - s.logLabel(1, 1)), 14.7, 0.1);
 }

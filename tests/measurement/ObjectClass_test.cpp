@@ -41,7 +41,7 @@ TEST(ObjectClass, PriorsSumToOne) {
 }
 
 TEST(ObjectClass, YawNoiseOfTheTableIsFifteenDegreesSquaredPerSecond) {
-  EXPECT_NEAR(shipped()[2].yaw_rate_psd, radians(15) * radians(15), 5e-5);  // the paper's figure
+  EXPECT_NEAR(shipped()[2].yaw_rate_psd, radians(15) * radians(15), 5e-5);  // of [radecki2016]
   EXPECT_EQ(shipped()[3].yaw_rate_psd, shipped()[2].yaw_rate_psd);  // size tells buses from cars
 }
 

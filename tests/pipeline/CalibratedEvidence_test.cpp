@@ -12,8 +12,8 @@ namespace perception {
 namespace {
 
 // A camera whose boxes carry calibrated log-odds. Births and clutter are as frequent, so that
-// nothing but a box's own score speaks for or against an object; labels have the paper's precision
-// by day (95 % for cars, 90 % for persons), both classes are as likely.
+// nothing but a box's own score speaks for or against an object; labels have [radecki2016]'s
+// precision by day (95 % for cars, 90 % for persons), both classes are as likely.
 const char* const kIni = R"(
 include = )" PERCEPTION_SOURCE_DIR R"(/ini/classes.ini
 [run]
@@ -105,7 +105,7 @@ bool confirmed(const std::vector<SceneObject>& objects) {
   return objects[0].existence >= kConfirmed && surest >= kConfirmed;
 }
 
-// The paper: "one car detection or two person detections are sufficient". Nothing in the filter
+// [radecki2016]: "one car detection or two person detections are sufficient". Nothing in the filter
 // counts detections.
 TEST(CalibratedEvidence, OneSureCarOrTwoSurePersonsAreEnough) {
   const auto car = standing("Car", 0.95), person = standing("Pedestrian", 0.9);

@@ -81,7 +81,7 @@ std::vector<Footprint> footprintsAt(const World& world, double t) {
                     overhead ? 0 : o.width});
   }
   const Pose3 ego = world.ego(t).T_world_ego;
-  constexpr double kFront = 4.2, kRear = 1.3;  // [m] the paper's vehicle
+  constexpr double kFront = 4.2, kRear = 1.3;  // [m] [radecki2016]'s vehicle
   const Vector3 middle = ego * Vector3(.5 * (kFront - kRear), 0, 0);
   list.push_back({middle.head<2>(), yawOf(ego), kFront + kRear, 2.0});
   return list;
