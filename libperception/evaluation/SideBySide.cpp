@@ -73,7 +73,7 @@ const FigureRow kRows[] = {
 // Pooled value, then mean, standard deviation and range over the trials.
 std::string cellOf(const EvaluatedRun& run, const FigureRow& row,
                    const EvaluationOptions& options) {
-  const std::string value = number(row.of(run.evaluation, options), row.places);
+  std::string value = number(row.of(run.evaluation, options), row.places);
   std::vector<double> trials;
   for (const EvaluatedRun& trial : run.trials) {
     if (const Figure f = row.of(trial.evaluation, options)) trials.push_back(*f);

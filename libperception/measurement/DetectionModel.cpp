@@ -77,7 +77,7 @@ void checkRow(Config& config, const std::string& section,
 }  // namespace
 
 void DetectionParams::visit(ParamVisitor& v) {
-  v.text("kind", kind, "front end by name: lidar, boxes, radar");
+  v.text("kind", kind, "front end by name: lidar, boxes, radar, positions");
   std::vector<std::string> letters;
   std::string names;
   for (const ModalityRow& row : modalities()) {

@@ -13,7 +13,7 @@ namespace {
 /// A heading known so well moves along its tangent: the mean step is .4 % shorter.
 constexpr double kSureHeading = radians(5);
 
-void symmetrise(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
+void symmetrize(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
 /// method.md 3.1: F = [I dtI; 0 I], Q of white acceleration; position_psd adds slip. Returns F.
 Matrix4 predictConstantVelocity(const ObjectClass& c, double psd, double damping, double dt,
@@ -127,7 +127,7 @@ bool hasUncertainHeading(const GaussianStep& s) {
 
 void moveFreely(const GaussianStep& s, Matrix4* transition) {
   const Matrix4 F = predictConstantVelocity(*s.object_class, s.psd, s.damping, s.dt, *s.x, *s.P);
-  symmetrise(*s.P);
+  symmetrize(*s.P);
   if (transition) *transition = F;
 }
 
@@ -151,7 +151,7 @@ void moveOnWheels(const GaussianStep& s, Matrix4* transition) {
     const Matrix4 F = predict(*s.object_class, s.psd, s.damping, s.dt / steps, *s.x, *s.P);
     if (transition) whole = F * whole;
   }
-  symmetrise(*s.P);
+  symmetrize(*s.P);
   if (transition) *transition = whole;
 }
 

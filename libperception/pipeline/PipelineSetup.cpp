@@ -135,8 +135,10 @@ void RunParams::visit(ParamVisitor& v) {
           "--sensors wins")
              .c_str());
   v.words("without", without, "labels of sensors that are left out all the same; none");
-  v.choiceOf("association", association, associationNames(),
-             "how a hypothesis chooses the causes of measurements");
+  v.choiceOf(
+      "association", association, associationNames(),
+      "sampled: drawn from the optimal proposal; ranked: the k best assignments (MHT); nearest: "
+      "the best one alone (global nearest neighbor)");
   v.text("output_sensor", output_sensor,
          "scenes at its scans; empty: the first lidar in use, else the first sensor");
   v.real("output_rate", output_rate, {0, 1000}, "Hz",

@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-void symmetrise(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
+void symmetrize(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
 /// x - reference, the heading wrapped.
 Vector4 difference(const Vector4& x, const Vector4& reference, bool oriented) {
@@ -109,7 +109,7 @@ void orientAll(ClassFilter& f, const Matrix4& J, Carry carry) {
   const auto one = [&](Vector4& x, Matrix4& P) {
     carry(x);
     P = J * P * J.transpose();
-    symmetrise(P);
+    symmetrize(P);
   };
   for (auto& m : f.modes) one(m.x, m.P);
   one(f.x, f.P);
