@@ -13,11 +13,8 @@ constexpr int kRelocation = 10;   // rejected fixes in a row after which they ar
 
 double square(double x) { return x * x; }
 
-}  // namespace
-
-bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
-                 const Vector3& world) {
-  const EgoVector& x = state.estimate.x;
+/// The place [m, world] of the antenna against the state: its lever arm turns with the vehicle.
+EgoObservation antennaObservation(const EgoVector& x, const GnssFix& fix, const Vector3& world) {
   const auto antennaAt = [&](double yaw, double pitch, double roll) -> Vector3 {
     return makePose(x[kEgoX], x[kEgoY], x[kEgoZ], yaw, pitch, roll) * fix.antenna;
   };
@@ -33,6 +30,15 @@ bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
       (antennaAt(yaw, pitch + kStep, roll) - antennaAt(yaw, pitch - kStep, roll)) / (2 * kStep);
   both.H.col(kEgoRoll) =
       (antennaAt(yaw, pitch, roll + kStep) - antennaAt(yaw, pitch, roll - kStep)) / (2 * kStep);
+  return both;
+}
+
+}  // namespace
+
+bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
+                 const Vector3& world) {
+  const EgoVector& x = state.estimate.x;
+  const EgoObservation both = antennaObservation(x, fix, world);
   static const double gate1 = chi2Quantile(kGate, 1), gate2 = chi2Quantile(kGate, 2);
   EgoObservation place = both;
   place.rows = 2;
