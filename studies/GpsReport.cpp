@@ -123,10 +123,11 @@ StudyReport gpsStudy(const GpsParams& params) {
       "The speed regimes are a Markov chain over speeds per class: how fast, how steadily, how "
       "often at rest. White acceleration with one variance has no speed at all, so a slow car is "
       "as likely as a slow walker.",
-      fmt::format("Pedestrians are favoured by the least log likelihood that finds {:.0f} % of the "
-                  "sections of training users, each held out in turn: they are whom a vehicle must "
-                  "not miss.",
-                  100 * params.pedestrian_recall)};
+      fmt::format(
+          "Pedestrians are favored by the least log likelihood that finds {:.0f} % of the "
+          "sections of training users, each held out in turn: they are those a vehicle must "
+          "not miss.",
+          100 * params.pedestrian_recall)};
   return report;
 }
 

@@ -199,7 +199,7 @@ StudyReport detectorStudy(const DetectorStudyInput& input,
       "Repeated: correlation of one object's errors a second apart; a filter takes them for "
       "independent, so stated deviations must be larger than the errors where it is high.",
       "Areas that the truth does not label (DontCare) cannot be told from clutter, nor objects "
-      "that nobody labeled. Bearings in rad, lengths in m, axes in rad."};
+      "that have no label. Bearings in rad, lengths in m, axes in rad."};
   return report;
 }
 

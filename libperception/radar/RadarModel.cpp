@@ -23,7 +23,7 @@ Vector2 lineOfSight(const Measurement& m, const SensorState& s) {
   return direction(yawOf(s.T_world_sensor) + m.z[RadarModel::kBearing]);
 }
 
-/// [m, m^2] from its nearest point to the center of a rectangle whose heading nobody knows: mean
+/// [m, m^2] from its nearest point to the center of a rectangle of unknown heading: mean
 /// and variance over all headings of its support function, (l |cos| + w |sin|) / 2.
 ScalarEstimate halfDepth(double length, double width) {
   const double mean = (length + width) / kPi;
@@ -190,7 +190,7 @@ double RadarModel::logBirthDensity(const Measurement& m, ClassId c,
     rate = (1 - kShareOfAnySpeed) * speedDensity(speed.mean, max, speed.variance) +
            kShareOfAnySpeed / params_.rate_span;
   } else if (params_.min_birth_speed > 0) {
-    return kMinusInfinity;  // nobody knows whether it moves
+    return kMinusInfinity;  // unknown whether it moves
   }
   return std::log(detection_model().params().births_per_scan * position * rate);
 }
