@@ -143,7 +143,7 @@ std::vector<GroupAlternative> rankGroup(const AssignmentProblem& problem,
   return out;
 }
 
-/// The alternatives of a row whose options nobody else wants.
+/// The alternatives of a row whose options no other row has.
 std::vector<GroupAlternative> rankAlone(const std::vector<AssignmentProblem::Option>& options,
                                         int best, std::size_t k, double span) {
   double gain = 0;
@@ -162,7 +162,7 @@ std::vector<GroupAlternative> rankAlone(const std::vector<AssignmentProblem::Opt
 }  // namespace
 
 AssignmentRanking::AssignmentRanking(AssignmentProblem problem) : problem_(std::move(problem)) {
-  if (problem_.rows.size() == 1) {  // nobody competes
+  if (problem_.rows.size() == 1) {  // no competing row
     best_.column.assign(1, kNothing);
     for (const auto& o : problem_.rows[0]) {
       if (o.gain > best_.log_weight) best_.column[0] = o.column, best_.log_weight = o.gain;

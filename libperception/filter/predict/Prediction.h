@@ -19,7 +19,8 @@ struct TrackOdds {
 double predictExistence(const Track& track, Stamp to, const FilterModel& model);
 TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model);
 
-/// [s] in which the existence falls below what is kept (existence_min), if nobody sees the track.
+/// [s] in which the existence falls below what is kept (existence_min), if no sensor sees the
+/// track.
 double timeToLive(const Track& track, const FilterModel& model);
 
 /// predictTrack() for those tracks that are `touched`, their Gaussians in batches (see BankBatch);

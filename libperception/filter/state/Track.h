@@ -61,7 +61,7 @@ struct ReachableDisc {
   double reach = std::numeric_limits<double>::infinity();
   double speed = 0;             ///< [m/s] of the fastest mean
   double longest_deferral = 0;  ///< [s] for which it may be left behind, unseen
-  /// When nobody sees it until then, its existence has fallen below what is kept.
+  /// When no sensor sees it until then, its existence has fallen below what is kept.
   Stamp expires{std::numeric_limits<std::int64_t>::max()};
 };
 
