@@ -53,8 +53,25 @@ std::optional<CameraModel> cameraOf(const SensorFrame& frame) {
     camera.width = raster->width;
     camera.height = raster->height;
   }
-  if (!(camera.fx > 0) || !(camera.fy > 0)) return std::nullopt;
+  if (!(camera.fx > 0) || !(camera.fy > 0)) return panoramaModel(camera.width, camera.height);
   return camera;
+}
+
+bool isPanorama(const CameraModel& camera) {
+  return camera.projection == CameraModel::Projection::kEquirectangular;
+}
+
+// The box in the pixels of an image; panoramas of two sizes differ by their scale alone. Empty for
+// two cameras that have nothing in common.
+std::optional<ObjectDetection::ImageBox> boxIn(const CameraModel& image,
+                                               const ObjectDetection::ImageBox& box,
+                                               const CameraModel& detector) {
+  if (detector.width == image.width) return box;
+  if (!isPanorama(image) || !isPanorama(detector)) return std::nullopt;
+  const double sx = image.fx / detector.fx, sy = image.fy / detector.fy;
+  return ObjectDetection::ImageBox{
+      image.cx + sx * (box.x1 - detector.cx), image.cy + sy * (box.y1 - detector.cy),
+      image.cx + sx * (box.x2 - detector.cx), image.cy + sy * (box.y2 - detector.cy)};
 }
 
 // The seen sides as a rectangle on the ground.
@@ -247,16 +264,17 @@ void SnapshotSensors::addImage(SceneView& view) {
       if (missing_image_.empty()) missing_image_ = source->source;
     }
   }
-  // Boxes of any detector that worked on images of this size.
+  // Boxes of any detector that worked on images of this size, or on panoramas if it is one.
   for (const auto& [label, other] : last_) {
     const auto* found = std::get_if<ObjectDetections>(&other.data);
     if (!found || !hasImageBoxes(*found) || now_ - other.stamp > kLastScan) continue;
-    if (found->camera.width != image.camera.width) continue;
     if (label == frame.sensor && found->T_ego_camera) {
       image.T_world_camera = frame.ego.T_world_ego * *found->T_ego_camera;
     }
     for (const ObjectDetection& object : found->objects) {
-      if (object.image_box) image.boxes.push_back({*object.image_box, object.label});
+      if (!object.image_box) continue;
+      if (const auto box = boxIn(image.camera, *object.image_box, found->camera))
+        image.boxes.push_back({*box, object.label});
     }
   }
   view.image = std::move(image);
