@@ -16,8 +16,8 @@
 namespace perception {
 namespace {
 
-/// [%] of simulated images: hardly any loss can be seen, and half the bytes of 95.
-constexpr int kJpegQuality = 85;
+/// [%] of simulated images: hardly any loss can be seen, and a third of the bytes of 95.
+constexpr int kJpegQuality = 80;
 
 std::shared_ptr<mrpt::obs::CObservation> imageObservation(const CameraImage& image) {
   auto result = std::make_shared<mrpt::obs::CObservationImage>();

@@ -41,11 +41,29 @@ bool isVehicle(ObjectKind kind) {
   return kind == ObjectKind::kCar || kind == ObjectKind::kVan || kind == ObjectKind::kBus;
 }
 
-// Lamps, number plates and the dark skirt of a vehicle's body.
+// Distance from the nearest axle over the wheel's radius; the body is flush with the wheels, so the
+// place tells them apart, not the material.
+double fromAxle(const ObjectParams& o, const Vector3& p, const Vector3& normal) {
+  if (!isVehicle(o.kind) || std::abs(normal.y()) < .9) return 10;
+  const Wheels wheels = wheelsOf(o);
+  const double x = std::min(std::abs(p.x() - wheels.front), std::abs(p.x() - wheels.rear));
+  return std::hypot(x, p.z() - wheels.radius) / wheels.radius;
+}
+
+Finish wheel(double from_axle) {
+  constexpr double kHub = .15, kRim = .62;  // of the wheel's radius
+  if (from_axle < kRim) return {Rgb::Constant(from_axle < kHub ? .10 : .34), 0};
+  return {Rgb::Constant(.025), 0};
+}
+
+// Wheels, lamps, number plates and the dark skirt of a vehicle's body.
 Finish coachwork(const ObjectParams& o, const Vector3& p, const Vector3& normal) {
+  constexpr double kArch = 1.12;  // of the wheel's radius
+  const double from_axle = fromAxle(o, p, normal);
+  if (from_axle < kArch) return wheel(from_axle);
   const double h = p.z() / o.height, across = std::abs(p.y()) / o.width;
   const bool end = std::abs(normal.x()) > .7, bus = o.kind == ObjectKind::kBus;
-  if (h < (bus ? .14 : .21)) return {{.03, .03, .03}, 0};
+  if (h < (bus ? .14 : .21)) return {Rgb::Constant(.03), 0};
   if (!end) return {bodyColor(o), kGlossy};
   const double lamps = bus ? .20 : .33, top = bus ? .28 : .47;
   if (across > .30 && h > lamps && h < top) {
@@ -54,17 +72,6 @@ Finish coachwork(const ObjectParams& o, const Vector3& p, const Vector3& normal)
   }
   if (across < .15 && h > .25 && h < .33) return {{.65, .65, .60}, 0};
   return {bodyColor(o), kGlossy};
-}
-
-Finish wheel(const ObjectParams& o, const Vector3& p, const Vector3& normal) {
-  constexpr double kRim = .62;  // of the wheel's radius
-  const Wheels wheels = wheelsOf(o);
-  if (isVehicle(o.kind) && std::abs(normal.y()) > .9) {
-    const double x = std::min(std::abs(p.x() - wheels.front), std::abs(p.x() - wheels.rear));
-    const double radius = std::hypot(x, p.z() - wheels.radius) / wheels.radius;
-    if (radius < kRim) return {Rgb::Constant(radius < .15 ? .10 : .34), 0};
-  }
-  return {Rgb::Constant(.025), 0};
 }
 
 // Trousers to the hip, shoes; the arms reach below the hip, but hands are not shown apart.
@@ -159,7 +166,7 @@ Finish finishOf(const ObjectParams& o, Material material, const Vector3& place,
     case Material::kGlass:
       return {Rgb::Constant(.02), 2 * kGlossy};
     case Material::kTyre:
-      return wheel(o, place, normal);
+      return wheel(fromAxle(o, place, normal));
     case Material::kCloth:
       return clothes(o, place);
     case Material::kSkin:

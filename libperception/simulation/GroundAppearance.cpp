@@ -60,8 +60,8 @@ double detail(double size, double pixel) { return std::clamp(2 - 2 * pixel / siz
 
 Rgb asphalt(const Vector2& p, double pixel) {
   const double patches = smoothValue(p.x() / 6, p.y() / 6, 1) - .5;
-  const double grain = smoothValue(p.x() / .12, p.y() / .12, 2) - .5;
-  return Rgb(.115, .115, .12) * (1 + .25 * patches + .35 * detail(.12, pixel) * grain);
+  const double grain = smoothValue(p.x() / .05, p.y() / .05, 2) - .5;
+  return Rgb(.095, .095, .10) * (1 + .25 * patches + .15 * detail(.05, pixel) * grain);
 }
 
 Rgb pavement(const Vector2& p, double pixel) {

@@ -51,7 +51,7 @@ class Renderer {
     Sample sample;
     sample.object = hit.object;
     if (hit.object == BeamHit::kNothing && !below) {
-      sample.value = light_.exposed(light_.sky(direction));
+      sample.value = light_.exposed(light_.hazySky(direction));
       return sample;
     }
     const Vector3 place = eye_ + static_cast<double>(hit.range) * direction;

@@ -7,9 +7,12 @@ namespace perception {
 namespace {
 
 // Colors assumed: a clear sky by day, of mean 1 over the hemisphere.
-const Rgb kSun(1.0, 0.95, 0.86), kHorizon(1.30, 1.38, 1.42), kZenith(0.38, 0.68, 1.25);
-const Rgb kGround(0.16, 0.16, 0.14);  // mean reflectance of what lies below
-constexpr double kGlow = 0.5;         // of the sky near the sun
+const Rgb kSun(1.0, 0.95, 0.86), kHorizon(1.45, 1.58, 1.72), kZenith(0.36, 0.70, 1.45);
+const Rgb kSkylight(0.93, 0.98, 1.08);  // on a surface, after the camera's white balance
+const Rgb kGround(0.16, 0.16, 0.14);    // mean reflectance of what lies below
+constexpr double kGlow = 0.5;           // of the sky near the sun
+constexpr double kLayer = 100;          // [m] height of the hazy air
+constexpr double kLeastSlope = 0.01;    // of lines of sight that leave it
 
 }  // namespace
 
@@ -39,12 +42,17 @@ Rgb Lighting::sky(const Vector3& direction) const {
   return ambient * radiance;
 }
 
+Rgb Lighting::hazySky(const Vector3& direction) const {
+  const double up = std::max(kLeastSlope, direction.z());
+  return through(sky(direction), kLayer / up, direction);
+}
+
 Rgb Lighting::ambientOn(const Vector3& normal) const {
   const double above = .5 * (1 + normal.z());
-  const Rgb sky_mean = kHorizon + .6 * (kZenith - kHorizon);
-  const Rgb from_ground = kGround.cwiseProduct(ambient * sky_mean +
-                                               std::max(0.0, std::sin(sun_elevation)) * sunlight());
-  return above * ambient * sky_mean + (1 - above) * from_ground;
+  const Rgb from_sky = ambient * kSkylight;
+  const Rgb from_ground =
+      kGround.cwiseProduct(from_sky + std::max(0.0, std::sin(sun_elevation)) * sunlight());
+  return above * from_sky + (1 - above) * from_ground;
 }
 
 Rgb Lighting::through(const Rgb& radiance, double range, const Vector3& direction) const {

@@ -15,7 +15,7 @@ struct Lighting {
   double sun_azimuth = radians(-60);   ///< [rad] world, from x towards y
   double sun_elevation = radians(40);  ///< [rad] below 0: no sunlight
   double ambient = 0.3;   ///< light of the sky, as a share of the sun's at right angles
-  double exposure = 1.6;  ///< of the camera, times the radiance
+  double exposure = 2.0;  ///< of the camera, times the radiance
   double haze = 2e-4;     ///< [1/m] extinction: visible to 15 km (method.md 9.3)
 
   void visit(ParamVisitor& v);
@@ -28,6 +28,8 @@ struct Lighting {
   Rgb sky(const Vector3& direction) const;
   /// Light that arrives on a surface from sky and ground, over pi: times reflectance, a radiance.
   Rgb ambientOn(const Vector3& normal) const;
+  /// The same seen through the layer of hazy air over the ground.
+  Rgb hazySky(const Vector3& direction) const;
   /// What is left of a radiance after `range` [m] of air, with the light that the air adds.
   Rgb through(const Rgb& radiance, double range, const Vector3& direction) const;
   /// The linear display value in [0, 1] of a radiance.
