@@ -19,6 +19,16 @@ namespace {
 /// [%] of simulated images: hardly any loss can be seen, and a third of the bytes of 95.
 constexpr int kJpegQuality = 80;
 
+// MRPT's default is raw pixels. Once: another thread may be writing the image before.
+void compressImages() {
+  static const bool done = [] {
+    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(false);
+    mrpt::img::CImage::SERIALIZATION_JPEG_QUALITY(kJpegQuality);
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
 std::shared_ptr<mrpt::obs::CObservation> imageObservation(const CameraImage& image) {
   auto result = std::make_shared<mrpt::obs::CObservationImage>();
   const CameraModel& camera = image.camera;
@@ -32,8 +42,7 @@ std::shared_ptr<mrpt::obs::CObservation> imageObservation(const CameraImage& ima
   }
   const auto raster = image.load ? image.load() : std::nullopt;
   if (!raster) return result;
-  mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(false);  // MRPT's default is raw pixels
-  mrpt::img::CImage::SERIALIZATION_JPEG_QUALITY(kJpegQuality);
+  compressImages();
   const cv::Mat pixels(raster->height, raster->width, CV_8UC(raster->channels),
                        const_cast<std::uint8_t*>(raster->pixels.data()));
   result->image = mrpt::img::CImage(pixels, mrpt::img::DEEP_COPY);
