@@ -57,21 +57,18 @@ std::optional<CameraModel> cameraOf(const SensorFrame& frame) {
   return camera;
 }
 
-bool isPanorama(const CameraModel& camera) {
-  return camera.projection == CameraModel::Projection::kEquirectangular;
-}
-
 // The box in the pixels of an image; panoramas of two sizes differ by their scale alone. Empty for
 // two cameras that have nothing in common.
 std::optional<ObjectDetection::ImageBox> boxIn(const CameraModel& image,
                                                const ObjectDetection::ImageBox& box,
                                                const CameraModel& detector) {
   if (detector.width == image.width) return box;
-  if (!isPanorama(image) || !isPanorama(detector)) return std::nullopt;
-  const double sx = image.fx / detector.fx, sy = image.fy / detector.fy;
-  return ObjectDetection::ImageBox{
-      image.cx + sx * (box.x1 - detector.cx), image.cy + sy * (box.y1 - detector.cy),
-      image.cx + sx * (box.x2 - detector.cx), image.cy + sy * (box.y2 - detector.cy)};
+  constexpr auto kSphere = CameraModel::Projection::kEquirectangular;
+  if (image.projection != kSphere || detector.projection != kSphere) return std::nullopt;
+  const double scale = static_cast<double>(image.width) / detector.width;
+  const auto x = [&](double u) { return image.cx + scale * (u - detector.cx); };
+  const auto y = [&](double v) { return image.cy + scale * (v - detector.cy); };
+  return ObjectDetection::ImageBox{x(box.x1), y(box.y1), x(box.x2), y(box.y2)};
 }
 
 // The seen sides as a rectangle on the ground.
@@ -272,9 +269,9 @@ void SnapshotSensors::addImage(SceneView& view) {
       image.T_world_camera = frame.ego.T_world_ego * *found->T_ego_camera;
     }
     for (const ObjectDetection& object : found->objects) {
-      if (!object.image_box) continue;
-      if (const auto box = boxIn(image.camera, *object.image_box, found->camera))
-        image.boxes.push_back({*box, object.label});
+      const auto box =
+          object.image_box ? boxIn(image.camera, *object.image_box, found->camera) : std::nullopt;
+      if (box) image.boxes.push_back({*box, object.label});
     }
   }
   view.image = std::move(image);
