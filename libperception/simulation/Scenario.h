@@ -8,7 +8,9 @@
 #include "libperception/core/LaneMap.h"
 #include "libperception/simulation/CameraBoxes.h"
 #include "libperception/simulation/EgoSensors.h"
+#include "libperception/simulation/ImageCamera.h"
 #include "libperception/simulation/LidarSensor.h"
+#include "libperception/simulation/Lighting.h"
 #include "libperception/simulation/RadarUnit.h"
 #include "libperception/simulation/SphericalCamera.h"
 #include "libperception/simulation/Trajectory.h"
@@ -101,6 +103,7 @@ enum class SensorKind {
   kLidar4,
   kCameraBoxes,
   kSphericalCamera,
+  kCameraImages,
   kRadar,
   kGnss,
   kImu,
@@ -118,6 +121,7 @@ struct SensorParams {
   LidarParams lidar;
   CameraParams camera;
   SphericalCameraParams panorama;
+  ImageCameraParams images;
   RadarUnitParams radar;
   GnssUnitParams gnss;
   ImuUnitParams imu;
@@ -125,7 +129,8 @@ struct SensorParams {
 
   bool isLidar() const { return kind == SensorKind::kLidar64 || kind == SensorKind::kLidar4; }
   bool isCamera() const {
-    return kind == SensorKind::kCameraBoxes || kind == SensorKind::kSphericalCamera;
+    return kind == SensorKind::kCameraBoxes || kind == SensorKind::kSphericalCamera ||
+           kind == SensorKind::kCameraImages;
   }
   /// Of the vehicle's own motion: sees nothing around it.
   bool isOfEgo() const {
@@ -133,6 +138,7 @@ struct SensorParams {
   }
   /// Of a camera.
   CameraModel cameraModel() const {
+    if (kind == SensorKind::kCameraImages) return images.model();
     return kind == SensorKind::kSphericalCamera ? panorama.model() : camera.model();
   }
   /// Sensor frame (x forward, y left, z up; a camera's too) on the vehicle.
@@ -156,6 +162,7 @@ struct Scenario {
   ScenarioParams params;
   EgoParams ego;
   VariationParams variation;
+  Lighting light;
   std::vector<RoadParams> roads;      ///< none: asphalt everywhere
   std::vector<Lane> lanes;            ///< that the log's map shows
   std::vector<ObjectParams> objects;  ///< in the order of the file

@@ -5,6 +5,7 @@
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/Lighting.h"
 
 namespace perception {
 
@@ -46,10 +47,10 @@ struct CameraLook {
   double edge_noise = 0;  ///< of a box edge, as a share of the box's height
 };
 
-/// What lies between the sensors and the things: the simulator shows it every pulse, reflection and
-/// look, and it may change them. This class is clear air and changes nothing; a kind of weather
-/// overrides what it acts on. Const while a frame is sensed, so frames may be sensed in parallel;
-/// randomness comes from `rng` alone, a stream of its own.
+/// What lies between the sensors and the things: the simulator shows it every pulse, reflection,
+/// look and the light of every image, and it may change them. This class is clear air and changes
+/// nothing; a kind of weather overrides what it acts on. Const while a frame is sensed, so frames
+/// may be sensed in parallel; randomness comes from `rng` alone, a stream of its own.
 class SimulatedWeather {
  public:
   virtual ~SimulatedWeather() = default;
@@ -58,6 +59,8 @@ class SimulatedWeather {
   virtual void alter(const SensorParams&, LidarPulse&, Rng&) const {}
   virtual void alter(const SensorParams&, RadarReflection&, Rng&) const {}
   virtual void alter(const SensorParams&, CameraLook&, Rng&) const {}
+  /// Light and air of one rendered image: fog, night, a low sun.
+  virtual void alter(const SensorParams&, Lighting&, Rng&) const {}
   /// The whole frame: false boxes of mirror images, noise returns, fouling.
   virtual void alter(const SensorParams&, SensorFrame&, Rng&) const {}
   /// False: alter() of pulses is the identity and need not be called.
