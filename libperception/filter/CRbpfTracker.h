@@ -13,12 +13,13 @@ namespace perception {
 
 /// [particle_filter]: MRPT's TParticleFilterOptions by their own names.
 struct ParticleFilterParams {
-  int pf_algorithm = 2;  ///< index into names(): only pfOptimalProposal is implemented
+  int pf_algorithm = 2;  ///< index into names(): only pfOptimalProposal is
+                         ///< implemented (method.md 5.4)
   int resampling_method =
-      3;  ///< MRPT's order: prMultinomial, prResidual, prStratified, prSystematic
+      3;  ///< MRPT's order: prMultinomial, prResidual, prStratified, prSystematic (method.md 5.10)
   double beta =
       0.5;  ///< resample when the effective share of particles falls below it (method.md 5.10)
-  int sample_size = 8;  ///< number of particles; 8 as in the paper
+  int sample_size = 8;  ///< number of particles [radecki2016]
 
   void visit(ParamVisitor& v);
   mrpt::bayes::CParticleFilter::TParticleFilterOptions toMrpt() const;

@@ -28,7 +28,7 @@ std::vector<FrontEndRow>& frontEnds();
 
 /// [run]: what is run on a log, and when scenes are output.
 struct RunParams {
-  unsigned long long seed = 1;                ///< any number will do
+  unsigned long long seed = 1;                ///< assumed: any number will do
   std::string sensors = "C+L+R";              ///< modalities in use: letters joined by +
   std::vector<std::string> without;           ///< labels of sensors that are left out all the same
   Proposal association = Proposal::kSampled;  ///< method.md 5.4, [radecki2016]

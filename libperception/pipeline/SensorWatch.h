@@ -30,8 +30,9 @@ class SensorWatch {
   void setSeen(std::size_t sensor, Stamp stamp);
   /// Reports sensors that have been silent for longer than the timeout.
   void check(Stamp now);
-  /// The clock has jumped: the instants of before say nothing.
-  void forgetInstants();
+  /// The clock has jumped to this instant: those of before say nothing, and who spoke before is
+  /// waited for from now on.
+  void restart(Stamp now);
   /// Reports what is only known at the end: sensors that never spoke, labels of no sensor.
   void finish();
   /// Of the sensors used, in the order of the INI.

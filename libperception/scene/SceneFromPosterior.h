@@ -16,7 +16,7 @@ struct SceneParams {
   /// Class probability from which an object counts as classified [radecki2016].
   double classified_at = 0.95;
   /// KITTI export: an object that may be a mere thing is written as the road user that it may be
-  /// from this probability on; even odds.
+  /// from this probability on (assumed: even odds).
   double road_user_from = 0.5;
   /// KITTI export: share of its image box that an object must have in the image; 0: any.
   double in_image = 0;

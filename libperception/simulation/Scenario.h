@@ -149,7 +149,7 @@ struct SensorParams {
 /// [variation]: how the trials of one scenario differ. Each mover draws its own values, uniform
 /// within +- these; what never moves stays.
 struct VariationParams {
-  int trials = 1;    ///< how many there are
+  int trials = 1;    ///< how many there are; assumed: the scenario as it is written
   double start = 0;  ///< [s] earlier or later
   double pace = 0;   ///< [-] faster or slower, about t = 0
   double place = 0;  ///< [m] of the whole way, x and y
