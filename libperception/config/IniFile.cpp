@@ -12,8 +12,8 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kLargestFile =
-    4u << 20;  // [bytes] a rawlog given as INI is told apart by its size
+constexpr std::size_t kLargestFile = 4u
+                                     << 20;  // [bytes] a larger file (a rawlog) is rejected at once
 
 /// Closes a C file.
 struct Closer {

@@ -62,7 +62,7 @@ class RowByRow {
       column_potential_(c) -= reached - distance(c);
       row_potential_(rowOf(c)) += reached - distance(c);
     }
-    for (Eigen::Index c = last; c >= 0;) {  // turn the path round
+    for (Eigen::Index c = last; c >= 0;) {  // flip the pairs along the path
       const Eigen::Index before = previous[static_cast<std::size_t>(c)];
       rowOf(c) = before < 0 ? static_cast<int>(new_row) : rowOf(before);
       c = before;

@@ -13,7 +13,7 @@ struct Stamp {
   }
   double seconds() const {
     return static_cast<double>(ns) * 1e-9;
-  }  ///< [s] about 0.2 us of rounding today
+  }  ///< [s] since 1970; a double rounds it to about 0.2 us
 
   friend bool operator==(Stamp a, Stamp b) { return a.ns == b.ns; }
   friend bool operator!=(Stamp a, Stamp b) { return a.ns != b.ns; }

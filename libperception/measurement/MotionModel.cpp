@@ -10,7 +10,8 @@
 namespace perception {
 namespace {
 
-/// A heading known so well moves along its tangent: the mean step is .4 % shorter.
+/// Below this standard deviation [rad] of the heading the tangent is used (method.md 3.2): the mean
+/// step is .4 % shorter.
 constexpr double kSureHeading = radians(5);
 
 void symmetrize(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
@@ -33,8 +34,8 @@ Matrix4 predictConstantVelocity(const ObjectClass& c, double psd, double damping
   return F;
 }
 
-/// method.md 3.2: speed v along theta, both random walks; Q to first order, valid for any dt and
-/// composing consistently. Returns F.
+/// method.md 3.2: speed v along theta, both random walks; F of method.md (6), Q of method.md (7),
+/// to first order, for any dt and composing consistently. Returns F.
 Matrix4 predictWheeled(const ObjectClass& object_class, double psd, double damping, double dt,
                        Vector4& x, Matrix4& P) {
   const SpeedNoise noise(damping, dt);
@@ -64,10 +65,11 @@ Matrix4 predictWheeled(const ObjectClass& object_class, double psd, double dampi
   return F;
 }
 
-/// The same with the moments of an uncertain heading in place of the tangent: with (v, theta)
-/// jointly Gaussian, E[v e^(i theta)] = e^(i theta - s^2/2) (v + i cov(v, theta)) and
+/// The same with exact moments of an uncertain heading in place of the tangent, method.md (8): with
+/// (v, theta) jointly Gaussian, E[v e^(i theta)] = e^(i theta - s^2/2) (v + i cov(v, theta)) and
 /// E[v^2 e^(2i theta)] = e^(2i theta - 2 s^2) ((v + 2i cov)^2 + var v), s^2 the heading's variance.
-/// By Stein's lemma the best line through the curve has the mean of the Jacobian as its slope.
+/// By Stein's lemma [stein1981] the slope of the best linear approximation is the mean of the
+/// Jacobian.
 Matrix4 predictUncertainHeading(const ObjectClass& object_class, double psd, double damping,
                                 double dt, Vector4& x, Matrix4& P) {
   const SpeedNoise noise(damping, dt);
@@ -97,7 +99,7 @@ Matrix4 predictUncertainHeading(const ObjectClass& object_class, double psd, dou
   Matrix2 along;
   along << 0.5 * (1 + twice.x()), 0.5 * twice.y(), 0.5 * twice.y(), 0.5 * (1 - twice.x());
   const Matrix2 across = whole * Matrix2::Identity() - second;
-  // F P F' by blocks: F changes the place by the second half of the state alone.
+  // F P F' by blocks: F adds a function of (v, theta) to the position.
   const Matrix2 B = P.bottomRightCorner<2, 2>(), way = noise.effective_dt * slope;
   const Matrix2 moved = P.topRightCorner<2, 2>() + way * B;
   const Matrix2 back = way * P.bottomLeftCorner<2, 2>();
@@ -140,7 +142,7 @@ Kinematics freeKinematics(const Vector4& x, bool) {
 
 BatchKernel freeKernel(const GaussianStep&) { return BatchKernel::kConstantVelocity; }
 
-/// In sub-steps where the step is long or the heading uncertain.
+/// Wheeled step, in sub-steps where it is long or the heading is uncertain (method.md 3.2).
 void moveOnWheels(const GaussianStep& s, Matrix4* transition) {
   if (!s.oriented) return moveFreely(s, transition);
   Matrix4 whole = Matrix4::Identity();
