@@ -32,7 +32,7 @@ struct ScalarEstimate {
 struct PartialBox {
   double yaw = 0;                                        ///< [rad] direction of side a, world
   double yaw_sigma = 0.2;                                ///< [rad]
-  double length = 0, width = 0;                          ///< [m] seen length along and across yaw
+  double length = 0, width = 0;                          ///< [m] observed, along and across yaw
   bool length_complete = false, width_complete = false;  ///< both ends of that side were seen
   double length_sigma = 0, width_sigma = 0;  ///< [m] of complete sides; 0: the filter's side_sigma
   Vector2 center = Vector2::Zero();          ///< [m] of the box, world
@@ -63,7 +63,7 @@ struct Measurement {
   double log_clutter = 0;
   Vector2 position = Vector2::Zero();    ///< [m] approximate position of the object, world: for
                                          ///< gating by distance and for drawings
-  double position_sigma = 1;             ///< [m] how rough
+  double position_sigma = 1;             ///< [m] its standard deviation
   std::optional<ScalarEstimate> base_z;  ///< [m] lowest point of the object, world
   std::optional<ScalarEstimate> height;  ///< [m] lowest to highest point
   std::optional<PartialBox> sides;
@@ -85,7 +85,7 @@ struct MeasurementScan {
   std::int64_t frame = -1;  ///< the log's frame number
   SensorState state;
   std::shared_ptr<const MeasurementModel> model;
-  std::shared_ptr<const OcclusionMap> occlusion;  ///< what occludes what; null: nothing
+  std::shared_ptr<const OcclusionMap> occlusion;  ///< null: nothing is occluded
   std::vector<Measurement> measurements;
   std::size_t dropped = 0;  ///< detections that could not be used: unknown label, invalid box
   std::size_t dropped_points =

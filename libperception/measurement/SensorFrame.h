@@ -83,7 +83,7 @@ struct Raster {
 struct CameraImage {
   CameraModel camera;                           ///< width and height may be 0 until it is loaded
   std::string source;                           ///< file or "in the log", for messages
-  std::function<std::optional<Raster>()> load;  ///< empty result: the image is not there
+  std::function<std::optional<Raster>()> load;  ///< empty result: no such image
 };
 
 /// One target or point of a radar, in the sensor frame (x forward, y left).
@@ -116,7 +116,7 @@ struct ObjectDetection {
   std::string label;  ///< the detector's class name
   double score = 0;   ///< in the detector's own unit
   std::vector<std::pair<std::string, double>>
-      class_scores;  ///< when the detector scores several classes
+      class_scores;  ///< of detectors that score several classes
   std::optional<ImageBox> image_box;
   std::optional<SpaceBox> space_box;
   std::optional<double>
