@@ -10,18 +10,19 @@ namespace perception {
 
 namespace {
 
-constexpr double kHeld = 0.15;        // [s] a reading of gyros or wheels holds so long
+constexpr double kHeld = 0.15;        // [s] validity of a reading of gyros or wheels
 constexpr double kLongestStep = 0.1;  // [s] of one prediction
-constexpr double kStanding = 0.02;    // [m/s] wheels that turn no faster stand
-constexpr double kLevelEvery = 0.1;   // [s] between looks at the sideways force
+constexpr double kStanding = 0.02;    // [m/s] largest speed at standstill
+constexpr double kLevelEvery = 0.1;   // [s] between updates by the lateral force
 constexpr double kImuRate = 100;      // [1/s] readings of gyros, for one reading's noise
-// Without gyros or accelerometer: what a vehicle may do.
+// Process noise without gyros or accelerometer.
 constexpr double kAnyTurn = radians(15), kWheelTurn = radians(1.5);  // [rad/sqrt(s)]
 constexpr double kAnyAcceleration = 2;                               // [m/s^2 sqrt(s)]
 constexpr double kRoadSlope = radians(3), kSlopeTime = 2;  // [rad], [s] pitch and roll of roads
-constexpr double kFreeLevelTime = 20;  // [s] gyros without accelerometer go back to level
-constexpr double kScaleWalk = 1e-4;    // [1/sqrt(s)]
-constexpr double kAnySpeed = 15;       // [m/s] before anything is known
+constexpr double kFreeLevelTime =
+    20;                              // [s] time constant to level, for gyros without accelerometer
+constexpr double kScaleWalk = 1e-4;  // [1/sqrt(s)]
+constexpr double kAnySpeed = 15;     // [m/s] initial deviation
 
 double square(double x) { return x * x; }
 
@@ -31,7 +32,7 @@ EgoMotionState EgoMotion::after(const EgoMotionState& before, Stamp stamp,
                                 const EgoReading& reading) {
   EgoMotionState state = before;
   if (!state.started) start(state, stamp);
-  // An inertial reading tells of the time before it, so it is in force from the last one on.
+  // An inertial reading is of the interval before it, so it applies from the previous one on.
   if (const auto* imu = std::get_if<ImuReading>(&reading)) state.imu = {stamp, *imu};
   advance(state, stamp);
   std::visit([&](const auto& r) { apply(state, r); }, reading);
@@ -65,8 +66,8 @@ EgoInput EgoMotion::inputAt(const EgoMotionState& state, Stamp stamp) const {
   noise.segment<3>(kEgoGyroX).setConstant(square(params_.gyro_bias_walk));
   noise[kEgoWheel] = square(kScaleWalk);
   noise[kEgoAccel] = noise[kAccelBiasY] = square(params_.accel_bias_walk);
-  if (isStationary(state, stamp)) {               // nothing moves, whatever the gyros say
-    noise[kEgoSpeed] = square(kAnyAcceleration);  // it may start at any time
+  if (isStationary(state, stamp)) {               // zero-velocity update
+    noise[kEgoSpeed] = square(kAnyAcceleration);  // may start at any time
     noise[kEgoYaw] = square(radians(0.01));
     return input;
   }
@@ -120,7 +121,7 @@ double EgoMotion::yawRate(const EgoMotionState& state) const {
 
 void EgoMotion::apply(EgoMotionState& state, const ImuReading& imu) {
   if (imu.gyro && isStationary(state, state.stamp)) {
-    EgoObservation o;  // at rest the gyros show their biases
+    EgoObservation o;  // at rest gyros measure their biases
     o.rows = 3;
     o.z = imu.rates;
     o.h = state.estimate.x.segment<3>(kEgoGyroX);
@@ -131,7 +132,7 @@ void EgoMotion::apply(EgoMotionState& state, const ImuReading& imu) {
   if (imu.accelerometer) updateAttitude(state, imu);
 }
 
-// The mean of a tenth of a second: single readings shake.
+// Uses the mean over a tenth of a second: single readings are too noisy.
 void EgoMotion::updateAttitude(EgoMotionState& state, const ImuReading& imu) {
   auto& sum = state.level;
   ++sum.count;
@@ -149,7 +150,7 @@ void EgoMotion::updateAttitude(EgoMotionState& state, const ImuReading& imu) {
   const double rate = stands || !imu.gyro ? yawRate(state) : turning - x[kEgoGyroZ];
   const double cp = std::cos(x[kEgoPitch]), sp = std::sin(x[kEgoPitch]);
   const double cr = std::cos(x[kEgoRoll]), sr = std::sin(x[kEgoRoll]);
-  EgoObservation side;  // turning and gravity
+  EgoObservation side;  // lateral force: turn rate and gravity
   side.rows = 1;
   side.z[0] = force.y();
   side.h[0] = x[kEgoSpeed] * rate + kGravity * cp * sr + x[kAccelBiasY];
@@ -161,7 +162,7 @@ void EgoMotion::updateAttitude(EgoMotionState& state, const ImuReading& imu) {
   side.variance[0] = square(params_.level_sigma) + square(params_.accel_noise) / time;
   filter_.update(state.estimate, side);
   if (!stands) return;
-  EgoObservation ahead;  // at rest: gravity and bias
+  EgoObservation ahead;  // forward force at rest: gravity and bias
   ahead.rows = 1;
   ahead.z[0] = force.x();
   ahead.h[0] = x[kEgoAccel] - kGravity * std::sin(x[kEgoPitch]);
@@ -181,7 +182,7 @@ void EgoMotion::apply(EgoMotionState& state, const WheelReading& wheels) {
   o.h[0] = scale * v;
   o.H(0, kEgoSpeed) = scale;
   o.H(0, kEgoWheel) = v;
-  // Wheels that stand are known to stand.
+  // Zero-velocity update: a wheel speed of zero is exact.
   const bool stand = std::abs(wheels.speed) < kStanding;
   o.variance[0] = square(stand ? std::min(kStanding, params_.wheel_sigma) : params_.wheel_sigma);
   filter_.update(state.estimate, o);
@@ -189,7 +190,7 @@ void EgoMotion::apply(EgoMotionState& state, const WheelReading& wheels) {
 
 void EgoMotion::apply(EgoMotionState& state, const GnssFix& fix) {
   if (!state.origin) {
-    // The world's ground is the road below the antenna.
+    // Height 0 of the world frame is the road below the antenna.
     state.origin = fix.place;
     state.origin->height -= fix.antenna.z();
   }

@@ -14,7 +14,7 @@ namespace perception {
 inline constexpr const char* kEgoPoseLabel = "EGO_POSE";
 inline constexpr const char* kFrameLabel = "FRAME";
 
-/// The inverse of frameFromObservation(): a lidar scan or object detections of our own classes.
+/// The inverse of frameFromObservation(): a CObservationLidarScan or CObservationObjectDetections.
 std::shared_ptr<mrpt::obs::CObservation> observationFromFrame(const SensorFrame& frame);
 /// The vehicle's pose with its uncertainty (a standard deviation of 0 in z and roll) as
 /// CObservationRobotPose.
@@ -22,7 +22,7 @@ std::shared_ptr<mrpt::obs::CObservation> poseObservation(const EgoState& ego,
                                                          const std::string& label = kEgoPoseLabel);
 /// The frame number as CObservationComment "frame N".
 std::shared_ptr<mrpt::obs::CObservation> frameComment(Stamp stamp, std::int64_t number);
-/// A scan of measurements; `model`, `axes` and `labels` name what the numbers mean.
+/// A CObservationMeasurements of a scan; `model`, `axes` and `labels` document its numbers.
 std::shared_ptr<mrpt::obs::CObservation> measurementsObservation(
     const MeasurementScan& scan, const std::string& model, const std::vector<std::string>& axes,
     const std::vector<std::string>& labels);

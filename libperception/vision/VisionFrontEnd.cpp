@@ -220,8 +220,7 @@ std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& 
   }
   const DetectionModel detection_model =
       DetectionModel::read(config, section, classes, detector.labels, cameraDefaults());
-  // Clutter is uniform over the range in which objects are detected, but a box may have a larger
-  // range.
+  // The measured range of an object within range_max may exceed it.
   if (detection_model.params().resolution > 0)
     geometry.max_range = 1.1 * detection_model.params().range_max;
   return std::make_unique<VisionFrontEnd>(detector, geometry, classes, detection_model);
