@@ -48,8 +48,8 @@ bool fitsOnnxLayout(const OnnxShape& shape, OnnxLayout layout, int side) {
     case OnnxLayout::kYolox:
       return shape.rows == cellsOf(side) && shape.columns >= 6;
     case OnnxLayout::kYolov5:
-      // Three anchors per cell; other strides change the number of boxes, which still exceeds that
-      // of the values.
+      // Three anchors per cell; other strides change the number of boxes, but there are more boxes
+      // than values.
       return shape.rows > shape.columns && shape.rows != cellsOf(side) && shape.columns >= 6;
     case OnnxLayout::kYolov8:
       return shape.columns > shape.rows && shape.rows >= 5;

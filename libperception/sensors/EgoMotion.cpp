@@ -182,7 +182,7 @@ void EgoMotion::apply(EgoMotionState& state, const WheelReading& wheels) {
   o.h[0] = scale * v;
   o.H(0, kEgoSpeed) = scale;
   o.H(0, kEgoWheel) = v;
-  // Zero-velocity update: a wheel speed of zero is exact.
+  // At standstill the deviation of the speed is at most kStanding.
   const bool stand = std::abs(wheels.speed) < kStanding;
   o.variance[0] = square(stand ? std::min(kStanding, params_.wheel_sigma) : params_.wheel_sigma);
   filter_.update(state.estimate, o);

@@ -12,9 +12,8 @@ constexpr double kSameFix = 0.06;             // [s] largest time between fixes 
 constexpr double kLeastBaseline = 0.5;        // [m] least distance of two antennas
 constexpr double kHeadingSigma = radians(8);  // [rad] largest deviation of a first heading
 constexpr double kCourseSpeed = 2;            // [m/s] least speed of a valid course
-constexpr double kStraight =
-    radians(5);                    // [rad] deviation of a path without wheels from a straight line
-constexpr double kReference = 10;  // [s] longest path without wheels
+constexpr double kStraight = radians(5);      // [rad] deviation of a path without wheels
+constexpr double kReference = 10;             // [s] longest path without wheels
 
 double square(double x) { return x * x; }
 

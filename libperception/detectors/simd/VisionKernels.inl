@@ -93,8 +93,7 @@ inline V inverseRoot(V sum) {
 void features(const float* histogram, int stride, int cells, const float* above, const float* row,
               const float* below, float* features) {
   for (int x = 1; x < cells - 1; x += L) {
-    // Energies of the four blocks that contain the cell: below right, above right, below left,
-    // above left.
+    // Energies of the blocks of the cell: below right, above right, below left, above left.
     const V middle = at(row + x), up = at(above + x), down = at(below + x);
     const V right = middle + at(row + x + 1), left = middle + at(row + x - 1);
     const V n[4] = {
