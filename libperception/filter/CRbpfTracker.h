@@ -18,7 +18,7 @@ struct ParticleFilterParams {
       3;  ///< MRPT's order: prMultinomial, prResidual, prStratified, prSystematic
   double beta =
       0.5;  ///< resample when the effective share of particles falls below it (method.md 5.10)
-  int sample_size = 8;  ///< number of particles; 8 as in the paper
+  int sample_size = 8;  ///< number of particles; 8 as in [radecki2016]
 
   void visit(ParamVisitor& v);
   mrpt::bayes::CParticleFilter::TParticleFilterOptions toMrpt() const;

@@ -19,7 +19,7 @@ struct GaussianStep {
   bool oriented;
 };
 
-/// The batch kernel with the same result as MotionModel::predict (filter/predict/BankKernels.inl).
+/// The batch kernel with the same result as MotionModel::predict (BankKernels.inl).
 enum class BatchKernel { kNone, kConstantVelocity, kWheeled, kMoments };
 
 /// How the objects of a class move (method.md 3): a row of motionModels(). Code depends on the
