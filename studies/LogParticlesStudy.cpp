@@ -83,8 +83,7 @@ StudyTable countTable(const std::vector<Method>& methods, const std::vector<Coun
   table.name = "counts";
   table.title =
       "Errors in the number of objects; paper (Radecki et al.): all objects with DUC's tracker, "
-      "all / classified "
-      "with classification, on its own drive";
+      "all / classified with classification, on its own drive";
   table.columns = {"configuration, particles", "paper", "rms of all",      "rms of classified",
                    "rms against truth",        "bias",  "things not held", "mean of all",
                    "mean of classified",       "cars",  "persons"};

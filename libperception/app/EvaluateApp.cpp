@@ -21,8 +21,7 @@ namespace fs = std::filesystem;
 
 std::string EvaluateApp::description() const {
   return "Compares tracked runs with the truth of their log: the table of Radecki et al., GOSPA, "
-         "false "
-         "objects, calibration, front ends, plots; several runs side by side or pooled.";
+         "false objects, calibration, front ends, plots; several runs side by side or pooled.";
 }
 
 void EvaluateApp::declare(CLI::App& cli) {

@@ -15,9 +15,7 @@ using I = int __attribute__((vector_size(L * sizeof(int)), aligned(4), may_alias
 
 inline const V& at(const float* p) { return *reinterpret_cast<const V*>(p); }
 inline V& at(float* p) { return *reinterpret_cast<V*>(p); }
-inline V all(float x) {
-  return x - V{};
-}  // not V{} + x, which the compiler must compute because 0 + -0 is 0
+inline V all(float x) { return x - V{}; }  // not V{} + x, an addition, since 0 + -0 is 0
 inline V maximum(V a, V b) { return a > b ? a : b; }
 inline V minimum(V a, V b) { return a < b ? a : b; }
 
