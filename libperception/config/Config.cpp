@@ -110,7 +110,7 @@ std::string Config::Impl::unknownKey(const ConfigSection& section, const std::st
 void Config::Impl::addUnknown(const IniSection& section, std::vector<IniFault>& all) const {
   const ConfigSection* known = findRead(section.name);
   if (!known) {
-    // An include that could not be read may hold the reason to read this section.
+    // Because of an include that could not be read, this section may not have been read.
     if (document.complete()) all.push_back({section.place, unknownSection(section.name)});
     return;
   }

@@ -12,8 +12,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kLargestFile = 4u
-                                     << 20;  // [bytes] a larger file (a rawlog) is rejected at once
+constexpr std::size_t kLargestFile = 4u << 20;  // [bytes]; a larger file is no INI
 
 /// Closes a C file.
 struct Closer {

@@ -15,8 +15,7 @@ struct Kinematics {
   Vector5 q =
       Vector5::Zero();  ///< x, y, vx, vy, yaw of the footprint's center [m, m/s, rad], world
   Matrix54 J = Matrix54::Zero();  ///< dq/dstate; columns beyond the state's size are zero
-  bool has_yaw =
-      false;  ///< false: no orientation in the state (pedestrians, poles) or not known yet
+  bool has_yaw = false;           ///< false: not in the state (pedestrians, poles) or unknown
 };
 
 /// Horizontal size of an object as an estimate: static parameters beside the state.

@@ -44,8 +44,7 @@ class LaneMap {
   static std::int64_t cellOf(double x, double y);
 
   std::vector<Lane> lanes_;
-  std::unordered_map<std::int64_t, std::vector<Segment>>
-      cells_;  // by cell: the segments that may cover it
+  std::unordered_map<std::int64_t, std::vector<Segment>> cells_;  // segments that may cover a cell
 };
 
 /// The content of FILE.lanes.csv.

@@ -15,8 +15,7 @@ struct LabeledBox {
   std::optional<double> heading;  ///< [rad] KITTI's alpha
   /// Ignored, found or not: too small, truncated, occluded, or of a similar class (vans).
   bool ignore = false;
-  bool area =
-      false;  ///< a region (DontCare): boxes with at least half of their area in it are ignored
+  bool area = false;  ///< a region (DontCare): boxes at least half in it are ignored
 };
 
 /// A detected box compared with the truth.

@@ -40,11 +40,10 @@ struct DpmParams {
 
 /// [onnx]: properties of a network that cv::dnn does not provide.
 struct OnnxParams {
-  int input = 416;        ///< [px] side of the square input (YOLOX-Nano, [ge2021])
-  int layout = 0;         ///< of the output, an index into layoutNames(); 0: by its shape
-  double overlap = 0.45;  ///< intersection over union of boxes of one object (assumed)
-  bool windows =
-      true;  ///< search long images also in square windows (measured on KITTI: ini/detectors)
+  int input = 416;              ///< [px] side of the square input (YOLOX-Nano, [ge2021])
+  int layout = 0;               ///< of the output, an index into layoutNames(); 0: by its shape
+  double overlap = 0.45;        ///< intersection over union of boxes of one object (assumed)
+  bool windows = true;          ///< long images also in square windows (measured: ini/detectors)
   double window_overlap = 0.5;  ///< overlap of neighboring windows, share of their side (assumed)
 
   static const std::vector<std::string>& layoutNames();

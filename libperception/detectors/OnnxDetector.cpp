@@ -21,8 +21,7 @@ namespace {
 
 constexpr double kLeastScore = 0.01;  // weaker boxes of a network are noise
 constexpr double kLongish = 1.3;      // ratio of sides above which square windows are added
-constexpr double kCut =
-    0.03;  // of its width: a box this close to the window's edge is truncated by it
+constexpr double kCut = 0.03;         // of its width: a box this close to its edge is truncated
 
 /// Networks of the YOLO kind through cv::dnn.
 class OnnxDetector final : public Detector {

@@ -55,9 +55,8 @@ struct ClearBlock {
 
 /// Bounds of a block of points, without their bearings.
 struct ClearSurvey {
-  float farthest = 0;  ///< [cells^2] squared range; may be NaN
-  unsigned quadrants =
-      0;  ///< bit 1 << q for each quadrant q with points: q = 1 for negative x, + 2 for negative y
+  float farthest = 0;      ///< [cells^2] squared range; may be NaN
+  unsigned quadrants = 0;  ///< a bit per quadrant with points: + 1 for negative x, + 2 for y
   bool all_finite = true;
 };
 /// Bounds of ClearBlock::kSize points from `first` on.

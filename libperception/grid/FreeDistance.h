@@ -27,8 +27,7 @@ struct FreeDistance {
   double distance =
       0;  ///< [m] along the arc from the ego origin to the first occupied cell, or max
   bool blocked = false;  ///< an occupied cell was found
-  double seen =
-      0;  ///< [m] observed without a gap longer than 1 m: beyond it, obstacles may be unobserved
+  double seen = 0;       ///< [m] observed without a gap longer than 1 m
 };
 
 /// Coordinates along (s) and across (d, positive left) the corridor's arc.

@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kUnits = LogOddsColumn::kUnits;
 constexpr int kGroup = LogOddsColumn::kGroup;
-constexpr double kForgotten =
-    0.05;  // [log-odds] below it a cell is unknown: rounding stops the decay
+constexpr double kForgotten = 0.05;  // [log-odds] below it unknown: rounding stops decay
 
 int layersOf(const GridParams& params) {
   const double spread = 2 * params.grade * params.size * std::sqrt(0.5);

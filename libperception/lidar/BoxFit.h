@@ -18,8 +18,7 @@ struct BoxParams {
   double outlier_gap = 0.25;     ///< [m] ... this gap separates them from the rest (assumed)
   double corner_sigma = 0.20;    ///< [m] of a side's end (tuned on KITTI 0000)
   double yaw_sigma_min = radians(3);  ///< [rad] least deviation of yaw (method.md 8.6)
-  double grazing =
-      radians(15);  ///< [rad] a side seen at a smaller angle has no reliable length (assumed)
+  double grazing = radians(15);       ///< [rad] least angle of a side of reliable length (assumed)
 };
 
 /// L-shape fit by the closeness criterion [zhang2017]. Side a is the longer one; yaw is that of an

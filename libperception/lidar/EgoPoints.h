@@ -11,8 +11,7 @@ namespace perception {
 
 /// Selection of the returns of a scan: [sensor.LABEL.points].
 struct PointParams {
-  double range_min =
-      0.5;  ///< [m] horizontal, from the sensor; nearer returns are of its housing (assumed)
+  double range_min = 0.5;  ///< [m] horizontal; nearer returns are of the housing (assumed)
   double range_max = 80;  ///< [m] horizontal, from the sensor; clusters to about 70 m [radecki2016]
   /// [m] extent of the own vehicle ahead of the ego origin, behind it, to each side and above the
   /// ground (assumed: KITTI's car).

@@ -24,11 +24,10 @@ struct GroundParams {
   double min_inliers = 0.25;     ///< least share of inliers among the candidates (assumed)
   double alpha = 0.1;            ///< weight of a new plane in the exponential filter
   double wet_depth = 0.30;       ///< [m] below the plane: a mirrored return
-  double wet_share =
-      0.05;                ///< share of mirrored returns within wet_range that indicates a wet road
-  double wet_range = 20;   ///< [m] beyond it, a change of pitch has the same effect (assumed)
-  double freeze = 2;       ///< [s] for which the plane is kept on a wet road
-  int max_points = 16000;  ///< of a scan used, evenly subsampled: about 20 per cell (assumed)
+  double wet_share = 0.05;       ///< share of mirrored returns within wet_range of a wet road
+  double wet_range = 20;         ///< [m] beyond it, a change of pitch has the same effect (assumed)
+  double freeze = 2;             ///< [s] for which the plane is kept on a wet road
+  int max_points = 16000;        ///< of a scan used, evenly subsampled: about 20 per cell (assumed)
 
   void visit(ParamVisitor& v);
 };

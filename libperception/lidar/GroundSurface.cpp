@@ -199,8 +199,7 @@ PERCEPTION_WIDER void subtractAll(const std::int32_t* __restrict cell,
                                   const float* __restrict departure, std::size_t count,
                                   float* __restrict heights) {
   for (std::size_t i = 0; i < count; ++i)
-    heights[i] -=
-        departure[cell[i] ^ (cell[i] >> 31)];  // points that are not low hold the complement
+    heights[i] -= departure[cell[i] ^ (cell[i] >> 31)];  // undoes the complement
 }
 
 }  // namespace

@@ -54,9 +54,8 @@ struct PersonPeak {
   double weight = 0;                  ///< sum over the returns within radius
   double normalized = 0;              ///< response per return within radius
   float lowest = 0, highest = 0;      ///< [m] above ground
-  double width =
-      0;  ///< [m] across the line of sight: of a uniform distribution with the same deviation
-  double gap = 0;  ///< [m] largest between consecutive heights of returns
+  double width = 0;  ///< [m] across the line of sight, sqrt(12) times the deviation
+  double gap = 0;    ///< [m] largest between consecutive heights of returns
 };
 
 /// Peaks among obstacle points (x, y, height above ground; [m]), strongest first. `weight`: trust

@@ -19,10 +19,9 @@ constexpr double kImuRate = 100;      // [1/s] readings of gyros, for one readin
 constexpr double kAnyTurn = radians(15), kWheelTurn = radians(1.5);  // [rad/sqrt(s)]
 constexpr double kAnyAcceleration = 2;                               // [m/s^2 sqrt(s)]
 constexpr double kRoadSlope = radians(3), kSlopeTime = 2;  // [rad], [s] pitch and roll of roads
-constexpr double kFreeLevelTime =
-    20;                              // [s] time constant to level, for gyros without accelerometer
-constexpr double kScaleWalk = 1e-4;  // [1/sqrt(s)]
-constexpr double kAnySpeed = 15;     // [m/s] initial deviation
+constexpr double kFreeLevelTime = 20;  // [s] to level, gyros without accelerometer
+constexpr double kScaleWalk = 1e-4;    // [1/sqrt(s)]
+constexpr double kAnySpeed = 15;       // [m/s] initial deviation
 
 double square(double x) { return x * x; }
 

@@ -68,7 +68,7 @@ class EgoPose {
   std::uint64_t rejectedJumps() const { return rejected_jumps_; }  ///< faster than max_speed
   std::uint64_t rejectedOther() const {
     return rejected_other_;
-  }  ///< invalid stamp or values, too old, same instant
+  }  ///< invalid, too old, same instant
 
  private:
   const std::deque<EgoState>& poses() const { return poses_.empty() ? fusion_.poses() : poses_; }
@@ -79,10 +79,9 @@ class EgoPose {
 
   EgoPoseParams params_;
   EgoFusion fusion_;
-  std::string label_;           ///< in use
-  std::deque<EgoState> poses_;  ///< by stamp; velocities are not set
-  std::deque<EgoState>
-      relocated_;  ///< consecutive rejected poses that are consistent with each other
+  std::string label_;               ///< in use
+  std::deque<EgoState> poses_;      ///< by stamp; velocities are not set
+  std::deque<EgoState> relocated_;  ///< consecutive consistent rejected poses
   std::uint64_t accepted_ = 0, rejected_jumps_ = 0, rejected_other_ = 0;
   std::uint64_t frame_epoch_ = 0;
 };

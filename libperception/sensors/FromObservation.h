@@ -20,8 +20,7 @@ struct DecodeCounts {
   std::uint64_t bad_returns = 0;  ///< of radars: with a value that is not finite, or without range
   std::uint64_t missing_images = 0;   ///< external images without a file
   std::uint64_t rejected_stamps = 0;  ///< observations without a usable stamp
-  std::uint64_t rejected =
-      0;  ///< observations with inconsistent arrays, or of a scanner with unknown calibration
+  std::uint64_t rejected = 0;         ///< inconsistent arrays, unknown calibration of a scanner
 
   std::uint64_t dropped() const {
     return not_finite + no_range + beyond_range + bad_boxes + bad_returns;

@@ -17,8 +17,7 @@ struct ScanParams {
   std::vector<std::string> merge;  ///< labels of the scanners that form one sensor; empty: its own
   double merge_window =
       0.05;  ///< [s] from the first scan to the last one of a merged frame (assumed)
-  Ground ground =
-      Ground::kYes;  ///< whether the ground plane is estimated from its returns (method.md 8.1)
+  Ground ground = Ground::kYes;  ///< ground plane from its returns (method.md 8.1)
 
   void visit(ParamVisitor& v);
   /// Whether an observation of that label is part of the merged sensor. A trailing * is a wildcard:

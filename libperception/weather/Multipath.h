@@ -12,10 +12,9 @@ struct MultipathParams {
   bool enabled = true;
   double depth = 0.3;      ///< [m] below the ground plane (method.md 9.7)
   double tolerance = 0.4;  ///< [m] between the mirrored return and a real one (method.md 9.7)
-  double max_range =
-      30;               ///< [m] beyond it, the road may deviate from its plane by as much (assumed)
-  double grade = 0.01;  ///< [-] growth of `depth` with range, for the same reason (assumed)
-  int support = 3;      ///< least number of trusted returns near the image (assumed)
+  double max_range = 30;   ///< [m] beyond it, the road deviates from its plane (assumed)
+  double grade = 0.01;     ///< [-] growth of `depth` with range, for the same reason (assumed)
+  int support = 3;         ///< least number of trusted returns near the image (assumed)
 
   void visit(ParamVisitor& v);
 };

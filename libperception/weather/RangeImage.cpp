@@ -11,8 +11,7 @@
 namespace perception {
 namespace {
 
-constexpr float kSteepest =
-    1;  // tangent of elevation; steeper beams are stored in the outermost rows
+constexpr float kSteepest = 1;  // tangent of elevation; steeper beams go into the outermost rows
 constexpr float kInstrument = 0.3F;  // [m] nearer returns are of the sensor's window
 constexpr double kConnected = 0.6;   // share of pixels with a neighbor above or below
 // [rad] 64 and 128 beams, 32, 16, and a few layers (Ibeo).

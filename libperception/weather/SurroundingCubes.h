@@ -41,9 +41,8 @@ class SurroundingCubes {
   std::size_t memoryBytes() const { return counts_.capacity() * sizeof counts_[0]; }
 
  private:
-  static constexpr float kEdge = 0.5F;  // [m]
-  static constexpr float kBottom =
-      -4.5F;  // [m] of the lowest layer, below the road for a lidar on the roof
+  static constexpr float kEdge = 0.5F;     // [m]
+  static constexpr float kBottom = -4.5F;  // [m] of the lowest layer: lidar on a roof
   static constexpr std::uint64_t kDoubted = std::uint64_t{1} << 32;
   static constexpr int kLayers = 24;  // fewer than 32, see surroundings()
 
@@ -53,9 +52,8 @@ class SurroundingCubes {
 
   float reach_;
   int side_;
-  std::vector<std::uint64_t>
-      counts_;  // [returns] of each cube: low 32 bits trusted, high 32 bits phantoms
-  std::array<float, 1024> logs_;  // ln(1 + count) for small counts
+  std::vector<std::uint64_t> counts_;  // trusted; in the upper 32 bits phantoms
+  std::array<float, 1024> logs_;       // ln(1 + count) for small counts
 };
 
 }  // namespace perception

@@ -24,8 +24,7 @@ struct DpmLevel {
   int width = 0, height = 0;        ///< [px]
   double scale_x = 1, scale_y = 1;  ///< of the image
   int cells_x = 0, cells_y = 0;     ///< of 8 px
-  int parts_level =
-      -1;  ///< level whose cells the parts use; -1: cells of half the side at this level
+  int parts_level = -1;             ///< level of the parts' cells; -1: cells of half the side here
   std::vector<DpmSearch> searches;  ///< per target
   Span root_x, root_y;              ///< [cells] read by roots
   int patch_x0 = 0, patch_y0 = 0, patches_x = 0, patches_y = 0;
