@@ -57,10 +57,11 @@ void appendSection(const ConfigSection& section, bool expert, std::string& text)
 
 struct Config::Impl {
   IniDocument document;
-  std::deque<ConfigSection> read;          // in the order of their first reading
-  mutable std::vector<std::string> asked;  // section names that the program knows, read or not
-  std::vector<IniFault> faults;            // of values and semantics
-  std::vector<std::string> missing;        // required sections that are missing
+  std::deque<ConfigSection> read;  // in the order of their first reading
+  mutable std::vector<std::string>
+      known_titles;                  // section names that the program knows, read or not
+  std::vector<IniFault> faults;      // of values and semantics
+  std::vector<std::string> missing;  // required sections that are missing
 
   ConfigSection& readSection(const std::string& name);
   const ConfigSection* findRead(const std::string& name) const;
@@ -84,7 +85,7 @@ const ConfigSection* Config::Impl::findRead(const std::string& name) const {
 }
 
 std::string Config::Impl::unknownSection(const std::string& name) const {
-  std::vector<std::string> candidates = asked;
+  std::vector<std::string> candidates = known_titles;
   for (const auto& section : read) candidates.push_back(section.name);
   const std::string nearest = nearestWord(name, candidates);
   return nearest.empty() || nearest == name
@@ -148,7 +149,7 @@ void Config::set(const std::string& assignment) { impl_->document.set(assignment
 const std::string& Config::name() const { return impl_->document.name(); }
 
 bool Config::has(const std::string& section) const {
-  impl_->asked.push_back(section);
+  impl_->known_titles.push_back(section);
   impl_->document.claim(section);
   return impl_->document.find(section) != nullptr;
 }

@@ -115,8 +115,8 @@ class ConfigReader final : public ParamVisitor {
   void reals(const char* key, std::vector<double>& values, int count, Bounds allowed,
              const char* unit, const char* doc) override {
     const std::string usual = realsWithin(values, count, allowed);
-    const std::string kind = count < 0 ? "numbers parted by commas, each"
-                                       : fmt::format("{} numbers parted by commas, each", count);
+    const std::string kind = count < 0 ? "numbers separated by commas, each"
+                                       : fmt::format("{} numbers separated by commas, each", count);
     if (const IniEntry* entry = take(key)) {
       std::vector<double> read;
       for (const auto part : splitList(entry->value)) {
@@ -139,7 +139,7 @@ class ConfigReader final : public ParamVisitor {
       const auto parts = splitList(entry->value);
       // A word as ";x" would begin a comment where the list is written with spaces.
       if (!std::all_of(parts.begin(), parts.end(), survivesWriting)) {
-        reject(*entry, "words parted by commas");
+        reject(*entry, "words separated by commas");
       } else {
         values.assign(parts.begin(), parts.end());
       }

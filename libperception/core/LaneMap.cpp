@@ -101,7 +101,7 @@ LaneMap LaneMap::fromFile(const std::string& path) {
     if (lane_name.empty()) table.fault(r, name, "the name of a lane");
     if (fresh) {
       if (!names.insert(lane_name).second)
-        table.fault(r, name, "the points of a lane in lines that stand together");
+        table.fault(r, name, "the points of a lane in consecutive lines");
       if (!lanes.empty() && lanes.back().points.size() < 2)
         table.fault(r, name, "a second point of lane '" + lanes.back().name + "'");
       lanes.push_back({lane_name, {}, table.real(r, width), table.flag(r, one_way)});

@@ -19,9 +19,9 @@
 namespace perception {
 namespace {
 
-constexpr double kLeastScore = 0.01;  // weaker boxes of a network are noise
-constexpr double kLongish = 1.3;      // ratio of sides above which square windows are added
-constexpr double kCut = 0.03;         // of its width: a box this close to its edge is truncated
+constexpr double kLeastScore = 0.01;   // weaker boxes of a network are noise
+constexpr double kWindowAspect = 1.3;  // ratio of sides above which square windows are added
+constexpr double kTruncated = 0.03;    // of its width: a box this close to its edge is truncated
 
 /// Networks of the YOLO kind through cv::dnn.
 class OnnxDetector final : public Detector {
@@ -67,7 +67,7 @@ class OnnxDetector final : public Detector {
     std::vector<cv::Rect> out{{{0, 0}, image}};
     const int side = std::min(image.width, image.height);
     const int length = std::max(image.width, image.height);
-    if (!params_.windows || length < kLongish * side || length <= side_) return out;
+    if (!params_.windows || length < kWindowAspect * side || length <= side_) return out;
     const double step = (1 - params_.window_overlap) * side;
     const int count = 1 + static_cast<int>(std::ceil((length - side) / step));
     for (int i = 0; i < count; ++i) {
@@ -94,7 +94,7 @@ class OnnxDetector final : public Detector {
                                              std::max(kLeastScore, model_.threshold))) {
       const auto name = names_.find(b.index);
       if (name == names_.end()) continue;
-      const double border = kCut * (b.box.x2 - b.box.x1) / scale;
+      const double border = kTruncated * (b.box.x2 - b.box.x1) / scale;
       const double x1 = window.x + b.box.x1 / scale, x2 = window.x + b.box.x2 / scale;
       const double y1 = window.y + b.box.y1 / scale, y2 = window.y + b.box.y2 / scale;
       const bool cut = (window.x > 0 && x1 < window.x + border) ||

@@ -188,12 +188,12 @@ std::optional<PartialBox> fitBox(const std::vector<Vector2>& points, const Vecto
 
   // Deviation of yaw: error of an end over half the length; uniform in 90 degrees for a round
   // cluster (method.md 8.6).
-  constexpr double kAnyDirection =
+  constexpr double kUniformSigma =
       kPi / 2 / 3.4641016151377544;  // [rad] sigma of a uniform quarter turn
   const double from_length = std::atan2(2 * params.corner_sigma, a);
   const double clarity = std::clamp(direction.contrast / 0.25, 0.0, 1.0);
   const double sigma = std::hypot(params.yaw_sigma_min, from_length) / std::max(clarity, 0.01);
-  sides.yaw_sigma = std::min(sigma, kAnyDirection);
+  sides.yaw_sigma = std::min(sigma, kUniformSigma);
 
   // Which end is the left edge: seen from the sensor, left is counter-clockwise.
   const double sensor_a = c * sensor.x() + s * sensor.y(),

@@ -21,10 +21,10 @@ void PointParams::visit(ParamVisitor& v) {
 
 namespace {
 
-constexpr float kBeyondAnyLidar2 = 1e3f * 1e3f;  // [m^2]
-constexpr std::size_t kBlock = 512;              // points that fit in the L1 cache
-constexpr std::size_t kAhead = 512;              // points of prefetch distance
-constexpr std::size_t kTaken = 16;               // points per cache line, subsampled together
+constexpr float kMaxRange2 = 1e3f * 1e3f;  // [m^2]
+constexpr std::size_t kBlock = 512;        // points that fit in the L1 cache
+constexpr std::size_t kAhead = 512;        // points of prefetch distance
+constexpr std::size_t kTaken = 16;         // points per cache line, subsampled together
 
 bool isDroppedByLabel(std::uint8_t label, bool only_objects) {
   if (only_objects) return label != static_cast<std::uint8_t>(PointLabel::kObject);
@@ -90,7 +90,7 @@ PERCEPTION_WIDEST BlockCounts judge(const float* __restrict px, const float* __r
     const float z = r20 * px[k] + r21 * py[k] + r22 * pz[k] + tz;
     const float dx = x - tx, dy = y - ty, horizontal2 = dx * dx + dy * dy;
     // False for NaN, too.
-    const std::int32_t has_range = (range2 > 0) & (range2 < kBeyondAnyLidar2);
+    const std::int32_t has_range = (range2 > 0) & (range2 < kMaxRange2);
     const std::int32_t within = (horizontal2 >= near2) & (horizontal2 <= far2);
     const std::int32_t own = (x < front) & (x > rear) & (y < side) & (y > -side) & (z < top);
     const std::int32_t kept = has_range & within & (own ^ 1);

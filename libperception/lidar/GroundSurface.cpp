@@ -112,10 +112,10 @@ using Whole4 = std::int32_t __attribute__((vector_size(16)));
 constexpr std::size_t kWays = 8;
 
 inline __attribute__((always_inline)) void add(float height, Lowest& cell) {
-  constexpr float kAnyHigher = std::numeric_limits<float>::infinity();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const Lowest h{height, height, height, height};
   const Lowest before =
-      __builtin_shuffle(cell, Lowest{-kAnyHigher, kAnyHigher, 0, 0},
+      __builtin_shuffle(cell, Lowest{-kInfinity, kInfinity, 0, 0},
                         Whole4{4, 0, 1, 5});  // heights shifted by one; the count is kept
   const Lowest not_before = before > h ? before : h;
   const Lowest lowest = cell < not_before ? cell : not_before;

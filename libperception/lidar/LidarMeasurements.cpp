@@ -12,7 +12,7 @@ namespace {
 /// Indices into LidarFrontEnd::labels().
 enum Label { kCarSized, kPersonSized, kUnstable };
 
-constexpr float kHides = 0.5f;  // [-] least trust of an occluder
+constexpr float kLeastOccluderTrust = 0.5f;  // [-] least trust of an occluder
 
 /// A point of the ego frame's x-y plane, `above` [m] over the ground, in the world frame.
 Vector3 toWorld(const ScanContext& scan, const Vector2& place, double above) {
@@ -84,7 +84,7 @@ std::shared_ptr<const OcclusionMap> occlusionMapOf(const LidarDetections& found,
   for (std::size_t i = 0; i < found.x.size(); ++i) {
     if (found.above[i] < static_cast<float>(params.occluder_min) ||
         found.above[i] > static_cast<float>(params.occluder_max) ||
-        (!found.trust.empty() && found.trust[i] < kHides))
+        (!found.trust.empty() && found.trust[i] < kLeastOccluderTrust))
       continue;
     const float dx = found.x[i] - sx, dy = found.y[i] - sy, range2 = dx * dx + dy * dy;
     Bin& bin =

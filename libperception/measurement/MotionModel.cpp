@@ -12,7 +12,7 @@ namespace {
 
 /// Below this standard deviation [rad] of the heading the tangent is used (method.md 3.2): the mean
 /// step is .4 % shorter.
-constexpr double kSureHeading = radians(5);
+constexpr double kTangentHeadingSigma = radians(5);
 
 void symmetrize(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
@@ -124,27 +124,27 @@ bool needsSubSteps(const GaussianStep& s) {
 }
 
 bool hasUncertainHeading(const GaussianStep& s) {
-  return (*s.P)(3, 3) > kSureHeading * kSureHeading;
+  return (*s.P)(3, 3) > kTangentHeadingSigma * kTangentHeadingSigma;
 }
 
-void moveFreely(const GaussianStep& s, Matrix4* transition) {
+void stepConstantVelocity(const GaussianStep& s, Matrix4* transition) {
   const Matrix4 F = predictConstantVelocity(*s.object_class, s.psd, s.damping, s.dt, *s.x, *s.P);
   symmetrize(*s.P);
   if (transition) *transition = F;
 }
 
-Kinematics freeKinematics(const Vector4& x, bool) {
+Kinematics constantVelocityKinematics(const Vector4& x, bool) {
   Kinematics k;
   k.q.head<4>() = x;
   k.J.topRows<4>().setIdentity();
   return k;
 }
 
-BatchKernel freeKernel(const GaussianStep&) { return BatchKernel::kConstantVelocity; }
+BatchKernel constantVelocityKernel(const GaussianStep&) { return BatchKernel::kConstantVelocity; }
 
 /// Wheeled step, in sub-steps where it is long or the heading is uncertain (method.md 3.2).
-void moveOnWheels(const GaussianStep& s, Matrix4* transition) {
-  if (!s.oriented) return moveFreely(s, transition);
+void stepWheeled(const GaussianStep& s, Matrix4* transition) {
+  if (!s.oriented) return stepConstantVelocity(s, transition);
   Matrix4 whole = Matrix4::Identity();
   const int steps =
       needsSubSteps(s) ? std::max(1, static_cast<int>(std::ceil(s.dt / 0.1 - 1e-9))) : 1;
@@ -158,7 +158,7 @@ void moveOnWheels(const GaussianStep& s, Matrix4* transition) {
 }
 
 Kinematics wheeledKinematics(const Vector4& x, bool oriented) {
-  if (!oriented) return freeKinematics(x, oriented);
+  if (!oriented) return constantVelocityKinematics(x, oriented);
   Kinematics k;
   const double c = std::cos(x[3]), s = std::sin(x[3]), v = x[2];
   k.q << x[0], x[1], v * c, v * s, x[3];
@@ -178,12 +178,12 @@ BatchKernel wheeledKernel(const GaussianStep& s) {
   return hasUncertainHeading(s) ? BatchKernel::kMoments : BatchKernel::kWheeled;
 }
 
-void stand(const GaussianStep& s, Matrix4* transition) {
+void stepStatic(const GaussianStep& s, Matrix4* transition) {
   s.P->topLeftCorner<2, 2>().diagonal().array() += s.object_class->position_psd * s.dt;
   if (transition) transition->setIdentity();
 }
 
-Kinematics standingKinematics(const Vector4& x, bool) {
+Kinematics staticKinematics(const Vector4& x, bool) {
   Kinematics k;
   k.q.head<2>() = x.head<2>();
   k.J(0, 0) = k.J(1, 1) = 1;
@@ -207,9 +207,10 @@ SpeedNoise::SpeedNoise(double a, double dt) {
 
 std::deque<MotionModel>& motionModels() {
   static std::deque<MotionModel> models = {
-      {"constant-velocity", true, false, moveFreely, freeKinematics, freeKernel},
-      {"wheeled", true, true, moveOnWheels, wheeledKinematics, wheeledKernel},
-      {"static", false, false, stand, standingKinematics, nullptr},
+      {"constant-velocity", true, false, stepConstantVelocity, constantVelocityKinematics,
+       constantVelocityKernel},
+      {"wheeled", true, true, stepWheeled, wheeledKinematics, wheeledKernel},
+      {"static", false, false, stepStatic, staticKinematics, nullptr},
   };
   return models;
 }

@@ -9,7 +9,7 @@ namespace perception {
 namespace {
 
 constexpr double kLongestDifference = 1;  // [s] between two poses of an odometer
-constexpr double kAnyVehicle = 200;       // [m/s]
+constexpr double kMaxSpeed = 200;         // [m/s]
 
 }  // namespace
 
@@ -52,7 +52,7 @@ std::optional<WheelReading> Odometers::read(const mrpt::obs::CObservationOdometr
     reading.yaw_rate = wrapAngle(step.phi()) / dt;
   }
   if (!std::isfinite(reading.speed + *reading.yaw_rate)) return {};
-  if (std::abs(reading.speed) > kAnyVehicle) return {};
+  if (std::abs(reading.speed) > kMaxSpeed) return {};
   return reading;
 }
 

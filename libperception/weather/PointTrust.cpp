@@ -9,10 +9,11 @@
 namespace perception {
 namespace {
 
-constexpr float kPhantom = 0;   // [log-odds] decision threshold
-constexpr float kSettled = -5;  // [log-odds] below it the second pass cannot change the decision
+constexpr float kPhantom = 0;  // [log-odds] decision threshold
+constexpr float kLeastSecondPass =
+    -5;  // [log-odds] below it the second pass cannot change the decision
 constexpr std::size_t kIntensityStep = 4;  // every fourth return is a sufficient sample
-constexpr float kBeyondDoubt = 8;          // [log-odds]
+constexpr float kCertainOdds = 8;          // [log-odds]
 
 float sigmoid(float v) { return 1 / (1 + std::exp(-v)); }
 
@@ -184,7 +185,7 @@ void PointTrust::applySensorLabels(const LidarCloud& cloud) {
 // Learns the intensities of phantoms and surfaces from the geometric log-odds.
 void PointTrust::learnIntensity() {
   std::array<double, IntensityLaw::kBins> phantoms{};
-  const auto weather = static_cast<float>(share_.logOdds()), least = -kBeyondDoubt - weather;
+  const auto weather = static_cast<float>(share_.logOdds()), least = -kCertainOdds - weather;
   const std::size_t open =
       findOpen(least, suspects_.geometry.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
@@ -212,7 +213,7 @@ void PointTrust::weighIntensity() {
 // Second pass: adds the first pass's result for the returns within half a meter.
 void PointTrust::applyNeighborhood() {
   const std::size_t open =
-      findOpen(kSettled, suspects_.first.data(), suspects_.count, open_.data());
+      findOpen(kLeastSecondPass, suspects_.first.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
     const std::uint32_t s = open_[k];
     if (suspects_.first[s] > kPhantom) cubes_.doubt(suspects_.cubeOf(s));
@@ -233,7 +234,7 @@ void PointTrust::writeTrust(LidarCloud& cloud, TrustStats& stats) {
   cloud.trust.assign(cloud.size(), 1);
   const auto weather = static_cast<float>(share_.logOdds());
   const std::size_t open =
-      findOpen(-kBeyondDoubt - weather, suspects_.second.data(), suspects_.count, open_.data());
+      findOpen(-kCertainOdds - weather, suspects_.second.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
     const std::uint32_t s = open_[k];
     const float odds = suspects_.second[s] + weather;
