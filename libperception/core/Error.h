@@ -7,7 +7,7 @@ namespace perception {
 /// Exit codes of the programs: those of BSD sysexits.h, and 3. Only kTryAgain is worth a retry.
 enum class ExitCode : int {
   kOk = 0,
-  kDataWarnings = 3,   ///< finished; part of the data was missing or bad, and the result says so
+  kDataWarnings = 3,   ///< finished; part of the data was missing or bad, as the result reports
   kUsage = 64,         ///< wrong command line
   kBadInput = 65,      ///< an input file cannot be used
   kNoInput = 66,       ///< an input file does not exist
