@@ -17,7 +17,7 @@ struct GpsParams {
   int section = 50;        ///< fixes a section
   int sections = 100;      ///< drawn a class
   int draws = 20;
-  double least_step = 0.25;         ///< [m] sections that move less on average are left out (paper)
+  double least_step = 0.25;  ///< [m] sections that move less on average are left out [radecki2016]
   double pedestrian_recall = 0.97;  ///< of held-out training users, sets what favours pedestrians
   std::uint64_t seed = 1;
 };

@@ -82,8 +82,8 @@ StudyTable countTable(const std::vector<Method>& methods, const std::vector<Coun
   StudyTable table;
   table.name = "counts";
   table.title =
-      "Errors in the number of objects; paper: all objects with DUC's tracker, all / classified "
-      "with classification, on its own drive";
+      "Errors in the number of objects; paper (Radecki et al.): all objects with DUC's tracker, "
+      "all / classified with classification, on its own drive";
   table.columns = {"configuration, particles", "paper", "rms of all",      "rms of classified",
                    "rms against truth",        "bias",  "things not held", "mean of all",
                    "mean of classified",       "cars",  "persons"};
@@ -102,7 +102,7 @@ StudyTable trackingTable(const std::vector<Method>& methods, const std::vector<C
                          double cutoff) {
   StudyTable table;
   table.name = "tracking";
-  table.title = "Tracking against the truth, columns as in the paper";
+  table.title = "Tracking against the truth, columns as in Radecki et al.";
   table.columns = {"configuration, particles",
                    "Object Tracked",
                    "Range Error (m)",
@@ -189,7 +189,7 @@ StudyPlot errorPlot(const std::vector<Method>& methods, const std::vector<Counte
   plot.name = "errors";
   plot.caption =
       "Rms error in the number of objects against 50 particles, by number of particles; open "
-      "symbols and dashes: the paper, on its own drive.";
+      "symbols and dashes: Radecki et al., on their own drive.";
   std::string duc, joint, paper;
   for (std::size_t i = 0; i < methods.size(); ++i) {
     if (!methods[i].in_curves) continue;
@@ -285,7 +285,7 @@ StudyReport logParticlesStudy(const LogParticlesParams& params, const RecordedLo
                   params.reference),
       "The rows with DUC's births and with ranked assignments have the joint configuration's "
       "reference.",
-      "Classified: a class of road users with 95 % or more. The paper classified cars and "
+      "Classified: a class of road users with 95 % or more. Radecki et al. classified cars and "
       "pedestrians alone; what is left over was unclassified there and is static-other here."};
   if (truth) {
     report.remarks.push_back(

@@ -7,7 +7,7 @@
 
 namespace perception {
 
-/// The paper's class filters at a fixed step: Euler integration, noise in the speed and heading
+/// [radecki2016]'s class filters at a fixed step: Euler integration, noise in the speed and heading
 /// alone, both started from the first measurement with the velocity towards the second.
 struct PaperClass {
   bool wheeled = false;                 ///< else walking: constant velocity

@@ -143,8 +143,8 @@ StudyReport particlesStudy(const ParticlesParams& params) {
   StudyTable table;
   table.name = "counts";
   table.title =
-      "Errors in the number of objects; paper: DUC's births, or all / classified, on its "
-      "own drive";
+      "Errors in the number of objects; paper (Radecki et al.): DUC's births, or all / classified, "
+      "on its own drive";
   table.columns = {
       "method",    "paper",      "rms against 50 particles", "classified", "rms against truth",
       "GOSPA [m]", "mean count", "mean classified"};
@@ -180,8 +180,8 @@ StudyReport particlesStudy(const ParticlesParams& params) {
   report.plots.push_back(cdfPlot("cdf_eight", "Eight particles", at_eight));
   report.tables = {table};
   report.remarks = {
-      "50 particles against 50 of another seed is the noise of the paper's measure: no method can "
-      "be told from the reference below it.",
+      "50 particles against 50 of another seed is the noise of this measure of Radecki et al.: no "
+      "method can be told from the reference below it.",
       "The reference of the ranked rows is the joint filter with 50 sampled particles.",
       "Truth counts what stands in the field of view, seen or not."};
   return report;

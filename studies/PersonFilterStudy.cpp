@@ -34,7 +34,7 @@ struct Returns {
   }
 };
 
-/// A person 12 m ahead, a car, a wall and a post around, as a scanner with beams 0.2 deg across and
+/// A person 12 m ahead, a car, a wall and a pole around, as a scanner with beams 0.2 deg across and
 /// 0.4 deg up sees their near sides.
 Returns simulatedReturns() {
   constexpr double kAcross = radians(0.2), kUp = radians(0.4);

@@ -26,9 +26,9 @@ StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::strin
   StudyPlot plot;
   plot.name = "recall";
   plot.caption =
-      "Recall of what stands free over the distance as a share of the paper's range for that "
-      "resolution; gray: the paper's figure within range. Where the curves fall together recall is "
-      "independent of resolution.";
+      "Recall of unoccluded objects over the distance as a share of the range of Radecki et al. "
+      "for that resolution; gray: the figure of Radecki et al. within range. Where the curves "
+      "coincide recall is independent of resolution.";
   plot.width = 1100, plot.height = 460;
   plot.script = fmt::format(
       "set multiplot layout 1,2 title {} noenhanced\nset grid\nset yrange [0:1.02]\nset xrange "
@@ -68,7 +68,7 @@ StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::strin
 StudyPlot ratePlot(const StudyTable& table, const std::string& what, const std::string& where) {
   StudyPlot plot;
   plot.name = table.name;
-  plot.caption = table.title + "; full: here, hatched: the paper.";
+  plot.caption = table.title + "; full: this study, hatched: Radecki et al.";
   plot.width = 1000, plot.height = 460;
   std::string data;
   for (const auto& row : table.rows) {

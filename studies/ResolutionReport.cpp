@@ -28,7 +28,7 @@ bool showsCamera(const ResolutionRun& run) { return run.resolution >= 0 && !run.
 StudyTable resolutionTable(const std::vector<CameraFigures>& cameras) {
   StudyTable t;
   t.name = "resolutions";
-  t.title = "Camera processing by resolution; ranges of the paper and measured";
+  t.title = "Camera processing by resolution; ranges of Radecki et al. (paper) and measured";
   t.columns = {"resolution",
                "panorama",
                "tile",
@@ -151,7 +151,7 @@ StudyTable detectionTable(const std::vector<CameraFigures>& cameras,
                           const std::optional<DetectionCounts>& lidar) {
   StudyTable t;
   t.name = "detection_rate";
-  t.title = "Detections a sensor return, beside the paper's drive";
+  t.title = "Detections per sensor return, beside the drive of Radecki et al. (paper)";
   t.columns = {"sensors", "objects", "cars", "persons", "paper: objects", "cars", "persons"};
   const auto add = [&](const std::string& name, const DetectionCounts& d) {
     addRates(t, name, {d.mean(), d.mean(0), d.mean(1)}, false);
@@ -164,7 +164,8 @@ StudyTable detectionTable(const std::vector<CameraFigures>& cameras,
 StudyTable trackingTable(const ResolutionData& data) {
   StudyTable t;
   t.name = "tracking_rate";
-  t.title = "Objects tracked on average, classified as cars and persons, beside the paper's drive";
+  t.title =
+      "Objects tracked on average, classified as cars and persons, beside Radecki et al. (paper)";
   t.columns = {"sensors", "objects", "cars", "persons", "paper: objects", "cars", "persons"};
   if (data.truth)
     t.columns.insert(t.columns.end(),
@@ -225,12 +226,12 @@ StudyReport resolutionReport(const ResolutionData& data) {
     }
     report.remarks.push_back(
         "Recall: of objects of which three quarters are visible, found by a box of the right kind. "
-        "Precision: share of boxes on a road user of their kind. The paper judged 300 detections "
-        "by hand.");
+        "Precision: share of boxes on a road user of their kind. Radecki et al. judged 300 "
+        "detections by hand.");
   }
   report.remarks.push_back(
-      "The paper's rates are of its own drive: what can be compared is how they grow from row to "
-      "row.");
+      "The rates of Radecki et al. are of their own drive: only their growth can be compared, from "
+      "row to row.");
   return report;
 }
 

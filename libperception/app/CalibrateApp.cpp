@@ -96,7 +96,7 @@ StudyReport CalibrateApp::tempering() {
   TemperingParams params;
   params.seed = seed;
   if (rounds > 0) params.rounds = rounds;
-  params.evaluation.selection.min_points = 5;  // posts are thin
+  params.evaluation.selection.min_points = 5;  // poles are thin
   params.evaluation.selection.range = truth_range;
   params.evaluation.selection.fov = radians(truth_fov);
   std::vector<TemperingLog> logs;

@@ -19,7 +19,7 @@ class EvaluateApp : public App {
   std::string
       reference;  ///< --reference: a run whose number of objects the others are compared with
   std::vector<std::string> front_ends;  ///< --front-end: labels of sensors, or patterns of them
-  std::vector<std::string> paper;       ///< --paper: tables of [radecki2016] to stand beside ours
+  std::vector<std::string> paper;       ///< --paper: tables of [radecki2016] beside the runs
   EvaluationOptions params;
   double fov_deg = 180, complete_fov_deg = 360;
   bool surroundings = false;  ///< --surroundings: the truth holds poles and hedges, too

@@ -35,7 +35,7 @@ PositionModel::Params modelParams(const ClassTable& classes,
     row.last_range = seen.last_range;
     for (int l = 0; l < labels; ++l)
       row.labels.push_back(std::exp(detection_model.logLabel(l, id)));
-    row.noise.setZero();  // all of it stands in R
+    row.noise.setZero();  // it is part of R
     const ObjectClass& of = classes[id];
     row.extent = {of.length, of.width, of.length_sigma * of.length_sigma,
                   of.width_sigma * of.width_sigma};
@@ -58,7 +58,7 @@ bool usable(const ObjectDetection::SpaceBox& box) {
          box.width > 0 && box.height > 0;
 }
 
-/// A label's entry of a table; 0 where it has none.
+/// The entry of a label in a table; 0 when it has none.
 double entry(const PositionParams::Table& table, const std::string& label) {
   for (const auto& [name, value] : table) {
     if (name == label) return value;
@@ -69,7 +69,7 @@ double entry(const PositionParams::Table& table, const std::string& label) {
 }  // namespace
 
 void PositionParams::visit(ParamVisitor& v) {
-  v.words("labels", labels, "our labels: the columns of the class tables");
+  v.words("labels", labels, "labels of the measurements: columns of the class tables");
   v.require(!labels.empty(), "labels: at least one");
   v.words("names", names, "the detector's class names and their labels: Car=car ...");
   for (const auto& n : names) {
@@ -84,32 +84,33 @@ void PositionParams::visit(ParamVisitor& v) {
                 prefix + row.first + ": no such label");
     }
   };
-  v.real("sigma", sigma, {0.001, 1e3}, "m", "of the center, each axis");
-  v.real("range_share", range_share, {0, 1}, "", "of the distance, added to sigma");
+  v.real("sigma", sigma, {0.001, 1e3}, "m", "noise of the center, each axis");
+  v.real("range_share", range_share, {0, 1}, "", "share of the range added to sigma");
   v.real("clutter_sigma_growth", clutter_sigma_growth, {0, 100}, "",
-         "by which both grow for a box that is clutter by its score");
+         "relative growth of both for a box that is clutter by its score");
   table("score_slope.", score_slope, "1/score",
         "by label: P(object | score) = 1 / (1 + exp(-slope (score - offset) + fade range)); none: "
         "scores are no evidence");
-  table("score_offset.", score_offset, "", "... score of even odds near by");
-  table("score_fade.", score_fade, "1/m", "... by which the odds fall with the range");
-  table("score_balance.", score_balance, "", "... log of objects / clutter in that count");
+  table("score_offset.", score_offset, "", "... score of even odds at range 0");
+  table("score_fade.", score_fade, "1/m", "... decrease of the log-odds with range");
+  table("score_balance.", score_balance, "",
+        "... log of objects / clutter in the recordings of the fit");
   v.real("group_distance", group_distance, {0, 10}, "m",
-         "boxes of different labels nearer than this are of one object; 0: off");
+         "boxes of different labels closer than this are of one object; 0: off");
   v.boolean("sizes", sizes, "length, width, height and direction of the boxes are measured, too");
-  v.angle("axis_sigma_deg", axis_sigma, {0.1, 90}, "of that direction as an axis");
+  v.angle("axis_sigma_deg", axis_sigma, {0.1, 90}, "noise of that direction as an axis");
   v.real("heading_flip", heading_flip, {0, 0.5}, "", "share of reversed directions");
-  v.real("length_sigma", length_sigma, {0.001, 10}, "m", "of a box");
-  v.real("width_sigma", width_sigma, {0.001, 10}, "m", "of a box");
-  v.real("height_sigma", height_sigma, {0.001, 10}, "m", "of a box");
-  v.real("base_sigma", base_sigma, {0.001, 10}, "m", "of a box's lower face");
-  table("length_excess.", length_excess, "m", "by which a label's boxes are too long");
+  v.real("length_sigma", length_sigma, {0.001, 10}, "m", "noise of a box's length");
+  v.real("width_sigma", width_sigma, {0.001, 10}, "m", "noise of a box's width");
+  v.real("height_sigma", height_sigma, {0.001, 10}, "m", "noise of a box's height");
+  v.real("base_sigma", base_sigma, {0.001, 10}, "m", "noise of the height of a box's lower face");
+  table("length_excess.", length_excess, "m", "bias of the length of a label's boxes");
   table("width_excess.", width_excess, "m", "... too wide");
   table("height_excess.", height_excess, "m", "... too high");
   v.expert();
   v.real("min_score", min_score, {-1e9, 1e9}, "", "boxes below are dropped");
   v.real("off_label_score_weight", off_label_score_weight, {0, 1}, "",
-         "of that evidence for classes that the label is not the name of");
+         "weight of that evidence for classes that the label does not name");
 }
 
 PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& classes,
@@ -131,7 +132,7 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
     label.length_excess = entry(params_.length_excess, name);
     label.width_excess = entry(params_.width_excess, name);
     label.height_excess = entry(params_.height_excess, name);
-    // A label that is no class's name ("unknown") speaks for all road users alike.
+    // A label that names no class ("unknown") supports all road users equally.
     bool names_a_class = false;
     for (ClassId c = 0; c < classes.size(); ++c)
       names_a_class = names_a_class || detection_model.labelOf(c) == static_cast<int>(l);
@@ -167,7 +168,7 @@ std::vector<std::vector<PositionFrontEnd::Candidate>> PositionFrontEnd::groups(
     const auto label = label_of_.find(object.label);
     const bool good =
         object.space_box && usable(*object.space_box) && label != label_of_.end() &&
-        // Out of the field of view neither clutter nor objects have a density.
+        // Outside the field of view the densities are zero.
         model_->inView((scan.state.T_world_sensor * object.space_box->bottom_center).head<2>(),
                        scan.state);
     if (good) {
@@ -178,7 +179,7 @@ std::vector<std::vector<PositionFrontEnd::Candidate>> PositionFrontEnd::groups(
       ++scan.dropped;
     }
   }
-  // The surest box of a group leads it; boxes of one label never share a group.
+  // Groups start from the most probable box; boxes of one label are never grouped.
   std::stable_sort(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
     return logScoreRatio(a) > logScoreRatio(b);
   });
@@ -242,7 +243,8 @@ Measurement PositionFrontEnd::measure(const std::vector<Candidate>& group, const
   m.seen = 3;
   m.label = first.label;
   m.detection = static_cast<int>(first.index);
-  // Place by the sensor, plus the vehicle's place and, across the line of sight, its heading.
+  // R: noise of the sensor, of the vehicle's position and, across the line of sight, of its yaw
+  // (method.md 1.3).
   const Vector2 across(-sight.y(), sight.x());
   const double own = (params_.sigma + params_.range_share * sight.norm()) *
                      (1 + params_.clutter_sigma_growth * clutterProbability(first));

@@ -13,46 +13,45 @@
 
 namespace perception {
 
-/// [sensor.LABEL.positions]: measurements of boxes in space, or points. Tables "key.LABEL" hold for
-/// one label; a label without an entry has 0.
+/// [sensor.LABEL.positions]: measurements of 3D boxes or points. Tables "key.LABEL" are per label;
+/// a label without an entry has 0.
 struct PositionParams {
   using Table = std::vector<std::pair<std::string, double>>;
   std::vector<std::string> labels{"object"};        ///< the columns of the class tables
   std::vector<std::string> names{"object=object"};  ///< the detector's class = one of the labels
-  double min_score = -1e9;                          ///< boxes below are dropped: none (assumed)
+  double min_score = -1e9;                          ///< boxes below are dropped (default: none)
   double sigma = 0.3;               ///< [m] of the center, each axis (method.md 8.9, assumed)
-  double range_share = 0;           ///< [-] of the distance, added to sigma (method.md 8.9)
-  double clutter_sigma_growth = 0;  ///< [-] by which both grow for a box that is surely clutter, by
-                                    ///< its score (method.md 8.9)
+  double range_share = 0;           ///< [-] share of the range added to sigma (method.md 8.9)
+  double clutter_sigma_growth = 0;  ///< [-] growth of both at P(clutter) = 1 (method.md 8.9)
 
-  /// Score as evidence, method.md (49), counted on recordings with truth: P(object | score, range)
-  /// = 1 / (1 + exp(-slope (score - offset) + fade range)), [1/score], [score], [1/m]; slope 0:
-  /// scores are no evidence. balance: log of (objects / clutter) in that count; it turns the odds
+  /// Score as evidence, method.md (49), fitted on recordings with truth: P(object | score, range) =
+  /// 1 / (1 + exp(-slope (score - offset) + fade range)), [1/score], [score], [1/m]; slope 0:
+  /// scores are no evidence. balance: log of (objects / clutter) in those; it converts the odds
   /// into p(score | object) / p(score | clutter).
   Table score_slope, score_offset, score_fade, score_balance;
   double score_limit = 6;  ///< bound of that logarithm (method.md (49), assumed)
-  /// Classes whose boxes score like clutter (method.md 8.9, assumed).
+  /// Classes whose boxes have the scores of clutter (method.md 8.9, assumed).
   std::vector<std::string> clutter_like{"static-other"};
-  /// Share of that logarithm for classes that the label is not the name of: a walker whom the
-  /// detector also calls a cyclist scores low as one (method.md 8.9, assumed).
+  /// Weight of that logarithm for classes that the label does not name: a pedestrian whom the
+  /// detector also labels cyclist has a low score as cyclist (method.md 8.9, assumed).
   double off_label_score_weight = 0.5;
-  /// [m] boxes of different labels nearer than this are of one object, and the surest stands for
-  /// them; 0: off. (On KITTI's training sequences the surest box names 96 % of pedestrians and of
-  /// cyclists right.)
+  /// [m] boxes of different labels closer than this are of one object, of which the most probable
+  /// is used; 0: off. (On KITTI's training sequences its label is right for 96 % of pedestrians and
+  /// of cyclists.)
   double group_distance = 0;
 
   bool sizes = false;  ///< length, width, height and direction of the box are measured, too
-  double axis_sigma = radians(10);                   ///< [rad] of that direction as axis (assumed)
-  double heading_flip = 0.5;                         ///< reversed directions: unknown (assumed)
+  double axis_sigma = radians(10);  ///< [rad] of that direction as an axis (assumed)
+  double heading_flip = 0.5;        ///< share of reversed directions; 0.5: unknown (assumed)
   double length_sigma = 0.3, width_sigma = 0.3;      ///< [m] (assumed)
   double height_sigma = 0.3, base_sigma = 0.3;       ///< [m] (assumed)
-  Table length_excess, width_excess, height_excess;  ///< [m] by which a label's boxes are too large
+  Table length_excess, width_excess, height_excess;  ///< [m] bias of the sizes of a label's boxes
 
   void visit(ParamVisitor& v);
 };
 
-/// Boxes in space as measurements of their centers: 3D detectors, GPS receivers on objects, sensors
-/// that give points. Boxes are in the sensor's frame.
+/// 3D boxes as measurements of their centers: 3D detectors, GPS receivers on objects, sensors that
+/// report points. Boxes are in the sensor frame.
 class PositionFrontEnd final : public FrontEnd {
  public:
   PositionFrontEnd(PositionParams params, const ClassTable& classes,
@@ -66,12 +65,12 @@ class PositionFrontEnd final : public FrontEnd {
   void fill(const SensorFrame& frame, MeasurementScan& scan) const override;
 
  private:
-  /// What is known of one label.
+  /// Parameters of one label.
   struct Label {
     ScoreOdds odds;
     double balance = 0;
     double length_excess = 0, width_excess = 0, height_excess = 0;
-    /// By class: log p(label | class); share of the score's evidence that it takes.
+    /// By class: log p(label | class); weight of the score's evidence.
     std::vector<double> log_label, score_share;
     double log_clutter = 0;
   };
@@ -79,7 +78,7 @@ class PositionFrontEnd final : public FrontEnd {
     const ObjectDetection* object;
     std::size_t index;
     int label;
-    double log_odds = 0;  ///< of an object, by score and range
+    double log_odds = 0;  ///< that it is an object, by score and range
   };
 
   std::vector<std::vector<Candidate>> groups(const ObjectDetections& detections,

@@ -9,7 +9,7 @@ ScoreOdds fitScoreOdds(const std::vector<BoxSample>& samples, double ridge) {
   constexpr int kSteps = 30;
   if (samples.empty()) return {};
   const auto rowOf = [](const BoxSample& s) { return Eigen::Vector3d(1, s.score, s.range); };
-  // Columns in units of their own spread, so that one ridge suits both.
+  // Standardized columns, so that one ridge penalty fits both.
   Eigen::Vector3d spread = Eigen::Vector3d::Zero();
   for (const BoxSample& s : samples) spread += rowOf(s).cwiseAbs2();
   spread = (spread / static_cast<double>(samples.size())).cwiseSqrt().cwiseMax(1e-9);

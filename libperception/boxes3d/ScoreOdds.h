@@ -13,7 +13,7 @@ struct ScoreOdds {
   }
 };
 
-/// A box and what the truth says of it.
+/// A box and whether the truth has an object there.
 struct BoxSample {
   double score = 0, range = 0;  ///< [-], [m]
   bool object = false;
@@ -22,7 +22,7 @@ struct BoxSample {
 /// Logistic regression of `object` on score and range by Newton's method, with a ridge penalty.
 /// No samples: zeros.
 ScoreOdds fitScoreOdds(const std::vector<BoxSample>& samples, double ridge = 10);
-/// Mean of -log P(what each sample is).
+/// Mean negative log-likelihood of the samples.
 double logLoss(const ScoreOdds& odds, const std::vector<BoxSample>& samples);
 
 }  // namespace perception

@@ -17,7 +17,7 @@ constexpr double kLeastExponent = 0.01, kMostExponent = 1;
 constexpr int kEvaluationsARound = 20;      // of the optimizer, each a run over all logs of a part
 constexpr double kLeastProbability = 1e-5;  // of the true class: as the filter's own floor
 
-/// What does not move is truth, too: labels of posts are the reason for tempering.
+/// Static objects are part of the truth: labels of poles are the reason for tempering.
 GroundTruth withThings(GroundTruth truth, const ClassTable& classes) {
   for (auto& instant : truth.instants) {
     for (TruthObject& o : instant.objects) {
@@ -245,7 +245,7 @@ StudyReport temperingStudy(const TemperingParams& params, const std::vector<Temp
   report.tables = {table, found};
   report.remarks = {
       "For the INI: " + iniOf(mean) + ".",
-      "Truth counts as in the evaluation, posts and hedges of simulated logs included; an object "
+      "Truth counts as in the evaluation, poles and hedges of simulated logs included; an object "
       "counts at every instant at which it is tracked.",
       "correct, wrong: shares with a class of probability .95 or more that is the true one or not.",
       "What no label tells is fitted with it: other front ends, classes or rates want a fit of "

@@ -16,7 +16,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kMostFaults = 50;  // shown; a file of another kind can have thousands
+constexpr std::size_t kMostFaults = 50;  // reported; a file that is no INI file can have thousands
 constexpr std::size_t kCommentColumn = 40;
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
@@ -42,7 +42,7 @@ void appendKey(const ConfigKey& key, std::string& text) {
   text += '\n';
 }
 
-// The section's keys of one kind, under its title; nothing where there are none.
+// Appends the section's keys, expert or not, under its title; nothing where there are none.
 void appendSection(const ConfigSection& section, bool expert, std::string& text) {
   const auto chosen = [&](const ConfigKey& key) { return key.expert == expert; };
   const bool any = std::any_of(section.keys.begin(), section.keys.end(), chosen);
@@ -57,10 +57,11 @@ void appendSection(const ConfigSection& section, bool expert, std::string& text)
 
 struct Config::Impl {
   IniDocument document;
-  std::deque<ConfigSection> read;          // in the order of their first reading
-  mutable std::vector<std::string> asked;  // titles that the program knows, read or not
-  std::vector<IniFault> faults;            // of values and meaning
-  std::vector<std::string> missing;        // sections that had to be there
+  std::deque<ConfigSection> read;  // in the order of their first reading
+  mutable std::vector<std::string>
+      known_titles;                  // section names that the program knows, read or not
+  std::vector<IniFault> faults;      // of values and semantics
+  std::vector<std::string> missing;  // required sections that are missing
 
   ConfigSection& readSection(const std::string& name);
   const ConfigSection* findRead(const std::string& name) const;
@@ -84,7 +85,7 @@ const ConfigSection* Config::Impl::findRead(const std::string& name) const {
 }
 
 std::string Config::Impl::unknownSection(const std::string& name) const {
-  std::vector<std::string> candidates = asked;
+  std::vector<std::string> candidates = known_titles;
   for (const auto& section : read) candidates.push_back(section.name);
   const std::string nearest = nearestWord(name, candidates);
   return nearest.empty() || nearest == name
@@ -110,7 +111,7 @@ std::string Config::Impl::unknownKey(const ConfigSection& section, const std::st
 void Config::Impl::addUnknown(const IniSection& section, std::vector<IniFault>& all) const {
   const ConfigSection* known = findRead(section.name);
   if (!known) {
-    // An include that could not be read may hold what would have had this section read.
+    // Because of an include that could not be read, this section may not have been read.
     if (document.complete()) all.push_back({section.place, unknownSection(section.name)});
     return;
   }
@@ -148,7 +149,7 @@ void Config::set(const std::string& assignment) { impl_->document.set(assignment
 const std::string& Config::name() const { return impl_->document.name(); }
 
 bool Config::has(const std::string& section) const {
-  impl_->asked.push_back(section);
+  impl_->known_titles.push_back(section);
   impl_->document.claim(section);
   return impl_->document.find(section) != nullptr;
 }
@@ -156,7 +157,7 @@ bool Config::has(const std::string& section) const {
 std::vector<std::string> Config::sectionsWithPrefix(const std::string& prefix) const {
   std::vector<std::string> names;
   for (const auto& section : impl_->document.sections()) {
-    // --set changes sections; a mistyped title there must not make another class or sensor.
+    // --set changes existing sections; a mistyped section name must not create a class or sensor.
     if (section.in_file && section.name.compare(0, prefix.size(), prefix) == 0) {
       names.push_back(section.name);
     }
@@ -187,8 +188,8 @@ void Config::finish() const {
   const IniDocument& document = impl_->document;
   std::vector<IniFault> all = document.faults();
   for (const auto& fault : impl_->faults) {
-    // What is said to be missing may stand in a file that could not be read: that fault comes
-    // first.
+    // What seems to be missing may be in a file that could not be read: then only that fault is
+    // reported.
     if (fault.place.source >= 0 || document.complete()) all.push_back(fault);
   }
   for (const auto& section : document.sections()) impl_->addUnknown(section, all);

@@ -13,20 +13,20 @@ namespace perception {
 ///
 /// Syntax: [section], key = value, ; or # starts a comment, `include = other.ini` (path relative to
 /// the file that holds it; before or inside any section). A section may be continued in a later
-/// place of the same or another file, but a key stands once per section; an including file wins
-/// over a file that it includes; --set wins over all.
+/// place of the same or another file, but a key occurs once per section; a file overrides those
+/// that it includes, --set overrides all files.
 class Config {
  public:
-  /// Reads the file and its includes; faults of syntax are kept for finish().
+  /// Reads the file and its includes; syntax errors are collected for finish().
   static Config fromFile(const std::string& path);
   static Config fromText(const std::string& text, const std::string& name = "(text)");
   ~Config();
   Config(Config&&) noexcept;
   Config& operator=(Config&&) noexcept;
 
-  /// One `section.key=value` of the command line; the last dot before '=' parts section and key
-  /// unless the section exists with a longer name (sections and table keys may hold dots: the
-  /// longest known section wins).
+  /// One `section.key=value` of the command line; the last dot before '=' separates section and key
+  /// unless a section exists with a longer name (sections and table keys may hold dots: the longest
+  /// known section wins).
   void set(const std::string& assignment);
 
   /// Fills `params` from [section]; a missing section leaves the defaults unless `required`.
@@ -36,17 +36,17 @@ class Config {
     params.visit(*visitor);
     return params;
   }
-  /// Titles with that prefix, in the order of the file: "class." gives class.pedestrian, class.car
-  /// ...
+  /// Names of the sections with that prefix, in the order of the file: "class." gives
+  /// class.pedestrian, class.car ...
   std::vector<std::string> sectionsWithPrefix(const std::string& prefix) const;
   bool has(const std::string& section) const;
 
-  /// Reports a fault of meaning; section's (and key's, when given) file and line are added.
+  /// Reports a semantic fault; file and line of the section (and of the key, when given) are added.
   void fault(const std::string& section, const std::string& key, const std::string& message);
   /// Throws ConfigError with all faults, unread sections and keys included.
   void finish() const;
-  /// All sections read so far as a commented INI text with every key, default or given: the
-  /// effective INI.
+  /// The effective INI: all sections read so far, as a commented INI text with every key, default
+  /// or given.
   std::string effectiveText() const;
   const std::string& name() const;
 

@@ -115,8 +115,8 @@ class ConfigReader final : public ParamVisitor {
   void reals(const char* key, std::vector<double>& values, int count, Bounds allowed,
              const char* unit, const char* doc) override {
     const std::string usual = realsWithin(values, count, allowed);
-    const std::string kind = count < 0 ? "numbers parted by commas, each"
-                                       : fmt::format("{} numbers parted by commas, each", count);
+    const std::string kind = count < 0 ? "numbers separated by commas, each"
+                                       : fmt::format("{} numbers separated by commas, each", count);
     if (const IniEntry* entry = take(key)) {
       std::vector<double> read;
       for (const auto part : splitList(entry->value)) {
@@ -137,9 +137,9 @@ class ConfigReader final : public ParamVisitor {
     const std::string usual = listText(values, sameWord);
     if (const IniEntry* entry = take(key)) {
       const auto parts = splitList(entry->value);
-      // A word as ";x" would begin a comment where the list is written with blanks.
+      // A word as ";x" would begin a comment where the list is written with spaces.
       if (!std::all_of(parts.begin(), parts.end(), survivesWriting)) {
-        reject(*entry, "words parted by commas");
+        reject(*entry, "words separated by commas");
       } else {
         values.assign(parts.begin(), parts.end());
       }
@@ -190,7 +190,8 @@ class ConfigReader final : public ParamVisitor {
   }
 
   void require(bool holds, const std::string& message) override {
-    // A value that was refused left its default: a rule over it would speak of a value nobody gave.
+    // A rejected value left the default in place: a constraint on it would report a value that was
+    // not given.
     if (holds || rejected_) return;
     faults_.push_back(
         {given_ ? given_->place : IniPlace{}, fmt::format("[{}]: {}", section_.name, message)});
@@ -257,7 +258,7 @@ class ConfigReader final : public ParamVisitor {
            before == usual.end() ? "" : formatReal(before->second), comment);
     }
     if (!again) return;
-    // Rows that only one of several readers has by default: they stay its own.
+    // Default rows that only one of several structs has are kept.
     for (std::size_t i = 0; i < section_.keys.size(); ++i) {
       ConfigKey& key = section_.keys[i];
       if (key.name.compare(0, prefix.size(), prefix) != 0 || isGiven(key.name)) continue;

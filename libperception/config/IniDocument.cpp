@@ -12,7 +12,7 @@
 namespace perception {
 namespace {
 
-const std::string kNoSection = "[";  // no title can read so
+const std::string kNoSection = "[";  // not a valid section name
 
 }  // namespace
 
@@ -102,7 +102,7 @@ void IniDocument::readLine(int source, int number, std::string_view line, std::s
     return addFault(place, fmt::format("{}: key outside of any section, expected a [section] first",
                                        inQuotes(key)));
   }
-  if (section == kNoSection) return;  // its title was a fault: more of them would say nothing new
+  if (section == kNoSection) return;  // its title was reported already
   if (value.empty()) {
     return addFault(place,
                     fmt::format("[{}] {}: found no value, expected one after '='", section, key));
@@ -143,7 +143,7 @@ void IniDocument::include(const IniPlace& place, const std::string& value) {
   if (!survivesWriting(value)) {
     return addFault(place, fmt::format("include: found {}, expected a file", inQuotes(value)));
   }
-  // From the file's own folder, whatever relative_paths says of the paths in it.
+  // Relative to the including file's folder, whatever its relative_paths says.
   const auto& includer = sources_[static_cast<std::size_t>(place.source)];
   const std::string path = joined(includer.identity.empty() ? "" : folderOf(includer.name), value);
   const std::string identity = identityOf(path);
@@ -152,7 +152,7 @@ void IniDocument::include(const IniPlace& place, const std::string& value) {
   if (known != sources_.end()) {
     const int other = static_cast<int>(known - sources_.begin());
     const auto begin = std::find(open_.begin(), open_.end(), other);
-    if (begin == open_.end()) {  // read before, by another way: once is enough
+    if (begin == open_.end()) {  // read before, through another file
       sources_[static_cast<std::size_t>(place.source)].includes.push_back(other);
       return;
     }
@@ -190,7 +190,7 @@ IniSection& IniDocument::section(const std::string& name, const IniPlace& place)
   return sections_.back();
 }
 
-// All lines of all files are there: now it can be said which line of a key counts.
+// Selects the effective line of each key, once all files are read.
 void IniDocument::merge() {
   std::map<std::pair<std::string, std::string>, std::vector<const Line*>> groups;
   for (const auto& line : lines_) groups[{line.section, line.key}].push_back(&line);

@@ -5,13 +5,13 @@
 
 namespace perception {
 
-/// Where something of a configuration stands: a line of a file or an option of the command line.
+/// A position in a configuration: a line of a file or an option of the command line.
 struct IniPlace {
   int source = -1;  ///< index of the file or option; -1: nowhere
   int line = 0;     ///< 1 = first; 0: the file or option as a whole
 };
 
-/// One key of a section with the value that counts.
+/// One key of a section with its effective value.
 struct IniEntry {
   std::string key, value;
   IniPlace place;
@@ -21,7 +21,7 @@ struct IniEntry {
 struct IniSection {
   std::string name;
   IniPlace place;        ///< of its first title
-  bool in_file = false;  ///< false: made by --set alone
+  bool in_file = false;  ///< false: created by --set alone
   std::vector<IniEntry> entries;
 
   const IniEntry* find(const std::string& key) const;
@@ -33,38 +33,37 @@ struct IniFault {
   std::string text;
 };
 
-/// The lines of an INI file, of the files that it includes and of --set options as sections of keys
-/// and values; knows nothing of their meaning. Syntax: see Config.h. Never throws on bad content:
-/// faults are collected.
+/// The lines of an INI file, of its includes and of --set options, as sections of keys and values
+/// without interpretation. Syntax: see Config.h. Never throws on bad content: faults are collected.
 class IniDocument {
  public:
-  /// One of the two, once.
+  /// Call one of readFile and readText, once.
   void readFile(const std::string& path);
   void readText(const std::string& text, const std::string& name);
-  /// `section.key=value`, after reading; a later one wins.
+  /// Applies `section.key=value` after reading; a later one overrides.
   void set(const std::string& assignment);
 
-  /// The program knows a section of that title: a --set that was taken for a dotted key of a
-  /// shorter title ([sensor.A] class.car.detection) moves there.
+  /// Declares a section that the program knows: a --set that was read as a dotted key of a shorter
+  /// section name ([sensor.A] class.car.detection) moves to it.
   void claim(const std::string& section);
 
   const std::vector<IniSection>& sections() const { return sections_; }
   const IniSection* find(const std::string& section) const;
   const std::vector<IniFault>& faults() const { return faults_; }
-  /// False when a file could not be read: what seems to be missing may stand there.
+  /// False when a file could not be read: sections and keys that seem to be missing may be in it.
   bool complete() const { return complete_; }
   const std::string& name() const { return sources_.front().name; }  ///< the main file's, as given
 
   /// "ini/site.ini:12" or "--set run.seed=x".
   std::string where(const IniPlace& place) const;
-  /// A relative path of that place as seen from the working folder.
+  /// A relative path given at `place`, made relative to the working folder.
   std::string resolved(const std::string& path, const IniPlace& place) const;
 
  private:
-  /// A file, text or option that lines come from.
+  /// Origin of lines: a file, a text or an option.
   struct Source {
     std::string name;           ///< path as given, or the option
-    std::string folder;         ///< relative paths of this source start here; "": working folder
+    std::string folder;         ///< base of the relative paths in this source; "": working folder
     std::string identity;       ///< canonical path; "": not a file
     std::vector<int> includes;  ///< sources
   };

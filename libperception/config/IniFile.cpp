@@ -12,8 +12,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kLargestFile =
-    4u << 20;  // [bytes] a rawlog given as INI is told apart by its size
+constexpr std::size_t kLargestFile = 4u << 20;  // [bytes]; a larger file is no INI
 
 /// Closes a C file.
 struct Closer {

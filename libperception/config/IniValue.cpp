@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::string_view kWhiteSpace = " \t\r\v\f";
 
-// std::from_chars knows no locale, no white space and no hex prefix; it refuses '+', which people
-// do write.
+// std::from_chars is independent of the locale and accepts neither white space nor a hex prefix; a
+// leading '+' is removed for it.
 template <class Number>
 std::optional<Number> parseWhole(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
@@ -28,7 +28,7 @@ std::optional<Number> parseWhole(std::string_view text) {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Optimal string alignment distance (Damerau-Levenshtein with neighbors swapped once), blind to
+// Optimal string alignment distance (Damerau-Levenshtein with neighbors swapped once), ignoring
 // case.
 std::size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -146,7 +146,7 @@ std::string inQuotes(std::string_view text) {
 }
 
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLongest = 100;  // nobody mistypes a word of this length by a few letters
+  constexpr std::size_t kLongest = 100;  // a longer word is no misspelled key
   if (word.size() > kLongest) return "";
   std::size_t best = std::max<std::size_t>(1, word.size() / 3) + 1;
   std::string nearest;

@@ -21,7 +21,7 @@ double chi2Quantile(double probability, int degrees_of_freedom) {
   double high = std::max(1.0, 2.0 * degrees_of_freedom);
   while (chi2Cdf(high, degrees_of_freedom) < probability) high *= 2;
   while (high - low >
-         1e-12 * high) {  // bisection: the cdf is monotone, and this is never on a hot path
+         1e-12 * high) {  // bisection: the cdf is monotone, and this is not time-critical
     const double middle = 0.5 * (low + high);
     if (middle == low || middle == high) break;
     (chi2Cdf(middle, degrees_of_freedom) < probability ? low : high) = middle;

@@ -46,7 +46,7 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-// The whole field as a number; from_chars never looks at the locale.
+// Parses the whole field as a number; from_chars is independent of the locale.
 template <class Number>
 bool parse(std::string_view field, Number& value) {
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);

@@ -4,20 +4,19 @@
 
 namespace perception {
 
-/// What a program of ours says to the shell when it ends (sysexits; 3 is our own). Only 75 is worth
-/// another try.
+/// Exit codes of the programs: those of BSD sysexits.h, and 3. Only kTryAgain is worth a retry.
 enum class ExitCode : int {
   kOk = 0,
-  kDataWarnings = 3,   ///< finished; part of the data was missing or bad, and the result says so
+  kDataWarnings = 3,   ///< finished; part of the data was missing or bad, as the result reports
   kUsage = 64,         ///< wrong command line
-  kBadInput = 65,      ///< an input file that cannot be used
-  kNoInput = 66,       ///< an input file that is not there
-  kUnavailable = 69,   ///< something of the machine is missing (no OpenGL, no device)
-  kInternal = 70,      ///< a fault of ours
+  kBadInput = 65,      ///< an input file cannot be used
+  kNoInput = 66,       ///< an input file does not exist
+  kUnavailable = 69,   ///< a resource of the machine is missing (no OpenGL, no device)
+  kInternal = 70,      ///< internal error: a bug in the program
   kCannotCreate = 73,  ///< the output cannot be created
   kIoError = 74,       ///< reading or writing failed midway (disk full)
   kTryAgain = 75,      ///< stopped by a signal or busy
-  kBadConfig = 78      ///< a configuration file or value that is wrong
+  kBadConfig = 78      ///< a configuration file or value is wrong
 };
 
 /// Base of all errors that end a run with a message and an exit code; only app/runApp catches them.

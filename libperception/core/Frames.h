@@ -33,7 +33,7 @@ inline double rollOf(const Pose3& pose) {
   return std::atan2(pose.linear()(2, 1), pose.linear()(2, 2));
 }
 
-/// Turns a vector of the plane by `angle` [rad].
+/// Rotates a vector in the plane counter-clockwise by `angle` [rad].
 inline Vector2 rotate2(double angle, const Vector2& v) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};

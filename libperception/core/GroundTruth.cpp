@@ -22,8 +22,8 @@ namespace {
 constexpr std::string_view kHeader =
     "frame,t,id,class,x,y,z,yaw,length,width,height,vx,vy,truncated,occluded,lidar_points,ignore\n";
 
-// A row whose place is not known is of use to nobody but for its ignore flag (KITTI's DontCare is
-// an area of the image).
+// A row without a position is accepted only with the ignore flag (KITTI's DontCare is an area of
+// the image).
 double place(const CsvTable& csv, std::size_t row, std::string_view column, bool ignore) {
   const CsvTable::Column c = csv.column(column);
   return ignore ? csv.realOrNan(row, c) : csv.real(row, c);
@@ -68,7 +68,7 @@ TruthObject readRow(const CsvTable& csv, std::size_t row) {
   return o;
 }
 
-// Rows of one instant share frame and time; an object stands there once.
+// Rows of one instant share frame and time; an object id occurs once.
 void checkInstants(const std::vector<std::pair<TruthObject, std::size_t>>& rows,
                    const CsvTable& csv) {
   std::set<std::int64_t> frames, ids;
@@ -98,7 +98,7 @@ std::string decimal(double value) {
 
 std::string line(const TruthObject& o) {
   const auto count = [](std::int64_t n) { return n < 0 ? std::string() : fmt::format("{}", n); };
-  // Times to the nanosecond, so that they meet the run's; yaw to a microradian.
+  // Times to the nanosecond, so that they match those of the run; yaw to a microradian.
   return fmt::format("{},{:.9f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", count(o.frame),
                      o.t, count(o.id), o.type, decimal(o.position.x()), decimal(o.position.y()),
                      decimal(o.position.z()),
@@ -120,7 +120,7 @@ bool GroundTruth::hasLidar() const {
 
 GroundTruth readGroundTruth(const std::string& path) {
   const CsvTable csv = CsvTable::fromFile(path);
-  // A wrong header shows with the first of its columns, even when there is no row.
+  // Reports a missing column even when the file has no row.
   for (std::string_view rest = kHeader; !rest.empty();) {
     const std::size_t end = rest.find_first_of(",\n");
     csv.column(rest.substr(0, end));

@@ -8,14 +8,14 @@ using Matrix4 = Eigen::Matrix<double, 4, 4>;
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix54 = Eigen::Matrix<double, 5, 4>;
 
-/// What any sensor can see of an object, whatever its motion model: n sensors + m models instead of
-/// n * m.
+/// What any sensor can observe of an object, whatever its motion model. The common interface of n
+/// measurement models and m motion models, so that no pair of them needs code of its own.
 struct Kinematics {
   enum Index { kX, kY, kVx, kVy, kYaw };
   Vector5 q =
       Vector5::Zero();  ///< x, y, vx, vy, yaw of the footprint's center [m, m/s, rad], world
   Matrix54 J = Matrix54::Zero();  ///< dq/dstate; columns beyond the state's size are zero
-  bool has_yaw = false;  ///< false: no orientation in the state (people, poles) or not known yet
+  bool has_yaw = false;           ///< false: not in the state (pedestrians, poles) or unknown
 };
 
 /// Horizontal size of an object as an estimate: static parameters beside the state.

@@ -11,10 +11,10 @@
 namespace perception {
 namespace {
 
-constexpr double kCell = 10;         // [m] of the look-up
+constexpr double kCell = 10;         // [m] cell size of the spatial index
 constexpr double kLeastStep = 1e-3;  // [m] between points of a lane
 
-/// The way from a to b at the place nearest to p.
+/// The point of the segment a-b nearest to p.
 struct Foot {
   double distance;  // [m]
   double offset;    // [m] to the left
@@ -79,7 +79,7 @@ std::vector<LanePlace> LaneMap::at(const Vector2& place) const {
     if (known == found.end()) {
       found.push_back(here);
     } else if (here.distance < known->distance) {
-      *known = here;  // of a lane its nearest segment
+      *known = here;  // keep the nearest segment of each lane
     }
   }
   std::stable_sort(found.begin(), found.end(),
@@ -101,7 +101,7 @@ LaneMap LaneMap::fromFile(const std::string& path) {
     if (lane_name.empty()) table.fault(r, name, "the name of a lane");
     if (fresh) {
       if (!names.insert(lane_name).second)
-        table.fault(r, name, "the points of a lane in lines that stand together");
+        table.fault(r, name, "the points of a lane in consecutive lines");
       if (!lanes.empty() && lanes.back().points.size() < 2)
         table.fault(r, name, "a second point of lane '" + lanes.back().name + "'");
       lanes.push_back({lane_name, {}, table.real(r, width), table.flag(r, one_way)});

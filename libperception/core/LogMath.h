@@ -27,7 +27,7 @@ double logSumExp(const Range& values) {
 }
 
 /// Shifts log probabilities so that they sum to one. All -inf becomes uniform. Returns the log of
-/// the sum before.
+/// their former sum.
 template <class Range>
 double logNormalize(Range& values) {
   const double total = logSumExp(values);

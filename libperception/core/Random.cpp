@@ -40,7 +40,7 @@ double Rng::exponential(double mean) { return -mean * std::log1p(-uniform()); }
 
 int Rng::poisson(double mean) {
   int count = 0;
-  while (mean > 30) {  // sums of Poisson variables are Poisson: keeps exp(-mean) away from zero
+  while (mean > 30) {  // a sum of Poisson variables is Poisson; avoids underflow of exp(-mean)
     count += poisson(30);
     mean -= 30;
   }

@@ -4,20 +4,20 @@
 
 namespace perception {
 
-/// Names one stream of random numbers. Streams of different keys are independent, whatever order
-/// they are used in.
+/// Identifies one stream of random numbers. Streams of different keys are independent, in whatever
+/// order they are used.
 struct RngKey {
   std::uint64_t seed = 0;     ///< of the whole run
   std::uint64_t counter = 0;  ///< which scan, frame, ...
   std::uint32_t slot = 0;     ///< which hypothesis, beam, ...
-  std::uint32_t purpose = 0;  ///< what the numbers are for; every user has its own constant
+  std::uint32_t purpose = 0;  ///< a constant per use, so that uses do not share numbers
 
   RngKey withSlot(std::uint32_t s) const { return {seed, counter, s, purpose}; }
   RngKey withPurpose(std::uint32_t p) const { return {seed, counter, slot, p}; }
 };
 
-/// Counter-based generator (Philox4x32-10, Salmon et al., SC 2011, from Random123): a function of
-/// key and index only, hence the same on every machine and for every number of threads. Also a
+/// Counter-based generator (Philox4x32-10 [salmon2011], from Random123; method.md 1.5): a function
+/// of key and index only, hence the same on every machine and for every number of threads. Also a
 /// UniformRandomBitGenerator.
 class Rng {
  public:

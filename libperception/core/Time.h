@@ -11,9 +11,7 @@ struct Stamp {
   static Stamp fromSeconds(double seconds) {
     return {static_cast<std::int64_t>(seconds * 1e9 + (seconds < 0 ? -0.5 : 0.5))};
   }
-  double seconds() const {
-    return static_cast<double>(ns) * 1e-9;
-  }  ///< [s] about 0.2 us of rounding today
+  double seconds() const { return static_cast<double>(ns) * 1e-9; }  ///< [s] to about 0.2 us
 
   friend bool operator==(Stamp a, Stamp b) { return a.ns == b.ns; }
   friend bool operator!=(Stamp a, Stamp b) { return a.ns != b.ns; }

@@ -6,8 +6,8 @@
 
 namespace perception {
 
-/// Floats at an address fit for the widest vectors, with room to read and write one vector more.
-/// Their values are not set.
+/// Uninitialized array of floats, aligned to 64 bytes, with one vector of padding that may be read
+/// and written.
 class AlignedFloats {
  public:
   AlignedFloats() = default;

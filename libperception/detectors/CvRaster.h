@@ -7,7 +7,7 @@ class Mat;
 
 namespace perception {
 
-/// The pixels as blue, green, red; shares them when they are so already.
+/// The image as blue, green, red; shares the pixels of an image in this format.
 cv::Mat colorMat(const Raster& image);
 
 }  // namespace perception

@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-/// Area under f over recall, f made monotone from the right.
+/// Area under f over recall, with f made monotone from the right.
 double areaUnder(const std::vector<double>& recall, std::vector<double> f) {
   double area = 0, before = 0;
   for (std::size_t i = f.size(); i-- > 1;) f[i - 1] = std::max(f[i - 1], f[i]);
@@ -151,7 +151,7 @@ std::optional<Logistic> fitLogistic(const std::vector<JudgedBox>& boxes) {
     }
     return sum;
   };
-  for (int round = 0; round < 100; ++round) {  // Newton's steps, halved while they do not help
+  for (int round = 0; round < 100; ++round) {  // Newton's method with step halving
     double ga = 0, gb = 0, haa = 1e-9, hab = 0, hbb = 1e-9;
     for (const JudgedBox& box : boxes) {
       const double t = box.right ? target_right : target_wrong, x = box.score - mean;

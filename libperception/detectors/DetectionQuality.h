@@ -8,18 +8,17 @@
 
 namespace perception {
 
-/// What an image really shows.
+/// An object of the truth in an image.
 struct LabeledBox {
   std::string label;
   ObjectDetection::ImageBox box;
   std::optional<double> heading;  ///< [rad] KITTI's alpha
-  /// Neither to be found nor wrong when found as `label`: too small, cut off, hidden, kindred
-  /// (vans).
+  /// Ignored, found or not: too small, truncated, occluded, or of a similar class (vans).
   bool ignore = false;
-  bool area = false;  ///< a region (DontCare): boxes that lie in it by half do not count
+  bool area = false;  ///< a region (DontCare): boxes at least half in it are ignored
 };
 
-/// One box of a detector after comparison with the labels.
+/// A detected box compared with the truth.
 struct JudgedBox {
   double score = 0;
   bool right = false;
@@ -27,15 +26,15 @@ struct JudgedBox {
   std::optional<double> heading_error;  ///< [rad] (-pi, pi], of right boxes
 };
 
-/// How good boxes of one label are.
+/// Detection quality of one label.
 struct LabelQuality {
   std::string label;
-  int labeled = 0;  ///< to be found
+  int labeled = 0;  ///< not ignored
   int right = 0, wrong = 0;
   double average_precision = 0;                ///< area under precision (made monotone) over recall
   double recall = 0;                           ///< at the lowest score
-  int headings = 0, flips = 0;                 ///< flips: more than 90 degrees off
-  double heading_median = 0, heading_rms = 0;  ///< [rad] of the axis: flips turned back
+  int headings = 0, flips = 0;                 ///< flips: errors above 90 degrees
+  double heading_median = 0, heading_rms = 0;  ///< [rad] errors of the axis
   double orientation_similarity = 0;  ///< KITTI's: as average precision, with (1 + cos error) / 2
   /// Points of the curve: score, recall, precision.
   struct Point {
@@ -44,18 +43,19 @@ struct LabelQuality {
   std::vector<Point> curve;
 };
 
-/// Compares detections with labels image by image, by the rules of KITTI's benchmark.
+/// Compares detections with the truth image by image, by the rules of the KITTI benchmark
+/// [geiger2012].
 class DetectionQuality {
  public:
-  /// `overlap`: intersection over union of a right box; `min_height` [px]: smaller boxes that hit
-  /// nothing do not count.
+  /// `overlap`: least intersection over union of a right box; `min_height` [px]: smaller unmatched
+  /// boxes are ignored.
   DetectionQuality(double overlap, double min_height)
       : overlap_(overlap), min_height_(min_height) {}
 
   void add(const std::vector<LabeledBox>& labels, const std::vector<ObjectDetection>& objects);
-  /// Labels that stood in an image or were detected, in order of their names.
+  /// One entry per label that was in an image or detected, ordered by name.
   std::vector<LabelQuality> results() const;
-  /// All judged boxes of a label, as they came.
+  /// All compared boxes of a label, in the order of add().
   const std::vector<JudgedBox>& judged(const std::string& label) const;
   std::vector<std::string> labels() const;
 
@@ -70,9 +70,8 @@ class DetectionQuality {
   std::map<std::string, Row> rows_;
 };
 
-/// P(right | score) = 1 / (1 + exp(-slope (score - even_score))) by maximum likelihood, with two
-/// boxes' worth of prior ([platt1999]: targets a little off 0 and 1). Empty when all are right or
-/// all are wrong.
+/// P(right | score) = 1 / (1 + exp(-slope (score - even_score))) by maximum likelihood with the
+/// regularized targets of [platt1999]. Empty when all are right or all are wrong.
 struct Logistic {
   double slope = 0, even_score = 0;
 };

@@ -27,15 +27,14 @@ double valueOf(const std::vector<std::pair<std::string, double>>& table, const s
 void DetectorModelParams::visit(ParamVisitor& v) {
   v.text("file", file, "of the model, relative to [detector] folder");
   v.text("label", label, "class name of its boxes; empty: the model's own");
-  v.words("names", names, "networks: INDEX=LABEL of the classes that are wanted (COCO: 2=Car)");
+  v.words("names", names, "networks: INDEX=LABEL of the classes to report (COCO: 2=Car)");
   v.real("threshold", threshold, {-1e9, 1e9}, "score", "weaker boxes are dropped");
-  v.real("low", low, {0.1, 20}, "m", "height of the lowest objects");
-  v.real("high", high, {0.1, 20}, "m", "height of the highest ones");
+  v.real("low", low, {0.1, 20}, "m", "height of the smallest objects");
+  v.real("high", high, {0.1, 20}, "m", "height of the tallest objects");
   v.require(low < high, "low: must be below high");
   v.real("slope", slope, {0, 1e3}, "1/score",
          "P(object | score) = 1 / (1 + exp(-slope (score - even_score))); 0: not calibrated");
-  v.real("even_score", even_score, {-1e9, 1e9}, "score",
-         "of a box that is as likely right as wrong");
+  v.real("even_score", even_score, {-1e9, 1e9}, "score", "score at which P(object) is one half");
   v.table("slope.", label_slope, {0, 1e3}, "1/score", "the same for one label");
   v.table("even_score.", label_even_score, {-1e9, 1e9}, "score", "the same for one label");
 }
@@ -50,13 +49,13 @@ double DetectorModelParams::evenScoreOf(const std::string& name) const {
 
 void DpmParams::visit(ParamVisitor& v) {
   v.integer("levels_per_octave", options.levels_per_octave, {1, 20},
-            "scales from one size to its half (voc-release: 10)");
+            "pyramid levels per octave (voc-release: 10)");
   v.real("enlarge", options.enlarge, {1, 4}, "",
-         "size of the first image searched: 2 finds cars of 16 to 20 px");
+         "scale of the first pyramid level: 2 finds cars of 16 to 20 px");
   v.real("outside", options.outside, {0, 1}, "",
          "share of an object's sides that may lie beyond the image");
-  v.integer("window", options.window, {0, 12}, "cells of a part by which it may move");
-  v.real("overlap", options.overlap, {0, 1}, "", "share of the weaker box in the better one");
+  v.integer("window", options.window, {0, 12}, "largest displacement of a part in its cells");
+  v.real("overlap", options.overlap, {0, 1}, "", "share of the weaker box inside the better one");
 }
 
 const std::vector<std::string>& OnnxParams::layoutNames() {
@@ -68,26 +67,28 @@ void OnnxParams::visit(ParamVisitor& v) {
   v.integer("input", input, {32, 4096}, "side of the network's square input in pixels");
   v.choice("layout", layout, layoutNames(), "of the output; auto: by its shape");
   v.real("overlap", overlap, {0, 1}, "", "intersection over union of boxes of one object");
-  v.boolean("windows", windows, "long images also in overlapping squares of their shorter side");
+  v.boolean("windows", windows,
+            "search long images also in overlapping square windows of their shorter side");
   v.real("window_overlap", window_overlap, {0, 0.9}, "",
-         "share of a square that the next sees, too");
+         "overlap of neighboring windows, share of their side");
 }
 
 void HogParams::visit(ParamVisitor& v) {
-  v.real("enlarge", enlarge, {0.5, 4}, "", "of the image: the detector knows people of 96 px");
+  v.real("enlarge", enlarge, {0.5, 4}, "",
+         "scale of the image: the smallest people detected have 96 px");
   v.real("overlap", overlap, {0, 1}, "", "intersection over union of boxes of one object");
 }
 
 void DetectorSetup::visit(ParamVisitor& v) {
   std::vector<std::string> names;
   for (const auto& row : detectorBackends()) names.emplace_back(row.name);
-  v.choice("backend", backend, names, "what finds the boxes; file: they are in the log already");
+  v.choice("backend", backend, names, "detector; file: the boxes in the log");
   v.path("folder", folder, "of the models' files");
   v.boolean("ground_gate", ground_gate,
-            "look only where objects of the models' heights can stand, if the camera's place is "
+            "search only where objects of the models' heights can stand, if the camera's pose is "
             "known");
   v.angle("ground_slope_sigma_deg", ground_slope_sigma, {0, 20},
-          "how far pitch and slope of the road may be off");
+          "deviation of pitch and slope of the road");
 }
 
 DetectorSetup DetectorSetup::read(Config& config) {

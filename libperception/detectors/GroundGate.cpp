@@ -23,7 +23,7 @@ std::optional<GroundGate> groundGate(const CameraModel& camera, const Pose3& T_e
   const Vector3 up = Vector3(-ground.a, -ground.b, 1).normalized();
   GroundGate gate;
   gate.height = (origin.z() - ground.heightAt(origin.x(), origin.y())) * up.z();
-  // Downwards in the camera's frame: (roll, 1, pitch) on the ray (0, y, 1) gives its slope.
+  // Downward direction in the camera frame: its dot product with the ray (0, y, 1) is the slope.
   const Vector3 down = -(T_ego_camera.linear().transpose() * up);
   if (gate.height < 0.2 || down.y() < std::abs(down.z())) return std::nullopt;
   gate.focal = camera.fy * down.y();

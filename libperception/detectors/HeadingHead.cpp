@@ -19,15 +19,15 @@
 namespace perception {
 namespace {
 
-constexpr int kColumns = 10, kRows = 6, kCell = 8;  // of the box; a cell more on either side
-constexpr std::size_t kValues = kColumns * kRows * (kFeatures - 1) + 1;  // and the box's shape
+constexpr int kColumns = 10, kRows = 6, kCell = 8;  // of the box; plus a cell at each side
+constexpr std::size_t kValues = kColumns * kRows * (kFeatures - 1) + 1;  // plus the aspect ratio
 constexpr double kBin = kTwoPi / HeadingHead::kBins;
 constexpr double kSpread = radians(20);  // [rad] of the target over the orientations
 constexpr double kRidge = 2;             // in units of a descriptor's mean square
 constexpr const char* kTitle = "heading_head 1";
 
-/// The box and a cell around it, whole pixels; columns wrap in a panorama, else the border is
-/// repeated.
+/// Crops the box plus a cell around it; columns wrap in a panorama, otherwise the border is
+/// replicated.
 Raster cut(const Raster& image, const ObjectDetection::ImageBox& b, bool closed, bool mirrored) {
   const double mx = (b.x2 - b.x1) / kColumns, my = (b.y2 - b.y1) / kRows;
   const int x0 = static_cast<int>(std::lround(b.x1 - mx)),
@@ -52,7 +52,7 @@ Raster cut(const Raster& image, const ObjectDetection::ImageBox& b, bool closed,
   return out;
 }
 
-/// How much a heading is each orientation: a bump around it.
+/// Regression target: a Gaussian over the orientations, centered at the heading.
 Eigen::RowVectorXf target(double heading) {
   Eigen::RowVectorXf t(HeadingHead::kBins);
   for (int k = 0; k < HeadingHead::kBins; ++k) {
@@ -84,7 +84,7 @@ double nextNumber(std::istream& in, const std::string& path, const char* expecte
 void HeadingHeadParams::visit(ParamVisitor& v) {
   v.path("file", file, "of a head, as written by perception-detect --train-heading");
   v.expert();
-  v.boolean("replace", replace, "also where the detector has a heading of its own");
+  v.boolean("replace", replace, "replace the headings of the detector");
 }
 
 std::vector<float> HeadingHead::describe(const Raster& image, const ObjectDetection::ImageBox& box,
@@ -95,7 +95,7 @@ std::vector<float> HeadingHead::describe(const Raster& image, const ObjectDetect
   constexpr int kWidth = (kColumns + 2) * kCell, kHeight = (kRows + 2) * kCell;
   PlanarImage pixels = planarImage(cut(image, box, closed, mirrored));
   while (pixels.width > 2 * kWidth && pixels.height > 2 * kHeight) pixels = halved(pixels);
-  // One side may still be more than twice as long: means over areas reach over three pixels.
+  // Halve first: area averaging spans at most three pixels.
   while (pixels.width > 2 * kWidth || pixels.height > 2 * kHeight)
     pixels = resampled(pixels, std::max(kWidth, (pixels.width + 1) / 2),
                        std::max(kHeight, (pixels.height + 1) / 2),
@@ -134,7 +134,7 @@ void HeadingHead::fit(const std::vector<HeadingExample>& examples, int left_out)
   const Eigen::RowVectorXf mean_x = X.colwise().mean(), mean_t = T.colwise().mean();
   X.rowwise() -= mean_x;
   T.rowwise() -= mean_t;
-  // Fewer examples than values: the dual form.
+  // Fewer examples than features: the dual form of ridge regression.
   Eigen::MatrixXf gram = X * X.transpose();
   const float scale = gram.trace() / static_cast<float>(std::max<Eigen::Index>(n, 1));
   gram.diagonal().array() += static_cast<float>(kRidge) * scale;
@@ -194,7 +194,7 @@ double HeadingHead::heading(const std::vector<float>& features) const {
   }
   const auto best =
       static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
-  // The top of a parabola through the best orientation and its neighbors.
+  // Maximum of the parabola through the best orientation and its neighbors.
   const double a = score[(best + kBins - 1) % kBins], b = score[best],
                c = score[(best + 1) % kBins];
   const double bend = a - 2 * b + c;

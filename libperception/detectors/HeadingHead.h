@@ -9,49 +9,48 @@
 
 namespace perception {
 
-/// [heading.NAME]: a head that estimates headings of boxes whose detector does not.
+/// [heading.NAME]: a HeadingHead for boxes without heading.
 struct HeadingHeadParams {
   std::string file;
-  bool replace = false;  ///< also where the detector has a heading of its own
+  bool replace = false;  ///< replace the headings of the detector
 
   void visit(ParamVisitor& v);
 };
 
-/// A picture of one object with its heading, to learn from.
+/// Training example: descriptor and heading of one object.
 struct HeadingExample {
   std::vector<float> features;
   double heading = 0;  ///< [rad] KITTI's alpha
-  int fold = 0;        ///< examples of one image share a fold
+  int fold = 0;        ///< of cross-validation; the same for all examples of an image
 };
 
 /// Estimates the heading of an object from its box: HOG of 10 x 6 cells, a linear score for each of
-/// 16 orientations, the best one refined between its neighbors. It knows how wrong it is from
-/// images that it did not learn from.
+/// 16 orientations, the best one refined between its neighbors. Its errors are cross-validated.
 class HeadingHead {
  public:
   static constexpr int kBins = 16;
 
-  /// Descriptor of what is inside a box (`closed`: a panorama whose columns go around); `mirrored`
-  /// as seen in a mirror. Empty for a box that is none.
+  /// Descriptor of the inside of a box (`closed`: a full panorama, whose columns wrap around);
+  /// `mirrored`: of the mirrored image. Empty for an invalid box.
   static std::vector<float> describe(const Raster& image, const ObjectDetection::ImageBox& box,
                                      bool closed, bool mirrored = false);
   /// Ridge regression onto the orientations; confusion, axis error and flips by cross-validation
   /// over the folds. Throws DataError for fewer than 32 examples or fewer than two folds.
   static HeadingHead train(std::string label, const std::vector<HeadingExample>& examples);
 
-  /// Text form. read() throws DataError.
+  /// Serialization as text. read() throws DataError.
   std::string text() const;
   static HeadingHead read(const std::string& path);
 
-  /// [rad] KITTI's alpha.
+  /// Heading [rad], KITTI's alpha, by a descriptor.
   double heading(const std::vector<float>& features) const;
-  /// Heading of every box of its label that has none (or of all, `replace`).
+  /// Sets the heading of every box of its label that has none (of all with `replace`).
   void apply(const Raster& image, bool closed, bool replace,
              std::vector<ObjectDetection>& objects) const;
 
   const std::string& label() const { return label_; }
-  double axisSigma() const { return axis_sigma_; }  ///< [rad] rms of the axis, flips turned back
-  double flipShare() const { return flip_share_; }  ///< front taken for back
+  double axisSigma() const { return axis_sigma_; }  ///< [rad] rms error of the axis
+  double flipShare() const { return flip_share_; }  ///< share of reversed headings
   int examples() const { return examples_; }
   using Confusion = std::array<std::array<double, kBins>, kBins>;
   const Confusion& confusion() const { return confusion_; }  ///< [true][predicted], rows sum to 1

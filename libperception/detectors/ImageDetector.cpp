@@ -9,7 +9,7 @@
 namespace perception {
 namespace {
 
-/// The camera turned to the right by an angle, about its own vertical axis.
+/// T_ego_camera of a camera rotated to the right by `angle` [rad] about its vertical axis.
 Pose3 turnedRight(const Pose3& T_ego_camera, double angle) {
   Pose3 turn = Pose3::Identity();
   turn.linear() << std::cos(angle), 0, std::sin(angle), 0, 1, 0, -std::sin(angle), 0,

@@ -8,19 +8,18 @@
 
 namespace perception {
 
-/// A detector for any camera: ordinary pictures as they are, panoramas of the full circle through
-/// their eight tiles.
+/// A detector for any camera: pinhole images directly, full panoramas by their eight tiles.
 class ImageDetector {
  public:
   explicit ImageDetector(DetectorSetup setup);
 
-  /// Boxes in pixels of the image, each object once. `T_ego_camera` (optical frame), when known,
-  /// says where objects can stand. Without `camera.projection` = equirectangular the image is an
-  /// ordinary picture. Scores are the back end's own.
+  /// Boxes in pixels of the image, one per object. `T_ego_camera` (optical frame), when known,
+  /// restricts the search by the ground. `camera.projection` selects pinhole or panorama. Scores
+  /// are in the back end's own unit.
   ObjectDetections detect(const Raster& image, const CameraModel& camera,
                           const std::optional<Pose3>& T_ego_camera,
                           const GroundPlane& ground = {}) const;
-  /// Headings by the heads of the setup, of boxes of any origin.
+  /// Sets the headings of boxes from any source by the heading heads of the setup.
   void addHeadings(const Raster& image, const CameraModel& camera,
                    std::vector<ObjectDetection>& objects) const;
   const DetectorSetup& setup() const { return setup_; }

@@ -19,9 +19,9 @@
 namespace perception {
 namespace {
 
-constexpr double kLeastScore = 0.01;  // weaker boxes of a network are no boxes
-constexpr double kLongish = 1.3;  // a longer image is cut into squares, too: what scale it loses
-constexpr double kCut = 0.03;     // of its width: a box so near to its window's edge is cut by it
+constexpr double kLeastScore = 0.01;   // weaker boxes of a network are noise
+constexpr double kWindowAspect = 1.3;  // ratio of sides above which square windows are added
+constexpr double kTruncated = 0.03;    // of its width: a box this close to its edge is truncated
 
 /// Networks of the YOLO kind through cv::dnn.
 class OnnxDetector final : public Detector {
@@ -39,7 +39,7 @@ class OnnxDetector final : public Detector {
     try {
       net_ = cv::dnn::readNetFromONNX(path_);
       net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-      run(cv::Mat::zeros(side_, side_, CV_8UC3));  // an export that cannot run says so at once
+      run(cv::Mat::zeros(side_, side_, CV_8UC3));  // fails here when the network cannot run
     } catch (const cv::Exception& e) {
       throw DataError(fmt::format(
           "{}: cv::dnn {} cannot run this network at an input of {} px ([onnx] input): {}. Export "
@@ -61,13 +61,13 @@ class OnnxDetector final : public Detector {
   }
 
  private:
-  /// The image itself, and where it is much longer than broad squares along it that share
-  /// `window_overlap`: a network of 416 px sees a car of 40 px in 1242 as one of 13.
+  /// The whole image and, if it is long, square windows along it that overlap by `window_overlap`:
+  /// scaling an image of 1242 px to 416 px would shrink a car of 40 px to 13.
   std::vector<cv::Rect> windowsOf(const cv::Size& image) const {
     std::vector<cv::Rect> out{{{0, 0}, image}};
     const int side = std::min(image.width, image.height);
     const int length = std::max(image.width, image.height);
-    if (!params_.windows || length < kLongish * side || length <= side_) return out;
+    if (!params_.windows || length < kWindowAspect * side || length <= side_) return out;
     const double step = (1 - params_.window_overlap) * side;
     const int count = 1 + static_cast<int>(std::ceil((length - side) / step));
     for (int i = 0; i < count; ++i) {
@@ -78,12 +78,13 @@ class OnnxDetector final : public Detector {
     return out;
   }
 
-  /// The boxes of one window, those left out that it cuts: others show them whole.
+  /// Detects in one window, without boxes truncated by it, which are whole in others.
   void detectIn(const cv::Mat& pixels, const cv::Rect& window, const SearchRegion& region,
                 std::vector<ObjectDetection>& out) const {
     const double scale = std::min(static_cast<double>(side_) / window.width,
                                   static_cast<double>(side_) / window.height);
-    cv::Mat input(side_, side_, CV_8UC3, cv::Scalar::all(114));  // the gray that they learned with
+    cv::Mat input(side_, side_, CV_8UC3,
+                  cv::Scalar::all(114));  // padding with the gray of training
     cv::Mat part = input(cv::Rect(0, 0, std::max(1, cvRound(window.width * scale)),
                                   std::max(1, cvRound(window.height * scale))));
     cv::resize(pixels(window), part, part.size(), 0, 0, cv::INTER_LINEAR);
@@ -93,7 +94,7 @@ class OnnxDetector final : public Detector {
                                              std::max(kLeastScore, model_.threshold))) {
       const auto name = names_.find(b.index);
       if (name == names_.end()) continue;
-      const double border = kCut * (b.box.x2 - b.box.x1) / scale;
+      const double border = kTruncated * (b.box.x2 - b.box.x1) / scale;
       const double x1 = window.x + b.box.x1 / scale, x2 = window.x + b.box.x2 / scale;
       const double y1 = window.y + b.box.y1 / scale, y2 = window.y + b.box.y2 / scale;
       const bool cut = (window.x > 0 && x1 < window.x + border) ||
@@ -125,10 +126,10 @@ class OnnxDetector final : public Detector {
       names_[index] = word.substr(equals + 1);
     }
     if (names_.empty())
-      throw ConfigError("[model] names: which of the network's classes are wanted? (2=Car, ...)");
+      throw ConfigError("[model] names: expected the classes to report (2=Car, ...)");
   }
 
-  /// The first output, 1 x A x B.
+  /// Runs the network; returns its first output, 1 x A x B.
   cv::Mat run(const cv::Mat& input) const {
     const bool yolox = layout_ == OnnxLayout::kYolox;
     // YOLOX takes blue, green, red from 0 to 255; the others red, green, blue from 0 to 1.

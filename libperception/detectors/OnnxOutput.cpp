@@ -13,7 +13,7 @@ int cellsOf(int side) {
   return n;
 }
 
-/// Place and size of one box, before its layout is undone.
+/// Position, size and scores of one box as in the output.
 struct Raw {
   double x, y, width, height;
 };
@@ -22,7 +22,7 @@ ObjectDetection::ImageBox boxOf(const Raw& r) {
   return {r.x - 0.5 * r.width, r.y - 0.5 * r.height, r.x + 0.5 * r.width, r.y + 0.5 * r.height};
 }
 
-/// The cell of place `i` in YOLOX's order: strides, in them rows, in them columns.
+/// Decodes entry `i` of YOLOX, ordered by stride, row and column.
 Raw fromCell(const Raw& r, int i, int side) {
   for (const int stride : kStrides) {
     const int cells = side / stride;
@@ -48,7 +48,8 @@ bool fitsOnnxLayout(const OnnxShape& shape, OnnxLayout layout, int side) {
     case OnnxLayout::kYolox:
       return shape.rows == cellsOf(side) && shape.columns >= 6;
     case OnnxLayout::kYolov5:
-      // Three anchors a cell; variants with other strides differ, but boxes outnumber values.
+      // Three anchors per cell; other strides change the number of boxes, but there are more boxes
+      // than values.
       return shape.rows > shape.columns && shape.rows != cellsOf(side) && shape.columns >= 6;
     case OnnxLayout::kYolov8:
       return shape.columns > shape.rows && shape.rows >= 5;

@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// How a network writes its boxes; the order of OnnxParams::layoutNames().
+/// Layout of a network's output; in the order of OnnxParams::layoutNames().
 enum class OnnxLayout {
   kUnknown,
   kYolox,   ///< cells x (offset, log size, objectness, classes), strides 8, 16, 32
@@ -13,12 +13,12 @@ enum class OnnxLayout {
   kYolov8   ///< (center, size, classes) x boxes, in input pixels
 };
 
-/// Of an output 1 x rows x columns.
+/// Shape of an output 1 x rows x columns.
 struct OnnxShape {
   int rows = 0, columns = 0;
 };
 
-/// Which layout an output of that shape can have at an input of side x side pixels.
+/// Layout by the shape of the output for an input of side x side pixels.
 OnnxLayout guessOnnxLayout(const OnnxShape& shape, int side);
 bool fitsOnnxLayout(const OnnxShape& shape, OnnxLayout layout, int side);
 
@@ -27,7 +27,7 @@ struct OnnxBox {
   double score = 0;               ///< [0, 1]
   ObjectDetection::ImageBox box;  ///< [px] of the input
 };
-/// All boxes whose best class reaches `least`.
+/// All boxes with a best class score of at least `least`.
 std::vector<OnnxBox> decodeOnnxOutput(const float* values, const OnnxShape& shape,
                                       OnnxLayout layout, int side, double least);
 

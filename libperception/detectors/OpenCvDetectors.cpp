@@ -36,7 +36,7 @@ bool isBox(const ObjectDetection& o) {
   return o.image_box->x2 > o.image_box->x1 && o.image_box->y2 > o.image_box->y1;
 }
 
-/// cv::dpm of OpenCV's contributed modules: star cascades, without headings.
+/// cv::dpm of OpenCV's contrib modules: cascades of star models, without headings.
 class CvDpmDetector final : public Detector {
  public:
   explicit CvDpmDetector(const DetectorSetup& setup) {

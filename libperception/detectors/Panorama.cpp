@@ -12,23 +12,23 @@
 namespace perception {
 namespace {
 
-constexpr int kMargin = 2;       // [px] of the strip beyond the tile's edges, for interpolation
-constexpr double kBorder = 1.5;  // [px] a box so near to its tile's edge is cut by it
+constexpr int kMargin = 2;                // [px] margin of the strip for interpolation
+constexpr double kBorder = 1.5;           // [px] a box this close to its tile's edge is truncated
 constexpr double kCentral = radians(25);  // tiles are 45 degrees apart; some overlap
 constexpr double kSameUnion = 0.4;        // method.md 8.8: one object from this overlap on ...
 constexpr double kSameSmaller = 0.7;  // ... or when so much of the smaller box lies in the other
 
 using Box = ObjectDetection::ImageBox;
 
-/// A detection in the panorama, and which of its sides the tile cut off.
+/// A detection in the panorama and the sides at which its tile truncates it.
 struct Candidate {
   ObjectDetection object;
   bool left_cut = false, right_cut = false, bottom_cut = false;
-  bool off_axis = false;  ///< another tile sees it nearer to its middle, with less distortion
+  bool off_axis = false;  ///< closer to the middle of another tile, with less distortion
   int cuts() const { return left_cut + right_cut + bottom_cut; }
 };
 
-/// The box moved by whole turns so that it begins inside the panorama.
+/// The box shifted by full turns so that it begins inside the panorama.
 Box normalized(Box box, double width) {
   const double turns = std::floor((box.x1 + 0.5) / width);
   box.x1 -= turns * width;
@@ -36,7 +36,7 @@ Box normalized(Box box, double width) {
   return box;
 }
 
-/// `b` moved by whole turns to where it is nearest to `a`.
+/// `b` shifted by full turns to be nearest to `a`.
 Box besides(const Box& a, Box b, double width) {
   const double turns = std::round((0.5 * (a.x1 + a.x2) - 0.5 * (b.x1 + b.x2)) / width);
   b.x1 += turns * width;
@@ -44,12 +44,12 @@ Box besides(const Box& a, Box b, double width) {
   return b;
 }
 
-/// Two views of an object that is wider than a tile's half: one lacks its right, one its left part.
+/// Whether two truncated boxes are the left and right part of one object.
 bool complete(const Candidate& a, const Candidate& b) {
   return (a.right_cut && b.left_cut) || (a.left_cut && b.right_cut);
 }
 
-/// Takes what another view of the same object adds to the one that is kept.
+/// Extends the kept box by another view of the same object.
 void absorb(Candidate& kept, const Candidate& other, double width) {
   Box& box = *kept.object.image_box;
   if (complete(kept, other)) {
@@ -65,10 +65,11 @@ void absorb(Candidate& kept, const Candidate& other, double width) {
   }
 }
 
-/// One candidate an object: the best view, with what the others add.
+/// One candidate per object: the best view, extended by the others.
 std::vector<Candidate> suppress(std::vector<Candidate> candidates, double width) {
-  // Whole views before cut ones (the best score may belong to half a car), and before views at a
-  // tile's edge, where the lowest row is not of the nearest point (12 cm for a person at 45 deg).
+  // Complete views before truncated ones (half a car may have the best score) and before views at a
+  // tile's edge, where the lowest row is not that of the nearest point (12 cm for a person at 45
+  // deg).
   std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
     return std::make_tuple(a.cuts(), a.off_axis, -a.object.score) <
            std::make_tuple(b.cuts(), b.off_axis, -b.object.score);
@@ -91,7 +92,7 @@ std::vector<Candidate> suppress(std::vector<Candidate> candidates, double width)
 
 }  // namespace
 
-/// Where in its strip of the panorama each pixel of a tile comes from.
+/// Source coordinates of each pixel of a tile within its strip of the panorama.
 struct Panorama::Maps {
   cv::Mat fixed, weights;
 };
@@ -111,7 +112,7 @@ Panorama::Panorama(int width) {
   tile_camera_.fx = tile_camera_.fy = 0.5 * size;  // 90 degrees
   tile_camera_.cx = tile_camera_.cy = 0.5 * size - 0.5;
 
-  // Column of the strip's first pixel for tile 0; the other tiles' strips are whole pixels further.
+  // Column of the strip's first pixel for tile 0; those of other tiles are offset by whole pixels.
   const double first = 0.5 * camera_.width - 0.5 * size - kMargin;
   cv::Mat from_x(size, size, CV_32FC1), from_y(size, size, CV_32FC1);
   for (int y = 0; y < size; ++y) {
@@ -143,7 +144,7 @@ Raster Panorama::tile(const Raster& panorama, int tile) const {
     return {};
   const cv::Mat whole(camera_.height, width, CV_8UC(channels),
                       const_cast<std::uint8_t*>(panorama.pixels.data()));
-  // The tile's strip, put together where the seam goes through it.
+  // The tile's strip, joined across the seam.
   const int shift = ((tile % kTiles) + kTiles) % kTiles * (width / kTiles);
   const int begin = ((width - size) / 2 - kMargin + shift) % width;
   const int columns = size + 2 * kMargin, before_seam = std::min(columns, width - begin);
@@ -165,7 +166,7 @@ ObjectDetection::ImageBox Panorama::toPanorama(const ObjectDetection::ImageBox& 
                                                int tile) const {
   const double f = tile_camera_.fx, c = tile_camera_.cx;
   const double left = std::atan((box.x1 - c) / f), right = std::atan((box.x2 - c) / f);
-  // Rows hold at the middle azimuth, where the object stands.
+  // Rows are converted at the middle azimuth of the box.
   const double depth = std::hypot(1.0, std::tan(0.5 * (left + right)));
   const auto row = [&](double y) {
     return std::atan2((y - tile_camera_.cy) / tile_camera_.fy, depth) * camera_.fy + camera_.cy;
@@ -196,7 +197,7 @@ ObjectDetections Panorama::merge(const std::vector<std::vector<ObjectDetection>>
       candidates.push_back(std::move(c));
     }
   }
-  // A box that grew may meet another one: wide objects take more than one round.
+  // An extended box may overlap another one: repeat until none is merged.
   for (std::size_t before = candidates.size() + 1; candidates.size() < before;) {
     before = candidates.size();
     candidates = suppress(std::move(candidates), camera_.width);

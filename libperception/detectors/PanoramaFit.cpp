@@ -12,7 +12,7 @@ PanoramaFit::PanoramaFit(const CameraModel& camera)
     : camera_(camera),
       width_((camera.width + Panorama::kTiles - 1) / Panorama::kTiles * Panorama::kTiles) {
   scale_ = static_cast<double>(width_) / std::max(1, camera.width);
-  // The horizon lies in the middle of the whole panorama.
+  // The horizon is the middle row of the whole panorama.
   top_ = static_cast<int>(std::lround(0.25 * width_ - scale_ * (camera.cy + 0.5)));
   whole_ = width_ == camera.width && 2 * camera.height == width_ && top_ == 0;
 }
@@ -24,7 +24,7 @@ Raster PanoramaFit::whole(const Raster& image) const {
   const int rows = static_cast<int>(std::lround(scale_ * image.height));
   cv::Mat scaled;
   cv::resize(pixels, scaled, {width_, rows}, 0, 0, cv::INTER_LINEAR);
-  // A horizon near the picture's first or last row leaves rows beyond a pole: they go.
+  // Rows beyond a pole are dropped.
   const int first = std::max(0, -top_), last = std::min(rows, width_ / 2 - top_);
   Raster out{width_, width_ / 2, image.channels, {}};
   if (first >= last) return {};
@@ -40,7 +40,7 @@ void PanoramaFit::toPicture(std::vector<ObjectDetection>& objects) const {
   for (ObjectDetection& o : objects) {
     if (!o.image_box) continue;
     auto& b = *o.image_box;
-    // Centers of pixels are whole numbers.
+    // Pixel centers have integer coordinates.
     const auto column = [&](double u) { return (u + 0.5) / scale_ - 0.5; };
     const auto row = [&](double v) {
       return std::clamp((v + 0.5 - top_) / scale_ - 0.5, -0.5, last);

@@ -11,10 +11,10 @@ namespace {
 
 using Box = ObjectDetection::ImageBox;
 
-constexpr double kSameView = 0.6;  // overlap of two components' boxes around one object
+constexpr double kSameView = 0.6;  // least overlap of boxes of two components for one object
 
-/// The kept component's heading and those of its neighbors, each with its best score near the box,
-/// weighted by e^{2 score}.
+/// Mean of the headings of the kept component and its neighbors, weighted by e^{2 score} of their
+/// best score near the box (method.md 8.8).
 double refinedHeading(const DpmDetection& kept, const std::vector<const DpmDetection*>& around) {
   std::map<int, const DpmDetection*> best;
   for (const DpmDetection* d : around) {

@@ -5,15 +5,15 @@
 
 namespace perception {
 
-/// [px^2] that two boxes share.
+/// Area of the intersection of two boxes [px^2].
 double sharedArea(const ObjectDetection::ImageBox& a, const ObjectDetection::ImageBox& b);
 double areaOf(const ObjectDetection::ImageBox& box);
 /// Intersection over union, [0, 1].
 double overlapOf(const ObjectDetection::ImageBox& a, const ObjectDetection::ImageBox& b);
 
-/// The best place of each object, best first: weaker ones of a target of which more than `overlap`
-/// lies inside a better one go. Headings are then means of the components that fit the kept box,
-/// which lie finer than the components do.
+/// Non-maximum suppression, best first: removes weaker detections of a target with more than
+/// `overlap` of their area inside a better one. Headings become means over the components that fit
+/// the kept box, finer than the components' spacing.
 std::vector<DpmDetection> suppressed(std::vector<DpmDetection> places, double overlap);
 
 /// The same for any detector's boxes, within each label.

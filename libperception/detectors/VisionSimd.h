@@ -4,7 +4,7 @@
 
 namespace perception {
 
-/// The inner loops for a level that this processor has.
+/// The kernels of a SIMD level, which the processor must support.
 inline const VisionKernels& visionKernels(SimdLevel level) {
   return level == SimdLevel::kAvx512 ? avx512::kVisionKernels
          : level == SimdLevel::kAvx2 ? avx2::kVisionKernels

@@ -92,7 +92,8 @@ ReportTable summaryTable(const std::vector<Named>& all, const EvaluationReport& 
       "sized is n/a of cameras and where the truth does not hold what stands around (walls are in "
       "no truth: a "
       "measurement on one is wrong at both levels).",
-      "The paper's sized figures are those of its text; its recall is over the sensor's range."};
+      "paper: Radecki et al.; sized figures are those of its text, recall is over the sensor's "
+      "range."};
   for (const Named& named : all) {
     table.rows.push_back(summaryRow(named, true));
     if (hasFurtherLabels(*named.front_end)) table.rows.push_back(summaryRow(named, false));

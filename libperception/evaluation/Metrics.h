@@ -12,7 +12,8 @@ namespace perception {
 /// A figure; nothing where nothing can be said ("n/a": no truth, no match), never 0 or NaN instead.
 using Figure = std::optional<double>;
 
-/// The paper's table and its relatives for a class or all of them, one pairing.
+/// The table of results of [radecki2016] and related figures, for one class or all, with one
+/// pairing.
 struct TrackingFigures {
   std::size_t active = 0;  ///< counted truth objects over all instants (denominator A)
   std::size_t in_sensor_range = 0, returns_in_sensor_range = 0;  ///< of these (denominator B)
@@ -117,8 +118,8 @@ struct ClearFigures {
 /// Strict when the evaluation's exclusion is its tolerance: outputs between the two are left out.
 ClearFigures clearFigures(const Evaluation& evaluation);
 
-/// RMS difference in the number of objects between two runs (paper: against a run of 50 particles),
-/// at the instants that both have; nothing when there are none.
+/// RMS difference in the number of objects between two runs ([radecki2016]: against a run of 50
+/// particles), at the instants that both have; nothing when there are none.
 struct CountDifference {
   std::size_t instants = 0;
   Figure all, classified;

@@ -34,7 +34,7 @@ struct EvaluationReport {
   std::string reference;  ///< path of the run that object counts are compared with; may be empty
   EvaluationOptions options;
   std::vector<EvaluatedRun> runs;
-  std::vector<PaperTrackingRow> paper;  ///< rows of [radecki2016] to stand beside ours
+  std::vector<PaperTrackingRow> paper;  ///< rows of [radecki2016] beside the runs
   std::vector<std::string> plots;       ///< file names beside the report, for Markdown
 };
 

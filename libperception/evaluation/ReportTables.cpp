@@ -34,7 +34,7 @@ void addPaperRows(const EvaluationReport& report, ReportTable& table) {
 
 ReportTable paperTable(const EvaluationReport& report) {
   ReportTable table =
-      makeTable("Results, columns as in the paper", {"Run", "Class"},
+      makeTable("Results, columns as in Radecki et al.", {"Run", "Class"},
                 {"Object Tracked", "Range Error (m)", "Bearing Error (rad)",
                  "Correct Classification", "Mis-Classification", "Number of Returns"});
   table.notes = {

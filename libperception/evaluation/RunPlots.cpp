@@ -215,7 +215,7 @@ void drawComparison(const EvaluationReport& report, PlotScript& script) {
                800);
   script.add(fmt::format(
       "set multiplot layout 2,3 title 'Runs side by side: pooled instants; lines: lowest and "
-      "highest trial; squares: the paper' noenhanced font ',14'\n"
+      "highest trial; squares: Radecki et al.' noenhanced font ',14'\n"
       "set style fill solid 0.8 noborder\nset boxwidth 0.6\nunset key\nset grid noxtics\n"
       "set xrange [-0.6:{:.1f}]\nset xtics noenhanced rotate by 30 right ({})\n"
       "set bmargin 6\n",

@@ -114,11 +114,11 @@ ReportTable sideBySideTable(const EvaluationReport& report) {
     table.rows.push_back(std::move(cells));
   }
   table.notes = {
-      "Closest matching as in the paper down to Number of Returns, one-to-one below. The "
+      "Closest matching as in Radecki et al. down to Number of Returns, one-to-one below. The "
       "sensors' range: all with lidar, else 15 m, persons 10 m."};
   if (trials) {
     table.notes.push_back(
-        "Of all trials' instants taken together, as the paper does; in brackets mean +- standard "
+        "Instants of all trials pooled, as in Radecki et al.; in brackets mean +- standard "
         "deviation over the trials; lowest..highest trial.");
   }
   return table;

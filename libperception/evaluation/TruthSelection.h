@@ -10,7 +10,7 @@ namespace perception {
 
 /// Which truth objects count, ego frame.
 struct SelectionOptions {
-  double range = 20;  ///< [m] of the center (paper: "20m semi-circle in front")
+  double range = 20;  ///< [m] of the center ([radecki2016]: "20m semi-circle in front")
   double fov = kPi;   ///< [rad] whole opening angle of the sector ahead
   double complete_fov =
       kTwoPi;            ///< [rad] beyond it the truth lacks objects: no output there is false

@@ -7,14 +7,15 @@
 namespace perception {
 namespace {
 
-constexpr float kInside = 1e-3F;  // [cells] by which stretches stay within window and last cell
-constexpr float kShort = 1e-3F;   // [cells] of a beam that stands upright
-constexpr float kLevel = 1e-20F;  // [-] instead of a slope of zero
+constexpr float kInside = 1e-3F;  // [cells] margin to the borders of window and last cell
+constexpr float kShort = 1e-3F;   // [cells] horizontal length of a vertical beam
+constexpr float kLevel = 1e-20F;  // [-] replaces a slope of zero
 constexpr float kFinestBins = 1 << BeamCover::kFinest;
 constexpr float kBinsAcross = BeamCover::kAcross * kFinestBins;
 constexpr float kBinsUp = BeamCover::kUp * kFinestBins;
 
-// Shrinks [from, to] to where a linear function that is `a` at 0 and `b` at 1 is not negative.
+// Clips [from, to] to where a linear function with the values `a` at 0 and `b` at 1 is not
+// negative.
 template <class Float>
 PERCEPTION_LANES void clip(const Float& a, const Float& b, Float& from, Float& to) {
   const Float zero = a / (a == b ? all<Float>(kLevel) : a - b);
@@ -23,7 +24,7 @@ PERCEPTION_LANES void clip(const Float& a, const Float& b, Float& from, Float& t
   to = b < 0 ? smaller(to, zero) : to;
 }
 
-// Where a beam of `slope` enters the cell of its end, from `origin` on: distance along.
+// Distance along at which a beam of `slope` from `origin` enters its end cell.
 template <class Float>
 PERCEPTION_LANES Float entry(const Float& origin, const Float& end, const Float& slope) {
   const Float cell = roundedDown(end);
@@ -33,7 +34,7 @@ PERCEPTION_LANES Float entry(const Float& origin, const Float& end, const Float&
   return (border - origin) / steep;
 }
 
-// Whether a beam is within [0, size) at `from` and `to`, whatever the rounding. So it is between.
+// Whether a beam is within [0, size) at `from` and `to`, and hence in between, rounding included.
 template <class Float>
 PERCEPTION_LANES IntsOf<Float> within(const Float& origin, const Float& slope, const Float& from,
                                       const Float& to, float size) {
@@ -73,7 +74,7 @@ PERCEPTION_LANES void prepareAll(BeamBlock& b, const WindowPlace& o, float cells
                        within(aside, across, begin, end, cells) &
                        within(oz + all<Float>(0.0F), up, begin, end, layers);
     store8(begin, &b.from[i]), store8(inside ? end : begin, &b.to[i]);
-    // The last bin holds a slope of one, too.
+    // The last bin includes a slope of one.
     store8(truncated(smaller((across + 1) * kBinsAcross, all<Float>(2 * kBinsAcross - 0.5F))),
            &b.bin_across[i]);
     store8(truncated(roundedDown(up * kBinsUp)), &b.bin_up[i]);
@@ -85,7 +86,7 @@ PERCEPTION_LANES void prepareAll(BeamBlock& b, const WindowPlace& o, float cells
   }
 }
 
-// As PERCEPTION_WIDER, but each width has its own vectors.
+// Like PERCEPTION_WIDER, with vectors of the width of each target.
 PERCEPTION_TARGET("default")
 void prepareBeams(BeamBlock& b, const WindowPlace& o, float cells, float layers,
                   const FanBins& fans) {

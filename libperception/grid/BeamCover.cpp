@@ -6,9 +6,9 @@
 namespace perception {
 
 BeamCover::BeamCover(int cells, int layers)
-    // An octave begins at half its end, so its beams rise by at most twice the layers there.
+    // Beams within the layers at the begin of an octave rise by at most twice that at its end.
     : rows_(static_cast<std::int32_t>(2 * kUp * static_cast<float>(layers)) + 2) {
-  constexpr float kMarks = 254;  // of a byte, from an octave's begin to its end
+  constexpr float kMarks = 254;  // steps of a mark from begin to end of an octave
   std::size_t first = 0;
   for (int k = kFinest; k >= kCoarsest; --k) {
     Octave& octave = octaves_[k];

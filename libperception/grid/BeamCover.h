@@ -5,27 +5,28 @@
 
 namespace perception {
 
-/// How far along each direction beams have already crossed this scan's cells. Directions are binned
-/// so finely that beams of one bin pass through the same cells but for corners, coarser near the
-/// sensor, where beams lie close to each other: from octave to octave of the distance bins halve in
-/// number and lie within each other. So a scan costs by what it sees and not by its beams.
+/// For each direction the distance up to which beams of this scan have already crossed cells. Bins
+/// of direction are so fine that beams of a bin cross the same cells except at corners, and coarser
+/// near the sensor: with each octave of distance toward it their number halves, nested. The cost of
+/// a scan is then that of the cells crossed, not of its beams.
 class BeamCover {
  public:
-  static constexpr int kFinest = 7, kCoarsest = 2;  ///< octave k reaches to 2^k cells, the last on
-  /// Bins across and upwards per cell at the far end of an octave.
+  static constexpr int kFinest = 7,
+                       kCoarsest = 2;  ///< octave k ends at 2^k cells, the last one is open
+  /// Bins across and upward per cell at the far end of an octave.
   static constexpr float kAcross = 1.5F, kUp = 1.5F;
-  /// Bins across of a face in the finest octave.
+  /// Bins across per face in the finest octave.
   static constexpr int kFaceBins = static_cast<int>(2 * kAcross * (1 << kFinest));
 
   /// `cells`, `layers`: of the window.
   BeamCover(int cells, int layers);
 
-  /// Forgets the last scan. `height`: [cells] of the sensor above the window's bottom.
+  /// Starts a scan. `height`: [cells] of the sensor above the window's bottom.
   void begin(float height);
 
-  /// [cells] from where on a beam crosses what no other has crossed; it takes it up to `to` from
-  /// now on. Nothing is left where the result is not below `to`. `across`, `up`: the beam's bins in
-  /// the finest octave.
+  /// Distance [cells] from which a beam crosses cells that no other has crossed, and marks its
+  /// direction as crossed up to `to`. Nothing remains when the result is not below `to`. `across`,
+  /// `up`: the beam's bins in the finest octave.
   float take(int face, std::int32_t across, std::int32_t up, float from, float to) {
     int octave = octaveOf(to);
     float begin = to, end = to;
@@ -54,7 +55,7 @@ class BeamCover {
   std::size_t memoryBytes() const { return reached_.capacity(); }
 
  private:
-  /// [cells] where it begins, per step of a mark; and where its bins begin in the table.
+  /// [cells] begin and step per mark, [1/cells] marks per cell, and index of its first bin.
   struct Octave {
     float begin = 0, cells = 1, units = 1;
     std::size_t first = 0;
@@ -67,7 +68,7 @@ class BeamCover {
 
   std::int32_t rows_, lowest_ = 0;
   Octave octaves_[kFinest + 1];
-  std::vector<std::uint8_t> reached_;  // 0: not at all; [octave][face][across][up]
+  std::vector<std::uint8_t> reached_;  // 0: not crossed; [octave][face][across][up]
 };
 
 }  // namespace perception

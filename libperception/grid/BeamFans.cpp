@@ -11,21 +11,21 @@
 namespace perception {
 namespace {
 
-// [cells] a fan's width at the window's far end. With the cell that a beam may go aside within a
-// cell along this is less than two, so three rows hold it.
+// [cells] width of a fan at the window's far end. Plus the cell by which a beam may move across per
+// cell along, this is below two, so that three rows contain it.
 constexpr float kWidest = 0.9F;
 constexpr int kRows = 3;
-constexpr float kFarthest = 7000;  // [cells] to the window's far end: fans are numbered in 16 bits
-constexpr float kLevel = 1e-20F;   // [-] instead of a slope of zero
+constexpr float kFarthest = 7000;  // [cells] largest window: fan numbers have 16 bits
+constexpr float kLevel = 1e-20F;   // [-] replaces a slope of zero
 
-/// What the beams of a fan share. Its octant is mirrored so that they grow along and aside.
+/// Common data of the beams of a fan, mirrored so that they increase along and across.
 struct Fan {
   float along, aside, height;  ///< [cells] of the sensor
-  float slope;                 ///< [-] the least of its beams
+  float slope;                 ///< [-] least slope of its beams
   std::int32_t first, last;    ///< cells along, `first` of a group
   std::int32_t cells;          ///< of the window
   std::int32_t column;         ///< of cell and row 0
-  std::int32_t step, side;     ///< from column to column along and aside
+  std::int32_t step, side;     ///< column increments along and across
 };
 
 template <class Bits, class Mask>
@@ -36,8 +36,8 @@ PERCEPTION_LANES void gather(Mask* masks, const Bits& bits) {
   std::memcpy(masks, &all, sizeof all);
 }
 
-// For each group of cells along: where they begin and where the first row ends that a beam of the
-// fan may be in, as distances [cells] from the sensor.
+// For each group of cells along: begin of the cells and end of the first row that a beam of the fan
+// may be in, as distances [cells] from the sensor.
 template <class Float>
 PERCEPTION_LANES void layOut(const Fan& fan, float* guides) {
   constexpr int kCount = LanesOf<Float>::kCount;
@@ -49,7 +49,7 @@ PERCEPTION_LANES void layOut(const Fan& fan, float* guides) {
   }
 }
 
-// The layers between the heights where the beam enters and leaves each row of a group of cells.
+// Layers between the heights at which the beam enters and leaves each row of a group of cells.
 template <bool kRises, class Float, class Mask>
 PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sensor_height,
                                  const float* guides, Mask* gathered) {
@@ -76,13 +76,13 @@ PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sen
   }
 }
 
-// No beam is in the cells beyond the window's end, of the last group: they mark nothing.
+// Cells of the last group beyond the window's end hold no beam and mark nothing.
 template <class Float, class Mask>
 PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, const Mask* gathered,
                                    Mask* crossed) {
   constexpr int kCount = LanesOf<Float>::kCount;
   const std::ptrdiff_t side = fan.side;
-  // Lanes before and behind the beams stay beside the window: row and the next two are in margin().
+  // Lanes before and behind the beams fall beside the window: their rows are within margin().
   constexpr std::int32_t kBefore = 2;
   const Float end = all<Float>(static_cast<float>(fan.cells - 1));
   const Float lowest = all<Float>(0.5F), highest = end + (0.5F + kBefore);
@@ -121,7 +121,7 @@ PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const s
   markGathered<Float>(fan, guides, gathered, crossed);
 }
 
-// As PERCEPTION_WIDER, but each width has its own vectors. A template cannot have targets.
+// Like PERCEPTION_WIDER, with vectors of the width of each target. Templates cannot have targets.
 #define PERCEPTION_CROSS_FAN(TARGET, Float, Mask)                                       \
   PERCEPTION_TARGET(TARGET)                                                             \
   void crossFanOf(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order, \
@@ -154,7 +154,8 @@ void BeamFans<Mask>::begin(const WindowPlace& origin) {
   ends_.resize(static_cast<std::size_t>(kOctants * bins_.slopes + 1));
 }
 
-// By counting; afterwards ends_ tells where each fan begins, and the next one ends it.
+// Counting sort; afterwards ends_ holds the begin of each fan, which is the end of the previous
+// one.
 template <class Mask>
 void BeamFans<Mask>::sort() {
   std::fill(ends_.begin(), ends_.end(), std::uint16_t{0});

@@ -18,7 +18,7 @@ bool endsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// The highest log-odds of each place of the ground, or the lowest where none is above 0.
+/// The highest log-odds of each ground cell, or the lowest where none is above 0.
 std::map<std::pair<int, int>, double> groundOf(const std::vector<GridCell>& cells,
                                                double resolution, const Vector2& corner) {
   std::map<std::pair<int, int>, double> ground;
@@ -62,7 +62,7 @@ void saveOctree(const SafetyGrid& grid, const std::string& file) {
 void saveGround(const SafetyGrid& grid, const std::string& file) {
   const auto cells = grid.knownCells();
   const double resolution = grid.params().resolution;
-  Vector2 low(-1, -1), high(1, 1);  // [m] a small empty map when nothing is known
+  Vector2 low(-1, -1), high(1, 1);  // [m] a small empty map when no cell is known
   if (!cells.empty()) low = high = cells.front().center.head<2>();
   for (const GridCell& cell : cells) {
     low = low.cwiseMin(cell.center.head<2>()), high = high.cwiseMax(cell.center.head<2>());

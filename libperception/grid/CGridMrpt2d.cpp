@@ -14,7 +14,7 @@ namespace {
 using mrpt::maps::COccupancyGridMap2D;
 
 constexpr double kUnitsPerLogOdd = 16;  // CLogOddsGridMapLUT: LOGODD_K; MRPT's sign: free is > 0
-constexpr double kDecayShare = 0.1;  // of tau between decays: finer steps would vanish in rounding
+constexpr double kDecayShare = 0.1;     // of tau between decays: smaller ones are lost to rounding
 
 class CGridMrpt2d final : public SafetyGrid {
  public:
@@ -23,7 +23,7 @@ class CGridMrpt2d final : public SafetyGrid {
         evidence_(params, true),
         cells_(static_cast<int>(std::ceil(params.size / params.resolution))) {
     static_assert(std::is_same_v<Cell, COccupancyGridMap2D::cellType>);
-    // MRPT's coordinates are floats: the map's own begin at 0, the window's corner is kept in
+    // MRPT's map coordinates are floats: they begin at 0, and the window's corner is stored in
     // cells.
     const auto edge = static_cast<float>(static_cast<double>(cells_) * params.resolution);
     map_.setSize(0, edge, 0, edge, static_cast<float>(params.resolution), 0.5F);
@@ -89,7 +89,7 @@ class CGridMrpt2d final : public SafetyGrid {
     if (now_ - decayed_ >= kDecayShare * params().tau) decay();
   }
 
-  // MRPT's maps only grow: the window moves by copying rows within the map.
+  // MRPT's maps cannot move: the window is shifted by copying rows within the map.
   void moveTo(const CellIndex& corner) {
     const std::int64_t dx = corner.x - corner_.x, dy = corner.y - corner_.y;
     const std::int64_t begin = std::max<std::int64_t>(0, -dx),
@@ -115,14 +115,14 @@ class CGridMrpt2d final : public SafetyGrid {
         Cell& cell = values[x];
         if (cell == 0) continue;
         const auto smaller = static_cast<Cell>(std::lround(cell * factor));
-        // Rounding would hold small values for ever.
+        // At least one step: rounding would keep small values forever.
         cell = smaller != cell ? smaller : static_cast<Cell>(cell - (cell > 0 ? 1 : -1));
       }
     }
     decayed_ = now_;
   }
 
-  // Cells hold values as of the last decay.
+  // Cells hold values at the time of the last decay.
   void add(const CellIndex& cell, double log_odds) {
     Cell& at = map_.getRow(static_cast<int>(cell.y - corner_.y))[cell.x - corner_.x];
     const double after = std::clamp(valueOf(at) + log_odds, params().low, params().high);
@@ -147,7 +147,7 @@ class CGridMrpt2d final : public SafetyGrid {
     return cells;
   }
 
-  // In the middle of the slab above the vehicle's ground plane.
+  // Centered in the slab above the vehicle's ground plane.
   GridCell describe(std::int64_t column, std::int64_t row, double log_odds) const {
     const double res = params().resolution;
     const double x = evidence_.centerOf(column), y = evidence_.centerOf(row);
@@ -166,7 +166,7 @@ class CGridMrpt2d final : public SafetyGrid {
   CellIndex corner_;  // of the window, in cells of the world
   Pose3 T_world_ground_ = Pose3::Identity();
   bool started_ = false;
-  Stamp now_, decayed_;  // of the last scan; up to which the cells have decayed
+  Stamp now_, decayed_;  // of the last scan; of the last decay
 };
 
 }  // namespace

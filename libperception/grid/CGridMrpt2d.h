@@ -5,9 +5,9 @@
 
 namespace perception {
 
-/// Cells of the ground in MRPT's COccupancyGridMap2D: all heights of the slab in one cell, so a
-/// bridge blocks and a low obstacle seen once may be cleared by a beam above it, but a scan costs a
-/// few milliseconds. Log-odds in steps of 1/16, MRPT's.
+/// 2D grid in MRPT's COccupancyGridMap2D: one cell for all heights of the slab, so that a bridge
+/// blocks and a beam above a low obstacle may clear it, at a few milliseconds per scan. Log-odds in
+/// MRPT's steps of 1/16.
 std::unique_ptr<SafetyGrid> makeGridMrpt2d(const GridParams& params);
 
 }  // namespace perception

@@ -38,7 +38,8 @@ CSafetyGrid::CSafetyGrid(const GridParams& params) : grid_(makeSafetyGrid(params
 
 CSafetyGrid::TMapDefinition::TMapDefinition() = default;
 
-// [PREFIX_creationOpts] back_end, resolution, size, tau, z_min, z_max; the rest has its defaults.
+// [PREFIX_creationOpts] back_end, resolution, size, tau, z_min, z_max; other parameters keep their
+// defaults.
 void CSafetyGrid::TMapDefinition::loadFromConfigFile_map_specific(
     const mrpt::config::CConfigFileBase& source, const std::string& prefix) {
   const std::string section = prefix + "_creationOpts";
@@ -80,7 +81,7 @@ std::string CSafetyGrid::asString() const {
                      grid_->occupiedCells().size());
 }
 
-// By way of a points map: it alone takes the sensor's pose from every class of observation.
+// Uses a points map, which handles the sensor pose of every class of observation.
 bool CSafetyGrid::internal_insertObservation(
     const mrpt::obs::CObservation& observation,
     const std::optional<const mrpt::poses::CPose3D>& robot_pose) {
@@ -136,7 +137,7 @@ void CSafetyGrid::getVisualizationInto(mrpt::opengl::CSetOfObjects& scene) const
   scene.insert(voxels);
 }
 
-// 0 had other back ends.
+// Version 0 had other back ends.
 uint8_t CSafetyGrid::serializeGetVersion() const { return 1; }
 
 void CSafetyGrid::serializeTo(mrpt::serialization::CArchive& out) const {
@@ -173,7 +174,7 @@ void CSafetyGrid::serializeFrom(mrpt::serialization::CArchive& in, uint8_t versi
     cells.push_back(cell);
   }
   grid_ = makeSafetyGrid(p);
-  GridScan here;  // only places the window
+  GridScan here;  // only sets the window
   here.stamp = Stamp::fromSeconds(stamp_);
   here.T_world_ground = T_world_ground_;
   here.origin = T_world_ground_.translation();

@@ -9,10 +9,10 @@
 
 namespace perception {
 
-/// A safety grid as one of MRPT's metric maps: takes any observation that a points map takes, can
-/// be a member of a CMultiMetricMap by INI ("perception::CSafetyGrid"), is stored in files with
-/// what it knows, and is drawn by MRPT's tools. Returns within the slab count as obstacles, others
-/// only clear; with ground and trust known, give GridScan to grid() instead.
+/// A safety grid as an MRPT metric map: inserts any observation that a points map accepts, can be a
+/// member of a CMultiMetricMap by INI ("perception::CSafetyGrid"), is serialized with its cells,
+/// and is displayed by MRPT's tools. Returns within the slab are obstacles, others only clear; with
+/// ground and trust known, insert a GridScan into grid() instead.
 class CSafetyGrid : public mrpt::maps::CMetricMap {
   DEFINE_SERIALIZABLE(CSafetyGrid, perception)
  public:
@@ -26,7 +26,7 @@ class CSafetyGrid : public mrpt::maps::CMetricMap {
   /// PREFIX.ot, .bt, .gridmap.gz and .png.
   void saveMetricMapRepresentationToFile(const std::string& prefix) const override;
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& scene) const override;
-  /// No map to localize with: it forgets within seconds.
+  /// Not for localization: cells decay within seconds.
   double internal_computeObservationLikelihood(const mrpt::obs::CObservation&,
                                                const mrpt::poses::CPose3D&) const override {
     return 0;
@@ -51,7 +51,7 @@ class CSafetyGrid : public mrpt::maps::CMetricMap {
   double stamp_ = 0;                          ///< [s] of the last scan
 };
 
-/// Lets MRPT's readers and map factories know the class; call once at start-up.
+/// Registers the class with MRPT's serialization and map factory; call once at start-up.
 void registerSafetyGrid();
 
 }  // namespace perception

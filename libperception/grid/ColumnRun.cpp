@@ -5,7 +5,7 @@
 namespace perception {
 namespace {
 
-/// Turns masks of a window, whose bit k is layer k of it, to where layers stand in the array.
+/// Rotates masks, whose bit k is layer k of the window, to the layers of the array.
 template <class Mask>
 struct Turn {
   unsigned up, down;

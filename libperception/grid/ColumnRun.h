@@ -7,18 +7,18 @@
 
 namespace perception {
 
-/// Columns that lie side by side in a window and in the grid's array, and what a scan says of them.
+/// Columns that are contiguous in the window and in the grid's array, and the evidence of a scan.
 template <class Mask>
 struct ColumnRun {
   std::int16_t* values;     ///< of the first one, layer by layer
-  Mask *hit, *crossed;      ///< of each column, a bit a layer; zero afterwards
+  Mask *hit, *crossed;      ///< of each column, a bit per layer; cleared by updateColumns()
   std::size_t slot, count;  ///< of the first one in ColumnAges; how many
   int layers;
-  unsigned turn;  ///< by which layers stand higher in the array than in the masks, around the top
+  unsigned turn;  ///< cyclic shift of the layers from masks to array
   bool judged;    ///< as in LogOddsColumn::update()
 };
 
-/// Brings the columns that the scan has evidence of to its time and adds that evidence.
+/// Decays the columns with evidence to the time of the scan and adds the evidence.
 void updateColumns(const LogOddsColumn& rules, const ColumnRun<std::uint32_t>& run,
                    ColumnAges& ages);
 void updateColumns(const LogOddsColumn& rules, const ColumnRun<std::uint64_t>& run,

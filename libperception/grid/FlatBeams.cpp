@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kSize = FlatBlock::kSize;
 
-// Points that are nearer, or farther, than their bearing's best before the block. Mostly none is.
+// Marks points that are nearer, or farther, than the current one of their bearing; mostly none.
 PERCEPTION_WIDEST void findNearer(const std::int32_t* __restrict bearing,
                                   const float* __restrict range, const float* __restrict nearest,
                                   std::uint8_t* __restrict news) {
@@ -25,9 +25,9 @@ PERCEPTION_WIDEST void findFarther(const std::int32_t* __restrict bearing,
   for (std::size_t i = 0; i < kSize; ++i) news[i] = range[i] > farthest[bearing[i]];
 }
 
-// Of squares, which are not negative: their order is that of their bits.
+// Minimum of squares: non-negative floats are ordered like their bits.
 PERCEPTION_WIDEST float leastOf(const float* __restrict squares, std::size_t count) {
-  std::int32_t least = 0x7F7FFFFF;  // the greatest float
+  std::int32_t least = 0x7F7FFFFF;  // the largest float
   for (std::size_t i = 0; i < count; ++i) {
     std::int32_t bits;
     std::memcpy(&bits, squares + i, sizeof bits);
@@ -38,17 +38,17 @@ PERCEPTION_WIDEST float leastOf(const float* __restrict squares, std::size_t cou
   return square;
 }
 
-/// A beam of a block on its way, mirrored so that it grows along.
+/// A beam of a block, mirrored so that it increases along.
 struct FlatBeam {
   float on, aside, across;  ///< [cells], [cells], [-]
   float from, to;           ///< [cells] along
   std::int32_t column;      ///< of cell and row 0
-  std::int32_t step, side;  ///< from column to column along and aside
+  std::int32_t step, side;  ///< column increments along and across
   std::int32_t cells;       ///< of the window
 };
 
-// The columns that it enters and leaves, some cells along at a time; lanes beyond its end stay in
-// its last cell. Returns how many there are in `way`.
+// Columns that it enters and leaves, several cells along at a time; lanes beyond its end repeat its
+// last cell. Returns their number in `way`.
 template <class Float>
 PERCEPTION_LANES std::int32_t followOne(const FlatBeam& beam, std::int32_t* way) {
   constexpr std::int32_t kCount = LanesOf<Float>::kCount;
@@ -90,7 +90,7 @@ PERCEPTION_LANES void crossAll(const BeamBlock& b, const WindowPlace& origin, st
   }
 }
 
-// As PERCEPTION_WIDER, but each width has its own vectors.
+// Like PERCEPTION_WIDER, with vectors of the width of each target.
 PERCEPTION_TARGET("default")
 void crossBeams(const BeamBlock& b, const WindowPlace& origin, std::int32_t cells,
                 std::int32_t* way, std::uint8_t* crossed) {
@@ -148,8 +148,8 @@ void FlatBeams::offerPassing(const std::int32_t* bearings, const float* ranges,
   }
 }
 
-// Of a stopped beam nothing is asked any more. Most of what is left are returns of the ground
-// nearer than what has been seen before: whole blocks of them say nothing.
+// Stopped beams need no further points. Most others are ground returns nearer than the farthest
+// point of their bearing: whole blocks of them are skipped.
 std::size_t FlatBeams::offerClear(const GridPoints& points, const WindowFrame& frame) {
   for (std::size_t i = 0; i < nearest_.size(); ++i)
     if (nearest_[i] < kNone) farthest_[i] = kNone;
@@ -175,7 +175,8 @@ bool FlatBeams::isRedundant(const ClearSurvey& survey) const {
   return true;
 }
 
-// Bearings begin at -x and turn left; roughly, so those beside a quadrant are taken for part of it.
+// Bearings begin at -x, counter-clockwise; neighbors of a quadrant are included because of
+// rounding.
 void FlatBeams::findLeast() {
   constexpr std::array<std::size_t, kQuadrants> kByTurn = {3, 2, 0, 1};
   constexpr std::size_t kBeside = 2;
@@ -203,7 +204,7 @@ std::size_t FlatBeams::cross(const GridPoints& hits, const GridPoints& clear,
     const PointOffset& from = is_clear ? of_clear : of_hits;
     const GridPoints& points = is_clear ? clear : hits;
     const std::size_t i = end & ~kClear;
-    // On the ground heights play no part.
+    // Heights are not used in the plane.
     block_.add({*points.x(i) * from.per_meter + from.x, *points.y(i) * from.per_meter + from.y,
                 kMiddle, 1, 1});
     ++beams;

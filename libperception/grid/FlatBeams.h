@@ -10,21 +10,21 @@
 
 namespace perception {
 
-/// The beam of each bearing on the ground: up to its nearest return that stops it or, where there
-/// is none, to its farthest.
+/// One beam per bearing in the plane: up to the nearest return that stops it or, without one, to
+/// the farthest.
 class FlatBeams {
  public:
   /// `step`: [rad] of bearing. `cells`: of the window.
   FlatBeams(double step, int cells);
 
-  /// Forgets the last scan. `origin`: the sensor.
+  /// Starts a scan. `origin`: the sensor.
   void begin(const WindowPlace& origin);
   const BearingBins& bins() const { return bearing_bins_; }
-  /// The scan's hits from `first` on.
+  /// Adds the scan's hits from `first` on.
   void offerHits(const FlatBlock& hits, std::size_t first);
-  /// After the hits: points that stop no beam. Returns how many are no numbers.
+  /// After the hits: adds points that stop no beam. Returns how many are not finite.
   std::size_t offerClear(const GridPoints& points, const WindowFrame& frame);
-  /// Sets the columns [y][x] that beams cross. Returns their number.
+  /// Marks the columns [y][x] that beams cross. Returns the number of beams.
   std::size_t cross(const GridPoints& hits, const GridPoints& clear, const WindowFrame& frame,
                     std::uint8_t* crossed);
   std::size_t memoryBytes() const {
@@ -35,7 +35,7 @@ class FlatBeams {
  private:
   static constexpr float kNone = FlatBlock::kNone, kMiddle = 0.5F;
   static constexpr std::size_t kQuadrants = 4;
-  static constexpr std::uint32_t kClear = 0x80000000;  // in ends_: the number is of a clear point
+  static constexpr std::uint32_t kClear = 0x80000000;  // in ends_: the index is of a clear point
 
   void offerPassing(const std::int32_t* bearings, const float* ranges, std::uint32_t first);
   bool isRedundant(const ClearSurvey& survey) const;
@@ -44,10 +44,10 @@ class FlatBeams {
 
   BearingBins bearing_bins_;
   // By bearing, and one for points without: squared ranges [cells^2] of the nearest point that
-  // stops the beam and of the farthest that does not, and their numbers.
+  // stops the beam and of the farthest that does not, and their indices.
   std::vector<float> nearest_, farthest_;
   std::vector<std::uint32_t> stops_, ends_;
-  std::array<float, kQuadrants> least_{};  // of farthest_ in each quadrant of bearings
+  std::array<float, kQuadrants> least_{};  // minimum of farthest_ in each quadrant of bearings
   int cells_;
   WindowPlace origin_{};
   ClearBlock clear_;

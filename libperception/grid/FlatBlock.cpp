@@ -11,9 +11,9 @@
 namespace perception {
 namespace {
 
-constexpr float kTrusted = 0.5F;  // a hit below does not end a beam: what lies behind was seen
+constexpr float kTrusted = 0.5F;  // a hit of lower weight does not stop its beam
 
-// Points in the sensor's own cell have the bearing behind the last one.
+// Points in the sensor's cell get the bin behind the last one.
 PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, const BearingBins& bins) {
   const auto bin = static_cast<std::int32_t>((fastAtan2(dx, dy) + 3.1416F) * bins.per_radian);
   const std::int32_t bounded = bin < bins.count ? bin : 0;
@@ -26,7 +26,7 @@ PERCEPTION_LANES std::int32_t bitsOf(float v) {
   return bits;
 }
 
-/// The points of a block, axis by axis. [m] from their base
+/// Coordinates [m] of the points of a block, relative to their base.
 struct BlockPoints {
   const float *x, *y, *z;
   std::size_t count;
@@ -34,7 +34,7 @@ struct BlockPoints {
 
 struct BlockCounts {
   std::int32_t hits, beside;  // `beside`: outside the slab
-  std::int32_t not_finite;    // not zero where some points are no numbers
+  std::int32_t not_finite;    // non-zero when some points are not finite
 };
 
 PERCEPTION_WIDEST BlockCounts placeHits(const BlockPoints points, const PointOffset from,
@@ -62,18 +62,18 @@ PERCEPTION_WIDEST BlockCounts placeHits(const BlockPoints points, const PointOff
     out.bearing[i] = bearingOf(dx, dy, range2, bins);
     out.range[i] = range2, out.stop[i] = in_slab != 0 ? range2 : FlatBlock::kNone;
     counts.hits += marks, counts.beside += 1 - in_slab;
-    counts.not_finite |= bitsOf(sum - sum);  // zero of numbers
+    counts.not_finite |= bitsOf(sum - sum);  // zero for finite values
   }
   return counts;
 }
 
-// Of hits that all stop their beams makes those that do. Returns whether some do not.
+// Separates hits that stop their beams from those that do not. Returns whether some do not.
 PERCEPTION_WIDEST std::int32_t weigh(const float* __restrict weights, std::size_t count,
                                      FlatBlock& __restrict out) {
   std::int32_t passes = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const float given = weights[i], stop = out.stop[i];
-    const float w = given < PlacedBlock::kFullWeight ? given : 1;  // no verdict: believe it
+    const float w = given < PlacedBlock::kFullWeight ? given : 1;  // NaN counts as 1
     const float share = w > 0 ? w : 0;
     out.mark[i] = static_cast<std::int32_t>(share * FlatBlock::kWhole + 0.5F);
     const float stops = w >= kTrusted ? stop : FlatBlock::kNone;
@@ -90,7 +90,7 @@ PERCEPTION_WIDEST void findPassing(FlatBlock& out) {
   }
 }
 
-// Gives points that are no numbers the bearing behind the last one. Returns how many there are.
+// Gives points that are not finite the bin behind the last one. Returns how many they are.
 std::size_t dropNotFinite(const BlockPoints& points, const BearingBins& bins,
                           std::int32_t* bearing) {
   std::size_t dropped = 0;
@@ -102,7 +102,7 @@ std::size_t dropNotFinite(const BlockPoints& points, const BearingBins& bins,
   return dropped;
 }
 
-// Of points that only clear their bearing is all that matters. Not zero where some are no numbers.
+// Bearing and range of points that only clear. Returns non-zero when some are not finite.
 PERCEPTION_WIDEST std::int32_t placeClear(const BlockPoints points, const PointOffset from,
                                           const BearingBins bins, std::int32_t* __restrict bearing,
                                           float* __restrict range) {
@@ -122,7 +122,7 @@ struct SurveyBits {
   std::int32_t farthest, any_x, any_y, all_x, all_y, not_finite;
 };
 
-// Squares are not negative, so their order is that of their bits; no number is above them all.
+// Squares are non-negative, hence ordered like their bits; NaN is above all.
 PERCEPTION_WIDEST void survey(const float* __restrict xs, const float* __restrict ys,
                               const float* __restrict zs, const PointOffset from,
                               const BearingBins bins, SurveyBits& out) {
@@ -157,7 +157,7 @@ void FlatBlock::place(const GridPoints& points, const float* weights, std::size_
   if (passes) findPassing(*this);
 }
 
-// Neighboring hits often mark the same column, and would wait for each other.
+// Interleaved, since neighboring hits often mark the same column.
 void FlatBlock::markColumns(bool weighted, std::uint8_t* weights) const {
   if (!weighted) {
     for (const std::int32_t i : column) weights[i] = kWhole;

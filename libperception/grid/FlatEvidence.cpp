@@ -9,7 +9,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kStretch = 32;  // columns; most stretches have no hit
+constexpr std::size_t kStretch = 32;  // columns; most groups have no hit
 
 template <std::size_t kCount>
 PERCEPTION_LANES void addHits(float* __restrict values, std::uint8_t* __restrict weights,
@@ -35,7 +35,7 @@ PERCEPTION_LANES void addMisses(float* __restrict values, std::uint8_t* __restri
   }
 }
 
-// The next columns as long as there are kCount of them.
+// Processes groups of kCount columns.
 template <std::size_t kCount>
 PERCEPTION_LANES void addStretches(float* __restrict values, std::size_t count, std::size_t& i,
                                    const FlatEvidence& e) {

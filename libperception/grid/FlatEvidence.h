@@ -4,15 +4,15 @@
 
 namespace perception {
 
-/// What columns side by side on the ground keep and take in.
+/// Evidence of a scan for contiguous columns of a 2D grid.
 struct FlatEvidence {
-  std::uint8_t *weights, *crossed;  ///< of 255; 0 or 1; zero afterwards
-  float keep;                       ///< share of the log-odds that is not forgotten
+  std::uint8_t *weights, *crossed;  ///< in units of 1 / 255; 0 or 1; both cleared by addEvidence()
+  float keep;                       ///< factor of decay of the log-odds
   float hit, miss, low, high;       ///< [log-odds]
-  float voided;                     ///< share of voidedBy(): 1 where hits are judged
+  float voided;                     ///< factor of voidedBy(): 1 with weights of hits, else 0
 };
 
-/// Brings the log-odds of `count` columns to the time of a scan and adds what it says.
+/// Decays the log-odds of `count` columns to the time of a scan and adds its evidence.
 void addEvidence(float* values, std::size_t count, const FlatEvidence& evidence);
 
 }  // namespace perception

@@ -7,12 +7,12 @@ namespace perception {
 namespace {
 
 constexpr double kStraight = 1e-6;  // [1/m] below it the arc is a line
-constexpr double kGap = 1;          // [m] of unknown ground that is taken for a gap between beams
+constexpr double kGap = 1;          // [m] largest unknown gap between beams
 
-// A column counts as seen when a beam went through any of a few heights of it.
+// A column is known when any of a few heights of it is.
 bool isKnown(const Corridor& corridor, double s,
              const std::function<double(const Vector3&)>& log_odds_at) {
-  constexpr double kHeights[] = {0.5, 0.9, 1.3, 1.7};  // [m] below and up to a roof's lidar
+  constexpr double kHeights[] = {0.5, 0.9, 1.3, 1.7};  // [m] up to a lidar on the roof
   const Vector2 p = onArc(corridor, {s, 0});
   return std::any_of(std::begin(kHeights), std::end(kHeights), [&](double z) {
     return log_odds_at(corridor.T_world_ego * Vector3(p.x(), p.y(), z)) != 0;

@@ -11,16 +11,16 @@
 namespace perception {
 namespace {
 
-// A cell with the time of its last change. (OctoMap's own OcTreeStamped takes the wall clock, in
+// A cell with the time of its last change. (OctoMap's OcTreeStamped uses the wall clock, in
 // seconds.)
 class StampedNode : public octomap::OcTreeNode {
  public:
-  std::uint32_t ms : 31;     // since the grid's first scan
+  std::uint32_t ms : 31;     // time since the grid's first scan
   std::uint32_t listed : 1;  // among GridOctomap::listed_
 
   StampedNode() : ms(0), listed(0) {}
 
-  // OctoMap's deleteNode() leaves the array of deleted children behind and asserts on it later.
+  // OctoMap's deleteNode() keeps the array of deleted children and asserts on it later.
   void freeChildren() {
     delete[] children;
     children = nullptr;
@@ -38,8 +38,8 @@ constexpr octomap::key_type kMiddle = 32768;  // key of the tree's center: 16 bi
 
 constexpr int kDepth = 16;  // levels of the tree below its root
 
-// Walks the tree along neighboring keys: only the levels that differ are descended again, since
-// search() from the root for each cell would take the time of several scans.
+// Traverses the tree along neighboring keys, descending only the levels that differ: search() from
+// the root per cell is several times slower.
 class TreeCursor {
  public:
   explicit TreeCursor(StampedTree& tree) : tree_(tree) {
@@ -48,7 +48,7 @@ class TreeCursor {
     path_[0] = tree.getRoot();
   }
 
-  // The cell's node; where there is none, a new unknown one or null.
+  // The node of the cell; if missing, a new unknown one (`create`) or null.
   StampedNode* at(const octomap::OcTreeKey& key, bool create) {
     while (depth_ > 0 && !sameBranch(key)) --depth_;
     key_ = key;
@@ -72,14 +72,14 @@ class TreeCursor {
 
   StampedTree& tree_;
   StampedNode* path_[kDepth + 1] = {};
-  int depth_ = 0;  // down to which path_ holds
+  int depth_ = 0;  // depth down to which path_ is valid
   octomap::OcTreeKey key_;
 };
 
-constexpr std::uint32_t kLatestMs = 0x7fffffff;  // that a node can hold: 24 days
-constexpr double kForgotten = 0.1;               // [log-odds] of a cell that is as good as unknown
-constexpr std::int64_t kSweepMs = 1000;          // between removals of what is forgotten or outside
-constexpr std::int64_t kReach = 30000;           // cells from the center at which the tree is moved
+constexpr std::uint32_t kLatestMs = 0x7fffffff;  // largest time in a node: 24 days
+constexpr double kForgotten = 0.1;               // [log-odds] below it a cell is unknown
+constexpr std::int64_t kSweepMs = 1000;          // between removals of decayed and outside cells
+constexpr std::int64_t kReach = 30000;  // cells from the center at which the tree is rebuilt
 
 class GridOctomap final : public SafetyGrid {
  public:
@@ -92,7 +92,7 @@ class GridOctomap final : public SafetyGrid {
     advance(scan, stats);
     TreeCursor cursor(*tree_);
     for (const CellEvidence& cell : evidence_.collect(scan, stats)) {
-      // Beams make free cells only in the slab itself, where they bear on driving.
+      // Beams create free cells only within the slab itself, before its widening.
       const bool create = cell.weight > 0 || cell.relevant;
       const octomap::OcTreeKey key = keyOf(cell.cell);
       if (StampedNode* node = cursor.at(key, create))
@@ -110,7 +110,7 @@ class GridOctomap final : public SafetyGrid {
     return node ? decayed(*node) : 0;
   }
 
-  // From the list of candidates: the tree holds some hundred thousand free cells.
+  // Uses the list of candidates: the tree holds about a hundred thousand free cells.
   std::vector<GridCell> occupiedCells() const override {
     std::vector<GridCell> cells;
     for (const octomap::OcTreeKey& key : listed_) {
@@ -156,7 +156,7 @@ class GridOctomap final : public SafetyGrid {
     return std::make_unique<StampedTree>(params().resolution);
   }
 
-  // Moves the clock and the window.
+  // Advances time and window.
   void advance(const GridScan& scan, GridStats& stats) {
     const Vector3 center = scan.T_world_ground.translation();
     const CellIndex cell = {evidence_.indexOf(center.x()), evidence_.indexOf(center.y()),
@@ -176,8 +176,8 @@ class GridOctomap final : public SafetyGrid {
     }
   }
 
-  // The keys and the cells' times are used up after hours or kilometers: a new tree around the
-  // vehicle, with what it remembers.
+  // Keys and times of cells overflow after kilometers or days: builds a new tree around the vehicle
+  // with the known cells.
   void restartAt(const CellIndex& cell, Stamp stamp) {
     std::vector<GridCell> kept;
     for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf) {
@@ -205,7 +205,7 @@ class GridOctomap final : public SafetyGrid {
     list(node, key);
   }
 
-  // Decay and misses only take a cell down: what is listed holds all occupied cells.
+  // Decay and misses only lower the log-odds, so the list contains all occupied cells.
   void list(StampedNode& node, const octomap::OcTreeKey& key) {
     if (node.listed || node.getLogOdds() <= params().occupied) return;
     node.listed = 1;
@@ -217,14 +217,14 @@ class GridOctomap final : public SafetyGrid {
     return static_cast<double>(node.getLogOdds()) * std::exp(-age / params().tau);
   }
 
-  // Bounds memory: the tree itself has no window and never forgets.
+  // Bounds memory: the tree itself has neither window nor decay.
   void sweep() {
     swept_ms_ = now_ms_;
     listed_.clear();
     if (StampedNode* root = tree_->getRoot(); root && sweep(*root, {0, 0, 0}, 0)) tree_->clear();
   }
 
-  // Removes what is forgotten or outside below a node; `corner`: its lowest key. True: nothing is
+  // Removes decayed and outside cells below a node; `corner`: its lowest key. True when none is
   // left.
   bool sweep(StampedNode& node, const std::array<int, 3>& corner, int depth) {
     if (depth == kDepth) {
@@ -262,8 +262,7 @@ class GridOctomap final : public SafetyGrid {
     return std::max(std::abs(d.x()), std::abs(d.y())) <= params().size / 2;
   }
 
-  // Relative to the anchor: keys have 16 bits, worlds may have coordinates of hundreds of
-  // kilometers.
+  // Relative to the anchor: keys have 16 bits, world coordinates may be hundreds of kilometers.
   octomap::OcTreeKey keyOf(const CellIndex& cell) const {
     const auto key = [](std::int64_t i) {
       return static_cast<octomap::key_type>(std::clamp<std::int64_t>(i + kMiddle, 0, 65535));
@@ -278,7 +277,7 @@ class GridOctomap final : public SafetyGrid {
 
   ScanEvidence evidence_;
   std::unique_ptr<StampedTree> tree_;
-  std::vector<octomap::OcTreeKey> listed_;  // all occupied cells and some that were
+  std::vector<octomap::OcTreeKey> listed_;  // all occupied cells and some former ones
   bool started_ = false;
   Stamp first_;                             // time 0 of the cells
   std::int64_t now_ms_ = 0, swept_ms_ = 0;  // since first_

@@ -5,9 +5,8 @@
 
 namespace perception {
 
-/// Cells in space, in an octree of OctoMap [hornung2013], so that a
-/// bridge or a branch does not hide the road below. Each cell carries the time of its last change
-/// and decays when it is touched or read.
+/// 3D grid in an OctoMap octree [hornung2013], so that a bridge or a branch does not block the road
+/// below. Each cell stores the time of its last change and decays when it is updated or read.
 std::unique_ptr<SafetyGrid> makeGridOctomap(const GridParams& params);
 
 }  // namespace perception

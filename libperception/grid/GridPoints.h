@@ -6,12 +6,11 @@
 
 namespace perception {
 
-/// Points of a scan, axis by axis, as offsets from a place among them: there floats are fine
-/// enough, wherever in the world it is.
+/// Points of a scan as structure of arrays, in floats relative to a base near them, which keeps
+/// their precision at any world coordinates.
 class GridPoints {
  public:
-  /// `p`: [m] world. The base is the first one that is a number, in whole meters: what has short
-  /// coordinates keeps them.
+  /// Appends `p` [m, world]. The base is the first finite point, rounded to whole meters.
   void push_back(const Vector3& p) {
     if (!based_ && p.allFinite()) base_ = p.array().round(), based_ = true;
     x_.push_back(static_cast<float>(p.x() - base_.x()));
@@ -21,7 +20,7 @@ class GridPoints {
   void emplace_back(double x, double y, double z) { push_back({x, y, z}); }
   void reserve(std::size_t count) { x_.reserve(count), y_.reserve(count), z_.reserve(count); }
   void clear() { x_.clear(), y_.clear(), z_.clear(), based_ = false; }
-  /// Moves all of them. [m]
+  /// Translates all points [m].
   void shift(const Vector3& by) { base_ += by; }
 
   std::size_t size() const { return x_.size(); }

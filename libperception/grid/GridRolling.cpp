@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kUnits = LogOddsColumn::kUnits;
 constexpr int kGroup = LogOddsColumn::kGroup;
-constexpr double kForgotten = 0.05;  // [log-odds] as good as unknown: decay by rounding ends there
+constexpr double kForgotten = 0.05;  // [log-odds] below it unknown: rounding stops decay
 
 int layersOf(const GridParams& params) {
   const double spread = 2 * params.grade * params.size * std::sqrt(0.5);
@@ -22,8 +22,8 @@ int layersOf(const GridParams& params) {
 
 std::int64_t modulo(std::int64_t a, std::int64_t n) { return ((a % n) + n) % n; }
 
-/// A cell's place in the array is its place in the world modulo the window's size, so nothing is
-/// moved when the vehicle does. Columns carry the time of their last change and decay when touched.
+/// The index of a cell in the array is its world index modulo the window's size, so no cell is
+/// moved with the vehicle. Columns store the time of their last change and decay when updated.
 template <class Mask>
 class GridRolling final : public SafetyGrid {
  public:
@@ -107,7 +107,7 @@ class GridRolling final : public SafetyGrid {
            c.z < first_.z + layers_;
   }
 
-  /// `column_may`: a quick look at a column of values; `wanted`: at a cell's log-odds.
+  /// `column_may`: fast test of a column of values; `wanted`: test of a cell's log-odds.
   template <class ColumnMay, class Wanted>
   std::vector<GridCell> cellsWhere(const ColumnMay& column_may, const Wanted& wanted) const {
     std::vector<GridCell> cells;
@@ -131,7 +131,7 @@ class GridRolling final : public SafetyGrid {
     return cells;
   }
 
-  // Moves clock and window; what enters is unknown.
+  // Advances time and window; entering columns are unknown.
   void advance(const GridScan& scan, GridStats& stats) {
     const Vector3 center = scan.T_world_ground.translation();
     const double below = params().grade * params().size * std::sqrt(0.5) - params().z_min;
@@ -172,14 +172,14 @@ class GridRolling final : public SafetyGrid {
     return std::abs(v) < kForgotten ? 0 : v;
   }
 
-  // To the time of the scan, and its evidence on top.
+  // Decays a column to the time of the scan and adds its evidence.
   void update(std::size_t slot, Mask hit, Mask crossed) {
     column_.update(values_.data() + slot * static_cast<std::size_t>(layers_),
                    static_cast<int>(layers_), ages_.loss(slot), hit, crossed, judged_);
     ages_.touch(slot);
   }
 
-  // Of `count` columns of the window from `column` on, which stand from `slot` on in the array.
+  // Adds the evidence of `count` columns of the window from `column` on, at `slot` in the array.
   void addEvidence(std::size_t column, std::size_t slot, std::size_t count, unsigned turn) {
     updateColumns(column_,
                   ColumnRun<Mask>{values_.data() + slot * static_cast<std::size_t>(layers_),
@@ -205,10 +205,10 @@ class GridRolling final : public SafetyGrid {
   std::int64_t cells_, layers_;
   RollingSquare square_;
   WindowMarks<Mask> marks_;
-  std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units, as old as ages_ says
+  std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units, at the time in ages_
   ColumnAges ages_;
   LogOddsColumn column_;
-  bool judged_ = false;  // the scan's hits came with weights
+  bool judged_ = false;  // the hits of the scan have weights
   bool started_ = false;
   Stamp now_;        // of the last scan
   CellIndex first_;  // lowest cell of the window

@@ -9,10 +9,10 @@
 namespace perception {
 namespace {
 
-constexpr double kForgotten = 0.05;  // [log-odds] as good as unknown
+constexpr double kForgotten = 0.05;  // [log-odds] below it a cell is unknown
 
-/// Cells of the ground in one flat array that rolls with the vehicle; a beam a direction, up to its
-/// first trusted hit or, where there is none, its farthest end.
+/// 2D grid in one flat array that rolls with the vehicle; one beam per bearing, up to its first
+/// trusted hit or, without one, its farthest end.
 class GridRolling2d final : public SafetyGrid {
  public:
   explicit GridRolling2d(const GridParams& params)
@@ -92,7 +92,7 @@ class GridRolling2d final : public SafetyGrid {
   double valueOf(float v) const {
     return std::abs(v) < static_cast<float>(kForgotten) ? 0 : static_cast<double>(v);
   }
-  // In the middle of the slab above the vehicle's ground plane.
+  // Centered in the slab above the vehicle's ground plane.
   Vector3 centerOf(std::int64_t x, std::int64_t y) const {
     const double res = params().resolution;
     const Vector3 origin = T_world_ground_.translation(), up = T_world_ground_.linear().col(2);
@@ -119,7 +119,7 @@ class GridRolling2d final : public SafetyGrid {
     started_ = true;
   }
 
-  // Last ones first: scans begin with their highest beams, and what these see is farther off.
+  // In reverse order: scans begin with their highest beams, whose returns are farther.
   void addHits(const GridScan& scan, GridStats& stats) {
     const std::size_t blocks = (scan.hits.size() + FlatBlock::kSize - 1) / FlatBlock::kSize;
     for (std::size_t block = blocks; block-- > 0;) {
@@ -151,18 +151,18 @@ class GridRolling2d final : public SafetyGrid {
 
   int cells_;
   RollingSquare square_;
-  std::vector<float> values_;  // [log-odds], by place in the world modulo the window
-  // Of the scan, from the window's corner on. Hits elsewhere mark the weight behind the last one.
+  std::vector<float> values_;  // [log-odds], by world index modulo the window
+  // Of the scan, from the window's corner on. Hits outside mark the element behind the last one.
   std::vector<std::uint8_t> weights_, crossed_;
   FlatBeams beams_;
   FlatBlock hits_;
   WindowFrame frame_;
-  bool rays_ = false;  // it is known where the sensor is
+  bool rays_ = false;  // the sensor position is finite
   Pose3 T_world_ground_ = Pose3::Identity();
-  bool judged_ = false;  // the scan's hits came with weights
+  bool judged_ = false;  // the hits of the scan have weights
   bool started_ = false;
   Stamp now_;
-  float keep_ = 1;  // share of what was known that is left at the scan
+  float keep_ = 1;  // factor of decay of the scan
   CellIndex first_;
 };
 

@@ -11,15 +11,15 @@ namespace perception {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-/// Layers of several cells as bits, of 32 or 64 layers: for eight cells where AVX2 is, which shifts
-/// by lane, or four.
+/// Bit masks of 32 or 64 layers for several cells: eight with AVX2, which shifts per lane, else
+/// four.
 template <class Float, class Mask>
 struct LayerBits;
 
 template <>
 struct LayerBits<Float8, std::uint32_t> {
   using Bits = std::uint32_t __attribute__((vector_size(32)));
-  /// A bit at the layer of each height. [cells]
+  /// Bit of the layer at each height [cells].
   PERCEPTION_LANES static Bits at(const Float8& z) {
     return Bits{1, 1, 1, 1, 1, 1, 1, 1} << reinterpret_cast<Bits>(truncated(z));
   }
@@ -48,7 +48,8 @@ struct LayerBits<Float4, std::uint32_t> {
   PERCEPTION_LANES static Bits where(const Int4& lanes, const Bits& bits) {
     return reinterpret_cast<Bits>(lanes) & bits;
   }
-  /// 2^layer by way of the float of that value. SSE2 turns 2^31, too great for it, into that bit.
+  /// 2^layer, by constructing the float of that value. The SSE2 conversion of 2^31, out of range,
+  /// gives just that bit.
   PERCEPTION_LANES static Bits power(const Int4& layer) {
     constexpr std::int32_t kBias = 127, kMantissa = 23;
     const Int4 value = (layer + kBias) << kMantissa;

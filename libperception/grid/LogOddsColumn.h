@@ -11,12 +11,12 @@
 
 namespace perception {
 
-/// Arithmetic on the log-odds of a column of cells, eight layers at once: 16 bit integers in steps
-/// of 1/2048, of which 7 + 5, the largest sum, stays below 32767.
+/// Arithmetic on the log-odds of a column of cells, eight layers at once: 16-bit integers in steps
+/// of 1/2048, in which the largest sum, 7 + 5, is below 32767.
 class LogOddsColumn {
  public:
   static constexpr double kUnits = 2048;
-  static constexpr int kGroup = 4;  ///< columns have a multiple of so many layers
+  static constexpr int kGroup = 4;  ///< the number of layers is a multiple
 
   LogOddsColumn(double hit, double miss, double low, double high)
       : hit_(eight(units(hit))),
@@ -27,13 +27,13 @@ class LogOddsColumn {
   static std::int16_t units(double log_odds) {
     return static_cast<std::int16_t>(std::lround(log_odds * kUnits));
   }
-  /// What a share of 1 - keep takes away, as forget() and update() want it.
+  /// The loss 1 - keep, as fixed-point number for update() and clear().
   static std::int16_t lossOf(double keep) {
     return static_cast<std::int16_t>(std::min(32767L, std::lround((1 - keep) * 32768)));
   }
 
-  /// Takes the loss off, then adds the evidence of a scan, a bit a layer. `judged`: hits void that
-  /// their cells were free (voidedBy() for weights of one).
+  /// Applies the loss, then adds the evidence of a scan, a bit per layer. `judged`: hits reset
+  /// negative log-odds (voidedBy() with weights of one).
   template <class Mask>
   PERCEPTION_LANES void update(std::int16_t* values, int layers, std::int16_t loss, Mask hit,
                                Mask crossed, bool judged) const {
@@ -77,7 +77,7 @@ class LogOddsColumn {
       std::memcpy(&v, values, sizeof v);
       return v;
     }
-    std::int64_t four;  // by way of a number: half a vector written is slow to read
+    std::int64_t four;  // by an integer: avoids a store-forwarding stall
     std::memcpy(&four, values, sizeof four);
     return reinterpret_cast<Short8>(Long2{four, 0});
   }

@@ -7,8 +7,8 @@
 
 namespace perception {
 
-/// How a square of columns that rolls with the vehicle stands in an array of fixed size: a column's
-/// place there is its place in the world modulo the square's edge, so nothing is moved.
+/// Indexing of a square window of columns that moves with the vehicle, in an array of fixed size:
+/// world index modulo the edge, so that no column is moved.
 class RollingSquare {
  public:
   /// `cells`: along an edge.
@@ -21,8 +21,8 @@ class RollingSquare {
     return x >= first.x && y >= first.y && x < first.x + cells_ && y < first.y + cells_;
   }
 
-  /// Calls `run(slot, count)` for what lies side by side in the array of the `count` columns from
-  /// (x, y) on along x, in their order: one run or two.
+  /// Calls `run(slot, count)` for each contiguous part (one or two) of the `count` columns from (x,
+  /// y) on along x, in order.
   template <class Run>
   void forRow(std::int64_t x, std::int64_t y, std::int64_t count, const Run& run) const {
     const std::int64_t begin = modulo(x), straight = std::min(count, cells_ - begin);
@@ -32,7 +32,7 @@ class RollingSquare {
     if (straight < count) run(row, static_cast<std::size_t>(count - straight));
   }
 
-  /// The same for all columns that a square from `now` on holds and one from `old` on did not.
+  /// The same for all columns in the square from `now` on that are not in the one from `old` on.
   template <class Run>
   void forEntering(const CellIndex& old, const CellIndex& now, const Run& run) const {
     for (std::int64_t y = now.y; y < now.y + cells_; ++y) {

@@ -28,7 +28,7 @@ std::unique_ptr<SafetyGrid> makeSafetyGrid(const GridParams& params) {
   for (const BackEndRow& row : kBackEnds) {
     if (row.back_end == params.back_end) return row.make(params);
   }
-  return nullptr;  // not reached: the parameter is a choice among the rows
+  return nullptr;  // unreachable: the parameter is one of the rows
 }
 
 }  // namespace perception

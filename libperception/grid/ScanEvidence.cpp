@@ -8,16 +8,16 @@ namespace {
 
 constexpr std::uint8_t kCrossed = 0x80;
 constexpr double kFullWeight = 127;
-// A hit that is more likely a phantom than not does not end a flat ray: what lies behind was seen.
+// Least weight of a hit that ends a 2D ray; behind a probable phantom the beam was free.
 constexpr float kTrusted = 0.5F;
-// Elevations are binned by their tangent up to this one (45 deg): steeper beams leave the slab at
-// once.
+// Elevations are binned by their tangent up to this one (45 deg): steeper beams leave the slab
+// immediately.
 constexpr double kSteepest = 1;
 
 float weightOf(const GridScan& scan, std::size_t i) {
   if (scan.weights.size() != scan.hits.size()) return 1;
   const float w = scan.weights[i];
-  return std::isfinite(w) ? std::clamp(w, 0.0F, 1.0F) : 1.0F;  // no verdict: believe the return
+  return std::isfinite(w) ? std::clamp(w, 0.0F, 1.0F) : 1.0F;  // not finite: full weight
 }
 
 Vector3 pointOf(const GridScan& scan, std::size_t i) {
@@ -52,7 +52,7 @@ const std::vector<CellEvidence>& ScanEvidence::collect(const GridScan& scan, Gri
   return evidence_;
 }
 
-// The window's heights in the world: the slab over the whole window, tilted and widened.
+// Height range of the window in the world: the slab over the whole window, tilted and widened.
 void ScanEvidence::placeWindow(const GridScan& scan) {
   const Vector3 center = scan.T_world_ground.translation();
   T_ground_world_ = scan.T_world_ground.inverse();
@@ -112,8 +112,8 @@ void ScanEvidence::markHits(const GridScan& scan, GridStats& stats) {
   }
 }
 
-// In space: the nearest end of a direction's returns, so that no ray passes an obstacle. On the
-// ground: up to the first trusted hit of a bearing, or, where there is none, the farthest end.
+// 3D: the nearest return of a direction, so that no ray passes an obstacle. 2D: the first trusted
+// hit of a bearing or, without one, the farthest return.
 void ScanEvidence::offerRay(const GridScan& scan, std::size_t point, bool stops) {
   const Vector3 d = pointOf(scan, point) - scan.origin;
   const double flat_range = d.head<2>().norm();
@@ -156,8 +156,8 @@ void ScanEvidence::chooseRays(const GridScan& scan, GridStats& stats) {
   }
 }
 
-// Amanatides and Woo, "A fast voxel traversal algorithm" (Eurographics 1987). The last cell is not
-// crossed: that is where the beam ended.
+// Amanatides and Woo, "A fast voxel traversal algorithm" (Eurographics 1987). The end cell is not
+// crossed.
 void ScanEvidence::castRay(const Vector3& origin, const Vector3& end) {
   const double range = (end - origin).norm();
   const Vector3 direction = (end - origin) / range;
@@ -181,10 +181,10 @@ void ScanEvidence::castRay(const Vector3& origin, const Vector3& end) {
   double t = 0;
   while (true) {
     const int a = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
-    if (next[a] >= range) return;  // this cell holds the end
+    if (next[a] >= range) return;  // the end is in this cell
     bool inside = true;
     for (int b = 0; b < 3; ++b) {
-      // A ray may enter the layers of the window from above: a lidar on a high roof.
+      // A ray may enter the layers of the window from above (lidar on a high roof).
       if (at[b] < 0 && step[b] <= 0) return;
       if (at[b] >= count[b] && step[b] >= 0) return;
       inside = inside && at[b] >= 0 && at[b] < count[b];

@@ -7,13 +7,14 @@
 
 namespace perception {
 
-/// Integer place of a cell in the world.
+/// Integer coordinates of a cell in the world frame.
 struct CellIndex {
   std::int64_t x = 0, y = 0, z = 0;
 };
 
-/// [log-odds] by which a hit voids that the cell was free. A return that was judged a surface says
-/// that something has come; one of which nothing is known may be a flake, and counts up from there.
+/// [log-odds] by which a hit of known weight resets a free cell (negative log-odds): a return
+/// trusted as surface means that an object has entered. Hits of unknown trust may be of
+/// precipitation and only accumulate.
 inline double voidedBy(double weight, double log_odds) {
   return log_odds < 0 ? -weight * log_odds : 0;
 }
@@ -21,27 +22,27 @@ inline double voidedBy(double weight, double log_odds) {
 /// Evidence of one scan about one cell.
 struct CellEvidence {
   CellIndex cell;
-  double weight = 0;     ///< [0, 1] the greatest of the cell's hits
+  double weight = 0;     ///< [0, 1] largest of the cell's hits
   bool crossed = false;  ///< a clearing ray went through
-  bool relevant = true;  ///< within the slab itself, not only where it has been widened
-  bool judged = false;   ///< the scan's hits came with weights
+  bool relevant = true;  ///< within the slab itself, before its widening
+  bool judged = false;   ///< the hits of the scan have weights
 
-  /// [log-odds] w hit + (1 - w) miss, the miss only where a beam went through, and what a judged
-  /// hit takes off `before`.
+  /// [log-odds] w hit + (1 - w) miss, the miss only where a beam passed, plus voidedBy() of
+  /// `before` for hits with weights.
   double logOdds(const GridParams& params, double before) const {
     return weight * params.hit + (crossed ? (1 - weight) * params.miss : 0) +
            (judged ? voidedBy(weight, before) : 0);
   }
 };
 
-/// Turns a scan into at most one piece of evidence per cell of the window, in flat arrays: a hash
-/// set of cells costs more than everything else together. Rays are thinned, hits are not. `flat`
-/// lays all heights into one layer of cells.
+/// Reduces a scan to at most one piece of evidence per cell of the window, in flat arrays, which
+/// are faster than a hash set of cells. Rays are subsampled, hits are not. `flat`: one layer for
+/// all heights.
 class ScanEvidence {
  public:
   ScanEvidence(const GridParams& params, bool flat);
 
-  /// The evidence lives until the next call; its order depends on the scan alone.
+  /// Valid until the next call; the order depends on the scan alone.
   const std::vector<CellEvidence>& collect(const GridScan& scan, GridStats& stats);
   std::size_t memoryBytes() const;
 
@@ -53,11 +54,11 @@ class ScanEvidence {
   }
 
  private:
-  /// The return chosen for one direction.
+  /// The return selected for one direction.
   struct Ray {
     float range = 0;          ///< [m] 0: none
-    std::uint32_t point = 0;  ///< place in the scan's hits, then its clear points
-    bool stopped = false;     ///< by a hit that is trusted
+    std::uint32_t point = 0;  ///< index into the scan's hits followed by its clear points
+    bool stopped = false;     ///< by a trusted hit
   };
 
   void placeWindow(const GridScan& scan);
@@ -77,7 +78,7 @@ class ScanEvidence {
   CellIndex first_;  ///< corner of the window
   Pose3 T_ground_world_ = Pose3::Identity();
   std::vector<std::uint8_t> marks_;     ///< bit 7: crossed; the rest: weight * 127
-  std::vector<std::uint32_t> touched_;  ///< places in marks_
+  std::vector<std::uint32_t> touched_;  ///< indices into marks_
   std::size_t bearings_, elevations_;   ///< directions of clearing rays
   std::vector<Ray> rays_;               ///< [bearing][elevation]
   std::vector<CellEvidence> evidence_;

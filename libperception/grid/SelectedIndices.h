@@ -6,7 +6,7 @@
 
 namespace perception {
 
-/// The places of a few marks among many, without a branch for each: no branch could be predicted.
+/// Indices of the set marks among many, without branches, which would be mispredicted.
 class SelectedIndices {
  public:
   static constexpr std::size_t kMost = 256;  ///< marks
@@ -31,7 +31,7 @@ class SelectedIndices {
  private:
   static constexpr std::size_t kGroup = 8;
 
-  // By the bits of a group: where they are, in its lowest bytes.
+  // For each 8-bit mask the indices of its set bits, in the lowest bytes.
   static constexpr std::array<std::uint64_t, 256> placesByBits() {
     std::array<std::uint64_t, 256> table{};
     for (std::size_t bits = 0; bits < table.size(); ++bits) {

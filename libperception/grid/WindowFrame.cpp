@@ -8,7 +8,7 @@
 namespace perception {
 namespace {
 
-// Returns how many are no numbers.
+// Returns how many are not finite.
 PERCEPTION_WIDER std::int32_t placeAll(const float* __restrict xs, const float* __restrict ys,
                                        const float* __restrict zs, std::size_t count,
                                        const PointOffset from, const WindowRules k,
@@ -35,7 +35,7 @@ PERCEPTION_WIDER std::int32_t placeAll(const float* __restrict xs, const float* 
     const std::int32_t inside =
         (x >= 0) & (y >= 0) & (up >= 0) & (x < k.cells) & (y < k.cells) & (up < top);
     const float sum = x + y + z;
-    const std::int32_t finite = sum - sum == 0;  // not of infinities and what is no number
+    const std::int32_t finite = sum - sum == 0;  // false for infinities and NaN
     const float kx = inside != 0 ? x : 0, ky = inside != 0 ? y : 0, kz = inside != 0 ? up : 0;
     const std::int32_t column = static_cast<std::int32_t>(ky) * row + static_cast<std::int32_t>(kx);
     const std::int32_t place = column * PlacedBlock::kLayers + static_cast<std::int32_t>(kz);

@@ -12,12 +12,12 @@
 
 namespace perception {
 
-/// Some points of a scan in a window.
+/// A block of points of a scan in a window.
 struct PlacedBlock {
   static constexpr std::size_t kSize = 256;
   static constexpr std::int32_t kLayers = 64;  ///< cell = column * kLayers + layer
   static constexpr std::int32_t kOutside = -1, kNotFinite = -2;
-  static constexpr float kFullWeight = 0.99F;  ///< of a hit: counts as 1
+  static constexpr float kFullWeight = 0.99F;  ///< a hit of at least this weight has weight 1
   template <class Number>
   using Lane = std::array<Number, kSize>;
 
@@ -26,16 +26,16 @@ struct PlacedBlock {
   Lane<std::int32_t> in_slab;      ///< 0 or 1
   std::size_t not_finite = 0;      ///< how many
 
-  // What chooseHits() and chooseClear() make of them.
+  // Results of chooseHits() and chooseClear().
   SelectedIndices chosen;
-  std::size_t hits = 0;        ///< of all
-  Lane<std::int32_t> settled;  ///< the cell if it needs no further point, or kOutside
+  std::size_t hits = 0;        ///< number of hits within the window
+  Lane<std::int32_t> settled;  ///< the cell, if further points in it are redundant, else kOutside
 
-  /// Leaves out hits that say nothing new, those in the cell of the one before when that was within
-  /// the slab and of full weight. `weights`: null where all are full. `before`: settled cell of the
-  /// point before the first one.
+  /// Skips redundant hits: those in the cell of the previous one if that was within the slab and of
+  /// full weight. `weights`: null when all are 1. `before`: settled cell of the point before the
+  /// first one.
   void chooseHits(std::size_t count, const float* weights, std::int32_t before);
-  /// Leaves out points in the cell of the one before.
+  /// Skips points in the cell of the previous one.
   void chooseClear(std::size_t count, std::int32_t before);
 
   WindowPlace at(std::size_t k) const { return {x[k], y[k], z[k], low[k], high[k]}; }
@@ -44,30 +44,30 @@ struct PlacedBlock {
   void leaveOut(std::size_t count, std::int32_t before);
 };
 
-/// What decides on a point, in cells from the window's corner and meters above the ground.
+/// Bounds for points, in cells from the window's corner and meters above the ground.
 struct WindowRules {
   float slope_x = 0, slope_y = 0, slope_z = 1, offset = 0;  ///< [m] of height per cell; [m]
-  float center_x = 0, center_y = 0;                         ///< [cells] of the vehicle
+  float center_x = 0, center_y = 0;                         ///< [cells] position of the vehicle
   float z_min = 0, z_max = 0;                               ///< [m]
   float grade = 0;                                          ///< [m] per cell
   float cells = 0, layers = 0;
 };
 
-/// Where the base of some points is in a window [cells], and how fine its cells are.
+/// Position of the base of points in a window [cells], and cells per meter.
 struct PointOffset {
   float x, y, z;
   float per_meter;
 };
 
-/// Where a window lies in the world, and the slab of heights that matter in it.
+/// Transform from world to window, and the height slab in it.
 class WindowFrame {
  public:
   WindowFrame() = default;
-  /// `first`: lowest cell of the window. No layers: all heights are in.
+  /// `first`: lowest cell of the window. `layers` 0: all heights are inside.
   WindowFrame(const GridParams& params, const Pose3& T_world_ground, const CellIndex& first,
               int cells, int layers);
 
-  /// At most PlacedBlock::kSize points from `first` on.
+  /// Converts at most PlacedBlock::kSize points from `first` on.
   void place(const GridPoints& points, std::size_t first, std::size_t count,
              PlacedBlock& out) const;
   PointOffset offsetOf(const GridPoints& points) const;

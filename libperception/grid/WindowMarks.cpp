@@ -55,12 +55,12 @@ void WindowMarks<Mask>::addHits(const GridScan& scan, GridStats& stats) {
   }
 }
 
-// Whether its beam says anything new.
+// Returns whether its beam is needed.
 template <class Mask>
 bool WindowMarks<Mask>::addHit(std::int32_t cell, float weight) {
   const auto column = static_cast<std::uint32_t>(cell / PlacedBlock::kLayers);
   const auto layer = static_cast<std::uint8_t>(cell % PlacedBlock::kLayers);
-  if (weight >= PlacedBlock::kFullWeight || !std::isfinite(weight)) {  // no verdict: believe it
+  if (weight >= PlacedBlock::kFullWeight || !std::isfinite(weight)) {  // not finite: full weight
     const Mask bit = Mask{1} << layer;
     const bool first = !(hit_[column] & bit);
     hit_[column] |= bit;
@@ -106,7 +106,7 @@ void WindowMarks<Mask>::castBeams() {
   beams_.count = 0;
 }
 
-// One entry a cell, without those that a trusted return has settled.
+// One entry per cell, without cells that have a hit of full weight.
 template <class Mask>
 void WindowMarks<Mask>::settleSoftHits() {
   std::sort(soft_hits_.begin(), soft_hits_.end(), [](const SoftHit& a, const SoftHit& b) {

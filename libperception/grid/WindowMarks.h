@@ -12,32 +12,32 @@
 
 namespace perception {
 
-/// What one scan says of the cells of a window, a bit a cell: columns of cells in `Mask`, layer by
-/// layer. Every beam is followed as far as no other of its direction was before (BeamCover).
+/// Evidence of one scan for the cells of a window, a bit per cell: a `Mask` per column with a bit
+/// per layer. Beams are followed only where no other of their direction was (BeamCover).
 template <class Mask>
 class WindowMarks {
  public:
   static constexpr int kMostLayers = static_cast<int>(8 * sizeof(Mask));
 
-  /// A cell with hits of which none is fully trusted.
+  /// A cell whose hits all have a weight below 1.
   struct SoftHit {
     std::uint32_t column = 0;
     std::uint8_t layer = 0;
-    bool crossed = false;  ///< a beam went through
-    float weight = 0;      ///< [0, 1) the greatest of its hits
+    bool crossed = false;  ///< a beam passed through
+    float weight = 0;      ///< [0, 1) largest of its hits
   };
 
   WindowMarks(const GridParams& params, int layers);
 
-  /// `first`: lowest cell of the window. The marks last until reset().
+  /// `first`: lowest cell of the window. The marks persist until reset().
   void collect(const GridScan& scan, const CellIndex& first, GridStats& stats);
-  /// Forgets a column; all of those that were marked must be forgotten before the next scan.
+  /// Clears a column; all marked columns must be cleared before the next scan.
   void reset(std::size_t column) { crossed_[fans_.margin() + column] = hit_[column] = 0; }
 
-  /// Without the cells in doubt. Columns are numbered [y][x].
+  /// Crossed layers, without cells in doubts(). Columns are numbered [y][x].
   Mask crossed(std::size_t column) const { return crossed_[fans_.margin() + column]; }
   Mask hit(std::size_t column) const { return hit_[column]; }  ///< with full weight
-  /// To be read and forgotten in one go: those of a column and the ones behind it.
+  /// Mutable access to a column and the following ones, for reading and clearing at once.
   Mask* crossings(std::size_t column) { return &crossed_[fans_.margin() + column]; }
   Mask* hits(std::size_t column) { return hit_.data() + column; }
   const std::vector<SoftHit>& doubts() const { return soft_hits_; }  ///< by column and layer
@@ -66,7 +66,7 @@ class WindowMarks {
   PlacedBlock placed_;
   BeamBlock beams_;
   BeamFans<Mask> fans_;
-  std::vector<Mask> crossed_;  // with the margins of fans_
+  std::vector<Mask> crossed_;  // including the margins of fans_
   std::vector<Mask> hit_;
   std::vector<SoftHit> soft_hits_;
 };

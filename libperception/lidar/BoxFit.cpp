@@ -10,7 +10,7 @@ namespace perception {
 
 namespace {
 
-/// Four floats that the compiler keeps in one register, on every x86-64.
+/// Four floats in one SSE register.
 using Four = float __attribute__((vector_size(16)));
 Four least(Four a, Four b) { return a < b ? a : b; }
 Four largest(Four a, Four b) { return a > b ? a : b; }
@@ -24,7 +24,7 @@ float across(Four v, const Choose& choose) {
 }
 float sumOf(Four v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 
-/// Points of a cluster relative to one of them, in fours; the last four repeat a point with weight
+/// Points of a cluster relative to one of them, in groups of four, padded by a point of weight
 /// zero.
 struct PointFours {
   explicit PointFours(const std::vector<Vector2>& points) {
@@ -40,7 +40,7 @@ struct PointFours {
     }
     a.resize(x.size()), b.resize(x.size());
   }
-  // Rotated points, while a direction is tried.
+  // Points rotated into the direction under test.
   std::vector<Four> x, y, weight, a, b;  ///< [m]
 };
 
@@ -79,7 +79,7 @@ double closeness(PointFours& points, double yaw, double min_distance) {
 
 struct Direction {
   double yaw = 0;       ///< [rad] in [0, pi/2)
-  double contrast = 0;  ///< [0, 1] how much better than the mean direction: 0 for a round cluster
+  double contrast = 0;  ///< [0, 1] gain over the mean of all directions; 0 for a round cluster
 };
 
 Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& params) {
@@ -107,7 +107,7 @@ Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& par
   return {yaw, high > 0 ? 1 - mean / high : 0};
 }
 
-/// Every `stride`th point, at most `limit`.
+/// At most `limit` points, evenly subsampled.
 std::vector<Vector2> evenly(const std::vector<Vector2>& points, int limit) {
   std::vector<Vector2> used;
   const std::size_t stride = 1 + (points.size() - 1) / static_cast<std::size_t>(limit);
@@ -115,21 +115,21 @@ std::vector<Vector2> evenly(const std::vector<Vector2>& points, int limit) {
   return used;
 }
 
-/// Without the few points that stand off the others along or across yaw: a bollard beside a car, a
-/// mirror's tip.
+/// Removes the few points that a gap separates from the others along or across yaw: a bollard
+/// beside a car, a wing mirror.
 std::vector<Vector2> withoutOutliers(const std::vector<Vector2>& points, double yaw,
                                      const BoxParams& params) {
   const double c = std::cos(yaw), s = std::sin(yaw);
   std::vector<double> along, across;
   for (const Vector2& p : points)
     along.push_back(c * p.x() + s * p.y()), across.push_back(c * p.y() - s * p.x());
-  // Without the few lowest and highest values that a gap parts from the rest.
+  // Bounds without the few lowest and highest values that a gap separates from the rest.
   const auto bounds = [&params](std::vector<double> values) {
     const auto few =
         static_cast<std::size_t>(params.outlier_share * static_cast<double>(values.size()));
     const std::size_t last = values.size() - 1;
     const auto tail = static_cast<std::ptrdiff_t>(std::min(few + 1, values.size()));
-    // Only the ends need an order.
+    // Only the ends need sorting.
     std::nth_element(values.begin(), values.begin() + tail - 1, values.end());
     std::sort(values.begin(), values.begin() + tail);
     std::nth_element(values.begin() + tail, values.end() - tail, values.end());
@@ -155,11 +155,11 @@ bool sideComplete(const Rectangle& r, double sensor_a, double sensor_b, bool low
                   bool high_open, double grazing) {
   const double off = sensor_b < r.b0 ? r.b0 - sensor_b : sensor_b > r.b1 ? sensor_b - r.b1 : 0;
   if (off <= 0)
-    return false;  // the sensor stands in its extension: the side is seen from its end only
+    return false;  // the sensor lies in the extension of the side, which is seen from its end only
   const double farther_end = std::max(std::abs(r.a0 - sensor_a), std::abs(r.a1 - sensor_a));
   if (std::atan2(off, farther_end) < grazing) return false;
-  // An end is the outline's edge unless the face around the corner is well seen, too: then it is
-  // the corner between them.
+  // An end is the outline's edge, unless the adjacent side is also well visible: then it is the
+  // corner between them.
   const double depth = off + (r.b1 - r.b0), clear = depth * std::tan(grazing);
   const bool low_is_edge = sensor_a >= r.a0 - clear, high_is_edge = sensor_a <= r.a1 + clear;
   return (low_open || !low_is_edge) && (high_open || !high_is_edge);
@@ -186,14 +186,14 @@ std::optional<PartialBox> fitBox(const std::vector<Vector2>& points, const Vecto
   const double center_a = (r.a0 + r.a1) / 2, center_b = (r.b0 + r.b1) / 2;
   sides.center = {c * center_a - s * center_b, s * center_a + c * center_b};
 
-  // Direction known to an error at its end over half its length; a round cluster's is any in 90
-  // degrees.
-  constexpr double kAnyDirection =
+  // Deviation of yaw: error of an end over half the length; uniform in 90 degrees for a round
+  // cluster (method.md 8.6).
+  constexpr double kUniformSigma =
       kPi / 2 / 3.4641016151377544;  // [rad] sigma of a uniform quarter turn
   const double from_length = std::atan2(2 * params.corner_sigma, a);
   const double clarity = std::clamp(direction.contrast / 0.25, 0.0, 1.0);
   const double sigma = std::hypot(params.yaw_sigma_min, from_length) / std::max(clarity, 0.01);
-  sides.yaw_sigma = std::min(sigma, kAnyDirection);
+  sides.yaw_sigma = std::min(sigma, kUniformSigma);
 
   // Which end is the left edge: seen from the sensor, left is counter-clockwise.
   const double sensor_a = c * sensor.x() + s * sensor.y(),

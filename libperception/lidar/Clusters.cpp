@@ -11,11 +11,11 @@ namespace perception {
 void ClusterParams::visit(ParamVisitor& v) {
   v.integer("min_points", min_points, {1, 10000}, "returns that a cluster needs");
   v.real("min_top", min_top, {0, 5}, "m", "height that one return must exceed");
-  v.boolean("accept_unstable", accept_unstable, "clusters close to others, too, labeled unstable");
+  v.boolean("accept_unstable", accept_unstable, "use clusters close to others, labeled unstable");
   v.expert();
   v.real("near_threshold", near_threshold, {0.05, 5}, "m", "single linkage");
   v.real("far_threshold", far_threshold, {0.1, 10}, "m",
-         "second single linkage; the same set is stable");
+         "second single linkage; a cluster equal at both is stable");
   v.require(near_threshold < far_threshold, "near_threshold must be below far_threshold");
 }
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t kNoCluster = ~0u;
 
-/// What tells without a hull that a group is no cluster.
+/// Properties by which a group is rejected before its hull is computed.
 struct Candidate {
   std::uint32_t points = 0;
   double weight = 0;                                   ///< sum of the trust in its returns
@@ -32,9 +32,9 @@ struct Candidate {
   static constexpr float kFar = 1e30f;
 };
 
-/// False when no rectangle about the hull can have the size of a cluster: its diagonal lies between
-/// the group's extent and the extents' diagonal, and its longest side is at least diagonal /
-/// sqrt(2).
+/// False when no enclosing rectangle of the hull can be of a cluster's size: its diagonal lies
+/// between the longer side and the diagonal of the axis-aligned bounds, and its longest side is at
+/// least diagonal / sqrt(2).
 bool mayHaveCarSize(const Candidate& c, bool stable, const ClusterParams& params) {
   const auto width = static_cast<double>(c.x1 - c.x0), depth = static_cast<double>(c.y1 - c.y0);
   const double least = std::max(width, depth) * (std::sqrt(0.5) - 1e-6);

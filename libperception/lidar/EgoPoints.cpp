@@ -7,24 +7,24 @@
 namespace perception {
 
 void PointParams::visit(ParamVisitor& v) {
-  v.real("vehicle_front", vehicle_front, {0, 20}, "m", "own body ahead of the ego origin");
-  v.real("vehicle_rear", vehicle_rear, {0, 20}, "m", "own body behind the ego origin");
+  v.real("vehicle_front", vehicle_front, {0, 20}, "m", "own vehicle ahead of the ego origin");
+  v.real("vehicle_rear", vehicle_rear, {0, 20}, "m", "own vehicle behind the ego origin");
   v.boolean("only_objects", only_objects,
-            "only returns that the scanner itself labels as object, where it labels at all");
+            "only returns that the scanner itself labels as object, if it labels returns");
   v.expert();
   v.real("range_max", range_max, {5, 300}, "m",
          "horizontal range beyond which returns are dropped");
-  v.real("vehicle_side", vehicle_side, {0, 5}, "m", "own body to each side of the ego origin");
-  v.real("vehicle_top", vehicle_top, {0, 6}, "m", "own body above the ground");
+  v.real("vehicle_side", vehicle_side, {0, 5}, "m", "own vehicle to each side of the ego origin");
+  v.real("vehicle_top", vehicle_top, {0, 6}, "m", "own vehicle above the ground");
   v.require(range_min < range_max, "range_max must be above 0.5 m");
 }
 
 namespace {
 
-constexpr float kBeyondAnyLidar2 = 1e3f * 1e3f;  // [m^2]
-constexpr std::size_t kBlock = 512;              // points that stay in the nearest cache
-constexpr std::size_t kAhead = 512;  // points by which far places of the scan are fetched early
-constexpr std::size_t kTaken = 16;   // neighbors of a line of the cache, taken together
+constexpr float kMaxRange2 = 1e3f * 1e3f;  // [m^2]
+constexpr std::size_t kBlock = 512;        // points that fit in the L1 cache
+constexpr std::size_t kAhead = 512;        // points of prefetch distance
+constexpr std::size_t kTaken = 16;         // points per cache line, subsampled together
 
 bool isDroppedByLabel(std::uint8_t label, bool only_objects) {
   if (only_objects) return label != static_cast<std::uint8_t>(PointLabel::kObject);
@@ -32,13 +32,13 @@ bool isDroppedByLabel(std::uint8_t label, bool only_objects) {
          label == static_cast<std::uint8_t>(PointLabel::kDirt);
 }
 
-/// Marks of one block of a cloud, and its points where they do not lie side by side.
+/// Marks of one block of a cloud, and a copy of its points where they are not contiguous.
 struct Block {
   std::array<float, kBlock> px, py, pz;   ///< [m] sensor frame, when the cloud is thinned
   std::array<std::int32_t, kBlock> keep;  ///< 0 or 1
 };
 
-/// Where a block's points go: behind those that are kept already.
+/// Output of a block's points, behind those already kept.
 struct Places {
   Places(EgoPoints& points, std::size_t first)
       : x(&points.x[first]),
@@ -50,7 +50,7 @@ struct Places {
 };
 
 struct BlockCounts {
-  std::int32_t kept = 0, with_range = 0;  ///< numbers
+  std::int32_t kept = 0, with_range = 0;  ///< counts
 };
 
 /// The bounds of PointParams in floats, and the sensor's pose.
@@ -69,8 +69,8 @@ struct Rules {
   float near2, far2, front, rear, side, top;
 };
 
-/// Transforms and judges `count` points from the `first` on; no branches, so that the compiler
-/// makes vectors of it.
+/// Transforms and tests `count` points from `first` on; without branches, so that the compiler
+/// vectorizes it.
 PERCEPTION_WIDEST BlockCounts judge(const float* __restrict px, const float* __restrict py,
                                     const float* __restrict pz, std::uint32_t first,
                                     std::size_t count, const Rules& rules, float* __restrict ex,
@@ -89,8 +89,8 @@ PERCEPTION_WIDEST BlockCounts judge(const float* __restrict px, const float* __r
     const float y = r10 * px[k] + r11 * py[k] + r12 * pz[k] + ty;
     const float z = r20 * px[k] + r21 * py[k] + r22 * pz[k] + tz;
     const float dx = x - tx, dy = y - ty, horizontal2 = dx * dx + dy * dy;
-    // False also where something is not a number.
-    const std::int32_t has_range = (range2 > 0) & (range2 < kBeyondAnyLidar2);
+    // False for NaN, too.
+    const std::int32_t has_range = (range2 > 0) & (range2 < kMaxRange2);
     const std::int32_t within = (horizontal2 >= near2) & (horizontal2 <= far2);
     const std::int32_t own = (x < front) & (x > rear) & (y < side) & (y > -side) & (z < top);
     const std::int32_t kept = has_range & within & (own ^ 1);
@@ -100,10 +100,10 @@ PERCEPTION_WIDEST BlockCounts judge(const float* __restrict px, const float* __r
   return all;
 }
 
-/// Moves what is kept to the front; the number of it.
+/// Moves the kept points to the front; returns how many they are.
 std::size_t squeeze(const Block& block, std::size_t size, const Places& at) {
   std::size_t kept = 0;
-  for (std::size_t k = 0; k < size; ++k) {  // what is dropped is overwritten by the next
+  for (std::size_t k = 0; k < size; ++k) {  // a dropped point is overwritten by the next
     at.x[kept] = at.x[k], at.y[kept] = at.y[k], at.z[kept] = at.z[k];
     at.source[kept] = at.source[k];
     kept += static_cast<std::size_t>(block.keep[k]);
@@ -111,7 +111,7 @@ std::size_t squeeze(const Block& block, std::size_t size, const Places& at) {
   return kept;
 }
 
-/// Most groups are whole: no call is needed to copy them.
+/// Most groups have the full size, for which the copy is inlined.
 void copyGroup(const float* from, std::size_t count, float* to) {
   if (count == kTaken) {
     std::memcpy(to, from, kTaken * sizeof *to);
@@ -125,7 +125,7 @@ void resize(EgoPoints& points, std::size_t size) {
   points.source.resize(size);
 }
 
-/// Fetches what is needed next: the processor itself stops at every page.
+/// Prefetches the next points: hardware prefetchers stop at page borders.
 void prefetch(const LidarCloud& cloud, std::size_t first, std::size_t count) {
   for (const auto* axis : {&cloud.x, &cloud.y, &cloud.z})
     for (std::size_t k = first; k < std::min(first + count, axis->size()); k += kTaken)
@@ -140,7 +140,7 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
   points.reach = params.range_max;
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud == nullptr || cloud->size() == 0) return points;
-  // A scan that is too large is thinned by whole groups of neighbors.
+  // A scan that is too large is subsampled by whole groups of neighbors.
   const std::size_t stride =
       1 + (cloud->size() - 1) / static_cast<std::size_t>(std::max(params.max_points, 1));
   const auto index = [stride](std::size_t k) { return k / kTaken * kTaken * stride + k % kTaken; };

@@ -19,7 +19,8 @@ Partition partitionOf(const std::vector<std::uint32_t>& cell_of_point, Forest& c
 void joinNearGroups(Forest& near_groups, DoubleLinkage& linkage) {
   linkage.far_of_near.resize(linkage.near.count);
   for (std::uint32_t g = 0; g < linkage.near.count; ++g) {
-    // Near groups come in the order of their first points, and the smaller root wins: so do these.
+    // Near groups are in the order of their first points and roots are the smallest: far groups are
+    // in that order, too.
     const std::uint32_t root = near_groups.find(g);
     linkage.far_of_near[g] = root == g ? linkage.far_count++ : linkage.far_of_near[root];
   }

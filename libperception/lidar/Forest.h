@@ -7,8 +7,8 @@
 
 namespace perception {
 
-/// Union-find with path halving; the smaller root wins, so that roots do not depend on the order of
-/// unions.
+/// Disjoint sets (union-find) with path halving; the smaller root becomes the parent, so that roots
+/// do not depend on the order of unions.
 class Forest {
  public:
   explicit Forest(std::size_t count) : parent_(count) {
@@ -29,11 +29,10 @@ class Forest {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Groups of points by the trees that their cells belong to, numbered in the order of the groups'
-/// first points.
+/// Groups of points by the sets of their cells, numbered in the order of the groups' first points.
 Partition partitionOf(const std::vector<std::uint32_t>& cell_of_point, Forest& cells);
 
-/// Fills the far half of a linkage from the trees of its near groups.
+/// Computes the far groups of a linkage from the sets of its near groups.
 void joinNearGroups(Forest& near_groups, DoubleLinkage& linkage);
 
 }  // namespace perception

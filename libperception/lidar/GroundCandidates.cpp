@@ -11,13 +11,13 @@
 namespace perception {
 namespace {
 
-// A cell's returns are counted by height first, in steps, so that only those of the step that holds
-// the quantile need an order.
+// A cell's returns are first counted in height bins ("steps"), so that only those of the bin that
+// holds the quantile need sorting.
 constexpr std::int32_t kSteps = 64;
-constexpr float kStepsPerMeter = 33;    // fine where roads are; what is beyond shares the last step
-constexpr float kLowestStep = -0.97f;   // [m] ego frame
-constexpr std::uint32_t kNoStep = ~0u;  // of a cell with too few returns
-constexpr std::size_t kBlock = 1024;    // points that stay in the nearest cache
+constexpr float kStepsPerMeter = 33;   // fine at road level; the last step holds all higher returns
+constexpr float kLowestStep = -0.97f;  // [m] ego frame
+constexpr std::uint32_t kNoStep = ~0u;  // for a cell with too few returns
+constexpr std::size_t kBlock = 1024;    // points that fit in the L1 cache
 
 /// Polar cells in floats.
 struct PolarCells {
@@ -27,8 +27,8 @@ struct PolarCells {
   std::int32_t rings, sectors;
 };
 
-/// The cell and height step of each point, that of cell rings x sectors where it is in none; no
-/// branches, so that the compiler makes vectors of it.
+/// Cell and height step of each point, cell rings x sectors for points in none; without branches,
+/// so that the compiler vectorizes it.
 PERCEPTION_WIDEST void findSteps(const float* __restrict xs, const float* __restrict ys,
                                  const float* __restrict zs, std::size_t count, const PolarCells k,
                                  std::uint32_t* __restrict steps) {
@@ -48,7 +48,7 @@ PERCEPTION_WIDEST void findSteps(const float* __restrict xs, const float* __rest
   }
 }
 
-/// Marks the points of the steps that are wanted, one a cell.
+/// Marks the points in the selected steps, one step per cell.
 PERCEPTION_WIDER void markWanted(const std::uint32_t* __restrict steps, std::size_t count,
                                  const std::uint32_t* __restrict wanted,
                                  std::int32_t* __restrict marks) {
@@ -58,7 +58,7 @@ PERCEPTION_WIDER void markWanted(const std::uint32_t* __restrict steps, std::siz
   }
 }
 
-/// Number i of height z as one number that is ordered by height, then by i.
+/// A sort key: height z, then index i.
 std::uint64_t byHeight(float z, std::uint32_t i) {
   const float no_negative_zero = z + 0.0f;
   std::uint32_t bits;
@@ -67,13 +67,13 @@ std::uint64_t byHeight(float z, std::uint32_t i) {
   return std::uint64_t{bits} << 32 | i;
 }
 
-/// What is looked for in a cell: how many of the wanted step lie below it, and where that step's
-/// returns go.
+/// Selection in a cell: rank of the candidate within its step, and the output range of the step's
+/// returns.
 struct Search {
   std::uint32_t cell, below, first, end;
 };
 
-/// The step of each cell that holds its quantile.
+/// For each cell the step that contains its quantile.
 std::vector<Search> searchesIn(const std::vector<std::uint32_t>& counts,
                                const CandidateRules& rules, std::vector<std::uint32_t>& wanted) {
   std::vector<Search> searches;
@@ -109,10 +109,11 @@ GroundCandidates groundCandidates(const EgoPoints& points, const CandidateRules&
                          rings,
                          rules.sectors};
   const std::size_t count = points.size();
-  thread_local std::vector<std::uint32_t> step_of, counts;  // memory that every scan needs again
+  thread_local std::vector<std::uint32_t> step_of, counts;  // reused between scans
   step_of.resize(count), counts.assign((cells + 1) * kSteps, 0);
   findSteps(points.x.data(), points.y.data(), points.z.data(), count, polar, step_of.data());
-  // Neighbors in a scan share steps; four places of the scan by turns do not wait for each other.
+  // Neighbors in a scan increment the same counter; interleaving four parts of the scan avoids that
+  // dependency.
   const std::size_t quarter = count / 4;
   for (std::size_t i = 0; i < quarter; ++i)
     ++counts[step_of[i]], ++counts[step_of[i + quarter]], ++counts[step_of[i + 2 * quarter]],

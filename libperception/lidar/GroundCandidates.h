@@ -6,20 +6,20 @@
 
 namespace perception {
 
-/// Returns that may be of the ground: a low one of every polar cell.
+/// Ground candidates: a low return of every polar cell (method.md 8.1).
 struct GroundCandidates {
   std::vector<float> x, y, z;  ///< [m] ego frame
   std::size_t size() const { return x.size(); }
 };
 
-/// Polar cells about the vehicle, and which of their returns is taken: as GroundParams.
+/// Polar cells about the vehicle and the choice of their candidate, as in GroundParams.
 struct CandidateRules {
   int sectors;
   double ring, range_min, range_max;  ///< [m]
   double quantile;                    ///< height of the candidate among a cell's returns
-  int cell_points;                    ///< fewer returns give none
-  GroundPlane plane;                  ///< of before
-  double depth;                       ///< [m] below it returns are mirrored and do not count
+  int cell_points;                    ///< least number of returns
+  GroundPlane plane;                  ///< previous estimate
+  double depth;                       ///< [m] below it, returns are mirrored and ignored
 };
 
 GroundCandidates groundCandidates(const EgoPoints& points, const CandidateRules& rules);

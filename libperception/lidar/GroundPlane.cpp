@@ -17,26 +17,27 @@ void GroundParams::visit(ParamVisitor& v) {
 
 namespace {
 
-constexpr double kMissed = 1e-5;  // of RANSAC: more draws are not worth their time
-constexpr std::uint32_t kRansacPurpose = 0x67726f75;  // "grou": this user's own random streams
+constexpr double kMissed = 1e-5;                      // probability of a miss at which RANSAC stops
+constexpr std::uint32_t kRansacPurpose = 0x67726f75;  // "grou": separate random streams
 
-/// The plane through three places as (a, b, c); empty when they lie on a line seen from above.
+/// The plane through three points as (a, b, c); empty when they are collinear in the horizontal
+/// plane.
 std::optional<Vector3> planeThrough(const Vector3& p, const Vector3& q, const Vector3& r) {
   const Vector3 u = q - p, v = r - p;
   const double area = u.x() * v.y() - u.y() * v.x();
-  if (std::abs(area) < 1) return std::nullopt;  // [m^2] too thin to tell a slope
+  if (std::abs(area) < 1) return std::nullopt;  // [m^2] a slope would be too uncertain
   const double a = (u.z() * v.y() - v.z() * u.y()) / area,
                b = (u.x() * v.z() - v.x() * u.z()) / area;
   return Vector3(a, b, p.z() - a * p.x() - b * p.y());
 }
 
-/// Where and how far below the plane returns count as mirrored.
+/// Range and depth below the plane of mirrored returns.
 struct MirrorRules {
   float a, b, c, depth;  ///< the plane; [m] below it
   float far;             ///< [m]
 };
 
-/// Of points within `far`, how many there are and how many lie `depth` below the plane.
+/// Numbers of points within `far` and of those more than `depth` below the plane.
 struct NearCounts {
   std::int32_t near, below;
 };
@@ -78,7 +79,7 @@ std::optional<GroundPlane> GroundEstimator::fit(const GroundCandidates& candidat
   Vector3 best = Vector3::Zero();
   int best_inliers = 0;
   const auto tolerance = static_cast<float>(params_.tolerance);
-  double missed = 1;  // probability that no draw so far was of three inliers of a plane so good
+  double missed = 1;  // probability that no draw so far was of three inliers of the best plane
   for (int i = 0; i < params_.iterations && missed > kMissed; ++i) {
     const std::uint32_t p = rng.below(count), q = rng.below(count), r = rng.below(count);
     const auto plane = planeThrough(place(p), place(q), place(r));
@@ -132,8 +133,8 @@ GroundPlane GroundEstimator::update(const SensorFrame& frame) {
          frozen_until_ - frame.stamp <= params_.freeze;
   if (wet_) return plane_;
 
-  // After a freeze one plane is measured whatever the returns say: else a lasting change of pitch
-  // would freeze for good.
+  // After a freeze one plane is measured in any case: otherwise a lasting change of pitch would
+  // never be followed.
   if (plane_.measured && !froze_ && mirrored_share_ > params_.wet_share) {
     frozen_until_ = frame.stamp + params_.freeze;
     wet_ = froze_ = true;

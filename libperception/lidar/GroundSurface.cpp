@@ -8,16 +8,16 @@ namespace perception {
 
 void SurfaceParams::visit(ParamVisitor& v) {
   v.expert();
-  v.boolean("local", local, "follow the ground's departures from its plane; false: [radecki2016]");
+  v.boolean("local", local,
+            "track deviations of the ground from its plane; false: plane alone (Radecki et al.)");
 }
 
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kNoGround = std::numeric_limits<float>::quiet_NaN();
-constexpr float kLowReturns =
-    1.0f;                           // [m] above the plane: higher returns say nothing of the ground
-constexpr float kSteepest = 0.10f;  // [-] slope of a ramp against the plane
+constexpr float kLowReturns = 1.0f;  // [m] above the plane: higher returns are no ground
+constexpr float kSteepest = 0.10f;   // [-] slope of a ramp against the plane
 constexpr float kMirrorMargin =
     0.30f;  // [m] below the lowest possible ground: mirrored in a wet road (method.md 8.1)
 
@@ -41,7 +41,7 @@ GroundSurface::GroundSurface(const GroundPlane& plane, const EgoPoints& points,
     inverse_sector_ = static_cast<float>(params.sectors / kTwoPi);
   }
   if (!local && heights == nullptr) return;
-  thread_local std::vector<float> own;          // memory that every scan needs again
+  thread_local std::vector<float> own;          // reused between scans
   thread_local std::vector<std::int32_t> cell;  // [sector][ring]
   std::vector<float>& above = heights != nullptr ? *heights : own;
   place(points, params, above, cell);
@@ -55,13 +55,13 @@ namespace {
 struct PlaceRules {
   float a, b, c;                  ///< the plane
   float sensor_x, sensor_y;       ///< [m]
-  float rings, sectors;           ///< numbers
+  float rings, sectors;           ///< counts
   float per_ring, per_sector;     ///< [1/m, 1/rad]
-  float bound_near, bound_slope;  ///< [m, -] of departures from the plane
+  float bound_near, bound_slope;  ///< [m, -] of deviations from the plane
 };
 
-/// Height above the plane and cell of each point; no branches, so that the compiler makes vectors
-/// of it.
+/// Height above the plane and cell of each point; without branches, so that the compiler vectorizes
+/// it.
 PERCEPTION_WIDEST void placeAll(const float* __restrict x, const float* __restrict y,
                                 const float* __restrict z, std::size_t count, PlaceRules r,
                                 float* __restrict above, std::int32_t* __restrict cell) {
@@ -105,24 +105,25 @@ void GroundSurface::place(const EgoPoints& points, const SurfaceParams& params,
 
 namespace {
 
-/// The three lowest heights [m] of a cell and, in the last place, how many there were: bits of a
-/// whole number.
+/// The three lowest heights [m] of a cell; the last element holds their number as the bits of an
+/// integer.
 using Lowest = float __attribute__((vector_size(16)));
 using Whole4 = std::int32_t __attribute__((vector_size(16)));
 constexpr std::size_t kWays = 8;
 
 inline __attribute__((always_inline)) void add(float height, Lowest& cell) {
-  constexpr float kAnyHigher = std::numeric_limits<float>::infinity();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const Lowest h{height, height, height, height};
-  const Lowest before = __builtin_shuffle(cell, Lowest{-kAnyHigher, kAnyHigher, 0, 0},
-                                          Whole4{4, 0, 1, 5});  // the next lower; never the number
+  const Lowest before =
+      __builtin_shuffle(cell, Lowest{-kInfinity, kInfinity, 0, 0},
+                        Whole4{4, 0, 1, 5});  // heights shifted by one; the count is kept
   const Lowest not_before = before > h ? before : h;
   const Lowest lowest = cell < not_before ? cell : not_before;
   cell = reinterpret_cast<Lowest>(reinterpret_cast<Whole4>(lowest) + Whole4{0, 0, 0, 1});
 }
 
-/// Heights into their cells. Neighbors in a scan share cells; eight places of the scan by turns do
-/// not wait for each other. What is not low goes into a cell of its own for each of them.
+/// Inserts heights into their cells. Neighbors in a scan share cells; interleaving eight parts of
+/// the scan avoids that dependency. Points that are not low go into a dummy cell per part.
 PERCEPTION_WIDEST void addAll(const float* above, const std::int32_t* cell, std::size_t count,
                               Lowest* cells, std::size_t cell_count) {
   const std::size_t part = count / kWays;
@@ -137,8 +138,7 @@ PERCEPTION_WIDEST void addAll(const float* above, const std::int32_t* cell, std:
 
 }  // namespace
 
-/// The quantile of each cell's low heights, at most the third from below; none where too few are
-/// low.
+/// The quantile of each cell's low heights, at most the third lowest; none where too few are low.
 std::vector<float> GroundSurface::lowestOf(const std::vector<float>& above,
                                            const std::vector<std::int32_t>& cell,
                                            const SurfaceParams& params) const {
@@ -155,15 +155,15 @@ std::vector<float> GroundSurface::lowestOf(const std::vector<float>& above,
   return heights;
 }
 
-/// Outward along each sector: a cell's lowest return is ground if it can be reached from the ground
-/// before it.
+/// Outward along each sector: the low height of a cell is ground if the step from the previous
+/// ground cell is within bounds.
 void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams& params) {
   const auto ring = static_cast<float>(params.ring), step = static_cast<float>(params.step);
   const auto slope = static_cast<float>(params.slope),
              max_step = static_cast<float>(params.max_step);
   std::vector<float> along(lowest.size(), 0);
   for (std::size_t s = 0; s < sectors_; ++s) {
-    float ground = 0, trend = 0, gap = ring;  // trend: slope against the plane, of a ramp
+    float ground = 0, trend = 0, gap = ring;  // trend: slope of a ramp relative to the plane
     for (std::size_t k = 0; k < rings_; ++k) {
       const float low = lowest[s * rings_ + k];
       const float range = (static_cast<float>(k) + 0.5f) * ring;
@@ -182,7 +182,7 @@ void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams
       along[s * rings_ + k] = ground;
     }
   }
-  // A car's side that passed for ground stands alone among its neighbors.
+  // Median over neighboring sectors: removes the side of a car that was taken for ground.
   departure_.resize(along.size());
   for (std::size_t s = 0; s < sectors_; ++s) {
     const std::size_t left = (s + 1) % sectors_, right = (s + sectors_ - 1) % sectors_;
@@ -194,12 +194,12 @@ void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams
 
 namespace {
 
-// Look-ups by sixteen are slower than by eight.
+// Gathers of sixteen are slower than of eight.
 PERCEPTION_WIDER void subtractAll(const std::int32_t* __restrict cell,
                                   const float* __restrict departure, std::size_t count,
                                   float* __restrict heights) {
   for (std::size_t i = 0; i < count; ++i)
-    heights[i] -= departure[cell[i] ^ (cell[i] >> 31)];  // not low: the complement
+    heights[i] -= departure[cell[i] ^ (cell[i] >> 31)];  // undoes the complement
 }
 
 }  // namespace

@@ -7,46 +7,46 @@
 
 namespace perception {
 
-/// How far the ground may leave its plane: [sensor.LABEL.surface]. Assumed (method.md 8.1): real
-/// roads have crowns, curbs, ramps.
+/// Bounds on the deviation of the ground from its plane (crowns, curbs, ramps):
+/// [sensor.LABEL.surface]. Assumed (method.md 8.1).
 struct SurfaceParams {
-  bool local = true;  ///< false: the plane alone, as [radecki2016]
+  bool local = true;  ///< false: the plane alone, as in [radecki2016]
   int sectors = 120;
-  double ring = 2;          ///< [m] depth of a cell
-  int cell_points = 3;      ///< returns that a cell needs
-  double quantile = 0.05;   ///< height of a cell's ground among its low returns, at most the third
-  double step = 0.15;       ///< [m] a curb: change from one cell to the next outward
-  double slope = 0.05;      ///< [-] further change per meter since the last cell with ground
-  double max_step = 0.25;   ///< [m] whatever the gap: below the underside of cars
-  double bound_near = 0.2;  ///< [m] largest distance from the plane at the vehicle
+  double ring = 2;            ///< [m] depth of a cell
+  int cell_points = 3;        ///< least number of returns in a cell
+  double quantile = 0.05;     ///< of the heights of a cell's low returns, at most the third lowest
+  double step = 0.15;         ///< [m] a curb: change from one cell to the next outward
+  double slope = 0.05;        ///< [-] additional change per meter from the last cell with ground
+  double max_step = 0.25;     ///< [m] for any gap: less than the ground clearance of cars
+  double bound_near = 0.2;    ///< [m] largest distance from the plane at the vehicle
   double bound_slope = 0.03;  ///< [-] growth of that bound with range
 
   void visit(ParamVisitor& v);
 };
 
-/// Height of the ground of one scan: the plane and, in each polar cell about the sensor, a bounded
-/// departure from it that is followed outward along the beams.
+/// Ground height of one scan: the plane plus, in each polar cell about the sensor, a bounded
+/// deviation that is tracked outward along the beams (method.md 8.1).
 class GroundSurface {
  public:
-  /// `heights`, where given, becomes heightsAbove(points).
+  /// `heights`, unless null, is set to heightsAbove(points).
   GroundSurface(const GroundPlane& plane, const EgoPoints& points, const SurfaceParams& params,
                 std::vector<float>* heights = nullptr);
 
-  /// [m] of the ground below a place of the ego frame.
+  /// [m] height of the ground at a position, ego frame.
   double heightAt(double x, double y) const;
-  /// [m] of every point above the ground; mirrored returns are negative.
+  /// [m] height of every point above the ground; negative for mirrored returns.
   std::vector<float> heightsAbove(const EgoPoints& points) const;
 
  private:
-  /// Heights of all points above the plane [m], and their cells, [sector][ring]; the complement of
-  /// it where a point is too high or too low to be of the ground.
+  /// Heights of all points above the plane [m], and their cells, [sector][ring]; the bitwise
+  /// complement of the cell for points too high or too low to be ground.
   void place(const EgoPoints& points, const SurfaceParams& params, std::vector<float>& above,
              std::vector<std::int32_t>& cell) const;
   std::vector<float> lowestOf(const std::vector<float>& above,
                               const std::vector<std::int32_t>& cell,
                               const SurfaceParams& params) const;
   void follow(const std::vector<float>& lowest, const SurfaceParams& params);
-  /// Makes heights above the ground of those above the plane.
+  /// Converts heights above the plane into heights above the ground.
   void subtract(const std::vector<std::int32_t>& cell, std::vector<float>& above) const;
 
   GroundPlane plane_;

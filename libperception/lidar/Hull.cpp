@@ -10,7 +10,8 @@ namespace {
 
 double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Points that cannot lie on the hull go: those strictly inside the octagon of eight extremes.
+/// Removes points that cannot be on the hull: those strictly inside the octagon of eight extreme
+/// points.
 void dropInner(std::vector<Vector2>& points) {
   static const std::array<Vector2, 8> kDirections = {
       Vector2(1, 0),  Vector2(1, 1),   Vector2(0, 1),  Vector2(-1, 1),
@@ -53,7 +54,7 @@ std::vector<Vector2> convexHull(std::vector<Vector2> points) {
   points.erase(std::unique(points.begin(), points.end()), points.end());
   const std::size_t count = points.size();
   if (count < 3) return points;
-  // Andrew's monotone chain: the lower half forward, the upper half back.
+  // Andrew's monotone chain: the lower half left to right, the upper half right to left.
   std::vector<Vector2> hull;
   hull.reserve(2 * count);
   const auto append = [&hull](const Vector2& p, std::size_t floor) {
@@ -88,7 +89,7 @@ HullSize sizeOf(const std::vector<Vector2>& hull) {
   if (hull.size() < 2) return size;
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hull.size();
-       ++i) {  // a smallest rectangle lies along a side of the hull
+       ++i) {  // the smallest rectangle is collinear with a side of the hull
     const Vector2 side = hull[(i + 1) % hull.size()] - hull[i];
     const Rectangle r = rectangleAlong(hull, std::atan2(side.y(), side.x()));
     const double area = (r.a1 - r.a0) * (r.b1 - r.b0);

@@ -8,7 +8,7 @@ namespace perception {
 /// Convex hull, counter-clockwise from the leftmost lowest point, without points on its sides.
 std::vector<Vector2> convexHull(std::vector<Vector2> points);
 
-/// Distance [m] from `place` to the hull (a polygon, a segment or a point); 0 inside.
+/// Distance [m] from point `place` to the hull (a polygon, a segment or a point); 0 inside.
 double distanceToHull(const std::vector<Vector2>& hull, const Vector2& place);
 
 /// Longest side [m] of the smallest enclosing rectangle and its area [m^2].
@@ -17,8 +17,8 @@ struct HullSize {
 };
 HullSize sizeOf(const std::vector<Vector2>& hull);
 
-/// The rectangle about some points whose sides lie along and across `yaw` [rad]: its ends [m] along
-/// (a) and across (b).
+/// Enclosing rectangle with sides along and across `yaw` [rad]: its bounds [m] along (a) and across
+/// (b).
 struct Rectangle {
   double yaw, a0, a1, b0, b1;
 };

@@ -8,23 +8,23 @@ namespace perception {
 
 void ObstacleParams::visit(ParamVisitor& v) {
   v.real("height_min", height_min, {0.05, 2}, "m",
-         "above ground from which a return is an obstacle");
-  v.real("occluder_min", occluder_min, {0.1, 5}, "m",
-         "height from which returns hide what lies behind");
+         "least height above ground of an obstacle return");
+  v.real("occluder_min", occluder_min, {0.1, 5}, "m", "least height above ground of an occluder");
   v.expert();
   v.real("height_max", height_max, {0.5, 10}, "m",
-         "above ground up to which a return is an obstacle");
-  v.real("occluder_max", occluder_max, {0.2, 10}, "m", "height up to which returns hide");
+         "largest height above ground of an obstacle return");
+  v.real("occluder_max", occluder_max, {0.2, 10}, "m",
+         "largest height above ground of an occluder");
   v.require(height_min < height_max, "height_min must be below height_max");
   v.require(occluder_min < occluder_max, "occluder_min must be below occluder_max");
 }
 
 void OutlineNoise::visit(ParamVisitor& v) {
   v.expert();
-  v.real("sigma_edge", sigma_edge, {0.001, 5}, "m", "of an edge, across the line of sight");
+  v.real("sigma_edge", sigma_edge, {0.001, 5}, "m", "noise of an edge, across the line of sight");
   v.angle("sigma_bearing_deg", sigma_bearing, {0, 20},
-          "of an edge's bearing, beside sigma_edge / range");
-  v.real("sigma_range", sigma_range, {0.001, 5}, "m", "of the nearest point's range");
+          "noise of an edge's bearing, besides sigma_edge / range");
+  v.real("sigma_range", sigma_range, {0.001, 5}, "m", "noise of the range of the nearest point");
 }
 
 LidarParams::LidarParams() {
@@ -34,7 +34,7 @@ LidarParams::LidarParams() {
 
 namespace {
 
-/// Places and heights of the obstacles, and trust in them.
+/// Positions, heights and trust of the obstacles.
 void gatherObstacles(const LidarCloud& cloud, LidarDetections& found) {
   const EgoPoints& points = found.points;
   const std::size_t obstacles = found.obstacles.size();
@@ -126,7 +126,7 @@ std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& s
   if (params.clusters.accept_unstable)
     params.unstable_noise = config.read(section + ".noise.unstable", params.unstable_noise);
 
-  DetectionParams defaults;  // lidar defaults of method.md 2.3 and 5.3 are DetectionParams' own
+  DetectionParams defaults;  // holds the lidar defaults of method.md 2.3 and 5.3
   defaults.kind = "lidar";
   defaults.modality = Modality::kLidar;
   const DetectionModel detection_model = DetectionModel::read(

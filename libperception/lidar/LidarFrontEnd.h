@@ -15,21 +15,22 @@
 
 namespace perception {
 
-/// Which returns are obstacles and which of them hide what lies behind: [sensor.LABEL.obstacles].
+/// Selection of obstacle returns and of occluders: [sensor.LABEL.obstacles].
 struct ObstacleParams {
   double height_min = 0.30;   ///< [m] above ground [radecki2016]
-  double height_max = 3.0;    ///< [m] above ground: bridges and crowns beyond (method.md 8.1)
-  double min_trust = 0.1;     ///< [0, 1] less: a phantom that joins no obstacles (assumed)
-  double occluder_min = 1.0;  ///< [m] above ground that a hiding column reaches (assumed)
-  double occluder_max = 2.2;  ///< [m] higher returns leave the view below them (assumed)
-  double occluder_bin = radians(0.4);  ///< [rad] of the horizon (assumed)
-  double occluder_margin = 0.5;        ///< [m] nearer than what it hides (method.md 8.6)
+  double height_max = 3.0;    ///< [m] above ground; higher: bridges, tree crowns (method.md 8.1)
+  double min_trust = 0.1;     ///< [0, 1] less trusted returns are no obstacles (assumed)
+  double occluder_min = 1.0;  ///< [m] above ground: least height of an occluder (assumed)
+  double occluder_max = 2.2;  ///< [m] higher returns do not occlude (assumed)
+  double occluder_bin = radians(0.4);  ///< [rad] of the occlusion map (assumed)
+  double occluder_margin = 0.5;        ///< [m] an occluder is nearer by this much (method.md 8.6)
 
   void visit(ParamVisitor& v);
 };
 
-/// Noise of one kind of detection about FootprintModel's outline: [sensor.LABEL.noise.NAME]. An
-/// edge's bearing has sigma_bearing (+) sigma_edge / range. Tuned on KITTI 0000.
+/// Noise of one kind of detection, for FootprintModel's axes: [sensor.LABEL.noise.NAME]. The
+/// variance of an edge's bearing is sigma_bearing^2 + (sigma_edge / range)^2 (method.md 4.1). Tuned
+/// on KITTI 0000.
 struct OutlineNoise {
   double sigma_edge = 0.25;             ///< [m] across the line of sight
   double sigma_bearing = radians(0.3);  ///< [rad]
@@ -52,25 +53,23 @@ struct LidarParams {
   LidarParams();
 };
 
-/// What the front end found in one scan, in the ego frame: for the tracker, for pictures and for
-/// the safety grid.
+/// Detections of one scan, in the ego frame: for the tracker, for pictures and for the safety grid.
 struct LidarDetections {
   LidarDetections(EgoPoints points_, std::vector<float> height_, GroundSurface surface_)
       : points(std::move(points_)), height(std::move(height_)), surface(std::move(surface_)) {}
 
   EgoPoints points;                      ///< usable returns
-  std::vector<float> height;             ///< [m] of each above the local ground
+  std::vector<float> height;             ///< [m] of each point above the local ground
   std::vector<std::uint32_t> obstacles;  ///< indices into points, in the scan's order
-  std::vector<float> x, y, above;        ///< [m] the obstacles' place and height above ground
-  std::vector<float> trust;              ///< [0, 1] in each obstacle; empty: all 1
-  std::vector<Cluster> clusters;         ///< car-sized; their indices run over the obstacles
-  std::vector<PersonPeak>
-      persons;  ///< outside of the clusters' hulls; their indices run over the obstacles
+  std::vector<float> x, y, above;        ///< [m] position of the obstacles and height above ground
+  std::vector<float> trust;              ///< [0, 1] of each obstacle; empty: all 1
+  std::vector<Cluster> clusters;         ///< car-sized; indices into the obstacles
+  std::vector<PersonPeak> persons;   ///< outside of the clusters' hulls; indices into the obstacles
   std::vector<std::uint8_t> ground;  ///< per return of the frame's cloud: 1 = ground
   GroundSurface surface;             ///< the local ground
 };
 
-/// The lidar front end: obstacle points, car-sized and person-sized groups among them, and their
+/// The lidar front end: obstacle returns, car-sized clusters and person peaks among them, and their
 /// outlines as measurements. Labels: car_sized, person_sized and, where clusters.accept_unstable,
 /// unstable.
 class LidarFrontEnd final : public FrontEnd {
@@ -81,7 +80,7 @@ class LidarFrontEnd final : public FrontEnd {
   std::vector<std::string> labelNames() const override {
     return model_->detection_model().labels();
   }
-  /// A frame without a point cloud gives empty detections.
+  /// Empty for a frame without a point cloud.
   LidarDetections detect(const SensorFrame& frame) const;
   /// Obstacle returns [m], ego frame.
   std::vector<Vector3> obstaclePoints(const SensorFrame& frame) const;

@@ -9,12 +9,12 @@
 namespace perception {
 namespace {
 
-/// As LidarFrontEnd::labels has them.
+/// Indices into LidarFrontEnd::labels().
 enum Label { kCarSized, kPersonSized, kUnstable };
 
-constexpr float kHides = 0.5f;  // [-] trust below which a return is more likely a flake than a wall
+constexpr float kLeastOccluderTrust = 0.5f;  // [-] least trust of an occluder
 
-/// Places of the ego frame's plane in the world, at the ground's height plus `above` [m].
+/// A point of the ego frame's x-y plane, `above` [m] over the ground, in the world frame.
 Vector3 toWorld(const ScanContext& scan, const Vector2& place, double above) {
   const double ground = scan.found.surface.heightAt(place.x(), place.y());
   return scan.frame.ego.T_world_ego * Vector3(place.x(), place.y(), ground + above);
@@ -24,13 +24,12 @@ Vector3 toWorld(const ScanContext& scan, const Vector2& place, double above) {
 /// `place` (ego).
 void fillVertical(const ScanContext& scan, const Vector2& place, double lowest, double highest,
                   bool partly_hidden, Measurement& m) {
-  constexpr double kStandsBelow =
-      0.5;  // [m] returns begin at height_min: lower ones are cut as ground
-  constexpr double kBaseSigma = 0.10;  // [m] of the local ground
-  constexpr double kTopSigma = 0.10;   // [m] of the highest return
+  constexpr double kStandsBelow = 0.5;  // [m] returns below height_min are removed as ground
+  constexpr double kBaseSigma = 0.10;   // [m] of the local ground
+  constexpr double kTopSigma = 0.10;    // [m] of the highest return
   constexpr double kBeamSpacing =
       0.008;  // [rad] 0.4 deg, HDL-64's lower half: the top lies up to a beam higher
-  constexpr double kCutSigma = 1.5;  // [m] the top is not in the returns
+  constexpr double kCutSigma = 1.5;  // [m] when the top is outside the view
   const bool stands = lowest < kStandsBelow;
   const double base = stands ? 0 : lowest;
   const double base_sigma = stands ? std::hypot(kBaseSigma, scan.frame.ground.sigma) : 0.3;
@@ -85,7 +84,7 @@ std::shared_ptr<const OcclusionMap> occlusionMapOf(const LidarDetections& found,
   for (std::size_t i = 0; i < found.x.size(); ++i) {
     if (found.above[i] < static_cast<float>(params.occluder_min) ||
         found.above[i] > static_cast<float>(params.occluder_max) ||
-        (!found.trust.empty() && found.trust[i] < kHides))
+        (!found.trust.empty() && found.trust[i] < kLeastOccluderTrust))
       continue;
     const float dx = found.x[i] - sx, dy = found.y[i] - sy, range2 = dx * dx + dy * dy;
     Bin& bin =
@@ -105,7 +104,7 @@ std::shared_ptr<const OcclusionMap> occlusionMapOf(const LidarDetections& found,
   return occlusion;
 }
 
-/// A sample of the returns tells as much: the highest beam has its share of them.
+/// A subsample suffices: the highest beam has its share of the returns.
 double topSlope(const LidarDetections& found) {
   constexpr std::size_t kSample = 16000;
   const EgoPoints& points = found.points;
@@ -145,7 +144,7 @@ Measurement measurementOf(const ScanContext& scan, const Cluster& cluster) {
     m.position_sigma = std::clamp(m.sides->length / 3, 0.5, 2.0);
     if (!cluster.stable)
       m.sides->length_complete = m.sides->width_complete =
-          false;  // its neighbor may be the same object
+          false;  // a neighbor may be part of the same object
   }
   fillVertical(scan, center, lowest, highest, outline.left_hidden || outline.right_hidden, m);
   return m;

@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// Heights of the ground and of the returns that one scan's measurements share.
+/// Data shared by the measurements of one scan.
 struct ScanContext {
   const SensorFrame& frame;
   const LidarDetections& found;
@@ -16,18 +16,17 @@ struct ScanContext {
   double top_slope;  ///< [-] tangent of the highest beam's elevation
 };
 
-/// The second nearest hiding return of every direction: a single one may be a flake, a drop or a
-/// twig.
+/// Occlusion map from the second nearest occluding return of every direction: a single one may be a
+/// snowflake, a drop or a twig.
 std::shared_ptr<const OcclusionMap> occlusionMapOf(const LidarDetections& found,
                                                    const Pose3& T_world_ego,
                                                    const Pose3& T_world_sensor,
                                                    const ObstacleParams& params);
 
-/// Tangent of the highest beam's elevation. A sample of the returns tells as much: the highest beam
-/// has its share of them.
+/// Tangent of the highest beam's elevation, from a subsample of the returns.
 double topSlope(const LidarDetections& found);
 
-/// What a detection is as a measurement, in the world.
+/// Converts a detection into a measurement (z, R), world frame.
 Measurement measurementOf(const ScanContext& scan, const Cluster& cluster);
 Measurement measurementOf(const ScanContext& scan, const PersonPeak& peak);
 

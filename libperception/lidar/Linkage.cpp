@@ -34,12 +34,13 @@ bool touch(const LinkageCells& cells, std::uint32_t i, std::uint32_t j, float th
   return false;
 }
 
-/// Cells of this or a following row that may hold points within the threshold of a cell's points.
+/// Range of cells in this or a following row that may hold points within the threshold of a cell's
+/// points.
 struct Reach {
   std::int32_t row, first_column, last_column;  ///< relative to the cell
 };
 
-/// One half of the plane about a cell.
+/// The ranges in one half-plane about a cell.
 std::vector<Reach> reachesOf(double side, double threshold) {
   std::vector<Reach> reaches;
   const auto most = static_cast<std::int32_t>(std::ceil(threshold / side)) + 1;
@@ -54,10 +55,10 @@ std::vector<Reach> reachesOf(double side, double threshold) {
   return reaches;
 }
 
-/// Neighboring cells of a row that are joined already.
+/// Neighboring cells of a row in the same set.
 struct Run {
   std::uint32_t first, last;  ///< cells
-  std::uint32_t set;          ///< of the forest, when the run was made
+  std::uint32_t set;          ///< root in the forest when the run was made
 };
 
 struct Runs {
@@ -92,8 +93,8 @@ bool touch(const LinkageCells& cells, const Run& a, const Run& b, const Reach& r
   return false;
 }
 
-/// Joins all sets of cells that hold points no farther apart than the threshold. `set` of each
-/// cell: cells of one set are joined already.
+/// Joins all sets of cells that hold points not farther apart than the threshold. `set`: per cell,
+/// the set it belongs to already.
 void link(const LinkageCells& cells, const std::vector<Reach>& reaches, double threshold,
           const std::vector<std::uint32_t>& set, Forest& forest) {
   const auto threshold2 = static_cast<float>(threshold * threshold);
@@ -101,7 +102,7 @@ void link(const LinkageCells& cells, const std::vector<Reach>& reaches, double t
   const std::size_t rows = runs.row_start.size() - 1;
   const auto row_of = [&cells](std::size_t r) { return cells.rows[cells.row_start[r]]; };
   for (const Reach& reach : reaches) {
-    std::size_t other = 0;  // the row reach.row farther on; both advance together
+    std::size_t other = 0;  // the row reach.row ahead; both advance together
     for (std::size_t r = 0; r < rows; ++r) {
       while (other < rows && row_of(other) < row_of(r) + reach.row) ++other;
       if (other == rows) break;
@@ -137,13 +138,13 @@ Partition farPartition(const DoubleLinkage& linkage) {
 DoubleLinkage linkTwice(const std::vector<float>& x, const std::vector<float>& y,
                         double near_threshold, double far_threshold) {
   DoubleLinkage result;
-  const double side =
-      near_threshold / std::sqrt(2.0) * (1 - 1e-5);  // the diagonal stays below, rounding included
+  const double side = near_threshold / std::sqrt(2.0) *
+                      (1 - 1e-5);  // the diagonal is below the threshold, rounding included
   const LinkageCells cells(x, y, side);
   std::vector<std::uint32_t> set(cells.count());
   std::iota(set.begin(), set.end(), 0u);
   Forest near_forest(cells.count());
-  link(cells, {{0, 1, 1}, {1, -1, 1}}, near_threshold, set, near_forest);  // most of what there is
+  link(cells, {{0, 1, 1}, {1, -1, 1}}, near_threshold, set, near_forest);  // joins most cells
   for (std::uint32_t& s : set) s = near_forest.find(s);
   link(cells, reachesOf(side, near_threshold), near_threshold, set, near_forest);
   result.near = partitionOf(cells.cell_of_point, near_forest);

@@ -5,29 +5,28 @@
 
 namespace perception {
 
-/// A partition of points: points of one group have the same number, counted in the order of the
-/// groups' first points.
+/// A partition of points into groups, numbered in the order of their first points.
 struct Partition {
   std::vector<std::uint32_t> group;  ///< per point
   std::uint32_t count = 0;           ///< of groups
 };
 
-/// Exact single linkage of the plane's points at two thresholds at once: the connected components
-/// of the graph that joins points no farther than a threshold apart.
+/// Exact single linkage of points in the plane at two thresholds: the connected components of the
+/// graph whose edges join points not farther apart than the threshold.
 struct DoubleLinkage {
   Partition near;  ///< at the small threshold
-  /// At the large one every group is a union of groups of `near`.
+  /// Number of groups at the large threshold, each a union of groups of `near`.
   std::uint32_t far_count = 0;
   std::vector<std::uint32_t> far_of_near;  ///< the far group of each near group
   std::vector<std::uint32_t>
-      parts;  ///< near groups in each far group; 1: the same set at both thresholds
+      parts;  ///< number of near groups in each far group; 1: the same set at both thresholds
 };
 
 /// The far group of every point, numbered in the order of the groups' first points.
 Partition farPartition(const DoubleLinkage& linkage);
 
-/// `near_threshold` < `far_threshold` [m]; coordinates finite. Distances are compared as squares in
-/// float.
+/// Single linkage of finite points [m]; `near_threshold` < `far_threshold` [m]. Squared distances
+/// are compared in float.
 DoubleLinkage linkTwice(const std::vector<float>& x, const std::vector<float>& y,
                         double near_threshold, double far_threshold);
 

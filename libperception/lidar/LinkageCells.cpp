@@ -28,7 +28,7 @@ void LinkageCells::place(const std::vector<float>& x, const std::vector<float>& 
   wraps_ = across > std::int64_t{1} << column_bits_ || up > std::int64_t{1} << row_bits;
   column_mask_ = (1u << column_bits_) - 1, row_mask_ = (1u << row_bits) - 1;
   const std::size_t places = std::size_t{1} << (column_bits_ + row_bits);
-  thread_local std::vector<std::uint32_t> table;  // memory that every scan needs again
+  thread_local std::vector<std::uint32_t> table;  // reused between scans
   if (table.size() < places) table.resize(places);
   table_ = table.data();
   taken_.assign(places / 64, 0);
@@ -40,7 +40,7 @@ void LinkageCells::place(const std::vector<float>& x, const std::vector<float>& 
   std::uint32_t last = kNone;
   for (std::size_t first = 0; first < x.size(); first += kBlock) {
     const std::size_t size = std::min(kBlock, x.size() - first);
-    for (std::size_t k = 0; k < size; ++k) {  // from the lowest on, so truncation is floor
+    for (std::size_t k = 0; k < size; ++k) {  // relative to the lowest, so that truncation is floor
       column[k] = static_cast<std::int32_t>((static_cast<double>(x[first + k]) - x0) * per_meter);
       row[k] = static_cast<std::int32_t>((static_cast<double>(y[first + k]) - y0) * per_meter);
     }

@@ -34,7 +34,7 @@ Outline outlineOf(const std::vector<Vector2>& hull, const Pose3& T_world_sensor)
 void markHiddenEdges(Outline& outline, const OcclusionMap& occlusion, const Pose3& T_world_sensor,
                      double margin, double step, double fov) {
   const double yaw = yawOf(T_world_sensor);
-  // The edge's own bin holds its own returns: the two bins outside of it tell.
+  // The edge's own bin holds the object's returns: the two bins outside of it are tested.
   const auto hiddenBeside = [&](double bearing, double range, double outward) {
     const bool at_border = fov < kTwoPi - 1e-6 && std::abs(bearing) > fov / 2 - 2 * step;
     return at_border || occlusion.nearest(yaw + bearing + outward) < range - margin ||
@@ -53,7 +53,7 @@ void fillFootprint(const Outline& outline, double sigma_left, double sigma_right
   if (outline.left_hidden) m.seen = static_cast<AxisMask>(m.seen & ~(1 << FootprintModel::kLeft));
   if (outline.right_hidden) m.seen = static_cast<AxisMask>(m.seen & ~(1 << FootprintModel::kRight));
 
-  // Derivatives of the axes by the sensor's x, y and yaw.
+  // Derivatives of the axes with respect to the sensor's x, y and yaw.
   Eigen::Matrix3d J;
   const double left = sensor_yaw + outline.left, right = sensor_yaw + outline.right;
   J.row(FootprintModel::kLeft) << std::sin(left) / outline.left_range,

@@ -6,7 +6,7 @@
 namespace perception {
 namespace {
 
-/// Trust in a return of the obstacles.
+/// Trust in obstacle return i.
 double trustIn(const LidarDetections& found, std::uint32_t i) {
   return found.trust.empty() ? 1.0 : static_cast<double>(found.trust[i]);
 }

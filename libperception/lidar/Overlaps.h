@@ -3,11 +3,12 @@
 
 namespace perception {
 
-/// One object, one detection, and no return in two: where a peak lies in a cluster's hull, one of
-/// the two goes or they are parted. A peak that explains most of a short cluster is a person with
-/// legs apart; one that is the middle of something rider-sized belongs to it; else the cluster is
-/// something larger and the peak its corner (method.md 8.3). A clear peak beside something unstable
-/// is a person standing close to it: its returns leave the cluster.
+/// Resolves overlaps of person peaks and clusters, so that each object gives one detection and each
+/// return is part of at most one (method.md 8.3). A peak with most of the returns of a short
+/// cluster replaces it (a person with legs apart). Peaks in stable clusters, weak peaks and those
+/// with a large share of a rider-sized cluster are parts of the cluster and dropped. A strong peak
+/// in an unstable cluster is a person close to something else: its returns are removed from the
+/// cluster.
 void settleOverlaps(LidarDetections& found, const PersonParams& params,
                     const ClusterParams& cluster_params);
 

@@ -13,16 +13,16 @@ void PersonParams::visit(ParamVisitor& v) {
   v.real("min_span", min_span, {0, 3}, "m", "least height from lowest to highest return");
   v.expert();
   v.choiceOf("kernel", kernel, {"consistent", "printed"},
-             "second term with sigma^4, or sigma^2 as [radecki2016] prints it");
+             "second term with sigma^4, or with sigma^2 as printed in Radecki et al.");
   v.real("threshold", threshold, {0, 10}, "1/m^2", "response per return near the peak");
 }
 
 namespace {
 
-/// The returns of the cells about some places, cell by cell.
+/// The returns in the cells about some positions, cell by cell.
 class Neighborhoods {
  public:
-  /// Square blocks of cells that reach `reach` cells to each side of `middles`.
+  /// Square blocks that extend `reach` cells to each side of `middles`.
   Neighborhoods(const PersonResponse& response, const std::vector<std::uint32_t>& middles,
                 std::size_t reach);
   /// Calls f with each return in the block about `middle`.
@@ -47,7 +47,7 @@ Neighborhoods::Neighborhoods(const PersonResponse& response,
   start_.assign(count + 2, 0);
   const std::vector<std::uint32_t>& cells = response.cellOfReturn();
   for (const std::uint32_t k : cells) ++start_[number_[k]];
-  start_[0] = 0;  // returns in no block
+  start_[0] = 0;  // for returns in no block
   for (std::size_t n = 1; n < start_.size(); ++n) start_[n] += start_[n - 1];
   returns_.resize(start_[count]);
   std::vector<std::uint32_t> next(start_.begin(), start_.end());
@@ -63,11 +63,11 @@ void Neighborhoods::forEach(std::uint32_t middle, const Function& f) const {
       for (std::uint32_t p = start_[number_[k] - 1]; p < start_[number_[k]]; ++p) f(returns_[p]);
 }
 
-/// Drops maxima whose response per return is too low whatever the returns at the circle's rim are:
+/// Drops maxima whose response per return is too low even without the cells cut by the circle:
 /// walls and hedges.
 void dropCrowded(const PersonResponse& response, const PersonParams& params,
                  std::vector<std::uint32_t>& maxima) {
-  std::vector<std::ptrdiff_t> inside;  // cells that lie in the circle as a whole
+  std::vector<std::ptrdiff_t> inside;  // cells entirely inside the circle
   const auto reach = static_cast<std::ptrdiff_t>(params.radius / params.cell);
   for (std::ptrdiff_t row = -reach; row <= reach; ++row)
     for (std::ptrdiff_t column = -reach; column <= reach; ++column)
@@ -86,7 +86,7 @@ void dropCrowded(const PersonResponse& response, const PersonParams& params,
   maxima.erase(std::remove_if(maxima.begin(), maxima.end(), crowded), maxima.end());
 }
 
-/// The peak at a cell, when its returns are person-sized.
+/// Describes the peak at a cell; false unless its returns are person-sized.
 bool describe(const PersonResponse& response, const Neighborhoods& near, std::uint32_t cell,
               const std::vector<float>& x, const std::vector<float>& y,
               const std::vector<float>& height, const std::vector<float>& weight,
@@ -115,8 +115,8 @@ bool describe(const PersonResponse& response, const Neighborhoods& near, std::ui
   return peak.normalized >= params.threshold && span >= params.min_span && span <= params.max_span;
 }
 
-/// Whether the returns have the shape of somebody upright: wide enough for shoulders, low enough
-/// for a person, without the gaps of twigs. Fills width and gap.
+/// Whether the returns have the shape of an upright person: width of shoulders, height of a person,
+/// no vertical gaps as in twigs. Sets width and gap.
 bool hasShape(const std::vector<float>& x, const std::vector<float>& y,
               const std::vector<float>& height, const PersonParams& params, const Vector2& sensor,
               PersonPeak& peak) {
@@ -152,8 +152,8 @@ std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vect
   std::vector<PersonPeak> peaks;
   if (x.empty()) return peaks;
   const PersonResponse response(x, y, weight, params);
-  // A peak of at least min_points returns with that response each; any positive one may do where
-  // the threshold is zero.
+  // Least response: min_points returns at the threshold; any positive one when the threshold is
+  // zero.
   const double least = std::max(params.threshold * params.min_points * (1 - 1e-3), 1e-6);
   std::vector<std::uint32_t> maxima = response.maxima(static_cast<float>(least));
   dropCrowded(response, params, maxima);

@@ -20,7 +20,7 @@ double personKernel(double r, const PersonParams& params) {
 PersonResponse::PersonResponse(const std::vector<float>& x, const std::vector<float>& y,
                                const std::vector<float>& weight, const PersonParams& params)
     : cell_(params.cell),
-      // Rows of the kernel are padded by up to seven cells to the right.
+      // The margin includes up to seven cells of padding of the kernel rows.
       margin_(static_cast<std::size_t>(std::ceil(params.support / params.cell)) + 8) {
   if (x.empty()) return;
   place(x, y, weight);
@@ -62,7 +62,7 @@ PERCEPTION_WIDER void findCells(const float* __restrict x, const float* __restri
   }
 }
 
-/// Where, in steps of sixteen, the first sixteen begin of which one is at least so large.
+/// Start of the first group of sixteen values of which one reaches the threshold.
 PERCEPTION_WIDER std::size_t firstGroupWith(const float* v, std::size_t begin, std::size_t end,
                                             float least) {
   for (; begin + 2 * kLanes <= end; begin += 2 * kLanes) {
@@ -80,8 +80,8 @@ void PersonResponse::place(const std::vector<float>& x, const std::vector<float>
                            const std::vector<float>& weight) {
   const Spread x_bounds = spreadOf(x.data(), x.size()), y_bounds = spreadOf(y.data(), y.size());
   const double margin = static_cast<double>(margin_) * cell_, per_meter = 1 / cell_;
-  // Cells lie on multiples of their side, so that they do not depend on which return is the
-  // outermost.
+  // The grid is aligned to multiples of the cell side, so that it does not depend on the outermost
+  // return.
   x0_ = std::floor(static_cast<double>(x_bounds.lowest) / cell_) * cell_ - margin;
   y0_ = std::floor(static_cast<double>(y_bounds.lowest) / cell_) * cell_ - margin;
   columns_ =
@@ -103,11 +103,11 @@ void PersonResponse::place(const std::vector<float>& x, const std::vector<float>
 
 namespace {
 
-/// The kernel's rows, padded with zeros to multiples of eight: whole vectors.
+/// The kernel's rows, zero-padded to multiples of eight.
 struct KernelRows {
   struct Row {
-    std::ptrdiff_t offset;  ///< of its first cell from the center, in the grid
-    std::size_t first;      ///< place in `weights`
+    std::ptrdiff_t offset;  ///< grid offset of its first cell from the center
+    std::size_t first;      ///< index into `weights`
     std::size_t eights;     ///< length in groups of eight
   };
   KernelRows(std::size_t columns, const PersonParams& params);
@@ -143,7 +143,7 @@ PERCEPTION_WIDER void addKernel(const KernelRows& kernel, float weight, float* c
 
 }  // namespace
 
-/// Every cell with returns adds its weight times the kernel to the cells around it.
+/// Adds, for every cell with returns, its weight times the kernel to the cells around it.
 void PersonResponse::scatter(const PersonParams& params) {
   const KernelRows kernel(columns_, params);
   response_ = std::vector<float>(columns_ * rows_);

@@ -8,22 +8,22 @@ namespace perception {
 
 struct PersonParams;
 
-/// The kernel L(r) [1/m^2].
+/// The kernel L(r) [1/m^2] at distance r [m], method.md (46).
 double personKernel(double r, const PersonParams& params);
 
-/// The person filter's response over the plane: at the center of every square cell the sum of the
-/// kernel over the returns, each taken at its own cell's center.
+/// Response of the person filter on a grid: at the center of every square cell the sum of the
+/// kernel over the returns, each moved to the center of its cell.
 class PersonResponse {
  public:
-  /// Places [m]; `weight` as for findPersons.
+  /// Positions of the returns [m]; `weight` as for findPersons().
   PersonResponse(const std::vector<float>& x, const std::vector<float>& y,
                  const std::vector<float>& weight, const PersonParams& params);
 
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
-  std::size_t margin() const { return margin_; }  ///< cells without returns at each side
-  double cell() const { return cell_; }           ///< [m]
-  const std::vector<float>& values() const { return response_; }  ///< row by row
+  std::size_t margin() const { return margin_; }                  ///< empty cells at each side
+  double cell() const { return cell_; }                           ///< [m]
+  const std::vector<float>& values() const { return response_; }  ///< row-major
   const std::vector<float>& weights() const { return weights_; }  ///< of the returns in each cell
   /// The cell of every return, in their order.
   const std::vector<std::uint32_t>& cellOfReturn() const { return cell_of_return_; }
@@ -31,8 +31,9 @@ class PersonResponse {
     return {x0_ + (static_cast<double>(k % columns_) + 0.5) * cell_,
             y0_ + (static_cast<double>(k / columns_) + 0.5) * cell_};
   }
-  /// Cells with at least `least` that are not below any of their eight neighbors (of equal ones
-  /// the first) and hold returns or lie beside returns; in the order of the grid. `least` > 0.
+  /// Local maxima: cells with a response of at least `least` > 0 that is not below any of the eight
+  /// neighbors (of equal ones the first) and with returns in or beside them; in the order of the
+  /// grid.
   std::vector<std::uint32_t> maxima(float least) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // points that stay in the nearest cache
+constexpr std::size_t kBlock = 1024;  // points that fit in the L1 cache
 
 PERCEPTION_WIDEST void markGround(const float* __restrict heights, std::size_t count, float low,
                                   std::uint8_t* __restrict marks) {
@@ -22,7 +22,7 @@ PERCEPTION_WIDEST void markObstacles(const float* __restrict heights, std::size_
   for (std::size_t k = 0; k < count; ++k) marks[k] = (heights[k] > low) & (heights[k] < high);
 }
 
-/// Takes back what the sensor itself calls ground and what is a phantom.
+/// Unmarks returns that the sensor labels as ground, and phantoms.
 void unmark(const LidarCloud& cloud, const std::uint32_t* source, std::size_t count,
             float least_trust, std::int32_t* marks) {
   constexpr auto kGround = static_cast<std::uint8_t>(PointLabel::kGround);
@@ -42,7 +42,7 @@ void labelGround(const EgoPoints& points, const std::vector<float>& heights, flo
     const std::size_t count = std::min(kBlock, heights.size() - first);
     const std::uint32_t* source = &points.source[first];
     markGround(&heights[first], count, low, marks.data());
-    if (source[count - 1] - source[0] == count - 1) {  // all of them in a row, as most are
+    if (source[count - 1] - source[0] == count - 1) {  // contiguous, the common case
       std::memcpy(&ground[source[0]], marks.data(), count);
     } else {
       for (std::size_t k = 0; k < count; ++k) ground[source[k]] = marks[k];

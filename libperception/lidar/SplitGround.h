@@ -6,19 +6,18 @@
 
 namespace perception {
 
-/// Which returns are ground and which are obstacles.
+/// Criteria of ground and obstacle returns.
 struct SplitRules {
   double height_min, height_max;  ///< [m] above ground
-  double min_trust;               ///< [0, 1] less: a phantom, no obstacle
+  double min_trust;               ///< [0, 1] less trusted returns are no obstacles
 };
 
-/// A label for each return of a cloud of `returns`: 1 where it is a point that lies within `low`
-/// [m] of the ground.
+/// Labels each of the `returns` returns of a cloud: 1 for a point within `low` [m] of the ground.
 void labelGround(const EgoPoints& points, const std::vector<float>& heights, float low,
                  std::size_t returns, std::vector<std::uint8_t>& ground);
 
-/// Labels the ground, the sensor's own label included, and finds the obstacles, places in
-/// `points`: neither are what is mirrored in a wet road and what hangs above all that drives.
+/// Labels the ground, by the sensor's own label too, and finds the obstacles, as indices into
+/// `points`. Mirrored returns and those above height_max are neither.
 void splitGround(const LidarCloud& cloud, const EgoPoints& points,
                  const std::vector<float>& heights, const SplitRules& rules,
                  std::vector<std::uint8_t>& ground, std::vector<std::uint32_t>& obstacles);

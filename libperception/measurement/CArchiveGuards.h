@@ -10,12 +10,11 @@
 
 namespace perception::archive {
 
-// Reading of our observation classes from unchecked files: no count is believed
-// before it is compared with what is plausible, no memory is taken before the bytes for it have
-// been read, and no short read is accepted (mrpt::serialization::CArchive::ReadBuffer accepts one
-// in silence).
+// Deserialization of this library's observation classes from untrusted files: counts are checked
+// against a maximum, memory is allocated only as bytes arrive, and a short read throws
+// (mrpt::serialization::CArchive::ReadBuffer only returns the number of bytes).
 
-/// Largest block of memory taken in advance [bytes].
+/// Largest block of memory allocated ahead of its data [bytes].
 inline constexpr std::size_t kBlockBytes = 1U << 20;
 
 inline void readExactly(mrpt::serialization::CArchive& in, void* to, std::size_t bytes) {
@@ -34,14 +33,14 @@ inline std::uint32_t readCount(mrpt::serialization::CArchive& in, std::uint32_t 
   return count;
 }
 
-/// A truth value; bytes other than 0 and 1 are no bool.
+/// A bool; throws for bytes other than 0 and 1.
 inline bool readFlag(mrpt::serialization::CArchive& in) {
   const auto byte = in.ReadAs<std::uint8_t>();
-  if (byte > 1) throw std::runtime_error("a truth value that is neither 0 nor 1");
+  if (byte > 1) throw std::runtime_error("a bool that is neither 0 nor 1");
   return byte == 1;
 }
 
-/// An array of plain numbers, little-endian, without a count of its own.
+/// An array of `count` numbers, little-endian; the count is not part of it.
 template <class Number>
 void readBlock(mrpt::serialization::CArchive& in, std::vector<Number>& values, std::size_t count) {
   values.clear();

@@ -74,7 +74,7 @@ void writeMeasurement(CArchive& out, const Measurement& m) {
   out.WriteAs<std::uint8_t>(m.z.size());
   for (Eigen::Index i = 0; i < m.z.size(); ++i) out << m.z[i];
   for (Eigen::Index i = 0; i < m.z.size();
-       ++i) {  // R is symmetric, but it is kept as it is: faults must show
+       ++i) {  // all of R, not one triangle: an asymmetric R must remain visible
     for (Eigen::Index j = 0; j < m.z.size(); ++j) out << m.R(i, j);
   }
   out << m.seen;

@@ -10,9 +10,9 @@
 
 namespace perception {
 
-/// The measurements that a front end took from one sensor at one instant, as an entry of a rawlog:
-/// z with covariance R under a named measurement model. What a front end hands to the filter can so
-/// be recorded, looked at with the stock tools and played again.
+/// The measurements of one sensor at one instant as an observation: z with covariance R under a
+/// named measurement model. Lets the output of a front end be recorded in a rawlog, viewed with
+/// MRPT's tools and replayed.
 class CObservationMeasurements : public mrpt::obs::CObservation {
   DEFINE_SERIALIZABLE(CObservationMeasurements, perception)
  public:
@@ -23,7 +23,7 @@ class CObservationMeasurements : public mrpt::obs::CObservation {
       axes;  ///< names of the axes of z ("left", "right", "range"), for readers
   std::vector<std::string> labels;  ///< what Measurement::label indexes
   std::vector<Measurement> measurements;
-  mrpt::poses::CPose3D sensor_pose;  ///< of the sensor on the vehicle
+  mrpt::poses::CPose3D sensor_pose;  ///< pose of the sensor in the vehicle frame
 
   void getSensorPose(mrpt::poses::CPose3D& pose) const override { pose = sensor_pose; }
   void setSensorPose(const mrpt::poses::CPose3D& pose) override { sensor_pose = pose; }

@@ -4,14 +4,14 @@
 
 namespace perception {
 
-/// A row of the table of [radecki2016] of panorama resolutions. Ranges: recall and precision hold
-/// within.
+/// A row of [radecki2016]'s table of panorama resolutions (method.md 4.2). Its recall and precision
+/// hold within the ranges.
 struct CameraResolution {
   const char* name;
   int width, height;               ///< [px] of the whole sphere
   double car_range, person_range;  ///< [m]
-  /// Boxes of no car or person an image: from the detections per image of [radecki2016] (cars
-  /// .46/1.53/4.52/8.12, persons .15/.45/5.98/27.31) and its precision (95 and 90 %).
+  /// Expected false boxes per image: detections per image of [radecki2016] (cars
+  /// .46/1.53/4.52/8.12, persons .15/.45/5.98/27.31) times 1 - precision (95 and 90 %).
   double false_per_image;
 };
 

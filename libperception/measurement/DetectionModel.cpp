@@ -9,8 +9,8 @@
 namespace perception {
 namespace {
 
-/// A row of the tables by modality, for a sensor of these labels: labels that it does not have drop
-/// out, and the rest is normalized.
+/// A row of [detection.MODALITY.CLASS] for a sensor with these labels: other labels are removed and
+/// the rest is normalized.
 ClassDetection withLabels(ClassDetection row, const std::vector<std::string>& labels) {
   const auto missing = [&](const auto& l) {
     return std::find(labels.begin(), labels.end(), l.first) == labels.end();
@@ -28,10 +28,10 @@ std::string tableSection(Modality modality, const std::string& class_name) {
   return kTablePrefix + rowOf(modality).name + "." + class_name;
 }
 
-/// A label that no row mentions still happens now and then.
+/// Least probability of a label (method.md 2.3).
 constexpr double kLeastLabel = 0.005;
 
-/// Probabilities in the order of `labels`: the given ones, the others sharing what is left; sums
+/// Probabilities in the order of `labels`: the given ones, the others sharing the remainder; sums
 /// to 1.
 std::vector<double> completeRow(const std::vector<std::pair<std::string, double>>& given,
                                 const std::vector<std::string>& labels) {
@@ -88,9 +88,9 @@ void DetectionParams::visit(ParamVisitor& v) {
   v.choice("modality", index, letters, names.c_str());
   modality = modalities()[static_cast<std::size_t>(index)].letter;
   v.real("clutter_per_scan", clutter_per_scan, {1e-9, 1e4}, "",
-         "expected number of false measurements a scan (kappa)");
+         "expected number of false measurements per scan (kappa)");
   v.real("births_per_scan", births_per_scan, {1e-9, 1e4}, "",
-         "expected number of new objects a scan (beta)");
+         "expected number of new objects per scan (beta)");
   v.real("range_min", range_min, {0, 1000}, "m", "nearest objects that it sees");
   v.real("range_max", range_max, {1, 100000}, "m", "farthest objects that it sees");
   v.require(range_min < range_max, "range_min must lie below range_max");
@@ -99,19 +99,19 @@ void DetectionParams::visit(ParamVisitor& v) {
   v.real("label_exponent", label_exponent, {0.001, 1}, "",
          "tempers labels in the class update: 1 = independent labels");
   v.real("detection_exponent", detection_exponent, {1e-3, 1}, "",
-         "tempers detections and misses in the class update");
+         "tempers detections and missed detections in the class update");
   std::vector<std::string> resolutions = cameraResolutionNames();
   resolutions.insert(resolutions.begin(), "none");
   v.choice("resolution", resolution, resolutions,
-           "panoramas of the paper's detector (kind = boxes): sets range_max, clutter_per_scan, "
-           "births_per_scan and the ranges of all classes, over the keys for these");
+           "panoramas of Radecki et al. (kind = boxes): sets range_max, clutter_per_scan, "
+           "births_per_scan and the ranges of all classes, overriding their keys");
   v.require(resolution == 0 || kind == "boxes", "resolution: of cameras, kind = boxes");
   applyResolution();
   v.table("clutter_label.", clutter_labels, {0, 1}, "",
-          "P(label | clutter); labels not named share the rest");
-  v.table(
-      "precision.", precision, {0.5, 1}, "",
-      "the paper's mode: P(label | its class) = precision, else 1 - precision; one key a label");
+          "P(label | clutter); labels not listed share the rest");
+  v.table("precision.", precision, {0.5, 1}, "",
+          "labels as in Radecki et al.: P(label | its class) = precision, else 1 - precision; a "
+          "key per label");
   v.expert();
   std::vector<double> numbers;
   if (pose) {
@@ -124,7 +124,7 @@ void DetectionParams::visit(ParamVisitor& v) {
                degrees(rollOf(*pose))};
   }
   v.reals("pose", numbers, -1, {-1000, 1000}, "m, deg",
-          "x, y, z, yaw, pitch, roll on the vehicle; wins over the log's");
+          "x, y, z, yaw, pitch, roll in the vehicle frame; overrides the log's");
   v.require(numbers.empty() || numbers.size() == 6,
             "pose: expected six numbers x, y, z [m], yaw, pitch, roll [deg]");
   if (numbers.size() == 6) {
@@ -136,7 +136,7 @@ void DetectionParams::visit(ParamVisitor& v) {
 void DetectionParams::applyResolution() {
   if (resolution == 0) return;
   const CameraResolution& row = cameraResolutions()[static_cast<std::size_t>(resolution) - 1];
-  // Of the panorama at 2k, whose figures method.md 5.3 gives, births grow with the range's border.
+  // Births are proportional to the range, from those of the 2k panorama (method.md 5.3).
   constexpr double kBirths = 0.01, kRange = 15;  // [1/scan], [m]
   range_max = 1.2 * row.car_range;
   clutter_per_scan = row.false_per_image;
@@ -146,11 +146,11 @@ void DetectionParams::applyResolution() {
 void ClassDetection::visit(ParamVisitor& v) {
   v.real("detection", detection, {0, 1}, "", "P(detected) in view, near, not occluded");
   v.real("full_range", full_range, {0.1, 1e4}, "m",
-         "up to which that holds; falls to 0 at last_range");
+         "up to which P(detected) is constant; falls to 0 at last_range");
   v.real("last_range", last_range, {0.1, 1e4}, "m",
-         "where it is 0; at most the sensor's range_max");
+         "where P(detected) is 0; at most the sensor's range_max");
   v.table("label.", labels, {0, 1}, "",
-          "P(label | this class, detected); labels not named share the rest");
+          "P(label | this class, detected); labels not listed share the rest");
 }
 
 void checkDetectionTables(Config& config, const ClassTable& classes) {
@@ -222,8 +222,8 @@ void DetectionModel::applyPrecision() {
   }
 }
 
-// Recall falls from all to none within 10 % of [radecki2016]'s range; what the detector calls a
-// car is seen as far as cars are.
+// P_D falls to 0 between 0.9 and 1.1 of [radecki2016]'s range (method.md 4.2); classes that the
+// detector labels "car" have the range of cars.
 void DetectionModel::applyResolution() {
   const CameraResolution& resolution =
       cameraResolutions()[static_cast<std::size_t>(params_.resolution) - 1];
@@ -253,7 +253,7 @@ double DetectionModel::logLabel(int label, ClassId c) const {
 double DetectionModel::detection(ClassId c, double range, double bearing, double visibility) const {
   const auto& row = classes_[static_cast<std::size_t>(c)];
   if (range < params_.range_min || range >= params_.range_max) return 0;
-  // At the borders of the view detections fade out instead of ending: over the last 5 % of range,
+  // P_D falls linearly to 0 at the borders of the field of view: over the last 5 % of the range and
   // the last 2 degrees.
   const double last = std::min(row.last_range, params_.range_max);
   const double full = std::min(row.full_range, 0.95 * last);

@@ -9,50 +9,52 @@
 
 namespace perception {
 
-/// What every sensor has: [sensor.LABEL]. Rates are per scan over the whole field of view.
+/// Parameters that every sensor has, [sensor.LABEL]. Rates are per scan over the whole field of
+/// view.
 struct DetectionParams {
   std::string kind = "lidar";  ///< front end by name
   Modality modality = Modality::kLidar;
-  double clutter_per_scan = 0.6;  ///< kappa: false measurements (method.md 5.3)
-  double births_per_scan = 0.03;  ///< beta: first measurements of new objects (method.md 5.3)
-  double range_min = 0, range_max = 70;  ///< [m] of the objects' nearest points [radecki2016]
+  double clutter_per_scan = 0.6;         ///< kappa: false measurements (method.md 5.3)
+  double births_per_scan = 0.03;         ///< beta: first measurements of new objects (method.md 5.3)
+  double range_min = 0, range_max = 70;  ///< [m] of the nearest point of an object [radecki2016]
   double fov = kTwoPi;              ///< [rad] full horizontal angle about the sensor's forward axis
   double label_exponent = 0.3;      ///< (0, 1] tempers labels in the class update (method.md 5.6)
-  double detection_exponent = 0.1;  ///< (0, 1] tempers detections and misses there (method.md 5.6)
-  std::optional<Pose3> pose;        ///< on the vehicle; when given it wins over the log's
+  double detection_exponent = 0.1;  ///< (0, 1] tempers detections and missed detections there (method.md 5.6)
+  std::optional<Pose3> pose;        ///< in the ego frame; overrides the pose of the log
   std::vector<std::pair<std::string, double>>
-      clutter_labels;  ///< P(label | clutter); the rest shares evenly
-  /// Panoramas of [radecki2016]: a row of cameraResolutions(), 1, 2 ...; 0: none. Sets range_max,
-  /// clutter, births and every class's ranges, over what the INI says of them.
+      clutter_labels;  ///< P(label | clutter); labels not listed share the rest evenly
+  /// Panoramas of [radecki2016]: the row of cameraResolutions(), counted from 1; 0: none. Sets
+  /// range_max, clutter, births and the ranges of every class, overriding the INI.
   int resolution = 0;
   /// [radecki2016]'s reading of labels in place of the class tables: a label's precision p is
-  /// P(label | its class), 1 - p is P(label | any other class) (method.md 5.6). Empty: the tables.
+  /// P(label | its class), 1 - p is P(label | any other class) (method.md 5.6). Empty: the class
+  /// tables.
   std::vector<std::pair<std::string, double>> precision;
 
   void visit(ParamVisitor& v);
   void applyResolution();
 };
 
-/// How a sensor sees one class: [sensor.LABEL.class.NAME], over [detection.MODALITY.NAME] of
-/// classes.ini (method.md 2.3), over these values, which hold for a class that stands in neither.
+/// P_D and labels of one class for one sensor: [sensor.LABEL.class.NAME] overrides
+/// [detection.MODALITY.NAME] of classes.ini (method.md 2.3), which overrides these defaults.
 struct ClassDetection {
   double detection = 0.9;  ///< P(detected | in view, not occluded, near)
   double full_range =
       1e3;  ///< [m] up to which that holds; from there it falls linearly to 0 at last_range
-  double last_range = 1e4;                             ///< [m] at most the sensor's range_max
+  double last_range = 1e4;  ///< [m] where P_D is 0; at most the sensor's range_max
   std::vector<std::pair<std::string, double>> labels;  ///< P(label | class, detected), normalized
 
   void visit(ParamVisitor& v);
 };
 
-/// Reads all [detection.MODALITY.CLASS], so that those of modalities without a sensor are no
-/// faults, either; other names of sections are.
+/// Reads all [detection.MODALITY.CLASS], those of modalities without a sensor too, and reports
+/// sections of unknown modalities or classes.
 void checkDetectionTables(Config& config, const ClassTable& classes);
 
 /// The tables of one sensor, checked against the class table and the front end's labels.
 class DetectionModel {
  public:
-  /// `defaults` are the front end's for [sensor.LABEL].
+  /// `defaults` are those of the front end for [sensor.LABEL].
   static DetectionModel read(Config& config, const std::string& section, const ClassTable& classes,
                              const std::vector<std::string>& labels,
                              const DetectionParams& defaults);
@@ -65,7 +67,7 @@ class DetectionModel {
   /// Index of a label name or -1.
   int labelIndex(const std::string& name) const;
   double logLabel(int label, ClassId c) const;
-  /// The label that is the name of the class: the likeliest of its row.
+  /// The most probable label of the class.
   int labelOf(ClassId c) const;
   double logLabelClutter(int label) const {
     return log_clutter_labels_[static_cast<std::size_t>(label)];

@@ -8,7 +8,7 @@ namespace perception {
 namespace {
 
 constexpr double kFloor = 0.1 * 0.1;    // [m^2]
-constexpr double kFloorShare = 1. / 9;  // as if no more than nine errors were independent
+constexpr double kFloorShare = 1. / 9;  // as for nine independent errors
 
 void updateSide(double seen, bool complete, double own_sigma, double sigma, double& mean,
                 double& var) {

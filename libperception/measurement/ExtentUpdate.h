@@ -4,11 +4,12 @@
 
 namespace perception {
 
-/// The extent after a box was seen (method.md 5.13): a complete side is a measurement of length or
-/// width with standard deviation `sigma` [m] or the side's own, an incomplete one only raises a
-/// smaller mean. Sides are told apart by the angle to the object's `yaw` [rad, world]; between 30
-/// and 60 degrees they cannot be, and nothing changes. Variances keep a floor of (0.1 m)^2, or of a
-/// ninth of the side's own, because the errors of one object's boxes are not independent.
+/// The extent updated by a partial box (method.md 5.13): a complete side is a measurement of length
+/// or width with standard deviation `sigma` [m] or the side's own, an incomplete one is a lower
+/// bound of the mean. Sides are assigned to length and width by the angle to the object's `yaw`
+/// [rad, world]; between 30 and 60 degrees that is ambiguous and nothing changes. Variances stay
+/// above (0.1 m)^2, or a ninth of the side's own variance, because the errors of the boxes of one
+/// object are not independent.
 Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, double sigma);
 
 }  // namespace perception

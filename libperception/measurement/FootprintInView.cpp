@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-/// h and derivatives of a bearing to a point of the object that moves with dpoint.
+/// h and Jacobians of the bearing to a point of the object with the derivatives `dpoint`.
 void setBearing(const Vector2& d, double forward, const Eigen::Matrix<double, 2, 5>& dpoint_dq,
                 const Matrix2& dpoint_dextent, Eigen::Index row, AxisPrediction& out) {
   out.h[row] = wrapAngle(std::atan2(d.y(), d.x()) - forward);
@@ -51,7 +51,7 @@ void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double
                       AxisPrediction& out) {
   const Vector2 u(std::cos(yaw), std::sin(yaw)), n = perpendicular(u);
   const Vector2 half(0.5 * extent.length, 0.5 * extent.width);
-  const Vector2 sensor(-u.dot(d), -n.dot(d));  // in the object's own frame
+  const Vector2 sensor(-u.dot(d), -n.dot(d));  // in the object's frame
   const Vector2 nearest(std::clamp(sensor.x(), -half.x(), half.x()),
                         std::clamp(sensor.y(), -half.y(), half.y()));
   const double range = (sensor - nearest).norm();
@@ -60,8 +60,8 @@ void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double
   resize(out);
 
   const auto point = [&](const Vector2& own) { return Vector2(d + own.x() * u + own.y() * n); };
-  // Derivatives of a point that is fixed in the object's frame up to its size: own = (ex L/2, ey
-  // W/2) where e = +-1.
+  // Derivatives (method.md (12)) of a point fixed in the object's frame up to its size: own = (ex
+  // L/2, ey W/2) where e = +-1.
   const auto derivatives = [&](const Vector2& own, const Vector2& e,
                                Eigen::Matrix<double, 2, 5>& dq, Matrix2& dextent) {
     dq.setZero();
@@ -72,8 +72,8 @@ void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double
   };
   Eigen::Matrix<double, 2, 5> dq;
   Matrix2 dextent;
-  // Angles from the center's direction by their tangents; by themselves beside the object, where
-  // corners lie behind the sensor.
+  // Corners are compared by the tangents of their angles from the center's direction; by the angles
+  // when the sensor is beside the object and corners lie behind it.
   const double middle = std::atan2(d.y(), d.x());
   const bool ahead = d.norm() > half.norm();
   Vector2 left_corner, right_corner;

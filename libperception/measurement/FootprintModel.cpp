@@ -10,15 +10,13 @@
 namespace perception {
 namespace {
 
-constexpr double kWidestClutter =
-    10;  // [m] false measurements have any width up to this (method.md 4.1)
-constexpr double kWidestAngle = 0.5;  // [rad] the same where the range is not seen
+constexpr double kWidestClutter = 10;  // [m] clutter is uniform in width up to this (method.md 4.1)
+constexpr double kWidestAngle = 0.5;   // [rad] the same where the range is not seen
 constexpr double kSideSigma =
     0.5;  // [m] a complete side as a measurement of the extent (method.md 5.13)
 constexpr double kBoxSigma = 0.2;  // [m] of a seen box's faces
-constexpr double kSureYaw =
-    0.35;  // [rad] a box whose direction is less certain says nothing of the heading
-constexpr int kAngles = 8;  // of the average over unknown headings
+constexpr double kSureYaw = 0.35;  // [rad] boxes of less certain direction give no heading
+constexpr int kAngles = 8;         // of the average over unknown headings
 
 bool seen(const Measurement& m, FootprintModel::Axis axis) { return m.seen >> axis & 1; }
 
@@ -34,8 +32,8 @@ double normalDensity(double x, double variance) {
   return std::exp(-0.5 * x * x / variance) / std::sqrt(kTwoPi * variance);
 }
 
-/// Density [1/m] of the seen width of a class's objects, headings uniform, seen with variance
-/// `noise` [m^2].
+/// Density [1/m] of the visible width of the objects of a class, headings uniform, measured with
+/// variance `noise` [m^2] (method.md 4.1).
 double widthDensity(const ObjectClass& c, double width, double noise) {
   const double l2 = c.length_sigma * c.length_sigma, w2 = c.width_sigma * c.width_sigma;
   double sum = 0;
@@ -51,7 +49,7 @@ double widthDensity(const ObjectClass& c, double width, double noise) {
 }
 
 /// Log density per unit of the axes seen of a position that is uniform over the field of view,
-/// times that of the width `per_meter` [1/m] where both edges are seen (method.md 4.1).
+/// times the density `per_meter` [1/m] of the width where both edges are seen (method.md (13)).
 double logUniform(const Measurement& m, const DetectionModel& detection_model, const SensorState& s,
                   double per_meter) {
   const double range = rangeOf(m, s), area = detection_model.area(),
@@ -69,9 +67,9 @@ double logUniform(const Measurement& m, const DetectionModel& detection_model, c
   return std::log(density);
 }
 
-/// The heading (an axis) that a seen box gives an object of a wheeled class, when it is beyond
-/// doubt: a side longer than the class is wide lies along it; a complete side of the class's width
-/// with nothing longer is its front or rear.
+/// The heading (an axis) of an object of a wheeled class by its box, when it is unambiguous
+/// (method.md 3.4): a side longer than the class is wide lies along it; a complete side of the
+/// class's width with nothing longer is its front or rear.
 std::optional<ScalarEstimate> headingFromBox(const PartialBox& box, const ObjectClass& c) {
   if (box.yaw_sigma > kSureYaw) return std::nullopt;
   const bool a_longer = box.length >= box.width;
@@ -82,14 +80,13 @@ std::optional<ScalarEstimate> headingFromBox(const PartialBox& box, const Object
   const bool complete = a_longer ? box.length_complete : box.width_complete;
   const bool is_width = std::abs(longer - c.width) < 1.5 * c.width_sigma;
   const bool tells =
-      c.length >
-      1.5 * (c.width + 3 * c.width_sigma);  // a short class is as broad as long to a lidar
+      c.length > 1.5 * (c.width + 3 * c.width_sigma);  // shorter classes show no axis to a lidar
   if (complete && is_width && tells) return ScalarEstimate{wrapAngle(along + kPi / 2), variance};
   return std::nullopt;
 }
 
-/// Center and covariance of an object of known heading and size from the part of its box that was
-/// seen: a complete side keeps its middle, an incomplete one is continued away from the sensor.
+/// Center and covariance of an object of known heading and size from its partial box: a complete
+/// side keeps its middle, an incomplete one is extended away from the sensor.
 void placeByBox(const PartialBox& box, double yaw, const Extent& extent, const Vector2& sensor,
                 BirthState& birth) {
   const bool a_is_length = std::abs(wrapAxis(box.yaw - yaw)) < kPi / 4;
@@ -159,7 +156,7 @@ double FootprintModel::logBirthDensity(const Measurement& m, ClassId c,
     const double range = rangeOf(m, sensor);
     const double width = range * wrapAngle(m.z[kLeft] - m.z[kRight]);
     const double noise = range * range * (m.R(kLeft, kLeft) + m.R(kRight, kRight));
-    // No class is ruled out by a size alone: a thousandth of its objects have any width.
+    // No class is excluded by size alone: a share of 0.001 has any width.
     per_meter = 0.999 * widthDensity(classes_[c], width, noise) + 0.001 / kWidestClutter;
   }
   return std::log(detection_model_.params().births_per_scan) +
@@ -185,8 +182,8 @@ std::optional<BirthState> FootprintModel::birth(const Measurement& m, ClassId c,
   if (m.sides && !object_class.motion->moves) {
     birth.extent = updateExtent(birth.extent, *m.sides, m.sides->yaw, kSideSigma);
   }
-  // Without a heading: a disc behind its nearest point, as far off as half of length or width may
-  // be.
+  // Without a heading: a disc behind the nearest point; the variance of its radius covers half the
+  // length and half the width.
   const double forward = yawOf(sensor.T_world_sensor);
   const bool both = seen(m, kLeft) && seen(m, kRight);
   const Vector2 d = m.position - origin;

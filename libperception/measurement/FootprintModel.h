@@ -4,15 +4,15 @@
 
 namespace perception {
 
-/// Sees the outline of an object's footprint: z = (bearing of its left edge, bearing of its right
-/// edge, range of its nearest point), bearings [rad] counter-clockwise off the sensor's forward
-/// axis in the horizontal plane, range [m]. Lidar clusters and image boxes (whose lower edge gives
-/// the range) are both of this kind. method.md 4.1.
+/// Outline of an object's footprint: z = (bearing of its left edge, bearing of its right edge,
+/// range of its nearest point), bearings [rad] counter-clockwise off the sensor's forward axis in
+/// the horizontal plane, range [m]. For lidar clusters and for image boxes, whose lower edge gives
+/// the range. method.md 4.1.
 ///
 /// An oriented object is the rectangle (length, width, yaw) about its center; one without yaw is a
 /// disc whose diameter is the mean of its length and width. Left is the counter-clockwise edge as
-/// seen from the sensor. "Forward" is the x axis of T_world_sensor: a camera's front end hands over
-/// a frame with x forward instead of its optical one.
+/// seen from the sensor. "Forward" is the x axis of T_world_sensor: the front end of a camera
+/// passes its level frame, not the optical one.
 class FootprintModel : public MeasurementModel {
  public:
   /// Rows of z.

@@ -7,12 +7,12 @@
 
 namespace perception {
 
-/// A front end: turns one sensor's frame into measurements. Const and without state, so front ends
-/// may run in parallel.
+/// A front end converts one sensor frame into measurements. Stateless, so front ends may run in
+/// parallel.
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
-  /// The scan of a frame: who saw it, when, from where, under which model, and what fill() adds.
+  /// The scan of a frame: sensor, stamp, pose, measurement model, and what fill() adds.
   MeasurementScan extract(const SensorFrame& frame) const;
   /// Names of what Measurement::label indexes; empty: no labels.
   virtual std::vector<std::string> labelNames() const { return {}; }
@@ -20,10 +20,10 @@ class FrontEnd {
  protected:
   virtual Modality modality() const = 0;
   virtual std::shared_ptr<const MeasurementModel> model() const = 0;
-  /// The pose in which the model measures; cameras and radars take pitch and roll out of it.
+  /// T_world_sensor in which z is measured; cameras and radars remove pitch and roll.
   virtual Pose3 measuringPose(const SensorFrame& frame) const { return frame.T_world_sensor(); }
-  /// Adds measurements and occlusion. `frame.data` should hold the kind of data that this front end
-  /// reads, else nothing is added; bad points and boxes are dropped and counted.
+  /// Adds measurements and occlusion. Adds nothing when `frame.data` is of another kind than this
+  /// front end reads; invalid points and boxes are dropped and counted.
   virtual void fill(const SensorFrame& frame, MeasurementScan& scan) const = 0;
 };
 

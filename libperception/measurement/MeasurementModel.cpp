@@ -30,7 +30,7 @@ bool touchesSector(const Vector2& center, double reach, const HalfAngle& half_fo
   const double distance = d.norm();
   if (distance - reach > range) return false;
   if (half_fov.all || distance <= reach) return true;
-  // Along the sector's edge on the center's side and, positive outside, across it.
+  // Coordinates along and (positive outside) across the sector's edge on the center's side.
   const Vector2 forward = sensor.T_world_sensor.linear().col(0).head<2>().normalized();
   const double along = forward.dot(d), across = std::abs(forward.x() * d.y() - forward.y() * d.x());
   const double c = half_fov.cosine, s = half_fov.sine;

@@ -17,66 +17,66 @@ enum class AxisKind {
   kAngle  ///< [rad], wrapped to (-pi, pi]
 };
 
-/// How a prediction is made linear along the aspect of an object, the heading as seen from the
-/// sensor (filter/Linearization).
+/// How h is linearized in the aspect of an object, its heading relative to the line of sight
+/// (filter/likelihood/Linearization.h).
 enum class AspectLine {
   kNone,    ///< h does not depend on it, or is linear enough
   kChord,   ///< slope and spread from wide sigma points
-  kTangent  ///< the tangent's slope, the spread from wide sigma points
+  kTangent  ///< slope of the tangent, spread from wide sigma points
 };
 
-/// What one object would look like: h and its derivatives. Not `defined`: the model cannot say
-/// (object at the sensor).
+/// Predicted measurement of one object: h and its Jacobians. Not `defined`: no prediction exists
+/// (the sensor is at the object).
 struct AxisPrediction {
   AxisVector h;
   Eigen::Matrix<double, Eigen::Dynamic, 5, Eigen::ColMajor, kMaxAxes, 5>
       H_q;  ///< dh/d(x, y, vx, vy, yaw)
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMaxAxes, 2>
-      H_extent;  ///< dh/d(length, width)
-  AxisMatrix
-      R_model;  ///< what the model itself is unsure of for this class, added to R; empty: nothing
+      H_extent;        ///< dh/d(length, width)
+  AxisMatrix R_model;  ///< model uncertainty for this class, added to R; empty: none
   bool defined = false;
 };
 
-/// What a range rate says of a velocity: its component along one direction, and, where the sensor's
-/// site tells, how large the component across it may be.
+/// Velocity information of a range rate: the component along the line of sight and, where the
+/// sensor configuration bounds it, the spread of the component across.
 struct RadialSpeed {
   Vector2 direction = Vector2::UnitX();  ///< unit vector, world
   ScalarEstimate along;                  ///< [m/s, m^2/s^2]
-  std::optional<double> across_sigma;    ///< [m/s]; empty: whatever the class allows
+  std::optional<double> across_sigma;    ///< [m/s]; empty: that of the class
 };
 
-/// Where a newborn object of one class stands, from one measurement.
+/// Initial state of a newborn object of one class from one measurement.
 struct BirthState {
   Vector2 position = Vector2::Zero();        ///< [m] center, world
   Matrix2 covariance = Matrix2::Identity();  ///< [m^2]
   std::optional<ScalarEstimate> yaw;         ///< [rad, rad^2] world; its direction or its opposite
   std::optional<ScalarEstimate> speed;       ///< [m/s] along yaw
-  std::optional<RadialSpeed> radial_speed;   ///< of objects whose yaw is not known
+  std::optional<RadialSpeed> radial_speed;   ///< of objects without yaw
   Extent extent;
 };
 
 class PositionOnlyModel;
 
-/// How one kind of sensor sees one kind of object. Batched, so that no virtual call stands in the
-/// inner loop. Labels, detection and clutter are per class and per scan as in [sensor.LABEL]; all
-/// densities are per unit of the axes seen.
+/// How one kind of sensor sees one kind of object. Batched, to keep virtual calls out of the inner
+/// loop. Labels, P_D and clutter are those of [sensor.LABEL]; all densities are per unit of the
+/// axes seen.
 class MeasurementModel {
  public:
   virtual ~MeasurementModel() = default;
 
   virtual const std::vector<AxisKind>& axes() const = 0;
-  /// Of a model whose z is the object's position and nothing else: itself, for the shorter way to
+  /// This model when its z is the object's position and nothing else, which allows shorter code for
   /// the same numbers (method.md 4.4); null: any other model.
   virtual const PositionOnlyModel* positionOnly() const { return nullptr; }
-  /// Axes that correct the extent. A range tells of length only together with the center's place,
-  /// whose correlation with the extent is not kept: it is left out there, but counts in S.
+  /// Axes that update the extent. A range depends on the length only together with the position,
+  /// whose correlation with the extent is not kept: it does not update the extent, but the variance
+  /// of the extent enters its S.
   virtual AxisMask extentAxes() const { return 0xff; }
-  /// h, dh/dq, dh/dextent into out[0..count) of `count` objects, object i taken as one of class i %
-  /// classes: batches hold whole banks.
+  /// h, dh/dq, dh/dextent into out[0..count) of `count` objects, object i of class i % classes (a
+  /// batch holds whole banks). World frame.
   virtual void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                        const SensorState& sensor, AxisPrediction* out) const = 0;
-  /// Whether, and how, h of an object with a heading follows the side that it shows the sensor.
+  /// How h of an object with a heading is linearized in its aspect.
   virtual AspectLine aspectLine() const { return AspectLine::kNone; }
   /// P(detected | class, state), in [0, 1]: 0 outside the field of view; `visibility` in [0, 1] is
   /// the share not occluded.
@@ -92,14 +92,14 @@ class MeasurementModel {
   /// Exponent in (0, 1] of the label in the class update: labels of one object are not independent
   /// (method.md 5.6).
   virtual double labelExponent() const { return 1; }
-  /// The same of detections and misses; where hundreds of them come, no table knows P_D to the
-  /// percent that they would tell.
+  /// The same for detections and missed detections: over hundreds of scans an error of P_D in the
+  /// percent range would decide the class.
   virtual double detectionExponent() const { return 1; }
   /// log P(label | clutter).
   virtual double logLabelClutter(int label) const = 0;
   /// Log of the expected number of false measurements per scan and unit of the axes seen at z.
   virtual double logClutterDensity(const Measurement& m, const SensorState& sensor) const = 0;
-  /// The same for first measurements of newborn objects of class c (the class prior not included).
+  /// The same for births of class c, without the class prior.
   virtual double logBirthDensity(const Measurement& m, ClassId c,
                                  const SensorState& sensor) const = 0;
   /// The newborn object of class c; empty when this measurement cannot start one.
@@ -107,16 +107,16 @@ class MeasurementModel {
                                           const SensorState& sensor) const = 0;
 };
 
-/// log p(label, score | class, detected), whichever way the measurement gives it.
+/// log p(label, score | class, detected), from `log_class` of the measurement or the label table.
 double logLabelAndScore(const MeasurementModel& model, const Measurement& m, ClassId c);
-/// The same of clutter.
+/// The same for clutter.
 double logClutterLabelAndScore(const MeasurementModel& model, const Measurement& m);
-/// The part of logLabelAndScore() that tells classes apart.
+/// The part of logLabelAndScore() that depends on the class.
 double logLabelOf(const MeasurementModel& model, const Measurement& m, ClassId c);
 
 /// Whether a disc of radius `reach` [m] about `center` (world) touches the sector of full angle
-/// `fov` [rad] and radius `range` [m] about the sensor's forward axis. Near the origin it may say
-/// true too often.
+/// `fov` [rad] and radius `range` [m] about the sensor's forward axis. Conservative near the
+/// origin: may be true without contact.
 bool touchesSector(const Vector2& center, double reach, double fov, double range,
                    const SensorState& sensor);
 /// Half of a field of view, its sine and cosine taken once.
@@ -126,7 +126,7 @@ struct HalfAngle {
   double cosine, sine;
   bool all;  ///< the full circle
 };
-/// touchesSector() for a field of view that many discs are held against.
+/// touchesSector() for many discs and one field of view.
 bool touchesSector(const Vector2& center, double reach, const HalfAngle& half_fov, double range,
                    const SensorState& sensor);
 

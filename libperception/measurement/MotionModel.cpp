@@ -11,8 +11,9 @@
 namespace perception {
 namespace {
 
-/// A heading known so well moves along its tangent: the mean step is .4 % shorter.
-constexpr double kSureHeading = radians(5);
+/// Below this standard deviation [rad] of the heading the tangent is used (method.md 3.2): the mean
+/// step is .4 % shorter.
+constexpr double kTangentHeadingSigma = radians(5);
 
 /// method.md 3.1: F = [I dtI; 0 I], Q of white acceleration; position_psd adds slip. Returns F.
 Matrix4 predictConstantVelocity(const ObjectClass& c, double psd, double damping, double dt,
@@ -32,8 +33,8 @@ Matrix4 predictConstantVelocity(const ObjectClass& c, double psd, double damping
   return F;
 }
 
-/// method.md 3.2: speed v along theta, both random walks; Q to first order, valid for any dt and
-/// composing consistently. Returns F.
+/// method.md 3.2: speed v along theta, both random walks; F of method.md (6), Q of method.md (7),
+/// to first order, for any dt and composing consistently. Returns F.
 Matrix4 predictWheeled(const ObjectClass& object_class, double psd, double damping, double dt,
                        Vector4& x, Matrix4& P) {
   const SpeedNoise noise(damping, dt);
@@ -63,10 +64,11 @@ Matrix4 predictWheeled(const ObjectClass& object_class, double psd, double dampi
   return F;
 }
 
-/// The same with the moments of an uncertain heading in place of the tangent: with (v, theta)
-/// jointly Gaussian, E[v e^(i theta)] = e^(i theta - s^2/2) (v + i cov(v, theta)) and
+/// The same with exact moments of an uncertain heading in place of the tangent, method.md (8): with
+/// (v, theta) jointly Gaussian, E[v e^(i theta)] = e^(i theta - s^2/2) (v + i cov(v, theta)) and
 /// E[v^2 e^(2i theta)] = e^(2i theta - 2 s^2) ((v + 2i cov)^2 + var v), s^2 the heading's variance.
-/// By Stein's lemma the best line through the curve has the mean of the Jacobian as its slope.
+/// By Stein's lemma [stein1981] the slope of the best linear approximation is the mean of the
+/// Jacobian.
 Matrix4 predictUncertainHeading(const ObjectClass& object_class, double psd, double damping,
                                 double dt, Vector4& x, Matrix4& P) {
   const SpeedNoise noise(damping, dt);
@@ -96,7 +98,7 @@ Matrix4 predictUncertainHeading(const ObjectClass& object_class, double psd, dou
   Matrix2 along;
   along << 0.5 * (1 + twice.x()), 0.5 * twice.y(), 0.5 * twice.y(), 0.5 * (1 - twice.x());
   const Matrix2 across = whole * Matrix2::Identity() - second;
-  // F P F' by blocks: F changes the place by the second half of the state alone.
+  // F P F' by blocks: F adds a function of (v, theta) to the position.
   const Matrix2 B = P.bottomRightCorner<2, 2>(), way = noise.effective_dt * slope;
   const Matrix2 moved = P.topRightCorner<2, 2>() + way * B;
   const Matrix2 back = way * P.bottomLeftCorner<2, 2>();
@@ -121,27 +123,27 @@ bool needsSubSteps(const GaussianStep& s) {
 }
 
 bool hasUncertainHeading(const GaussianStep& s) {
-  return (*s.P)(3, 3) > kSureHeading * kSureHeading;
+  return (*s.P)(3, 3) > kTangentHeadingSigma * kTangentHeadingSigma;
 }
 
-void moveFreely(const GaussianStep& s, Matrix4* transition) {
+void stepConstantVelocity(const GaussianStep& s, Matrix4* transition) {
   const Matrix4 F = predictConstantVelocity(*s.object_class, s.psd, s.damping, s.dt, *s.x, *s.P);
   symmetrize(*s.P);
   if (transition) *transition = F;
 }
 
-Kinematics freeKinematics(const Vector4& x, bool) {
+Kinematics constantVelocityKinematics(const Vector4& x, bool) {
   Kinematics k;
   k.q.head<4>() = x;
   k.J.topRows<4>().setIdentity();
   return k;
 }
 
-BatchKernel freeKernel(const GaussianStep&) { return BatchKernel::kConstantVelocity; }
+BatchKernel constantVelocityKernel(const GaussianStep&) { return BatchKernel::kConstantVelocity; }
 
-/// In sub-steps where the step is long or the heading uncertain.
-void moveOnWheels(const GaussianStep& s, Matrix4* transition) {
-  if (!s.oriented) return moveFreely(s, transition);
+/// Wheeled step, in sub-steps where it is long or the heading is uncertain (method.md 3.2).
+void stepWheeled(const GaussianStep& s, Matrix4* transition) {
+  if (!s.oriented) return stepConstantVelocity(s, transition);
   Matrix4 whole = Matrix4::Identity();
   const int steps =
       needsSubSteps(s) ? std::max(1, static_cast<int>(std::ceil(s.dt / 0.1 - 1e-9))) : 1;
@@ -155,7 +157,7 @@ void moveOnWheels(const GaussianStep& s, Matrix4* transition) {
 }
 
 Kinematics wheeledKinematics(const Vector4& x, bool oriented) {
-  if (!oriented) return freeKinematics(x, oriented);
+  if (!oriented) return constantVelocityKinematics(x, oriented);
   Kinematics k;
   const double c = std::cos(x[3]), s = std::sin(x[3]), v = x[2];
   k.q << x[0], x[1], v * c, v * s, x[3];
@@ -175,12 +177,12 @@ BatchKernel wheeledKernel(const GaussianStep& s) {
   return hasUncertainHeading(s) ? BatchKernel::kMoments : BatchKernel::kWheeled;
 }
 
-void stand(const GaussianStep& s, Matrix4* transition) {
+void stepStatic(const GaussianStep& s, Matrix4* transition) {
   s.P->topLeftCorner<2, 2>().diagonal().array() += s.object_class->position_psd * s.dt;
   if (transition) transition->setIdentity();
 }
 
-Kinematics standingKinematics(const Vector4& x, bool) {
+Kinematics staticKinematics(const Vector4& x, bool) {
   Kinematics k;
   k.q.head<2>() = x.head<2>();
   k.J(0, 0) = k.J(1, 1) = 1;
@@ -204,9 +206,10 @@ SpeedNoise::SpeedNoise(double a, double dt) {
 
 std::deque<MotionModel>& motionModels() {
   static std::deque<MotionModel> models = {
-      {"constant-velocity", true, false, moveFreely, freeKinematics, freeKernel},
-      {"wheeled", true, true, moveOnWheels, wheeledKinematics, wheeledKernel},
-      {"static", false, false, stand, standingKinematics, nullptr},
+      {"constant-velocity", true, false, stepConstantVelocity, constantVelocityKinematics,
+       constantVelocityKernel},
+      {"wheeled", true, true, stepWheeled, wheeledKinematics, wheeledKernel},
+      {"static", false, false, stepStatic, staticKinematics, nullptr},
   };
   return models;
 }

@@ -8,8 +8,8 @@ namespace perception {
 
 struct ObjectClass;
 
-/// One Gaussian of a class filter and the step that it takes. State [x, y, vx, vy]; with a heading
-/// [x, y, v, theta] once `oriented`; of what does not move [x, y, 0, 0]. World, SI units.
+/// One Gaussian of a class filter and its prediction step. State [x, y, vx, vy]; with a heading [x,
+/// y, v, theta] once `oriented`; of a static class [x, y, 0, 0]. World, SI units.
 struct GaussianStep {
   Vector4* x;
   Matrix4* P;
@@ -19,31 +19,31 @@ struct GaussianStep {
   bool oriented;
 };
 
-/// The batch kernel that takes the same step as MotionModel::predict (filter/state/BankBatch).
+/// The batch kernel with the same result as MotionModel::predict (BankKernels.inl).
 enum class BatchKernel { kNone, kConstantVelocity, kWheeled, kMoments };
 
-/// How the objects of a class move (method.md 3): a row of motionModels(). Whoever needs to know
-/// asks for a property of the row, not for its name.
+/// How the objects of a class move (method.md 3): a row of motionModels(). Code depends on the
+/// properties of a row, never on its name.
 struct MotionModel {
   std::string name;          ///< [class.NAME] motion
   bool moves = true;         ///< false: neither velocity nor heading
-  bool has_heading = false;  ///< along its length; unknown at birth unless the sensor tells it
-  /// Moves one Gaussian by dt > 0; `transition`, unless null, becomes dx(after)/dx(before).
+  bool has_heading = false;  ///< along its length; unknown at birth unless the sensor measures it
+  /// Predicts one Gaussian by dt > 0; sets `transition`, unless null, to F = dx(after)/dx(before).
   void (*predict)(const GaussianStep& step, Matrix4* transition) = nullptr;
-  /// What sensors can see of a state: q(x) and its Jacobian.
+  /// Kinematics q(x) and their Jacobian dq/dx.
   Kinematics (*kinematics)(const Vector4& x, bool oriented) = nullptr;
-  /// The kernel of a step, kNone where it has to be taken alone; null: always alone.
+  /// The kernel of a step, kNone where predict() has to be called instead; null: always predict().
   BatchKernel (*kernel)(const GaussianStep& step) = nullptr;
 };
 
-/// constant-velocity, wheeled, static, and what a program appends before it reads its configuration
-/// (not while others read). Rows stay where they are.
+/// constant-velocity, wheeled, static, and rows appended by a program, before it reads its
+/// configuration (not thread-safe). References to rows stay valid.
 std::deque<MotionModel>& motionModels();
-/// Null: there is none of that name.
+/// Null when there is no such name.
 const MotionModel* findMotionModel(const std::string& name);
 
-/// White acceleration through a speed that decays (rate `damping` [1/s]), method.md (4): integrals
-/// over the step. Without decay the dt^3/3, dt^2/2, dt.
+/// Integrals of white acceleration over a step with a speed that decays at the rate `damping`
+/// [1/s], method.md (4). Without decay dt^3/3, dt^2/2, dt.
 struct SpeedNoise {
   double decay = 1, effective_dt = 0;  ///< e^(-a dt); integral of it [s]
   double pp = 0, pv = 0, vv = 0;       ///< [s^3, s^2, s] times the power spectral density

@@ -15,7 +15,7 @@ void visitMotion(ParamVisitor& v, const MotionModel*& motion) {
     if (&m == motion) index = static_cast<int>(names.size());
     names.push_back(m.name);
   }
-  v.choice("motion", index, names, "how it moves");
+  v.choice("motion", index, names, "motion model");
   motion = &models[static_cast<std::size_t>(index)];
 }
 
@@ -25,16 +25,16 @@ void ObjectClass::visit(ParamVisitor& v) {
   visitMotion(v, motion);
   v.real("accel_psd", accel_psd, {0, 100}, "m^2/s^3", "white acceleration, power spectral density");
   v.reals("mode_accel_psd", mode_accel_psd, -1, {0, 100}, "m^2/s^3",
-          "one a motion mode, in place of accel_psd; empty: a single model");
+          "one per motion mode, in place of accel_psd; empty: a single model");
   v.reals("mode_damping", mode_damping, -1, {0, 100}, "1/s",
-          "one a mode: at which the speed decays");
-  v.reals("mode_sojourn", mode_sojourn, -1, {0.01, 1e4}, "s", "one a mode: mean time in it");
+          "one per mode: rate at which the speed decays");
+  v.reals("mode_sojourn", mode_sojourn, -1, {0.01, 1e4}, "s", "one per mode: mean time in it");
   v.require(mode_damping.size() == modes() && mode_sojourn.size() == modes() && modes() != 1,
-            "mode_accel_psd, mode_damping, mode_sojourn: expected one number a mode in each, two "
+            "mode_accel_psd, mode_damping, mode_sojourn: expected one number per mode in each, two "
             "modes or more");
   v.real("yaw_rate_psd", yaw_rate_psd, {0, 10}, "rad^2/s", "white yaw rate (wheeled)");
   v.real("position_psd", position_psd, {0, 10}, "m^2/s",
-         "slip and model mismatch; all the noise of a static object");
+         "slip and model mismatch; the only process noise of a static object");
   v.real("length", length, {0.05, 40}, "m", "mean length");
   v.real("width", width, {0.05, 10}, "m", "mean width");
   v.real("height", height, {0.05, 10}, "m", "mean height");

@@ -10,26 +10,24 @@ namespace perception {
 
 using ClassId = int;  ///< index into ClassTable
 
-/// One kind of object: [class.NAME] of classes.ini. Defaults are the paper's and those of
-/// method.md 2.2.
+/// One kind of object: [class.NAME] of classes.ini. Defaults: method.md 2.2.
 struct ObjectClass {
   std::string name;                                       ///< from the section's title
   const MotionModel* motion = findMotionModel("static");  ///< never null
   double accel_psd = 0.5;  ///< [m^2/s^3] white acceleration along the track (q_a or q_v)
-  /// Interacting motion modes in place of `accel_psd` (method.md 3.6), one entry a mode; empty: one
-  /// mode.
+  /// Interacting motion modes in place of `accel_psd` (method.md 3.6), one entry per mode; empty:
+  /// one mode.
   std::vector<double> mode_accel_psd;  ///< [m^2/s^3]
-  std::vector<double>
-      mode_damping;  ///< [1/s] at which the speed decays; 0 keeps it, 5 stands at once
-  std::vector<double> mode_sojourn;  ///< [s] mean time in the mode
-  double yaw_rate_psd = 0.0685;      ///< [rad^2/s] wheeled only
+  std::vector<double> mode_damping;    ///< [1/s] rate at which the speed decays; 0: constant speed
+  std::vector<double> mode_sojourn;    ///< [s] mean time in the mode
+  double yaw_rate_psd = 0.0685;        ///< [rad^2/s] wheeled only
   double position_psd =
-      1e-4;  ///< [m^2/s] slip and model mismatch; the whole noise of static objects
+      1e-4;  ///< [m^2/s] slip and model mismatch; the only process noise of static objects
   double length = 1, width = 1, height = 1.5;  ///< [m] mean size
   double length_sigma = 1, width_sigma = 1,
          height_sigma = 1;  ///< [m] spread of the size over objects
   double prior = 0.2;       ///< share among newborn objects; normalized over the table
-  double max_speed = 60;    ///< [m/s] plausible; bounds what a start may claim
+  double max_speed = 60;    ///< [m/s] largest plausible speed; bounds that of newborns
   bool reported =
       true;  ///< false: an object, but neither true nor false in an evaluation (static-other)
   std::string kitti_type = "Misc";  ///< type written by the KITTI export

@@ -6,16 +6,15 @@
 
 namespace perception {
 
-/// For every direction around a sensor the range of the nearest thing that occludes what lies
-/// behind it. Objects whose directions are occluded are not expected to be detected (negative
-/// information, method.md 5.8).
+/// For every direction around a sensor the range of the nearest occluder. Objects whose directions
+/// are occluded are not expected to be detected (negative information, method.md 5.8).
 class OcclusionMap {
  public:
   /// `bins` equal sectors about the vertical axis through `origin` (world), the first starting at
   /// world yaw 0.
   OcclusionMap(const Vector2& origin, std::size_t bins);
 
-  /// An occluding return at `point` (world).
+  /// Adds an occluding return at `point` [m, world].
   void add(const Vector2& point);
   /// Share in [0, 1] of the directions between the two bearings (world yaw, counter-clockwise from
   /// `cw` to `ccw`, [rad]) in which nothing nearer than `range` - `tolerance` [m] occludes.

@@ -8,7 +8,7 @@
 
 namespace perception {
 namespace {
-constexpr double kSideSigma = 0.5;  // [m] of sides that tell none of their own
+constexpr double kSideSigma = 0.5;  // [m] of sides without a standard deviation of their own
 
 Vector2 forwardOf(const SensorState& sensor) {
   return sensor.T_world_sensor.linear().col(0).head<2>().normalized();

@@ -7,13 +7,13 @@
 
 namespace perception {
 
-/// A sensor that sees an object's center: z = (x, y) [m, world]. GPS receivers on the object, box
-/// centers, and the position-level scenes that the filter's association is studied on.
+/// A sensor that measures the center of an object: z = (x, y) [m, world]. GPS receivers on the
+/// object, box centers, and simulated positions for studies of the association.
 class PositionModel : public MeasurementModel, public PositionOnlyModel {
  public:
   struct ClassRow {
     double detection = 0.9;      ///< P(detected | in view, near)
-    double full_range = 1e9;     ///< [m] up to which that holds; falls linearly to 0 ...
+    double full_range = 1e9;     ///< [m] up to which it is constant; falls linearly to 0 ...
     double last_range = 2e9;     ///< [m] ... here
     std::vector<double> labels;  ///< P(label | class, detected); sums to 1
     Matrix2 noise =
@@ -66,7 +66,8 @@ class PositionModel : public MeasurementModel, public PositionOnlyModel {
   }  ///< [m^2]
 
  private:
-  /// |d| [m] of a place d from the sensor that looks `forward`; -1 when it is out of view.
+  /// |d| [m] of a position `d` relative to a sensor whose forward axis is `forward`; -1 when out of
+  /// view.
   double rangeInView(const Vector2& d, const Vector2& forward) const;
 
   Params params_;

@@ -38,7 +38,7 @@ struct GroundPlane {
   double heightAt(double x, double y) const { return a * x + b * y + c; }
 };
 
-/// Per-point verdict of the sensor's own processing (Ibeo), when it gives one.
+/// Classification of a return by the sensor itself (Ibeo), where it gives one.
 enum class PointLabel : std::uint8_t {
   kUnknown = 0,
   kObject = 1,
@@ -47,8 +47,8 @@ enum class PointLabel : std::uint8_t {
   kDirt = 4
 };
 
-/// One lidar scan, points in the sensor frame. x, y, z have the same size; the rest is empty or has
-/// that size, too.
+/// One lidar scan, points in the sensor frame. x, y, z have the same size; the other vectors have
+/// that size or are empty.
 struct LidarCloud {
   std::vector<float> x, y, z;       ///< [m]
   std::vector<float> intensity;     ///< [0, 1]
@@ -79,11 +79,11 @@ struct Raster {
   std::vector<std::uint8_t> pixels;
 };
 
-/// An image of the log. Loaded when asked for: images lie outside the log more often than not.
+/// An image of the log. Loaded on demand: most logs store images in external files.
 struct CameraImage {
   CameraModel camera;                           ///< width and height may be 0 until it is loaded
   std::string source;                           ///< file or "in the log", for messages
-  std::function<std::optional<Raster>()> load;  ///< empty result: the image is not there
+  std::function<std::optional<Raster>()> load;  ///< empty result: no such image
 };
 
 /// One target or point of a radar, in the sensor frame (x forward, y left).
@@ -103,7 +103,7 @@ struct RadarReturns {
   double max_range = 0;  ///< [m] of the instrument; 0 = unknown
 };
 
-/// One object found by somebody's detector: a box in the image, a box in space, or both.
+/// One object found by an external detector: an image box, a 3D box, or both.
 struct ObjectDetection {
   struct ImageBox {
     double x1 = 0, y1 = 0, x2 = 0, y2 = 0;  ///< [px] left, top, right, bottom
@@ -116,14 +116,14 @@ struct ObjectDetection {
   std::string label;  ///< the detector's class name
   double score = 0;   ///< in the detector's own unit
   std::vector<std::pair<std::string, double>>
-      class_scores;  ///< when the detector scores several classes
+      class_scores;  ///< of detectors that score several classes
   std::optional<ImageBox> image_box;
   std::optional<SpaceBox> space_box;
   std::optional<double>
       heading;  ///< [rad] KITTI's alpha: observation angle of the object, in (-pi, pi]
 };
 
-/// All detections of one detector at one instant. `camera` holds for image boxes.
+/// All detections of one detector at one instant. `camera` refers to the image boxes.
 struct ObjectDetections {
   CameraModel camera;
   std::vector<ObjectDetection> objects;

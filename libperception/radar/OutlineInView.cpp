@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-constexpr double kGrazing = 0.05;  // cosine below which a side counts as seen along itself
+constexpr double kGrazing = 0.05;  // least cosine between line of sight and normal of a side
 
 Vector2 direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
 Vector2 perpendicular(const Vector2& v) { return {-v.y(), v.x()}; }
@@ -18,7 +18,7 @@ Vector2 perpendicular(const Vector2& v) { return {-v.y(), v.x()}; }
 /// Where a line of sight enters the outline.
 struct Entry {
   double range = 0;                   ///< [m]
-  Vector2 normal = Vector2::UnitX();  ///< outward, there; world
+  Vector2 normal = Vector2::UnitX();  ///< outward, at that point; world
   Vector2 size = Vector2::Zero();     ///< d(the side's distance from the center)/d(length, width)
 };
 
@@ -34,7 +34,7 @@ std::optional<Entry> enterDisc(const Vector2& d, const Extent& extent, const Vec
   return e;
 }
 
-/// The last side that the line crosses from outside, by slabs.
+/// Entry point by the slab method: the last side that the line crosses from outside.
 std::optional<Entry> enterRectangle(const Vector2& d, double yaw, const Extent& extent,
                                     const Vector2& sight) {
   const Vector2 axis[2] = {direction(yaw), perpendicular(direction(yaw))};
@@ -93,12 +93,13 @@ OutlineInView outlineInView(const AxisPrediction& outline, const Kinematics& obj
   const Vector2 d = object.q.head<2>() - sensor.T_world_sensor.translation().head<2>();
   const double nearest = nearestBearing(d, object, extent, forward);
   if (nearest <= out.left && nearest >= out.right) return out;
-  // A convex outline comes nearer towards its nearest point: the border on that side sees most.
+  // The range of a convex outline decreases towards its nearest point: the border on that side has
+  // the smallest.
   const Vector2 sight = direction(forward + (nearest > out.left ? out.left : out.right));
   const auto entry = object.has_yaw ? enterRectangle(d, object.q[Kinematics::kYaw], extent, sight)
                                     : enterDisc(d, extent, sight);
   if (!entry || entry->range <= 0) return out;
-  // n . (r sight - d) = half size, differentiated. A side seen along itself has no usable slope.
+  // n . (r sight - d) = half size, differentiated. At grazing incidence the derivative is bounded.
   const double slope = std::min(entry->normal.dot(sight), -kGrazing);
   out.range = entry->range;
   out.range_q.setZero();

@@ -6,11 +6,10 @@
 namespace perception {
 namespace {
 
-constexpr double kSteepest = radians(60);  // no return of a road user comes from above it
-constexpr double kDoubleSigmas =
-    3;  // a ghost is told by twice the values within so many deviations
+constexpr double kSteepest = radians(60);  // larger elevations are no road users
+constexpr double kDoubleSigmas = 3;        // deviations within which range and rate are doubled
 
-constexpr double kBorderSigmas = 3;  // beyond the view by so many of a bearing's own deviations
+constexpr double kBorderSigmas = 3;  // deviations of a bearing beyond the border of the view
 
 DetectionParams radarDefaults() {
   DetectionParams p;
@@ -21,8 +20,8 @@ DetectionParams radarDefaults() {
   p.range_min = 1;
   p.range_max = 120;
   p.fov = radians(60);
-  p.detection_exponent = 0.3;  // fades come and go (Swerling 1): less alike from scan to scan than
-                               // hits of a lidar; tuned on scenario A (simulated)
+  p.detection_exponent = 0.3;  // fluctuates (Swerling 1): less correlated between scans than lidar
+                               // detections; tuned on scenario A (simulated)
   return p;
 }
 
@@ -52,16 +51,17 @@ std::vector<FlatReturn> flatten(const RadarReturns& data, const Pose3& T_level_s
       ++dropped;
       continue;
     }
-    // Objects move on the ground: what is seen along a rising line of sight is shorter by its
-    // cosine.
+    // Range and range rate on the ground: objects move horizontally, so the rate along an inclined
+    // line of sight is smaller by its cosine.
     out.push_back({r.range * flat, std::atan2(d.y(), d.x()), has_rate ? r.range_rate / flat : 0,
                    std::isfinite(r.amplitude) ? r.amplitude : 0, has_rate, static_cast<int>(i)});
   }
   return out;
 }
 
-/// The echo of `first` that went as a double bounce once more between object and vehicle: twice its
-/// range, twice its rate, never stronger. Only where the rate tells it from another object.
+/// Whether `r` is the double bounce of `first` (object - vehicle - object): twice the range and
+/// range rate, not stronger. Only where the rate is measured, which distinguishes it from another
+/// object.
 bool isDoubleBounce(const FlatReturn& r, const FlatReturn& first, const RadarParams& p) {
   if (!r.has_rate || !first.has_rate || r.amplitude > first.amplitude) return false;
   return std::abs(first.rate) > kDoubleSigmas * p.rate_sigma &&
@@ -122,19 +122,19 @@ void RadarParams::visit(ParamVisitor& v) {
   v.real("range_sigma", range_sigma, {0.01, 50}, "m", "noise of a return's range");
   v.angle("bearing_sigma_deg", bearing_sigma, {0.01, 45}, "noise of a return's bearing");
   v.real("rate_sigma", rate_sigma, {0.01, 20}, "m/s", "noise of a return's range rate");
-  v.real("own_speed_sigma", own_speed_sigma, {0, 20}, "m/s", "of the vehicle's own velocity");
+  v.real("own_speed_sigma", own_speed_sigma, {0, 20}, "m/s", "noise of the vehicle's own velocity");
   v.real("merge_range", merge_range, {0, 20}, "m",
-         "returns so near to a stronger one in range ...");
+         "returns within this distance of a stronger one in range ...");
   v.real("merge_width", merge_width, {0, 20}, "m",
-         "... and across the line of sight (at least bearing_sigma there) are of the same object");
+         "... and this one across the line of sight (at least bearing_sigma) are of one object");
   v.boolean(
       "drop_double_bounce", drop_double_bounce,
       "drop returns at twice the range and rate of a stronger one (object - vehicle - object)");
   model.visit(v);
   v.expert();
-  v.boolean(
-      "upside_down", upside_down,
-      "the unit is mounted upside down and the log's pose does not say so: bearings change sign");
+  v.boolean("upside_down", upside_down,
+            "the unit is mounted upside down, which the log's pose does not include: bearings "
+            "change sign");
 }
 
 std::vector<RadarTarget> radarTargets(const RadarReturns& data, const Pose3& T_level_sensor,
@@ -181,8 +181,8 @@ void RadarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
 
 std::optional<Measurement> RadarFrontEnd::measure(const RadarTarget& t,
                                                   const SensorState& state) const {
-  // The bearing's own error carries returns past the border of the view: without those the rest
-  // would lie too far inside on average.
+  // Bearing noise moves returns past the border of the view: dropping those would bias the rest
+  // inward.
   const DetectionParams& view = model_->detection_model().params();
   if (t.range > view.range_max ||
       std::abs(t.bearing) > 0.5 * view.fov + kBorderSigmas * params_.bearing_sigma)
@@ -199,8 +199,8 @@ std::optional<Measurement> RadarFrontEnd::measure(const RadarTarget& t,
   m.z = Vector3(t.range, t.bearing, t.range_rate);
   m.seen = t.has_rate ? RadarModel::kAll : RadarModel::kNoRate;
   m.detection = t.strongest;
-  // The vehicle's pose by x, y, yaw (method.md 1.3): a turned line of sight sees the own motion
-  // elsewhere.
+  // Derivatives with respect to the vehicle's x, y, yaw (method.md 1.3); yaw also changes the own
+  // velocity along the line of sight.
   const Eigen::RowVector3d bearing(-n.x() / t.range, -n.y() / t.range, -1);
   Eigen::Matrix3d J;
   J.row(RadarModel::kRange) << -u.x(), -u.y(), 0;

@@ -9,17 +9,17 @@
 
 namespace perception {
 
-/// [sensor.LABEL.radar]: one unit's noise, mounting and clean-up. Defaults are of a modern 77 GHz
+/// [sensor.LABEL.radar]: noise, mounting and clustering of one unit. Defaults: a modern 77 GHz
 /// unit, assumed (method.md 4.3); DUC's Delphi had 5 m, 5 deg, 1 m/s [cornell2007].
 struct RadarParams {
   double range_sigma = 0.5;           ///< [m]
   double bearing_sigma = radians(2);  ///< [rad]
   double rate_sigma = 0.15;           ///< [m/s]
   double own_speed_sigma = 0.1;       ///< [m/s] of the vehicle's velocity in any direction; assumed
-  bool upside_down =
-      false;  ///< the unit is mounted upside down and its pose in the log does not say so
-  // Returns of one object in one scan are one measurement. From the strongest on, each takes those
-  // within these distances (a cell of method.md 9.9; assumed, 8.7); a row of cars does not chain.
+  bool upside_down = false;  ///< mounted upside down, which its pose in the log does not include
+  // Returns of one object in one scan are merged: from the strongest on, each takes the returns
+  // within these distances (cell of method.md 9.9; assumed, 8.7), without chaining along a row of
+  // cars.
   double merge_range = 0.75;       ///< [m]
   double merge_width = 1.0;        ///< [m] across the line of sight, at least bearing_sigma there
   double merge_rate = 0.5;         ///< [m/s]
@@ -29,7 +29,7 @@ struct RadarParams {
   void visit(ParamVisitor& v);
 };
 
-/// Several returns that are taken as one reflector.
+/// Returns that are merged into one reflector.
 struct RadarTarget {
   double range = 0, bearing = 0;  ///< [m] on the ground, [rad] off forward in the level frame
   double range_rate = 0;          ///< [m/s] on the ground; see has_rate
@@ -39,8 +39,8 @@ struct RadarTarget {
   int returns = 0;
 };
 
-/// The radar front end: targets of one unit's scan under a RadarModel. Bad returns are dropped and
-/// counted.
+/// The radar front end: the targets of one scan as measurements under a RadarModel. Invalid returns
+/// are dropped and counted.
 class RadarFrontEnd final : public FrontEnd {
  public:
   RadarFrontEnd(RadarParams params, const ClassTable& classes,
@@ -65,8 +65,8 @@ class RadarFrontEnd final : public FrontEnd {
   std::shared_ptr<const RadarModel> model_;
 };
 
-/// The returns in the level frame (x along the unit's forward axis, z up), ghosts left out, those
-/// of one object merged; `dropped` is increased by those that cannot be used.
+/// The targets in the level frame (x along the unit's forward axis, z up): double bounces removed,
+/// returns of one object merged. Adds the number of invalid returns to `dropped`.
 std::vector<RadarTarget> radarTargets(const RadarReturns& data, const Pose3& T_level_sensor,
                                       const RadarParams& params, std::size_t& dropped);
 

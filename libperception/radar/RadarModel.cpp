@@ -9,8 +9,8 @@
 namespace perception {
 namespace {
 
-constexpr double kNearest = 0.1;           // [m] nearer than this a bearing means nothing
-constexpr double kShareOfAnySpeed = 1e-3;  // of a class's newborn have any range rate
+constexpr double kNearest = 0.1;           // [m] least range of a valid bearing
+constexpr double kShareOfAnySpeed = 1e-3;  // share of a class's newborns with any range rate
 
 Vector2 sensorPosition(const SensorState& s) { return s.T_world_sensor.translation().head<2>(); }
 
@@ -23,21 +23,21 @@ Vector2 lineOfSight(const Measurement& m, const SensorState& s) {
   return direction(yawOf(s.T_world_sensor) + m.z[RadarModel::kBearing]);
 }
 
-/// [m, m^2] from its nearest point to the center of a rectangle of unknown heading: mean
-/// and variance over all headings of its support function, (l |cos| + w |sin|) / 2.
+/// Mean and variance [m, m^2] over all headings of the distance from nearest point to center of a
+/// rectangle: its support function (l |cos| + w |sin|) / 2 (method.md 4.3).
 ScalarEstimate halfDepth(double length, double width) {
   const double mean = (length + width) / kPi;
   const double square = 0.125 * (length * length + width * width) + length * width / kTwoPi;
   return {mean, std::max(0.0, square - mean * mean)};
 }
 
-/// Half of an edge's slope to the bearing of the outline's middle.
+/// Adds half of an edge's Jacobian to that of the middle bearing.
 void addHalf(const AxisPrediction& outline, FootprintModel::Axis edge, AxisPrediction& out) {
   out.H_q.row(RadarModel::kBearing) += 0.5 * outline.H_q.row(edge);
   out.H_extent.row(RadarModel::kBearing) += 0.5 * outline.H_extent.row(edge);
 }
 
-/// Density [s/m] of speeds that spread evenly over [-max, max], seen with variance `noise`.
+/// Density [s/m] of speeds uniform over [-max, max], measured with variance `noise` [m^2/s^2].
 double speedDensity(double speed, double max, double noise) {
   const double scale = 1 / std::sqrt(2 * noise);
   if (max < 1e-3) return std::exp(-0.5 * speed * speed / noise) / std::sqrt(kTwoPi * noise);
@@ -62,12 +62,13 @@ ScalarEstimate groundSpeed(const Measurement& m, const SensorState& sensor) {
 
 void RadarModelParams::visit(ParamVisitor& v) {
   v.real("occluded_detection", occluded_detection, {0, 1}, "",
-         "share of P_D left for objects that a lidar finds occluded");
+         "factor of P_D for objects that a lidar reports as occluded");
   v.expert();
-  v.real("min_birth_speed", min_birth_speed, {0, 50}, "m/s",
-         "over ground, along the line of sight: returns below it only update; 0: all may start");
+  v.real(
+      "min_birth_speed", min_birth_speed, {0, 50}, "m/s",
+      "over ground, along the line of sight: slower returns only update; 0: all may start objects");
   v.angle("birth_heading_sigma_deg", birth_heading_sigma, {1, 90},
-          "of a newborn's course about the line of sight (DUC: 30); 90: nothing is known");
+          "of a newborn's course about the line of sight (DUC: 30); 90: unknown");
 }
 
 RadarModel::RadarModel(ClassTable classes, DetectionModel detection_model, RadarModelParams params)
@@ -101,8 +102,7 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
     p.H_extent.row(kBearing).setZero();
     if (!part.left_cut) addHalf(outline, FootprintModel::kLeft, p);
     if (!part.right_cut) addHalf(outline, FootprintModel::kRight, p);
-    // rho_dot = u . (V - v_s), where u turns with the bearing: the d/dp of method.md 4.3 is the
-    // special case of a point.
+    // rho_dot = u . (V - v_s), where u turns with the bearing, method.md (16).
     const Vector2 u = direction(forward + bearing);
     const Vector2 relative = objects[i].q.segment<2>(Kinematics::kVx) - own_velocity;
     const double turn = perpendicular(u).dot(relative);  // d(rate) / d(bearing)
@@ -110,8 +110,7 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
     p.H_q.row(kRate) = turn * p.H_q.row(kBearing);
     p.H_q.row(kRate).segment<2>(Kinematics::kVx) += u.transpose();
     p.H_extent.row(kRate) = turn * p.H_extent.row(kBearing);
-    // Anywhere on the outline's width with equal probability, and somewhat behind the nearest
-    // point.
+    // R_model, method.md (17): uniform over the outline's width, and behind the nearest point.
     const Vector2 center = objects[i].q.head<2>() - sensorPosition(sensor);
     const double depth = 2 * std::max(0.0, center.norm() - outline.h[FootprintModel::kRange]);
     p.R_model.setZero(kAxes, kAxes);
@@ -134,7 +133,7 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
 double RadarModel::detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                                         const SensorState& sensor, double visibility) const {
   const double occluded = 1 - std::clamp(visibility, 0.0, 1.0);
-  // What reaches into the view answers: the edge next to the axis counts, not the center.
+  // Detection depends on the edge nearest to the sensor's axis, not on the center.
   const Vector2 d = object.q.head<2>() - sensorPosition(sensor);
   const double middle = wrapAngle(std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor));
   AxisPrediction outline;
@@ -164,8 +163,8 @@ bool RadarModel::mayDetect(const Vector2& position, double reach, const SensorSt
 }
 
 double RadarModel::logClutterDensity(const Measurement& m, const SensorState& sensor) const {
-  // Even over the field of view: range / area per meter and radian (method.md 4.3). Most of what is
-  // no object stands, and so is likelier where own motion puts its range rate.
+  // Uniform over the field of view: range / area per meter and radian, times the density of the
+  // range rate, method.md (18).
   const double position = std::max(m.z[kRange], kNearest) / detection_model().area();
   double rate = 1;
   if (hasRate(m)) {
@@ -190,7 +189,7 @@ double RadarModel::logBirthDensity(const Measurement& m, ClassId c,
     rate = (1 - kShareOfAnySpeed) * speedDensity(speed.mean, max, speed.variance) +
            kShareOfAnySpeed / params_.rate_span;
   } else if (params_.min_birth_speed > 0) {
-    return kMinusInfinity;  // unknown whether it moves
+    return kMinusInfinity;  // not known to move
   }
   return std::log(detection_model().params().births_per_scan * position * rate);
 }
@@ -203,8 +202,8 @@ std::optional<BirthState> RadarModel::birth(const Measurement& m, ClassId c,
   e = {object_class.length, object_class.width,
        object_class.length_sigma * object_class.length_sigma,
        object_class.width_sigma * object_class.width_sigma};
-  // Behind its nearest point by half of what it is deep, whichever way it points; the reflecting
-  // point lies anywhere on its width.
+  // The center lies half a mean depth behind the nearest point; the reflecting point is uniform
+  // over the width.
   const double radius = 0.25 * (e.length + e.width);
   const ScalarEstimate half =
       object_class.motion->has_heading ? halfDepth(e.length, e.width) : ScalarEstimate{radius, 0};

@@ -3,41 +3,42 @@
 
 namespace perception {
 
-/// What a radar unit's model needs besides the tables of [sensor.LABEL]; a part of
+/// Parameters of the radar model besides the tables of [sensor.LABEL]; part of
 /// [sensor.LABEL.radar]. Sources: method.md 4.3.
 struct RadarModelParams {
-  double rate_span = 53.6;  ///< [m/s] over which range rates of clutter spread [cornell2007]
-  /// Of clutter: posts, rails, the road (View of Delft: .83 of all returns [palffy2022]); the
-  /// others have any rate.
+  double rate_span = 53.6;  ///< [m/s] span of the range rates of clutter [cornell2007]
+  /// Share of clutter that is stationary: poles, rails, the road (View of Delft: .83 of all returns
+  /// [palffy2022]); the rest has any rate.
   double standing_share = 0.8;
-  /// [m/s] over ground along the line of sight: returns below it may be of anything that stands and
+  /// [m/s] over ground along the line of sight: slower returns may be of stationary structures and
   /// start no objects; assumed.
   double min_birth_speed = 0.5;
-  /// ... nor those within so many of its own deviations of standing: an uncertain bearing turns own
-  /// motion into the return's; tuned on simulated drives.
+  /// The same in standard deviations of the ground speed: an uncertain bearing makes own motion
+  /// appear as object motion; tuned on simulated drives.
   double min_birth_sigmas = 3;
-  /// [rad] of a newborn's course about the line of sight: 30 deg [cornell2007]; 90 deg: unknown.
+  /// [rad] deviation of a newborn's course from the line of sight: 30 deg [cornell2007]; 90 deg:
+  /// unknown.
   double birth_heading_sigma = radians(90);
-  /// Share of P_D that is left for objects that a lidar finds occluded: radar sees past and below
-  /// vehicles, through snow; assumed.
+  /// Factor of P_D for objects that a lidar reports as occluded: radar sees past and below vehicles
+  /// and through snow; assumed.
   double occluded_detection = 0.5;
-  /// [rad] deviation of the border of the view: detections fade there; assumed.
+  /// [rad] standard deviation of the border of the field of view, across which P_D falls; assumed.
   double view_edge = radians(2);
-  /// Of the object's depth along the line of sight, added to the range's deviation: returns come
-  /// from wheels and inside, too; assumed.
+  /// Share of the object's depth along the line of sight that is added to the deviation of the
+  /// range: returns also come from wheels and the inside; method.md (17).
   double depth_share = 0.15;
 
   void visit(ParamVisitor& v);
 };
 
-/// Sees where an object reflects and how fast that point comes or goes: z = (range [m] on the
+/// Range, bearing and range rate of the reflecting point of an object: z = (range [m] on the
 /// ground, bearing [rad] counter-clockwise off the sensor's forward axis, range rate [m/s] against
 /// the moving sensor, > 0 moves away). method.md 4.3.
 ///
 /// The reflecting point lies on the near side: the range is that of the footprint's nearest point,
 /// the bearing that of the middle of its outline, with the outline's width as uncertainty of the
 /// model (R_model). A point off the middle has another line of sight and so another range rate: the
-/// two errors go together.
+/// two errors are correlated, method.md (17).
 class RadarModel final : public MeasurementModel {
  public:
   enum Axis { kRange, kBearing, kRate, kAxes };
@@ -46,9 +47,9 @@ class RadarModel final : public MeasurementModel {
   RadarModel(ClassTable classes, DetectionModel detection_model, RadarModelParams params);
 
   const std::vector<AxisKind>& axes() const override;
-  AxisMask extentAxes() const override { return 0; }  ///< one point says nothing of a size
-  /// A chord would take a share of each range rate's speed for an error of the heading: of 60
-  /// simulated drives with radars alone 19 end with a wrong speed or place, with the tangent 9.
+  AxisMask extentAxes() const override { return 0; }  ///< a point has no size
+  /// The chord attributes a part of each range rate to the heading: of 60 simulated drives with
+  /// radars alone 19 end with a wrong speed or position, with the tangent 9.
   AspectLine aspectLine() const override { return AspectLine::kTangent; }
   void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                const SensorState& sensor, AxisPrediction* out) const override;
@@ -68,9 +69,9 @@ class RadarModel final : public MeasurementModel {
   const DetectionModel& detection_model() const { return footprint_.detection_model(); }
 
  private:
-  /// Share of detections left at a bearing [rad] of the outline.
+  /// Factor of P_D at a bearing [rad] of the outline, from view_edge.
   double edgeShare(double bearing) const;
-  /// Whether object i of a batch has a length axis: batches hold whole banks.
+  /// Whether the class of object i of a batch (whole banks) has a heading.
   bool isWheeled(std::size_t i) const {
     return classes_.classes[i % classes_.classes.size()].motion->has_heading;
   }
@@ -80,7 +81,7 @@ class RadarModel final : public MeasurementModel {
   RadarModelParams params_;
 };
 
-/// [m/s, m^2/s^2] of the reflecting point over ground, along the line of sight as measured.
+/// [m/s, m^2/s^2] speed of the reflecting point over ground along the measured line of sight.
 ScalarEstimate groundSpeed(const Measurement& m, const SensorState& sensor);
 
 /// [m/s] world: velocity of a sensor on a vehicle that drives and turns (lever arm included).

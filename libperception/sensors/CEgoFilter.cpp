@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-// Of MRPT's matrices only some sizes are in its library; what checks and prints Jacobians of eleven
-// axes (KF_options.debug_verify_analytic_jacobians) is not.
+// MRPT instantiates only some matrix sizes in its library; those used to verify Jacobians of eleven
+// components (KF_options.debug_verify_analytic_jacobians) are missing.
 namespace mrpt::math {
 using Matrix11 = CMatrixFixed<double, perception::kAccelBiasY, perception::kAccelBiasY>;
 
@@ -27,7 +27,7 @@ namespace perception {
 
 namespace {
 
-constexpr int kVehicle = kAccelBiasY;  // axes of MRPT's "vehicle"
+constexpr int kVehicle = kAccelBiasY;  // components of MRPT's "vehicle"
 
 /// Rates of yaw, pitch and roll [rad/s] from the rates about the vehicle's axes.
 Vector3 angleRates(const EgoVector& x, const EgoInput& input) {
@@ -39,14 +39,14 @@ Vector3 angleRates(const EgoVector& x, const EgoInput& input) {
   return {turning / cp, cr * w.y() - sr * w.z(), w.x() + tp * turning};
 }
 
-/// Share of pitch and roll that is left after the step.
+/// Factor of pitch and roll in a step.
 double levelShare(const EgoInput& input) {
   return input.level_time > 0 ? std::exp(-input.dt / input.level_time) : 1;
 }
 
 }  // namespace
 
-// The rear axle rolls along its own direction. The way of a step has its middle heading.
+// The rear axle moves along its heading; a step uses the heading at its middle.
 EgoVector CEgoFilter::moved(const EgoVector& x, const EgoInput& input) {
   const double dt = input.dt, level = levelShare(input);
   const Vector3 turn = dt * angleRates(x, input);
@@ -72,7 +72,7 @@ EgoMatrix CEgoFilter::jacobian(const EgoVector& x, const EgoInput& input) {
   const double sr = std::sin(x[kEgoRoll]), cr = std::cos(x[kEgoRoll]);
   const double sp = std::sin(x[kEgoPitch]), cp = std::cos(x[kEgoPitch]), tp = sp / cp;
   const double turning = sr * w.y() + cr * w.z(), tilting = cr * w.y() - sr * w.z();
-  // Rows: yaw, pitch, roll; what their rates depend on.
+  // Jacobian of the rates of yaw, pitch and roll.
   Eigen::Matrix<double, 3, kEgoAxes> rate = Eigen::Matrix<double, 3, kEgoAxes>::Zero();
   rate(0, kEgoPitch) = turning * tp / cp;
   rate(0, kEgoRoll) = tilting / cp;
@@ -208,7 +208,7 @@ void CEgoFilter::OnNormalizeStateVector() {
   for (const int axis : {kEgoYaw, kEgoPitch, kEgoRoll}) m_xkk[axis] = wrapAngle(m_xkk[axis]);
 }
 
-// MRPT's update is P - K H P: rounding must not make it lopsided over hours.
+// MRPT updates by P - K H P: symmetrized against accumulated rounding.
 void CEgoFilter::OnPostIteration() {
   OnNormalizeStateVector();
   const EgoMatrix P = m_pkk.asEigen();

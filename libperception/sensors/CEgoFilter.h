@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// Axes of the vehicle's state.
+/// Components of the vehicle's state.
 enum EgoAxis : int {
   kEgoX,
   kEgoY,
@@ -19,7 +19,7 @@ enum EgoAxis : int {
   kEgoGyroZ,    ///< [rad/s] biases of the gyros
   kEgoAccel,    ///< [m/s^2] bias of the forward accelerometer
   kAccelBiasY,  ///< [m/s^2] bias of the sideways accelerometer
-  kEgoWheel,    ///< [-] scale error: wheels read (1 + it) times the speed
+  kEgoWheel,    ///< [-] scale error: wheels read (1 + scale error) times the speed
   kEgoAxes
 };
 using EgoVector = Eigen::Matrix<double, kEgoAxes, 1>;
@@ -37,32 +37,33 @@ struct EgoEstimate {
   }
 };
 
-/// What moves the vehicle during one step.
+/// Input of one prediction step.
 struct EgoInput {
-  double dt = 0;                        ///< [s]
-  Vector3 rates = Vector3::Zero();      ///< [rad/s] about the vehicle's axes, biases included
-  bool gyro = false;                    ///< the rates are of gyros: their biases are taken off
-  double force = 0;                     ///< [m/s^2] specific force along x
-  bool accelerometer = false;           ///< the force is measured: gravity and bias are taken off
-  double level_time = 0;                ///< [s] in which pitch and roll go back to 0; 0: never
-  EgoVector noise = EgoVector::Zero();  ///< variance added a second, by axis
+  double dt = 0;                    ///< [s]
+  Vector3 rates = Vector3::Zero();  ///< [rad/s] about the vehicle's axes, biases included
+  bool gyro = false;                ///< the rates are of gyros: biases are subtracted
+  double force = 0;                 ///< [m/s^2] specific force along x
+  bool accelerometer = false;       ///< the force is measured: gravity and bias are subtracted
+  double level_time = 0;  ///< [s] time constant with which pitch and roll decay to 0; 0: none
+  EgoVector noise = EgoVector::Zero();  ///< variance per second, by component
 };
 
-/// Up to three numbers that were seen of the state, linearized.
+/// An observation of up to three linearized rows.
 struct EgoObservation {
   int rows = 0;  ///< in use
   Eigen::Vector3d z = Eigen::Vector3d::Zero(), h = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, kEgoAxes> H = Eigen::Matrix<double, 3, kEgoAxes>::Zero();
   Eigen::Vector3d variance = Eigen::Vector3d::Ones();
   bool angle = false;  ///< row 0 is an angle
-  double gate = 0;     ///< NIS above which it is not believed; 0: never
+  double gate = 0;     ///< largest NIS that is accepted; 0: no gate
 };
 
-/// The extended Kalman filter of the vehicle's own motion, run by MRPT's. Rows of an observation
-/// that are not in use have H = 0 and no innovation: they change nothing.
+/// The extended Kalman filter of the vehicle's own motion, executed by
+/// mrpt::bayes::CKalmanFilterCapable (method.md 1.4). Unused rows of an observation have H = 0 and
+/// zero innovation.
 ///
-/// MRPT parts a state into a vehicle, which moves, and landmarks, which stay and are only seen. The
-/// last two axes are such constants: they are the one landmark.
+/// MRPT divides a state into a vehicle, which moves, and static landmarks. The last two components,
+/// which are constants, form one landmark.
 class CEgoFilter final : private mrpt::bayes::CKalmanFilterCapable<kAccelBiasY, 3, 2, 1> {
  public:
   CEgoFilter();
@@ -72,7 +73,7 @@ class CEgoFilter final : private mrpt::bayes::CKalmanFilterCapable<kAccelBiasY, 
   bool update(EgoEstimate& estimate, const EgoObservation& observation);
   double nis() const { return nis_; }  ///< of the last observation
 
-  /// The motion model alone, and its Jacobian.
+  /// The motion model and its Jacobian.
   static EgoVector moved(const EgoVector& x, const EgoInput& input);
   static EgoMatrix jacobian(const EgoVector& x, const EgoInput& input);
 

@@ -34,7 +34,7 @@ constexpr std::uint8_t kKnownArrays = 0x3f;
 constexpr std::array<const char*, 6> kArrayNames = {"intensity", "ring",        "time_offset",
                                                     "echo",      "pulse_width", "label"};
 
-/// Nearest and farthest return and the number of those that have a range.
+/// Nearest and farthest return and the number of returns with a range.
 struct RangeSummary {
   double nearest = 0, farthest = 0;  ///< [m]
   std::size_t valid = 0;
@@ -65,7 +65,7 @@ void CObservationLidarScan::serializeTo(CArchive& out) const {
   forEachOptional(cloud, [&](int bit, const auto& values) {
     if (!values.empty() && values.size() != n) {
       throw std::runtime_error(
-          "CObservationLidarScan: an optional array has not one value a point");
+          "CObservationLidarScan: an optional array does not have one value per point");
     }
     if (!values.empty()) arrays = static_cast<std::uint8_t>(arrays | 1U << bit);
   });

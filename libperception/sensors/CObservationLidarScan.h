@@ -6,15 +6,14 @@
 
 namespace perception {
 
-/// One scan of a 3D lidar with everything that weather filters want of each return: intensity,
-/// beam, time, echo number, pulse width, the sensor's own label. MRPT 2.5.8 has no point cloud that
-/// carries them. Float arrays are written as they are, in one block each; arrays that a sensor does
-/// not have take no room.
+/// One scan of a 3D lidar with the attributes of each return that weather filters use: intensity,
+/// beam, time, echo number, pulse width, the sensor's own label. No point cloud of MRPT 2.5.8 holds
+/// them. Arrays are serialized as one block each; absent arrays take no space.
 class CObservationLidarScan : public mrpt::obs::CObservation {
   DEFINE_SERIALIZABLE(CObservationLidarScan, perception)
  public:
   LidarCloud cloud;                  ///< points in the sensor frame
-  mrpt::poses::CPose3D sensor_pose;  ///< of the sensor on the vehicle
+  mrpt::poses::CPose3D sensor_pose;  ///< pose of the sensor in the vehicle frame
 
   void getSensorPose(mrpt::poses::CPose3D& pose) const override { pose = sensor_pose; }
   void setSensorPose(const mrpt::poses::CPose3D& pose) override { sensor_pose = pose; }

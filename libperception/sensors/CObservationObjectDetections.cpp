@@ -68,7 +68,7 @@ CameraModel::Projection readProjection(CArchive& in) {
 }  // namespace
 
 uint8_t CObservationObjectDetections::serializeGetVersion() const {
-  // Version 1 adds the projection; pinhole cameras stay readable by older programs.
+  // Version 1 adds the projection; pinhole cameras are written as version 0 for older programs.
   return detections.camera.projection == CameraModel::Projection::kPinhole ? 0 : 1;
 }
 

@@ -6,14 +6,14 @@
 
 namespace perception {
 
-/// What somebody's detector found at one instant: boxes in the image, boxes in space, or both, with
+/// The objects found by an external detector at one instant: image boxes, 3D boxes, or both, with
 /// scores. No MRPT class holds labeled boxes.
 class CObservationObjectDetections : public mrpt::obs::CObservation {
   DEFINE_SERIALIZABLE(CObservationObjectDetections, perception)
  public:
   ObjectDetections detections;
-  /// On the vehicle: of the frame of the space boxes (x forward, y left, z up); with image boxes
-  /// alone, of the camera's optical frame (x right, y down, z forward).
+  /// In the vehicle frame: pose of the sensor frame of the 3D boxes (x forward, y left, z up); with
+  /// image boxes only, of the camera's optical frame (x right, y down, z forward).
   mrpt::poses::CPose3D sensor_pose;
 
   void getSensorPose(mrpt::poses::CPose3D& pose) const override { pose = sensor_pose; }

@@ -6,13 +6,13 @@
 
 namespace perception {
 
-/// What one radar unit reported at one instant: targets with range, bearing, range rate, amplitude.
-/// No MRPT class holds range rates.
+/// The returns of one radar unit at one instant: range, bearing, range rate, amplitude. No MRPT
+/// class holds range rates.
 class CObservationRadarScan : public mrpt::obs::CObservation {
   DEFINE_SERIALIZABLE(CObservationRadarScan, perception)
  public:
   RadarReturns scan;
-  mrpt::poses::CPose3D sensor_pose;  ///< on the vehicle; x forward, y left, z up
+  mrpt::poses::CPose3D sensor_pose;  ///< in the vehicle frame; x forward, y left, z up
 
   void getSensorPose(mrpt::poses::CPose3D& pose) const override { pose = sensor_pose; }
   void setSensorPose(const mrpt::poses::CPose3D& pose) override { sensor_pose = pose; }

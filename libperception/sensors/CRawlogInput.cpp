@@ -32,14 +32,14 @@ const char* kindOf(mode_t mode) {
 
 struct CRawlogInput::Inflater {
   z_stream z{};
-  bool in_member = true;  ///< between a member's header and its trailer
+  bool in_member = true;  ///< between the header and the trailer of a member
   Inflater() { inflateInit2(&z, kGzipWindow); }
   ~Inflater() { inflateEnd(&z); }
 };
 
 CRawlogInput::CRawlogInput(const std::string& path) : path_(path) {
   struct stat info {};
-  // Looked at before it is opened: opening a pipe would wait for a writer.
+  // stat() before open(): opening a pipe would wait for a writer.
   if (::stat(path.c_str(), &info) != 0) {
     throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);
   }
@@ -97,7 +97,7 @@ bool CRawlogInput::fillInflated() {
   ready_.resize(before + kReadyBytes);
   z.next_out = ready_.data() + before;
   z.avail_out = kReadyBytes;
-  // Until there is something: an input block may inflate to nothing (headers, trailers).
+  // Loop: an input block may inflate to nothing (headers, trailers).
   while (z.avail_out == kReadyBytes && state_ == State::kGood) {
     if (z.avail_in == 0) {
       if (!readFile()) {
@@ -108,9 +108,9 @@ bool CRawlogInput::fillInflated() {
       z.next_in = raw_.data();
       z.avail_in = static_cast<uInt>(raw_.size());
     }
-    if (!inflater_->in_member) {  // what follows a member must be another one
+    if (!inflater_->in_member) {  // only another member may follow
       if (z.next_in[0] != 0x1f) {
-        stop(State::kDamaged, "something that is not gzip follows the end of the gzip container");
+        stop(State::kDamaged, "other data follow the end of the gzip container");
         break;
       }
       inflateReset2(&z, kGzipWindow);

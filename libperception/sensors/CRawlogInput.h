@@ -8,25 +8,25 @@
 
 namespace perception {
 
-/// The bytes of a rawlog file, plain or gzip (several members allowed), inflated as they are read.
-/// Unlike MRPT's CFileGZInputStream it checks length and CRC of every gzip member, never gives
-/// fewer bytes than asked for, and knows why it ended.
+/// Reads a rawlog file, plain or gzip (several members allowed). Unlike MRPT's CFileGZInputStream
+/// it checks length and CRC of every gzip member, never returns fewer bytes than requested, and
+/// reports why it ended.
 class CRawlogInput final : public mrpt::serialization::CArchive {
  public:
   enum class State {
     kGood,
-    kEnd,      ///< all bytes were read, and the container is whole
-    kTorn,     ///< the file ends inside the gzip container, or inside what was asked for
-    kDamaged,  ///< bad gzip data, wrong check sum, or something else behind the end
-    kFailed    ///< the operating system refused to read
+    kEnd,      ///< all bytes were read and the container is complete
+    kTorn,     ///< the file ends inside the gzip container or inside the requested bytes
+    kDamaged,  ///< invalid gzip data, wrong checksum, or other data behind the end
+    kFailed    ///< read error of the operating system
   };
 
-  /// Throws DataError: kNoInput when missing, kBadInput when it is not a file with something in it
-  /// or unreadable.
+  /// Throws DataError: kNoInput when missing, kBadInput when it is empty, unreadable or no regular
+  /// file.
   explicit CRawlogInput(const std::string& path);
   ~CRawlogInput() override;
 
-  /// True when no byte is left, for whatever reason; see state().
+  /// True when no byte is left; state() has the reason.
   bool atEnd();
   /// The next bytes without consuming them; fewer than `count` (at most 1024) only at the end.
   std::string peek(std::size_t count);
@@ -34,22 +34,22 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   const std::string& reason() const { return reason_; }  ///< for kTorn, kDamaged, kFailed
 
   std::uint64_t position() const { return position_; }        ///< [bytes] consumed, after inflating
-  std::uint64_t fileBytes() const { return file_bytes_; }     ///< [bytes] of the file as it is
-  std::uint64_t fileBytesRead() const { return file_read_; }  ///< [bytes] of it read so far
+  std::uint64_t fileBytes() const { return file_bytes_; }     ///< [bytes] size of the file
+  std::uint64_t fileBytesRead() const { return file_read_; }  ///< [bytes] read so far
   bool compressed() const { return compressed_; }
   std::string getArchiveDescription() const override { return path_; }
 
  protected:
-  /// Throws when `count` bytes are not there.
+  /// Throws when fewer than `count` bytes are left.
   std::size_t read(void* to, std::size_t count) override;
   std::size_t write(const void*, std::size_t) override;
 
  private:
   struct Inflater;
-  bool fill();  ///< more bytes into ready_; false at the end
+  bool fill();  ///< appends bytes to ready_; false at the end
   bool fillPlain();
   bool fillInflated();
-  bool readFile();  ///< next part of the file into raw_
+  bool readFile();  ///< reads the next part of the file into raw_
   void stop(State state, const std::string& reason);
 
   std::string path_;
@@ -57,7 +57,7 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   std::uint64_t file_bytes_ = 0, file_read_ = 0, position_ = 0;
   bool compressed_ = false;
   std::unique_ptr<Inflater> inflater_;
-  std::vector<unsigned char> raw_;    ///< as in the file
+  std::vector<unsigned char> raw_;    ///< as read from the file
   std::vector<unsigned char> ready_;  ///< inflated; [ready_begin_, end) is not consumed yet
   std::size_t ready_begin_ = 0;
   State state_ = State::kGood;

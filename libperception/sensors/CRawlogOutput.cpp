@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kOutBytes = 1U << 18;
 constexpr std::size_t kMostAtOnce = 1U << 30;  ///< zlib counts in 32 bits
 
-/// MRPT writes many fields of a few bytes: they are gathered before zlib sees them.
+/// MRPT writes many fields of a few bytes: they are buffered before compression.
 constexpr std::size_t kGather = 1U << 16;
 
 }  // namespace
@@ -70,7 +70,7 @@ void CRawlogOutput::writeFile(const unsigned char* from, std::size_t count) {
 
 void CRawlogOutput::deflateSome(const void* from, std::size_t count, int flush) {
   z_stream& z = deflater_->z;
-  z.next_in = static_cast<Bytef*>(const_cast<void*>(from));  // zlib reads only
+  z.next_in = static_cast<Bytef*>(const_cast<void*>(from));  // zlib does not write to it
   z.avail_in = static_cast<uInt>(count);
   do {
     z.next_out = deflater_->out.data();

@@ -10,19 +10,18 @@
 
 namespace perception {
 
-/// The bytes of a rawlog on their way into a gzip file. Every failed write is an OutputError at
-/// once (MRPT's CFileGZOutputStream closes a file on a full disk without a word).
+/// Writes a rawlog as a gzip file. Every failed write throws OutputError at once (MRPT's
+/// CFileGZOutputStream does not report a full disk on closing).
 class CRawlogOutput final : public mrpt::serialization::CArchive {
  public:
-  /// Creates or empties the file. `gzip_level` 0 (stored) to 9; above 1 hardly gains on sensor
-  /// data.
+  /// Creates or truncates the file. `gzip_level` 0 (stored) to 9; levels above 1 hardly reduce
+  /// sensor data further.
   CRawlogOutput(const std::string& path, int gzip_level);
   ~CRawlogOutput() override;
 
-  /// Writes the rest and the trailer, forces it to the disk and closes. Throws OutputError.
+  /// Writes the rest and the trailer, syncs to disk and closes. Throws OutputError.
   void finish();
-  /// What the disk said, when a write failed: MRPT's serialization turns exceptions that pass it
-  /// into its own type.
+  /// The error of a failed write: MRPT's serialization converts exceptions into its own type.
   const std::optional<OutputError>& failure() const { return failure_; }
   std::uint64_t bytesIn() const { return bytes_in_; }    ///< [bytes] before compression
   std::uint64_t bytesOut() const { return bytes_out_; }  ///< [bytes] written to the file

@@ -8,12 +8,12 @@
 
 namespace perception {
 
-/// Where MRPT's programs keep the images of a log: LOG_Images beside LOG.rawlog.
+/// MRPT's folder of external images: LOG_Images beside LOG.rawlog.
 std::string imagesBeside(const std::string& log);
 
-/// The image with its camera; pixels are loaded when asked for, from the log or, for images stored
-/// outside, from `folder`. load() of an image that is missing or that no decoder reads gives
-/// nothing and throws nothing.
+/// The image with its camera; pixels are loaded on demand, from the log or, for external images,
+/// from `folder`. load() returns nothing for an image that is missing or cannot be decoded; it does
+/// not throw.
 CameraImage cameraImage(const mrpt::obs::CObservationImage& observation, const std::string& folder);
 
 /// The camera of a picture without calibration, as logs hold panoramas of the whole sphere

@@ -8,7 +8,7 @@ constexpr std::int64_t kNsPerTick = 100;
 /// Ticks of 100 ns from 1601-01-01 to 1970-01-01 (134774 days), as in mrpt::Clock.
 constexpr std::int64_t kUnixEpoch = 134774LL * 86400 * 10'000'000;
 constexpr std::int64_t kEnd =
-    (1LL << 32) * 10'000'000;  ///< [ticks since 1970] 2106-02-07: the 32-bit clock is full
+    (1LL << 32) * 10'000'000;  ///< [ticks since 1970] 2106-02-07: overflow of 32-bit seconds
 
 }  // namespace
 

@@ -12,10 +12,10 @@ namespace perception {
 Pose3 toPose3(const mrpt::poses::CPose3D& pose);
 mrpt::poses::CPose3D toMrpt(const Pose3& pose);
 
-/// MRPT counts 100 ns since 1601, we count ns since 1970: exact. Empty for INVALID_TIMESTAMP and
-/// for stamps that no clock of ours writes (1970 or before, 2106 or later).
+/// Exact conversion from 100 ns since 1601 to ns since 1970. Empty for INVALID_TIMESTAMP and
+/// outside of 1970 to 2106.
 std::optional<Stamp> toStamp(const mrpt::system::TTimeStamp& stamp);
-/// Exact for whole multiples of 100 ns, otherwise the multiple before.
+/// Rounded down to a multiple of 100 ns.
 mrpt::system::TTimeStamp fromStamp(Stamp stamp);
 
 }  // namespace perception

@@ -16,7 +16,7 @@ namespace perception {
 namespace {
 
 constexpr double kHistory = 10;            // [s] of poses
-constexpr std::size_t kMostSteps = 20000;  // bound of the memory whatever the rates
+constexpr std::size_t kMostSteps = 20000;  // bound of the memory at any rate
 
 }  // namespace
 
@@ -54,7 +54,7 @@ std::optional<EgoReading> EgoFusion::readingOf(const mrpt::obs::CObservation& ob
   return reading;
 }
 
-// Readings of one instant have an order of their own, so that the order of arrival does not matter.
+// A strict order of readings of one instant, so that the order of arrival does not matter.
 bool EgoFusion::before(const Step& a, const Step& b) {
   return std::make_tuple(a.stamp.ns, a.reading.index(), a.label) <
          std::make_tuple(b.stamp.ns, b.reading.index(), b.label);
@@ -66,7 +66,7 @@ bool EgoFusion::add(const mrpt::obs::CObservation& observation) {
   Step step{*toStamp(observation.timestamp), observation.sensorLabel, std::move(*reading), {}};
   const bool running = state().started;
   const double behind = running ? steps_.back().stamp - step.stamp : 0;
-  // The base stands for all that came before it: nothing can be put before it.
+  // The base summarizes all earlier readings: nothing can be inserted before it.
   const bool before_base = steps_.front().state.started && !before(steps_.front(), step);
   if (behind > motion_.params().late || before_base) {
     ++late_;
@@ -89,8 +89,8 @@ bool EgoFusion::add(const mrpt::obs::CObservation& observation) {
 }
 
 void EgoFusion::publish(const EgoMotionState& state) {
-  // What was said before the heading was known, in the frame of the start, is turned into the
-  // world: once more when a late reading changed how.
+  // Transforms poses from before the heading was known into the world frame, again when a late
+  // reading changes the transform.
   const Pose3& wanted = state.T_world_start;
   if (!wanted.isApprox(T_world_start_, 0)) {
     const Pose3 change = wanted * T_world_start_.inverse();

@@ -11,16 +11,16 @@
 
 namespace perception {
 
-/// The vehicle's pose, attitude and speed from satellite fixes, gyros, accelerometer and wheels, as
-/// far as a log has them, by one extended Kalman filter (CEgoFilter).
+/// The vehicle's pose, attitude and speed from GNSS fixes, gyros, accelerometer and wheels, as far
+/// as available, by one extended Kalman filter (CEgoFilter, method.md 1.4).
 ///
-/// Until the heading is known the vehicle starts at the origin of its own frame, x ahead. The
-/// heading comes from two antennas, the receiver's INS or course, or from the way driven. Found
-/// within heading_wait, the world is east, north, up about the first fix (or `origin`) and what was
-/// said before is turned into it: state().relocations counts that. Found later, or never, the world
-/// remains the frame of the start, and fixes are turned into that.
+/// The vehicle starts at the origin of its start frame, x ahead. The heading comes from two
+/// antennas, the receiver's INS or course, or the path driven. When it is found within
+/// heading_wait, the world frame becomes east, north, up about the first fix (or `origin`) and
+/// earlier poses are transformed into it, counted by state().relocations. When it is found later or
+/// never, the world frame remains the start frame, and fixes are transformed into that.
 ///
-/// Observations may come late and in any order: the result is that of the sorted log.
+/// Observations may come late and out of order: the result is that of the sorted log.
 class EgoFusion {
  public:
   explicit EgoFusion(FusionParams params);
@@ -28,17 +28,16 @@ class EgoFusion {
   /// Takes CObservationGPS, CObservationIMU and CObservationOdometry; others are ignored. True when
   /// the estimate has changed.
   bool add(const mrpt::obs::CObservation& observation);
-  /// Forgets everything, as after a jump of the clock.
+  /// Resets, as after a jump of the clock.
   void clear();
 
-  /// By stamp, one an observation, with the filter's own uncertainties. Those of the last `history`
-  /// seconds.
+  /// Poses of the last 10 s by stamp, one per observation, with the filter's standard deviations.
   const std::deque<EgoState>& poses() const { return poses_; }
-  /// Newest state.
+  /// The latest state.
   const EgoMotionState& state() const { return steps_.back().state; }
 
   std::uint64_t late() const { return late_; }          ///< dropped: later than [ego] late
-  std::uint64_t unusable() const { return unusable_; }  ///< bad stamp or numbers, no fix
+  std::uint64_t unusable() const { return unusable_; }  ///< invalid stamp or values, no fix
 
  private:
   /// A reading and the state after it.

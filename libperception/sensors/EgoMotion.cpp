@@ -10,18 +10,18 @@ namespace perception {
 
 namespace {
 
-constexpr double kHeld = 0.15;        // [s] a reading of gyros or wheels holds so long
-constexpr double kLongestStep = 0.1;  // [s] of one prediction
-constexpr double kStanding = 0.02;    // [m/s] wheels that turn no faster stand
-constexpr double kLevelEvery = 0.1;   // [s] between looks at the sideways force
-constexpr double kImuRate = 100;      // [1/s] readings of gyros, for one reading's noise
-// Without gyros or accelerometer: what a vehicle may do.
-constexpr double kAnyTurn = radians(15), kWheelTurn = radians(1.5);  // [rad/sqrt(s)]
-constexpr double kAnyAcceleration = 2;                               // [m/s^2 sqrt(s)]
+constexpr double kValidity = 0.15;         // [s] validity of a reading of gyros or wheels
+constexpr double kLongestStep = 0.1;       // [s] of one prediction
+constexpr double kStandstillSpeed = 0.02;  // [m/s] largest speed at standstill
+constexpr double kLevelEvery = 0.1;        // [s] between updates by the lateral force
+constexpr double kImuRate = 100;           // [1/s] readings of gyros, for one reading's noise
+// Process noise without gyros or accelerometer.
+constexpr double kTurnNoise = radians(15), kWheelTurnNoise = radians(1.5);  // [rad/sqrt(s)]
+constexpr double kAccelerationNoise = 2;                                    // [m/s^2 sqrt(s)]
 constexpr double kRoadSlope = radians(3), kSlopeTime = 2;  // [rad], [s] pitch and roll of roads
-constexpr double kFreeLevelTime = 20;  // [s] gyros without accelerometer go back to level
-constexpr double kScaleWalk = 1e-4;    // [1/sqrt(s)]
-constexpr double kAnySpeed = 15;       // [m/s] before anything is known
+constexpr double kFreeLevelTime = 20;      // [s] to level, gyros without accelerometer
+constexpr double kScaleWalk = 1e-4;        // [1/sqrt(s)]
+constexpr double kInitialSpeedSigma = 15;  // [m/s] initial deviation
 
 double square(double x) { return x * x; }
 
@@ -31,7 +31,7 @@ EgoMotionState EgoMotion::after(const EgoMotionState& before, Stamp stamp,
                                 const EgoReading& reading) {
   EgoMotionState state = before;
   if (!state.started) start(state, stamp);
-  // An inertial reading tells of the time before it, so it is in force from the last one on.
+  // An inertial reading is of the interval before it, so it applies from the previous one on.
   if (const auto* imu = std::get_if<ImuReading>(&reading)) state.imu = {stamp, *imu};
   advance(state, stamp);
   std::visit([&](const auto& r) { apply(state, r); }, reading);
@@ -45,7 +45,7 @@ void EgoMotion::start(EgoMotionState& state, Stamp stamp) const {
     state.origin = Geodetic{params_.origin[0], params_.origin[1], params_.origin[2]};
   EgoVector variance = EgoVector::Zero();
   variance[kEgoPitch] = variance[kEgoRoll] = square(kRoadSlope);
-  variance[kEgoSpeed] = square(kAnySpeed);
+  variance[kEgoSpeed] = square(kInitialSpeedSigma);
   variance.segment<3>(kEgoGyroX).setConstant(square(params_.gyro_bias_sigma));
   variance[kEgoWheel] = square(params_.wheel_scale_sigma);
   variance[kEgoAccel] = variance[kAccelBiasY] = square(params_.accel_bias_sigma);
@@ -55,8 +55,8 @@ void EgoMotion::start(EgoMotionState& state, Stamp stamp) const {
 // ---- Motion.
 
 bool EgoMotion::isStationary(const EgoMotionState& state, Stamp stamp) const {
-  return state.wheels && stamp - state.wheels->first <= kHeld &&
-         std::abs(state.wheels->second.speed) < kStanding;
+  return state.wheels && stamp - state.wheels->first <= kValidity &&
+         std::abs(state.wheels->second.speed) < kStandstillSpeed;
 }
 
 EgoInput EgoMotion::inputAt(const EgoMotionState& state, Stamp stamp) const {
@@ -65,15 +65,16 @@ EgoInput EgoMotion::inputAt(const EgoMotionState& state, Stamp stamp) const {
   noise.segment<3>(kEgoGyroX).setConstant(square(params_.gyro_bias_walk));
   noise[kEgoWheel] = square(kScaleWalk);
   noise[kEgoAccel] = noise[kAccelBiasY] = square(params_.accel_bias_walk);
-  if (isStationary(state, stamp)) {               // nothing moves, whatever the gyros say
-    noise[kEgoSpeed] = square(kAnyAcceleration);  // it may start at any time
+  if (isStationary(state, stamp)) {                 // zero-velocity update
+    noise[kEgoSpeed] = square(kAccelerationNoise);  // may start at any time
     noise[kEgoYaw] = square(radians(0.01));
     return input;
   }
   noise.segment<3>(kEgoX).setConstant(square(params_.slip));
-  const auto* imu = state.imu && stamp - state.imu->first <= kHeld ? &state.imu->second : nullptr;
+  const auto* imu =
+      state.imu && stamp - state.imu->first <= kValidity ? &state.imu->second : nullptr;
   const auto* wheels =
-      state.wheels && stamp - state.wheels->first <= kHeld ? &state.wheels->second : nullptr;
+      state.wheels && stamp - state.wheels->first <= kValidity ? &state.wheels->second : nullptr;
   if (imu != nullptr && imu->gyro) {
     input.gyro = true;
     input.rates = imu->rates;
@@ -82,7 +83,7 @@ EgoInput EgoMotion::inputAt(const EgoMotionState& state, Stamp stamp) const {
   } else {
     const bool turns = wheels != nullptr && wheels->yaw_rate;
     input.rates.z() = turns ? *wheels->yaw_rate : 0;
-    noise[kEgoYaw] = square(turns ? kWheelTurn : kAnyTurn);
+    noise[kEgoYaw] = square(turns ? kWheelTurnNoise : kTurnNoise);
     input.level_time = kSlopeTime;
     noise[kEgoPitch] = noise[kEgoRoll] = 2 * square(kRoadSlope) / kSlopeTime;
   }
@@ -91,7 +92,7 @@ EgoInput EgoMotion::inputAt(const EgoMotionState& state, Stamp stamp) const {
     input.force = imu->force.x();
     noise[kEgoSpeed] = square(params_.accel_noise);
   } else {
-    noise[kEgoSpeed] = square(kAnyAcceleration);
+    noise[kEgoSpeed] = square(kAccelerationNoise);
   }
   return input;
 }
@@ -109,9 +110,9 @@ void EgoMotion::advance(EgoMotionState& state, Stamp stamp) {
 
 double EgoMotion::yawRate(const EgoMotionState& state) const {
   if (isStationary(state, state.stamp)) return 0;
-  if (state.imu && state.stamp - state.imu->first <= kHeld && state.imu->second.gyro)
+  if (state.imu && state.stamp - state.imu->first <= kValidity && state.imu->second.gyro)
     return state.imu->second.rates.z() - state.estimate.x[kEgoGyroZ];
-  if (state.wheels && state.stamp - state.wheels->first <= kHeld)
+  if (state.wheels && state.stamp - state.wheels->first <= kValidity)
     return state.wheels->second.yaw_rate.value_or(0);
   return 0;
 }
@@ -120,7 +121,7 @@ double EgoMotion::yawRate(const EgoMotionState& state) const {
 
 void EgoMotion::apply(EgoMotionState& state, const ImuReading& imu) {
   if (imu.gyro && isStationary(state, state.stamp)) {
-    EgoObservation o;  // at rest the gyros show their biases
+    EgoObservation o;  // at rest gyros measure their biases
     o.rows = 3;
     o.z = imu.rates;
     o.h = state.estimate.x.segment<3>(kEgoGyroX);
@@ -131,7 +132,7 @@ void EgoMotion::apply(EgoMotionState& state, const ImuReading& imu) {
   if (imu.accelerometer) updateAttitude(state, imu);
 }
 
-// The mean of a tenth of a second: single readings shake.
+// Uses the mean over a tenth of a second: single readings are too noisy.
 void EgoMotion::updateAttitude(EgoMotionState& state, const ImuReading& imu) {
   auto& sum = state.level;
   ++sum.count;
@@ -149,7 +150,7 @@ void EgoMotion::updateAttitude(EgoMotionState& state, const ImuReading& imu) {
   const double rate = stands || !imu.gyro ? yawRate(state) : turning - x[kEgoGyroZ];
   const double cp = std::cos(x[kEgoPitch]), sp = std::sin(x[kEgoPitch]);
   const double cr = std::cos(x[kEgoRoll]), sr = std::sin(x[kEgoRoll]);
-  EgoObservation side;  // turning and gravity
+  EgoObservation side;  // lateral force: turn rate and gravity
   side.rows = 1;
   side.z[0] = force.y();
   side.h[0] = x[kEgoSpeed] * rate + kGravity * cp * sr + x[kAccelBiasY];
@@ -161,7 +162,7 @@ void EgoMotion::updateAttitude(EgoMotionState& state, const ImuReading& imu) {
   side.variance[0] = square(params_.level_sigma) + square(params_.accel_noise) / time;
   filter_.update(state.estimate, side);
   if (!stands) return;
-  EgoObservation ahead;  // at rest: gravity and bias
+  EgoObservation ahead;  // forward force at rest: gravity and bias
   ahead.rows = 1;
   ahead.z[0] = force.x();
   ahead.h[0] = x[kEgoAccel] - kGravity * std::sin(x[kEgoPitch]);
@@ -181,15 +182,16 @@ void EgoMotion::apply(EgoMotionState& state, const WheelReading& wheels) {
   o.h[0] = scale * v;
   o.H(0, kEgoSpeed) = scale;
   o.H(0, kEgoWheel) = v;
-  // Wheels that stand are known to stand.
-  const bool stand = std::abs(wheels.speed) < kStanding;
-  o.variance[0] = square(stand ? std::min(kStanding, params_.wheel_sigma) : params_.wheel_sigma);
+  // At standstill the deviation of the speed is at most kStandstillSpeed.
+  const bool stand = std::abs(wheels.speed) < kStandstillSpeed;
+  o.variance[0] =
+      square(stand ? std::min(kStandstillSpeed, params_.wheel_sigma) : params_.wheel_sigma);
   filter_.update(state.estimate, o);
 }
 
 void EgoMotion::apply(EgoMotionState& state, const GnssFix& fix) {
   if (!state.origin) {
-    // The world's ground is the road below the antenna.
+    // Height 0 of the world frame is the road below the antenna.
     state.origin = fix.place;
     state.origin->height -= fix.antenna.z();
   }

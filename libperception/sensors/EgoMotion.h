@@ -9,13 +9,13 @@
 
 namespace perception {
 
-/// How readings change the state: the models around CEgoFilter.
+/// Motion and observation models of the vehicle for CEgoFilter.
 class EgoMotion {
  public:
   explicit EgoMotion(FusionParams params) : params_(std::move(params)) {}
 
   EgoMotionState after(const EgoMotionState& before, Stamp stamp, const EgoReading& reading);
-  /// [rad/s] of the vehicle at the state's instant.
+  /// Yaw rate of the vehicle [rad/s] at the time of the state.
   double yawRate(const EgoMotionState& state) const;
   const FusionParams& params() const { return params_; }
 

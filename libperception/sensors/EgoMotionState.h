@@ -11,15 +11,16 @@
 
 namespace perception {
 
-/// All that the estimate depends on: a value, so that the filter can go back to it.
+/// The complete state of the fusion, as a value, so that the filter can return to it for late
+/// readings.
 struct EgoMotionState {
-  /// A fix while the heading is not known, and where the vehicle thought to be then.
+  /// A fix while the heading is unknown, with the estimated pose at that time.
   struct Reference {
     Stamp stamp;
     Vector3 enu;      ///< [m]
-    Vector2 place;    ///< [m] frame of the start
-    double yaw;       ///< [rad] frame of the start
-    Vector3 antenna;  ///< [m] on the vehicle
+    Vector2 place;    ///< [m] start frame
+    double yaw;       ///< [rad] start frame
+    Vector3 antenna;  ///< [m] in the vehicle frame
     double sigma;     ///< [m]
   };
 
@@ -29,7 +30,7 @@ struct EgoMotionState {
   std::optional<std::pair<Stamp, ImuReading>> imu;
   std::optional<std::pair<Stamp, WheelReading>> wheels;
   bool had_wheels = false;
-  /// Of inertial readings since gravity was last looked at.
+  /// Sums of inertial readings since the last update by gravity.
   struct {
     std::optional<Stamp> begin;
     int count = 0;
@@ -41,7 +42,7 @@ struct EgoMotionState {
   std::optional<Geodetic> origin;           ///< of east, north, up
   double world_turn = 0;                    ///< [rad] of the world's x axis from east
   Vector3 world_shift = Vector3::Zero();    ///< [m] origin of the world in east, north, up
-  Pose3 T_world_start = Pose3::Identity();  ///< where the frame of the start came to lie
+  Pose3 T_world_start = Pose3::Identity();  ///< pose of the start frame
   std::uint64_t relocations = 0, fixes = 0, rejected_fixes = 0;
   int rejected_in_row = 0, rejected_heights_in_row = 0;
 

@@ -13,18 +13,17 @@ namespace perception {
 
 namespace {
 
-/// After so many poses in a row that contradict the old place but not each other the vehicle is
-/// there: a receiver that found its fix again. Tuned so that one second of a 10 Hz log is believed.
+/// Number of consecutive poses, consistent with each other but not with the former position, after
+/// which they are accepted: a receiver with a new fix. One second at 10 Hz.
 constexpr std::size_t kRelocation = 10;
-/// [s] Velocities are differences over about this time: poses at 100 Hz would otherwise give their
-/// noise.
+/// [s] Velocities are differences over about this time, to suppress the noise of poses at 100 Hz.
 constexpr double kDifference = 0.1;
-/// Bound of the memory whatever the rate of the poses.
+/// Bound of the memory at any rate of the poses.
 constexpr std::size_t kMostPoses = 20000;
 
 bool before(const EgoState& pose, Stamp stamp) { return pose.stamp < stamp; }
 
-/// Standard deviation of a variance from a log, not below `minimum`.
+/// Standard deviation by a variance of the log, at least `minimum`.
 double sigmaOf(double variance, double minimum) {
   return std::isfinite(variance) && variance > 0 ? std::max(minimum, std::sqrt(variance)) : minimum;
 }
@@ -62,7 +61,7 @@ void EgoPoseParams::visit(ParamVisitor& v) {
   fusion.visit(v);
   v.expert();
   v.real("blind_gap", blind_gap, {0.1, 1e6}, "s",
-         "without any scan, in a log that does not tell the vehicle's motion: tracks start anew");
+         "without scans, in a log without ego motion, after which tracks start anew");
 }
 
 EgoPose::EgoPose(EgoPoseParams params)
@@ -85,7 +84,7 @@ void EgoPose::clear() {
 bool EgoPose::wants(const std::string& label) {
   if (!params_.label.empty()) return label == params_.label;
   if (label == kEgoPoseLabel &&
-      label_ != kEgoPoseLabel) {  // the real one came late: forget the substitute and its world
+      label_ != kEgoPoseLabel) {  // EGO_POSE came late: drop the substitute label and its world
     if (!empty()) ++frame_epoch_;
     clear();
     label_ = label;
@@ -121,7 +120,7 @@ bool EgoPose::isJump(const EgoState& pose) {
   const EgoState& neighbor = after == poses_.begin() ? *after : *std::prev(after);
   const auto tooFast = [this](const EgoState& a, const EgoState& b) {
     const double distance = (a.T_world_ego.translation() - b.T_world_ego.translation()).norm();
-    // Two poses of nearly the same instant may differ by their noise.
+    // At least 10 ms: poses of nearly the same instant differ by noise.
     return distance > params_.max_speed * std::max(std::abs(a.stamp - b.stamp), 0.01);
   };
   if (!tooFast(neighbor, pose)) {
@@ -141,7 +140,8 @@ void EgoPose::add(const EgoState& pose) {
     ++rejected_other_;
     return;
   }
-  if (poses_.empty() && !fusion_.poses().empty()) ++frame_epoch_;  // the log's own poses take over
+  if (poses_.empty() && !fusion_.poses().empty())
+    ++frame_epoch_;  // the poses of the log replace the fusion
   if (!poses_.empty()) {
     const auto place = std::lower_bound(poses_.begin(), poses_.end(), pose.stamp, before);
     const bool same_instant = place != poses_.end() && place->stamp == pose.stamp;
@@ -167,7 +167,7 @@ void EgoPose::setMotion(EgoState& state) const {
   state.velocity = Vector2::Zero();
   state.yaw_rate = 0;
   if (poses_.size() < 2) return;
-  // The two poses about the instant, and more on both sides until they are kDifference apart.
+  // The two poses around the instant, extended on both sides until they are kDifference apart.
   auto last = std::lower_bound(poses_.begin(), poses_.end(), state.stamp, before);
   if (last == poses_.end()) --last;
   if (last == poses_.begin()) ++last;

@@ -12,56 +12,56 @@
 
 namespace perception {
 
-/// How the vehicle's pose is taken from the log: [ego].
+/// Source of the vehicle's pose: [ego].
 struct EgoPoseParams {
-  /// Poses of the log, or satellites, inertial unit and wheels, or these where no pose is.
+  /// Poses of the log; fusion of GNSS, inertial unit and wheels; or fusion if the log has no poses.
   enum class Source { kAuto, kPoses, kFusion };
   Source source = Source::kAuto;
   FusionParams fusion;
   std::string
       label;  ///< of the pose observations; empty: EGO_POSE, or the first label if there is none
-  PoseUncertainty minimum;     ///< method.md 1.3; a log that claims less (or nothing) gets this
-  double extrapolation = 0.2;  ///< [s] at most beyond the last pose (assumed: two poses at 10 Hz)
-  double max_speed = 100;      ///< [m/s] a step that implies more is a jump (assumed)
-  double history = 10;         ///< [s] of poses that are kept (assumed)
-  /// [s] without any scan, while nothing tells how the vehicle moves, after which tracks start
-  /// anew: at 5 m/s another bush stands then where one was, and the pair looks like a runner
-  /// (assumed).
+  PoseUncertainty minimum;     ///< lower bounds of the standard deviations (method.md 1.3)
+  double extrapolation = 0.2;  ///< [s] largest, beyond the last pose (assumed: two poses at 10 Hz)
+  double max_speed = 100;      ///< [m/s] poses that imply more are jumps (assumed)
+  double history = 10;         ///< [s] of stored poses (assumed)
+  /// [s] without scans, in a log without ego motion, after which tracks start anew: a moving
+  /// vehicle would see another static object in place of the former one, and the pair appears as a
+  /// moving object (assumed).
   double blind_gap = 2;
 
   void visit(ParamVisitor& v);
 };
 
-/// Where the vehicle was at any instant of the recent past: positions in between linearly,
-/// attitudes by slerp, beyond the newest pose for a moment with the last velocity. Poses may come
-/// in any order within the history.
+/// Pose of the vehicle at any recent instant: positions interpolated linearly, attitudes by slerp,
+/// extrapolated for a short time with the last velocity. Poses may come in any order within the
+/// history.
 ///
-/// A log without poses but with a satellite receiver, an inertial unit or wheels gets them from
-/// EgoFusion; the first pose of the log ends that.
+/// Without poses in the log, EgoFusion computes them from GNSS, inertial unit or wheels, until the
+/// first pose of the log.
 ///
-/// A log without any of them: empty() stays true and at() gives nothing; callers then use parked(),
-/// the documented fallback: the vehicle stands at the world's origin.
+/// Without any of these, empty() stays true and at() returns nothing; callers then use parked():
+/// the vehicle stands at the origin of the world frame.
 class EgoPose {
  public:
   explicit EgoPose(EgoPoseParams params = {});
 
-  /// Takes a CObservationRobotPose of the wanted label and, unless `source` is poses, what
-  /// EgoFusion takes; every other observation is ignored.
+  /// Processes a CObservationRobotPose of the selected label and, unless `source` is kPoses, the
+  /// observations of EgoFusion; others are ignored.
   void add(const mrpt::obs::CObservation& observation);
-  /// The same for a pose from elsewhere (velocity and yaw rate are ignored).
+  /// The same for a pose from another source (velocity and yaw rate are ignored).
   void add(const EgoState& pose);
-  /// The vehicle at `stamp`; empty when no pose is near enough in time.
+  /// The ego state at `stamp`; empty when no pose is close enough in time.
   std::optional<EgoState> at(Stamp stamp) const;
 
   bool empty() const { return poses().empty(); }
   /// Of the oldest and the newest pose; only when not empty().
   Stamp earliest() const { return poses().front().stamp; }
   Stamp latest() const { return poses().back().stamp; }
-  /// How often the world of the poses became another one: when the first pose of the log took over
-  /// from EgoFusion, or this one found its heading. What was placed in the old world is void.
+  /// Number of changes of the world frame: when the first pose of the log replaces EgoFusion, or
+  /// when EgoFusion finds its heading. Positions in the former world frame are invalid.
   std::uint64_t frameEpoch() const { return frame_epoch_ + fusion_.state().relocations; }
   const EgoFusion& fusion() const { return fusion_; }
-  /// Forgets everything, as after a jump of the clock.
+  /// Resets, as after a jump of the clock.
   void clear();
   static EgoState parked(Stamp stamp, const PoseUncertainty& uncertainty = {});
 
@@ -69,7 +69,7 @@ class EgoPose {
   std::uint64_t rejectedJumps() const { return rejected_jumps_; }  ///< faster than max_speed
   std::uint64_t rejectedOther() const {
     return rejected_other_;
-  }  ///< bad stamp or numbers, too old, same instant
+  }  ///< invalid, too old, same instant
 
  private:
   const std::deque<EgoState>& poses() const { return poses_.empty() ? fusion_.poses() : poses_; }
@@ -82,7 +82,7 @@ class EgoPose {
   EgoFusion fusion_;
   std::string label_;               ///< in use
   std::deque<EgoState> poses_;      ///< by stamp; velocities are not set
-  std::deque<EgoState> relocated_;  ///< a run of rejected poses that agree with each other
+  std::deque<EgoState> relocated_;  ///< consecutive consistent rejected poses
   std::uint64_t accepted_ = 0, rejected_jumps_ = 0, rejected_other_ = 0;
   std::uint64_t frame_epoch_ = 0;
 };

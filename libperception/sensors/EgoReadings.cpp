@@ -8,8 +8,8 @@ namespace perception {
 
 namespace {
 
-constexpr double kLongestDifference = 1;  // [s] between two sums of an odometer
-constexpr double kAnyVehicle = 200;       // [m/s]
+constexpr double kLongestDifference = 1;  // [s] between two poses of an odometer
+constexpr double kMaxSpeed = 200;         // [m/s]
 
 }  // namespace
 
@@ -27,7 +27,7 @@ std::optional<ImuReading> imuReading(const mrpt::obs::CObservationIMU& imu) {
   if (reading.accelerometer) reading.force = vector(IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC);
   if (!reading.gyro && !reading.accelerometer) return {};
   if (!reading.rates.allFinite() || !reading.force.allFinite()) return {};
-  // Away from the rear axle the unit feels the turning, too.
+  // Removes the acceleration of the lever arm by rotation.
   const Vector3& w = reading.rates;
   if (reading.accelerometer) reading.force -= w.cross(w.cross(T_ego_imu.translation()));
   return reading;
@@ -52,7 +52,7 @@ std::optional<WheelReading> Odometers::read(const mrpt::obs::CObservationOdometr
     reading.yaw_rate = wrapAngle(step.phi()) / dt;
   }
   if (!std::isfinite(reading.speed + *reading.yaw_rate)) return {};
-  if (std::abs(reading.speed) > kAnyVehicle) return {};
+  if (std::abs(reading.speed) > kMaxSpeed) return {};
   return reading;
 }
 

@@ -14,30 +14,31 @@
 
 namespace perception {
 
-/// What an inertial unit felt, about the vehicle's axes and at its rear axle.
+/// A reading of an inertial unit, in the vehicle's axes and reduced to its rear axle.
 struct ImuReading {
   bool gyro = false, accelerometer = false;
   Vector3 rates = Vector3::Zero();  ///< [rad/s]
-  Vector3 force = Vector3::Zero();  ///< [m/s^2] specific force: at rest gravity, upwards
+  Vector3 force = Vector3::Zero();  ///< [m/s^2] specific force: at rest g upward
 };
 
-/// How fast the wheels turned.
+/// A reading of wheel odometry.
 struct WheelReading {
   double speed = 0;                ///< [m/s] > 0 forward
-  std::optional<double> yaw_rate;  ///< [rad/s] from their difference or the steering
+  std::optional<double> yaw_rate;  ///< [rad/s] from wheel differences or the steering
 };
 
-/// One reading of any of the vehicle's own sensors; the order is that of one instant.
+/// One reading of any ego motion sensor; readings of one instant are processed in this order.
 using EgoReading = std::variant<ImuReading, WheelReading, GnssFix>;
 
-/// Empty when the unit holds neither rates nor forces, or numbers that are none. A gyro of the yaw
-/// axis alone is a gyro; an accelerometer has three axes.
+/// Empty when the observation has neither rates nor forces, or values that are not finite. A yaw
+/// gyro alone suffices; an accelerometer needs three axes.
 std::optional<ImuReading> imuReading(const mrpt::obs::CObservationIMU& imu);
 
-/// Wheel readings of several odometers: their velocities, or the differences of their sums.
+/// Wheel readings of several odometers, by their velocities or by differences of their poses.
 class Odometers {
  public:
-  /// Empty for a first sum, one out of order or after a long gap, and for numbers that are none.
+  /// Empty for a first pose, one out of order or after a long gap, and for values that are not
+  /// finite.
   std::optional<WheelReading> read(const mrpt::obs::CObservationOdometry& odometry, Stamp stamp);
 
  private:

@@ -8,23 +8,23 @@ namespace perception {
 
 namespace {
 
-constexpr double kSameFix = 0.06;             // [s] fixes of two antennas are of one instant
-constexpr double kLeastBaseline = 0.5;        // [m] between two antennas
-constexpr double kHeadingSigma = radians(8);  // [rad] a first heading is not taken below it
-constexpr double kCourseSpeed = 2;            // [m/s] from which a course is a heading
-constexpr double kStraight = radians(5);      // [rad] a way without wheels is as straight
-constexpr double kReference = 10;             // [s] after which a way starts anew (without wheels)
+constexpr double kSameFix = 0.06;             // [s] largest time between fixes of two antennas
+constexpr double kLeastBaseline = 0.5;        // [m] least distance of two antennas
+constexpr double kHeadingSigma = radians(8);  // [rad] largest deviation of a first heading
+constexpr double kCourseSpeed = 2;            // [m/s] least speed of a valid course
+constexpr double kStraight = radians(5);      // [rad] deviation of a path without wheels
+constexpr double kReference = 10;             // [s] longest path without wheels
 
 double square(double x) { return x * x; }
 
-// `turn` [rad] takes the frame of the start to east, north, up.
+// `turn` [rad]: rotation from the start frame to east, north, up.
 void setHeading(EgoMotionState& state, const GnssFix& fix, const Vector3& enu, double turn,
                 double sigma, const FusionParams& params) {
   EgoEstimate& e = state.estimate;
   const double level = fix.has_height ? square(fix.height_sigma) : 1e4;
   const Pose3 start = e.pose();
   const Pose3 T_enu_start = makePose(0, 0, 0, turn);
-  // The antenna of the turned vehicle stands where the fix is.
+  // The antenna of the rotated vehicle is at the fix.
   const Vector3 arm = T_enu_start * (start.linear() * fix.antenna);
   Vector3 place = enu - arm;
   if (!fix.has_height) place.z() = 0;
@@ -35,11 +35,11 @@ void setHeading(EgoMotionState& state, const GnssFix& fix, const Vector3& enu, d
     state.T_world_start = T_enu_world;
     e.x.segment<3>(kEgoX) = place;
     e.x[kEgoYaw] = wrapAngle(e.x[kEgoYaw] + turn);
-  } else {  // too late: the world stays, and fixes are turned into it
+  } else {  // too late: keep the world frame, transform the fixes
     state.world_turn = wrapAngle(turn);
     state.world_shift = T_enu_world.translation();
   }
-  // The place is that of this one fix, the rest keeps what it knew.
+  // The position is that of the fix alone; other components keep their covariance.
   for (const int axis : {kEgoX, kEgoY, kEgoZ}) {
     e.P.row(axis).setZero();
     e.P.col(axis).setZero();
@@ -80,7 +80,7 @@ void findHeading(EgoMotionState& state, const GnssFix& fix, const Vector3& enu,
       return setHeading(state, fix, enu, direction(fix.velocity) + back - x[kEgoYaw], sigma,
                         params);
   }
-  // The way since an earlier fix, seen by satellites and by the vehicle itself.
+  // The path since an earlier fix, by GNSS and by odometry.
   if (!state.reference ||
       (!state.had_wheels && state.stamp - state.reference->stamp > kReference)) {
     state.reference = here;

@@ -5,10 +5,10 @@
 
 namespace perception {
 
-/// Looks for the vehicle's heading while it is not known, at a fix that lies at `enu` [m] east,
-/// north, up: by the receiver itself, two antennas, the course over ground, or the way since an
-/// earlier fix. When found, the state turns into east, north, up; later than heading_wait the
-/// world stays as it is, and fixes are turned into it.
+/// Estimates the vehicle's heading while it is unknown, at a fix at `enu` [m] east, north, up: by
+/// the receiver's INS, two antennas, the course over ground, or the path since an earlier fix. When
+/// found, the state is transformed to east, north, up; later than heading_wait the world frame is
+/// kept and fixes are transformed into it.
 void findHeading(EgoMotionState& state, const GnssFix& fix, const Vector3& enu,
                  const FusionParams& params);
 

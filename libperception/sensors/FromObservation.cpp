@@ -26,8 +26,8 @@ namespace {
 using mrpt::obs::CObservation;
 using Data = decltype(SensorFrame::data);
 
-/// Intensities of MRPT clouds come as [0, 1] or as the sensor's integer of one or two bytes; ours
-/// are [0, 1]. The cloud's highest value tells which, for the cloud as a whole.
+/// Scales the intensities of an MRPT cloud to [0, 1]. They are given in [0, 1] or as integers of
+/// one or two bytes; the largest value of the cloud decides.
 void scaleIntensity(std::vector<float>& intensity) {
   float highest = 0;
   for (float& value : intensity) {
@@ -38,7 +38,7 @@ void scaleIntensity(std::vector<float>& intensity) {
   for (float& value : intensity) value = std::min(1.F, value * scale);
 }
 
-/// One array after bad points went: those whose `keep` is set, in their order.
+/// Removes the elements of an array whose `keep` is not set; keeps the order.
 template <class Number>
 void filterArray(std::vector<Number>& values, const std::vector<char>& keep) {
   if (values.empty()) return;
@@ -180,8 +180,7 @@ std::optional<Data> decodeImage(const mrpt::obs::CObservationImage& observation,
   return image;
 }
 
-/// One class of observation that holds data for a front end: to decode another class, add its
-/// decode() and a row.
+/// Decoder of one observation class; a new class needs its decode function and a row.
 struct Decoder {
   bool (*knows)(const CObservation&);
   std::optional<Data> (*decode)(const CObservation&, DecodeCounts&, const std::string& images);

@@ -17,11 +17,11 @@ constexpr double kKnot = 1852.0 / 3600;  // [m/s]
 constexpr double kDifferential = 0.5;    // [-] of the plain sigma: DGPS, SBAS
 constexpr double kFloat = 0.25;          // [-] of the plain sigma: RTK without fixed ambiguities
 constexpr double kEstimated = 4;         // [-] of the plain sigma: dead reckoning of the receiver
-constexpr double kInsYawSigma = radians(1);  // [rad] of a receiver's INS that does not say it
-constexpr double kCourseSpeed = 1.0;         // [m/s] below it a course says nothing
+constexpr double kInsYawSigma = radians(1);  // [rad] default of a receiver's INS
+constexpr double kCourseSpeed = 1.0;         // [m/s] least speed of a valid course
 
 bool onEarth(double latitude, double longitude) {
-  // 0, 0 is what receivers send before they know.
+  // Receivers without a position send 0, 0.
   return std::isfinite(latitude + longitude) && std::abs(latitude) <= 90 &&
          std::abs(longitude) <= 180 && (latitude != 0 || longitude != 0);
 }
@@ -55,7 +55,7 @@ std::optional<GnssFix> fromGga(const gnss::Message_NMEA_GGA& gga, const GnssPara
     case 6:
       setSigma(fix, kEstimated * params.sigma * hdop, params);
       break;
-    default:  // 0: no fix, 7: typed in
+    default:  // 0: no fix, 7: manual input
       return {};
   }
   return fix;
@@ -125,7 +125,7 @@ Geodetic fromCartesian(const Vector3& p) {
   return {out.lat.getDecimalValue(), out.lon.getDecimalValue(), out.height};
 }
 
-/// East and north parts of a velocity in Earth's cartesian axes.
+/// East and north components of a velocity in Earth's cartesian axes.
 Vector2 horizontalPart(const Vector3& v, const Geodetic& place) {
   const double la = radians(place.latitude), lo = radians(place.longitude);
   return {-std::sin(lo) * v.x() + std::cos(lo) * v.y(), -std::sin(la) * std::cos(lo) * v.x() -
@@ -139,14 +139,14 @@ std::optional<GnssFix> fromTopcon(const gnss::Message_TOPCON_PZS& pzs, const Gns
     fix.place = {pzs.latitude_degrees, pzs.longitude_degrees, pzs.height_meters};
   } else if (pzs.hasCartesianPosVel) {
     const Vector3 p(pzs.cartesian_x, pzs.cartesian_y, pzs.cartesian_z);
-    if (!p.allFinite() || p.norm() < 6e6) return {};  // [m] inside of Earth
+    if (!p.allFinite() || p.norm() < 6e6) return {};  // [m] inside the Earth
     fix.place = fromCartesian(p);
   } else {
     return {};
   }
   setSigma(fix, pzs.PSigma > 0 ? static_cast<double>(pzs.PSigma) : params.sigma, params);
   if (pzs.hasPosCov) {
-    // Cartesian axes: one value for all directions.
+    // Cartesian axes: one deviation for all directions.
     const auto& c = pzs.pos_covariance;
     const double mean = static_cast<double>(c(0, 0) + c(1, 1) + c(2, 2)) / 3;
     if (std::isfinite(mean) && mean > 0) setSigma(fix, std::sqrt(mean), params);
@@ -187,7 +187,7 @@ std::optional<GnssFix> bestOf(const CObservationGPS& o, const GnssParams& params
   if (const auto* m = messageOf<gnss::Message_TOPCON_PZS>(o)) {
     if (auto fix = fromTopcon(*m, params)) return fix;
   }
-  // A GGA that says "no fix" is not overruled by the RMC beside it.
+  // A GGA without a fix is not replaced by the RMC beside it.
   if (const auto* m = messageOf<gnss::Message_NMEA_GGA>(o)) return fromGga(*m, params);
   if (const auto* m = messageOf<gnss::Message_NMEA_RMC>(o)) return fromPlain(*m, params);
   if (const auto* m = messageOf<gnss::Message_NMEA_GLL>(o)) return fromPlain(*m, params);
@@ -198,7 +198,7 @@ std::optional<GnssFix> bestOf(const CObservationGPS& o, const GnssParams& params
 
 void GnssParams::visit(ParamVisitor& v) {
   v.real("gnss_sigma", sigma, {0.001, 100}, "m",
-         "of a plain fix at HDOP 1, where a receiver does not say it");
+         "of a plain fix at HDOP 1, for receivers that do not report it");
 }
 
 std::optional<GnssFix> gnssFix(const CObservationGPS& observation, const GnssParams& params) {
@@ -219,7 +219,7 @@ Vector3 LocalFrame::fromGeodetic(const Geodetic& place) const {
   return {enu.x, enu.y, enu.z};
 }
 
-// By hand: ENUToGeocentric() of MRPT 2.5.8 is 2 m off at a distance of 1.6 km.
+// Own code: ENUToGeocentric() of MRPT 2.5.8 has an error of 2 m at a distance of 1.6 km.
 Geodetic LocalFrame::toGeodetic(const Vector3& enu) const {
   const double la = radians(origin_.latitude), lo = radians(origin_.longitude);
   const Vector3 east(-std::sin(lo), std::cos(lo), 0);

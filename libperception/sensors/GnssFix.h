@@ -9,24 +9,24 @@
 
 namespace perception {
 
-/// Standard deviations of a satellite receiver whose messages do not state them: in [ego]. Figures
-/// of receivers' data sheets, assumed (method.md 1.4).
+/// Standard deviations of a GNSS receiver whose messages do not give them: part of [ego]. Figures
+/// of data sheets, assumed (method.md 1.4).
 struct GnssParams {
   double sigma = 1.5;           ///< [m] of a plain fix at HDOP 1, east and north each
   double rtk_sigma = 0.03;      ///< [m] of a fixed RTK solution
-  double height_factor = 2;     ///< [-] heights are so much worse than east and north
+  double height_factor = 2;     ///< [-] of the deviation of heights over that of east and north
   double velocity_sigma = 0.2;  ///< [m/s] of Doppler speed and course (RMC, VTG)
 
   void visit(ParamVisitor& v);
 };
 
-/// A place on WGS84.
+/// A position on WGS84.
 struct Geodetic {
   double latitude = 0, longitude = 0;  ///< [deg] north, east
   double height = 0;                   ///< [m] above the ellipsoid
 };
 
-/// One position of a satellite receiver, with what else its messages say.
+/// One position of a GNSS receiver, with velocity and heading where its messages have them.
 struct GnssFix {
   Stamp stamp;
   Geodetic place;           ///< of the antenna
@@ -36,18 +36,18 @@ struct GnssFix {
   bool has_velocity = false;
   Vector2 velocity = Vector2::Zero();  ///< [m/s] east, north
   double velocity_sigma = 0.2;         ///< [m/s] each
-  std::optional<double> yaw;           ///< [rad] of the vehicle, from east: receivers with own INS
+  std::optional<double> yaw;           ///< [rad] of the vehicle, from east; of receivers with INS
   double yaw_sigma = 0.02;             ///< [rad]
-  Vector3 antenna = Vector3::Zero();   ///< [m] on the vehicle
+  Vector3 antenna = Vector3::Zero();   ///< [m] in the vehicle frame
 };
 
 /// The best position among the messages of an observation: NMEA GGA, RMC, GLL (speed and course of
 /// RMC, VTG), Novatel BESTPOS, INSPVAS (with INSCOVS), Topcon PZS (geodetic or cartesian). Empty
-/// when there is none or the receiver says that it is not valid.
+/// when there is none or the receiver marks it as invalid.
 std::optional<GnssFix> gnssFix(const mrpt::obs::CObservationGPS& observation,
                                const GnssParams& params);
 
-/// East, north, up [m] about a place on WGS84.
+/// East, north, up [m] about a position on WGS84.
 class LocalFrame {
  public:
   explicit LocalFrame(const Geodetic& origin) : origin_(origin) {}

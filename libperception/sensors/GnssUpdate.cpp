@@ -8,12 +8,12 @@ namespace perception {
 
 namespace {
 
-constexpr double kGate = 0.9999;  // of the NIS of a fix
-constexpr int kRelocation = 10;   // rejected fixes in a row after which they are believed
+constexpr double kGate = 0.9999;  // probability of the gate of a fix
+constexpr int kRelocation = 10;   // consecutive rejected fixes after which they are accepted
 
 double square(double x) { return x * x; }
 
-/// The place [m, world] of the antenna against the state: its lever arm turns with the vehicle.
+/// Observation of the antenna's position [m, world], including its lever arm.
 EgoObservation antennaObservation(const EgoVector& x, const GnssFix& fix, const Vector3& world) {
   const auto antennaAt = [&](double yaw, double pitch, double roll) -> Vector3 {
     return makePose(x[kEgoX], x[kEgoY], x[kEgoZ], yaw, pitch, roll) * fix.antenna;
@@ -23,7 +23,7 @@ EgoObservation antennaObservation(const EgoVector& x, const GnssFix& fix, const 
   both.z = world;
   both.h = antennaAt(yaw, pitch, roll);
   both.H.block<3, 3>(0, kEgoX).setIdentity();
-  constexpr double kStep = 1e-4;  // [rad] of the lever arm's derivatives
+  constexpr double kStep = 1e-4;  // [rad] of numerical derivatives of the lever arm
   both.H.col(kEgoYaw) =
       (antennaAt(yaw + kStep, pitch, roll) - antennaAt(yaw - kStep, pitch, roll)) / (2 * kStep);
   both.H.col(kEgoPitch) =
@@ -53,7 +53,7 @@ bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
   height.variance[0] = square(fix.height_sigma);
   height.gate = gate1;
   const Vector3 arm = both.h - x.segment<3>(kEgoX);
-  // Rejected ones that agree with each other for longer than chance allows: the vehicle is there.
+  // After consistent rejected fixes the state is reset to them.
   const auto moveTo = [&](int axis, double value, double sigma) {
     state.estimate.x[axis] = value;
     state.estimate.P.row(axis).setZero();
@@ -87,7 +87,7 @@ void updateVelocity(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fi
                     double yaw_rate) {
   const EgoVector& x = state.estimate.x;
   const double c = std::cos(x[kEgoYaw]), s = std::sin(x[kEgoYaw]);
-  // The antenna swings about the rear axle.
+  // Velocity of the lever arm by rotation about the rear axle.
   const Vector2 swing = rotate2(x[kEgoYaw], yaw_rate * Vector2(-fix.antenna.y(), fix.antenna.x()));
   EgoObservation o;
   o.rows = 2;

@@ -5,17 +5,18 @@
 
 namespace perception {
 
-// What a fix of satellites says of a vehicle whose heading is known.
+// Updates by a GNSS fix of a vehicle with known heading (method.md 1.4).
 
-/// The fix as a place in the world [m]; false when it was rejected. Place and height apart:
-/// receivers whose base stations differ agree in place and not in height.
+/// Update by the position `world` [m] of the antenna; false when it was rejected. Horizontal
+/// position and height are gated separately: receivers with different base stations disagree in
+/// height.
 bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
                  const Vector3& world);
 
-/// Its velocity; `yaw_rate` [rad/s] is the vehicle's.
+/// Update by its velocity; `yaw_rate` [rad/s] is the vehicle's.
 void updateVelocity(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix, double yaw_rate);
 
-/// Its yaw [rad] in the world, with its standard deviation [rad].
+/// Update by a yaw [rad, world] with its standard deviation [rad].
 void updateYaw(CEgoFilter& filter, EgoMotionState& state, double yaw, double sigma);
 
 }  // namespace perception

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <new>
 
-// MRPT's own gives null when there is no memory, and its containers write through it. The program's
-// definition goes before the library's; aligned_free() there is free().
+// MRPT's version returns null when out of memory, which its containers do not check. This
+// definition overrides that of the library, whose aligned_free() is free().
 void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
   const std::size_t whole = (size + alignment - 1) / alignment * alignment;
   void* const memory = whole < size ? nullptr : std::aligned_alloc(alignment, whole);
@@ -21,7 +21,7 @@ namespace perception {
 
 namespace {
 
-constexpr std::uint64_t kLeast = 2ULL << 30;  // [bytes] libraries alone reserve half of that
+constexpr std::uint64_t kLeast = 2ULL << 30;  // [bytes] half of it is reserved by libraries
 
 std::uint64_t machineMemory() {
   const auto pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);

@@ -4,9 +4,9 @@
 
 namespace perception {
 
-/// Bounds the memory of the process while it lives (RLIMIT_AS), so that hostile sizes in a torn or
-/// forged rawlog end as an exception that RawlogReader reports, and not as a machine without
-/// memory. MRPT's aligned allocations, whose failure MRPT 2.5.8 does not look at, throw
+/// Limits the memory of the process (RLIMIT_AS) during its lifetime, so that implausible sizes in a
+/// truncated or forged rawlog cause an exception that RawlogReader reports instead of exhausting
+/// the machine. MRPT's aligned allocation, whose failure MRPT 2.5.8 does not check, throws
 /// std::bad_alloc in every program that links RawlogReader.
 class MemoryLimit {
  public:
@@ -18,11 +18,11 @@ class MemoryLimit {
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 
   static bool supported();
-  /// Makes sure that the checked allocation is part of the program; does nothing else.
+  /// No operation; forces the linker to include the checked allocation.
   static void link();
 
  private:
-  std::optional<std::uint64_t> before_;  ///< [bytes] soft limit to go back to
+  std::optional<std::uint64_t> before_;  ///< [bytes] former soft limit
 };
 
 }  // namespace perception

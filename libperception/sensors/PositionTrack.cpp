@@ -29,7 +29,7 @@ std::vector<std::string> fieldsOf(const std::string& text, char separator) {
   return out;
 }
 
-/// The whole text as a number, whatever the locale.
+/// Parses the whole text as a number, independent of the locale.
 std::optional<double> numberOf(const std::string& text) {
   double value = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -37,7 +37,7 @@ std::optional<double> numberOf(const std::string& text) {
   return value;
 }
 
-/// ddmm.mmmm and a hemisphere.
+/// Degrees from ddmm.mmmm and a hemisphere.
 std::optional<double> nmeaAngle(const std::string& text, const std::string& hemisphere) {
   const auto value = numberOf(text);
   if (!value || hemisphere.size() != 1) return {};
@@ -107,7 +107,7 @@ PositionTrack readNmea(const std::string& path) {
   return track;
 }
 
-/// 2008-11-07T09:23:41Z or with a fraction: seconds since 1970.
+/// Seconds since 1970 from 2008-11-07T09:23:41Z, optionally with a fraction.
 std::optional<double> timeOf(const char* text) {
   if (!text) return {};
   int year = 0, month = 0, day = 0, hour = 0, minute = 0, used = 0;

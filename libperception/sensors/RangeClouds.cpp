@@ -23,7 +23,7 @@ void addPoint(LidarCloud& cloud, double x, double y, double z) {
   cloud.z.push_back(static_cast<float>(z));
 }
 
-/// PointLabel by the name that a scanner's own processing gives it.
+/// PointLabel by the name in the observation.
 PointLabel labelNamed(const std::string& name) {
   static constexpr std::array<const char*, 5> kNames = {"unknown", "object", "rain", "ground",
                                                         "dirt"};
@@ -71,8 +71,8 @@ LidarCloud unproject(const mrpt::obs::CObservation3DRangeScan& scan, std::uint64
   return cloud;
 }
 
-/// MRPT 2.5.8 makes sixteen times too many columns of Velodyne's packets and leaves the rest empty;
-/// the span of azimuths is that of the used ones.
+/// MRPT 2.5.8 allocates sixteen times too many columns for Velodyne packets; the span of azimuths
+/// is that of the filled ones.
 int columnsInUse(const mrpt::obs::CObservationRotatingScan& scan) {
   constexpr int kTooMany = 16;
   const auto& ranges = scan.rangeImage;
@@ -87,7 +87,7 @@ int columnsInUse(const mrpt::obs::CObservationRotatingScan& scan) {
   return used <= ranges.cols() / kTooMany ? ranges.cols() / kTooMany : ranges.cols();
 }
 
-/// Elevations [rad] of the rows of a range image; empty for models that nobody knows here.
+/// Elevations [rad] of the rows of a range image; empty for unknown models.
 std::vector<double> elevationsOf(const mrpt::obs::CObservationRotatingScan& scan) {
   if (scan.rowCount == 1) return {0};
   std::string model;
@@ -127,7 +127,7 @@ LidarCloud planarCloud(const mrpt::obs::CObservation2DRangeScan& scan, std::uint
     }
     const double share = static_cast<double>(i) * step;
     const double bearing = side * static_cast<double>(scan.aperture) * (share - 0.5);
-    // A scanner that nods starts at its pose and ends deltaPitch lower.
+    // A tilting scanner starts at its pose and ends deltaPitch lower.
     const double pitch = scan.deltaPitch * share, ahead = range * std::cos(bearing);
     addPoint(cloud, ahead * std::cos(pitch), range * std::sin(bearing), -ahead * std::sin(pitch));
     if (scan.hasIntensity())
@@ -140,7 +140,7 @@ std::optional<LidarCloud> rangeImageCloud(const mrpt::obs::CObservation3DRangeSc
                                           std::uint64_t& no_range) {
   try {
     scan.load();
-  } catch (const std::exception&) {  // a file beside the log that is not there
+  } catch (const std::exception&) {  // an external file is missing
     return {};
   }
   LidarCloud cloud;

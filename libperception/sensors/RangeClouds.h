@@ -10,20 +10,20 @@
 
 namespace perception {
 
-/// Returns left out because their range is 0 or negative is added to `no_range` in all of these.
+/// All of these add the number of returns dropped for a range of 0 or below to `no_range`.
 
-/// A planar scan, beams that are marked invalid left out. Intensities as they are.
+/// A planar scan without the beams marked invalid. Intensities are not scaled.
 LidarCloud planarCloud(const mrpt::obs::CObservation2DRangeScan& scan, std::uint64_t& no_range);
 
-/// A range camera's image, or the points of a scanner that stores points (Ibeo LUX): x forward, y
-/// left. Labels named object, rain, ground or dirt are kept. Data outside of the log are loaded.
-/// Empty when they are not there, when arrays contradict each other or when there is nothing.
+/// The range image of a 3D camera, or the points of a scanner that stores points (Ibeo LUX): x
+/// forward, y left. Labels named object, rain, ground or dirt are kept. External data are loaded.
+/// Empty when they are missing, when arrays are inconsistent or without points.
 std::optional<LidarCloud> rangeImageCloud(const mrpt::obs::CObservation3DRangeScan& scan,
                                           std::uint64_t& no_range);
 
-/// A range image by rows (beams) and columns (azimuths). The class holds no elevations: those of
-/// the model that it names are taken. MRPT writes Velodyne's azimuths, which turn clockwise, as if
-/// they turned to the left; they are read as what they are. Empty for unknown models.
+/// A range image by rows (beams) and columns (azimuths). The class has no elevations: those of the
+/// named sensor model are used. MRPT stores Velodyne's clockwise azimuths as counter-clockwise;
+/// this is corrected. Empty for unknown models.
 std::optional<LidarCloud> rotatingCloud(const mrpt::obs::CObservationRotatingScan& scan,
                                         std::uint64_t& no_range);
 

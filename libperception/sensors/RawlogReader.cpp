@@ -20,8 +20,8 @@ namespace perception {
 
 namespace {
 
-/// How an entry begins: length of the class's name (bit 7 set since MRPT 0.5.5, four bytes before),
-/// name, version.
+/// Header of an entry: length of the class name (one byte with bit 7 set since MRPT 0.5.5, formerly
+/// four bytes), name, version.
 struct EntryHeader {
   std::string class_name;
 };
@@ -33,7 +33,8 @@ bool isNameCharacter(char c) {
          c == ':' || c == '<' || c == '>' || c == ',' || c == ' ';
 }
 
-/// Empty when the bytes cannot begin an entry. `complete` is false when they end too early to tell.
+/// Empty when the bytes are no header of an entry. `complete` is false when there are too few of
+/// them.
 std::optional<EntryHeader> parseHeader(const std::string& bytes, bool& complete) {
   complete = true;
   if (bytes.empty()) return {};
@@ -54,7 +55,7 @@ std::optional<EntryHeader> parseHeader(const std::string& bytes, bool& complete)
   return EntryHeader{name};
 }
 
-/// What the beginning of a file looks like, for a person who took the wrong one.
+/// Description of the content of a file that is no rawlog.
 std::string describe(const std::string& bytes) {
   const bool text = std::all_of(bytes.begin(), bytes.end(), [](char c) {
     const auto u = static_cast<unsigned char>(c);
@@ -72,7 +73,7 @@ std::string describe(const std::string& bytes) {
   return "data that begins with" + hex;
 }
 
-/// The useful line of an exception of MRPT, whose texts hold source places and a call stack.
+/// The relevant line of an MRPT exception, whose text includes source positions and a call stack.
 std::string firstLine(const std::string& text) {
   const std::string marker = "Message:";
   const auto last = text.rfind(marker);
@@ -144,7 +145,7 @@ void RawlogReader::finish(End end, const std::string& what) {
     end_message_ = fmt::format("{}: whole, {} entries", path_, entries_);
     return;
   }
-  // Observations of earlier entries may still wait in ready_: their stamps are the last ones of the
+  // Observations of earlier entries may still be in ready_: their stamps are the last ones of the
   // log.
   for (const auto& observation : ready_) {
     if (const auto stamp = toStamp(observation->timestamp)) last_stamp_ = stamp;
@@ -155,7 +156,7 @@ void RawlogReader::finish(End end, const std::string& what) {
                              last_stamp_ ? fmt::format("{:.6f}", last_stamp_->seconds()) : "none");
 }
 
-/// Says what an exception of an entry's class means.
+/// Sets end() by the exception of an entry's class.
 void RawlogReader::finishAtFault(const std::string& class_name, const std::string& fault) {
   using State = CRawlogInput::State;
   const std::string unknown = unknownClassIn(fault);
@@ -189,7 +190,7 @@ bool RawlogReader::readEntry() {
   bool complete = false;
   const auto header = parseHeader(input_->peek(kHeaderBytes), complete);
   if (!header) {
-    finish(End::kDamaged, "bytes that begin no entry");
+    finish(End::kDamaged, "bytes that are no header of an entry");
     return false;
   }
   if (complete && header->class_name != "nullptr" &&
@@ -202,7 +203,7 @@ bool RawlogReader::readEntry() {
     object = input_->ReadObject();
   } catch (const std::bad_alloc&) {
     finish(End::kDamaged,
-           fmt::format("entry of class '{}' wants more memory than there is", header->class_name));
+           fmt::format("entry of class '{}' needs more memory than available", header->class_name));
     return false;
   } catch (const std::exception& e) {
     finishAtFault(header->class_name, e.what());

@@ -20,46 +20,45 @@ namespace perception {
 
 class CRawlogInput;
 
-/// Reads a rawlog observation by observation, never as a whole, and says why it ended: MRPT's own
-/// readers take a torn, damaged or half-unknown log for a complete one. Both layouts are read:
-/// observations alone, and sensory frames with actions (wheel odometry inside an action becomes a
-/// CObservationOdometry that is labeled ODOMETRY).
+/// Streams the observations of a rawlog and reports why it ended: MRPT's own readers do not
+/// distinguish a truncated, damaged or partly unknown log from a complete one. Both layouts are
+/// read: observations alone, and sensory frames with actions (wheel odometry inside an action
+/// becomes a CObservationOdometry with the label ODOMETRY).
 ///
-/// A bit error inside gzip data shows at once where the data stop to make sense, at the latest with
-/// the check sum at the end of the file: observations given before that may be wrong, end() says
-/// so.
+/// A bit error in gzip data is detected where decoding fails, at the latest by the checksum at the
+/// end of the file: observations returned before that may be wrong, see end().
 ///
-/// Not detectable: a log without compression that was cut exactly between two entries. Hostile
-/// sizes inside MRPT's own classes can take gigabytes before they fail: a program that reads
-/// unknown logs sets a MemoryLimit, as runApp() does.
+/// Not detectable: an uncompressed log truncated exactly between two entries. Implausible sizes
+/// inside MRPT's own classes may allocate gigabytes before they fail: a program that reads
+/// untrusted logs sets a MemoryLimit, as runApp() does.
 class RawlogReader {
  public:
   enum class End {
     kNotYet,
-    kClean,         ///< the file ends after a whole entry, and its gzip check sums are right
-    kTorn,          ///< cut off: a copy that stopped, a recorder that died
-    kUnknownClass,  ///< an entry of a class that no library here registers; entries carry no length
-                    ///< to skip by
-    kNewerVersion,  ///< an entry that was written by a newer version of its class
-    kDamaged        ///< bytes that make no sense: bit errors, something else appended
+    kClean,         ///< the file ends after a whole entry and its gzip checksums match
+    kTorn,          ///< truncated: an interrupted copy or recording
+    kUnknownClass,  ///< an entry of an unregistered class; entries have no length by which to skip
+    kNewerVersion,  ///< an entry written by a newer version of its class
+    kDamaged        ///< invalid bytes: bit errors, other data appended
   };
 
-  /// Throws DataError: kNoInput when missing, kBadInput (with what was found) when it is no rawlog.
+  /// Throws DataError: kNoInput when missing, kBadInput (with a description of the content) when it
+  /// is no rawlog.
   explicit RawlogReader(const std::string& path);
   ~RawlogReader();
 
-  /// The next observation; null at the end. All whole entries before a fault are given.
+  /// The next observation; null at the end. All whole entries before a fault are returned.
   std::shared_ptr<mrpt::obs::CObservation> next();
 
   End end() const { return end_; }
-  /// One line on the end: file, fault, byte offset, index of the entry, last stamp.
+  /// One line about the end: file, fault, byte offset, index of the entry, last stamp.
   const std::string& endMessage() const { return end_message_; }
 
   std::uint64_t entries() const { return entries_; }  ///< whole ones so far
-  /// Entries that are no observation, by class.
+  /// Number of entries that are no observations, by class.
   const std::map<std::string, std::uint64_t>& skipped() const { return skipped_; }
   std::optional<Stamp> lastStamp() const { return last_stamp_; }
-  std::uint64_t bytesRead() const;  ///< of the file as it is (compressed), for a progress bar
+  std::uint64_t bytesRead() const;  ///< compressed bytes, for a progress bar
   std::uint64_t fileBytes() const;
 
  private:

@@ -24,7 +24,7 @@ std::string temporaryName(const std::string& path) {
   return (p.parent_path() / fmt::format(".{}.{}.part", p.filename().string(), ::getpid())).string();
 }
 
-/// Inflates the whole file; true when its check sums are right and it holds `bytes`.
+/// Inflates the whole file; true when its checksums match and it holds `bytes` bytes.
 bool holds(const std::string& path, std::uint64_t bytes) {
   CRawlogInput input(path);
   std::vector<char> part(1U << 20);
@@ -40,8 +40,7 @@ bool holds(const std::string& path, std::uint64_t bytes) {
   return left == 0 && input.atEnd() && input.state() == CRawlogInput::State::kEnd;
 }
 
-/// Makes the new name itself survive a power failure; file systems that cannot are none of our
-/// business.
+/// Syncs the folder, so that the new name survives a power failure; errors are ignored.
 void syncFolderOf(const std::string& path) {
   const auto parent = std::filesystem::path(path).parent_path();
   const int folder =

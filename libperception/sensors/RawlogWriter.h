@@ -11,20 +11,20 @@ namespace perception {
 
 class CRawlogOutput;
 
-/// Writes observations to a gzip rawlog under a temporary name beside the final one; close() reads
-/// the file back, checks it and renames it, so that a file of the final name is always whole.
+/// Writes observations to a gzip rawlog under a temporary name; close() reads the file back,
+/// verifies and renames it, so that a file of the final name is always complete.
 class RawlogWriter {
  public:
   /// Throws OutputError (kCannotCreate).
   explicit RawlogWriter(const std::string& path, int gzip_level = 1);
-  /// Without close() nothing remains.
+  /// Without close() the file is removed.
   ~RawlogWriter();
   RawlogWriter(const RawlogWriter&) = delete;
   RawlogWriter& operator=(const RawlogWriter&) = delete;
 
   /// Throws OutputError (kIoError) when the disk is full or fails.
   void write(const mrpt::serialization::CSerializable& entry);
-  /// Throws OutputError (kIoError) when the file is not whole.
+  /// Throws OutputError (kIoError) when the verification fails.
   void close();
 
   std::uint64_t entries() const { return entries_; }

@@ -6,8 +6,8 @@ namespace perception {
 
 namespace {
 
-/// Appends `from`, or `count` times `missing` where the scan has none of it. `kept` is the size
-/// before: scans without it may have come first.
+/// Appends `from`, or `count` times `missing` if the scan lacks the array. `kept`: former number of
+/// points, for arrays that earlier scans lacked.
 template <class Number>
 void append(std::vector<Number>& to, const std::vector<Number>& from, std::size_t kept,
             std::size_t count, Number missing) {
@@ -20,14 +20,14 @@ void append(std::vector<Number>& to, const std::vector<Number>& from, std::size_
 }  // namespace
 
 void ScanParams::visit(ParamVisitor& v) {
-  v.words("merge", merge,
-          "labels of the scanners that are one sensor, * for any end; empty: its own label");
+  v.words(
+      "merge", merge,
+      "labels of the scanners that form one sensor, trailing * as wildcard; empty: its own label");
   v.real("merge_window", merge_window, {0, 1}, "s",
          "from the first scan to the last one of a merged frame; at most [run] reorder_window");
-  v.choiceOf(
-      "ground", ground, {"false", "true", "only"},
-      "the ground plane is estimated from its returns, for itself and the others; only: that "
-      "and no measurements, whether or not the sensor is in use");
+  v.choiceOf("ground", ground, {"false", "true", "only"},
+             "the ground plane is estimated from its returns, for all sensors; only: that "
+             "and no measurements, whether or not the sensor is in use");
 }
 
 bool ScanParams::merges(const std::string& label) const {
@@ -59,7 +59,7 @@ SensorFrame mergedScan(const std::vector<SensorFrame>& frames, const std::string
     append(all.pulse_width, cloud.pulse_width, kept, count, 0.F);
     append(all.label, cloud.label, kept, count, static_cast<std::uint8_t>(PointLabel::kUnknown));
     append(all.trust, cloud.trust, kept, count, 1.F);
-    // Rings and times: every scanner has its own, and its own beginning.
+    // Ring numbers and time offsets are shifted by scanner.
     std::uint16_t highest = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint16_t ring = cloud.ring.empty() ? std::uint16_t{0} : cloud.ring[i];

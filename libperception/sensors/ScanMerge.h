@@ -7,28 +7,27 @@
 
 namespace perception {
 
-/// How scans become frames of one lidar: in [sensor.LABEL], kind = lidar.
+/// Merging of scans into frames of one lidar: part of [sensor.LABEL], kind = lidar.
 struct ScanParams {
   enum class Ground {
     kNo,
-    kYes,  ///< where the sensor is in use
-    kOnly  ///< and nothing else: also where the sensor is not in use, no measurements
+    kYes,  ///< if the sensor is in use
+    kOnly  ///< also if the sensor is not in use; no measurements
   };
-  std::vector<std::string> merge;  ///< labels of the scanners that are one sensor; empty: its own
+  std::vector<std::string> merge;  ///< labels of the scanners that form one sensor; empty: its own
   double merge_window =
       0.05;  ///< [s] from the first scan to the last one of a merged frame (assumed)
-  Ground ground = Ground::kYes;  ///< is the road estimated from its returns? (method.md 8.1)
+  Ground ground = Ground::kYes;  ///< ground plane from its returns (method.md 8.1)
 
   void visit(ParamVisitor& v);
-  /// Does an observation of that label belong to the merged sensor? A trailing * stands for any
-  /// end: IBEO_LEFT_L* are the layers of a scanner that come as planar scans.
+  /// Whether an observation of that label is part of the merged sensor. A trailing * is a wildcard:
+  /// IBEO_LEFT_L* are the layers of a scanner recorded as planar scans.
   bool merges(const std::string& label) const;
 };
 
-/// Scans of several scanners, or of the layers of one, as one scan: points in the frame of the
-/// first one, stamped as the newest, each point's time with it. Rings of one scanner follow those
-/// of the scanner before. `frames` is not empty and holds point clouds; its order is that of the
-/// rings.
+/// Merges scans of several scanners, or of the layers of one: points in the sensor frame of the
+/// first, with the stamp of the latest and time offsets relative to it. Rings are numbered
+/// consecutively in the order of `frames`, which must not be empty and hold point clouds.
 SensorFrame mergedScan(const std::vector<SensorFrame>& frames, const std::string& label);
 
 }  // namespace perception

@@ -25,7 +25,7 @@ std::shared_ptr<mrpt::obs::CObservation> poseObservation(const EgoState& ego,
                                                          const std::string& label = kEgoPoseLabel);
 /// The frame number as CObservationComment "frame N".
 std::shared_ptr<mrpt::obs::CObservation> frameComment(Stamp stamp, std::int64_t number);
-/// A scan of measurements; `model`, `axes` and `labels` name what the numbers mean.
+/// A CObservationMeasurements of a scan; `model`, `axes` and `labels` document its numbers.
 std::shared_ptr<mrpt::obs::CObservation> measurementsObservation(
     const MeasurementScan& scan, const std::string& model, const std::vector<std::string>& axes,
     const std::vector<std::string>& labels);

@@ -20,11 +20,11 @@ using Calibration = mrpt::obs::VelodyneCalibration;
 constexpr int kBlocks = Scan::BLOCKS_PER_PACKET, kReturns = Scan::SCANS_PER_BLOCK;
 constexpr int kFullTurn = Scan::ROTATION_MAX_UNITS;  // [0.01 deg]
 constexpr int kMostStep = 1000;       // [0.01 deg] between blocks; more is a gap, not a rotation
-constexpr double kHour = 3600e6;      // [us] where the packets' clock starts anew
+constexpr double kHour = 3600e6;      // [us] period of the packets' clock
 constexpr double kLongestScan = 1.0;  // [s] 5 turns a second are the slowest setting
 constexpr std::uint8_t kModelHdl32 = 0x21, kModelVlp16 = 0x22;
 
-/// When the lasers of a block fire (VLP-16, HDL-32E and HDL-64E S3 user manuals).
+/// Firing times of the lasers of a block (VLP-16, HDL-32E and HDL-64E S3 user manuals).
 struct Firing {
   double block;     ///< [us] between blocks of one azimuth step and the next
   double sequence;  ///< [us] between the firing sequences within a block
@@ -38,7 +38,7 @@ Firing firingOf(std::size_t lasers) {
   return {48.0, 48.0, 1.5, 32};  // HDL-64E: both banks at once, spread evenly (table: within 5 us)
 }
 
-/// The scan's own calibration, else MRPT's usual one of the model that the packets name.
+/// The scan's calibration, else MRPT's default for the model given in the packets.
 const Calibration* calibrationOf(const Scan& scan) {
   if (!scan.calibration.empty()) return &scan.calibration;
   if (scan.scan_packets.empty()) return nullptr;
@@ -54,7 +54,7 @@ const Calibration* calibrationOf(const Scan& scan) {
   }
 }
 
-/// Beam numbers from below: the lasers' places in the order of their elevation.
+/// Ring number of each laser, by elevation from below.
 std::vector<std::uint16_t> ringsOf(const Calibration& calibration) {
   const auto& lasers = calibration.laser_corrections;
   std::vector<std::size_t> order(lasers.size());
@@ -67,7 +67,7 @@ std::vector<std::uint16_t> ringsOf(const Calibration& calibration) {
   return rings;
 }
 
-/// How the blocks of one packet follow each other.
+/// Sequence of the blocks of one packet.
 struct PacketLayout {
   std::array<int, kBlocks> step{};     ///< azimuth step that a block belongs to, from 0
   std::array<int, kBlocks> partner{};  ///< the other block of a dual return, or -1
@@ -100,7 +100,7 @@ PacketLayout layoutOf(const Packet& packet, const Firing& firing, bool banks) {
       break;
     }
   }
-  // The median of the steps: one bad block does not bend the others.
+  // Median of the steps, robust to a bad block.
   std::vector<int> turned;
   for (int b = 1; b < kBlocks; ++b) {
     if (layout.step[static_cast<std::size_t>(b)] == layout.step[static_cast<std::size_t>(b) - 1])
@@ -144,7 +144,7 @@ class Decoder {
       clock = clock && since >= 0 && since < 1e6 * kLongestScan;
       decodePacket(packet, since);
     }
-    if (!clock) cloud_.time_offset.clear();  // stamps that are none
+    if (!clock) cloud_.time_offset.clear();  // invalid time stamps
     if (!dual_) cloud_.echo.clear();
     return std::move(cloud_);
   }
@@ -202,7 +202,7 @@ class Decoder {
     const double along =
         range * c.cosVertCorrection - c.verticalOffsetCorrection * c.sinVertCorrection;
     const double sine = std::sin(azimuth), cosine = std::cos(azimuth);
-    // Velodyne's azimuth turns clockwise from its y axis, which is our x.
+    // Velodyne's azimuth is clockwise from its y axis, which is x in the sensor frame.
     cloud_.x.push_back(static_cast<float>(along * cosine + c.horizontalOffsetCorrection * sine));
     cloud_.y.push_back(static_cast<float>(-along * sine + c.horizontalOffsetCorrection * cosine));
     cloud_.z.push_back(static_cast<float>(range * c.sinVertCorrection +
@@ -218,7 +218,7 @@ class Decoder {
   std::vector<std::uint16_t> rings_;
   Firing firing_;
   bool banks_;         ///< 64 lasers: a block holds one of two banks
-  bool dual_ = false;  ///< some pulse had a place for two echoes
+  bool dual_ = false;  ///< some pulse has a dual return
   VelodyneCounts& counts_;
   LidarCloud cloud_;
 };

@@ -17,11 +17,11 @@ std::uint32_t numberAt(const void* column, std::size_t row) {
   return number;
 }
 
-/// From row `first` on; `kept` rows are in their places already.
+/// pack() from row `first` on, after `kept` rows were packed.
 template <std::size_t kColumns>
 std::size_t packRows(const std::int32_t* marks, std::size_t first, std::size_t count,
                      std::size_t kept, const std::array<Column, kColumns>& columns) {
-  for (std::size_t row = first; row < count; ++row) {  // the next overwrites what is not marked
+  for (std::size_t row = first; row < count; ++row) {  // an unmarked row is overwritten by the next
     const bool marked = marks[row] != 0;
     for (const Column& column : columns) {
       const std::uint32_t number = numberAt(column.from, row);
@@ -43,7 +43,7 @@ std::size_t packPlacesOf(const std::int32_t* marks, std::size_t row, std::size_t
 
 #if PERCEPTION_HAS_WIDER
 
-/// For each set of marks of eight rows the places of those that are set, a byte each.
+/// For each mask of eight rows the indices of its set bits, a byte each.
 struct Orders {
   Orders() {
     for (std::size_t set = 0; set < bytes.size(); ++set) {
@@ -58,7 +58,7 @@ const Orders kOrders;
 
 #define PERCEPTION_AVX2 __attribute__((target("avx2,popcnt")))
 
-/// Marks of eight rows, and how those that are set move to the front.
+/// Marks of eight rows and the permutation that moves the marked ones to the front.
 struct Move {
   __m256i order;
   std::size_t count;
@@ -74,7 +74,7 @@ PERCEPTION_AVX2 inline Move moveOf(const std::int32_t* marks) {
 template <std::size_t kColumns>
 PERCEPTION_AVX2 std::size_t packEights(const std::int32_t* marks, std::size_t count,
                                        const std::array<Column, kColumns>& columns) {
-  const std::array<Column, kColumns> own = columns;  // which nothing that is written can change
+  const std::array<Column, kColumns> own = columns;  // a copy, which stores cannot alias
   std::size_t kept = 0;
   for (std::size_t row = 0; row + 8 <= count; row += 8) {
     const Move move = moveOf(marks + row);

@@ -1,10 +1,10 @@
 #pragma once
 
-/// A loop over returns that is also compiled for wider registers and chosen at run time. Without
-/// fused multiply-add, so the bytes stay the same.
-/// PERCEPTION_WIDEST also knows AVX-512: for modules compiled with -ffp-contract=off, since that
-/// has fused multiply-add in it. PERCEPTION_TARGET("avx2") and ("default") choose so between two
-/// functions of one name.
+/// PERCEPTION_WIDER marks a function (a loop over returns) that is also compiled for AVX2 and
+/// selected at run time. AVX2 without fused multiply-add: results are the same to the bit.
+/// PERCEPTION_WIDEST adds AVX-512, only for modules compiled with -ffp-contract=off, since AVX-512
+/// includes fused multiply-add. PERCEPTION_TARGET("avx2") and PERCEPTION_TARGET("default") select
+/// between two functions of one name.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define PERCEPTION_HAS_WIDER 1
 #define PERCEPTION_TARGET(name) __attribute__((target(name)))

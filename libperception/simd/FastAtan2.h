@@ -3,8 +3,9 @@
 
 namespace perception {
 
-/// atan2(y, x) within 3e-4 rad [rad], without a call or a branch, so that loops over returns become
-/// vectors: for choosing sectors, not for measuring. Abramowitz and Stegun 4.4.49, four terms.
+/// atan2(y, x) within 3e-4 rad [rad], without calls and branches, so that the compiler vectorizes
+/// loops over returns. For selecting sectors, not for measuring. Abramowitz and Stegun 4.4.49, four
+/// terms.
 inline float fastAtan2(float x, float y) {
   const float ax = std::abs(x), ay = std::abs(y);
   const float high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;

@@ -2,10 +2,10 @@
 
 namespace perception {
 
-/// How wide the arithmetic of a batch is. Chosen at run time; results may differ in their
-/// last digits between levels.
+/// Register width of batch arithmetic, selected at run time. Results may differ in their last
+/// digits between levels.
 enum class SimdLevel { kSse2, kAvx2, kAvx512 };
-/// The widest that this processor has. The environment variable PERCEPTION_SIMD (sse2, avx2,
+/// The widest level of this processor. The environment variable PERCEPTION_SIMD (sse2, avx2,
 /// avx512) lowers it.
 SimdLevel simdLevel();
 const char* nameOf(SimdLevel level);

@@ -4,18 +4,18 @@
 
 namespace perception {
 
-/// Eight numbers at once: one register where PERCEPTION_WIDER finds AVX2, two elsewhere. For loops
-/// that the compiler does not make vectors of by itself. Comparisons give lanes of 0 or -1.
+/// Eight numbers: one register in code compiled for AVX2 (PERCEPTION_WIDER), two elsewhere. For
+/// loops that the compiler does not vectorize itself. Comparisons give lanes of 0 or -1.
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 constexpr int kLanes = 8;
 
-/// Four numbers at once, for loops that compare much: where registers hold four, comparisons of
-/// eight are taken apart. Such a loop is written once for `Float` and compiled for each.
+/// Four numbers, for loops with many comparisons: with SSE registers, comparisons of eight are
+/// split into scalars. Such a loop is a template on `Float`.
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 
-/// What belongs to vectors of floats.
+/// Integer vector and number of lanes of a vector of floats.
 template <class Float>
 struct LanesOf;
 template <>
@@ -31,8 +31,7 @@ struct LanesOf<Float4> {
 template <class Float>
 using IntsOf = typename LanesOf<Float>::Int;
 
-// Always part of their caller, so that they are compiled as wide as it is, and nothing is handed
-// over.
+// Always inlined, so that they are compiled for the caller's target and pass vectors in registers.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define PERCEPTION_LANES inline __attribute__((always_inline))

@@ -7,18 +7,18 @@
 namespace perception {
 namespace {
 
-constexpr double kSeamOverlap = 0.5;  // of the rows of two halves of one object
+constexpr double kSeamOverlap = 0.5;  // least overlap of the rows of two halves
 
 bool isSpherical(const CameraModel& camera) {
   return camera.projection == CameraModel::Projection::kEquirectangular;
 }
 
-/// A panorama that closes: what leaves it on the right comes in on the left.
+/// Whether the image is a panorama of the full circle.
 bool isFullCircle(const CameraModel& camera) {
   return isSpherical(camera) && std::abs(camera.width - kTwoPi * camera.fx) < 2;
 }
 
-/// [rad] of a column to the right of the optical axis.
+/// Azimuth [rad] of a column, to the right of the optical axis.
 double azimuth(double u, const CameraModel& camera) {
   const double x = (u - camera.cx) / camera.fx;
   return isSpherical(camera) ? x : std::atan(x);
@@ -37,25 +37,25 @@ Vector3 ray(double azimuth, double v, const CameraModel& camera, const Pose3& T_
 /// Where a ray from the camera meets the ground, ego frame; empty at or above the horizon.
 std::optional<Vector3> onGround(const Vector3& direction, const Vector3& origin,
                                 const GroundPlane& g) {
-  const double fall =
-      g.a * direction.x() + g.b * direction.y() - direction.z();  // towards the ground, per unit
+  const double fall = g.a * direction.x() + g.b * direction.y() -
+                      direction.z();  // descent towards the ground per unit length
   const double height = origin.z() - g.heightAt(origin.x(), origin.y());
   if (fall <= 1e-4 || height <= 0) return std::nullopt;
   return origin + direction * (height / fall);
 }
 
-/// [-] rise of a direction per unit of way over ground.
+/// [-] rise of a direction per unit of horizontal distance.
 double rise(const Vector3& direction) { return direction.z() / direction.head<2>().norm(); }
 
-/// The edges of a box seen as rises, with their deviations.
+/// Rises of the lower and upper edge of a box, with their deviations.
 struct Rises {
   double bottom = 0, top = 0;
-  double edge_sigma = 0;   ///< of either, by the detector
-  double pitch_sigma = 0;  ///< of both alike
+  double edge_sigma = 0;   ///< of each edge, by the detector
+  double pitch_sigma = 0;  ///< common to both
 };
 
-/// Range of an object of a usual height from the angle that its box is high: pitch and slope drop
-/// out, its own height takes their place.
+/// Range from the height prior and the angular height of the box, method.md (15): independent of
+/// pitch and slope.
 ScalarEstimate rangeByHeight(const ScalarEstimate& height, const Rises& seen) {
   const double angle = seen.top - seen.bottom;
   const double relative2 = height.variance / (height.mean * height.mean) +
@@ -64,7 +64,8 @@ ScalarEstimate rangeByHeight(const ScalarEstimate& height, const Rises& seen) {
   return {range, range * range * relative2};
 }
 
-/// Both ranges as one, unless they contradict each other: then the object is not as high as usual.
+/// Combines both ranges by their variances; when they contradict, the object has another height and
+/// the ground range is kept.
 ScalarEstimate together(const ScalarEstimate& ground, const ScalarEstimate& height) {
   constexpr double kContradiction = 3;  // standard deviations
   const double d = ground.mean - height.mean, variance = ground.variance + height.variance;
@@ -96,7 +97,8 @@ void seeEdges(const ObjectDetection::ImageBox& box, const CameraModel& camera,
   out.right_sigma = edge_sigma * perPixel(out.right);
 }
 
-/// Range of the point at which the ray of the lower edge meets the ground; empty beyond max_range.
+/// Range of the intersection of the ray of the lower edge with the ground, method.md (14); empty
+/// beyond max_range.
 std::optional<ScalarEstimate> rangeByGround(const Vector3& lowest, const Vector3& origin,
                                             const GroundPlane& ground, const Rises& seen, bool cut,
                                             const BoxGeometryParams& params) {
@@ -115,13 +117,14 @@ std::optional<ScalarEstimate> rangeByGround(const Vector3& lowest, const Vector3
 }  // namespace
 
 void BoxGeometryParams::visit(ParamVisitor& v) {
-  v.real("edge_sigma", edge_sigma, {0.1, 200}, "px", "of the left and right edge");
-  v.real("edge_share", edge_share, {0, 1}, "", "of the box's width, added to edge_sigma");
-  v.real("bottom_sigma", bottom_sigma, {0.1, 200}, "px", "of the lower edge");
-  v.real("bottom_share", bottom_share, {0, 1}, "", "of the box's height, added to bottom_sigma");
+  v.real("edge_sigma", edge_sigma, {0.1, 200}, "px", "noise of the left and right edge");
+  v.real("edge_share", edge_share, {0, 1}, "", "share of the box's width added to edge_sigma");
+  v.real("bottom_sigma", bottom_sigma, {0.1, 200}, "px", "noise of the lower edge");
+  v.real("bottom_share", bottom_share, {0, 1}, "",
+         "share of the box's height added to bottom_sigma");
   v.angle("pitch_sigma_deg", pitch_sigma, {0, 10},
-          "of the line of sight against the ground, beside the pose's own");
-  v.real("max_range", max_range, {1, 500}, "m", "beyond it the ground range is not used");
+          "noise of the line of sight relative to the ground, besides the pose's");
+  v.real("max_range", max_range, {1, 500}, "m", "largest range by the ground");
 }
 
 Pose3 levelFrame(const Pose3& T_ego_camera) {
@@ -148,7 +151,7 @@ std::vector<std::size_t> joinSeam(const CameraModel& camera, double border,
       if (right.x1 > border || !sameRows(left, right)) continue;
       left = {left.x1, std::min(left.y1, right.y1), right.x2 + camera.width,
               std::max(left.y2, right.y2)};
-      // The half with the better score saw more of the object: its heading, too.
+      // The half with the better score shows more of the object: its heading is used, too.
       if (objects[k].score > objects[i].score) {
         objects[i].score = objects[k].score;
         objects[i].heading = objects[k].heading;
@@ -196,7 +199,8 @@ std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,
   if (!range) return out;
   out.range = range->mean;
   out.range_sigma = std::sqrt(range->variance);
-  // Lower end and height follow the box's own rays: so they fit the picture whatever the pitch.
+  // Base and height follow the rays of the box at that range: so they agree with the image for any
+  // pitch.
   out.base = origin.z() + range->mean * seen.bottom;
   out.base_sigma = std::hypot(range->mean * std::hypot(seen.edge_sigma, seen.pitch_sigma),
                               seen.bottom * out.range_sigma);

@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-constexpr double kNearest = 0.1;  // [m] an object's foot under the camera itself
+constexpr double kNearest = 0.1;  // [m] least range: below it the object is under the camera
 
 /// "Car=car" -> {"Car", "car"}; empty when it is not of that form.
 std::optional<std::pair<std::string, std::string>> splitName(const std::string& text) {
@@ -19,7 +19,7 @@ std::optional<std::pair<std::string, std::string>> splitName(const std::string& 
   return std::pair{text.substr(0, equals), text.substr(equals + 1)};
 }
 
-/// On the vehicle: of the image boxes where they say so, else of the sensor.
+/// T_ego_camera: of the image boxes when they give it, else of the sensor.
 Pose3 poseOfCamera(const SensorFrame& frame) {
   const auto* detections = std::get_if<ObjectDetections>(&frame.data);
   return detections && detections->T_ego_camera ? *detections->T_ego_camera : frame.T_ego_sensor;
@@ -32,7 +32,7 @@ DetectionParams cameraDefaults() {
   p.clutter_per_scan = 0.15;  // method.md 5.3
   p.births_per_scan = 0.01;
   p.label_exponent = 0.6;    // method.md 5.6
-  p.detection_exponent = 1;  // what no image shows is no road user: walls, bushes
+  p.detection_exponent = 1;  // objects without image boxes are no road users: walls, bushes
   p.fov = radians(90);
   p.range_min = 1;
   return p;
@@ -41,7 +41,7 @@ DetectionParams cameraDefaults() {
 }  // namespace
 
 void DetectorParams::visit(ParamVisitor& v) {
-  v.words("labels", labels, "our labels: the columns of the class tables");
+  v.words("labels", labels, "labels of the measurements: columns of the class tables");
   v.words("names", names,
           "the detector's class names and their labels: Car=car, Pedestrian=person ...");
   for (const auto& n : names) {
@@ -51,31 +51,32 @@ void DetectorParams::visit(ParamVisitor& v) {
   }
   v.require(!labels.empty(), "labels: at least one");
   v.real("min_score", min_score, {-1e9, 1e9}, "", "boxes below are dropped");
-  v.real("score_offset", score_offset, {-1e9, 1e9}, "",
-         "score that is no evidence for or against an object");
+  v.real("score_offset", score_offset, {-1e9, 1e9}, "", "score at which the evidence is zero");
   v.table("score_offset.", label_offsets, {-1e9, 1e9}, "", "the same for one label");
   v.table("height_prior.", height_priors, {0.1, 10}, "m",
-          "of what a label names: its box's height tells the range, too");
-  v.table("height_prior_sigma.", height_prior_sigmas, {0.01, 5}, "m", "its spread over objects");
+          "mean height of the objects of a label: the box's height then also gives the range");
+  v.table("height_prior_sigma.", height_prior_sigmas, {0.01, 5}, "m",
+          "its spread over the objects");
   for (const auto* table : {&label_offsets, &height_priors, &height_prior_sigmas}) {
     for (const auto& row : *table)
       v.require(std::find(labels.begin(), labels.end(), row.first) != labels.end(),
                 row.first + ": no such label");
   }
   v.real("occluder_score", occluder_score, {-1e9, 1e9}, "",
-         "score from which a box hides what stands behind it");
-  v.boolean("base", base, "the lower edge measures the height of the ground at the object, too");
+         "least score of a box that occludes objects behind it");
+  v.boolean("base", base, "the lower edge also measures the base height of the object");
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
          "log-odds of an object per unit of score; 0: no evidence");
-  v.angle("heading_sigma_deg", heading_sigma, {0.1, 90}, "of the detector's headings, as axes");
+  v.angle("heading_sigma_deg", heading_sigma, {0.1, 90},
+          "noise of the detector's headings, as axes");
   v.real("heading_flip", heading_flip, {0, 0.5}, "",
-         "share of its headings that are reversed; 0.5: they tell the axis alone");
+         "share of its headings that are reversed; 0.5: axis only");
   v.real("heading_flip_persistence", heading_flip_persistence, {0, 0.99}, "",
-         "... after a reversed one of the same object: they come in bursts");
+         "... after a reversed one of the same object");
   v.expert();
   v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log-odds");
   v.path("heading_model", heading_model,
-         "file of the heading head that told them: its measured errors replace heading_sigma_deg "
+         "file of the heading head in use: its measured errors replace heading_sigma_deg "
          "and heading_flip");
 }
 
@@ -88,7 +89,7 @@ VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geomet
     if (const auto pair = splitName(n))
       label_of_[pair->first] = detection_model.labelIndex(pair->second);
   }
-  constexpr double kHeightShare = 0.1;  // of the mean: spread where none is given
+  constexpr double kHeightShare = 0.1;  // of the mean: default spread
   height_prior_.resize(detection_model.labels().size());
   for (const auto& [name, mean] : detector_.height_priors) {
     double sigma = kHeightShare * mean;
@@ -139,7 +140,7 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
                range * Vector2(std::cos(bearing), std::sin(bearing));
   m.position_sigma = box->range ? box->range_sigma : 0.5 * geometry_.max_range;
   if (object.heading && std::isfinite(*object.heading)) {
-    // KITTI's alpha is the heading against the line of sight, clockwise from its right
+    // KITTI's alpha is the heading relative to the line of sight, clockwise from its right
     // (method.md 4.2).
     m.heading =
         MeasuredHeading{wrapAngle(bearing - *object.heading - kPi / 2),
@@ -157,12 +158,12 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
   return m;
 }
 
-/// What the boxes hide, at the ranges that they tell; null: no box hides.
+/// Occlusion by the boxes, at their ranges; null: none occludes.
 std::shared_ptr<const OcclusionMap> VisionFrontEnd::occlusion(
     const MeasurementScan& scan, const std::vector<ObjectDetection>& objects) const {
   if (detector_.occluder_score >= 1e9) return nullptr;
   constexpr std::size_t kBins = 1440;           // a quarter of a degree
-  constexpr double kStep = kTwoPi / kBins / 2;  // [rad] no bin of a box is left out
+  constexpr double kStep = kTwoPi / kBins / 2;  // [rad] half a bin, so that none is skipped
   const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
   const double forward = yawOf(scan.state.T_world_sensor);
   auto result = std::make_shared<OcclusionMap>(origin, kBins);
@@ -219,7 +220,7 @@ std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& 
   }
   const DetectionModel detection_model =
       DetectionModel::read(config, section, classes, detector.labels, cameraDefaults());
-  // Of objects as far as they are seen; what stands farther may still be a box.
+  // The measured range of an object within range_max may exceed it.
   if (detection_model.params().resolution > 0)
     geometry.max_range = 1.1 * detection_model.params().range_max;
   return std::make_unique<VisionFrontEnd>(detector, geometry, classes, detection_model);

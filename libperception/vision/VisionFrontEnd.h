@@ -11,33 +11,32 @@
 
 namespace perception {
 
-/// [sensor.LABEL.detector]: what the detector calls things, and what its scores are worth.
+/// [sensor.LABEL.detector]: the detector's class names, scores and heading errors.
 struct DetectorParams {
   std::vector<std::string> labels{"car",
-                                  "person"};  ///< our labels, the columns of the class tables
-  /// The detector's class name = one of the labels; names that stand nowhere are dropped and
-  /// counted.
+                                  "person"};  ///< of the measurements: columns of the class tables
+  /// The detector's class name = one of the labels; other names are dropped and counted.
   std::vector<std::string> names{
       "Car=car",   "Van=car",           "Truck=car",      "car=car",       "bus=car",
       "truck=car", "Pedestrian=person", "Cyclist=person", "person=person", "bicycle=person"};
-  double min_score = -1e9;  ///< boxes below are not looked at; assumed: the detector has cut
+  double min_score = -1e9;  ///< boxes below are dropped; assumed: the detector has cut
   /// log p(score | object) / p(score | clutter) = slope (score - offset), clamped (method.md 8.8).
   double score_offset = 0;
   double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
   std::vector<std::pair<std::string, double>> label_offsets;  ///< score_offset of single labels
   double score_limit = 4;                                     ///< of that logarithm; assumed
-  /// [m] of what a label names, mean and spread over objects: they tell the range, too.
+  /// [m] height of the objects of a label, mean and spread: a second source of range (method.md
+  /// (15)).
   std::vector<std::pair<std::string, double>> height_priors, height_prior_sigmas;
-  bool base = false;  ///< the lower edge measures the height of the ground at the object, too
-  /// Score from which a box hides what stands behind it (the filter's occluded_detection and
-  /// occlusion_tolerance say how much, and from where). Assumed: none, until scores were counted.
+  bool base = false;  ///< the lower edge also measures the base height of the object
+  /// Least score of a box that occludes objects behind it (see the filter's occluded_detection and
+  /// occlusion_tolerance). Assumed: none, until scores were counted.
   double occluder_score = 1e9;
-  double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error:
-                                      ///< method.md 7. KITTI's bank: 6.7 deg
-  double heading_flip = 0.2;  ///< share of headings that confuse front and back, assumed; 0.5: axis
-                              ///< alone
-  double heading_flip_persistence = 0;  ///< share of reversed ones after a reversed one
-  std::string heading_model;  ///< file of a HeadingHead, whose own errors then replace both
+  double heading_sigma = radians(8);    ///< [rad] of the axis: 16 bins of 22.5 deg and an error:
+                                        ///< method.md 7. KITTI's bank: 6.7 deg
+  double heading_flip = 0.2;            ///< share of reversed headings, assumed; 0.5: axis only
+  double heading_flip_persistence = 0;  ///< P(reversed | the previous one was)
+  std::string heading_model;  ///< file of a HeadingHead, whose measured errors replace both
 
   void visit(ParamVisitor& v);
 };

@@ -3,7 +3,8 @@
 
 namespace perception {
 
-/// Height of returns above the ground plane, straight from the sensor frame: a linear function.
+/// Height of returns above the ground plane, as a linear function of their coordinates in the
+/// sensor frame.
 class HeightAboveGround {
  public:
   HeightAboveGround(const Pose3& T_ego_sensor, const GroundPlane& ground) {
@@ -13,7 +14,7 @@ class HeightAboveGround {
     z_ = static_cast<float>(slope.z());
     offset_ = static_cast<float>(normal.dot(T_ego_sensor.translation()) - ground.c);
   }
-  /// [m]; a point of the sensor frame.
+  /// [m] height of a point of the sensor frame.
   float of(float x, float y, float z) const { return x_ * x + y_ * y + z_ * z + offset_; }
 
  private:

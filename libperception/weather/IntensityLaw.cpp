@@ -9,14 +9,14 @@
 namespace perception {
 namespace {
 
-constexpr double kPrior = 50;           // [returns] that a bin's ratio must stand against
+constexpr double kPrior = 50;           // [returns] prior count of each bin
 constexpr float kBound = 4;             // [log-odds]
-constexpr double kFewestPhantoms = 20;  // [returns] below it nothing is learned
+constexpr double kFewestPhantoms = 20;  // [returns] least number of phantoms, and of surfaces
 
-/// The number of binary digits of intensities as bytes: a float's exponent tells it.
+/// Number of binary digits of the intensities as bytes, from the exponent of the float.
 PERCEPTION_LANES Int8 digitsOf(const Float8& intensity) {
   const Float8 scaled = intensity * 255 + 0.5F;
-  const Float8 low = scaled > 0 ? scaled : eight(0.0F);  // not a number, too
+  const Float8 low = scaled > 0 ? scaled : eight(0.0F);  // NaN becomes 0
   const Float8 bytes = asFloats(truncated(smaller(low, eight(255.0F))));
   return larger((reinterpret_cast<Int8>(bytes) >> 23) - 126, eight(0));
 }

@@ -6,18 +6,18 @@
 
 namespace perception {
 
-/// What intensities phantoms and surfaces have, learned from scan to scan from what the geometry
-/// says: instruments scale them as they like, and some snow is dark and some is bright.
+/// Distributions of the intensities of phantoms and surfaces, learned online from the geometric
+/// classification: they depend on the instrument's scale and on the kind of snow (method.md 9.6).
 class IntensityLaw {
  public:
   static constexpr std::size_t kBins = 9;
-  /// Of intensities in [0, 1]: zero, then octaves of 1/255.
+  /// Bin of an intensity in [0, 1]: zero, then octaves of 1/255.
   static std::size_t binOf(float intensity);
   static void findBins(const float* intensity, std::size_t count, std::uint32_t* bins);
-  void forget(double share);  ///< [-] of what is known that stays
-  /// Returns of a bin, by what they are likely to be.
+  void forget(double share);  ///< multiplies the counts by `share` in [0, 1]
+  /// Adds expected numbers of phantoms and surfaces to a bin.
   void add(std::size_t bin, double phantoms, double surfaces);
-  /// [log-odds] per bin; 0 where nothing is known.
+  /// Log-likelihood ratio phantom : surface per bin; 0 without data.
   std::array<float, kBins> logRatios() const;
 
  private:

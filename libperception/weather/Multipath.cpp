@@ -14,8 +14,7 @@ void MultipathParams::visit(ParamVisitor& v) {
 
 namespace {
 
-/// Counts real returns in cubes of the tolerance's size, but only in those around mirrored ones:
-/// few among the hundreds of thousands of a scan.
+/// Counts real returns in cubes of the size of the tolerance, only in cubes around mirror images.
 class Cubes {
  public:
   explicit Cubes(double edge) : edge_(edge), maybe_(1U << 16, 0) {}
@@ -56,7 +55,7 @@ class Cubes {
   static std::size_t slotOf(std::uint64_t key) { return (key * 0x9E3779B97F4A7C15ULL) >> 48; }
 
   double edge_;
-  std::vector<char> maybe_;  // by slot: a watched cube may be there
+  std::vector<char> maybe_;  // by hash slot: it may hold a cube of interest
   std::unordered_map<std::uint64_t, int> counts_;
 };
 
@@ -78,13 +77,13 @@ std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
   std::vector<float> heights(cloud->size());
   struct Mirrored {
     std::uint32_t index;
-    Vector3 place;  // [m] of the image about the ground, ego frame
+    Vector3 place;  // [m] position of the mirror image, ego frame
   };
   std::vector<Mirrored> below;
   for (std::size_t i = 0; i < cloud->size(); ++i)
     heights[i] = height.of(cloud->x[i], cloud->y[i], cloud->z[i]);
   for (std::size_t i = 0; i < cloud->size(); ++i) {
-    if (!(heights[i] < -depth)) continue;  // also what is no number
+    if (!(heights[i] < -depth)) continue;  // NaN, too
     const float flat2 = cloud->x[i] * cloud->x[i] + cloud->y[i] * cloud->y[i];
     if (!(flat2 < far2) || heights[i] > -depth - grade * std::sqrt(flat2)) continue;
     // The road is flat enough for its plane's normal to be z.

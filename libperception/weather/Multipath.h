@@ -12,16 +12,16 @@ struct MultipathParams {
   bool enabled = true;
   double depth = 0.3;      ///< [m] below the ground plane (method.md 9.7)
   double tolerance = 0.4;  ///< [m] between the mirrored return and a real one (method.md 9.7)
-  double max_range = 30;   ///< [m] beyond, the road may leave its plane by as much (assumed)
+  double max_range = 30;   ///< [m] beyond it, the road deviates from its plane (assumed)
   double grade = 0.01;     ///< [-] growth of `depth` with range, for the same reason (assumed)
-  int support = 3;         ///< real returns near the mirrored one (assumed)
+  int support = 3;         ///< least number of trusted returns near the image (assumed)
 
   void visit(ParamVisitor& v);
 };
 
-/// Returns below the ground whose mirror image about it lies at something real: the beam went by
-/// way of the road both ways. Indices into the cloud, ascending. Where trust is known, phantoms
-/// count as nothing real.
+/// Returns below the ground plane whose mirror image about it lies among real returns: both paths
+/// of the pulse were reflected by the road. Indices into the cloud, ascending. Returns of low trust
+/// do not count as real.
 std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
                                             const MultipathParams& params);
 

@@ -3,8 +3,9 @@
 
 namespace perception {
 
-/// What is in the pixels about a return, RangeImage::kColumnReach columns and kRowReach rows to
-/// each side, in one number: six bits a count, so that it can be looked up in a table.
+/// Counts of neighbors in the pixels about a return, RangeImage::kColumnReach columns and kRowReach
+/// rows to each side, packed in one number with six bits per count, so that tables can be indexed
+/// by it.
 class NeighborCounts {
  public:
   static constexpr int kBits = 6;

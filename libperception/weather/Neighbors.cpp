@@ -14,7 +14,7 @@ namespace {
 constexpr float kTightFloor = 0.03F;  // [m] noise of a range
 constexpr float kBeyondFloor = 0.3F;  // [m]
 
-/// Within which a neighbor counts.
+/// Differences of range within which a neighbor counts.
 struct Bounds {
   Float8 tight, wide, behind;  ///< [m]
 };
@@ -23,12 +23,12 @@ PERCEPTION_LANES Bounds boundsAt(const Float8& r, const NeighborRules& rules) {
           (1 + rules.beyond) * r + kBeyondFloor};
 }
 
-/// Eight numbers of each count, downwards: true is -1.
+/// Eight lanes of each count, negated: true is -1.
 struct Tally {
   Int8 near = eight(0), neighbors = eight(0), beyond = eight(0), filled = eight(0);
   Int8 around = eight(0);
 
-  /// Which of others are within `tight`.
+  /// Adds neighbors to the counts; returns which are within `tight`.
   PERCEPTION_LANES Int8 look(const Float8& other, const Float8& r, const Bounds& bounds) {
     const Float8 off = magnitude(other - r);
     const Int8 same = off < bounds.tight;
@@ -36,7 +36,7 @@ struct Tally {
     beyond += other > bounds.behind, filled += other > 0;
     return same;
   }
-  /// Negative bits of NeighborCounts.
+  /// The bits of NeighborCounts, negated.
   PERCEPTION_LANES Int8 bits() const {
     constexpr int kBits = NeighborCounts::kBits;
     return near + (neighbors << kBits) + (beyond << 2 * kBits) + (filled << 3 * kBits) +
@@ -52,7 +52,8 @@ PERCEPTION_LANES std::uint32_t sumOf(const Int8& v) {
   return static_cast<std::uint32_t>((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
-/// About the pixel at `corner`: rows of eight and a ninth column apart.
+/// Counts about one pixel, from `corner` of its neighborhood: rows of eight, the ninth column
+/// separately.
 PERCEPTION_LANES std::uint32_t countAbout(const float* corner, std::ptrdiff_t stride, float range,
                                           const NeighborRules& rules) {
   static_assert(RangeImage::kColumnReach == 4 && RangeImage::kRowReach == 2, "nine by five");
@@ -87,7 +88,7 @@ PERCEPTION_LANES bool anyOf(const Int8& marks) {
   return (pairs[0] | pairs[1] | pairs[2] | pairs[3]) != 0;
 }
 
-/// About each pixel of a row that shows something near; eight neighbors of eight pixels at once.
+/// Counts about each pixel of a row with a near return, for eight pixels at once.
 PERCEPTION_WIDER void countRow(const float* line, std::ptrdiff_t stride, std::size_t columns,
                                const NeighborRules rules, std::uint32_t* counts) {
   constexpr int kAside = RangeImage::kColumnReach, kAway = RangeImage::kRowReach;
@@ -112,7 +113,7 @@ PERCEPTION_WIDER void countRow(const float* line, std::ptrdiff_t stride, std::si
 
 namespace {
 
-/// Reads the counts of what the image shows, and marks what it does not.
+/// Copies the counts of returns held by the image and marks the hidden ones.
 PERCEPTION_WIDER void lookUp(const float* __restrict shown, const std::uint32_t* __restrict counts,
                              const std::uint32_t* __restrict pixel, const float* __restrict range,
                              std::size_t count, std::uint32_t* __restrict of_return,
@@ -126,7 +127,7 @@ PERCEPTION_WIDER void lookUp(const float* __restrict shown, const std::uint32_t*
 
 }  // namespace
 
-/// What the image shows is counted already; of the others, the numbers, and how many there are.
+/// Indices of the hidden returns; returns how many they are.
 std::size_t NeighborCounter::findHidden(const RangeImage& image, SuspectReturns& near) {
   constexpr std::size_t kBlock = RangeImage::kBlock;
   std::array<std::int32_t, kBlock> marks;
@@ -140,9 +141,9 @@ std::size_t NeighborCounter::findHidden(const RangeImage& image, SuspectReturns&
   return hidden;
 }
 
-/// Hidden returns at one range in one pixel are of one kind: the number of kinds. Twins are some
-/// dozen returns apart, so a small table finds them; those that it does not are two kinds. Written
-/// without a branch: what is no new kind is overwritten by the next.
+/// Deduplicates hidden returns of equal pixel and range ("kinds"); returns the number of kinds.
+/// Duplicates are some dozen returns apart, so a small direct-mapped table finds most; missed ones
+/// are only counted twice. Branch-free: an entry that is no new kind is overwritten by the next.
 std::size_t NeighborCounter::deduplicateReturns(std::size_t hidden, const SuspectReturns& near) {
   constexpr std::uint32_t kTable = 4096;
   std::array<std::uint32_t, kTable> last_kind{};
@@ -151,7 +152,7 @@ std::size_t NeighborCounter::deduplicateReturns(std::size_t hidden, const Suspec
   std::uint32_t* __restrict kind_pixel = kind_pixel_.data(), * __restrict kind = kind_.data();
   float* __restrict kind_range = kind_range_.data();
   std::uint32_t kinds = 0;
-  kind_pixel[0] = 0;  // nobody's
+  kind_pixel[0] = 0;  // matches no return
   for (std::size_t h = 0; h < hidden; ++h) {
     const std::uint32_t pixel = pixels[hidden_[h]];
     const float range = ranges[hidden_[h]];

@@ -8,21 +8,22 @@
 
 namespace perception {
 
-/// How far a neighbor may be off a return's own range r for each count: share * r, and a floor.
+/// Largest difference of range of a neighbor from the return's range r for each count: share * r
+/// plus a constant.
 struct NeighborRules {
-  float far;     ///< [m] returns beyond are not looked at
+  float far;     ///< [m] largest range of the returns
   float tight;   ///< [-] of the range: a neighbor of the same surface
   float wide;    ///< [-] of the range
   float beyond;  ///< [-] of the range: a beam that passes behind
-  int surface;   ///< of the eight nearest within `tight`: no suspect
+  int surface;   ///< number of the eight nearest within `tight` that makes a return a surface
 };
 
-/// Counts what is about near returns. Those that a range image shows are counted eight pixels of a
-/// row at once; the others, which shared their pixel with a later one, each by itself, and those at
-/// one range in one pixel (echoes that are one) once.
+/// Counts the neighbors of near returns. Those stored in the range image are processed eight pixels
+/// of a row at a time; hidden ones, whose pixel holds a later return, one by one, and hidden ones
+/// of equal range and pixel once.
 class NeighborCounter {
  public:
-  /// Fills `neighbors` of all returns that are there.
+  /// Fills `near.neighbors` of all its returns.
   void count(const RangeImage& image, const NeighborRules& rules, SuspectReturns& near);
   std::size_t memoryBytes() const;
 
@@ -31,8 +32,8 @@ class NeighborCounter {
   std::size_t deduplicateReturns(std::size_t hidden, const SuspectReturns& near);
 
   std::vector<std::uint32_t> of_pixel_;    // bits of NeighborCounts
-  std::vector<std::uint32_t> hidden_;      // returns that the image does not show
-  std::vector<std::uint32_t> kind_;        // of each of them
+  std::vector<std::uint32_t> hidden_;      // indices of returns that the image does not hold
+  std::vector<std::uint32_t> kind_;        // distinct (pixel, range) of each
   std::vector<std::uint32_t> kind_pixel_;  // of each kind
   std::vector<float> kind_range_;          // [m]
   std::vector<std::uint32_t> of_kind_;     // bits of NeighborCounts

@@ -9,8 +9,8 @@
 namespace perception {
 namespace {
 
-constexpr double kBounds[] = {-7, 2};  // [log-odds] that weather may add
-constexpr int kBins = 128;             // of log-odds; one more for returns that do not count
+constexpr double kBounds[] = {-7, 2};  // [log-odds] of the correction
+constexpr int kBins = 128;             // of log-odds; one more for returns out of range
 constexpr float kPerLogOdds = 4, kMiddle = kBins / 2;
 
 double logit(double p) { return std::log(p / (1 - p)); }
@@ -25,10 +25,10 @@ PERCEPTION_WIDEST void findBins(const float* __restrict odds, const float* __res
   }
 }
 
-/// Suspects within reach by their log-odds.
+/// Histogram of the log-odds of suspects within `reach` [m].
 std::array<std::uint32_t, kBins> countsOf(const SuspectReturns& suspects, float reach) {
   constexpr std::size_t kBlock = 1024, kWays = 4;
-  // Most share a few bins; four counters by turns do not wait for each other.
+  // Most fall into a few bins; four interleaved histograms avoid the dependency.
   std::array<std::array<std::uint32_t, kBins + 1>, kWays> ways{};
   std::array<std::int32_t, kBlock> bins;
   for (std::size_t first = 0; first < suspects.count; first += kBlock) {
@@ -62,10 +62,10 @@ double PhantomShare::logOdds() const {
   return std::clamp(gain_ * change, kBounds[0], kBounds[1]);
 }
 
-// A histogram of log-odds does for the steps.
+// Expectation maximization on a histogram of the log-odds.
 void PhantomShare::follow(const SuspectReturns& suspects, int near) {
   if (!adapts_ || near == 0) return;
-  static const std::array<double, kBins> kSurfaceOdds = [] {  // at the middles of the bins
+  static const std::array<double, kBins> kSurfaceOdds = [] {  // at bin centers
     std::array<double, kBins> odds{};
     for (int b = 0; b < kBins; ++b)
       odds[static_cast<std::size_t>(b)] =

@@ -4,15 +4,16 @@
 
 namespace perception {
 
-/// The share of phantoms among the returns near the sensor, which follows the weather by
-/// expectation maximization from scan to scan [saerens2002].
+/// The share of phantoms among the returns near the sensor, adapted from scan to scan by
+/// expectation maximization [saerens2002], method.md (53).
 class PhantomShare {
  public:
   explicit PhantomShare(const TrustParams& params);
 
-  /// A scan, of which `near` returns lie within share_range, those that are no suspects included.
+  /// Updates the share by a scan; `near`: number of its returns within share_range, suspects or
+  /// not.
   void follow(const SuspectReturns& suspects, int near);
-  /// [log-odds] that the weather adds to what was fitted.
+  /// [log-odds] correction of the fitted prior.
   double logOdds() const;
   double value() const { return share_; }  ///< [-]
 

@@ -5,7 +5,7 @@
 namespace perception {
 namespace {
 
-/// A filter, and then the test for mirror images, which needs to know what the phantoms are.
+/// A filter followed by the test for mirror images, which uses its trust.
 class WithMultipath final : public PointFilter {
  public:
   WithMultipath(std::unique_ptr<PointFilter> filter, const MultipathParams& params)
@@ -33,7 +33,7 @@ class WithMultipath final : public PointFilter {
 void WeatherParams::visit(ParamVisitor& v) {
   bool filter_on = filter == "trust";
   v.choiceOf("filter", filter_on, {"off", "trust"},
-             "how far each lidar return is trusted; trust: the model of [weather.trust]");
+             "trust of lidar returns; off: all 1; trust: the model of [weather.trust]");
   filter = filter_on ? "trust" : "off";
 }
 

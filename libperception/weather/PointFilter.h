@@ -11,20 +11,20 @@
 
 namespace perception {
 
-/// What a filter made of a scan.
+/// Statistics of one filtered scan.
 struct TrustStats {
   std::size_t returns = 0;
-  std::size_t phantoms = 0;  ///< trusted less than one half
+  std::size_t phantoms = 0;  ///< with a trust below one half
   std::size_t mirrored = 0;  ///< of these: mirror images in a wet road
   double share = 0;          ///< [-] of phantoms near the sensor, over the last scans
 };
 
-/// Tells phantoms from surfaces: writes LidarCloud::trust = 1 - P(phantom) of every return. One
-/// filter per sensor: it may remember earlier scans.
+/// Separates phantoms from surfaces: writes LidarCloud::trust = 1 - P(phantom) of every return. One
+/// instance per sensor, since it may keep state between scans.
 class PointFilter {
  public:
   virtual ~PointFilter() = default;
-  /// A frame without a point cloud is left alone. `frame.ground` is used.
+  /// Uses `frame.ground`. No effect on a frame without a point cloud.
   virtual TrustStats apply(SensorFrame& frame) = 0;
 };
 

@@ -9,10 +9,11 @@
 namespace perception {
 namespace {
 
-constexpr float kPhantom = 0;              // [log-odds] above it a verdict is "phantom"
-constexpr float kSettled = -5;             // [log-odds] below it no neighbor can make a phantom
-constexpr std::size_t kIntensityStep = 4;  // every fourth return tells as much
-constexpr float kBeyondDoubt = 8;          // [log-odds]
+constexpr float kPhantom = 0;  // [log-odds] decision threshold
+constexpr float kLeastSecondPass =
+    -5;  // [log-odds] below it the second pass cannot change the decision
+constexpr std::size_t kIntensityStep = 4;  // every fourth return is a sufficient sample
+constexpr float kCertainOdds = 8;          // [log-odds]
 
 float sigmoid(float v) { return 1 / (1 + std::exp(-v)); }
 
@@ -21,7 +22,7 @@ PERCEPTION_WIDEST void markFrom(float least, const float* __restrict odds, std::
   for (std::size_t s = 0; s < count; ++s) marks[s] = odds[s] >= least;
 }
 
-/// The places of odds not below `least`: their number.
+/// Indices of log-odds not below `least`; returns how many they are.
 std::size_t findOpen(float least, const float* odds, std::size_t count, std::uint32_t* open) {
   constexpr std::size_t kBlock = 1024;
   std::array<std::int32_t, kBlock> marks;
@@ -34,7 +35,7 @@ std::size_t findOpen(float least, const float* odds, std::size_t count, std::uin
   return found;
 }
 
-/// Of ranges [m], how many are no farther than that; 0 is none.
+/// Number of ranges [m] up to `far`; 0 is no range.
 PERCEPTION_WIDEST int countWithin(const float* ranges, std::size_t count, float far) {
   int within = 0;
   for (std::size_t i = 0; i < count; ++i) within += (ranges[i] > 0) & (ranges[i] <= far);
@@ -47,7 +48,7 @@ bool isRainEcho(const LidarCloud& c, std::size_t i) {
   const float dot = c.x[i] * c.x[i + 1] + c.y[i] * c.y[i + 1] + c.z[i] * c.z[i + 1];
   const float a = c.x[i] * c.x[i] + c.y[i] * c.y[i] + c.z[i] * c.z[i];
   const float b = c.x[i + 1] * c.x[i + 1] + c.y[i + 1] * c.y[i + 1] + c.z[i + 1] * c.z[i + 1];
-  if (!(a < b) || !(dot * std::abs(dot) > 0.99999F * a * b)) return false;  // another direction
+  if (!(a < b) || !(dot * std::abs(dot) > 0.99999F * a * b)) return false;  // of different pulses
   const bool weaker = !c.intensity.empty() && c.intensity[i] < c.intensity[i + 1];
   const bool shorter = !c.pulse_width.empty() && c.pulse_width[i] < c.pulse_width[i + 1];
   return weaker || shorter;
@@ -68,8 +69,8 @@ CountCurves::CountCurves(const TrustCurve& of_tight, const TrustCurve& of_wide,
 
 namespace {
 
-/// Log-odds of what the geometry says of some suspects; `near` and `high`: where the curves of
-/// range and height are read.
+/// Log-odds of some suspects by geometry; `near` and `high`: indices into the curves of range and
+/// height.
 PERCEPTION_WIDER void weigh(const std::uint32_t* __restrict neighbors,
                             const std::int32_t* __restrict near,
                             const std::int32_t* __restrict high, std::size_t count, float bias,
@@ -87,7 +88,7 @@ PERCEPTION_WIDER void weigh(const std::uint32_t* __restrict neighbors,
   }
 }
 
-/// The first pass, complete; the second is the same as yet.
+/// First pass: geometry plus intensity. Initializes the second pass with it.
 PERCEPTION_WIDER void addIntensity(const float* __restrict geometry,
                                    const std::uint32_t* __restrict cube, std::size_t count,
                                    const float* __restrict ratios, float* __restrict first,
@@ -116,7 +117,7 @@ PointTrust::PointTrust(const TrustParams& params)
       share_(params),
       cubes_(static_cast<float>(params.max_range)) {}
 
-// Every return into the image; the near ones into their cubes, all of them trusted as yet.
+// Enters all returns into the range image and the near ones into their cubes, as trusted.
 void PointTrust::placeReturns(const SensorFrame& frame, const LidarCloud& cloud) {
   uses_intensity_ = params_.use_intensity && cloud.intensity.size() == cloud.size();
   cubes_.clear();
@@ -147,7 +148,7 @@ NeighborRules PointTrust::neighborRules() const {
           params_.surface_neighbors};
 }
 
-// The first pass: who is no surface for sure, and what does the geometry say of it?
+// First pass: removes certain surfaces and weighs the geometry of the remaining suspects.
 void PointTrust::countNeighbors() {
   suspects_.makeRoomForResults();
   neighbors_.count(image_, neighborRules(), suspects_);
@@ -181,10 +182,10 @@ void PointTrust::applySensorLabels(const LidarCloud& cloud) {
   }
 }
 
-// Asks what intensities are those of phantoms, by what the geometry says of these returns.
+// Learns the intensities of phantoms and surfaces from the geometric log-odds.
 void PointTrust::learnIntensity() {
   std::array<double, IntensityLaw::kBins> phantoms{};
-  const auto weather = static_cast<float>(share_.logOdds()), least = -kBeyondDoubt - weather;
+  const auto weather = static_cast<float>(share_.logOdds()), least = -kCertainOdds - weather;
   const std::size_t open =
       findOpen(least, suspects_.geometry.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
@@ -197,7 +198,7 @@ void PointTrust::learnIntensity() {
     law_.add(b, kIntensityStep * phantoms[b], kIntensityStep * (census_.returns[b] - phantoms[b]));
 }
 
-// The first pass, complete: geometry and intensity.
+// Completes the first pass with the intensity.
 void PointTrust::weighIntensity() {
   std::array<float, IntensityLaw::kBins> ratios{};
   if (uses_intensity_) {
@@ -209,11 +210,10 @@ void PointTrust::weighIntensity() {
                suspects_.first.data(), suspects_.second.data());
 }
 
-// The second pass: what did the first make of the neighbors and of what else is within half a
-// meter?
+// Second pass: adds the first pass's result for the returns within half a meter.
 void PointTrust::applyNeighborhood() {
   const std::size_t open =
-      findOpen(kSettled, suspects_.first.data(), suspects_.count, open_.data());
+      findOpen(kLeastSecondPass, suspects_.first.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
     const std::uint32_t s = open_[k];
     if (suspects_.first[s] > kPhantom) cubes_.doubt(suspects_.cubeOf(s));
@@ -234,7 +234,7 @@ void PointTrust::writeTrust(LidarCloud& cloud, TrustStats& stats) {
   cloud.trust.assign(cloud.size(), 1);
   const auto weather = static_cast<float>(share_.logOdds());
   const std::size_t open =
-      findOpen(-kBeyondDoubt - weather, suspects_.second.data(), suspects_.count, open_.data());
+      findOpen(-kCertainOdds - weather, suspects_.second.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
     const std::uint32_t s = open_[k];
     const float odds = suspects_.second[s] + weather;

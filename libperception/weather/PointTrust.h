@@ -17,17 +17,17 @@
 
 namespace perception {
 
-/// The curves over counts of neighbors, read straight from the counts [log-odds].
+/// The curves over counts of neighbors, tabulated by count [log-odds].
 struct CountCurves {
   CountCurves(const TrustCurve& of_tight, const TrustCurve& of_wide, const TrustCurve& of_beyond);
   std::array<float, NeighborCounts::kMost> tight, wide;
   std::array<float, NeighborCounts::kMost * NeighborCounts::kMost> beyond;
 };
 
-/// P(phantom) of every return from how it stands among its neighbors in the range image, its
-/// height above the ground, its intensity, the sensor's label and echoes. Two passes: in the second
-/// counts what the first made of the returns nearby, so that a dark car keeps its dark returns. The
-/// share of phantoms follows the weather, so that nothing is doubted in clear air.
+/// P(phantom) of every return from its neighbors in the range image, height above the ground,
+/// intensity, the sensor's label and echoes (method.md 9.6). The second pass uses the first pass's
+/// result for nearby returns, so that dark returns of a dark car are kept. The share of phantoms
+/// adapts to the weather, so that returns in clear air stay trusted.
 class PointTrust final : public PointFilter {
  public:
   explicit PointTrust(const TrustParams& params);
@@ -42,7 +42,7 @@ class PointTrust final : public PointFilter {
   std::size_t memoryBytes() const;
 
  private:
-  /// What is counted while the scan is read once.
+  /// Counts made while the scan is read.
   struct Census {
     int within_share_range = 0;                                ///< returns
     std::array<std::uint32_t, IntensityLaw::kBins> returns{};  ///< every kIntensityStep'th, near
@@ -66,12 +66,12 @@ class PointTrust final : public PointFilter {
   CountCurves count_curves_;
   RangeImage image_;
   IntensityLaw law_;
-  bool uses_intensity_ = false;  // this scan has it, and it is used
+  bool uses_intensity_ = false;  // available in this scan and enabled
   PhantomShare share_;
   Census census_;
   NeighborCounter neighbors_;
   SuspectReturns suspects_;
-  std::vector<std::uint32_t> open_;  // suspects that are still to be looked at
+  std::vector<std::uint32_t> open_;  // indices of the suspects under evaluation
   SurroundingCubes cubes_;
 };
 

@@ -11,20 +11,20 @@
 namespace perception {
 namespace {
 
-constexpr float kSteepest = 1;       // tangent of elevation; steeper beams share the outermost rows
-constexpr float kInstrument = 0.3F;  // [m] nearer is the sensor's own window
+constexpr float kSteepest = 1;  // tangent of elevation; steeper beams go into the outermost rows
+constexpr float kInstrument = 0.3F;  // [m] nearer returns are of the sensor's window
 constexpr double kConnected = 0.6;   // share of pixels with a neighbor above or below
 // [rad] 64 and 128 beams, 32, 16, and a few layers (Ibeo).
 const double kRows[] = {radians(0.35), radians(0.5), radians(0.7), radians(1.0),
                         radians(1.4),  radians(2.0), radians(3.0)};
 
-/// How RangeImage lays its pixels out.
+/// Layout of the pixels.
 struct PixelRules {
   float per_radian, rows_per_slope;
   std::int32_t columns, stride;
 };
 
-/// Ranges [m] of `count` points [m], 0 where there is none, and their pixels, then 0, too.
+/// Ranges [m] of `count` points [m] and their pixels, both 0 for invalid points.
 PERCEPTION_WIDEST void findPixels(const float* __restrict x, const float* __restrict y,
                                   const float* __restrict z, std::size_t count, const PixelRules k,
                                   float* __restrict range, std::uint32_t* __restrict pixels) {
@@ -55,7 +55,7 @@ PERCEPTION_WIDEST PixelSpan widened(const std::uint32_t* pixels, std::size_t cou
                                     PixelSpan span) {
   std::uint32_t before_first = span.first - 1, last = span.last;
   for (std::size_t i = 0; i < count; ++i) {
-    before_first = std::min(before_first, pixels[i] - 1);  // no range: the largest number
+    before_first = std::min(before_first, pixels[i] - 1);  // no range wraps to the largest number
     last = std::max(last, pixels[i]);
   }
   return {before_first + 1, last};
@@ -77,7 +77,7 @@ void RangeImage::layOut(double row) {
   stride_ = static_cast<std::ptrdiff_t>(columns_ + 2 * kColumnReach);
 }
 
-// Block by block: what is known of a return never leaves the nearest cache.
+// Processes block by block, so that intermediate results stay in the L1 cache.
 void RangeImage::place(const LidarCloud& cloud, const BlockVisitor& look) {
   std::array<float, kBlock> ranges;
   std::array<std::uint32_t, kBlock> pixels;
@@ -98,7 +98,7 @@ void RangeImage::place(const LidarCloud& cloud, const BlockVisitor& look) {
   lowest_ = span.first / stride, highest_ = span.last / stride;
 }
 
-// Of the directions with a return, how many have one in the row above or below.
+// Share of pixels with a return that have another in the row above or below.
 double RangeImage::connectedShare(const LidarCloud& cloud, double row) const {
   RangeImage other(column_, row);
   other.layOut(row);
@@ -125,7 +125,7 @@ double RangeImage::findRow(const LidarCloud& cloud) const {
   return *(std::end(kRows) - 1);
 }
 
-// Rows without returns are empty already.
+// Rows without returns are zero already.
 void RangeImage::wipe() {
   const auto stride = static_cast<std::size_t>(stride_);
   image_.resize((rows_ + 2 * kRowReach) * stride + kSlack);

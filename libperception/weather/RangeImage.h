@@ -8,31 +8,32 @@
 
 namespace perception {
 
-/// A scan as a picture of ranges: a pixel a direction, so that the neighbors of a return are found
-/// without a search, at any range at the scale of the beams. The picture goes round; its margin
-/// holds the other end's columns.
+/// A scan as an image of ranges, a pixel per direction, so that neighbors of a return are found
+/// without a search. The image covers the full circle; its margins repeat the columns of the other
+/// end.
 class RangeImage {
  public:
   /// Some returns of the cloud.
   struct Block {
     std::size_t first, count;
-    const float* ranges;          ///< [m]; 0 where it is not finite or in the sensor itself
-    const std::uint32_t* pixels;  ///< places in pixels(); 0 where there is no range
+    const float* ranges;          ///< [m]; 0 where it is not finite or inside the sensor's housing
+    const std::uint32_t* pixels;  ///< indices into pixels(); 0 without a range
   };
   using BlockVisitor = std::function<void(const Block&)>;
   static constexpr int kColumnReach = 4, kRowReach = 2;  ///< [px] of a return's neighborhood
-  static constexpr std::size_t kBlock = 960;             ///< [returns] no more in a block
+  static constexpr std::size_t kBlock = 960;             ///< [returns] largest block
 
-  /// `column`, `row`: [rad] of a pixel (rows are even in the tangent of elevation). row = 0: found
-  /// from the first scan, the finest in which neighboring beams lie in neighboring rows.
+  /// `column`, `row`: [rad] pitch of the pixels (rows are uniform in the tangent of elevation). row
+  /// = 0: estimated from the first scan, as the finest pitch at which neighboring beams lie in
+  /// neighboring rows.
   RangeImage(double column, double row);
 
-  /// The last return of a direction stays. `look`, where given, is shown each block of returns when
-  /// they are in the nearest cache.
+  /// Of several returns in a pixel the last is stored. Calls `look`, if given, for each block of
+  /// returns while it is in the cache.
   void fill(const LidarCloud& cloud, const BlockVisitor& look = {});
 
-  /// [m]; 0: no return. Rows from the lowest to the highest hold all of them, each of columns()
-  /// and a margin at either end; what lies kSlack behind the last row may be read, too.
+  /// [m]; 0: no return. Rows lowestRow() to highestRow() hold all returns; each has columns()
+  /// pixels and a margin at either end. kSlack elements behind the last row may be read, too.
   const std::vector<float>& pixels() const { return image_; }
   static constexpr std::size_t kSlack = 8;
   std::size_t columns() const { return columns_; }

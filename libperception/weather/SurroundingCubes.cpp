@@ -8,7 +8,7 @@
 namespace perception {
 namespace {
 
-/// How cubes are numbered.
+/// Numbering of the cubes.
 struct CubeRules {
   float reach, bottom, per_meter;
   std::int32_t side, layers;
@@ -24,8 +24,9 @@ struct CubeRules {
   std::int32_t column(std::int32_t x, std::int32_t y) const { return (x * side + y) * layers; }
 };
 
-/// Of each place the cube, and of the cubes a quarter of an edge to either side the numbers: 10
-/// bits and how many farther the upper ones are, 2 bits, along x and y; 5 and 2 bits upwards.
+/// For each point its cube, and its corner: along x and y the lower cube (10 bits) and the step to
+/// the upper one (2 bits), along z 5 and 2 bits. The two are the cubes a quarter of an edge to
+/// either side.
 PERCEPTION_WIDEST void findAll(const float* __restrict x, const float* __restrict y,
                                const float* __restrict z, std::size_t count, const CubeRules k,
                                float half, std::uint32_t* __restrict cubes,
@@ -59,7 +60,7 @@ void SurroundingCubes::locate(const float* x, const float* y, const float* z, st
   findAll(x, y, z, count, rules, kEdge / 2, cubes, corners);
 }
 
-// Neighbors in a scan share cubes; four places by turns do not wait for each other.
+// Neighbors in a scan share cubes; interleaving four parts of the scan avoids that dependency.
 void SurroundingCubes::add(const std::uint32_t* cubes, std::size_t count, std::uint32_t mask) {
   std::uint64_t* const counts = counts_.data();
   const std::size_t quarter = count / 4;

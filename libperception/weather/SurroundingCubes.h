@@ -7,23 +7,23 @@
 
 namespace perception {
 
-/// Counts trusted and doubted returns in cubes about the sensor: a dark return within a car's body
-/// stands among other returns than a flake of the same brightness.
+/// Counts trusted returns and phantoms in cubes of half a meter about the sensor, for the feature
+/// TrustFeature::kSurroundings.
 class SurroundingCubes {
  public:
   explicit SurroundingCubes(float reach);  ///< [m] horizontal, from the sensor
 
   void clear();
-  /// The cubes of some places [m, sensor frame], below 2^24, and, of each, which eight meet
-  /// nearest.
+  /// Cubes of some points [m, sensor frame], below 2^24, and for each the nearest corner of eight
+  /// cubes.
   void locate(const float* x, const float* y, const float* z, std::size_t count,
               std::uint32_t* cubes, std::uint32_t* corners) const;
-  /// Returns that count as trusted; `mask`: the bits of their cubes.
+  /// Adds returns as trusted; `mask`: the bits of `cubes` that hold the cube.
   void add(const std::uint32_t* cubes, std::size_t count, std::uint32_t mask);
-  /// One of the returns that were added is a phantom.
+  /// Turns one of the added returns into a phantom.
   void doubt(std::uint32_t cube) { counts_[cube] += kDoubted - 1; }
-  /// ln((1 + trusted) / (1 + doubted)) of the others in the eight cubes at a corner, where a return
-  /// counts as `doubted` itself.
+  /// ln((1 + trusted) / (1 + doubted)) of the returns in the eight cubes at a corner, except the
+  /// return itself, which is counted as `doubted` or trusted.
   float surroundings(std::uint32_t corner, bool doubted) const {
     const std::uint32_t x0 = corner & 1023, x1 = x0 + (corner >> 10 & 3);
     const std::uint32_t y0 = corner >> 12 & 1023, y1 = y0 + (corner >> 22 & 3);
@@ -42,7 +42,7 @@ class SurroundingCubes {
 
  private:
   static constexpr float kEdge = 0.5F;     // [m]
-  static constexpr float kBottom = -4.5F;  // [m] of the lowest layer, below a roof lidar's road
+  static constexpr float kBottom = -4.5F;  // [m] of the lowest layer: lidar on a roof
   static constexpr std::uint64_t kDoubted = std::uint64_t{1} << 32;
   static constexpr int kLayers = 24;  // fewer than 32, see surroundings()
 
@@ -52,8 +52,8 @@ class SurroundingCubes {
 
   float reach_;
   int side_;
-  std::vector<std::uint64_t> counts_;  // [returns] of each cube: trusted; above, doubted
-  std::array<float, 1024> logs_;       // ln(1 + count), where counts are as usual
+  std::vector<std::uint64_t> counts_;  // trusted; in the upper 32 bits phantoms
+  std::array<float, 1024> logs_;       // ln(1 + count) for small counts
 };
 
 }  // namespace perception

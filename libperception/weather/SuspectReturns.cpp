@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kBlock = RangeImage::kBlock;
 
-/// Heights [m], the numbers in the cloud, the bins above the cubes, and which are near.
+/// Computes heights [m], indices in the cloud, cubes with bins, and marks of near returns.
 PERCEPTION_WIDEST void describe(const float* __restrict x, const float* __restrict y,
                                 const float* __restrict z, const float* __restrict range,
                                 const std::uint32_t* __restrict bin, std::uint32_t first,

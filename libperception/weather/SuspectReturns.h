@@ -20,32 +20,33 @@ struct SuspectReturn {
   float second = 0;  ///< [log-odds] of the second pass, without weather
 };
 
-/// The suspects of a scan, in its order: an array a number, so that loops over them are short. At
-/// first all returns that are near enough. The arrays keep their memory: only the first `count` are
-/// of this scan.
+/// The suspects of a scan in its order, as a structure of arrays; initially all near returns. The
+/// arrays keep their memory: only the first `count` elements are valid.
 struct SuspectReturns {
   std::size_t count = 0;
-  std::vector<std::uint32_t> index;      ///< in the cloud
-  std::vector<std::uint32_t> pixel;      ///< of the range image, before any is cleared
-  std::vector<std::uint32_t> cube;       ///< of SurroundingCubes; above, the bin of the intensity
+  std::vector<std::uint32_t> index;  ///< in the cloud
+  std::vector<std::uint32_t> pixel;  ///< of the range image; not updated by clearSurfaces()
+  std::vector<std::uint32_t>
+      cube;  ///< of SurroundingCubes; the bits above kBinShift hold the intensity bin
   std::vector<std::uint32_t> corner;     ///< of SurroundingCubes
   std::vector<std::uint32_t> neighbors;  ///< bits of NeighborCounts
   std::vector<float> range, height;      ///< [m]
   std::vector<float> geometry;           ///< [log-odds] without intensity and weather
   std::vector<float> first, second;      ///< [log-odds]
-  std::vector<float> surroundings;  ///< as TrustFeature::kSurroundings; of those of the second pass
+  std::vector<float>
+      surroundings;  ///< as TrustFeature::kSurroundings; of suspects in the second pass
 
   static constexpr int kBinShift = 28;
   std::uint32_t binOf(std::size_t s) const { return cube[s] >> kBinShift; }
   std::uint32_t cubeOf(std::size_t s) const { return cube[s] & ((1U << kBinShift) - 1); }
 
-  /// Appends those of a block of the cloud that are near; `bins` of their intensities. Counts them
-  /// in their cubes.
+  /// Appends the returns of a block that are within `far` [m], with the `bins` of their
+  /// intensities, and counts them in their cubes.
   void add(const LidarCloud& cloud, const RangeImage::Block& block, const std::uint32_t* bins,
            const HeightAboveGround& height_above, float far, SurroundingCubes& cubes);
-  /// Clears those of which at least `surface` of the nearest pixels are of the same surface.
+  /// Removes returns with at least `surface` of the eight nearest pixels on the same surface.
   void clearSurfaces(std::uint32_t surface);
-  /// Room for the results of each of those that are there.
+  /// Resizes the arrays of results to `count`.
   void makeRoomForResults();
   SuspectReturn at(std::size_t s) const;
   std::size_t memoryBytes() const { return 11 * sizeof(float) * index.capacity(); }

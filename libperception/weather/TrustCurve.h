@@ -6,7 +6,7 @@
 
 namespace perception {
 
-/// A curve through knots, read from a table: a multiplication and a look-up per return.
+/// A piecewise linear curve through knots, tabulated: a multiplication and a look-up per return.
 class TrustCurve {
  public:
   TrustCurve() = default;
@@ -16,7 +16,7 @@ class TrustCurve {
     const float low = place > 0 ? place : 0;
     return table_[static_cast<std::size_t>(static_cast<int>(low < kLast ? low : kLast))];
   }
-  /// Of many, where at() looks in table().
+  /// Indices into table() that at() would use, for `count` values.
   void findPlaces(const float* values, std::size_t count, std::int32_t* places) const;
   const float* table() const { return table_.data(); }
 

@@ -39,7 +39,7 @@ const std::vector<double>& TrustParams::knotsOf(TrustFeature feature) {
 void TrustParams::visit(ParamVisitor& v) {
   v.expert();
   v.real("max_range", max_range, {1, 200}, "m", "beyond it every return is trusted");
-  v.boolean("use_intensity", use_intensity, "learn which intensities phantoms have");
+  v.boolean("use_intensity", use_intensity, "learn the intensities of phantoms");
 }
 
 }  // namespace perception

@@ -32,13 +32,15 @@ TEST(ConfigFaults, EachHasItsMessage) {
        "t.ini:2: [a] seed: found '-5', expected an integer in 0 .. 18446744073709551615"},
       {"[a]\nactive = maybe", "t.ini:2: [a] active: found 'maybe', expected true or false"},
       {"[a]\ncorners = 1",
-       "t.ini:2: [a] corners: found '1', expected 2 numbers parted by commas, each in -10 .. 10 "
+       "t.ini:2: [a] corners: found '1', expected 2 numbers separated by commas, each in -10 .. 10 "
        "[m]"},
       {"[a]\ncorners = 1,,2",
-       "t.ini:2: [a] corners: found '1,,2', expected 2 numbers parted by commas, each in -10 .. 10 "
+       "t.ini:2: [a] corners: found '1,,2', expected 2 numbers separated by commas, each in -10 .. "
+       "10 "
        "[m]"},
-      {"[a]\nnames = x,", "t.ini:2: [a] names: found 'x,', expected words parted by commas"},
-      {"[a]\nnames = x ,#y", "t.ini:2: [a] names: found 'x ,#y', expected words parted by commas"},
+      {"[a]\nnames = x,", "t.ini:2: [a] names: found 'x,', expected words separated by commas"},
+      {"[a]\nnames = x ,#y",
+       "t.ini:2: [a] names: found 'x ,#y', expected words separated by commas"},
       {"[a]\ncolor = gren",
        "t.ini:2: [a] color: found 'gren', expected one of red, green, blue; did you mean "
        "'green'?"},

@@ -8,14 +8,14 @@
 
 namespace perception {
 
-/// Models as the engine's inner loops want them: parts in groups, as spectra.
+/// Models prepared for the engine's kernels: parts in groups, as spectra.
 struct DpmBank {
   /// A part as one filter of a group.
   struct Lane {
     int component = -1, part = -1;
-    std::size_t parity = 0;  ///< of its anchor, a place in Group::parities
+    std::size_t parity = 0;  ///< of its anchor, an index into Group::parities
   };
-  /// 2 * lanes filters that are convolved together.
+  /// 2 * lanes filters convolved together.
   struct Group {
     std::vector<Lane> lanes;
     std::vector<std::pair<int, int>> parities;  ///< of anchors' columns and rows: 0 or 1
@@ -28,12 +28,12 @@ struct DpmBank {
   const VisionKernels& kernels;
   std::vector<std::vector<Group>> groups;  ///< per target
   int cell = 8;                            ///< [px]
-  int valid = kPatch;                      ///< [cells] side of a patch that is right for all parts
+  int valid = kPatch;                      ///< [cells] side of a patch that is valid for all parts
 
   /// Throws DataError for models that cannot share a pyramid, or with parts that are too large.
   DpmBank(std::vector<DpmTarget> targets, DpmOptions options, SimdLevel level);
 
-  /// Root cells of a part's anchor: floor(a / 2), for negative numbers too.
+  /// Anchor in root cells: floor(a / 2), negative numbers included.
   static int halfOf(int anchor) { return anchor >= 0 ? anchor / 2 : -((1 - anchor) / 2); }
 
  private:

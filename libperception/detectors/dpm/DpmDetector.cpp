@@ -11,7 +11,7 @@ ObjectDetection::ImageBox inside(ObjectDetection::ImageBox b, const Raster& imag
   return b;
 }
 
-/// Our engine for banks of deformable part models.
+/// Detector with DpmEngine for banks of deformable part models.
 class DpmDetector final : public Detector {
  public:
   explicit DpmDetector(const DetectorSetup& setup) : engine_(targetsOf(setup), setup.dpm.options) {}

@@ -62,7 +62,7 @@ void convolveGroup(const DpmBank& bank, DpmLevel& level, std::size_t target, std
 }
 
 void convolve(const DpmBank& bank, std::vector<DpmLevel>& levels) {
-  // Groups outside, levels inside: a group's weights stay in the cache.
+  // Groups in the outer loop, levels in the inner one: a group's weights stay in the cache.
   struct Task {
     std::size_t target, group;
   };
@@ -80,10 +80,10 @@ void convolve(const DpmBank& bank, std::vector<DpmLevel>& levels) {
 
 // ---- scores
 
-/// Place in DpmComponent::octaves of a root's scale (voc-release5, loc_feat.m: the first `interval`
-/// levels are finer than the image, the next as many go down to its half).
+/// Index into DpmComponent::octaves by the scale of a root (voc-release5, loc_feat.m: the first
+/// `interval` levels are finer than the image, the next ones down to half its scale).
 std::size_t octaveOf(double scale) {
-  constexpr double kRounding = 1e-3;  // scales are of whole pixels
+  constexpr double kRounding = 1e-3;  // scales are rounded to whole pixels
   return scale > 1 + kRounding ? 0 : scale > 0.5 + kRounding ? 1 : 2;
 }
 

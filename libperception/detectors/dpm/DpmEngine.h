@@ -12,42 +12,42 @@ namespace perception {
 
 struct DpmBank;
 
-/// How densely and where an engine searches.
+/// Search parameters of an engine.
 struct DpmOptions {
   int levels_per_octave = 5;  ///< method.md 8.8; [girshick2012]: 10
-  double enlarge = 1;         ///< [1, 4] size of the first image searched (assumed)
+  double enlarge = 1;         ///< [1, 4] scale of the first pyramid level (assumed)
   double outside = 0.4;       ///< share of an object's sides beyond the image (assumed)
-  int window = 4;             ///< [cells of a part] how far a part may move [girshick2012]
-  double overlap = 0.5;       ///< of the weaker box: more is the same object (method.md 8.8)
+  int window = 4;             ///< [cells of a part] largest displacement of a part [girshick2012]
+  double overlap = 0.5;  ///< share of the weaker box that makes it the same object (method.md 8.8)
 };
 
-/// What an engine searches for with one model.
+/// One model with its threshold.
 struct DpmTarget {
   DpmModel model;
-  double threshold = -1;       ///< score from which on a place is reported (assumed)
+  double threshold = -1;       ///< least score of a detection (assumed)
   double low = 0.5, high = 3;  ///< [m] heights of the objects on the ground (assumed)
 };
 
-/// A place where a model fits.
+/// A detection of a model.
 struct DpmDetection {
   int target = 0, component = 0;
   double score = 0;
-  ObjectDetection::ImageBox box;  ///< [px] may reach beyond the image
-  std::optional<double> heading;  ///< [rad] KITTI's alpha, between the components' own
+  ObjectDetection::ImageBox box;  ///< [px] may extend beyond the image
+  std::optional<double> heading;  ///< [rad] KITTI's alpha, interpolated between components
 };
 
-/// Finds deformable part models in images: all components of all classes on one feature pyramid,
-/// parts convolved exactly by Fourier transform of 16 x 16 patches [dubout2012],
-/// only where the ground allows objects. The result is the same for any number of threads.
+/// Detects deformable part models in images: all components of all classes on one feature pyramid,
+/// parts convolved exactly by Fourier transform of 16 x 16 patches [dubout2012], only where the
+/// ground allows objects (method.md 8.8). The result does not depend on the number of threads.
 class DpmEngine {
  public:
   DpmEngine(std::vector<DpmTarget> targets, DpmOptions options, SimdLevel level = simdLevel());
   ~DpmEngine();
   DpmEngine(DpmEngine&&) noexcept;
 
-  /// One box an object and target, best first.
+  /// One box per object and target, best first.
   std::vector<DpmDetection> detect(const Raster& image, const SearchRegion& region = {}) const;
-  /// All places at or above the thresholds, before suppression.
+  /// All detections at or above the thresholds, before suppression.
   std::vector<DpmDetection> places(const Raster& image, const SearchRegion& region = {}) const;
   const std::vector<DpmTarget>& targets() const;
 

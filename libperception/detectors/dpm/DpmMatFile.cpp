@@ -18,7 +18,7 @@
 namespace perception {
 namespace {
 
-// How the features of a cell change places in a mirror (voc-release5, flipfeat.m).
+// Permutation of the features of a cell under mirroring (voc-release5, flipfeat.m).
 constexpr std::array<int, kFeatures> kMirrored = {9,  8,  7,  6,  5,  4,  3,  2,  1,  0,  17,
                                                   16, 15, 14, 13, 12, 11, 10, 18, 26, 25, 24,
                                                   23, 22, 21, 20, 19, 29, 30, 27, 28, 31};
@@ -106,7 +106,8 @@ class MatModel {
   std::unique_ptr<matvar_t, FreeVariable> model_;
 };
 
-/// Reads the grammar: start rules are components, a component's symbols its root and its parts.
+/// Reads the grammar: start rules are components; the symbols of a component are its root and
+/// parts.
 class ModelReader {
  public:
   explicit ModelReader(const std::string& path)
@@ -136,13 +137,13 @@ class ModelReader {
       in_.fail(".rules: not a star of parts");
     return rules;
   }
-  /// The weights of a block (release 5), or the field w beside it (release 4).
+  /// The weights of a block (release 5), or of the field w (release 4).
   std::vector<double> weights(const matvar_t* parent, std::size_t index) const {
     if (blocks_ != nullptr && in_.find(parent, "blocklabel", index) != nullptr)
       return in_.numbers(blocks_, "w", indexOf(in_.number(parent, "blocklabel", index)));
     return in_.numbers(parent, "w", index);
   }
-  /// The flag of a mirrored copy of a block; release 4 stores copies as they are.
+  /// Whether a block is stored mirrored (release 5).
   bool mirrored(const matvar_t* parent, std::size_t index) const {
     return blocks_ != nullptr && in_.find(parent, "flip", index) != nullptr &&
            in_.number(parent, "flip", index) != 0;
@@ -214,7 +215,7 @@ class ModelReader {
       out.parts.push_back(part(indexOf(symbols[p]), in_.numbers(in_.cell(anchors, p), "anchor")));
     return out;
   }
-  /// Release 5 stores offsets in units of this.
+  /// Unit of the offsets in release 5.
   double bias() const {
     const matvar_t* features = in_.find(model_, "features");
     return blocks_ != nullptr && features != nullptr ? in_.number(features, "bias") : 1;
@@ -229,7 +230,8 @@ class ModelReader {
 
 DpmModel readDpmMatFile(const std::string& path) {
   DpmModel model = ModelReader(path).read();
-  // KITTI's supervised models: component k sees alpha = -pi + (k + 1) 2 pi / n ("_2_" in the name).
+  // KITTI's supervised models: component k has alpha = -pi + (k + 1) 2 pi / n (method.md 8.8; "_2_"
+  // in the name).
   const std::string name = std::filesystem::path(path).filename().string();
   if (name.find("_2_") != std::string::npos) {
     const auto n = static_cast<double>(model.components.size());

@@ -39,7 +39,7 @@ class Words {
   void key(const char* key) {
     if (word(key) != key) fail(fmt::format("'{}'", key));
   }
-  /// Takes the word if it is there.
+  /// Consumes the word if it is next.
   bool has(const std::string& word) {
     if (atEnd() || text_.compare(place_, word.size(), word) != 0) return false;
     place_ += word.size();

@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kSmallestImage = 5;  // [cells] voc-release: the pyramid's last level
 
-// ---- what to look at
+// ---- search regions
 
-/// Corners at which a component of that size has at most its share outside the image.
+/// Corners at which at most the share `outside` of a component lies beyond the image.
 Span cornersOf(int size, int cells, double outside) {
   const int beyond = static_cast<int>(std::ceil(outside * size));
   return {-beyond, cells + beyond - size + 1};
@@ -54,7 +54,7 @@ void planSearch(const DpmBank& bank, DpmLevel& level, std::size_t target,
 }
 
 void planPatches(const DpmBank& bank, DpmLevel& level) {
-  // [part cells] of parts' places, moves and odd anchors included.
+  // [part cells] of part positions, displacements and odd anchors included.
   const auto placesOf = [&](const Span& lattice) {
     return lattice.empty() ? Span{}
                            : Span{2 * lattice.begin - bank.options.window,
@@ -101,7 +101,7 @@ void buildFeatures(const DpmBank& bank, const Raster& image, std::vector<DpmLeve
   tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t k) {
     DpmLevel& level = levels[k];
     std::vector<FeatureRequest> requests;
-    // As the roots of this level and as the parts of one an octave above.
+    // For the roots of this level and the parts of the level an octave above.
     FeatureRequest whole{bank.cell, level.root_x, level.root_y};
     for (const DpmLevel& other : levels) {
       if (other.parts_level != static_cast<int>(k) || other.part_x.empty()) continue;
@@ -132,7 +132,7 @@ void buildFeatures(const DpmBank& bank, const Raster& image, std::vector<DpmLeve
   }
 }
 
-/// Does any group look at that patch?
+/// Whether any group uses that patch.
 bool wanted(const DpmLevel& level, int column, int row) {
   const auto holds = [](const Span& span, int i) { return i >= span.begin && i < span.end; };
   for (const DpmSearch& s : level.searches) {

@@ -6,14 +6,14 @@
 
 namespace perception {
 
-/// What one group needs of one level, and what it gets.
+/// Region of one group at one level, and its responses.
 struct DpmGroupSearch {
-  Span lattice_x, lattice_y;        ///< [root cells] of parts' places, halved
-  Span patch_columns, patch_rows;   ///< of the level's patches
+  Span lattice_x, lattice_y;        ///< [root cells] of part positions, halved
+  Span patch_columns, patch_rows;   ///< patches of the level
   std::vector<AlignedFloats> best;  ///< per parity: displaced responses, lattice by 2 * lanes
 };
 
-/// What one target needs of one level.
+/// Region of one target at one level.
 struct DpmSearch {
   std::vector<Span> x, y;  ///< [root cells] per component: of the root's corner
   std::vector<DpmGroupSearch> groups;
@@ -24,24 +24,24 @@ struct DpmLevel {
   int width = 0, height = 0;        ///< [px]
   double scale_x = 1, scale_y = 1;  ///< of the image
   int cells_x = 0, cells_y = 0;     ///< of 8 px
-  int parts_level = -1;             ///< whose cells the parts see; -1: cells of half the side here
+  int parts_level = -1;             ///< level of the parts' cells; -1: cells of half the side here
   std::vector<DpmSearch> searches;  ///< per target
-  Span root_x, root_y;              ///< [cells] that roots read
+  Span root_x, root_y;              ///< [cells] read by roots
   int patch_x0 = 0, patch_y0 = 0, patches_x = 0, patches_y = 0;
-  Span part_x, part_y;  ///< [part cells] that patches read
+  Span part_x, part_y;  ///< [part cells] read by patches
   FeatureMap roots, parts;
   const FeatureMap* part_map = nullptr;
-  AlignedFloats spectra;  ///< kDpmSpectrumStride a patch; not set where nothing is searched
+  AlignedFloats spectra;  ///< kDpmSpectrumStride per patch; undefined where nothing is searched
 };
 
-/// Patches lie so far apart that equal frequencies of several do not fall on the same lines of the
-/// cache (sizes alone are multiples of 2048 bytes).
+/// Stride between spectra, padded so that equal frequencies of several patches do not map to the
+/// same cache lines (the size alone is a multiple of 2048 bytes).
 constexpr std::size_t kDpmSpectrumStride = kSpectrum + 112;
 
-/// Which places each component may take at each scale of an image, and what that needs.
+/// Plans the levels of an image: allowed positions of each component and the features they need.
 std::vector<DpmLevel> planPyramid(const DpmBank& bank, int width, int height,
                                   const SearchRegion& region);
-/// Features and spectra of what was planned.
+/// Computes features and spectra of the planned levels.
 void buildPyramid(const DpmBank& bank, const Raster& image, std::vector<DpmLevel>& levels);
 
 }  // namespace perception

@@ -7,7 +7,7 @@
 namespace perception {
 namespace {
 
-constexpr int kMargin = 32;  // floats beyond a row: whole vectors are read and written
+constexpr int kMargin = 32;  // padding of a row [floats], for access by whole vectors
 
 std::size_t floats(long a, long b) { return static_cast<std::size_t>(a * b); }
 
@@ -33,7 +33,7 @@ Resampling resampling(int from, int to) {
     double begin = i * ratio, end = (i + 1) * ratio;
     if (ratio <= 1) {
       const double center = (i + 0.5) * ratio - 0.5;
-      begin = center, end = center + 1;  // a pixel wide: linear between centers
+      begin = center, end = center + 1;  // upsampling: linear between pixel centers
     }
     begin = std::clamp(begin, 0.0, from - 1e-6);
     end = std::clamp(end, begin + 1e-6, static_cast<double>(from));
@@ -62,7 +62,7 @@ PlanarImage emptyImage(int width, int height, Span rows) {
   return out;
 }
 
-/// The histograms that one map is made of.
+/// Histograms of one feature map.
 struct Histograms {
   FeatureRequest request;
   int cells_x = 0, cells_y = 0;
@@ -229,8 +229,8 @@ int cellsAcross(int pixels, int side) {
 }
 
 Span pixelRows(Span cells, int side, int height) {
-  // Histograms of one row more on either side; each takes pixels half a cell beyond itself, and a
-  // gradient one pixel more. Beyond the image the last row with a gradient stands for the rest.
+  // Histograms need one more row at each side, each half a cell of further pixels, and gradients
+  // one more pixel. Beyond the image the last row with a gradient is replicated.
   const Span rows{(cells.begin - 1) * side - side / 2 - 1, (cells.end + 1) * side + side / 2 + 1};
   Span out = rows.within({0, height});
   if (rows.end >= height - 2) out = out.with({std::max(0, height - 3), height});

@@ -12,7 +12,7 @@ struct Span {
   int begin = 0, end = 0;
   bool empty() const { return end <= begin; }
   int size() const { return empty() ? 0 : end - begin; }
-  /// The smallest range that holds both.
+  /// The smallest range that contains both.
   Span with(const Span& other) const;
   Span within(const Span& limits) const;
 };
@@ -20,9 +20,9 @@ struct Span {
 /// Rows `rows` of an image of width x height pixels, in three planes of floats.
 struct PlanarImage {
   int width = 0, height = 0;  ///< [px] of the whole image
-  Span rows;                  ///< [px] that are there
+  Span rows;                  ///< [px] stored rows
   long stride = 0;            ///< [floats] of a row of one channel
-  AlignedFloats values;       ///< row by row, in it blue, green, red
+  AlignedFloats values;       ///< row by row, each as blue, green, red
 
   PixelRow row(int y) const;
   float* channel(int y, int c) {
@@ -40,11 +40,11 @@ PlanarImage halved(const PlanarImage& image);
 PlanarImage resampled(const PlanarImage& image, int width, int height, Span rows,
                       const VisionKernels& kernels);
 
-/// HOG features of a grid of cells; cell 0 begins at the image's corner. Cells that have none (the
-/// image's outermost ones and all beyond) are 0 but for the last value, which is 1 there.
+/// HOG features of a grid of cells; cell 0 begins at the image's corner. Cells without features
+/// (the outermost ones of the image and those beyond) are 0 except for the last value, 1.
 struct FeatureMap {
   Span x, y;             ///< [cells] that are stored, beyond the image too
-  AlignedFloats values;  ///< kFeatures a cell, row by row
+  AlignedFloats values;  ///< kFeatures per cell, row by row
 
   long rowStride() const { return static_cast<long>(x.size()) * kFeatures; }
   const float* cell(int column, int row) const {
@@ -62,12 +62,12 @@ int cellsAcross(int pixels, int side);
 /// Pixel rows that are read for features of cell rows `cells`.
 Span pixelRows(Span cells, int side, int height);
 
-/// What is wanted of an image: a map of cells of a side, over a region.
+/// A requested feature map: side of its cells and region.
 struct FeatureRequest {
   int side = 8;  ///< [px]
   Span x, y;     ///< [cells]
 };
-/// The maps of several sides share the image's gradients. The image must hold the pixelRows() of
+/// Feature maps of several cell sides from common gradients. The image must hold the pixelRows() of
 /// each.
 std::vector<FeatureMap> hogFeatures(const PlanarImage& image,
                                     const std::vector<FeatureRequest>& requests,

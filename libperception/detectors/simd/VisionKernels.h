@@ -1,5 +1,5 @@
-// The inner loops of the part models, compiled once a SIMD level. No inline functions and no other
-// headers here: the linker would take one level's copy for all.
+// Kernels of the part models, compiled once per SIMD level. No inline functions and no other
+// headers here: the linker would merge them into one level's copy.
 #pragma once
 
 namespace perception {
@@ -7,12 +7,12 @@ namespace perception {
 /// Sides of the patches that are convolved by Fourier transform, and of their half spectrum.
 enum {
   kPatch = 16,                               ///< [cells]
-  kHalf = kPatch / 2 + 1,                    ///< columns that a real signal needs
+  kHalf = kPatch / 2 + 1,                    ///< columns of the spectrum of a real signal
   kFrequencies = kPatch * kHalf,             ///< ky major, kx = 0 .. kHalf - 1
   kFeatures = 32,                            ///< values of a HOG cell
   kSpectrum = kFrequencies * 3 * kFeatures,  ///< floats of a patch's spectrum
   kWeights = 6,                              ///< vectors of a group's weight: see products()
-  kOrientations = 18                         ///< contrast sensitive ones
+  kOrientations = 18                         ///< contrast sensitive
 };
 
 /// A row of an image in three planes.
@@ -21,14 +21,14 @@ struct PixelRow {
 };
 
 struct VisionKernels {
-  int lanes;  ///< floats a vector; a group is 2 * lanes filters
+  int lanes;  ///< floats per vector; a group has 2 * lanes filters
 
-  /// Of pixels 1 .. width - 2: length of the strongest channel's gradient and its orientation, 0 ..
-  /// 17 in steps of 20 degrees. Writes up to a whole vector more.
+  /// For pixels 1 .. width - 2: magnitude of the strongest channel's gradient and its orientation,
+  /// 0 .. 17 in steps of 20 degrees. Writes up to one vector beyond.
   void (*gradients)(const PixelRow* above, const PixelRow* row, const PixelRow* below, int width,
                     float* magnitude, int* bin);
-  /// Shares each pixel among the two cells beside it: histogram[bin * stride + cell[x]] and the
-  /// next one, by weights[2 x], weights[2 x + 1].
+  /// Distributes each pixel to the two nearest cells: adds to histogram[bin * stride + cell[x]] and
+  /// the next element, weighted by weights[2 x], weights[2 x + 1].
   void (*bin)(const float* magnitude, const int* bin, const int* cell, const float* weights,
               int begin, int end, int stride, float* histogram);
   /// target += weight * source
@@ -43,27 +43,28 @@ struct VisionKernels {
   void (*forward)(const float* features, long row_stride, float* spectrum);
   /// Sums over features of spectrum x times weight w for up to kAtOnce patches: per patch
   /// kFrequencies * 4 * lanes floats (A.re, A.im, B.re, B.im), where a group's filters are A and B.
-  /// By three products, not four: w is given as w.re, w.im - w.re, w.im + w.re of A, then of B;
-  /// x w = k - x.im (w.im + w.re) + i (k + x.re (w.im - w.re)) with k = (x.re + x.im) w.re.
-  /// Frequencies that are conjugates of others (kx = 0 or 8, ky > 8) are left out.
+  /// By three products, not four: w is given as w.re, w.im - w.re, w.im + w.re of A, then of B; x w
+  /// = k - x.im (w.im + w.re) + i (k + x.re (w.im - w.re)) with k = (x.re + x.im) w.re. Frequencies
+  /// that are conjugates of others (kx = 0 or 8, ky > 8) are skipped.
   void (*products)(const float* weights, const float* const* spectra, int patches,
                    float* const* products);
-  /// Back to `rows` x `cols` responses of 2 * lanes filters each; strides in floats.
+  /// Inverse transform to `rows` x `cols` responses of 2 * lanes filters each; strides in floats.
   void (*inverse)(const float* products, int rows, int cols, float* responses, long row_stride);
-  /// Best displaced response at every second place: from rows x cols responses of 2 * lanes filters
-  /// with `window` more on every side; costs are (2 window + 1) x 2 * lanes for x, then for y.
+  /// Best displaced response at every second position: from rows x cols responses of 2 * lanes
+  /// filters with a margin of `window`; costs are (2 window + 1) x 2 * lanes for x, then for y.
   void (*displace)(const float* responses, long row_stride, int rows, int cols, int window,
                    const float* costs_x, const float* costs_y, float* scratch, float* best);
-  /// Direct correlation of a whole filter (height x width cells) at `n` places of a row.
+  /// Direct correlation of a filter (height x width cells) at `n` positions of a row.
   void (*correlate)(const float* features, long row_stride, const float* filter, int height,
                     int width, int n, float* responses);
-  /// Resampling down: target = sum of weights[k] * sources[k].
+  /// Vertical resampling: target = sum of weights[k] * sources[k].
   void (*blend)(const float* const* sources, const float* weights, int count, int n, float* target);
-  /// Resampling across: target[i] = sum of weights[k * n + i] * source[first[i] + k], k = 0 .. 2.
+  /// Horizontal resampling: target[i] = sum of weights[k * n + i] * source[first[i] + k], k = 0 ..
+  /// 2.
   void (*gather)(const float* source, const int* first, const float* weights, int n, float* target);
 };
 
-enum { kAtOnce = 16 };  ///< patches of one call of products(): weights are read once for all
+enum { kAtOnce = 16 };  ///< largest number of patches per call of products()
 
 namespace sse2 {
 extern const VisionKernels kVisionKernels;

@@ -1,8 +1,8 @@
-// The inner loops of the part models, compiled once a SIMD level into a namespace of its own. No
-// header with inline functions may be included here: the linker would take one level's copy for
-// all. Written in vectors of the compiler (vector_size).
+// Kernels of the part models, compiled once per SIMD level into a namespace of its own. No header
+// with inline functions may be included here: the linker would merge them into one level's copy.
+// Written with the compiler's vector extensions (vector_size).
 //
-// Before inclusion: PERCEPTION_SIMD_NAMESPACE, PERCEPTION_SIMD_LANES (floats a vector).
+// Before inclusion: PERCEPTION_SIMD_NAMESPACE, PERCEPTION_SIMD_LANES (floats per vector).
 #include "libperception/detectors/simd/VisionKernels.h"
 
 namespace perception {
@@ -15,11 +15,11 @@ using I = int __attribute__((vector_size(L * sizeof(int)), aligned(4), may_alias
 
 inline const V& at(const float* p) { return *reinterpret_cast<const V*>(p); }
 inline V& at(float* p) { return *reinterpret_cast<V*>(p); }
-inline V all(float x) { return x - V{}; }  // not V{} + x: 0 + -0 is 0, an addition to be done
+inline V all(float x) { return x - V{}; }  // not V{} + x, an addition, since 0 + -0 is 0
 inline V maximum(V a, V b) { return a > b ? a : b; }
 inline V minimum(V a, V b) { return a < b ? a : b; }
 
-// ---- histograms of oriented gradients (Felzenszwalb et al. 2010, section 6.1)
+// ---- histograms of oriented gradients ([felzenszwalb2010], section 6.1)
 
 void gradients(const PixelRow* above, const PixelRow* row, const PixelRow* below, int width,
                float* magnitude, int* bin) {
@@ -91,8 +91,7 @@ inline V inverseRoot(V sum) {
 void features(const float* histogram, int stride, int cells, const float* above, const float* row,
               const float* below, float* features) {
   for (int x = 1; x < cells - 1; x += L) {
-    // Energies of the four blocks that hold the cell: below right, above right, below left, above
-    // left.
+    // Energies of the blocks of the cell: below right, above right, below left, above left.
     const V middle = at(row + x), up = at(above + x), down = at(below + x);
     const V right = middle + at(row + x + 1), left = middle + at(row + x - 1);
     const V n[4] = {
@@ -146,7 +145,7 @@ inline void fft16(V* re, V* im, int step) {
   V r[16], i[16];
   for (int n = 0; n < 16; ++n) r[n] = re[n * step], i[n] = im[n * step];
   for (int n = 0; n < 4; ++n) fft4(r, i, n, n + 4, n + 8, n + 12);
-  // Now 4 k1 + n2 holds A[n2][k1]: turn by e^{-2 pi i n2 k1 / 16}.
+  // Element 4 k1 + n2 is A[n2][k1]: multiply by the twiddle factor e^{-2 pi i n2 k1 / 16}.
   turn(r[5], i[5], c1, s1), turn(r[6], i[6], h, h), turn(r[7], i[7], s1, c1);
   turn(r[9], i[9], h, h), turn(r[10], i[10], 0, 1), turn(r[11], i[11], -h, h);
   turn(r[13], i[13], s1, c1), turn(r[14], i[14], -h, h), turn(r[15], i[15], -c1, -s1);
@@ -190,7 +189,7 @@ void forward(const float* features, long row_stride, float* spectrum) {
   }
 }
 
-/// Does another frequency hold the same, conjugated?
+/// Whether the frequency is the conjugate of another.
 inline bool isCopy(int x, int y) { return (x == 0 || x == kPatch / 2) && y > kPatch / 2; }
 
 /// One frequency of kCount patches: kVectors of the group's two vectors of filters by 32 features.

@@ -55,10 +55,10 @@ struct SampledAssociation {
 };
 
 /// Pass 3 for one hypothesis and the slots that hold it, table look-ups only: measurement by
-/// measurement each slot draws the cause from the exact conditional (the paper's optimal proposal,
-/// method.md 5.4). Slots that drew alike so far share the work. `tracks` are indices of the
-/// hypothesis's tracks into the distinct ones; `order` is the scan's random order of measurements,
-/// the same for all hypotheses; slot i draws from stream i of `key`.
+/// measurement each slot draws the cause from the exact conditional ([radecki2016]'s optimal
+/// proposal, method.md 5.4). Slots that drew alike so far share the work. `tracks` are indices of
+/// the hypothesis's tracks into the distinct ones; `order` is the scan's random order of
+/// measurements, the same for all hypotheses; slot i draws from stream i of `key`.
 std::vector<SampledAssociation> sampleAssociations(const TrackIndices& tracks,
                                                    const AssociationIndex& index,
                                                    const std::vector<std::size_t>& order,

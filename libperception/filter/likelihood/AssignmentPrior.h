@@ -5,7 +5,7 @@
 
 namespace perception {
 
-// The paper's assignment probability that is not uniform (its p(a | Z, A)): what earlier
+// [radecki2016]'s assignment probability that is not uniform (its p(a | Z, A)): what earlier
 // assignments tell of a measurement beside the state. Two parts, each a normalized density over
 // values that track, birth and clutter are all weighed by, so that the weights of hypotheses stay
 // exact.

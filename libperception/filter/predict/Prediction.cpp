@@ -63,7 +63,7 @@ void beginTrack(Stamp to, const FilterModel& model, Track& next, std::vector<Gau
   if (next.body_heading) next.body_heading->variance += model.params.body_heading_walk * dt;
 }
 
-/// What moves one Gaussian, as planes of a MotionBatch.
+/// Coefficients of a Gaussian's F and Q (method.md (4) and (7)), as planes of a MotionBatch.
 void putMotion(const GaussianStep& s, const SpeedNoise& n, std::size_t i, MotionBatch& motion) {
   motion[MotionBatch::kDecay][i] = n.decay;
   motion[MotionBatch::kEffectiveDt][i] = n.effective_dt;

@@ -10,7 +10,7 @@ namespace perception {
 /// (method.md 5.1, 5.7).
 Track predictTrack(const Track& track, Stamp to, const FilterModel& model);
 
-/// What a later time makes of the existence and the classes of a track.
+/// Existence and class probabilities of a track predicted to a later time.
 struct TrackOdds {
   double existence = 0;
   std::vector<double> log_class;
@@ -19,8 +19,7 @@ struct TrackOdds {
 double predictExistence(const Track& track, Stamp to, const FilterModel& model);
 TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model);
 
-/// [s] in which the existence falls below what is kept (existence_min), if no sensor sees the
-/// track.
+/// [s] in which the existence falls below existence_min without detections.
 double timeToLive(const Track& track, const FilterModel& model);
 
 /// predictTrack() for those tracks that are `touched`, their Gaussians in batches (see BankBatch);

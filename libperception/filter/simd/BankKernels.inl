@@ -80,6 +80,7 @@ struct Lanes {
   }
 };
 
+/// [x, y, vx, vy], method.md 3.1: k, tau and Q by eq. (4), method.md (4), are in the planes of `m`.
 void predictConstantVelocity(Count n, Count s, const double* m, double* bank) {
   for (Count i = 0; i < n; i += kLanes) {
     Lanes b(bank + i, s);
@@ -106,6 +107,7 @@ void predictConstantVelocity(Count n, Count s, const double* m, double* bank) {
   }
 }
 
+/// [x, y, v, theta]: F by method.md (6), Q by method.md (7).
 void predictWheeled(Count n, Count s, const double* m, double* bank) {
   for (Count i = 0; i < n; i += kLanes) {
     Lanes q(bank + i, s);
@@ -141,8 +143,8 @@ void predictWheeled(Count n, Count s, const double* m, double* bank) {
   }
 }
 
-/// [x, y, v, theta] by the moments of an uncertain heading: predictUncertainHeading() of
-/// MotionModel.cpp, where they are derived, written out.
+/// [x, y, v, theta] by the moments of an uncertain heading, method.md (8), with Q of method.md (7):
+/// predictUncertainHeading() of MotionModel.cpp in vectors.
 void predictMoments(Count n, Count s, const double* m, double* bank) {
   for (Count i = 0; i < n; i += kLanes) {
     Lanes q(bank + i, s);

@@ -9,8 +9,8 @@ namespace perception {
 
 /// How a hypothesis chooses the causes of a scan's measurements. [run] association.
 enum class Proposal {
-  kSampled,  ///< drawn measurement by measurement from the exact conditional (the paper's optimal
-             ///< proposal, method.md 5.4)
+  kSampled,  ///< drawn measurement by measurement from the exact conditional ([radecki2016]'s
+             ///< optimal proposal, method.md 5.4)
   kRanked,   ///< the likeliest assignments of every hypothesis (method.md 6)
   kNearest,  ///< the likeliest assignment of one hypothesis: global nearest neighbor, a baseline
 };
