@@ -40,8 +40,8 @@ struct FilterParams {
   /// of a partly occluded car may be wrongly taken as complete; 0.5 for boxes of detectors whose
   /// labels are not informative.
   double side_exponent = 0;
-  /// Standard deviation of the tail of the speed prior beyond max_speed, as a share of max_speed;
-  /// 0: no limit (assumed).
+  /// Standard deviation of the tail of the speed prior beyond a class's max_speed, as a share of
+  /// max_speed; 0: no limit (assumed).
   double speed_slack = 0.2;
   /// [m/s] of newborn moving objects, at most half of the class's max_speed (method.md 3.4).
   double start_speed_sigma = 5;

@@ -3,12 +3,11 @@
 
 namespace perception {
 
-/// A class filter after its object's measurement (method.md 4): the Gaussians of all modes, their
-/// probabilities, and the extent. Left alone where S is no covariance.
+/// Kalman update of a class filter (method.md 4): Gaussians and probabilities of all modes, and
+/// extent. No change where S is not positive definite.
 void kalmanUpdate(const Innovation& innovation, ClassFilter& f);
 
-/// The same of a filter of one Gaussian and a measurement of its place alone; `noise` [m^2] is the
-/// model's own.
+/// The same for a filter of one Gaussian and a position-only measurement; `noise` [m^2]: R_model.
 void placeUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f);
 
 }  // namespace perception
