@@ -23,7 +23,7 @@ StudyTable noiseTable(const GpsExperiment& e) {
   t.name = "process_noise";
   t.title =
       "Process noises by maximum likelihood (mean over left-out users; variances in (m/s^2)^2, "
-      "standard deviations in deg/s) beside the paper's";
+      "standard deviations in deg/s) beside those of Radecki et al.";
   t.columns = {"class", "acceleration", "paper", "rotation", "paper"};
   for (std::size_t m = 0; m < kModes; ++m) {
     double accel = 0, rotation = 0;
@@ -89,9 +89,10 @@ StudyReport gpsStudy(const GpsParams& params) {
       "judged by models of the others, seed {}; R = [{:.2f} {:.2f}; {:.2f} {:.2f}] m^2{}",
       e.tracks.size(), e.users.size(), std::filesystem::path(params.folder).filename().string(),
       params.draws, params.sections, params.section, params.seed, e.R(0, 0), e.R(0, 1), e.R(1, 0),
-      e.R(1, 1), params.stationary.empty() ? " (the paper's receiver)" : " (receiver at rest)");
+      e.R(1, 1),
+      params.stationary.empty() ? " (receiver of Radecki et al.)" : " (receiver at rest)");
   const std::vector<std::pair<std::string, GpsResult>> results = {
-      {"chi-square (paper's rule)", runGps(e, params, GpsRule::kChi2)},
+      {"chi-square (rule of Radecki et al.)", runGps(e, params, GpsRule::kChi2)},
       {"sequential likelihood", runGps(e, params, GpsRule::kSequential)},
       {"speed regimes", runGps(e, params, GpsRule::kRegimes)}};
   StudyTable summary;
@@ -100,7 +101,7 @@ StudyReport gpsStudy(const GpsParams& params) {
   summary.columns = {"rule"};
   for (const auto& mode : gpsModes()) summary.columns.push_back(mode);
   summary.columns.push_back("balanced (deviation over draws)");
-  std::vector<std::string> published{"published in the paper (other data)"};
+  std::vector<std::string> published{"Radecki et al. (other data)"};
   for (const auto& p : kPaper) published.push_back(fmt::format("{:.2f}", p.percent / 100));
   published.push_back("");
   summary.rows.push_back(published);
@@ -111,7 +112,7 @@ StudyReport gpsStudy(const GpsParams& params) {
     summary.rows.push_back(row);
   }
   report.tables = {summary, noiseTable(e),
-                   confusionTable(results[0].second, "confusion_chi2", "The paper's rule"),
+                   confusionTable(results[0].second, "confusion_chi2", "Rule of Radecki et al."),
                    confusionTable(results[2].second, "confusion_regimes", "Speed regimes")};
   report.plots = {accuracyPlot(results)};
   const auto& c = results[2].second.confusion;

@@ -17,8 +17,8 @@ struct GpsParams {
   int section = 50;        ///< fixes a section
   int sections = 100;      ///< drawn a class
   int draws = 20;
-  double least_step = 0.25;         ///< [m] sections that move less on average are left out (paper)
-  double pedestrian_recall = 0.97;  ///< of held-out training users, sets what favours pedestrians
+  double least_step = 0.25;  ///< [m] sections that move less on average are excluded [radecki2016]
+  double pedestrian_recall = 0.97;  ///< of held-out training users, sets the pedestrian bias
   std::uint64_t seed = 1;
 };
 

@@ -82,8 +82,9 @@ StudyTable countTable(const std::vector<Method>& methods, const std::vector<Coun
   StudyTable table;
   table.name = "counts";
   table.title =
-      "Errors in the number of objects; paper: all objects with DUC's tracker, all / classified "
-      "with classification, on its own drive";
+      "Errors in the number of objects; Radecki et al.: all objects with DUC's tracker, all / "
+      "classified "
+      "with classification, on their own drive";
   table.columns = {"configuration, particles", "paper", "rms of all",      "rms of classified",
                    "rms against truth",        "bias",  "things not held", "mean of all",
                    "mean of classified",       "cars",  "persons"};
@@ -102,7 +103,7 @@ StudyTable trackingTable(const std::vector<Method>& methods, const std::vector<C
                          double cutoff) {
   StudyTable table;
   table.name = "tracking";
-  table.title = "Tracking against the truth, columns as in the paper";
+  table.title = "Tracking against the truth, columns as in Radecki et al.";
   table.columns = {"configuration, particles",
                    "Object Tracked",
                    "Range Error (m)",
@@ -124,7 +125,7 @@ StudyTable trackingTable(const std::vector<Method>& methods, const std::vector<C
   }
   for (const PaperTrackingRow& row : paperTrackingRows()) {
     if (row.table != std::string("particles")) continue;
-    table.rows.push_back({fmt::format("paper, {} (its encounters)", row.condition),
+    table.rows.push_back({fmt::format("Radecki et al., {} (their encounters)", row.condition),
                           number(row.tracked, 3), number(row.range, 3), number(row.bearing, 3),
                           number(row.correct, 3), number(row.mis, 3),
                           fmt::format("{}", row.returns), "", ""});
@@ -189,7 +190,7 @@ StudyPlot errorPlot(const std::vector<Method>& methods, const std::vector<Counte
   plot.name = "errors";
   plot.caption =
       "Rms error in the number of objects against 50 particles, by number of particles; open "
-      "symbols and dashes: the paper, on its own drive.";
+      "symbols and dashes: Radecki et al., on their own drive.";
   std::string duc, joint, paper;
   for (std::size_t i = 0; i < methods.size(); ++i) {
     if (!methods[i].in_curves) continue;
@@ -215,10 +216,11 @@ StudyPlot errorPlot(const std::vector<Method>& methods, const std::vector<Counte
   plot.script += fmt::format(
       "'errors_joint.dat' using 1:2 with linespoints lw 2 pt 5 lc rgb '{0}' title 'joint', "
       "'' using 1:3 with linespoints lw 2 pt 9 lc rgb '{1}' title 'joint, classified', "
-      "'errors_paper.dat' using 1:2 with linespoints dt 2 pt 6 lc rgb '{2}' title 'paper: "
+      "'errors_paper.dat' using 1:2 with linespoints dt 2 pt 6 lc rgb '{2}' title 'Radecki et al.: "
       "DUC', "
-      "'' using 1:3 with linespoints dt 2 pt 4 lc rgb '{0}' title 'paper: joint', "
-      "'' using 1:4 with linespoints dt 2 pt 8 lc rgb '{1}' title 'paper: joint, classified'\n",
+      "'' using 1:3 with linespoints dt 2 pt 4 lc rgb '{0}' title 'Radecki et al.: joint', "
+      "'' using 1:4 with linespoints dt 2 pt 8 lc rgb '{1}' title 'Radecki et al.: joint, "
+      "classified'\n",
       kBlue, kGreen, kVermilion);
   return plot;
 }
@@ -285,7 +287,7 @@ StudyReport logParticlesStudy(const LogParticlesParams& params, const RecordedLo
                   params.reference),
       "The rows with DUC's births and with ranked assignments have the joint configuration's "
       "reference.",
-      "Classified: a class of road users with 95 % or more. The paper classified cars and "
+      "Classified: a class of road users with 95 % or more. Radecki et al. classified cars and "
       "pedestrians alone; what is left over was unclassified there and is static-other here."};
   if (truth) {
     report.remarks.push_back(

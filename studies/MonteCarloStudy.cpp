@@ -100,8 +100,9 @@ StudyPlot traces(const MonteCarloResult& r) {
   StudyPlot plot;
   plot.name = "traces";
   plot.caption =
-      "Mean normalized innovation squared of each simulated track in both filters, as the paper's "
-      "figure: above for tracks of cyclists, below for tracks of pedestrians. Dashed: 1.986, the "
+      "Mean normalized innovation squared of each simulated track in both filters, as in the "
+      "figure of Radecki et al.: above for tracks of cyclists, below for tracks of pedestrians. "
+      "Dashed: 1.986, the "
       "median for the right filter.";
   std::string data[2];
   for (const int kind : {kCyclist, kPedestrian}) {
@@ -209,13 +210,14 @@ StudyReport monteCarloStudy(MonteCarloParams params) {
   const auto drawn = runMonteCarlo(params);
   report.tables = {
       comparison(fixed, "fixed_noise",
-                 "Measurement noise [1.2 .1; .1 1.2] m^2, the paper's receiver"),
+                 "Measurement noise [1.2 .1; .1 1.2] m^2, receiver of Radecki et al."),
       comparison(drawn, "noise_per_track",
                  "Measurement sigma drawn per track from U(.5, 1.7) m and known to the filters"),
       countsTable(fixed)};
   report.plots = {traces(fixed)};
   report.remarks = {
-      "The paper's table is one experiment of 100 tracks a class; its numbers should lie within "
+      "The table of Radecki et al. is one experiment of 100 tracks a class; its numbers should lie "
+      "within "
       "two or three deviations of the mean.",
       "The first innovation is zero, since the first measurement starts the filters: the mean NIS "
       "of the right filter is below 2.",

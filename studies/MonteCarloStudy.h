@@ -7,8 +7,8 @@
 
 namespace perception {
 
-/// The paper's simulation of a walker and a cyclist told apart by their filters' innovations
-/// (method.md 4.5).
+/// The simulation of [radecki2016] in which pedestrians and cyclists are classified by the
+/// innovations of their filters (method.md 4.5).
 struct MonteCarloParams {
   int repeats = 100;     ///< experiments ...
   int iterations = 100;  ///< ... of so many tracks a class ([radecki2016]: one of 100)

@@ -7,8 +7,9 @@
 
 namespace perception {
 
-/// The paper's class filters at a fixed step: Euler integration, noise in the speed and heading
-/// alone, both started from the first measurement with the velocity towards the second.
+/// The class filters of [radecki2016] at a fixed step: Euler integration, process noise in speed
+/// and heading only, both initialized from the first measurement with the velocity towards the
+/// second.
 struct PaperClass {
   bool wheeled = false;                 ///< else walking: constant velocity
   double accel_sigma = 0.2;             ///< [m/s^2] standard deviation per step (method.md 3.3)

@@ -143,7 +143,8 @@ StudyReport particlesStudy(const ParticlesParams& params) {
   StudyTable table;
   table.name = "counts";
   table.title =
-      "Errors in the number of objects; paper: DUC's births, or all / classified, on its "
+      "Errors in the number of objects; Radecki et al.: DUC's births, or all / classified, on "
+      "their "
       "own drive";
   table.columns = {
       "method",    "paper",      "rms against 50 particles", "classified", "rms against truth",
@@ -180,7 +181,7 @@ StudyReport particlesStudy(const ParticlesParams& params) {
   report.plots.push_back(cdfPlot("cdf_eight", "Eight particles", at_eight));
   report.tables = {table};
   report.remarks = {
-      "50 particles against 50 of another seed is the noise of the paper's measure: no method can "
+      "50 particles against 50 of another seed is the noise of this measure: no method can "
       "be told from the reference below it.",
       "The reference of the ranked rows is the joint filter with 50 sampled particles.",
       "Truth counts what stands in the field of view, seen or not."};

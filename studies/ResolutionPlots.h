@@ -23,7 +23,7 @@ double rangeOf(const CameraResolution& row, int kind);
 
 /// Recall over the range, a curve a resolution; `where`: the logs, for titles.
 StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::string& where);
-/// Ours and the paper's of a table of rates, side by side.
+/// A table of rates and that of [radecki2016], side by side.
 StudyPlot ratePlot(const StudyTable& table, const std::string& what, const std::string& where);
 
 }  // namespace perception

@@ -28,7 +28,7 @@ bool showsCamera(const ResolutionRun& run) { return run.resolution >= 0 && !run.
 StudyTable resolutionTable(const std::vector<CameraFigures>& cameras) {
   StudyTable t;
   t.name = "resolutions";
-  t.title = "Camera processing by resolution; ranges of the paper and measured";
+  t.title = "Camera processing by resolution; ranges of Radecki et al. and measured";
   t.columns = {"resolution",
                "panorama",
                "tile",
@@ -75,7 +75,7 @@ StudyTable recallTable(const std::vector<CameraFigures>& cameras,
   }
   if (lidar) add("L", *lidar);
   for (const PaperFrontEndRow& row : paperFrontEndRows()) {
-    t.rows.push_back({fmt::format("paper: {}, {}", row.sensor, row.condition),
+    t.rows.push_back({fmt::format("Radecki et al.: {}, {}", row.sensor, row.condition),
                       places(row.car_recall, 2), "", places(row.car_precision, 2),
                       places(row.person_recall, 2), "", places(row.person_precision, 2)});
   }
@@ -151,7 +151,7 @@ StudyTable detectionTable(const std::vector<CameraFigures>& cameras,
                           const std::optional<DetectionCounts>& lidar) {
   StudyTable t;
   t.name = "detection_rate";
-  t.title = "Detections a sensor return, beside the paper's drive";
+  t.title = "Detections per sensor return, and those of Radecki et al. on their drive";
   t.columns = {"sensors", "objects", "cars", "persons", "paper: objects", "cars", "persons"};
   const auto add = [&](const std::string& name, const DetectionCounts& d) {
     addRates(t, name, {d.mean(), d.mean(0), d.mean(1)}, false);
@@ -164,7 +164,9 @@ StudyTable detectionTable(const std::vector<CameraFigures>& cameras,
 StudyTable trackingTable(const ResolutionData& data) {
   StudyTable t;
   t.name = "tracking_rate";
-  t.title = "Objects tracked on average, classified as cars and persons, beside the paper's drive";
+  t.title =
+      "Objects tracked on average, classified as cars and persons, and those of Radecki et al. on "
+      "their drive";
   t.columns = {"sensors", "objects", "cars", "persons", "paper: objects", "cars", "persons"};
   if (data.truth)
     t.columns.insert(t.columns.end(),
@@ -225,11 +227,13 @@ StudyReport resolutionReport(const ResolutionData& data) {
     }
     report.remarks.push_back(
         "Recall: of objects of which three quarters are visible, found by a box of the right kind. "
-        "Precision: share of boxes on a road user of their kind. The paper judged 300 detections "
+        "Precision: share of boxes on a road user of their kind. Radecki et al. judged 300 "
+        "detections "
         "by hand.");
   }
   report.remarks.push_back(
-      "The paper's rates are of its own drive: what can be compared is how they grow from row to "
+      "Radecki et al.'s rates are of their own drive: what can be compared is how they grow from "
+      "row to "
       "row.");
   return report;
 }

@@ -119,7 +119,7 @@ ResolutionData simulated(const ResolutionOptions& options) {
   data.runs = streams.finish();
   data.truth = byInstant(simulator.truth());
   data.remarks = {
-      "The simulated camera's detector has the paper's ranges, recall and false boxes built in: "
+      "The simulated camera's detector has the ranges, recall and false boxes of Radecki et al.: "
       "the first two tables show that filter and front end keep them, not that a detector has "
       "them."};
   return data;

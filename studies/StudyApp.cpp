@@ -92,7 +92,7 @@ const Study kStudies[] = {
      true},
     {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
      [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, false, true},
-    {"resolution", "what a panorama's resolution is worth: the paper's tables of its camera",
+    {"resolution", "effect of a panorama's resolution: the camera tables of Radecki et al.",
      [](StudyApp& app) {
        app.resolution.seed = app.seed;
        return resolutionStudy(app.resolution);
@@ -162,7 +162,8 @@ void StudyApp::declareLog(CLI::App& sub) {
   sub.add_option("--duc", duc_config, "INI of the tracker without classification, for --log");
   sub.add_option("--set", settings, "section.key=value: overrides both INIs");
   sub.add_option("-t,--truth", truth_file, "Truth of the log");
-  sub.add_option("--counts", counts, "Numbers of particles, for --log (else the paper's)")
+  sub.add_option("--counts", counts,
+                 "Numbers of particles, for --log (else those of Radecki et al.)")
       ->delimiter(',')
       ->check(CLI::Range(1, 100000));
   sub.add_option("--seconds", seconds, "Of the log; 0 = all")->check(CLI::Range(0.0, 1e6));

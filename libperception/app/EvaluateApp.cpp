@@ -20,7 +20,7 @@ namespace perception {
 namespace fs = std::filesystem;
 
 std::string EvaluateApp::description() const {
-  return "Holds tracked runs against the truth of their log: the paper's table, GOSPA, false "
+  return "Compares tracked runs with the truth of their log: table of Radecki et al., GOSPA, false "
          "objects, calibration, front ends, plots; several runs side by side or pooled.";
 }
 
@@ -48,9 +48,9 @@ void EvaluateApp::declareInputs(CLI::App& cli) {
                  "recall and precision of the sensor of this label, or of all of a pattern "
                  "('RADAR_*'); for runs with --measurements")
       ->type_name("LABEL");
-  cli.add_option(
-         "--paper", paper,
-         fmt::format("rows of the paper beside ours: {}", fmt::join(paperTableNames(), ", ")))
+  cli.add_option("--paper", paper,
+                 fmt::format("rows of Radecki et al. to list for comparison: {}",
+                             fmt::join(paperTableNames(), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
 }

@@ -60,7 +60,9 @@ bool hasFurtherLabels(const FrontEndEvaluation& f) {
 Row summaryRow(const Named& named, bool primary) {
   const FrontEndEvaluation& f = *named.front_end;
   const bool two = hasFurtherLabels(f);
-  Row row = {named.run, f.name + (!two ? "" : primary ? ", the paper's labels" : ", all labels")};
+  Row row = {named.run, f.name + (!two      ? ""
+                                  : primary ? ", labels of Radecki et al."
+                                            : ", all labels")};
   for (const bool person : {false, true}) {
     const RecallCounts r =
         f.recall({person ? std::string("pedestrian") : std::string("car")}, true);
@@ -92,13 +94,13 @@ ReportTable summaryTable(const std::vector<Named>& all, const EvaluationReport& 
       "sized is n/a of cameras and where the truth does not hold what stands around (walls are in "
       "no truth: a "
       "measurement on one is wrong at both levels).",
-      "The paper's sized figures are those of its text; its recall is over the sensor's range."};
+      "Radecki et al.: sized precision as in their text; recall over the sensor's range."};
   for (const Named& named : all) {
     table.rows.push_back(summaryRow(named, true));
     if (hasFurtherLabels(*named.front_end)) table.rows.push_back(summaryRow(named, false));
   }
   for (const PaperFrontEndRow& p : paperFrontEndRows()) {
-    table.rows.push_back({"paper", fmt::format("{}, {}", p.sensor, p.condition), "",
+    table.rows.push_back({"Radecki et al.", fmt::format("{}, {}", p.sensor, p.condition), "",
                           percent(p.car_recall), percent(p.car_size_precision),
                           percent(p.car_precision), "", percent(p.person_recall),
                           percent(p.person_size_precision), percent(p.person_precision)});

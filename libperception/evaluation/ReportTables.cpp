@@ -25,7 +25,7 @@ std::vector<ClassId> classesWithTruth(const Evaluation& evaluation) {
 // [radecki2016]'s rows, in the columns of paperTable().
 void addPaperRows(const EvaluationReport& report, ReportTable& table) {
   for (const PaperTrackingRow& row : report.paper) {
-    table.rows.push_back({fmt::format("paper: {}, {}", row.sensors, row.condition), "all",
+    table.rows.push_back({fmt::format("Radecki et al.: {}, {}", row.sensors, row.condition), "all",
                           fixedPlaces(row.tracked, 3), fixedPlaces(row.range, 3),
                           fixedPlaces(row.bearing, 3), fixedPlaces(row.correct, 3),
                           fixedPlaces(row.mis, 3), fmt::format("{}", row.returns)});
@@ -34,7 +34,7 @@ void addPaperRows(const EvaluationReport& report, ReportTable& table) {
 
 ReportTable paperTable(const EvaluationReport& report) {
   ReportTable table =
-      makeTable("Results, columns as in the paper", {"Run", "Class"},
+      makeTable("Results, columns as in Radecki et al.", {"Run", "Class"},
                 {"Object Tracked", "Range Error (m)", "Bearing Error (rad)",
                  "Correct Classification", "Mis-Classification", "Number of Returns"});
   table.notes = {

@@ -215,14 +215,14 @@ void drawComparison(const EvaluationReport& report, PlotScript& script) {
                800);
   script.add(fmt::format(
       "set multiplot layout 2,3 title 'Runs side by side: pooled instants; lines: lowest and "
-      "highest trial; squares: the paper' noenhanced font ',14'\n"
+      "highest trial; squares: Radecki et al.' noenhanced font ',14'\n"
       "set style fill solid 0.8 noborder\nset boxwidth 0.6\nunset key\nset grid noxtics\n"
       "set xrange [-0.6:{:.1f}]\nset xtics noenhanced rotate by 30 right ({})\n"
       "set bmargin 6\n",
       static_cast<double>(report.runs.size()) - 0.4, tics));
   for (std::size_t f = 0; f < std::size(kCompared); ++f) {
     const Compared& compared = kCompared[f];
-    std::string bars = "# place, value, lowest, highest of the trials, the paper's\n";
+    std::string bars = "# place, value, lowest, highest of the trials, [radecki2016]\n";
     double top = 0;
     bool in_paper = false;
     for (std::size_t r = 0; r < report.runs.size(); ++r) {

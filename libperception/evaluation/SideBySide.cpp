@@ -103,7 +103,7 @@ ReportTable sideBySideTable(const EvaluationReport& report) {
     trials = trials || !run.trials.empty();
   }
   for (const PaperTrackingRow& row : report.paper)
-    table.header.push_back(fmt::format("paper: {}, {}", row.sensors, row.condition));
+    table.header.push_back(fmt::format("Radecki et al.: {}, {}", row.sensors, row.condition));
   for (const FigureRow& row : kRows) {
     std::vector<std::string> cells = {row.name};
     for (const EvaluatedRun& run : report.runs) cells.push_back(cellOf(run, row, report.options));
@@ -114,11 +114,12 @@ ReportTable sideBySideTable(const EvaluationReport& report) {
     table.rows.push_back(std::move(cells));
   }
   table.notes = {
-      "Closest matching as in the paper down to Number of Returns, one-to-one below. The "
+      "Closest matching as in Radecki et al. down to Number of Returns, one-to-one below. The "
       "sensors' range: all with lidar, else 15 m, persons 10 m."};
   if (trials) {
     table.notes.push_back(
-        "Of all trials' instants taken together, as the paper does; in brackets mean +- standard "
+        "Of all trials' instants taken together, as in Radecki et al.; in brackets mean +- "
+        "standard "
         "deviation over the trials; lowest..highest trial.");
   }
   return table;

@@ -19,11 +19,11 @@ void ParticleFilterParams::visit(ParamVisitor& v) {
   v.choice(
       "PF_algorithm", pf_algorithm,
       {"pfStandardProposal", "pfAuxiliaryPFStandard", "pfOptimalProposal", "pfAuxiliaryPFOptimal"},
-      "MRPT's name; pfOptimalProposal is the one that this filter implements");
+      "MRPT's name; this filter implements pfOptimalProposal only");
   v.require(pf_algorithm == 2, "PF_algorithm: this filter implements pfOptimalProposal only");
   v.choice("resamplingMethod", resampling_method,
            {"prMultinomial", "prResidual", "prStratified", "prSystematic"}, "MRPT's name");
-  v.real("BETA", beta, {0, 1}, "", "resample when the effective share of particles falls below it");
+  v.real("BETA", beta, {0, 1}, "", "resample when ESS / sampleSize falls below it");
   v.integer("sampleSize", sample_size, {1, 65536}, "number of particles");
 }
 

@@ -102,16 +102,17 @@ void DetectionParams::visit(ParamVisitor& v) {
          "tempers detections and misses in the class update");
   std::vector<std::string> resolutions = cameraResolutionNames();
   resolutions.insert(resolutions.begin(), "none");
-  v.choice("resolution", resolution, resolutions,
-           "panoramas of the paper's detector (kind = boxes): sets range_max, clutter_per_scan, "
-           "births_per_scan and the ranges of all classes, over the keys for these");
+  v.choice(
+      "resolution", resolution, resolutions,
+      "panoramas of [radecki2016]'s detector (kind = boxes): sets range_max, clutter_per_scan, "
+      "births_per_scan and the ranges of all classes, over the keys for these");
   v.require(resolution == 0 || kind == "boxes", "resolution: of cameras, kind = boxes");
   applyResolution();
   v.table("clutter_label.", clutter_labels, {0, 1}, "",
           "P(label | clutter); labels not named share the rest");
   v.table(
       "precision.", precision, {0.5, 1}, "",
-      "the paper's mode: P(label | its class) = precision, else 1 - precision; one key a label");
+      "as in [radecki2016]: P(label | its class) = precision, else 1 - precision; one key a label");
   v.expert();
   std::vector<double> numbers;
   if (pose) {

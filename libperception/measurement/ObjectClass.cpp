@@ -15,7 +15,7 @@ void visitMotion(ParamVisitor& v, const MotionModel*& motion) {
     if (&m == motion) index = static_cast<int>(names.size());
     names.push_back(m.name);
   }
-  v.choice("motion", index, names, "how it moves");
+  v.choice("motion", index, names, "motion model");
   motion = &models[static_cast<std::size_t>(index)];
 }
 
@@ -25,12 +25,12 @@ void ObjectClass::visit(ParamVisitor& v) {
   visitMotion(v, motion);
   v.real("accel_psd", accel_psd, {0, 100}, "m^2/s^3", "white acceleration, power spectral density");
   v.reals("mode_accel_psd", mode_accel_psd, -1, {0, 100}, "m^2/s^3",
-          "one a motion mode, in place of accel_psd; empty: a single model");
+          "one per motion mode, in place of accel_psd; empty: a single model");
   v.reals("mode_damping", mode_damping, -1, {0, 100}, "1/s",
-          "one a mode: at which the speed decays");
-  v.reals("mode_sojourn", mode_sojourn, -1, {0.01, 1e4}, "s", "one a mode: mean time in it");
+          "one per mode: decay rate of the speed");
+  v.reals("mode_sojourn", mode_sojourn, -1, {0.01, 1e4}, "s", "one per mode: mean time in it");
   v.require(mode_damping.size() == modes() && mode_sojourn.size() == modes() && modes() != 1,
-            "mode_accel_psd, mode_damping, mode_sojourn: expected one number a mode in each, two "
+            "mode_accel_psd, mode_damping, mode_sojourn: expected one number per mode in each, two "
             "modes or more");
   v.real("yaw_rate_psd", yaw_rate_psd, {0, 10}, "rad^2/s", "white yaw rate (wheeled)");
   v.real("position_psd", position_psd, {0, 10}, "m^2/s",
@@ -43,7 +43,9 @@ void ObjectClass::visit(ParamVisitor& v) {
   v.real("height_sigma", height_sigma, {0.001, 10}, "m", "spread of the height over objects");
   v.real("prior", prior, {1e-6, 1}, "", "share among newborn objects");
   v.real("max_speed", max_speed, {0, 100}, "m/s", "largest plausible speed");
-  v.boolean("reported", reported, "false: neither true nor false in an evaluation");
+  v.boolean("reported", reported,
+            "false: not a road user, but still in tracks.csv; the KITTI export and "
+            "perception-calibrate use it, perception-evaluate takes --unnamed instead");
   v.text("kitti_type", kitti_type, "type in KITTI exports");
 }
 

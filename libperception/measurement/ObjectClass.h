@@ -10,8 +10,7 @@ namespace perception {
 
 using ClassId = int;  ///< index into ClassTable
 
-/// One kind of object: [class.NAME] of classes.ini. Defaults are the paper's and those of
-/// method.md 2.2.
+/// One kind of object: [class.NAME] of classes.ini. Defaults: [radecki2016] and method.md 2.2.
 struct ObjectClass {
   std::string name;                                       ///< from the section's title
   const MotionModel* motion = findMotionModel("static");  ///< never null
@@ -31,7 +30,9 @@ struct ObjectClass {
   double prior = 0.2;       ///< share among newborn objects; normalized over the table
   double max_speed = 60;    ///< [m/s] plausible; bounds what a start may claim
   bool reported =
-      true;  ///< false: an object, but neither true nor false in an evaluation (static-other)
+      true;  ///< false: not a road user (static-other). Tracked and output as any object. KITTI
+             ///< export: see KittiSelection::road_user_from; perception-calibrate tempering adds
+             ///< its truth; perception-evaluate does not read it: EvaluationOptions::unnamed
   std::string kitti_type = "Misc";  ///< type written by the KITTI export
 
   std::size_t modes() const { return mode_accel_psd.size(); }  ///< 0: a single model

@@ -15,7 +15,7 @@ void LaneParams::visit(ParamVisitor& v) {
   v.real("forward", forward, {0.5, 0.999}, "",
          "share that faces the driving direction; .5: axis only");
   v.real("interval", interval, {0.01, 1e6}, "s",
-         "an object takes evidence from lanes at most so often");
+         "shortest time between two lane updates of an object");
 }
 
 void LanePrior::apply(const FilterModel& model, Track& track) const {
