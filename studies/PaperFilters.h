@@ -20,7 +20,7 @@ struct PaperClass {
 
 /// One filter's run over a track.
 struct FilterTrace {
-  std::vector<double> nis;          ///< by measurement; 0 for the first one, which starts it
+  std::vector<double> nis;          ///< by measurement; 0 for the first one, which initializes it
   std::vector<double> log_density;  ///< log N(y; S) by measurement
 };
 
@@ -28,7 +28,7 @@ struct FilterTrace {
 FilterTrace runPaperFilter(const PaperClass& object_class, const std::vector<Vector2>& z, double dt,
                            const Matrix2& R);
 
-/// A track of the class's own dynamics with measurements. `speed` [m/s] at the start.
+/// Simulated measurements of a track with the class's own dynamics. `speed` [m/s] at the start.
 std::vector<Vector2> simulatePaperTrack(const PaperClass& object_class, double speed, int steps,
                                         double dt, const Matrix2& R, Rng& rng);
 
