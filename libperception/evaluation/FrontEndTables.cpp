@@ -34,7 +34,7 @@ std::vector<Named> allOf(const EvaluationReport& report) {
   return all;
 }
 
-// Measurements of all labels that speak of this size, [radecki2016]'s labels alone or all.
+// Measurements of all labels of this size, of the labels of [radecki2016] or of all.
 PrecisionCounts precisionOf(const FrontEndEvaluation& f, LabelMeaning::Size size, bool primary) {
   PrecisionCounts sum;
   for (const auto& entry : f.labels) {

@@ -9,7 +9,7 @@
 namespace perception {
 namespace {
 
-// A row of the table: a figure of a run, and where [radecki2016] has it.
+// A row of the table: a metric and its value in [radecki2016].
 struct FigureRow {
   const char* name;
   int places;

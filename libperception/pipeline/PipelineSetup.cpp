@@ -20,7 +20,7 @@ struct SensorSet {
 
 std::string wideWord(const ModalityRow& m) { return std::string(1, letterOf(m.letter)) + "/H"; }
 
-/// "C, C/H, L, R": what a set is made of.
+/// "C, C/H, L, R": elements of a set.
 std::string sensorWords() {
   std::string words;
   for (const ModalityRow& m : modalities()) {
@@ -30,7 +30,7 @@ std::string sensorWords() {
   return words;
 }
 
-/// Empty when the text is anything but sensorWords() joined by +.
+/// Empty unless the text is sensorWords() joined by +.
 std::optional<SensorSet> readSensorSet(const std::string& text) {
   SensorSet set;
   for (std::size_t at = 0; at <= text.size();) {

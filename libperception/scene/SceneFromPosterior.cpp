@@ -13,11 +13,11 @@
 namespace perception {
 namespace {
 
-/// [m/s] an object without a heading of its own points where it goes once it goes this fast.
+/// [m/s] an object without a heading takes the direction of its velocity from this speed on.
 constexpr double kHeadingFromSpeed = 0.5;
 
-/// [s] up to which a track is predicted in one go; what the filter left behind for longer goes on
-/// from scene to scene.
+/// [s] longest single prediction of a track; predictions deferred for longer continue from the last
+/// scene.
 constexpr double kLongStep = 0.5;
 
 /// Mean and covariance of (x, y, vx, vy) over the classes (moment matching).

@@ -39,7 +39,7 @@ bool LanePrior::apply(const FilterModel& model, ClassFilter& f) const {
   if (places.empty()) return false;
   const double variance = params_.sigma * params_.sigma;
   if (!f.oriented) {
-    // What moves will show its heading itself; where lanes cross they say nothing.
+    // Moving objects are oriented by their velocity; crossing lanes are ambiguous.
     if (f.x.tail<2>().norm() >= model.params.orient_min_speed) return false;
     for (const auto& p : places) {
       if (std::abs(wrapAxis(p.direction - places[0].direction)) > params_.sigma) return false;
