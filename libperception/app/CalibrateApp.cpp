@@ -38,7 +38,7 @@ struct CalibrateApp::Task {
   const char* name;
   const char* description;
   StudyReport (CalibrateApp::*run)();
-  bool search = false;  ///< tracks again and again, in a sector where truth counts
+  bool search = false;  ///< repeats tracking; has options of the truth sector
 };
 
 const CalibrateApp::Task CalibrateApp::kTasks[] = {
@@ -96,7 +96,7 @@ StudyReport CalibrateApp::tempering() {
   TemperingParams params;
   params.seed = seed;
   if (rounds > 0) params.rounds = rounds;
-  params.evaluation.selection.min_points = 5;  // posts are thin
+  params.evaluation.selection.min_points = 5;  // posts have few returns
   params.evaluation.selection.range = truth_range;
   params.evaluation.selection.fov = radians(truth_fov);
   std::vector<TemperingLog> logs;

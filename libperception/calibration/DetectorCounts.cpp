@@ -16,7 +16,7 @@ namespace {
 constexpr double kWider = 4;                  // [-] of the stated deviations: a match, not a gate
 constexpr double kFarthest = 9.0;             // [-] normalized distance at those, three deviations
 constexpr double kAbout = 2;                  // [m] of a labeled object: no clutter
-constexpr double kLag = 1, kLagSlack = 0.06;  // [s] at which errors are said to be repeated
+constexpr double kLag = 1, kLagSlack = 0.06;  // [s] lag of the error correlation
 constexpr int kSeenAtMost = 2;                // KITTI's occlusion: 3 is unknown
 
 /// A labeled object in a sensor's view.
@@ -36,7 +36,7 @@ Kinematics kinematicsOf(const TruthObject& o) {
   return k;
 }
 
-/// Labeled objects of the model's classes, with what the sensor should measure of each.
+/// Labeled objects of the model's classes, with the predicted measurement of each.
 std::vector<Candidate> candidates(const MeasurementScan& scan, const GroundTruth::Instant& instant,
                                   const std::vector<std::string>& classes) {
   std::vector<Candidate> out;

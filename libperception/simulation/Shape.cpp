@@ -22,7 +22,7 @@ void addWheels(Mesh& mesh, double front, double rear, double half_width, double 
   }
 }
 
-// A saloon: body with bonnet and boot, glass all around the cabin.
+// A sedan: body with hood and trunk, glass all around the cabin.
 Mesh carMesh(double l, double w, double h) {
   Mesh mesh;
   const double belt = 0.60 * h;
@@ -146,7 +146,7 @@ Mesh bushMesh(const ObjectParams& o) {
   const double per_area = 2.5;        // tufts' area over the ellipsoid's mean section
   const auto count = static_cast<std::uint32_t>(per_area * kPi / 4 * std::max(o.length, o.width) *
                                                 o.height / (kLeafSide * kLeafSide));
-  std::uint64_t seed = 1469598103934665603ull;  // FNV-1a: the name picks the bush, not the run
+  std::uint64_t seed = 1469598103934665603ull;  // FNV-1a of the name: the same bush in every run
   for (const char c : o.name) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211ull;
   for (std::uint32_t i = 0; i < std::min(count, 4000u); ++i) {
     Rng rng({seed, 0, i, kLeafStream});
