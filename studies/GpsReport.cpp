@@ -15,7 +15,7 @@ constexpr std::size_t kModes = 4;
 struct Published {
   double accel, rotation_deg, percent;
 };
-/// [radecki2016]'s tables of process noises and of classification rates.
+/// Tables of process noises and of classification rates in [radecki2016].
 constexpr Published kPaper[kModes] = {{0.04, 0, 100}, {0.31, 15, 50}, {0.6, 15, 99}, {0.4, 15, 99}};
 
 StudyTable noiseTable(const GpsExperiment& e) {

@@ -11,7 +11,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-// A table with a row a condition: labels, method, and what `fill` adds.
+// A table with one row per condition: labels, method and the columns of `fill`.
 StudyTable conditionsTable(const char* name, const char* title, const Row& figures,
                            const std::vector<LabelCondition>& conditions,
                            const std::function<void(const LabelCondition&, Row&)>& fill) {

@@ -22,7 +22,7 @@ struct Method {
   const RecordedLog* log;
   ReplayMethod replay;
   std::string note;           // behind the number of particles
-  std::size_t reference = 0;  // its reference's place among the methods
+  std::size_t reference = 0;  // index of its reference among the methods
   bool in_curves = false;     // one of [radecki2016]'s counts
 
   std::string label() const { return fmt::format("{}, {}{}", family, replay.particles, note); }
@@ -255,7 +255,7 @@ StudyReport logParticlesStudy(const LogParticlesParams& params, const RecordedLo
                               const RecordedLog* duc, const GroundTruth* truth) {
   const std::vector<Method> methods = methodsOf(params, joint, duc);
   std::vector<CountedRun> runs(methods.size());
-  // The longest first: they are what the others would have to be waited for.
+  // Longest runs first, to balance the threads.
   std::vector<std::size_t> order(methods.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -20,7 +20,7 @@ constexpr int kCounts[] = {1, 4, 8, 12, 16, 20};
 constexpr int kReference = 50;
 constexpr std::size_t kLargestError = 12;  // objects, of the plot
 
-/// As in a Python prototype: clutter four times, detections 85 %, noise twice, close ones merge.
+/// Difficult conditions: clutter x 4, P_D x .85, noise x 2, close objects merge.
 const EncounterConditions kBusy{0.85, 4, 2, 0.7};
 
 FilterModel modelOf(const ParticlesMethod& method) {

@@ -22,7 +22,7 @@ std::string places(const std::optional<double>& value, int n) {
   return value ? fmt::format("{:.{}f}", *value, n) : "n/a";
 }
 
-/// The camera with radar alone (or alone): the run that a resolution's detections are taken from.
+/// The run C+R (or C) from which the detections of a resolution are taken.
 bool showsCamera(const ResolutionRun& run) { return run.resolution >= 0 && !run.lidar; }
 
 StudyTable resolutionTable(const std::vector<CameraFigures>& cameras) {
@@ -101,7 +101,7 @@ StudyTable byRangeTable(const std::vector<CameraFigures>& cameras) {
   return t;
 }
 
-/// How far recall (normalized by range) differs between the resolutions, in its own errors.
+/// Difference of the range-normalized recall between resolutions, in standard errors.
 std::string independence(const std::vector<CameraFigures>& cameras, int kind) {
   double low = 1, high = 0, worst = 0, right = 0, all = 0;
   int n = 0;

@@ -40,7 +40,7 @@ struct Study {
 };
 
 const Study kStudies[] = {
-    {"monte-carlo", "walkers and cyclists told apart by their filters' innovations (simulated)",
+    {"monte-carlo", "pedestrians and cyclists classified by filter innovations (simulated)",
      [](StudyApp& app) {
        MonteCarloParams p;
        p.seed = app.seed;
@@ -53,7 +53,7 @@ const Study kStudies[] = {
        if (app.runs > 0) p.seeds = app.runs;
        return associationStudy(p);
      }},
-    {"particles", "numbers of objects by particles and births, in a simulated street or a rawlog",
+    {"particles", "number of objects by particles and birth model, simulated street or a rawlog",
      [](StudyApp& app) {
        if (!app.log.empty()) return app.particlesOfLog();
        ParticlesParams p;
@@ -61,14 +61,14 @@ const Study kStudies[] = {
        return particlesStudy(p);
      },
      false, true},
-    {"heading", "headings that confuse front and back (simulated)",
+    {"heading", "reversed headings (simulated)",
      [](StudyApp& app) {
        HeadingParams p;
        p.seed = app.seed;
        if (app.runs > 0) p.runs = app.runs;
        return headingStudy(p);
      }},
-    {"ego", "the vehicle's own pose from satellites, inertial unit and wheels (simulated)",
+    {"ego", "ego pose from GNSS, IMU and wheels (simulated)",
      [](StudyApp& app) {
        EgoStudyParams p;
        Config config = Config::fromFile(app.scenario);
@@ -80,7 +80,7 @@ const Study kStudies[] = {
        return egoStudy(p);
      },
      false, false, true},
-    {"gps", "travel modes told apart by positions once a second (recordings)",
+    {"gps", "travel modes classified from positions at 1 Hz (recordings)",
      [](StudyApp& app) {
        GpsParams p;
        p.seed = app.seed;
@@ -119,7 +119,7 @@ GroundTruth truthBeside(const std::string& log) {
 }  // namespace
 
 std::string StudyApp::description() const {
-  return "Experiments about the method: each writes a report with tables and plots.";
+  return "Experiments on the method: each writes a report with tables and plots.";
 }
 
 void StudyApp::declare(CLI::App& cli) {
