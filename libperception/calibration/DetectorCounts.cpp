@@ -52,7 +52,7 @@ std::vector<Candidate> candidates(const MeasurementScan& scan, const GroundTruth
   return out;
 }
 
-double normalisedDistance(const MeasurementModel& model, const Measurement& m,
+double normalizedDistance(const MeasurementModel& model, const Measurement& m,
                           const AxisVector& h) {
   const AxisVector y = residual(model, m, h);
   AxisMatrix R(y.size(), y.size());
@@ -72,7 +72,7 @@ std::vector<int> match(const MeasurementScan& scan, const std::vector<Candidate>
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
   for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      const double d = normalisedDistance(*scan.model, scan.measurements[k], objects[i].seen.h);
+      const double d = normalizedDistance(*scan.model, scan.measurements[k], objects[i].seen.h);
       if (d < kFarthest) pairs.emplace_back(d, k, i);
     }
   }

@@ -20,7 +20,7 @@ struct FusionParams {
   double accel_bias_sigma = 0.1;           ///< [m/s^2] at the start
   double accel_bias_walk = 0.002;          ///< [m/s^2/sqrt(s)]
   double wheel_sigma = 0.05;               ///< [m/s] of one reading
-  double wheel_scale_sigma = 0.02;         ///< [-] tyres, pressure
+  double wheel_scale_sigma = 0.02;         ///< [-] tires, pressure
   double slip = 0.02;          ///< [m/sqrt(s)] motion that neither wheels nor model explain
   double level_sigma = 0.3;    ///< [m/s^2] sideways force beside turning and gravity
   double heading_wait = 5;     ///< [s] for a heading before the start's frame is kept

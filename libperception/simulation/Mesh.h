@@ -12,7 +12,7 @@ enum class Material : std::uint8_t {
   kRoad,
   kPaint,
   kGlass,
-  kTyre,
+  kTire,
   kCloth,
   kSkin,
   kMetal,

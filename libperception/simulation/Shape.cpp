@@ -13,11 +13,11 @@ namespace {
 constexpr std::uint32_t kLeafStream = 0x51A01, kRoadStream = 0x51A02;  // purposes of random numbers
 
 void addWheels(Mesh& mesh, double front, double rear, double half_width, double radius) {
-  constexpr double kTyreWidth = 0.22;  // [m]
+  constexpr double kTireWidth = 0.22;  // [m]
   for (const double x : {front, rear}) {
     for (const double side : {-1.0, 1.0}) {
       addCylinder(mesh, {x, side * half_width, radius},
-                  {x, side * (half_width - kTyreWidth), radius}, radius, Material::kTyre, 1, 14);
+                  {x, side * (half_width - kTireWidth), radius}, radius, Material::kTire, 1, 14);
     }
   }
 }
@@ -94,14 +94,14 @@ Shape pedestrianShape(double w, double h) {
   return shape;
 }
 
-void addTyre(Mesh& mesh, double x, double radius) {
+void addTire(Mesh& mesh, double x, double radius) {
   constexpr int kPieces = 12;
   const auto rim = [&](int k) {
     const double angle = kTwoPi * k / kPieces;
     return Vector3(x + radius * std::cos(angle), 0, radius * (1 + std::sin(angle)));
   };
   for (int k = 0; k < kPieces; ++k) {
-    addCylinder(mesh, rim(k), rim(k + 1), .025, Material::kTyre, 1, 5);
+    addCylinder(mesh, rim(k), rim(k + 1), .025, Material::kTire, 1, 5);
   }
 }
 
@@ -111,8 +111,8 @@ Shape cyclistShape(double l, double w, double h) {
   Part body;
   Mesh& mesh = body.mesh;
   const double radius = .19 * l, front = .5 * l - radius, rear = -front;
-  addTyre(mesh, front, radius);
-  addTyre(mesh, rear, radius);
+  addTire(mesh, front, radius);
+  addTire(mesh, rear, radius);
   const Vector3 crank(-.05 * l, 0, .16 * h), seat(-.14 * l, 0, .52 * h), head(.24 * l, 0, .52 * h);
   for (const auto& [a, b] : {std::pair(crank, seat), std::pair(crank, head), std::pair(seat, head),
                              std::pair(Vector3(rear, 0, radius), crank),
