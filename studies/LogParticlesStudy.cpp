@@ -83,8 +83,7 @@ StudyTable countTable(const std::vector<Method>& methods, const std::vector<Coun
   table.name = "counts";
   table.title =
       "Errors in the number of objects; Radecki et al.: all objects with DUC's tracker, all / "
-      "classified "
-      "with classification, on their own drive";
+      "classified with classification, on their own drive";
   table.columns = {"configuration, particles", "paper", "rms of all",      "rms of classified",
                    "rms against truth",        "bias",  "things not held", "mean of all",
                    "mean of classified",       "cars",  "persons"};
@@ -214,11 +213,10 @@ StudyPlot errorPlot(const std::vector<Method>& methods, const std::vector<Counte
     plot.script += fmt::format(
         "'errors_duc.dat' with linespoints lw 2 pt 7 lc rgb '{}' title 'DUC', ", kVermilion);
   plot.script += fmt::format(
-      "'errors_joint.dat' using 1:2 with linespoints lw 2 pt 5 lc rgb '{0}' title 'joint', "
-      "'' using 1:3 with linespoints lw 2 pt 9 lc rgb '{1}' title 'joint, classified', "
+      "'errors_joint.dat' using 1:2 with linespoints lw 2 pt 5 lc rgb '{0}' title 'joint', '' "
+      "using 1:3 with linespoints lw 2 pt 9 lc rgb '{1}' title 'joint, classified', "
       "'errors_paper.dat' using 1:2 with linespoints dt 2 pt 6 lc rgb '{2}' title 'Radecki et al.: "
-      "DUC', "
-      "'' using 1:3 with linespoints dt 2 pt 4 lc rgb '{0}' title 'Radecki et al.: joint', "
+      "DUC', '' using 1:3 with linespoints dt 2 pt 4 lc rgb '{0}' title 'Radecki et al.: joint', "
       "'' using 1:4 with linespoints dt 2 pt 8 lc rgb '{1}' title 'Radecki et al.: joint, "
       "classified'\n",
       kBlue, kGreen, kVermilion);

@@ -137,15 +137,13 @@ StudyReport particlesStudy(const ParticlesParams& params) {
   report.title = "How many particles a busy street needs";
   report.data = fmt::format(
       "simulated positions and labels of a lidar and a camera in {} busy streets of 8 s (17 "
-      "objects, "
-      "clutter four times, detections 85 %, noise twice, close ones merge)",
+      "objects, clutter four times, detections 85 %, noise twice, close ones merge)",
       params.scenes);
   StudyTable table;
   table.name = "counts";
   table.title =
       "Errors in the number of objects; Radecki et al.: DUC's births, or all / classified, on "
-      "their "
-      "own drive";
+      "their own drive";
   table.columns = {
       "method",    "paper",      "rms against 50 particles", "classified", "rms against truth",
       "GOSPA [m]", "mean count", "mean classified"};

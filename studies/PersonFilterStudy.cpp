@@ -99,8 +99,7 @@ StudyPlot kernelPlot() {
   plot.name = "kernel";
   plot.caption =
       "The kernel over the radius. The text wants a negative mean: only the reading with sigma^4 "
-      "has "
-      "one (-0.90 against +0.06, integrated over the plane).";
+      "has one (-0.90 against +0.06, integrated over the plane).";
   plot.data = {{"kernel.dat", data}};
   plot.script =
       "set grid\nset xlabel 'distance from the middle [m]'\nset ylabel 'response per return "

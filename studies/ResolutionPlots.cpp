@@ -27,9 +27,8 @@ StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::strin
   plot.name = "recall";
   plot.caption =
       "Recall of unoccluded objects over the distance as a share of Radecki et al.'s range for "
-      "that "
-      "resolution; gray: Radecki et al. within range. Where the curves fall together recall is "
-      "independent of resolution.";
+      "that resolution; gray: Radecki et al. within range. Where the curves fall together recall "
+      "is independent of resolution.";
   plot.width = 1100, plot.height = 460;
   plot.script = fmt::format(
       "set multiplot layout 1,2 title {} noenhanced\nset grid\nset yrange [0:1.02]\nset xrange "

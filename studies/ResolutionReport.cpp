@@ -228,13 +228,11 @@ StudyReport resolutionReport(const ResolutionData& data) {
     report.remarks.push_back(
         "Recall: of objects of which three quarters are visible, found by a box of the right kind. "
         "Precision: share of boxes on a road user of their kind. Radecki et al. judged 300 "
-        "detections "
-        "by hand.");
+        "detections by hand.");
   }
   report.remarks.push_back(
       "Radecki et al.'s rates are of their own drive: what can be compared is how they grow from "
-      "row to "
-      "row.");
+      "row to row.");
   return report;
 }
 

@@ -92,8 +92,7 @@ ReportTable summaryTable(const std::vector<Named>& all, const EvaluationReport& 
       "any vehicle; person: pedestrian or cyclist); sized: on anything of that size, poles and "
       "hedges included.",
       "sized is n/a of cameras and where the truth does not hold what stands around (walls are in "
-      "no truth: a "
-      "measurement on one is wrong at both levels).",
+      "no truth: a measurement on one is wrong at both levels).",
       "Radecki et al.: sized precision as in their text; recall over the sensor's range."};
   for (const Named& named : all) {
     table.rows.push_back(summaryRow(named, true));

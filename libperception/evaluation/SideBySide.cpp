@@ -119,8 +119,7 @@ ReportTable sideBySideTable(const EvaluationReport& report) {
   if (trials) {
     table.notes.push_back(
         "Of all trials' instants taken together, as in Radecki et al.; in brackets mean +- "
-        "standard "
-        "deviation over the trials; lowest..highest trial.");
+        "standard deviation over the trials; lowest..highest trial.");
   }
   return table;
 }

@@ -111,8 +111,7 @@ class TimelinePlot {
   std::string title() const {
     return fmt::format(
         "What every true object was called, {} (within {:g} m and {:g} deg ahead; one-to-one "
-        "within "
-        "{:g} m)",
+        "within {:g} m)",
         run_.name, options_.selection.range, degrees(options_.selection.fov), options_.tolerance);
   }
 

@@ -101,7 +101,7 @@ text { font-family: sans-serif; fill: #222 }
 const char* layerTitle(int layer) {
   static const std::vector<const char*> titles = {
       "Base",         "Tools",   "Measurements", "One sensor,|one scan,|one filter",
-      "Scenes, logs", "One run", "Many runs",       "Programs",
+      "Scenes, logs", "One run", "Many runs",    "Programs",
       "Experiments",  "Mains"};
   return layer < static_cast<int>(titles.size()) ? titles[static_cast<std::size_t>(layer)] : "";
 }
@@ -155,7 +155,8 @@ std::string drawn() {
          text(12, 28, "title",
               "Modules: each includes some of those below it (the nearest are named in italics)") +
          text(12, 50, "layer",
-              "Orange: the main dependency chain. Numbers: the order of processing from log to scene. Drawn "
+              "Orange: the main dependency chain. Numbers: the order of processing from log to "
+              "scene. Drawn "
               "and checked "
               "by tests/architecture.") +
          bands + chain + boxes + filterInside(inside) + "</svg>\n";
