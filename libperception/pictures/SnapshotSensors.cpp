@@ -39,7 +39,7 @@ bool hasImageBoxes(const ObjectDetections& detections) {
   return detections.objects.empty() || detections.objects.front().image_box.has_value();
 }
 
-// The camera of a frame, if it has one; an image is loaded where the log does not tell its size.
+// The camera of a frame, if it has one; an image is loaded if the log does not have its size.
 std::optional<CameraModel> cameraOf(const SensorFrame& frame) {
   if (const auto* boxes = std::get_if<ObjectDetections>(&frame.data)) {
     if (hasImageBoxes(*boxes)) return boxes->camera;

@@ -12,9 +12,9 @@ using TrackIndices = std::vector<std::uint32_t>;
 /// The association of one hypothesis: the cause of every measurement, and the increment of the
 /// hypothesis's log weight.
 struct Association {
-  static constexpr int kNew = -1;  ///< a newborn: a Bernoulli one that may be clutter, or, where
-                                   ///< births are sampled, a sure one
-  static constexpr int kClutter = -2;  ///< only where births are sampled
+  static constexpr int kNew =
+      -1;  ///< a newborn: Bernoulli track of birth or clutter; with sampled births, a birth
+  static constexpr int kClutter = -2;  ///< with sampled births only
   std::vector<int> cause;  ///< by measurement: index of a distinct track, kNew or kClutter
   double log_weight = 0;   ///< log p(scan | history) / proposal, exact
 };

@@ -19,7 +19,7 @@ struct Footprint {
   Vector2 center, half;  // [m]
   double corner2 = 0;    // [m^2] square of the distance from the center to a corner
   double yaw = 0;        // [rad]
-  double area = 0;       // [m^2] of a track whose class is sure, else 0
+  double area = 0;       // [m^2] of a track whose class probability is >= .95, else 0
   Stamp last_hit;
   bool fresh = true;  // of this scan
 };

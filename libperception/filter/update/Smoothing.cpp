@@ -165,7 +165,7 @@ std::optional<Track> smoothedTrack(const Track& now, Stamp at, const FilterModel
   Track track = now;
   for (TrackHandle older = now.previous.lock(); older && track.stamp > at;
        older = older->previous.lock()) {
-    // The instant asked for may lie between two scans.
+    // `at` may lie between two scans.
     track =
         smoothedBefore(older->stamp < at ? predictTrack(*older, at, model) : *older, track, model);
   }

@@ -61,7 +61,7 @@ double speedSigma(const ObjectClass& c, const FilterModel& model) {
   return std::min(model.params.start_speed_sigma, std::max(0.5 * c.max_speed, 0.1));
 }
 
-/// A newborn's velocity, with what a range rate says of it (method.md 4.3).
+/// Initial velocity of a newborn, with the range rate if measured (method.md 4.3).
 void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
   const auto measure = [&](const Vector2& u, double speed, double variance) {
     const Vector2 Pu = f.P.bottomRightCorner<2, 2>() * u;
@@ -98,7 +98,7 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   return f;
 }
 
-/// The direction of a class's length axis [rad], when something tells it.
+/// Direction of a class's length axis [rad], if known.
 std::optional<double> lengthAxis(const ObjectClass& c, const ClassFilter& f, const Track& track,
                                  const PartialBox& sides) {
   if (f.oriented) return f.x[3];
