@@ -10,7 +10,7 @@
 #include "libperception/core/Angle.h"
 #include "libperception/core/Random.h"
 #include "libperception/evaluation/Gnuplot.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "studies/HeadingScene.h"
 
 namespace perception {

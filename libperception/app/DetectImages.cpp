@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
+#include "libperception/sensors/CameraImages.h"
 
 namespace perception {
 namespace {
@@ -70,9 +70,8 @@ Pose3 cameraPose(double height, double pitch) {
 }
 
 bool isPanorama(const Raster& image, int choice, bool calibrated) {
-  constexpr int kLeastWidth = 1024;  // [px] the smallest of [radecki2016]'s panoramas
-  return choice == 1 || (choice == 0 && !calibrated && image.width >= kLeastWidth &&
-                         std::abs(image.width - 2 * image.height) <= 1);
+  return choice == 1 ||
+         (choice == 0 && !calibrated && panoramaModel(image.width, image.height).has_value());
 }
 
 CameraModel panoramaCamera(const Raster& image, const DetectCameraParams& params,

@@ -151,6 +151,7 @@ void SimulateApp::run() {
              name, seed, out_frames, out_entries, static_cast<double>(out_bytes) * 1e-6);
   fmt::print("  lidar: {} scans, {} points; camera: {} boxes; radar: {} targets\n",
              simulator.scans(), out_points, out_boxes, out_targets);
+  if (simulator.images() > 0) fmt::print("  camera: {} rendered images\n", simulator.images());
   fmt::print("{}: {} rows\n", out_truth_file, simulator.truth().size());
   if (simulator.unwritten() > 0) {
     warn(fmt::format("{} frames omitted: there is no observation class for them",

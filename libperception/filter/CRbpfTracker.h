@@ -13,12 +13,12 @@ namespace perception {
 
 /// [particle_filter]: MRPT's TParticleFilterOptions, keys named as in MRPT.
 struct ParticleFilterParams {
-  int pf_algorithm =
-      2;  ///< MRPT's TParticleFilterAlgorithm; only pfOptimalProposal (2) is implemented
-  int resampling_method =
-      3;                ///< MRPT's TParticleResamplingAlgorithm: 0 prMultinomial ... 3 prSystematic
-  double beta = 0.5;    ///< resampling threshold on ESS / sampleSize (method.md 5.10)
-  int sample_size = 8;  ///< number of particles [radecki2016]
+  int pf_algorithm = 2;       ///< MRPT's TParticleFilterAlgorithm; only pfOptimalProposal (2) is
+                              ///< implemented (method.md 5.4)
+  int resampling_method = 3;  ///< MRPT's TParticleResamplingAlgorithm: 0 prMultinomial ... 3
+                              ///< prSystematic (method.md 5.10)
+  double beta = 0.5;          ///< resampling threshold on ESS / sampleSize (method.md 5.10)
+  int sample_size = 8;        ///< number of particles [radecki2016]
 
   void visit(ParamVisitor& v);
   mrpt::bayes::CParticleFilter::TParticleFilterOptions toMrpt() const;

@@ -127,7 +127,9 @@ GroundPlane GroundEstimator::update(const SensorFrame& frame) {
   all.max_points = params_.max_points;
   const EgoPoints points = usablePoints(frame, all);
   mirrored_share_ = mirroredShareOf(points);
-  wet_ = plane_.measured && frame.stamp < frozen_until_;
+  // Farther off than a freeze lasts: the clock has gone back.
+  wet_ = plane_.measured && frame.stamp < frozen_until_ &&
+         frozen_until_ - frame.stamp <= params_.freeze;
   if (wet_) return plane_;
 
   // After a freeze one plane is measured whatever the returns say: else a lasting change of pitch

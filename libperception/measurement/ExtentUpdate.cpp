@@ -1,4 +1,5 @@
 #include "libperception/measurement/ExtentUpdate.h"
+#include "libperception/core/KalmanUpdate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,10 @@ void updateSide(double seen, bool complete, double own_sigma, double sigma, doub
   }
   const double variance = own_sigma > 0 ? own_sigma * own_sigma : sigma * sigma;
   const double floor = own_sigma > 0 ? kFloorShare * variance : kFloor;
-  const double gain = var / (var + variance);
-  mean += gain * (seen - mean);
-  var = std::max(std::min(var, floor), var * (1 - gain));
+  ScalarEstimate side{mean, var};
+  scalarUpdate({seen, variance}, side, floor);
+  mean = side.mean;
+  var = side.variance;
 }
 
 }  // namespace

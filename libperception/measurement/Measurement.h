@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libperception/core/Frames.h"
+#include "libperception/core/KalmanUpdate.h"
 #include "libperception/core/Time.h"
 #include "libperception/measurement/OcclusionMap.h"
 #include "libperception/measurement/SensorFrame.h"
@@ -21,11 +22,6 @@ using AxisVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMa
 using AxisMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxAxes, kMaxAxes>;
 using AxisMask = std::uint8_t;  ///< bit i: axis i was seen
-
-/// A scalar with its variance.
-struct ScalarEstimate {
-  double mean = 0, variance = 1;
-};
 
 /// Sides of a box about the returns: what was seen of the object's size and orientation. Not every
 /// side is complete.

@@ -5,6 +5,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Frames.h"
+#include "libperception/core/KalmanUpdate.h"
 #include "libperception/measurement/ObjectClass.h"
 
 namespace perception {
@@ -12,8 +13,6 @@ namespace {
 
 /// A heading known so well moves along its tangent: the mean step is .4 % shorter.
 constexpr double kSureHeading = radians(5);
-
-void symmetrize(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
 /// method.md 3.1: F = [I dtI; 0 I], Q of white acceleration; position_psd adds slip. Returns F.
 Matrix4 predictConstantVelocity(const ObjectClass& c, double psd, double damping, double dt,

@@ -168,7 +168,7 @@ Picture coveragePicture(const std::vector<SensorParams>& sensors, const std::str
   std::vector<Panel> panels = {
       {"Lidar", kLidarColor, {}}, {"Camera", kCameraColor, {}}, {"Radar", kRadarColor, {}}};
   for (const SensorParams& s : sensors) {
-    if (s.isOfEgo()) continue;
+    if (s.isOfEgo() || s.kind == SensorKind::kCameraImages) continue;  // images find nothing
     panels[s.isLidar() ? 0 : s.isCamera() ? 1 : 2].sensors.push_back(coverageOf(s));
   }
   panels.erase(std::remove_if(panels.begin(), panels.end(),

@@ -53,8 +53,22 @@ std::optional<CameraModel> cameraOf(const SensorFrame& frame) {
     camera.width = raster->width;
     camera.height = raster->height;
   }
-  if (!(camera.fx > 0) || !(camera.fy > 0)) return std::nullopt;
+  if (!(camera.fx > 0) || !(camera.fy > 0)) return panoramaModel(camera.width, camera.height);
   return camera;
+}
+
+// The box in the pixels of an image; panoramas of two sizes differ by their scale alone. Empty for
+// two cameras that have nothing in common.
+std::optional<ObjectDetection::ImageBox> boxIn(const CameraModel& image,
+                                               const ObjectDetection::ImageBox& box,
+                                               const CameraModel& detector) {
+  if (detector.width == image.width) return box;
+  constexpr auto kSphere = CameraModel::Projection::kEquirectangular;
+  if (image.projection != kSphere || detector.projection != kSphere) return std::nullopt;
+  const double scale = static_cast<double>(image.width) / detector.width;
+  const auto x = [&](double u) { return image.cx + scale * (u - detector.cx); };
+  const auto y = [&](double v) { return image.cy + scale * (v - detector.cy); };
+  return ObjectDetection::ImageBox{x(box.x1), y(box.y1), x(box.x2), y(box.y2)};
 }
 
 // The seen sides as a rectangle on the ground.
@@ -248,16 +262,17 @@ void SnapshotSensors::addImage(SceneView& view) {
       if (missing_image_.empty()) missing_image_ = source->source;
     }
   }
-  // Boxes of any detector that worked on images of this size.
+  // Boxes of any detector that worked on images of this size, or on panoramas if it is one.
   for (const auto& [label, other] : last_) {
     const auto* found = std::get_if<ObjectDetections>(&other.data);
     if (!found || !hasImageBoxes(*found) || now_ - other.stamp > kLastScan) continue;
-    if (found->camera.width != image.camera.width) continue;
     if (label == frame.sensor && found->T_ego_camera) {
       image.T_world_camera = frame.ego.T_world_ego * *found->T_ego_camera;
     }
     for (const ObjectDetection& object : found->objects) {
-      if (object.image_box) image.boxes.push_back({*object.image_box, object.label});
+      const auto box =
+          object.image_box ? boxIn(image.camera, *object.image_box, found->camera) : std::nullopt;
+      if (box) image.boxes.push_back({*box, object.label});
     }
   }
   view.image = std::move(image);

@@ -43,11 +43,12 @@ EgoState EgoTimeline::at(Stamp stamp) {
     in_gap_ = false;
     return *state;
   }
-  EgoState state = pose_.at(pose_.latest()).value_or(EgoPose::parked(stamp, params_.minimum));
+  const Stamp nearest = stamp < pose_.earliest() ? pose_.earliest() : pose_.latest();
+  EgoState state = pose_.at(nearest).value_or(EgoPose::parked(stamp, params_.minimum));
   const double gap = stamp - state.stamp;
   if (!in_gap_) {
     events_.warn(stamp, event_kind::kEgoGap,
-                 fmt::format("no ego pose for {:.3f} s: extrapolated", gap));
+                 fmt::format("no ego pose for {:.3f} s: extrapolated", std::abs(gap)));
   }
   in_gap_ = true;
   state.T_world_ego.translation().head<2>() += gap * state.velocity;
@@ -59,6 +60,8 @@ EgoState EgoTimeline::at(Stamp stamp) {
 void EgoTimeline::clear() {
   pose_.clear();
   last_seen_.reset();
+  none_reported_ = false;
+  in_gap_ = false;
 }
 
 }  // namespace perception

@@ -61,7 +61,7 @@ void Pipeline::startEpoch(Stamp stamp, double back) {
   queue_.clear();
   frame_numbers_.clear();
   outputs_.restart();
-  watch_.forgetInstants();
+  watch_.restart(stamp);
   last_stamp_ = stamp;
 }
 

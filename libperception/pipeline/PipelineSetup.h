@@ -28,7 +28,7 @@ std::vector<FrontEndRow>& frontEnds();
 
 /// [run]: sensors, association and output of a run.
 struct RunParams {
-  unsigned long long seed = 1;                ///< of all random streams
+  unsigned long long seed = 1;                ///< of all random streams; assumed
   std::string sensors = "C+L+R";              ///< modalities in use: letters joined by +
   std::vector<std::string> without;           ///< labels of sensors excluded from those
   Proposal association = Proposal::kSampled;  ///< method.md 5.4, [radecki2016]

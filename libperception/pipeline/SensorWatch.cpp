@@ -59,17 +59,20 @@ void SensorWatch::check(Stamp now) {
   }
 }
 
-void SensorWatch::forgetInstants() {
-  for (State& s : states_) s.last.reset();
+void SensorWatch::restart(Stamp now) {
+  for (State& s : states_) {
+    if (s.last) s.last = now;
+  }
 }
 
 void SensorWatch::finish() {
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    if (sensors_[i].used() && states_[i].record.frames == 0) {
-      events_.warn(
-          std::nullopt, event_kind::kSensorMissing,
-          sensors_[i].label + ": in use by the configuration, but nothing of it in the log");
-    }
+    const SensorRecord& record = states_[i].record;
+    if (!sensors_[i].used() || record.frames > 0) continue;
+    const char* why =
+        record.dropped_frames > 0 ? "none of its frames could be used" : "nothing of it in the log";
+    events_.warn(std::nullopt, event_kind::kSensorMissing,
+                 fmt::format("{}: in use by the configuration, but {}", record.label, why));
   }
   for (const auto& [label, frames] : ignored_) {
     events_.add(std::nullopt, event_kind::kSensorIgnored,

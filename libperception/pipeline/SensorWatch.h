@@ -30,8 +30,9 @@ class SensorWatch {
   void setSeen(std::size_t sensor, Stamp stamp);
   /// Reports sensors without frames for longer than the timeout.
   void check(Stamp now);
-  /// Clears the stamps of the last frames, after a clock jump.
-  void forgetInstants();
+  /// After a clock jump to `now`: clears the stamps of the last frames; sensors that had frames
+  /// before are expected from now on.
+  void restart(Stamp now);
   /// Reports events known at the end of the log: sensors without frames, labels without a section.
   void finish();
   /// Of the sensors in use, in the order of the INI.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "libperception/filter/predict/Prediction.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/state/Parallel.h"
 #include "libperception/filter/update/Smoothing.h"
 

@@ -15,7 +15,7 @@ struct SceneParams {
   double min_existence = 0.5;  ///< objects below are not output (method.md 5.11)
   /// Class probability from which an object counts as classified [radecki2016].
   double classified_at = 0.95;
-  /// KITTI export: see KittiSelection::road_user_from; even odds.
+  /// KITTI export: see KittiSelection::road_user_from (assumed: even odds).
   double road_user_from = 0.5;
   /// KITTI export: see KittiSelection::in_image; 0: any overlap.
   double in_image = 0;

@@ -1,9 +1,12 @@
 #include "libperception/sensors/CameraImages.h"
 
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
+
+#include "libperception/core/Angle.h"
 
 namespace perception {
 namespace {
@@ -46,6 +49,17 @@ std::optional<Raster> pixelsOf(const mrpt::img::CImage& image) {
 std::string imagesBeside(const std::string& log) {
   const std::filesystem::path path(log);
   return (path.parent_path() / (path.stem().string() + "_Images")).string();
+}
+
+std::optional<CameraModel> panoramaModel(int width, int height) {
+  constexpr int kLeastWidth = 1024;  // [px]
+  if (width < kLeastWidth || std::abs(width - 2 * height) > 1) return std::nullopt;
+  CameraModel camera;
+  camera.projection = CameraModel::Projection::kEquirectangular;
+  camera.width = width, camera.height = height;
+  camera.fx = camera.fy = width / kTwoPi;
+  camera.cx = .5 * width - .5, camera.cy = .5 * height - .5;
+  return camera;
 }
 
 CameraImage cameraImage(const mrpt::obs::CObservationImage& observation,

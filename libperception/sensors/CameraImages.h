@@ -1,6 +1,7 @@
 #pragma once
 #include <mrpt/obs/CObservationImage.h>
 
+#include <optional>
 #include <string>
 
 #include "libperception/measurement/SensorFrame.h"
@@ -14,5 +15,10 @@ std::string imagesBeside(const std::string& log);
 /// outside, from `folder`. load() of an image that is missing or that no decoder reads gives
 /// nothing and throws nothing.
 CameraImage cameraImage(const mrpt::obs::CObservationImage& observation, const std::string& folder);
+
+/// The camera of a picture without calibration, as logs hold panoramas of the whole sphere
+/// (equirectangular): twice as wide as high, 1024 px or more, the smallest of [radecki2016]. Empty:
+/// a picture of another shape.
+std::optional<CameraModel> panoramaModel(int width, int height);
 
 }  // namespace perception

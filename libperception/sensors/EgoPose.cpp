@@ -85,7 +85,8 @@ void EgoPose::clear() {
 bool EgoPose::wants(const std::string& label) {
   if (!params_.label.empty()) return label == params_.label;
   if (label == kEgoPoseLabel &&
-      label_ != kEgoPoseLabel) {  // the real one came late: forget the substitute
+      label_ != kEgoPoseLabel) {  // the real one came late: forget the substitute and its world
+    if (!empty()) ++frame_epoch_;
     clear();
     label_ = label;
   }

@@ -54,7 +54,8 @@ class EgoPose {
   std::optional<EgoState> at(Stamp stamp) const;
 
   bool empty() const { return poses().empty(); }
-  /// Of the newest pose; only when not empty().
+  /// Of the oldest and the newest pose; only when not empty().
+  Stamp earliest() const { return poses().front().stamp; }
   Stamp latest() const { return poses().back().stamp; }
   /// How often the world of the poses became another one: when the first pose of the log took over
   /// from EgoFusion, or this one found its heading. What was placed in the old world is void.

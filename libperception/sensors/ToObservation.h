@@ -14,7 +14,10 @@ namespace perception {
 inline constexpr const char* kEgoPoseLabel = "EGO_POSE";
 inline constexpr const char* kFrameLabel = "FRAME";
 
-/// The inverse of frameFromObservation(): a lidar scan or object detections of our own classes.
+/// The inverse of frameFromObservation(): a lidar scan, a radar scan or object detections of our
+/// own classes; an image as CObservationImage with its pixels in the log, JPEG compressed when
+/// written (a setting of MRPT's for the whole program). MRPT knows no spherical camera: a panorama
+/// comes without calibration, as panoramaModel() expects it.
 std::shared_ptr<mrpt::obs::CObservation> observationFromFrame(const SensorFrame& frame);
 /// The vehicle's pose with its uncertainty (a standard deviation of 0 in z and roll) as
 /// CObservationRobotPose.

@@ -123,6 +123,31 @@ struct LidarCaster::Impl {
   BeamHit hit(const Vector3& origin, const Vector3& direction, double range_max) const {
     RTCRayHit r = makeRay(origin, direction, range_max);
     intersect(top.get(), r);
+    return hitOf(r, direction);
+  }
+
+  SurfaceHit surface(const Vector3& origin, const Vector3& direction, double range_max) const {
+    RTCRayHit r = makeRay(origin, direction, range_max);
+    intersect(top.get(), r);
+    SurfaceHit result;
+    static_cast<BeamHit&>(result) = hitOf(r, direction);
+    if (result.object == BeamHit::kNothing) return result;
+    const Instance& instance = instances[r.hit.instID[0]];
+    const Vector3 normal =
+        instance.T_world_part.linear() * Vector3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z).normalized();
+    result.normal = normal.dot(direction) > 0 ? Vector3(-normal) : normal;
+    return result;
+  }
+
+  bool blocked(const Vector3& origin, const Vector3& direction, double range_max) const {
+    RTCRay ray = makeRay(origin, direction, range_max).ray;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(top.get(), &context, &ray);
+    return ray.tfar < 0;
+  }
+
+  BeamHit hitOf(const RTCRayHit& r, const Vector3& direction) const {
     BeamHit result;
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return result;
     const Instance& instance = instances[r.hit.instID[0]];
@@ -200,6 +225,15 @@ std::vector<BeamHit> LidarCaster::cast(const Vector3& origin,
     for (std::size_t i = from; i < to; ++i) hits[i] = impl_->hit(origin, directions[i], range_max);
   });
   return hits;
+}
+
+SurfaceHit LidarCaster::surface(const Vector3& origin, const Vector3& direction,
+                                double range_max) const {
+  return impl_->surface(origin, direction, range_max);
+}
+
+bool LidarCaster::blocked(const Vector3& origin, const Vector3& direction, double range_max) const {
+  return impl_->blocked(origin, direction, range_max);
 }
 
 void LidarCaster::parallel(std::size_t count, std::size_t grain,

@@ -19,6 +19,11 @@ struct BeamHit {
   Material material = Material::kRoad;
 };
 
+/// First intersection of a line of sight with a surface, for cameras.
+struct SurfaceHit : BeamHit {
+  Vector3 normal = Vector3::UnitZ();  ///< unit, world, towards the eye
+};
+
 /// Ray caster of a World (Embree). Results do not depend on the number of threads.
 class LidarCaster {
  public:
@@ -33,6 +38,10 @@ class LidarCaster {
   /// One hit for each direction (unit vectors, world) from `origin` [m], up to `range_max` [m].
   std::vector<BeamHit> cast(const Vector3& origin, const std::vector<Vector3>& directions,
                             double range_max) const;
+  /// The surface in one direction (unit vector, world), for work that runs on the caster's threads.
+  SurfaceHit surface(const Vector3& origin, const Vector3& direction, double range_max) const;
+  /// Whether anything lies in that direction nearer than `range_max` [m].
+  bool blocked(const Vector3& origin, const Vector3& direction, double range_max) const;
   /// Calls work(from, to) for pieces of [0, count) of about `grain`, on the caster's threads.
   void parallel(std::size_t count, std::size_t grain,
                 const std::function<void(std::size_t from, std::size_t to)>& work) const;

@@ -108,10 +108,10 @@ void ObjectParams::visit(ParamVisitor& v) {
 
 void SensorParams::visit(ParamVisitor& v) {
   const SensorKind before = kind;
-  v.choiceOf(
-      "kind", kind,
-      {"lidar64", "lidar4", "camera_boxes", "spherical_camera", "radar", "gnss", "imu", "wheels"},
-      "kind of sensor");
+  v.choiceOf("kind", kind,
+             {"lidar64", "lidar4", "camera_boxes", "spherical_camera", "camera_images", "radar",
+              "gnss", "imu", "wheels"},
+             "kind of sensor");
   if (kind != before && kind == SensorKind::kLidar4) lidar = LidarParams::fourLayer();
   v.real("x", x, {-20, 20}, "m", "place on the vehicle: forward of the rear axle");
   v.real("y", y, {-20, 20}, "m", "left");
@@ -129,6 +129,8 @@ void SensorParams::visit(ParamVisitor& v) {
       return camera.visit(v);
     case SensorKind::kSphericalCamera:
       return panorama.visit(v);
+    case SensorKind::kCameraImages:
+      return images.visit(v);
     case SensorKind::kRadar:
       return radar.visit(v);
     case SensorKind::kGnss:
@@ -153,6 +155,7 @@ Scenario readScenario(Config& config) {
   scenario.params = config.read<ScenarioParams>("scenario", {}, true);
   scenario.ego = config.read<EgoParams>("ego", {}, true);
   scenario.variation = config.read<VariationParams>("variation");
+  scenario.light = config.read<Lighting>("light");
   const std::string object_prefix = "object.", road_prefix = "road.", lane_prefix = "lane.";
   for (const std::string& section : config.sectionsWithPrefix(road_prefix)) {
     RoadParams road;

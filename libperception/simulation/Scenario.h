@@ -8,7 +8,9 @@
 #include "libperception/core/LaneMap.h"
 #include "libperception/simulation/CameraBoxes.h"
 #include "libperception/simulation/EgoSensors.h"
+#include "libperception/simulation/ImageCamera.h"
 #include "libperception/simulation/LidarSensor.h"
+#include "libperception/simulation/Lighting.h"
 #include "libperception/simulation/RadarUnit.h"
 #include "libperception/simulation/SphericalCamera.h"
 #include "libperception/simulation/Trajectory.h"
@@ -100,6 +102,7 @@ enum class SensorKind {
   kLidar4,
   kCameraBoxes,
   kSphericalCamera,
+  kCameraImages,
   kRadar,
   kGnss,
   kImu,
@@ -117,6 +120,7 @@ struct SensorParams {
   LidarParams lidar;
   CameraParams camera;
   SphericalCameraParams panorama;
+  ImageCameraParams images;
   RadarUnitParams radar;
   GnssUnitParams gnss;
   ImuUnitParams imu;
@@ -124,7 +128,8 @@ struct SensorParams {
 
   bool isLidar() const { return kind == SensorKind::kLidar64 || kind == SensorKind::kLidar4; }
   bool isCamera() const {
-    return kind == SensorKind::kCameraBoxes || kind == SensorKind::kSphericalCamera;
+    return kind == SensorKind::kCameraBoxes || kind == SensorKind::kSphericalCamera ||
+           kind == SensorKind::kCameraImages;
   }
   /// Measures ego motion only.
   bool isOfEgo() const {
@@ -132,6 +137,7 @@ struct SensorParams {
   }
   /// For cameras.
   CameraModel cameraModel() const {
+    if (kind == SensorKind::kCameraImages) return images.model();
     return kind == SensorKind::kSphericalCamera ? panorama.model() : camera.model();
   }
   /// Sensor frame (x forward, y left, z up; a camera's too) on the vehicle.
@@ -142,7 +148,7 @@ struct SensorParams {
 /// [variation]: random differences of the trials of a scenario, drawn for each moving object,
 /// uniform within +- these.
 struct VariationParams {
-  int trials = 1;    ///< number of trials
+  int trials = 1;    ///< number of trials; assumed: the unchanged scenario alone
   double start = 0;  ///< [s] of the start time
   double pace = 0;   ///< [-] relative speed, time scaled about t = 0
   double place = 0;  ///< [m] of the whole path, x and y
@@ -155,6 +161,7 @@ struct Scenario {
   ScenarioParams params;
   EgoParams ego;
   VariationParams variation;
+  Lighting light;
   std::vector<RoadParams> roads;      ///< empty: asphalt everywhere
   std::vector<Lane> lanes;            ///< of the lane map
   std::vector<ObjectParams> objects;  ///< in the order of the file

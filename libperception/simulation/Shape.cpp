@@ -12,9 +12,10 @@ namespace {
 
 constexpr std::uint32_t kLeafStream = 0x51A01, kRoadStream = 0x51A02;  // purposes of random numbers
 
-void addWheels(Mesh& mesh, double front, double rear, double half_width, double radius) {
+void addWheels(Mesh& mesh, const Wheels& wheels, double half_width) {
   constexpr double kTireWidth = 0.22;  // [m]
-  for (const double x : {front, rear}) {
+  const double radius = wheels.radius;
+  for (const double x : {wheels.front, wheels.rear}) {
     for (const double side : {-1.0, 1.0}) {
       addCylinder(mesh, {x, side * half_width, radius},
                   {x, side * (half_width - kTireWidth), radius}, radius, Material::kTire, 1, 14);
@@ -23,7 +24,7 @@ void addWheels(Mesh& mesh, double front, double rear, double half_width, double 
 }
 
 // A sedan: body with hood and trunk, glass all around the cabin.
-Mesh carMesh(double l, double w, double h) {
+Mesh carMesh(double l, double w, double h, const Wheels& wheels) {
   Mesh mesh;
   const double belt = 0.60 * h;
   addExtruded(mesh,
@@ -37,12 +38,12 @@ Mesh carMesh(double l, double w, double h) {
               .5 * w, Material::kPaint);
   addFrustum(mesh, {belt, -.42 * l, .20 * l, .48 * w}, {h, -.28 * l, .06 * l, .38 * w},
              Material::kGlass, Material::kPaint);
-  addWheels(mesh, .31 * l, -.30 * l, .5 * w, .21 * h);
+  addWheels(mesh, wheels, .5 * w);
   return mesh;
 }
 
 // A panel van: glass in the front third only.
-Mesh vanMesh(double l, double w, double h) {
+Mesh vanMesh(double l, double w, double h, const Wheels& wheels) {
   Mesh mesh;
   const double belt = 0.50 * h;
   addExtruded(
@@ -53,17 +54,17 @@ Mesh vanMesh(double l, double w, double h) {
              Material::kGlass, Material::kPaint);
   addFrustum(mesh, {belt, -.5 * l, .10 * l, .5 * w}, {h, -.49 * l, .10 * l, .46 * w},
              Material::kPaint, Material::kPaint);
-  addWheels(mesh, .32 * l, -.30 * l, .5 * w, .16 * h);
+  addWheels(mesh, wheels, .5 * w);
   return mesh;
 }
 
-Mesh busMesh(double l, double w, double h) {
+Mesh busMesh(double l, double w, double h, const Wheels& wheels) {
   Mesh mesh;
   const auto level = [&](double share) { return Level{share * h, -.5 * l, .5 * l, .5 * w}; };
   addFrustum(mesh, level(.10), level(.36), Material::kPaint, Material::kPaint);
   addFrustum(mesh, level(.36), level(.76), Material::kGlass, Material::kPaint);
   addFrustum(mesh, level(.76), level(1), Material::kPaint, Material::kPaint);
-  addWheels(mesh, .28 * l, -.27 * l, .5 * w, .15 * h);
+  addWheels(mesh, wheels, .5 * w);
   return mesh;
 }
 
@@ -172,16 +173,24 @@ Shape rigid(Mesh mesh) {
 
 }  // namespace
 
+Wheels wheelsOf(const ObjectParams& o) {
+  const double l = o.length, h = o.height;
+  if (o.kind == ObjectKind::kCar) return {.31 * l, -.30 * l, .21 * h};
+  if (o.kind == ObjectKind::kVan) return {.32 * l, -.30 * l, .16 * h};
+  if (o.kind == ObjectKind::kBus) return {.28 * l, -.27 * l, .15 * h};
+  return {};
+}
+
 Shape makeShape(const ObjectParams& o) {
   const double l = o.length, w = o.width, h = o.height;
   Mesh mesh;
   switch (o.kind) {
     case ObjectKind::kCar:
-      return rigid(carMesh(l, w, h));
+      return rigid(carMesh(l, w, h, wheelsOf(o)));
     case ObjectKind::kVan:
-      return rigid(vanMesh(l, w, h));
+      return rigid(vanMesh(l, w, h, wheelsOf(o)));
     case ObjectKind::kBus:
-      return rigid(busMesh(l, w, h));
+      return rigid(busMesh(l, w, h, wheelsOf(o)));
     case ObjectKind::kCyclist:
       return cyclistShape(l, w, h);
     case ObjectKind::kPedestrian:

@@ -24,6 +24,13 @@ struct Shape {
 
 Shape makeShape(const ObjectParams& object);
 
+/// Where the wheels of a car, van or bus stand: axles [m] in the object frame, outer faces at half
+/// of its width.
+struct Wheels {
+  double front = 0, rear = 0, radius = 0;
+};
+Wheels wheelsOf(const ObjectParams& object);
+
 /// Pose of a part in the object's frame after `traveled` [m] at `speed` [m/s].
 Pose3 partPose(const Shape& shape, const Part& part, double traveled, double speed);
 

@@ -5,6 +5,7 @@
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/Lighting.h"
 
 namespace perception {
 
@@ -46,10 +47,10 @@ struct CameraLook {
   double edge_noise = 0;  ///< of a box edge, as a share of the box's height
 };
 
-/// Weather between sensors and objects: may modify every pulse, reflection and look before
-/// detection. This base class is clear air and changes nothing; derived classes override what they
-/// affect. alter() is const, so that a frame may be simulated in parallel; randomness comes only
-/// from `rng`, a separate stream.
+/// Weather between sensors and objects: may modify every pulse, reflection, look and the light
+/// of every image before detection. This base class is clear air and changes nothing; derived
+/// classes override what they affect. alter() is const, so that a frame may be simulated in
+/// parallel; randomness comes only from `rng`, a separate stream.
 class SimulatedWeather {
  public:
   virtual ~SimulatedWeather() = default;
@@ -59,6 +60,8 @@ class SimulatedWeather {
   virtual void alter(const SensorParams&, LidarPulse&, Rng&) const {}
   virtual void alter(const SensorParams&, RadarReflection&, Rng&) const {}
   virtual void alter(const SensorParams&, CameraLook&, Rng&) const {}
+  /// Light and air of one rendered image: fog, night, a low sun.
+  virtual void alter(const SensorParams&, Lighting&, Rng&) const {}
   /// The whole frame: false boxes of mirror images, noise returns, fouling.
   virtual void alter(const SensorParams&, SensorFrame&, Rng&) const {}
   /// False: alter() does not change pulses and is not called for them.

@@ -196,7 +196,14 @@ std::shared_ptr<mrpt::obs::CObservation> Simulator::sense(const Event& event) {
     frame.data = scanLidar(event, key);
   } else if (sensor.isCamera()) {
     frame.T_ego_sensor = frame.T_ego_sensor * opticalAxes();
-    frame.data = seeObjects(event, world_.ego(event.t).T_world_ego * frame.T_ego_sensor, key);
+    const Pose3 T_world_camera = world_.ego(event.t).T_world_ego * frame.T_ego_sensor;
+    if (sensor.kind == SensorKind::kCameraImages) {
+      caster_.setTime(event.t);
+      frame.data = takeImage(event, T_world_camera, key);
+      ++images_;
+    } else {
+      frame.data = seeObjects(event, T_world_camera, key);
+    }
   } else {
     frame.data = listenRadar(event, key);
   }
@@ -223,6 +230,24 @@ ObjectDetections Simulator::seeObjects(const Event& event, const Pose3& T_world_
           : detectBoxes(caster_, event.t, sensor.camera, T_world_camera, key, hook);
   boxes_ += boxes.objects.size();
   return boxes;
+}
+
+CameraImage Simulator::takeImage(const Event& event, const Pose3& T_world_camera,
+                                 const RngKey& key) const {
+  const SensorParams& sensor = world_.scenario().sensors[event.sensor];
+  Lighting light = world_.scenario().light;
+  if (weather_) {
+    Rng rng(key);
+    weather_->alter(sensor, light, rng);
+  }
+  CameraImage image;
+  image.camera = sensor.cameraModel();
+  image.source = "simulated";
+  RenderedImage rendered = renderImage(caster_, event.t, image.camera, light, T_world_camera);
+  image.load = [raster = std::make_shared<const Raster>(std::move(rendered.raster))] {
+    return std::optional<Raster>(*raster);
+  };
+  return image;
 }
 
 RadarReturns Simulator::listenRadar(const Event& event, const RngKey& key) {

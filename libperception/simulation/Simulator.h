@@ -41,6 +41,7 @@ class Simulator {
   std::uint64_t points() const { return points_; }        ///< of lidars
   std::uint64_t beams() const { return beams_; }          ///< cast by lidars
   std::uint64_t boxes() const { return boxes_; }          ///< of detectors
+  std::uint64_t images() const { return images_; }        ///< of cameras
   std::uint64_t targets() const { return targets_; }      ///< of radars
   std::uint64_t unwritten() const { return unwritten_; }  ///< frames without an observation class
   const World& world() const { return world_; }
@@ -63,6 +64,7 @@ class Simulator {
   LidarCloud scanLidar(const Event& event, const RngKey& key);
   ObjectDetections seeObjects(const Event& event, const Pose3& T_world_camera, const RngKey& key);
   std::shared_ptr<mrpt::obs::CObservation> feelEgo(const Event& event);
+  CameraImage takeImage(const Event& event, const Pose3& T_world_camera, const RngKey& key) const;
   RadarReturns listenRadar(const Event& event, const RngKey& key);
   void setVisibility(std::vector<TruthObject>& rows, double t);
 
@@ -82,7 +84,8 @@ class Simulator {
   double pose_error_time_ = 0;            // [s]
   bool pose_error_drawn_ = false;
   std::int64_t frames_ = 0;
-  std::uint64_t scans_ = 0, points_ = 0, beams_ = 0, boxes_ = 0, targets_ = 0, unwritten_ = 0;
+  std::uint64_t scans_ = 0, points_ = 0, beams_ = 0, boxes_ = 0, images_ = 0, targets_ = 0,
+                unwritten_ = 0;
 };
 
 }  // namespace perception

@@ -69,8 +69,9 @@ ScalarEstimate together(const ScalarEstimate& ground, const ScalarEstimate& heig
   constexpr double kContradiction = 3;  // standard deviations
   const double d = ground.mean - height.mean, variance = ground.variance + height.variance;
   if (d * d > kContradiction * kContradiction * variance) return ground;
-  const double gain = ground.variance / variance;
-  return {ground.mean - gain * d, ground.variance * (1 - gain)};
+  ScalarEstimate both = ground;
+  scalarUpdate(height, both);
+  return both;
 }
 
 /// Bearings of the left and right edge, with their deviations.

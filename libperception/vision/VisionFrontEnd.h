@@ -20,7 +20,7 @@ struct DetectorParams {
   std::vector<std::string> names{
       "Car=car",   "Van=car",           "Truck=car",      "car=car",       "bus=car",
       "truck=car", "Pedestrian=person", "Cyclist=person", "person=person", "bicycle=person"};
-  double min_score = -1e9;  ///< boxes below are not looked at
+  double min_score = -1e9;  ///< boxes below are not looked at; assumed: the detector has cut
   /// log p(score | object) / p(score | clutter) = slope (score - offset), clamped (method.md 8.8).
   double score_offset = 0;
   double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
@@ -30,7 +30,7 @@ struct DetectorParams {
   std::vector<std::pair<std::string, double>> height_priors, height_prior_sigmas;
   bool base = false;  ///< the lower edge measures the height of the ground at the object, too
   /// Score from which a box hides what stands behind it (the filter's occluded_detection and
-  /// occlusion_tolerance say how much, and from where).
+  /// occlusion_tolerance say how much, and from where). Assumed: none, until scores were counted.
   double occluder_score = 1e9;
   double heading_sigma = radians(8);  ///< [rad] of the axis: 16 bins of 22.5 deg and an error:
                                       ///< method.md 7. KITTI's bank: 6.7 deg

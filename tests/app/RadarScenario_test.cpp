@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libperception/filter/Step.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/radar/RadarModel.h"
 #include "libperception/simulation/LidarCaster.h"

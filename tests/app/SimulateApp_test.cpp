@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "libperception/core/GroundTruth.h"
+#include "libperception/sensors/CameraImages.h"
+#include "libperception/sensors/FromObservation.h"
+#include "libperception/sensors/RawlogReader.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
@@ -80,6 +84,38 @@ TEST(SimulateApp, DrawsCoverageAndContactSheet) {
   for (const char* name : {"coverage.png", "sheet.png"}) {
     EXPECT_GT(std::filesystem::file_size(folder / name), 50000u) << name;  // not blank
   }
+}
+
+/// The images of a log, decoded.
+std::vector<Raster> imagesOf(const std::string& log) {
+  std::vector<Raster> images;
+  RawlogReader reader(log);
+  while (const auto observation = reader.next()) {
+    if (!isImage(*observation)) continue;
+    const auto raster = std::get<CameraImage>(frameFromObservation(*observation)->data).load();
+    if (raster) images.push_back(*raster);
+  }
+  return images;
+}
+
+TEST(SimulateApp, ShippedImagesAreThoseOfTheirScenario) {
+  const test::TemporaryFolder folder;
+  SimulateApp app;
+  ASSERT_EQ(simulate(app, {"-c", kIni + "scenarios/street_images.ini", "--seed", "7", "--set",
+                           "scenario.duration=0.1", "-o", folder / "again.rawlog"}),
+            0);
+  const auto shipped = imagesOf(PERCEPTION_SOURCE_DIR "/rawlogs/camera.rawlog"),
+             again = imagesOf(folder / "again.rawlog");
+  ASSERT_EQ(shipped.size(), 11u);
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_TRUE(panoramaModel(shipped[0].width, shipped[0].height));
+  ASSERT_EQ(shipped[0].pixels.size(), again[0].pixels.size());
+  double difference = 0;  // another JPEG library may round otherwise
+  for (std::size_t i = 0; i < again[0].pixels.size(); ++i)
+    difference += std::abs(int{shipped[0].pixels[i]} - int{again[0].pixels[i]});
+  EXPECT_LT(difference / static_cast<double>(again[0].pixels.size()), 1);
+  const auto truth = readGroundTruth(PERCEPTION_SOURCE_DIR "/rawlogs/camera.truth.csv");
+  EXPECT_EQ(truth.instants.size(), 21u);
 }
 
 TEST(SimulateApp, NoScenarioIsAUsageError) {

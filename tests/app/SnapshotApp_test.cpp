@@ -4,6 +4,7 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationImage.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -187,6 +188,22 @@ TEST_F(SnapshotAppTest, CameraViewShowsTheDetectorsViewOfALogWithoutImages) {
                  dir_ + "/a.png"}),
             64);
   EXPECT_EQ(run({"--frame", "20", "--view", "side", "-o", dir_ + "/a.png"}), 64);
+}
+
+TEST_F(SnapshotAppTest, CameraViewShowsThePanoramasOfALog) {
+  const std::string log = PERCEPTION_SOURCE_DIR "/rawlogs/camera.rawlog";
+  ASSERT_EQ(run({"--time", "2", "--view", "camera", "-i", log, "-o", dir_ + "/a.png"}), 0);
+  const Picture& picture = app_->out_picture;
+  const auto at = [&](double x, double y) {  // of the picture, as shares
+    const auto i = 3 * (static_cast<std::size_t>(y * picture.height) *
+                            static_cast<std::size_t>(picture.width) +
+                        static_cast<std::size_t>(x * picture.width));
+    return std::array<int, 3>{picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]};
+  };
+  EXPECT_GT(at(.4, .15)[2], at(.4, .15)[0] + 30) << "sky";
+  EXPECT_NEAR(at(.3, .9)[2], at(.3, .9)[0], 15) << "road";
+  EXPECT_LT(at(.3, .9)[2], 180);
+  EXPECT_GT(colorsOf(picture), 5000U);
 }
 
 TEST_F(SnapshotAppTest, SiteSettingsDecideWhichReturnsAreDrawn) {

@@ -15,7 +15,7 @@ constexpr std::size_t kMostKeys = 350, kMostExpertKeys = 60;
 
 /// A line v.real("key", member, ...) of a visit().
 struct VisitedKey {
-  std::string folder, file, key, member;
+  std::string folder, file, owner, key, member;  // owner: the struct that is visited
   bool expert = false;
 };
 
@@ -51,19 +51,25 @@ std::size_t endOfBlock(const std::string& code, std::size_t at) {
 std::vector<VisitedKey> keysOf(const SourceFile& file) {
   static const std::regex visit(
       R"re(\bv\.(?:real|angle|integer|unsigned64|boolean|text|path|reals|words|choice|choiceOf|table)\(\s*"([^"]+)",\s*([\w.]*))re");
+  static const std::regex owner(R"re((\w+)::visit\(ParamVisitor)re");
   const std::string code = withoutComments(file.text);
   std::vector<std::pair<std::size_t, std::size_t>> expert;
   const std::string mark = "v.expert();";
   for (std::size_t at = code.find(mark); at != std::string::npos; at = code.find(mark, at + 1))
     expert.push_back({at, endOfBlock(code, at)});
+  std::map<std::size_t, std::string> owners;  // by place
+  for (std::sregex_iterator i(code.begin(), code.end(), owner), end; i != end; ++i)
+    owners[static_cast<std::size_t>(i->position())] = (*i)[1];
   std::vector<VisitedKey> keys;
   for (std::sregex_iterator i(code.begin(), code.end(), visit), end; i != end; ++i) {
     const auto at = static_cast<std::size_t>(i->position());
+    const auto next = owners.upper_bound(at);
+    const std::string owned_by = next == owners.begin() ? "" : std::prev(next)->second;
     const bool hidden = std::any_of(expert.begin(), expert.end(), [&](const auto& range) {
       return range.first < at && at < range.second;
     });
     const std::string folder = file.path.substr(0, file.path.rfind('/'));
-    keys.push_back({folder, file.path, (*i)[1], (*i)[2], hidden});
+    keys.push_back({folder, file.path, owned_by, (*i)[1], (*i)[2], hidden});
   }
   return keys;
 }
@@ -133,7 +139,7 @@ bool saysItsSource(const std::string& comment) {
 
 /// Members that are set by a person or empty have no value whose source could be asked for.
 bool hasNumber(const std::string& initializer) {
-  static const std::regex number(R"re([1-9]|true)re");
+  static const std::regex number(R"re((^|[^\w.])[\d.]*[1-9]|\btrue\b)re");  // not that of Vector3
   return std::regex_search(initializer, number);
 }
 
@@ -142,17 +148,34 @@ std::string trimmedComment(const std::string& line) {
   return at == std::string::npos ? "" : line.substr(at);
 }
 
+/// A line that is a comment and goes on with that of the line before: "// ..." or "///< ...".
+bool goesOn(const std::string& line) {
+  const std::size_t at = line.find("//");
+  return at != std::string::npos && line.find_first_not_of(' ') == at &&
+         (line.compare(at, 3, "///") != 0 || line.compare(at, 4, "///<") == 0);
+}
+
+/// Members of structs that are visited, as "Struct::member"; "::member": of a struct within the
+/// visited one, whatever its name.
+using Members = std::set<std::string>;
+
+void addMember(const VisitedKey& key, Members& members) {
+  const std::size_t dot = key.member.rfind('.');
+  members.insert(dot == std::string::npos ? key.owner + "::" + key.member
+                                          : "::" + key.member.substr(dot + 1));
+}
+
 /// Declarations "type name = number;  ///< ..." whose comment, or that of the struct, names no
 /// source. Only of `members`.
-std::vector<std::string> withoutSource(const std::string& header,
-                                       const std::set<std::string>& members) {
-  static const std::regex begin(R"re(^\s*(struct|class) \w+[^;]*\{)re");
-  static const std::regex member(R"re(\b(\w+) *(=|\{)([^;]*);)re");
+std::vector<std::string> withoutSource(const std::string& header, const Members& members) {
+  static const std::regex begin(R"re(^\s*(?:struct|class) (\w+)[^;]*\{)re");
+  static const std::regex member(R"re(\b(\w+) *(=|\{)([^;]*?)(?=;|, \w+ =))re");
   std::vector<std::string> lines;
   std::istringstream in(header);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   std::vector<std::string> faults;
   std::string above, of_struct;  // comments
+  std::string name;              // of the struct
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string comment = trimmedComment(lines[i]);
     const std::string code = lines[i].substr(0, lines[i].size() - comment.size());
@@ -160,7 +183,8 @@ std::vector<std::string> withoutSource(const std::string& header,
       above = comment.empty() ? "" : above + " " + comment;
       continue;
     }
-    if (std::regex_search(code, begin)) of_struct = above + comment;
+    if (code[0] == '#') continue;
+    if (std::smatch m; std::regex_search(code, m, begin)) of_struct = above + comment, name = m[1];
     std::string statement = code, behind = comment;
     // A declaration may take several lines, its comment as well.
     while (statement.find(';') == std::string::npos && code.find('{') == std::string::npos &&
@@ -170,42 +194,29 @@ std::vector<std::string> withoutSource(const std::string& header,
       statement += lines[i].substr(0, lines[i].size() - more.size());
       behind += more;
     }
-    while (i + 1 < lines.size() && lines[i + 1].find("///<") == std::string::npos &&
-           lines[i + 1].find("//") != std::string::npos &&
-           lines[i + 1].find_first_not_of(' ') == lines[i + 1].find("//") &&
-           lines[i + 1].find("///") == std::string::npos) {
+    while (!behind.empty() && i + 1 < lines.size() && goesOn(lines[i + 1]))
       behind += trimmedComment(lines[++i]);
-    }
     for (std::sregex_iterator m(statement.begin(), statement.end(), member), end; m != end; ++m) {
-      if (members.count((*m)[1]) != 0 && hasNumber((*m)[3]) &&
-          !saysItsSource(above + behind + of_struct))
-        faults.push_back((*m)[1]);
+      const std::string found = (*m)[1];
+      if ((members.count(name + "::" + found) != 0 || members.count("::" + found) != 0) &&
+          hasNumber((*m)[3]) && !saysItsSource(above + behind + of_struct))
+        faults.push_back(found);
     }
     above.clear();
   }
   return faults;
 }
 
-// Printed, module by module, until all have one.
-TEST(Keys, DefaultsWithoutASourceAreListed) {
-  std::map<std::string, std::set<std::string>> members;  // by folder
-  for (const VisitedKey& key : keysOfProduct())
-    members[key.folder].insert(key.member.substr(key.member.rfind('.') + 1));
-  std::size_t all = 0;
+TEST(Keys, EachDefaultSaysItsSource) {
+  std::map<std::string, Members> members;  // by folder
+  for (const VisitedKey& key : keysOfProduct()) addMember(key, members[key.folder]);
   for (const auto& [folder, names] : members) {
-    std::size_t count = 0;
-    std::string text;
     for (const SourceFile& file : filesBelow(folder)) {
       if (!file.isHeader()) continue;
-      for (const std::string& name : withoutSource(file.text, names)) {
-        text += " " + name;
-        ++count;
-      }
+      for (const std::string& name : withoutSource(file.text, names))
+        ADD_FAILURE() << file.path << ": " << name << " does not say where its value is from";
     }
-    if (count > 0) std::cout << folder << " " << count << ":" << text << "\n";
-    all += count;
   }
-  std::cout << all << " defaults without a source\n";
 }
 
 // The checkers ------------------------------------------------------------------------------------
@@ -227,9 +238,13 @@ void Q::visit(ParamVisitor& v) { v.boolean("on", on, "e"); }
 TEST(Keys, TheCheckerReadsVisits) {
   const auto keys = keysOf({"libperception/a/P.cpp", kVisit});
   std::string text;
-  for (const VisitedKey& key : keys)
+  Members members;
+  for (const VisitedKey& key : keys) {
     text += key.key + "(" + key.member + (key.expert ? ") expert " : ") ");
+    addMember(key, members);
+  }
   EXPECT_EQ(text, "gain(gain) label.(rows) expert turn_deg(p.turn) name(name) expert on(on) ");
+  EXPECT_EQ(members, (Members{"::turn", "P::gain", "P::name", "P::rows", "Q::on"}));
   EXPECT_EQ(countOf(keys, false), 5u);
   EXPECT_EQ(countOf(keys, true), 2u);
 }
@@ -243,21 +258,33 @@ TEST(Keys, TheCheckerReadsInis) {
 }
 
 TEST(Keys, TheCheckerReadsSources) {
-  const std::string header = R"(struct P {
+  const std::string header = R"(#include "a/b.h"
+struct P {
   double gain = 0.5;  ///< [-] method.md 5.6
   double bare = 2;    ///< [m] of the cell
   /// Fitted to something.
   int count = 3;
-  double empty = 0;  ///< off
-  double other = 4;  ///< not a key
+  double empty = 0;    ///< off
+  double other = 4;    ///< not a key
+  double two = 0, more = 0.05;  ///< the second one is a number
+  Vector3 place = Vector3::Zero();
+  double deep = 3;
+  double late = 1;  ///< [s] a comment whose second line says it:
+                    ///< assumed
+  double next = 2;  ///< [s] has nothing of the line before
 };
 /// All assumed.
 struct Q {
   double bold = 1;
 };
+struct R {
+  double gain = 1;  ///< of a struct that is not visited
+};
 )";
-  EXPECT_EQ(withoutSource(header, {"gain", "bare", "count", "empty", "bold"}),
-            std::vector<std::string>{"bare"});
+  EXPECT_EQ(
+      withoutSource(header, {"P::gain", "P::bare", "P::count", "P::empty", "P::two", "P::more",
+                             "P::place", "::deep", "P::late", "P::next", "Q::bold"}),
+      (std::vector<std::string>{"bare", "more", "deep", "next"}));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# [radecki2016]'s three encounters by sensor set: simulates scenarios A, B, C with five trials each, tracks them, and
-# pools all instants as [radecki2016]'s tables do, with recall and precision of the front ends. Leaves
-# OUT/pooled/report.md and plots, with [radecki2016]'s rows beside. C/H: the camera's headings as one wide Gaussian. About 7 minutes and 2 GB on four cores; SEEDS="51 52 53 54"
-# draws the five trials four times over.
+# The three encounters of [radecki2016] by sensor set, simulated: scenarios A, B, C with five trials each, tracked and
+# pooled over all instants as in the tables of [radecki2016], with recall and precision of the front ends. Leaves
+# OUT/pooled/report.md and plots, with the published rows beside. C/H: the camera's headings as one wide Gaussian.
+# About 7 minutes and 2 GB on four cores; SEEDS="51 52 53 54" draws the five trials four times over.
 #   tests/bench/scenarios.sh [OUT, default out/scenarios]
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."

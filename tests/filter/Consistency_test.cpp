@@ -14,7 +14,7 @@
 #include "libperception/core/Random.h"
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/likelihood/Linearization.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/measurement/FootprintModel.h"
 #include "libperception/measurement/PositionModel.h"
 #include "libperception/radar/RadarModel.h"

@@ -94,6 +94,17 @@ TEST(GroundEstimator, FreezesForAWetRoadAndThawsAfter) {
   EXPECT_FALSE(estimator.wet());
 }
 
+TEST(GroundEstimator, AClockThatGoesBackThaws) {
+  GroundEstimator estimator;
+  estimator.update(castScan(street(), coarse(), Stamp::fromSeconds(1000)));
+  SensorFrame wet = castScan(street(), coarse(), Stamp::fromSeconds(1000.1));
+  addMirrored(wet, 0.2);
+  estimator.update(wet);
+  ASSERT_TRUE(estimator.wet());
+  estimator.update(castScan(street(), coarse(), Stamp::fromSeconds(10)));
+  EXPECT_FALSE(estimator.wet());
+}
+
 TEST(GroundEstimator, MirroredReturnsDoNotPullThePlaneDown) {
   GroundEstimator estimator;
   estimator.update(castScan(street(), coarse(), Stamp::fromSeconds(0)));

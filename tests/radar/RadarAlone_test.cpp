@@ -5,7 +5,7 @@
 
 #include "libperception/core/Random.h"
 #include "libperception/filter/Step.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/radar/RadarFrontEnd.h"
 
 namespace perception {

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "libperception/filter/Step.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/measurement/PositionModel.h"
 #include "libperception/radar/RadarFrontEnd.h"
 

@@ -4,6 +4,7 @@
 
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
+#include "libperception/sensors/ToObservation.h"
 #include "tests/sensors/TestFiles.h"
 
 namespace perception {
@@ -77,6 +78,56 @@ TEST(CameraImages, FilesBesideTheLogAreReadWhenAskedForAndMissingOnesAreCounted)
   ASSERT_TRUE(frameFromObservation(empty, &counts));
   EXPECT_EQ(counts.missing_images, 2U);
   EXPECT_FALSE(std::get<CameraImage>(frameFromObservation(empty)->data).load());
+}
+
+/// 64 x 32 pixels of one color.
+CameraImage imageOf(const CameraModel& camera) {
+  CameraImage image;
+  image.camera = camera;
+  image.load = [camera] {
+    Raster raster{camera.width, camera.height, 3, {}};
+    for (int i = 0; i < camera.width * camera.height; ++i)
+      raster.pixels.insert(raster.pixels.end(), {10, 20, 30});
+    return std::optional<Raster>(raster);
+  };
+  return image;
+}
+
+TEST(CameraImages, ImagesGoIntoALogAndComeBack) {
+  SensorFrame frame;
+  frame.sensor = "FRONT";
+  frame.stamp = kStart;
+  CameraModel pinhole;
+  pinhole.width = 64, pinhole.height = 32;
+  pinhole.fx = 50, pinhole.fy = 51, pinhole.cx = 31.5, pinhole.cy = 15.5;
+  frame.data = imageOf(pinhole);
+  const auto back = frameFromObservation(*observationFromFrame(frame));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->sensor, "FRONT");
+  const auto& image = std::get<CameraImage>(back->data);
+  EXPECT_EQ(image.camera.fy, 51);
+  EXPECT_EQ(image.camera.cx, 31.5);
+  const auto raster = image.load();
+  ASSERT_TRUE(raster);
+  EXPECT_EQ(raster->pixels.size(), 64U * 32 * 3);
+  EXPECT_EQ(raster->pixels[2], 30);
+}
+
+TEST(CameraImages, PanoramasComeWithoutCalibrationAndAreKnownByTheirShape) {
+  const auto panorama = panoramaModel(1536, 768);
+  ASSERT_TRUE(panorama);
+  EXPECT_EQ(panorama->projection, CameraModel::Projection::kEquirectangular);
+  EXPECT_EQ(panorama->cx, 767.5);
+  SensorFrame frame;
+  frame.stamp = kStart;
+  frame.data = imageOf(*panorama);
+  const auto back = frameFromObservation(*observationFromFrame(frame));
+  ASSERT_TRUE(back);
+  const CameraModel& read = std::get<CameraImage>(back->data).camera;
+  EXPECT_EQ(read.fx, 0);
+  EXPECT_TRUE(panoramaModel(read.width, read.height));
+  EXPECT_FALSE(panoramaModel(1242, 375));
+  EXPECT_FALSE(panoramaModel(512, 256)) << "smaller than any panorama";
 }
 
 }  // namespace

@@ -81,6 +81,38 @@ TEST(SimulatedWeather, StrongerScattererReplacesTheSurface) {
   EXPECT_EQ(fog.nearest, many.nearest);
 }
 
+/// Fog at night.
+class Night final : public SimulatedWeather {
+ public:
+  void alter(const SensorParams&, Lighting& light, Rng&) const override {
+    light.sun_elevation = radians(-10), light.ambient = 0.01, light.haze = 0.05;
+  }
+  using SimulatedWeather::alter;
+};
+
+double meanBrightness(std::unique_ptr<SimulatedWeather> weather) {
+  Simulator simulator(scenarioOf(kStanding +
+                                 "[sensor.CAMERA]\nkind = camera_images\n"
+                                 "width = 128\nrate = 1\n" +
+                                 parked("car", "car", 12, 0)),
+                      "street", 3);
+  if (weather) simulator.setWeather(std::move(weather));
+  double sum = 0, count = 0;
+  while (const auto o = simulator.next()) {
+    if (!isImage(*o)) continue;
+    const auto raster = std::get<CameraImage>(frameFromObservation(*o)->data).load();
+    if (!raster) return -1;
+    for (const std::uint8_t value : raster->pixels) sum += value, ++count;
+  }
+  EXPECT_EQ(count, 2 * 128 * 64 * 3);
+  return sum / count;
+}
+
+TEST(SimulatedWeather, ChangesTheLightOfImages) {
+  EXPECT_GT(meanBrightness(nullptr), 90);
+  EXPECT_LT(meanBrightness(std::make_unique<Night>()), 40);
+}
+
 TEST(BeamWidth, EdgesReturnPartsAndMixedPixels) {
   // A board 0.3 m before a wall: rays see one or the other, wide beams also something between.
   const World world(scenarioOf(

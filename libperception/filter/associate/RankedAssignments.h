@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "libperception/filter/associate/AssignmentSolver.h"
+#include "libperception/core/Assignment.h"
 
 namespace perception {
 

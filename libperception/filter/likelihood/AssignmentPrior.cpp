@@ -7,7 +7,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/LogMath.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {
 namespace {

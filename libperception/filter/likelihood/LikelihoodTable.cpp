@@ -10,7 +10,7 @@
 #include "libperception/filter/likelihood/LikelihoodRow.h"
 #include "libperception/filter/likelihood/Linearization.h"
 #include "libperception/filter/likelihood/PairDensity.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/state/Parallel.h"
 
 namespace perception {

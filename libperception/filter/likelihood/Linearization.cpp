@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {
 namespace {

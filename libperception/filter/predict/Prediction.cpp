@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "libperception/filter/state/BankBatch.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/state/Parallel.h"
 
 namespace perception {

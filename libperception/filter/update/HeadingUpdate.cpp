@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
-#include "libperception/filter/state/MotionModels.h"
-#include "libperception/filter/update/ScalarUpdate.h"
+#include "libperception/core/KalmanUpdate.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/KalmanUpdate.h"
 
 namespace perception {
 namespace {
@@ -38,12 +39,6 @@ double logSides(const ObjectClass& c, const Track& track) {
          logSide(track.width, c.width, c.width_sigma);
 }
 
-void update(const ScalarEstimate& z, double floor, ScalarEstimate& x) {
-  const double gain = x.variance / (x.variance + z.variance);
-  x.mean += gain * (z.mean - x.mean);
-  x.variance = std::max(std::min(x.variance, floor), x.variance * (1 - gain));
-}
-
 /// Complete sides into length and width. False: none.
 bool seeSides(const PartialBox& sides, double axis, double default_sigma, Track& track) {
   const double angle = std::abs(wrapAxis(sides.yaw - axis));  // [0, pi/2]
@@ -51,7 +46,7 @@ bool seeSides(const PartialBox& sides, double axis, double default_sigma, Track&
   const bool a_is_length = angle <= kAlong;
   const auto see = [&](double size, double sigma, ScalarEstimate& x) {
     const double s = sigma > 0 ? sigma : default_sigma;
-    update({size, s * s}, kSideFloor, x);
+    scalarUpdate({size, s * s}, x, kSideFloor);
   };
   if (sides.length_complete)
     see(sides.length, sides.length_sigma, a_is_length ? track.length : track.width);
@@ -100,7 +95,7 @@ void updateSizes(const Measurement& m, std::optional<double> axis, const FilterM
   if (m.height) {
     count(
         p.height_exponent, [&](const ObjectClass& c) { return logHeight(c, track.height); },
-        [&] { update(*m.height, 0, track.height); });
+        [&] { scalarUpdate(*m.height, track.height); });
   }
   if (m.sides && axis) {
     count(

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "libperception/core/Chi2.h"
+#include "libperception/core/KalmanUpdate.h"
 #include "libperception/core/LogMath.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/update/ClassDecision.h"
+#include "libperception/filter/update/ClassFilterUpdate.h"
 #include "libperception/filter/update/HeadingUpdate.h"
-#include "libperception/filter/update/KalmanUpdate.h"
-#include "libperception/filter/update/ScalarUpdate.h"
 #include "libperception/filter/update/SizeEvidence.h"
 #include "libperception/measurement/ExtentUpdate.h"
 #include "libperception/measurement/PositionOnlyModel.h"
@@ -64,10 +64,8 @@ double speedSigma(const ObjectClass& c, const FilterModel& model) {
 /// Initial velocity of a newborn, with the range rate if measured (method.md 4.3).
 void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
   const auto measure = [&](const Vector2& u, double speed, double variance) {
-    const Vector2 Pu = f.P.bottomRightCorner<2, 2>() * u;
-    const Vector2 K = Pu / (u.dot(Pu) + variance);
-    f.x.tail<2>() += K * (speed - u.dot(f.x.tail<2>()));
-    f.P.bottomRightCorner<2, 2>() -= K * Pu.transpose();
+    const Eigen::RowVector4d h(0, 0, u.x(), u.y());
+    josephUpdate<4>(speed - h * f.x, variance, h, f.x, f.P);
   };
   measure(seen.direction, seen.along.mean, seen.along.variance);
   if (seen.across_sigma)
@@ -177,10 +175,10 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     if (is_lost || c.motion->has_heading) birth = scan.model->birth(m, j, scan.state);
     if (!is_lost) {
       if (place) {
-        placeUpdate(m, place->placeNoise(j), f);
+        positionUpdate(m, place->placeNoise(j), f);
       } else {
         const Kinematics k = kinematicsOf(c, f);
-        kalmanUpdate(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
+        updateClassFilter(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
       }
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);

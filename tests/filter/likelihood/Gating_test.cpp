@@ -6,7 +6,7 @@
 #include "libperception/filter/likelihood/Innovation.h"
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/predict/Prediction.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/update/Duplicates.h"
 #include "tests/support/FilterWorld.h"
 

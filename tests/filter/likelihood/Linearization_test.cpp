@@ -9,7 +9,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Random.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/measurement/FootprintModel.h"
 #include "libperception/measurement/PositionModel.h"
 

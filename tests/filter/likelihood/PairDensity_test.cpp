@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "libperception/core/Random.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/state/FixedAxes.h"
-#include "libperception/filter/state/MotionModels.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {

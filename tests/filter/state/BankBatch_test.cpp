@@ -7,7 +7,7 @@
 
 #include "libperception/core/Random.h"
 #include "libperception/filter/predict/Prediction.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {

@@ -6,7 +6,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Random.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "libperception/core/LogMath.h"
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {

@@ -1,4 +1,4 @@
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/KalmanUpdate.h"
 
 namespace perception {
 namespace {
-
-void symmetrize(Matrix4& P) { P = (0.5 * (P + P.transpose())).eval(); }
 
 /// x - reference, the heading wrapped.
 Vector4 difference(const Vector4& x, const Vector4& reference, bool oriented) {
@@ -176,10 +175,7 @@ void reverse(ClassFilter& f) {
 
 void updateYaw(double y, double variance, ClassFilter& f) {
   const auto one = [&](Vector4& x, Matrix4& P) {
-    const Vector4 K = P.col(3) / (P(3, 3) + variance);
-    x += K * y;
-    P = (P - K * P.row(3)).eval();
-    P = (0.5 * (P + P.transpose())).eval();
+    josephUpdate<4>(y, variance, Eigen::RowVector4d::UnitW(), x, P);
     x[3] = wrapAngle(x[3]);
   };
   if (f.modes.empty()) {

@@ -1,13 +1,14 @@
-#include "libperception/filter/update/KalmanUpdate.h"
+#include "libperception/filter/update/ClassFilterUpdate.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/KalmanUpdate.h"
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/state/FixedAxes.h"
-#include "libperception/filter/state/MotionModels.h"
 
 namespace perception {
 namespace {
@@ -37,30 +38,20 @@ void updateExtentBy(const Innovation& innovation, Extent& e) {
   e.var_width = std::max(std::min(kFloor, e.var_width), e.var_width - gain(1, 1));
 }
 
-/// Kalman update of one Gaussian in Joseph form (method.md 4); returns the log density of y up to a
-/// constant.
+/// josephUpdate() of one Gaussian by those axes that were seen.
 double gaussianUpdate(const AxisVector& y, const AxisMatrix& S, const Innovation& innovation,
                       Vector4& x, Matrix4& P) {
   double log_density = kMinusInfinity;
   withAxes(y.size(), [&](auto n) {
-    const auto H = fixedRows<n, 4>(innovation.H);
-    const Eigen::Matrix<double, n, 1> fixed_y = fixedRows<n, 1>(y);
-    const FixedFactors<n> factors(fixedRows<n, n>(S));
-    if (!factors.positive()) return;
-    const Eigen::Matrix<double, n, 4> HP = H * P;
-    const Eigen::Matrix<double, 4, n> K = factors.template solve<4>(HP).transpose();
-    const Matrix4 I_KH = Matrix4::Identity() - K * H;
-    x += K * fixed_y;
-    P = (I_KH * P * I_KH.transpose() + K * fixedRows<n, n>(innovation.R) * K.transpose()).eval();
-    P = (0.5 * (P + P.transpose())).eval();
-    log_density = -0.5 * (factors.normSquared(fixed_y) + std::log(factors.determinant()));
+    log_density = josephUpdate<n, 4>(fixedRows<n, 1>(y), fixedRows<n, 4>(innovation.H),
+                                     fixedRows<n, n>(innovation.R), fixedRows<n, n>(S), x, P);
   });
   return log_density;
 }
 
 }  // namespace
 
-void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
+void updateClassFilter(const Innovation& innovation, ClassFilter& f) {
   if (f.modes.empty()) {
     gaussianUpdate(innovation.y, innovation.S, innovation, f.x, f.P);
     if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
@@ -82,7 +73,7 @@ void kalmanUpdate(const Innovation& innovation, ClassFilter& f) {
   updateExtentBy(innovation, f.extent);
 }
 
-void placeUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f) {
+void positionUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f) {
   Matrix2 R = m.R + noise;
   R.diagonal().array() += 1e-9;  // as innovationOf()
   const Matrix2 S = f.P.topLeftCorner<2, 2>() + R;
@@ -104,7 +95,8 @@ void placeUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f) {
   P += KR * K.transpose();
   f.x += K * y;
   if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
-  f.P = 0.5 * (P + P.transpose());
+  symmetrize(P);
+  f.P = P;
 }
 
 }  // namespace perception

@@ -1,4 +1,4 @@
-#include "libperception/filter/state/MotionModels.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,39 @@
+#pragma once
+#include <vector>
+
+#include "libperception/config/ParamSet.h"
+#include "libperception/measurement/SensorFrame.h"
+#include "libperception/simulation/Lighting.h"
+
+namespace perception {
+
+class LidarCaster;
+
+/// A camera that takes images, in a [sensor.LABEL] section: a pinhole, or at 360 degrees a panorama
+/// of the whole sphere (equirectangular), twice as wide as high. Defaults: the smallest panorama of
+/// [radecki2016].
+struct ImageCameraParams {
+  int width = 1024, height = 512;  ///< [px] height: of a pinhole's image
+  double fov = kTwoPi;             ///< [rad] horizontal
+
+  void visit(ParamVisitor& v);
+  bool panorama() const { return fov >= kTwoPi - 1e-9; }
+  /// Pixel centers at whole numbers.
+  CameraModel model() const;
+};
+
+/// An image, and what is seen in each pixel's middle.
+struct RenderedImage {
+  Raster raster;
+  /// Index into the scenario's objects, BeamHit::kRoad or kNothing; one a pixel, rows from the top.
+  std::vector<int> objects;
+};
+
+/// What the camera sees at t [s], the time at which the caster stands: one ray a pixel, four where
+/// neighbors differ, each with rays towards the sun and, from the ground, straight up (method.md
+/// 9.11). `T_world_camera`: optical frame. The vehicle itself is not seen. A function of its
+/// arguments to the byte, for any number of threads.
+RenderedImage renderImage(const LidarCaster& caster, double t, const CameraModel& camera,
+                          const Lighting& light, const Pose3& T_world_camera);
+
+}  // namespace perception

@@ -1,0 +1,42 @@
+#pragma once
+#include "libperception/config/ParamSet.h"
+#include "libperception/core/Frames.h"
+
+namespace perception {
+
+/// Red, green, blue in linear units: reflectance [0, 1] of surfaces, radiance of light. A white
+/// surface that faces the sun has radiance 1.
+using Rgb = Vector3;
+
+/// [light]: sun, sky, air and shutter of rendered images (method.md 9.11). Weather may change it
+/// from image to image: fog raises the haze, night takes the sun below the horizon and lowers the
+/// ambient light. Defaults assumed: a clear day.
+struct Lighting {
+  double sun_azimuth = radians(-60);   ///< [rad] world, from x towards y
+  double sun_elevation = radians(40);  ///< [rad] below 0: no sunlight
+  double ambient = 0.3;   ///< light of the sky, as a share of the sun's at right angles
+  double exposure = 2.0;  ///< of the camera, times the radiance
+  double haze = 2e-4;     ///< [1/m] extinction: visible to 15 km (method.md 9.3)
+
+  void visit(ParamVisitor& v);
+  Vector3 sunDirection() const;  ///< unit, towards the sun, world
+  bool hasSun() const { return sun_elevation > 0; }
+  /// Color of direct light; zero when the sun is down.
+  Rgb sunlight() const;
+  /// Radiance of the clear sky in a direction (unit vector, world); below the horizon that of the
+  /// horizon, into which distant things fade.
+  Rgb sky(const Vector3& direction) const;
+  /// Light that arrives on a surface from sky and ground, over pi: times reflectance, a radiance.
+  Rgb ambientOn(const Vector3& normal) const;
+  /// The same seen through the layer of hazy air over the ground.
+  Rgb hazySky(const Vector3& direction) const;
+  /// What is left of a radiance after `range` [m] of air, with the light that the air adds.
+  Rgb through(const Rgb& radiance, double range, const Vector3& direction) const;
+  /// The linear display value in [0, 1] of a radiance.
+  Rgb exposed(const Rgb& radiance) const;
+};
+
+/// The byte of a linear display value: the curve of sRGB (IEC 61966-2-1).
+std::uint8_t displayByte(double linear);
+
+}  // namespace perception
