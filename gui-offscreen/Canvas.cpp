@@ -11,7 +11,7 @@ constexpr int kScale = 2;     // drawn pixels per pixel
 constexpr int kFraction = 4;  // bits of sub-pixel places in OpenCV's drawing
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kCapitals = 21;     // [px] height of that font's capitals at scale 1
-constexpr double kFarthest = 20000;  // [px] OpenCV's integers overflow beyond
+constexpr double kFarthest = 20000;  // [px] limit of OpenCV's fixed-point coordinates
 
 cv::Scalar colorOf(const Color& c) { return {double(c.r), double(c.g), double(c.b)}; }
 

@@ -23,8 +23,8 @@ struct Rect {
   }
 };
 
-/// A picture to draw on with smooth lines and text: everything is drawn at twice the size and
-/// averaged at the end. Coordinates are pixels of the finished picture.
+/// Drawing area with anti-aliased lines and text, by supersampling at twice the size. Coordinates
+/// are pixels of the final picture.
 class Canvas {
  public:
   Canvas(int width, int height, const Color& background = kPaper);

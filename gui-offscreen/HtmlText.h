@@ -3,12 +3,12 @@
 
 namespace perception {
 
-/// Text as it stands between tags and in attributes of HTML.
+/// Escapes text for HTML content and attributes.
 std::string escaped(const std::string& text);
-/// The same of a name, with blanks for its underscores.
+/// The same, with spaces for underscores.
 std::string spaced(std::string name);
 
-/// RFC 4648, section 4.
+/// Base64 encoding, RFC 4648 section 4.
 std::string base64(const std::string& bytes);
 
 }  // namespace perception

@@ -18,7 +18,7 @@ Rect placeAt(const LabelWish& wish, double angle, double distance) {
   const double c = std::cos(angle), s = std::sin(angle);
   const double half_w = (wish.object.width + wish.width) / 2 + distance;
   const double half_h = (wish.object.height + wish.height) / 2 + distance;
-  // On the outline of the rectangle that keeps the two apart.
+  // On the boundary of the rectangle at which the two do not overlap.
   const double stretch =
       std::min(half_w / std::max(1e-9, std::abs(c)), half_h / std::max(1e-9, std::abs(s)));
   return {cx + stretch * c - wish.width / 2, cy + stretch * s - wish.height / 2, wish.width,

@@ -6,17 +6,17 @@
 
 namespace perception {
 
-/// A label that wants to stand near its object.
+/// A label to be placed near its object.
 struct LabelWish {
-  Rect object;                   ///< [px] that it belongs to and should not cover
+  Rect object;                   ///< [px] labeled object, should not be covered
   double width = 0, height = 0;  ///< [px]
-  int rank = 0;                  ///< lower ranks choose first
-  double reach = 90;             ///< [px] farthest from the object
+  int rank = 0;                  ///< lower ranks are placed first
+  double reach = 90;             ///< [px] largest distance from the object
 };
 
-/// Places labels beside their objects so that no two of them overlap: greedily, by rank, each at
-/// the nearest free place; first places that cover no other object are tried. A label that finds no
-/// place within its reach is left out.
+/// Places labels beside their objects so that no two of them overlap: greedily by rank, at the
+/// nearest free position, preferably one that covers no other object. Empty for a label without a
+/// position within its reach.
 std::vector<std::optional<Rect>> placeLabels(const std::vector<LabelWish>& wishes,
                                              const std::vector<Rect>& taken, const Rect& area);
 

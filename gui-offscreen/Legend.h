@@ -4,8 +4,8 @@
 
 namespace perception {
 
-/// Explains every symbol that pictures of this view may hold. Draws into `at`, from the top;
-/// returns where it ends [px].
+/// Legend of the symbols used in pictures of this view. Draws into `at` from the top; returns its
+/// lower end [px].
 double drawLegend(Canvas& canvas, const SceneView& view, const Rect& at);
 
 }  // namespace perception

@@ -6,10 +6,10 @@
 
 namespace perception {
 
-/// One object over the run.
+/// Lifetime of one object in a run.
 struct ObjectLife {
   std::uint64_t id = 0;
-  /// A stretch of time with one class.
+  /// A time interval with one class.
   struct Stretch {
     double from = 0, to = 0;  ///< [s] of the log
     ClassId class_id = 0;
@@ -23,7 +23,7 @@ struct ObjectLife {
   double to() const { return stretches.back().to; }
 };
 
-/// All objects of a run by id. Gaps of more than two scene periods part a stretch.
+/// All objects of a run by id. Gaps of more than two scene periods start a new interval.
 std::vector<ObjectLife> objectLives(const TrackedRun& run);
 
 }  // namespace perception

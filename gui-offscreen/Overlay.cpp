@@ -14,9 +14,9 @@ namespace {
 constexpr double kReach = 90, kMutedReach = 4;  // [px] from an object to its label
 constexpr double kLabelSize = 8.5;              // [px] height of capitals
 constexpr double kSmallSize = 7.5;              // [px]
-constexpr double kArrowTime = 1;                // [s] the speed arrow shows the way of so long
-constexpr double kStanding = 0.5;               // [m/s] below it there is no arrow
-constexpr double kImageReach = 1.5;  // of the range: farther objects crowd at the horizon
+constexpr double kArrowTime = 1;     // [s] length of the velocity arrow: distance in this time
+constexpr double kStanding = 0.5;    // [m/s] below it there is no arrow
+constexpr double kImageReach = 1.5;  // of the range: farther objects are not drawn on images
 
 /// Draws what is given in the ego frame.
 class Overlay {
@@ -55,7 +55,7 @@ class Overlay {
   void drawTruth(const TruthObject& o) {
     const auto corners =
         boxCorners(T_ego_world_ * o.position, o.yaw - ego_yaw_, o.length, o.width, o.height);
-    pen_.box(corners, kPaper, 3, false);  // a rim, so that it stands out on outlines, too
+    pen_.box(corners, kPaper, 3, false);  // a white border, for contrast on outlines
     pen_.box(corners, kInk, 1.2, false);
   }
 
@@ -86,7 +86,7 @@ class Overlay {
     const auto corners = cornersOf(object);
     const bool muted = isMuted(view_.className(object));
     pen_.box(corners, color, muted ? 1.2 : 2, object.existence < kSureExistence);
-    // A bar across the front tells front from rear.
+    // A bar marks the front.
     if (!muted && object.has_yaw) {
       const auto inward = [&](std::size_t front, std::size_t rear) -> Vector3 {
         return corners[front] + 0.2 * (corners[rear] - corners[front]);
@@ -120,8 +120,8 @@ class Overlay {
   std::vector<Rect> taken_;  // by text that is there already
 };
 
-// A camera of the vehicle: its image or, where the log has none, the lidar's returns in its place;
-// boxes from far to near.
+// A camera of the vehicle: its image or, if the log has none, the lidar returns; boxes from far to
+// near.
 int Overlay::drawOnImage() {
   if (view_.image->picture.width == 0) drawImagePoints();
   std::vector<const SceneObject*> objects;
@@ -202,7 +202,7 @@ std::string Overlay::labelOf(const SceneObject& object) const {
   return text;
 }
 
-// What the object's box covers of the picture; empty when it is out of sight.
+// Bounding rectangle of the object's box in the picture; empty if not visible.
 std::optional<Rect> Overlay::frameOf(const SceneObject& object) const {
   double low_x = 1e9, low_y = 1e9, high_x = -1e9, high_y = -1e9;
   for (const Vector3& corner : cornersOf(object)) {
@@ -253,7 +253,7 @@ int Overlay::drawLabels() {
     const Color color =
         colorOfClass(view_.className(*labels[i].object), labels[i].object->class_id);
     const Rect& o = wishes[i].object;
-    // From the label's edge to the object's, where they stand apart.
+    // A line from the label to the object if they are apart.
     const Vector2 from(std::clamp(o.x + o.width / 2, r.x, r.right()),
                        std::clamp(o.y + o.height / 2, r.y, r.bottom()));
     const Vector2 to(std::clamp(from.x(), o.x, o.right()), std::clamp(from.y(), o.y, o.bottom()));

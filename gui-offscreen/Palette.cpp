@@ -7,7 +7,7 @@
 namespace perception {
 namespace {
 
-// Five places of matplotlib's viridis, without its yellow end, which vanishes on white.
+// Five colors of matplotlib's viridis without the yellow end, which has no contrast on white.
 constexpr std::array<Color, 5> kRamp = {
     {{68, 1, 84}, {65, 68, 135}, {42, 120, 142}, {34, 168, 132}, {122, 209, 81}}};
 

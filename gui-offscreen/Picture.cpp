@@ -19,8 +19,7 @@ std::size_t colorsOf(const Picture& picture) {
   return colors.size();
 }
 
-// Encoded in memory and written by our own file class: OpenCV's imwrite() says nothing of a full
-// disk.
+// Encoded in memory and written by OutputFile: OpenCV's imwrite() does not report a full disk.
 void writePng(const std::string& path, const Picture& picture) {
   const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
                     const_cast<std::uint8_t*>(picture.rgb.data()));

@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// A color picture in memory: rows from the top, three bytes a pixel.
+/// An RGB image in memory: rows from the top, three bytes per pixel.
 struct Picture {
   int width = 0, height = 0;      ///< [px]
   std::vector<std::uint8_t> rgb;  ///< red, green, blue
@@ -15,14 +15,14 @@ struct Picture {
   }
 };
 
-/// Number of different colors; 1 = blank.
+/// Number of distinct colors; 1 = blank.
 std::size_t colorsOf(const Picture& picture);
 
 /// Writes a PNG. Throws OutputError naming the path.
 void writePng(const std::string& path, const Picture& picture);
 
 struct Raster;
-/// Gray or color, without a transparency; empty for an image that is none.
+/// Converts a gray or color raster; empty for an empty raster.
 Picture pictureOf(const Raster& raster);
 
 }  // namespace perception

@@ -80,7 +80,7 @@ Picture Renderer::render(const SceneView& view, const ViewCamera& camera) {
   viewport->setCustomBackgroundColor({1.0F, 1.0F, 1.0F});
   viewport->setViewportClipDistances(static_cast<float>(camera.near),
                                      static_cast<float>(camera.far));
-  // Almost flat: colors carry meaning.
+  // Nearly flat shading, since colors have a meaning.
   viewport->lightParameters().ambient = {0.85F, 0.85F, 0.85F, 1.0F};
   viewport->lightParameters().diffuse = {0.15F, 0.15F, 0.15F, 1.0F};
   viewport->lightParameters().specular = {0.0F, 0.0F, 0.0F, 1.0F};

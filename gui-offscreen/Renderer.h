@@ -6,17 +6,16 @@
 
 namespace perception {
 
-/// OpenGL without a display: one framebuffer for the life of the program. MRPT 2.5.8 draws silently
-/// wrong pictures when two of them are used in turn, so a second one is refused; and it must be
-/// used by the thread that made it.
+/// Off-screen OpenGL: one framebuffer per process. With two of them MRPT 2.5.8 silently renders
+/// wrong pictures, so a second instance is refused. Must be used by the thread that created it.
 class Renderer {
  public:
-  /// Size of the framebuffer [px]. Throws Error(kUnavailable) where the machine has no OpenGL.
+  /// Size of the framebuffer [px]. Throws Error(kUnavailable) without OpenGL.
   Renderer(int width, int height);
   ~Renderer();
 
-  /// The view, from the camera, at the framebuffer's size; the camera's own picture may be smaller
-  /// but has the same shape.
+  /// Renders the view from the camera at the size of the framebuffer; the camera's picture may be
+  /// smaller, with the same aspect ratio.
   Picture render(const SceneView& view, const ViewCamera& camera);
 
   int width() const { return width_; }

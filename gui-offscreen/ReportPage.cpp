@@ -14,9 +14,9 @@ namespace perception {
 namespace {
 
 constexpr double kShortest = 0.5;      // [s] objects seen for less have no row
-constexpr std::size_t kMostRows = 80;  // of the timeline; the longest seen stay
+constexpr std::size_t kMostRows = 80;  // of the timeline; objects of longest lifetime are kept
 
-/// The page as it is written, part by part.
+/// Writes the page part by part.
 class Page {
  public:
   explicit Page(const ReportContent& content) : content_(content), run_(*content.run) {
@@ -157,7 +157,7 @@ void Page::video() {
   figure(content_.video[0]);
 }
 
-// A row an object, time to the right; pale where its class was not sure.
+// One row per object over time; pale where not classified.
 void Page::timeline() {
   if (lives_.empty()) return;
   out_ +=

@@ -8,9 +8,9 @@
 
 namespace perception {
 
-/// All that the page of a run tells. What is empty is left out.
+/// Contents of the page of a run; empty parts are omitted.
 struct ReportContent {
-  /// A picture or film of the page, inside of it.
+  /// An embedded picture or video.
   struct Figure {
     std::string title, caption;
     std::string media_type;  ///< "image/png", "video/mp4"
@@ -24,8 +24,8 @@ struct ReportContent {
   std::vector<Figure> pictures, plots;
 };
 
-/// One HTML page, whole in itself: no network, no other file. Says what a run was made of, what it
-/// tracked and when, and how that compares with the truth.
+/// A self-contained HTML page: inputs of a run, tracked objects over time, comparison with the
+/// truth.
 std::string htmlPage(const ReportContent& content);
 
 }  // namespace perception

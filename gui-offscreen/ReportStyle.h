@@ -2,7 +2,7 @@
 
 namespace perception {
 
-/// Looks of the report page.
+/// CSS of the report page.
 inline constexpr const char* kReportStyle = R"css(
 body { font: 15px/1.45 system-ui, "DejaVu Sans", sans-serif; color: #141414; background: #fff;
        max-width: 1180px; margin: 24px auto; padding: 0 16px; }
@@ -28,7 +28,7 @@ svg .grid { stroke: #ddd; }
 .legend i { display: inline-block; width: 14px; height: 12px; margin-right: 5px; }
 )css";
 
-/// Film and timeline go together: a line shows the film's time, a click goes there.
+/// Synchronizes video and timeline: a line marks the current time, a click seeks.
 inline constexpr const char* kReportScript = R"js(
 (function () {
   var film = document.getElementById('film'), chart = document.getElementById('timeline');

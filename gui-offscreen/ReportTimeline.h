@@ -6,11 +6,11 @@
 
 namespace perception {
 
-/// The name of a class of the run; "?": it has none.
+/// Name of a class of the run; "?" if out of range.
 std::string nameOfClass(const TrackedRun& run, ClassId c);
 
-/// SVG of the page of a run: a row an object in the order given, time to the right from 0 to `end`
-/// [s]; pale where its class was not sure.
+/// SVG of the page of a run: one row per object in the given order, time axis from 0 to `end` [s];
+/// pale where not classified.
 std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& lives, double end);
 
 }  // namespace perception

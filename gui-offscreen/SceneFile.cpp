@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kLetter = 0.5F;     // [m] height of letters
 constexpr double kLetterGap = 0.3;  // [m] between an object's roof and its label
-constexpr double kArrowTime = 1;    // [s] the arrow shows the way of so long
+constexpr double kArrowTime = 1;    // [s] length of the velocity arrow: distance in this time
 constexpr double kStanding = 0.5;   // [m/s] below it there is no arrow
 
 mrpt::img::TColor colorOf(const Color& c) { return {c.r, c.g, c.b, 255}; }
@@ -32,7 +32,7 @@ void addLabel(mrpt::opengl::COpenGLScene& scene, const SceneObject& object, cons
   auto label = mrpt::opengl::CText3D::Create(text, "sans", kLetter);
   label->setName(fmt::format("label {}", object.id));
   label->setColor_u8(colorOf(color));
-  // Upright, to be read by who stands behind the vehicle.
+  // Upright, facing a viewer behind the vehicle.
   label->setPose(mrpt::poses::CPose3D(place.x(), place.y(), place.z() + object.height + kLetterGap,
                                       -kPi / 2, 0, kPi / 2));
   scene.insert(label);
@@ -117,7 +117,7 @@ void writeSceneFile(const std::string& path, const SceneView& view, double range
   camera.setZoomDistance(static_cast<float>(range));
   camera.setAzimuthDegrees(180);
   camera.setElevationDegrees(35);
-  // In memory first: MRPT's own saving says nothing of a full disk.
+  // In memory first, since MRPT's saving does not report a full disk.
   mrpt::io::CMemoryStream bytes;
   mrpt::serialization::archiveFrom(bytes) << *scene;
   writeFile(path, {static_cast<const char*>(bytes.getRawBufferData()),

@@ -99,11 +99,12 @@ void addQuad(mrpt::opengl::CSetOfTriangles& triangles, const std::array<Vector3,
   }
 }
 
-// From above as flat squares below the returns; from behind as low curbs that hide nothing.
+// In the top view flat squares below the returns; in the driver view low boxes that occlude
+// nothing.
 void addOccupied(mrpt::opengl::COpenGLScene& scene, const SceneView& view,
                  const Pose3& T_ego_world) {
   constexpr double kLevel = 0.02;  // [m] above the grid's lines
-  constexpr double kRim = 1.5;     // of a cell's edge: returns would hide the cell below them
+  constexpr double kRim = 1.5;     // factor on the cell size: returns would cover the cell
   auto triangles = mrpt::opengl::CSetOfTriangles::Create();
   for (const Column& column : columnsOf(view.occupied)) {
     const double h = kRim * column.size / 2;

@@ -6,36 +6,36 @@
 
 namespace perception {
 
-/// How pictures are made.
+/// Parameters of pictures.
 struct SnapshotParams {
-  int width = 1280, height = 720;  ///< [px] of a picture with one view; each more widens it
+  int width = 1280, height = 720;  ///< [px] of a picture with one view; further views widen it
   double range = 40;               ///< [m] ahead that is shown
-  std::vector<ViewKind> views = {ViewKind::kTop};  ///< side by side; a camera's below the others
+  std::vector<ViewKind> views = {ViewKind::kTop};  ///< side by side, camera views below
 };
 
-/// Makes finished pictures: the rendered scene, lines and text over it, a title, a legend. Keep one
-/// for the life of the program (see Renderer).
+/// Makes complete pictures: rendered scene, overlay, title, legend. One instance per process (see
+/// Renderer).
 class Snapshot {
  public:
-  /// Throws Error(kUnavailable) where the machine has no OpenGL.
+  /// Throws Error(kUnavailable) without OpenGL.
   explicit Snapshot(const SnapshotParams& params);
 
   void setViews(const std::vector<ViewKind>& views);
   Picture picture(const SceneView& view) { return picture(std::vector<SceneView>{view}); }
-  /// Several runs at one instant, at least one: side by side, or below each other where each has
-  /// more than one view. Same views, same layers: same size.
+  /// One or more runs at one instant: side by side, or in rows if there are several views. The size
+  /// depends on views and layers only.
   Picture picture(const std::vector<SceneView>& runs);
-  /// The same without title and legend, smaller, with time and frame above: for a contact sheet.
+  /// A smaller picture without title and legend, with time and frame above: for contact sheets.
   Picture tile(const SceneView& view);
 
-  /// The solid things alone, at the framebuffer's size.
+  /// The rendered scene without overlay, at the framebuffer's size.
   Picture render(const SceneView& view, const ViewCamera& camera) {
     return renderer_.render(view, camera);
   }
 
   int viewWidth() const { return map_width_; }    ///< [px] of one view on a picture
   int viewHeight() const { return map_height_; }  ///< [px]
-  /// Labels that found no room on the last picture.
+  /// Number of labels omitted on the last picture for lack of space.
   int labelsLeftOut() const { return labels_left_out_; }
 
  private:

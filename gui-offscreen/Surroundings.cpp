@@ -86,7 +86,7 @@ void Surroundings::drawScale() {
       kSmallSize, kInk);
 }
 
-// The lane as it is steered up to the first occupied cell, and a bar where it ends.
+// The steering corridor up to the first occupied cell, and a bar at its end.
 void Surroundings::drawFreeDistance() {
   if (!view_.corridor) return;
   constexpr double kPiece = 2;  // [m] drawn straight, and of gap

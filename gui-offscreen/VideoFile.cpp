@@ -36,7 +36,7 @@ std::string onPath(const std::string& program) {
   return "";
 }
 
-// One thread and no marks of version or time: the same pictures give the same file.
+// One thread and no metadata of version or time: reproducible output.
 std::vector<std::string> arguments(const Picture& first, double rate, const std::string& file) {
   return {"ffmpeg",
           "-hide_banner",
@@ -82,7 +82,7 @@ VideoFile::VideoFile(const std::string& path, double rate)
     throw Error(ExitCode::kUnavailable,
                 path + ": ffmpeg, which writes videos, is not installed (Debian package ffmpeg)");
   }
-  OutputFile(partial_).close();  // says why, when the folder is missing or closed
+  OutputFile(partial_).close();  // throws with the reason if the folder is missing or not writable
 }
 
 VideoFile::~VideoFile() {
@@ -116,7 +116,7 @@ void VideoFile::start(const Picture& first) {
     process_ = -1;
     fail(std::strerror(failed));
   }
-  std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ended shows as a failed write instead
+  std::signal(SIGPIPE, SIG_IGN);  // a terminated ffmpeg is then reported as a failed write
 }
 
 void VideoFile::add(const Picture& picture) {

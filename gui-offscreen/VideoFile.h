@@ -7,21 +7,21 @@
 
 namespace perception {
 
-/// A film (H.264 in MP4, plays in browsers) from pictures of one size, written by ffmpeg as a
-/// process of its own: `path` is there once close() has returned, and not before.
+/// A video (H.264 in MP4) from pictures of equal size, encoded by an ffmpeg process. `path` exists
+/// only after close().
 class VideoFile {
  public:
-  /// `rate` [1/s] of the pictures. Throws Error(kUnavailable) when ffmpeg is not installed,
-  /// OutputError when the file cannot be created.
+  /// `rate` [1/s] of the pictures. Throws Error(kUnavailable) if ffmpeg is not installed,
+  /// OutputError if the file cannot be created.
   VideoFile(const std::string& path, double rate);
-  /// A film that was not closed leaves no file.
+  /// Removes the file if it was not closed.
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;
 
-  /// The first picture gives the size; width and height are even. Throws OutputError.
+  /// The first picture determines the size; width and height must be even. Throws OutputError.
   void add(const Picture& picture);
-  /// Waits for ffmpeg. Throws OutputError with what it said.
+  /// Waits for ffmpeg. Throws OutputError with its messages.
   void close();
 
   std::size_t frames() const { return frames_; }
@@ -31,7 +31,7 @@ class VideoFile {
   [[noreturn]] void fail(const std::string& what);
   int finish();  ///< ffmpeg's exit status
 
-  std::string path_, partial_, said_;  ///< final, while growing, ffmpeg's messages
+  std::string path_, partial_, said_;  ///< final path, temporary path, ffmpeg's messages
   double rate_;
   int width_ = 0, height_ = 0;  ///< [px]
   int pipe_ = -1;

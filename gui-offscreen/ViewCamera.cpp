@@ -28,7 +28,7 @@ Vector2 pixelOf(const ViewCamera& camera, const Vector3& optical) {
   return camera.center + Vector2(camera.focal * at.x(), camera.focal_y * at.y());
 }
 
-// The view with a square pixel and its axis in the middle.
+// A camera with square pixels and centered principal point.
 void centerAxis(ViewCamera& camera, double focal) {
   camera.focal = camera.focal_y = focal;
   camera.center = Vector2(camera.width / 2.0, camera.height / 2.0);

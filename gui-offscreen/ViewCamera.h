@@ -10,20 +10,19 @@ namespace perception {
 
 enum class ViewKind { kTop, kDriver, kCamera };
 
-/// A camera about the vehicle, in the ego frame: the same one draws the solid things in OpenGL and
-/// places text and lines on the picture. The top view is a pinhole, too, one kilometer up: 2 m of
-/// height shift a place by 0.2 % of its distance from the middle. Views of a camera of the vehicle
-/// are not rendered: they lie over its image.
+/// A virtual camera in the ego frame, used for both the OpenGL rendering and the overlay. The top
+/// view is a pinhole at a height of 1 km: 2 m of height shift a point by 0.2 % of its distance from
+/// the center. Views of the vehicle's cameras are drawn over their image.
 struct ViewCamera {
   ViewKind kind = ViewKind::kTop;
   int width = 0, height = 0;         ///< [px]
   double focal = 1;                  ///< [px]; equirectangular: [px/rad]
   double focal_y = 1;                ///< the same, down the picture
-  Vector2 center = Vector2::Zero();  ///< [px] where the optical axis meets the picture
+  Vector2 center = Vector2::Zero();  ///< [px] principal point
   CameraModel::Projection projection = CameraModel::Projection::kPinhole;
   Pose3 T_ego_camera = Pose3::Identity();  ///< optical: x right, y down, z forward
-  double near = 0.5, far = 500;            ///< [m] of what is drawn, along the optical axis
-  double range = 40;                       ///< [m] ahead that the view shows
+  double near = 0.5, far = 500;            ///< [m] clipping planes along the optical axis
+  double range = 40;                       ///< [m] displayed ahead
 
   /// Forward is up; `range` meters ahead of the vehicle at the upper edge, 0.4 range behind it at
   /// the lower one.
@@ -33,10 +32,10 @@ struct ViewCamera {
   /// What a camera of the vehicle sees, `scale` picture pixels per image pixel.
   static ViewCamera image(const CameraModel& model, const Pose3& T_ego_camera, double scale);
 
-  /// Pixel of a point of the ego frame; empty when it lies behind the near plane.
+  /// Pixel of a point of the ego frame; empty if behind the near plane.
   std::optional<Vector2> project(const Vector3& point) const;
-  /// A line between two points: cut at the near plane; in a panorama as pieces, since straight
-  /// lines are bent there, and parted at its seam. Empty when nothing of it is seen.
+  /// Projection of a line segment: clipped at the near plane; in a panorama piecewise, split at the
+  /// seam. Empty if not visible.
   std::vector<std::pair<Vector2, Vector2>> projectLine(const Vector3& a, const Vector3& b) const;
   /// [px/m] at a point of the ego frame in front of the camera.
   double scaleAt(const Vector3& point) const;

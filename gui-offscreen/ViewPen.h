@@ -8,7 +8,8 @@
 
 namespace perception {
 
-/// Draws what is given in the ego frame over a camera's picture; `at`: its place on the canvas.
+/// Draws primitives given in the ego frame over a camera's picture; `at`: its rectangle on the
+/// canvas.
 class ViewPen {
  public:
   static constexpr double kDash = 4;  ///< [px]
@@ -23,7 +24,7 @@ class ViewPen {
   std::optional<Vector2> pixel(const Vector3& p) const;
   void line(const Vector3& a, const Vector3& b, const Color& color, double thickness,
             bool dashed = false);
-  /// Edges of a box of the corners as boxCorners() gives them; from above its floor alone.
+  /// Edges of a box with corners by boxCorners(); in the top view its base only.
   void box(const std::array<Vector3, 8>& c, const Color& color, double thickness, bool dashed);
 
  private:
@@ -32,8 +33,8 @@ class ViewPen {
   Rect at_;
 };
 
-/// Distances along the axes, the scale, the free lane and the vehicle. Gives the places that text
-/// and vehicle take.
+/// Draws axis distances, scale, free corridor and vehicle. Returns the rectangles of text and
+/// vehicle.
 std::vector<Rect> drawSurroundings(ViewPen& pen, const SceneView& view);
 
 }  // namespace perception

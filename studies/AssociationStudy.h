@@ -9,7 +9,8 @@
 
 namespace perception {
 
-/// Encounters with one configuration for all: who keeps identities apart, and at what error.
+/// Identity swaps and GOSPA of association methods in simulated encounters, one configuration for
+/// all.
 struct AssociationParams {
   int seeds = 400;  ///< scenes 1 ... seeds
 };
@@ -21,14 +22,14 @@ struct AssociationScene {
 };
 const std::vector<AssociationScene>& associationScenes();
 
-/// A way to associate, with a number of particles or hypotheses.
+/// Association method and number of particles or hypotheses.
 struct AssociationMethod {
   std::string label;
   Proposal proposal = Proposal::kSampled;
   int particles = 8;
 };
 
-/// The one configuration: interacting walking modes, the posterior exact but for the gate.
+/// Filter model of the study: two pedestrian motion modes, no pruning except the gate.
 FilterModel associationModel(Proposal proposal);
 
 struct AssociationFigures {

@@ -15,11 +15,11 @@
 namespace perception {
 namespace {
 
-constexpr double kEvery = 0.5;         // [s] between looks
+constexpr double kEvery = 0.5;         // [s] sampling interval
 constexpr double kConfidence = 0.999;  // of the interval of the mean NEES
 constexpr int kAxes = 3;
 
-/// The scenario's own-motion sensors alone: nothing is seen, so nothing has to be cast.
+/// The scenario with ego-motion sensors only, so that no rays are cast.
 Scenario withoutLooking(Scenario scenario) {
   auto& sensors = scenario.sensors;
   sensors.erase(std::remove_if(sensors.begin(), sensors.end(),
@@ -38,7 +38,7 @@ const SensorParams* receiverOf(const Scenario& scenario) {
   return nullptr;
 }
 
-/// Time between two instants of which the figures are told together.
+/// Time interval with its own row of metrics.
 struct Phase {
   std::string name;
   double from, to;  ///< [s]
@@ -96,7 +96,7 @@ StudyTable phaseTable(const EgoStudyParams& params, const Runs& runs) {
   return table;
 }
 
-/// Mean NEES of all runs by instant; instants that not all runs have are left out.
+/// Mean NEES of all runs by instant; only instants of all runs.
 std::vector<std::pair<double, double>> meanNees(const Runs& runs) {
   std::vector<std::pair<double, double>> mean;
   for (const EgoError& first : runs.front()) {
@@ -181,7 +181,7 @@ std::vector<EgoError> runEgo(const EgoStudyParams& params, std::uint64_t seed) {
   const SensorParams* receiver = receiverOf(params.scenario);
   EgoPoseParams ego_params = params.ego;
   ego_params.source = EgoPoseParams::Source::kFusion;
-  // The world of the filter is that of the scene, so that errors are errors.
+  // Filter and scene share the world frame, so that poses can be compared.
   ego_params.fusion.origin = {receiver->gnss.latitude, receiver->gnss.longitude,
                               receiver->gnss.height};
   EgoPose ego(ego_params);
@@ -192,7 +192,7 @@ std::vector<EgoError> runEgo(const EgoStudyParams& params, std::uint64_t seed) {
   while (const auto observation = simulator.next()) {
     const Stamp stamp = *toStamp(observation->timestamp);
     if (!start) start = stamp;
-    // Before what belongs to a later instant is added; a late fix is no later instant.
+    // Evaluate before an observation of a later stamp is added; a delayed fix has an earlier stamp.
     while (stamp - *start > next + 1e-6) {
       const EgoMotionState& state = ego.fusion().state();
       if (state.heading_known) {

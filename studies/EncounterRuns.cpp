@@ -44,7 +44,7 @@ std::uint64_t dominant(const std::vector<std::uint64_t>& ids) {
       ->first;
 }
 
-/// Gathers a run's figures instant by instant.
+/// Accumulates the metrics of a run.
 class Scorer {
  public:
   explicit Scorer(const EncounterScene& scene)
@@ -58,7 +58,7 @@ class Scorer {
       truth.push_back(scene_.objects[i].path[k]);
       who.push_back(i);
     }
-    // Truth ends at the border of the view, so do the estimates that are compared with it.
+    // Only estimates within the field of view are compared, as truth.
     int classified = 0;
     for (const auto& o : estimate.objects) {
       if (!encounterInView(o.position.head<2>())) continue;

@@ -8,24 +8,24 @@
 
 namespace perception {
 
-/// The filter on one simulated encounter.
+/// Results of the filter on one simulated encounter.
 struct EncounterScore {
-  bool swapped = false;    ///< some object's dominant id differs before and after the encounter
-  double gospa = 0;        ///< [m] root of the mean square over instants, cut-off 2 m
-  double tracked = 0;      ///< share of (object, instant) with an estimate within 2 m
-  std::vector<int> count;  ///< objects output in view, by instant
-  std::vector<int> classified;   ///< of these, with a class of 95 % or more
+  bool swapped = false;  ///< the dominant id of some object differs before and after the encounter
+  double gospa = 0;      ///< [m] root of the mean square over instants, cut-off 2 m
+  double tracked = 0;    ///< share of (object, instant) with an estimate within 2 m
+  std::vector<int> count;        ///< objects output in view, by instant
+  std::vector<int> classified;   ///< of these, with a class probability >= .95
   std::vector<int> truth_count;  ///< objects in view, by instant
 };
 
-/// Runs the filter on scene `name` under `conditions`: truth and measurements are a function of
-/// `seed`, the filter's own draws of `filter_seed`. The first second is warm-up for `tracked` and
-/// `swapped`; an id is dominant before in the first third, after in the last four tenths.
+/// Runs the filter on scene `name` under `conditions`: `seed` determines truth and measurements,
+/// `filter_seed` the filter's samples. `tracked` and `swapped` exclude the first second; before is
+/// the first third of the scene, after the last four tenths.
 EncounterScore runEncounter(const std::string& name, const EncounterConditions& conditions,
                             const FilterModel& model, int particles, std::uint64_t seed,
                             std::uint64_t filter_seed);
 
-/// Wilson's upper bound of a rate, 95 % two-sided.
+/// Upper bound of the two-sided 95 % Wilson interval of a rate.
 double wilsonUpper(int events, int trials);
 
 }  // namespace perception

@@ -10,10 +10,11 @@
 namespace perception {
 namespace {
 
-constexpr double kLeastDensity = -15;  // log: a jump of the receiver is not the class's
-constexpr int kEvaluations = 150;      // of the optimizer
+constexpr double kLeastDensity =
+    -15;                           // lower bound of the log density: excludes jumps of the receiver
+constexpr int kEvaluations = 150;  // of the optimizer
 
-/// What the optimizer is given: sections of one class and the receiver.
+/// Data of the optimizer: sections of one class, covariance of the receiver.
 struct NoiseProblem {
   const std::vector<std::vector<Vector2>>* sections;
   Matrix2 R;  // [m^2]
@@ -33,7 +34,7 @@ double logLikelihood(unsigned, const double* log_sigma, double*, void* data) {
     const auto trace = runPaperFilter(problem.object_class, section, 1.0, problem.R);
     for (std::size_t k = 2; k < trace.log_density.size(); ++k)
       sum += std::max(trace.log_density[k],
-                      kLeastDensity);  // a jump of the receiver is not the class's
+                      kLeastDensity);  // excludes jumps of the receiver
   }
   return sum;
 }

@@ -5,8 +5,8 @@
 
 namespace perception {
 
-/// Process noises of maximum likelihood (NLopt's Nelder-Mead) over sections of positions [m], one a
-/// second; R [m^2]: of the receiver. Without sections those of PaperClass.
+/// Maximum-likelihood process noise (NLopt's Nelder-Mead) from sections of positions [m] at 1 Hz; R
+/// [m^2]: of the receiver. Without sections the defaults of PaperClass.
 PaperClass fitNoise(bool wheeled, const std::vector<std::vector<Vector2>>& sections,
                     const Matrix2& R);
 

@@ -15,7 +15,7 @@ constexpr std::size_t kModes = 4;
 struct Published {
   double accel, rotation_deg, percent;
 };
-/// [radecki2016]'s tables of process noises and of classification rates.
+/// Tables of process noises and of classification rates in [radecki2016].
 constexpr Published kPaper[kModes] = {{0.04, 0, 100}, {0.31, 15, 50}, {0.6, 15, 99}, {0.4, 15, 99}};
 
 StudyTable noiseTable(const GpsExperiment& e) {
@@ -101,7 +101,7 @@ StudyReport gpsStudy(const GpsParams& params) {
   summary.columns = {"rule"};
   for (const auto& mode : gpsModes()) summary.columns.push_back(mode);
   summary.columns.push_back("balanced (deviation over draws)");
-  std::vector<std::string> published{"published by Radecki et al. (other data)"};
+  std::vector<std::string> published{"Radecki et al. (other data)"};
   for (const auto& p : kPaper) published.push_back(fmt::format("{:.2f}", p.percent / 100));
   published.push_back("");
   summary.rows.push_back(published);
@@ -111,10 +111,9 @@ StudyReport gpsStudy(const GpsParams& params) {
     row.push_back(fmt::format("{:.3f} ({:.3f})", r.balanced, r.deviation));
     summary.rows.push_back(row);
   }
-  report.tables = {
-      summary, noiseTable(e),
-      confusionTable(results[0].second, "confusion_chi2", "The rule of Radecki et al."),
-      confusionTable(results[2].second, "confusion_regimes", "Speed regimes")};
+  report.tables = {summary, noiseTable(e),
+                   confusionTable(results[0].second, "confusion_chi2", "Rule of Radecki et al."),
+                   confusionTable(results[2].second, "confusion_regimes", "Speed regimes")};
   report.plots = {accuracyPlot(results)};
   const auto& c = results[2].second.confusion;
   report.remarks = {

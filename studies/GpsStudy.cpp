@@ -56,7 +56,7 @@ Matrix2 stationaryNoise(const std::string& path) {
   return R;
 }
 
-/// Sections for the noises: evenly over all that the users have of the class.
+/// Sections for the process noise: evenly from all users of the class.
 std::vector<std::vector<Vector2>> trainingSections(const std::vector<GpsTrack>& tracks, int mode,
                                                    const std::string& without,
                                                    const GpsParams& params) {
@@ -97,7 +97,7 @@ std::vector<double> regimeScores(const std::vector<SpeedRegimes>& regimes, const
   return out;
 }
 
-/// The least bias at which pedestrians of training users are found, each judged without himself.
+/// Smallest bias for the required pedestrian recall, by leave-one-user-out among training users.
 double pedestrianBias(const std::vector<GpsTrack>& tracks, const std::vector<std::string>& users,
                       const std::string& without, const GpsParams& params) {
   std::vector<double> margins;  // pedestrian sections: log likelihood missing to be called one

@@ -10,15 +10,15 @@
 
 namespace perception {
 
-/// Travel modes told apart by positions alone, once a second (the GPS experiment of [radecki2016]).
+/// Classification of travel modes from positions at 1 Hz (the GPS experiment of [radecki2016]).
 struct GpsParams {
   std::string folder;  ///< holds pedestrian/, cyclist/, car/, bus/ with .nmea, .gpx or .csv files
   std::string stationary;  ///< recording of a receiver at rest, for R; empty: R of [radecki2016]
-  int section = 50;        ///< fixes a section
-  int sections = 100;      ///< drawn a class
+  int section = 50;        ///< fixes per section
+  int sections = 100;      ///< drawn per class
   int draws = 20;
-  double least_step = 0.25;  ///< [m] sections that move less on average are left out [radecki2016]
-  double pedestrian_recall = 0.97;  ///< of held-out training users, sets what favours pedestrians
+  double least_step = 0.25;  ///< [m] sections that move less on average are excluded [radecki2016]
+  double pedestrian_recall = 0.97;  ///< of held-out training users, sets the pedestrian bias
   std::uint64_t seed = 1;
 };
 
@@ -29,7 +29,7 @@ struct GpsTrack {
   std::vector<double> t;            ///< [s]
   std::vector<Vector2> p;           ///< [m]
   std::vector<int> bins;            ///< of SpeedRegimes, one fewer
-  std::vector<std::size_t> starts;  ///< of sections that move enough
+  std::vector<std::size_t> starts;  ///< of sections whose mean step is at least least_step
 };
 
 /// pedestrian, cyclist, car, bus.
@@ -37,32 +37,32 @@ const std::vector<std::string>& gpsModes();
 /// Throws DataError naming folder or file.
 std::vector<GpsTrack> readGpsTracks(const GpsParams& params);
 
-/// What is learned from a set of users.
+/// Models trained on a set of users.
 struct GpsModel {
   std::vector<PaperClass> filters;    ///< by mode, noises by maximum likelihood
   std::vector<SpeedRegimes> regimes;  ///< by mode
   double pedestrian_bias = 0;         ///< added to the pedestrian's log likelihood
 };
 
-/// How a section is classified.
+/// Classification rule for a section.
 enum class GpsRule {
   kChi2,        ///< [radecki2016]: chi-square density of the filters' innovations
   kSequential,  ///< sequential likelihood of the same filters
   kRegimes,     ///< likelihood of the speed regimes, pedestrians favored
 };
 
-/// How often which class was called what, and how much that scatters.
+/// Confusion matrix and balanced accuracy.
 struct GpsResult {
   std::vector<std::vector<double>> confusion;  ///< [truth][called], shares over all draws
   double balanced = 0, deviation = 0;  ///< mean and deviation of balanced accuracy over draws
   std::vector<double> right;           ///< by mode
 };
 
-/// The experiment: every user's sections are judged by models that never saw that user.
+/// The experiment: leave-one-user-out cross-validation.
 struct GpsExperiment {
   std::vector<GpsTrack> tracks;
   std::vector<std::string> users;
-  std::vector<GpsModel> models;  ///< by user: learned from the others
+  std::vector<GpsModel> models;  ///< by user: trained on the others
   Matrix2 R;
 };
 GpsExperiment prepareGps(const GpsParams& params);

@@ -5,7 +5,7 @@
 namespace perception {
 namespace {
 
-// Boxes of one thing, the surest first.
+// Boxes of one object, highest score first.
 using Thing = std::vector<std::size_t>;
 
 std::vector<Thing> thingsOf(const std::vector<ObjectDetection>& boxes,
@@ -48,7 +48,7 @@ void corruptLabels(const LabelNoise& damage, const std::vector<std::string>& lab
   std::vector<bool> gone(detections.objects.size(), false);
   Rng rng(key);
   for (const Thing& thing : thingsOf(detections.objects, labels, group_distance)) {
-    // Drawn for every thing, hit or not: the draws of one do not depend on another's.
+    // Drawn for every object, corrupted or not, so that draws are independent of other objects.
     const double u = rng.uniform();
     const std::string& label = detections.objects[thing.front()].label;
     const std::string other = otherLabel(label, labels, rng);

@@ -7,24 +7,22 @@
 
 namespace perception {
 
-/// The label of a box whose detector does not say what it is. A configuration that takes such boxes
-/// lists it among its labels.
+/// Label of boxes without a class. A configuration that accepts such boxes lists it in its labels.
 inline constexpr const char* kNoLabel = "unknown";
 
-/// How a detector's labels are corrupted: of every thing, with this probability.
+/// Corruption of a detector's labels, per object with this probability.
 struct LabelNoise {
   enum Kind { kNone, kDropped, kFlipped } kind = kNone;
-  double probability = 0;  ///< 1 with kDropped: the classes are pooled without labels
+  double probability = 0;  ///< 1 with kDropped: all labels are removed
 };
 
-/// Boxes of different labels nearer to each other than `group_distance` [m] are of one thing. A
-/// thing that is hit keeps its surest box alone, with place, size and score; its label becomes
-/// kNoLabel (dropped) or one of the others, each alike (flipped). What is hit with one probability
-/// is also hit with a larger one.
+/// Boxes of different labels within `group_distance` [m] are of one object. A corrupted object
+/// keeps only its box of highest score; its label becomes kNoLabel (dropped) or a uniformly drawn
+/// other one (flipped). Objects corrupted at one probability are also corrupted at any larger one.
 void corruptLabels(const LabelNoise& damage, const std::vector<std::string>& labels,
                    double group_distance, const RngKey& key, ObjectDetections& detections);
 
-/// Keeps one label's boxes and, if asked for, those without a label.
+/// Keeps the boxes of one label and, with `without_label`, those of kNoLabel.
 void keepLabel(const std::string& label, bool without_label, ObjectDetections& detections);
 
 }  // namespace perception

@@ -11,7 +11,7 @@
 namespace perception {
 namespace {
 
-/// What a line of the pictures is of, and how it looks.
+/// A curve of the plots and its style.
 struct Line {
   LabelMethod method;
   const char* file;
@@ -29,7 +29,7 @@ std::vector<Line> lines() {
 }
 
 // The points of one line over the share of corrupted labels: share, MOTA by class, MOTA and id
-// switches whatever class, right after 10.
+// switches ignoring class, share correct after 10.
 std::string pointsOf(const std::vector<LabelCondition>& conditions, LabelNoise::Kind kind,
                      const LabelMethod& method) {
   std::string text;
@@ -40,7 +40,7 @@ std::string pointsOf(const std::vector<LabelCondition>& conditions, LabelNoise::
     if (!same || !(none || c.damage.kind == kind)) continue;
     const ClearFigures by_class = sumOf(c.score.of_class);
     const std::size_t k = std::min<std::size_t>(10, c.score.objects.front().size());
-    // Pooled without labels stands behind a gap: 100 %, drawn at 70.
+    // All labels dropped: 100 %, drawn at 70 after a gap.
     text += fmt::format("{:.0f} {} {} {} {}\n",
                         c.damage.probability >= 1 ? 70 : 100 * c.damage.probability,
                         percent(by_class.mota), percent(c.score.any_class.mota),
@@ -49,7 +49,7 @@ std::string pointsOf(const std::vector<LabelCondition>& conditions, LabelNoise::
   return text;
 }
 
-/// A row of the picture: one figure, a column of the points.
+/// A panel of the plot: one metric, a column of the data.
 struct Panel {
   const char* label;
   const char* range;

@@ -11,7 +11,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-// A table with a row a condition: labels, method, and what `fill` adds.
+// A table with one row per condition: labels, method and the columns of `fill`.
 StudyTable conditionsTable(const char* name, const char* title, const Row& figures,
                            const std::vector<LabelCondition>& conditions,
                            const std::function<void(const LabelCondition&, Row&)>& fill) {
@@ -148,9 +148,8 @@ void describeLabels(const LabelsParams& params, const std::vector<LabelCondition
           "kind side of the question.",
           params.group_distance, kNoLabel),
       "Tracker per class: the same pipeline and motion models once per label, on that label's "
-      "boxes "
-      "only, outputs joined, each of its tracker's class. Boxes without a label are left out, or "
-      "given to every tracker (unlabeled to all).",
+      "boxes only, outputs joined, each of its tracker's class. Boxes without a label are left "
+      "out, or given to every tracker (unlabeled to all).",
       fmt::format("Put out is what exists and is a road user with a probability of {:g} or more. "
                   "Matching one-to-one within {:g} m on the ground; truth within {:g} m and {:g} "
                   "deg; outputs on truth that does not count are neither right nor wrong. KITTI's "
@@ -163,8 +162,7 @@ void describeLabels(const LabelsParams& params, const std::vector<LabelCondition
       "a second one is false.",
       "k-th measurement: the k-th frame in which some box, of whatever label and score, lies on "
       "the object before labels are corrupted; the same instants for all methods. An object "
-      "without "
-      "an output has no right class."};
+      "without an output has no right class."};
 }
 
 }  // namespace perception

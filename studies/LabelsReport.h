@@ -8,7 +8,7 @@
 
 namespace perception {
 
-/// A way to track.
+/// Tracking method.
 struct LabelMethod {
   const char* name;
   bool per_class;
@@ -19,7 +19,7 @@ inline constexpr LabelMethod kTrackerPerClass = {"tracker per class", true, fals
 inline constexpr LabelMethod kTrackerPerClassAll = {"tracker per class, unlabeled to all", true,
                                                     true};
 
-/// A row of the study: a damage, a way to track, and how it fared.
+/// A row of the study: label corruption, tracking method, score.
 struct LabelCondition {
   LabelNoise damage;
   LabelMethod method;
@@ -28,17 +28,17 @@ struct LabelCondition {
   std::string labels() const;  ///< as in the tables
 };
 
-/// Tables, pictures and remarks of the study of labels; `where`: its logs, for titles.
+/// Adds tables, plots and remarks of the study; `where`: names of the logs, for titles.
 void describeLabels(const LabelsParams& params, const std::vector<LabelCondition>& conditions,
                     const std::string& where, StudyReport& report);
 
-/// Adds counts; the figures follow.
+/// Adds counts and recomputes the metrics.
 void addClear(const ClearFigures& part, ClearFigures& sum);
 ClearFigures sumOf(const std::vector<ClearFigures>& parts);
-/// Share of the objects with a k-th measurement that then have an output of the right class; of one
-/// label, or of all (-1). Empty: there are none.
+/// Share of objects that have an output of the correct class at their k-th measurement; of one
+/// label or of all (-1). Empty if there are none.
 std::optional<double> rightShare(const LabelScore& score, std::size_t k, int label = -1);
-/// [%] as in tables and data of plots.
+/// [%], formatted for tables and plot data.
 std::string percent(const std::optional<double>& value);
 
 }  // namespace perception

@@ -29,16 +29,16 @@ std::vector<LabelCondition> conditionsOf(const LabelsParams& params) {
   return conditions;
 }
 
-// What all runs of one log share.
+// Data common to all runs of one log.
 struct LogFacts {
   bool simulated = false;
   GroundTruth truth;              // objects of classes without a label are ignored
   std::vector<ClassId> classes;   // by label
   std::vector<bool> road_user;    // by class
-  std::vector<int> measurements;  // by sample: the how-manieth of its object
+  std::vector<int> measurements;  // by sample: index of the object's measurement, from 1
 };
 
-// The measurements of a log as if each were an object output: what the truth could be seen of.
+// The measurements of a log as outputs, to count detections of each truth object.
 TrackedRun seenRun(const RecordedLog& log) {
   TrackedRun run;
   run.first_stamp = log.first_stamp;
@@ -184,8 +184,7 @@ LabelScore scoreLabels(const TrackedRun& run, const GroundTruth& truth,
                        const LabelsParams& params) {
   LabelScore score;
   EvaluationOptions options = params.evaluation;
-  options.exclusion =
-      options.tolerance;  // CLEAR: an output is paired, on what is ignored, or false
+  options.exclusion = options.tolerance;  // CLEAR: every output is matched, ignored or false
   const Evaluation all = evaluate(run, truth, options);
   if (all.samples.size() != numbers.size())
     throw DataError(run.dir + ": other objects count than were seen");

@@ -22,7 +22,7 @@ struct Method {
   const RecordedLog* log;
   ReplayMethod replay;
   std::string note;           // behind the number of particles
-  std::size_t reference = 0;  // its reference's place among the methods
+  std::size_t reference = 0;  // index of its reference among the methods
   bool in_curves = false;     // one of [radecki2016]'s counts
 
   std::string label() const { return fmt::format("{}, {}{}", family, replay.particles, note); }
@@ -82,8 +82,8 @@ StudyTable countTable(const std::vector<Method>& methods, const std::vector<Coun
   StudyTable table;
   table.name = "counts";
   table.title =
-      "Errors in the number of objects; paper (Radecki et al.): all objects with DUC's tracker, "
-      "all / classified with classification, on its own drive";
+      "Errors in the number of objects; Radecki et al.: all objects with DUC's tracker, all / "
+      "classified with classification, on their own drive";
   table.columns = {"configuration, particles", "paper", "rms of all",      "rms of classified",
                    "rms against truth",        "bias",  "things not held", "mean of all",
                    "mean of classified",       "cars",  "persons"};
@@ -124,7 +124,7 @@ StudyTable trackingTable(const std::vector<Method>& methods, const std::vector<C
   }
   for (const PaperTrackingRow& row : paperTrackingRows()) {
     if (row.table != std::string("particles")) continue;
-    table.rows.push_back({fmt::format("paper, {} (its encounters)", row.condition),
+    table.rows.push_back({fmt::format("Radecki et al., {} (their encounters)", row.condition),
                           number(row.tracked, 3), number(row.range, 3), number(row.bearing, 3),
                           number(row.correct, 3), number(row.mis, 3),
                           fmt::format("{}", row.returns), "", ""});
@@ -213,12 +213,12 @@ StudyPlot errorPlot(const std::vector<Method>& methods, const std::vector<Counte
     plot.script += fmt::format(
         "'errors_duc.dat' with linespoints lw 2 pt 7 lc rgb '{}' title 'DUC', ", kVermilion);
   plot.script += fmt::format(
-      "'errors_joint.dat' using 1:2 with linespoints lw 2 pt 5 lc rgb '{0}' title 'joint', "
-      "'' using 1:3 with linespoints lw 2 pt 9 lc rgb '{1}' title 'joint, classified', "
-      "'errors_paper.dat' using 1:2 with linespoints dt 2 pt 6 lc rgb '{2}' title 'paper: "
-      "DUC', "
-      "'' using 1:3 with linespoints dt 2 pt 4 lc rgb '{0}' title 'paper: joint', "
-      "'' using 1:4 with linespoints dt 2 pt 8 lc rgb '{1}' title 'paper: joint, classified'\n",
+      "'errors_joint.dat' using 1:2 with linespoints lw 2 pt 5 lc rgb '{0}' title 'joint', '' "
+      "using 1:3 with linespoints lw 2 pt 9 lc rgb '{1}' title 'joint, classified', "
+      "'errors_paper.dat' using 1:2 with linespoints dt 2 pt 6 lc rgb '{2}' title 'Radecki et al.: "
+      "DUC', '' using 1:3 with linespoints dt 2 pt 4 lc rgb '{0}' title 'Radecki et al.: joint', "
+      "'' using 1:4 with linespoints dt 2 pt 8 lc rgb '{1}' title 'Radecki et al.: joint, "
+      "classified'\n",
       kBlue, kGreen, kVermilion);
   return plot;
 }
@@ -253,7 +253,7 @@ StudyReport logParticlesStudy(const LogParticlesParams& params, const RecordedLo
                               const RecordedLog* duc, const GroundTruth* truth) {
   const std::vector<Method> methods = methodsOf(params, joint, duc);
   std::vector<CountedRun> runs(methods.size());
-  // The longest first: they are what the others would have to be waited for.
+  // Longest runs first, to balance the threads.
   std::vector<std::size_t> order(methods.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

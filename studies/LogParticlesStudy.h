@@ -10,16 +10,17 @@
 
 namespace perception {
 
-/// The second particle study of [radecki2016] on a log: how many particles its objects need, with
-/// the tracker of the DARPA Urban Challenge and with joint classification.
+/// The second particle study of [radecki2016] on a log: errors of the number of objects over the
+/// number of particles, with the tracker of the DARPA Urban Challenge and with joint
+/// classification.
 struct LogParticlesParams {
   std::vector<int> counts = {1, 4, 8, 12, 16, 20};  ///< [radecki2016]
   int reference = 50;                               ///< [radecki2016]
   std::uint64_t seed = 1;
-  EvaluationOptions evaluation;  ///< its sector is where objects count
+  EvaluationOptions evaluation;  ///< sector in which objects count
 };
 
-/// `duc`: the same log as seen by DUC's configuration; may be null.
+/// `duc`: the same log recorded with DUC's configuration; may be null.
 StudyReport logParticlesStudy(const LogParticlesParams& params, const RecordedLog& joint,
                               const RecordedLog* duc, const GroundTruth* truth);
 

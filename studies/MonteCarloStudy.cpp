@@ -100,9 +100,9 @@ StudyPlot traces(const MonteCarloResult& r) {
   StudyPlot plot;
   plot.name = "traces";
   plot.caption =
-      "Mean normalized innovation squared of each simulated track in both filters, as in Radecki "
-      "et al.'s figure: above for tracks of cyclists, below for tracks of pedestrians. Dashed: "
-      "1.986, the median for the right filter.";
+      "Mean normalized innovation squared of each simulated track in both filters, as in the "
+      "figure of Radecki et al.: above for tracks of cyclists, below for tracks of pedestrians. "
+      "Dashed: 1.986, the median for the right filter.";
   std::string data[2];
   for (const int kind : {kCyclist, kPedestrian}) {
     const auto& own = r.traces[kind];
@@ -215,8 +215,8 @@ StudyReport monteCarloStudy(MonteCarloParams params) {
       countsTable(fixed)};
   report.plots = {traces(fixed)};
   report.remarks = {
-      "The table of Radecki et al. is one experiment of 100 tracks per class; its numbers should "
-      "lie within two or three deviations of the mean.",
+      "The table of Radecki et al. is one experiment of 100 tracks a class; its numbers should lie "
+      "within two or three deviations of the mean.",
       "The first innovation is zero, since the first measurement starts the filters: the mean NIS "
       "of the right filter is below 2.",
       "The chi-square density asks which filter's innovations have the size that they should have; "

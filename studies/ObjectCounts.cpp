@@ -24,8 +24,7 @@ double rms(const std::vector<int>& a, const std::vector<int>& b) {
   return std::sqrt(sum / std::max<double>(1, static_cast<double>(n)));
 }
 
-// Poles and hedges are things as much as road users; walls are in no truth. One output serves one
-// thing.
+// Poles and hedges count as road users do; walls are not in the truth. One-to-one matching.
 void countThings(const TrackedRun& run, const GroundTruth& truth, const EvaluationOptions& options,
                  CountedRun& counted) {
   constexpr double kOverhead = 2;  // [m] above the vehicle's ground: crowns of trees
@@ -64,7 +63,7 @@ CountedRun countObjects(const TrackedRun& run, const GroundTruth* truth,
   for (const Scene& scene : run.scenes) {
     int all = 0, classified = 0;
     for (const SceneObject& o : scene.objects) {
-      // A list may hold what was left behind long ago: only what is around counts.
+      // The output may contain objects left far behind: only those in the sector count.
       const GroundView view =
           viewFrom(scene.ego.T_world_ego, makeFootprint(o.position, o.yaw, o.length, o.width));
       if (!inSector(view, options.selection.range, options.selection.fov)) continue;

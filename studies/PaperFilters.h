@@ -7,8 +7,9 @@
 
 namespace perception {
 
-/// [radecki2016]'s class filters at a fixed step: Euler integration, noise in the speed and heading
-/// alone, both started from the first measurement with the velocity towards the second.
+/// The class filters of [radecki2016] at a fixed step: Euler integration, process noise in speed
+/// and heading only, both initialized from the first measurement with the velocity towards the
+/// second.
 struct PaperClass {
   bool wheeled = false;                 ///< else walking: constant velocity
   double accel_sigma = 0.2;             ///< [m/s^2] standard deviation per step (method.md 3.3)
@@ -19,7 +20,7 @@ struct PaperClass {
 
 /// One filter's run over a track.
 struct FilterTrace {
-  std::vector<double> nis;          ///< by measurement; 0 for the first one, which starts it
+  std::vector<double> nis;          ///< by measurement; 0 for the first one, which initializes it
   std::vector<double> log_density;  ///< log N(y; S) by measurement
 };
 
@@ -27,7 +28,7 @@ struct FilterTrace {
 FilterTrace runPaperFilter(const PaperClass& object_class, const std::vector<Vector2>& z, double dt,
                            const Matrix2& R);
 
-/// A track of the class's own dynamics with measurements. `speed` [m/s] at the start.
+/// Simulated measurements of a track with the class's own dynamics. `speed` [m/s] at the start.
 std::vector<Vector2> simulatePaperTrack(const PaperClass& object_class, double speed, int steps,
                                         double dt, const Matrix2& R, Rng& rng);
 

@@ -20,7 +20,7 @@ constexpr int kCounts[] = {1, 4, 8, 12, 16, 20};
 constexpr int kReference = 50;
 constexpr std::size_t kLargestError = 12;  // objects, of the plot
 
-/// As in a Python prototype: clutter four times, detections 85 %, noise twice, close ones merge.
+/// Difficult conditions: clutter x 4, P_D x .85, noise x 2, close objects merge.
 const EncounterConditions kBusy{0.85, 4, 2, 0.7};
 
 FilterModel modelOf(const ParticlesMethod& method) {
@@ -137,14 +137,13 @@ StudyReport particlesStudy(const ParticlesParams& params) {
   report.title = "How many particles a busy street needs";
   report.data = fmt::format(
       "simulated positions and labels of a lidar and a camera in {} busy streets of 8 s (17 "
-      "objects, "
-      "clutter four times, detections 85 %, noise twice, close ones merge)",
+      "objects, clutter four times, detections 85 %, noise twice, close ones merge)",
       params.scenes);
   StudyTable table;
   table.name = "counts";
   table.title =
-      "Errors in the number of objects; paper (Radecki et al.): DUC's births, or all / classified, "
-      "on its own drive";
+      "Errors in the number of objects; Radecki et al.: DUC's births, or all / classified, on "
+      "their own drive";
   table.columns = {
       "method",    "paper",      "rms against 50 particles", "classified", "rms against truth",
       "GOSPA [m]", "mean count", "mean classified"};
@@ -180,8 +179,8 @@ StudyReport particlesStudy(const ParticlesParams& params) {
   report.plots.push_back(cdfPlot("cdf_eight", "Eight particles", at_eight));
   report.tables = {table};
   report.remarks = {
-      "50 particles against 50 of another seed is the noise of this measure of Radecki et al.: no "
-      "method can be told from the reference below it.",
+      "50 particles against 50 of another seed is the noise of this measure: no method can "
+      "be told from the reference below it.",
       "The reference of the ranked rows is the joint filter with 50 sampled particles.",
       "Truth counts what stands in the field of view, seen or not."};
   return report;

@@ -8,24 +8,24 @@
 
 namespace perception {
 
-/// How many particles a busy street needs, with births that are drawn (DUC) and with newborns that
-/// may be clutter (the second particle study of [radecki2016]).
+/// Errors over the number of particles on a simulated busy street, with sampled births (DUC) and
+/// with Bernoulli newborns (second particle study of [radecki2016]).
 struct ParticlesParams {
   int scenes = 40;
 };
 
-/// What is varied.
+/// Filter settings.
 struct ParticlesMethod {
   std::string label;
   Proposal proposal = Proposal::kSampled;
-  bool duc = false;  ///< sampled births, existence that fades in 3 s
+  bool duc = false;  ///< sampled births, existence decays in 3 s
   int particles = 8;
   std::uint64_t filter_seed = 1;
 };
 
 struct ParticlesFigures {
   double count_rms = 0, classified_rms = 0;  ///< against the same births with 50 particles
-  double truth_rms = 0;                      ///< objects output against objects in view
+  double truth_rms = 0;                      ///< number of outputs against objects in view
   double gospa = 0;                          ///< [m]
   double mean_count = 0, mean_classified = 0;
   std::vector<double> error_cdf;  ///< share of instants with an error of at most i objects

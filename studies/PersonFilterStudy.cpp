@@ -22,7 +22,7 @@ namespace perception {
 namespace {
 
 constexpr double kWindow = 8;   // [m] half a side of the surface's picture
-constexpr double kWithin = 25;  // [m] of the sensor, where the clearest peak is looked for
+constexpr double kWithin = 25;  // [m] of the sensor, for the search of the highest peak
 
 /// Obstacle returns of one scan.
 struct Returns {
@@ -34,8 +34,8 @@ struct Returns {
   }
 };
 
-/// A person 12 m ahead, a car, a wall and a pole around, as a scanner with beams 0.2 deg across and
-/// 0.4 deg up sees their near sides.
+/// A person 12 m ahead, a car, a wall and a pole around, their near sides sampled at 0.2 deg in
+/// azimuth and 0.4 deg in elevation.
 Returns simulatedReturns() {
   constexpr double kAcross = radians(0.2), kUp = radians(0.4);
   Returns returns;
@@ -99,8 +99,7 @@ StudyPlot kernelPlot() {
   plot.name = "kernel";
   plot.caption =
       "The kernel over the radius. The text wants a negative mean: only the reading with sigma^4 "
-      "has "
-      "one (-0.90 against +0.06, integrated over the plane).";
+      "has one (-0.90 against +0.06, integrated over the plane).";
   plot.data = {{"kernel.dat", data}};
   plot.script =
       "set grid\nset xlabel 'distance from the middle [m]'\nset ylabel 'response per return "
@@ -110,7 +109,7 @@ StudyPlot kernelPlot() {
   return plot;
 }
 
-/// The response about `middle`, from obliquely above.
+/// Surface plot of the response around `middle`.
 StudyPlot surfacePlot(const Returns& returns, const PersonResponse& response,
                       const Vector2& middle) {
   std::string data, places;

@@ -17,7 +17,7 @@
 namespace perception {
 namespace {
 
-constexpr double kEnlarge = 1.05;  // no image is brought to a resolution that it does not have
+constexpr double kEnlarge = 1.05;  // largest upscaling: images are not used beyond their resolution
 
 }  // namespace
 

@@ -12,8 +12,8 @@
 
 namespace perception {
 
-/// The images of a log brought down to the resolutions of [radecki2016], and a detector's boxes in
-/// them. A panorama takes the size of the row; another camera as many pixels a radian as that has.
+/// Runs a detector on the images of a log scaled down to the resolutions of [radecki2016]: a
+/// panorama to the size of the row, other cameras to the same pixels per radian.
 class ResolutionImages {
  public:
   /// `detector`: INI of perception-detect; `label` of the images, empty: of all. Throws
@@ -21,10 +21,10 @@ class ResolutionImages {
   ResolutionImages(const std::string& log, const std::string& label, const std::string& detector);
 
   bool isOurs(const mrpt::obs::CObservation& observation) const;
-  /// The pixels; empty (and counted) when they are missing. Throws DataError for an image that is
+  /// Loads the pixels; empty (and counted) if missing. Throws DataError for an image that is
   /// neither a panorama nor calibrated.
   std::optional<Raster> load(const mrpt::obs::CObservation& observation);
-  /// Those resolutions of which the last loaded image has the pixels.
+  /// The resolutions that the last loaded image has.
   std::vector<int> resolutions() const;
   /// Boxes of the last loaded image at a resolution, scores as log-odds, under a label.
   std::shared_ptr<mrpt::obs::CObservation> boxes(const Raster& image, int resolution,

@@ -26,9 +26,9 @@ StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::strin
   StudyPlot plot;
   plot.name = "recall";
   plot.caption =
-      "Recall of unoccluded objects over the distance as a share of the range of Radecki et al. "
-      "for that resolution; gray: the figure of Radecki et al. within range. Where the curves "
-      "coincide recall is independent of resolution.";
+      "Recall of unoccluded objects over the distance as a share of Radecki et al.'s range for "
+      "that resolution; gray: Radecki et al. within range. Where the curves fall together recall "
+      "is independent of resolution.";
   plot.width = 1100, plot.height = 460;
   plot.script = fmt::format(
       "set multiplot layout 1,2 title {} noenhanced\nset grid\nset yrange [0:1.02]\nset xrange "
@@ -39,7 +39,8 @@ StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::strin
     const auto paper =
         k == 0 ? paperFrontEndRows()[1].car_recall : paperFrontEndRows()[1].person_recall;
     plot.script += fmt::format(
-        "set ylabel '{} recall'\nset key {}\nplot (x<=1 ? {} : 1/0) lw 6 lc rgb '{}' title 'paper'",
+        "set ylabel '{} recall'\nset key {}\nplot (x<=1 ? {} : 1/0) lw 6 lc rgb '{}' title "
+        "'Radecki et al.'",
         k == 0 ? "car" : "person", "bottom left", paper.value_or(0), plot_color::kGray);
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       const CameraFigures& c = cameras[i];
@@ -68,7 +69,7 @@ StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::strin
 StudyPlot ratePlot(const StudyTable& table, const std::string& what, const std::string& where) {
   StudyPlot plot;
   plot.name = table.name;
-  plot.caption = table.title + "; full: this study, hatched: Radecki et al.";
+  plot.caption = table.title + "; full: here, hatched: Radecki et al.";
   plot.width = 1000, plot.height = 460;
   std::string data;
   for (const auto& row : table.rows) {
@@ -87,7 +88,7 @@ StudyPlot ratePlot(const StudyTable& table, const std::string& what, const std::
     const std::string color = plot_color::ofRun(static_cast<std::size_t>(i));
     plot.script += fmt::format(
         "{0}'{1}.dat' using {2}:xtic(1) fs solid 0.9 border lc rgb '{4}' lc rgb '{4}' title '{5}', "
-        "'' using {3} fs pattern 4 border lc rgb '{4}' lc rgb '{4}' title 'paper: {5}'",
+        "'' using {3} fs pattern 4 border lc rgb '{4}' lc rgb '{4}' title 'Radecki et al.: {5}'",
         i ? ", " : "", table.name, i + 2, i + 5, color, names[i]);
   }
   plot.script += '\n';

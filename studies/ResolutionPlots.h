@@ -9,21 +9,21 @@
 
 namespace perception {
 
-/// What tables and plots share of one camera run.
+/// Results of one camera run for tables and plots.
 struct CameraFigures {
   const ResolutionRun* run;
   DetectionCounts detections;
   std::optional<RangeRates> rates;
 };
 
-/// The row of a run's camera.
+/// Table row of a run's camera.
 const CameraResolution& rowOf(const ResolutionRun& run);
-/// [m] of a row for a kind: 0 car, 1 person.
+/// [m] range of a row for a kind: 0 car, 1 person.
 double rangeOf(const CameraResolution& row, int kind);
 
-/// Recall over the range, a curve a resolution; `where`: the logs, for titles.
+/// Recall over range, one curve per resolution; `where`: names of the logs, for titles.
 StudyPlot recallPlot(const std::vector<CameraFigures>& cameras, const std::string& where);
-/// Rates of a table beside those of [radecki2016].
+/// A table of rates and that of [radecki2016], side by side.
 StudyPlot ratePlot(const StudyTable& table, const std::string& what, const std::string& where);
 
 }  // namespace perception

@@ -22,13 +22,13 @@ std::string places(const std::optional<double>& value, int n) {
   return value ? fmt::format("{:.{}f}", *value, n) : "n/a";
 }
 
-/// The camera with radar alone (or alone): the run that a resolution's detections are taken from.
+/// The run C+R (or C) from which the detections of a resolution are taken.
 bool showsCamera(const ResolutionRun& run) { return run.resolution >= 0 && !run.lidar; }
 
 StudyTable resolutionTable(const std::vector<CameraFigures>& cameras) {
   StudyTable t;
   t.name = "resolutions";
-  t.title = "Camera processing by resolution; ranges of Radecki et al. (paper) and measured";
+  t.title = "Camera processing by resolution; ranges of Radecki et al. and measured";
   t.columns = {"resolution",
                "panorama",
                "tile",
@@ -75,7 +75,7 @@ StudyTable recallTable(const std::vector<CameraFigures>& cameras,
   }
   if (lidar) add("L", *lidar);
   for (const PaperFrontEndRow& row : paperFrontEndRows()) {
-    t.rows.push_back({fmt::format("paper: {}, {}", row.sensor, row.condition),
+    t.rows.push_back({fmt::format("Radecki et al.: {}, {}", row.sensor, row.condition),
                       places(row.car_recall, 2), "", places(row.car_precision, 2),
                       places(row.person_recall, 2), "", places(row.person_precision, 2)});
   }
@@ -101,7 +101,7 @@ StudyTable byRangeTable(const std::vector<CameraFigures>& cameras) {
   return t;
 }
 
-/// How far recall (normalized by range) differs between the resolutions, in its own errors.
+/// Difference of the range-normalized recall between resolutions, in standard errors.
 std::string independence(const std::vector<CameraFigures>& cameras, int kind) {
   double low = 1, high = 0, worst = 0, right = 0, all = 0;
   int n = 0;
@@ -151,7 +151,7 @@ StudyTable detectionTable(const std::vector<CameraFigures>& cameras,
                           const std::optional<DetectionCounts>& lidar) {
   StudyTable t;
   t.name = "detection_rate";
-  t.title = "Detections per sensor return, beside the drive of Radecki et al. (paper)";
+  t.title = "Detections per sensor return, and those of Radecki et al. on their drive";
   t.columns = {"sensors", "objects", "cars", "persons", "paper: objects", "cars", "persons"};
   const auto add = [&](const std::string& name, const DetectionCounts& d) {
     addRates(t, name, {d.mean(), d.mean(0), d.mean(1)}, false);
@@ -165,7 +165,8 @@ StudyTable trackingTable(const ResolutionData& data) {
   StudyTable t;
   t.name = "tracking_rate";
   t.title =
-      "Objects tracked on average, classified as cars and persons, beside Radecki et al. (paper)";
+      "Objects tracked on average, classified as cars and persons, and those of Radecki et al. on "
+      "their drive";
   t.columns = {"sensors", "objects", "cars", "persons", "paper: objects", "cars", "persons"};
   if (data.truth)
     t.columns.insert(t.columns.end(),
@@ -230,7 +231,7 @@ StudyReport resolutionReport(const ResolutionData& data) {
         "detections by hand.");
   }
   report.remarks.push_back(
-      "The rates of Radecki et al. are of their own drive: only their growth can be compared, from "
+      "Radecki et al.'s rates are of their own drive: what can be compared is how they grow from "
       "row to row.");
   return report;
 }

@@ -10,7 +10,7 @@
 
 namespace perception {
 
-/// A sensor set on the log: what its front ends found, and what was tracked.
+/// Measurements and tracks of one sensor set on the log.
 struct ResolutionRun {
   std::string name;     ///< as in [radecki2016]: C-2k+R
   int resolution = -1;  ///< of its camera, a place in cameraResolutions(); -1: no camera
@@ -19,18 +19,18 @@ struct ResolutionRun {
   TrackedRun tracks;
 };
 
-/// All that the tables of resolutions are made of.
+/// Input of the report.
 struct ResolutionData {
-  std::string source;  ///< of the observations; "simulated ..." where they were
+  std::string source;  ///< of the observations; begins with "simulated" if they are
   std::string camera;  ///< label of the panorama's boxes in the runs
-  std::string lidar;   ///< label of the lidar that stands in the tables; empty: none
+  std::string lidar;   ///< label of the lidar in the tables; empty: none
   std::optional<GroundTruth> truth;
   std::vector<ResolutionRun> runs;
   std::vector<std::string> remarks;
 };
 
-/// The four tables of the camera in [radecki2016] beside ours, with plots: sizes and ranges; recall
-/// and precision, over the range and by its quarters; detections an image; objects tracked.
+/// The four camera tables of [radecki2016] compared with the data, with plots: sizes and ranges;
+/// recall and precision, over the range and by its quarters; detections per image; objects tracked.
 StudyReport resolutionReport(const ResolutionData& data);
 
 }  // namespace perception

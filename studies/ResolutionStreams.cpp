@@ -94,7 +94,7 @@ ResolutionStreams::~ResolutionStreams() = default;
 void ResolutionStreams::give(const mrpt::obs::CObservation& observation, int resolution) {
   tbb::parallel_for(std::size_t{0}, streams_.size(), [&](std::size_t i) {
     if (resolution >= 0 && streams_[i]->run.resolution != resolution) return;
-    // A thread that waits must not take up another set: MRPT resamples with its generator.
+    // A waiting thread must not start another set: MRPT resamples with the thread's generator.
     tbb::this_task_arena::isolate([&] { streams_[i]->add(observation); });
   });
 }

@@ -26,9 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 using Observation = std::shared_ptr<mrpt::obs::CObservation>;
 
-constexpr double kLook = 3;  // [s] of a log in which all its sensors have spoken
+constexpr double kLook = 3;  // [s] of a log in which all its sensors have had a frame
 
-/// The site's sensors in use, for what the tables name and which of the world's sensors matter.
+/// The site's sensors in use, for the tables and the selection of simulated sensors.
 PipelineSetup siteOf(const ResolutionOptions& options) {
   Config config = Config::fromFile(options.site.file);
   for (const std::string& setting : options.site.settings) config.set(setting);
@@ -119,13 +119,13 @@ ResolutionData simulated(const ResolutionOptions& options) {
   data.runs = streams.finish();
   data.truth = byInstant(simulator.truth());
   data.remarks = {
-      "The simulated camera's detector uses the ranges, recall and false boxes of Radecki et al.: "
+      "The simulated camera's detector has the ranges, recall and false boxes of Radecki et al.: "
       "the first two tables show that filter and front end keep them, not that a detector has "
       "them."};
   return data;
 }
 
-/// What a log holds, by its first seconds.
+/// Contents of a log, from its first seconds.
 struct LogContent {
   std::set<char> letters;  ///< of sensors of the site
   std::vector<int> resolutions;

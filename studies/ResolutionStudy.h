@@ -26,8 +26,8 @@ struct ResolutionOptions {
 
 void declareResolution(CLI::App& cli, ResolutionOptions& options);
 
-/// Sensors of all resolutions see the same world (or image) at the same time; each sensor set has a
-/// tracker of its own.
+/// Sensors of all resolutions observe the same world (or image) at the same time; each sensor set
+/// has its own tracker.
 StudyReport resolutionStudy(const ResolutionOptions& options);
 
 }  // namespace perception

@@ -6,13 +6,13 @@
 namespace perception {
 namespace {
 
-/// Lower edges [m/s]: finer where people walk and ride, coarser where only motors go.
+/// Lower edges [m/s]: finer at speeds of pedestrians and cyclists.
 constexpr std::array<double, SpeedRegimes::kBins> kEdges = {0,   0.3, 0.8, 1.3, 1.8,  2.5, 3.3, 4.2,
                                                             5.2, 6.5, 8,   10,  12.5, 16,  20,  26};
 constexpr double kKernel = 0.7;      // bins: standard deviation of the smoothing
 constexpr double kPrior = 0.3;       // transitions a bin, near the diagonal, before any data
-constexpr double kReference = 1000;  // transitions after which a user's weight grows by the root
-constexpr int kMixing = 300;         // steps after which the chain has forgotten its start
+constexpr double kReference = 1000;  // number of transitions of a user with weight 1
+constexpr int kMixing = 300;         // steps to the stationary distribution
 
 using Matrix = std::array<std::array<double, SpeedRegimes::kBins>, SpeedRegimes::kBins>;
 

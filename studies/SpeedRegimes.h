@@ -6,18 +6,17 @@
 
 namespace perception {
 
-/// How fast objects of a class go and how they change it, second by second: a Markov chain over
-/// speed bins, learned from tracks. Stops, cruising and stop-and-go are all in its transitions; a
-/// Gaussian of white acceleration knows none of them.
+/// Markov chain of the speed of a class over speed bins at 1 Hz, trained on tracks. Unlike white
+/// acceleration it models stops, cruising and stop-and-go.
 class SpeedRegimes {
  public:
   static constexpr int kBins = 16;
 
-  /// Bin of each step between fixes: by distance over time.
+  /// Speed bin of each step between fixes.
   static std::vector<int> binsOf(const std::vector<double>& t, const std::vector<Vector2>& p);
 
-  /// Transitions of one user's tracks of the class; users count by the square root of their
-  /// lengths, so that one does not stand for all.
+  /// Adds the transitions of one user's tracks, weighted by the square root of their number, so
+  /// that no single user dominates.
   void add(const std::vector<std::vector<int>>& tracks_of_user);
   /// Smooths over neighboring bins and normalizes.
   void finish();

@@ -40,7 +40,7 @@ struct Study {
 };
 
 const Study kStudies[] = {
-    {"monte-carlo", "walkers and cyclists told apart by their filters' innovations (simulated)",
+    {"monte-carlo", "pedestrians and cyclists classified by filter innovations (simulated)",
      [](StudyApp& app) {
        MonteCarloParams p;
        p.seed = app.seed;
@@ -53,7 +53,7 @@ const Study kStudies[] = {
        if (app.runs > 0) p.seeds = app.runs;
        return associationStudy(p);
      }},
-    {"particles", "numbers of objects by particles and births, in a simulated street or a rawlog",
+    {"particles", "number of objects by particles and birth model, simulated street or a rawlog",
      [](StudyApp& app) {
        if (!app.log.empty()) return app.particlesOfLog();
        ParticlesParams p;
@@ -61,14 +61,14 @@ const Study kStudies[] = {
        return particlesStudy(p);
      },
      false, true},
-    {"heading", "headings that confuse front and back (simulated)",
+    {"heading", "reversed headings (simulated)",
      [](StudyApp& app) {
        HeadingParams p;
        p.seed = app.seed;
        if (app.runs > 0) p.runs = app.runs;
        return headingStudy(p);
      }},
-    {"ego", "the vehicle's own pose from satellites, inertial unit and wheels (simulated)",
+    {"ego", "ego pose from GNSS, IMU and wheels (simulated)",
      [](StudyApp& app) {
        EgoStudyParams p;
        Config config = Config::fromFile(app.scenario);
@@ -80,7 +80,7 @@ const Study kStudies[] = {
        return egoStudy(p);
      },
      false, false, true},
-    {"gps", "travel modes told apart by positions once a second (recordings)",
+    {"gps", "travel modes classified from positions at 1 Hz (recordings)",
      [](StudyApp& app) {
        GpsParams p;
        p.seed = app.seed;
@@ -92,7 +92,7 @@ const Study kStudies[] = {
      true},
     {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
      [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, false, true},
-    {"resolution", "influence of a panorama's resolution: the camera tables of Radecki et al.",
+    {"resolution", "effect of a panorama's resolution: the camera tables of Radecki et al.",
      [](StudyApp& app) {
        app.resolution.seed = app.seed;
        return resolutionStudy(app.resolution);
@@ -119,7 +119,7 @@ GroundTruth truthBeside(const std::string& log) {
 }  // namespace
 
 std::string StudyApp::description() const {
-  return "Experiments about the method: each writes a report with tables and plots.";
+  return "Experiments on the method: each writes a report with tables and plots.";
 }
 
 void StudyApp::declare(CLI::App& cli) {
@@ -163,7 +163,7 @@ void StudyApp::declareLog(CLI::App& sub) {
   sub.add_option("--set", settings, "section.key=value: overrides both INIs");
   sub.add_option("-t,--truth", truth_file, "Truth of the log");
   sub.add_option("--counts", counts,
-                 "Numbers of particles, for --log (default: those of Radecki et al.)")
+                 "Numbers of particles, for --log (else those of Radecki et al.)")
       ->delimiter(',')
       ->check(CLI::Range(1, 100000));
   sub.add_option("--seconds", seconds, "Of the log; 0 = all")->check(CLI::Range(0.0, 1e6));

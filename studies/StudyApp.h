@@ -9,12 +9,12 @@
 
 namespace perception {
 
-/// perception-study: experiments about the method, each a report with tables and plots.
+/// perception-study: experiments on the method, each with a report of tables and plots.
 class StudyApp : public App {
  public:
   std::string study;                 ///< the name of the experiment
   std::uint64_t seed = 1;            ///< --seed
-  int runs = 0;                      ///< --runs; 0 = the study's own number
+  int runs = 0;                      ///< --runs; 0 = default of the study
   std::string folder;                ///< gps: recordings by class
   std::string stationary;            ///< gps: recording of a receiver at rest
   std::string log;                   ///< particles: a rawlog instead of simulated positions
@@ -22,7 +22,7 @@ class StudyApp : public App {
   std::string truth_file;            ///< particles: --truth of the log
   std::vector<int> counts;           ///< particles: of the log; empty = those of [radecki2016]
   double seconds = 0;                ///< particles: of the log; 0 = all
-  double range = 30, fov_deg = 360;  ///< particles: where objects of a log count [m, deg]
+  double range = 30, fov_deg = 360;  ///< particles: sector of counted objects [m, deg]
   std::string scenario;              ///< ego: INI of the scenario
   ResolutionOptions resolution;      ///< resolution: all of its options
   double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
@@ -34,9 +34,9 @@ class StudyApp : public App {
   void declare(CLI::App& cli) override;
   void run() override;
 
-  /// The study of a log, for --log.
+  /// The particles study on a log (--log).
   StudyReport particlesOfLog();
-  /// Labels of a detector, on the logs of -i.
+  /// The labels study on the logs of -i.
   StudyReport labelsOfLogs();
 
  private:

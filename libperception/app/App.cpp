@@ -22,7 +22,7 @@ void printLine(const std::string& line) {
   fmt::print(stderr, "{}\n", line);
 }
 
-// One line as it is; a list of faults below a line that counts them.
+// A single line unchanged; several faults as an indented list.
 void printError(const App& app, const std::string& message) {
   if (message.find('\n') == std::string::npos) {
     return printLine(fmt::format("{}: error: {}", app.name(), message));
@@ -37,7 +37,7 @@ void printError(const App& app, const std::string& message) {
   printLine(lines);
 }
 
-// Fills the app from the command line; the exit code when the program ends here.
+// Parses the command line into the app; returns an exit code if the program ends here.
 int parse(App& app, CLI::App& cli, int argc, const char* const* argv) {
   try {
     cli.parse(argc, argv);
@@ -135,14 +135,14 @@ int runApp(App& app, int argc, const char* const* argv) {
   cli.add_flag("-v,--verbose", app.verbosity, "Say more; may be repeated");
   try {
     app.declare(cli);
-  } catch (const CLI::Error& error) {  // an option declared twice: a fault of ours
+  } catch (const CLI::Error& error) {  // an option declared twice: an internal error
     printError(app, fmt::format("internal: {}", error.what()));
     return static_cast<int>(ExitCode::kInternal);
   }
   const int ended = parse(app, cli, argc, argv);
   if (ended >= 0) return ended;
   const StopSignals listening;
-  const MemoryLimit limit;  // logs are not believed: a forged size must not take the machine
+  const MemoryLimit limit;  // a corrupt size in a log must not exhaust the machine's memory
   return static_cast<int>(runGuarded(app));
 }
 

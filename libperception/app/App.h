@@ -11,19 +11,19 @@ class App;
 
 namespace perception {
 
-/// A program as a class, so that a test can run it in-process: public options, run(), public out_*
+/// A program as a class, so that tests can run it in-process: public options, run(), public out_*
 /// members. `main` is: `int main(int argc, char** argv) { perception::TrackRawlogApp app; return
 /// perception::runApp(app, argc, argv); }`
 class App {
  public:
   virtual ~App() = default;
 
-  // What every program understands; an app declares only those it uses.
+  // Common options; an app declares only those it uses.
   std::string config_file;            ///< -c/--config
   std::vector<std::string> inputs;    ///< -i/--input
   std::string output;                 ///< -o/--output
   std::vector<std::string> settings;  ///< --set section.key=value
-  int threads = 0;                    ///< --threads; 0 = as many as the machine has
+  int threads = 0;                    ///< --threads; 0 = number of cores
   bool strict = false;                ///< --strict: damaged input is an error instead of a warning
   bool print_config =
       false;          ///< --print-config: write the effective INI to standard output and stop
@@ -44,14 +44,14 @@ class App {
   void addOutputOption(CLI::App& cli, bool required);
   void addRunOptions(CLI::App& cli);  ///< --threads, --strict
 
-  /// The INI of -c with --set applied; faults are thrown by Config::finish().
+  /// The INI of -c with --set applied; Config::finish() throws faults.
   Config loadConfig() const;
-  /// After all sections were read: throws on faults; for --print-config prints and returns true
-  /// (then return from run()).
+  /// Call after all sections were read: throws on faults. With --print-config, prints and returns
+  /// true; then return from run().
   bool configDone(const Config& config) const;
-  /// A message for the person at the terminal (standard error) when verbosity >= level.
+  /// Prints a message to standard error if verbosity >= level.
   void say(int level, const std::string& message) const;
-  /// A data warning: said on standard error, counted.
+  /// Prints a data warning to standard error and counts it.
   void warn(const std::string& message);
 
  private:
@@ -59,10 +59,11 @@ class App {
   int warnings_ = 0;
 };
 
-/// Parses, runs, turns exceptions into messages ("perception-track: error: ...") and exit codes.
+/// Parses the command line, runs the app and converts exceptions to messages ("perception-track:
+/// error: ...") and exit codes.
 int runApp(App& app, int argc, const char* const* argv);
 
-/// The last folder of the path: a run's name in tables and titles.
+/// Last folder of the path: name of a run in tables and titles.
 std::string lastFolderOf(const std::string& path);
 
 }  // namespace perception

@@ -38,7 +38,7 @@ struct CalibrateApp::Task {
   const char* name;
   const char* description;
   StudyReport (CalibrateApp::*run)();
-  bool search = false;  ///< tracks again and again, in a sector where truth counts
+  bool search = false;  ///< repeats tracking; has options of the truth sector
 };
 
 const CalibrateApp::Task CalibrateApp::kTasks[] = {

@@ -8,14 +8,15 @@
 
 namespace perception {
 
-/// perception-calibrate: lines for a vehicle's INI from rawlogs with truth, each with its counts.
+/// perception-calibrate: parameters for a vehicle's INI from rawlogs with truth, each with its
+/// counts.
 class CalibrateApp : public App {
  public:
   std::string task;                          ///< the subcommand
   std::uint64_t seed = 1;                    ///< --seed
-  int rounds = 0;                            ///< tempering: --runs; 0 = its own number
+  int rounds = 0;                            ///< tempering: --runs; 0 = default of the task
   double seconds = 0;                        ///< of every log; 0 = all
-  double truth_range = 30, truth_fov = 360;  ///< tempering: where truth counts [m, deg]
+  double truth_range = 30, truth_fov = 360;  ///< tempering: sector in which truth counts [m, deg]
 
   StudyReport out_report;
 

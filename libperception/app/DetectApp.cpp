@@ -107,7 +107,7 @@ void DetectApp::finish(const ImageDetector& detector, Result& result) {
   auto& objects = result.found.objects;
   for (const ObjectDetection& o : objects) result.raw.push_back(o.score);
   std::vector<ObjectDetection> before = objects;
-  scores_are_log_odds_ = !detector.hasBackend();  // boxes of a log were calibrated when written
+  scores_are_log_odds_ = !detector.hasBackend();  // scores of boxes in a log are calibrated
   if (!scores_are_log_odds_) calibrateScores(detector.setup(), objects);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const auto& o = objects[i];

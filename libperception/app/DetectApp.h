@@ -26,18 +26,19 @@ class DetectApp : public App {
   std::string camera_label;  ///< --camera: sensorLabel of the log's images; empty: all
   std::string
       boxes_label;        ///< --label: sensorLabel of the boxes; empty: that of the images + _BOXES
-  std::string calibrate;  ///< --calibrate: INI that gets the fitted logistics
-  std::string kitti_folder;   ///< --export kitti:DIR
-  std::string train_heading;  ///< --train-heading: file of the head that is learned from the labels
-  std::string heading_label = "Car";  ///< --heading-label: of the boxes to learn from
+  std::string calibrate;  ///< --calibrate: output INI of the fitted logistic functions
+  std::string kitti_folder;  ///< --export kitti:DIR
+  std::string
+      train_heading;  ///< --train-heading: output file of the heading head trained on the labels
+  std::string heading_label = "Car";  ///< --heading-label: label of the training boxes
   bool pictures = false;              ///< --pictures
-  int every = 1;                      ///< --every: of the log's images, one in so many
+  int every = 1;                      ///< --every: uses every n-th image of the log
   double overlap = 0.5, min_height = 25, max_truncation = 0.3;
   int max_occlusion = 1;
 
   std::int64_t out_images = 0, out_objects = 0, out_unreadable = 0;
   std::vector<LabelQuality> out_quality;
-  double out_seconds = 0;  ///< wall, of detection alone
+  double out_seconds = 0;  ///< wall time of detection
 
   std::string name() const override { return "perception-detect"; }
   std::string description() const override;
@@ -45,7 +46,7 @@ class DetectApp : public App {
   void run() override;
 
  private:
-  /// A picture with its boxes, on the way to the outputs.
+  /// An image with its boxes, for the outputs.
   struct Result {
     std::string name;
     Raster image;
@@ -59,7 +60,7 @@ class DetectApp : public App {
   void closeOutput(const std::string& images, LogOutput& out) const;
   void runLog(const ImageDetector& detector, const DetectCameraParams& camera,
               const std::string& log);
-  /// An image of a log with its boxes; empty when it cannot be read.
+  /// Detections in an image of a log; empty if it cannot be read.
   std::optional<Result> detectIn(const SensorFrame& frame, std::int64_t number,
                                  const ImageDetector& detector, const DetectCameraParams& params);
   std::shared_ptr<mrpt::obs::CObservation> boxesObservation(const SensorFrame& image,

@@ -8,33 +8,35 @@
 
 namespace perception {
 
-/// [camera]: of images that come without a calibration of their own.
+/// [camera]: for images without calibration.
 struct DetectCameraParams {
-  double height = 0;                   ///< [m] over the ground; 0: not known
+  double height = 0;                   ///< [m] above the ground; 0: unknown
   double pitch = 0;                    ///< [rad] nose down
-  double field_of_view = radians(80);  ///< [rad] across; assumed, as wide as KITTI's cameras
-  double horizon = 0;                  ///< [px] row at pitch 0, of panoramas, too; 0: the middle
-  int panorama = 0;  ///< auto (width = 2 height, no calibration), yes, no: a fact of the picture
+  double field_of_view = radians(80);  ///< [rad] horizontal; assumed, as KITTI's cameras
+  double horizon =
+      0;  ///< [px] image row of the horizon at pitch 0, also for panoramas; 0: the middle row
+  int panorama = 0;  ///< 0 auto (if width = 2 height and no calibration), 1 yes, 2 no
 
   void visit(ParamVisitor& v);
 };
 
-/// perception-detect's inputs: a rawlog, by its ending.
+/// Whether an input is a rawlog, by its extension.
 bool isRawlog(const std::string& path);
-/// Files as they are, folders as the images in them, in order.
+/// Expands folders to the images in them, sorted; files are unchanged.
 std::vector<std::string> imageFiles(const std::vector<std::string>& inputs);
-/// Empty: not there, or no image.
+/// Empty if missing or not an image.
 std::optional<Raster> readImage(const std::string& path);
 
-/// Camera `height` [m] over the ground, looking ahead, `pitch` [rad] nose down; optical frame.
+/// T_ego_camera of a camera at `height` [m] facing forward, pitched down by `pitch` [rad]; optical
+/// frame.
 Pose3 cameraPose(double height, double pitch);
-/// A calibrated camera is a pinhole unless the INI says otherwise.
+/// A calibrated camera is a pinhole unless `choice` is yes.
 bool isPanorama(const Raster& image, int choice, bool calibrated);
-/// The camera of an image without calibration. `name` for the message of a DataError: `panorama =
-/// yes` and no picture of the full circle.
+/// The camera model of an image without calibration. Throws DataError naming `name` if `panorama =
+/// yes` and the image does not cover the full circle.
 CameraModel cameraOf(const Raster& image, const DetectCameraParams& params,
                      const std::string& name);
-/// The full circle across, with as many pixels a radian downwards.
+/// Equirectangular model of the full circle with equal vertical resolution [px/rad].
 CameraModel panoramaCamera(const Raster& image, const DetectCameraParams& params,
                            const std::string& name);
 

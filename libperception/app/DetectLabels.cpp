@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Types that KITTI's benchmark counts neither for nor against a class.
+// Truth types that KITTI's benchmark ignores for a class.
 std::string kindredOf(const std::string& type) {
   if (type == "Van") return "Car";
   if (type == "Person_sitting" || type == "Person") return "Pedestrian";

@@ -7,20 +7,20 @@
 
 namespace perception {
 
-/// Which labels count.
+/// Criteria of counted labels.
 struct LabelRules {
   double min_height = 25;       ///< [px]
-  double max_truncation = 0.3;  ///< share beyond the image
+  double max_truncation = 0.3;  ///< share outside of the image
   int max_occlusion = 1;        ///< KITTI: 0 = fully visible, 1 = partly, 2 = largely
 };
 
 /// Truth of images: a folder of KITTI's object labels (NAME.txt beside NAME.png), or a CSV with the
-/// columns image, class, x1, y1, x2, y2 and where there are ignore, occluded, heading_deg.
+/// columns image, class, x1, y1, x2, y2 and optionally ignore, occluded, heading_deg.
 class ImageLabels {
  public:
   /// Throws DataError.
   ImageLabels(const std::string& path, LabelRules rules);
-  /// Of the image with that file name; throws DataError where a folder lacks its file.
+  /// Labels of the image with this file name. Throws DataError if a folder lacks its file.
   std::vector<LabeledBox> of(const std::string& file_name) const;
 
  private:

@@ -15,7 +15,7 @@ namespace perception {
 
 namespace fs = std::filesystem;
 
-/// Where a log's boxes go: into another log, or as pictures and tables into a folder.
+/// Output of a log's boxes: into another log, or as pictures and tables into a folder.
 struct DetectApp::LogOutput {
   std::optional<RawlogWriter> writer;
   std::optional<OutputFolder> folder;
@@ -38,7 +38,7 @@ void DetectApp::openOutput(bool detects, LogOutput& out) const {
 void DetectApp::closeOutput(const std::string& images, LogOutput& out) const {
   if (out.writer) {
     out.writer->close();
-    // The new log finds the images that the old one keeps beside itself.
+    // Lets the new log refer to the external images of the old one.
     const fs::path beside = images, link = imagesBeside(output);
     if (fs::is_directory(beside) && !fs::exists(fs::symlink_status(link)))
       fs::create_directory_symlink(fs::absolute(beside), link);

@@ -8,13 +8,14 @@
 
 namespace perception {
 
-/// A line of KITTI's result files: image box, alpha and score; the rest unknown.
+/// A line of KITTI's result files: image box, alpha and score; other columns unknown.
 std::string kittiBoxLine(const ObjectDetection& object);
-/// quality.csv: a line a label.
+/// quality.csv: one line per label.
 std::string qualityCsv(const std::vector<LabelQuality>& quality);
-/// precision.csv: the curves, a line a score.
+/// precision.csv: precision-recall curves, one line per score.
 std::string precisionCsv(const std::vector<LabelQuality>& quality);
-/// The models' logistics, P(right | score), as an INI to be included by that of the detector.
+/// The fitted logistic functions P(correct | score) as an INI to be included by that of the
+/// detector.
 std::string calibrationIni(const DetectorSetup& setup, const DetectionQuality& quality,
                            std::int64_t images, double overlap);
 

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kImagesAFold = 3;  // neighbors of a drive show the same objects
+constexpr int kImagesAFold = 3;  // neighboring images of a drive show the same objects
 
 }  // namespace
 

@@ -20,8 +20,8 @@ namespace perception {
 namespace fs = std::filesystem;
 
 std::string EvaluateApp::description() const {
-  return "Compares tracked runs with the truth of their log: the table of Radecki et al., GOSPA, "
-         "false objects, calibration, front ends, plots; several runs side by side or pooled.";
+  return "Compares tracked runs with the truth of their log: table of Radecki et al., GOSPA, false "
+         "objects, calibration, front ends, plots; several runs side by side or pooled.";
 }
 
 void EvaluateApp::declare(CLI::App& cli) {
@@ -49,13 +49,13 @@ void EvaluateApp::declareInputs(CLI::App& cli) {
                  "('RADAR_*'); for runs with --measurements")
       ->type_name("LABEL");
   cli.add_option("--paper", paper,
-                 fmt::format("rows of Radecki et al. beside the runs: {}",
+                 fmt::format("rows of Radecki et al. to list for comparison: {}",
                              fmt::join(paperTableNames(), ", ")))
       ->delimiter(',')
       ->type_name("NAME,...");
 }
 
-/// Which truth counts.
+/// Options of the truth selection.
 void EvaluateApp::declareTruth(CLI::App& cli) {
   cli.add_option("--range", params.selection.range, "truth counts up to this distance [m]")
       ->capture_default_str()
@@ -78,7 +78,7 @@ void EvaluateApp::declareTruth(CLI::App& cli) {
       ->check(CLI::Range(0, 3));
 }
 
-/// How outputs are matched with it, and what is reported.
+/// Options of matching and reports.
 void EvaluateApp::declareFigures(CLI::App& cli) {
   cli.add_option("--tolerance", params.tolerance,
                  "greatest distance of the centers of truth and estimate [m]")
@@ -249,7 +249,7 @@ void EvaluateApp::write(EvaluationReport report, const std::string& dir) {
   out_folders.push_back(dir);
 }
 
-// Each run has a report of its own; several, or the conditions of trials, a joint one, too.
+// One report per run, and a joint one of several runs or of conditions.
 void EvaluateApp::writeReports() {
   bool pooled = false;
   for (const EvaluatedRun& run : out_report.runs) pooled = pooled || !run.trials.empty();
@@ -262,7 +262,8 @@ void EvaluateApp::writeReports() {
     EvaluationReport own = emptyReport();
     own.runs.push_back(run);
     std::string dir = run.dir + "/evaluation";
-    // Names that are paths (two runs of one name) cannot be folders: such runs are numbered.
+    // Names that are paths (two runs of the same name) cannot be folder names: these runs are
+    // numbered.
     if (!output.empty()) {
       dir = output;
       if (several) {

@@ -9,26 +9,25 @@
 
 namespace perception {
 
-/// perception-evaluate: holds tracked runs against the truth of their log and reports the
-/// table of [radecki2016] and more.
+/// perception-evaluate: compares tracked runs with the truth of their log; table of [radecki2016]
+/// and other metrics.
 class EvaluateApp : public App {
  public:
   std::vector<std::string> runs;  ///< -r: folders of perception-track, or CONDITION=PATTERN of such
-  std::string truth_file;  ///< -t; {log} and {run} stand for the names of a run's log and folder
-  std::string manifest;    ///< --manifest: CSV with the columns condition, run, truth
   std::string
-      reference;  ///< --reference: a run whose number of objects the others are compared with
+      truth_file;  ///< -t; {log} and {run} are replaced by the names of a run's log and folder
+  std::string manifest;                 ///< --manifest: CSV with the columns condition, run, truth
+  std::string reference;                ///< --reference: reference run of the number of objects
   std::vector<std::string> front_ends;  ///< --front-end: labels of sensors, or patterns of them
-  std::vector<std::string> paper;       ///< --paper: tables of [radecki2016] beside the runs
+  std::vector<std::string> paper;       ///< --paper: tables of [radecki2016] to list for comparison
   EvaluationOptions params;
   double fov_deg = 180, complete_fov_deg = 360;
-  bool surroundings = false;  ///< --surroundings: the truth holds poles and hedges, too
-  std::size_t max_plots =
-      40;             ///< --max-plots: truth objects with a picture of their own, for each run
-  bool plots = true;  ///< --no-plots clears it
+  bool surroundings = false;   ///< --surroundings: the truth includes poles and hedges
+  std::size_t max_plots = 40;  ///< --max-plots: most truth objects with their own plot, per run
+  bool plots = true;           ///< --no-plots clears it
 
   EvaluationReport out_report;
-  std::vector<std::string> out_folders;  ///< where reports were written
+  std::vector<std::string> out_folders;  ///< with reports
 
   std::string name() const override { return "perception-evaluate"; }
   std::string description() const override;

@@ -27,11 +27,10 @@ void ImportApp::declare(CLI::App& cli) {
     sub.add_option("--first", options.first, "first frame")->capture_default_str();
     sub.add_option("--last", options.last, "last frame; -1: to the end")->capture_default_str();
     if (row.uses & kUsesRate)
-      sub.add_option("--rate", options.rate,
-                     "[Hz] of frames that carry no stamps; default: the format's own");
+      sub.add_option("--rate", options.rate, "[Hz] of frames without stamps; default: by format");
     if (row.uses & kUsesRepeat)
       sub.add_option("--repeat", options.repeat,
-                     "shows frames that stand alone so often, as a still world")
+                     "number of repetitions of isolated frames, as a static scene")
           ->capture_default_str();
     if (row.uses & kUsesImages) {
       auto* copy = sub.add_flag("--copy-images", copy_images_,

@@ -24,7 +24,7 @@ class ImportApp : public App {
   void checkOptions() const;
   void report() const;
 
-  std::vector<std::unique_ptr<Importer>> importers_;  ///< as the table
+  std::vector<std::unique_ptr<Importer>> importers_;  ///< by row of importers()
   std::size_t chosen_ = 0;
   bool copy_images_ = false, embed_images_ = false;
 };

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the page shows of a run's folder when it is there.
+/// Files of a run's folder shown on the page if they exist.
 struct FigureRow {
   const char* file;
   const char* media_type;
@@ -22,22 +22,22 @@ struct FigureRow {
   const char* caption;
 };
 constexpr FigureRow kVideos[] = {
-    {"scene.mp4", "video/mp4", "The film",
-     "Left from above, right from behind the vehicle. Boxes are tracked objects, thin black "
-     "outlines the truth, points the lidar's returns; the legend stands at the right."}};
+    {"scene.mp4", "video/mp4", "Video",
+     "Left from above, right from behind the vehicle. Boxes: tracked objects; thin black "
+     "outlines: truth; points: lidar returns; legend at the right."}};
 constexpr FigureRow kPictures[] = {{"scene.png", "image/png", "One instant, large",
-                                    "The same view as in the film. Arrow: the way of the next "
-                                    "second; line: that of the last two."},
-                                   {"contact.png", "image/png", "The run at a glance",
-                                    "Instants evenly over the run, from above."}};
+                                    "The same view as in the video. Arrow: predicted path of one "
+                                    "second; line: path of the last two."},
+                                   {"contact.png", "image/png", "Overview of the run",
+                                    "Instants at equal intervals, from above."}};
 constexpr FigureRow kPlots[] = {
-    {"plots/timelines.png", "image/png", "True objects over time",
-     "A row a true object: called by its class, missed, renumbered."},
+    {"plots/timelines.png", "image/png", "Truth objects over time",
+     "One row per truth object: estimated class, missed instants, id switches."},
     {"plots/overview.png", "image/png", "Over time",
-     "Above: each true object, tracked or not, its class right or not. Below: how many objects "
-     "there were, were missed, were false at each instant."},
-    {"plots/reliability.png", "image/png", "Can the probabilities be believed?",
-     "How often a class was right against how probable it was said to be: on the diagonal, yes."}};
+     "Above: each truth object, tracked or not, class correct or not. Below: number of true, "
+     "missed and false objects at each instant."},
+    {"plots/reliability.png", "image/png", "Calibration of the class probability",
+     "Observed frequency of the correct class over its stated probability; ideal: the diagonal."}};
 
 std::string contentsOf(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -67,7 +67,7 @@ std::vector<ReportContent::Figure> figuresIn(const fs::path& dir, const FigureRo
 }  // namespace
 
 std::string ReportApp::description() const {
-  return "Makes one HTML page about a run: film, pictures, timeline, figures, origin.";
+  return "Makes one HTML page of a run: video, pictures, timeline, metrics, inputs.";
 }
 
 void ReportApp::declare(CLI::App& cli) {
@@ -77,7 +77,7 @@ void ReportApp::declare(CLI::App& cli) {
   cli.add_option("--evaluation", evaluation_dir,
                  "folder of perception-evaluate; default: evaluation/ of the run")
       ->type_name("DIR");
-  cli.add_option("-o,--output", output, "the page; default: index.html in the run's folder")
+  cli.add_option("-o,--output", output, "output; default: index.html in the run's folder")
       ->type_name("FILE.html");
 }
 

@@ -6,12 +6,12 @@
 
 namespace perception {
 
-/// perception-report: one page about a run, from what the other programs left in its folder.
+/// perception-report: HTML page of a run, from the results of the other programs in its folder.
 class ReportApp : public App {
  public:
   std::string run_dir;         ///< -r: folder of perception-track
   std::string evaluation_dir;  ///< --evaluation; empty: evaluation/ of the run, when it is there
-  std::string out_page;        ///< the page
+  std::string out_page;        ///< path of the page
 
   std::string name() const override { return "perception-report"; }
   std::string description() const override;

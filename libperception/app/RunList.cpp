@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders that a shell pattern stands for, in order of their names.
+// Folders that match a shell pattern, sorted by name.
 std::vector<std::string> foldersOf(const std::string& pattern) {
   std::vector<std::string> folders;
   glob_t found{};
@@ -82,7 +82,7 @@ std::vector<RunEntry> runEntries(const std::vector<std::string>& runs,
   std::vector<RunEntry> result;
   for (const std::string& run : runs) {
     const auto equals = run.find('=');
-    // A path with a '=' in it is none of a condition; C/H+R=... is one.
+    // A path that contains '=' is not taken as a condition; C/H+R=... is.
     const auto slash = run.find('/');
     const bool in_folder = slash < equals && (slash == 0 || fs::exists(run.substr(0, slash)));
     const bool conditional =

@@ -37,18 +37,18 @@ void SimulateApp::declare(CLI::App& cli) {
   addConfigOptions(cli, false);
   cli.add_option("--seed", seed, "Seed of all random numbers: same seed, same bytes")
       ->capture_default_str();
-  cli.add_option(
-         "--trial", trial,
-         "Trial 1, 2, ... of the scenario ([variation]): own ways and own noise, drawn from "
-         "the seed; 0 = as the file stands")
+  cli.add_option("--trial", trial,
+                 "Trial 1, 2, ... of the scenario ([variation]): paths and noise drawn from "
+                 "the seed; 0 = the unchanged scenario")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   cli.add_option("--vehicle", vehicle,
                  "INI of a vehicle: its sensors instead of those of the scenario")
       ->check(CLI::ExistingFile);
   addOutputOption(cli, false);
-  cli.add_option("--coverage", coverage,
-                 "Picture (PNG) of what the sensors of -c, a vehicle or a scenario, see; no log");
+  cli.add_option(
+      "--coverage", coverage,
+      "Picture (PNG) of the coverage of the sensors of -c (vehicle or scenario); no log");
   cli.add_option("--contact-sheet", contact_sheet, "Picture (PNG) of the scenarios named; no log");
   cli.add_option("SCENARIO", scenes, "Scenario INIs of the contact sheet")
       ->check(CLI::ExistingFile);
@@ -80,7 +80,7 @@ std::optional<Scenario> SimulateApp::loadScenario() {
 
 void SimulateApp::drawCoverage() {
   Config config = loadConfig();
-  // A vehicle INI has no scene; a scenario's other sections are none of the picture's.
+  // A vehicle INI has no scene; other sections of a scenario do not affect the picture.
   if (config.has("scenario")) {
     const Scenario scenario = readScenario(config);
     if (configDone(config)) return;
@@ -127,7 +127,7 @@ void SimulateApp::run() {
   RawlogWriter log(output, gzip_level);
   {
     Progress progress("simulate", static_cast<std::uint64_t>(duration * 1e3));
-    // One observation is packed while the next one is simulated.
+    // An observation is compressed while the next one is simulated.
     std::future<void> packed;
     while (const auto observation = simulator.next()) {
       stopIfAsked();
@@ -138,7 +138,7 @@ void SimulateApp::run() {
     }
     if (packed.valid()) packed.get();
   }
-  // The truth first: a log of the final name then never lacks it.
+  // The truth first, so that a log with its final name always has one.
   out_truth_file = beside(output, ".truth.csv");
   writeGroundTruth(out_truth_file, simulator.truth());
   if (!lanes.empty()) writeFile(beside(output, ".lanes.csv"), lanesText(lanes));
@@ -154,7 +154,8 @@ void SimulateApp::run() {
   if (simulator.images() > 0) fmt::print("  camera: {} rendered images\n", simulator.images());
   fmt::print("{}: {} rows\n", out_truth_file, simulator.truth().size());
   if (simulator.unwritten() > 0) {
-    warn(fmt::format("{} frames left out: no observation class holds them", simulator.unwritten()));
+    warn(fmt::format("{} frames omitted: there is no observation class for them",
+                     simulator.unwritten()));
   }
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

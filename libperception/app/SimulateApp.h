@@ -12,13 +12,13 @@ namespace perception {
 /// perception-simulate: a scenario INI becomes a rawlog with ground truth.
 class SimulateApp : public App {
  public:
-  std::uint64_t seed = 1;           ///< --seed
-  int gzip_level = 1;               ///< --gzip
-  int trial = 0;                    ///< --trial; 0 = the scenario as it stands in its file
-  std::string coverage;             ///< --coverage: picture of what the sensors of -c see
-  std::string contact_sheet;        ///< --contact-sheet: picture of `scenes`
+  std::uint64_t seed = 1;     ///< --seed
+  int gzip_level = 1;         ///< --gzip
+  int trial = 0;              ///< --trial; 0 = the unchanged scenario
+  std::string coverage;       ///< --coverage: output picture of the coverage of the sensors of -c
+  std::string contact_sheet;  ///< --contact-sheet: output picture of `scenes`
   std::vector<std::string> scenes;  ///< scenario INIs of the contact sheet
-  std::string vehicle;              ///< --vehicle: sensors of this INI instead of the scenario's
+  std::string vehicle;              ///< --vehicle: INI whose sensors replace those of the scenario
 
   std::string out_truth_file;
   std::int64_t out_frames = 0;

@@ -31,7 +31,7 @@ constexpr double kSlowestFilm = 1;       // [s] a picture at most
 }  // namespace
 
 std::string SnapshotApp::description() const {
-  return "Draws tracked runs as PNG or video: objects, sensors' data, safety grid, truth.";
+  return "Draws tracked runs as PNG or video: objects, sensor data, safety grid, truth.";
 }
 
 void SnapshotApp::declare(CLI::App& cli) {
@@ -47,15 +47,15 @@ void SnapshotApp::declare(CLI::App& cli) {
   auto* when = cli.add_option_group("when", "which instants");
   when->add_option("--time", time, "the scene nearest to this time of the log [s]");
   when->add_option("--frame", frame, "the scene of this frame of the log");
-  when->add_option("--every", every, "a picture every so many seconds and a contact sheet [s]")
+  when->add_option("--every", every, "interval of pictures, and a contact sheet [s]")
       ->check(CLI::Range(1e-3, 1e6));
-  when->add_option("--contact", contact, "one sheet of so many instants, evenly over the run")
+  when->add_option("--contact", contact, "one contact sheet of this many instants, equally spaced")
       ->check(CLI::Range(1, 100));
-  when->add_option("--video", video, "a film of all scenes at the log's rate (needs ffmpeg)")
+  when->add_option("--video", video, "a video of all scenes at the log's rate (needs ffmpeg)")
       ->type_name("FILE.mp4");
   when->require_option(1);
-  cli.add_option("--from", video_from, "the film begins at this time of the log [s]");
-  cli.add_option("--to", video_to, "and ends at this one [s]");
+  cli.add_option("--from", video_from, "start of the video, time of the log [s]");
+  cli.add_option("--to", video_to, "end of the video [s]");
   cli.add_option("-o,--output", output, "PNG file; with --every a folder");
   cli.add_option("--scene", scene_file,
                  "with --time or --frame: also a file for MRPT's SceneViewer3D")
@@ -72,20 +72,20 @@ void SnapshotApp::declare(CLI::App& cli) {
       ->capture_default_str();
   cli.add_option("--camera", sensors.camera, "label of the camera that is shown")
       ->type_name("LABEL");
-  cli.add_flag("--no-measurements", no_measurements, "without what the front ends took");
-  cli.add_option("--range", params.range, "how far ahead is shown [m]")
+  cli.add_flag("--no-measurements", no_measurements, "do not draw measurements");
+  cli.add_option("--range", params.range, "range shown ahead [m]")
       ->check(CLI::Range(5.0, 200.0))
       ->capture_default_str();
   cli.add_option("--memory", sensors.memory,
-                 "lidar scans so long before an instant fill the grid [s]")
+                 "lidar scans of this time before an instant are in the grid [s]")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
-  cli.add_option("--title", titles, "instead of the names of log and run, one a run")
+  cli.add_option("--title", titles, "instead of the names of log and run, one per run")
       ->allow_extra_args(false);
 }
 
-// The site INI is that of -c, else the one that the run was made with: returns are drawn and
-// measured as the tracker did.
+// The site INI of -c, else the run's effective.ini, so that returns and measurements are those of
+// the tracker.
 Config SnapshotApp::readSite(const std::string& run_dir) {
   const std::string given = config_file;
   const std::string own = (fs::path(run_dir) / "effective.ini").string();
@@ -116,7 +116,7 @@ std::vector<std::size_t> SnapshotApp::chooseScenes(const TrackedRun& run) const 
   return every > 0 ? chosen : spread(chosen, static_cast<std::size_t>(contact));
 }
 
-// Log and run; a simulated result is called simulated.
+// Log and run; marks simulated logs.
 std::string SnapshotApp::titleOf(std::size_t index) {
   if (index < titles.size()) return titles[index];
   const std::string& dir = run_dirs[index];
@@ -182,7 +182,7 @@ void SnapshotApp::run() {
   readRuns();
   const auto camera = std::find(params.views.begin(), params.views.end(), ViewKind::kCamera);
   if (camera != params.views.end() && (!shown_[0].sensors || !shown_[0].sensors->layers().camera)) {
-    // "all" is what there is, a camera that was asked for is not.
+    // "all" shows the views available; a camera requested explicitly must exist.
     if (view != "all") {
       throw Error(
           ExitCode::kUsage,
@@ -245,7 +245,8 @@ void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
   }
 }
 
-// As fast as it happened: the rate is that of most scenes, and a gap in the log stands still.
+// Real time: frame rate by the median scene interval; in gaps of the log the video shows the last
+// scene.
 void SnapshotApp::drawVideo(const std::vector<std::size_t>& chosen) {
   const auto& scenes = shown_[0].run.scenes;
   const auto at = [&](std::size_t i) { return scenes[chosen[i]].stamp - scenes[chosen[0]].stamp; };

@@ -13,19 +13,19 @@
 
 namespace perception {
 
-/// perception-snapshot: pictures and films of tracked runs, without a display.
+/// perception-snapshot: pictures and videos of tracked runs, without a display.
 class SnapshotApp : public App {
  public:
-  std::vector<std::string> run_dirs;      ///< -r: folders of perception-track, runs of one log
-  std::string truth_file;                 ///< -t
-  std::optional<double> time;             ///< --time [s] since the log's first stamp
-  std::optional<std::int64_t> frame;      ///< --frame
-  double every = 0;                       ///< --every [s]: a picture each, and a contact sheet
-  int contact = 0;                        ///< --contact: one sheet of so many instants
-  std::string video;                      ///< --video: a film of every scene
-  double video_from = 0, video_to = 1e9;  ///< --from, --to [s]: which part of the log is filmed
+  std::vector<std::string> run_dirs;  ///< -r: folders of perception-track, runs of one log
+  std::string truth_file;             ///< -t
+  std::optional<double> time;         ///< --time [s] since the log's first stamp
+  std::optional<std::int64_t> frame;  ///< --frame
+  double every = 0;                   ///< --every [s]: interval of pictures, and a contact sheet
+  int contact = 0;                    ///< --contact: number of instants on one contact sheet
+  std::string video;                  ///< --video: video of all scenes
+  double video_from = 0, video_to = 1e9;  ///< --from, --to [s]: part of the log in the video
   std::string scene_file;                 ///< --scene: .3Dscene of the instant
-  std::vector<std::string> grid_files;    ///< --grid: of the instant, by their endings
+  std::vector<std::string> grid_files;    ///< --grid: of the instant, format by extension
   std::string view = "both";              ///< --view: top, driver, camera joined by +; both; all
   std::vector<std::string> titles;        ///< --title: instead of the runs' names
   bool no_measurements = false;           ///< --no-measurements
@@ -41,7 +41,7 @@ class SnapshotApp : public App {
   void run() override;
 
  private:
-  bool readConfig();  ///< true: only the configuration was asked for
+  bool readConfig();  ///< true: --print-config, stop
   Config readSite(const std::string& run_dir);
   void readRuns();
   std::vector<std::size_t> chooseScenes(const TrackedRun& run) const;

@@ -12,7 +12,7 @@
 namespace perception {
 namespace {
 
-/// A view as --view names it.
+/// Parses one view name of --view.
 struct ViewRow {
   const char* name;
   ViewKind kind;
@@ -27,7 +27,7 @@ SceneView viewOf(const ShownRun& shown, std::size_t index, const GroundTruth* tr
   if (shown.sensors) {
     shown.sensors->advanceTo(result.scene.stamp);
     shown.sensors->fill(result);
-    // Not in the legend when it is not in the picture.
+    // Excluded from the legend if not drawn.
     if (std::find(views.begin(), views.end(), ViewKind::kCamera) == views.end()) {
       result.layers.camera.reset();
     }

@@ -12,19 +12,19 @@
 
 namespace perception {
 
-/// A run that is drawn.
+/// A run to be drawn.
 struct ShownRun {
   TrackedRun run;
   std::string name;
-  std::unique_ptr<SnapshotSensors> sensors;  ///< where there is a log
+  std::unique_ptr<SnapshotSensors> sensors;  ///< null without a log
 };
 
-/// The views that --view asks for. Throws Error (kUsage).
+/// Parses --view. Throws Error (kUsage).
 std::vector<ViewKind> viewsNamed(const std::string& view);
 
-/// What is drawn of the runs: of the first one its scene `index`, of the others those nearest to
-/// its time, with what their sensors have seen until then. `truth` may be null. Throws DataError:
-/// no scene near.
+/// Views of several runs at one instant: scene `index` of the first run and the nearest scenes of
+/// the others, with sensor data up to then. `truth` may be null. Throws DataError if a run has no
+/// scene near.
 std::vector<SceneView> viewsOfRuns(const std::vector<ShownRun>& runs, std::size_t index,
                                    const GroundTruth* truth, const std::vector<ViewKind>& views);
 

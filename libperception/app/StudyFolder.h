@@ -7,7 +7,7 @@
 namespace perception {
 
 /// Writes report.md, the tables as CSV, further files, and the plots with their scripts and data
-/// into the folder `output`; whole or not at all. Returns what could not be plotted and why. Throws
+/// into the folder `output`; complete or not at all. Returns warnings about missing plots. Throws
 /// OutputError.
 std::vector<std::string> writeStudyReport(const StudyReport& report, const std::string& output);
 

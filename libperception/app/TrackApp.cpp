@@ -27,9 +27,9 @@ void TrackApp::declare(CLI::App& cli) {
                  "[Hz] Scenes at a fixed rate instead of at the output sensor's scans")
       ->check(CLI::Range(0.0, 1000.0));
   cli.add_flag("--measurements", measurements,
-               "Record what the front ends found: measurements.csv, scans.csv, sensors.csv");
+               "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
   cli.add_option("--export", exports,
-                 "kitti:FILE: write the objects in KITTI's tracking format, too")
+                 "kitti:FILE: also write the objects in KITTI's tracking format")
       ->allow_extra_args(false);
 }
 
@@ -42,14 +42,14 @@ std::string TrackApp::exportFileFor(const std::string& log) const {
   }
   const fs::path file = exports[0].substr(prefix.size());
   if (inputs.size() == 1) return file.string();
-  // Several logs: one file each, told apart by the log's name.
+  // Several logs: one file each, named by the log.
   return (file.parent_path() / (fs::path(log).stem().string() + "." + file.filename().string()))
       .string();
 }
 
 Config TrackApp::configWithOptions() const {
   Config config = loadConfig();
-  // As settings of [run], so that the effective INI says what was run.
+  // As settings of [run], so that they are in the effective INI.
   if (!sensors.empty()) config.set("run.sensors=" + sensors);
   if (seed) config.set(fmt::format("run.seed={}", *seed));
   if (measurements) config.set("run.write_measurements=true");

@@ -11,14 +11,14 @@
 
 namespace perception {
 
-/// perception-track: rawlogs in, tracked and classified objects out.
+/// perception-track: from rawlogs to tracked and classified objects.
 class TrackApp : public App {
  public:
-  std::string sensors;                ///< --sensors: wins over [run] sensors
-  std::optional<std::uint64_t> seed;  ///< --seed: wins over [run] seed
+  std::string sensors;                ///< --sensors: overrides [run] sensors
+  std::optional<std::uint64_t> seed;  ///< --seed: overrides [run] seed
   double rate = 0;                    ///< --rate [Hz]: scenes at a fixed rate instead of at scans
   std::vector<std::string> exports;   ///< --export FORMAT:FILE
-  bool measurements = false;          ///< --measurements: record what the front ends found, too
+  bool measurements = false;          ///< --measurements: also record the filter's input
   bool keep_scenes = false;           ///< keep all scenes in out_scenes (tests)
 
   std::string name() const override { return "perception-track"; }

@@ -13,7 +13,8 @@ namespace perception {
 namespace {
 
 constexpr double kLengthShare = 0.25, kPlace = 0.3;  // [-], [m] a box on its object
-constexpr double kElsewhere = 2;  // [m] nearer to an object of another class a box is neither
+constexpr double kElsewhere =
+    2;  // [m] boxes within this distance of an object of another class are excluded
 
 enum class Verdict { kObject, kClutter, kNeither };
 
@@ -45,7 +46,7 @@ std::vector<BoxSample> joined(const ByLog& logs, std::size_t without) {
   return all;
 }
 
-/// Mean loss of each log under what was fitted on the others.
+/// Mean loss of each log under the fit to the others.
 double leftOutLoss(const ByLog& logs) {
   double sum = 0;
   std::size_t n = 0;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kWider = 4;                  // [-] of the stated deviations: a match, not a gate
 constexpr double kFarthest = 9.0;             // [-] normalized distance at those, three deviations
 constexpr double kAbout = 2;                  // [m] of a labeled object: no clutter
-constexpr double kLag = 1, kLagSlack = 0.06;  // [s] at which errors are said to be repeated
+constexpr double kLag = 1, kLagSlack = 0.06;  // [s] lag of the error correlation
 constexpr int kSeenAtMost = 2;                // KITTI's occlusion: 3 is unknown
 
 /// A labeled object in a sensor's view.
@@ -36,7 +36,7 @@ Kinematics kinematicsOf(const TruthObject& o) {
   return k;
 }
 
-/// Labeled objects of the model's classes, with what the sensor should measure of each.
+/// Labeled objects of the model's classes, with the predicted measurement of each.
 std::vector<Candidate> candidates(const MeasurementScan& scan, const GroundTruth::Instant& instant,
                                   const std::vector<std::string>& classes) {
   std::vector<Candidate> out;
@@ -52,7 +52,7 @@ std::vector<Candidate> candidates(const MeasurementScan& scan, const GroundTruth
   return out;
 }
 
-double normalisedDistance(const MeasurementModel& model, const Measurement& m,
+double normalizedDistance(const MeasurementModel& model, const Measurement& m,
                           const AxisVector& h) {
   const AxisVector y = residual(model, m, h);
   AxisMatrix R(y.size(), y.size());
@@ -72,7 +72,7 @@ std::vector<int> match(const MeasurementScan& scan, const std::vector<Candidate>
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
   for (std::size_t k = 0; k < scan.measurements.size(); ++k) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      const double d = normalisedDistance(*scan.model, scan.measurements[k], objects[i].seen.h);
+      const double d = normalizedDistance(*scan.model, scan.measurements[k], objects[i].seen.h);
       if (d < kFarthest) pairs.emplace_back(d, k, i);
     }
   }

@@ -9,48 +9,49 @@
 
 namespace perception {
 
-/// One quantity of a detection against the truth of the object that it lies on.
+/// Error of one measured quantity of a detection.
 struct DetectorError {
   ClassId class_id = -1;
   std::string quantity;  ///< left, right [rad]; range, across, height, base, length, width [m] ...
   double range = 0;      ///< [m] of the object's center from the sensor
-  double error = 0;      ///< measured less true
-  double sigma = 1;      ///< as the front end states it
+  double error = 0;      ///< measured minus true
+  double sigma = 1;      ///< standard deviation stated by the front end
   std::size_t log = 0;
   std::int64_t object = -1;
   double t = 0;  ///< [s]
 };
 
-/// One labeled object at one instant in the sensor's view: seen or not.
+/// One labeled object in the sensor's view at one instant: detected or not.
 struct DetectorChance {
   ClassId class_id = -1;
   int occluded = 0;   ///< KITTI: 0 visible, 1 partly, 2 largely
   double range = 0;   ///< [m]
   int label = -1;     ///< of the detection on it; -1: none
-  double stated = 0;  ///< P_D that the INI gives
+  double stated = 0;  ///< P_D by the INI
 };
 
-/// What one sensor's detections are, held against labeled objects.
+/// Statistics of one sensor's detections against labeled objects.
 struct DetectorCounts {
   std::string sensor;
   Modality modality = Modality::kLidar;
-  std::size_t scans = 0, first_seen = 0;  ///< scans; labeled objects that came into view
+  std::size_t scans = 0,
+              first_seen = 0;  ///< number of scans; number of labeled objects that entered the view
   std::vector<DetectorChance> chances;
   std::vector<DetectorError> errors;
-  std::vector<std::size_t> clutter;        ///< by label: detections on nothing labeled
-  std::vector<std::vector<double>> label;  ///< [class][label] as the INI says
+  std::vector<std::size_t> clutter;        ///< by label: detections on no labeled object
+  std::vector<std::vector<double>> label;  ///< [class][label] of the INI
 };
 
-/// Adds what a log's scans of every sensor show. Detections are matched one to one, nearest first
-/// by their normalized distance under the stated noise, with deviations four times as large; those
-/// within 2 m or half an object's size of an unmatched label of any type are no clutter.
-/// `labels`: how many labels each sensor has.
+/// Adds the counts of all sensors of a log. Detections are matched one-to-one, nearest first by
+/// normalized distance with four times the stated standard deviations; those within 2 m or half an
+/// object's size of an unmatched label of any type are not counted as clutter. `labels`: how many
+/// labels each sensor has.
 void countDetections(const RecordedLog& log, const GroundTruth& truth, std::size_t log_index,
                      const std::map<std::string, std::size_t>& labels,
                      std::map<std::string, DetectorCounts>& counts);
 
-/// Mean, root mean square, stated deviation and normalized square of errors; `repeated` is the
-/// correlation of the normalized errors of one object a second apart.
+/// Mean, rms, stated standard deviation and mean NIS of errors; `repeated`: correlation of the
+/// normalized errors of one object one second apart.
 struct ErrorFigures {
   std::size_t count = 0;
   double mean = 0, rms = 0, stated = 0, nis = 0, repeated = 0;

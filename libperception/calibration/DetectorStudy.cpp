@@ -13,7 +13,7 @@ namespace perception {
 namespace {
 
 constexpr std::array<double, 5> kRanges{0, 10, 20, 40, 80};  // [m] borders of the tables
-constexpr std::size_t kFewest = 20;  // below it nothing is said: one in twenty is 5 %
+constexpr std::size_t kFewest = 20;  // fewest samples of a share: one in twenty is 5 %
 
 std::string percent(std::size_t part, std::size_t whole) {
   return whole < kFewest ? "n/a"
@@ -114,7 +114,7 @@ void addLabels(const DetectorCounts& counts, const ClassTable& classes,
   }
 }
 
-/// Share with half a count on either side, so that what never happened stays possible.
+/// Share with half a pseudo-count on either side, so that it is never 0 or 1.
 double smoothed(std::size_t part, std::size_t whole) {
   return (static_cast<double>(part) + 0.5) / (static_cast<double>(whole) + 1);
 }

@@ -9,7 +9,7 @@
 
 namespace perception {
 
-/// What is known of the detectors before anything is counted.
+/// Inputs of the study besides the counts.
 struct DetectorStudyInput {
   ClassTable classes;
   std::map<std::string, std::vector<std::string>> labels;  ///< of each sensor, by its name
@@ -17,8 +17,8 @@ struct DetectorStudyInput {
   bool simulated = false;
 };
 
-/// Detection, labels, clutter, births and noise of every sensor beside what the INI says, and
-/// `detector.ini`: the counted keys as sections for the vehicle's INI, their counts as comments.
+/// Counted P_D, label tables, clutter, births and noise of every sensor compared with the INI, and
+/// `detector.ini`: the counted keys as INI sections with their counts as comments.
 StudyReport detectorStudy(const DetectorStudyInput& input,
                           const std::map<std::string, DetectorCounts>& counts);
 

@@ -55,7 +55,7 @@ class TemperedModel final : public MeasurementModel {
 }  // namespace
 
 Exponents exponentsOf(const RecordedLog& log) {
-  std::map<std::string, Exponents::OfSensor> sensors;  // whose labels tell classes apart
+  std::map<std::string, Exponents::OfSensor> sensors;  // whose labels depend on the class
   for (const auto& entry : log.entries) {
     if (entry.kind != RecordedLog::Entry::kScan || sensors.count(entry.scan->sensor)) continue;
     const MeasurementModel& model = *entry.scan->model;

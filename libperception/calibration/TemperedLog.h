@@ -6,7 +6,7 @@
 
 namespace perception {
 
-/// How far the evidence of each kind counts in the class update: eta of method.md 5.6.
+/// Tempering exponents of the class update: eta of method.md 5.6.
 struct Exponents {
   struct OfSensor {
     std::string sensor;  ///< label
@@ -16,9 +16,9 @@ struct Exponents {
   double kinematic = 1;  ///< [filter] kinematic_exponent
 };
 
-/// The log as it would be with other exponents; scans are shared but for their model's exponents.
+/// The log with other exponents; scans are shared except for their models.
 RecordedLog withExponents(const RecordedLog& log, const Exponents& exponents);
-/// Those that the log was recorded with; sensors in order of their label.
+/// The exponents that the log was recorded with; sensors sorted by label.
 Exponents exponentsOf(const RecordedLog& log);
 
 }  // namespace perception

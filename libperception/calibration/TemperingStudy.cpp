@@ -17,7 +17,7 @@ constexpr double kLeastExponent = 0.01, kMostExponent = 1;
 constexpr int kEvaluationsARound = 20;      // of the optimizer, each a run over all logs of a part
 constexpr double kLeastProbability = 1e-5;  // of the true class: as the filter's own floor
 
-/// Static objects are part of the truth: labels of poles are the reason for tempering.
+/// Adds classes with reported = false to the truth: labels of poles are the reason for tempering.
 GroundTruth withThings(GroundTruth truth, const ClassTable& classes) {
   for (auto& instant : truth.instants) {
     for (TruthObject& o : instant.objects) {

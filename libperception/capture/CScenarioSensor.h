@@ -7,16 +7,16 @@
 
 namespace perception {
 
-/// One sensor of a simulated vehicle as a driver for MRPT's rawlog-grabber: gives in real time what
-/// that sensor would see in a scenario. Which sensor: `sensorLabel`, as in the scenario's
+/// One sensor of a simulated vehicle as a driver for MRPT's rawlog-grabber: outputs its
+/// observations of a scenario in real time. Sensor: `sensorLabel`, as in the scenario's
 /// [sensor.LABEL]; EGO_POSE is the vehicle itself (poses and frame numbers). Drivers with the same
 /// scenario, seed and start_delay share one vehicle. Keys: ini/capture.ini.
 class CScenarioSensor : public mrpt::hwdrivers::CGenericSensor {
   DEFINE_GENERIC_SENSOR(CScenarioSensor)
 
  public:
-  /// Throws with the labels of the scenario when none is `sensorLabel`, and with the faults of a
-  /// scenario that cannot be read.
+  /// Throws if the scenario is invalid or has no sensor `sensorLabel` (the message lists its
+  /// labels).
   void initialize() override;
   void doProcess() override;
 

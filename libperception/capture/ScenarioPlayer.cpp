@@ -50,7 +50,7 @@ void ScenarioPlayer::advanceTo(double t) {
   while (next_ && mrpt::Clock::toDouble(next_->timestamp) - first_ <= t) {
     const auto queue = waiting_.find(next_->sensorLabel);
     next_->timestamp += shift_;
-    // Comments carry no label of a sensor: they belong to the vehicle.
+    // Comments have no sensor label: they are assigned to the vehicle.
     (queue != waiting_.end() ? queue->second : waiting_[kVehicle]).push_back(std::move(next_));
     next_ = simulator_->next();
   }

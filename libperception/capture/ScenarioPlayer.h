@@ -14,11 +14,11 @@
 
 namespace perception {
 
-/// Which scenario is played, and when it begins.
+/// Scenario, seed and start of a simulated vehicle.
 struct ScenarioSource {
   std::string scenario;  ///< path of the scenario INI
   std::uint64_t seed = 1;
-  double start_delay = 1;  ///< [s] from the first driver's start: the others join in that time
+  double start_delay = 1;  ///< [s] from the start of the first driver, so that the others can join
 
   bool operator<(const ScenarioSource& other) const {
     return std::tie(scenario, seed, start_delay) <
@@ -26,31 +26,30 @@ struct ScenarioSource {
   }
 };
 
-/// A simulated vehicle in real time. Every driver takes its own sensor's observations; nothing is
-/// lost and nothing differs from what perception-simulate writes, but for the stamps, which are of
-/// the time at which it was played. Drivers run in threads of their own: all calls are safe.
+/// A simulated vehicle in real time. Each driver takes its sensor's observations. They equal those
+/// of perception-simulate except for the stamps, which are of the time of playback. Thread-safe.
 class ScenarioPlayer {
  public:
   using Observations = std::vector<std::shared_ptr<mrpt::obs::CObservation>>;
 
-  /// Of the vehicle itself: poses, frame numbers and the comment that calls the log simulated.
+  /// Label of ego poses, frame numbers and the comment that marks the log as simulated.
   static constexpr const char* kVehicle = "EGO_POSE";
 
   /// Throws ConfigError with all faults of the scenario.
   explicit ScenarioPlayer(const ScenarioSource& source);
 
-  /// The one player of a source that is shared by all who hold it.
+  /// The player of a source, shared while anyone holds it.
   static std::shared_ptr<ScenarioPlayer> shared(const ScenarioSource& source);
 
-  /// What that sensor has seen since it was asked last, in order of time; the clock starts with the
-  /// first player's construction.
+  /// Observations of a sensor since the last call, in chronological order; the clock starts with
+  /// the construction.
   Observations take(const std::string& label);
-  /// The same at a time of the scenario [s].
+  /// The same up to scenario time t [s].
   Observations takeUntil(const std::string& label, double t);
 
   bool has(const std::string& label) const;
   std::vector<std::string> labels() const;
-  bool ended();  ///< and everything was taken
+  bool ended();  ///< true when the scenario is over and all observations were taken
 
  private:
   void advanceTo(double t);
@@ -61,7 +60,7 @@ class ScenarioPlayer {
   std::shared_ptr<mrpt::obs::CObservation> next_;  ///< null at the end
   double first_ = 0;                             ///< [s] since 1970: stamp of the scenario's t = 0
   std::chrono::steady_clock::time_point start_;  ///< when t = 0 is played
-  mrpt::Clock::duration shift_{0};               ///< from the scenario's stamps to those of today
+  mrpt::Clock::duration shift_{0};               ///< offset from scenario stamps to playback stamps
 };
 
 }  // namespace perception

@@ -39,7 +39,7 @@ int AssignmentSolver::nearestOpen() const {
   double least = kInfinity;
   for (const int c : touched_) {
     const Reach& r = reach_[at(c)];
-    // Of equal ones the lowest column, in whatever order they were touched.
+    // Ties: the lowest column, independent of the order of visits.
     if (!r.done && (r.distance < least || (r.distance == least && c < nearest)))
       least = r.distance, nearest = c;
   }
@@ -65,7 +65,7 @@ AssignmentNode AssignmentSolver::solve() {
         const Option& o = options_[at(i)];
         reach(o.column, length + (o.cost - node.v[at(o.column)]) - node.u[at(row)], row);
       }
-      next = nearestOpen();  // there is one: the row's own column at the latest
+      next = nearestOpen();  // always exists: at least the row's own column
       length = reach_[at(next)].distance;
       reach_[at(next)].done = true;
       if (row_of_[at(next)] < 0) break;
@@ -101,8 +101,8 @@ void AssignmentSolver::reachSink(double distance, int from_column, int from_row)
   sink_column_ = from_column;
 }
 
-// The row may take any of its options but its present column and, for the path's start, those that
-// are forbidden.
+// Relaxes all options of the row except its present column and, at the start of the path, forbidden
+// ones.
 void AssignmentSolver::relax(const AssignmentNode& node, int row, double length) {
   const int present = node.column[at(row)];
   for (int i = first_[at(row)]; i < first_[at(row) + 1]; ++i) {
@@ -113,7 +113,7 @@ void AssignmentSolver::relax(const AssignmentNode& node, int row, double length)
   }
 }
 
-// Any column that is taken now may become free at the price of its dual variable.
+// Any assigned column may become free at the cost of its dual variable.
 void AssignmentSolver::relaxFromSink(const AssignmentNode& node, int row) {
   for (int r = row; r < rows(); ++r) {
     const int c = node.column[at(r)];
@@ -121,8 +121,8 @@ void AssignmentSolver::relaxFromSink(const AssignmentNode& node, int row) {
   }
 }
 
-// The flow of one unit from the row back to the column that it gave up, through the sink of free
-// columns if need be. All reduced costs are non-negative, so one search is enough.
+// A unit flow from the row back to its former column, possibly through the sink of free columns.
+// All reduced costs are non-negative, so one search is enough.
 bool AssignmentSolver::solveChild(const AssignmentNode& node, int row, double limit,
                                   AssignmentNode& child) {
   const double allowed = limit - node.cost;
@@ -163,7 +163,7 @@ bool AssignmentSolver::solveChild(const AssignmentNode& node, int row, double li
   }
   augment(node, row, target, child);
   child.cost = node.cost + length;
-  // Dual variables: whatever was nearer than the target moves with it; the sink stays at zero.
+  // Updates the dual variables of nodes nearer than the target; that of the sink stays zero.
   const double sink = length - std::min(sink_.distance, length);
   child.u = node.u;
   child.v = node.v;
@@ -182,7 +182,8 @@ bool AssignmentSolver::solveChild(const AssignmentNode& node, int row, double li
   return true;
 }
 
-// Back along the path: every row on it takes the next column, what the sink was left by is free.
+// Augments along the path: every row on it takes the next column; the column after the sink becomes
+// free.
 void AssignmentSolver::augment(const AssignmentNode& node, int row, int target,
                                AssignmentNode& child) const {
   child.column = node.column;

@@ -10,12 +10,12 @@ struct AssignmentNode {
   double cost = 0;
   std::vector<int> column;     ///< by row
   std::vector<double> u, v;    ///< by row, by column
-  int fixed = 0;               ///< rows 0..fixed-1 keep their columns ...
-  std::vector<int> forbidden;  ///< ... and row `fixed` must not take these
+  int fixed = 0;               ///< rows 0..fixed-1 are fixed to their columns ...
+  std::vector<int> forbidden;  ///< ... and row `fixed` must not be assigned to these
 };
 
-/// Rows that each take one column, none twice, at least cost. Every row has a column of its own as
-/// a last resort. Sparse: only the options that there are are looked at.
+/// Sparse linear assignment: each row to one column, no column twice, at minimum cost. Every row
+/// needs an option of its own that no other row has, so that a solution exists.
 class AssignmentSolver {
  public:
   struct Option {
@@ -23,7 +23,7 @@ class AssignmentSolver {
     double cost;
   };
 
-  /// Starts a problem; rows follow one by one.
+  /// Starts a problem; add the options of each row, then endRow().
   void begin(int columns);
   void addOption(int column, double cost) { options_.push_back({column, cost}); }
   void endRow() { first_.push_back(static_cast<int>(options_.size())); }
@@ -31,15 +31,16 @@ class AssignmentSolver {
   int rows() const { return static_cast<int>(first_.size()) - 1; }
   int columns() const { return columns_; }
 
-  /// The best assignment: successive shortest paths with potentials (Jonker and Volgenant 1987).
+  /// The optimal assignment: successive shortest paths with potentials (Jonker and Volgenant 1987).
   AssignmentNode solve();
-  /// The best assignment of the node's set in which row `row` takes another column than now and
-  /// those before it keep theirs, from one shortest path (Miller, Stone and Cox 1997). False when
-  /// there is none within `limit`.
+  /// The optimal assignment of the node's set in which row `row` changes its column and the rows
+  /// before it keep theirs, by one shortest path (Miller, Stone and Cox 1997). False when none
+  /// costs less than `limit`.
   bool solveChild(const AssignmentNode& node, int row, double limit, AssignmentNode& child);
 
  private:
-  /// How far a column or the sink of free columns is from the path's start, and from where.
+  /// Distance of a column, or of the sink of free columns, from the start of the path, and
+  /// predecessor.
   struct Reach {
     double distance;
     int from;  // a row, kSink or kNone
@@ -57,15 +58,15 @@ class AssignmentSolver {
 
   int columns_ = 0;
   std::vector<Option> options_;
-  std::vector<int> first_;  // of each row, and the end
-  // Of one search:
+  std::vector<int> first_;  // of each row, and one past the end
+  // State of one search:
   std::vector<Reach> reach_;  // by column
-  std::vector<int> touched_;  // columns whose distance is known
+  std::vector<int> touched_;  // columns with a finite distance
   std::vector<int> row_of_;   // by column; -1: free
   std::vector<char> blocked_;
   std::vector<char> is_forbidden_;
   Reach sink_{};
-  int sink_column_ = -1;  // the free column by which the sink was reached
+  int sink_column_ = -1;  // the free column through which the sink was reached
 };
 
 /// The assignment of rows to columns with the smallest sum of costs that pairs min(rows, columns)

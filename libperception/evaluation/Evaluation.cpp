@@ -16,7 +16,7 @@ constexpr double kCameraCarRange = 15, kCameraPersonRange = 10;
 // [m] Rounding of a point of the rectangle itself.
 constexpr double kOnFootprint = 1e-6;
 
-// A truth object at a scene, with what the vehicle sees of it.
+// A truth object at a scene, with its position relative to the ego.
 struct SeenTruth {
   const TruthObject* object;
   ClassId class_id;
@@ -25,7 +25,7 @@ struct SeenTruth {
   TruthUse use;
 };
 
-// An estimate likewise.
+// The same for an estimate.
 struct SeenEstimate {
   const SceneObject* object;
   Footprint footprint;
@@ -123,8 +123,7 @@ class Evaluator {
                    {}};
     seen.view = viewFrom(scene.ego.T_world_ego, seen.footprint);
     seen.use = useOf(object, seen.view, seen.class_id, options_.selection);
-    // A truth object may be of a class that is not named: it is no more counted than such an
-    // output.
+    // Truth objects of unnamed classes do not count, as outputs of these.
     if (seen.use == TruthUse::kCounts && !isNamed(seen.class_id)) seen.use = TruthUse::kNoClass;
     return seen;
   }
@@ -139,7 +138,7 @@ class Evaluator {
   }
 
   bool isNamed(ClassId c) const { return result_.named[static_cast<std::size_t>(c)]; }
-  // Where an output can be found false: in the sector, and where the truth knows all objects.
+  // Region in which outputs can be false: the sector, where the truth is complete.
   bool isNamedInSector(const SeenEstimate& e) const {
     const SelectionOptions& o = options_.selection;
     return isNamed(e.object->class_id) &&
@@ -170,8 +169,9 @@ class Evaluator {
     }
   }
 
-  // Real: paired with a truth of any type. Not real: nothing near, or an object that has its output
-  // already. What stands near a truth without being paired says nothing: the truth may be its own.
+  // Real: matched to a truth object of any type. Not real: no truth object near, or only ones
+  // matched to other outputs. Unmatched outputs near an unmatched truth object are ambiguous and
+  // left out.
   void addExistence(const std::vector<SeenEstimate>& estimates,
                     const std::vector<SeenTruth>& counted, const std::vector<SeenTruth>& others) {
     std::vector<SeenTruth> truth = counted;
@@ -202,8 +202,8 @@ class Evaluator {
   }
 
   // The truth set is the counted one. Its estimates: of named classes, those that pair with it
-  // one-to-one wherever they stand, and of the rest those inside the sector but not near a truth
-  // that does not count (it may well be theirs).
+  // one-to-one wherever they stand, and of the rest those inside the sector and not near a truth
+  // object that does not count.
   void setDistances(const std::vector<SeenEstimate>& estimates,
                     const std::vector<SeenTruth>& counted, const std::vector<SeenTruth>& others,
                     InstantFigures& figures) const {
@@ -227,8 +227,8 @@ class Evaluator {
     figures.ospa = ospa(centers(counted), set, options_.cutoff);
   }
 
-  // Denominator B: the part of the sector that the sensor set can see. A lidar sees all of it;
-  // without lidar the camera's range holds (method.md 11), also where radar helps.
+  // Denominator B: truth within the range of the sensor set. A lidar covers the sector; without
+  // one, the camera's range limits it (method.md 11), also with radar.
   bool inSensorRange(const SeenTruth& truth) const {
     const std::string& sensors = result_.sensors;
     const auto covers = [](char letter) {

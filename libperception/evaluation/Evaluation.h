@@ -13,22 +13,23 @@
 
 namespace perception {
 
-/// How a run is judged; defaults: method.md 11 and [radecki2016].
+/// Parameters of an evaluation; defaults: method.md 11 and [radecki2016].
 struct EvaluationOptions {
   SelectionOptions selection;
   AlignmentOptions alignment;
-  double tolerance = 2;  ///< [m] between the centers of a truth and its estimate
-  double exclusion = 3;  ///< [m] an output this near to any truth is not a false object
-  double cutoff = 2;     ///< [m] c of GOSPA and OSPA
-  /// Classes that are neither right nor wrong to output: the truth does not label poles and walls.
+  double tolerance = 2;  ///< [m] largest distance between the centers of truth and matched estimate
+  double exclusion =
+      3;  ///< [m] an output within this distance of any truth object is not a false object
+  double cutoff = 2;  ///< [m] c of GOSPA and OSPA
+  /// Classes whose outputs are ignored, since the truth does not label poles and walls.
   std::vector<std::string> unnamed = {"static-other", "static_other", "phantom"};
-  double min_existence = 0;  ///< outputs below are left out of all figures but the calibration
-  /// Letters of the sensor set (C, L, R) for denominator B; empty: the modalities that ever hit an
-  /// output object.
+  double min_existence = 0;  ///< outputs below are excluded from all metrics except the calibration
+  /// Letters of the sensor set (C, L, R) for denominator B; empty: the modalities of any output's
+  /// last_hit_*.
   std::string sensors;
 };
 
-/// The estimate that was given to a truth object, and its errors (estimate minus truth).
+/// The estimate matched to a truth object and its errors (estimate minus truth).
 struct Match {
   std::uint64_t id = 0;
   ClassId class_id = 0;
@@ -36,12 +37,13 @@ struct Match {
   double probability = 0;  ///< of class_id
   double distance = 0;     ///< [m] between the centers
   GroundView view;
-  std::optional<double> speed_error;  ///< [m/s] of the magnitudes; where the truth has a velocity
+  std::optional<double>
+      speed_error;  ///< [m/s] difference of the magnitudes; if the truth has a velocity
   std::optional<double> velocity_error;  ///< [m/s] magnitude of the difference of the vectors
-  std::optional<double> heading_error;   ///< [rad] in (-pi, pi]; where both have a heading
+  std::optional<double> heading_error;   ///< [rad] in (-pi, pi]; if both have a heading
 };
 
-/// One counted truth object at one instant: what all figures are made of.
+/// One counted truth object at one instant: the sample of all metrics.
 struct TruthSample {
   std::size_t instant = 0;  ///< place in Evaluation::instants
   double t = 0;             ///< [s] since the log's first stamp
@@ -57,7 +59,7 @@ struct TruthSample {
   }
 };
 
-/// Outputs as a named class inside the sector, and those of them that have no truth anywhere near.
+/// Number of outputs of a named class in the sector, and of false ones among them.
 struct OutputCounts {
   std::size_t named = 0, false_ = 0;                       ///< by the most probable class
   std::size_t classified_named = 0, classified_false = 0;  ///< of these, probability >= .95
@@ -65,18 +67,19 @@ struct OutputCounts {
   OutputCounts& operator+=(const OutputCounts& other);
 };
 
-/// An output as a named class inside the sector that has no truth anywhere near.
+/// A false object: an output of a named class in the sector without a truth object within
+/// EvaluationOptions::exclusion.
 struct FalseObject {
   std::uint64_t id = 0;
   ClassId class_id = 0;
   bool classified = false;
 };
 
-/// An output as a named class inside the sector, for the calibration of the existence probability.
+/// An output of a named class in the sector, for the calibration of the existence probability.
 struct ExistenceSample {
   std::size_t instant = 0;
   double probability = 0;  ///< as stated
-  bool real = false;       ///< it is the output of some truth object, of whatever type
+  bool real = false;       ///< matched to a truth object of any type
 };
 
 /// One evaluated instant.
@@ -84,7 +87,7 @@ struct InstantFigures {
   std::int64_t frame = -1;
   double t = 0;                       ///< [s] since the log's first stamp
   std::size_t truth = 0;              ///< counted truth objects
-  std::size_t estimates = 0;          ///< estimates in the set distances
+  std::size_t estimates = 0;          ///< number of estimates in the GOSPA and OSPA sets
   std::vector<OutputCounts> outputs;  ///< by class
   std::vector<FalseObject> false_objects;
   Gospa gospa;
@@ -93,27 +96,26 @@ struct InstantFigures {
   OutputCounts allOutputs() const;
 };
 
-/// A run held against the truth, before any averaging.
+/// Comparison of a run with the truth, before averaging.
 struct Evaluation {
   std::vector<std::string> class_names;
   std::vector<bool> named;  ///< by class
-  std::string sensors;      ///< letters that denominator B was built for; empty: unknown
+  std::string sensors;      ///< modality letters that denominator B is for; empty: unknown
   std::vector<InstantFigures> instants;
   std::vector<TruthSample> samples;  ///< in order of time
   std::vector<ExistenceSample> existence;
-  TruthAlignment alignment;  ///< counts only; its instants are moved out
+  TruthAlignment alignment;  ///< counters only; `instants` is empty
   std::array<std::size_t, kTruthUses>
       truth_use{};  ///< truth lines at evaluated instants, by TruthUse
 };
 
-/// Compares every scene of the run that has a truth. All such instants count, the first ones too; a
-/// truth object without estimates around is missed. Estimates are the run's lines as they are (it
-/// writes objects of existence > .5).
+/// Compares every scene that has a truth, from the first one on. Estimates are the lines of
+/// tracks.csv, i.e. objects with existence >= [scene] min_existence.
 Evaluation evaluate(const TrackedRun& run, const GroundTruth& truth,
                     const EvaluationOptions& options);
 
-/// All instants of several runs as those of one: figures over it are pooled over trials, as the
-/// paper's are. Truth objects of different runs stay different. Throws DataError when the runs'
+/// Concatenates the instants of several runs, so that metrics are pooled over trials as in
+/// [radecki2016]. Truth ids of different runs are kept distinct. Throws DataError when the runs'
 /// classes differ.
 Evaluation pooled(const std::vector<const Evaluation*>& parts);
 

@@ -27,14 +27,15 @@ bool isPersonSized(const SeenObject& seen, const FrontEndOptions& options) {
   return std::max(seen.footprint.length, seen.footprint.width) < options.person_side;
 }
 
-// What the thing is called in the tables: poles and hedges are one type of the truth.
+// Name of a truth object in the tables: poles and hedges have one truth type, so their size is
+// added.
 std::string kindOf(const SeenObject& seen, const FrontEndOptions& options) {
   const TruthObject& object = *seen.object;
   if (seen.class_id >= 0 || !object.ignore) return object.type;
   return object.type + (isPersonSized(seen, options) ? ", person-sized" : ", larger");
 }
 
-// Distance of a measurement from a footprint in units of what is allowed; at most 1: it lies on it.
+// Normalized distance of a measurement from a footprint; <= 1: on the object.
 double offset(const RecordedMeasurement& m, const SeenObject& seen, const Vector2& sensor,
               const FrontEndOptions& options) {
   const Vector2 d = m.position - closestPoint(seen.footprint, m.position);
@@ -93,8 +94,8 @@ class ScanJudge {
     return things;
   }
 
-  // The nearest thing that the measurement lies on, or -1; of those it lies inside of, the one with
-  // the nearest center.
+  // Index of the nearest object that the measurement lies on, or -1; of several footprints that
+  // contain it, the one with the nearest center.
   int thingUnder(const RecordedMeasurement& m, const std::vector<SeenObject>& things,
                  const Vector2& sensor) const {
     const double most = options_.margin + options_.deviations * std::max(m.sd_range, m.sd_across);
@@ -134,7 +135,7 @@ class ScanJudge {
     return std::min(place, edges.size() - 1) - 1;
   }
 
-  // Only where the truth knows everything can a measurement be wrong.
+  // A measurement can be false only where the truth is complete.
   bool isJudged(const RecordedScan& scan, const RecordedMeasurement& m) const {
     const Vector2 sight = m.position - scan.T_world_ego.translation().head<2>();
     const double bearing = wrapAngle(std::atan2(sight.y(), sight.x()) - yawOf(scan.T_world_ego));
@@ -179,7 +180,7 @@ class ScanJudge {
   std::map<std::string, LabelMeaning> meanings_;
 };
 
-// The instants of one sensor's scans, so that the truth is brought to them as to scenes.
+// The stamps of one sensor's scans as scenes, for alignTruth().
 TrackedRun instantsOf(const MeasurementRun& run, std::size_t sensor,
                       std::vector<const RecordedScan*>& scans) {
   TrackedRun instants;

@@ -34,7 +34,7 @@ std::vector<Named> allOf(const EvaluationReport& report) {
   return all;
 }
 
-// Measurements of all labels that speak of this size, [radecki2016]'s labels alone or all.
+// Measurements of all labels of this size, of the labels of [radecki2016] or of all.
 PrecisionCounts precisionOf(const FrontEndEvaluation& f, LabelMeaning::Size size, bool primary) {
   PrecisionCounts sum;
   for (const auto& entry : f.labels) {
@@ -60,7 +60,9 @@ bool hasFurtherLabels(const FrontEndEvaluation& f) {
 Row summaryRow(const Named& named, bool primary) {
   const FrontEndEvaluation& f = *named.front_end;
   const bool two = hasFurtherLabels(f);
-  Row row = {named.run, f.name + (!two ? "" : primary ? ", the paper's labels" : ", all labels")};
+  Row row = {named.run, f.name + (!two      ? ""
+                                  : primary ? ", labels of Radecki et al."
+                                            : ", all labels")};
   for (const bool person : {false, true}) {
     const RecallCounts r =
         f.recall({person ? std::string("pedestrian") : std::string("car")}, true);
@@ -90,16 +92,14 @@ ReportTable summaryTable(const std::vector<Named>& all, const EvaluationReport& 
       "any vehicle; person: pedestrian or cyclist); sized: on anything of that size, poles and "
       "hedges included.",
       "sized is n/a of cameras and where the truth does not hold what stands around (walls are in "
-      "no truth: a "
-      "measurement on one is wrong at both levels).",
-      "paper: Radecki et al.; sized figures are those of its text, recall is over the sensor's "
-      "range."};
+      "no truth: a measurement on one is wrong at both levels).",
+      "Radecki et al.: sized precision as in their text; recall over the sensor's range."};
   for (const Named& named : all) {
     table.rows.push_back(summaryRow(named, true));
     if (hasFurtherLabels(*named.front_end)) table.rows.push_back(summaryRow(named, false));
   }
   for (const PaperFrontEndRow& p : paperFrontEndRows()) {
-    table.rows.push_back({"paper", fmt::format("{}, {}", p.sensor, p.condition), "",
+    table.rows.push_back({"Radecki et al.", fmt::format("{}, {}", p.sensor, p.condition), "",
                           percent(p.car_recall), percent(p.car_size_precision),
                           percent(p.car_precision), "", percent(p.person_recall),
                           percent(p.person_size_precision), percent(p.person_precision)});

@@ -14,7 +14,7 @@
 namespace perception {
 namespace {
 
-// What the child is to find: our folder, no input, its messages in a file.
+// Environment of the child process: working folder, no input, messages to a file.
 class FileActions {
  public:
   explicit FileActions(const std::string& dir) {
@@ -34,7 +34,7 @@ class FileActions {
   posix_spawn_file_actions_t actions_;
 };
 
-// Our environment in the C locale: a decimal comma would spoil script and data.
+// The environment with the C locale: a decimal comma would break script and data.
 std::vector<char*> environmentInCLocale(std::string& locale) {
   locale = "LC_ALL=C.UTF-8";
   std::vector<char*> variables = {locale.data()};

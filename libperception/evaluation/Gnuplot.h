@@ -4,11 +4,11 @@
 namespace perception {
 
 /// Runs `gnuplot SCRIPT` (Debian: gnuplot-nox) inside `dir`, C locale, its messages in
-/// DIR/gnuplot.log. Returns what went wrong in one line ("gnuplot is not installed ..."), or
-/// nothing.
+/// DIR/gnuplot.log. Returns a one-line error message ("gnuplot is not installed ..."), empty on
+/// success.
 std::string runGnuplot(const std::string& dir, const std::string& script);
 
-/// The text as a gnuplot string; what a line cannot hold becomes a space.
+/// The text as a quoted gnuplot string; control characters become spaces.
 std::string gnuplotString(const std::string& text);
 
 }  // namespace perception

@@ -31,8 +31,8 @@ std::vector<int> closest(const Eigen::MatrixXd& distance) {
 }
 
 std::vector<int> oneToOne(const Eigen::MatrixXd& distance, double tolerance) {
-  // Pairs out of reach cost more than all pairs within reach together, so that the number of pairs
-  // comes first.
+  // Pairs beyond the tolerance cost more than the sum of all other pairs, so that the number of
+  // pairs is maximized first.
   const double out_of_reach = tolerance * static_cast<double>(distance.rows() + 1) + 1;
   return optimalAssignment((distance.array() <= tolerance).select(distance, out_of_reach));
 }

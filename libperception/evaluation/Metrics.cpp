@@ -11,7 +11,7 @@ Figure ratio(std::size_t part, std::size_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// A sum over instants as mean or root of the mean square; nothing was added: no figure.
+// A sum over instants as mean or rms; empty if nothing was added.
 class Sum {
  public:
   void add(double value) {
@@ -138,7 +138,7 @@ TrackingFigures trackingFigures(const Evaluation& evaluation, Pairing pairing, C
 std::vector<ObjectTimeline> objectTimelines(const Evaluation& evaluation, Pairing pairing) {
   std::map<std::int64_t, TimelineBuilder> builders;
   for (const TruthSample& sample : evaluation.samples) {
-    if (sample.id < 0) continue;  // truth without numbers: no object to follow
+    if (sample.id < 0) continue;  // truth without ids: no object timelines
     builders.try_emplace(sample.id, sample).first->second.add(sample, sample.matched(pairing));
   }
   std::vector<ObjectTimeline> lines;
@@ -188,8 +188,7 @@ SetFigures setFigures(const Evaluation& evaluation, double cutoff) {
   double squares = 0;
   std::size_t pairs = 0;
   for (const InstantFigures& instant : evaluation.instants) {
-    if (instant.truth == 0 && instant.estimates == 0)
-      continue;  // nothing to be right or wrong about
+    if (instant.truth == 0 && instant.estimates == 0) continue;  // neither truth nor estimate
     ++figures.instants;
     value.add(instant.gospa.value());
     localization.add(instant.gospa.localization);

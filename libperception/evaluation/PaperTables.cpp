@@ -4,7 +4,7 @@
 
 namespace perception {
 
-// The numbers are printed in [radecki2016]; nothing here is computed or rounded by us.
+// Values as printed in [radecki2016], not computed or rounded.
 
 const std::vector<PaperTrackingRow>& paperTrackingRows() {
   static const std::vector<PaperTrackingRow> rows = {

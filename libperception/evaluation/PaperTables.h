@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// A row of [radecki2016]'s tables of tracking results: the fractions and errors of one condition.
+/// A row of the tables of tracking results of [radecki2016]: one condition.
 struct PaperTrackingRow {
   const char* table;      ///< short name, as given to --paper: sunny, particles, pedestrian ...
   const char* condition;  ///< weather, number of particles or kind of object
@@ -17,8 +17,8 @@ struct PaperTrackingRow {
   int returns;            ///< Number of Returns
 };
 
-/// A row of [radecki2016]'s table of recall and precision, with the precision by size that its text
-/// gives. All in [0, 1]; empty: not published.
+/// A row of the table of recall and precision of [radecki2016], with the precision by size given in
+/// its text. All in [0, 1]; empty: not published.
 struct PaperFrontEndRow {
   const char* sensor;
   const char* condition;
@@ -26,19 +26,19 @@ struct PaperFrontEndRow {
   std::optional<double> person_recall, person_size_precision, person_precision;
 };
 
-/// A row of [radecki2016]'s second particle study: rms errors in numbers of objects against 50
-/// particles.
+/// A row of the second particle study of [radecki2016]: rms errors of the number of objects against
+/// 50 particles.
 struct PaperParticlesRow {
   int particles;
   double duc;              ///< configuration 1: DUC's tracker
   double all, classified;  ///< configuration 2: with classification
 };
 
-/// A row of [radecki2016]'s two tables of rates: objects detected per sensor return, objects
-/// tracked on average.
+/// A row of the two tables of rates of [radecki2016]: objects detected per sensor return, mean
+/// number of objects tracked.
 struct PaperRateRow {
   const char* sensors;
-  bool tracked;  ///< else detected
+  bool tracked;  ///< false: objects detected
   double objects, cars, persons;
 };
 

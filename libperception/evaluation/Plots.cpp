@@ -13,8 +13,8 @@ namespace {
 
 using namespace plot_color;
 
-constexpr std::size_t kMinSamples = 5;        // fewer instants are no curve
-constexpr std::size_t kMaxOverviewRows = 60;  // more names cannot be read
+constexpr std::size_t kMinSamples = 5;        // fewest instants of a curve
+constexpr std::size_t kMaxOverviewRows = 60;  // limit of legible rows
 constexpr std::size_t kMaxNamedIds = 7;       // ids with a line in the legend; black is the truth's
 
 constexpr const char* kOverviewHead = R"(
@@ -156,7 +156,7 @@ class PlotWriter {
     std::size_t last_instant = 0;
     for (const TruthSample& s : run_.evaluation.samples) {
       if (s.id != o.id) continue;
-      // A blank line lifts the pen where the object does not count.
+      // A blank line interrupts the curve where the object does not count.
       if (s.instant > last_instant + 1) text += "\n";
       last_instant = s.instant;
       text += polar(s.t, s.view);

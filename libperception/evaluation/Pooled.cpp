@@ -4,7 +4,7 @@
 namespace perception {
 namespace {
 
-// Truth objects of pooled runs are numbered run by run.
+// Truth ids are made unique over the runs.
 constexpr std::int64_t kIdsOfARun = 1000000;
 
 }  // namespace

@@ -9,36 +9,37 @@
 
 namespace perception {
 
-/// One run held against the truth, or several of one condition pooled.
+/// Evaluation of one run, or of the pooled runs of one condition.
 struct EvaluatedRun {
-  std::string name;  ///< as it stands in the tables
+  std::string name;  ///< in the tables
   std::string dir;
   Evaluation evaluation;
   std::optional<CountDifference> count_difference = {};  ///< against EvaluationReport::reference
-  std::vector<FrontEndEvaluation> front_ends = {};       ///< in the order asked for
-  std::vector<EvaluatedRun> trials = {};  ///< the runs that were pooled; empty: a single run
+  std::vector<FrontEndEvaluation> front_ends = {};       ///< in the order of --front-end
+  std::vector<EvaluatedRun> trials = {};  ///< the pooled runs; empty for a single run
 };
 
-/// The runs of one condition as one; they stay in `trials`. Throws DataError when they cannot be.
+/// Pools the runs of one condition; they are kept in `trials`. Throws DataError when their classes
+/// differ.
 EvaluatedRun pooledRun(std::string name, std::vector<EvaluatedRun> trials);
 
-/// Runs of one condition become one, at the place of the first of them; `conditions` holds that of
-/// every run, "": it stays on its own. Throws DataError.
+/// Pools the runs of each condition at the place of its first run. `conditions`: condition of each
+/// run; "": not pooled. Throws DataError.
 std::vector<EvaluatedRun> pooledByCondition(const std::vector<std::string>& conditions,
                                             std::vector<EvaluatedRun> runs);
 
-/// All that a report tells.
+/// Contents of a report.
 struct EvaluationReport {
-  std::string command;    ///< the command line with every option that a figure depends on
+  std::string command;    ///< command line with every option that affects the results
   std::string truth;      ///< path of the truth
-  std::string reference;  ///< path of the run that object counts are compared with; may be empty
+  std::string reference;  ///< path of the reference run of the object counts; may be empty
   EvaluationOptions options;
   std::vector<EvaluatedRun> runs;
-  std::vector<PaperTrackingRow> paper;  ///< rows of [radecki2016] beside the runs
-  std::vector<std::string> plots;       ///< file names beside the report, for Markdown
+  std::vector<PaperTrackingRow> paper;  ///< rows of [radecki2016] to list for comparison
+  std::vector<std::string> plots;       ///< paths relative to the report, for Markdown
 };
 
-/// A table of a report; the first `labels` columns are words, the others numbers.
+/// A table of a report; the first `labels` columns are text, the others numbers.
 struct ReportTable {
   std::string title;
   std::vector<std::string> notes;  ///< definitions, one line each
@@ -47,20 +48,21 @@ struct ReportTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// The tables of the report; the one with the columns of [radecki2016], in its order, comes first.
+/// The tables of the report, first the one with the columns of [radecki2016].
 std::vector<ReportTable> reportTables(const EvaluationReport& report);
 
-/// Tables of the front ends, beside those of [radecki2016]; none where no front end was asked for.
+/// Tables of the front ends with the values of [radecki2016]; empty without --front-end.
 std::vector<ReportTable> frontEndTables(const EvaluationReport& report);
-/// Every figure a row, every run a column; conditions with mean, deviation and range over trials.
+/// One row per metric, one column per run; conditions with mean, standard deviation and range over
+/// trials.
 ReportTable sideBySideTable(const EvaluationReport& report);
 
 std::string textReport(const EvaluationReport& report);
 std::string markdownReport(const EvaluationReport& report);
-/// A line an instant: frame,t,truth,estimates,gospa,localization,missed,false,ospa,outputs,
+/// One line per instant: frame,t,truth,estimates,gospa,localization,missed,false,ospa,outputs,
 /// false_outputs; [m], its parts [m^2].
 std::string instantsCsv(const EvaluatedRun& run);
-/// Every figure of the tables, both pairings, by run; null where a table says n/a.
+/// Every metric of the tables, both pairings, by run; null for n/a.
 std::string jsonReport(const EvaluationReport& report);
 
 }  // namespace perception

@@ -11,15 +11,15 @@ using Row = std::vector<std::string>;
 inline constexpr const char* kNotAvailable = "n/a";
 inline constexpr Pairing kAllPairings[] = {Pairing::kClosest, Pairing::kOneToOne};
 
-/// A table without rows whose first columns are words.
+/// A table without rows: header of text columns, then of number columns.
 ReportTable makeTable(std::string title, Row labels, const Row& numbers);
 
-/// With so many places, or n/a.
+/// With this many decimal places, or n/a.
 std::string number(const Figure& figure, int places = 3);
-/// A count of what there is a truth for; without any truth it is unknown, not 0.
+/// A count; n/a unless `known` (there is truth).
 std::string countOf(std::size_t count, bool known);
 const char* nameOf(Pairing pairing);
-/// -1 is called all.
+/// "all" for -1.
 std::string className(const Evaluation& evaluation, ClassId c);
 
 // Tables of one run.

@@ -25,7 +25,7 @@ std::vector<ClassId> classesWithTruth(const Evaluation& evaluation) {
 // [radecki2016]'s rows, in the columns of paperTable().
 void addPaperRows(const EvaluationReport& report, ReportTable& table) {
   for (const PaperTrackingRow& row : report.paper) {
-    table.rows.push_back({fmt::format("paper: {}, {}", row.sensors, row.condition), "all",
+    table.rows.push_back({fmt::format("Radecki et al.: {}, {}", row.sensors, row.condition), "all",
                           fixedPlaces(row.tracked, 3), fixedPlaces(row.range, 3),
                           fixedPlaces(row.bearing, 3), fixedPlaces(row.correct, 3),
                           fixedPlaces(row.mis, 3), fmt::format("{}", row.returns)});
@@ -39,15 +39,14 @@ ReportTable paperTable(const EvaluationReport& report) {
                  "Correct Classification", "Mis-Classification", "Number of Returns"});
   table.notes = {
       fmt::format("Object Tracked: share of the instants of counted truth objects at which the "
-                  "closest estimate has its "
-                  "center within {:g} m of the truth's; one estimate may serve several truths.",
+                  "closest estimate has its center within {:g} m of the truth's; one estimate may "
+                  "serve several truths.",
                   report.options.tolerance),
       "Range Error, Bearing Error: rms over the tracked instants, of the range to the closest "
       "point of the footprint and of "
       "the bearing of the center.",
       "Correct, Mis-Classification: share of the tracked instants at which a class has probability "
-      ">= .95 and is right, "
-      "wrong; the rest is unclassified.",
+      ">= .95 and is right, wrong; the rest is unclassified.",
       "Number of Returns: number of tracked instants."};
   for (const EvaluatedRun& run : report.runs) {
     for (const ClassId c : classesWithTruth(run.evaluation)) {
@@ -96,8 +95,7 @@ ReportTable trackedTable(const EvaluationReport& report) {
                   sensors),
       "C: over those from each object's first to its last tracked instant.",
       "id switches: the estimate's id is another one than at the object's last tracked instant. "
-      "fragmentations: gaps in "
-      "tracking while active."};
+      "fragmentations: gaps in tracking while active."};
   addPairedRows(report, table, [](const TrackingFigures& f) {
     const bool known = f.active > 0;
     return Row{number(f.tracked_a),
@@ -147,13 +145,12 @@ ReportTable falseObjectTable(const EvaluationReport& report) {
        "share of classified", "classified false", "classified outputs"});
   table.notes = {
       fmt::format("Output as a named class (most probable class; not {}) inside the sector, no "
-                  "truth of any type within "
-                  "{:g} m of its center or under it, areas marked DontCare with a place included.",
+                  "truth of any type within {:g} m of its center or under it, areas marked "
+                  "DontCare with a place included.",
                   fmt::join(report.options.unnamed, ", "), report.options.exclusion),
       fmt::format(
           "Only within {:g} deg ahead: a truth that covers less (KITTI labels the camera's view, "
-          "about 80 deg) needs "
-          "--complete-fov-deg.",
+          "about 80 deg) needs --complete-fov-deg.",
           degrees(std::min(report.options.selection.fov, report.options.selection.complete_fov))),
       "An area without a place (KITTI's DontCare are areas of the image) excuses no output.",
       "classified: of these, the ones whose class has probability >= .95."};

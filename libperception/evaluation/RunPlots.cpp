@@ -48,7 +48,7 @@ set format x '%g'
 set xlabel 'time since the log''s first stamp (s)'
 )";
 
-// What a run's curve is called in a key.
+// Name of a run's curve in the key.
 std::string keyName(const std::string& name, const Figure& error) {
   return error ? fmt::format("{} (mean error {:.3f})", name, *error) : name;
 }
@@ -65,7 +65,7 @@ std::string timeRows(const EvaluatedRun& run) {
   return text;
 }
 
-// A figure of a comparison: how it is got and where [radecki2016] has it.
+// A metric of the comparison and its value in [radecki2016].
 struct Compared {
   const char* title;
   Figure (*of)(const Evaluation&);
@@ -87,7 +87,7 @@ const Compared kCompared[] = {
      [](const Evaluation& e) { return falseObjectFigures(e).per_instant; }, nullptr},
 };
 
-// [radecki2016]'s row of that sensor set: the condition is called by it, or ends in it.
+// Row of [radecki2016] for the sensor set that the condition is, or ends with.
 const PaperTrackingRow* paperRowOf(const std::vector<PaperTrackingRow>& rows,
                                    const std::string& name) {
   for (const PaperTrackingRow& row : rows) {
@@ -222,7 +222,7 @@ void drawComparison(const EvaluationReport& report, PlotScript& script) {
       static_cast<double>(report.runs.size()) - 0.4, tics));
   for (std::size_t f = 0; f < std::size(kCompared); ++f) {
     const Compared& compared = kCompared[f];
-    std::string bars = "# place, value, lowest, highest of the trials, the paper's\n";
+    std::string bars = "# place, value, lowest, highest of the trials, [radecki2016]\n";
     double top = 0;
     bool in_paper = false;
     for (std::size_t r = 0; r < report.runs.size(); ++r) {

@@ -6,8 +6,8 @@
 
 namespace perception {
 
-/// GOSPA (Rahmathullah et al. 2017) with alpha = 2 and p = 2: the squared distance in its three
-/// parts, which add up.
+/// GOSPA (Rahmathullah et al. 2017) with alpha = 2 and p = 2: the squared distance as sum of its
+/// three parts.
 struct Gospa {
   double localization = 0;  ///< [m^2] sum of squared distances of the pairs closer than the cut-off
   double missed = 0;        ///< [m^2] c^2 / 2 for each truth without estimate

@@ -9,7 +9,7 @@
 namespace perception {
 namespace {
 
-// A row of the table: a figure of a run, and where [radecki2016] has it.
+// A row of the table: a metric and its value in [radecki2016].
 struct FigureRow {
   const char* name;
   int places;
@@ -103,7 +103,7 @@ ReportTable sideBySideTable(const EvaluationReport& report) {
     trials = trials || !run.trials.empty();
   }
   for (const PaperTrackingRow& row : report.paper)
-    table.header.push_back(fmt::format("paper: {}, {}", row.sensors, row.condition));
+    table.header.push_back(fmt::format("Radecki et al.: {}, {}", row.sensors, row.condition));
   for (const FigureRow& row : kRows) {
     std::vector<std::string> cells = {row.name};
     for (const EvaluatedRun& run : report.runs) cells.push_back(cellOf(run, row, report.options));
@@ -118,8 +118,8 @@ ReportTable sideBySideTable(const EvaluationReport& report) {
       "sensors' range: all with lidar, else 15 m, persons 10 m."};
   if (trials) {
     table.notes.push_back(
-        "Instants of all trials pooled, as in Radecki et al.; in brackets mean +- standard "
-        "deviation over the trials; lowest..highest trial.");
+        "Of all trials' instants taken together, as in Radecki et al.; in brackets mean +- "
+        "standard deviation over the trials; lowest..highest trial.");
   }
   return table;
 }

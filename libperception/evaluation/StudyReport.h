@@ -6,9 +6,9 @@
 
 namespace perception {
 
-/// A table of a study, numbers already as text. Becomes NAME.csv and a part of the Markdown report.
+/// A table of a study, numbers formatted as text. Written as NAME.csv and into the Markdown report.
 struct StudyTable {
-  std::string name;   ///< of the CSV file, without ending
+  std::string name;   ///< of the CSV file, without extension
   std::string title;  ///< one line
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
@@ -23,14 +23,14 @@ struct StudyPlot {
   std::vector<std::pair<std::string, std::string>> data;  ///< file name, content
 };
 
-/// What a study found.
+/// Results of a study.
 struct StudyReport {
   std::string title;
-  std::string data;  ///< what it was measured on: begins with "simulated" where it was
+  std::string data;  ///< description of the data; begins with "simulated" if they are
   std::vector<StudyTable> tables;
   std::vector<StudyPlot> plots;
-  std::vector<std::pair<std::string, std::string>> files;  ///< further ones: name, content
-  std::vector<std::string> remarks;                        ///< sentences that belong to the figures
+  std::vector<std::pair<std::string, std::string>> files;  ///< further files: name, content
+  std::vector<std::string> remarks;                        ///< sentences below the tables
 };
 
 /// The report as one Markdown text, plots linked as NAME.png.

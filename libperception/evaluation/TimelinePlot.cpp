@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kMaxTruthRows = 60;  // more names cannot be read
+constexpr std::size_t kMaxTruthRows = 60;  // limit of legible rows
 constexpr std::size_t kMaxFalseRows = 25;
 
 constexpr const char* kHead = R"(
@@ -26,14 +26,14 @@ set xlabel 'time since the log''s first stamp (s)' offset 0,0.5
 set style fill solid 1 noborder
 )";
 
-// What an object was called over a stretch of instants.
+// Estimated class of an object over a time interval.
 struct Stretch {
   double from, to;  // [s]
   double row;
   int state;  // 2 * class + classified; -1 missed
 };
 
-// The usual time between two instants [s]: how wide a single one is drawn.
+// Median time between two instants [s]: width of a single one in the plot.
 double typicalStep(const std::vector<InstantFigures>& instants) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < instants.size(); ++i)
@@ -44,7 +44,7 @@ double typicalStep(const std::vector<InstantFigures>& instants) {
   return std::max(steps[steps.size() / 2], 1e-3);
 }
 
-// Joins instants of one row and one state to stretches.
+// Joins consecutive instants of one row and state to intervals.
 class Stretches {
  public:
   explicit Stretches(double step) : step_(step) {}
@@ -111,8 +111,7 @@ class TimelinePlot {
   std::string title() const {
     return fmt::format(
         "What every true object was called, {} (within {:g} m and {:g} deg ahead; one-to-one "
-        "within "
-        "{:g} m)",
+        "within {:g} m)",
         run_.name, options_.selection.range, degrees(options_.selection.fov), options_.tolerance);
   }
 

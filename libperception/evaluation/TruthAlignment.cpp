@@ -28,9 +28,8 @@ TruthObject moved(TruthObject object, double t) {
   return object;
 }
 
-// The object between two of its truths; `share` in [0, 1] of the way from a to b. What is no
-// quantity (type, occlusion, points) comes from the nearer one; what only one of them knows stays
-// unknown or as the nearer one has it.
+// The object between two of its truths; `share` in [0, 1] of the way from a to b. Discrete values
+// (type, occlusion, points) and values missing in one of them are those of the nearer one.
 TruthObject between(const TruthObject& a, const TruthObject& b, double share) {
   TruthObject object = share <= 0.5 ? a : b;
   const auto mix = [share](double from, double to) { return from + share * (to - from); };
@@ -63,7 +62,7 @@ std::vector<TruthObject> interpolated(const Instant& before, const Instant& afte
   return objects;
 }
 
-// The truth at a time of the log; notes which instants served.
+// The truth at a time of the log; records which instants were used.
 class TruthByTime {
  public:
   TruthByTime(const GroundTruth& truth, double limit, std::vector<bool>& used)

@@ -56,8 +56,7 @@ bool isArea(const TruthObject& object) { return lowerCase(object.type) == "dontc
 
 TruthUse useOf(const TruthObject& object, const GroundView& view, ClassId class_id,
                const SelectionOptions& options) {
-  if (isArea(object))
-    return TruthUse::kIgnored;  // it may lack a place (KITTI: an area of the image)
+  if (isArea(object)) return TruthUse::kIgnored;  // it may have no position (KITTI: an image area)
   if (!inSector(view, options.range, options.fov)) return TruthUse::kOutside;
   if (object.ignore) return TruthUse::kIgnored;
   if (class_id < 0) return TruthUse::kNoClass;

@@ -8,27 +8,27 @@
 
 namespace perception {
 
-/// Which truth objects count, ego frame.
+/// Criteria of counted truth objects, ego frame.
 struct SelectionOptions {
-  double range = 20;  ///< [m] of the center ([radecki2016]: "20m semi-circle in front")
-  double fov = kPi;   ///< [rad] whole opening angle of the sector ahead
-  double complete_fov =
-      kTwoPi;            ///< [rad] beyond it the truth lacks objects: no output there is false
-  int min_points = 20;   ///< lidar returns on the object, where the truth counts them
-  int max_occluded = 2;  ///< KITTI: 3 = unknown
+  double range = 20;             ///< [m] of the center ([radecki2016]: "20m semi-circle in front")
+  double fov = kPi;              ///< [rad] full opening angle of the sector ahead
+  double complete_fov = kTwoPi;  ///< [rad] full angle ahead in which the truth is complete: outputs
+                                 ///< outside are not false objects
+  int min_points = 20;           ///< lidar returns on the object, if the truth has their number
+  int max_occluded = 2;          ///< KITTI's levels; 3 = unknown
 };
 
-/// Why a truth object counts or not; the first reason that holds.
+/// Whether a truth object counts, and if not, the first criterion it fails.
 enum class TruthUse { kCounts, kOutside, kIgnored, kNoClass, kOccluded, kFewPoints };
 inline constexpr int kTruthUses = 6;
 const char* describe(TruthUse use);
 
-/// The class of that name among `class_names` that stands for a truth type or -1: Van and Car are
-/// car, Truck and Bus are bus, Person_sitting is a pedestrian; other types stand for the class of
-/// their own name. Case does not matter.
+/// Index in `class_names` of the class of a truth type, or -1: Van and Car are car, Truck and Bus
+/// are bus, Person_sitting is pedestrian; any other type is the class of the same name.
+/// Case-insensitive.
 ClassId classOfTruth(const std::string& type, const std::vector<std::string>& class_names);
 
-/// DontCare: an area of which nothing is known.
+/// DontCare: an unlabeled area.
 bool isArea(const TruthObject& object);
 
 TruthUse useOf(const TruthObject& object, const GroundView& view, ClassId class_id,

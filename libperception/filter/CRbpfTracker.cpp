@@ -19,11 +19,11 @@ void ParticleFilterParams::visit(ParamVisitor& v) {
   v.choice(
       "PF_algorithm", pf_algorithm,
       {"pfStandardProposal", "pfAuxiliaryPFStandard", "pfOptimalProposal", "pfAuxiliaryPFOptimal"},
-      "MRPT's name; pfOptimalProposal is the one that this filter implements");
+      "MRPT's name; this filter implements pfOptimalProposal only");
   v.require(pf_algorithm == 2, "PF_algorithm: this filter implements pfOptimalProposal only");
   v.choice("resamplingMethod", resampling_method,
            {"prMultinomial", "prResidual", "prStratified", "prSystematic"}, "MRPT's name");
-  v.real("BETA", beta, {0, 1}, "", "resample when the effective share of particles falls below it");
+  v.real("BETA", beta, {0, 1}, "", "resample when ESS / sampleSize falls below it");
   v.integer("sampleSize", sample_size, {1, 65536}, "number of particles");
 }
 
@@ -52,8 +52,8 @@ CRbpfTracker::CRbpfTracker(FilterModel model, const Options& options, std::uint6
 
 bool CRbpfTracker::process(const MeasurementScan& scan) {
   if (started_ && scan.state.stamp < stamp_) return false;
-  // MRPT resamples with this thread's generator; assignment also clears what randomize() would
-  // leave behind.
+  // MRPT resamples with this thread's generator; assignment also clears the cached normal deviate,
+  // which randomize() keeps.
   if (executor_.m_options.BETA > 0) {
     Rng seeds({seed_, scans_, 0, kResampling});
     mrpt::random::getRandomGenerator() = mrpt::random::CRandomGenerator(seeds());
@@ -99,7 +99,7 @@ void CRbpfTracker::prediction_and_update_pfOptimalProposal(const mrpt::obs::CAct
 
 void CRbpfTracker::keepHistory(const Posterior& posterior, Stamp now) {
   history_.emplace_back(now, posterior.hypotheses);
-  // One from before the span stays: an instant inside of it lies between two scans.
+  // Keeps one entry before the span, since the instants in it lie between two scans.
   while (history_.size() > 1 && now - history_[1].first >= model_.history) history_.pop_front();
 }
 
@@ -108,7 +108,7 @@ void CRbpfTracker::setPosterior(Posterior&& posterior) {
   for (std::size_t i = 0; i < m_particles.size(); ++i) {
     m_particles[i].d = std::move(posterior.hypotheses[i]);
     const double w = posterior.log_weights[i];
-    // MRPT turns a NaN into silence (no resampling, no error).
+    // With NaN weights MRPT neither resamples nor reports an error.
     m_particles[i].log_w = std::isfinite(w) ? w : -1e300;
   }
 }

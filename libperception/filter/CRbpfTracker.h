@@ -11,31 +11,31 @@
 
 namespace perception {
 
-/// [particle_filter]: MRPT's TParticleFilterOptions by their own names.
+/// [particle_filter]: MRPT's TParticleFilterOptions, keys named as in MRPT.
 struct ParticleFilterParams {
-  int pf_algorithm = 2;  ///< index into names(): only pfOptimalProposal is
-                         ///< implemented (method.md 5.4)
-  int resampling_method =
-      3;  ///< MRPT's order: prMultinomial, prResidual, prStratified, prSystematic (method.md 5.10)
-  double beta =
-      0.5;  ///< resample when the effective share of particles falls below it (method.md 5.10)
-  int sample_size = 8;  ///< number of particles [radecki2016]
+  int pf_algorithm = 2;       ///< MRPT's TParticleFilterAlgorithm; only pfOptimalProposal (2) is
+                              ///< implemented (method.md 5.4)
+  int resampling_method = 3;  ///< MRPT's TParticleResamplingAlgorithm: 0 prMultinomial ... 3
+                              ///< prSystematic (method.md 5.10)
+  double beta = 0.5;          ///< resampling threshold on ESS / sampleSize (method.md 5.10)
+  int sample_size = 8;        ///< number of particles [radecki2016]
 
   void visit(ParamVisitor& v);
   mrpt::bayes::CParticleFilter::TParticleFilterOptions toMrpt() const;
 };
 
-/// What one scan did to the particle set.
+/// Statistics of the particle set for one scan.
 struct ScanStats : StepStats {
-  double ess = 1;  ///< effective share of particles before resampling, in (0, 1]
+  double ess = 1;  ///< effective sample size / sampleSize before resampling, in (0, 1]
   bool resampled = false;
-  double map_probability = 0;  ///< of the hypothesis that is output
+  double map_probability = 0;  ///< posterior probability of mapHypothesis()
 };
 
 /// The joint association, tracking and classification filter as an MRPT particle-filter algorithm:
-/// particles are handles of hypotheses, the proposal is the optimal one, executed and resampled by
-/// mrpt::bayes::CParticleFilter. With ranked associations it holds at most sampleSize distinct
-/// hypotheses and is never resampled (BETA = 0): one dominant hypothesis is no degeneracy there.
+/// particles are shared pointers to hypotheses, the proposal is the optimal one, executed and
+/// resampled by mrpt::bayes::CParticleFilter. With ranked associations it holds at most sampleSize
+/// distinct hypotheses and is never resampled (BETA = 0): there, one hypothesis of dominant weight
+/// does not indicate degeneracy.
 class CRbpfTracker final
     : public mrpt::bayes::CParticleFilterData<HypothesisHandle,
                                               mrpt::bayes::particle_storage_mode::VALUE>,
@@ -48,10 +48,10 @@ class CRbpfTracker final
 
   CRbpfTracker(FilterModel model, const Options& options, std::uint64_t seed);
 
-  /// One scan through CParticleFilter::executeOn(). Scans must come in order of time; an older one
-  /// is refused (false).
+  /// Processes one scan by CParticleFilter::executeOn(). Scans must be in chronological order;
+  /// returns false, with the state unchanged, for a scan older than the last one.
   bool process(const MeasurementScan& scan);
-  /// Forgets every track, as after a jump of the clock; new tracks get new identities.
+  /// Deletes all tracks, as after a clock jump. Tracks born later get new ids.
   void reset();
 
   const FilterModel& model() const { return model_; }
@@ -61,7 +61,7 @@ class CRbpfTracker final
   Stamp stamp() const { return stamp_; }
   std::uint64_t scans() const { return scans_; }
 
-  /// MRPT 2.5.8 keeps the old weights after resampling; they are reset here.
+  /// Also sets all weights equal: MRPT 2.5.8 keeps the old weights after resampling.
   void performSubstitution(const std::vector<size_t>& indices) override;
 
  protected:
@@ -78,12 +78,12 @@ class CRbpfTracker final
   std::size_t slots_;  ///< sampleSize
   std::uint64_t seed_;
   std::uint64_t scans_ = 0;
-  bool started_ = false;  ///< stamp_ is that of a scan since the last reset
+  bool started_ = false;  ///< at least one scan was processed since the last reset()
   Stamp stamp_;
-  const MeasurementScan* scan_ = nullptr;  ///< the scan that executeOn() is to use
+  const MeasurementScan* scan_ = nullptr;  ///< input of the executeOn() call in progress
   HypothesisHandle map_;
-  /// What the particles held after the scans of the last FilterModel::history seconds: keeps alive
-  /// what tracks are linked to.
+  /// Hypotheses of the particles after each scan of the last FilterModel::history seconds: owns the
+  /// tracks that Track::previous points to.
   std::deque<std::pair<Stamp, std::vector<HypothesisHandle>>> history_;
   ScanStats stats_;
 };

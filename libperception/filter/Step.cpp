@@ -19,7 +19,7 @@ namespace {
 
 enum Purpose : std::uint32_t { kOrder = 0x5701, kSample = 0x5702 };
 
-/// A handle's identity as a key.
+/// The address behind a handle as a key.
 template <class T>
 std::uint64_t keyOf(const T* p) {
   return static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(p));
@@ -89,7 +89,7 @@ class TrackIndexMap {
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
   std::vector<TrackHandle>& tracks_;
   const TrackTable* table_ = nullptr;
-  bool one_table_ = true;  // as after a step; posteriors made by hand may have several
+  bool one_table_ = true;  // as after step(); posteriors from elsewhere may have several
   std::vector<std::uint32_t> by_place_;
   IndexMap by_key_;
 };

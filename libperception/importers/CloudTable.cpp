@@ -12,7 +12,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kMostPoints = 1U << 24;  // no scanner has them
+constexpr std::size_t kMostPoints = 1U << 24;  // more than any scanner has
 
 template <class Number>
 double as(const char* bytes) {

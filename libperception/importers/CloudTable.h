@@ -17,17 +17,17 @@ struct CloudColumn {
   std::size_t size = 4;  ///< [bytes] of a number
   std::size_t count = 1;
   std::size_t bytes() const { return size * count; }
-  /// Whether numbers of this kind and size can be read.
+  /// Whether this kind and size is supported.
   bool isKnown() const;
-  /// The number that stands there, little-endian.
+  /// Decodes one little-endian number.
   double numberAt(const char* bytes) const;
 };
 
-/// Columns of numbers, whatever the file was.
+/// Numeric columns of a point cloud file of any format.
 struct CloudTable {
   std::vector<CloudColumn> columns;
   std::size_t rows = 0;
-  std::vector<std::vector<double>> values;  ///< [column][row]; of columns of several the first
+  std::vector<std::vector<double>> values;  ///< [column][row]; the first element of vector columns
 
   void resize(std::size_t n) {
     rows = n;
@@ -40,7 +40,7 @@ struct CloudTable {
 class TextLines {
  public:
   TextLines(const std::string& path, std::string_view text) : path_(path), text_(text) {}
-  /// The next line without its end; empty at the end of the text.
+  /// The next line without its newline; empty at the end of the text.
   std::optional<std::string_view> next();
   std::string_view rest() const { return text_.substr(std::min(at_, text_.size())); }
   /// Throws DataError with file and line.
@@ -60,9 +60,9 @@ void readRows(std::string_view data, bool swapped, CloudTable& table);
 /// Rows of text with the table's columns; "nan" is a number.
 void readTextRows(TextLines& lines, const char* separators, CloudTable& table);
 
-/// Throws DataError: more points than any scanner has.
+/// Throws DataError if there are more points than a scanner can have.
 void checkCount(const std::string& path, std::size_t points);
-/// Throws DataError: fewer bytes than expected.
+/// Throws DataError if there are fewer bytes than expected.
 void checkSize(const std::string& path, std::size_t got, std::size_t expected);
 
 /// PCD of PCL 0.7 (ascii, binary, binary_compressed) and PLY (ascii, binary of both byte orders).

@@ -12,10 +12,10 @@
 namespace perception {
 namespace {
 
-/// [s] A pose of a stamped file serves clouds so far from the next one at the ends of the file.
+/// [s] At the ends of a stamped pose file, the first or last pose is used up to this far in time.
 constexpr double kPoseReach = 0.2;
 
-/// Anyone's folder of scans.
+/// A folder of scans in one of the supported formats.
 class CloudsImporter final : public Importer {
  public:
   void declare(CLI::App& cli) override;
@@ -119,7 +119,7 @@ void CloudsImporter::readPoses(const std::vector<FrameFile>& files) {
   }
 }
 
-/// Of the frame that the file's poses are of; empty where the file says nothing.
+/// Pose of the frame that the file's poses refer to; empty outside of the file.
 std::optional<Pose3> CloudsImporter::poseAt(std::size_t index) const {
   if (!poses_.empty()) return poses_[index];
   if (stamped_.empty()) return {};

@@ -21,19 +21,19 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kRadarLabel = "RADAR_FRONT";
-/// [m] The device behind the windscreen above the road, openpilot's model_height.
+/// [m] Height of the device behind the windshield above the road, openpilot's model_height.
 constexpr double kDeviceHeight = 1.22;
 /// [m] The radar ahead of the device, openpilot's RADAR_TO_CAMERA.
 constexpr double kRadarAhead = 1.52;
-constexpr double kRadarHeight = 0.5;  ///< [m] behind the grille; plays no part on flat ground
+constexpr double kRadarHeight = 0.5;  ///< [m] behind the grille; irrelevant on flat ground
 /// [deg] The device looks left of the car's course and up: medians over the example minute above
 /// 5 m/s (quartiles 0.74 and 0.89 deg, 3.63 and 3.93 deg).
 constexpr double kDeviceYawDeg = 0.81, kDeviceUpDeg = 3.81;
 constexpr int kFirstSlot = 528;  ///< CAN address of the radar's first track slot
-/// [s] Slots are sent one after the other: rows so near belong to one scan.
+/// [s] Largest time between rows of one scan: slots are sent one after the other.
 constexpr double kScanSpread = 0.025;
-/// [s] The unit tells what its own filter held so long ago: least spread of the range rates of what
-/// stands (tests/radar/RealReturns_test).
+/// [s] Latency of the unit's filter: minimizes the spread of the range rates of stationary objects
+/// (tests/radar/RealReturns_test).
 constexpr double kRadarDelay = 0.05;
 constexpr double kMaxRange = 200;  ///< [m] of the unit; the example reaches 184 m
 
@@ -116,7 +116,7 @@ class Comma2k19Importer final : public Importer {
   double from_ = 0, to_ = 0;  ///< [s] of the radar scans that are wanted
 };
 
-/// The receiver's UTC is what gives the device clock a date.
+/// Offset of the device clock to UTC, by the receiver.
 void Comma2k19Importer::readGnss(ImportLog& log) {
   const Table gnss(path("gnss_ublox_10hz.csv"));
   if (gnss.csv.rows() == 0)
@@ -128,7 +128,7 @@ void Comma2k19Importer::readGnss(ImportLog& log) {
                    offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2),
                    offsets.end());
   utc_offset_ = offsets[offsets.size() / 2];
-  readRadar(log);  // tells which part is wanted
+  readRadar(log);  // determines the imported part
   for (std::size_t i = 0; i < gnss.csv.rows(); ++i) {
     if (!inside(gnss.time(i))) continue;
     const GpsFix fix{stampOf(gnss.time(i)), gnss.at(i, "lat_deg"), gnss.at(i, "lon_deg"),
@@ -143,8 +143,8 @@ RadarReturn returnOf(const Table& radar, std::size_t row) {
   RadarReturn r;
   r.range = std::hypot(forward, left);
   r.bearing = std::atan2(left, forward);
-  // Whether the unit gives the rate or its forward part is not known; within its 10 degrees both
-  // are the same to 1.5 %.
+  // It is not documented whether the unit gives the range rate or its forward component; within its
+  // 10 degrees they differ by at most 1.5 %.
   r.range_rate = radar.at(row, "rel_speed_mps");
   r.id = static_cast<std::int32_t>(radar.csv.integer(row, radar.csv.column("can_address"))) -
          kFirstSlot;

@@ -12,7 +12,8 @@ namespace perception {
 namespace {
 
 constexpr const char* kObjectLabel = "GPS_OBJECT";
-/// [m] A point as a box: front ends want sizes above 0. `sizes = false` leaves them out.
+/// [m] Size of a point as a box, since front ends require sizes above 0; `sizes = false` ignores
+/// them.
 constexpr double kPointSize = 0.1;
 
 /// A receiver's track, NMEA or GPX: the way of the vehicle, or of an object beside a standing one.

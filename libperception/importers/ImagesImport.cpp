@@ -18,8 +18,8 @@ namespace {
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
 constexpr const char* kBoxesLabel = "LABELLED_BOXES";
-/// Frames that stand alone are so far apart in time [Hz] and place [m] that no object of one is one
-/// of the next.
+/// Isolated frames are separated in time [Hz] and position [m], so that tracks of one cannot
+/// continue in the next.
 constexpr double kAloneRate = 0.1, kAloneDistance = 500;
 
 /// Single frames in the layout of KITTI's object benchmark: image_2, calib, label_2, velodyne.
@@ -75,7 +75,7 @@ ImagesImporter::Frame ImagesImporter::read(const FrameFile& file, ImportLog& log
       log.missing("labels", path("label_2"), file.number);
     } else {
       frame.labels = readKittiObjectLabels(labels, file.number);
-      for (KittiLabel& label : frame.labels) label.id += 1000 * file.number;  // no two are one
+      for (KittiLabel& label : frame.labels) label.id += 1000 * file.number;  // unique over frames
     }
     log.expectTruth();
   }
@@ -121,7 +121,7 @@ void ImagesImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog
     out.data = std::move(found);
     log.sensor(out);
   }
-  if (!last) return;  // number, image and truth stand at the last showing
+  if (!last) return;  // frame number, image and truth are at the last repetition
   ImportedImage image;
   image.label = kImageLabel;
   image.path = frame.file.path;
@@ -135,7 +135,7 @@ void ImagesImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog
 
 void ImagesImporter::run(ImportLog& log) {
   const auto files = frameFiles(path("image_2"), {".png", ".jpg", ".jpeg"});
-  std::int64_t place = 0;  // numbers of single frames are no times
+  std::int64_t place = 0;  // frame numbers of single frames are not times
   for (const FrameFile& file : files) {
     if (!log.options().wants(file.number)) continue;
     Frame frame = read(file, log);

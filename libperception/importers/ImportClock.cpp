@@ -7,18 +7,18 @@
 namespace perception {
 namespace {
 
-/// [periods] A longer step of the stamps is one of the clock, or a lost fix.
+/// [periods] A longer step of the stamps is a clock step or a lost fix.
 constexpr double kStep = 3;
-/// [s] A clock that has gone on for so long since it stepped back was set anew.
+/// [s] A clock that has run for this long since a backward step was reset.
 constexpr double kSetAnew = 2;
-/// [m] Cells in which scans are compared; walls and hedges are not flatter.
+/// [m] Cell size for the comparison of scans, about the depth of walls and hedges.
 constexpr double kCell = 0.2;
-/// [m] Band above the road: below is the road, which looks the same everywhere; above are trees.
+/// [m] Band above the road: excludes the road, which looks the same everywhere, and trees.
 constexpr double kLowest = 0.8, kHighest = 3;
-/// [m] Returns so near are the vehicle's own, farther ones are too sparse to meet again.
+/// [m] Range limits: nearer returns are of the vehicle itself, farther ones too sparse.
 constexpr double kNearest = 3, kFarthest = 25;
 constexpr double kCoarse = 0.1, kFine = 0.02;  ///< [s] steps of the search
-constexpr std::size_t kFewest = 1000;          ///< returns, below them nothing can be said
+constexpr std::size_t kFewest = 1000;          ///< fewest returns
 
 double medianPeriod(const std::vector<GpsFix>& fixes) {
   std::vector<double> steps;
@@ -72,7 +72,7 @@ std::vector<GpsFix> steadyFixes(const std::vector<GpsFix>& fixes, std::size_t& d
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const GpsFix& fix = fixes[i];
     if (!out.empty()) {
-      if (fix.stamp == fixes[i - 1].stamp) continue;  // told twice
+      if (fix.stamp == fixes[i - 1].stamp) continue;  // duplicate
       const double step = fix.stamp - fixes[i - 1].stamp;
       if (step < 0) behind = true;
       if (step > kStep * period || fix.stamp - out.back().stamp > kSetAnew) behind = false;

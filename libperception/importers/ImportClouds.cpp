@@ -93,7 +93,7 @@ LidarCloud cloudOf(const std::string& path, const CloudTable& table, const Cloud
     cloud.intensity = toFloat(*v, format.intensity_max > 0 ? 1 / format.intensity_max : 1);
   if (const auto* v = find(table, {"ring", "channel", "laser_id", "line"})) {
     cloud.ring.resize(v->size());
-    for (std::size_t i = 0; i < v->size(); ++i)  // a ring that is none is 0
+    for (std::size_t i = 0; i < v->size(); ++i)  // invalid rings become 0
       cloud.ring[i] = static_cast<std::uint16_t>((*v)[i] >= 0 && (*v)[i] < 65536 ? (*v)[i] : 0);
   }
   if (const auto* v = find(table, {"time", "t", "time_offset", "timestamp"})) {

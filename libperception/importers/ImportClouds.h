@@ -6,23 +6,23 @@
 
 namespace perception {
 
-/// What the numbers of a cloud file without a header mean.
+/// Format of a cloud file without header.
 struct CloudFormat {
   /// Of .bin (float32 each) and of .csv without a header line: x, y, z, intensity, ring, time;
-  /// other words are skipped.
+  /// columns of other names are skipped.
   std::vector<std::string> columns{"x", "y", "z", "intensity"};
   double intensity_max = 0;  ///< intensities are divided by it; 0: they are in [0, 1] already
   double time_scale = 1;     ///< [s] of the unit of the column time
   double max_range = 0;      ///< [m] of the instrument; 0: unknown
 };
 
-/// Endings that readCloudFile() knows, gzip variants included.
+/// File extensions supported by readCloudFile(), including gzip variants.
 const std::vector<std::string>& cloudEndings();
 
 /// One scan: .bin (float32 columns), .pcd (PCL 0.7: ascii, binary, binary_compressed), .ply (ascii,
-/// binary of both byte orders), .csv .txt .xyz (with or without a line of names). Points keep their
-/// order and number, also those that are no numbers. Times become offsets from the first point's.
-/// Throws DataError (kNoInput when missing, else with place and what was expected).
+/// binary of both byte orders), .csv .txt .xyz (with or without a line of names). Order and number
+/// of points are kept, including NaN points. Times become offsets from that of the first point.
+/// Throws DataError (kNoInput if missing, else with position and expectation).
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format = {});
 
 }  // namespace perception

@@ -14,7 +14,7 @@ namespace perception {
 namespace {
 
 constexpr std::int64_t kDayNs = 86400LL * 1'000'000'000;
-/// [s] A course over more time is none of this moment.
+/// [s] Longest time over which a course is computed.
 constexpr double kCourseTime = 5;
 
 }  // namespace
@@ -54,7 +54,7 @@ std::vector<StampedPose> posesOfFixes(const std::vector<GpsFix>& fixes, double c
   std::optional<double> course, first;
   std::vector<std::optional<double>> courses(fixes.size());
   for (std::size_t i = 0; i < fixes.size(); ++i) {
-    std::size_t a = i, b = i;  // grows on both sides until the way is long enough to have a course
+    std::size_t a = i, b = i;  // extends on both sides until the distance suffices for a course
     const auto near = [&](std::size_t k) {
       return std::abs(fixes[k].stamp - fixes[i].stamp) <= kCourseTime;
     };

@@ -10,7 +10,7 @@
 
 namespace perception {
 
-/// Where a receiver was, on WGS 84.
+/// Position of a receiver, WGS 84.
 struct GpsFix {
   Stamp stamp;
   double latitude = 0, longitude = 0;  ///< [deg]
@@ -21,11 +21,11 @@ struct GpsFix {
 std::shared_ptr<mrpt::obs::CObservation> gpsObservation(const GpsFix& fix,
                                                         const std::string& label = "GPS");
 
-/// Meters east and north of the first fix.
+/// East and north of the first fix [m].
 std::vector<Vector2> localPositions(const std::vector<GpsFix>& fixes);
 
-/// A moving receiver as the vehicle's poses: x east, y north, heading by the course over
-/// `course_distance` [m] about each fix. Where it hardly moves the course before holds.
+/// Ego poses from a moving receiver: x east, y north, heading from the course over
+/// `course_distance` [m] about each fix. At low speed the last course is kept.
 std::vector<StampedPose> posesOfFixes(const std::vector<GpsFix>& fixes, double course_distance = 2);
 
 }  // namespace perception

@@ -21,7 +21,7 @@ namespace {
 
 /// [%] of embedded images: no visible loss.
 constexpr int kJpegQuality = 95;
-/// [s] Rows of one object farther apart are two stretches: no velocity across the gap.
+/// [s] Largest time between rows of one object for a velocity by differences.
 constexpr double kTruthGap = 1.0;
 
 void failImage(const fs::path& path, const char* what, const std::error_code& error) {
@@ -192,7 +192,7 @@ void ImportLog::setTruthVelocities() {
 
 ImportResult ImportLog::close() {
   warnOfMissing();
-  if (has_truth_) {  // before the log: where a log is, its truth is whole
+  if (has_truth_) {  // before the log, so that a complete log has its truth
     std::vector<TruthObject> objects;
     for (auto& [stamp, object] : truth_) object.t = stamp - first_stamp_.value_or(stamp);
     setTruthVelocities();

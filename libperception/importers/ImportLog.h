@@ -16,42 +16,41 @@
 
 namespace perception {
 
-/// [Hz] of a frame that is shown repeatedly: so fast that nothing would have moved meanwhile, not
-/// even what drives.
+/// [Hz] rate of repeated frames: high enough that no object would move noticeably.
 inline constexpr double kRepeatRate = 200;
-/// [s] Poses so long before and after a still world keep its vehicle from moving: velocities are
-/// differences of poses.
+/// [s] Equal poses are written from this long before to this long after a static scene, so that the
+/// ego velocity, a difference of poses, is zero.
 inline constexpr double kStillPoses = 0.15;
 
-/// What every importer understands.
+/// Options of all importers.
 struct ImportOptions {
   /// Where a log's images are.
   enum class Images {
-    kReference,  ///< where they were; the log names them through FILE_Images/LABEL, a link
-    kCopy,       ///< in FILE_Images beside the log, as MRPT's programs expect
-    kEmbed       ///< inside the log, as JPEG
+    kReference,  ///< original files, referenced through FILE_Images/LABEL, a symbolic link
+    kCopy,       ///< copied to FILE_Images beside the log, MRPT's convention
+    kEmbed       ///< in the log, as JPEG
   };
   std::string output;                 ///< FILE.rawlog
-  double rate = 0;                    ///< [Hz] of frames without stamps; 0: the format's own
+  double rate = 0;                    ///< [Hz] of frames without stamps; 0: default of the format
   std::int64_t first = 0, last = -1;  ///< frame numbers; last -1: to the end
-  int repeat = 1;                     ///< how often a frame that stands alone is shown
+  int repeat = 1;                     ///< number of repetitions of isolated frames
   Images images = Images::kReference;
 
   bool wants(std::int64_t frame) const { return frame >= first && (last < 0 || frame <= last); }
 };
 
-/// What an import wrote.
+/// Statistics of an import.
 struct ImportResult {
   std::int64_t frames = 0, scans = 0, images = 0, radar_scans = 0, poses = 0;
   std::uint64_t points = 0, radar_returns = 0;
   std::map<std::string, std::uint64_t> detections;   ///< by detector
-  std::map<std::string, std::uint64_t> others;       ///< entries of other kinds, by label
-  std::uint64_t truth_rows = 0;                      ///< ignored ones included
+  std::map<std::string, std::uint64_t> others;       ///< other observations, by label
+  std::uint64_t truth_rows = 0;                      ///< including ignored ones
   std::map<std::string, std::uint64_t> truth_types;  ///< rows by type
   std::string truth_file;                            ///< empty without truth
   std::uint64_t entries = 0, bytes = 0, bytes_inflated = 0;
-  std::vector<std::string> notes;     ///< what a reader of the log should know
-  std::vector<std::string> warnings;  ///< parts of the data that are missing
+  std::vector<std::string> notes;     ///< remarks for users of the log
+  std::vector<std::string> warnings;  ///< missing data
 };
 
 /// `progress(done, total)`, per frame.
@@ -67,39 +66,39 @@ struct ImportedImage {
   std::vector<double> distortion;  ///< k1 k2 p1 p2 k3; empty: rectified
 };
 
-/// The log, truth and report that an importer writes; one for all formats. The log stands under its
-/// name only after close().
+/// Output of an importer: log, truth and statistics. The log has its final name only after close().
 class ImportLog {
  public:
   explicit ImportLog(ImportOptions options, ImportProgress progress = {});
 
   const ImportOptions& options() const { return options_; }
 
-  /// Entries in the order of the calls. Deviations of 0: not known, the site's minimum holds.
+  /// Entries are in the order of calls. Uncertainty of 0: unknown, the minimum of the site INI
+  /// applies.
   void ego(Stamp stamp, const Pose3& T_world_ego, const PoseUncertainty& uncertainty = {0, 0, 0});
   void frame(Stamp stamp, std::int64_t number);
   void sensor(const SensorFrame& frame);
   void image(const ImportedImage& image, std::int64_t frame);
-  /// An entry of another kind: GNSS, IMU, odometry.
+  /// Any other observation: GNSS, IMU, odometry.
   void observation(const mrpt::obs::CObservation& observation);
 
-  /// For sensors of several rates: `write` is called by writeInOrder(), in order of stamps and, of
-  /// one stamp, of calls.
+  /// For sensors of different rates: writeInOrder() calls `write` in order of stamps, equal stamps
+  /// in order of calls.
   void at(Stamp stamp, std::function<void()> write);
   void writeInOrder();
 
-  /// There is truth, if only with no row.
+  /// Declares that there is truth, also if it has no rows.
   void expectTruth() { has_truth_ = true; }
   /// `t` of the row is set from `stamp`.
   void truth(Stamp stamp, TruthObject object);
-  /// A frame whose `what` (scan, image) is not in `dir`.
+  /// Reports a frame whose `what` (scan, image) is missing in `dir`.
   void missing(const std::string& what, const std::string& dir, std::int64_t frame);
   void note(const std::string& text) { result_.notes.push_back(text); }
   void warn(const std::string& text) { result_.warnings.push_back(text); }
   void progress(std::int64_t done, std::int64_t total) const;
 
-  /// Writes the truth, closes the log, gives the report. Throws DataError (kNoInput) where every
-  /// frame misses something, OutputError.
+  /// Writes the truth and closes the log. Throws DataError (kNoInput) if every frame misses data,
+  /// OutputError.
   ImportResult close();
 
  private:
@@ -122,16 +121,16 @@ class ImportLog {
 
 /// FILE.truth.csv beside FILE.rawlog.
 std::string truthFileOf(const std::string& rawlog);
-/// FILE_Images, where MRPT's programs look for what a log does not hold itself.
+/// FILE_Images, MRPT's folder for externally stored images.
 std::string imageFolderOf(const std::string& rawlog);
 
-/// Types of the truth that a class of ours covers; an output of another type is neither right nor
-/// wrong.
+/// Whether a class of ini/classes.ini covers this truth type. Importers set `ignore` for truth of
+/// other types.
 bool coveredType(const std::string& type);
 
-/// Returns of a cloud inside a box, both in the sensor frame.
+/// Number of returns inside a box, both in the sensor frame.
 int returnsInside(const ObjectDetection::SpaceBox& box, const LidarCloud& cloud);
-/// A truth row's place and size from a box in a sensor's frame.
+/// Sets pose and size of a truth row from a box in a sensor's frame.
 void placeTruth(const ObjectDetection::SpaceBox& box, const Pose3& T_world_sensor, TruthObject& o);
 
 }  // namespace perception

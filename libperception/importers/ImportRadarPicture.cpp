@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-/// Power by beam and cell, as the antenna saw it: a row a beam, counter-clockwise from forward.
+/// Power by beam and cell (polar image): a row a beam, counter-clockwise from forward.
 cv::Mat polarOf(const cv::Mat& picture, const RadarPictureParams& params) {
   const int center_u = picture.cols / 2, center_v = picture.rows / 2;
   const int cells =
@@ -33,7 +33,7 @@ struct Echo {
   int power, beam, cell;
 };
 
-/// Cells that none of their eight neighbors outshines.
+/// Local maxima among eight neighbors.
 std::vector<Echo> peaksOf(const cv::Mat& polar, const RadarPictureParams& params) {
   std::vector<Echo> peaks;
   const int nearest = std::max(1, static_cast<int>(std::ceil(params.nearest / params.pixel)));
@@ -54,7 +54,7 @@ std::vector<Echo> peaksOf(const cv::Mat& polar, const RadarPictureParams& params
   return peaks;
 }
 
-/// Takes the strongest echo and what it stands for, and so on; a saturated wall keeps an echo per
+/// Greedy non-maximum suppression, strongest echo first; a saturated wall keeps one echo per
 /// window.
 class BoundingDisc {
  public:

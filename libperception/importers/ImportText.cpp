@@ -147,7 +147,7 @@ std::string readBytes(const std::string& path, std::size_t most) {
     got = gzread(file, bytes.data() + begin, 1U << 20);
     bytes.resize(begin + static_cast<std::size_t>(std::max(got, 0)));
   } while (got > 0 && bytes.size() <= most);
-  // A cut gzip file shows only when it is closed.
+  // A truncated gzip file is detected only on close.
   const int closed = gzclose(file);
   if (got < 0 || closed != Z_OK) throw DataError(fmt::format("{}: bad or cut gzip data", path));
   if (bytes.size() > most)

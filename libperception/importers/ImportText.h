@@ -11,8 +11,8 @@
 
 namespace perception {
 
-/// The fields of one line of a text file; every complaint is a DataError that names file,
-/// line and field. Numbers are read whatever the locale. Valid while path and text live.
+/// The fields of one line of a text file; errors are DataErrors that name file, line and field.
+/// Numbers are parsed independent of the locale. Valid while path and text exist.
 class TextRow {
  public:
   TextRow(const std::string& path, std::size_t line, std::string_view text, const char* separators);
@@ -26,11 +26,12 @@ class TextRow {
   std::int64_t frame(std::size_t i) const;  ///< an integer of at least 0
 
   // Numbers in a row, from field `first` to the end of the line.
-  /// A pose of 12 numbers, 3x4 row-major; limited precision is repaired, what is no rotation fails.
+  /// A pose of 12 numbers, 3x4 row-major; rounding errors are corrected, other matrices that are
+  /// not rotations fail.
   Pose3 pose34(std::size_t first) const;
   /// A rotation of 9 numbers, row-major.
   Pose3 rotation33(std::size_t first) const;
-  /// 12 numbers as they are, 3x4 row-major.
+  /// 12 numbers unchanged, 3x4 row-major.
   Eigen::Matrix<double, 3, 4> matrix34(std::size_t first) const;
 
   void expect(bool holds, const std::string& expected) const;
@@ -51,52 +52,53 @@ inline constexpr const char* kSpaces = " \t\r";
 inline constexpr const char* kCommas = ", \t\r";
 
 /// Calls use(row) for each line of a file, plain or gzip, that is not blank. Throws DataError
-/// (kNoInput when the file is not there).
+/// (kNoInput if the file does not exist).
 void forEachRow(const std::string& path, const char* separators,
                 const std::function<void(const TextRow&)>& use);
 
-/// All bytes of a file, plain or gzip. Throws DataError: missing (kNoInput), cut or damaged gzip
-/// data, more than `most` bytes.
+/// All bytes of a file, plain or gzip. Throws DataError: missing (kNoInput), truncated or damaged
+/// gzip data, more than `most` bytes.
 std::string readBytes(const std::string& path, std::size_t most = std::size_t{1} << 28);
 
-/// Throws DataError unless it is a folder (kNoInput when it is not there).
+/// Throws DataError unless it is a folder (kNoInput if it does not exist).
 void requireFolder(const std::string& path);
 
-/// A file of a folder whose files are frames.
+/// A file in a folder with one file per frame.
 struct FrameFile {
-  std::int64_t number = 0;  ///< the file's name, where every name is a number, else its place
-  std::string stem;         ///< name without folder and endings
+  std::int64_t number = 0;  ///< the file name if all names are numbers, else the index
+  std::string stem;         ///< name without folder and extensions
   std::string path;
 };
-/// The files of `dir` with one of the endings (".bin", ".bin.gz"), in order of number. Throws
-/// DataError for no folder and for a folder without such a file (kNoInput both).
+/// The files in `dir` with one of the extensions (".bin", ".bin.gz"), sorted by number. Throws
+/// DataError (kNoInput) if there is no such folder or file.
 std::vector<FrameFile> frameFiles(const std::string& dir, const std::vector<std::string>& endings);
-/// DIR/STEM + one of the endings, the first that is there; empty: none.
+/// DIR/STEM + the first of the extensions for which a file exists; empty: none.
 std::string fileOfStem(const std::string& dir, const std::string& stem,
                        const std::vector<std::string>& endings);
 
-/// A pose with its time, of a TUM file: t x y z qx qy qz qw, lines of # left out.
+/// A pose with its stamp. TUM format: t x y z qx qy qz qw; lines with # are skipped.
 struct StampedPose {
   Stamp stamp;
   Pose3 pose = Pose3::Identity();
 };
 std::vector<StampedPose> readTumPoses(const std::string& path);
-/// Between two poses: linear in place, slerp in attitude.
+/// Between two poses: linear in position, slerp in attitude.
 Pose3 interpolate(const Pose3& a, const Pose3& b, double share);
 
-/// Seconds as text, "1574859771.744660272", to the nanosecond. Empty: it is no such number.
+/// Seconds as text, "1574859771.744660272", exact to the nanosecond. Empty if it is not such a
+/// number.
 std::optional<Stamp> stampOfSeconds(std::string_view text);
-/// "2011-09-26 13:02:25.964389445", with a blank, a T or a _ in the middle, UTC.
+/// "2011-09-26 13:02:25.964389445", UTC, date and time separated by a space, T or _.
 std::optional<Stamp> stampOfDate(std::string_view text);
 /// Midnight of "2011-09-26".
 std::optional<Stamp> stampOfDay(std::string_view text);
 
-/// Steps of MRPT's clock.
+/// Resolution of MRPT's clock.
 inline constexpr std::int64_t kTickNs = 100;
-/// first + k / rate, rounded to MRPT's steps.
+/// first + k / rate, rounded to kTickNs.
 Stamp stampAtRate(Stamp first, std::int64_t k, double rate);
 
-/// Where recordings without a date begin: 2011-09-26 12:00:00 UTC, the day of most of KITTI's.
+/// Start of recordings without a date: 2011-09-26 12:00:00 UTC, the day of most of KITTI's.
 inline constexpr Stamp kUndatedStart{1317038400LL * 1'000'000'000};
 
 }  // namespace perception

@@ -11,30 +11,30 @@ class App;
 
 namespace perception {
 
-/// A format of others: its own options, and the import. Throws Error (kUsage), DataError (with file
-/// and line), OutputError.
+/// Importer of one recording format: its options and the import. Methods throw Error (kUsage),
+/// DataError (with file and line), OutputError.
 class Importer {
  public:
   virtual ~Importer() = default;
-  /// The options beside those of ImportOptions.
+  /// Declares the options of the format, besides ImportOptions.
   virtual void declare(CLI::App& cli) = 0;
-  /// Before the log is opened: the format's own defaults for what the command line does not say.
+  /// Sets format-specific defaults of options not given on the command line; called before the log
+  /// is opened.
   virtual void prepare(ImportOptions&) {}
   virtual void run(ImportLog& log) = 0;
 };
 
-/// Options of ImportOptions that not every format can use: a recording with stamps has its rate.
+/// Options of ImportOptions that only some formats use.
 enum SharedOption : unsigned { kUsesRate = 1, kUsesImages = 2, kUsesRepeat = 4 };
 
-/// A row per sub-command of perception-import.
+/// Registry entry: a sub-command of perception-import.
 struct ImporterRow {
   const char* name;
   const char* description;
-  unsigned uses;  ///< SharedOption; --first and --last are everybody's
+  unsigned uses;  ///< SharedOption flags; all formats have --first and --last
   std::unique_ptr<Importer> (*make)();
 };
-/// The table: one row a format. A program that brings a format of its own adds a row before it
-/// runs.
+/// Registry of formats. A program may append rows before runApp().
 std::vector<ImporterRow>& importers();
 
 std::unique_ptr<Importer> makeKittiImporter();
@@ -49,7 +49,7 @@ std::unique_ptr<Importer> makeImagesImporter();
 std::unique_ptr<Importer> makeNmeaImporter();
 std::unique_ptr<Importer> makeGpxImporter();
 
-/// Throws Error (kUsage): the command line is wrong.
+/// Throws Error (kUsage).
 [[noreturn]] void failUsage(const std::string& message);
 
 }  // namespace perception

@@ -11,8 +11,7 @@
 namespace perception {
 namespace {
 
-/// The layout goes by the name of the detector, or by what stands before its first dash
-/// (kitti2d-mine).
+/// The layout is given by the detector's name, or its part before the first dash (kitti2d-mine).
 const KittiDetectionLayout& layoutOf(const std::string& name) {
   const std::string base = name.substr(0, name.find('-'));
   std::string known;

@@ -10,16 +10,16 @@
 
 namespace perception {
 
-/// NAME:CLASS=FILE of the command line. Throws Error (kUsage).
+/// Parses NAME:CLASS=FILE of the command line. Throws Error (kUsage).
 KittiImportParams::Detections kittiDetectionsOf(const std::string& text);
 
 /// The boxes of all detectors of a sequence, by frame.
 class KittiDetections {
  public:
-  /// Reads a file; several files of one name become one detector. Throws Error (kUsage) for a name
+  /// Reads a file; files of the same name are one detector. Throws Error (kUsage) for a name
   /// without a known layout, DataError.
   void add(const KittiImportParams::Detections& wanted);
-  /// An entry a detector, also without any object: that nothing was found is a detection, too.
+  /// Writes one observation per detector, also without objects: an empty list is information.
   void write(std::int64_t frame, Stamp stamp, const KittiCalibration& calibration,
              const Pose3& T_ego_velo, ImportLog& log) const;
 

@@ -16,8 +16,8 @@ namespace {
 
 using Matrix34 = Eigen::Matrix<double, 3, 4>;
 
-/// KITTI's rectified images differ in size from day to day, and no calibration file says so; the
-/// focal length tells the day (image sizes of the raw data's S_rect_02).
+/// The size of KITTI's rectified images depends on the day and is not in the calibration files; the
+/// focal length identifies the day (image sizes of the raw data's S_rect_02).
 struct ImageSize {
   double fx;          ///< [px]
   int width, height;  ///< [px]
@@ -219,7 +219,8 @@ std::vector<KittiLabel> readKittiDetections(const std::string& path, const std::
 
 LidarCloud readKittiScan(const std::string& path) {
   constexpr std::size_t kPointBytes = 16;
-  constexpr std::size_t kMostBytes = kPointBytes << 24;  // 16 million points: no scanner has them
+  constexpr std::size_t kMostBytes = kPointBytes
+                                     << 24;  // 16 million points: more than any scanner has
   const std::string bytes = readBytes(path, kMostBytes);
   if (bytes.size() % kPointBytes != 0) {
     throw DataError(fmt::format("{}: {} bytes, expected 16 a point (float32 x, y, z, intensity)",
@@ -243,8 +244,8 @@ LidarCloud readKittiScan(const std::string& path) {
 ObjectDetection::SpaceBox boxInVelodyne(const KittiBox& box, const KittiCalibration& calibration) {
   const Pose3 T_velo_cam0 = calibration.T_cam0_velo.inverse();
   // rotation_y turns the camera's x axis about its y axis, which points down. With ideal axes yaw =
-  // -rotation_y - pi/2; the axis itself also takes the fractions of a degree between the two
-  // instruments along.
+  // -rotation_y - pi/2; rotating the axis itself also includes the fractions of a degree between
+  // the two sensors.
   const Vector3 axis_cam(std::cos(box.rotation_y), 0, -std::sin(box.rotation_y));
   const Vector3 axis = T_velo_cam0.linear() * axis_cam;
   ObjectDetection::SpaceBox result;

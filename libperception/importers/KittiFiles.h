@@ -18,7 +18,7 @@ struct KittiCalibration {
   CameraModel camera;                     ///< of cam2
 };
 
-/// A 3D box as KITTI writes it, in cam0; all NaN for an area of the image alone.
+/// A 3D box as KITTI writes it, in cam0; all NaN for an image area (DontCare).
 struct KittiBox {
   double height = 0, width = 0, length = 0;  ///< [m]
   Vector3 bottom_center = Vector3::Zero();   ///< [m] cam0
@@ -34,7 +34,7 @@ struct KittiLabel {
   double alpha = 0;  ///< [rad] observation angle
   ObjectDetection::ImageBox image_box;
   std::optional<KittiBox> box;
-  double score = 1;  ///< of a detector's file
+  double score = 1;  ///< if from a detector
 };
 
 // All readers throw DataError: kNoInput when the file is missing, else with file, line and what was
@@ -49,23 +49,23 @@ std::vector<Pose3> readKittiPoses(const std::string& path, const std::string& fo
 /// file.
 std::vector<Pose3> readKittiOxts(const std::string& path);
 
-/// Truth, or detections in the same layout (with the score at the end, with or without the column
-/// of ids).
+/// Truth, or detections in the same layout (last column score, column of ids optional).
 std::vector<KittiLabel> readKittiLabels(const std::string& path);
 
-/// Truth of one frame in the layout of the object benchmark: no frame, no id (ids count the lines).
+/// Truth of one frame in the layout of the object benchmark: without frame and id columns (ids are
+/// line numbers).
 std::vector<KittiLabel> readKittiObjectLabels(const std::string& path, std::int64_t frame);
 
-/// Detections of one file, by frame: what is known of each in KITTI's terms. A row's type that is
-/// not `class_name` is left out unless `class_name` is "all". Layouts: see kittiDetectionLayouts().
+/// Detections of one file, by frame. Rows whose type is not `class_name` are skipped unless
+/// `class_name` is "all". Layouts: see kittiDetectionLayouts().
 std::vector<KittiLabel> readKittiDetections(const std::string& path, const std::string& layout,
                                             const std::string& class_name);
 
-/// A detector whose files can be read.
+/// File layout of a detector.
 struct KittiDetectionLayout {
   const char* name;
   bool space_boxes;  ///< 3D boxes (modality L), otherwise image boxes (modality C)
-  bool has_alpha;    ///< the observation angle means something
+  bool has_alpha;    ///< the observation angle is valid
 };
 const std::vector<KittiDetectionLayout>& kittiDetectionLayouts();
 

@@ -24,8 +24,8 @@ struct TimedFile {
   Stamp stamp;
 };
 
-/// The files of a folder with a time; the others are left out with a warning. `wanted`: of the
-/// frames that are wanted alone.
+/// The files of a folder that have a time; others are skipped with a warning. `wanted`: only frames
+/// within --first and --last.
 std::vector<TimedFile> timedFiles(const std::filesystem::path& folder,
                                   const std::vector<std::string>& endings, const FrameTimes& times,
                                   bool wanted, ImportLog& log);
@@ -33,17 +33,17 @@ std::vector<TimedFile> timedFiles(const std::filesystem::path& folder,
 /// A scan of the lidar. Throws DataError.
 LidarCloud readRadiateScan(const std::string& path);
 
-/// The fixes with a time, those left out while their clock was set back counted. Throws DataError.
+/// GPS fixes by steadyFixes(), `dropped` increased by those skipped. Throws DataError.
 std::vector<GpsFix> readRadiateFixes(const std::filesystem::path& dir, std::size_t& dropped);
 
-/// The annotations of a sequence's folder; empty: none.
+/// Path of the annotations of a sequence; empty: none.
 std::string radiateAnnotationFile(const std::filesystem::path& dir);
 
 /// A box of the annotations, in pixels of Navtech_Cartesian.
 struct RadiateAnnotation {
   std::int64_t id = 0;
   std::string type;
-  double x = 0, y = 0, width = 0, length = 0;  ///< [px] top left corner and size before turning
+  double x = 0, y = 0, width = 0, length = 0;  ///< [px] top left corner and size before rotation
   double rotation = 0;                         ///< [deg] counter-clockwise about the center
 };
 
@@ -58,7 +58,7 @@ struct RadiateCalibration {
   std::vector<double> distortion;  ///< k1 k2 p1 p2 k3
 };
 
-/// Throws DataError: missing (kNoInput), or without what is needed.
+/// Throws DataError: missing (kNoInput), or incomplete.
 RadiateCalibration readRadiateCalibration(const std::string& path);
 
 }  // namespace perception

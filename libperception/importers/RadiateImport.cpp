@@ -26,23 +26,21 @@ constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kRadarLabel = "RADAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
 const std::vector<std::string> kScanEndings = {".csv", ".csv.gz"};
-/// [s] Radar frames that are older than the first fix by less go on with its velocity.
+/// [s] Radar frames up to this much older than the first fix are extrapolated with its velocity.
 constexpr double kBeforeFirstPose = 1;
-/// [s] of lidar scans that find the shift of the GPS clock.
+/// [s] of lidar scans for the estimation of the GPS clock offset.
 constexpr double kShiftScans = 4;
-/// [s] How far the shift is looked for about that with which both recordings begin at once.
+/// [s] Search range of the offset about the one at which both recordings begin together.
 constexpr double kShiftReach = 5;
 
-/// What is read of a folder, and what the recording does not say.
+/// Options: parts of the folder to read, and parameters that the recording lacks.
 struct RadiateParams {
   std::string dir;
   double lidar_height = 2.05;  ///< [m] road returns lie so far below the lidar (frame 28)
-  /// [s] The radar's stamps are later than its pictures: at 10 m/s they fit the lidar's returns
-  /// when these are moved 2.0 m ahead (correlation over radar frames 3, 8, 13, 17). A turn takes
-  /// 0.25 s.
+  /// [s] Delay of the radar's stamps: at 10 m/s its images match the lidar's returns moved 2.0 m
+  /// ahead (correlation over radar frames 3, 8, 13, 17). One revolution takes 0.25 s.
   double radar_delay = 0.2;
-  /// [s] added to GPS stamps, whose clock is not synchronized; empty: that which makes the lidar's
-  /// scans agree.
+  /// [s] added to GPS stamps, whose clock is not synchronized; empty: by clockShift().
   std::optional<double> gps_shift;
   RadarPictureParams radar;
   bool radar_images = false;  ///< also as images
@@ -157,8 +155,8 @@ void RadiateImporter::addLidar(ImportLog& log) {
 void RadiateImporter::addImages(ImportLog& log) {
   if (!fs::exists(path("zed_left"))) return;
   const FrameTimes times = readRadiateTimes(path("zed_left.txt"));
-  // Optical axes: x right, y down, z ahead; the calibration's turn of a degree is left out, since
-  // its order is not documented.
+  // Optical axes: x right, y down, z ahead; the calibration's rotation of a degree is ignored,
+  // since its convention is not documented.
   Pose3 T_ego_camera = makePose(calibration_.camera.y(), -calibration_.camera.x(),
                                 radar_height_ + calibration_.camera.z(), 0);
   T_ego_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -176,7 +174,7 @@ void RadiateImporter::addImages(ImportLog& log) {
   }
 }
 
-/// The shift of the GPS clock that makes the scans in the middle of the wanted part agree.
+/// Offset of the GPS clock, by clockShift() of scans in the middle of the imported part.
 double RadiateImporter::gpsShift(const std::vector<GpsFix>& fixes, ImportLog& log) const {
   const FrameTimes times = readRadiateTimes(path("velo_lidar.txt"));
   const double at_once = times.begin()->second - fixes.front().stamp;

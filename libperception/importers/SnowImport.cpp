@@ -49,7 +49,7 @@ const SnowDataSet kWads = {2.17,
 const SnowDataSet kSnowyKitti = {
     kKittiVelodyneHeight, 120, {{0, "surface"}, {1, "snow (simulated)"}}};
 
-/// Scans of such a set; its labels, which no sensor would know, go beside the log and not into it.
+/// Imports such a data set; point labels are truth and written beside the log, not into it.
 class SnowImporter final : public Importer {
  public:
   explicit SnowImporter(const SnowDataSet& set) : set_(set) {}

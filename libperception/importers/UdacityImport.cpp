@@ -13,9 +13,10 @@ namespace {
 
 constexpr const char* kLaserLabel = "LASER";
 constexpr const char* kRadarLabel = "RADAR";
-/// [m] A point as a box: front ends want sizes above 0. `sizes = false` leaves them out.
+/// [m] Size of a point as a box, since front ends require sizes above 0; `sizes = false` ignores
+/// them.
 constexpr double kPointSize = 0.1;
-/// [m/s] below it a velocity tells no heading.
+/// [m/s] speed below which the velocity does not determine a heading.
 constexpr double kHeadingSpeed = 0.1;
 
 /// One line: L x y t or R range bearing rate t [us], then truth x y vx vy [yaw yaw_rate].

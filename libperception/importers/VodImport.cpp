@@ -21,10 +21,10 @@ namespace {
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kRadarLabel = "RADAR_FRONT";
 constexpr const char* kImageLabel = "CAMERA_FRONT";
-/// [m] The lidar stands level so high above the plane of the poses: z of odomToCamera *
-/// Tr_velo_to_cam (1.6501); road returns of the example frames lie 1.6 m below it.
+/// [m] Height of the level lidar above the plane of the poses: z of odomToCamera * Tr_velo_to_cam
+/// (1.6501); road returns of the example frames lie 1.6 m below it.
 constexpr double kLidarHeight = 1.65;
-/// [s] before and after a frame that stands alone: poses that carry the vehicle's velocity.
+/// [s] before and after an isolated frame: poses that give the ego velocity.
 constexpr double kVelocityStep = 0.1;
 
 /// Where the parts of a recording lie: in the example set, in the whole data set.
@@ -154,7 +154,7 @@ void VodImporter::writeTruth(const Frame& frame, Stamp stamp, const Pose3& T_wor
     if (!label.box) continue;
     TruthObject o;
     o.frame = frame.number;
-    // The published labels carry no identities: one for each frame and line.
+    // The published labels have no ids: one for each frame and line.
     o.id = frame.number * 1000 + label.id;
     o.type = label.type == "truck" ? "Truck" : label.type;
     o.occluded = std::max(0, label.occluded);

@@ -43,7 +43,9 @@ void ObjectClass::visit(ParamVisitor& v) {
   v.real("height_sigma", height_sigma, {0.001, 10}, "m", "spread of the height over objects");
   v.real("prior", prior, {1e-6, 1}, "", "share among newborn objects");
   v.real("max_speed", max_speed, {0, 100}, "m/s", "largest plausible speed");
-  v.boolean("reported", reported, "false: neither true nor false in an evaluation");
+  v.boolean("reported", reported,
+            "false: not a road user, but still in tracks.csv; the KITTI export and "
+            "perception-calibrate use it, perception-evaluate takes --unnamed instead");
   v.text("kitti_type", kitti_type, "type in KITTI exports");
 }
 

@@ -29,7 +29,9 @@ struct ObjectClass {
   double prior = 0.2;       ///< share among newborn objects; normalized over the table
   double max_speed = 60;    ///< [m/s] largest plausible speed; bounds that of newborns
   bool reported =
-      true;  ///< false: an object, but neither true nor false in an evaluation (static-other)
+      true;  ///< false: not a road user (static-other). Tracked and output as any object. KITTI
+             ///< export: see KittiSelection::road_user_from; perception-calibrate tempering adds
+             ///< its truth; perception-evaluate does not read it: EvaluationOptions::unnamed
   std::string kitti_type = "Misc";  ///< type written by the KITTI export
 
   std::size_t modes() const { return mode_accel_psd.size(); }  ///< 0: a single model

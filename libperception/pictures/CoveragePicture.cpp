@@ -92,7 +92,7 @@ void drawOwnCar(Canvas& canvas, const Scale& scale) {
   const Vector2 middle = scale({1.3, 0});
   if (scale.pixels * 5 > 12) {
     drawPolygon(canvas, scale, footprint({0, 0}, 0, kEgoFront, kEgoRear, kEgoWidth), kEgo);
-  } else {  // too small to be seen in scale: a sign
+  } else {  // too small to scale: a symbol
     canvas.polygon({{middle.x() + 9, middle.y()},
                     {middle.x() - 6, middle.y() - 5},
                     {middle.x() - 6, middle.y() + 5}},

@@ -12,7 +12,7 @@ namespace perception {
 namespace {
 
 constexpr double kText = 9;      // [px] height of capitals
-constexpr double kFaint = 0.35;  // boxes that are rather wrong
+constexpr double kFaint = 0.35;  // opacity of boxes of probability < .5
 constexpr Color kTruth{255, 255, 255, 0.9};
 
 Color colorOf(const std::string& label) {
@@ -71,7 +71,7 @@ Picture detectionPicture(const Raster& image, const std::vector<ObjectDetection>
     if (!o->image_box) continue;
     Color color = colorOf(o->label);
     if (calibrated && o->score < 0) color.alpha = kFaint;
-    // In a panorama a box may reach over the right end: its rest stands at the left one.
+    // In a panorama a box may extend over the right border: the rest is drawn at the left one.
     for (const double shift : {0.0, -static_cast<double>(image.width)}) {
       auto b = *o->image_box;
       b.x1 += shift, b.x2 += shift;

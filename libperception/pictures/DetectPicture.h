@@ -6,8 +6,8 @@
 
 namespace perception {
 
-/// The image with the detector's boxes, what it takes them for and how sure it is, an arrow for
-/// each heading, and the labels as dashed boxes. `calibrated`: scores are log-odds.
+/// The image with the detector's boxes, labels and scores, an arrow for each heading, and the truth
+/// as dashed boxes. `calibrated`: scores are log-odds.
 Picture detectionPicture(const Raster& image, const std::vector<ObjectDetection>& objects,
                          const std::vector<LabeledBox>& truth, bool calibrated);
 

@@ -28,7 +28,7 @@ void addTruth(const GroundTruth& truth, SceneView& result) {
   for (const TruthObject& object : best->objects) {
     if (!object.position.allFinite() || object.ignore) continue;
     TruthObject& drawn = result.truth.emplace_back(object);
-    // What the truth leaves open is drawn small: radars' labels have no height, points no size.
+    // Unknown sizes of the truth are drawn small: radar labels have no height, points no size.
     for (double* size : {&drawn.length, &drawn.width, &drawn.height}) {
       if (!(*size > 0)) *size = kUnknownSize;
     }

@@ -8,24 +8,25 @@
 
 namespace perception {
 
-/// [s] A scene farther from the asked time is not of it: half the period of a scene a second.
+/// [s] Largest distance in time of a scene from the requested time: half the period of 1 Hz.
 inline constexpr double kNearestScene = 0.51;
 
-/// The scene nearest to the stamp; the run has one at least.
+/// Index of the scene nearest to the stamp; the run must have a scene.
 std::size_t nearestScene(const TrackedRun& run, Stamp stamp);
-/// The scene at a time since the log's first stamp [s]. Throws Error (kUsage): none near.
+/// Index of the scene at t [s] since the log's first stamp. Throws Error (kUsage) if none is near.
 std::size_t sceneAt(const TrackedRun& run, double t);
-/// The scene of a frame number. Throws Error (kUsage): there is none.
+/// Index of the scene of a frame number. Throws Error (kUsage) if there is none.
 std::size_t sceneOfFrame(const TrackedRun& run, std::int64_t number);
-/// The scenes between two times since the log's first stamp [s]. Throws Error (kUsage): none.
+/// Scenes between two times [s] since the log's first stamp. Throws Error (kUsage) if there are
+/// none.
 std::vector<std::size_t> scenesBetween(const TrackedRun& run, double from, double to);
-/// A scene every so many seconds [s], the first among them; 0: all. The run has one at least.
+/// One scene every `every` seconds, beginning with the first; 0: all. The run must have a scene.
 std::vector<std::size_t> scenesEvery(const TrackedRun& run, double every);
-/// `count` of `all`, evenly spread, the first and the last among them.
+/// `count` of `all`, evenly spaced, including the first and the last.
 std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t count);
 
-/// What a picture of the scene shows of the run alone: objects, trails and, by frame number where
-/// both have one, else by time, the truth. `truth` may be null.
+/// View of a scene without sensor data: objects, trails and, by frame number if both have one, else
+/// by time, the truth. `truth` may be null.
 SceneView viewOfScene(const TrackedRun& run, std::size_t index, const GroundTruth* truth);
 
 }  // namespace perception

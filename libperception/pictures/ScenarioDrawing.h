@@ -6,21 +6,22 @@
 
 namespace perception {
 
-// What pictures of scenarios and of vehicles' sensors share.
+// Drawing functions for pictures of scenarios and sensor coverage.
 
 inline constexpr double kEgoFront = 4.2, kEgoRear = 1.3, kEgoWidth = 2.0;  ///< [m] of the rear axle
 
-/// World or vehicle meters to pixels; y points up.
+/// Transform from world or ego frame [m] to pixels; y up.
 struct Scale {
-  Vector2 middle = Vector2::Zero();  ///< [m] at the panel's middle
-  Vector2 at = Vector2::Zero();      ///< [px] the panel's middle
+  Vector2 middle = Vector2::Zero();  ///< [m] position shown at the center of the panel
+  Vector2 at = Vector2::Zero();      ///< [px] center of the panel
   double pixels = 1;                 ///< [px/m]
   Vector2 operator()(const Vector2& p) const {
     return {at.x() + pixels * (p.x() - middle.x()), at.y() - pixels * (p.y() - middle.y())};
   }
 };
 
-/// Corners [m] of what reaches `front` and `rear` from `center` along `heading` [rad].
+/// Corners [m] of a rectangle that extends `front` ahead of and `rear` behind `center` along
+/// `heading` [rad].
 std::vector<Vector2> footprint(const Vector2& center, double heading, double front, double rear,
                                double width);
 

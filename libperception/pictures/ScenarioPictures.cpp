@@ -27,7 +27,7 @@ Color colorOfKind(ObjectKind k) {
   return colorOfClass(k == ObjectKind::kCyclist ? "cyclist" : "pedestrian", 0);
 }
 
-/// What the view must show [m]: the ways, without what lies far beyond the ego's.
+/// Extent of the view [m]: paths near that of the ego.
 struct Extent {
   Vector2 low = Vector2::Constant(1e9), high = Vector2::Constant(-1e9);
   void add(const Vector2& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
@@ -159,7 +159,7 @@ void drawScenario(Canvas& canvas, const Rect& area, const NamedScenario& named) 
   std::string text = s.params.description;
   while (!text.empty() && Canvas::textWidth(text, 9) > area.width - 4) text.pop_back();
   canvas.text({area.x + 2, area.y + 25}, text, 9, kMutedInk);
-  // A long street is cut into strips, the first one on top.
+  // A long street is split into strips, the first one on top.
   const Rect view{area.x, area.y + 30, area.width, area.height - 34};
   const int strips = std::clamp(
       static_cast<int>(std::lround(std::sqrt(size.x() / size.y() * view.height / view.width))), 1,

@@ -7,17 +7,17 @@
 
 namespace perception {
 
-/// What each sensor of a vehicle covers, one panel a modality with its own scale, the vehicle in
-/// the middle driving to the right (as the figure of [radecki2016]); names, ranges and rates below.
+/// Coverage of each sensor of a vehicle, one panel per modality with its own scale, the vehicle in
+/// the center facing right (as in the figure of [radecki2016]); names, ranges and rates below.
 Picture coveragePicture(const std::vector<SensorParams>& sensors, const std::string& title);
 
-/// A scenario as a reader of the INI would draw it.
+/// A scenario and its name.
 struct NamedScenario {
   std::string name;
   Scenario scenario;
 };
-/// Top views side by side: roads, what stands, ways of what moves with where it is at the start,
-/// half-way (filled) and at the end (arrow). World x to the right, y up.
+/// Top views side by side: roads, static objects, paths of moving objects with their positions at
+/// the start, half-way (filled) and at the end (arrow). World x to the right, y up.
 Picture scenarioSheet(const std::vector<NamedScenario>& scenarios);
 
 }  // namespace perception

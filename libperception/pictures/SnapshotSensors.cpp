@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kLastScan = 0.5;  // [s] after which returns are too old to be drawn
 constexpr double kLastImage = 1;   // [s]
-constexpr double kLookAhead = 3;   // [s] of log in which every sensor has spoken
+constexpr double kLookAhead = 3;   // [s] of log in which every sensor has had a frame
 constexpr double kMirrored =
     -0.3;                      // [m] lower returns are mirror images in a wet road (method.md 8.1)
-constexpr double kSteers = 2;  // [m/s] below it yaw rate and speed tell no curvature
+constexpr double kSteers = 2;  // [m/s] speed below which the curvature is undefined
 constexpr double kSharpest = 0.2;  // [1/m] of a car's steering
 
 // The vehicle on the ground plane: z = 0 is the ground.
@@ -39,7 +39,7 @@ bool hasImageBoxes(const ObjectDetections& detections) {
   return detections.objects.empty() || detections.objects.front().image_box.has_value();
 }
 
-// The camera of a frame, if it has one; an image is loaded where the log does not tell its size.
+// The camera of a frame, if it has one; an image is loaded if the log does not have its size.
 std::optional<CameraModel> cameraOf(const SensorFrame& frame) {
   if (const auto* boxes = std::get_if<ObjectDetections>(&frame.data)) {
     if (hasImageBoxes(*boxes)) return boxes->camera;
@@ -90,7 +90,7 @@ SnapshotSensors::SnapshotSensors(const std::string& log, const TrackedRun& run,
   lookAhead(log);
 }
 
-// A camera with images goes before one that has a detector's boxes alone.
+// Prefers a camera with images to one with boxes only.
 void SnapshotSensors::lookAhead(const std::string& log) {
   RawlogReader reader(log);
   std::optional<Stamp> first;
@@ -211,7 +211,8 @@ void SnapshotSensors::takeLidar(SensorFrame& frame) {
   ++scans_;
 }
 
-// What a still thing would show is taken off: the sensor's own motion, lever arm included.
+// Subtracts the range rate of a stationary object, i.e. the sensor's own motion, lever arm
+// included.
 void SnapshotSensors::addRadar(const SensorFrame& frame, SceneView& view) const {
   const Pose3 T = frame.T_world_sensor();
   const Vector3 arm = T.translation() - frame.ego.T_world_ego.translation();

@@ -15,22 +15,22 @@
 
 namespace perception {
 
-/// How the sensors of a log are drawn.
+/// Parameters of the drawing of sensor data.
 struct SnapshotSensorParams {
   GridParams grid;
   GroundParams ground;
   WeatherParams weather;
-  double memory = 5;  ///< [s] lidar scans so long before an instant fill the grid
+  double memory = 5;  ///< [s] lidar scans of this time before the instant are in the grid
   bool no_measurements = false;
-  std::string camera;  ///< label of the camera that is shown; empty: the first one with images
-  /// The site's sensors: which returns count, what the front ends take. Others are drawn with
-  /// default settings and without measurements.
+  std::string camera;  ///< label of the displayed camera; empty: the first one with images
+  /// Sensors of the site INI: returns used and measurements. Other sensors are drawn with default
+  /// settings and without measurements.
   std::vector<PipelineSetup::Sensor> sensors;
 };
 
-/// What the sensors of a log have seen up to an instant, for pictures of a run: the lidars' last
-/// returns and the safety grid over the seconds before, the radars' last returns, the last image,
-/// what the front ends took of them. The vehicle's places are the run's.
+/// Sensor data of a log up to an instant, for pictures of a run: last lidar returns and safety grid
+/// over the preceding seconds, last radar returns, last image, and the measurements of the front
+/// ends. Ego poses are those of the run.
 class SnapshotSensors {
  public:
   /// Reads the first seconds of the log for layers(). The run must outlive this.
@@ -38,25 +38,25 @@ class SnapshotSensors {
 
   /// Reads on to `stamp`, which must not go back.
   void advanceTo(Stamp stamp);
-  /// Adds what was seen at the last instant.
+  /// Adds the data of the last instant to the view.
   void fill(SceneView& view);
 
   const ViewLayers& layers() const { return layers_; }
   const SafetyGrid& grid() const { return *grid_; }  ///< as of the last instant
   const RawlogReader& reader() const { return reader_; }
-  std::uint64_t scans() const { return scans_; }    ///< put into the grid so far
-  std::uint64_t frames() const { return frames_; }  ///< of any sensor, at the run's times
-  /// Where the first image lay that was to be drawn and could not be loaded; empty: none.
+  std::uint64_t scans() const { return scans_; }    ///< number added to the grid so far
+  std::uint64_t frames() const { return frames_; }  ///< of any sensor, within the run's time
+  /// Path of the first image that could not be loaded; empty: none.
   const std::string& missingImage() const { return missing_image_; }
 
  private:
-  /// What goes on from scan to scan of one lidar.
+  /// State of one lidar from scan to scan.
   struct Lidar {
     GroundEstimator ground;
     std::unique_ptr<PointFilter> weather;
     std::vector<ViewPoint> points;  ///< of the last scan
   };
-  /// Which of a lidar's returns count, and as what.
+  /// Parameters for the returns of one lidar.
   struct LidarSettings {
     PointParams points;
     SurfaceParams surface;

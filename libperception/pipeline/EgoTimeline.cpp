@@ -8,7 +8,7 @@
 namespace perception {
 namespace {
 
-/// [m/s] growth of the position's deviation while no pose comes; assumed.
+/// [m/s] growth of the position's standard deviation without poses; assumed.
 constexpr double kGapDrift = 1.0;
 
 }  // namespace

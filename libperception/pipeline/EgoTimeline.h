@@ -7,25 +7,24 @@
 
 namespace perception {
 
-/// The vehicle at the instants of the frames, also where its pose is missing: before the first one,
-/// in gaps, in logs without any (method.md 1.4). Reports gaps as events.
+/// Ego state at the stamps of frames, also where poses are missing: before the first one, in gaps,
+/// in logs without poses (method.md 1.4). Reports gaps as events.
 class EgoTimeline {
  public:
   EgoTimeline(const EgoPoseParams& params, EventLog& events)
       : params_(params), events_(events), pose_(params) {}
 
   void add(const mrpt::obs::CObservation& observation) { pose_.add(observation); }
-  /// True once after the world frame changed while tracks were about: in another one they are
-  /// nowhere.
+  /// True once after the world frame has changed, so that all tracks must be deleted.
   bool changedFrame(Stamp stamp);
-  /// True when nothing was seen for longer than blind_gap and no pose tells how the vehicle moved:
-  /// a vehicle that is only taken to stand may be anywhere after a while. What is seen now would be
-  /// paired with what stood there before, and look as if it had run.
+  /// True when there was no frame for longer than blind_gap and no pose: the vehicle is then only
+  /// assumed to stand still, so that new measurements could be associated with tracks at wrong
+  /// places.
   bool isBlindGap(Stamp stamp);
   EgoState at(Stamp stamp);
-  /// Frames of this instant were used.
+  /// A frame of this stamp was used.
   void setSeen(Stamp stamp) { last_seen_ = stamp; }
-  /// Forgets everything, as after a jump of the clock.
+  /// Clears all state, as after a clock jump.
   void clear();
 
  private:
@@ -33,8 +32,8 @@ class EgoTimeline {
   EventLog& events_;
   EgoPose pose_;
   std::optional<Stamp> last_seen_;
-  std::uint64_t frame_epoch_ = 0;  ///< EgoPose::frameEpoch() that the tracks live in
-  bool none_reported_ = false;     ///< that there is no pose yet
+  std::uint64_t frame_epoch_ = 0;  ///< EgoPose::frameEpoch() of the tracks
+  bool none_reported_ = false;     ///< the event "no pose yet"
   bool in_gap_ = false;
 };
 

@@ -11,29 +11,29 @@
 
 namespace perception {
 
-/// Puts sensor frames into the order of time: holds them for a window, because sensors report late
-/// (method.md 1.2). Frames of one instant come out together, by label. The result does not depend
-/// on the order of arrival within the window.
+/// Reorder buffer: sorts sensor frames by stamp within a window, since sensors report late
+/// (method.md 1.2). Frames of one stamp are returned together, sorted by label. The result does not
+/// depend on the order of arrival within the window.
 class FrameQueue {
  public:
   struct Params {
-    double window = 0.2;     ///< [s] how late a frame may come
-    std::size_t limit = 70;  ///< frames held at most; the oldest go early beyond it
+    double window = 0.2;     ///< [s] largest delay of a frame
+    std::size_t limit = 70;  ///< most frames held; beyond it the oldest are returned early
   };
   enum class Verdict { kTaken, kTooLate, kDuplicate };
 
   explicit FrameQueue(Params params) : params_(params) {}
 
   Verdict push(SensorFrame frame);
-  /// Time has come to `stamp` even if no frame says so (poses, other entries of the log).
+  /// Advances the time to `stamp`, as entries of the log other than frames do.
   void advance(Stamp stamp);
-  /// All frames of the oldest instant, once nothing older can come; with `flush` at once.
+  /// All frames of the oldest stamp once its window has passed; with `flush` at once. Empty: none.
   std::vector<SensorFrame> pop(bool flush);
-  /// Takes frames up to `until` whose label `wanted` accepts, in the order of time, before their
-  /// turn.
+  /// Removes frames up to `until` whose label `wanted` accepts, in chronological order, before
+  /// their window has passed.
   std::vector<SensorFrame> take(Stamp until, const std::function<bool(const std::string&)>& wanted);
   bool empty() const { return frames_.empty(); }
-  /// Forgets everything, as after a jump of the clock.
+  /// Clears all state, as after a clock jump.
   void clear();
 
  private:

@@ -13,7 +13,7 @@
 namespace perception {
 namespace {
 
-// Keeps what passes through.
+// Records all scans and scenes.
 class Recorder : public PipelineObserver {
  public:
   explicit Recorder(RecordedLog& log) : log_(log) {}
@@ -47,7 +47,7 @@ RecordedLog recordLog(const std::string& log, Config& config, double seconds,
   recorded.model = setup.model;
   recorded.particles = setup.particles;
   recorded.scene = setup.scene;
-  // What is tracked meanwhile is not looked at: the cheapest way.
+  // The tracks are not used: cheapest settings.
   if (!setup.model.params.sampled_births) setup.model.proposal = Proposal::kNearest;
   setup.particles.sample_size = 1;
 

@@ -11,15 +11,15 @@
 
 namespace perception {
 
-/// Changes an observation between log and front end.
+/// Modifies an observation before its front end.
 using ObservationEdit = std::function<void(mrpt::obs::CObservation&)>;
 
-/// Reads a log once through the front ends of a configuration. `seconds` of it; 0 = all. Throws
-/// DataError when no scene comes of it.
+/// Reads the first `seconds` of a log (0 = all) through the front ends of a configuration. Throws
+/// DataError when there is no scene.
 RecordedLog recordLog(const std::string& log, Config& config, double seconds,
                       const ObservationEdit& edit = {});
 
-/// What the sensor of a scan is expected to see, by its section of the INI.
+/// Description of the sensor of a scan, from its section of the INI.
 RecordedSensor describeSensor(const PipelineSetup& setup, const MeasurementScan& scan);
 
 }  // namespace perception

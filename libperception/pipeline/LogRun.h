@@ -14,27 +14,27 @@
 
 namespace perception {
 
-/// Where the results of one log go.
+/// Input and output paths of one run.
 struct LogRunFiles {
   std::string log, dir;
   std::string export_file;  ///< KITTI's tracking format; empty: none
 };
 
-/// One log tracked into one folder of results: read() first, then finish() and commit(), each once.
+/// Tracks one log into one result folder. Call read(), finish(), commit(), each once.
 class LogRun {
  public:
-  /// Throws DataError for the log, OutputError and Error for the folder.
+  /// Throws DataError for the log, OutputError or Error for the folder.
   LogRun(const PipelineSetup& setup, LogRunFiles files);
 
-  /// Reads the log to its end; `keep` is called with each scene.
+  /// Processes the log to its end; `keep` is called with each scene.
   void read(const std::function<void(const Scene&)>& keep);
-  /// Judges how it went. Returns what there is to warn of; throws DataError when nothing came of
-  /// it, or when the log is damaged and `strict`.
+  /// Returns warnings. Throws DataError when there is no scene, or when the log is damaged and
+  /// `strict`.
   std::vector<std::string> finish(bool strict);
-  /// Fills the record's figures of the log and writes all that remains; then the folder is whole.
+  /// Completes the record and writes the remaining files, done.json last.
   void commit(const std::string& effective_ini, int threads);
 
-  RunRecord record;  ///< program and configuration are the caller's
+  RunRecord record;  ///< program and configuration are set by the caller
   double wallSeconds() const { return timing_.wallSeconds(); }
   double realTimeFactor() const;  ///< seconds of log per second of work
 
@@ -48,7 +48,7 @@ class LogRun {
   const LogRunFiles files_;
   RawlogReader reader_;
   OutputFolder folder_;
-  std::string written_to_;  ///< the folder's files until they are whole
+  std::string written_to_;  ///< temporary folder until commit()
   EventLog events_;
   RunTiming timing_;
   Pipeline pipeline_;
@@ -57,7 +57,8 @@ class LogRun {
   std::optional<MeasurementRecorder> recorder_;
   std::optional<TrackedRunWriter> writer_;
   std::optional<KittiExport> kitti_;
-  std::vector<Scene> before_camera_;  ///< exports need a camera, and the log may show it late
+  std::vector<Scene>
+      before_camera_;  ///< scenes before the first camera observation, which exports need
 };
 
 }  // namespace perception

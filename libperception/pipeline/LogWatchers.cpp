@@ -16,8 +16,8 @@ void LogFacts::look(const mrpt::obs::CObservation& observation) {
   const auto frame = frameFromObservation(observation);
   const auto* detections = frame ? std::get_if<ObjectDetections>(&frame->data) : nullptr;
   if (!detections || detections->camera.width <= 0) return;
-  // Boxes in space come in another sensor's frame: the camera's pose is only known from pure
-  // image detections.
+  // 3D boxes are given in another sensor's frame: only pure image detections have the camera's
+  // pose.
   for (const auto& o : detections->objects) {
     if (o.space_box || !o.image_box) return;
   }

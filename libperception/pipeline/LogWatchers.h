@@ -14,8 +14,8 @@
 
 namespace perception {
 
-/// Watches a log go by for what the results need besides scenes: is it simulated, which camera do
-/// exports use.
+/// Facts of a log that results need besides scenes: whether it is simulated, and the camera for
+/// exports.
 struct LogFacts {
   bool simulated = false;
   std::optional<KittiCamera> camera;
@@ -23,7 +23,7 @@ struct LogFacts {
   void look(const mrpt::obs::CObservation& observation);
 };
 
-/// Says in events.jsonl when objects come and go, and counts them.
+/// Writes events when objects appear and disappear, and counts them.
 class ObjectEvents {
  public:
   ObjectEvents(const ClassTable& classes, EventLog& events) : classes_(classes), events_(events) {}
@@ -37,7 +37,7 @@ class ObjectEvents {
   std::set<std::uint64_t> born_, classified_, last_;
 };
 
-/// Records what the front ends hand to the filter.
+/// Writes the measurements of all scans to the filter (MeasurementRunWriter).
 class MeasurementRecorder : public PipelineObserver {
  public:
   MeasurementRecorder(const std::string& dir, const Pipeline& pipeline)

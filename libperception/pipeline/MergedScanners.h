@@ -6,9 +6,9 @@
 
 namespace perception {
 
-/// The frames of one instant, those of scanners that are one sensor (ScanParams::merge) as one
-/// frame: scans at most merge_window apart, at the newest one's time. Later scans are taken from
-/// the queue before their turn; a merged frame of a later instant goes back into it.
+/// Merges the frames of scanners that form one sensor (ScanParams::merge) into one frame: scans at
+/// most merge_window apart, at the stamp of the newest. Later scans are taken from the queue early;
+/// a merged frame with a later stamp is put back into it.
 std::vector<SensorFrame> mergeScanners(const std::vector<PipelineSetup::Sensor>& sensors,
                                        std::vector<SensorFrame> frames, FrameQueue& queue);
 

@@ -65,7 +65,7 @@ void OutputFolder::create() {
   const fs::file_status status = fs::status(path_, error);
   if (fs::is_directory(status)) return;
   if (fs::exists(status)) failCreating(path_, "a file of that name is there, expected a folder");
-  // Parent by parent, so that an unfinished run can take back exactly what it made.
+  // Parent by parent, so that an unfinished run removes exactly the folders that it created.
   fs::path folder;
   for (const auto& part : fs::path(path_)) {
     folder /= part;
@@ -81,14 +81,14 @@ void OutputFolder::create() {
 void OutputFolder::lock() {
   lock_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ < 0) failCreating(path_, std::strerror(errno));
-  // Some network disks cannot lock a folder; two runs are harmless there too: each renames whole
-  // files.
+  // Some network disks cannot lock a folder; two runs are safe there too, since each renames
+  // complete files.
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     throw Error(ExitCode::kTryAgain, fmt::format("{}: busy: another run writes into it", path_));
   }
 }
 
-// What a killed run of this host left. Others may be at work from other hosts on a shared disk.
+// Removes files of killed runs on this host only: on a shared disk other hosts may be writing.
 void OutputFolder::removeLeftovers() const {
   const std::string prefix = fmt::format("{}{}.", kTemporaryPrefix, hostName());
   std::error_code error;
@@ -106,7 +106,7 @@ void OutputFolder::removeLeftovers() const {
 void OutputFolder::removeTemporaries() noexcept {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  if (!committed_) {  // rmdir leaves alone what is not empty
+  if (!committed_) {  // rmdir does not remove folders that are not empty
     for (auto i = made_.rbegin(); i != made_.rend(); ++i) ::rmdir(i->c_str());
   }
   made_.clear();

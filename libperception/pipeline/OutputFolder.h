@@ -5,10 +5,10 @@
 
 namespace perception {
 
-/// A folder of results whose files are whole or absent: they are written into a dot folder
-/// inside it and renamed into place by commit(). Until then results of an earlier run stay as they
-/// are; without commit() nothing is left, the folder itself included when it was made here. One run
-/// at a time writes into a folder (lock of the same host).
+/// A result folder whose files are complete or absent: they are written into a hidden folder inside
+/// it and renamed into place by commit(). Until then results of an earlier run are unchanged;
+/// without commit() all files are removed, and the folder if it was created here. One run at a time
+/// writes into a folder (lock on the same host).
 class OutputFolder {
  public:
   /// Creates the folder. Throws OutputError (kCannotCreate) with path and reason, Error (kTryAgain)
@@ -19,14 +19,14 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   const std::string& path() const { return path_; }
-  /// Where to write the file that will be `name` (relative; may hold folders, which are made).
+  /// Temporary path of the file that commit() renames to `name` (relative; folders are created).
   std::string pathFor(const std::string& name);
-  /// Throws OutputError (kIoError) with path and free bytes when the disk has fewer than `bytes`
-  /// [bytes] left.
+  /// Throws OutputError (kIoError) with path and free space when less than `bytes` [bytes] are free
+  /// on the disk.
   void requireSpace(std::uint64_t bytes) const;
-  /// Hands all files to the disk and renames them into place, `last` as the last; an earlier `last`
-  /// is removed first, so that it never stands beside files of two runs. Throws OutputError
-  /// (kIoError) also for a file that was never written.
+  /// Syncs all files to disk and renames them into place, `last` as the last one; the `last` of an
+  /// earlier run is removed first, so that it never exists beside files of two runs. Throws
+  /// OutputError (kIoError), also for a file that was not written.
   void commit(const std::string& last = "done.json");
 
  private:
@@ -39,9 +39,9 @@ class OutputFolder {
   void moveIntoPlace(const std::string& name) const;
 
   std::string path_, temporary_;
-  std::vector<std::string> made_;   ///< folders made here, outermost first
-  std::vector<std::string> names_;  ///< files promised, in the order of pathFor()
-  int lock_ = -1;                   ///< the folder's descriptor, locked
+  std::vector<std::string> made_;   ///< folders created here, outermost first
+  std::vector<std::string> names_;  ///< of the files, in the order of pathFor()
+  int lock_ = -1;                   ///< file descriptor of the folder, locked
   bool committed_ = false;
 };
 

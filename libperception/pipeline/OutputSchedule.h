@@ -9,11 +9,11 @@
 
 namespace perception {
 
-/// When scenes are made: at the scans of one sensor or at a fixed rate, and how long each waits for
-/// what is seen after it.
+/// Stamps of the scenes: at the scans of one sensor or at a fixed rate, delayed by the smoothing
+/// lag.
 class OutputSchedule {
  public:
-  /// An instant of which a scene is made.
+  /// A scene to be made.
   struct Instant {
     EgoState ego;
     std::int64_t frame = -1;
@@ -21,19 +21,20 @@ class OutputSchedule {
 
   OutputSchedule(const RunParams& run, const std::vector<PipelineSetup::Sensor>& sensors);
 
-  /// Place of the output sensor: the one named in [run], else the first in use of the modality with
-  /// the largest output_rank.
+  /// Index of the output sensor: the one named in [run] output_sensor, else the first one in use of
+  /// the modality with the largest output_rank.
   std::size_t sensor() const { return sensor_; }
-  /// An instant with frames; `of_sensor`: one of them of the output sensor. True when a scene is to
-  /// be made of it.
+  /// Whether a scene is due at the stamp of frames just processed; `of_sensor`: one of them is of
+  /// the output sensor.
   bool isOutput(Stamp stamp, bool of_sensor);
-  /// The next instant of the fixed rate before this one, once each.
+  /// The next stamp of the fixed rate before this one; each is returned once.
   std::optional<Stamp> takeBefore(Stamp stamp);
 
   void push(const EgoState& ego, std::int64_t frame) { waiting_.push_back({ego, frame}); }
-  /// The oldest instant whose lag is over; without `now` the oldest, as no more will be seen.
+  /// The oldest waiting instant whose lag has passed at `now`; without `now` (end of log) the
+  /// oldest.
   std::optional<Instant> takeDue(std::optional<Stamp> now);
-  /// Begins anew, as after a jump of the clock; those that wait stay.
+  /// Restarts the fixed rate, as after a clock jump; waiting instants are kept.
   void restart() { next_.reset(); }
 
  private:

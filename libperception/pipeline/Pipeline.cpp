@@ -42,7 +42,8 @@ void Pipeline::addTime(Stamp stamp) {
   if (last_stamp_.ns != 0 && last_stamp_ - stamp > setup_.run.clock_jump)
     startEpoch(stamp, last_stamp_ - stamp);
   if (last_stamp_.ns != 0 && stamp - last_stamp_ > setup_.run.clock_jump) {
-    // Before the first pose behind the gap comes: it would push the poses of these frames out.
+    // Before the first pose after the gap, which would remove the poses of these frames from the
+    // buffer.
     while (processNext(true)) continue;
     events_.add(stamp, event_kind::kClockJump,
                 fmt::format("nothing for {:.3f} s", stamp - last_stamp_));
@@ -102,7 +103,8 @@ std::optional<Scene> Pipeline::next(bool flush) {
   return scene;
 }
 
-/// The oldest instant, once nothing older can come; with `flush` at once. False: there is none.
+/// Processes the frames of the oldest stamp once its window has passed; with `flush` at once. False
+/// if there are none.
 bool Pipeline::processNext(bool flush) {
   auto popped = queue_.pop(flush);
   if (popped.empty()) return false;
@@ -154,7 +156,7 @@ void Pipeline::addOutput(const EgoState& ego, std::int64_t frame) {
   makeScenes(ego.stamp);
 }
 
-/// Those whose lag is over; without `now` all, as no more will be seen.
+/// Makes the scenes whose lag has passed; without `now` (end of log) all.
 void Pipeline::makeScenes(std::optional<Stamp> now) {
   const auto scope = timing_.stage("scene");
   while (const auto instant = outputs_.takeDue(now))

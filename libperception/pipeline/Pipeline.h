@@ -17,19 +17,18 @@
 
 namespace perception {
 
-/// Sees what passes through a pipeline, in order: to record it or to play it again.
+/// Observer of a pipeline's data flow, called in order, for recording and replay.
 class PipelineObserver {
  public:
   virtual ~PipelineObserver() = default;
   virtual void onScan(const MeasurementScan& scan) { (void)scan; }  ///< goes into the filter
-  /// A scene is taken for this instant.
+  /// A scene of this instant is due.
   virtual void onScene(const EgoState& ego, std::int64_t frame) { (void)ego, (void)frame; }
-  virtual void onRestart() {}  ///< all tracks are forgotten
+  virtual void onRestart() {}  ///< all tracks are deleted
 };
 
-/// From observations to scenes: the one place where sensors, front ends, filter and scene meet.
-/// Feed a log's observations with add(), take scenes with next() until it gives none, and at the
-/// end of the log again with `flush`.
+/// From observations to scenes: connects sensors, front ends, filter and scene. Call add() with
+/// each observation, then next() until it returns none; at the end of the log next() with `flush`.
 class Pipeline {
  public:
   Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing);
@@ -38,9 +37,9 @@ class Pipeline {
 
   void add(const mrpt::obs::CObservation& observation);
   std::optional<Scene> next(bool flush = false);
-  /// Reports what is only known at the end: sensors that never spoke, labels of no sensor.
+  /// Reports events known at the end of the log: sensors without frames, labels without a section.
   void finish() { watch_.finish(); }
-  /// Told from now on; null: none.
+  /// Called from now on; null: none. Not owned.
   void observe(PipelineObserver* observer) { observer_ = observer; }
 
   const CRbpfTracker& tracker() const { return tracker_; }

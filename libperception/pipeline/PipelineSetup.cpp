@@ -20,7 +20,7 @@ struct SensorSet {
 
 std::string wideWord(const ModalityRow& m) { return std::string(1, letterOf(m.letter)) + "/H"; }
 
-/// "C, C/H, L, R": what a set is made of.
+/// "C, C/H, L, R": elements of a set.
 std::string sensorWords() {
   std::string words;
   for (const ModalityRow& m : modalities()) {
@@ -30,7 +30,7 @@ std::string sensorWords() {
   return words;
 }
 
-/// Empty when the text is anything but sensorWords() joined by +.
+/// Empty unless the text is sensorWords() joined by +.
 std::optional<SensorSet> readSensorSet(const std::string& text) {
   SensorSet set;
   for (std::size_t at = 0; at <= text.size();) {
@@ -134,7 +134,7 @@ void RunParams::visit(ParamVisitor& v) {
           " joined by + (/H: headings as one wide Gaussian); "
           "--sensors wins")
              .c_str());
-  v.words("without", without, "labels of sensors that are left out all the same; none");
+  v.words("without", without, "labels of sensors to exclude from these; none");
   v.choiceOf(
       "association", association, associationNames(),
       "sampled: drawn from the optimal proposal; ranked: the k best assignments (MHT); nearest: "
@@ -145,10 +145,10 @@ void RunParams::visit(ParamVisitor& v) {
          "scenes at a fixed rate instead; 0: at scans; --rate wins");
   v.expert();
   v.real("output_lag", output_lag, {0, 10}, "s",
-         "scenes come so late, smoothed by what was seen meanwhile; 0: at once");
-  v.real("reorder_window", reorder_window, {0, 10}, "s", "how late an observation may come");
+         "lag of fixed-lag smoothing of the scenes; 0: none");
+  v.real("reorder_window", reorder_window, {0, 10}, "s", "largest delay of an observation");
   v.boolean("write_measurements", write_measurements,
-            "what the front ends found goes into measurements.csv, scans.csv and sensors.csv; "
+            "write the filter's input to measurements.csv, scans.csv and sensors.csv; "
             "--measurements wins");
 }
 

@@ -16,36 +16,38 @@
 
 namespace perception {
 
-/// A kind of front end: [sensor.LABEL] kind.
+/// Registry entry of a front end: [sensor.LABEL] kind.
 struct FrontEndRow {
   std::string kind;
   std::unique_ptr<FrontEnd> (*make)(Config&, const std::string& label, const ClassTable&);
 };
 
-/// The table: lidar, boxes, radar, positions. A program may add rows before it reads its
-/// configuration (and a row to modalities(), where the sensor is of none of them).
+/// Registry of front ends: lidar, boxes, radar, positions. A program may append rows before it
+/// reads its configuration, and register a new modality by addModality() (measurement/Modality.h).
 std::vector<FrontEndRow>& frontEnds();
 
-/// [run]: what is run on a log, and when scenes are output.
+/// [run]: sensors, association and output of a run.
 struct RunParams {
-  unsigned long long seed = 1;                ///< assumed: any number will do
+  unsigned long long seed = 1;                ///< of all random streams; assumed
   std::string sensors = "C+L+R";              ///< modalities in use: letters joined by +
-  std::vector<std::string> without;           ///< labels of sensors that are left out all the same
+  std::vector<std::string> without;           ///< labels of sensors excluded from those
   Proposal association = Proposal::kSampled;  ///< method.md 5.4, [radecki2016]
-  /// Scenes at its scans; empty: the first lidar in use, else the first sensor.
+  /// Label of the sensor at whose scans scenes are made; empty: the first lidar in use, else the
+  /// first sensor.
   std::string output_sensor;
-  double output_rate = 0;       ///< [Hz] instead: scenes at a fixed rate; 0: at scans
-  double output_lag = 0;        ///< [s] scenes come so late, smoothed (method.md 5.17); 0: at once
-  double reorder_window = 0.2;  ///< [s] how late an observation may come (method.md 1.2)
-  double sensor_timeout = 1;    ///< [s] of silence after which a sensor is lost; assumed
-  double clock_jump = 5;        ///< [s] back: a new epoch; forward: an event; assumed
-  bool write_measurements = false;  ///< what the front ends found goes into the results, too
+  double output_rate = 0;       ///< [Hz] scenes at a fixed rate instead; 0: at scans
+  double output_lag = 0;        ///< [s] lag of fixed-lag smoothing (method.md 5.17); 0: none
+  double reorder_window = 0.2;  ///< [s] largest delay of an observation (method.md 1.2)
+  double sensor_timeout = 1;    ///< [s] without frames after which a sensor is lost; assumed
+  double clock_jump =
+      5;  ///< [s] smallest clock jump; backward: a new epoch, forward: an event; assumed
+  bool write_measurements = false;  ///< write measurements.csv, scans.csv, sensors.csv
 
   static const std::vector<std::string>& associationNames();  ///< in the order of Proposal
   void visit(ParamVisitor& v);
 };
 
-/// All that a run reads from its INI.
+/// Everything that a run reads from its INI.
 struct PipelineSetup {
   /// One [sensor.LABEL].
   struct Sensor {
@@ -53,8 +55,8 @@ struct PipelineSetup {
     DetectionParams params;
     ScanParams scan;  ///< lidars
     std::shared_ptr<const FrontEnd> front_end;
-    bool active = false;        ///< its measurements are used: its modality is in use
-    bool gives_ground = false;  ///< its point clouds give the ground plane
+    bool active = false;        ///< its modality is in use and it is not excluded by `without`
+    bool gives_ground = false;  ///< the ground plane is estimated from its point clouds
 
     bool used() const { return active || gives_ground; }
   };
@@ -65,12 +67,12 @@ struct PipelineSetup {
   EgoPoseParams ego;
   GroundParams ground;
   WeatherParams weather;
-  GridParams grid;              ///< of the safety grid in pictures
+  GridParams grid;              ///< safety grid, for pictures
   std::vector<Sensor> sensors;  ///< in the order of the INI
 
-  /// Reads every section; faults go to the configuration (throw them with Config::finish()).
+  /// Reads all sections. Faults are collected in the configuration; Config::finish() throws them.
   static PipelineSetup read(Config& config);
-  /// The sensor whose own label, or that of a scanner merged into it, this is.
+  /// Index of the sensor with this label, or into which the scanner of this label is merged.
   std::optional<std::size_t> sensorOf(const std::string& label) const;
 };
 

@@ -4,8 +4,8 @@
 
 namespace perception {
 
-/// Listens to SIGINT and SIGTERM while it lives: the first one asks the run to end at the next
-/// frame, the second one kills as without this.
+/// Handles SIGINT and SIGTERM during its lifetime: the first signal requests the end of the run at
+/// the next frame, the second one has the default action.
 class StopSignals {
  public:
   StopSignals();
@@ -14,22 +14,21 @@ class StopSignals {
   StopSignals& operator=(const StopSignals&) = delete;
 };
 
-/// True once SIGINT or SIGTERM has arrived; long loops look at it between frames and call
-/// stopIfAsked().
+/// True once SIGINT or SIGTERM has arrived; long loops call stopIfAsked() between frames.
 bool stopAsked();
 /// Throws Error(kTryAgain) when stopAsked().
 void stopIfAsked();
 
-/// Wipes the progress bar off the last line of the terminal, where there is one: before a message.
+/// Erases the progress bar from the terminal, before a message.
 void clearProgressBar();
 
-/// A progress bar with rate and time left on a terminal; silent elsewhere.
+/// A progress bar with rate and remaining time; no output unless standard error is a terminal.
 class Progress {
  public:
   /// `total` in the unit of update() (bytes, frames); 0 = unknown.
   Progress(std::string what, std::uint64_t total);
   ~Progress();
-  void update(std::uint64_t done, std::uint64_t items);  ///< items: counted for the rate (frames)
+  void update(std::uint64_t done, std::uint64_t items);  ///< items: for the rate (frames)
 
  private:
   std::string what_;

@@ -25,7 +25,7 @@ TrackedRun replay(const RecordedLog& log, const ReplayMethod& method) {
   for (const RecordedLog::Entry& entry : log.entries) {
     switch (entry.kind) {
       case RecordedLog::Entry::kScan:
-        // A thread that waits must not take up another replay: MRPT resamples with the thread's
+        // A waiting thread must not start another replay: MRPT resamples with the thread's
         // generator, seeded before the scan.
         tbb::this_task_arena::isolate([&] { tracker.process(*entry.scan); });
         break;

@@ -10,8 +10,8 @@
 
 namespace perception {
 
-/// What a log's front ends hand to the filter, and when scenes are taken, in order: so that a log
-/// is read and seen once and tracked in many ways.
+/// The scans of a log and the instants of its scenes in order, so that a log is decoded once and
+/// tracked with several methods.
 struct RecordedLog {
   struct Entry {
     enum Kind { kScan, kScene, kRestart } kind = kScan;
@@ -28,15 +28,15 @@ struct RecordedLog {
   std::vector<Entry> entries;
 };
 
-/// A way to track a recorded log.
+/// Filter settings of a replay.
 struct ReplayMethod {
   Proposal proposal = Proposal::kSampled;
   int particles = 8;
   std::uint64_t seed = 1;
-  bool drawn_births = false;  ///< DUC's: birth or clutter is drawn, existence fades in 3 s
+  bool drawn_births = false;  ///< as in DUC: birth or clutter is sampled, existence decays in 3 s
 };
 
-/// The scenes that perception-track makes of the log with these settings.
+/// The same scenes as perception-track with these settings.
 TrackedRun replay(const RecordedLog& log, const ReplayMethod& method);
 
 /// Births of the tracker of the DARPA Urban Challenge (method.md 5.1, 5.9).

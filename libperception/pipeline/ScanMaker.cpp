@@ -5,8 +5,7 @@
 namespace perception {
 namespace {
 
-/// [s] for which what one sensor sees occluded holds for the others, too; assumed: two scans of a
-/// lidar.
+/// [s] for which an occlusion map is used for other sensors; assumed: two scans of a lidar.
 constexpr double kOcclusionMapAge = 0.2;
 
 }  // namespace

@@ -7,29 +7,28 @@
 
 namespace perception {
 
-/// Frames to scans: ground plane and trust in returns first, then the sensor's front end, and what
-/// one sensor found for the others: ground plane and occlusion.
+/// Converts frames to scans: ground plane, trust of lidar returns, then the sensor's front end.
+/// Passes ground plane and occlusion map of one sensor to the others.
 class ScanMaker {
  public:
   ScanMaker(const PipelineSetup& setup, RunTiming& timing);
 
-  /// Takes the frame's ground plane where the sensor gives it, and enters the newest one into the
-  /// frame.
+  /// Updates the ground plane if the sensor gives it, and sets the newest one in the frame.
   void addGround(std::size_t sensor, SensorFrame& frame);
-  /// After addGround(). Of sensors in use.
+  /// For sensors in use, after addGround().
   MeasurementScan measure(std::size_t sensor, SensorFrame& frame);
-  /// The world frame is another one.
+  /// Call when the world frame changes.
   void forgetOcclusion() { occlusion_.reset(); }
 
  private:
   struct Lidar {
-    std::unique_ptr<GroundEstimator> ground;  ///< null: not of this sensor
-    std::unique_ptr<PointFilter> weather;     ///< null: every return is trusted
+    std::unique_ptr<GroundEstimator> ground;  ///< null: this sensor does not give the ground plane
+    std::unique_ptr<PointFilter> weather;     ///< null: trust 1 for every return
   };
 
   const PipelineSetup& setup_;
   RunTiming& timing_;
-  std::vector<Lidar> lidars_;  ///< as setup_.sensors
+  std::vector<Lidar> lidars_;  ///< index as in setup_.sensors
   GroundPlane ground_;         ///< newest, ego frame
   std::shared_ptr<const OcclusionMap> occlusion_;
   Stamp occlusion_stamp_;

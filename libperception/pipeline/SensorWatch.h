@@ -11,31 +11,31 @@
 
 namespace perception {
 
-/// What each sensor contributed, and events about it: lost, back, missing, data dropped.
-/// `sensors` are those of the setup and outlive it; index: place in them.
+/// Statistics of each sensor, and events: lost, back, missing, data dropped. Indices refer to
+/// `sensors`, which must outlive this.
 class SensorWatch {
  public:
   /// `timeout` [s]: RunParams::sensor_timeout.
   SensorWatch(const std::vector<PipelineSetup::Sensor>& sensors, double timeout, EventLog& events);
 
-  /// An observation of a label that no [sensor.LABEL] has.
+  /// Counts an observation whose label has no [sensor.LABEL].
   void countIgnored(const std::string& label) { ++ignored_[label]; }
   void countDroppedPoints(std::size_t sensor, std::uint64_t points);
-  /// A frame that is not used; `warning`: worth a warning.
+  /// A frame that is not used; `warning`: severity of the event.
   void addDroppedFrame(std::size_t sensor, std::optional<Stamp> stamp, const char* event,
                        const std::string& why, bool warning);
-  /// A frame that was used, for its ground plane only where `scan` is null.
+  /// A frame that was used; `scan` is null if only for its ground plane.
   void addFrame(std::size_t sensor, Stamp stamp, const MeasurementScan* scan);
-  /// That sensor spoke at this instant.
+  /// The sensor had a frame at this stamp.
   void setSeen(std::size_t sensor, Stamp stamp);
-  /// Reports sensors that have been silent for longer than the timeout.
+  /// Reports sensors without frames for longer than the timeout.
   void check(Stamp now);
-  /// The clock has jumped to this instant: those of before say nothing, and who spoke before is
-  /// waited for from now on.
+  /// After a clock jump to `now`: clears the stamps of the last frames; sensors that had frames
+  /// before are expected from now on.
   void restart(Stamp now);
-  /// Reports what is only known at the end: sensors that never spoke, labels of no sensor.
+  /// Reports events known at the end of the log: sensors without frames, labels without a section.
   void finish();
-  /// Of the sensors used, in the order of the INI.
+  /// Of the sensors in use, in the order of the INI.
   std::vector<SensorRecord> records() const;
 
  private:
@@ -43,7 +43,7 @@ class SensorWatch {
     SensorRecord record;
     std::optional<Stamp> last;
     bool lost = false;
-    bool points_reported = false;  ///< that returns were dropped
+    bool points_reported = false;  ///< an event about dropped returns was written
   };
 
   const std::vector<PipelineSetup::Sensor>& sensors_;

@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// A color and how much of it covers what lies below.
+/// An RGBA color.
 struct Color {
   std::uint8_t r = 0, g = 0, b = 0;
   double alpha = 1;  ///< 0 = invisible
@@ -20,10 +20,10 @@ inline constexpr Color kBlue{0, 114, 178}, kVermilion{213, 94, 0}, kGreen{0, 158
     kPurple{204, 121, 167}, kOrange{230, 159, 0}, kSky{86, 180, 233}, kBlack{0, 0, 0};
 }  // namespace okabe_ito
 
-/// Color of a class in every picture, plot and page; classes that are not known by name share the
-/// rest of the palette by place.
+/// Color of a class in all pictures, plots and pages. Classes without a fixed color get one of the
+/// remaining palette by index `place`.
 Color colorOfClass(const std::string& name, int place);
-/// Classes that are drawn in gray: objects that are no road users (static-other).
+/// Classes drawn in gray because they are not road users (static-other).
 bool isMuted(const std::string& class_name);
 
 /// Color of the i-th of several curves.

@@ -10,14 +10,13 @@
 
 namespace perception {
 
-/// Whether an event is part of normal work or something that the user must know of (the run then
-/// ends with code 3).
+/// kWarning: the run ends with exit code 3.
 enum class Severity { kInfo, kWarning };
 
-/// The kinds of events that the programs write; a kind is a free word, these are the agreed ones.
+/// Event kinds written by the programs; any other string may be used, too.
 namespace event_kind {
 inline constexpr char kDroppedPoints[] = "dropped_points";  ///< NaN, infinite, negative, too far
-inline constexpr char kDroppedMeasurements[] = "dropped_measurements";  ///< covariance that is none
+inline constexpr char kDroppedMeasurements[] = "dropped_measurements";  ///< invalid covariance
 inline constexpr char kDroppedFrame[] = "dropped_frame";  ///< no stamp, no image, cannot be decoded
 inline constexpr char kOutOfOrder[] = "out_of_order";     ///< older than the reorder window
 inline constexpr char kClockJump[] = "clock_jump";        ///< back: new epoch; forward: a gap
@@ -30,22 +29,23 @@ inline constexpr char kSensorIgnored[] = "sensor_ignored";  ///< in the log, not
 inline constexpr char kLogDamaged[] = "log_damaged";    ///< torn, wrong check sum, unknown class
 inline constexpr char kFilterReset[] = "filter_reset";  ///< weights or a state became not finite
 inline constexpr char kTrackBorn[] = "track_born";      ///< first time in a scene
-inline constexpr char kTrackConfirmed[] = "track_confirmed";  ///< first time with a named class
-inline constexpr char kTrackLost[] = "track_lost";            ///< left the scene for good
+inline constexpr char kTrackConfirmed[] =
+    "track_confirmed";                              ///< first time classified as a named class
+inline constexpr char kTrackLost[] = "track_lost";  ///< left the scene for good
 }  // namespace event_kind
 
-/// What happened in a run besides its scenes: events.jsonl, one JSON object a line:
+/// Events of a run: events.jsonl, one JSON object per line:
 ///   {"t": 1.5, "stamp": "1700000001.500000000", "kind": "...", "severity": "info|warning",
 ///   "message": "...", "fields": {}}
 /// t [s] since the log's first stamp, stamp [s] since 1970 as text (exact); both null for an event
-/// without an instant. Lines stand in the order of add(), so add() is called from one thread only,
-/// in the order of the log.
+/// without a stamp. Lines are in the order of add(), which is called from one thread in the order
+/// of the log.
 class EventLog {
  public:
   using Fields = nlohmann::ordered_json;
 
-  /// Of each kind the first `kept_per_kind` events are kept as lines and the others only counted:
-  /// bounded memory.
+  /// Memory is bounded: of each kind the first `kept_per_kind` events are stored, the others only
+  /// counted.
   explicit EventLog(std::size_t kept_per_kind = 100000) : kept_per_kind_(kept_per_kind) {}
 
   /// `fields`: an object of numbers and texts, {{"sensor", "LIDAR_TOP"}, {"points", 12}}.
@@ -55,11 +55,11 @@ class EventLog {
   void warn(std::optional<Stamp> stamp, const std::string& kind, const std::string& message,
             Fields fields = Fields::object());
 
-  /// Number of events by kind, those without a line included.
+  /// Number of events by kind, including those not stored.
   const std::map<std::string, std::uint64_t>& counts() const { return counts_; }
   std::uint64_t warnings() const { return warnings_; }
 
-  /// The whole file; a last line per kind that was cut says how many events have no line.
+  /// Contents of the file; a last line per truncated kind gives the number of omitted events.
   std::string text(Stamp first_stamp) const;
   /// Throws OutputError.
   void write(const std::string& path, Stamp first_stamp) const;

@@ -12,11 +12,10 @@
 namespace perception {
 namespace {
 
-constexpr double kNearPlane =
-    0.1;                         // [m] before the camera; what is nearer has no place in the image
-constexpr int kPixelPlaces = 2;  // as in KITTI's own files
+constexpr double kNearPlane = 0.1;  // [m] near plane of the projection
+constexpr int kPixelPlaces = 2;     // as in KITTI's own files
 constexpr double kSurest =
-    1e-6;  // existence beyond which the score grows no more: places in tracks.csv
+    1e-6;  // bound of the existence probability in the score: resolution of tracks.csv
 
 // Corners of the box in the reference frame; bit 0: front, bit 1: right, bit 2: top. The frame's y
 // axis points down.
@@ -32,7 +31,7 @@ std::array<Vector3, 8> corners(const KittiObject& o) {
   return result;
 }
 
-// The image region that is being covered by the points added to it.
+// Bounding box of the points added.
 struct Outline {
   double x1 = 1e9, y1 = 1e9, x2 = -1e9, y2 = -1e9;  // [px]
   void add(const Vector3& p, const CameraModel& camera) {
@@ -43,8 +42,8 @@ struct Outline {
   }
 };
 
-// Image box of the 3D box, given in the camera's frame: its edges are cut at the near plane, the
-// result at the image, which must hold at least the given share of it.
+// Image box of the 3D box, given in the camera's frame: its edges are clipped at the near plane,
+// the result at the image; empty if less than the given share is inside.
 std::optional<ObjectDetection::ImageBox> project(const std::array<Vector3, 8>& corner,
                                                  const CameraModel& camera, double in_image) {
   Outline outline;
@@ -66,8 +65,8 @@ std::optional<ObjectDetection::ImageBox> project(const std::array<Vector3, 8>& c
   return box;
 }
 
-// As what an object is written: its likeliest class, but a thing that may be a road user as that,
-// with the little probability that this has; the reader's threshold decides.
+// Class that an object is written as: its most probable one, or, if that is not a road user, the
+// most probable road-user class from road_user_from on; a low score then lets a threshold decide.
 struct Role {
   ClassId class_id = 0;
   double probability = 0;  // that it exists and is of such a kind
@@ -89,14 +88,14 @@ Role roleOf(const SceneObject& object, const ClassTable& classes, double road_us
   return {best, object.existence * road_user};
 }
 
-// A heading that could be any tells nothing of the outline.
+// A heading of nearly uniform distribution does not determine the outline.
 bool headingKnown(const SceneObject& object) {
   constexpr double kUnknown = 1.2;  // [rad] of a heading that is uniform as an axis: pi / sqrt(12)
   return object.has_yaw && object.sd_yaw < kUnknown;
 }
 
-// Without a heading an object is a disc of the mean diameter, as sensors see it; in KITTI's boxes
-// a square across the line of sight that is as broad as the disc looks.
+// Without a heading the object is a disc of the mean diameter, as in the measurement models;
+// written as a square facing the line of sight with the same angular width.
 void takeAsDisc(KittiObject& o) {
   const double radius = 0.25 * (o.length + o.width);
   const double range = std::hypot(o.bottom_center.x(), o.bottom_center.z());

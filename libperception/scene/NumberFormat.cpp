@@ -17,7 +17,7 @@ std::string fixedPlaces(double value, int places) {
 }
 
 std::string decimalSeconds(std::int64_t nanoseconds) {
-  // Unsigned, because the most negative number has no positive counterpart.
+  // Unsigned, since -INT64_MIN overflows.
   const auto bits = static_cast<std::uint64_t>(nanoseconds);
   const std::uint64_t magnitude = nanoseconds < 0 ? ~bits + 1 : bits;
   return fmt::format("{}{}.{:09}", nanoseconds < 0 ? "-" : "", magnitude / 1000000000u,

@@ -28,8 +28,7 @@ void OutputFile::close() {
   if (!file_) return;
   errno = 0;
   if (std::fflush(file_.get()) != 0) fail(errno);
-  // A file system may promise space and find out only now that there is none; pipes and devices
-  // cannot be synced.
+  // Some file systems report a full disk only on sync; pipes and devices cannot be synced.
   if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL && errno != EROFS) fail(errno);
   if (std::fclose(file_.release()) != 0) fail(errno);
 }

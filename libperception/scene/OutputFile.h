@@ -6,16 +6,16 @@
 
 namespace perception {
 
-/// A result file that is whole or an error: what cannot be created, written or closed throws
-/// OutputError with path, reason and free space. A full disk shows at the latest in close().
+/// A checked output file: failures to create, write or close throw OutputError with path, reason
+/// and free space. A full disk is detected at the latest in close().
 class OutputFile {
  public:
-  /// Creates or empties the file. Throws OutputError (kCannotCreate).
+  /// Creates or truncates the file. Throws OutputError (kCannotCreate).
   explicit OutputFile(const std::string& path);
 
   /// Throws OutputError (kIoError).
   void write(std::string_view text);
-  /// Hands everything to the disk and closes. Throws OutputError (kIoError).
+  /// Syncs to disk and closes. Throws OutputError (kIoError).
   void close();
   const std::string& path() const { return path_; }
 
@@ -28,11 +28,11 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-/// Creates a folder and those above it; nothing for an empty path. Throws OutputError
+/// Creates a folder and its parents; no effect for an empty path. Throws OutputError
 /// (kCannotCreate).
 void createFolder(const std::string& path);
 
-/// Writes a whole file at once. Throws OutputError.
+/// Writes a file. Throws OutputError.
 void writeFile(const std::string& path, std::string_view text);
 
 }  // namespace perception

@@ -8,7 +8,7 @@
 
 namespace perception {
 
-/// What one sensor contributed to a run.
+/// Statistics of one sensor in a run.
 struct SensorRecord {
   std::string label;
   std::string modality;      ///< its letter: "C", "L", "R"
@@ -16,23 +16,22 @@ struct SensorRecord {
   std::uint64_t measurements = 0;
   std::uint64_t dropped_points = 0;  ///< not finite, out of range
   std::uint64_t dropped_measurements =
-      0;  ///< no measurement for the front end: no label, no box, ghost ...
+      0;  ///< detections rejected by the front end: no label, no box, ghost ...
   std::uint64_t dropped_frames = 0;  ///< no stamp, cannot be decoded, older than the reorder window
 };
 
-/// done.json: what a run was made of and how it ended. The last file to be written: a folder with
-/// it is whole. A function of (rawlog, INI, seed) like all results: no time of day, no durations of
-/// work, no folder names.
+/// done.json: inputs and outcome of a run. Written last: a folder that has it is complete. A
+/// function of (rawlog, INI, seed) like all results: no time of day, no run times, no folder names.
 struct RunRecord {
   std::string program;  ///< "perception-track"
   std::string version;
-  std::string input;  ///< file name of the log; folders are cut off when written
+  std::string input;  ///< file name of the log; folders are removed when written
   std::uint64_t input_bytes = 0;
   std::uint64_t input_entries = 0;  ///< objects read from the log
   std::string input_end =
-      "clean";  ///< how the log ended: clean, torn, unknown class, newer version, damaged
-  std::string input_end_detail;  ///< where and why; empty when clean
-  bool simulated = false;        ///< the log says that a simulator wrote it
+      "clean";  ///< end of the log: clean, torn (truncated), unknown class, newer version, damaged
+  std::string input_end_detail;  ///< position and reason; empty if clean
+  bool simulated = false;        ///< the log is marked as simulated
   std::string config;            ///< file name of the INI
   std::uint64_t seed = 0;
   std::string sensors_used;  ///< as given with --sensors

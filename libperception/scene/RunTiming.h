@@ -8,19 +8,17 @@
 
 namespace perception {
 
-/// How long a run took and where: timing.json. Never part of the results, which do not depend on
-/// the clock.
+/// Run times by stage: timing.json. Not part of the reproducible results.
 class RunTiming {
  public:
-  /// What one stage of the pipeline took, summed over its calls (and over threads, when it ran in
-  /// several).
+  /// Time of one stage of the pipeline, summed over calls and threads.
   struct Stage {
     std::string name;
     std::uint64_t calls = 0;
     double seconds = 0;  ///< [s] wall
     double longest = 0;  ///< [s] of one call
   };
-  /// Measures from its making to its end.
+  /// Measures its own lifetime.
   class Scope {
    public:
     Scope(RunTiming& timing, const char* name) : timing_(timing), name_(name) {}
@@ -34,7 +32,7 @@ class RunTiming {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   };
 
-  /// Starts the clocks of the whole run.
+  /// Starts the clocks of the run.
   RunTiming();
   /// `const auto scope = timing.stage("lidar");` Any thread.
   Scope stage(const char* name) { return Scope(*this, name); }
@@ -45,7 +43,7 @@ class RunTiming {
   static std::uint64_t peakMemoryBytes();  ///< largest resident size of the process so far
   std::vector<Stage> stages() const;       ///< in order of first use
 
-  /// The text of timing.json; `log_seconds` of recording were processed with `threads`.
+  /// The text of timing.json; `log_seconds` [s] of log were processed with `threads`.
   std::string toJson(double log_seconds, int threads) const;
   /// Throws OutputError.
   void write(const std::string& path, double log_seconds, int threads) const;

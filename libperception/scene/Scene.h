@@ -9,7 +9,7 @@
 
 namespace perception {
 
-/// One tracked, classified object: the product. World frame, SI units.
+/// One tracked and classified object of the output. World frame, SI units.
 struct SceneObject {
   std::uint64_t id = 0;     ///< 1, 2, 3 ... in order of first output; stays with the object
   ClassId class_id = 0;     ///< most probable class
@@ -26,7 +26,7 @@ struct SceneObject {
   std::map<Modality, Stamp> last_hit;                   ///< last measurement of each modality
 };
 
-/// Everything around the vehicle at one instant.
+/// The objects around the vehicle at one instant: the output of a run.
 struct Scene {
   Stamp stamp;
   std::int64_t frame = -1;  ///< the log's frame number; -1 = none

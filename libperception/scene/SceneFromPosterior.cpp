@@ -13,11 +13,11 @@
 namespace perception {
 namespace {
 
-/// [m/s] an object without a heading of its own points where it goes once it goes this fast.
+/// [m/s] an object without a heading takes the direction of its velocity from this speed on.
 constexpr double kHeadingFromSpeed = 0.5;
 
-/// [s] up to which a track is predicted in one go; what the filter left behind for longer goes on
-/// from scene to scene.
+/// [s] longest single prediction of a track; predictions deferred for longer continue from the last
+/// scene.
 constexpr double kLongStep = 0.5;
 
 /// Mean and covariance of (x, y, vx, vy) over the classes (moment matching).
@@ -54,12 +54,12 @@ Mixture mixtureOf(const Track& track, const FilterModel& model, const std::vecto
 void SceneParams::visit(ParamVisitor& v) {
   v.real("min_existence", min_existence, {0, 1}, "", "objects below are not output");
   v.real("road_user_from", road_user_from, {0, 1}, "",
-         "KITTI export: written as a road user from this probability on");
+         "KITTI export: smallest P(exists and is a road user) to be written as a road user");
   v.real("in_image", in_image, {0, 1}, "",
-         "KITTI export: share of its box that an object must have in the image");
+         "KITTI export: smallest share of an object's box inside the image");
   v.real("place_within", place_within, {0, 100}, "",
-         "of sqrt(length width): with a lidar, places that are less certain are not output; 0: all "
-         "are");
+         "of sqrt(length width): largest position deviation of an output object, with a lidar; 0: "
+         "any");
 }
 
 std::uint64_t SceneFromPosterior::numberOf(std::uint64_t track_id) {

@@ -10,49 +10,47 @@
 
 namespace perception {
 
-/// [scene]: what of the posterior becomes the output.
+/// [scene]: output of the posterior.
 struct SceneParams {
   double min_existence = 0.5;  ///< objects below are not output (method.md 5.11)
   /// Class probability from which an object counts as classified [radecki2016].
   double classified_at = 0.95;
-  /// KITTI export: an object that may be a mere thing is written as the road user that it may be
-  /// from this probability on (assumed: even odds).
+  /// KITTI export: see KittiSelection::road_user_from (assumed: even odds).
   double road_user_from = 0.5;
-  /// KITTI export: share of its image box that an object must have in the image; 0: any.
+  /// KITTI export: see KittiSelection::in_image; 0: any overlap.
   double in_image = 0;
-  /// Share of sqrt(length * width) to which a place must be known (deviations of x and y together):
-  /// objects less certain are tracked, but not output. 0: all are. Only where a sensor takes part
-  /// that covers the sector (ModalityRow): others know few places so well.
+  /// Objects are output only if sqrt(sd_x^2 + sd_y^2) is below this share of sqrt(length * width).
+  /// 0: all are. Used only with a sensor whose modality covers the sector (ModalityRow); others
+  /// rarely localize objects this well.
   double place_within = 0;
 
   void visit(ParamVisitor& v);
 };
 
-/// Reduces the most probable hypothesis to a list of objects. Gives every track a small number at
-/// its first output, and keeps it; that, and how far tracks out of view were predicted, is its
-/// state.
+/// Reduces the most probable hypothesis to a list of objects. Stateful: assigns each track an id 1,
+/// 2, 3 ... at its first output, and caches the predictions of tracks with deferred prediction.
 class SceneFromPosterior {
  public:
   SceneFromPosterior(FilterModel model, SceneParams params)
       : model_(std::move(model)), params_(params) {}
 
-  /// The objects at `ego.stamp`: a prediction of a copy when that is later than the tracks,
-  /// smoothed when it is earlier (FilterModel::history). The mean over classes of position and
-  /// velocity, size and heading of the most probable class.
+  /// The objects at `ego.stamp`: predicted if that is later than the tracks, smoothed if earlier
+  /// (FilterModel::history). Position and velocity are means over classes; size and heading are of
+  /// the most probable class.
   Scene make(const Hypothesis& hypothesis, const EgoState& ego, std::int64_t frame);
 
   std::uint64_t objectsSoFar() const { return numbers_.size(); }
 
  private:
-  /// A track that the filter left behind, and what the last scene made of it: the next goes on from
-  /// there.
+  /// A track with deferred prediction and its prediction at the last scene, from which the next one
+  /// continues.
   struct Sleeper {
     TrackHandle track, predicted;
   };
 
-  /// The track at that time; null when it is not believed in, then.
+  /// The track at that time; null if its existence is then below min_existence.
   TrackHandle trackAt(const TrackHandle& track, Stamp stamp) const;
-  /// What to predict it from: itself, or the last scene's prediction.
+  /// The state to predict from: the track itself, or the last scene's prediction.
   const Track& latestOf(const TrackHandle& track, Stamp stamp) const;
   void keepSleepers(const Hypothesis& hypothesis, const std::vector<TrackHandle>& predicted);
   SceneObject objectOf(const Track& track);

@@ -114,7 +114,7 @@ bool isFinite(const SceneObject& o) {
   return o.position.allFinite() && o.velocity.allFinite();
 }
 
-// A table of ours with typed access by column name; remembers where the columns are.
+// A CSV table with typed access by column name; caches the column indices.
 class Table {
  public:
   explicit Table(const std::string& path) : csv_(CsvTable::fromFile(path)) {}

@@ -11,27 +11,27 @@
 namespace perception {
 
 /// Writes a run's scenes: tracks.csv (one line per object and scene) and scenes.csv (one line per
-/// scene: the vehicle's pose, so that an empty scene is a scene, too). World frame, SI units, fixed
-/// number format, C locale.
+/// scene, also for an empty one: the vehicle's pose). World frame, SI units, fixed number format, C
+/// locale.
 ///
 /// tracks.csv:
 /// frame,t,stamp,id,class,classified,p_NAME...,existence,x,y,z,yaw,has_yaw,vx,vy,speed,length,width,height,
 ///             sd_x,sd_y,sd_yaw,sd_speed,last_hit_C,last_hit_L,last_hit_R
 /// scenes.csv: frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects
 /// t and last_hit_*: seconds since the log's first stamp; stamp: seconds since 1970; all three
-/// exact to the nanosecond. last_hit_* is empty when that modality has never seen the object; a
-/// column a row of modalities(), whichever sensors were in use. Decimal places: NumberFormat.h.
+/// exact to the nanosecond. last_hit_*: one column per row of modalities(), whichever sensors were
+/// in use; empty if that modality has never detected the object. Decimal places: NumberFormat.h.
 class TrackedRunWriter {
  public:
-  /// Opens DIR/tracks.csv and DIR/scenes.csv; DIR must be there. Throws OutputError.
+  /// Creates DIR/tracks.csv and DIR/scenes.csv; DIR must exist. Throws OutputError.
   TrackedRunWriter(const std::string& dir, const ClassTable& classes, Stamp first_stamp);
-  /// Scenes in order of time. An object with a number that is not finite is left out and counted.
-  /// Throws OutputError.
+  /// Scenes in chronological order. An object with a value that is not finite is omitted and
+  /// counted. Throws OutputError.
   void write(const Scene& scene);
   /// Flushes and checks that everything was written (disk full). Throws OutputError with kIoError.
   void close();
-  /// Objects left out so far because a number of theirs was not finite: a fault of the filter, to
-  /// be reported.
+  /// Number of objects omitted so far because of values that are not finite: an error of the
+  /// filter.
   std::uint64_t notFinite() const { return not_finite_; }
 
  private:
@@ -41,20 +41,20 @@ class TrackedRunWriter {
   std::uint64_t not_finite_ = 0;
 };
 
-/// A run read back from its folder.
+/// A run, read from its folder.
 struct TrackedRun {
   std::string dir;
   Stamp first_stamp;                     ///< of the log: t = 0
-  std::vector<std::string> class_names;  ///< as in the columns p_NAME
+  std::vector<std::string> class_names;  ///< of the columns p_NAME
   std::vector<Scene> scenes;  ///< in order of time; objects by id; class_id indexes class_names
 };
 
-/// Throws DataError naming file, line and column; a tracks.csv that was cut does not fit scenes.csv
-/// and is found.
+/// Throws DataError naming file, line and column. A truncated tracks.csv is detected by the object
+/// counts in scenes.csv.
 TrackedRun readTrackedRun(const std::string& dir);
 
-/// The vehicle at an instant, between scenes on the way from one to the next; nothing before the
-/// first scene, after the last one, or where scenes lie too far apart.
+/// Ego state at a stamp, interpolated between scenes; empty before the first scene, after the last
+/// one, or where scenes are too far apart.
 std::optional<EgoState> egoAt(const TrackedRun& run, Stamp stamp);
 
 }  // namespace perception

@@ -9,7 +9,7 @@ void FusionParams::visit(ParamVisitor& v) {
   v.real("accel_noise", accel_noise, {1e-6, 10}, "m/s", "velocity random walk over one second");
   v.real("accel_bias_sigma", accel_bias_sigma, {0, 5}, "m/s^2", "bias of the accelerometer");
   v.real("wheel_sigma", wheel_sigma, {0.001, 5}, "m/s", "of one reading of the wheels");
-  v.real("wheel_scale_sigma", wheel_scale_sigma, {0, 0.5}, "-", "their scale: tyres, pressure");
+  v.real("wheel_scale_sigma", wheel_scale_sigma, {0, 0.5}, "-", "their scale: tires, pressure");
   v.real("heading_wait", heading_wait, {0, 600}, "s",
          "for a heading, after which the start frame is kept as world frame");
   v.reals("origin", origin, -1, {-1e4, 1e4}, "deg, deg, m",

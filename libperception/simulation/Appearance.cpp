@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-// Colors and details are assumed throughout: what is common in a street.
+// All colors and details are assumed.
 const std::array<Rgb, 10> kCoach = {Rgb(.72, .72, .70), Rgb(.40, .41, .43), Rgb(.045, .045, .05),
                                     Rgb(.16, .17, .19), Rgb(.04, .10, .32), Rgb(.45, .03, .03),
                                     Rgb(.70, .70, .72), Rgb(.03, .16, .12), Rgb(.10, .24, .42),
@@ -41,8 +41,8 @@ bool isVehicle(ObjectKind kind) {
   return kind == ObjectKind::kCar || kind == ObjectKind::kVan || kind == ObjectKind::kBus;
 }
 
-// Distance from the nearest axle over the wheel's radius; the body is flush with the wheels, so the
-// place tells them apart, not the material.
+// Distance from the nearest axle / wheel radius: distinguishes wheels from the body, which is flush
+// with them.
 double fromAxle(const ObjectParams& o, const Vector3& p, const Vector3& normal) {
   if (!isVehicle(o.kind) || std::abs(normal.y()) < .9) return 10;
   const Wheels wheels = wheelsOf(o);
@@ -74,7 +74,7 @@ Finish coachwork(const ObjectParams& o, const Vector3& p, const Vector3& normal)
   return {bodyColor(o), kGlossy};
 }
 
-// Trousers to the hip, shoes; the arms reach below the hip, but hands are not shown apart.
+// Trousers to the hip, shoes; hands are not drawn separately.
 Finish clothes(const ObjectParams& o, const Vector3& p) {
   const std::uint32_t hash = hashOf(o.name);
   const double h = p.z() / o.height, hip = o.kind == ObjectKind::kCyclist ? .54 : .51;
@@ -165,7 +165,7 @@ Finish finishOf(const ObjectParams& o, Material material, const Vector3& place,
       return coachwork(o, place, normal);
     case Material::kGlass:
       return {Rgb::Constant(.02), 2 * kGlossy};
-    case Material::kTyre:
+    case Material::kTire:
       return wheel(fromAxle(o, place, normal));
     case Material::kCloth:
       return clothes(o, place);

@@ -9,16 +9,16 @@ struct ObjectParams;
 /// How a surface returns light to a camera.
 struct Finish {
   Rgb reflectance = Rgb::Zero();  ///< Lambert
-  double mirror = 0;  ///< share of light that is mirrored at normal incidence; 0: a dull surface
+  double mirror = 0;              ///< specular reflectance at normal incidence; 0: diffuse
 };
 
-/// Color of the coachwork, clothes or plaster of an object: stable for its name, common colors of
-/// its kind (assumed). Cars of a reflectivity below 1 are darker.
+/// Color of the body paint, clothes or plaster of an object: a function of its name, from common
+/// colors of its kind (assumed). Cars of a reflectivity below 1 are darker.
 Rgb bodyColor(const ObjectParams& object);
 
-/// What a place of an object looks like: material, and for plain bodies the details that a camera
-/// would show (lamps, rims, windows of houses, trousers and hair). `place` [m] and `normal` in the
-/// object's frame; detail finer than `pixel` [m] is left out.
+/// Appearance of a point of an object: material, and details that the geometry lacks (lamps, rims,
+/// windows of houses, trousers and hair). `place` [m] and `normal` in the object's frame; detail
+/// finer than `pixel` [m] is omitted.
 Finish finishOf(const ObjectParams& object, Material material, const Vector3& place,
                 const Vector3& normal, double pixel);
 

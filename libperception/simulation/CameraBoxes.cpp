@@ -12,10 +12,10 @@
 namespace perception {
 namespace {
 
-constexpr std::array<const char*, 3> kLabels = {"Car", "Pedestrian", "Cyclist"};  // KITTI's words
+constexpr std::array<const char*, 3> kLabels = {"Car", "Pedestrian", "Cyclist"};  // KITTI's types
 constexpr double kNearPlane = 0.2;  // [m] what lies nearer to the lens is not projected
 constexpr double kHidden = 0.15,
-                 kClear = 0.5;  // visible share: not found below, as good as all above
+                 kClear = 0.5;                         // visible share: P_D 0 below, full above
 constexpr std::uint32_t kFalseSlot = 1u << 20;         // random streams of false boxes
 constexpr std::uint32_t kWeatherPurpose = 0x57EA0000;  // of weather
 
@@ -85,7 +85,7 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
   return d;
 }
 
-// A box somewhere in the lower half of the image, as a person or a car would have.
+// A false box in the lower half of the image, of the size of a person or a car.
 ObjectDetection falseBox(const CameraModel& camera, Rng& rng) {
   ObjectDetection d;
   const std::size_t label = rng.below(kLabels.size());

@@ -18,7 +18,7 @@ namespace {
 /// The counter of what is drawn once a log.
 constexpr std::uint64_t kOnce = std::numeric_limits<std::uint64_t>::max();
 constexpr double kKnot = 1852.0 / 3600;  // [m/s]
-constexpr double kStanding = 1e-3;       // [m/s] wheels that turn slower give no pulses
+constexpr double kStanding = 1e-3;       // [m/s] lower speeds are measured as 0
 
 Vector3 normals(Rng& rng, double sigma) {
   const double x = rng.normal(), y = rng.normal(), z = rng.normal();
@@ -60,7 +60,7 @@ std::shared_ptr<Class> observationAt(const EgoMount& mount, const EgoTruth& trut
 void GnssUnitParams::visit(ParamVisitor& v) {
   v.real("sigma", sigma, {0, 100}, "m", "of a fix, east and north each, independent");
   v.real("height_sigma", height_sigma, {0, 100}, "m", "of its height");
-  v.real("delay", delay, {0, 5}, "s", "a fix comes so late into the log, with its own stamp");
+  v.real("delay", delay, {0, 5}, "s", "latency of a fix in the log; its stamp is the true one");
   v.reals("gap_from", gap_from, -1, {0, 3600}, "s", "beginnings of times without satellites");
   v.reals("gap_to", gap_to, -1, {0, 3600}, "s", "their ends");
   v.real("height", height, {-500, 9000}, "m", "of the scene's origin above the ellipsoid");
@@ -80,7 +80,7 @@ void ImuUnitParams::visit(ParamVisitor& v) {
 
 void WheelUnitParams::visit(ParamVisitor& v) {
   v.real("sigma", sigma, {0, 5}, "m/s", "of one reading");
-  v.real("scale", scale, {0, 0.5}, "-", "deviation of the scale: tyres, pressure");
+  v.real("scale", scale, {0, 0.5}, "-", "standard deviation of the scale error: tires, pressure");
 }
 
 std::shared_ptr<mrpt::obs::CObservation> gnssObservation(const GnssUnitParams& params,

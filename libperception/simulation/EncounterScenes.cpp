@@ -57,7 +57,7 @@ EncounterScene meeting(double separation, double pause, Rng& rng) {
   return scene;
 }
 
-/// Of the busy scene of a Python prototype.
+/// Parked cars, pedestrians and passing cars of scene U.
 EncounterScene busyStreet(Rng& rng) {
   constexpr double kDuration = 8;  // [s]
   const auto instants = static_cast<std::size_t>(kDuration / kStep);
@@ -166,7 +166,7 @@ MeasurementScan oneScan(const EncounterScene& scene, std::size_t instant,
     while (!encounterInView(z));
     scan.measurements.push_back(measurementAt(z, drawLabel(params.clutter_labels, rng)));
   }
-  for (std::size_t i = scan.measurements.size(); i > 1; --i) {  // the order says nothing
+  for (std::size_t i = scan.measurements.size(); i > 1; --i) {  // random order
     std::swap(scan.measurements[i - 1],
               scan.measurements[rng.below(static_cast<std::uint32_t>(i))]);
   }

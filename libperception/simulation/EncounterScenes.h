@@ -9,9 +9,9 @@
 
 namespace perception {
 
-/// Simulated encounters on the level of positions, to study association alone: a vehicle at rest at
-/// the origin, a field of view of 20 m to the front, a lidar at 10 Hz and a camera at 5 Hz that see
-/// (x, y) and a label.
+/// Simulated encounters with position measurements, to study association separately: a vehicle at
+/// rest at the origin, a field of view of 20 m to the front, a lidar at 10 Hz and a camera at 5 Hz
+/// that measure (x, y) and a label.
 struct EncounterScene {
   struct Object {
     bool car = false;           ///< else a pedestrian
@@ -23,12 +23,13 @@ struct EncounterScene {
 };
 
 /// By name: A (an oncoming car stops and passes), B (a crossing car), Cd (two pedestrians cross at
-/// d meters), D (four pedestrians in a crowd, two parked cars), Es_p (two meet at s meters, pause p
-/// seconds, pass or turn back), U (a busy street: eight parked cars, six pedestrians, three cars
-/// that drive by, 8 s). Throws Error(kUsage) for a name that is none.
+/// a distance of d meters), D (four pedestrians in a crowd, two parked cars), Es_p (two pedestrians
+/// meet at a distance of s meters, pause p seconds, then pass or turn back), U (a busy street of 8
+/// s: eight parked cars, six pedestrians, three passing cars). Throws Error(kUsage) for an unknown
+/// name.
 EncounterScene encounterScene(const std::string& name, Rng& rng);
 
-/// What makes a scene hard.
+/// Difficulty of a scene.
 struct EncounterConditions {
   double detection_factor = 1;  ///< times P_D
   double clutter_factor = 1;    ///< times kappa
@@ -36,13 +37,13 @@ struct EncounterConditions {
   double merge_distance = 0;  ///< [m] objects of a class nearer than this merge with probability .8
 };
 
-/// Pedestrian and car with the noise values of that study; `pedestrian_psd` [m^2/s^3].
+/// Classes pedestrian and car; `pedestrian_psd` [m^2/s^3].
 ClassTable encounterClasses(double pedestrian_psd = 0.25);
 /// The two sensors; P_D, kappa and label tables after recall and precision of [radecki2016].
 std::shared_ptr<const PositionModel> encounterLidar(const EncounterConditions& conditions);
 std::shared_ptr<const PositionModel> encounterCamera(const EncounterConditions& conditions);
 
-/// All scans of the scene in order of time; scan.frame is the instant.
+/// All scans of the scene in chronological order; scan.frame is the index of the instant.
 std::vector<MeasurementScan> simulateEncounter(const EncounterScene& scene,
                                                const EncounterConditions& conditions, Rng& rng);
 

@@ -16,7 +16,7 @@ constexpr double kDash = 3, kGap = 3;            // [m] of a center line in town
 constexpr double kTwoLanes = 5;                  // [m] a road as wide has a center line
 constexpr double kKeepOff = 2;                   // [m] between markings and a road that crosses
 constexpr double kCurb = 0.15, kPavement = 2.4;  // [m] beside the asphalt
-constexpr double kTile = 0.5;                    // [m] of the pavement
+constexpr double kTile = 0.5;                    // [m] of the sidewalk
 const Rgb kWhite(0.62, 0.62, 0.58);
 
 /// A place beside a line of two or more points.
@@ -55,7 +55,7 @@ bool inDash(double along) {
   return along - (kDash + kGap) * std::floor(along / (kDash + kGap)) < kDash;
 }
 
-// 1 where a pattern of that size [m] is seen, 0 where a pixel holds all of it.
+// Weight of a pattern of that size [m]: 1 if resolved, 0 if a pixel covers it.
 double detail(double size, double pixel) { return std::clamp(2 - 2 * pixel / size, 0.0, 1.0); }
 
 Rgb asphalt(const Vector2& p, double pixel) {
@@ -123,7 +123,7 @@ double GroundAppearance::markedByRoads(const Vector2& place, double pixel) const
   return marked;
 }
 
-// Borders of lanes, dashed between two lanes, none inside of another lane.
+// Lane borders: dashed between two lanes, none inside another lane.
 double GroundAppearance::markedByLanes(const Vector2& place, double pixel) const {
   double marked = 0;
   for (const Lane& lane : lanes_) {

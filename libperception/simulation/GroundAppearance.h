@@ -8,14 +8,14 @@ namespace perception {
 
 struct Scenario;
 
-/// What the ground of a scenario looks like from above: asphalt with marked edges and center line
-/// along its roads, curb, pavement and grass beside them; in a scenario without roads asphalt
-/// everywhere with the borders of its lanes. Widths and colors assumed.
+/// Appearance of the ground of a scenario: asphalt with marked edges and center line along its
+/// roads, curb, sidewalk and grass beside them; in a scenario without roads asphalt everywhere with
+/// the borders of its lanes. Widths and colors assumed.
 class GroundAppearance {
  public:
   explicit GroundAppearance(const Scenario& scenario);
 
-  /// Reflectance at a place [m, world]; detail finer than `pixel` [m] is left out.
+  /// Reflectance at a position [m, world]; detail finer than `pixel` [m] is omitted.
   Rgb reflectance(const Vector2& place, double pixel) const;
 
  private:

@@ -11,14 +11,15 @@
 namespace perception {
 namespace {
 
-constexpr double kFar = 1500;      // [m] beyond it there is sky, or ground in the haze
-constexpr double kLift = 0.03;     // [m] a ray starts so far above its surface: bumps of the road
-constexpr double kCover = 1.5;     // [m] what hangs lower over the ground keeps the sky's light off
-constexpr double kCovered = 0.35;  // of the sky's light is left there
+constexpr double kFar = 1500;  // [m] largest range of rays: sky or haze beyond
+constexpr double kLift =
+    0.03;  // [m] offset of secondary rays from the surface, against self-shadowing by bumps
+constexpr double kCover = 1.5;     // [m] objects lower than this above the ground occlude the sky
+constexpr double kCovered = 0.35;  // share of skylight left below them
 constexpr double kEdge = 0.03;     // step of display values from which a pixel takes more rays
-constexpr double kSeenThrough = 0.3;  // of the sun's light that a leaf lets through
+constexpr double kSeenThrough = 0.3;  // transmittance of leaves
 
-/// One ray's answer.
+/// Result of one ray.
 struct Sample {
   Rgb value = Rgb::Zero();  ///< linear display value
   int object = BeamHit::kNothing;
@@ -80,7 +81,7 @@ class Renderer {
 
   Rgb onGround(const Vector3& place, double range) const {
     const double pixel = range / camera_.fx;
-    const Vector3 up = Vector3::UnitZ();  // bumps of a centimeter are not seen
+    const Vector3 up = Vector3::UnitZ();  // bumps of a centimeter are not rendered
     const bool covered = caster_.blocked(place + kLift * up, up, kCover);
     const Rgb arriving = sunOn(place, up, 0) + (covered ? kCovered : 1) * light_.ambientOn(up);
     return ground_.reflectance(place.head<2>(), pixel).cwiseProduct(arriving);
@@ -91,7 +92,7 @@ class Renderer {
     const Pose3& T = T_object_world_[index];
     const Finish finish = finishOf(scenario_.objects[index], hit.material, T * place,
                                    T.linear() * hit.normal, hit.range / camera_.fx);
-    // A tuft of leaves is lit through, whichever way it lies.
+    // Leaves transmit light, independent of their orientation.
     const double floor = hit.material == Material::kLeaf ? kSeenThrough : 0;
     const Rgb arriving = sunOn(place, hit.normal, floor) + light_.ambientOn(hit.normal);
     const Rgb dull = finish.reflectance.cwiseProduct(arriving);

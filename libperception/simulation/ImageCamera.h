@@ -9,9 +9,9 @@ namespace perception {
 
 class LidarCaster;
 
-/// A camera that takes images, in a [sensor.LABEL] section: a pinhole, or at 360 degrees a panorama
-/// of the whole sphere (equirectangular), twice as wide as high. Defaults: the smallest panorama of
-/// [radecki2016].
+/// A camera with rendered images: [sensor.LABEL] kind = camera_images: a pinhole, or at 360 degrees
+/// a panorama of the whole sphere (equirectangular), twice as wide as high. Defaults: the smallest
+/// panorama of [radecki2016].
 struct ImageCameraParams {
   int width = 1024, height = 512;  ///< [px] height: of a pinhole's image
   double fov = kTwoPi;             ///< [rad] horizontal
@@ -22,17 +22,18 @@ struct ImageCameraParams {
   CameraModel model() const;
 };
 
-/// An image, and what is seen in each pixel's middle.
+/// An image, and the object at the center of each pixel.
 struct RenderedImage {
   Raster raster;
-  /// Index into the scenario's objects, BeamHit::kRoad or kNothing; one a pixel, rows from the top.
+  /// Index into the scenario's objects, BeamHit::kRoad or kNothing; one per pixel, rows from the
+  /// top.
   std::vector<int> objects;
 };
 
-/// What the camera sees at t [s], the time at which the caster stands: one ray a pixel, four where
-/// neighbors differ, each with rays towards the sun and, from the ground, straight up (method.md
-/// 9.11). `T_world_camera`: optical frame. The vehicle itself is not seen. A function of its
-/// arguments to the byte, for any number of threads.
+/// Renders the image at t [s], to which the caster must be set: one ray per pixel, four where
+/// neighbors differ, each with secondary rays towards the sun and, from the ground, straight up
+/// (method.md 9.11). `T_world_camera`: optical frame. The ego vehicle is not rendered.
+/// Byte-identical for any number of threads.
 RenderedImage renderImage(const LidarCaster& caster, double t, const CameraModel& camera,
                           const Lighting& light, const Pose3& T_world_camera);
 

@@ -10,7 +10,7 @@ namespace perception {
 
 class World;
 
-/// The first surface on a beam's way.
+/// First intersection of a beam with a surface.
 struct BeamHit {
   static constexpr int kNothing = -2, kRoad = -1;
   float range = 0;          ///< [m]
@@ -19,22 +19,21 @@ struct BeamHit {
   Material material = Material::kRoad;
 };
 
-/// The first surface on a line of sight, with what a camera sees of it.
+/// First intersection of a line of sight with a surface, for cameras.
 struct SurfaceHit : BeamHit {
   Vector3 normal = Vector3::UnitZ();  ///< unit, world, towards the eye
 };
 
-/// Sends beams through a world (Embree). The result depends on nothing but the arguments, whatever
-/// the number of threads.
+/// Ray caster of a World (Embree). Results do not depend on the number of threads.
 class LidarCaster {
  public:
-  /// `threads` 0 = as many as the machine has. The world must outlive it.
+  /// `threads` 0 = number of cores. The world must outlive it.
   explicit LidarCaster(const World& world, int threads = 1);
   ~LidarCaster();
   LidarCaster(const LidarCaster&) = delete;
   LidarCaster& operator=(const LidarCaster&) = delete;
 
-  /// Moves everything to time t [s].
+  /// Sets the time t [s] of all objects.
   void setTime(double t);
   /// One hit for each direction (unit vectors, world) from `origin` [m], up to `range_max` [m].
   std::vector<BeamHit> cast(const Vector3& origin, const std::vector<Vector3>& directions,
@@ -46,7 +45,7 @@ class LidarCaster {
   /// Calls work(from, to) for pieces of [0, count) of about `grain`, on the caster's threads.
   void parallel(std::size_t count, std::size_t grain,
                 const std::function<void(std::size_t from, std::size_t to)>& work) const;
-  /// Share of the object that nothing else hides from `eye` [m, world], by solid angle.
+  /// Unoccluded share of the object seen from `eye` [m, world], by solid angle.
   double visibleShare(const Vector3& eye, std::size_t object) const;
 
   const World& world() const;

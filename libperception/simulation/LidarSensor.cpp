@@ -15,12 +15,12 @@ namespace {
 struct Surface {
   double reflectivity;  ///< [0, 1] at normal incidence
   double grazing;       ///< exponent of the cosine: 1 = Lambert, less = rough
-  double lost;          ///< share of pulses that pass through or are mirrored away
+  double lost;          ///< share of pulses transmitted or reflected specularly
 };
 constexpr std::array<Surface, 10> kSurfaces = {{{.17, .3, 0},    // road
                                                 {.45, 1, .05},   // paint
                                                 {.10, 1, .75},   // glass
-                                                {.06, .6, 0},    // tyre
+                                                {.06, .6, 0},    // tire
                                                 {.35, .6, 0},    // cloth
                                                 {.50, .8, 0},    // skin
                                                 {.50, 1, .05},   // metal
@@ -43,7 +43,7 @@ double quantized(double value, double unit) { return std::round(value / unit) * 
 struct Echo {
   bool received = false;
   bool on_object = false;     ///< else road or air
-  bool object_label = false;  ///< what the instrument itself says (four layers)
+  bool object_label = false;  ///< the sensor's own point label (four layers)
   double range = 0;           ///< [m]
   double intensity = 0;       ///< [0, 1] corrected for range, as the instrument reports it
 };

@@ -12,10 +12,10 @@ namespace perception {
 
 class LidarCaster;
 
-/// Changes what a pulse meets; empty: clear air.
+/// Effect of weather on a pulse; empty: clear air.
 using PulseHook = std::function<void(LidarPulse&, Rng&)>;
 
-/// Turns beams' hits into returns: the common lidar equation of method.md (50), in clear air.
+/// Converts ray hits to returns by the lidar equation, method.md (50), in clear air.
 class LidarSensor {
  public:
   LidarSensor(const LidarParams& params, double rate);  ///< rate [1/s]
@@ -26,7 +26,7 @@ class LidarSensor {
     std::vector<int> points_on;
   };
   using PoseAt = std::function<Pose3(double t)>;  ///< T_world_sensor at t [s]
-  /// The scan that starts at t; leaves the caster at another time when sweeping.
+  /// The scan that starts at t [s]; changes the caster's time if sweeping.
   Scan scan(LidarCaster& caster, double t, const PoseAt& T_world_sensor, const RngKey& key,
             const PulseHook& hook = {}) const;
   std::size_t beams() const;  ///< of one scan

@@ -8,7 +8,7 @@ namespace perception {
 /// surface that faces the sun has radiance 1.
 using Rgb = Vector3;
 
-/// [light]: sun, sky, air and shutter of rendered images (method.md 9.11). Weather may change it
+/// [light]: sun, sky, haze and exposure of rendered images (method.md 9.11). Weather may change it
 /// from image to image: fog raises the haze, night takes the sun below the horizon and lowers the
 /// ambient light. Defaults assumed: a clear day.
 struct Lighting {
@@ -24,13 +24,13 @@ struct Lighting {
   /// Color of direct light; zero when the sun is down.
   Rgb sunlight() const;
   /// Radiance of the clear sky in a direction (unit vector, world); below the horizon that of the
-  /// horizon, into which distant things fade.
+  /// horizon, the color of distant objects in haze.
   Rgb sky(const Vector3& direction) const;
   /// Light that arrives on a surface from sky and ground, over pi: times reflectance, a radiance.
   Rgb ambientOn(const Vector3& normal) const;
   /// The same seen through the layer of hazy air over the ground.
   Rgb hazySky(const Vector3& direction) const;
-  /// What is left of a radiance after `range` [m] of air, with the light that the air adds.
+  /// A radiance attenuated over `range` [m], with the light scattered in by the air.
   Rgb through(const Rgb& radiance, double range, const Vector3& direction) const;
   /// The linear display value in [0, 1] of a radiance.
   Rgb exposed(const Rgb& radiance) const;

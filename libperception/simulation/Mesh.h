@@ -7,12 +7,12 @@
 
 namespace perception {
 
-/// What a surface is made of, as a lidar sees it.
+/// Material of a surface, for its lidar reflectivity.
 enum class Material : std::uint8_t {
   kRoad,
   kPaint,
   kGlass,
-  kTyre,
+  kTire,
   kCloth,
   kSkin,
   kMetal,
@@ -38,16 +38,16 @@ struct Level {
 /// Returns the new vertex's index.
 std::uint32_t addVertex(Mesh& mesh, const Vector3& v);
 
-/// A triangle of three vertices that are there.
+/// A triangle of three existing vertices.
 void addTriangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, Material material);
 
-/// Two triangles between four corners, in order around.
+/// Two triangles between four corners, in cyclic order.
 void addQuad(Mesh& mesh, const std::array<Vector3, 4>& corners, Material material);
 
 /// The solid between two rectangles, as a cabin between belt line and roof.
 void addFrustum(Mesh& mesh, const Level& low, const Level& high, Material side, Material top);
 
-/// A side view (x, z) drawn across the whole width; star-shaped about the mean of its corners.
+/// A side view (x, z) extruded along y; must be star-shaped about the mean of its corners.
 void addExtruded(Mesh& mesh, const std::vector<Vector2>& outline, double half_width,
                  Material material);
 

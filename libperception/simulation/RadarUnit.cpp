@@ -12,10 +12,10 @@ namespace {
 
 // Slots of random numbers beside those of the objects.
 constexpr std::uint32_t kCellSlot = 1u << 20, kFalseSlot = 1u << 21, kWeatherPurpose = 0x57EA0000;
-constexpr double kUnderVehicle = 0.02;  // share of the power that passes under a car, both ways
+constexpr double kUnderVehicle = 0.02;  // share of the power that propagates under a car, both ways
 constexpr double kShadowed = 0.1;  // power beside a stronger target of the same range: not resolved
 
-/// How a kind of object answers. Radar cross sections at 77 GHz: usual figures of the literature;
+/// Reflection of a kind of object. Radar cross sections at 77 GHz: usual figures of the literature;
 /// the reference is the car.
 struct RadarBody {
   double cross_section;                ///< [m^2] of all its centers, seen from near by
@@ -55,7 +55,7 @@ struct Center {
 };
 
 // Corners (two faces meet: a wheel arch, the edge of a bumper) are strong and seen from most
-// directions; the middles of sides answer to a unit that stands before them.
+// directions; the middles of sides reflect at normal incidence.
 std::vector<Center> centersOf(const RadarBody& body, double length, double width) {
   if (!body.vehicle) return {{Vector2::Zero(), Vector2::Zero(), 1}};
   std::vector<Center> centers;
@@ -96,7 +96,7 @@ double snrOf(double cross_section, double range, const RadarUnitParams& p) {
   return thresholdSnr(p) * cross_section / kCarSection * std::pow(p.reference_range / range, 4);
 }
 
-// Share of the power that arrives from `to` [m]: nothing through walls, a little under vehicles.
+// Share of the power received from `to` [m]: none through walls, a little under vehicles.
 double passing(const LidarCaster& caster, const Vector3& from, const Vector2& to, int object) {
   constexpr double kTolerance = 0.6;  // [m] hull and footprint differ
   const Vector3 target(to.x(), to.y(), from.z());
@@ -122,7 +122,7 @@ bool inCell(const RadarReflection& a, const RadarReflection& b) {
          std::abs(a.range_rate - b.range_rate) < RadarCell::kRate;
 }
 
-// From the strongest reflection on, each takes what lies in its cell.
+// Greedy clustering from the strongest reflection on: each takes those in its cell.
 std::vector<Cell> cellsOf(std::vector<RadarReflection> reflections) {
   std::stable_sort(reflections.begin(), reflections.end(),
                    [](const auto& a, const auto& b) { return a.snr > b.snr; });
@@ -155,7 +155,7 @@ RadarReturn measured(const RadarReflection& r, const RadarUnitParams& p, Rng& rn
   return out;
 }
 
-// What no object of the scenario answers for: the road, nothing at all.
+// Targets without an object: road echoes and false alarms.
 void addFalse(std::vector<RadarReturn>& list, const RadarUnitParams& p, const RadarMount& mount,
               Rng& rng) {
   constexpr double kGroundTo = 40;  // [m] grazing incidence beyond
@@ -170,7 +170,7 @@ void addFalse(std::vector<RadarReturn>& list, const RadarUnitParams& p, const Ra
     list.push_back(measured(r, p, rng));
   }
   for (int n = rng.poisson(p.false_per_scan); n > 0; --n) {
-    constexpr double kFastest = 20;  // [m/s] of what is not there
+    constexpr double kFastest = 20;  // [m/s] of false targets
     RadarReflection r;
     r.range = rng.uniform(p.range_min, p.range_max);
     r.bearing = rng.uniform(-.5, .5) * p.fov;
@@ -183,17 +183,16 @@ void addFalse(std::vector<RadarReturn>& list, const RadarUnitParams& p, const Ra
 }  // namespace
 
 void RadarUnitParams::visit(ParamVisitor& v) {
-  v.angle("fov_deg", fov, {1, 360}, "whole width of the view");
+  v.angle("fov_deg", fov, {1, 360}, "full horizontal field of view");
   v.real("range_min", range_min, {0.1, 50}, "m", "nothing nearer");
   v.real("range_max", range_max, {2, 500}, "m", "nothing farther");
-  v.real("reference_range", reference_range, {1, 1000}, "m",
-         "a car gives an echo every second scan");
+  v.real("reference_range", reference_range, {1, 1000}, "m", "range at which P_D of a car is .5");
   v.real("ground_per_scan", ground_per_scan, {0, 50}, "-", "echoes of the road");
   v.integer("max_targets", max_targets, {1, 1000}, "the strongest are kept");
   v.require(range_min < range_max, "range_min: expected less than range_max");
   v.expert();
   v.boolean("upside_down", upside_down,
-            "hangs on its head: bearings are mirrored, the pose is not");
+            "mounted upside down: bearings are mirrored, the pose is not");
 }
 
 std::vector<RadarReflection> radarReflections(const LidarCaster& caster, double t,

@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-/// What a kind is when the file does not say otherwise.
+/// Defaults of a kind.
 struct KindRow {
   const char* name;
   const char* truth_type;
@@ -58,7 +58,7 @@ void WaypointParams::visit(ParamVisitor& v) {
   v.reals("t", t, -1, kTime, "s", "times of the waypoints; the same place twice is a pause");
   v.reals("x", x, -1, kPlace, "m", "their places, world");
   v.reals("y", y, -1, kPlace, "m", "their places, world");
-  v.angle("heading_deg", heading, {-360, 360}, "of what never moves; else along the way");
+  v.angle("heading_deg", heading, {-360, 360}, "of an object at rest; else along the path");
   const std::string fault = Trajectory::fault(t, x, y);
   v.require(fault.empty(), fault);
 }
@@ -66,8 +66,8 @@ void WaypointParams::visit(ParamVisitor& v) {
 void PoseParams::visit(ParamVisitor& v) {
   v.real("pose_rate", rate, {0, 1000}, "1/s",
          "of the pose estimator ([radecki2016]: 100 Hz); 0: none");
-  v.real("pose_sigma_xy", sigma_xy, {0, 10}, "m", "slow error of the reported pose");
-  v.angle("pose_sigma_yaw_deg", sigma_yaw, {0, 10}, "slow error of the reported heading");
+  v.real("pose_sigma_xy", sigma_xy, {0, 10}, "m", "correlated error of the estimated pose");
+  v.angle("pose_sigma_yaw_deg", sigma_yaw, {0, 10}, "correlated error of the estimated heading");
 }
 
 void EgoParams::visit(ParamVisitor& v) {
@@ -101,7 +101,7 @@ void ObjectParams::visit(ParamVisitor& v) {
   v.real("width", width, {0.02, 500}, "m", "across");
   v.real("height", height, {0.02, 100}, "m", "bottom to top");
   v.real("base", base, {-5, 50}, "m", "height of the bottom above the road");
-  v.real("reflectivity", reflectivity, {0.01, 3}, "-", "times the usual one of its materials");
+  v.real("reflectivity", reflectivity, {0.01, 3}, "-", "factor on that of its materials");
   v.text("party", party, "objects of one party vary together from trial to trial");
   waypoints.visit(v);
 }
@@ -111,7 +111,7 @@ void SensorParams::visit(ParamVisitor& v) {
   v.choiceOf("kind", kind,
              {"lidar64", "lidar4", "camera_boxes", "spherical_camera", "camera_images", "radar",
               "gnss", "imu", "wheels"},
-             "what it is");
+             "kind of sensor");
   if (kind != before && kind == SensorKind::kLidar4) lidar = LidarParams::fourLayer();
   v.real("x", x, {-20, 20}, "m", "place on the vehicle: forward of the rear axle");
   v.real("y", y, {-20, 20}, "m", "left");
@@ -144,9 +144,10 @@ void SensorParams::visit(ParamVisitor& v) {
 
 void VariationParams::visit(ParamVisitor& v) {
   v.integer("trials", trials, {1, 1000}, "of this scenario; --trial N plays one");
-  v.real("start", start, {0, 60}, "s", "a mover starts up to so much earlier or later");
-  v.real("pace", pace, {0, 0.5}, "-", "a mover is up to this share faster or slower, about t = 0");
-  v.real("place", place, {0, 10}, "m", "a mover's way is shifted up to so much in x and y");
+  v.real("start", start, {0, 60}, "s", "largest shift of a moving object's start time");
+  v.real("pace", pace, {0, 0.5}, "-",
+         "largest relative change of a moving object's speed, about t = 0");
+  v.real("place", place, {0, 10}, "m", "largest shift of a moving object's path in x and y");
 }
 
 Scenario readScenario(Config& config) {

@@ -17,40 +17,39 @@
 
 namespace perception {
 
-/// What an object is; gives its shape, its usual size and its type in the truth.
+/// Kind of an object: determines shape, default size and truth type.
 enum class ObjectKind { kCar, kVan, kBus, kCyclist, kPedestrian, kPole, kBox, kBush };
 
 /// True for road users; poles, walls and bushes are surroundings.
 bool isRoadUser(ObjectKind kind);
-/// KITTI's word: Car, Van, Truck (a bus), Cyclist, Pedestrian, Misc.
+/// KITTI's type: Car, Van, Truck (a bus), Cyclist, Pedestrian, Misc.
 const char* truthType(ObjectKind kind);
 
-/// [scenario]: what holds for the whole log. Defaults assumed.
+/// [scenario]: parameters of the log. Defaults assumed.
 struct ScenarioParams {
   std::string description;
   double duration = 20;            ///< [s]
-  double rate = 10;                ///< [1/s] frames: numbers in the log and instants of the truth
+  double rate = 10;                ///< [1/s] rate of frame numbers in the log and of truth instants
   int start_utc = 1577836800;      ///< [s] since 1970, stamp of t = 0: 2020-01-01 (assumed)
   double ground_roughness = 0.01;  ///< [m] standard deviation of the road's height
 
   void visit(ParamVisitor& v);
 };
 
-/// Timed waypoints, as lists of one length. World, z up.
+/// Timed waypoints as lists of equal length. World frame, z up.
 struct WaypointParams {
   std::vector<double> t;     ///< [s] since the log's first stamp
   std::vector<double> x, y;  ///< [m]
-  double heading = 0;        ///< [rad] of what never moves
+  double heading = 0;        ///< [rad] of an object at rest
 
   void visit(ParamVisitor& v);
   Trajectory trajectory() const { return {t, x, y, heading}; }
 };
 
-/// The vehicle's pose estimator, in [ego]; the part of [ego] that a vehicle INI may hold. Errors
-/// assumed.
+/// Simulated ego pose estimates, in [ego]; also in a vehicle INI. Errors assumed.
 struct PoseParams {
   double rate = 100;        ///< [1/s] (100 Hz [radecki2016]); 0: the log holds no poses
-  double sigma_xy = 0;      ///< [m] error of the reported pose: slowly varying
+  double sigma_xy = 0;      ///< [m] correlated error of the estimated pose
   double sigma_yaw = 0;     ///< [rad]
   double correlation = 10;  ///< [s] time constant of that error
 
@@ -65,18 +64,17 @@ struct EgoParams {
   void visit(ParamVisitor& v);
 };
 
-/// [road.NAME]: asphalt along a line; with roads the rest of the ground is grass and pavement.
-/// Width assumed: two lanes.
+/// [road.NAME]: asphalt along a polyline; if there is any, the rest of the ground is grass. Width
+/// assumed: two lanes.
 struct RoadParams {
   std::string name;          ///< from the section's title
-  std::vector<double> x, y;  ///< [m] middle line
+  std::vector<double> x, y;  ///< [m] center line
   double width = 7;          ///< [m]
 
   void visit(ParamVisitor& v);
 };
 
-/// [lane.NAME]: a lane of a road, for the map that goes with the log. Width
-/// assumed.
+/// [lane.NAME]: a lane of the lane map written with the log. Width assumed.
 struct LaneSection {
   std::vector<double> x, y;  ///< [m] center line in driving direction, world
   double width = 3.5;        ///< [m]
@@ -85,14 +83,15 @@ struct LaneSection {
   void visit(ParamVisitor& v);
 };
 
-/// [object.NAME]: one thing of the scene. Size of a car (method.md 2.2).
+/// [object.NAME]: one object of the scene. Default size: car (method.md 2.2).
 struct ObjectParams {
   std::string name;  ///< from the section's title
   ObjectKind kind = ObjectKind::kCar;
   double length = 4.5, width = 1.8, height = 1.5;  ///< [m]
   double base = 0;                                 ///< [m] height of its bottom above the road
-  double reflectivity = 1;   ///< times the usual one of its materials: below 1 a dark car
-  std::string party;         ///< objects of one name vary together from trial to trial; "": alone
+  double reflectivity = 1;  ///< factor on the reflectivity of its materials: < 1 for a dark car
+  std::string
+      party;  ///< objects of the same party get the same variation in a trial; "": own variation
   WaypointParams waypoints;  ///< of the footprint's center
 
   void visit(ParamVisitor& v);
@@ -115,7 +114,7 @@ struct SensorParams {
   std::string label;  ///< from the section's title
   SensorKind kind = SensorKind::kLidar64;
   double x = 0, y = 0, z = 1.73;  ///< [m] on the vehicle (KITTI's Velodyne: 1.73 m above the road)
-  double yaw = 0, pitch = 0, roll = 0;  ///< [rad] of its forward axis; pitch > 0 looks down
+  double yaw = 0, pitch = 0, roll = 0;  ///< [rad] of its forward axis; pitch > 0: down
   double rate = 10;                     ///< [1/s]
   double phase = 0;                     ///< [s] of its first scan
   LidarParams lidar;
@@ -132,11 +131,11 @@ struct SensorParams {
     return kind == SensorKind::kCameraBoxes || kind == SensorKind::kSphericalCamera ||
            kind == SensorKind::kCameraImages;
   }
-  /// Of the vehicle's own motion: sees nothing around it.
+  /// Measures ego motion only.
   bool isOfEgo() const {
     return kind == SensorKind::kGnss || kind == SensorKind::kImu || kind == SensorKind::kWheels;
   }
-  /// Of a camera.
+  /// For cameras.
   CameraModel cameraModel() const {
     if (kind == SensorKind::kCameraImages) return images.model();
     return kind == SensorKind::kSphericalCamera ? panorama.model() : camera.model();
@@ -146,35 +145,36 @@ struct SensorParams {
   void visit(ParamVisitor& v);
 };
 
-/// [variation]: how the trials of one scenario differ. Each mover draws its own values, uniform
-/// within +- these; what never moves stays.
+/// [variation]: random differences of the trials of a scenario, drawn for each moving object,
+/// uniform within +- these.
 struct VariationParams {
-  int trials = 1;    ///< how many there are; assumed: the scenario as it is written
-  double start = 0;  ///< [s] earlier or later
-  double pace = 0;   ///< [-] faster or slower, about t = 0
-  double place = 0;  ///< [m] of the whole way, x and y
+  int trials = 1;    ///< number of trials; assumed: the unchanged scenario alone
+  double start = 0;  ///< [s] of the start time
+  double pace = 0;   ///< [-] relative speed, time scaled about t = 0
+  double place = 0;  ///< [m] of the whole path, x and y
 
   void visit(ParamVisitor& v);
 };
 
-/// A scene, its vehicle and its sensors as data: the scenario INI.
+/// Contents of a scenario INI: scene, vehicle and sensors.
 struct Scenario {
   ScenarioParams params;
   EgoParams ego;
   VariationParams variation;
   Lighting light;
-  std::vector<RoadParams> roads;      ///< none: asphalt everywhere
-  std::vector<Lane> lanes;            ///< that the log's map shows
+  std::vector<RoadParams> roads;      ///< empty: asphalt everywhere
+  std::vector<Lane> lanes;            ///< of the lane map
   std::vector<ObjectParams> objects;  ///< in the order of the file
   std::vector<SensorParams> sensors;
 };
 
-/// Reads all sections; faults go to `config`, whose finish() throws them.
+/// Reads all sections. Faults are collected in `config`; Config::finish() throws them.
 Scenario readScenario(Config& config);
 /// Reads the [sensor.LABEL] sections alone: a vehicle INI.
 std::vector<SensorParams> readSensors(Config& config);
 
-/// Trial 1, 2, ... of the scenario: its movers' ways varied. Trial 0 is the file as it stands.
+/// Trial 1, 2, ... of the scenario: paths of moving objects varied. Trial 0 is the unchanged
+/// scenario.
 Scenario trialOf(Scenario scenario, int trial, std::uint64_t seed);
 /// Seed of a trial's sensors; trial 0 has `seed` itself.
 std::uint64_t trialSeed(std::uint64_t seed, int trial);

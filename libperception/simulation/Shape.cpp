@@ -13,17 +13,17 @@ namespace {
 constexpr std::uint32_t kLeafStream = 0x51A01, kRoadStream = 0x51A02;  // purposes of random numbers
 
 void addWheels(Mesh& mesh, const Wheels& wheels, double half_width) {
-  constexpr double kTyreWidth = 0.22;  // [m]
+  constexpr double kTireWidth = 0.22;  // [m]
   const double radius = wheels.radius;
   for (const double x : {wheels.front, wheels.rear}) {
     for (const double side : {-1.0, 1.0}) {
       addCylinder(mesh, {x, side * half_width, radius},
-                  {x, side * (half_width - kTyreWidth), radius}, radius, Material::kTyre, 1, 14);
+                  {x, side * (half_width - kTireWidth), radius}, radius, Material::kTire, 1, 14);
     }
   }
 }
 
-// A saloon: body with bonnet and boot, glass all around the cabin.
+// A sedan: body with hood and trunk, glass all around the cabin.
 Mesh carMesh(double l, double w, double h, const Wheels& wheels) {
   Mesh mesh;
   const double belt = 0.60 * h;
@@ -95,14 +95,14 @@ Shape pedestrianShape(double w, double h) {
   return shape;
 }
 
-void addTyre(Mesh& mesh, double x, double radius) {
+void addTire(Mesh& mesh, double x, double radius) {
   constexpr int kPieces = 12;
   const auto rim = [&](int k) {
     const double angle = kTwoPi * k / kPieces;
     return Vector3(x + radius * std::cos(angle), 0, radius * (1 + std::sin(angle)));
   };
   for (int k = 0; k < kPieces; ++k) {
-    addCylinder(mesh, rim(k), rim(k + 1), .025, Material::kTyre, 1, 5);
+    addCylinder(mesh, rim(k), rim(k + 1), .025, Material::kTire, 1, 5);
   }
 }
 
@@ -112,8 +112,8 @@ Shape cyclistShape(double l, double w, double h) {
   Part body;
   Mesh& mesh = body.mesh;
   const double radius = .19 * l, front = .5 * l - radius, rear = -front;
-  addTyre(mesh, front, radius);
-  addTyre(mesh, rear, radius);
+  addTire(mesh, front, radius);
+  addTire(mesh, rear, radius);
   const Vector3 crank(-.05 * l, 0, .16 * h), seat(-.14 * l, 0, .52 * h), head(.24 * l, 0, .52 * h);
   for (const auto& [a, b] : {std::pair(crank, seat), std::pair(crank, head), std::pair(seat, head),
                              std::pair(Vector3(rear, 0, radius), crank),
@@ -147,7 +147,7 @@ Mesh bushMesh(const ObjectParams& o) {
   const double per_area = 2.5;        // tufts' area over the ellipsoid's mean section
   const auto count = static_cast<std::uint32_t>(per_area * kPi / 4 * std::max(o.length, o.width) *
                                                 o.height / (kLeafSide * kLeafSide));
-  std::uint64_t seed = 1469598103934665603ull;  // FNV-1a: the name picks the bush, not the run
+  std::uint64_t seed = 1469598103934665603ull;  // FNV-1a of the name: the same bush in every run
   for (const char c : o.name) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211ull;
   for (std::uint32_t i = 0; i < std::min(count, 4000u); ++i) {
     Rng rng({seed, 0, i, kLeafStream});

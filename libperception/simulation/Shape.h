@@ -8,18 +8,18 @@ namespace perception {
 
 struct ObjectParams;
 
-/// One rigid part of an object; legs and arms swing about an axis across the object.
+/// One rigid part of an object; limbs swing about a lateral axis.
 struct Part {
   Mesh mesh;                        ///< object frame: x along heading, z = 0 bottom, centered
   Vector3 pivot = Vector3::Zero();  ///< [m] a point of the axis, object frame
-  double swing = 0;  ///< [rad] amplitude at full pace; the sign tells left from right
+  double swing = 0;  ///< [rad] amplitude at full_pace; opposite signs for left and right
 };
 
-/// An object's parts and how fast they swing.
+/// Parts of an object and the cycle of their motion.
 struct Shape {
   std::vector<Part> parts;
-  double cycle = 1;      ///< [m] way of one whole swing
-  double full_pace = 1;  ///< [m/s] from this speed on the swing is full
+  double cycle = 1;      ///< [m] distance traveled per cycle
+  double full_pace = 1;  ///< [m/s] speed from which the amplitude is full
 };
 
 Shape makeShape(const ObjectParams& object);
@@ -34,7 +34,8 @@ Wheels wheelsOf(const ObjectParams& object);
 /// Pose of a part in the object's frame after `traveled` [m] at `speed` [m/s].
 Pose3 partPose(const Shape& shape, const Part& part, double traveled, double speed);
 
-/// A square of road about `center` with heights that vary smoothly; world frame, z = 0 on average.
+/// A square of ground about `center` with smoothly varying height, standard deviation `roughness`
+/// [m]; world frame, mean z = 0.
 Mesh makeRoad(const Vector2& center, double half_side, double roughness);
 
 }  // namespace perception

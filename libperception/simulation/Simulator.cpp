@@ -18,7 +18,7 @@ namespace {
 // Purposes of random numbers; a sensor adds its index.
 constexpr std::uint32_t kPoseStream = 0x51B00, kSensorStream = 0x51C00, kFrameStream = 0x51E00;
 
-// KITTI's levels of occlusion from the visible share; 3 ("unknown") when next to nothing is seen.
+// KITTI's levels of occlusion from the visible share; 3 ("unknown") if almost nothing is visible.
 int occlusionLevel(double visible) {
   if (visible >= 0.75) return 0;
   if (visible >= 0.35) return 1;
@@ -63,7 +63,8 @@ std::shared_ptr<mrpt::obs::CObservation> Simulator::next() {
   while (next_ < events_.size()) {
     const Event& event = events_[next_++];
     if (auto observation = play(event)) return observation;
-    // A receiver without satellites is silent; other silence is a class that is missing.
+    // A GNSS receiver has no output in a gap; for other sensors null means a missing observation
+    // class.
     const bool own =
         event.kind == Event::kSensor && world_.scenario().sensors[event.sensor].isOfEgo();
     unwritten_ += own ? 0 : 1;
@@ -94,7 +95,7 @@ std::shared_ptr<mrpt::obs::CObservation> Simulator::play(const Event& event) {
   return sense(event);
 }
 
-// The truth of a frame waits for the scans of that frame: their returns are counted in it.
+// The truth of a frame is completed after its scans, whose returns it counts.
 void Simulator::beginFrame(const Event& event) {
   endFrame();
   ++frames_;

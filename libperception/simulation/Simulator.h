@@ -14,24 +14,25 @@
 
 namespace perception {
 
-/// How the text of a simulated log's first observation, a comment, begins. Comments are known by
-/// their text: MRPT does not store their label.
+/// First words of the comment that is the first observation of a simulated log. Comments are
+/// identified by text because MRPT does not store their label.
 inline constexpr const char* kSimulatedText = "simulated log: ";
 
-/// Plays a scenario as a rawlog: a comment that calls it simulated, then in order of time ego
-/// poses, frame numbers and the sensors' observations. A function of scenario and seed alone.
+/// Simulates a scenario as a sequence of observations: a comment that marks the log as simulated,
+/// then in chronological order ego poses, frame numbers and sensor observations. Deterministic in
+/// scenario and seed.
 class Simulator {
  public:
-  /// `name` of the scenario goes into the first comment; `threads` 0 = as many as the machine has.
+  /// `name` of the scenario goes into the first comment; `threads` 0 = number of cores.
   Simulator(Scenario scenario, const std::string& name, std::uint64_t seed, int threads = 1);
 
-  /// Weather to be played from now on; without it the air is clear.
+  /// Weather from now on; default: clear air.
   void setWeather(std::unique_ptr<SimulatedWeather> weather) { weather_ = std::move(weather); }
 
   /// The next observation; null at the end.
   std::shared_ptr<mrpt::obs::CObservation> next();
 
-  /// What was there, for all frames that have been played to their end (all of them at the end).
+  /// Truth of all completed frames.
   const std::vector<TruthObject>& truth() const { return truth_; }
 
   double time() const { return next_ > 0 ? events_[next_ - 1].t : 0; }  ///< [s] of the last one
@@ -42,17 +43,17 @@ class Simulator {
   std::uint64_t boxes() const { return boxes_; }          ///< of detectors
   std::uint64_t images() const { return images_; }        ///< of cameras
   std::uint64_t targets() const { return targets_; }      ///< of radars
-  std::uint64_t unwritten() const { return unwritten_; }  ///< frames that no rawlog class holds
+  std::uint64_t unwritten() const { return unwritten_; }  ///< frames without an observation class
   const World& world() const { return world_; }
 
  private:
-  /// What happens when. The order of the kinds is the order at one instant.
+  /// A scheduled event. The order of the kinds is the order at equal times.
   struct Event {
     enum Kind { kComment, kPose, kFrame, kSensor } kind;
     double t;             // [s]
     std::int64_t ticks;   // 100 ns: the order
     std::size_t sensor;   // kSensor
-    std::uint64_t count;  // how many of this kind (and sensor) came before
+    std::uint64_t count;  // number of earlier events of this kind (and sensor)
   };
   void schedule(Event::Kind kind, std::size_t sensor, double rate, double phase);
   void beginFrame(const Event& event);

@@ -15,7 +15,7 @@ constexpr std::uint32_t kFalseSlot = 1u << 20, kWeatherPurpose = 0x57EA0000;  //
 constexpr double kRangeEdge = 0.1;  // recall falls from all to none within +-10 % of the range
 constexpr double kHidden = 0.15, kClear = 0.5;  // visible share: not found below, all above
 
-/// What the detector makes of a kind: two labels (method.md 2.3, camera columns).
+/// Recall and label probabilities of a kind (method.md 2.3, camera columns).
 struct Answer {
   double SphericalCameraParams::*recall;
   double SphericalCameraParams::*range;
@@ -78,7 +78,7 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
   }
   Rng rng(key.withSlot(static_cast<std::uint32_t>(object)));
   const double draw = rng.uniform();
-  if (draw >= look.chance) return {};  // before the costly question of what hides it
+  if (draw >= look.chance) return {};  // before the expensive occlusion test
   look.chance *= ramp(caster.visibleShare(T_world_camera.translation(), object), kHidden, kClear);
   if (draw >= look.chance) return {};
   const CameraModel camera = p.model();
@@ -101,8 +101,8 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
   return d;
 }
 
-// Half of the false boxes lie on things that look alike (a pole like a person, a bush like a car)
-// and come again in the next image, the rest anywhere on the ground within range.
+// Half of the false boxes are on similar objects (poles as persons, bushes as cars) and recur in
+// the next image, the rest is uniform on the ground within range.
 std::optional<ObjectDetection> falseBox(const LidarCaster& caster, double t,
                                         const SphericalCameraParams& p, const Pose3& T_world_camera,
                                         Rng& rng) {

@@ -10,14 +10,14 @@ class LidarCaster;
 
 /// A panoramic camera with the detector of [radecki2016] for cars and persons, in a [sensor.LABEL]
 /// section: boxes in pixels of the equirectangular panorama. `resolution` sets size, ranges and
-/// false boxes (tables of resolutions and of detections per image in [radecki2016]). Edge noise is
+/// false boxes (tables of resolutions and of detections per image in [radecki2016]). Edge noise
 /// assumed.
 struct SphericalCameraParams {
   enum class Resolution { k1k, k2k, k4k, k8k };
   Resolution resolution = Resolution::k2k;
   int width = 2048, height = 1024;                  ///< [px]
-  double car_range = 15, person_range = 10;         ///< [m] recall holds within [radecki2016]
-  double false_per_image = 0.12;                    ///< boxes of no car or person, see .cpp
+  double car_range = 15, person_range = 10;         ///< [m] up to which recall holds [radecki2016]
+  double false_per_image = 0.12;                    ///< mean number of false boxes, see .cpp
   double car_recall = 0.85, person_recall = 0.70;   ///< within range, sunny [radecki2016]
   double bus_recall = 0.60, cyclist_recall = 0.60;  ///< (method.md 2.3)
   double edge_noise = 0.05;  ///< of a box edge, as a share of the box's height
@@ -26,14 +26,14 @@ struct SphericalCameraParams {
   double heading_noise = radians(4.7);  ///< [rad] before binning; with 16 bins 8 deg (method.md 7)
   double heading_flip = 0.2;            ///< share reversed by 180 deg (method.md 7: p_f)
 
-  void setResolution(Resolution r);  ///< and all that depends on it
+  void setResolution(Resolution r);  ///< also sets all values that depend on it
   void visit(ParamVisitor& v);
   CameraModel model() const;
 };
 
-/// The detector's answer at t [s]; the caster stands at that time. Labels Car and Pedestrian; a
-/// cyclist is mostly a Pedestrian to it, a bus a Car. A box over the seam begins inside the image
-/// and ends beyond its width.
+/// Detections at t [s]; the caster must be set to that time. Labels Car and Pedestrian; a cyclist
+/// is mostly labeled Pedestrian, a bus Car. A box over the seam begins inside the image and ends
+/// beyond its width.
 ObjectDetections detectPanorama(const LidarCaster& caster, double t,
                                 const SphericalCameraParams& params, const Pose3& T_world_camera,
                                 const RngKey& key, const CameraHook& hook = {});

@@ -10,11 +10,12 @@ namespace perception {
 namespace {
 
 constexpr double kTableStep = 0.01;  // [s]
-constexpr double kRestSpeed = 0.02;  // [m/s] below it the direction of the velocity says nothing
-constexpr double kFastest = 60;      // [m/s] faster than any road user of ours: a slip of the pen
+constexpr double kRestSpeed =
+    0.02;  // [m/s] speed below which the velocity does not determine a heading
+constexpr double kFastest = 60;  // [m/s] faster than any road user: taken as a typing error
 
-// Slopes that keep the cubic monotone between its values: weighted harmonic mean of the
-// neighboring secants [fritsch1984]; 0 at a turn back.
+// Slopes that keep the cubic monotone between its values: weighted harmonic mean of the neighboring
+// secants [fritsch1984]; 0 where the direction reverses.
 std::vector<double> monotoneSlopes(const std::vector<double>& t, const std::vector<double>& v) {
   const std::size_t n = v.size();
   std::vector<double> slopes(n, 0.0);

@@ -6,24 +6,25 @@
 
 namespace perception {
 
-/// Where and how fast something moves on the ground at one instant, world.
+/// Planar motion state at one instant, world frame.
 struct Motion2 {
   Vector2 position = Vector2::Zero();  ///< [m]
   Vector2 velocity = Vector2::Zero();  ///< [m/s] exact derivative of the position
-  double heading = 0;                  ///< [rad] of the velocity; at rest the last (or first) one
-  double yaw_rate = 0;                 ///< [rad/s] 0 at rest
-  double traveled = 0;                 ///< [m] way since the first waypoint
+  double heading =
+      0;  ///< [rad] of the velocity; at rest the last (before any motion the first) one
+  double yaw_rate = 0;  ///< [rad/s] 0 at rest
+  double traveled = 0;  ///< [m] distance since the first waypoint
 };
 
 /// A smooth path through timed waypoints. Each coordinate is a monotone cubic of time
-/// [fritsch1984], so nothing overshoots: two waypoints at one place are a pause, waypoints on a
-/// line are driven on the line. Before the first and after the last waypoint it stands still.
+/// [fritsch1984], so there is no overshoot: two waypoints at one position are a pause, and
+/// collinear waypoints give a straight path. At rest before the first and after the last waypoint.
 class Trajectory {
  public:
-  /// `heading` [rad] holds as long as nothing has moved. The lists have passed fault().
+  /// `heading` [rad]: if it never moves. Precondition: fault() of the lists is empty.
   Trajectory(std::vector<double> t, std::vector<double> x, std::vector<double> y, double heading);
 
-  /// What is wrong with the lists, for a person; empty when nothing is.
+  /// Error message for invalid lists; empty if valid.
   static std::string fault(const std::vector<double>& t, const std::vector<double>& x,
                            const std::vector<double>& y);
 

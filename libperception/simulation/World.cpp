@@ -9,12 +9,12 @@ namespace perception {
 namespace {
 
 constexpr double kRoadMargin =
-    120;  // [m] around the ego's way: beyond it no ground return is strong
+    120;  // [m] around the ego's path: beyond it no ground return is detected
 
 Mesh roadAround(const WaypointParams& way, double roughness) {
   const auto [x0, x1] = std::minmax_element(way.x.begin(), way.x.end());
   const auto [y0, y1] = std::minmax_element(way.y.begin(), way.y.end());
-  // Centered on whole meters: the bumps stay where they are when a waypoint moves a little.
+  // Centered on whole meters, so that the ground does not change when a waypoint moves a little.
   const Vector2 center(std::round(.5 * (*x0 + *x1)), std::round(.5 * (*y0 + *y1)));
   return makeRoad(center, kRoadMargin + .5 * std::max(*x1 - *x0, *y1 - *y0), roughness);
 }

@@ -16,8 +16,7 @@ struct ObjectState {
   double yaw_rate = 0;                       ///< [rad/s]
 };
 
-/// Where everything of a scenario is at any time t [s] since the log's first stamp: a pure
-/// function.
+/// States of all objects of a scenario as functions of t [s] since the log's first stamp.
 class World {
  public:
   explicit World(Scenario scenario);
@@ -34,8 +33,8 @@ class World {
   /// Poses of the object's parts, world.
   std::vector<Pose3> parts(std::size_t object, double t) const;
 
-  /// The geometric columns of the truth: all objects but walls (kind box); ids are 1 + index. What
-  /// is seen (occluded, truncated, lidar_points) is left for the sensors.
+  /// The geometric columns of the truth: all objects but walls (kind box); ids are 1 + index.
+  /// occluded, truncated and lidar_points are set by the sensors.
   std::vector<TruthObject> truth(std::int64_t frame, double t) const;
 
  private:

@@ -176,7 +176,7 @@ TEST_F(EvaluateAppTest, RunsOfOneConditionArePooled) {
               (2 * kFrames - 2.0) / (2 * kFrames), 1e-12);
   EXPECT_EQ(all["runs"][0]["trials"].size(), 2u);
   EXPECT_EQ(all["paper"].size(), 3u);
-  EXPECT_NE(out_.find("paper: L+R, Sunny"), std::string::npos);
+  EXPECT_NE(out_.find("Radecki et al.: L+R, Sunny"), std::string::npos);
   EXPECT_FALSE(fs::exists(dir_ + "/t/one_L/evaluation"));
 }
 

@@ -11,11 +11,11 @@ struct Module {
   std::string name;
   std::string what;                   ///< what it does, for docs/structure.svg
   std::set<std::string> may_include;  ///< other modules
-  bool spine = false;                 ///< core, measurement, filter, scene and what runs them
-  int stage = 0;                      ///< order in which data pass from log to scene; 0: none
+  bool chain = false;                 ///< main dependency chain: core to pipeline
+  int stage = 0;                      ///< order of processing from log to scene; 0: none
 };
 
-/// Who may include whom, each module behind all that it may include. Layers_test holds it, and
+/// Allowed dependencies; each module comes after those it may include. Checked by Layers_test;
 /// docs/structure.svg is drawn from it.
 inline const std::vector<Module>& modules() {
   static const std::vector<Module> all = {
@@ -23,12 +23,12 @@ inline const std::vector<Module>& modules() {
       {"config", "strict INI files, each key documented", {"core"}},
       {"simd", "loops over returns for several vector widths", {}},
       {"measurement",
-       "the common language: frames, measurements z and R, measurement models h, object classes",
+       "frames, measurements z and R, measurement models h, object classes",
        {"config", "core"},
        true},
       // Front ends and weather: no filter, no sensors.
       {"weather",
-       "trust: is a return rain or snow?",
+       "trust: P(a return is not rain or snow)",
        {"measurement", "simd", "config", "core"},
        false,
        2},
@@ -48,12 +48,12 @@ inline const std::vector<Module>& modules() {
        true,
        4},
       {"sensors",
-       "reads logs, decodes, finds the pose",
+       "reads and decodes logs, estimates the ego pose",
        {"measurement", "config", "core"},
        false,
        1},
       {"scene",
-       "the posterior as one list of objects; result files",
+       "list of objects from the posterior; result files",
        {"filter", "measurement", "config", "core"},
        true,
        5},

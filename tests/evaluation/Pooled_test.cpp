@@ -51,7 +51,7 @@ TEST(SideBySide, ShowsMeanDeviationAndRangeOverTheTrials) {
   const ReportTable table = sideBySideTable(report);
   ASSERT_EQ(table.header.size(), 6u);
   EXPECT_EQ(table.header[1], "both, 2 trials");
-  EXPECT_EQ(table.header[3], "paper: L+R, Sunny");
+  EXPECT_EQ(table.header[3], "Radecki et al.: L+R, Sunny");
   EXPECT_EQ(table.rows[0][0], "Object Tracked");
   EXPECT_EQ(table.rows[0][1], "0.750 (0.750 +- 0.354; 0.500..1.000)");
   EXPECT_EQ(table.rows[0][2], "0.800");

@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-/// Where the hypothesis keeps each distinct track; -1: not at all.
+/// Index of each distinct track in the hypothesis; -1: absent.
 std::vector<int> placesOf(const TrackIndices& tracks, const AssociationIndex& index) {
   std::vector<int> place(index.tracks(), -1);
   for (std::size_t i = 0; i < tracks.size(); ++i) place[tracks[i]] = static_cast<int>(i);
@@ -23,7 +23,7 @@ double logAllMissed(const TrackIndices& tracks, const AssociationIndex& index) {
   return sum;
 }
 
-/// What a measurement may come from in one hypothesis, with normalized probabilities.
+/// Candidate causes of a measurement in one hypothesis, with normalized probabilities.
 struct Choices {
   std::vector<int> cause;
   std::vector<double> log_odds;
@@ -55,7 +55,7 @@ struct Choices {
   }
 };
 
-/// Slots that drew alike so far.
+/// Slots with equal samples so far.
 struct Branch {
   SampledAssociation sampled;
   std::vector<int> taken_by;  // by place of a track: its measurement or -1
@@ -66,8 +66,8 @@ struct Branch {
   }
 };
 
-/// The slots of `branch` part by what they draw for measurement k; parts beyond the first go to
-/// `out`.
+/// Splits the slots of `branch` by their sample for measurement k; all but the first part are
+/// appended to `out`.
 void split(std::size_t k, const Choices& choices, std::vector<Rng>& rngs, Branch& branch,
            std::vector<Branch>& out) {
   branch.sampled.association.log_weight += choices.total;
@@ -140,7 +140,7 @@ std::vector<SampledAssociation> sampleAssociations(const TrackIndices& tracks,
     for (std::size_t b = 0; b < before; ++b) {
       choices.gather(k, index, place, branches[b].taken_by);
       if (choices.total == kMinusInfinity)
-        continue;  // impossible under every cause: clutter of an unmodeled kind, no evidence
+        continue;  // zero density under every cause: ignored as unmodeled clutter
       Branch branch = std::move(branches[b]);
       split(k, choices, rngs, branch, branches);
       branches[b] = std::move(branch);

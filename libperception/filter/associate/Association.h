@@ -6,20 +6,20 @@
 
 namespace perception {
 
-/// The tracks of one hypothesis as indices into the scan's distinct tracks.
+/// The tracks of one hypothesis, as indices into the scan's distinct tracks.
 using TrackIndices = std::vector<std::uint32_t>;
 
-/// For one hypothesis: the cause of every measurement, and what that does to the hypothesis's
-/// weight.
+/// The association of one hypothesis: the cause of every measurement, and the increment of the
+/// hypothesis's log weight.
 struct Association {
-  static constexpr int kNew = -1;  ///< a newborn: a Bernoulli one that may be clutter, or, where
-                                   ///< births are sampled, a sure one
-  static constexpr int kClutter = -2;  ///< only where births are sampled
+  static constexpr int kNew =
+      -1;  ///< a newborn: Bernoulli track of birth or clutter; with sampled births, a birth
+  static constexpr int kClutter = -2;  ///< with sampled births only
   std::vector<int> cause;  ///< by measurement: index of a distinct track, kNew or kClutter
   double log_weight = 0;   ///< log p(scan | history) / proposal, exact
 };
 
-/// The table turned by measurement: who could have caused it. Shared by all hypotheses of a scan.
+/// The likelihood table by measurement: its candidate causes. Shared by all hypotheses of a scan.
 class AssociationIndex {
  public:
   AssociationIndex(const std::vector<Track>& predicted, const LikelihoodTable& table,
@@ -29,7 +29,7 @@ class AssociationIndex {
     std::size_t track;  ///< index into the distinct tracks
     double log_odds;    ///< log r + lhat - log(1 - r P_D)
   };
-  /// A cause that is no track.
+  /// A cause other than a track: newborn or clutter.
   struct Other {
     int cause;
     double log_weight;
@@ -48,16 +48,16 @@ class AssociationIndex {
   std::vector<double> log_miss_;
 };
 
-/// An association that several slots of one hypothesis drew.
+/// An association sampled by one or more slots of one hypothesis.
 struct SampledAssociation {
   Association association;
   std::vector<std::uint32_t> slots;  ///< ascending
 };
 
-/// Pass 3 for one hypothesis and the slots that hold it, table look-ups only: measurement by
-/// measurement each slot draws the cause from the exact conditional ([radecki2016]'s optimal
-/// proposal, method.md 5.4). Slots that drew alike so far share the work. `tracks` are indices of
-/// the hypothesis's tracks into the distinct ones; `order` is the scan's random order of
+/// Pass 3 for one hypothesis and the slots that hold it: each slot samples the cause of one
+/// measurement after the other from the exact conditional, the optimal proposal of [radecki2016]
+/// (method.md 5.4), by table look-up. Slots with equal samples so far share the work. `tracks` are
+/// indices of the hypothesis's tracks into the distinct ones; `order` is the scan's random order of
 /// measurements, the same for all hypotheses; slot i draws from stream i of `key`.
 std::vector<SampledAssociation> sampleAssociations(const TrackIndices& tracks,
                                                    const AssociationIndex& index,

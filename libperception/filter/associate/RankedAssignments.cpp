@@ -10,12 +10,12 @@ namespace perception {
 namespace {
 
 constexpr int kNothing = RankedAssignment::kNothing;
-/// Dual variables are exact up to rounding: what is this little beyond the limit stays in.
+/// Tolerance for rounding errors of the dual variables.
 constexpr double kRounding = 1e-9;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// The whole problem: columns of tracks first, then each row's "nothing".
+/// The complete problem: columns of tracks first, then one "none" column per row.
 AssignmentNode solveWhole(const AssignmentProblem& problem) {
   AssignmentSolver solver;
   const int n = static_cast<int>(problem.rows.size());
@@ -28,7 +28,7 @@ AssignmentNode solveWhole(const AssignmentProblem& problem) {
   return solver.solve();
 }
 
-/// A problem without the options that no assignment within the span can have.
+/// The problem without options that no assignment within the span contains.
 AssignmentProblem pruned(const AssignmentProblem& problem, const AssignmentNode& root,
                          double span) {
   AssignmentProblem out;
@@ -67,12 +67,13 @@ std::vector<int> groupsOf(const AssignmentProblem& problem) {
   return parent;
 }
 
-/// Murty: take the best assignment of a set, split the rest of the set by the first row in which
-/// they differ from it. All but the first of the best `k` within the limit.
+/// Murty: take the best assignment of a set, partition the rest of the set by the first row that
+/// differs from it. All but the first of the best `k` within the limit.
 std::vector<AssignmentNode> rankOthers(AssignmentSolver& solver, AssignmentNode root, std::size_t k,
                                        double span) {
   std::vector<AssignmentNode> out;
-  std::vector<AssignmentNode> open;  // by cost, ties by age; never more than can still come out
+  std::vector<AssignmentNode>
+      open;  // by cost, ties by age; at most as many as can still be returned
   const double limit = root.cost + span;
   AssignmentNode node = std::move(root), child;
   while (out.size() + 1 < k) {
@@ -143,7 +144,7 @@ std::vector<GroupAlternative> rankGroup(const AssignmentProblem& problem,
   return out;
 }
 
-/// The alternatives of a row whose options no other row has.
+/// The alternatives of a row that shares no option with other rows.
 std::vector<GroupAlternative> rankAlone(const std::vector<AssignmentProblem::Option>& options,
                                         int best, std::size_t k, double span) {
   double gain = 0;

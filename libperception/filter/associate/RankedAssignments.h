@@ -6,25 +6,25 @@
 
 namespace perception {
 
-/// Rows that each take one column of their own choice or nothing; no column is taken twice. In a
-/// scan rows are measurements, columns tracks, and nothing means a newborn object or clutter.
+/// Assignment of each row to one column or to none; no column is used twice. In a scan, rows are
+/// measurements, columns are tracks, and none means a newborn or clutter.
 struct AssignmentProblem {
   struct Option {
     int column = 0;
-    double gain = 0;  ///< log weight of row and column together, against the row taking nothing
+    double gain = 0;  ///< log weight of the pair relative to an unassigned row
   };
   int columns = 0;
   std::vector<std::vector<Option>> rows;
 };
 
-/// One way to fill all rows.
+/// One feasible assignment.
 struct RankedAssignment {
   static constexpr int kNothing = -1;
-  std::vector<int> column;  ///< by row, or kNothing
+  std::vector<int> column;  ///< by row; kNothing: unassigned
   double log_weight = 0;    ///< sum of the gains
 };
 
-/// A problem with its likeliest assignment.
+/// An assignment problem with its best assignment.
 class AssignmentRanking {
  public:
   explicit AssignmentRanking(AssignmentProblem problem);
@@ -39,12 +39,12 @@ class AssignmentRanking {
   AssignmentNode root_;
 };
 
-/// The `k` assignments of largest weight, best first, exactly: choices that cost more than `span`
-/// whatever the rest does are left out (the best assignment's dual variables tell), the independent
-/// parts that remain are ranked apart (Murty's partition, K. G. Murty, "An Algorithm for Ranking
-/// all the Assignments in Order of Increasing Cost", Operations Research 16, 1968) and their lists
-/// joined. Those lighter than the best by more than `span` in log weight may be left out. Equal
-/// weights come in an order that depends on the arguments alone.
+/// The exact `k` assignments of largest weight, best first. Options whose reduced cost in the best
+/// assignment exceeds `span` are pruned; the remaining independent subproblems are ranked
+/// separately by Murty's partition (K. G. Murty, "An Algorithm for Ranking all the Assignments in
+/// Order of Increasing Cost", Operations Research 16, 1968) and their lists merged. Assignments
+/// whose log weight is lower than the best by more than `span` may be omitted. The order of equal
+/// weights is deterministic.
 std::vector<RankedAssignment> rankedAssignments(const AssignmentProblem& problem, std::size_t k,
                                                 double span);
 

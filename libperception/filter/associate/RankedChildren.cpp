@@ -15,7 +15,7 @@
 namespace perception {
 namespace {
 
-/// A child before its causes are written down.
+/// A child whose causes are not yet listed.
 struct Draft {
   std::size_t parent;
   std::size_t rank;  // among the children of the parent
@@ -23,7 +23,7 @@ struct Draft {
   RankedSums::Sum sum;
 };
 
-/// The best `slots` weights seen so far: what is below them cannot survive.
+/// The best `slots` weights so far: children below are pruned.
 class Survivors {
  public:
   Survivors(std::size_t slots, double floor) : slots_(slots), floor_(floor) {}
@@ -75,7 +75,7 @@ class Ranking {
     return all_.of_hypothesis[h * parts_.measurements.size() + part];
   }
 
-  /// The likeliest association of every hypothesis, and what all have in common of it.
+  /// The best association of every hypothesis, and the part common to all.
   void setBest(const std::vector<TrackIndices>& tracks, const AssociationIndex& index) {
     for (std::size_t m = 0; m < index.measurements(); ++m) {
       const auto& other = likeliestOther(index, m);
@@ -96,7 +96,8 @@ class Ranking {
     for (std::size_t p = 0; p < parts; ++p) write(variantOf(0, p), 0, alike_);
   }
 
-  /// Alternatives of the variants that some hypothesis above the floor can still afford.
+  /// Computes the alternatives of the variants that may be within the pruning limit in some
+  /// hypothesis.
   void rankVariants(double floor) {
     auto& variants = all_.variants;
     std::vector<double> afforded(variants.size(), kMinusInfinity);
@@ -123,8 +124,8 @@ class Ranking {
     sums_.join(variant, losses.data(), losses.size(), limit);
   }
 
-  /// The children that survive, best first. Those of the likeliest hypotheses are found first, so
-  /// that the floor rises early; what all hypotheses see alike is joined once.
+  /// The remaining children, best first. Hypotheses are processed by weight, so that the pruning
+  /// limit tightens early; parts common to all hypotheses are merged once.
   std::vector<Draft> drafts(Survivors& survivors) {
     std::vector<char> varies(parts_.measurements.size(), 0);
     for (const std::uint32_t p : all_.varied) varies[p] = 1;

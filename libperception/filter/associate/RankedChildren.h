@@ -6,24 +6,25 @@
 
 namespace perception {
 
-/// How many associations the hypotheses of a scan are continued with.
+/// Limits on the child hypotheses of a scan.
 struct RankingLimits {
-  std::size_t children = 4;  ///< of one hypothesis at most
-  std::size_t slots = 1;     ///< of all together at most
-  double span = 14;          ///< none lighter than the best of all by more, in log weight
+  std::size_t children = 4;  ///< most children of one hypothesis
+  std::size_t slots = 1;     ///< most children of all hypotheses
+  double span = 14;          ///< largest difference of log weight to the best child
 };
 
-/// One likely association of one hypothesis.
+/// One association of one hypothesis.
 struct RankedChild {
   std::size_t parent = 0;  ///< index of the hypothesis
   Association association;
-  double log_weight = 0;  ///< that of the parent and of the association together
+  double log_weight = 0;  ///< sum of those of the parent and of the association
 };
 
-/// Pass 3 for all hypotheses at once: their likeliest associations, best first, with exact weights
-/// (method.md 6). The scan falls into parts whose measurements share no candidates; hypotheses that
-/// hold the same tracks in a part share its ranking, and what cannot be among the best `slots` of
-/// all is never made. `tracks`: by hypothesis indices of its tracks into the distinct ones.
+/// Pass 3 for all hypotheses at once: their best associations, best first, with exact weights
+/// (method.md 6). The scan is split into parts whose measurements share no candidate tracks;
+/// hypotheses that hold the same tracks in a part share its ranking, and associations that cannot
+/// be among the best `slots` of all hypotheses are not generated. `tracks`: by hypothesis, indices
+/// into the distinct tracks.
 std::vector<RankedChild> rankChildren(const std::vector<TrackIndices>& tracks,
                                       const std::vector<double>& log_weights,
                                       const AssociationIndex& index, const RankingLimits& limits);

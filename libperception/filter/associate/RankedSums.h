@@ -6,20 +6,20 @@
 
 namespace perception {
 
-/// The least sums of one alternative from each of several lists, or none of it: how the rankings of
-/// independent parts become that of the whole. Holds the `k` least, the empty sum first.
+/// The `k` smallest sums of at most one alternative from each of several lists: merges the rankings
+/// of independent parts. Ascending, the empty sum first.
 class RankedSums {
  public:
   struct Sum {
     double loss = 0;
-    std::int32_t last = -1;  ///< link of the change joined last; -1: nothing is changed
+    std::int32_t last = -1;  ///< link of the alternative added last; -1: none
   };
 
   explicit RankedSums(std::size_t k) : k_(k), sums_(1) {}
 
   const std::vector<Sum>& sums() const { return sums_; }
 
-  /// One more list: `losses` >= 0 in ascending order; sums above `limit` are left out.
+  /// Adds a list of `losses` >= 0 in ascending order; sums above `limit` are dropped.
   void join(std::uint32_t list, const double* losses, std::size_t count, double limit) {
     if (count == 0 || losses[0] > bound(limit)) return;
     const std::size_t before = sums_.size();
@@ -37,10 +37,10 @@ class RankedSums {
     if (sums_.size() > k_) sums_.resize(k_);
   }
 
-  /// Goes on from other sums of the same object, as after having joined what they were joined from.
+  /// Resets to an earlier state of the same object.
   void restart(const std::vector<Sum>& from) { sums_ = from; }
 
-  /// f(list, alternative) for everything that a sum changes.
+  /// Calls f(list, alternative) for each alternative in a sum.
   template <class Function>
   void forEachChange(const Sum& sum, const Function& f) const {
     for (std::int32_t i = sum.last; i >= 0; i = links_[static_cast<std::size_t>(i)].before) {

@@ -10,7 +10,8 @@ namespace perception {
 
 constexpr std::uint32_t kNoPart = static_cast<std::uint32_t>(-1);
 
-/// Measurements that share candidates, directly or through others, whatever the hypothesis.
+/// Connected components of the measurements of a scan that share candidate tracks in any
+/// hypothesis.
 struct ScanParts {
   std::vector<std::vector<std::size_t>> measurements;  ///< by part, ascending
   std::vector<std::uint32_t> of_track;                 ///< kNoPart: nothing lies in its gate
@@ -20,7 +21,7 @@ struct ScanParts {
 
 using Causes = std::vector<int>;  ///< by measurement of a part: index of a distinct track, or kNew
 
-/// One part as the hypotheses see it that hold the same tracks in it.
+/// The assignment problem of one part for all hypotheses that hold the same tracks in it.
 struct PartVariant {
   std::uint32_t part = 0;
   std::size_t example = 0;                     ///< a hypothesis that sees it so
@@ -39,7 +40,7 @@ struct PartVariant {
   }
 };
 
-/// All parts as all hypotheses see them.
+/// The variants of all parts for all hypotheses.
 struct PartVariants {
   std::vector<PartVariant> variants;
   std::vector<std::uint32_t> of_hypothesis;  ///< by hypothesis and part: index of the variant
@@ -48,12 +49,11 @@ struct PartVariants {
   PartVariants(const std::vector<TrackIndices>& tracks, const ScanParts& parts);
 };
 
-/// Of the causes that are no track the likeliest stands for all: there is only one unless births
-/// are sampled.
+/// The most likely cause other than a track. There is only one unless births are sampled.
 const AssociationIndex::Other& likeliestOther(const AssociationIndex& index,
                                               std::size_t measurement);
 
-/// Finds the best assignment of a variant.
+/// Computes the best assignment of a variant.
 void solveBest(const ScanParts& parts, const std::vector<TrackIndices>& tracks,
                const AssociationIndex& index, PartVariant& variant);
 

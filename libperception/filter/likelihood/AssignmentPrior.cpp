@@ -12,16 +12,17 @@
 namespace perception {
 namespace {
 
-constexpr double kHighest = 4;           // [m] clutter has any height up to this (method.md 5.15)
-constexpr double kHeightScatter = 0.15;  // [m] of an object's own height from scan to scan
-constexpr double kBaseScatter = 0.15;    // [m] of its lowest point
-constexpr double kGroundSigma = 0.5;     // [m] of the ground about the vehicle's own
+constexpr double kHighest = 4;  // [m] clutter has any height up to this (method.md 5.15)
+constexpr double kHeightScatter =
+    0.15;  // [m] standard deviation of a detection's height about the object's
+constexpr double kBaseScatter = 0.15;  // [m] of its lowest point
+constexpr double kGroundSigma = 0.5;   // [m] of the ground about the vehicle's own
 
 double logNormal(double d, double variance) {
   return -0.5 * (d * d / variance + std::log(kTwoPi * variance));
 }
 
-/// One object in a hundred is cut or merged: it then has any height.
+/// One detection in a hundred is truncated or merged and has any height.
 double logMostly(double d, double variance) {
   return std::log(0.99 * std::exp(logNormal(d, variance)) + 0.01 / kHighest);
 }
@@ -63,7 +64,7 @@ double logShape(const ObjectClass& c, const Measurement& m, const SensorState& s
 
 void weighShape(const Measurement& m, const SensorState& sensor, const FilterModel& model,
                 BirthLikelihood& births) {
-  // The newborn's classes learn of its height in the update, not here.
+  // The height enters the class probabilities of a newborn in the update, not here.
   std::vector<double> shape = births.log_class;
   for (ClassId j = 0; j < model.classes.size(); ++j)
     shape[static_cast<std::size_t>(j)] += logShape(model.classes[j], m, sensor);
@@ -96,7 +97,7 @@ Innovation withRegion(Innovation innovation, const RegionSeen& region, const Mea
     now += is;
     then += was;
   }
-  // D R D with D = sqrt(1 - rho^2): stays a covariance whatever axes were seen.
+  // D R D with D = sqrt(1 - rho^2): stays positive definite for any axes.
   const auto left = [&](Eigen::Index i) {
     const double c = carried[static_cast<std::size_t>(i)];
     return std::sqrt(1 - c * c);
@@ -112,7 +113,7 @@ void rememberRegion(const Measurement& m, const MeasurementScan& scan, const Fil
   const ClassId best = track.likeliestClass();
   const ClassFilter& f = track.bank[track.filterOf(static_cast<std::size_t>(best))];
   const ClassId of = track.decided_class < 0 ? best : track.decided_class;
-  // Models see a batch as whole banks: the filter stands at its class's place.
+  // Models predict whole banks: put the filter at the index of its class.
   std::vector<Kinematics> kinematics(static_cast<std::size_t>(of) + 1,
                                      kinematicsOf(model.classes[of], f));
   const std::vector<Extent> extents(kinematics.size(), f.extent);

@@ -10,24 +10,26 @@ namespace perception {
 // values that track, birth and clutter are all weighed by, so that the weights of hypotheses stay
 // exact.
 
-/// [filter] shape_prior: log density of the measurement's height and lowest point, given that it is
-/// of this track. 0 where it has neither.
+/// [filter] shape_prior: log density of the measurement's height and lowest point [m], given that
+/// this track caused it. 0 where the measurement has neither.
 double logShape(const Track& track, const Measurement& m);
-/// The same of a newborn of class c.
+/// The same for a newborn of class c.
 double logShape(const ObjectClass& c, const Measurement& m, const SensorState& sensor);
-/// Weighs birth and clutter by it; before they are compared.
+/// Multiplies birth and clutter densities by theirs. Call before the two are normalized against
+/// each other.
 void weighShape(const Measurement& m, const SensorState& sensor, const FilterModel& model,
                 BirthLikelihood& births);
 
-/// [filter] region_memory: the track's last region seen by the scan's sensor; null: none, or not
-/// asked for.
+/// [filter] region_memory: residual of the track's last update by the scan's sensor; null when
+/// there is none or region_memory = 0.
 const RegionSeen* regionOf(const Track& track, const MeasurementScan& scan,
                            const FilterModel& model);
-/// The innovation, given that the last region's error goes on with correlation rho: y - rho e with
-/// the noise (1 - rho^2) R, a Gaussian over the same axes. Axes that were not seen then stay.
+/// The innovation under AR(1) measurement errors with correlation rho, given the last residual e: y
+/// - rho e with noise (1 - rho^2) R on the same axes. Axes that were not seen in the last update
+/// are unchanged.
 Innovation withRegion(Innovation innovation, const RegionSeen& region, const Measurement& m,
                       const MeasurementScan& scan, const FilterModel& model);
-/// Keeps the region of a track that was just updated by this measurement.
+/// Stores the residual of a track that was just updated with this measurement.
 void rememberRegion(const Measurement& m, const MeasurementScan& scan, const FilterModel& model,
                     Track& track);
 

@@ -12,12 +12,11 @@
 namespace perception {
 namespace {
 
-/// Before any matrix: pairs farther apart than this many standard deviations (plus 2 m of size)
-/// cannot pass the gate.
+/// Coarse gate [standard deviations], plus 2 m for the size.
 constexpr double kCoarseGate = 6;
 constexpr double kCoarseMargin = 2;     // [m]
-constexpr double kSlack = 1e-6;         // [m] what two computations of a distance may differ by
-constexpr double kRounding = 1 + 1e-6;  // the same of a NIS
+constexpr double kSlack = 1e-6;         // [m] rounding tolerance of distances
+constexpr double kRounding = 1 + 1e-6;  // rounding tolerance of a NIS, relative
 
 /// Reach of one class filter [m], the measurement's own deviation left out.
 double coarseReach(const ClassFilter& f) {
@@ -82,7 +81,7 @@ AxisBounds::AxisBounds(const ClassFilter& filter, const Kinematics& k,
   for (Eigen::Index a = 0; a < prediction.h.size(); ++a) {
     const auto& H = prediction.H_q;
     double variance = 0;
-    if (H(a, 2) == 0 && H(a, 3) == 0 && H(a, 4) == 0) {  // a place only
+    if (H(a, 2) == 0 && H(a, 3) == 0 && H(a, 4) == 0) {  // position only
       const double x = H(a, 0), y = H(a, 1);
       variance = x * x * filter.P(0, 0) + 2 * x * y * filter.P(0, 1) + y * y * filter.P(1, 1);
     } else {

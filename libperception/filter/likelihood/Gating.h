@@ -8,30 +8,30 @@
 
 namespace perception {
 
-/// Chi-square quantiles of one probability by number of axes.
+/// Chi-square quantiles of one gate probability by number of axes.
 struct Gates {
   explicit Gates(double probability);
-  /// Those of the probability asked for last: a run has one.
+  /// Cached for the last probability, since a run uses one.
   static const Gates& of(double probability);
   std::array<double, kMaxAxes + 1> quantile{};
 };
 
-/// A disc about one class filter that holds the centers of all that are kept up to date.
+/// A disc that contains the means of all live class filters of a track, for the coarse gate.
 struct BoundingDisc {
   Vector2 center = Vector2::Zero();  ///< [m] world
   double spread = 0;                 ///< [m] radius
-  double size = 0;                   ///< [m] half of the largest side
-  double reach = 0;  ///< [m] of the coarse gate, the measurement's own deviation left out
+  double size = 0;                   ///< [m] half of the longest side of the class filters' extents
+  double reach = 0;  ///< [m] radius of the coarse gate without the measurement's standard deviation
   explicit BoundingDisc(const Track& track);
-  /// False when no class filter can be coarsely near: most pairs end here.
+  /// False when no class filter can pass the coarse gate: rejects most pairs.
   bool mayBeNear(const Measurement& m) const;
 };
 
-/// Before any matrix: false for pairs that are too far apart to pass the gate.
+/// Distance test without matrices: false for pairs that cannot pass the gate.
 bool coarseGate(const Track& track, const Measurement& m);
 
-/// Bounds from below the NIS of one class filter by its axes one by one: y' S^-1 y >= y_a^2 / S_aa.
-/// Most pairs that are coarsely near fail here, at a few products each.
+/// Lower bound of the NIS of one class filter from single axes: y' S^-1 y >= y_a^2 / S_aa. Rejects
+/// most pairs that pass the coarse gate at the cost of a few products.
 class AxisBounds {
  public:
   AxisBounds(const ClassFilter& filter, const Kinematics& k, const AxisPrediction& prediction);
@@ -40,23 +40,25 @@ class AxisBounds {
 
  private:
   const AxisPrediction& prediction_;
-  bool applies_;  // of motion modes any may be the nearest
+  bool applies_;  // false with motion modes: any of them may have the smallest NIS
   std::array<double, kMaxAxes> variance_{};
 };
 
-/// Where a sensor may see the track: P_D is taken at the means of the class filters.
+/// Bounds where a sensor may see the track; P_D is evaluated at the means of the class filters.
 ReachableDisc reachableDiscOf(const Track& track, const FilterModel& model);
 
-/// A track that no scan concerns is left behind until one does, or until it has expired; at most
-/// for this long [s]. Its steps are taken when it wakes, and most never do.
+/// [s] Longest deferred prediction of a track that is out of view of all scans: it is predicted
+/// when a sensor may see it again, or dropped when its existence has decayed, which is the usual
+/// case.
 inline constexpr double kLongestDeferral = 60;
-/// The same of tracks with motion modes: those mix once a step, and the step may not be long.
+/// [s] The same for tracks with motion modes, which mix once per prediction step.
 inline constexpr double kLongestDeferralOfModes = 0.5;
 
-/// Whether the scan's sensor sees places alone: whatever size a track has, only where it is counts.
+/// Whether the scan's measurement model is a PositionOnlyModel: visibility then depends on the
+/// center alone, not on the extent.
 bool isPositionOnly(const MeasurementScan& scan);
-/// False when the scan can say nothing of the track, since all its class filters, predicted, are
-/// out of view: it stays as it is for now. `position_only`: isPositionOnly().
+/// False when all predicted class filters of the track are out of the sensor's view, so that its
+/// prediction can be deferred. `position_only`: isPositionOnly(scan).
 bool mayBeInView(const MeasurementScan& scan, const Track& track, bool position_only);
 inline bool mayBeInView(const MeasurementScan& scan, const Track& track) {
   return mayBeInView(scan, track, isPositionOnly(scan));

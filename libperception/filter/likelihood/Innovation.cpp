@@ -37,7 +37,7 @@ Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
   }
   for (Eigen::Index i = 0; i < n; ++i)
     if (!(model.extentAxes() >> axis[static_cast<std::size_t>(i)] & 1)) H_extent.row(i).setZero();
-  out.R.diagonal().array() += 1e-9;  // S stays invertible whatever the sensor says (method.md 4)
+  out.R.diagonal().array() += 1e-9;  // keeps S invertible for any R (method.md 4)
   out.S = out.covarianceOf(filter.P);
   return out;
 }

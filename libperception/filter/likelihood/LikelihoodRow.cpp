@@ -12,7 +12,7 @@ namespace {
 
 constexpr AxisMask kPlaceSeen = 3;  // x and y
 
-/// What a class filter expects of z: its covariance, the measurement's own left out.
+/// Innovation covariance of a class filter without R of the measurement.
 struct ExpectedPlace {
   double x, y, xx, xy, yy;
 };
@@ -101,7 +101,8 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
                                                   : 0;
   const std::size_t k = pair_.measurement;
   pair_.nis[j] = density.nis;
-  // The heading tells objects apart, but not classes: people have one, too, that no filter keeps.
+  // A measured heading is evidence of the object, not of the class: people also have a heading,
+  // which their filters do not estimate.
   pair_.log_by_class[j] =
       density.log_density + terms_.labelAndScore(k, j) + log_detection + heading;
   pair_.log_class_evidence[j] = terms_.model.params.kinematic_exponent * density.log_density +
@@ -136,7 +137,7 @@ void positionRow(const Track& track, const std::vector<std::size_t>& near, const
     const std::size_t filter = track.filterOf(j);
     const Matrix4& P = track.bank[filter].P;
     const Matrix2& noise = terms.place()->placeNoise(static_cast<ClassId>(filter));
-    constexpr double kRegular = 1e-9;  // stays invertible whatever the sensor says (method.md 4)
+    constexpr double kRegular = 1e-9;  // keeps S invertible for any R (method.md 4)
     expected[j] = {places[j].x(), places[j].y(), P(0, 0) + noise(0, 0) + kRegular,
                    P(1, 0) + noise(1, 0), P(1, 1) + noise(1, 1) + kRegular};
   }

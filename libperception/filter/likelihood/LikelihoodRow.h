@@ -8,7 +8,7 @@
 
 namespace perception {
 
-/// What a scan says whatever the track: made once for all rows of the table.
+/// Terms of a scan's likelihoods that do not depend on the track, computed once per scan.
 class ScanTerms {
  public:
   ScanTerms(const MeasurementScan& scan, const FilterModel& model);
@@ -18,7 +18,7 @@ class ScanTerms {
   double labelAndScore(std::size_t k, std::size_t j) const {
     return labels_[k * classes_ + j].label_and_score;
   }
-  /// Not null: rows may be made by positionRow().
+  /// The model if it is position-only, so that positionRow() applies; else null.
   const PositionOnlyModel* place() const { return place_; }
 
   const MeasurementScan& scan;
@@ -36,14 +36,14 @@ class ScanTerms {
   const PositionOnlyModel* place_ = nullptr;
 };
 
-/// What the classes say of one pair, class by class; then their sum.
+/// Accumulates the likelihoods of one track-measurement pair over the classes.
 class PairTerms {
  public:
   PairTerms(const Track& track, std::size_t measurement, const ScanTerms& terms,
             PairLikelihood& pair);
   /// `log_detection`: log P_D of the class.
   void add(std::size_t j, const Density& density, double log_detection);
-  /// Of all classes added; the likelihood is -inf where there is none.
+  /// Sets the mixture likelihood of all classes added; -inf if none was.
   void finish();
   const ClassValues& mixture() const { return mixture_; }
 
@@ -55,16 +55,18 @@ class PairTerms {
   ClassValues mixture_;
 };
 
-/// P_D = 1 would make one miss a proof.
+/// Upper bound of P_D: with P_D = 1 a single missed detection would set the existence probability
+/// to 0.
 inline constexpr double kMaxDetection = 0.999;
-/// Share of the track's directions that nothing nearer hides; at least what hidden ones keep.
+/// Unoccluded share of the track's directions (method.md 5.8), at least [filter]
+/// occluded_detection.
 double visibilityOf(const Track& track, const MeasurementScan& scan, const FilterModel& model);
 
-/// A row of a sensor that sees the place alone, for tracks without motion modes: the numbers of the
-/// general way at a fraction of its cost. `row.predictions` stay empty.
+/// Row of the likelihood table for a position-only sensor and a track without motion modes: same
+/// values as the general code at a fraction of its cost. `row.predictions` stays empty.
 void positionRow(const Track& track, const std::vector<std::size_t>& near, const ScanTerms& terms,
                  TrackLikelihoods& row);
-/// Whether positionRow() may make it.
+/// Whether positionRow() applies to the track.
 bool takesPositionRow(const Track& track, const ScanTerms& terms);
 
 }  // namespace perception

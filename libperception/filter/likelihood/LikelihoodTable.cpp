@@ -16,7 +16,7 @@
 namespace perception {
 namespace {
 
-/// What one track after the other needs again.
+/// Buffers reused from track to track.
 struct Scratch {
   std::vector<std::size_t> near;
   std::vector<Kinematics> kinematics;
@@ -58,7 +58,7 @@ double pairLikelihood(const Track& track, const ClassValues& detection_by_class,
   with_region.assign(region ? track.bank.size() : 0, kMinusInfinity);
   double log_region = 0;
   Density density;
-  bool seen = false;  // a decided class: one filter stands for all
+  bool seen = false;  // with a decided class, one filter is used for all
   for (std::size_t j = 0; j < track.bank.size(); ++j) {
     const std::size_t filter = track.filterOf(j);
     if (!scratch.predictions[filter].defined || detection_by_class[j] <= 0) continue;
@@ -78,7 +78,7 @@ double pairLikelihood(const Track& track, const ClassValues& detection_by_class,
   return min_excess;
 }
 
-/// What sensors can see of each class filter; a class that another one stands for shares its.
+/// Kinematics of each class filter; with a decided class, shared.
 void setKinematics(const Track& track, const FilterModel& model, Scratch& scratch) {
   const std::size_t classes = track.bank.size();
   auto& kinematics = scratch.kinematics;
@@ -170,7 +170,7 @@ TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
   thread_local Scratch scratch;
   TrackLikelihoods row;
   const BoundingDisc around(track);
-  // Out of view: the scan says nothing of it.
+  // Out of view: no evidence.
   if (!scan.model->mayDetect(around.center, around.spread + 2 * around.size + 1, scan.state)) {
     row.detection_by_class.assign(track.bank.size(), 0);
     return row;

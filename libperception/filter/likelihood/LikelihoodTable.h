@@ -10,27 +10,28 @@
 
 namespace perception {
 
-/// One gated pair of track and measurement: its likelihood and what the update will need again.
+/// One gated track-measurement pair: its likelihood and intermediate results for the update.
 struct PairLikelihood {
   std::size_t measurement = 0;
   double log_likelihood = 0;  ///< lhat: log sum_j p(class j) p(z, label, score, detected | class j)
-  double log_prior = 0;       ///< of this cause against others, beside the likelihood
-  ClassValues log_by_class;   ///< l_j, the summands without the class probability
-  ClassValues
-      log_class_evidence;  ///< l_j with label and innovations tempered: for the class update only
-  ClassValues nis;         ///< normalized innovation squared of each class filter
+  double log_prior =
+      0;  ///< log of the assignment prior (method.md 5.15), not part of the likelihood
+  ClassValues log_by_class;        ///< l_j: log p(z, label, score, detected | class j)
+  ClassValues log_class_evidence;  ///< l_j with tempered label and innovations (method.md 5.6): for
+                                   ///< the class update only
+  ClassValues nis;                 ///< normalized innovation squared of each class filter
 };
 
-/// One predicted track against a scan.
+/// Likelihoods of one predicted track for all gated measurements of a scan.
 struct TrackLikelihoods {
   double detection = 0;  ///< P_D = sum_j p(class j) P_D(class j)
   ClassValues detection_by_class;
-  bool in_view = false;  ///< some class could have been detected were it not hidden
-  std::vector<AxisPrediction> predictions;  ///< by class; none of a sensor that sees places alone
+  bool in_view = false;                     ///< P_D of some class is positive, occlusion aside
+  std::vector<AxisPrediction> predictions;  ///< by class; empty for position-only models
   std::vector<PairLikelihood> pairs;        ///< in order of measurement
 };
 
-/// One measurement as the first of a new object or as clutter.
+/// A measurement as birth (first measurement of a new object) or as clutter.
 struct BirthLikelihood {
   double log_birth = 0, log_clutter = 0;  ///< log densities per scan and unit of the axes seen
   double log_new = 0;                     ///< log(birth + clutter)
@@ -44,12 +45,12 @@ struct LikelihoodTable {
   std::vector<BirthLikelihood> births;
 };
 
-/// `touched`: rows of the other tracks stay empty.
+/// Rows of tracks that are not `touched` (out of view) stay empty.
 LikelihoodTable likelihoodTable(const std::vector<Track>& predicted,
                                 const std::vector<char>& touched, const MeasurementScan& scan,
                                 const FilterModel& model);
 
-/// The same with all rows.
+/// All tracks touched.
 LikelihoodTable likelihoodTable(const std::vector<Track>& predicted, const MeasurementScan& scan,
                                 const FilterModel& model);
 

@@ -9,15 +9,15 @@
 namespace perception {
 namespace {
 
-/// Points this many deviations to either side. Any number gives the right mean and variance of a
-/// line with weights 1 / (2 reach^2); sqrt 3 would give a Gaussian's fourth moment, too, but folds
-/// of the outline that lie farther out (the other diagonal, the mirrored heading of a range rate)
-/// are then not seen, and the filter locks on the wrong side of them: of 200 simulated buses NEES
-/// is 2.4 per degree of freedom with 1.73, 1.3 with 2.3 (tests/filter/Consistency_test). A range
-/// rate folds farther out: of 2000 buses under a radar 34 are lost with 2.3, 25 with 2.8 (and 20
-/// with 3.3, but then the NIS of cars falls to .90).
+/// Distance of the sigma points in standard deviations. Any value gives the right mean and variance
+/// of a line with weights 1 / (2 reach^2); sqrt 3 would give a Gaussian's fourth moment, too, but
+/// misses folds of the outline farther out (the other diagonal, the mirrored heading of a range
+/// rate), so that the filter may lock on the wrong side of them: of 200 simulated buses NEES is 2.4
+/// per degree of freedom with 1.73, 1.3 with 2.3 (tests/filter/Consistency_test). A range rate
+/// folds farther out: of 2000 buses under a radar 34 are lost with 2.3, 25 with 2.8 (and 20 with
+/// 3.3, but then the NIS of cars falls to .90).
 double reachOf(AspectLine line) { return line == AspectLine::kTangent ? 2.8 : 2.3; }
-constexpr double kPlainReach = 0.05;  // [m] corners that move no more than this: the tangent does
+constexpr double kPlainReach = 0.05;  // [m] if corners move less, the tangent is used
 
 /// d(aspect)/dq, the aspect being yaw less the bearing from the sensor.
 Eigen::Matrix<double, 1, 5> aspectGradient(const Vector2& d) {
@@ -70,7 +70,7 @@ void linearizeAlongAspect(const ObjectClass& c, const ClassFilter& filter,
   const AxisVector chord = (up - down) / (2 * reach * sigma);
   const AxisVector tangent = prediction.H_q * (kinematics.J * Pa) / variance;
   const AxisVector& slope = line == AspectLine::kChord ? chord : tangent;
-  // The chord is the line that leaves least; what another one leaves besides is the difference.
+  // The chord has the smallest residual variance; another slope adds the square of the difference.
   const AxisVector off = slope - chord;
   const AxisMatrix unexplained = weight * (up * up.transpose() + down * down.transpose()) -
                                  shift * shift.transpose() -

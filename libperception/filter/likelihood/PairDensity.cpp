@@ -50,7 +50,7 @@ void ExpectedAxes::set(const ClassFilter& f, const Kinematics& k, const AxisPred
     fixedSquare<n>(S_) = H * f.P * H.transpose() + spread * He.transpose();
   });
   if (p.R_model.size() > 0) S_ += p.R_model;
-  S_.diagonal().array() += 1e-9;  // stays invertible whatever the sensor says (method.md 4)
+  S_.diagonal().array() += 1e-9;  // keeps S invertible for any R (method.md 4)
 }
 
 Density ExpectedAxes::densityOf(const AxisPrediction& p, const Measurement& m, const AxisList& axes,

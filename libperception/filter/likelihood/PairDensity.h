@@ -21,8 +21,8 @@ struct AxisList {
   }
 };
 
-/// Log density of an innovation and its normalized square; of modes their mixture and the least.
-/// -inf and infinite where S is no covariance.
+/// Log density and NIS of an innovation; with motion modes, log density of the mixture and smallest
+/// NIS. -inf and infinity where S is not positive definite.
 struct Density {
   double log_density = kMinusInfinity;
   double nis = std::numeric_limits<double>::infinity();
@@ -30,17 +30,17 @@ struct Density {
 
 Density densityOf(const Innovation& innovation, const ClassFilter& filter);
 
-/// What a filter of one Gaussian expects of all axes, made once for all measurements that may be
-/// near: densityOf() of their innovations at a fraction of the cost.
+/// H P H' + R_model of a filter with one Gaussian on all axes, computed once for all measurements:
+/// the same densities as densityOf() of their innovations at a fraction of the cost.
 class ExpectedAxes {
  public:
   void set(const ClassFilter& f, const Kinematics& k, const AxisPrediction& p);
-  /// Of a measurement with these `axes`; `p` is the prediction that it was set by.
+  /// Density of a measurement with these `axes`; `p`: the prediction given to set().
   Density densityOf(const AxisPrediction& p, const Measurement& m, const AxisList& axes,
                     const std::vector<AxisKind>& kinds) const;
 
  private:
-  AxisMatrix S_;  ///< H P H' and the model's own noise; that of the measurement comes on top
+  AxisMatrix S_;  ///< H P H' + R_model, without the measurement's R
 };
 
 }  // namespace perception

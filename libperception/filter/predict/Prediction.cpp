@@ -15,7 +15,7 @@ namespace {
 
 /// A track that no sensor could have seen for this long counts as out of view.
 constexpr double kOutOfViewAfter = 1.0;  // [s]
-/// Fewer Gaussians than this are not worth a batch.
+/// Smallest number of Gaussians for a batch.
 constexpr std::size_t kWorthBatch = 8;
 
 /// Tracks that are begun one after the other.
@@ -110,7 +110,7 @@ void moveBatch(const std::vector<GaussianStep>& steps, Kernel kernel) {
   }
   const std::size_t parts = (steps.size() + BatchPart::kPart - 1) / BatchPart::kPart;
   parallelFor(parts, [&](std::size_t p) {
-    // Of every thread one, small enough for the cache; what the last part left behind does no harm.
+    // One buffer per thread, sized for the cache; old contents are overwritten.
     thread_local BankBatch bank(BatchPart::kPart);
     thread_local MotionBatch motion(BatchPart::kPart);
     const std::size_t first = p * BatchPart::kPart;

@@ -6,8 +6,8 @@
 
 namespace perception {
 
-/// Numbers of many filters, one plane a quantity, each plane contiguous and padded to whole
-/// vectors.
+/// Quantities of many filters as structure of arrays: one plane per quantity, contiguous, aligned
+/// and padded to whole SIMD vectors.
 class Planes {
  public:
   Planes(std::size_t size, std::size_t planes);
@@ -28,17 +28,18 @@ class Planes {
   std::size_t offset_;          ///< of the first aligned value
 };
 
-/// Many four-state Gaussians as a structure of arrays: what a bank of class filters is to the
-/// processor. Planes 0-3: x; 4-13: the upper triangle of P, row by row.
+/// Many Gaussians of four state variables as structure of arrays. Planes 0-3: x; 4-13: the upper
+/// triangle of P, row by row.
 struct BankBatch : Planes {
   explicit BankBatch(std::size_t size) : Planes(size, 14) {}
 };
 
-/// What moves each Gaussian of a batch by its own time step (see predictClassFilter).
+/// Transition and process noise of each Gaussian of a batch over its own time step (see
+/// predictClassFilter).
 struct MotionBatch : Planes {
   enum Plane {
-    kDecay,        ///< share of the speed that stays
-    kEffectiveDt,  ///< [s] way per initial speed
+    kDecay,        ///< v(t + dt) / v(t)
+    kEffectiveDt,  ///< [s] distance covered / initial speed
     kPp,           ///< [m^2] position noise along the motion: psd times the integrals of the step
     kPv,           ///< [m^2/s]
     kVv,           ///< [m^2/s^2]
@@ -51,8 +52,8 @@ struct MotionBatch : Planes {
   explicit MotionBatch(std::size_t size) : Planes(size, kPlanes) {}
 };
 
-/// A part of a batch: whole vectors, so that parts may be worked on at once or one after the other
-/// while they are in the cache. `first` is a multiple of kPart, and so is `end` but at the last.
+/// A range of a batch, for parallel or cache-sized processing. `first` and, except in the last
+/// part, `end` are multiples of kPart.
 struct BatchPart {
   static constexpr std::size_t kPart = 64;
   std::size_t first = 0, end = static_cast<std::size_t>(-1);  ///< the default: all
@@ -64,7 +65,7 @@ void predictConstantVelocity(const MotionBatch& motion, BankBatch& bank, SimdLev
 /// [x, y, v, theta]; theta is not wrapped (method.md 3.2).
 void predictWheeled(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
                     BatchPart part = {});
-/// The same by the moments of an uncertain heading.
+/// The same by the exact moments of an uncertain heading.
 void predictMoments(const MotionBatch& motion, BankBatch& bank, SimdLevel level,
                     BatchPart part = {});
 

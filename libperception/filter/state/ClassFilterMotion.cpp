@@ -40,8 +40,8 @@ Moments momentsOf(const std::vector<ModeFilter>& modes, const std::vector<double
   return out;
 }
 
-/// The interaction of interacting multiple models (Blom and Bar-Shalom 1988): modes as they will
-/// be after dt, each starting from the mixture that could have led there.
+/// Mixing step of the interacting multiple model filter (Blom and Bar-Shalom 1988): each mode after
+/// dt starts from the mixture of its possible predecessors.
 void interact(const ObjectClass& c, double dt, ClassFilter& f) {
   const std::size_t n = f.modes.size();
   std::vector<ModeFilter> mixed(n);

@@ -6,35 +6,36 @@ namespace perception {
 
 /// Moves a class filter by dt >= 0 [s] (method.md 3). Motion modes interact first.
 void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter& filter);
-/// The parts of it, for batches: makes the modes interact and lists the Gaussians that are left to
-/// move by predictGaussian(); combineModes() comes after them.
+/// First step of predictClassFilter(), for batches: mixes the modes and appends the Gaussians to be
+/// predicted by predictGaussian(); combineModes() is the last step.
 void listSteps(const ObjectClass& object_class, double dt, ClassFilter& filter,
                std::vector<GaussianStep>& out);
 inline void predictGaussian(const GaussianStep& step, Matrix4* transition = nullptr) {
   step.object_class->motion->predict(step, transition);
 }
 
-/// What sensors can see of it: q(state) and its Jacobian.
+/// Kinematics q(state) that measurement models depend on, and its Jacobian.
 inline Kinematics kinematicsOf(const ObjectClass& object_class, const ClassFilter& filter) {
   return object_class.motion->kinematics(filter.x, filter.oriented);
 }
 
-/// Gives a new filter the motion modes of its class, at the shares of time that they take.
+/// Initializes the motion modes of a new filter with their stationary probabilities.
 void startModes(const ObjectClass& object_class, ClassFilter& filter);
-/// x and P of a filter with modes from them: the mixture's mean and spread.
+/// Sets x and P of a filter with modes to the moments of the mixture.
 void combineModes(ClassFilter& filter);
 
-/// Gives an unoriented wheeled filter its heading along its velocity: [x, y, vx, vy] -> [x, y, v,
-/// theta], with the covariance carried by the Jacobian.
+/// Converts an unoriented wheeled filter to heading along its velocity: [x, y, vx, vy] -> [x, y, v,
+/// theta], covariance by the Jacobian.
 void orientByVelocity(ClassFilter& filter);
-/// The same along a known axis: theta is `yaw` or its opposite, whichever the velocity prefers; v
-/// is the velocity along.
+/// The same along a known axis: theta is `yaw` or its opposite, whichever is closer to the
+/// velocity; v is the velocity component along theta.
 void orientByAxis(double yaw, double yaw_variance, ClassFilter& filter);
-/// The same with a known direction: v may be negative.
+/// The same with known heading; v may be negative.
 void orientAlong(double yaw, double yaw_variance, ClassFilter& filter);
-/// The same of a filter that is oriented already: its velocity is kept as far as it lies along.
+/// The same for an oriented filter; v becomes the component of its velocity along the new heading.
 void reorient(double yaw, double yaw_variance, ClassFilter& filter);
-/// A direct measurement of an oriented filter's theta: residual [rad] and variance.
+/// Kalman update of an oriented filter by a direct measurement of theta: residual [rad], variance
+/// [rad^2].
 void updateYaw(double y, double variance, ClassFilter& filter);
 inline constexpr double kYawGate = 6.635;  ///< chi-square .99, one degree of freedom
 /// The exact symmetry (v, theta) -> (-v, theta + pi) of an oriented filter (method.md 7).

@@ -6,7 +6,7 @@
 
 namespace perception {
 
-/// One number a class. Few classes, as all site INIs have, need no memory of their own.
+/// One value per class; up to eight without heap allocation.
 class ClassValues {
  public:
   ClassValues() = default;
@@ -14,7 +14,7 @@ class ClassValues {
     resize(n);
     std::fill(begin(), end(), value);
   }
-  /// Whatever is in there after it.
+  /// Values are unspecified afterwards.
   void resize(std::size_t n) {
     size_ = n;
     if (n > kOwn) more_.resize(n);

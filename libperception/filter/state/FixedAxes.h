@@ -7,8 +7,8 @@
 
 namespace perception {
 
-/// f(std::integral_constant<int, n>) for n axes, 1 to kMaxAxes: products and factors of matrices
-/// this small are several times faster when the compiler knows their size.
+/// f(std::integral_constant<int, n>) for n axes, 1 to kMaxAxes: products and factorizations of
+/// small matrices are several times faster with sizes known at compile time.
 template <class Function>
 void withAxes(Eigen::Index n, const Function& f) {
   static_assert(kMaxAxes == 5);
@@ -28,14 +28,14 @@ void withAxes(Eigen::Index n, const Function& f) {
   }
 }
 
-/// The first N rows of a matrix with that many, as one of fixed size.
+/// Fixed-size view of a matrix with N rows.
 template <int N, int kColumns, class Matrix>
 auto fixedRows(const Matrix& m) {
   assert(m.rows() == N);
   return Eigen::Map<const Eigen::Matrix<double, N, kColumns>>(m.data());
 }
 
-/// The same to write to, square.
+/// Fixed-size writable view, N x N.
 template <int N>
 auto fixedSquare(AxisMatrix& m) {
   m.resize(N, N);

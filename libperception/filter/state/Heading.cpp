@@ -10,11 +10,12 @@ namespace {
 
 // method.md 7: the log-odds forget slowly and stay within bounds, 97 % of vehicles drive forward.
 constexpr double kMemory = 0.98, kLogOddsLimit = 6, kForward = 0.97, kReverseAt = -0.5;
-/// The limit of 6 stands for reversals that repeat; where these are modeled it may be twice as far.
+/// The limit of 6 accounts for repeated reversals; with flip_persistence, which models these, it is
+/// twice as large.
 constexpr double kLimitWithRepeats = 12;
-constexpr double kLeastFlip = 1e-3;  // no detector is surer of front and back than this
-/// Share of detected axes that are not within their sigma of the object's but anywhere: 1 % of
-/// Geiger's on KITTI lie beyond 22.5 deg (method.md 7).
+constexpr double kLeastFlip = 1e-3;  // lower bound of the flip probability
+/// Share of stray axes, uniform instead of within their sigma of the object's: 1 % of Geiger's on
+/// KITTI lie beyond 22.5 deg (method.md 7).
 constexpr double kStray = 0.01;
 
 double flipProbability(const MeasuredHeading& seen) {

@@ -3,19 +3,22 @@
 
 namespace perception {
 
-/// How a measured heading that may be reversed is used (method.md 7).
+/// Use of measured headings that may be reversed by 180 degrees (method.md 7).
 enum class HeadingMode {
-  kSplit,  ///< axis and bit apart, the bit as log-odds with a prior that objects drive forward
-  kWide,   ///< one Gaussian wide enough for reversals: C/H of [radecki2016], `[run] sensors` = C/H
+  kSplit,  ///< axis and front/back bit separately; the bit as log-odds with a prior for driving
+           ///< forward
+  kWide,   ///< one Gaussian wide enough to cover reversals: C/H of [radecki2016], `[run] sensors` =
+           ///< C/H
 };
 
-/// What is known of an oriented object's direction along its axis: front or back.
+/// Front/back ambiguity of an oriented object: log-odds and counts of detections.
 struct FrontBackAmbiguity {
-  double log_odds = 0;         ///< that theta is the heading and not its opposite; 0: nothing known
+  double log_odds = 0;         ///< that theta is the heading and not its opposite; 0: unknown
   int same = 0, opposite = 0;  ///< detections that agreed with theta, or not
-  double lane = 0;             ///< what a lane gave to the log-odds
-  double axis_log_odds = 0;    ///< that theta lies along the object at all; 0: no detector told
-  int last = 0;                ///< the last detection: 1 agreed with theta, -1 did not, 0: none yet
+  double lane = 0;             ///< contribution of the lane prior to log_odds
+  double axis_log_odds =
+      0;         ///< that theta is the axis of the object; 0: no detection with a heading
+  int last = 0;  ///< the last detection: 1 agreed with theta, -1 did not, 0: none yet
 
   bool measured() const { return same + opposite > 0; }
   FrontBackAmbiguity reversed() const {
@@ -23,34 +26,36 @@ struct FrontBackAmbiguity {
   }
 };
 
-/// A measured heading against theta.
+/// Residual of a measured heading.
 struct HeadingResidual {
-  double y = 0;         ///< [rad] to the nearer of heading and opposite; `kWide`: to the heading
+  double y =
+      0;  ///< [rad] from theta to the nearer of heading and opposite; `kWide`: to the heading
   double variance = 0;  ///< [rad^2] of the measurement
-  bool same = true;     ///< the heading was the nearer one
+  bool same = true;     ///< false: the opposite was nearer
 };
 HeadingResidual headingResidual(const MeasuredHeading& seen, double theta, HeadingMode mode);
 
-/// Log density of the measured heading over the uniform one, given theta with `theta_variance`
-/// [rad^2]: what it says for this object against clutter, births and objects without a heading.
+/// log of p(measured heading | theta, `theta_variance` [rad^2]) over the uniform density, which
+/// holds for clutter, births and objects without a heading.
 double logHeadingRatio(const MeasuredHeading& seen, double theta, double theta_variance,
                        HeadingMode mode);
 
-/// The bit of a track that starts from, or is given its orientation by, this measurement.
+/// Front/back bit of a track that is born from, or oriented by, this measurement.
 FrontBackAmbiguity firstFrontBack(const MeasuredHeading& seen);
-/// The bit after one more detection. Reversals that come in bursts
-/// (MeasuredHeading::flip_persistence) are a chain of two states: what a detection says then
-/// depends on the one before.
+/// Front/back bit after one more detection. Correlated reversals
+/// (MeasuredHeading::flip_persistence) are a two-state Markov chain: the likelihood depends on the
+/// previous detection.
 FrontBackAmbiguity nextFrontBack(const FrontBackAmbiguity& bit, bool same,
                                  const MeasuredHeading& seen);
 
-/// Log-odds that theta, with `theta_variance` [rad^2], lies along the object after one more
-/// detection: what it says of the axis against an axis that may be any. Detectors' stray axes bound
-/// what a single one can say against it.
+/// axis_log_odds after one more detection: likelihood of the measured axis given theta with
+/// `theta_variance` [rad^2] against a uniform axis. The share of stray axes bounds the evidence of
+/// a single detection against theta.
 double nextAxisLogOdds(const FrontBackAmbiguity& bit, const MeasuredHeading& seen, double theta,
                        double theta_variance);
 
-/// Whether speed v [m/s, m^2/s^2] and bit ask for (v, theta) -> (-v, theta + pi).
+/// Whether (v, theta) -> (-v, theta + pi) agrees better with speed v [m/s], its variance [m^2/s^2]
+/// and the front/back bit.
 bool asksForReversal(const FrontBackAmbiguity& bit, double v, double v_variance, HeadingMode mode);
 
 }  // namespace perception

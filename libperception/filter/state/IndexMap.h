@@ -6,15 +6,15 @@
 
 namespace perception {
 
-/// splitmix64's finalizer: a bijection of 64-bit numbers that looks random.
+/// splitmix64's finalizer: a bijective hash of 64-bit integers.
 inline std::uint64_t mixBits(std::uint64_t z) {
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
   return z ^ (z >> 31);
 }
 
-/// Numbers distinct 64-bit keys 0, 1, 2 ... in order of their first appearance, whatever the keys
-/// are. Open addressing: one allocation for thousands of keys.
+/// Maps distinct 64-bit keys to 0, 1, 2 ... in order of first appearance. Open addressing: one
+/// allocation for thousands of keys.
 class IndexMap {
  public:
   explicit IndexMap(std::size_t expected) {

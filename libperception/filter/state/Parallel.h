@@ -6,8 +6,8 @@
 
 namespace perception {
 
-/// f(0) ... f(n-1), each independent of the others, in any order and on any number of threads. Few
-/// items, and all where there is one thread, are done by the caller: tasks would cost more.
+/// f(0) ... f(n-1), in any order and on any number of threads; the calls must be independent. Runs
+/// in the caller for few items or one thread, where tasks cost more than they gain.
 template <class Function>
 void parallelFor(std::size_t n, const Function& f) {
   constexpr std::size_t kWorthThreads = 24;

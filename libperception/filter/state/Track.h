@@ -19,97 +19,96 @@
 
 namespace perception {
 
-/// One motion mode of a class filter (interacting models): its Gaussian, in the class filter's
-/// coordinates.
+/// One motion mode of a class filter (IMM): its Gaussian in the class filter's state space.
 struct ModeFilter {
   double log_probability = 0;  ///< of the mode, given the class
   Vector4 x = Vector4::Zero();
   Matrix4 P = Matrix4::Zero();
 };
 
-/// The Gaussian of one class in a track's bank. The meaning of the state depends on the class's
-/// motion: constant velocity [x, y, vx, vy]; wheeled [x, y, v, theta] once `oriented`, before that
-/// as constant velocity; static [x, y, 0, 0] with zero covariance in the last two. World, SI units.
+/// The Gaussian of one class in a track's bank. The state depends on the class's motion model:
+/// constant velocity [x, y, vx, vy]; wheeled [x, y, v, theta] once `oriented`, before that as
+/// constant velocity; static [x, y, 0, 0] with zero covariance in the last two. World, SI units.
 struct ClassFilter {
   Vector4 x = Vector4::Zero();
   Matrix4 P = Matrix4::Zero();
   Extent extent;
-  bool oriented = false;       ///< wheeled only: the heading is known, up to its direction
+  bool oriented =
+      false;  ///< wheeled only: the state is [x, y, v, theta]; theta known up to 180 degrees
   FrontBackAmbiguity heading;  ///< of an oriented filter
   std::vector<ModeFilter>
-      modes;  ///< of classes with several; x and P are then their mean and spread
+      modes;  ///< empty unless the class has several; x and P are then the moments of the mixture
 };
 
-/// One filter a class. Larger than what the C library keeps at hand, and made and given back many
-/// times a scan: TBB's allocator.
+/// One filter per class. TBB's allocator: banks are too large for malloc's thread caches and are
+/// allocated many times a scan.
 using Bank = std::vector<ClassFilter, tbb::scalable_allocator<ClassFilter>>;
 
-/// How a sensor's last measurement of an object lay off its filter after the update: detectors err
-/// alike from one scan to the next.
+/// Residual of a sensor's last measurement of an object after the update, for correlated errors
+/// ([filter] region_memory).
 struct RegionSeen {
   std::uint64_t sensor = 0;  ///< hash of its label
   Stamp stamp;
   AxisMask seen = 0;
-  AxisVector error;  ///< z - h of the axes seen, packed
+  AxisVector error;  ///< z - h, axes seen only
 };
 
-/// A disc about the means of all class filters, and how fast it grows: what tells whether a sensor
-/// can see the track without predicting it.
+/// A disc that contains the means of all class filters and its growth over time: tells whether a
+/// sensor may see the track without predicting it.
 struct ReachableDisc {
   Vector2 center = Vector2::Zero();  ///< [m] world
-  /// [m] radius of the disc at the track's time; without bounds until somebody asked.
+  /// [m] radius of the disc at the track's stamp; infinite until computed.
   double reach = std::numeric_limits<double>::infinity();
-  double speed = 0;             ///< [m/s] of the fastest mean
-  double longest_deferral = 0;  ///< [s] for which it may be left behind, unseen
-  /// When no sensor sees it until then, its existence has fallen below what is kept.
+  double speed = 0;             ///< [m/s] largest speed of the means
+  double longest_deferral = 0;  ///< [s] longest deferral of the prediction
+  /// Without a detection until then, the existence probability falls below `existence_min`.
   Stamp expires{std::numeric_limits<std::int64_t>::max()};
 };
 
-/// One object inside a hypothesis. Immutable once made: hypotheses share it.
+/// One object in a hypothesis. Immutable, since hypotheses share tracks.
 struct Track {
-  std::uint64_t id =
-      0;  ///< of its birth: (scan index << 16) + measurement; shared by all hypotheses
+  std::uint64_t id = 0;       ///< birthId(); the same in all hypotheses
   std::uint64_t history = 0;  ///< hash of its association history: equal histories, equal tracks
-  Stamp birth, stamp;         ///< of its first measurement; of its state
-  Stamp last_in_view;         ///< last time that a sensor could have seen it
-  Stamp last_lane;            ///< last time that a lane spoke of its heading; 0 = never
+  Stamp birth, stamp;         ///< of the first measurement; of the state
+  Stamp last_in_view;         ///< last scan in whose field of view it was
+  Stamp last_lane;            ///< last update by the lane prior; 0 = never
   double existence = 0;       ///< probability that it is a real object
   Bank bank;                  ///< one filter a class
   ClassId decided_class =
-      -1;  ///< the class that is decided: its filter alone is kept up to date; -1: all
-  std::vector<double> log_class;  ///< log class probabilities, given existence; sum of exp is 1
+      -1;  ///< if >= 0 only this class's filter is updated ([filter] decide_class)
+  std::vector<double> log_class;  ///< log class probabilities given existence; normalized
   ScalarEstimate base_z, height;  ///< [m] lowest point, world; lowest to highest point
-  /// [m] along and across the heading, of complete sides, whatever the class: evidence of it. What
-  /// each class makes of the size is its filter's `extent`.
+  /// [m] from complete sides, without a class prior: evidence of the class. The estimate given a
+  /// class is the `extent` of its filter.
   ScalarEstimate length, width;
-  /// Where an object whose class has no heading in its state (people) looks: [rad] world, once a
-  /// detector told.
+  /// [rad] world. Body heading of an object whose class has no heading in its state (people); set
+  /// by the first detection with a heading.
   std::optional<ScalarEstimate> body_heading;
-  FrontBackAmbiguity body_heading_bit;            ///< of it: front or back
+  FrontBackAmbiguity body_heading_bit;            ///< front/back bit of body_heading
   std::array<Stamp, kMostModalities> last_hit{};  ///< by modality (modalityIndex); 0 = never
   std::array<int, kMostModalities> hits{};        ///< by modality
-  std::vector<RegionSeen> regions;                ///< by sensor, where the model asks for them
-  ReachableDisc reachable;  ///< made from the rest when a scan is done with it
-  /// What it was before its last scan, for as long as somebody keeps that; only where the model
-  /// asks for a history.
+  std::vector<RegionSeen> regions;  ///< by sensor, only with [filter] region_memory > 0
+  ReachableDisc reachable;          ///< computed at the end of the update
+  /// State before the last scan, valid while CRbpfTracker keeps that hypothesis; only with
+  /// FilterModel::history > 0.
   std::weak_ptr<const Track> previous;
 
   /// Index of the most probable class.
   ClassId likeliestClass() const;
-  /// Whether the class's filter is kept up to date.
+  /// Whether the class's filter is updated.
   bool live(ClassId c) const { return decided_class < 0 || decided_class == c; }
-  /// Index of the filter that stands for the class.
+  /// Index of the filter used for the class: with a decided class, that one's.
   std::size_t filterOf(std::size_t c) const {
     return decided_class < 0 ? c : static_cast<std::size_t>(decided_class);
   }
 };
 
 using TrackHandle = std::shared_ptr<const Track>;
-/// All distinct tracks after a scan; what no hypothesis has is null.
+/// All distinct tracks after a scan; entries that no hypothesis holds are null.
 using TrackTable = std::vector<TrackHandle>;
 
-/// The tracks of one hypothesis: places in a table that all hypotheses of a scan share, so that a
-/// thousand of them cost numbers and not handles.
+/// The tracks of one hypothesis as indices into a table that all hypotheses of a scan share:
+/// cheaper than a list of shared pointers each.
 class TrackList {
  public:
   class Iterator {
@@ -134,7 +133,7 @@ class TrackList {
 
   TrackList() = default;
   explicit TrackList(TrackTable tracks);
-  /// `places` of tracks that are there.
+  /// `places`: indices of non-null entries.
   TrackList(std::shared_ptr<const TrackTable> table, std::vector<std::uint32_t> places)
       : table_(std::move(table)), places_(std::move(places)) {}
 
@@ -144,7 +143,7 @@ class TrackList {
   bool empty() const { return places_.empty(); }
   const TrackHandle& operator[](std::size_t i) const { return (*table_)[places_[i]]; }
 
-  const TrackTable* table() const { return table_.get(); }  ///< may be null where there is no track
+  const TrackTable* table() const { return table_.get(); }  ///< may be null if the list is empty
   const std::vector<std::uint32_t>& places() const { return places_; }
 
  private:
@@ -152,21 +151,22 @@ class TrackList {
   std::vector<std::uint32_t> places_;
 };
 
-/// A sampled association history and the tracks that follow from it, in order of their birth.
-/// Immutable once made: particles share it.
+/// An association history and its tracks in order of birth. Immutable, since particles share
+/// hypotheses.
 struct Hypothesis {
   TrackList tracks;
-  std::uint64_t key = 0;  ///< of the tracks' histories, in any order: equal keys, equal hypotheses
+  std::uint64_t key =
+      0;  ///< order-independent hash of the tracks' histories: equal keys, equal hypotheses
 
   Hypothesis() = default;
   explicit Hypothesis(TrackTable t);
   Hypothesis(TrackList list, std::uint64_t k) : tracks(std::move(list)), key(k) {}
 };
 
-/// What a track adds to the key of its hypothesis.
+/// Contribution of a track to Hypothesis::key.
 std::uint64_t historyKey(const Track& track);
 
-/// What a particle holds. Never null.
+/// The value of a particle. Never null.
 using HypothesisHandle = std::shared_ptr<const Hypothesis>;
 
 /// The history after one more association; `scan` counts scans, `measurement` is its index in that

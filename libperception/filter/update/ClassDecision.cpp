@@ -8,7 +8,7 @@
 namespace perception {
 namespace {
 
-/// The filter of another class from a decided one's: the same place and velocity.
+/// Converts the decided class's filter to another class: same position and velocity.
 ClassFilter converted(const ObjectClass& from, const ClassFilter& source, const ObjectClass& to,
                       const Extent& extent) {
   ClassFilter f;

@@ -4,8 +4,8 @@
 
 namespace perception {
 
-/// Decides a class that has become sure, or takes the decision back; a measurement that `surprised`
-/// the decided class makes it unsure.
+/// Decides the class whose probability reaches [filter] decide_class, or revokes the decision when
+/// it falls below or a measurement `surprised` the decided class's filter (beyond its gate).
 void decideClass(const FilterModel& model, bool surprised, Track& track);
 
 }  // namespace perception

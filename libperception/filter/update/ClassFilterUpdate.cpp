@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kLogLeastMode = -14;  // log probability, about 1e-6
 
-/// The extent is a static part of the state whose correlation with the rest is left out: seen edges
-/// measure it, too. The floor of its variance keeps systematic errors (rounded corners, mirrors)
-/// from making it certain.
+/// Updates the extent, a static part of the state whose correlation with the rest is neglected, by
+/// the edges seen. A floor of its variance accounts for systematic errors (rounded corners,
+/// mirrors).
 void updateExtentBy(const Innovation& innovation, Extent& e) {
   constexpr double kFloor = 0.1 * 0.1;  // [m^2]
   if (innovation.H_extent.isZero(0)) return;
@@ -65,7 +65,7 @@ void updateClassFilter(const Innovation& innovation, ClassFilter& f) {
     }
     logNormalize(log_mode);
     for (std::size_t i = 0; i < log_mode.size(); ++i) {
-      // A floor keeps a mode able to come back within a few scans.
+      // A floor of the mode probability lets a mode recover within a few scans.
       f.modes[i].log_probability = std::max(log_mode[i], kLogLeastMode);
     }
     combineModes(f);

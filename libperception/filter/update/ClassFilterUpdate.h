@@ -3,12 +3,12 @@
 
 namespace perception {
 
-/// A class filter after its object's measurement (method.md 4): the Gaussians of all modes, their
-/// probabilities, and the extent. Left alone where S is no covariance.
+/// Kalman update of a class filter (method.md 4): Gaussians and probabilities of all modes, and
+/// extent. No change where S is not positive definite.
 void updateClassFilter(const Innovation& innovation, ClassFilter& f);
 
-/// The same of a filter of one Gaussian and a measurement of its position alone, without the
-/// products with zeros of H = (I 0); `noise` [m^2] is the model's own.
+/// The same for a filter of one Gaussian and a position-only measurement, H = (I 0), without the
+/// products with zeros; `noise` [m^2]: R_model.
 void positionUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f);
 
 }  // namespace perception

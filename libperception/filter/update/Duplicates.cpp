@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kUnseen = 0.25;  // [s] a track not hit for so long gives way to a fresh one
 constexpr std::uint32_t kAbsent = static_cast<std::uint32_t>(-1);
-/// A track of less sure class (.95) has no footprint that others must respect.
+/// A track whose class probability is below .95 has no footprint that others are merged into.
 const double kLogSureClass = std::log(0.95);
 
 struct Footprint {
@@ -19,12 +19,12 @@ struct Footprint {
   Vector2 center, half;  // [m]
   double corner2 = 0;    // [m^2] square of the distance from the center to a corner
   double yaw = 0;        // [rad]
-  double area = 0;       // [m^2] of a track whose class is sure, else 0
+  double area = 0;       // [m^2] of a track whose class probability is >= .95, else 0
   Stamp last_hit;
   bool fresh = true;  // of this scan
 };
 
-/// Of tracks that the scan left behind where they have gone meanwhile.
+/// For tracks with deferred prediction, the predicted position.
 Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
   const ClassId best = t.likeliestClass();
   const ClassFilter& f = t.bank[static_cast<std::size_t>(best)];
@@ -49,7 +49,7 @@ bool holds(const Footprint& f, const Vector2& p) {
   return std::abs(own.x()) <= f.half.x() && std::abs(own.y()) <= f.half.y();
 }
 
-/// The younger one's state under the older one's identity.
+/// The younger track's state with the older track's id.
 TrackHandle takeOver(const Track& older, const Track& younger) {
   Track t = younger;
   t.id = older.id;
@@ -79,7 +79,7 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
       if ((feet[j].center - feet[i].center).squaredNorm() > feet[i].corner2) continue;  // most
       if (!feet[i].fresh && !feet[j].fresh) continue;  // compared when one of them was
       if (feet[i].id == feet[j].id || !holds(feet[i], feet[j].center)) continue;
-      // Of two large ones that hold each other one entry is enough.
+      // One entry suffices for two large footprints that contain each other's centers.
       if (feet[j].area >= least && j < i && holds(feet[j], feet[i].center)) continue;
       const bool first = feet[i].id < feet[j].id;
       const std::size_t older = first ? i : j, younger = first ? j : i;

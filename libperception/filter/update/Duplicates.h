@@ -7,22 +7,22 @@
 
 namespace perception {
 
-/// Which of a scan's distinct tracks cannot both be in one hypothesis, because one stands inside
-/// the other's footprint: two solid objects cannot ([cornell2007] asks for an overlap of half of
-/// both; a fragment of a vehicle is smaller than that). Only footprints larger than `merge_area`
-/// swallow others, so people in a crowd stay apart. The older track keeps its identity; when it has
-/// not been seen lately and the younger one has, it takes over the younger one's state.
-/// `merge_area` = 0: nothing is merged. Found once for all hypotheses.
+/// Pairs of a scan's distinct tracks that are merged wherever a hypothesis holds both: the center
+/// of one lies inside the footprint of the other, which solid objects exclude ([cornell2007]
+/// requires an overlap of half of both footprints; fragments of a vehicle are smaller). Only
+/// footprints larger than `merge_area` count, so that people in a crowd are not merged. The older
+/// track keeps its id, and takes the state of the younger one if only that one was detected
+/// recently. `merge_area` = 0: no merging. Computed once for all hypotheses.
 class DuplicateTable {
  public:
   DuplicateTable() = default;
-  /// `tracks` by cell; null ones are not there.
+  /// `tracks` by cell, i.e. index; null entries are ignored.
   DuplicateTable(const FilterModel& model, Stamp now, const TrackTable& tracks);
 
-  /// The cells of one hypothesis without its duplicates, in the same order. Cells beyond those of
-  /// the table that it was made from are those of the replacements.
+  /// The cells of one hypothesis without duplicates, in the same order. Cells beyond the table
+  /// given to the constructor refer to the replacements.
   std::vector<std::uint32_t> merged(std::vector<std::uint32_t> cells) const;
-  /// Tracks of these cells.
+  /// Appends the tracks of these cells.
   void appendReplacements(TrackTable& tracks) const;
 
  private:

@@ -7,22 +7,20 @@
 
 namespace perception {
 
-/// What a detector says of the heading (method.md 7): the axis by a scalar update, the direction by
-/// the bit. With `may_mirror` an axis that the detector denies again and again is taken from it
-/// anew: the edges of an image box fit two headings that mirror each other, and a Gaussian in the
-/// wrong one of them stays there. A box in space has no such second fit.
+/// Update by a measured heading (method.md 7): theta's axis by a scalar Kalman update, front/back
+/// by the log-odds. With `may_mirror`, an axis that detections contradict repeatedly is
+/// reinitialized from the measurement: the edges of an image box fit two mirrored headings, and a
+/// Gaussian at the wrong one does not recover. 3D boxes have no such ambiguity.
 void useHeading(const MeasuredHeading& seen, const FilterParams& params, ClassFilter& f,
                 bool may_mirror = true);
 
-/// A wheeled filter takes its heading from what is known by now: the detector, the box seen
-/// (`birth`), else its own motion (method.md 3.4, with a constant-velocity start in place of the
-/// two-point start). An oriented one that drives backwards against what is known of its direction
-/// is reversed.
+/// Initializes the heading of a wheeled filter from a measured heading, the box of the measurement
+/// (`birth`), or its velocity, in this order (method.md 3.4; constant-velocity instead of two-point
+/// initialization). An oriented filter whose speed contradicts its front/back log-odds is reversed.
 void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
                  const FilterParams& params, ClassFilter& f);
 
-/// Where an object without a heading in its state looks: axis by a scalar filter, direction by the
-/// bit, as useHeading() for the others.
+/// The same as useHeading() for the body heading of an object whose state has no heading.
 void updateBodyHeading(const MeasuredHeading& seen, const FilterParams& params, Track& track);
 
 }  // namespace perception

@@ -15,7 +15,7 @@ void LaneParams::visit(ParamVisitor& v) {
   v.real("forward", forward, {0.5, 0.999}, "",
          "share that faces the driving direction; .5: axis only");
   v.real("interval", interval, {0.01, 1e6}, "s",
-         "an object takes evidence from lanes at most so often");
+         "shortest time between two lane updates of an object");
 }
 
 void LanePrior::apply(const FilterModel& model, Track& track) const {
@@ -39,7 +39,7 @@ bool LanePrior::apply(const FilterModel& model, ClassFilter& f) const {
   if (places.empty()) return false;
   const double variance = params_.sigma * params_.sigma;
   if (!f.oriented) {
-    // What moves will show its heading itself; where lanes cross they say nothing.
+    // Moving objects are oriented by their velocity; crossing lanes are ambiguous.
     if (f.x.tail<2>().norm() >= model.params.orient_min_speed) return false;
     for (const auto& p : places) {
       if (std::abs(wrapAxis(p.direction - places[0].direction)) > params_.sigma) return false;

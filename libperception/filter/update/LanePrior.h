@@ -16,25 +16,25 @@ struct LaneParams {
   double sigma = radians(10);
   /// Share of wheeled objects that face the driving direction (assumed).
   double forward = 0.95;
-  /// [s] an object takes evidence from lanes at most so often (assumed).
+  /// [s] shortest time between two lane updates of an object (assumed).
   double interval = 1;
 
   void visit(ParamVisitor& v);
 };
 
-/// What lanes say of the wheeled objects on them: pseudo-evidence of the heading's axis, with the
-/// variance sigma^2 and once every `interval`, and of front and back, the log-odds of `forward`
-/// once for as long as the object keeps to lanes of that direction. A filter without a heading gets
-/// the lane's when it stands. Weights of hypotheses are not touched: all of them share the lanes.
+/// Pseudo-measurement of the heading of wheeled objects on a lane: of the axis with variance
+/// sigma^2 every `interval`, and of front/back with the log-odds of `forward`, once while the
+/// object stays on lanes of that direction. A stationary filter without heading takes the lane's.
+/// Weights of hypotheses do not change.
 class LanePrior {
  public:
   LanePrior(LaneMap map, LaneParams params) : map_(std::move(map)), params_(std::move(params)) {}
 
-  /// Applies to the track at its own time.
+  /// Updates the track at its own stamp.
   void apply(const FilterModel& model, Track& track) const;
 
  private:
-  bool apply(const FilterModel& model, ClassFilter& filter) const;  ///< whether it took evidence
+  bool apply(const FilterModel& model, ClassFilter& filter) const;  ///< true if it was updated
 
   LaneMap map_;
   LaneParams params_;

@@ -11,12 +11,12 @@ namespace {
 
 /// Returns lie within the object, so an estimate has a bias of its own [m].
 constexpr double kHeightBias = 0.2, kSideBias = 0.3;
-/// Sides of one object seen again and again have errors alike: the variance stays above [m^2].
+/// Lower bound of the variance [m^2], since errors of repeated sides of one object are correlated.
 constexpr double kSideFloor = 0.1 * 0.1;
-/// Of a class's objects have any size (two cars taken for one, half a car): no size is a proof.
+/// Share of objects of any size (two cars merged, half a car), so that no size excludes a class.
 constexpr double kShareOfAnySize = 0.05;
 constexpr double kLargest = 15;  // [m] of those
-/// A side tells length or width when it lies this close to the axis or across it.
+/// A side measures length or width if it is this close to parallel or perpendicular to the axis.
 constexpr double kAlong = radians(30);
 
 double logNormal(double d, double variance) {

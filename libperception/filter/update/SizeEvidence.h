@@ -6,16 +6,17 @@
 
 namespace perception {
 
-/// What is seen of an object's height, length and width, as an estimate that knows of no class
-/// (Track::height, length, width), and what it says of the class: the density of the estimate over
-/// the class's objects. Whenever an estimate changes, the evidence of the one before is taken back,
-/// so that in the end a size counts once, however often it was seen.
+/// Size as evidence of the class (method.md 5.14). Height, length and width are estimated without a
+/// class prior (Track::height, length, width); the class likelihood is the density of the estimate
+/// over the sizes of the class. When an estimate changes, its former likelihood is divided out, so
+/// that each size counts once.
 
-/// The estimates of a newborn: the mixture of all classes.
+/// Initial estimates of a newborn: moments of the mixture of all classes.
 void startSizes(const FilterModel& model, Track& track);
 
-/// After a measurement: heights, complete sides along `axis` [rad] (the length axis; empty: not
-/// known, sides say nothing), and their evidence in track.log_class (not normalized).
+/// Updates height, and length and width from complete sides, and adds their log likelihood to
+/// track.log_class (not normalized). `axis` [rad]: the length axis; empty: unknown, sides are not
+/// used.
 void updateSizes(const Measurement& m, std::optional<double> axis, const FilterModel& model,
                  Track& track);
 

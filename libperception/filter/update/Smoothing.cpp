@@ -13,13 +13,13 @@
 namespace perception {
 namespace {
 
-/// A later state this far from what was predicted (chi-square 1 - 1e-6, four degrees of freedom)
-/// did not follow from it: the filter was started anew in between.
+/// Chi-square quantile 1 - 1e-6, four degrees of freedom: a later state farther from the prediction
+/// means that the filter was reinitialized in between.
 constexpr double kBroken = 33.38;
 constexpr double kLeastClass = 1e-4;  // classes less likely than this keep their filtered state
-constexpr double kRegular = 1e-12;    // [SI units] makes the covariance of what never moves regular
+constexpr double kRegular = 1e-12;    // [SI units] regularizes the covariance of static objects
 
-/// Where a class filter will be and how that goes with where it is now.
+/// Predicted state of a class filter and its cross-covariance with the current one.
 struct JointPrediction {
   Vector4 x;
   Matrix4 P;
@@ -55,7 +55,7 @@ JointPrediction predictJointly(const ObjectClass& c, double dt, const ClassFilte
   return out;
 }
 
-/// One step of the recursion back: `f` from filtered to smoothed.
+/// One backward step: `f` from filtered to smoothed.
 void smoothFilter(const ObjectClass& c, double dt, const ClassFilter& newer, ClassFilter& f) {
   f.extent = newer.extent;
   if (f.oriented && !newer.oriented) return;  // started anew in between
@@ -83,8 +83,8 @@ void smoothFilter(const ObjectClass& c, double dt, const ClassFilter& newer, Cla
   if (newer.oriented) f.heading = newer.heading;
 }
 
-/// The class chain back (method.md 5.7): p(c) sum over later classes of p(later | c)
-/// smoothed(later) / predicted(later).
+/// Backward recursion of the class chain (method.md 5.7): p(c) sum over later classes of p(later |
+/// c) smoothed(later) / predicted(later).
 void smoothClasses(const Track& newer, const TrackOdds& predicted, double forget, Track& track) {
   const std::size_t n = track.log_class.size();
   std::vector<double> ratio(n, kMinusInfinity);
@@ -98,7 +98,8 @@ void smoothClasses(const Track& newer, const TrackOdds& predicted, double forget
   logNormalize(track.log_class);
 }
 
-/// A random walk back: its variance grows by `walk`; `d`: later estimate minus this one.
+/// Backward recursion of a random walk: its variance grows by `walk`; `d`: later estimate minus
+/// this one.
 void smoothScalar(double d, double later_variance, double walk, ScalarEstimate& e) {
   const double predicted = e.variance + walk, gain = e.variance / predicted;
   e.mean += gain * d;
@@ -111,7 +112,7 @@ void smoothBodyHeading(const Track& newer, double walk, Track& track) {
     track.body_heading = {newer.body_heading->mean, newer.body_heading->variance + walk};
   } else {
     double d = wrapAngle(newer.body_heading->mean - track.body_heading->mean);
-    if (std::abs(d) > kPi / 2) {  // front and back were confused until then
+    if (std::abs(d) > kPi / 2) {  // the heading was reversed until then
       track.body_heading->mean += kPi;
       d = wrapAngle(d + kPi);
     }
@@ -121,7 +122,7 @@ void smoothBodyHeading(const Track& newer, double walk, Track& track) {
   track.body_heading_bit = newer.body_heading_bit;
 }
 
-/// `filtered` from what `newer`, its smoothed successor, knows.
+/// Smooths `filtered` with `newer`, its smoothed successor.
 Track smoothedBefore(const Track& filtered, const Track& newer, const FilterModel& model) {
   const double dt = newer.stamp - filtered.stamp;
   Track track = filtered;
@@ -139,7 +140,7 @@ Track smoothedBefore(const Track& filtered, const Track& newer, const FilterMode
   }
   const TrackOdds predicted = predictOdds(filtered, newer.stamp, model);
   smoothClasses(newer, predicted, -std::expm1(-dt / model.params.class_forgetting), track);
-  // Whatever is there later was there before; what is gone may have gone in between.
+  // An object that exists later existed before; one that does not may have disappeared in between.
   const double survival = predicted.existence / std::max(filtered.existence, 1e-300);
   const double gone_since =
       filtered.existence * (1 - survival) / std::max(1 - predicted.existence, 1e-12);
@@ -164,7 +165,7 @@ std::optional<Track> smoothedTrack(const Track& now, Stamp at, const FilterModel
   Track track = now;
   for (TrackHandle older = now.previous.lock(); older && track.stamp > at;
        older = older->previous.lock()) {
-    // The instant asked for may lie between two scans.
+    // `at` may lie between two scans.
     track =
         smoothedBefore(older->stamp < at ? predictTrack(*older, at, model) : *older, track, model);
   }

@@ -6,12 +6,11 @@
 
 namespace perception {
 
-/// The track as it was at the time `at`, given all that was seen until now (fixed-lag smoothing,
-/// method.md 5.17): the recursion of Rauch, Tung and Striebel for each class filter, the backward
-/// recursions of two-state existence and of the class chain, back along what the track is linked to
-/// (FilterModel::history). Exact for linear classes of one mode; motion modes count with their
-/// common mean and spread, and sizes, which do not change, are today's. Empty when the track was
-/// not born yet. Where the history ends early it is the oldest state that there is.
+/// The track at time `at` given all measurements until `now` (fixed-lag smoothing, method.md 5.17):
+/// Rauch-Tung-Striebel recursion of each class filter and backward recursions of existence and
+/// class chain along Track::previous (FilterModel::history). Exact for linear models of one mode;
+/// motion modes enter by the moments of their mixture, static sizes by their current estimates.
+/// Empty before the birth of the track. Where the history is shorter, the oldest state.
 std::optional<Track> smoothedTrack(const Track& now, Stamp at, const FilterModel& model);
 
 }  // namespace perception

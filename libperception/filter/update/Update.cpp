@@ -19,12 +19,12 @@
 namespace perception {
 namespace {
 
-/// A class filter this surprised by its own object's measurement (one true pair in 10^5) starts
-/// anew from it: an extended filter that has lost its object would never come back, and its class
-/// could never win again.
+/// A class filter is reinitialized from the measurement beyond this probability (one true pair in
+/// 10^5): a diverged extended Kalman filter would not recover, and its class could never become
+/// probable again.
 constexpr double kLostProbability = 1 - 1e-5;
 
-/// What one true pair in a hundred exceeds surprises a decided class.
+/// A decided class is revoked beyond this probability (one true pair in a hundred).
 constexpr double kSurprisingProbability = 0.99;
 
 /// Chi-square quantiles by number of axes.
@@ -61,7 +61,7 @@ double speedSigma(const ObjectClass& c, const FilterModel& model) {
   return std::min(model.params.start_speed_sigma, std::max(0.5 * c.max_speed, 0.1));
 }
 
-/// A newborn's velocity, with what a range rate says of it (method.md 4.3).
+/// Initial velocity of a newborn, with the range rate if measured (method.md 4.3).
 void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
   const auto measure = [&](const Vector2& u, double speed, double variance) {
     const Eigen::RowVector4d h(0, 0, u.x(), u.y());
@@ -96,7 +96,7 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   return f;
 }
 
-/// The direction of a class's length axis [rad], when something tells it.
+/// Direction of a class's length axis [rad], if known.
 std::optional<double> lengthAxis(const ObjectClass& c, const ClassFilter& f, const Track& track,
                                  const PartialBox& sides) {
   if (f.oriented) return f.x[3];
@@ -105,8 +105,8 @@ std::optional<double> lengthAxis(const ObjectClass& c, const ClassFilter& f, con
   return {};
 }
 
-/// A filter that lost the object: from the measurement, with the velocity of the class that
-/// explains it best.
+/// Reinitializes a diverged filter from the measurement, with the velocity of the class of largest
+/// likelihood.
 ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const Kinematics& best,
                           const FilterModel& model) {
   ClassFilter f = startFilter(c, birth, model);
@@ -117,8 +117,7 @@ ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const K
   return f;
 }
 
-/// Evidence of the speed: none up to the class's max_speed, then a Gaussian tail (no pedestrian
-/// walks at 5 m/s).
+/// Log likelihood of the speed: constant up to the class's max_speed, then a Gaussian tail.
 double logSpeed(const ObjectClass& c, const ClassFilter& f, const FilterModel& model) {
   if (!c.motion->moves || model.params.speed_slack <= 0) return 0;
   const double speed = f.oriented ? std::abs(f.x[2]) : f.x.tail<2>().norm();
@@ -207,7 +206,7 @@ Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementS
   const double r = track.existence;
   track.existence = r * (1 - row.detection) / (1 - r * row.detection);
   for (std::size_t j = 0; j < track.log_class.size(); ++j) {
-    // Misses of one object are no more independent than its labels.
+    // Missed detections of one object are correlated, as its labels are.
     track.log_class[j] += scan.model->detectionExponent() * std::log1p(-row.detection_by_class[j]);
   }
   clampClasses(model.params.class_epsilon, track.log_class);
@@ -234,7 +233,7 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
     } else {
       track.bank.emplace_back();
       track.log_class[static_cast<std::size_t>(j)] = kMinusInfinity;
-      track.existence = 0;  // no state: cannot be tracked
+      track.existence = 0;  // no valid state
     }
     if (birth && m.heading && c.motion->has_heading)
       useHeading(*m.heading, model.params, track.bank.back());

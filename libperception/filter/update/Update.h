@@ -4,14 +4,14 @@
 
 namespace perception {
 
-/// Pass 4 (method.md 5.5). The predicted track after it caused the pair's measurement: every class
-/// filter, class posterior, extent, heights; existence becomes certain. `scan_index` counts scans
-/// and goes into the history.
+/// Pass 4 (method.md 5.5): updates the predicted track with the pair's measurement: class filters,
+/// class posterior, extent, height; existence goes to existence_max. `scan_index` counts scans and
+/// is hashed into the history.
 Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihood& pair,
                const MeasurementScan& scan, std::uint64_t scan_index, const FilterModel& model);
 
-/// The predicted track after a scan without a measurement of it: existence and the classes that
-/// should have been seen lose mass.
+/// Missed detection: lowers the existence probability and the probabilities of classes with high
+/// P_D.
 Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementScan& scan,
                 const FilterModel& model);
 

@@ -8,27 +8,27 @@
 
 namespace perception {
 
-/// The tracks of one scan before it: each distinct one once.
+/// The distinct tracks of all hypotheses before and after prediction to a scan.
 struct ScanTracks {
   std::vector<TrackHandle> before;
-  std::vector<Track> predicted;             ///< at the scan's time; untouched ones hold nothing
-  std::vector<char> touched;                ///< the scan says something of it: predicted and scored
+  std::vector<Track> predicted;             ///< to the scan's stamp; empty unless touched
+  std::vector<char> touched;                ///< may be in view: predicted and scored
   std::vector<TrackIndices> of_hypothesis;  ///< by distinct hypothesis
 };
 
-/// Pass 4: the updated tracks of one scan, made once per distinct (track, cause) that some
-/// hypothesis wants and handed out as often as needed.
+/// Pass 4: the updated tracks of one scan, computed once per distinct (track, cause) that some
+/// child hypothesis needs.
 class UpdateCache {
  public:
   UpdateCache(ScanTracks& tracks, const LikelihoodTable& table, const MeasurementScan& scan,
               const FilterModel& model);
 
-  /// Calls for the tracks that follow from an association of hypothesis `h`: the next child.
+  /// Requests the tracks of the next child: hypothesis `h` under an association.
   void request(std::size_t h, const Association& association);
-  /// Makes all that is wanted, of the predicted tracks, which are used up; returns how many.
-  /// `scan_index` goes into the histories.
+  /// Computes all requested tracks, moving from ScanTracks::predicted; returns their number.
+  /// `scan_index` is hashed into the histories.
   std::size_t compute(std::uint64_t scan_index);
-  /// The hypothesis of child `c`, counted as they were called for; once.
+  /// The hypothesis of child `c`, in order of requests. Call once per child.
   HypothesisHandle hypothesis(std::size_t c);
 
  private:
@@ -37,9 +37,9 @@ class UpdateCache {
   Cell missCell(std::size_t track) const { return first_[track]; }
   Cell newCell(std::size_t k) const { return first_.back() + static_cast<Cell>(k); }
   bool keep(const Track& t) const;
-  /// The same of a track that the scan left behind, by its reachable.
+  /// The same for a track with deferred prediction, by Track::reachable.
   bool keepDeferred(const Track& t) const;
-  /// `before`: what the track was before the scan; null for a newborn.
+  /// `before`: the track before the scan; null for a newborn.
   void store(Cell cell, Track&& track, const TrackHandle& before);
 
   ScanTracks& tracks_;

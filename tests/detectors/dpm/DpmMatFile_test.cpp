@@ -107,7 +107,7 @@ std::string writeModel(const TemporaryFolder& folder, int release) {
   return path;
 }
 
-/// No file of release 5 is public with a licence to ship: these are written by this test, after the
+/// No file of release 5 is public with a license to ship: these are written by this test, after the
 /// layout that its sources (model_*.m, flipfeat.m) describe.
 TEST(DpmMatFile, ReleasesFourAndFiveGiveOneModel) {
   const TemporaryFolder folder;
