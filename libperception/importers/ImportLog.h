@@ -120,8 +120,6 @@ class ImportLog {
   std::map<std::string, std::string> linked_;  ///< folder of each camera's images
 };
 
-/// FILE.truth.csv beside FILE.rawlog.
-std::string truthFileOf(const std::string& rawlog);
 /// FILE_Images, where MRPT's programs look for what a log does not hold itself.
 std::string imageFolderOf(const std::string& rawlog);
 
