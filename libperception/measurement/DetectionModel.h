@@ -33,6 +33,10 @@ struct DetectionParams {
   void applyResolution();
 };
 
+/// Least P_D of a class near by, in view, where the tables say less (method.md 4.7): with none, one
+/// detection that is no object, or not the one it is taken for, would rule the class out.
+inline constexpr double kLeastDetection = 0.001;
+
 /// How a sensor sees one class: [sensor.LABEL.class.NAME], over [detection.MODALITY.NAME] of
 /// classes.ini (method.md 2.3), over these values, which hold for a class that stands in neither.
 struct ClassDetection {
