@@ -7,7 +7,6 @@
 namespace perception {
 
 void SurfaceParams::visit(ParamVisitor& v) {
-  v.expert();
   v.boolean("local", local, "follow the ground's departures from its plane; false: [radecki2016]");
 }
 

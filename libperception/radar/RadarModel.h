@@ -3,7 +3,7 @@
 
 namespace perception {
 
-/// What a radar unit's model needs besides the tables of [sensor.LABEL]; a part of
+/// What a radar unit's model needs besides the tables of its sensor; a part of
 /// [sensor.LABEL.radar]. Sources: method.md 4.3.
 struct RadarModelParams {
   double rate_span = 53.6;  ///< [m/s] over which range rates of clutter spread [cornell2007]

@@ -34,7 +34,7 @@ struct ScenarioParams {
   void visit(ParamVisitor& v);
 };
 
-/// Timed waypoints, as lists of one length. World, z up.
+/// Timed waypoints, as lists of one length: in [ego] and [object.NAME]. World, z up.
 struct WaypointParams {
   std::vector<double> t;     ///< [s] since the log's first stamp
   std::vector<double> x, y;  ///< [m]
