@@ -5,11 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <thread>
 
 #include "libperception/app/StudyFolder.h"
+#include "libperception/core/GroundTruth.h"
 #include "libperception/pipeline/LogRecorder.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/Conversions.h"
@@ -109,11 +109,6 @@ void addSector(CLI::App& sub, const char* range_help, const char* fov_help, doub
   sub.add_option("--fov-deg", fov_deg, fov_help)
       ->capture_default_str()
       ->check(CLI::Range(0.1, 360.0));
-}
-
-/// LOG.truth.csv beside LOG.rawlog.
-GroundTruth truthBeside(const std::string& log) {
-  return readGroundTruth(std::filesystem::path(log).replace_extension(".truth.csv").string());
 }
 
 }  // namespace

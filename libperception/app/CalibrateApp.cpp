@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -14,6 +13,7 @@
 #include "libperception/calibration/BoxEvidenceStudy.h"
 #include "libperception/calibration/DetectorStudy.h"
 #include "libperception/calibration/TemperingStudy.h"
+#include "libperception/core/GroundTruth.h"
 #include "libperception/pipeline/LogRecorder.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/Conversions.h"
@@ -21,11 +21,6 @@
 
 namespace perception {
 namespace {
-
-/// LOG.truth.csv beside LOG.rawlog.
-GroundTruth truthBeside(const std::string& log) {
-  return readGroundTruth(std::filesystem::path(log).replace_extension(".truth.csv").string());
-}
 
 bool hasSpaceBoxes(const ObjectDetections& detections) {
   return std::any_of(detections.objects.begin(), detections.objects.end(),

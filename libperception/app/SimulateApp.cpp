@@ -20,11 +20,11 @@ namespace perception {
 
 namespace {
 
-// FILE.truth.csv and the like beside FILE.rawlog.
-std::string beside(const std::string& rawlog, const char* ending) {
-  const std::filesystem::path path(rawlog);
-  const bool named = path.extension() == ".rawlog";
-  return (named ? path.parent_path() / path.stem() : path).string() + ending;
+// FILE.lanes.csv beside FILE.rawlog.
+std::string lanesFileOf(const std::string& rawlog) {
+  std::filesystem::path path(rawlog);
+  if (path.extension() == ".rawlog") path.replace_extension();
+  return path.string() + ".lanes.csv";
 }
 
 }  // namespace
@@ -139,9 +139,9 @@ void SimulateApp::run() {
     if (packed.valid()) packed.get();
   }
   // The truth first, so that a log with its final name always has one.
-  out_truth_file = beside(output, ".truth.csv");
+  out_truth_file = truthFileOf(output);
   writeGroundTruth(out_truth_file, simulator.truth());
-  if (!lanes.empty()) writeFile(beside(output, ".lanes.csv"), lanesText(lanes));
+  if (!lanes.empty()) writeFile(lanesFileOf(output), lanesText(lanes));
   log.close();
   out_frames = simulator.frames();
   out_entries = log.entries(), out_bytes = log.bytes();

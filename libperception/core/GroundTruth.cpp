@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <set>
@@ -140,6 +141,14 @@ GroundTruth readGroundTruth(const std::string& path) {
   }
   return truth;
 }
+
+std::string truthFileOf(const std::string& rawlog) {
+  std::filesystem::path path(rawlog);
+  if (path.extension() == ".rawlog") path.replace_extension();
+  return path.string() + ".truth.csv";
+}
+
+GroundTruth truthBeside(const std::string& rawlog) { return readGroundTruth(truthFileOf(rawlog)); }
 
 void writeGroundTruth(const std::string& path, const std::vector<TruthObject>& rows) {
   struct Closer {

@@ -41,6 +41,10 @@ struct GroundTruth {
 
 /// Reads FILE.truth.csv. Throws DataError with file, line and column.
 GroundTruth readGroundTruth(const std::string& path);
+/// FILE.truth.csv beside FILE.rawlog, where the truth of a log stands.
+std::string truthFileOf(const std::string& rawlog);
+/// Reads it. Throws as readGroundTruth().
+GroundTruth truthBeside(const std::string& rawlog);
 /// Writes it, in a fixed number format.
 void writeGroundTruth(const std::string& path, const std::vector<TruthObject>& rows);
 

@@ -82,8 +82,8 @@ double nextNumber(std::istream& in, const std::string& path, const char* expecte
 }  // namespace
 
 void HeadingHeadParams::visit(ParamVisitor& v) {
-  v.path("file", file, "of a head, as written by perception-detect --train-heading");
   v.expert();
+  v.path("file", file, "of a head, as written by perception-detect --train-heading");
   v.boolean("replace", replace, "replace the headings of the detector");
 }
 

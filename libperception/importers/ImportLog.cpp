@@ -208,12 +208,6 @@ ImportResult ImportLog::close() {
   return result_;
 }
 
-std::string truthFileOf(const std::string& rawlog) {
-  const fs::path path(rawlog);
-  if (path.extension() != ".rawlog") return rawlog + ".truth.csv";
-  return fs::path(path).replace_extension(".truth.csv").string();
-}
-
 std::string imageFolderOf(const std::string& rawlog) { return imagesBeside(rawlog); }
 
 bool coveredType(const std::string& type) {

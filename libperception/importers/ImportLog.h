@@ -119,8 +119,6 @@ class ImportLog {
   std::map<std::string, std::string> linked_;  ///< folder of each camera's images
 };
 
-/// FILE.truth.csv beside FILE.rawlog.
-std::string truthFileOf(const std::string& rawlog);
 /// FILE_Images, MRPT's folder for externally stored images.
 std::string imageFolderOf(const std::string& rawlog);
 

@@ -7,7 +7,6 @@
 namespace perception {
 
 void SurfaceParams::visit(ParamVisitor& v) {
-  v.expert();
   v.boolean("local", local,
             "track deviations of the ground from its plane; false: plane alone (Radecki et al.)");
 }

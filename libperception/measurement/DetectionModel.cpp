@@ -197,7 +197,8 @@ DetectionModel DetectionModel::read(Config& config, const std::string& section,
 DetectionModel::DetectionModel(DetectionParams params, std::vector<ClassDetection> classes,
                                std::vector<std::string> labels)
     : params_(std::move(params)), classes_(std::move(classes)), labels_(std::move(labels)) {
-  for (const auto& c : classes_) {
+  for (auto& c : classes_) {
+    c.detection = std::max(c.detection, kLeastDetection);
     std::vector<double> row = completeRow(c.labels, labels_);
     for (double& p : row) p = std::log(p);
     log_labels_.push_back(std::move(row));

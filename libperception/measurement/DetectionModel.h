@@ -35,6 +35,10 @@ struct DetectionParams {
   void applyResolution();
 };
 
+/// Least P_D of a class near by, in view, where the tables say less (method.md 4.7): with none, one
+/// detection that is no object, or not the one it is taken for, would rule the class out.
+inline constexpr double kLeastDetection = 0.001;
+
 /// P_D and labels of one class for one sensor: [sensor.LABEL.class.NAME] overrides
 /// [detection.MODALITY.NAME] of classes.ini (method.md 2.3), which overrides these defaults.
 struct ClassDetection {

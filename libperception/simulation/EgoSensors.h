@@ -28,8 +28,8 @@ struct GnssUnitParams {
   void visit(ParamVisitor& v);
 };
 
-/// Three gyros and three accelerometers: kind = imu. Biases are drawn once per log. Values typical
-/// of MEMS data sheets, assumed (method.md 1.4).
+/// Three gyros and three accelerometers: [sensor.LABEL] kind = imu. Biases are drawn once per log.
+/// Values typical of MEMS data sheets, assumed (method.md 1.4).
 struct ImuUnitParams {
   double gyro_noise = radians(0.05);  ///< [rad/sqrt(s)] angle random walk
   double gyro_bias = radians(0.5);    ///< [rad/s] standard deviation of the bias of each axis
@@ -40,7 +40,8 @@ struct ImuUnitParams {
   void visit(ParamVisitor& v);
 };
 
-/// The speed of the rear axle: kind = wheels. The scale error is drawn once per log. Assumed.
+/// The speed of the rear axle: [sensor.LABEL] kind = wheels. The scale error is drawn once per log.
+/// Assumed.
 struct WheelUnitParams {
   double sigma = 0.05;  ///< [m/s] of one reading
   double scale = 0.02;  ///< [-] standard deviation of the scale error: tires, pressure

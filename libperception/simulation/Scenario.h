@@ -36,7 +36,7 @@ struct ScenarioParams {
   void visit(ParamVisitor& v);
 };
 
-/// Timed waypoints as lists of equal length. World frame, z up.
+/// Timed waypoints as lists of equal length, in [ego] and [object.NAME]. World frame, z up.
 struct WaypointParams {
   std::vector<double> t;     ///< [s] since the log's first stamp
   std::vector<double> x, y;  ///< [m]

@@ -2,7 +2,7 @@
 // bearings, by resolution; a degree of pitch that nobody knows of against the stated deviation.
 #include <fmt/format.h>
 
-#include "tests/vision/PanoramaChain.h"
+#include "tests/detectors/PanoramaChain.h"
 
 int main() {
   using namespace perception;

@@ -120,6 +120,18 @@ TEST_F(GroundTruthFile, AFileThatCannotBeCreatedOrReadIsSaid) {
   EXPECT_THROW(readGroundTruth(path_), DataError);
 }
 
+TEST_F(GroundTruthFile, StandsBesideItsLog) {
+  EXPECT_EQ(truthFileOf("a.b/c.d.rawlog"), "a.b/c.d.truth.csv");
+  EXPECT_EQ(truthFileOf("a.b/c.d"), "a.b/c.d.truth.csv");
+  const std::string beside = truthFileOf(path_ + ".rawlog");
+  TruthObject car;
+  car.type = "Car";
+  writeGroundTruth(beside, {car});
+  EXPECT_EQ(truthBeside(path_ + ".rawlog").instants.size(), 1u);
+  std::filesystem::remove(beside);
+  EXPECT_THROW(truthBeside(path_ + ".rawlog"), DataError);
+}
+
 TEST_F(GroundTruthFile, ATruthWithoutObjectsIsReadAsEmpty) {
   writeGroundTruth(path_, {});
   EXPECT_TRUE(readGroundTruth(path_).instants.empty());

@@ -161,6 +161,17 @@ TEST(DetectionModel, TheResolutionOfAPanoramaSetsItsRanges) {
   EXPECT_NE(faultsOf("[sensor.A]\nresolution = 8k\n").find("of cameras"), std::string::npos);
 }
 
+TEST(DetectionModel, AClassThatIsNeverSeenKeepsALeastProbabilityInView) {
+  Config config = Config::fromText(
+      "[sensor.A]\nrange_max = 50\n[sensor.A.class.tram]\ndetection = 0\n", "a.ini");
+  const DetectionModel s = read(config);
+  config.finish();
+  EXPECT_EQ(s.detection(2, 10, 0, 1), 0.001);
+  EXPECT_EQ(s.detection(2, 10, 0, 0.5), 0.0005) << "half hidden";
+  EXPECT_EQ(s.detection(2, 51, 0, 1), 0) << "out of view";
+  EXPECT_EQ(s.detection(1, 10, 0, 1), 0.9) << "others are as the tables say";
+}
+
 TEST(DetectionModel, FadesAtTheBordersOfItsView) {
   DetectionParams p;
   p.range_min = 2;

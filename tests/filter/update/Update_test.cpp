@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "libperception/core/Random.h"
 #include "libperception/filter/Step.h"
 #include "libperception/filter/predict/Prediction.h"
+#include "libperception/measurement/DetectionModel.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {
@@ -50,6 +52,30 @@ TEST(MissTrack, CostsExistenceAndTheClassesThatShouldHaveBeenSeen) {
   EXPECT_NEAR(after.existence,
               before.existence * (1 - detection) / (1 - before.existence * detection), 1e-12);
   EXPECT_NEAR(std::exp(after.log_class[0]), pc[0] * 0.2 / (1 - detection), 1e-12);
+}
+
+/// Log-odds of the first class against the second after a hit by a sensor that detects the first
+/// one with that probability.
+double oddsAfterHit(double detection) {
+  Fixture f;
+  const Track before = predictTrack(f.born(), Stamp::fromSeconds(1000.1), f.model);
+  PositionModel::Params params = linearSensor();
+  params.classes[0].detection = detection;
+  f.sensor = std::make_shared<const PositionModel>(params);
+  const auto scan = positionScan(f.sensor, 0.1, {{1.05, 2, 0}});
+  const auto table = likelihoodTable({before}, scan, f.model);
+  const TrackLikelihoods& row = table.tracks[0];
+  const Track after = hitTrack(before, row, row.pairs.at(0), scan, 1, f.model);
+  return after.log_class[0] - after.log_class[1];
+}
+
+TEST(HitTrack, ADetectionByASensorThatNeverSeesAClassDoesNotRuleItOut) {
+  ClassDetection never;
+  never.detection = 0;
+  const DetectionModel table({}, {never, {}}, {"a", "b"});
+  const double least = table.row(0).detection;
+  EXPECT_EQ(oddsAfterHit(0), -std::numeric_limits<double>::infinity()) << "no model says that";
+  EXPECT_NEAR(oddsAfterHit(least) - oddsAfterHit(0.8), std::log(0.001 / 0.8), 1e-9);
 }
 
 TEST(HitTrack, MakesExistenceCertainAndClassesSumToOne) {
