@@ -1,16 +1,21 @@
 #pragma once
-#include <mrpt/obs/CObservation.h>
-
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "libperception/config/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
-#include "libperception/sensors/EgoFusion.h"
+#include "libperception/sensors/FusionParams.h"
+
+namespace mrpt::obs {
+class CObservation;
+}
 
 namespace perception {
+
+class EgoFusion;
 
 /// How the vehicle's pose is taken from the log: [ego].
 struct EgoPoseParams {
@@ -44,6 +49,7 @@ struct EgoPoseParams {
 class EgoPose {
  public:
   explicit EgoPose(EgoPoseParams params = {});
+  ~EgoPose();
 
   /// Takes a CObservationRobotPose of the wanted label and, unless `source` is poses, what
   /// EgoFusion takes; every other observation is ignored.
@@ -58,8 +64,8 @@ class EgoPose {
   Stamp latest() const { return poses().back().stamp; }
   /// How often the world of the poses became another one: when the first pose of the log took over
   /// from EgoFusion, or this one found its heading. What was placed in the old world is void.
-  std::uint64_t frameEpoch() const { return frame_epoch_ + fusion_.state().relocations; }
-  const EgoFusion& fusion() const { return fusion_; }
+  std::uint64_t frameEpoch() const;
+  const EgoFusion& fusion() const { return *fusion_; }
   /// Forgets everything, as after a jump of the clock.
   void clear();
   static EgoState parked(Stamp stamp, const PoseUncertainty& uncertainty = {});
@@ -71,14 +77,14 @@ class EgoPose {
   }  ///< bad stamp or numbers, too old, same instant
 
  private:
-  const std::deque<EgoState>& poses() const { return poses_.empty() ? fusion_.poses() : poses_; }
+  const std::deque<EgoState>& poses() const;
   bool fused() const { return poses_.empty(); }
   bool wants(const std::string& label);
   bool isJump(const EgoState& pose);
   void setMotion(EgoState& state) const;
 
   EgoPoseParams params_;
-  EgoFusion fusion_;
+  std::unique_ptr<EgoFusion> fusion_;
   std::string label_;               ///< in use
   std::deque<EgoState> poses_;      ///< by stamp; velocities are not set
   std::deque<EgoState> relocated_;  ///< a run of rejected poses that agree with each other
