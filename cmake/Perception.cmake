@@ -32,6 +32,19 @@ if(PERCEPTION_SANITIZE)
   target_link_options(perception_options INTERFACE -fsanitize=${PERCEPTION_SANITIZE})
 endif()
 
+# perception_precompile(NAME OWNER): Eigen is most of what most sources read. OWNER reads it once for all targets with its
+# compile options. Not beside ccache, which could not remember what uses it.
+function(perception_precompile NAME OWNER)
+  if(NOT PERCEPTION_PRECOMPILE OR CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
+    return()
+  endif()
+  if("${NAME}" STREQUAL "${OWNER}")
+    target_precompile_headers(${NAME} PRIVATE <Eigen/Cholesky> <Eigen/Geometry> <Eigen/LU>)
+  else()
+    target_precompile_headers(${NAME} REUSE_FROM ${OWNER})
+  endif()
+endfunction()
+
 # perception_module(NAME [FOLDER dir] LINK libs...): all sources below libperception/NAME as perception::NAME, but those
 # of simd/ kernels (see perception_simd) and of plugins.
 function(perception_module NAME)
@@ -45,6 +58,12 @@ function(perception_module NAME)
   if(SOURCES)
     add_library(perception_${NAME} STATIC ${SOURCES})
     target_link_libraries(perception_${NAME} PUBLIC perception_options ${ARG_LINK})
+    if(NAME IN_LIST PERCEPTION_LOOPS)
+      target_compile_options(perception_${NAME} PRIVATE -fno-math-errno -fno-trapping-math -ffp-contract=off -Wno-psabi)
+      perception_precompile(perception_${NAME} perception_simd)
+    else()
+      perception_precompile(perception_${NAME} perception_core)
+    endif()
   else()
     add_library(perception_${NAME} INTERFACE)
     target_link_libraries(perception_${NAME} INTERFACE perception_options ${ARG_LINK})
@@ -63,6 +82,15 @@ function(perception_simd NAME STEM)
   set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}Avx2.cpp PROPERTIES COMPILE_OPTIONS "${MATH};-mavx2;-mfma")
   set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}Avx512.cpp PROPERTIES
     COMPILE_OPTIONS "${MATH};-mavx512f;-mavx512dq;-mavx512vl;-mfma;-mprefer-vector-width=512")
+  foreach(LEVEL Sse2 Avx2 Avx512)
+    set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}${LEVEL}.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  endforeach()
+endfunction()
+
+# perception_cheap(SOURCES...): of what only declares options and hands over, -O1; a precompiled header would bring its -O3.
+function(perception_cheap)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON
+    COMPILE_OPTIONS "$<$<CONFIG:Release>:-O1>;-Wno-maybe-uninitialized")
 endfunction()
 
 # perception_program(NAME [SOURCES stems below libperception...] LINK libs...): the program build/bin/perception-NAME from
@@ -75,7 +103,10 @@ function(perception_program NAME)
     list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/libperception/)
     list(TRANSFORM ARG_SOURCES APPEND .cpp)
     add_library(perception_app_${NAME} STATIC ${ARG_SOURCES})
+    list(FILTER ARG_SOURCES INCLUDE REGEX "/libperception/app/")
+    perception_cheap(${ARG_SOURCES})
     target_link_libraries(perception_app_${NAME} PUBLIC perception::app ${ARG_LINK})
+    perception_precompile(perception_app_${NAME} perception_core)
     add_library(perception::app_${NAME} ALIAS perception_app_${NAME})
     target_link_libraries(${PROGRAM} PRIVATE perception::app_${NAME})
   else()

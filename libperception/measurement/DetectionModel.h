@@ -14,13 +14,14 @@ namespace perception {
 struct DetectionParams {
   std::string kind = "lidar";  ///< front end by name
   Modality modality = Modality::kLidar;
-  double clutter_per_scan = 0.6;         ///< kappa: false measurements (method.md 5.3)
-  double births_per_scan = 0.03;         ///< beta: first measurements of new objects (method.md 5.3)
+  double clutter_per_scan = 0.6;  ///< kappa: false measurements (method.md 5.3)
+  double births_per_scan = 0.03;  ///< beta: first measurements of new objects (method.md 5.3)
   double range_min = 0, range_max = 70;  ///< [m] of the nearest point of an object [radecki2016]
-  double fov = kTwoPi;              ///< [rad] full horizontal angle about the sensor's forward axis
-  double label_exponent = 0.3;      ///< (0, 1] tempers labels in the class update (method.md 5.6)
-  double detection_exponent = 0.1;  ///< (0, 1] tempers detections and missed detections there (method.md 5.6)
-  std::optional<Pose3> pose;        ///< in the ego frame; overrides the pose of the log
+  double fov = kTwoPi;          ///< [rad] full horizontal angle about the sensor's forward axis
+  double label_exponent = 0.3;  ///< (0, 1] tempers labels in the class update (method.md 5.6)
+  double detection_exponent =
+      0.1;  ///< (0, 1] tempers detections and missed detections there (method.md 5.6)
+  std::optional<Pose3> pose;  ///< in the ego frame; overrides the pose of the log
   std::vector<std::pair<std::string, double>>
       clutter_labels;  ///< P(label | clutter); labels not listed share the rest evenly
   /// Panoramas of [radecki2016]: the row of cameraResolutions(), counted from 1; 0: none. Sets

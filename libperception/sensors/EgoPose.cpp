@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/EgoFusion.h"
 #include "libperception/sensors/ToObservation.h"  // kEgoPoseLabel
 
 namespace perception {
@@ -65,7 +66,17 @@ void EgoPoseParams::visit(ParamVisitor& v) {
 }
 
 EgoPose::EgoPose(EgoPoseParams params)
-    : params_(std::move(params)), fusion_(params_.fusion), label_(params_.label) {}
+    : params_(std::move(params)),
+      fusion_(std::make_unique<EgoFusion>(params_.fusion)),
+      label_(params_.label) {}
+
+EgoPose::~EgoPose() = default;
+
+const std::deque<EgoState>& EgoPose::poses() const {
+  return poses_.empty() ? fusion_->poses() : poses_;
+}
+
+std::uint64_t EgoPose::frameEpoch() const { return frame_epoch_ + fusion_->state().relocations; }
 
 EgoState EgoPose::parked(Stamp stamp, const PoseUncertainty& uncertainty) {
   EgoState state;
@@ -75,8 +86,8 @@ EgoState EgoPose::parked(Stamp stamp, const PoseUncertainty& uncertainty) {
 }
 
 void EgoPose::clear() {
-  frame_epoch_ += fusion_.state().relocations;
-  fusion_.clear();
+  frame_epoch_ += fusion_->state().relocations;
+  fusion_->clear();
   poses_.clear();
   relocated_.clear();
 }
@@ -96,7 +107,8 @@ bool EgoPose::wants(const std::string& label) {
 void EgoPose::add(const mrpt::obs::CObservation& observation) {
   const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation);
   if (pose == nullptr) {
-    if (poses_.empty() && params_.source != EgoPoseParams::Source::kPoses) fusion_.add(observation);
+    if (poses_.empty() && params_.source != EgoPoseParams::Source::kPoses)
+      fusion_->add(observation);
     return;
   }
   if (params_.source == EgoPoseParams::Source::kFusion || !wants(pose->sensorLabel)) return;
@@ -140,7 +152,7 @@ void EgoPose::add(const EgoState& pose) {
     ++rejected_other_;
     return;
   }
-  if (poses_.empty() && !fusion_.poses().empty())
+  if (poses_.empty() && !fusion_->poses().empty())
     ++frame_epoch_;  // the poses of the log replace the fusion
   if (!poses_.empty()) {
     const auto place = std::lower_bound(poses_.begin(), poses_.end(), pose.stamp, before);

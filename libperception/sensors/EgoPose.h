@@ -1,16 +1,21 @@
 #pragma once
-#include <mrpt/obs/CObservation.h>
-
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "libperception/config/ParamSet.h"
 #include "libperception/measurement/SensorFrame.h"
-#include "libperception/sensors/EgoFusion.h"
+#include "libperception/sensors/FusionParams.h"
+
+namespace mrpt::obs {
+class CObservation;
+}
 
 namespace perception {
+
+class EgoFusion;
 
 /// Source of the vehicle's pose: [ego].
 struct EgoPoseParams {
@@ -44,6 +49,7 @@ struct EgoPoseParams {
 class EgoPose {
  public:
   explicit EgoPose(EgoPoseParams params = {});
+  ~EgoPose();
 
   /// Processes a CObservationRobotPose of the selected label and, unless `source` is kPoses, the
   /// observations of EgoFusion; others are ignored.
@@ -59,8 +65,8 @@ class EgoPose {
   Stamp latest() const { return poses().back().stamp; }
   /// Number of changes of the world frame: when the first pose of the log replaces EgoFusion, or
   /// when EgoFusion finds its heading. Positions in the former world frame are invalid.
-  std::uint64_t frameEpoch() const { return frame_epoch_ + fusion_.state().relocations; }
-  const EgoFusion& fusion() const { return fusion_; }
+  std::uint64_t frameEpoch() const;
+  const EgoFusion& fusion() const { return *fusion_; }
   /// Resets, as after a jump of the clock.
   void clear();
   static EgoState parked(Stamp stamp, const PoseUncertainty& uncertainty = {});
@@ -72,14 +78,14 @@ class EgoPose {
   }  ///< invalid, too old, same instant
 
  private:
-  const std::deque<EgoState>& poses() const { return poses_.empty() ? fusion_.poses() : poses_; }
+  const std::deque<EgoState>& poses() const;
   bool fused() const { return poses_.empty(); }
   bool wants(const std::string& label);
   bool isJump(const EgoState& pose);
   void setMotion(EgoState& state) const;
 
   EgoPoseParams params_;
-  EgoFusion fusion_;
+  std::unique_ptr<EgoFusion> fusion_;
   std::string label_;               ///< in use
   std::deque<EgoState> poses_;      ///< by stamp; velocities are not set
   std::deque<EgoState> relocated_;  ///< consecutive consistent rejected poses
