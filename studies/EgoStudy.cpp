@@ -9,7 +9,9 @@
 #include "libperception/core/Chi2.h"
 #include "libperception/core/Error.h"
 #include "libperception/evaluation/Gnuplot.h"
+#include "libperception/sensors/CEgoFilter.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/EgoFusion.h"
 #include "libperception/simulation/Simulator.h"
 
 namespace perception {
