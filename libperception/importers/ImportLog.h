@@ -19,6 +19,9 @@ namespace perception {
 /// [Hz] of a frame that is shown repeatedly: so fast that nothing would have moved meanwhile, not
 /// even what drives.
 inline constexpr double kRepeatRate = 200;
+/// Frames that stand alone are so far apart in time [Hz] and place [m] that no object of one is one
+/// of the next.
+inline constexpr double kAloneRate = 0.1, kAloneDistance = 500;
 /// [s] Poses so long before and after a still world keep its vehicle from moving: velocities are
 /// differences of poses.
 inline constexpr double kStillPoses = 0.15;

@@ -12,6 +12,8 @@ std::vector<ImporterRow>& importers() {
        &makeCloudsImporter},
       {"images", "single frames of the KITTI object benchmark: images, labels, scans",
        kUsesRate | kUsesImages | kUsesRepeat, &makeImagesImporter},
+      {"kitti-object", "single scans of the KITTI object benchmark: scans, labels, images",
+       kUsesRate | kUsesImages | kUsesRepeat, &makeKittiObjectImporter},
       {"vod", "View of Delft: radar points, lidar, image, labels, poses",
        kUsesRate | kUsesImages | kUsesRepeat, &makeVodImporter},
       {"radiate", "RADIATE: Navtech radar, lidar, camera, GPS, annotations", kUsesImages,
