@@ -16,6 +16,8 @@ std::vector<ImporterRow>& importers() {
        kUsesRate | kUsesImages | kUsesRepeat, &makeKittiObjectImporter},
       {"vod", "View of Delft: radar points, lidar, image, labels, poses",
        kUsesRate | kUsesImages | kUsesRepeat, &makeVodImporter},
+      {"av2", "Argoverse 2 as tables: scans of two stacked lidars, labels, poses", kUsesRepeat,
+       &makeAv2Importer},
       {"radiate", "RADIATE: Navtech radar, lidar, camera, GPS, annotations", kUsesImages,
        &makeRadiateImporter},
       {"wads", "WADS: lidar scans in falling snow with a class per point", kUsesRate,
