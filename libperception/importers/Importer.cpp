@@ -18,6 +18,8 @@ std::vector<ImporterRow>& importers() {
        kUsesRate | kUsesImages | kUsesRepeat, &makeVodImporter},
       {"av2", "Argoverse 2 as tables: scans of two stacked lidars, labels, poses", kUsesRepeat,
        &makeAv2Importer},
+      {"aimotive", "aiMotive: lidar, front and rear radar, camera, motion, labels", kUsesImages,
+       &makeAimotiveImporter},
       {"radiate", "RADIATE: Navtech radar, lidar, camera, GPS, annotations", kUsesImages,
        &makeRadiateImporter},
       {"wads", "WADS: lidar scans in falling snow with a class per point", kUsesRate,
