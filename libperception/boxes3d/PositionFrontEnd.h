@@ -19,7 +19,7 @@ struct PositionParams {
   using Table = std::vector<std::pair<std::string, double>>;
   std::vector<std::string> labels{"object"};        ///< the columns of the class tables
   std::vector<std::string> names{"object=object"};  ///< the detector's class = one of the labels
-  double min_score = -1e9;                          ///< boxes below are dropped (default: none)
+  double min_score = -1e9;                          ///< boxes below are dropped; assumed: none
   double sigma = 0.3;               ///< [m] of the center, each axis (method.md 8.9, assumed)
   double range_share = 0;           ///< [-] share of the range added to sigma (method.md 8.9)
   double clutter_sigma_growth = 0;  ///< [-] growth of both at P(clutter) = 1 (method.md 8.9)

@@ -18,7 +18,7 @@ struct DetectorModelParams {
   std::string file;                ///< relative to [detector] folder
   std::string label;               ///< class name of its boxes; empty: the model's own
   std::vector<std::string> names;  ///< networks: INDEX=LABEL of the classes to report
-  double threshold = -1e9;         ///< [score] weaker boxes are dropped (default: none)
+  double threshold = -1e9;         ///< [score] weaker boxes are dropped; assumed: none
   double low = 0.5, high = 4;      ///< [m] heights of its objects on the ground (assumed)
   /// P(object | score) = 1 / (1 + exp(-slope (score - even_score))): written by --calibrate.
   double slope = 0;       ///< [1/score]; 0: not calibrated
@@ -43,7 +43,7 @@ struct OnnxParams {
   int input = 416;              ///< [px] side of the square input (YOLOX-Nano, [ge2021])
   int layout = 0;               ///< of the output, an index into layoutNames(); 0: by its shape
   double overlap = 0.45;        ///< intersection over union of boxes of one object (assumed)
-  bool windows = true;          ///< long images also in square windows (measured: ini/detectors)
+  bool windows = true;          ///< long images also in square windows (counted: ini/detectors)
   double window_overlap = 0.5;  ///< overlap of neighboring windows, share of their side (assumed)
 
   static const std::vector<std::string>& layoutNames();

@@ -128,4 +128,13 @@ LidarCloud readCloudFile(const std::string& path, const CloudFormat& format) {
   throw DataError(fmt::format("{}: expected one of {}", path, fmt::join(cloudEndings(), ", ")));
 }
 
+LidarCloud inFrame(LidarCloud cloud, const Pose3& T_to_from) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f p =
+        (T_to_from * Vector3(cloud.x[i], cloud.y[i], cloud.z[i])).cast<float>();
+    cloud.x[i] = p.x(), cloud.y[i] = p.y(), cloud.z[i] = p.z();
+  }
+  return cloud;
+}
+
 }  // namespace perception

@@ -25,4 +25,7 @@ const std::vector<std::string>& cloudEndings();
 /// Throws DataError (kNoInput if missing, else with position and expectation).
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format = {});
 
+/// The cloud's points in another frame, by the pose of their own frame in it.
+LidarCloud inFrame(LidarCloud cloud, const Pose3& T_to_from);
+
 }  // namespace perception

@@ -18,6 +18,9 @@ namespace perception {
 
 /// [Hz] rate of repeated frames: high enough that no object would move noticeably.
 inline constexpr double kRepeatRate = 200;
+/// Isolated frames are separated in time [Hz] and position [m], so that tracks of one cannot
+/// continue in the next.
+inline constexpr double kAloneRate = 0.1, kAloneDistance = 500;
 /// [s] Equal poses are written from this long before to this long after a static scene, so that the
 /// ego velocity, a difference of poses, is zero.
 inline constexpr double kStillPoses = 0.15;

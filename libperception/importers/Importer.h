@@ -43,9 +43,12 @@ std::unique_ptr<Importer> makeWadsImporter();
 std::unique_ptr<Importer> makeSnowyKittiImporter();
 std::unique_ptr<Importer> makeRadiateImporter();
 std::unique_ptr<Importer> makeVodImporter();
+std::unique_ptr<Importer> makeAv2Importer();
+std::unique_ptr<Importer> makeAimotiveImporter();
 std::unique_ptr<Importer> makeComma2k19Importer();
 std::unique_ptr<Importer> makeUdacityImporter();
 std::unique_ptr<Importer> makeImagesImporter();
+std::unique_ptr<Importer> makeKittiObjectImporter();
 std::unique_ptr<Importer> makeNmeaImporter();
 std::unique_ptr<Importer> makeGpxImporter();
 

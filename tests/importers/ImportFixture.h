@@ -17,6 +17,15 @@
 
 namespace perception::test {
 
+/// A file or folder of the recordings as they were published.
+inline std::string sharedData(const std::string& path) {
+  return std::string(PERCEPTION_SHARED_DATA) + "/data/" + path;
+}
+/// Skips a test whose recording is not there.
+#define NEEDS_SHARED_DATA(path)                                       \
+  if (!std::filesystem::exists(::perception::test::sharedData(path))) \
+  GTEST_SKIP() << "no recording at " << ::perception::test::sharedData(path)
+
 /// Runs perception-import in a folder of its own, on files that the test writes.
 class ImportRun : public ::testing::Test {
  protected:

@@ -37,7 +37,7 @@ TEST(Importers, EachHasANameOfItsOwnAndSaysWhatItReads) {
     EXPECT_GT(std::string(row.description).size(), 20u) << row.name;
     EXPECT_NE(row.make(), nullptr);
   }
-  EXPECT_EQ(names.size(), 11u);
+  EXPECT_EQ(names.size(), 14u);
 }
 
 class ImportOptionsOfFormats : public test::ImportRun {};
@@ -552,6 +552,43 @@ TEST_F(ImagesImport, FaultsNameTheFile) {
   expectFault(65, "000009.png: not an image", "images", {"--dir", file("o")});
   fs::remove(file("o/calib/000003.txt"));
   expectFault(66, "calib/000003.txt: no calibration", "images", {"--dir", file("o")});
+}
+
+TEST_F(ImagesImport, ScansCanBeTheFramesAndImagesMayBeMissing) {
+  fs::remove_all(file("o/image_2"));
+  write("o/velodyne/000003.bin", bytesOf<float>({10, 0, -1, 0.5F, 30, 0, -1, 0.5F}));
+  writeGz("o/velodyne/000009.bin.gz", bytesOf<float>({10, 0, -1, 0.5F}));
+  ASSERT_EQ(import("kitti-object", {"--dir", file("o"), "--repeat", "3"}), 0) << error_;
+  EXPECT_EQ(result_.images, 0);
+  EXPECT_EQ(result_.points, 9u);
+  const auto frames = framesOf("LIDAR_TOP");
+  ASSERT_EQ(frames.size(), 6u);
+  EXPECT_NEAR(frames[3].stamp - frames[0].stamp, 10, 1e-6);
+  EXPECT_NEAR(
+      (frames[3].ego.T_world_ego.translation() - frames[0].ego.T_world_ego.translation()).norm(),
+      500, 1e-6);
+  for (const auto& frame : frames) EXPECT_NEAR(frame.ego.velocity.norm(), 0, 1e-6);
+  EXPECT_EQ(frameNumbers(), (std::vector<std::int64_t>{3, 9}));
+  const auto truth = readGroundTruth(file("out.truth.csv"));
+  ASSERT_EQ(truth.instants.size(), 2u);
+  ASSERT_EQ(truth.instants[0].objects.size(), 2u);
+  EXPECT_EQ(truth.instants[0].objects[0].lidar_points, 1);
+  EXPECT_TRUE(truth.instants[0].objects[1].ignore);
+  EXPECT_EQ(truth.instants[0].objects[1].type, "DontCare");
+}
+
+TEST_F(ImagesImport, FaultsOfScansNameTheFile) {
+  expectFault(66, "velodyne: no such folder", "kitti-object", {"--dir", file("o")});
+  write("o/velodyne/000003.bin", bytesOf<float>({10, 0, -1, 0.5F}));
+  write("o/velodyne/000009.bin", "17 bytes, no more");
+  expectFault(65, "000009.bin: 17 bytes, expected 16 a point", "kitti-object",
+              {"--dir", file("o")});
+  write("o/velodyne/000009.bin", bytesOf<float>({10, 0, -1, 0.5F}));
+  write("o/label_2/000009.txt", "\nCar 0.2 0 -1.57 10 5 50 30 1.5 2 4 0 1.73 far -1.57\n");
+  expectFault(65, "000009.txt:2: field 14: found 'far', expected a number", "kitti-object",
+              {"--dir", file("o")});
+  fs::remove(file("o/calib/000003.txt"));
+  expectFault(66, "calib/000003.txt: no calibration", "kitti-object", {"--dir", file("o")});
 }
 
 // ----------------------------------------------------------------------------- receivers' tracks

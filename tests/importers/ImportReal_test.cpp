@@ -16,15 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RealImport : public test::ImportRun {
- protected:
-  static std::string data(const std::string& path) {
-    return std::string(PERCEPTION_SHARED_DATA) + "/data/" + path;
-  }
-};
+using test::sharedData;
 
-#define NEEDS(path) \
-  if (!fs::exists(data(path))) GTEST_SKIP() << "no recording at " << data(path)
+class RealImport : public test::ImportRun {};
 
 // ------------------------------------------------------------------------------- View of Delft
 
@@ -36,8 +30,8 @@ double distanceFrom(const TruthObject& box, const Vector2& p) {
 }
 
 TEST_F(RealImport, VodsRadarReturnsLieOnWhatIsLabeled) {
-  NEEDS("vod_radar");
-  ASSERT_EQ(import("vod", {"--dir", data("vod_radar")}), 0) << error_;
+  NEEDS_SHARED_DATA("vod_radar");
+  ASSERT_EQ(import("vod", {"--dir", sharedData("vod_radar")}), 0) << error_;
   EXPECT_EQ(result_.points, 356860u);
   EXPECT_EQ(result_.radar_returns, 674u);
   const auto truth = readGroundTruth(file("out.truth.csv"));
@@ -87,8 +81,8 @@ std::pair<int, int> found(const GroundTruth& truth, const std::vector<Scene>& sc
 }
 
 TEST_F(RealImport, VodsRoadUsersAreTracked) {
-  NEEDS("vod_radar");
-  ASSERT_EQ(import("vod", {"--dir", data("vod_radar"), "--repeat", "10"}), 0) << error_;
+  NEEDS_SHARED_DATA("vod_radar");
+  ASSERT_EQ(import("vod", {"--dir", sharedData("vod_radar"), "--repeat", "10"}), 0) << error_;
   const auto truth = readGroundTruth(file("out.truth.csv"));
   const auto lidar = found(truth, track("vod.ini", "L"));
   const auto radar = found(truth, track("vod.ini", "R"));
@@ -102,8 +96,8 @@ TEST_F(RealImport, VodsRoadUsersAreTracked) {
 // ----------------------------------------------------------------------------------- comma2k19
 
 TEST_F(RealImport, Comma2k19sStillObjectsCloseAtOwnSpeed) {
-  NEEDS("comma2k19_radar");
-  ASSERT_EQ(import("comma2k19", {"--dir", data("comma2k19_radar")}), 0) << error_;
+  NEEDS_SHARED_DATA("comma2k19_radar");
+  ASSERT_EQ(import("comma2k19", {"--dir", sharedData("comma2k19_radar")}), 0) << error_;
   EXPECT_EQ(result_.radar_returns, 10100u);
   EXPECT_EQ(result_.radar_scans, 1200);
   ObjectClass car;
@@ -132,8 +126,9 @@ TEST_F(RealImport, Comma2k19sStillObjectsCloseAtOwnSpeed) {
 }
 
 TEST_F(RealImport, Comma2k19sTrafficIsTracked) {
-  NEEDS("comma2k19_radar");
-  ASSERT_EQ(import("comma2k19", {"--dir", data("comma2k19_radar"), "--last", "399"}), 0) << error_;
+  NEEDS_SHARED_DATA("comma2k19_radar");
+  ASSERT_EQ(import("comma2k19", {"--dir", sharedData("comma2k19_radar"), "--last", "399"}), 0)
+      << error_;
   const auto scenes = track("comma2k19.ini", "R");
   ASSERT_EQ(scenes.size(), 400u);
   std::map<std::uint64_t, int> scans_of;
@@ -148,9 +143,9 @@ TEST_F(RealImport, Comma2k19sTrafficIsTracked) {
 // ------------------------------------------------------------------------------------- RADIATE
 
 TEST_F(RealImport, RadiatesGpsClockIsFoundByItsLidarAndTheBusStandsStill) {
-  NEEDS("radiate_fog");
+  NEEDS_SHARED_DATA("radiate_fog");
   // 3: its own list of times leaves out 17 scans, and the GPS clock was set back for a moment.
-  ASSERT_EQ(import("radiate", {"--dir", data("radiate_fog")}), 3) << error_;
+  ASSERT_EQ(import("radiate", {"--dir", sharedData("radiate_fog")}), 3) << error_;
   EXPECT_EQ(result_.scans, 42);
   EXPECT_EQ(result_.radar_scans, 18);
   EXPECT_EQ(result_.images, 50);
@@ -173,10 +168,11 @@ TEST_F(RealImport, RadiatesGpsClockIsFoundByItsLidarAndTheBusStandsStill) {
 // ------------------------------------------------------------------------------------- Udacity
 
 TEST_F(RealImport, UdacitysObjectIsTrackedWithinTheExercisesBars) {
-  NEEDS("udacity_radar_lidar_synth");
-  ASSERT_EQ(import("udacity", {"--measurements", data("udacity_radar_lidar_synth/"
+  NEEDS_SHARED_DATA("udacity_radar_lidar_synth");
+  ASSERT_EQ(
+      import("udacity", {"--measurements", sharedData("udacity_radar_lidar_synth/"
                                                       "obj_pose-laser-radar-synthetic-input.txt")}),
-            0)
+      0)
       << error_;
   const auto truth = readGroundTruth(file("out.truth.csv"));
   ASSERT_EQ(truth.instants.size(), 500u);
@@ -209,24 +205,25 @@ TEST_F(RealImport, UdacitysObjectIsTrackedWithinTheExercisesBars) {
 // --------------------------------------------------------------------- snow, single images, GPS
 
 TEST_F(RealImport, SnowIsCountedByLabel) {
-  NEEDS("wads_snow");
-  ASSERT_EQ(import("wads", {"--dir", data("wads_snow"), "--last", "42224"}), 0) << error_;
+  NEEDS_SHARED_DATA("wads_snow");
+  ASSERT_EQ(import("wads", {"--dir", sharedData("wads_snow"), "--last", "42224"}), 0) << error_;
   EXPECT_EQ(result_.scans, 2);
   EXPECT_EQ(result_.poses, 2);
   EXPECT_TRUE(fs::exists(file("out_Labels/042224.label.gz")));
   EXPECT_TRUE(std::any_of(result_.notes.begin(), result_.notes.end(), [](const auto& note) {
     return note.rfind("label 110 (falling snow): ", 0) == 0;
   }));
-  NEEDS("snowykitti");
-  ASSERT_EQ(import("snowykitti", {"--dir", data("snowykitti")}), 0) << error_;
+  NEEDS_SHARED_DATA("snowykitti");
+  ASSERT_EQ(import("snowykitti", {"--dir", sharedData("snowykitti")}), 0) << error_;
   EXPECT_EQ(result_.scans, 6);
   EXPECT_EQ(result_.points, 581216u);
 }
 
 TEST_F(RealImport, LabeledBoxesGiveTracksOfCarsInSingleImages) {
-  NEEDS("kitti_object13");
-  ASSERT_EQ(import("images", {"--dir", data("kitti_object13"), "--label-boxes", "--repeat", "10"}),
-            0)
+  NEEDS_SHARED_DATA("kitti_object13");
+  ASSERT_EQ(
+      import("images", {"--dir", sharedData("kitti_object13"), "--label-boxes", "--repeat", "10"}),
+      0)
       << error_;
   EXPECT_EQ(result_.images, 13);
   EXPECT_EQ(result_.truth_types.at("Car"), 42u);
@@ -255,8 +252,8 @@ TEST_F(RealImport, LabeledBoxesGiveTracksOfCarsInSingleImages) {
 
 TEST_F(RealImport, ARidersReceiverIsFollowedAllTheWay) {
   const std::string track_file = "gps_modes/cyclist/cyclist_u020_20111105T075439Z.csv";
-  NEEDS(track_file);
-  ASSERT_EQ(import("gpx", {"--track", data(track_file), "--as-object"}), 0) << error_;
+  NEEDS_SHARED_DATA(track_file);
+  ASSERT_EQ(import("gpx", {"--track", sharedData(track_file), "--as-object"}), 0) << error_;
   EXPECT_EQ(result_.detections.at("GPS_OBJECT"), 1201u);
   const auto scenes = track("gps_object.ini", "L");
   const auto followed = std::count_if(scenes.begin(), scenes.end(),

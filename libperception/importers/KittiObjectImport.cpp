@@ -18,16 +18,25 @@ namespace {
 constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kImageLabel = "CAMERA_LEFT";
 constexpr const char* kBoxesLabel = "LABELLED_BOXES";
-/// Isolated frames are separated in time [Hz] and position [m], so that tracks of one cannot
-/// continue in the next.
-constexpr double kAloneRate = 0.1, kAloneDistance = 500;
+/// A folder of the benchmark and what its files end in.
+struct Part {
+  const char* folder;
+  std::vector<std::string> endings;
+};
+const Part kImages{"image_2", {".png", ".jpg", ".jpeg"}};
+const Part kScans{"velodyne", {".bin", ".bin.gz"}};
+const Part kLabels{"label_2", {".txt"}};
+const Part kCalibrations{"calib", {".txt"}};
 
 /// Single frames in the layout of KITTI's object benchmark: image_2, calib, label_2, velodyne.
-class ImagesImporter final : public Importer {
+class KittiObjectImporter final : public Importer {
  public:
+  /// The files of `frames` are the frames; of `other` there may be none.
+  KittiObjectImporter(const Part& frames, const Part& other) : frames_(frames), other_(other) {}
   void declare(CLI::App& cli) override {
     cli.add_option("--dir", dir_,
-                   "folder with image_2/ and calib/, and where there are label_2/ and velodyne/")
+                   fmt::format("folder with {}/ and calib/, and where there are label_2/ and {}/",
+                               frames_.folder, other_.folder))
         ->required();
     cli.add_flag("--label-boxes", label_boxes_,
                  "the labels' image boxes as detections LABELLED_BOXES: a detector without fault");
@@ -45,6 +54,7 @@ class ImagesImporter final : public Importer {
  private:
   struct Frame {
     FrameFile file;
+    std::string image;  ///< empty: none
     Pose3 T_world_ego = Pose3::Identity();
     KittiCalibration calibration;
     std::optional<LidarCloud> cloud;
@@ -52,45 +62,46 @@ class ImagesImporter final : public Importer {
   };
   Frame read(const FrameFile& file, ImportLog& log) const;
   void write(const Frame& frame, Stamp stamp, bool last, ImportLog& log) const;
-  std::string path(const char* folder) const { return (fs::path(dir_) / folder).string(); }
+  std::string path(const Part& part) const { return (fs::path(dir_) / part.folder).string(); }
+  std::string fileOf(const Part& part, const char* what, const FrameFile& frame,
+                     ImportLog& log) const;
 
+  const Part &frames_, &other_;
   std::string dir_;
   bool label_boxes_ = false;
   bool alone_ = true;  ///< frames of different places; else a sequence of a standing vehicle
 };
 
-ImagesImporter::Frame ImagesImporter::read(const FrameFile& file, ImportLog& log) const {
+/// The frame's file of `part`; empty: there is no such folder, or no such file in it (a warning).
+std::string KittiObjectImporter::fileOf(const Part& part, const char* what, const FrameFile& frame,
+                                        ImportLog& log) const {
+  if (!fs::exists(path(part))) return {};
+  std::string file = fileOfStem(path(part), frame.stem, part.endings);
+  if (file.empty()) log.missing(what, path(part), frame.number);
+  return file;
+}
+
+KittiObjectImporter::Frame KittiObjectImporter::read(const FrameFile& file, ImportLog& log) const {
   Frame frame;
   frame.file = file;
-  const std::string calibration = fileOfStem(path("calib"), file.stem, {".txt"});
+  const std::string calibration = fileOfStem(path(kCalibrations), file.stem, kCalibrations.endings);
   if (calibration.empty()) {
     throw DataError(
-        fmt::format("{}/{}.txt: no calibration for {}", path("calib"), file.stem, file.path),
+        fmt::format("{}/{}.txt: no calibration for {}", path(kCalibrations), file.stem, file.path),
         ExitCode::kNoInput);
   }
   frame.calibration = readKittiCalibration(calibration);
-  if (fs::exists(path("label_2"))) {
-    const std::string labels = fileOfStem(path("label_2"), file.stem, {".txt"});
-    if (labels.empty()) {
-      log.missing("labels", path("label_2"), file.number);
-    } else {
-      frame.labels = readKittiObjectLabels(labels, file.number);
-      for (KittiLabel& label : frame.labels) label.id += 1000 * file.number;  // unique over frames
-    }
-    log.expectTruth();
+  if (const std::string labels = fileOf(kLabels, "labels", file, log); !labels.empty()) {
+    frame.labels = readKittiObjectLabels(labels, file.number);
+    for (KittiLabel& label : frame.labels) label.id += 1000 * file.number;  // unique over frames
   }
-  if (fs::exists(path("velodyne"))) {
-    const std::string scan = fileOfStem(path("velodyne"), file.stem, {".bin", ".bin.gz"});
-    if (scan.empty()) {
-      log.missing("scan", path("velodyne"), file.number);
-    } else {
-      frame.cloud = readKittiScan(scan);
-    }
-  }
+  if (const std::string scan = fileOf(kScans, "scan", file, log); !scan.empty())
+    frame.cloud = readKittiScan(scan);
+  frame.image = fileOf(kImages, "image", file, log);
   return frame;
 }
 
-void ImagesImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog& log) const {
+void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog& log) const {
   const KittiCalibration& calibration = frame.calibration;
   const Pose3 T_ego_velo = levelVelodyne(calibration);
   const Pose3 T_ego_camera =
@@ -122,19 +133,22 @@ void ImagesImporter::write(const Frame& frame, Stamp stamp, bool last, ImportLog
     log.sensor(out);
   }
   if (!last) return;  // frame number, image and truth are at the last repetition
-  ImportedImage image;
-  image.label = kImageLabel;
-  image.path = frame.file.path;
-  image.stamp = stamp;
-  image.camera = calibration.camera;
-  image.T_ego_camera = T_ego_camera;
-  log.image(image, frame.file.number);
+  if (!frame.image.empty()) {
+    ImportedImage image;
+    image.label = kImageLabel;
+    image.path = frame.image;
+    image.stamp = stamp;
+    image.camera = calibration.camera;
+    image.T_ego_camera = T_ego_camera;
+    log.image(image, frame.file.number);
+  }
   for (const KittiLabel& label : frame.labels)
     log.truth(stamp, truthOf(label, calibration, frame.T_world_ego * T_ego_velo, frame.cloud));
 }
 
-void ImagesImporter::run(ImportLog& log) {
-  const auto files = frameFiles(path("image_2"), {".png", ".jpg", ".jpeg"});
+void KittiObjectImporter::run(ImportLog& log) {
+  const auto files = frameFiles(path(frames_), frames_.endings);
+  if (fs::exists(path(kLabels))) log.expectTruth();
   std::int64_t place = 0;  // frame numbers of single frames are not times
   for (const FrameFile& file : files) {
     if (!log.options().wants(file.number)) continue;
@@ -153,6 +167,11 @@ void ImagesImporter::run(ImportLog& log) {
 
 }  // namespace
 
-std::unique_ptr<Importer> makeImagesImporter() { return std::make_unique<ImagesImporter>(); }
+std::unique_ptr<Importer> makeImagesImporter() {
+  return std::make_unique<KittiObjectImporter>(kImages, kScans);
+}
+std::unique_ptr<Importer> makeKittiObjectImporter() {
+  return std::make_unique<KittiObjectImporter>(kScans, kImages);
+}
 
 }  // namespace perception
