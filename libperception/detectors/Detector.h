@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "libperception/config/Config.h"
+#include "libperception/detectors/DpmOptions.h"
 #include "libperception/detectors/GroundGate.h"
 #include "libperception/detectors/HeadingHead.h"
-#include "libperception/detectors/dpm/DpmEngine.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -91,11 +91,12 @@ class Detector {
 /// A row per back end: to add one, write its maker and its row.
 struct DetectorBackend {
   const char* name;
-  std::unique_ptr<Detector> (*make)(const DetectorSetup& setup);
+  std::unique_ptr<Detector> (*make)(const DetectorSetup& setup);  ///< null: not in this build
 };
 const std::vector<DetectorBackend>& detectorBackends();
 
-/// Throws DataError for models that are missing or cannot be used. Empty for `file`, which takes
+/// Throws DataError for models that are missing or cannot be used, ConfigError for a back end that
+/// is not in this build. Empty for `file`, which takes
 /// the boxes that a log already holds.
 std::unique_ptr<Detector> makeDetector(const DetectorSetup& setup);
 

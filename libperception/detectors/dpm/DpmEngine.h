@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "libperception/detectors/DpmOptions.h"
 #include "libperception/detectors/GroundGate.h"
 #include "libperception/detectors/dpm/DpmModel.h"
 #include "libperception/measurement/SensorFrame.h"
@@ -11,15 +12,6 @@
 namespace perception {
 
 struct DpmBank;
-
-/// How densely and where an engine searches.
-struct DpmOptions {
-  int levels_per_octave = 5;  ///< method.md 8.8; [girshick2012]: 10
-  double enlarge = 1;         ///< [1, 4] size of the first image searched (assumed)
-  double outside = 0.4;       ///< share of an object's sides beyond the image (assumed)
-  int window = 4;             ///< [cells of a part] how far a part may move [girshick2012]
-  double overlap = 0.5;       ///< of the weaker box: more is the same object (method.md 8.8)
-};
 
 /// What an engine searches for with one model.
 struct DpmTarget {
