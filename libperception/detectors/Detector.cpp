@@ -12,6 +12,13 @@ namespace {
 
 constexpr const char* kModelPrefix = "model.";
 
+#ifdef PERCEPTION_DPM
+constexpr auto kMakeDpm = &makeDpmDetector;
+#else
+constexpr std::unique_ptr<Detector> (*kMakeDpm)(const DetectorSetup&) = nullptr;
+#endif
+constexpr const char* kNotBuilt = " is not in this build (cmake -DPERCEPTION_DPM=ON)";
+
 std::unique_ptr<Detector> makeNothing(const DetectorSetup&) { return nullptr; }
 
 double valueOf(const std::vector<std::pair<std::string, double>>& table, const std::string& name,
@@ -103,6 +110,8 @@ DetectorSetup DetectorSetup::read(Config& config) {
   setup.onnx = config.read<OnnxParams>("onnx");
   setup.hog = config.read<HogParams>("hog");
   const std::string name = setup.backendName();
+  if (detectorBackends()[static_cast<std::size_t>(setup.backend)].make == nullptr)
+    config.fault("detector", "backend", name + kNotBuilt);
   if (setup.models.empty() && name != "hog" && name != "file")
     config.fault("detector", "backend", name + " needs a [model.NAME] section");
   for (const auto& [key, model] : setup.models) {
@@ -121,7 +130,7 @@ std::string DetectorSetup::pathOf(const DetectorModelParams& model) const {
 }
 
 const std::vector<DetectorBackend>& detectorBackends() {
-  static const std::vector<DetectorBackend> rows{{"dpm", &makeDpmDetector},
+  static const std::vector<DetectorBackend> rows{{"dpm", kMakeDpm},
                                                  {"cvdpm", &makeCvDpmDetector},
                                                  {"onnx", &makeOnnxDetector},
                                                  {"hog", &makeHogDetector},
@@ -130,7 +139,9 @@ const std::vector<DetectorBackend>& detectorBackends() {
 }
 
 std::unique_ptr<Detector> makeDetector(const DetectorSetup& setup) {
-  return detectorBackends()[static_cast<std::size_t>(setup.backend)].make(setup);
+  const auto make = detectorBackends()[static_cast<std::size_t>(setup.backend)].make;
+  if (make == nullptr) throw ConfigError(setup.backendName() + kNotBuilt);
+  return make(setup);
 }
 
 std::size_t calibrateScores(const DetectorSetup& setup, std::vector<ObjectDetection>& objects) {

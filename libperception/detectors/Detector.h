@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "libperception/config/Config.h"
+#include "libperception/detectors/DpmOptions.h"
 #include "libperception/detectors/GroundGate.h"
 #include "libperception/detectors/HeadingHead.h"
-#include "libperception/detectors/dpm/DpmEngine.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -91,12 +91,12 @@ class Detector {
 /// A table of back ends; a new one needs a factory function and a row.
 struct DetectorBackend {
   const char* name;
-  std::unique_ptr<Detector> (*make)(const DetectorSetup& setup);
+  std::unique_ptr<Detector> (*make)(const DetectorSetup& setup);  ///< null: not in this build
 };
 const std::vector<DetectorBackend>& detectorBackends();
 
-/// Throws DataError for models that are missing or unusable. Null for `file`, which uses the boxes
-/// in the log.
+/// Throws DataError for models that are missing or unusable, ConfigError for a back end that is not
+/// in this build. Null for `file`, which uses the boxes in the log.
 std::unique_ptr<Detector> makeDetector(const DetectorSetup& setup);
 
 std::unique_ptr<Detector> makeDpmDetector(const DetectorSetup& setup);

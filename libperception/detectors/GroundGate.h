@@ -1,7 +1,6 @@
 #pragma once
 #include <optional>
 
-#include "libperception/detectors/dpm/HogFeatures.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {

@@ -13,8 +13,8 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
+#include "libperception/detectors/HogFeatures.h"
 #include "libperception/detectors/VisionSimd.h"
-#include "libperception/detectors/dpm/HogFeatures.h"
 
 namespace perception {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "libperception/detectors/dpm/DpmEngine.h"
+#include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
 
@@ -11,12 +11,8 @@ double areaOf(const ObjectDetection::ImageBox& box);
 /// Intersection over union, [0, 1].
 double overlapOf(const ObjectDetection::ImageBox& a, const ObjectDetection::ImageBox& b);
 
-/// Non-maximum suppression, best first: removes weaker detections of a target with more than
-/// `overlap` of their area inside a better one. Headings become means over the components that fit
-/// the kept box, finer than the components' spacing.
-std::vector<DpmDetection> suppressed(std::vector<DpmDetection> places, double overlap);
-
-/// The same for any detector's boxes, within each label.
+/// Non-maximum suppression, best first, within each label: removes weaker boxes that overlap a
+/// better one by more than `overlap` (intersection over union).
 std::vector<ObjectDetection> suppressed(std::vector<ObjectDetection> objects, double overlap);
 
 }  // namespace perception

@@ -64,6 +64,13 @@ std::string faultOfFloors(const SourceFile& file, const Include& include) {
   return "";
 }
 
+// PERCEPTION_DPM=OFF leaves the engine of part models out: nothing else may need it.
+std::string faultOfDpm(const SourceFile& file, const Include& include) {
+  const std::string folder = "libperception/detectors/dpm/";
+  if (!beginsWith(include.path, folder) || beginsWith(file.path, folder)) return "";
+  return "only detectors/dpm may include detectors/dpm";
+}
+
 // Why the include breaks a rule, or nothing.
 std::string faultOf(const SourceFile& file, const Include& include) {
   const std::string module = moduleOf(file.path);
@@ -76,6 +83,7 @@ std::string faultOf(const SourceFile& file, const Include& include) {
     }
     if (other != module && !rule->may_include.count(other))
       return module + " must not include " + other;
+    if (other == "detectors") return faultOfDpm(file, include);
     return module == "filter" && other == module ? faultOfFloors(file, include) : "";
   }
   if (beginsWith(include.path, "mrpt/")) {
@@ -160,6 +168,9 @@ TEST(Layers, TheCheckerFindsWhatIsForbidden) {
   EXPECT_EQ(
       faultOfLine("libperception/filter/newcomer/A.h", "#include \"libperception/filter/Step.h\""),
       "the folder is no floor of the filter");
+  EXPECT_EQ(faultOfLine("libperception/detectors/A.h",
+                        "#include \"libperception/detectors/dpm/DpmEngine.h\""),
+            "only detectors/dpm may include detectors/dpm");
   EXPECT_EQ(faultOfLine("libperception/scene/A.cpp", "#include \"Scene.h\""),
             "is no path from the root of the repository");
   EXPECT_EQ(faultOfLine("libperception/app/A.cpp", "#include <mrpt/obs.h>"),
@@ -179,6 +190,9 @@ TEST(Layers, TheCheckerFindsWhatIsForbidden) {
 TEST(Layers, TheCheckerAllowsWhatIsAllowed) {
   EXPECT_EQ(faultOfLine("libperception/filter/update/A.h",
                         "#include \"libperception/filter/state/Track.h\""),
+            "");
+  EXPECT_EQ(faultOfLine("libperception/detectors/dpm/A.h",
+                        "#include \"libperception/detectors/dpm/DpmEngine.h\""),
             "");
   EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "#include \"libperception/core/Angle.h\""),
             "");

@@ -10,11 +10,12 @@
 #include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
 #include "libperception/detectors/DetectionQuality.h"
+#include "libperception/detectors/HogFeatures.h"
 #include "libperception/detectors/ImageDetector.h"
 #include "libperception/detectors/OnnxOutput.h"
 #include "libperception/detectors/Suppression.h"
 #include "libperception/detectors/VisionSimd.h"
-#include "libperception/detectors/dpm/HogFeatures.h"
+#include "libperception/detectors/dpm/DpmModel.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {
@@ -249,6 +250,7 @@ void paintBoard(Raster& r, int x0, int y0, int width, int height) {
             ((x * 5 / width + (y * 4 / height) * (y * 4 / height)) % 2) ? 230 : 20);
 }
 
+#ifdef PERCEPTION_DPM
 TEST(ImageDetector, AnObjectOnTheSeamOfAPanoramaIsOne) {
   constexpr int kWidth = 1024, kBoardWidth = 64, kBoardHeight = 48;
   // The template is the board as the tile ahead shows it.
@@ -301,6 +303,14 @@ TEST(ImageDetector, AnObjectOnTheSeamOfAPanoramaIsOne) {
   EXPECT_NEAR(here.y2, there.y2, 1);
   EXPECT_GT(here.x2, kWidth);
 }
+#else
+TEST(Detector, ABackEndThatIsNotBuiltIsAConfigurationFault) {
+  EXPECT_THROW(makeDetector(DetectorSetup()), ConfigError);  // dpm
+  Config config = Config::fromText("[detector]\nbackend = dpm\n[model.board]\nfile = board.txt\n");
+  DetectorSetup::read(config);
+  EXPECT_THROW(config.finish(), ConfigError);
+}
+#endif
 
 // A dark body with a bright front: rotating it moves the front from one side to the other.
 HeadingExample vehicle(double heading, unsigned seed) {

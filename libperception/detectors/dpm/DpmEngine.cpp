@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "libperception/detectors/Suppression.h"
 #include "libperception/detectors/dpm/DpmBank.h"
 #include "libperception/detectors/dpm/DpmPyramid.h"
+#include "libperception/detectors/dpm/DpmSuppression.h"
 
 namespace perception {
 namespace {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "libperception/detectors/DpmOptions.h"
 #include "libperception/detectors/GroundGate.h"
 #include "libperception/detectors/dpm/DpmModel.h"
 #include "libperception/measurement/SensorFrame.h"
@@ -11,15 +12,6 @@
 namespace perception {
 
 struct DpmBank;
-
-/// Search parameters of an engine.
-struct DpmOptions {
-  int levels_per_octave = 5;  ///< method.md 8.8; [girshick2012]: 10
-  double enlarge = 1;         ///< [1, 4] scale of the first pyramid level (assumed)
-  double outside = 0.4;       ///< share of an object's sides beyond the image (assumed)
-  int window = 4;             ///< [cells of a part] largest displacement of a part [girshick2012]
-  double overlap = 0.5;  ///< share of the weaker box that makes it the same object (method.md 8.8)
-};
 
 /// One model with its threshold.
 struct DpmTarget {

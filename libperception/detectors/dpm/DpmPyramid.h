@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "libperception/detectors/HogFeatures.h"
 #include "libperception/detectors/dpm/DpmBank.h"
-#include "libperception/detectors/dpm/HogFeatures.h"
 
 namespace perception {
 

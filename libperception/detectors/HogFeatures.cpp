@@ -1,4 +1,4 @@
-#include "libperception/detectors/dpm/HogFeatures.h"
+#include "libperception/detectors/HogFeatures.h"
 
 #include <algorithm>
 #include <cmath>
