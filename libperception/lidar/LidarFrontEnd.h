@@ -83,8 +83,6 @@ class LidarFrontEnd final : public FrontEnd {
   }
   /// A frame without a point cloud gives empty detections.
   LidarDetections detect(const SensorFrame& frame) const;
-  /// Obstacle returns [m], ego frame.
-  std::vector<Vector3> obstaclePoints(const SensorFrame& frame) const;
 
   const LidarParams& params() const { return params_; }
   static std::vector<std::string> labels(const ClusterParams& clusters);

@@ -21,9 +21,6 @@ class OutputFolder {
   const std::string& path() const { return path_; }
   /// Where to write the file that will be `name` (relative; may hold folders, which are made).
   std::string pathFor(const std::string& name);
-  /// Throws OutputError (kIoError) with path and free bytes when the disk has fewer than `bytes`
-  /// [bytes] left.
-  void requireSpace(std::uint64_t bytes) const;
   /// Hands all files to the disk and renames them into place, `last` as the last; an earlier `last`
   /// is removed first, so that it never stands beside files of two runs. Throws OutputError
   /// (kIoError) also for a file that was never written.

@@ -1,4 +1,7 @@
+#include <algorithm>
+
 #include "libperception/detectors/Detector.h"
+#include "libperception/detectors/dpm/DpmEngine.h"
 
 namespace perception {
 namespace {
