@@ -29,10 +29,4 @@ double chi2Quantile(double probability, int degrees_of_freedom) {
   return 0.5 * (low + high);
 }
 
-double chi2LogPdf(double x, int degrees_of_freedom) {
-  if (x <= 0) return kMinusInfinity;
-  const double half = 0.5 * degrees_of_freedom;
-  return (half - 1) * std::log(x) - 0.5 * x - half * std::log(2.0) - std::lgamma(half);
-}
-
 }  // namespace perception

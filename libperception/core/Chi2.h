@@ -9,7 +9,4 @@ double chi2Cdf(double x, int degrees_of_freedom);
 /// error below 1e-10.
 double chi2Quantile(double probability, int degrees_of_freedom);
 
-/// Log of the chi-square density at x > 0.
-double chi2LogPdf(double x, int degrees_of_freedom);
-
 }  // namespace perception

@@ -110,15 +110,6 @@ std::string line(const TruthObject& o) {
 
 }  // namespace
 
-bool GroundTruth::hasLidar() const {
-  for (const Instant& instant : instants) {
-    for (const TruthObject& object : instant.objects) {
-      if (object.lidar_points >= 0) return true;
-    }
-  }
-  return false;
-}
-
 GroundTruth readGroundTruth(const std::string& path) {
   const CsvTable csv = CsvTable::fromFile(path);
   // Reports a missing column even when the file has no row.

@@ -35,8 +35,6 @@ struct GroundTruth {
     std::vector<TruthObject> objects;
   };
   std::vector<Instant> instants;  ///< in order of time
-
-  bool hasLidar() const;  ///< some object carries a count of lidar points
 };
 
 /// Reads FILE.truth.csv. Throws DataError with file, line and column.

@@ -82,17 +82,6 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   return found;
 }
 
-std::vector<Vector3> LidarFrontEnd::obstaclePoints(const SensorFrame& frame) const {
-  const LidarDetections found = detect(frame);
-  std::vector<Vector3> points;
-  points.reserve(found.obstacles.size());
-  for (const std::uint32_t i : found.obstacles)
-    points.emplace_back(static_cast<double>(found.points.x[i]),
-                        static_cast<double>(found.points.y[i]),
-                        static_cast<double>(found.points.z[i]));
-  return points;
-}
-
 void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const {
   const LidarDetections found = detect(frame);
   scan.dropped_points = found.points.dropped + found.points.capped;

@@ -82,8 +82,6 @@ class LidarFrontEnd final : public FrontEnd {
   }
   /// Empty for a frame without a point cloud.
   LidarDetections detect(const SensorFrame& frame) const;
-  /// Obstacle returns [m], ego frame.
-  std::vector<Vector3> obstaclePoints(const SensorFrame& frame) const;
 
   const LidarParams& params() const { return params_; }
   static std::vector<std::string> labels(const ClusterParams& clusters);

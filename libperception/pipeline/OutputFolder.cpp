@@ -124,12 +124,6 @@ std::string OutputFolder::pathFor(const std::string& name) {
   return path;
 }
 
-void OutputFolder::requireSpace(std::uint64_t bytes) const {
-  std::error_code error;
-  const auto space = fs::space(path_, error);
-  if (!error && space.available < bytes) failWriting(path_, ENOSPC);
-}
-
 void OutputFolder::failWriting(const std::string& path, int reason) const {
   std::error_code error;
   const auto space = fs::space(path_, error);

@@ -21,9 +21,6 @@ class OutputFolder {
   const std::string& path() const { return path_; }
   /// Temporary path of the file that commit() renames to `name` (relative; folders are created).
   std::string pathFor(const std::string& name);
-  /// Throws OutputError (kIoError) with path and free space when less than `bytes` [bytes] are free
-  /// on the disk.
-  void requireSpace(std::uint64_t bytes) const;
   /// Syncs all files to disk and renames them into place, `last` as the last one; the `last` of an
   /// earlier run is removed first, so that it never exists beside files of two runs. Throws
   /// OutputError (kIoError), also for a file that was not written.

@@ -38,7 +38,6 @@ using IntsOf = typename LanesOf<Float>::Int;
 
 PERCEPTION_LANES Float8 eight(float v) { return Float8{v, v, v, v, v, v, v, v}; }
 PERCEPTION_LANES Int8 eight(std::int32_t v) { return Int8{v, v, v, v, v, v, v, v}; }
-PERCEPTION_LANES Int8 firstEight() { return Int8{0, 1, 2, 3, 4, 5, 6, 7}; }
 
 /// The same number in all lanes.
 template <class Float>

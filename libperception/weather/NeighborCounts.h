@@ -18,8 +18,6 @@ class NeighborCounts {
   std::uint32_t beyond() const { return bits_ >> 2 * kBits & (kMost - 1); }  ///< pass behind
   std::uint32_t filled() const { return bits_ >> 3 * kBits & (kMost - 1); }  ///< with a return
   std::uint32_t around() const { return bits_ >> 4 * kBits; }  ///< of the eight nearest, `tight`
-  /// beyond() and filled() as one number below kMost^2.
-  std::uint32_t beyondAndFilled() const { return bits_ >> 2 * kBits & (kMost * kMost - 1); }
 
  private:
   std::uint32_t bits_ = 0;

@@ -49,7 +49,6 @@ TEST_F(GroundTruthFile, GroupsRowsByInstantInOrderOfTime) {
   EXPECT_TRUE(std::isnan(truth.instants[0].objects[1].yaw));
   EXPECT_EQ(truth.instants[0].objects[1].lidar_points, -1);
   EXPECT_TRUE(std::isnan(truth.instants[1].objects[0].vx));
-  EXPECT_TRUE(truth.hasLidar());
 }
 
 TEST_F(GroundTruthFile, OnlyIgnoredRowsMayLackTheirPlace) {

@@ -1,4 +1,8 @@
+#include <algorithm>
+
 #include "libperception/detectors/Detector.h"
+#include "libperception/detectors/dpm/DpmBank.h"
+#include "libperception/detectors/dpm/DpmEngine.h"
 
 namespace perception {
 namespace {
