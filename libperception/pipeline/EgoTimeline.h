@@ -15,11 +15,12 @@ class EgoTimeline {
       : params_(params), events_(events), pose_(params) {}
 
   void add(const mrpt::obs::CObservation& observation) { pose_.add(observation); }
-  /// True once after the world frame has changed, so that all tracks must be deleted.
+  /// True at the first call after a change of the world frame, if a frame was used before: the
+  /// tracks are in the former world frame and must be deleted.
   bool changedFrame(Stamp stamp);
-  /// True when there was no frame for longer than blind_gap and no pose: the vehicle is then only
-  /// assumed to stand still, so that new measurements could be associated with tracks at wrong
-  /// places.
+  /// True when the log has no pose so far and the last frame was used more than blind_gap ago. The
+  /// tracks must then be deleted: without poses the vehicle is assumed to stand still, and if it
+  /// moved in the gap, measurements would be associated with wrong tracks.
   bool isBlindGap(Stamp stamp);
   EgoState at(Stamp stamp);
   /// A frame of this stamp was used.

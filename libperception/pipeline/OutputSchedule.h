@@ -24,10 +24,12 @@ class OutputSchedule {
   /// Index of the output sensor: the one named in [run] output_sensor, else the first one in use of
   /// the modality with the largest output_rank.
   std::size_t sensor() const { return sensor_; }
-  /// Whether a scene is due at the stamp of frames just processed; `of_sensor`: one of them is of
-  /// the output sensor.
+  /// Called once the frames of `stamp` are processed. Without a fixed rate: whether a scene is due
+  /// at `stamp`, which is so when one of these frames is of the output sensor (`of_sensor`). With a
+  /// fixed rate: always false, see takeBefore(); the first call, also after restart(), starts the
+  /// rate at `stamp`.
   bool isOutput(Stamp stamp, bool of_sensor);
-  /// The next stamp of the fixed rate before this one; each is returned once.
+  /// The next instant of the fixed rate if it is before `stamp`; call until empty.
   std::optional<Stamp> takeBefore(Stamp stamp);
 
   void push(const EgoState& ego, std::int64_t frame) { waiting_.push_back({ego, frame}); }

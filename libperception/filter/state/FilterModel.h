@@ -40,10 +40,12 @@ struct FilterParams {
   /// of a partly occluded car may be wrongly taken as complete; 0.5 for boxes of detectors whose
   /// labels are not informative.
   double side_exponent = 0;
-  /// Standard deviation of the tail of the speed prior beyond a class's max_speed, as a share of
-  /// max_speed; 0: no limit (assumed).
+  /// The likelihood of a speed above the max_speed of a class falls as a Gaussian; this is its
+  /// standard deviation as a share of max_speed (method.md 5.5; assumed). 0: every speed is equally
+  /// likely.
   double speed_slack = 0.2;
-  /// [m/s] of newborn moving objects, at most half of the class's max_speed (method.md 3.4).
+  /// [m/s] standard deviation of the initial velocity of moving objects, limited to half of the
+  /// max_speed of the class (method.md 3.4).
   double start_speed_sigma = 5;
   double orient_min_speed =
       1;  ///< [m/s] speed from which the velocity initializes the heading (method.md 3.4) ...
@@ -59,16 +61,18 @@ struct FilterParams {
   /// [m] a track is occluded only if it lies farther than this behind the range of the occlusion
   /// map (method.md 5.8; assumed).
   double occlusion_tolerance = 1.0;
-  /// [m^2] smallest footprint that tracks inside it are merged with (method.md 5.9); 0: no merging.
+  /// [m^2] least footprint of a track that absorbs the tracks whose centers lie inside it; 0: no
+  /// merging (method.md 5.9).
   double merge_area = 2.0;
   HeadingMode heading = HeadingMode::kSplit;  ///< kWide: sensor set C/H (method.md 7)
   int ranked_children = 4;                    ///< most assignments per hypothesis (method.md 6)
   /// Hypotheses whose log weight is lower than the best one's by more are dropped (14: a ratio of
   /// 1e-6; method.md 6).
   double ranked_span = 14;
-  /// Class probability from which the class is decided, so that its filter alone is updated; the
-  /// bank is restored when the probability falls below it or a measurement exceeds that filter's
-  /// .99 chi-square gate [radecki2016]. 0: never.
+  /// Class probability from which the class of a track is decided: from then on only the filter of
+  /// that class is updated. The filters of the other classes are restored from it when the class is
+  /// no longer the likeliest, its probability falls below this value or a measurement lies outside
+  /// the .99 chi-square gate of its filter [radecki2016]. 0: never.
   double decide_class = 0;
   /// Scores associations also by the height and lowest point of a detection, which are not axes of
   /// z: density given the track against those given birth and clutter (assignment prior of

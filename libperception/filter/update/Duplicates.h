@@ -7,22 +7,24 @@
 
 namespace perception {
 
-/// Pairs of a scan's distinct tracks that are merged wherever a hypothesis holds both: the center
-/// of one lies inside the footprint of the other, which solid objects exclude ([cornell2007]
-/// requires an overlap of half of both footprints; fragments of a vehicle are smaller). Only
-/// footprints larger than `merge_area` count, so that people in a crowd are not merged. The older
-/// track keeps its id, and takes the state of the younger one if only that one was detected
-/// recently. `merge_area` = 0: no merging. Computed once for all hypotheses.
+/// Pairs of tracks of a scan that describe the same object: the center of one lies inside the
+/// footprint of the other, which is impossible for two solid objects ([cornell2007] requires an
+/// overlap of half of both footprints; fragments of a vehicle are smaller). A hypothesis that holds
+/// both tracks of a pair keeps one. Only footprints of at least `merge_area` of tracks whose class
+/// is sure count, so that people in a crowd are not merged. The id of the older track is kept. Its
+/// state is kept, too, unless it has not been detected recently and the younger track is detected
+/// in this scan: then the state is that of the younger track (method.md 5.9). `merge_area` = 0: no
+/// merging. Computed once for all hypotheses.
 class DuplicateTable {
  public:
   DuplicateTable() = default;
   /// `tracks` by cell, i.e. index; null entries are ignored.
   DuplicateTable(const FilterModel& model, Stamp now, const TrackTable& tracks);
 
-  /// The cells of one hypothesis without duplicates, in the same order. Cells beyond the table
-  /// given to the constructor refer to the replacements.
+  /// The cells of a hypothesis after merging, in the same order. A cell number of at least the size
+  /// of the table given to the constructor refers to a track of appendReplacements().
   std::vector<std::uint32_t> merged(std::vector<std::uint32_t> cells) const;
-  /// Appends the tracks of these cells.
+  /// Appends the merged tracks that replace older ones; merged() refers to them by their cell.
   void appendReplacements(TrackTable& tracks) const;
 
  private:

@@ -25,8 +25,8 @@ class UpdateCache {
 
   /// Requests the tracks of the next child: hypothesis `h` under an association.
   void request(std::size_t h, const Association& association);
-  /// Computes all requested tracks, moving from ScanTracks::predicted; returns their number.
-  /// `scan_index` is hashed into the histories.
+  /// Computes the requested tracks, once after the last request; returns their number. Consumes
+  /// ScanTracks::predicted: its tracks are moved from. `scan_index` is hashed into the histories.
   std::size_t compute(std::uint64_t scan_index);
   /// The hypothesis of child `c`, in order of requests. Call once per child.
   HypothesisHandle hypothesis(std::size_t c);
@@ -37,7 +37,8 @@ class UpdateCache {
   Cell missCell(std::size_t track) const { return first_[track]; }
   Cell newCell(std::size_t k) const { return first_.back() + static_cast<Cell>(k); }
   bool keep(const Track& t) const;
-  /// The same for a track with deferred prediction, by Track::reachable.
+  /// keep() for a track whose prediction to this scan is deferred: decided by the bounds of
+  /// Track::reachable.
   bool keepDeferred(const Track& t) const;
   /// `before`: the track before the scan; null for a newborn.
   void store(Cell cell, Track&& track, const TrackHandle& before);
@@ -53,7 +54,7 @@ class UpdateCache {
   std::vector<std::vector<Cell>> children_;  ///< cells, in the order of the hypothesis's tracks
   TrackTable computed_;                      ///< null when not wanted or dropped
   DuplicateTable duplicates_;
-  std::shared_ptr<const TrackTable> all_;  ///< computed_ and what the duplicates became
+  std::shared_ptr<const TrackTable> all_;  ///< computed_ and the replacements of duplicates_
   std::vector<std::uint64_t> keys_;        ///< of all_
 };
 
