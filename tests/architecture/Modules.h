@@ -58,7 +58,7 @@ inline const std::vector<Module>& modules() {
        true,
        5},
       {"pipeline",
-       "runs one log: reader, weather, front ends, filter, scene, grid",
+       "runs one log: reader, weather, front ends, filter, scene",
        {"scene", "filter", "sensors", "grid", "weather", "lidar", "radar", "boxes3d", "vision",
         "measurement", "config", "core"},
        true},
