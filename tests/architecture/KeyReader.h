@@ -62,7 +62,7 @@ inline std::vector<VisitedKey> keysOf(const SourceFile& file) {
   std::vector<VisitedKey> keys;
   for (std::sregex_iterator i(code.begin(), code.end(), visit), end; i != end; ++i) {
     const auto at = static_cast<std::size_t>(i->position());
-    // A helper stands in front of the visit that it is a part of.
+    // A function that a visit calls stands in front of it.
     const auto next = owners.upper_bound(at);
     const std::string owned_by = next != owners.begin() ? std::prev(next)->second
                                  : next != owners.end() ? next->second
