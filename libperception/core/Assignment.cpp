@@ -211,7 +211,7 @@ std::vector<int> optimalAssignment(const Eigen::MatrixXd& cost) {
       solver.addOption(static_cast<int>(c), is_wide ? cost(r, c) : cost(c, r));
     solver.endRow();
   }
-  const std::vector<int> column = solver.solve().column;
+  std::vector<int> column = solver.solve().column;
   if (is_wide) return column;
   std::vector<int> of_row(static_cast<std::size_t>(cost.rows()), -1);
   for (std::size_t i = 0; i < column.size(); ++i) of_row[at(column[i])] = static_cast<int>(i);

@@ -28,7 +28,7 @@ float sumOf(Four v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 /// zero.
 struct PointFours {
   explicit PointFours(const std::vector<Vector2>& points) {
-    const Vector2 origin = points.front();
+    const Vector2& origin = points.front();
     for (std::size_t i = 0; i < points.size(); i += 4) {
       Four px{}, py{}, w{};
       for (std::size_t k = 0; k < 4; ++k) {

@@ -97,7 +97,7 @@ std::vector<Search> searchesIn(const std::vector<std::uint32_t>& counts,
 
 GroundCandidates groundCandidates(const EgoPoints& points, const CandidateRules& rules) {
   const int rings = static_cast<int>(std::ceil(rules.range_max / rules.ring));
-  const auto cells = static_cast<std::size_t>(rings * rules.sectors);
+  const auto cells = static_cast<std::size_t>(rings) * static_cast<std::size_t>(rules.sectors);
   const PolarCells polar{static_cast<float>(rules.plane.a),
                          static_cast<float>(rules.plane.b),
                          static_cast<float>(rules.plane.c),

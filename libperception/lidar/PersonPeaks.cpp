@@ -157,7 +157,7 @@ std::vector<PersonPeak> findPersons(const std::vector<float>& x, const std::vect
   const double least = std::max(params.threshold * params.min_points * (1 - 1e-3), 1e-6);
   std::vector<std::uint32_t> maxima = response.maxima(static_cast<float>(least));
   dropCrowded(response, params, maxima);
-  const auto reach = static_cast<std::size_t>(params.radius / params.cell + 0.5);
+  const auto reach = static_cast<std::size_t>(std::lround(params.radius / params.cell));
   const Neighborhoods near(response, maxima, std::min(reach, response.margin() - 1));
 
   std::vector<PersonPeak> candidates;
