@@ -5,12 +5,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 
 #include "libperception/app/StudyFolder.h"
 #include "libperception/boxes3d/PositionFrontEnd.h"
 #include "libperception/calibration/BoxEvidenceStudy.h"
+#include "libperception/calibration/ClusterStudy.h"
 #include "libperception/calibration/DetectorStudy.h"
 #include "libperception/calibration/TemperingStudy.h"
 #include "libperception/core/GroundTruth.h"
@@ -34,6 +36,7 @@ struct CalibrateApp::Task {
   const char* description;
   StudyReport (CalibrateApp::*run)();
   bool search = false;  ///< repeats tracking; has options of the truth sector
+  bool learns = false;  ///< leaves a model file
 };
 
 const CalibrateApp::Task CalibrateApp::kTasks[] = {
@@ -43,6 +46,8 @@ const CalibrateApp::Task CalibrateApp::kTasks[] = {
      &CalibrateApp::boxes},
     {"detector", "detection, labels, clutter and noise of detectors, counted",
      &CalibrateApp::detector},
+    {"lidar-classes", "what clusters of lidar returns look like, learned",
+     &CalibrateApp::lidarClasses, false, true},
 };
 
 std::string CalibrateApp::description() const {
@@ -70,6 +75,14 @@ void CalibrateApp::declare(CLI::App& cli) {
       sub->add_option("--fov-deg", truth_fov, "Whole angle ahead in which truth counts [deg]")
           ->capture_default_str()
           ->check(CLI::Range(0.1, 360.0));
+    }
+    if (t.learns) {
+      sub->add_option(
+             "--complete-fov-deg", complete_fov,
+             "Whole angle ahead in which the truth is complete [deg]: of all logs, or one a log")
+          ->check(CLI::Range(1.0, 360.0));
+      sub->add_option("--license", license, "Of the model, for its file")->capture_default_str();
+      sub->add_option("--date", date, "Of the model, for its file");
     }
     sub->callback([this, name = std::string(t.name)] { task = name; });
   }
@@ -150,6 +163,34 @@ StudyReport CalibrateApp::detector() {
     countDetections(recorded, truthBeside(inputs[i]), i, labels, counts);
   }
   return detectorStudy(input, counts);
+}
+
+StudyReport CalibrateApp::lidarClasses() {
+  registerPerceptionClasses();
+  ClusterSamples samples;
+  std::vector<TrainingLog> logs;
+  Provenance provenance{"1", date, license, {}, true};
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    Config config = loadConfig();
+    const PipelineSetup setup = PipelineSetup::read(config);
+    config.finish();
+    const auto sensor = std::find_if(setup.sensors.begin(), setup.sensors.end(), [](auto& s) {
+      return s.active && dynamic_cast<const LidarFrontEnd*>(s.front_end.get()) != nullptr;
+    });
+    if (sensor == setup.sensors.end())
+      throw DataError(config_file + ": no lidar is in use: check [run] sensors");
+    const PointLabels labels(inputs[i]);
+    const GroundTruth truth = labels.any() ? GroundTruth{} : truthBeside(inputs[i]);
+    SampleRules rules;
+    rules.fov = radians(complete_fov[std::min(i, complete_fov.size() - 1)]);
+    ClusterSampler sampler(sensor->label, dynamic_cast<const LidarFrontEnd&>(*sensor->front_end),
+                           truth, labels, i, rules, samples);
+    const LogPass pass = passLog(inputs[i], setup, seconds, sampler);
+    logs.push_back({std::filesystem::path(inputs[i]).stem().string(), pass.simulated});
+    provenance.data.push_back(logs.back().name + (pass.simulated ? " (simulated)" : ""));
+    provenance.simulated_only = provenance.simulated_only && pass.simulated;
+  }
+  return clusterStudy(samples, logs, provenance, seed);
 }
 
 }  // namespace perception

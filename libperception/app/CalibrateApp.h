@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "libperception/app/App.h"
 #include "libperception/evaluation/StudyReport.h"
@@ -18,6 +19,9 @@ class CalibrateApp : public App {
   double seconds = 0;                        ///< of every log; 0 = all
   double truth_range = 30, truth_fov = 360;  ///< tempering: sector in which truth counts [m, deg]
 
+  std::vector<double> complete_fov{360};  ///< lidar-classes: of all logs or one a log [deg]
+  std::string license = "that of the logs", date = "not given";  ///< lidar-classes: of the model
+
   StudyReport out_report;
 
   std::string name() const override { return "perception-calibrate"; }
@@ -32,6 +36,7 @@ class CalibrateApp : public App {
   StudyReport tempering();
   StudyReport boxes();
   StudyReport detector();
+  StudyReport lidarClasses();
 };
 
 }  // namespace perception

@@ -24,12 +24,12 @@ struct PositionParams {
   double range_share = 0;           ///< [-] share of the range added to sigma (method.md 8.9)
   double clutter_sigma_growth = 0;  ///< [-] growth of both at P(clutter) = 1 (method.md 8.9)
 
-  /// Score as evidence, method.md (49), fitted on recordings with truth: P(object | score, range) =
+  /// Score as evidence, method.md (52), fitted on recordings with truth: P(object | score, range) =
   /// 1 / (1 + exp(-slope (score - offset) + fade range)), [1/score], [score], [1/m]; slope 0:
   /// scores are no evidence. balance: log of (objects / clutter) in those; it converts the odds
   /// into p(score | object) / p(score | clutter).
   Table score_slope, score_offset, score_fade, score_balance;
-  double score_limit = 6;  ///< bound of that logarithm (method.md (49), assumed)
+  double score_limit = 6;  ///< bound of that logarithm (method.md (52), assumed)
   /// Classes whose boxes have the scores of clutter (method.md 8.9, assumed).
   std::vector<std::string> clutter_like{"static-other"};
   /// Weight of that logarithm for classes that the label does not name: a pedestrian whom the

@@ -4,7 +4,7 @@
 namespace perception {
 
 /// Log-odds that a detector's 3D box is an object of its label, by score and range (method.md
-/// (49)).
+/// (52)).
 struct ScoreOdds {
   double offset = 0, slope = 0, fade = 0;  ///< slope (score - offset) - fade range
 

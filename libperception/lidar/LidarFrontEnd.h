@@ -6,9 +6,11 @@
 
 #include "libperception/config/Config.h"
 #include "libperception/lidar/BoxFit.h"
+#include "libperception/lidar/ClusterClassifier.h"
 #include "libperception/lidar/Clusters.h"
 #include "libperception/lidar/EgoPoints.h"
 #include "libperception/lidar/GroundSurface.h"
+#include "libperception/lidar/LidarDetections.h"
 #include "libperception/lidar/PersonPeaks.h"
 #include "libperception/measurement/FootprintModel.h"
 #include "libperception/measurement/FrontEnd.h"
@@ -39,6 +41,15 @@ struct OutlineNoise {
   void visit(ParamVisitor& v);
 };
 
+/// [sensor.LABEL.classifier]
+struct ClassifierParams {
+  /// Model file of perception-calibrate lidar-classes, beside the INI; empty: clusters by two
+  /// spacings and the person filter, told by their size [radecki2016].
+  std::string file;
+
+  void visit(ParamVisitor& v);
+};
+
 /// All constants of the lidar front end.
 struct LidarParams {
   PointParams points;
@@ -53,29 +64,15 @@ struct LidarParams {
   LidarParams();
 };
 
-/// Detections of one scan, in the ego frame: for the tracker, for pictures and for the safety grid.
-struct LidarDetections {
-  LidarDetections(EgoPoints points_, std::vector<float> height_, GroundSurface surface_)
-      : points(std::move(points_)), height(std::move(height_)), surface(std::move(surface_)) {}
-
-  EgoPoints points;                      ///< usable returns
-  std::vector<float> height;             ///< [m] of each point above the local ground
-  std::vector<std::uint32_t> obstacles;  ///< indices into points, in the scan's order
-  std::vector<float> x, y, above;        ///< [m] position of the obstacles and height above ground
-  std::vector<float> trust;              ///< [0, 1] of each obstacle; empty: all 1
-  std::vector<Cluster> clusters;         ///< car-sized; indices into the obstacles
-  std::vector<PersonPeak> persons;   ///< outside of the clusters' hulls; indices into the obstacles
-  std::vector<std::uint8_t> ground;  ///< per return of the frame's cloud: 1 = ground
-  GroundSurface surface;             ///< the local ground
-};
-
-/// The lidar front end: obstacle returns, car-sized clusters and person peaks among them, and their
-/// outlines as measurements. Labels: car_sized, person_sized and, where clusters.accept_unstable,
-/// unstable.
+/// The lidar front end: obstacle returns, clusters among them and their outlines as measurements.
+/// With a classifier, segments in space with evidence of the class by their shape; without,
+/// car-sized clusters and person peaks with labels by their size. Labels: car_sized, person_sized
+/// and, where clusters.accept_unstable, unstable.
 class LidarFrontEnd final : public FrontEnd {
  public:
   LidarFrontEnd(const LidarParams& params, const ClassTable& classes,
-                const DetectionModel& detection_model);
+                const DetectionModel& detection_model,
+                std::shared_ptr<const ClusterClassifier> classifier = nullptr);
 
   std::vector<std::string> labelNames() const override {
     return model_->detection_model().labels();
@@ -94,11 +91,13 @@ class LidarFrontEnd final : public FrontEnd {
  private:
   LidarParams params_;
   double fov_;  ///< [rad]
+  ClassTable classes_;
+  std::shared_ptr<const ClusterClassifier> classifier_;  ///< null: told by size
   std::shared_ptr<const FootprintModel> model_;
 };
 
 /// Reads [sensor.LABEL], [sensor.LABEL.class.NAME], [sensor.LABEL.points], .surface, .obstacles,
-/// .clusters, .persons and .noise.{car_sized, person_sized, unstable}.
+/// .clusters, .persons, .classifier and .noise.{car_sized, person_sized, unstable}.
 std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& sensor_label,
                                             const ClassTable& classes);
 

@@ -166,4 +166,22 @@ Measurement measurementOf(const ScanContext& scan, const PersonPeak& peak) {
   return m;
 }
 
+Measurement measurementOf(const ScanContext& scan, const JudgedCluster& cluster, Cluster outline) {
+  constexpr double kPersonSize = 1.2;  // [m] longest side (method.md 8.2)
+  Measurement m;
+  if (sizeOf(outline.hull).longest < kPersonSize) {
+    PersonPeak peak;
+    peak.points = cluster.points;
+    peak.center = outline.centroid;
+    peak.lowest = outline.lowest, peak.highest = outline.highest;
+    m = measurementOf(scan, peak);
+  } else {
+    outline.stable = cluster.alone;
+    m = measurementOf(scan, outline);
+  }
+  const Vector2 seen = scan.T_world_sensor.translation().head<2>() - m.position;
+  m.view = EvidenceView{std::atan2(seen.y(), seen.x()), std::log(std::max(seen.norm(), 0.1))};
+  return m;
+}
+
 }  // namespace perception

@@ -29,5 +29,7 @@ double topSlope(const LidarDetections& found);
 /// Converts a detection into a measurement (z, R), world frame.
 Measurement measurementOf(const ScanContext& scan, const Cluster& cluster);
 Measurement measurementOf(const ScanContext& scan, const PersonPeak& peak);
+/// The same of a judged cluster with its described outline; `log_class` is left to the caller.
+Measurement measurementOf(const ScanContext& scan, const JudgedCluster& cluster, Cluster outline);
 
 }  // namespace perception

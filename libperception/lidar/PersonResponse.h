@@ -8,7 +8,7 @@ namespace perception {
 
 struct PersonParams;
 
-/// The kernel L(r) [1/m^2] at distance r [m], method.md (46).
+/// The kernel L(r) [1/m^2] at distance r [m], method.md (49).
 double personKernel(double r, const PersonParams& params);
 
 /// Response of the person filter on a grid: at the center of every square cell the sum of the

@@ -10,6 +10,7 @@
 #include "libperception/core/Frames.h"
 #include "libperception/core/KalmanUpdate.h"
 #include "libperception/core/Time.h"
+#include "libperception/measurement/EvidenceMemory.h"
 #include "libperception/measurement/OcclusionMap.h"
 #include "libperception/measurement/SensorFrame.h"
 
@@ -57,6 +58,7 @@ struct Measurement {
   /// per label. Empty: the model's label table and `log_score_ratio`.
   std::vector<double> log_class;
   double log_clutter = 0;
+  std::optional<EvidenceView> view;      ///< of `log_class`; empty: its errors are independent
   Vector2 position = Vector2::Zero();    ///< [m] approximate position of the object, world: for
                                          ///< gating by distance and for drawings
   double position_sigma = 1;             ///< [m] its standard deviation

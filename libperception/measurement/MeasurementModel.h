@@ -95,6 +95,11 @@ class MeasurementModel {
   /// The same for detections and missed detections: over hundreds of scans an error of P_D in the
   /// percent range would decide the class.
   virtual double detectionExponent() const { return 1; }
+  /// Factor in (0, 1] of [filter] kinematic_exponent: below 1 where the innovations tell a size
+  /// that Measurement::log_class has told already.
+  virtual double innovationShare() const { return 1; }
+  /// How the errors of Measurement::log_class repeat; null: they do not. Replaces labelExponent().
+  virtual const EvidenceMemory* evidenceMemory() const { return nullptr; }
   /// log P(label | clutter).
   virtual double logLabelClutter(int label) const = 0;
   /// Log of the expected number of false measurements per scan and unit of the axes seen at z.

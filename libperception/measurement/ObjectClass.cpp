@@ -23,6 +23,8 @@ void visitMotion(ParamVisitor& v, const MotionModel*& motion) {
 
 void ObjectClass::visit(ParamVisitor& v) {
   visitMotion(v, motion);
+  v.choiceOf("shape", shape, {"pedestrian", "cyclist", "vehicle", "thing"},
+             "looks: what a classifier of lidar clusters tells of the class");
   v.real("accel_psd", accel_psd, {0, 100}, "m^2/s^3", "white acceleration, power spectral density");
   v.reals("mode_accel_psd", mode_accel_psd, -1, {0, 100}, "m^2/s^3",
           "one per motion mode, in place of accel_psd; empty: a single model");

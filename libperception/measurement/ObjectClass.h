@@ -10,10 +10,15 @@ namespace perception {
 
 using ClassId = int;  ///< index into ClassTable
 
+/// What objects of a class look like to a sensor that tells shapes: [class.NAME] shape.
+enum class ObjectShape { kPedestrian, kCyclist, kVehicle, kThing };
+inline constexpr std::size_t kObjectShapes = 4;
+
 /// One kind of object: [class.NAME] of classes.ini. Defaults: method.md 2.2.
 struct ObjectClass {
   std::string name;                                       ///< from the section's title
   const MotionModel* motion = findMotionModel("static");  ///< never null
+  ObjectShape shape = ObjectShape::kThing;                ///< assumed of a class that tells none
   double accel_psd = 0.5;  ///< [m^2/s^3] white acceleration along the track (q_a or q_v)
   /// Interacting motion modes in place of `accel_psd` (method.md 3.6), one entry per mode; empty:
   /// one mode.

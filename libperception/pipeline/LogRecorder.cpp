@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/Progress.h"
@@ -36,31 +37,23 @@ class Recorder : public PipelineObserver {
 
 }  // namespace
 
-RecordedLog recordLog(const std::string& log, Config& config, double seconds,
-                      const ObservationEdit& edit) {
+LogPass passLog(const std::string& log, PipelineSetup setup, double seconds,
+                PipelineObserver& observer, const ObservationEdit& edit) {
   registerPerceptionClasses();
-  PipelineSetup setup = PipelineSetup::read(config);
-  config.finish();
-  setup.run.output_lag = setup.model.history = 0;  // replays are causal
-  RecordedLog recorded;
-  recorded.name = std::filesystem::path(log).stem().string();
-  recorded.model = setup.model;
-  recorded.particles = setup.particles;
-  recorded.scene = setup.scene;
   // The tracks are not used: cheapest settings.
   if (!setup.model.params.sampled_births) setup.model.proposal = Proposal::kNearest;
   setup.particles.sample_size = 1;
 
+  LogPass pass;
   EventLog events;
   RunTiming timing;
-  Pipeline pipeline(setup, events, timing);
-  Recorder recorder(recorded);
-  pipeline.observe(&recorder);
+  Pipeline pipeline(std::move(setup), events, timing);
+  pipeline.observe(&observer);
   RawlogReader reader(log);
   while (const auto observation = reader.next()) {
     stopIfAsked();
     const auto* comment = dynamic_cast<const mrpt::obs::CObservationComment*>(observation.get());
-    if (comment && comment->text.rfind("simulated log", 0) == 0) recorded.simulated = true;
+    if (comment && comment->text.rfind("simulated log", 0) == 0) pass.simulated = true;
     const auto first = pipeline.firstStamp();
     if (seconds > 0 && first && pipeline.lastStamp() - *first > seconds) break;
     if (edit) edit(*observation);
@@ -70,12 +63,29 @@ RecordedLog recordLog(const std::string& log, Config& config, double seconds,
   }
   while (pipeline.next(true)) {
   }
+  pass.first_stamp = pipeline.firstStamp();
+  return pass;
+}
+
+RecordedLog recordLog(const std::string& log, Config& config, double seconds,
+                      const ObservationEdit& edit) {
+  PipelineSetup setup = PipelineSetup::read(config);
+  config.finish();
+  setup.run.output_lag = setup.model.history = 0;  // replays are causal
+  RecordedLog recorded;
+  recorded.name = std::filesystem::path(log).stem().string();
+  recorded.model = setup.model;
+  recorded.particles = setup.particles;
+  recorded.scene = setup.scene;
+  Recorder recorder(recorded);
+  const LogPass pass = passLog(log, std::move(setup), seconds, recorder, edit);
+  recorded.simulated = pass.simulated;
   const bool any =
       std::any_of(recorded.entries.begin(), recorded.entries.end(),
                   [](const RecordedLog::Entry& e) { return e.kind == RecordedLog::Entry::kScene; });
   if (!any)
     throw DataError(log + ": no scene came of it: the log holds no frame of a sensor in use");
-  recorded.first_stamp = *pipeline.firstStamp();
+  recorded.first_stamp = *pass.first_stamp;
   return recorded;
 }
 

@@ -2,6 +2,7 @@
 #include <mrpt/obs/CObservation.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "libperception/config/Config.h"
@@ -18,6 +19,17 @@ using ObservationEdit = std::function<void(mrpt::obs::CObservation&)>;
 /// DataError when there is no scene.
 RecordedLog recordLog(const std::string& log, Config& config, double seconds,
                       const ObservationEdit& edit = {});
+
+/// What is known of a log after a pass.
+struct LogPass {
+  bool simulated = false;
+  std::optional<Stamp> first_stamp;
+};
+
+/// Passes the first `seconds` of a log (0 = all) through the front ends of a configuration, to the
+/// observer. The tracks are not used.
+LogPass passLog(const std::string& log, PipelineSetup setup, double seconds,
+                PipelineObserver& observer, const ObservationEdit& edit = {});
 
 /// Description of the sensor of a scan, from its section of the INI.
 RecordedSensor describeSensor(const PipelineSetup& setup, const MeasurementScan& scan);

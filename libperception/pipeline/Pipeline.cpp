@@ -136,7 +136,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
   if (setup_.sensors[sensor].active) {
     const MeasurementScan scan = scan_maker_.measure(sensor, frame);
     watch_.addFrame(sensor, frame.stamp, &scan);
-    if (observer_) observer_->onScan(scan);
+    if (observer_) observer_->onFrame(frame), observer_->onScan(scan);
     const auto scope = timing_.stage("filter");
     tracker_.process(scan);
   } else {

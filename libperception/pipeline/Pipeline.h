@@ -21,6 +21,8 @@ namespace perception {
 class PipelineObserver {
  public:
   virtual ~PipelineObserver() = default;
+  /// As its front end gets it; before the scan that comes of it.
+  virtual void onFrame(const SensorFrame& frame) { (void)frame; }
   virtual void onScan(const MeasurementScan& scan) { (void)scan; }  ///< goes into the filter
   /// A scene of this instant is due.
   virtual void onScene(const EgoState& ego, std::int64_t frame) { (void)ego, (void)frame; }

@@ -20,7 +20,7 @@ struct LidarParams {
   double range_min = 0.9;  ///< [m]
   double range_max = 120;  ///< [m]
   double reference_range =
-      200;  ///< [m] R_max of method.md (50): detection limit of a surface of 90 % reflectivity
+      200;  ///< [m] R_max of method.md (57): detection limit of a surface of 90 % reflectivity
   double range_noise = 0.01;  ///< [m] at the strongest echo
   double loss = 0.003;        ///< share of pulses lost independent of the target
   /// [rad] full beam divergence (method.md 9: 3 mrad). A beam on an edge returns the stronger echo

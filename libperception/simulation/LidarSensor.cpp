@@ -28,7 +28,7 @@ constexpr std::array<Surface, 10> kSurfaces = {{{.17, .3, 0},    // road
                                                 {.35, .5, 0},    // leaf
                                                 {.35, .3, 0}}};  // grass
 
-constexpr double kRangeUnit = 0.09;  // [m] dR of method.md (50): sigma = dR / sqrt(2 SNR)
+constexpr double kRangeUnit = 0.09;  // [m] dR of method.md (57): sigma = dR / sqrt(2 SNR)
 constexpr double kSpeckle = 0.12;    // relative spread of the echo's power, rough surfaces
 constexpr double kCoordinateUnit =
     1.0 / 512;                           // [m] HDL-64E: 2 mm; a power of two, as it packs well
@@ -61,7 +61,7 @@ LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& dir
   return pulse;
 }
 
-// Hard target: P0 = rho_t exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2, method.md (50); the
+// Hard target: P0 = rho_t exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2, method.md (57); the
 // strongest echo of the pulse is received.
 Echo echoOf(const LidarPulse& pulse, const LidarParams& p, Rng& rng) {
   Echo echo;

@@ -15,7 +15,7 @@ class LidarCaster;
 /// Effect of weather on a pulse; empty: clear air.
 using PulseHook = std::function<void(LidarPulse&, Rng&)>;
 
-/// Converts ray hits to returns by the lidar equation, method.md (50), in clear air.
+/// Converts ray hits to returns by the lidar equation, method.md (57), in clear air.
 class LidarSensor {
  public:
   LidarSensor(const LidarParams& params, double rate);  ///< rate [1/s]

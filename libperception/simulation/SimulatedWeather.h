@@ -24,7 +24,7 @@ struct LidarPulse {
   double reflectivity = 0;    ///< of the surface towards the sensor, incidence included
   double lost = 0;            ///< share of pulses without backscatter: glass, mirrors
   double optical_depth = 0;   ///< one way to the surface: attenuates the echo by exp(-2 depth)
-  double threshold = 1;       ///< factor on the detection threshold (P_min of method.md (50))
+  double threshold = 1;       ///< factor on the detection threshold (P_min of method.md (57))
   std::vector<Scatterer> scatterers;  ///< the strongest echo of a pulse is received
 };
 

@@ -5,7 +5,7 @@
 namespace perception {
 
 /// The share of phantoms among the returns near the sensor, adapted from scan to scan by
-/// expectation maximization [saerens2002], method.md (53).
+/// expectation maximization [saerens2002], method.md (60).
 class PhantomShare {
  public:
   explicit PhantomShare(const TrustParams& params);

@@ -71,7 +71,7 @@ TEST(LidarSensor, RangeNoiseHasItsSpread) {
     sum += error, squares += error * error, ++n;
   }
   ASSERT_GT(n, 1000);
-  // method.md (50) adds .09 m / sqrt(2 SNR) with SNR = .4/.9 (200/15)^2 = 79: sigma = hypot(.05,
+  // method.md (57) adds .09 m / sqrt(2 SNR) with SNR = .4/.9 (200/15)^2 = 79: sigma = hypot(.05,
   // .0072).
   const double sigma = std::hypot(0.05, 0.0072);
   EXPECT_NEAR(sum / n, 0, 4 * sigma / std::sqrt(n));

@@ -27,12 +27,6 @@ double logMostly(double d, double variance) {
   return std::log(0.99 * std::exp(logNormal(d, variance)) + 0.01 / kHighest);
 }
 
-std::uint64_t nameOf(const MeasurementScan& scan) {
-  std::uint64_t h = 0xcbf29ce484222325u;  // FNV-1a: the same on every machine
-  for (const char c : scan.sensor) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return h;
-}
-
 }  // namespace
 
 double logShape(const Track& track, const Measurement& m) {
@@ -75,7 +69,7 @@ void weighShape(const Measurement& m, const SensorState& sensor, const FilterMod
 const RegionSeen* regionOf(const Track& track, const MeasurementScan& scan,
                            const FilterModel& model) {
   if (model.params.region_memory <= 0) return nullptr;
-  const std::uint64_t sensor = nameOf(scan);
+  const std::uint64_t sensor = sensorKey(scan.sensor);
   for (const auto& r : track.regions)
     if (r.sensor == sensor) return &r;
   return nullptr;
@@ -121,7 +115,7 @@ void rememberRegion(const Measurement& m, const MeasurementScan& scan, const Fil
   scan.model->predict(kinematics.data(), extents.data(), kinematics.size(), scan.state,
                       seen.data());
   if (!seen.back().defined) return;
-  const RegionSeen region{nameOf(scan), scan.state.stamp, m.seen,
+  const RegionSeen region{sensorKey(scan.sensor), scan.state.stamp, m.seen,
                           residual(*scan.model, m, seen.back().h)};
   const auto known = std::find_if(track.regions.begin(), track.regions.end(),
                                   [&](const RegionSeen& r) { return r.sensor == region.sensor; });

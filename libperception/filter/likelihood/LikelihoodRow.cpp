@@ -66,6 +66,7 @@ ScanTerms::ScanTerms(const MeasurementScan& s, const FilterModel& m)
       gates(Gates::of(m.params.gate_probability)),
       label_exponent(s.model->labelExponent()),
       detection_exponent(s.model->detectionExponent()),
+      kinematic_exponent(m.params.kinematic_exponent * s.model->innovationShare()),
       classes_(static_cast<std::size_t>(m.classes.size())) {
   for (const ObjectClass& c : model.classes.classes) log_prior.push_back(std::log(c.prior));
   labels_.reserve(scan.measurements.size() * classes_);
@@ -84,7 +85,11 @@ double visibilityOf(const Track& track, const MeasurementScan& scan, const Filte
 
 PairTerms::PairTerms(const Track& track, std::size_t measurement, const ScanTerms& terms,
                      PairLikelihood& pair)
-    : track_(track), terms_(terms), m_(terms.scan.measurements[measurement]), pair_(pair) {
+    : track_(track),
+      terms_(terms),
+      m_(terms.scan.measurements[measurement]),
+      pair_(pair),
+      evidence_(track, m_, terms.scan, terms.model.params.class_epsilon) {
   const std::size_t classes = track.bank.size();
   pair.measurement = measurement;
   pair.log_prior = 0;
@@ -105,9 +110,10 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
   // which their filters do not estimate.
   pair_.log_by_class[j] =
       density.log_density + terms_.labelAndScore(k, j) + log_detection + heading;
-  pair_.log_class_evidence[j] = terms_.model.params.kinematic_exponent * density.log_density +
-                                terms_.label_exponent * terms_.label(k, j) +
-                                terms_.detection_exponent * log_detection;
+  pair_.log_class_evidence[j] =
+      terms_.kinematic_exponent * density.log_density +
+      (evidence_.applies() ? evidence_.added(j) : terms_.label_exponent * terms_.label(k, j)) +
+      terms_.detection_exponent * log_detection;
   mixture_[j] = track_.log_class[j] + pair_.log_by_class[j];
 }
 

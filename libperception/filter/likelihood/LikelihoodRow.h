@@ -4,6 +4,7 @@
 
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/likelihood/PairDensity.h"
+#include "libperception/filter/likelihood/RepeatedEvidence.h"
 #include "libperception/measurement/PositionOnlyModel.h"
 
 namespace perception {
@@ -24,7 +25,7 @@ class ScanTerms {
   const MeasurementScan& scan;
   const FilterModel& model;
   const Gates& gates;
-  const double label_exponent, detection_exponent;
+  const double label_exponent, detection_exponent, kinematic_exponent;
   std::vector<double> log_prior;  ///< by class
 
  private:
@@ -52,6 +53,7 @@ class PairTerms {
   const ScanTerms& terms_;
   const Measurement& m_;
   PairLikelihood& pair_;
+  const RepeatedEvidence evidence_;
   ClassValues mixture_;
 };
 

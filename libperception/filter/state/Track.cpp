@@ -31,6 +31,12 @@ std::uint64_t extendHistory(std::uint64_t history, std::uint64_t scan, std::size
   return mixBits(history ^ (birthId(scan, measurement) + 0x9E3779B97F4A7C15ull));
 }
 
+std::uint64_t sensorKey(const std::string& label) {
+  std::uint64_t h = 0xcbf29ce484222325u;
+  for (const char c : label) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return h;
+}
+
 std::vector<double> classProbabilities(const Track& track) {
   std::vector<double> p(track.log_class.size());
   std::transform(track.log_class.begin(), track.log_class.end(), p.begin(),

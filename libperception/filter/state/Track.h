@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,15 @@ struct RegionSeen {
   AxisVector error;  ///< z - h, axes seen only
 };
 
+/// What a sensor has said of the object's class so far (MeasurementModel::evidenceMemory()).
+struct EvidenceSeen {
+  std::uint64_t sensor = 0;  ///< hash of its label
+  Stamp stamp;               ///< of the last view
+  EvidenceView view;
+  double views = 0;          ///< independent looks, but for the part of the errors that stays
+  std::vector<double> mean;  ///< of Measurement::log_class, weighed by what each view was worth
+};
+
 /// A disc that contains the means of all class filters and its growth over time: tells whether a
 /// sensor may see the track without predicting it.
 struct ReachableDisc {
@@ -87,8 +97,9 @@ struct Track {
   FrontBackAmbiguity body_heading_bit;            ///< front/back bit of body_heading
   std::array<Stamp, kMostModalities> last_hit{};  ///< by modality (modalityIndex); 0 = never
   std::array<int, kMostModalities> hits{};        ///< by modality
-  std::vector<RegionSeen> regions;  ///< by sensor, only with [filter] region_memory > 0
-  ReachableDisc reachable;          ///< computed at the end of the update
+  std::vector<RegionSeen> regions;     ///< by sensor, only with [filter] region_memory > 0
+  std::vector<EvidenceSeen> evidence;  ///< by sensor
+  ReachableDisc reachable;             ///< computed at the end of the update
   /// State before the last scan, valid while CRbpfTracker keeps that hypothesis; only with
   /// FilterModel::history > 0.
   std::weak_ptr<const Track> previous;
@@ -175,6 +186,9 @@ std::uint64_t extendHistory(std::uint64_t history, std::uint64_t scan, std::size
 inline std::uint64_t birthId(std::uint64_t scan, std::size_t measurement) {
   return (scan << 16) + measurement;
 }
+
+/// Hash of a sensor's label (FNV-1a: the same on every machine).
+std::uint64_t sensorKey(const std::string& label);
 
 /// Posterior class probabilities as numbers (exp of log_class).
 std::vector<double> classProbabilities(const Track& track);

@@ -8,6 +8,7 @@
 #include "libperception/core/Chi2.h"
 #include "libperception/core/KalmanUpdate.h"
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/likelihood/RepeatedEvidence.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/update/ClassDecision.h"
 #include "libperception/filter/update/ClassFilterUpdate.h"
@@ -192,6 +193,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
+  rememberEvidence(m, scan, track);
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
   decideClass(model, pair.nis[static_cast<std::size_t>(best)] > surprisingNis(axes_seen), track);
@@ -241,6 +243,7 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
   if (m.heading) updateBodyHeading(*m.heading, model.params, track);
   track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
+  rememberEvidence(m, scan, track);
   startSizes(model, track);
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);

@@ -1,0 +1,17 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "libperception/calibration/ClusterTraining.h"
+#include "libperception/evaluation/StudyReport.h"
+
+namespace perception {
+
+/// Learns a classifier of lidar clusters from all logs, and how good it is on each log that it has
+/// not seen: tables left_out (clusters), boxes (objects by their cluster) and reliability, and the
+/// file lidar_classes.json. Throws DataError where fewer than three logs
+/// have clusters of a known kind.
+StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
+                         const Provenance& provenance, std::uint64_t seed);
+
+}  // namespace perception

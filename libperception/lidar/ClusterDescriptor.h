@@ -1,0 +1,110 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libperception/lidar/DirectionCells.h"
+#include "libperception/lidar/LidarDetections.h"
+
+namespace perception {
+
+/// What a cluster of returns shows in one scan; units and formulas: method.md 8.10.
+enum class Feature : std::uint8_t {
+  kLength,
+  kWidth,
+  kHeight,
+  kBottom,
+  kTop,
+  kArea,
+  kElongation,
+  kUprightness,
+  kSpread1,
+  kSpread2,
+  kSpread3,
+  kLinearity,
+  kPlanarity,
+  kScatter,
+  kNormalUp,
+  kDirectionUp,
+  kLength1,
+  kLength2,
+  kLength3,
+  kLength4,
+  kLength5,
+  kWidth1,
+  kWidth2,
+  kWidth3,
+  kWidth4,
+  kWidth5,
+  kShare1,
+  kShare2,
+  kShare3,
+  kShare4,
+  kShare5,
+  kEdgeDistance,
+  kEdgeShare,
+  kLogReturns,
+  kLogSurface,
+  kSeenArea,
+  kFill,
+  kRows,
+  kColumns,
+  kRowShare,
+  kRoughness,
+  kHoles,
+  kThrough,
+  kCut,
+  kIntensityMean,
+  kIntensitySpread,
+  kIntensityHigh,
+  kRange,
+  kIsolation,
+  kAspect,
+  kTopSpread,
+  kTouching,
+  kCount
+};
+inline constexpr auto kFeatures = static_cast<std::size_t>(Feature::kCount);
+using Descriptor = std::array<float, kFeatures>;
+
+/// Names of the features, as in model files and tables.
+const std::array<const char*, kFeatures>& featureNames();
+
+/// Describes clusters of one scan. For one thread.
+class ClusterDescriber {
+ public:
+  /// Borrows `found`.
+  ClusterDescriber(const LidarDetections& found, const LidarCloud& cloud);
+
+  /// `members`: indices into the obstacles, ascending; at least one.
+  Descriptor describe(const std::vector<std::uint32_t>& members);
+
+ private:
+  void rankIntensities(const LidarCloud& cloud);
+  void sortByPlace();
+  void describeOutline(Descriptor& d) const;
+  void describeSpread(Descriptor& d) const;
+  void describeRoughness(Descriptor& d) const;
+  void describeDirections(const std::vector<std::uint32_t>& members, Descriptor& d) const;
+  void describeIntensity(const std::vector<std::uint32_t>& members, Descriptor& d) const;
+  void describeNeighbors(const std::vector<std::uint32_t>& members, Descriptor& d);
+  float nearestOther(std::uint32_t i) const;
+
+  const LidarDetections& found_;
+  DirectionCells cells_;
+  std::vector<float> dx_, dy_, dz_;           ///< [m] of the obstacles from the sensor
+  std::vector<float> intensity_;              ///< rank among the scan's obstacles, [0, 1]
+  std::vector<DirectionCells::Place> place_;  ///< of the obstacles
+  std::vector<std::uint32_t> order_,
+      start_;  ///< obstacles by cell of the plane; first of each cell
+  int columns_ = 0, rows_ = 0;
+  float x0_ = 0, y0_ = 0;            ///< [m] corner of the plane's cells
+  std::vector<std::uint32_t> mark_;  ///< of every obstacle: last cluster it was member of
+  std::uint32_t cluster_ = 0;
+  /// The members: offset from the sensor and height above ground [m].
+  std::vector<float> x_, y_, z_, h_;
+  float along_x_ = 1, along_y_ = 0;  ///< direction of the longer side
+};
+
+}  // namespace perception

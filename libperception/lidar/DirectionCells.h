@@ -1,0 +1,39 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "libperception/core/Angle.h"
+#include "libperception/lidar/EgoPoints.h"
+
+namespace perception {
+
+/// The returns of a scan by direction from the sensor: the nearest and the farthest range in cells
+/// of equal azimuth and elevation (ego axes). Coarser than the beams of most sensors, so that a
+/// cell without a return is a hole and not a gap between beams.
+class DirectionCells {
+ public:
+  static constexpr double kPitch = radians(0.4);     ///< [rad] of the cells, both ways (assumed)
+  static constexpr int kColumns = 900, kRows = 150;  ///< the circle; elevations of +-30 deg
+
+  struct Cell {
+    float nearest = std::numeric_limits<float>::infinity(), farthest = 0;  ///< [m]; no return
+    bool empty() const { return farthest == 0; }
+  };
+  struct Place {
+    std::int16_t column, row;
+  };
+
+  explicit DirectionCells(const EgoPoints& points);
+
+  /// Direction of an offset from the sensor [m]; elevations beyond the rows are in the outermost.
+  static Place placeOf(float dx, float dy, float dz);
+  /// Columns wrap around; rows beyond the cells are empty.
+  const Cell& at(int column, int row) const;
+
+ private:
+  std::vector<Cell> cells_;  ///< row by row
+};
+
+}  // namespace perception

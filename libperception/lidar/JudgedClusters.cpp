@@ -1,0 +1,117 @@
+#include "libperception/lidar/JudgedClusters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libperception/lidar/BoxFit.h"
+#include "libperception/measurement/FootprintInView.h"
+
+namespace perception {
+namespace {
+
+using Probabilities = std::array<double, kClusterKinds>;
+
+/// Probability of the likeliest road user.
+double roadUser(const Probabilities& p) { return *std::max_element(p.begin(), p.begin() + 3); }
+
+double roadUserEvidence(const JudgedCluster& c) {
+  return *std::max_element(c.evidence.begin(), c.evidence.begin() + 3);
+}
+
+/// Least probability at which a part stands for itself, and that of a whole which is not looked
+/// into (assumed).
+constexpr double kLeastPart = 0.3, kSureWhole = 0.7;
+/// Probability of a thing from which a whole is not looked into (assumed).
+constexpr double kSureThing = 0.98;
+/// Evidence of the likeliest road user below which a cluster is surely a thing: with one road user
+/// in ten clusters, 1 in 180 is one (assumed).
+constexpr double kSurelyThing = -3;
+
+/// Drops what lies in the footprint of a likely vehicle: its seats, its roof, what is seen through
+/// its windows.
+void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& judged) {
+  constexpr double kMargin = 0.3;  // [m] about the box of its returns (assumed)
+  constexpr double kPerson = 1;    // evidence by which a person beside it stands (assumed)
+  constexpr auto kVehicle = static_cast<std::size_t>(ClusterKind::kVehicle);
+  const auto placesOf = [&](const JudgedCluster& j) {
+    std::vector<Vector2> places;
+    places.reserve(j.points.size());
+    for (const std::uint32_t i : j.points)
+      places.emplace_back(static_cast<double>(found.x[i]), static_cast<double>(found.y[i]));
+    return places;
+  };
+  std::vector<Vector2> centers;
+  for (const JudgedCluster& j : judged) {
+    Vector2 sum = Vector2::Zero();
+    for (const Vector2& p : placesOf(j)) sum += p;
+    centers.push_back(sum / static_cast<double>(j.points.size()));
+  }
+  const Vector2 sensor = found.points.sensor.head<2>();
+  std::vector<char> fragment(judged.size(), 0);
+  for (std::size_t v = 0; v < judged.size(); ++v) {
+    const auto& e = judged[v].evidence;
+    if (e[kVehicle] <= 0 || e[kVehicle] < *std::max_element(e.begin(), e.end())) continue;
+    const auto box = fitBox(placesOf(judged[v]), sensor, true, true, BoxParams{});
+    if (!box) continue;
+    const Vector2 along(std::cos(box->yaw), std::sin(box->yaw));
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+      if (i == v || judged[i].points.size() >= judged[v].points.size() ||
+          std::max(judged[i].evidence[0], judged[i].evidence[1]) >= kPerson)
+        continue;
+      const Vector2 d = centers[i] - box->center;
+      fragment[i] =
+          fragment[i] || (std::abs(d.dot(along)) < box->length / 2 + kMargin &&
+                          std::abs(d.dot(perpendicular(along))) < box->width / 2 + kMargin);
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    if (fragment[i]) continue;
+    if (kept != i) judged[kept] = std::move(judged[i]);
+    ++kept;
+  }
+  judged.resize(kept);
+}
+
+}  // namespace
+
+std::vector<JudgedCluster> judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
+                                          const ClusterClassifier& classifier) {
+  std::vector<double> own;  // probability of the likeliest road user
+  auto clusters = describedClusters(found, cloud, [&](const DescribedCluster& cluster) {
+    const auto p = classifier.probabilities(cluster.descriptor);
+    own.push_back(roadUser(p));
+    return own.back() < kSureWhole && p[static_cast<std::size_t>(ClusterKind::kThing)] < kSureThing;
+  });
+  const std::size_t n = clusters.size();
+  std::vector<double> best_part(n, 0);  // over all parts of parts
+  for (std::size_t i = n; i-- > 0;) {   // parts come after their whole
+    if (const int whole = clusters[i].segment.whole; whole >= 0) {
+      double& best = best_part[static_cast<std::size_t>(whole)];
+      best = std::max({best, own[i], best_part[i]});
+    }
+  }
+  std::vector<char> stands(n, 0), in_parts(n, 0);  // reached from above; is given as its parts
+  for (std::size_t i = 0; i < n; ++i) {
+    const int whole = clusters[i].segment.whole;
+    const bool reached = whole < 0 || in_parts[static_cast<std::size_t>(whole)];
+    in_parts[i] = reached && own[i] < kSureWhole && best_part[i] > std::max(kLeastPart, own[i]);
+    stands[i] = reached && !in_parts[i];
+  }
+  std::vector<JudgedCluster> judged;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!stands[i]) continue;
+    JudgedCluster cluster;
+    cluster.evidence = classifier.evidence(clusters[i].descriptor);
+    if (roadUserEvidence(cluster) < kSurelyThing) continue;
+    cluster.points = std::move(clusters[i].segment.points);
+    const float isolation = clusters[i].descriptor[static_cast<std::size_t>(Feature::kIsolation)];
+    cluster.alone = isolation > 0.5f;
+    judged.push_back(std::move(cluster));
+  }
+  dropFragments(found, judged);
+  return judged;
+}
+
+}  // namespace perception

@@ -1,0 +1,15 @@
+#pragma once
+#include <vector>
+
+#include "libperception/lidar/ClusterClassifier.h"
+#include "libperception/lidar/DescribedClusters.h"
+
+namespace perception {
+
+/// The clusters of a scan that may be road users (method.md 8.10): a segment, or its parts where
+/// one of them is likelier a road user than the whole; without those that are surely none and
+/// without those in the footprint of a likely vehicle.
+std::vector<JudgedCluster> judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
+                                          const ClusterClassifier& classifier);
+
+}  // namespace perception

@@ -1,0 +1,39 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "libperception/lidar/ClusterKind.h"
+#include "libperception/lidar/Clusters.h"
+#include "libperception/lidar/EgoPoints.h"
+#include "libperception/lidar/GroundSurface.h"
+#include "libperception/lidar/PersonPeaks.h"
+
+namespace perception {
+
+/// A cluster that may be a road user.
+struct JudgedCluster {
+  std::vector<std::uint32_t> points;       ///< indices into the obstacles, ascending
+  std::array<double, kShapes> evidence{};  ///< ClusterClassifier::evidence()
+  bool alone = false;                      ///< no other return within 0.5 m
+};
+
+/// Detections of one scan, in the ego frame: for the tracker, for pictures and for the safety grid.
+struct LidarDetections {
+  LidarDetections(EgoPoints points_, std::vector<float> height_, GroundSurface surface_)
+      : points(std::move(points_)), height(std::move(height_)), surface(std::move(surface_)) {}
+
+  EgoPoints points;                      ///< usable returns
+  std::vector<float> height;             ///< [m] of each point above the local ground
+  std::vector<std::uint32_t> obstacles;  ///< indices into points, in the scan's order
+  std::vector<float> x, y, above;        ///< [m] position of the obstacles and height above ground
+  std::vector<float> trust;              ///< [0, 1] of each obstacle; empty: all 1
+  std::vector<Cluster> clusters;         ///< car-sized; indices into the obstacles
+  std::vector<PersonPeak> persons;   ///< outside of the clusters' hulls; indices into the obstacles
+  std::vector<std::uint8_t> ground;  ///< per return of the frame's cloud: 1 = ground
+  std::vector<JudgedCluster> judged;  ///< with a classifier, in place of clusters and persons
+  GroundSurface surface;              ///< the local ground
+};
+
+}  // namespace perception

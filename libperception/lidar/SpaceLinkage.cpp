@@ -1,0 +1,223 @@
+#include "libperception/lidar/SpaceLinkage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "libperception/lidar/Forest.h"
+
+namespace perception {
+namespace {
+
+constexpr std::uint32_t kNone = ~0u;
+
+/// Numbers of keys in the order of their first appearance: open addressing.
+class KeyNumbers {
+ public:
+  explicit KeyNumbers(std::size_t most) {
+    std::size_t size = 64;
+    while (size < 2 * most) size *= 2;
+    keys_.resize(size), numbers_.assign(size, kNone), mask_ = size - 1;
+  }
+  std::uint32_t add(std::uint64_t key) {
+    std::size_t slot = slotOf(key);
+    while (numbers_[slot] != kNone && keys_[slot] != key) slot = (slot + 1) & mask_;
+    if (numbers_[slot] == kNone) keys_[slot] = key, numbers_[slot] = count_++;
+    return numbers_[slot];
+  }
+  std::uint32_t find(std::uint64_t key) const {
+    std::size_t slot = slotOf(key);
+    while (numbers_[slot] != kNone && keys_[slot] != key) slot = (slot + 1) & mask_;
+    return numbers_[slot];
+  }
+  std::uint32_t count() const { return count_; }
+
+ private:
+  std::size_t slotOf(std::uint64_t key) const {
+    return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> 20) & mask_;
+  }
+  std::vector<std::uint64_t> keys_;
+  std::vector<std::uint32_t> numbers_;
+  std::size_t mask_ = 0;
+  std::uint32_t count_ = 0;
+};
+
+/// 21 bits for each of three integers.
+std::uint64_t keyOf(std::int32_t a, std::int32_t b, std::int32_t c) {
+  constexpr std::int64_t kMiddle = 1 << 20;
+  return static_cast<std::uint64_t>(a + kMiddle) << 42 |
+         static_cast<std::uint64_t>(b + kMiddle) << 21 | static_cast<std::uint64_t>(c + kMiddle);
+}
+
+std::int32_t cellOf(float v, float per_meter) {
+  return static_cast<std::int32_t>(std::floor(v * per_meter));
+}
+
+/// Members of groups, group by group, in their order.
+struct Buckets {
+  Buckets(const std::vector<std::uint32_t>& group_of, std::size_t groups)
+      : start(groups + 1, 0), member(group_of.size()) {
+    for (const std::uint32_t g : group_of) ++start[g + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+    for (std::size_t i = 0; i < group_of.size(); ++i)
+      member[next[group_of[i]]++] = static_cast<std::uint32_t>(i);
+  }
+  std::vector<std::uint32_t> start, member;
+};
+
+/// Cubes so small that all their returns are linked, in blocks wider than the longest link.
+class CubeLinkage {
+ public:
+  CubeLinkage(const std::vector<LinkedReturn>& returns, float least, float most)
+      : returns_(returns),
+        per_cube_(std::sqrt(3.0f) / least * 1.0001f),
+        cubes_per_block_(static_cast<std::int32_t>(std::ceil(most * per_cube_)) + 1),
+        cube_of_(cubes(returns)),
+        in_cube_(cube_of_, cube_count_),
+        block_table_(cube_count_),
+        block_of_(blocks()),
+        in_block_(block_of_, block_key_.size()),
+        groups_(cube_count_) {
+    setBounds();
+  }
+
+  Partition link() {
+    for (std::uint32_t c = 0; c + 1 < in_block_.start.size(); ++c) linkWithin(c);
+    // Half of the 26 neighbors: every pair once.
+    constexpr std::int32_t kStep[13][3] = {
+        {1, 0, 0},  {-1, 1, 0}, {0, 1, 0}, {1, 1, 0},  {-1, -1, 1}, {0, -1, 1}, {1, -1, 1},
+        {-1, 0, 1}, {0, 0, 1},  {1, 0, 1}, {-1, 1, 1}, {0, 1, 1},   {1, 1, 1}};
+    for (std::uint32_t c = 0; c + 1 < in_block_.start.size(); ++c) {
+      for (const auto& step : kStep) {
+        const auto& [x, y, z] = block_key_[c];
+        const std::uint32_t d = block_table_.find(keyOf(x + step[0], y + step[1], z + step[2]));
+        if (d != kNone) linkBlocks(c, d);
+      }
+    }
+    return partitionOf(cube_of_, groups_);
+  }
+
+ private:
+  struct Bounds {
+    float x0, x1, y0, y1, z0, z1, length;
+  };
+
+  std::vector<std::uint32_t> cubes(const std::vector<LinkedReturn>& returns) {
+    KeyNumbers table(returns.size());
+    std::vector<std::uint32_t> cube_of;
+    cube_of.reserve(returns.size());
+    for (const LinkedReturn& r : returns)
+      cube_of.push_back(
+          table.add(keyOf(cellOf(r.x, per_cube_), cellOf(r.y, per_cube_), cellOf(r.z, per_cube_))));
+    cube_count_ = table.count();
+    return cube_of;
+  }
+
+  std::vector<std::uint32_t> blocks() {
+    std::vector<std::uint32_t> block_of;
+    block_of.reserve(cube_count_);
+    for (std::uint32_t c = 0; c < cube_count_; ++c) {
+      const LinkedReturn& r = returns_[in_cube_.member[in_cube_.start[c]]];
+      const std::array<std::int32_t, 3> key = {blockOf(r.x), blockOf(r.y), blockOf(r.z)};
+      block_of.push_back(block_table_.add(keyOf(key[0], key[1], key[2])));
+      if (block_of.back() == block_key_.size()) block_key_.push_back(key);
+    }
+    return block_of;
+  }
+
+  /// Blocks are of whole cubes and wider than a link and a cube: linked returns lie in neighboring
+  /// blocks at most.
+  std::int32_t blockOf(float v) const {
+    const std::int32_t cube = cellOf(v, per_cube_);
+    return (cube >= 0 ? cube : cube - cubes_per_block_ + 1) / cubes_per_block_;
+  }
+
+  void setBounds() {
+    bounds_.reserve(cube_count_);
+    for (std::uint32_t c = 0; c < cube_count_; ++c) {
+      constexpr float kFar = std::numeric_limits<float>::max();
+      Bounds b{kFar, -kFar, kFar, -kFar, kFar, -kFar, 0};
+      for (std::uint32_t k = in_cube_.start[c]; k < in_cube_.start[c + 1]; ++k) {
+        const LinkedReturn& r = returns_[in_cube_.member[k]];
+        b.x0 = std::min(b.x0, r.x), b.x1 = std::max(b.x1, r.x);
+        b.y0 = std::min(b.y0, r.y), b.y1 = std::max(b.y1, r.y);
+        b.z0 = std::min(b.z0, r.z), b.z1 = std::max(b.z1, r.z);
+        b.length = std::max(b.length, r.length);
+      }
+      bounds_.push_back(b);
+    }
+  }
+
+  bool near(std::uint32_t a, std::uint32_t b) const {
+    const Bounds &p = bounds_[a], &q = bounds_[b];
+    const float length = std::min(p.length, q.length);
+    const float dx = std::max({0.0f, p.x0 - q.x1, q.x0 - p.x1}),
+                dy = std::max({0.0f, p.y0 - q.y1, q.y0 - p.y1}),
+                dz = std::max({0.0f, p.z0 - q.z1, q.z0 - p.z1});
+    if (dx * dx + dy * dy + dz * dz > length * length) return false;
+    for (std::uint32_t i = in_cube_.start[a]; i < in_cube_.start[a + 1]; ++i) {
+      const LinkedReturn& r = returns_[in_cube_.member[i]];
+      for (std::uint32_t j = in_cube_.start[b]; j < in_cube_.start[b + 1]; ++j) {
+        const LinkedReturn& s = returns_[in_cube_.member[j]];
+        const float x = r.x - s.x, y = r.y - s.y, z = r.z - s.z, l = std::min(r.length, s.length);
+        if (x * x + y * y + z * z <= l * l) return true;
+      }
+    }
+    return false;
+  }
+
+  void join(std::uint32_t a, std::uint32_t b) {
+    if (groups_.find(a) != groups_.find(b) && near(a, b)) groups_.unite(a, b);
+  }
+
+  void linkWithin(std::uint32_t c) {
+    for (std::uint32_t i = in_block_.start[c]; i < in_block_.start[c + 1]; ++i)
+      for (std::uint32_t j = i + 1; j < in_block_.start[c + 1]; ++j)
+        join(in_block_.member[i], in_block_.member[j]);
+  }
+
+  bool uniform(std::uint32_t c) {
+    const std::uint32_t first = groups_.find(in_block_.member[in_block_.start[c]]);
+    for (std::uint32_t i = in_block_.start[c] + 1; i < in_block_.start[c + 1]; ++i)
+      if (groups_.find(in_block_.member[i]) != first) return false;
+    return true;
+  }
+
+  void linkBlocks(std::uint32_t c, std::uint32_t d) {
+    const bool whole = uniform(c) && uniform(d);
+    const auto same = [&] {
+      return groups_.find(in_block_.member[in_block_.start[c]]) ==
+             groups_.find(in_block_.member[in_block_.start[d]]);
+    };
+    for (std::uint32_t i = in_block_.start[c]; i < in_block_.start[c + 1]; ++i) {
+      for (std::uint32_t j = in_block_.start[d]; j < in_block_.start[d + 1]; ++j) {
+        if (whole && same()) return;
+        join(in_block_.member[i], in_block_.member[j]);
+      }
+    }
+  }
+
+  const std::vector<LinkedReturn>& returns_;
+  const float per_cube_;  ///< [1/m]
+  const std::int32_t cubes_per_block_;
+  std::uint32_t cube_count_ = 0;
+  std::vector<std::uint32_t> cube_of_;
+  Buckets in_cube_;
+  std::vector<std::array<std::int32_t, 3>> block_key_;
+  KeyNumbers block_table_;
+  std::vector<std::uint32_t> block_of_;
+  Buckets in_block_;
+  Forest groups_;
+  std::vector<Bounds> bounds_;
+};
+
+}  // namespace
+
+Partition linkInSpace(const std::vector<LinkedReturn>& returns, float least, float most) {
+  return CubeLinkage(returns, least, most).link();
+}
+
+}  // namespace perception

@@ -1,0 +1,209 @@
+#include "libperception/filter/likelihood/RepeatedEvidence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libperception/core/Random.h"
+#include "libperception/filter/predict/Prediction.h"
+#include "libperception/filter/update/Update.h"
+#include "tests/support/FilterWorld.h"
+
+namespace perception {
+namespace {
+
+using test::positionScan;
+
+/// Positions with evidence whose errors repeat; `remembers` false: with evidence that does not.
+class RememberingModel final : public PositionModel {
+ public:
+  RememberingModel(Params params, const EvidenceMemory& memory, bool remembers)
+      : PositionModel(std::move(params)), memory_(memory), remembers_(remembers) {}
+  const EvidenceMemory* evidenceMemory() const override { return remembers_ ? &memory_ : nullptr; }
+
+ private:
+  EvidenceMemory memory_;
+  bool remembers_;
+};
+
+struct Fixture {
+  EvidenceMemory memory{0.2, 0.9, 0.2, 0.3, 1, 0.5};
+  bool remembers = true;
+  FilterModel model = test::exactModel(test::linearClasses());
+
+  Fixture() { model.params.kinematic_exponent = 0; }
+
+  std::shared_ptr<const PositionModel> sensor() const {
+    PositionModel::Params params = test::linearSensor();
+    params.classes[1].detection = params.classes[0].detection;  // tells nothing of the class
+    return std::make_shared<const RememberingModel>(params, memory, remembers);
+  }
+  MeasurementScan seen(double t, std::optional<EvidenceView> view,
+                       std::vector<double> log_class = {1.5, -0.5}) const {
+    MeasurementScan scan = positionScan(sensor(), t, {{1, 2, 0}});
+    scan.measurements[0].log_class = std::move(log_class);
+    scan.measurements[0].view = view;
+    return scan;
+  }
+  Track born(const MeasurementScan& scan) const {
+    return newTrack(likelihoodTable({}, scan, model).births[0], 0, scan, 0, model);
+  }
+  Track hit(const Track& before, const MeasurementScan& scan) const {
+    const Track track = predictTrack(before, scan.state.stamp, model);
+    const auto table = likelihoodTable({track}, scan, model);
+    return hitTrack(track, table.tracks[0], table.tracks[0].pairs.at(0), scan, 1, model);
+  }
+};
+
+double odds(const Track& track) { return track.log_class[0] - track.log_class[1]; }
+
+const EvidenceView kAhead{0.1, 3};
+
+/// What a view adds; remembers it.
+double add(Track& track, const MeasurementScan& scan, std::size_t j = 0) {
+  const RepeatedEvidence evidence(track, scan.measurements[0], scan);
+  EXPECT_TRUE(evidence.applies());
+  const double added = evidence.added(j);
+  rememberEvidence(scan.measurements[0], scan, track);
+  return added;
+}
+
+TEST(RepeatedEvidence, TheFirstViewCountsFully) {
+  const Fixture f;
+  Track track;
+  const auto scan = f.seen(0, kAhead);
+  const RepeatedEvidence evidence(track, scan.measurements[0], scan);
+  EXPECT_EQ(evidence.added(0), 1.5);
+  EXPECT_EQ(evidence.added(1), -0.5);
+  EXPECT_EQ(evidence.views(), 1);
+  add(track, scan);
+  ASSERT_EQ(track.evidence.size(), 1u);
+  EXPECT_EQ(track.evidence[0].mean, (std::vector<double>{1.5, -0.5}));
+  EXPECT_EQ(track.evidence[0].views, 1);
+  EXPECT_EQ(track.evidence[0].stamp.ns, scan.state.stamp.ns);
+}
+
+TEST(RepeatedEvidence, AViewAlikeIsWorthLittle) {
+  const Fixture f;
+  Track track;
+  add(track, f.seen(0, kAhead));
+  const double second = add(track, f.seen(0, kAhead));
+  EXPECT_NEAR(second, 1.5 * (f.memory.looks(1 + 0.1 / 1.9) - 1), 1e-12);
+}
+
+TEST(RepeatedEvidence, ViewsAlikeAreWorthNoMoreThanWhatStaysAllows) {
+  Fixture f;
+  f.memory.kept = 0;  // each view is independent but for what stays
+  Track track;
+  double sum = 0;
+  for (int k = 0; k < 10; ++k) sum += add(track, f.seen(k, kAhead));
+  EXPECT_NEAR(sum, 1.5 * 10 / (1 + 0.2 * 9), 1e-9);
+  for (int k = 10; k < 3000; ++k) sum += add(track, f.seen(k, kAhead));
+  EXPECT_LT(sum, 1.5 / 0.2);
+  EXPECT_GT(sum, 1.5 / 0.2 - 0.01);
+}
+
+TEST(RepeatedEvidence, TheSumOfAllAddedIsThatOfTheMean) {
+  const Fixture f;
+  Rng rng(RngKey{4, 0, 0, 11});
+  for (std::size_t j = 0; j < 2; ++j) {
+    Track track;
+    double sum = 0, t = 0;
+    EvidenceView view = kAhead;
+    for (int k = 0; k < 40; ++k) {
+      t += rng.uniform(0, 0.3);
+      view.bearing += rng.normal(0, 0.2), view.log_range += rng.normal(0, 0.1);
+      sum += add(track, f.seen(t, view, {rng.normal(1, 2), rng.normal(-1, 2)}), j);
+      const EvidenceSeen& seen = track.evidence.at(0);
+      ASSERT_NEAR(sum, f.memory.looks(seen.views) * seen.mean[j], 1e-9);
+    }
+  }
+}
+
+TEST(RepeatedEvidence, AViewFromElsewhereLetsTheOldOnesGo) {
+  const Fixture f;
+  Track track;
+  double sum = 0;
+  for (int k = 0; k < 20; ++k) sum += add(track, f.seen(0.1 * k, kAhead, {4, 0}));
+  const auto other = f.seen(2, EvidenceView{kAhead.bearing + 3, kAhead.log_range}, {-1, 0});
+  sum += add(track, other);
+  EXPECT_NEAR(sum, -1, 0.05);
+  EXPECT_NEAR(track.evidence[0].views, 1, 0.01);
+}
+
+TEST(RepeatedEvidence, AnObjectThatComesNearIsJudgedAnew) {
+  const Fixture f;
+  Track track;
+  double sum = 0;
+  for (int k = 0; k < 20; ++k)
+    sum += add(track, f.seen(0.1 * k, EvidenceView{0.1, std::log(60.0)}, {4, 0}));
+  sum += add(track, f.seen(2, EvidenceView{0.1, std::log(4.0)}, {-1, 0}));
+  EXPECT_LT(sum, -0.5);
+}
+
+TEST(RepeatedEvidence, EachSensorHasAMemoryOfItsOwn) {
+  const Fixture f;
+  Track track;
+  MeasurementScan left = f.seen(0, kAhead), right = f.seen(0, kAhead);
+  right.sensor = "RIGHT";
+  EXPECT_EQ(add(track, left), 1.5);
+  EXPECT_EQ(add(track, right), 1.5);
+  EXPECT_EQ(track.evidence.size(), 2u);
+  EXPECT_LT(add(track, left), 0.2);
+  EXPECT_EQ(track.evidence.size(), 2u);
+}
+
+TEST(RepeatedEvidence, WithoutAViewOrAMemoryNothingIsKept) {
+  Fixture f;
+  Track track;
+  const auto check = [&](const MeasurementScan& scan) {
+    EXPECT_FALSE(RepeatedEvidence(track, scan.measurements[0], scan).applies());
+    rememberEvidence(scan.measurements[0], scan, track);
+    EXPECT_TRUE(track.evidence.empty());
+  };
+  check(f.seen(0, std::nullopt));
+  f.remembers = false;
+  check(f.seen(0, kAhead));
+}
+
+// In the update ---------------------------------------------------------------------------------
+
+TEST(RepeatedEvidence, IdenticalEvidenceConverges) {
+  const Fixture f;
+  const double prior = std::log(0.6 / 0.4);
+  Track track = f.born(f.seen(0, kAhead));
+  EXPECT_NEAR(odds(track), prior + 2, 1e-9) << "a birth is the first view";
+  double before = odds(track);
+  for (int k = 1; k <= 300; ++k) {
+    track = f.hit(track, f.seen(0.1 * k, kAhead));
+    EXPECT_GE(odds(track), before);
+    before = odds(track);
+    ASSERT_NEAR(odds(track), prior + 2 * f.memory.looks(track.evidence.at(0).views), 1e-6) << k;
+  }
+  EXPECT_LT(odds(track), prior + 2 / 0.2);
+  EXPECT_GT(odds(track), prior + 0.8 * 2 / 0.2);
+}
+
+TEST(RepeatedEvidence, IndependentEvidenceGrowsAsBefore) {
+  Fixture f;
+  const double prior = std::log(0.6 / 0.4);
+  const auto after = [&](const std::optional<EvidenceView>& view) {
+    Track track = f.born(f.seen(0, view));
+    for (int k = 1; k <= 5; ++k) track = f.hit(track, f.seen(0.1 * k, view));
+    return odds(track);
+  };
+  EXPECT_NEAR(after(std::nullopt), prior + 6 * 2, 1e-9);
+  f.remembers = false;
+  EXPECT_NEAR(after(kAhead), prior + 6 * 2, 1e-9);
+}
+
+TEST(RepeatedEvidence, AHitMayTakeBackWhatWasSaidBefore) {
+  const Fixture f;
+  Track track = f.born(f.seen(0, kAhead, {3, 0}));
+  const double before = odds(track);
+  track = f.hit(track, f.seen(0.1, EvidenceView{kAhead.bearing + 3, 3}, {0, 0}));
+  EXPECT_NEAR(odds(track), before - 3, 0.05);
+}
+
+}  // namespace
+}  // namespace perception

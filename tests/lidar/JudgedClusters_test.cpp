@@ -1,0 +1,231 @@
+#include "libperception/lidar/JudgedClusters.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/ClusterScenes.h"
+
+namespace perception {
+namespace {
+
+using test::SolidScene;
+
+/// Scores by length [m]: up to 0.8 that of a `person`, to 2 that of a `pair` of them, to 6 that of
+/// a vehicle, above that of a thing.
+std::shared_ptr<const ClusterClassifier> byLength(float pair = -4, float person = 4) {
+  const auto length = static_cast<std::int16_t>(Feature::kLength);
+  BoostedTrees trees;
+  const auto add = [&](const std::array<float, 4>& values) {
+    const auto root = static_cast<std::int32_t>(trees.nodes.size());
+    trees.roots.push_back(root);
+    const float bounds[] = {0.8f, 2.0f, 6.0f};
+    for (std::int32_t i = 0; i < 3; ++i) {
+      trees.nodes.push_back({length, bounds[i], root + 2 * i + 1, root + 2 * i + 2});
+      trees.nodes.push_back({-1, values[static_cast<std::size_t>(i)], 0, 0});
+    }
+    trees.nodes.push_back({-1, values[3], 0, 0});
+  };
+  add({person, pair, -4, -4});
+  add({-4, -4, -4, -4});
+  add({-4, -4, 2, -4});
+  add({0, 0, 0, 4});
+  add({-20, -20, -20, -20});
+  EvidenceMemory memory;
+  memory.lasting = 0.35;
+  return std::make_shared<const ClusterClassifier>(
+      trees, std::array<Calibration, kClusterKinds>{},
+      std::array<double, kClusterKinds>{0.2, 0.2, 0.2, 0.2, 0.2}, memory, Provenance{});
+}
+
+/// A van seen from the side, a person, and a wall of 8 m.
+SolidScene street() {
+  SolidScene scene;
+  scene.boxes = {{{12.9, 0}, kPi / 2, 4.4, 1.8, 0.25, 2}, {{25, 2}, kPi / 2, 8, 0.3, 0, 4}};
+  scene.cylinders = {{{10, -4}, 0.25, 0, 1.75}};
+  return scene;
+}
+
+/// Two persons 0.22 m apart at 15 m, to the left.
+SolidScene couple() {
+  SolidScene scene;
+  scene.cylinders = {{{15, 1.64}, 0.25, 0, 1.75}, {{15, 2.36}, 0.25, 0, 1.75}};
+  return scene;
+}
+
+struct Judged {
+  SensorFrame frame;
+  LidarDetections found;
+  std::vector<JudgedCluster> clusters;
+
+  explicit Judged(const SolidScene& scene,
+                  const std::shared_ptr<const ClusterClassifier>& classifier = byLength())
+      : frame(test::castScan(scene, test::narrowLidar())),
+        found(test::plainFrontEnd().detect(frame)),
+        clusters(judgedClusters(found, std::get<LidarCloud>(frame.data), *classifier)) {}
+
+  Vector2 middleOf(const JudgedCluster& c) const {
+    Vector2 sum = Vector2::Zero();
+    for (const std::uint32_t i : c.points)
+      sum += Vector2(static_cast<double>(found.x[i]), static_cast<double>(found.y[i]));
+    return sum / static_cast<double>(c.points.size());
+  }
+};
+
+double of(const JudgedCluster& c, ClusterKind kind) {
+  return c.evidence[static_cast<std::size_t>(kind)];
+}
+
+TEST(JudgedClusters, ThingsAreLeftOut) {
+  const Judged judged(street());
+  ASSERT_EQ(judged.clusters.size(), 2u) << "not the wall";
+  const bool person_first = judged.clusters[0].points.size() < judged.clusters[1].points.size();
+  const JudgedCluster &person = judged.clusters[person_first ? 0 : 1],
+                      &car = judged.clusters[person_first ? 1 : 0];
+  EXPECT_LT((judged.middleOf(person) - Vector2(10, -4)).norm(), 0.5);
+  EXPECT_LT((judged.middleOf(car) - Vector2(12, 0)).norm(), 0.5);
+  EXPECT_NEAR(of(person, ClusterKind::kPedestrian), 4, 1e-6);
+  EXPECT_NEAR(of(person, ClusterKind::kVehicle), -4, 1e-6);
+  EXPECT_NEAR(of(car, ClusterKind::kVehicle), 2, 1e-6);
+  EXPECT_EQ(of(car, ClusterKind::kThing), 0);
+  EXPECT_TRUE(person.alone);
+  EXPECT_TRUE(std::is_sorted(car.points.begin(), car.points.end()));
+}
+
+TEST(JudgedClusters, PartsReplaceAWholeThatIsLessLikely) {
+  const Judged judged(couple());
+  ASSERT_EQ(judged.clusters.size(), 2u);
+  double sum = 0;
+  for (const JudgedCluster& c : judged.clusters) {
+    EXPECT_NEAR(std::abs(judged.middleOf(c).y() - 2), 0.36, 0.1);
+    sum += judged.middleOf(c).y() - 2;
+    EXPECT_NEAR(of(c, ClusterKind::kPedestrian), 4, 1e-6);
+    EXPECT_FALSE(c.alone);
+  }
+  EXPECT_NEAR(sum, 0, 0.1) << "one to each side";
+}
+
+TEST(JudgedClusters, AWholeThatIsLikelierStands) {
+  const Judged judged(couple(), byLength(9));
+  ASSERT_EQ(judged.clusters.size(), 1u);
+  EXPECT_NEAR(judged.middleOf(judged.clusters[0]).y(), 2, 0.1);
+  EXPECT_TRUE(judged.clusters[0].alone);
+}
+
+TEST(JudgedClusters, ASureWholeIsNotLookedInto) {
+  // 0.77 and 0.55 of a pedestrian; each part has 0.98.
+  EXPECT_EQ(Judged(couple(), byLength(1.3f)).clusters.size(), 1u);
+  EXPECT_EQ(Judged(couple(), byLength(0.3f)).clusters.size(), 2u);
+}
+
+/// The low side of a car with something above it, and the same beside it.
+SolidScene carWithASeat() {
+  SolidScene scene;
+  scene.boxes = {{{12.05, 0}, kPi / 2, 4.4, 0.1, 0.25, 0.75}};
+  scene.cylinders = {{{12.3, 0}, 0.25, 1.7, 2.3}, {{12.3, 4}, 0.25, 1.7, 2.3}};
+  return scene;
+}
+
+TEST(JudgedClusters, WhatLiesInALikelyVehicleIsAFragmentOfIt) {
+  const Judged judged(carWithASeat(), byLength(-4, 0.5f));
+  ASSERT_EQ(judged.clusters.size(), 2u);
+  for (const JudgedCluster& c : judged.clusters) {
+    const Vector2 middle = judged.middleOf(c);
+    const bool car = c.points.size() > 60;
+    EXPECT_NEAR(middle.y(), car ? 0 : 4, 0.2) << "not the one above it";
+  }
+}
+
+TEST(JudgedClusters, APersonInTheFootprintOfAVehicleStands) {
+  EXPECT_EQ(Judged(carWithASeat(), byLength(-4, 4)).clusters.size(), 3u);
+}
+
+TEST(JudgedClusters, NoReturnsHaveNone) {
+  LidarDetections nothing(EgoPoints{}, {}, GroundSurface(GroundPlane{}, EgoPoints{}, {}, nullptr));
+  EXPECT_TRUE(judgedClusters(nothing, LidarCloud{}, *byLength()).empty());
+}
+
+// The front end ---------------------------------------------------------------------------------
+
+using Shapes = std::vector<ObjectShape>;
+
+const Measurement* nearest(const MeasurementScan& scan, const Vector2& place) {
+  const auto far = [&](const Measurement& m) { return (m.position - place).norm(); };
+  const auto best = std::min_element(scan.measurements.begin(), scan.measurements.end(),
+                                     [&](auto& a, auto& b) { return far(a) < far(b); });
+  return best == scan.measurements.end() ? nullptr : &*best;
+}
+
+TEST(JudgedClusters, MeasurementsTellClassesByTheirShape) {
+  const LidarFrontEnd lidar =
+      test::shapedFrontEnd({ObjectShape::kVehicle, ObjectShape::kThing, ObjectShape::kPedestrian,
+                            ObjectShape::kCyclist, ObjectShape::kVehicle},
+                           byLength());
+  SensorFrame frame = test::castScan(street(), test::narrowLidar());
+  frame.ego.T_world_ego = makePose(100, -50, 0, 2);
+  const MeasurementScan scan = lidar.extract(frame);
+  ASSERT_EQ(scan.measurements.size(), 2u);
+  const Vector2 place = (frame.ego.T_world_ego * Vector3(10, -4, 0)).head<2>();
+  const Measurement* person = nearest(scan, place);
+  ASSERT_EQ(person->log_class.size(), 5u);
+  const double expected[] = {-4, 0, 4, -4, -4};
+  for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(person->log_class[j], expected[j], 1e-6) << j;
+  EXPECT_EQ(person->log_clutter, 0) << "clutter looks as things do";
+  ASSERT_TRUE(person->view);
+  const Vector2 sight = Vector2(100, -50) - place;
+  EXPECT_NEAR(person->view->bearing, std::atan2(sight.y(), sight.x()), 0.02);
+  EXPECT_NEAR(person->view->log_range, std::log(sight.norm()), 0.05);
+  ASSERT_NE(scan.model->evidenceMemory(), nullptr);
+  EXPECT_EQ(scan.model->evidenceMemory()->lasting, 0.35);
+}
+
+TEST(JudgedClusters, WithAClassifierNoneIsBySpacingsOrPeaks) {
+  const LidarFrontEnd lidar = test::shapedFrontEnd({ObjectShape::kThing}, byLength());
+  const LidarDetections found = lidar.detect(test::castScan(street(), test::narrowLidar()));
+  EXPECT_EQ(found.judged.size(), 2u);
+  EXPECT_TRUE(found.clusters.empty());
+  EXPECT_TRUE(found.persons.empty());
+}
+
+TEST(JudgedClusters, WithoutAClassifierLabelsAreBySize) {
+  const SensorFrame frame = test::castScan(street(), test::narrowLidar());
+  const LidarFrontEnd lidar = test::plainFrontEnd();
+  EXPECT_TRUE(lidar.detect(frame).judged.empty());
+  const MeasurementScan scan = lidar.extract(frame);
+  ASSERT_EQ(scan.measurements.size(), 3u) << "the wall as well";
+  for (const Measurement& m : scan.measurements) {
+    EXPECT_TRUE(m.log_class.empty());
+    EXPECT_FALSE(m.view);
+  }
+  EXPECT_EQ(nearest(scan, {10, -4})->label, 1);
+  EXPECT_EQ(nearest(scan, {12, 0})->label, 0);
+  EXPECT_EQ(scan.model->evidenceMemory(), nullptr);
+}
+
+TEST(JudgedClusters, HaveOutlinesAsOtherClusters) {
+  const SensorFrame frame = test::castScan(street(), test::narrowLidar());
+  const MeasurementScan judged =
+      test::shapedFrontEnd({ObjectShape::kThing}, byLength()).extract(frame);
+  const MeasurementScan plain = test::plainFrontEnd().extract(frame);
+  const Measurement *car = nearest(judged, {12, 0}), *same = nearest(plain, {12, 0});
+  ASSERT_TRUE(car && same);
+  EXPECT_EQ(car->label, same->label);
+  EXPECT_EQ(car->seen, same->seen);
+  EXPECT_LT((car->z - same->z).norm(), 0.01);
+  EXPECT_EQ(car->R, same->R);
+  EXPECT_EQ(nearest(judged, {10, -4})->label, 1);
+}
+
+TEST(JudgedClusters, ShapesAreKindsOfTheSameNumber) {
+  EXPECT_EQ(kShapes, kObjectShapes);
+  for (std::size_t k = 0; k < kShapes; ++k) {
+    Config config = Config::fromText(
+        "[class.x]\nprior = 1\nshape = " + std::string(kClusterKindNames[k]) + "\n");
+    EXPECT_EQ(static_cast<std::size_t>(readClassTable(config)[0].shape), k);
+    EXPECT_NO_THROW(config.finish());
+  }
+}
+
+}  // namespace
+}  // namespace perception

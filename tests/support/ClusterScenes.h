@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "libperception/lidar/LidarFrontEnd.h"
+#include "tests/support/SyntheticCloud.h"
+
+namespace perception::test {
+
+/// A scanner that looks 30 deg to each side.
+inline SpinningLidar narrowLidar() {
+  SpinningLidar lidar;
+  lidar.fov = radians(60);
+  lidar.range_sigma = 0.002;
+  return lidar;
+}
+
+/// The front end with its default parameters, for classes of these shapes.
+inline LidarFrontEnd shapedFrontEnd(const std::vector<ObjectShape>& shapes,
+                                    std::shared_ptr<const ClusterClassifier> classifier = nullptr,
+                                    const LidarParams& params = {}) {
+  ClassTable classes;
+  for (const ObjectShape shape : shapes) {
+    classes.classes.emplace_back();
+    classes.classes.back().shape = shape;
+  }
+  return LidarFrontEnd(params, classes,
+                       DetectionModel(DetectionParams{}, std::vector<ClassDetection>(shapes.size()),
+                                      LidarFrontEnd::labels(params.clusters)),
+                       std::move(classifier));
+}
+
+inline LidarFrontEnd plainFrontEnd() { return shapedFrontEnd({ObjectShape::kThing}); }
+
+/// Indices of the obstacles in a region of the ego frame.
+inline std::vector<std::uint32_t> obstaclesWhere(
+    const LidarDetections& found, const std::function<bool(double x, double y)>& inside) {
+  std::vector<std::uint32_t> members;
+  for (std::size_t i = 0; i < found.x.size(); ++i)
+    if (inside(static_cast<double>(found.x[i]), static_cast<double>(found.y[i])))
+      members.push_back(static_cast<std::uint32_t>(i));
+  return members;
+}
+
+}  // namespace perception::test
