@@ -25,8 +25,8 @@ constexpr double kLeastPart = 0.3, kSureWhole = 0.7;
 /// Probability of a thing from which a whole is not looked into (assumed).
 constexpr double kSureThing = 0.98;
 /// Evidence of the likeliest road user below which a cluster is surely a thing: with one road user
-/// in ten clusters, 1 in 180 is one (assumed).
-constexpr double kSurelyThing = -3;
+/// in ten clusters, 1 in 66 is one (assumed).
+constexpr double kSurelyThing = -2;
 
 /// Drops what lies in the footprint of a likely vehicle: its seats, its roof, what is seen through
 /// its windows.

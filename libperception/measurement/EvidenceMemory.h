@@ -11,7 +11,7 @@ struct EvidenceView {
   double log_range = 0;  ///< log of the range [m]
 };
 
-/// Errors of what a sensor says of one object's class (method.md 8.10): a part that stays, since
+/// Errors of what a sensor says of one object's class (method.md 5.6, fitted as in 8.10): a part that stays, since
 /// the object looks unlike its kind, and one that changes with the view.
 struct EvidenceMemory {
   double lasting = 0.2;    ///< [0, 1) share of the part that stays in the variance
