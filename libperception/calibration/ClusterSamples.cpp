@@ -53,6 +53,17 @@ std::optional<ClusterKind> kindOfLabel(std::uint16_t label) {
   }
 }
 
+/// Obstacle returns, world [m].
+std::vector<Vector3> placesInWorld(const SensorFrame& frame, const LidarDetections& found) {
+  std::vector<Vector3> places;
+  places.reserve(found.obstacles.size());
+  for (const std::uint32_t k : found.obstacles)
+    places.push_back(frame.ego.T_world_ego * Vector3(static_cast<double>(found.points.x[k]),
+                                                     static_cast<double>(found.points.y[k]),
+                                                     static_cast<double>(found.points.z[k])));
+  return places;
+}
+
 }  // namespace
 
 std::optional<ClusterKind> kindOfTruth(const std::string& type) {
@@ -136,13 +147,7 @@ void ClusterSampler::nameThings(const SensorFrame& frame, std::size_t first) {
 void ClusterSampler::addByBoxes(const SensorFrame& frame, const LidarDetections& found,
                                 const GroundTruth::Instant& instant, std::size_t first) {
   const std::size_t returns = found.obstacles.size(), clusters = points_.size();
-  std::vector<Vector3> places(returns);
-  for (std::size_t i = 0; i < returns; ++i) {
-    const std::uint32_t k = found.obstacles[i];
-    places[i] = frame.ego.T_world_ego * Vector3(static_cast<double>(found.points.x[k]),
-                                                static_cast<double>(found.points.y[k]),
-                                                static_cast<double>(found.points.z[k]));
-  }
+  const std::vector<Vector3> places = placesInWorld(frame, found);
   struct Best {
     double share = 0, sum = 0, of_object = 0;  // of_object: of the best's returns, those in it
     const TruthObject* object = nullptr;

@@ -66,6 +66,72 @@ struct Counts {
 
 std::string ratio(double a, double b) { return b > 0 ? fmt::format("{:.2f}", a / b) : ""; }
 
+std::vector<std::string> leftOutRow(const std::string& name, const Counts& counts) {
+  std::vector<std::string> row = {
+      name,
+      fmt::format("{:.0f}", counts.n),
+      fmt::format("{:.3f}", counts.loss / counts.n),
+      fmt::format("{:.3f}", counts.priorLoss()),
+      ratio(counts.sure, counts.n),
+      fmt::format("{:.4f}", counts.sure_wrong / std::max(1.0, counts.sure)),
+      fmt::format("{:.0f}", counts.sure_users),
+      fmt::format("{:.0f}", counts.sure_users_wrong)};
+  for (std::size_t k = 0; k < kShapes; ++k) {
+    row.push_back(fmt::format("{:.0f}", counts.of[k]));
+    row.push_back(ratio(counts.right[k], counts.of[k]));
+    row.push_back(ratio(counts.right[k], counts.called[k]));
+  }
+  return row;
+}
+
+void addReliability(const std::string& name, const Counts& counts, StudyTable& reliability) {
+  for (std::size_t b = 0; b < counts.bins.size(); ++b) {
+    const Counts::Bin& bin = counts.bins[b];
+    if (bin.n > 0)
+      reliability.rows.push_back({name, fmt::format("{:.1f}", 0.1 * static_cast<double>(b)),
+                                  fmt::format("{:.3f}", bin.sum / bin.n),
+                                  fmt::format("{:.3f}", bin.right / bin.n),
+                                  fmt::format("{:.0f}", bin.n)});
+  }
+}
+
+/// True objects of a log and how many of them have a cluster of their kind; `shares`: of all
+/// samples.
+std::vector<std::string> boxRow(const std::string& name, const ClusterSamples& samples,
+                                std::size_t log, const std::vector<Shares>& shares) {
+  std::array<double, 3> objects{}, right{};
+  for (const ObjectView& o : samples.objects) {
+    if (o.log != log || o.returns < 20 || o.range > 40) continue;
+    const auto k = static_cast<std::size_t>(o.kind);
+    objects[k] += 1;
+    right[k] += o.sample >= 0 && likeliest(shares[static_cast<std::size_t>(o.sample)]) == k;
+  }
+  std::vector<std::string> box_row = {name};
+  for (std::size_t k = 0; k < 3; ++k) {
+    box_row.push_back(fmt::format("{:.0f}", objects[k]));
+    box_row.push_back(ratio(right[k], objects[k]));
+  }
+  return box_row;
+}
+
+StudyPlot reliabilityPlot(const StudyTable& reliability) {
+  std::string points;
+  for (const auto& row : reliability.rows)
+    points += fmt::format("{} {} {}\n", row[2], row[3], row[4]);
+  StudyPlot plot;
+  plot.name = "reliability";
+  plot.caption =
+      "Stated probabilities of all kinds against what came true, a point a log and tenth; "
+      "its area grows with the number of clusters";
+  plot.script =
+      "set xlabel 'stated probability'; set ylabel 'share that came true'; set size square\n"
+      "set xrange [0:1]; set yrange [0:1]; set key off\n"
+      "plot x with lines lc rgb 'gray', 'reliability.dat' using 1:2:(0.004*log($3+1)) with circles "
+      "lc rgb '#2060a0' fs transparent solid 0.5\n";
+  plot.data.emplace_back("reliability.dat", points);
+  return plot;
+}
+
 }  // namespace
 
 StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
@@ -116,42 +182,9 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
         counts.add(all[i], static_cast<std::size_t>(*s.kind));
     }
     if (counts.n == 0) continue;
-    std::vector<std::string> row = {
-        logs[log].name,
-        fmt::format("{:.0f}", counts.n),
-        fmt::format("{:.3f}", counts.loss / counts.n),
-        fmt::format("{:.3f}", counts.priorLoss()),
-        ratio(counts.sure, counts.n),
-        fmt::format("{:.4f}", counts.sure_wrong / std::max(1.0, counts.sure)),
-        fmt::format("{:.0f}", counts.sure_users),
-        fmt::format("{:.0f}", counts.sure_users_wrong)};
-    for (std::size_t k = 0; k < kShapes; ++k) {
-      row.push_back(fmt::format("{:.0f}", counts.of[k]));
-      row.push_back(ratio(counts.right[k], counts.of[k]));
-      row.push_back(ratio(counts.right[k], counts.called[k]));
-    }
-    left_out.rows.push_back(std::move(row));
-    for (std::size_t b = 0; b < counts.bins.size(); ++b) {
-      const Counts::Bin& bin = counts.bins[b];
-      if (bin.n > 0)
-        reliability.rows.push_back(
-            {logs[log].name, fmt::format("{:.1f}", 0.1 * static_cast<double>(b)),
-             fmt::format("{:.3f}", bin.sum / bin.n), fmt::format("{:.3f}", bin.right / bin.n),
-             fmt::format("{:.0f}", bin.n)});
-    }
-    std::array<double, 3> objects{}, right{};
-    for (const ObjectView& o : samples.objects) {
-      if (o.log != log || o.returns < 20 || o.range > 40) continue;
-      const auto k = static_cast<std::size_t>(o.kind);
-      objects[k] += 1;
-      right[k] += o.sample >= 0 && likeliest(all[static_cast<std::size_t>(o.sample)]) == k;
-    }
-    std::vector<std::string> box_row = {logs[log].name};
-    for (std::size_t k = 0; k < 3; ++k) {
-      box_row.push_back(fmt::format("{:.0f}", objects[k]));
-      box_row.push_back(ratio(right[k], objects[k]));
-    }
-    boxes.rows.push_back(std::move(box_row));
+    left_out.rows.push_back(leftOutRow(logs[log].name, counts));
+    addReliability(logs[log].name, counts, reliability);
+    boxes.rows.push_back(boxRow(logs[log].name, samples, log, all));
   }
   const ClusterClassifier final = trainer.classifier(logs.size(), provenance);
   const EvidenceMemory& memory = final.memory();
@@ -165,21 +198,7 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
   report.remarks.push_back(
       "`lidar_classes.json` is the model for `[sensor.LABEL.classifier] file`.");
   report.tables = {std::move(left_out), std::move(boxes)};
-  std::string points;
-  for (const auto& row : reliability.rows)
-    points += fmt::format("{} {} {}\n", row[2], row[3], row[4]);
-  StudyPlot plot;
-  plot.name = "reliability";
-  plot.caption =
-      "Stated probabilities of all kinds against what came true, a point a log and tenth; "
-      "its area grows with the number of clusters";
-  plot.script =
-      "set xlabel 'stated probability'; set ylabel 'share that came true'; set size square\n"
-      "set xrange [0:1]; set yrange [0:1]; set key off\n"
-      "plot x with lines lc rgb 'gray', 'reliability.dat' using 1:2:(0.004*log($3+1)) with circles "
-      "lc rgb '#2060a0' fs transparent solid 0.5\n";
-  plot.data.emplace_back("reliability.dat", points);
-  report.plots.push_back(std::move(plot));
+  report.plots.push_back(reliabilityPlot(reliability));
   report.tables.push_back(std::move(reliability));
   report.files.emplace_back("lidar_classes.json", final.write());
   return report;
