@@ -1,73 +1,40 @@
 #include "libperception/lidar/BoxFit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "libperception/lidar/PointFours.h"
 
 namespace perception {
 
 namespace {
 
-/// Four floats in one SSE register.
-using Four = float __attribute__((vector_size(16)));
-Four least(Four a, Four b) { return a < b ? a : b; }
-Four largest(Four a, Four b) { return a > b ? a : b; }
-Four all(double value) {
-  const auto v = static_cast<float>(value);
-  return Four{v, v, v, v};
+/// Points of a cluster relative to the first of them.
+PointFours foursOf(const std::vector<Vector2>& points) {
+  return {points.size(), [&](std::size_t i) {
+            const Vector2 d = points[i] - points.front();
+            return std::make_pair(static_cast<float>(d.x()), static_cast<float>(d.y()));
+          }};
 }
-template <class Choose>
-float across(Four v, const Choose& choose) {
-  return choose(choose(v[0], v[1]), choose(v[2], v[3]));
-}
-float sumOf(Four v) { return (v[0] + v[1]) + (v[2] + v[3]); }
-
-/// Points of a cluster relative to one of them, in groups of four, padded by a point of weight
-/// zero.
-struct PointFours {
-  explicit PointFours(const std::vector<Vector2>& points) {
-    const Vector2& origin = points.front();
-    for (std::size_t i = 0; i < points.size(); i += 4) {
-      Four px{}, py{}, w{};
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Vector2 d = points[std::min(i + k, points.size() - 1)] - origin;
-        px[k] = static_cast<float>(d.x()), py[k] = static_cast<float>(d.y());
-        w[k] = i + k < points.size() ? 1.0f : 0.0f;
-      }
-      x.push_back(px), y.push_back(py), weight.push_back(w);
-    }
-    a.resize(x.size()), b.resize(x.size());
-  }
-  // Points rotated into the direction under test.
-  std::vector<Four> x, y, weight, a, b;  ///< [m]
-};
 
 /// Sum over the points of 1 / distance to the nearer of the two rectangle sides that the points lie
 /// along.
 double closeness(PointFours& points, double yaw, double min_distance) {
-  const Four c = all(std::cos(yaw)), s = all(std::sin(yaw)), floor = all(min_distance);
-  Four a0 = all(1e30), a1 = all(-1e30), b0 = a0, b1 = a1;
-  const std::size_t count = points.x.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Four a = c * points.x[i] + s * points.y[i], b = c * points.y[i] - s * points.x[i];
-    points.a[i] = a, points.b[i] = b;
-    a0 = least(a0, a), a1 = largest(a1, a), b0 = least(b0, b), b1 = largest(b1, b);
-  }
-  const auto lower = [](float p, float q) { return std::min(p, q); };
-  const auto higher = [](float p, float q) { return std::max(p, q); };
-  const auto spread = [](float v) { return all(static_cast<double>(v)); };
-  a0 = spread(across(a0, lower)), a1 = spread(across(a1, higher));
-  b0 = spread(across(b0, lower)), b1 = spread(across(b1, higher));
+  points.turn(static_cast<float>(std::cos(yaw)), static_cast<float>(std::sin(yaw)));
+  const Four floor = all(static_cast<float>(min_distance));
+  const FourBounds along(points.a), across(points.b);
+  const std::size_t count = points.a.size();
   Four low_a{}, high_a{}, low_b{}, high_b{};
   for (std::size_t i = 0; i < count; ++i) {
-    const Four a = points.a[i], b = points.b[i], w = points.weight[i];
-    low_a += w * (a - a0) * (a - a0), high_a += w * (a1 - a) * (a1 - a);
-    low_b += w * (b - b0) * (b - b0), high_b += w * (b1 - b) * (b1 - b);
+    const Four w = points.weight[i];
+    const Four a0 = points.a[i] - along.low, a1 = along.high - points.a[i];
+    const Four b0 = points.b[i] - across.low, b1 = across.high - points.b[i];
+    low_a += w * a0 * a0, high_a += w * a1 * a1;
+    low_b += w * b0 * b0, high_b += w * b1 * b1;
   }
-  const Four edge_a = sumOf(low_a) < sumOf(high_a) ? a0 : a1;
-  const Four edge_b = sumOf(low_b) < sumOf(high_b) ? b0 : b1;
+  const Four edge_a = sumOf(low_a) < sumOf(high_a) ? along.low : along.high;
+  const Four edge_b = sumOf(low_b) < sumOf(high_b) ? across.low : across.high;
   Four sum{};
   for (std::size_t i = 0; i < count; ++i) {
     const Four off_a = largest(points.a[i] - edge_a, edge_a - points.a[i]);
@@ -83,7 +50,7 @@ struct Direction {
 };
 
 Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& params) {
-  PointFours points(places);
+  PointFours points = foursOf(places);
   const int steps = std::max(2, static_cast<int>(std::lround(kPi / 2 / params.step)));
   const double step = kPi / 2 / steps;
   std::vector<double> score(static_cast<std::size_t>(steps));

@@ -84,8 +84,8 @@ std::array<double, kClusterKinds> ClusterClassifier::probabilities(
   return p;
 }
 
-std::array<double, kShapes> ClusterClassifier::evidence(const Descriptor& descriptor) const {
-  const auto p = probabilities(descriptor);
+std::array<double, kShapes> ClusterClassifier::evidence(
+    const std::array<double, kClusterKinds>& p) const {
   const auto likelihood = [&](std::size_t k) {
     return std::log(std::max(p[k], kLeastProbability) / prior_[k]);
   };

@@ -61,7 +61,11 @@ class ClusterClassifier {
   /// log p(descriptor | kind) / p(descriptor | thing), by Bayes' rule from the probabilities and
   /// the prior. Limited to +-6 and then multiplied by 1 - P(mixed): the shape of several objects
   /// grown together tells little of any one of them.
-  std::array<double, kShapes> evidence(const Descriptor& descriptor) const;
+  std::array<double, kShapes> evidence(const Descriptor& descriptor) const {
+    return evidence(probabilities(descriptor));
+  }
+  std::array<double, kShapes> evidence(
+      const std::array<double, kClusterKinds>& probabilities) const;
 
   /// Reads a file as of write(). Nothing in it is trusted: throws DataError with the place of the
   /// first fault and what was expected there.

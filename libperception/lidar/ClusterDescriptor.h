@@ -83,6 +83,7 @@ class ClusterDescriber {
  private:
   void rankIntensities(const LidarCloud& cloud);
   void sortByPlace();
+  void describeEdges(Descriptor& d);
   void describeOutline(Descriptor& d) const;
   void describeSpread(Descriptor& d) const;
   void describeRoughness(Descriptor& d) const;

@@ -10,9 +10,9 @@
 namespace perception {
 namespace {
 
-constexpr float kPlaneCell = 0.25f;  // [m] of the search for neighbors
-constexpr float kIsolated = 3;       // [m] farther neighbors are not looked for
-constexpr std::size_t kNeighborSample = 24;
+constexpr float kPlaneCell = 0.5f;  // [m] of the search for neighbors
+constexpr float kIsolated = 3;      // [m] farther neighbors are not looked for
+constexpr std::size_t kNeighborSample = 24, kIntensitySample = 400;
 
 /// DirectionCells about a cluster.
 struct CellCounts {
@@ -145,15 +145,15 @@ void ClusterDescriber::describeDirections(const std::vector<std::uint32_t>& memb
 void ClusterDescriber::describeIntensity(const std::vector<std::uint32_t>& members,
                                          Descriptor& d) const {
   std::vector<float> values;
-  values.reserve(members.size());
-  for (const std::uint32_t k : members) values.push_back(intensity_[k]);
+  const std::size_t stride = 1 + (members.size() - 1) / kIntensitySample;
+  for (std::size_t i = 0; i < members.size(); i += stride) values.push_back(intensity_[members[i]]);
   const auto n = static_cast<float>(values.size());
   const float mean = std::accumulate(values.begin(), values.end(), 0.0f) / n;
   float squares = 0;
   for (const float v : values) squares += (v - mean) * (v - mean);
   at(d, Feature::kIntensityMean) = mean;
   at(d, Feature::kIntensitySpread) = std::sqrt(squares / n);
-  at(d, Feature::kIntensityHigh) = quantile(std::move(values), 0.9);
+  at(d, Feature::kIntensityHigh) = quantile(values, 0.9);
 }
 
 void ClusterDescriber::describeNeighbors(const std::vector<std::uint32_t>& members, Descriptor& d) {

@@ -19,8 +19,8 @@ struct Interval {
   float size() const { return high > low ? high - low : 0; }
 };
 
-/// The value of that rank in an unsorted copy.
-inline float quantile(std::vector<float> values, double q) {
+/// The value of that rank; changes the order.
+inline float quantile(std::vector<float>& values, double q) {
   const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + k, values.end());
   return values[static_cast<std::size_t>(k)];

@@ -78,10 +78,11 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
 
 std::vector<JudgedCluster> judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
                                           const ClusterClassifier& classifier) {
-  std::vector<double> own;  // probability of the likeliest road user
+  std::vector<Probabilities> probabilities;
+  std::vector<double> own;  // of the likeliest road user
   auto clusters = describedClusters(found, cloud, [&](const DescribedCluster& cluster) {
     const auto p = classifier.probabilities(cluster.descriptor);
-    own.push_back(roadUser(p));
+    probabilities.push_back(p), own.push_back(roadUser(p));
     return own.back() < kSureWhole && p[static_cast<std::size_t>(ClusterKind::kThing)] < kSureThing;
   });
   const std::size_t n = clusters.size();
@@ -103,7 +104,7 @@ std::vector<JudgedCluster> judgedClusters(const LidarDetections& found, const Li
   for (std::size_t i = 0; i < n; ++i) {
     if (!stands[i]) continue;
     JudgedCluster cluster;
-    cluster.evidence = classifier.evidence(clusters[i].descriptor);
+    cluster.evidence = classifier.evidence(probabilities[i]);
     if (roadUserEvidence(cluster) < kSurelyThing) continue;
     cluster.points = std::move(clusters[i].segment.points);
     const float isolation = clusters[i].descriptor[static_cast<std::size_t>(Feature::kIsolation)];

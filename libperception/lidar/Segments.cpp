@@ -11,14 +11,6 @@
 namespace perception {
 namespace {
 
-/// Returns of every group, ascending.
-std::vector<std::vector<std::uint32_t>> membersOf(const Partition& groups) {
-  std::vector<std::vector<std::uint32_t>> members(groups.count);
-  for (std::size_t i = 0; i < groups.group.size(); ++i)
-    members[groups.group[i]].push_back(static_cast<std::uint32_t>(i));
-  return members;
-}
-
 class SegmentFinder {
  public:
   SegmentFinder(const std::vector<float>& x, const std::vector<float>& y,
@@ -54,13 +46,30 @@ class SegmentFinder {
       returns.push_back({x_[i], y_[i], height_[i] * static_cast<float>(level.vertical),
                          static_cast<float>(length)});
     }
-    auto groups = membersOf(linkInSpace(returns, static_cast<float>(link_.least * level.share),
-                                        static_cast<float>(link_.most * level.share)));
-    for (auto& group : groups)
-      for (std::uint32_t& i : group) i = members[i];
-    groups.erase(std::remove_if(groups.begin(), groups.end(),
-                                [&](const auto& g) { return weightOf(g) < min_points_; }),
-                 groups.end());
+    const Partition linked = linkInSpace(returns, static_cast<float>(link_.least * level.share),
+                                         static_cast<float>(link_.most * level.share));
+    return largeGroups(members, linked);
+  }
+
+  /// Those of enough returns; in a snowfall most groups are of a few.
+  std::vector<std::vector<std::uint32_t>> largeGroups(const std::vector<std::uint32_t>& members,
+                                                      const Partition& linked) const {
+    constexpr std::uint32_t kSmall = ~0u;
+    std::vector<double> weight(linked.count, 0);
+    std::vector<std::uint32_t> size(linked.count, 0), number(linked.count, kSmall);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const std::uint32_t g = linked.group[k];
+      weight[g] += weight_.empty() ? 1.0 : static_cast<double>(weight_[members[k]]), ++size[g];
+    }
+    std::vector<std::vector<std::uint32_t>> groups;
+    for (std::uint32_t g = 0; g < linked.count; ++g) {
+      if (weight[g] < min_points_) continue;
+      number[g] = static_cast<std::uint32_t>(groups.size());
+      groups.emplace_back().reserve(size[g]);
+    }
+    for (std::size_t k = 0; k < members.size(); ++k)
+      if (const std::uint32_t n = number[linked.group[k]]; n != kSmall)
+        groups[n].push_back(members[k]);
     return groups;
   }
 
@@ -77,13 +86,6 @@ class SegmentFinder {
       segments_.push_back({group, whole});
       if (!visit_ || visit_(segments_.back())) addParts(group, number, level + 1);
     }
-  }
-
-  double weightOf(const std::vector<std::uint32_t>& members) const {
-    if (weight_.empty()) return static_cast<double>(members.size());
-    double sum = 0;
-    for (const std::uint32_t i : members) sum += static_cast<double>(weight_[i]);
-    return sum;
   }
 
   /// Longer side of the box about it along the axes [m].

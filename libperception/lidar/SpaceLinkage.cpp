@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "libperception/lidar/Forest.h"
@@ -13,34 +12,38 @@ namespace {
 
 constexpr std::uint32_t kNone = ~0u;
 
-/// Numbers of keys in the order of their first appearance: open addressing.
+/// Numbers of keys in the order of their first appearance: open addressing, at most half full.
 class KeyNumbers {
  public:
-  explicit KeyNumbers(std::size_t most) {
-    std::size_t size = 64;
-    while (size < 2 * most) size *= 2;
-    keys_.resize(size), numbers_.assign(size, kNone), mask_ = size - 1;
-  }
+  KeyNumbers() : slots_(1024) {}
   std::uint32_t add(std::uint64_t key) {
-    std::size_t slot = slotOf(key);
-    while (numbers_[slot] != kNone && keys_[slot] != key) slot = (slot + 1) & mask_;
-    if (numbers_[slot] == kNone) keys_[slot] = key, numbers_[slot] = count_++;
-    return numbers_[slot];
+    if (2 * count_ >= slots_.size()) grow();
+    Slot& slot = slots_[slotOf(key)];
+    if (slot.number == kNone) slot = {key, count_++};
+    return slot.number;
   }
-  std::uint32_t find(std::uint64_t key) const {
-    std::size_t slot = slotOf(key);
-    while (numbers_[slot] != kNone && keys_[slot] != key) slot = (slot + 1) & mask_;
-    return numbers_[slot];
-  }
+  std::uint32_t find(std::uint64_t key) const { return slots_[slotOf(key)].number; }
   std::uint32_t count() const { return count_; }
 
  private:
+  struct Slot {
+    std::uint64_t key = 0;
+    std::uint32_t number = kNone;
+  };
+  /// Where the key is or belongs.
   std::size_t slotOf(std::uint64_t key) const {
-    return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> 20) & mask_;
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> 32) & mask;
+    while (slots_[slot].number != kNone && slots_[slot].key != key) slot = (slot + 1) & mask;
+    return slot;
   }
-  std::vector<std::uint64_t> keys_;
-  std::vector<std::uint32_t> numbers_;
-  std::size_t mask_ = 0;
+  void grow() {
+    std::vector<Slot> old(4 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& s : old)
+      if (s.number != kNone) slots_[slotOf(s.key)] = s;
+  }
+  std::vector<Slot> slots_;  ///< a power of two
   std::uint32_t count_ = 0;
 };
 
@@ -52,7 +55,9 @@ std::uint64_t keyOf(std::int32_t a, std::int32_t b, std::int32_t c) {
 }
 
 std::int32_t cellOf(float v, float per_meter) {
-  return static_cast<std::int32_t>(std::floor(v * per_meter));
+  const float place = v * per_meter;
+  const auto cell = static_cast<std::int32_t>(place);  // towards zero
+  return cell - (place < static_cast<float>(cell));
 }
 
 /// Members of groups, group by group, in their order.
@@ -75,14 +80,11 @@ class CubeLinkage {
       : returns_(returns),
         per_cube_(std::sqrt(3.0f) / least * 1.0001f),
         cubes_per_block_(static_cast<std::int32_t>(std::ceil(most * per_cube_)) + 1),
-        cube_of_(cubes(returns)),
+        cube_of_(cubes()),
         in_cube_(cube_of_, cube_count_),
-        block_table_(cube_count_),
         block_of_(blocks()),
         in_block_(block_of_, block_key_.size()),
-        groups_(cube_count_) {
-    setBounds();
-  }
+        groups_(cube_count_) {}
 
   Partition link() {
     for (std::uint32_t c = 0; c + 1 < in_block_.start.size(); ++c) linkWithin(c);
@@ -105,13 +107,24 @@ class CubeLinkage {
     float x0, x1, y0, y1, z0, z1, length;
   };
 
-  std::vector<std::uint32_t> cubes(const std::vector<LinkedReturn>& returns) {
-    KeyNumbers table(returns.size());
+  /// The cube of every return; sets the bounds of the cubes.
+  std::vector<std::uint32_t> cubes() {
+    KeyNumbers table;
     std::vector<std::uint32_t> cube_of;
-    cube_of.reserve(returns.size());
-    for (const LinkedReturn& r : returns)
-      cube_of.push_back(
-          table.add(keyOf(cellOf(r.x, per_cube_), cellOf(r.y, per_cube_), cellOf(r.z, per_cube_))));
+    cube_of.reserve(returns_.size());
+    std::uint64_t last = 0;  // neighbors in the scan are often in one cube
+    for (const LinkedReturn& r : returns_) {
+      const std::uint64_t key =
+          keyOf(cellOf(r.x, per_cube_), cellOf(r.y, per_cube_), cellOf(r.z, per_cube_));
+      const std::uint32_t cube = !cube_of.empty() && key == last ? cube_of.back() : table.add(key);
+      if (cube == bounds_.size()) bounds_.push_back({r.x, r.x, r.y, r.y, r.z, r.z, r.length});
+      Bounds& b = bounds_[cube];
+      b.x0 = std::min(b.x0, r.x), b.x1 = std::max(b.x1, r.x);
+      b.y0 = std::min(b.y0, r.y), b.y1 = std::max(b.y1, r.y);
+      b.z0 = std::min(b.z0, r.z), b.z1 = std::max(b.z1, r.z);
+      b.length = std::max(b.length, r.length);
+      cube_of.push_back(cube), last = key;
+    }
     cube_count_ = table.count();
     return cube_of;
   }
@@ -133,22 +146,6 @@ class CubeLinkage {
   std::int32_t blockOf(float v) const {
     const std::int32_t cube = cellOf(v, per_cube_);
     return (cube >= 0 ? cube : cube - cubes_per_block_ + 1) / cubes_per_block_;
-  }
-
-  void setBounds() {
-    bounds_.reserve(cube_count_);
-    for (std::uint32_t c = 0; c < cube_count_; ++c) {
-      constexpr float kFar = std::numeric_limits<float>::max();
-      Bounds b{kFar, -kFar, kFar, -kFar, kFar, -kFar, 0};
-      for (std::uint32_t k = in_cube_.start[c]; k < in_cube_.start[c + 1]; ++k) {
-        const LinkedReturn& r = returns_[in_cube_.member[k]];
-        b.x0 = std::min(b.x0, r.x), b.x1 = std::max(b.x1, r.x);
-        b.y0 = std::min(b.y0, r.y), b.y1 = std::max(b.y1, r.y);
-        b.z0 = std::min(b.z0, r.z), b.z1 = std::max(b.z1, r.z);
-        b.length = std::max(b.length, r.length);
-      }
-      bounds_.push_back(b);
-    }
   }
 
   bool near(std::uint32_t a, std::uint32_t b) const {
@@ -204,6 +201,7 @@ class CubeLinkage {
   const float per_cube_;  ///< [1/m]
   const std::int32_t cubes_per_block_;
   std::uint32_t cube_count_ = 0;
+  std::vector<Bounds> bounds_;
   std::vector<std::uint32_t> cube_of_;
   Buckets in_cube_;
   std::vector<std::array<std::int32_t, 3>> block_key_;
@@ -211,7 +209,6 @@ class CubeLinkage {
   std::vector<std::uint32_t> block_of_;
   Buckets in_block_;
   Forest groups_;
-  std::vector<Bounds> bounds_;
 };
 
 }  // namespace

@@ -141,7 +141,7 @@ TEST(ClusterClassifier, MixesNinePartsOfTheMappedProbabilityWithOneOfTheRaw) {
 }
 
 TEST(ClusterClassifier, EvidenceIsTheLogRatioToAThingWithoutThePrior) {
-  const auto e = constant({0.3, 0.1, 0.2, 0.2, 0.2}, {0.1, 0.1, 0.2, 0.5, 0.1}).evidence({});
+  const auto e = constant({0.3, 0.1, 0.2, 0.2, 0.2}, {0.1, 0.1, 0.2, 0.5, 0.1}).evidence(Descriptor{});
   // 20 % of "mixed" weakens it by as much.
   EXPECT_NEAR(e[0], 0.8 * std::log((0.3 / 0.1) / (0.2 / 0.5)), 1e-14);
   EXPECT_NEAR(e[1], 0.8 * std::log((0.1 / 0.1) / (0.2 / 0.5)), 1e-14);
@@ -149,7 +149,7 @@ TEST(ClusterClassifier, EvidenceIsTheLogRatioToAThingWithoutThePrior) {
 }
 
 TEST(ClusterClassifier, EvidenceIsLimited) {
-  const auto e = constant({1, 1e-300, 1e-9, 1e-6, 1e-300}).evidence({});
+  const auto e = constant({1, 1e-300, 1e-9, 1e-6, 1e-300}).evidence(Descriptor{});
   EXPECT_NEAR(e[0], 6, 1e-12);
   EXPECT_NEAR(e[1], -6, 1e-12);
 }
