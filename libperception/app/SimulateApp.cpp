@@ -45,6 +45,8 @@ void SimulateApp::declare(CLI::App& cli) {
   cli.add_option("--vehicle", vehicle,
                  "INI of a vehicle: its sensors instead of those of the scenario")
       ->check(CLI::ExistingFile);
+  cli.add_option("--weather", weather, "INI of weather: instead of [weather] of the scenario")
+      ->check(CLI::ExistingFile);
   addOutputOption(cli, false);
   cli.add_option(
       "--coverage", coverage,
@@ -73,6 +75,11 @@ std::optional<Scenario> SimulateApp::loadScenario() {
     if (other.has("ego")) scenario.ego.pose = other.read<PoseParams>("ego");
     scenario.sensors = readSensors(other);
     if (scenario.sensors.empty()) other.fault("", "", "no [sensor.LABEL] section");
+    other.finish();
+  }
+  if (!weather.empty()) {
+    Config other = Config::fromFile(weather);
+    scenario.weather = other.read<SimulatedWeatherParams>("weather", {}, true);
     other.finish();
   }
   return trialOf(std::move(scenario), trial, seed);

@@ -19,6 +19,7 @@ class SimulateApp : public App {
   std::string contact_sheet;  ///< --contact-sheet: output picture of `scenes`
   std::vector<std::string> scenes;  ///< scenario INIs of the contact sheet
   std::string vehicle;              ///< --vehicle: INI whose sensors replace those of the scenario
+  std::string weather;              ///< --weather: INI whose [weather] replaces the scenario's
 
   std::string out_truth_file;
   std::int64_t out_frames = 0;
@@ -31,7 +32,8 @@ class SimulateApp : public App {
   void run() override;
 
  private:
-  /// The scenario of -c with --vehicle and --trial applied; nothing after --print-config.
+  /// The scenario of -c with --vehicle, --weather and --trial applied; nothing after
+  /// --print-config.
   std::optional<Scenario> loadScenario();
   void drawCoverage();
   void drawContactSheet();

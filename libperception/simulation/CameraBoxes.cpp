@@ -63,6 +63,7 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
   if (hook) {
     Rng weather_rng(key.withPurpose(key.purpose ^ kWeatherPurpose));
     hook(look, weather_rng);
+    look.chance *= contrastRecall(look.optical_depth);
   }
   if (rng.uniform() >= look.chance) return {};
   ObjectDetection d;
@@ -130,6 +131,10 @@ Pose3 opticalAxes() {
 double observationAngle(const Pose3& T_camera_object) {
   const Vector3 p = T_camera_object.translation(), axis = T_camera_object.linear().col(0);
   return wrapAngle(std::atan2(-axis.z(), axis.x()) - std::atan2(p.x(), p.z()));
+}
+
+double contrastRecall(double optical_depth) {
+  return std::clamp((std::exp(-optical_depth) - 0.05) / 0.2, 0.0, 1.0);
 }
 
 std::optional<ImageOutline> imageOutline(const World& world, std::size_t object, double t,

@@ -44,6 +44,10 @@ Pose3 opticalAxes();
 /// KITTI's alpha: rotation about the optical y axis, seen along the line of sight.
 double observationAngle(const Pose3& T_camera_object);
 
+/// Share of its recall that a detector has left where the air's optical depth lowers the contrast
+/// C/C0 = exp(-depth): clip((C/C0 - 0.05) / 0.2, 0, 1) (method.md 9.9).
+double contrastRecall(double optical_depth);
+
 /// Effect of weather on detections; empty: clear air by day.
 using CameraHook = std::function<void(CameraLook&, Rng&)>;
 

@@ -1,32 +1,14 @@
 #include "libperception/simulation/LidarSensor.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/LidarSurface.h"
 #include "libperception/simulation/World.h"
 
 namespace perception {
 namespace {
-
-/// How a material returns light. Reflectivities at 905 nm: usual figures of lidar data sheets; the
-/// road's grazing exponent is set by calculation so that dry asphalt is seen to 45-50 m.
-struct Surface {
-  double reflectivity;  ///< [0, 1] at normal incidence
-  double grazing;       ///< exponent of the cosine: 1 = Lambert, less = rough
-  double lost;          ///< share of pulses transmitted or reflected specularly
-};
-constexpr std::array<Surface, 10> kSurfaces = {{{.17, .3, 0},    // road
-                                                {.45, 1, .05},   // paint
-                                                {.10, 1, .75},   // glass
-                                                {.06, .6, 0},    // tire
-                                                {.35, .6, 0},    // cloth
-                                                {.50, .8, 0},    // skin
-                                                {.50, 1, .05},   // metal
-                                                {.40, .8, 0},    // wall
-                                                {.35, .5, 0},    // leaf
-                                                {.35, .3, 0}}};  // grass
 
 constexpr double kRangeUnit = 0.09;  // [m] dR of method.md (57): sigma = dR / sqrt(2 SNR)
 constexpr double kSpeckle = 0.12;    // relative spread of the echo's power, rough surfaces
@@ -46,6 +28,7 @@ struct Echo {
   bool object_label = false;  ///< the sensor's own point label (four layers)
   double range = 0;           ///< [m]
   double intensity = 0;       ///< [0, 1] corrected for range, as the instrument reports it
+  Phantom phantom = Phantom::kNone;
 };
 
 LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& direction,
@@ -54,17 +37,32 @@ LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& dir
   pulse.origin = origin, pulse.direction = direction;
   pulse.hit = hit;
   if (hit.object == BeamHit::kNothing) return pulse;
-  const Surface& surface = kSurfaces[static_cast<std::size_t>(hit.material)];
-  pulse.reflectivity = surface.reflectivity * reflectivity_factor *
-                       std::pow(static_cast<double>(hit.cos_incidence), surface.grazing);
-  pulse.lost = surface.lost;
+  pulse.reflectivity = reflectivity_factor * lidarReflectivity(hit);
+  pulse.lost = lidarSurface(hit.material).lost;
   return pulse;
+}
+
+// The nearest scatterer of known intensity; null where there is none.
+const LidarPulse::Scatterer* knownReturn(const LidarPulse& pulse, const LidarParams& p) {
+  const LidarPulse::Scatterer* first = nullptr;
+  for (const LidarPulse::Scatterer& s : pulse.scatterers) {
+    if (s.intensity < 0 || s.range < p.range_min || s.range > p.range_max) continue;
+    if (!first || s.range < first->range) first = &s;
+  }
+  return first;
 }
 
 // Hard target: P0 = rho_t exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2, method.md (57); the
 // strongest echo of the pulse is received.
 Echo echoOf(const LidarPulse& pulse, const LidarParams& p, Rng& rng) {
   Echo echo;
+  if (pulse.blocked) return echo;
+  if (const LidarPulse::Scatterer* known = knownReturn(pulse, p)) {
+    echo.received = true;
+    echo.range = known->range + rng.normal() * p.range_noise;
+    echo.intensity = known->intensity, echo.phantom = known->phantom;
+    return echo;
+  }
   const bool surface = pulse.hit.object != BeamHit::kNothing && pulse.hit.range >= p.range_min;
   if (!surface && pulse.scatterers.empty()) return echo;
   const bool lost = surface && rng.uniform() < pulse.lost + p.loss;
@@ -78,7 +76,7 @@ Echo echoOf(const LidarPulse& pulse, const LidarParams& p, Rng& rng) {
     if (s.range < p.range_min || s.range > p.range_max) continue;
     if (returned > 0 && s.power * range * range <= returned) continue;
     range = s.range, returned = s.power * s.range * s.range;
-    echo.on_object = false;
+    echo.on_object = false, echo.phantom = s.phantom;
   }
   const double far = p.reference_range / range;
   const double snr = returned / (0.9 * pulse.threshold) * far * far;
@@ -179,6 +177,7 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
         const std::uint32_t slot = slices_[s][i].slot;
         if (hook) {
           Rng weather_rng(key.withSlot(slot).withPurpose(key.purpose ^ kWeatherPurpose));
+          pulses[i].aim = slices_[s][i].direction, pulses[i].scene = &caster;
           hook(pulses[i], weather_rng);
         }
         Rng rng(key.withSlot(slot));
@@ -203,6 +202,7 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
         cloud.label.push_back(static_cast<std::uint8_t>(echo.object_label ? PointLabel::kObject
                                                                           : PointLabel::kGround));
       }
+      if (hook) result.phantoms.push_back(echo.phantom);
       if (echo.on_object) ++result.points_on[static_cast<std::size_t>(pulses[i].hit.object)];
     }
   }

@@ -156,6 +156,7 @@ Scenario readScenario(Config& config) {
   scenario.ego = config.read<EgoParams>("ego", {}, true);
   scenario.variation = config.read<VariationParams>("variation");
   scenario.light = config.read<Lighting>("light");
+  scenario.weather = config.read<SimulatedWeatherParams>("weather");
   const std::string object_prefix = "object.", road_prefix = "road.", lane_prefix = "lane.";
   for (const std::string& section : config.sectionsWithPrefix(road_prefix)) {
     RoadParams road;

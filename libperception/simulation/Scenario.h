@@ -14,6 +14,7 @@
 #include "libperception/simulation/RadarUnit.h"
 #include "libperception/simulation/SphericalCamera.h"
 #include "libperception/simulation/Trajectory.h"
+#include "libperception/simulation/weather/SimulatedWeatherParams.h"
 
 namespace perception {
 
@@ -162,6 +163,7 @@ struct Scenario {
   EgoParams ego;
   VariationParams variation;
   Lighting light;
+  SimulatedWeatherParams weather;
   std::vector<RoadParams> roads;      ///< empty: asphalt everywhere
   std::vector<Lane> lanes;            ///< of the lane map
   std::vector<ObjectParams> objects;  ///< in the order of the file

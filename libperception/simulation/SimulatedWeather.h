@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "libperception/core/Frames.h"
@@ -12,19 +13,29 @@ namespace perception {
 class World;
 struct SensorParams;
 
+/// What a lidar return comes from where it is no surface.
+enum class Phantom : std::uint8_t { kNone, kRain, kSnow, kFog, kSpray, kPlume, kMirror, kNoise };
+
 /// A lidar pulse and its targets, before detection.
 struct LidarPulse {
   /// A backscattering particle or cloud: a raindrop, a snowflake, a plume.
   struct Scatterer {
     double range = 0;  ///< [m]
     double power = 0;  ///< in the unit of the lidar equation: reflectivity / range^2
+    /// [0, 1] where a law of measured returns gives it: the nearest such return is received,
+    /// whatever the other echoes and the power. < 0: the power decides.
+    double intensity = -1;
+    Phantom phantom = Phantom::kNone;
   };
-  Vector3 origin, direction;  ///< [m], unit vector; world
-  BeamHit hit;                ///< the surface
-  double reflectivity = 0;    ///< of the surface towards the sensor, incidence included
-  double lost = 0;            ///< share of pulses without backscatter: glass, mirrors
-  double optical_depth = 0;   ///< one way to the surface: attenuates the echo by exp(-2 depth)
-  double threshold = 1;       ///< factor on the detection threshold (P_min of method.md (57))
+  Vector3 origin, direction;           ///< [m], unit vector; world
+  Vector3 aim = Vector3::UnitX();      ///< the direction in the sensor's frame
+  const LidarCaster* scene = nullptr;  ///< for paths over mirrors
+  BeamHit hit;                         ///< the surface
+  double reflectivity = 0;             ///< of the surface towards the sensor, incidence included
+  double lost = 0;                     ///< share of pulses without backscatter: glass, mirrors
+  double optical_depth = 0;  ///< one way to the surface: attenuates the echo by exp(-2 depth)
+  double threshold = 1;      ///< factor on the detection threshold (P_min of method.md (57))
+  bool blocked = false;      ///< nothing comes back: dirt on the window
   std::vector<Scatterer> scatterers;  ///< the strongest echo of a pulse is received
 };
 
@@ -45,6 +56,8 @@ struct CameraLook {
   double azimuth = 0;     ///< [rad] world, of the line of sight
   double chance = 0;      ///< [0, 1] P_D
   double edge_noise = 0;  ///< of a box edge, as a share of the box's height
+  /// Of the air up to the object: with the contrast the chance falls (contrastRecall()).
+  double optical_depth = 0;
 };
 
 /// Weather between sensors and objects: may modify every pulse, reflection, look and the light
@@ -54,9 +67,9 @@ struct CameraLook {
 class SimulatedWeather {
  public:
   virtual ~SimulatedWeather() = default;
-  /// Called before each observation in chronological order; t [s]. For dynamic weather: spray,
-  /// plumes.
-  virtual void advance(const World&, double /*t*/) {}
+  /// Called before each observation of a sensor in chronological order; t [s]. For what moves
+  /// (spray, plumes) and what is the same for many beams.
+  virtual void advance(const World&, const SensorParams&, double /*t*/) {}
   virtual void alter(const SensorParams&, LidarPulse&, Rng&) const {}
   virtual void alter(const SensorParams&, RadarReflection&, Rng&) const {}
   virtual void alter(const SensorParams&, CameraLook&, Rng&) const {}

@@ -11,6 +11,7 @@
 
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/ToObservation.h"
+#include "libperception/simulation/weather/WeatherChain.h"
 
 namespace perception {
 namespace {
@@ -46,6 +47,7 @@ Simulator::Simulator(Scenario scenario, const std::string& name, std::uint64_t s
   std::sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) {
     return std::tie(a.ticks, a.kind, a.sensor) < std::tie(b.ticks, b.kind, b.sensor);
   });
+  weather_ = makeWeather(s.weather, s, seed);
   points_on_.assign(s.sensors.size(), std::vector<int>(world_.objects(), 0));
   scanned_.assign(s.sensors.size(), false);
 }
@@ -82,6 +84,8 @@ std::shared_ptr<mrpt::obs::CObservation> Simulator::play(const Event& event) {
       comment->text = fmt::format("{}scenario {}, seed {}", kSimulatedText, name_, seed_);
       const std::string& description = world_.scenario().params.description;
       if (!description.empty()) comment->text += ": " + description;
+      const std::string weather = world_.scenario().weather.text();
+      if (!weather.empty()) comment->text += "; weather: " + weather;
       return comment;
     }
     case Event::kPose:
@@ -191,7 +195,7 @@ std::shared_ptr<mrpt::obs::CObservation> Simulator::sense(const Event& event) {
   frame.sensor = sensor.label;
   frame.stamp = world_.stamp(event.t);
   frame.T_ego_sensor = sensor.T_ego_sensor();
-  if (weather_) weather_->advance(world_, event.t);
+  if (weather_) weather_->advance(world_, sensor, event.t);
   if (sensor.isLidar()) {
     frame.data = scanLidar(event, key);
   } else if (sensor.isCamera()) {

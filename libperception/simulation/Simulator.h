@@ -26,7 +26,7 @@ class Simulator {
   /// `name` of the scenario goes into the first comment; `threads` 0 = number of cores.
   Simulator(Scenario scenario, const std::string& name, std::uint64_t seed, int threads = 1);
 
-  /// Weather from now on; default: clear air.
+  /// Weather from now on; default: that of the scenario.
   void setWeather(std::unique_ptr<SimulatedWeather> weather) { weather_ = std::move(weather); }
 
   /// The next observation; null at the end.

@@ -75,6 +75,7 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
     Rng rng(key.withSlot(static_cast<std::uint32_t>(object))
                 .withPurpose(key.purpose ^ kWeatherPurpose));
     hook(look, rng);
+    look.chance *= contrastRecall(look.optical_depth);
   }
   Rng rng(key.withSlot(static_cast<std::uint32_t>(object)));
   const double draw = rng.uniform();

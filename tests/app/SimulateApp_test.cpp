@@ -47,6 +47,28 @@ TEST(SimulateApp, AnotherVehicleReplacesTheSensors) {
   EXPECT_EQ(readGroundTruth(folder / "e.truth.csv").instants.size(), 11u);
 }
 
+TEST(SimulateApp, WeatherOfAnIniReplacesThatOfTheScenario) {
+  const test::TemporaryFolder folder;
+  auto arguments = shortScene(folder / "e.rawlog");
+  arguments.insert(arguments.end(), {"--weather", kIni + "weather/fog_50.ini"});
+  SimulateApp fog;
+  ASSERT_EQ(simulate(fog, arguments), 0);
+  RawlogReader reader(folder / "e.rawlog");
+  std::ostringstream text;
+  reader.next()->getDescriptionAsText(text);
+  EXPECT_NE(text.str().find("weather: fog 50 m"), std::string::npos) << text.str();
+}
+
+TEST(SimulateApp, UnknownKeyOfTheWeatherIsAConfigurationError) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "hail.ini") << "[weather]\nhail_mm_h = 1\n";
+  auto arguments = shortScene(folder / "e.rawlog");
+  arguments.insert(arguments.end(), {"--weather", folder / "hail.ini"});
+  SimulateApp app;
+  EXPECT_EQ(simulate(app, arguments), static_cast<int>(ExitCode::kBadConfig));
+  EXPECT_FALSE(std::filesystem::exists(folder / "e.rawlog"));
+}
+
 TEST(SimulateApp, TrialsDifferAndAreRepeated) {
   const test::TemporaryFolder folder;
   for (const auto& [name, trial] :

@@ -23,8 +23,9 @@ std::vector<SetKey> keysSetIn(const std::vector<SourceFile>& inis) {
   static const std::regex line_of(R"re(^\s*(?:\[([^\]]+)\]|([\w.-]+)\s*=))re");
   std::vector<SetKey> keys;
   for (const SourceFile& file : inis) {
-    const bool simulated =
-        file.path.rfind("ini/vehicles/", 0) == 0 || file.path.rfind("ini/scenarios/", 0) == 0;
+    const bool simulated = file.path.rfind("ini/vehicles/", 0) == 0 ||
+                           file.path.rfind("ini/scenarios/", 0) == 0 ||
+                           file.path.rfind("ini/weather/", 0) == 0;
     std::istringstream in(file.text);
     std::smatch match;
     std::string section;
@@ -72,7 +73,7 @@ bool isOfKind(const std::string& section, const std::string& kind) {
 /// In a section of one of these kinds. A table of keys ("label.") is set by any key that begins so.
 bool isSet(const VisitedKey& key, const std::vector<std::string>& kinds,
            const std::vector<SetKey>& set) {
-  const bool simulated = key.folder == "libperception/simulation";
+  const bool simulated = key.folder.rfind("libperception/simulation", 0) == 0;
   return std::any_of(set.begin(), set.end(), [&](const SetKey& s) {
     const bool named = key.key.back() == '.' ? s.key.rfind(key.key, 0) == 0 : s.key == key.key;
     return named && s.simulated == simulated &&

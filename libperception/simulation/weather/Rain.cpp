@@ -1,0 +1,45 @@
+#include "libperception/simulation/weather/Rain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/simulation/weather/Beam.h"
+#include "libperception/simulation/weather/Precipitation.h"
+
+namespace perception {
+namespace {
+
+constexpr double kMeanIntensity = 0.693;  // of false returns, of 255; Poisson [linnhoff2022]
+// Box edges in rain (method.md 9.9, assumed): 1.5 times the noise from this rate on.
+constexpr double kEdgeNoise = 1.5, kEdgeRate = 10;
+
+}  // namespace
+
+Rain::Rain(double mm_h)
+    : extinction_(rainExtinction(mm_h)),
+      chance_(kRainReturns.chance(mm_h)),
+      attenuation_(radarAttenuation(mm_h)),
+      edge_noise_(1 + (kEdgeNoise - 1) * std::min(1.0, mm_h / kEdgeRate)) {}
+
+void Rain::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
+  attenuate(pulse, extinction_);
+  if (rng.uniform() >= chance_) return;
+  LidarPulse::Scatterer drop;
+  drop.range = kRainReturns.range(rng);
+  drop.intensity = std::min(255, rng.poisson(kMeanIntensity)) / 255.0;
+  drop.phantom = Phantom::kRain;
+  if (drop.range < openRange(pulse)) pulse.scatterers.push_back(drop);
+}
+
+void Rain::alter(const SensorParams&, RadarReflection& reflection, Rng&) const {
+  reflection.snr *= std::pow(10, -.1 * 2 * attenuation_ * reflection.range / 1000);
+}
+
+void Rain::alter(const SensorParams&, CameraLook& look, Rng&) const {
+  look.optical_depth += extinction_ * look.range;
+  look.edge_noise *= edge_noise_;
+}
+
+void Rain::alter(const SensorParams&, Lighting& light, Rng&) const { light.haze += extinction_; }
+
+}  // namespace perception

@@ -1,0 +1,28 @@
+#pragma once
+#include "libperception/simulation/SimulatedWeather.h"
+
+namespace perception {
+
+/// Falling rain (method.md 9.1, 9.8, 9.9). Lidar: extinction by the drops' sizes, false returns by
+/// the measured law [linnhoff2022]. The law of drops in a beam's cone is not used: it has no
+/// calibrated detector, the measured law has one. Radar: attenuation. Camera: contrast, edges,
+/// haze.
+class Rain final : public SimulatedWeather {
+ public:
+  explicit Rain(double mm_h);
+
+  using SimulatedWeather::alter;
+  void alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const override;
+  void alter(const SensorParams&, RadarReflection& reflection, Rng&) const override;
+  void alter(const SensorParams&, CameraLook& look, Rng&) const override;
+  void alter(const SensorParams&, Lighting& light, Rng&) const override;
+  bool actsOnPulses() const override { return true; }
+
+ private:
+  double extinction_;   // [1/m]
+  double chance_;       // of a false return, a beam
+  double attenuation_;  // [dB/km] one way
+  double edge_noise_;   // factor
+};
+
+}  // namespace perception

@@ -1,0 +1,62 @@
+#include "libperception/simulation/weather/WeatherChain.h"
+
+#include <utility>
+
+#include "libperception/simulation/Scenario.h"
+#include "libperception/simulation/weather/Fog.h"
+#include "libperception/simulation/weather/Rain.h"
+#include "libperception/simulation/weather/Snow.h"
+
+namespace perception {
+namespace {
+
+template <class What>
+void pass(const std::vector<std::unique_ptr<SimulatedWeather>>& phenomena,
+          const SensorParams& sensor, What& what, Rng& rng) {
+  for (const auto& phenomenon : phenomena) phenomenon->alter(sensor, what, rng);
+}
+
+}  // namespace
+
+WeatherChain::WeatherChain(std::vector<std::unique_ptr<SimulatedWeather>> phenomena)
+    : phenomena_(std::move(phenomena)) {
+  for (const auto& phenomenon : phenomena_) {
+    if (phenomenon->actsOnPulses()) on_pulses_.push_back(phenomenon.get());
+  }
+}
+
+void WeatherChain::advance(const World& world, const SensorParams& sensor, double t) {
+  for (const auto& phenomenon : phenomena_) phenomenon->advance(world, sensor, t);
+}
+
+void WeatherChain::alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const {
+  for (const SimulatedWeather* phenomenon : on_pulses_) phenomenon->alter(sensor, pulse, rng);
+}
+
+void WeatherChain::alter(const SensorParams& sensor, RadarReflection& r, Rng& rng) const {
+  pass(phenomena_, sensor, r, rng);
+}
+
+void WeatherChain::alter(const SensorParams& sensor, CameraLook& look, Rng& rng) const {
+  pass(phenomena_, sensor, look, rng);
+}
+
+void WeatherChain::alter(const SensorParams& sensor, Lighting& light, Rng& rng) const {
+  pass(phenomena_, sensor, light, rng);
+}
+
+void WeatherChain::alter(const SensorParams& sensor, SensorFrame& frame, Rng& rng) const {
+  pass(phenomena_, sensor, frame, rng);
+}
+
+std::unique_ptr<SimulatedWeather> makeWeather(const SimulatedWeatherParams& p,
+                                              const Scenario& /*scenario*/, std::uint64_t seed) {
+  std::vector<std::unique_ptr<SimulatedWeather>> phenomena;
+  if (p.rain_mm_h > 0) phenomena.push_back(std::make_unique<Rain>(p.rain_mm_h));
+  if (p.snow_mm_h > 0) phenomena.push_back(std::make_unique<Snow>(p.snow_mm_h, seed));
+  if (p.fog_mor > 0) phenomena.push_back(std::make_unique<Fog>(p.fog_mor));
+  if (phenomena.empty()) return nullptr;
+  return std::make_unique<WeatherChain>(std::move(phenomena));
+}
+
+}  // namespace perception

@@ -1,0 +1,66 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "libperception/simulation/Scenario.h"
+#include "libperception/simulation/SimulatedWeather.h"
+#include "libperception/simulation/World.h"
+#include "tests/simulation/SceneText.h"
+
+namespace perception::test {
+
+/// A pulse of a sensor at 1.9 m height, `up` [rad] above the horizon, that meets nothing.
+inline LidarPulse skyPulse(double azimuth, double up) {
+  LidarPulse pulse;
+  pulse.origin = {0, 0, 1.9};
+  pulse.direction = {std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth),
+                     std::sin(up)};
+  pulse.aim = pulse.direction;
+  return pulse;
+}
+
+/// A level pulse that meets a wall of 30 % at `range` [m].
+inline LidarPulse wallPulse(double range) {
+  LidarPulse pulse = skyPulse(0, 0);
+  pulse.hit.range = static_cast<float>(range), pulse.hit.cos_incidence = 1;
+  pulse.hit.object = 0, pulse.hit.material = Material::kWall;
+  pulse.reflectivity = 0.3;
+  return pulse;
+}
+
+/// Pulses to the sky of scans of 16 rings with 720 beams; calls see(ring, column, pulse).
+inline void scanSky(SimulatedWeather& weather, int scans,
+                    const std::function<void(int, int, const LidarPulse&)>& see) {
+  const World world(scenarioOf(kStanding + kRoofLidar));
+  const SensorParams& sensor = world.scenario().sensors.front();
+  for (int s = 0; s < scans; ++s) {
+    weather.advance(world, sensor, 0.1 * s);
+    for (int ring = 0; ring < 16; ++ring) {
+      for (int i = 0; i < 720; ++i) {
+        Rng rng({5, static_cast<std::uint64_t>(s), static_cast<std::uint32_t>(ring * 720 + i), 1});
+        LidarPulse pulse = skyPulse(kTwoPi * i / 720, radians(0.37 * ring));
+        weather.alter(sensor, pulse, rng);
+        see(ring, i, pulse);
+      }
+    }
+  }
+}
+
+/// Largest difference between the empirical distribution of logs and a normal one, times sqrt(n);
+/// above 1.63 for one in a hundred true samples (Kolmogorov-Smirnov).
+inline double kolmogorovSmirnov(std::vector<double> ranges, double log_mean, double log_sigma) {
+  std::sort(ranges.begin(), ranges.end());
+  const double n = static_cast<double>(ranges.size());
+  double most = 0;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const double z = (std::log(ranges[i]) - log_mean) / log_sigma;
+    const double law = .5 * std::erfc(-z / std::sqrt(2.0));
+    most = std::max({most, std::abs(law - static_cast<double>(i) / n),
+                     std::abs(law - static_cast<double>(i + 1) / n)});
+  }
+  return most * std::sqrt(n);
+}
+
+}  // namespace perception::test

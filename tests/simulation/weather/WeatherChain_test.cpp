@@ -1,0 +1,82 @@
+#include "libperception/simulation/weather/WeatherChain.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include "libperception/core/Error.h"
+#include "libperception/sensors/FromObservation.h"
+#include "libperception/simulation/Simulator.h"
+#include "tests/simulation/SceneText.h"
+
+namespace perception {
+namespace {
+
+using test::kCamera, test::kRoofLidar, test::kStanding, test::parked, test::scenarioOf;
+
+const std::string kRadar = "[sensor.RADAR]\nkind = radar\nz = 0.5\n";
+const std::string kScene = kStanding + kRoofLidar + "azimuth_step_deg = 1\nrate = 4\n" + kCamera +
+                           kRadar + parked("car", "car", 14, 0) + parked("far", "van", 45, 3);
+
+/// All numbers that a run's sensors gave, in their order.
+std::vector<float> played(const std::string& weather, std::uint64_t seed = 3, int threads = 1) {
+  Simulator simulator(scenarioOf(kScene + weather), "street", seed, threads);
+  std::vector<float> all;
+  while (const auto o = simulator.next()) {
+    const auto frame = frameFromObservation(*o);
+    if (!frame) continue;
+    if (const auto* cloud = std::get_if<LidarCloud>(&frame->data)) {
+      for (std::size_t i = 0; i < cloud->size(); ++i)
+        all.insert(all.end(), {cloud->x[i], cloud->y[i], cloud->z[i], cloud->intensity[i]});
+    } else if (const auto* boxes = std::get_if<ObjectDetections>(&frame->data)) {
+      for (const auto& d : boxes->objects) all.push_back(static_cast<float>(d.image_box->x1));
+    } else if (const auto* radar = std::get_if<RadarReturns>(&frame->data)) {
+      for (const auto& r : radar->returns) all.push_back(static_cast<float>(r.range));
+    }
+  }
+  return all;
+}
+
+const std::string kEverything = "[weather]\nrain_mm_h = 20\nsnow_mm_h = 2\nfog_mor = 200\n";
+
+TEST(WeatherChain, NothingSetIsClearAir) {
+  EXPECT_EQ(makeWeather({}, {}, 1), nullptr);
+  EXPECT_EQ(played("[weather]\n"), played(""));
+  EXPECT_TRUE(SimulatedWeatherParams().text().empty());
+}
+
+TEST(WeatherChain, SameSeedSameScansWhateverTheThreads) {
+  const auto one = played(kEverything);
+  EXPECT_EQ(one, played(kEverything, 3, 3));
+  EXPECT_NE(one, played(kEverything, 4));
+  EXPECT_NE(one, played(""));
+}
+
+TEST(WeatherChain, PhenomenaAddUp) {
+  SimulatedWeatherParams p;
+  p.rain_mm_h = 10, p.fog_mor = 100;
+  const auto weather = makeWeather(p, {}, 1);
+  ASSERT_NE(weather, nullptr);
+  EXPECT_TRUE(weather->actsOnPulses());
+  Rng rng({1, 0, 0, 0});
+  Lighting light;
+  light.haze = 0;
+  weather->alter(SensorParams(), light, rng);
+  EXPECT_NEAR(light.haze, 0.0016 + 0.03, 1e-4);
+}
+
+TEST(WeatherChain, TheFirstCommentSaysTheWeather) {
+  Simulator simulator(scenarioOf(kScene + kEverything), "street", 3);
+  const auto first = simulator.next();
+  std::ostringstream text;
+  first->getDescriptionAsText(text);
+  EXPECT_NE(text.str().find("weather: rain 20 mm/h, snow 2 mm/h, fog 200 m"), std::string::npos)
+      << text.str();
+}
+
+TEST(WeatherChain, UnknownKeysAreConfigurationErrors) {
+  EXPECT_THROW(scenarioOf(kScene + "[weather]\nhail = 1\n"), ConfigError);
+  EXPECT_THROW(scenarioOf(kScene + "[weather]\nfog_mor = 3\n"), ConfigError);
+}
+
+}  // namespace
+}  // namespace perception
