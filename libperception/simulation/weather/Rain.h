@@ -14,7 +14,7 @@ class Rain final : public SimulatedWeather {
   using SimulatedWeather::alter;
   void alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const override;
   void alter(const SensorParams&, RadarReflection& reflection, Rng&) const override;
-  void alter(const SensorParams&, CameraLook& look, Rng&) const override;
+  void alter(const SensorParams&, CameraLook& look, Rng& rng) const override;
   void alter(const SensorParams&, Lighting& light, Rng&) const override;
   bool actsOnPulses() const override { return true; }
 
@@ -22,6 +22,7 @@ class Rain final : public SimulatedWeather {
   double extinction_;   // [1/m]
   double chance_;       // of a false return, a beam
   double attenuation_;  // [dB/km] one way
+  double drops_;        // blurred share of an image
   double edge_noise_;   // factor
 };
 

@@ -5,11 +5,21 @@
 #include <vector>
 
 namespace perception {
+namespace {
+
+const std::vector<std::string> kSkies = {"as_scenario", "night", "cloudy", "sunny"};
+
+}  // namespace
 
 void SimulatedWeatherParams::visit(ParamVisitor& v) {
   v.real("rain_mm_h", rain_mm_h, {0, 200}, "mm/h", "rain; 50 is a downpour");
   v.real("snow_mm_h", snow_mm_h, {0, 20}, "mm/h", "snowfall, as water; from 2.5 on it is heavy");
   v.real("fog_mor", fog_mor, {0, 20000}, "m", "range of sight in fog; 0: none");
+  v.real("water_film_mm", water_film_mm, {0, 10}, "mm", "on the road; from 1.2 on it is a mirror");
+  v.real("snow_cover", snow_cover, {0, 1}, "-", "share of objects and ground that snow covers");
+  v.choiceOf("sky", sky, kSkies, "as_scenario: its own [light]");
+  v.real("fouling", fouling, {0, 1}, "-", "share of the windows of lidars and cameras under dirt");
+  v.real("radome_db", radome_db, {0, 60}, "dB", "one way: 1.5 to 3 wet, 30 under packed snow");
   v.require(fog_mor == 0 || fog_mor >= 10, "fog_mor: expected 0 or 10 m and more");
 }
 
@@ -21,6 +31,11 @@ std::string SimulatedWeatherParams::text() const {
   add("rain {:g} mm/h", rain_mm_h);
   add("snow {:g} mm/h", snow_mm_h);
   add("fog {:g} m", fog_mor);
+  add("water film {:g} mm", water_film_mm);
+  add("snow cover {:g}", snow_cover);
+  if (sky != Sky::kOfScenario) parts.push_back(kSkies[static_cast<std::size_t>(sky)]);
+  add("fouling {:g}", fouling);
+  add("radomes {:g} dB", radome_db);
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

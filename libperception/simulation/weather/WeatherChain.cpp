@@ -3,9 +3,13 @@
 #include <utility>
 
 #include "libperception/simulation/Scenario.h"
+#include "libperception/simulation/weather/Daylight.h"
 #include "libperception/simulation/weather/Fog.h"
+#include "libperception/simulation/weather/Fouling.h"
 #include "libperception/simulation/weather/Rain.h"
 #include "libperception/simulation/weather/Snow.h"
+#include "libperception/simulation/weather/TargetSurfaces.h"
+#include "libperception/simulation/weather/WetGround.h"
 
 namespace perception {
 namespace {
@@ -49,12 +53,22 @@ void WeatherChain::alter(const SensorParams& sensor, SensorFrame& frame, Rng& rn
   pass(phenomena_, sensor, frame, rng);
 }
 
+// Surfaces first, then the air; ghosts of mirrors need the air's extinction.
 std::unique_ptr<SimulatedWeather> makeWeather(const SimulatedWeatherParams& p,
-                                              const Scenario& /*scenario*/, std::uint64_t seed) {
+                                              const Scenario& scenario, std::uint64_t seed) {
+  using Sky = SimulatedWeatherParams::Sky;
   std::vector<std::unique_ptr<SimulatedWeather>> phenomena;
-  if (p.rain_mm_h > 0) phenomena.push_back(std::make_unique<Rain>(p.rain_mm_h));
-  if (p.snow_mm_h > 0) phenomena.push_back(std::make_unique<Snow>(p.snow_mm_h, seed));
-  if (p.fog_mor > 0) phenomena.push_back(std::make_unique<Fog>(p.fog_mor));
+  const auto add = [&](auto phenomenon) { phenomena.push_back(std::move(phenomenon)); };
+  if (p.fouling > 0 || p.radome_db > 0)
+    add(std::make_unique<Fouling>(p.fouling, p.radome_db, seed));
+  if (p.wet() || p.snow_cover > 0) add(std::make_unique<TargetSurfaces>(p.wet(), p.snow_cover));
+  if (p.rain_mm_h > 0) add(std::make_unique<Rain>(p.rain_mm_h));
+  if (p.snow_mm_h > 0) add(std::make_unique<Snow>(p.snow_mm_h, seed));
+  if (p.fog_mor > 0) add(std::make_unique<Fog>(p.fog_mor));
+  if (p.water_film_mm > 0)
+    add(std::make_unique<WetGround>(p.water_film_mm * (1 - p.snow_cover),
+                                    objectFactor(p.wet(), p.snow_cover)));
+  if (p.sky != Sky::kOfScenario) add(std::make_unique<Daylight>(p.sky, scenario.light));
   if (phenomena.empty()) return nullptr;
   return std::make_unique<WeatherChain>(std::move(phenomena));
 }

@@ -36,7 +36,9 @@ std::vector<float> played(const std::string& weather, std::uint64_t seed = 3, in
   return all;
 }
 
-const std::string kEverything = "[weather]\nrain_mm_h = 20\nsnow_mm_h = 2\nfog_mor = 200\n";
+const std::string kEverything =
+    "[weather]\nrain_mm_h = 20\nsnow_mm_h = 2\nfog_mor = 200\nwater_film_mm = 1\nsky = "
+    "sunny\nfouling = .05\n";
 
 TEST(WeatherChain, NothingSetIsClearAir) {
   EXPECT_EQ(makeWeather({}, {}, 1), nullptr);
@@ -69,7 +71,9 @@ TEST(WeatherChain, TheFirstCommentSaysTheWeather) {
   const auto first = simulator.next();
   std::ostringstream text;
   first->getDescriptionAsText(text);
-  EXPECT_NE(text.str().find("weather: rain 20 mm/h, snow 2 mm/h, fog 200 m"), std::string::npos)
+  EXPECT_NE(
+      text.str().find("weather: rain 20 mm/h, snow 2 mm/h, fog 200 m, water film 1 mm, sunny, "),
+      std::string::npos)
       << text.str();
 }
 
