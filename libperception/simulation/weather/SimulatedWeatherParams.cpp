@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 namespace perception {
@@ -20,7 +21,15 @@ void SimulatedWeatherParams::visit(ParamVisitor& v) {
   v.choiceOf("sky", sky, kSkies, "as_scenario: its own [light]");
   v.real("fouling", fouling, {0, 1}, "-", "share of the windows of lidars and cameras under dirt");
   v.real("radome_db", radome_db, {0, 60}, "dB", "one way: 1.5 to 3 wet, 30 under packed snow");
+  v.real("air_temperature", air_temperature, {-60, 60}, "deg C", "below 8 one sees exhaust");
+  v.real("humidity", humidity, {0, 1}, "-", "relative; above 0.85 one sees exhaust");
+  v.real("wind_speed", wind_speed, {0, 50}, "m/s", "carries spray and exhaust");
+  v.angle("wind_towards_deg", wind_towards, {-360, 360}, "where it blows: world, from x towards y");
   v.require(fog_mor == 0 || fog_mor >= 10, "fog_mor: expected 0 or 10 m and more");
+}
+
+Vector2 SimulatedWeatherParams::wind() const {
+  return wind_speed * Vector2(std::cos(wind_towards), std::sin(wind_towards));
 }
 
 std::string SimulatedWeatherParams::text() const {
@@ -36,6 +45,8 @@ std::string SimulatedWeatherParams::text() const {
   if (sky != Sky::kOfScenario) parts.push_back(kSkies[static_cast<std::size_t>(sky)]);
   add("fouling {:g}", fouling);
   add("radomes {:g} dB", radome_db);
+  if (plumes()) parts.push_back(fmt::format("exhaust seen at {:g} deg C", air_temperature));
+  add("wind {:g} m/s", wind_speed);
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

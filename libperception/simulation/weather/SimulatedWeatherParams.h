@@ -2,6 +2,7 @@
 #include <string>
 
 #include "libperception/config/ParamSet.h"
+#include "libperception/core/Frames.h"
 
 namespace perception {
 
@@ -9,18 +10,25 @@ namespace perception {
 /// scenario, or in an INI of its own (--weather). Default: clear air.
 struct SimulatedWeatherParams {
   enum class Sky { kOfScenario, kNight, kCloudy, kSunny };
-  double rain_mm_h = 0;        ///< [mm/h] method.md 9.1
-  double snow_mm_h = 0;        ///< [mm/h] of water, method.md 9.2
-  double fog_mor = 0;          ///< [m] meteorological optical range, method.md 9.3; 0: no fog
-  double water_film_mm = 0;    ///< [mm] mean depth on the road, method.md 9.7
-  double snow_cover = 0;       ///< [0, 1] share of objects and ground under snow, method.md 9.9
-  Sky sky = Sky::kOfScenario;  ///< method.md 9.9
-  double fouling = 0;          ///< [0, 1] share of the windows of lidars and cameras under dirt
-  double radome_db = 0;        ///< [dB] one way, of water or snow on radars, method.md 9.8
+  double rain_mm_h = 0;         ///< [mm/h] method.md 9.1
+  double snow_mm_h = 0;         ///< [mm/h] of water, method.md 9.2
+  double fog_mor = 0;           ///< [m] meteorological optical range, method.md 9.3; 0: no fog
+  double water_film_mm = 0;     ///< [mm] mean depth on the road, method.md 9.7
+  double snow_cover = 0;        ///< [0, 1] share of objects and ground under snow, method.md 9.9
+  Sky sky = Sky::kOfScenario;   ///< method.md 9.9
+  double fouling = 0;           ///< [0, 1] share of the windows of lidars and cameras under dirt
+  double radome_db = 0;         ///< [dB] one way, of water or snow on radars, method.md 9.8
+  double air_temperature = 20;  ///< [deg C] below 8 exhaust is seen, method.md 9.5; assumed
+  double humidity = 0.5;        ///< [0, 1] relative; above 0.85 exhaust is seen; assumed
+  double wind_speed = 0;        ///< [m/s] carries spray and exhaust
+  double wind_towards = 0;      ///< [rad] world, from x towards y
 
   void visit(ParamVisitor& v);
   /// Water on objects: of rain, or where the road is wet.
   bool wet() const { return rain_mm_h > 0 || water_film_mm > 0; }
+  /// Exhaust condenses.
+  bool plumes() const { return air_temperature < 8 || humidity > 0.85; }
+  Vector2 wind() const;  ///< [m/s] world
   /// As the log's first comment says it: "rain 10 mm/h, fog 150 m"; empty in clear air.
   std::string text() const;
 };

@@ -6,8 +6,10 @@
 #include "libperception/simulation/weather/Daylight.h"
 #include "libperception/simulation/weather/Fog.h"
 #include "libperception/simulation/weather/Fouling.h"
+#include "libperception/simulation/weather/Plume.h"
 #include "libperception/simulation/weather/Rain.h"
 #include "libperception/simulation/weather/Snow.h"
+#include "libperception/simulation/weather/Spray.h"
 #include "libperception/simulation/weather/TargetSurfaces.h"
 #include "libperception/simulation/weather/WetGround.h"
 
@@ -68,6 +70,9 @@ std::unique_ptr<SimulatedWeather> makeWeather(const SimulatedWeatherParams& p,
   if (p.water_film_mm > 0)
     add(std::make_unique<WetGround>(p.water_film_mm * (1 - p.snow_cover),
                                     objectFactor(p.wet(), p.snow_cover)));
+  if (p.water_film_mm > 0 || p.snow_cover > 0)
+    add(std::make_unique<Spray>(p.water_film_mm, p.snow_cover, p.wind(), seed));
+  if (p.plumes()) add(std::make_unique<Plume>(p.wind(), seed));
   if (p.sky != Sky::kOfScenario) add(std::make_unique<Daylight>(p.sky, scenario.light));
   if (phenomena.empty()) return nullptr;
   return std::make_unique<WeatherChain>(std::move(phenomena));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
 #include "libperception/simulation/LidarSurface.h"
 #include "libperception/simulation/World.h"
 #include "libperception/simulation/weather/Fresnel.h"
@@ -11,7 +10,6 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kBins = 360;  // of azimuth
 // Share of a beam's light that leaves, or of its sight that arrives, by the other one of the two
 // paths (method.md 9.7, assumed).
 constexpr double kStray = 0.05;
@@ -19,43 +17,33 @@ constexpr double kPulseLength = 0.75;  // [m] echoes nearer to each other are on
 constexpr double kLift = 0.01;         // [m] mirrored rays start above the road
 constexpr double kMotion = 1;          // [m] of sensor and objects during a scan
 
-std::size_t binOf(double azimuth) {
-  const double turn = (azimuth + kPi) / kTwoPi;
-  return static_cast<std::size_t>(turn * kBins) % kBins;
-}
-
 }  // namespace
 
 WetGround::WetGround(double film_mm, double object_factor)
-    : wet_(wetShare(film_mm)), object_factor_(object_factor), standers_(kBins) {}
+    : wet_(wetShare(film_mm)), object_factor_(object_factor) {}
 
 // Which objects a mirrored ray can meet, so that few are cast.
 void WetGround::advance(const World& world, const SensorParams& sensor, double t) {
   if (!sensor.isLidar()) return;
-  for (auto& bin : standers_) bin.clear();
-  const Vector2 eye = (world.ego(t).T_world_ego * sensor.T_ego_sensor()).translation().head<2>();
+  table_.reset((world.ego(t).T_world_ego * sensor.T_ego_sensor()).translation().head<2>());
+  standers_.clear();
   for (std::size_t i = 0; i < world.objects(); ++i) {
     const ObjectParams& object = world.scenario().objects[i];
-    const Vector2 arm = world.object(i, t).T_world_object.translation().head<2>() - eye;
-    const double reach = .5 * std::hypot(object.length, object.width) + kMotion, range = arm.norm();
-    if (range - reach > sensor.lidar.range_max) continue;
-    const double half = range > reach ? std::asin(reach / range) : kPi;
-    const int bins = std::min(static_cast<int>(kBins) - 1,
-                              static_cast<int>(std::ceil(2 * half / kTwoPi * kBins)));
-    const double first = std::atan2(arm.y(), arm.x()) - half;
-    for (int k = 0; k <= bins; ++k) {
-      const double azimuth = wrapAngle(first + k * kTwoPi / kBins);
-      standers_[binOf(azimuth)].push_back(
-          {std::max(0.0, range - reach), object.base + object.height + 0.1});
-    }
+    const Vector2 place = world.object(i, t).T_world_object.translation().head<2>();
+    const double reach = .5 * std::hypot(object.length, object.width) + kMotion,
+                 near = (place - table_.eye()).norm() - reach;
+    if (near > sensor.lidar.range_max) continue;
+    table_.add(place, reach, static_cast<std::uint32_t>(standers_.size()));
+    standers_.push_back({std::max(0.0, near), object.base + object.height + 0.1});
   }
 }
 
 // `traveled` [m] horizontally up to the ground point.
 bool WetGround::mayMeet(const Vector3& ground, const Vector3& direction, double traveled) const {
   const double slope = direction.z() / direction.head<2>().norm();
-  const auto& bin = standers_[binOf(std::atan2(direction.y(), direction.x()))];
-  return std::any_of(bin.begin(), bin.end(), [&](const Stander& s) {
+  const auto& items = table_.along(direction);
+  return std::any_of(items.begin(), items.end(), [&](std::uint32_t item) {
+    const Stander& s = standers_[item];
     return ground.z() + std::max(0.0, s.near - traveled) * slope < s.height;
   });
 }

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "libperception/simulation/SimulatedWeather.h"
+#include "libperception/simulation/weather/AzimuthTable.h"
 
 namespace perception {
 
@@ -28,7 +29,8 @@ class WetGround final : public SimulatedWeather {
 
   double wet_;  // [0, 1] share of the road
   double object_factor_;
-  std::vector<std::vector<Stander>> standers_;  // by azimuth, world
+  std::vector<Stander> standers_;
+  AzimuthTable table_;
 };
 
 }  // namespace perception

@@ -15,7 +15,8 @@ using test::kCamera, test::kRoofLidar, test::kStanding, test::parked, test::scen
 
 const std::string kRadar = "[sensor.RADAR]\nkind = radar\nz = 0.5\n";
 const std::string kScene = kStanding + kRoofLidar + "azimuth_step_deg = 1\nrate = 4\n" + kCamera +
-                           kRadar + parked("car", "car", 14, 0) + parked("far", "van", 45, 3);
+                           kRadar + parked("car", "car", 14, 0) + parked("far", "van", 45, 3) +
+                           "[object.moving]\nkind = car\nt = -5, 5\nx = -80, 120\ny = 4, 4\n";
 
 /// All numbers that a run's sensors gave, in their order.
 std::vector<float> played(const std::string& weather, std::uint64_t seed = 3, int threads = 1) {
@@ -36,9 +37,16 @@ std::vector<float> played(const std::string& weather, std::uint64_t seed = 3, in
   return all;
 }
 
-const std::string kEverything =
-    "[weather]\nrain_mm_h = 20\nsnow_mm_h = 2\nfog_mor = 200\nwater_film_mm = 1\nsky = "
-    "sunny\nfouling = .05\n";
+const std::string kEverything = R"([weather]
+rain_mm_h = 20
+snow_mm_h = 2
+fog_mor = 200
+water_film_mm = 1
+sky = sunny
+fouling = .05
+snow_cover = .1
+air_temperature = 0
+)";
 
 TEST(WeatherChain, NothingSetIsClearAir) {
   EXPECT_EQ(makeWeather({}, {}, 1), nullptr);
@@ -71,9 +79,9 @@ TEST(WeatherChain, TheFirstCommentSaysTheWeather) {
   const auto first = simulator.next();
   std::ostringstream text;
   first->getDescriptionAsText(text);
-  EXPECT_NE(
-      text.str().find("weather: rain 20 mm/h, snow 2 mm/h, fog 200 m, water film 1 mm, sunny, "),
-      std::string::npos)
+  EXPECT_NE(text.str().find("weather: rain 20 mm/h, snow 2 mm/h, fog 200 m, water film 1 mm, snow "
+                            "cover 0.1, sunny, "),
+            std::string::npos)
       << text.str();
 }
 
