@@ -144,6 +144,8 @@ LidarSensor::LidarSensor(const LidarParams& params, double rate)
       const std::size_t slice = i * slices_.size() / columns;
       slices_[slice].push_back(
           {{std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth), std::sin(up)},
+           azimuth,
+           up,
            static_cast<std::uint16_t>(ring),
            ring * columns + i});
     }
@@ -177,7 +179,8 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
         const std::uint32_t slot = slices_[s][i].slot;
         if (hook) {
           Rng weather_rng(key.withSlot(slot).withPurpose(key.purpose ^ kWeatherPurpose));
-          pulses[i].aim = slices_[s][i].direction, pulses[i].scene = &caster;
+          pulses[i].azimuth = slices_[s][i].azimuth, pulses[i].elevation = slices_[s][i].elevation;
+          pulses[i].scene = &caster;
           hook(pulses[i], weather_rng);
         }
         Rng rng(key.withSlot(slot));

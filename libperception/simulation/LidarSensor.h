@@ -35,7 +35,8 @@ class LidarSensor {
  private:
   /// One direction of the pattern.
   struct Beam {
-    Vector3 direction;  // sensor frame
+    Vector3 direction;          // sensor frame
+    double azimuth, elevation;  // [rad] of the direction
     std::uint16_t ring;
     std::uint32_t slot;  // of its random numbers
   };

@@ -28,7 +28,7 @@ struct LidarPulse {
     Phantom phantom = Phantom::kNone;
   };
   Vector3 origin, direction;           ///< [m], unit vector; world
-  Vector3 aim = Vector3::UnitX();      ///< the direction in the sensor's frame
+  double azimuth = 0, elevation = 0;   ///< [rad] the direction in the sensor's frame
   const LidarCaster* scene = nullptr;  ///< for paths over mirrors
   BeamHit hit;                         ///< the surface
   double reflectivity = 0;             ///< of the surface towards the sensor, incidence included

@@ -16,12 +16,17 @@ void attenuate(LidarPulse& pulse, double extinction) {
   if (pulse.hit.object != BeamHit::kNothing) pulse.optical_depth += extinction * pulse.hit.range;
 }
 
-AimCell aimCell(const Vector3& aim, double size, double shift_across, double shift_up) {
-  const auto columns = static_cast<std::uint32_t>(std::lround(kTwoPi / size));
-  const double across = (std::atan2(aim.y(), aim.x()) + kPi) / size + shift_across,
-               up = (std::atan2(aim.z(), std::hypot(aim.x(), aim.y())) + kPi / 2) / size + shift_up;
-  const auto column = static_cast<std::uint32_t>(across), row = static_cast<std::uint32_t>(up);
-  return {row * columns + column % columns, across - column, up - row};
+AimGrid::AimGrid(double size)
+    : size_(size),
+      columns_(static_cast<std::size_t>(std::lround(kTwoPi / size))),
+      rows_(columns_ / 2 + 2) {}
+
+AimGrid::Place AimGrid::at(double azimuth, double elevation) const {
+  const double across = (azimuth + kTwoPi) / size_ + across_,
+               up = (elevation + kPi / 2) / size_ + up_;
+  const auto column = static_cast<std::size_t>(across), row = static_cast<std::size_t>(up);
+  return {row * columns_ + column % columns_, across - static_cast<double>(column),
+          up - static_cast<double>(row)};
 }
 
 // FNV-1a.

@@ -1,5 +1,8 @@
 #pragma once
+#include <vector>
+
 #include "libperception/simulation/SimulatedWeather.h"
+#include "libperception/simulation/weather/Beam.h"
 
 namespace perception {
 
@@ -12,17 +15,18 @@ class Fouling final : public SimulatedWeather {
 
   using SimulatedWeather::alter;
   void advance(const World& world, const SensorParams& sensor, double t) override;
-  void alter(const SensorParams& sensor, LidarPulse& pulse, Rng&) const override;
+  void alter(const SensorParams&, LidarPulse& pulse, Rng&) const override;
   void alter(const SensorParams&, RadarReflection& reflection, Rng&) const override;
-  void alter(const SensorParams& sensor, CameraLook& look, Rng&) const override;
+  void alter(const SensorParams&, CameraLook& look, Rng&) const override;
   bool actsOnPulses() const override { return share_ > 0; }
 
  private:
-  bool dirty(const SensorParams& sensor, std::uint32_t cell) const;
-
   double share_, radome_;  // radome: factor on the power, both ways
   std::uint64_t seed_;
-  double yaw_ = 0;  // [rad] of the sensor of the last advance(), world
+  // Of the sensor of the last advance():
+  double yaw_ = 0;  // [rad] world
+  AimGrid grid_;
+  std::vector<char> dirty_;  // cells
 };
 
 }  // namespace perception

@@ -26,12 +26,19 @@ class Plume final : public SimulatedWeather {
   bool actsOnPulses() const override { return true; }
 
  private:
+  /// The puffs of one vehicle and a sphere about them.
+  struct Cloud {
+    std::size_t from, to;  // of puffs_
+    Vector3 center;        // [m] world
+    double radius;         // [m]
+  };
   void addPuffs(const World& world, std::size_t object, double t);
 
   Vector3 wind_;
   std::uint64_t seed_;
   std::vector<Puff> puffs_;
-  AzimuthTable table_;
+  std::vector<Cloud> clouds_;
+  AzimuthTable table_;  // of clouds
 };
 
 }  // namespace perception

@@ -5,7 +5,6 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/simulation/Scenario.h"
-#include "libperception/simulation/weather/Beam.h"
 #include "libperception/simulation/weather/Precipitation.h"
 
 namespace perception {
@@ -15,12 +14,12 @@ constexpr double kReflectivity = 0.9;  // of a flake [hahner2022]
 constexpr double kDivergence = 0.003;  // [rad] method.md 9
 // Large flakes (method.md 9.2, assumed): share of the returns within 5 m, their angular diameter
 // (2 to 4 beams of a 64-beam lidar), brightness as the beam is filled.
-constexpr double kLargeShare = 0.3, kLargeWithin = 5;               // [m]
-constexpr double kSmallest = 0.4, kLargest = 0.6;                   // [cells]
-constexpr double kLeastBrightness = 0.2, kMostBrightness = 0.6;     // of its reflectivity
-constexpr double kCell = radians(1);                                // of directions
-constexpr double kHeavy = 2.5, kHeavyRecall = 0.5;                  // [mm/h] method.md 9.9
-constexpr std::uint32_t kFlakes = 0x57EA1000, kShift = 0x57EA1001;  // purposes of random numbers
+constexpr double kLargeShare = 0.3, kLargeWithin = 5;            // [m]
+constexpr double kSmallest = 0.4, kLargest = 0.6;                // [cells]
+constexpr double kLeastBrightness = 0.2, kMostBrightness = 0.6;  // of its reflectivity
+constexpr double kCell = radians(1);                             // of directions
+constexpr double kHeavy = 2.5, kHeavyRecall = 0.5;               // [mm/h] method.md 9.9
+constexpr std::uint32_t kFlakes = 0x57EA1000;                    // purpose of random numbers
 
 // Mean area of a disk whose diameter is uniform between the two.
 double meanArea() {
@@ -36,18 +35,34 @@ Snow::Snow(double mm_h, std::uint64_t seed)
       chance_(kSnowReturns.chance(mm_h)),
       large_per_cell_(chance_ * kLargeShare * kSnowReturns.shareWithin(kLargeWithin) / meanArea()),
       diameter_(1e-3 / gunnMarshall(mm_h).slope),
-      recall_(1 - (1 - kHeavyRecall) * std::min(1.0, mm_h / kHeavy)) {}
+      recall_(1 - (1 - kHeavyRecall) * std::min(1.0, mm_h / kHeavy)),
+      grid_(kCell),
+      large_(grid_.cells()) {}
 
-void Snow::advance(const World&, const SensorParams&, double t) {
-  tick_ = static_cast<std::uint64_t>(std::llround(std::max(0.0, t) * 1e6));
-  Rng rng({seed_, tick_, 0, kShift});
-  shift_across_ = rng.uniform(), shift_up_ = rng.uniform();
+// A cell holds one large flake or none, a disk that lies within it.
+void Snow::advance(const World&, const SensorParams& sensor, double t) {
+  if (!sensor.isLidar()) return;
+  const auto tick = static_cast<std::uint64_t>(std::llround(std::max(0.0, t) * 1e6));
+  Rng rng({seed_, tick, 0, streamOf(sensor.label, kFlakes)});
+  const double across = rng.uniform(), up = rng.uniform();
+  grid_.shift(across, up);
+  for (LargeFlake& flake : large_) {
+    flake.radius = 0;
+    if (rng.uniform() >= large_per_cell_) continue;
+    flake.radius = .5 * rng.uniform(kSmallest, kLargest);
+    flake.across = rng.uniform(flake.radius, 1 - flake.radius);
+    flake.up = rng.uniform(flake.radius, 1 - flake.radius);
+    do {
+      flake.range = kSnowReturns.range(rng);
+    } while (flake.range >= kLargeWithin);
+    flake.intensity = kReflectivity * rng.uniform(kLeastBrightness, kMostBrightness);
+  }
 }
 
-void Snow::alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const {
+void Snow::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
   attenuate(pulse, extinction_);
   addSmallFlake(pulse, rng);
-  addLargeFlake(sensor, pulse);
+  addLargeFlake(pulse);
 }
 
 // Those that belong to large flakes are left out here.
@@ -62,21 +77,17 @@ void Snow::addSmallFlake(LidarPulse& pulse, Rng& rng) const {
   if (flake.range < openRange(pulse)) pulse.scatterers.push_back(flake);
 }
 
-// A cell holds one flake or none, a disk that lies within it.
-void Snow::addLargeFlake(const SensorParams& sensor, LidarPulse& pulse) const {
-  const AimCell cell = aimCell(pulse.aim, kCell, shift_across_, shift_up_);
-  Rng rng({seed_, tick_, cell.index, streamOf(sensor.label, kFlakes)});
-  if (rng.uniform() >= large_per_cell_) return;
-  const double radius = .5 * rng.uniform(kSmallest, kLargest);
-  const double across = rng.uniform(radius, 1 - radius), up = rng.uniform(radius, 1 - radius);
-  if (std::hypot(cell.across - across, cell.up - up) > radius) return;
+void Snow::addLargeFlake(LidarPulse& pulse) const {
+  const AimGrid::Place place = grid_.at(pulse.azimuth, pulse.elevation);
+  const LargeFlake& large = large_[place.cell];
+  if (large.radius <= 0 || large.range >= openRange(pulse) ||
+      std::hypot(place.across - large.across, place.up - large.up) > large.radius) {
+    return;
+  }
   LidarPulse::Scatterer flake;
-  do {
-    flake.range = kSnowReturns.range(rng);
-  } while (flake.range >= kLargeWithin);
-  flake.intensity = kReflectivity * rng.uniform(kLeastBrightness, kMostBrightness);
+  flake.range = large.range, flake.intensity = large.intensity;
   flake.phantom = Phantom::kSnow;
-  if (flake.range < openRange(pulse)) pulse.scatterers.push_back(flake);
+  pulse.scatterers.push_back(flake);
 }
 
 void Snow::alter(const SensorParams&, CameraLook& look, Rng&) const {

@@ -1,5 +1,8 @@
 #pragma once
+#include <vector>
+
 #include "libperception/simulation/SimulatedWeather.h"
+#include "libperception/simulation/weather/Beam.h"
 
 namespace perception {
 
@@ -12,24 +15,30 @@ class Snow final : public SimulatedWeather {
   Snow(double mm_h, std::uint64_t seed);
 
   using SimulatedWeather::alter;
-  void advance(const World&, const SensorParams&, double t) override;
-  void alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const override;
+  void advance(const World&, const SensorParams& sensor, double t) override;
+  void alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const override;
   void alter(const SensorParams&, CameraLook& look, Rng&) const override;
   void alter(const SensorParams&, Lighting& light, Rng&) const override;
   bool actsOnPulses() const override { return true; }
 
  private:
   void addSmallFlake(LidarPulse& pulse, Rng& rng) const;
-  void addLargeFlake(const SensorParams& sensor, LidarPulse& pulse) const;
+  void addLargeFlake(LidarPulse& pulse) const;
+
+  /// A flake that several beams see: a disk in a cell of directions.
+  struct LargeFlake {
+    double across, up, radius;  // [cells]; radius 0: none
+    double range, intensity;    // [m], [0, 1]
+  };
 
   std::uint64_t seed_;
-  std::uint64_t tick_ = 0;                  // [us] of the observation
-  double shift_across_ = 0, shift_up_ = 0;  // of the cells of directions
-  double extinction_;                       // [1/m]
-  double chance_;                           // of a false return, a beam
-  double large_per_cell_;                   // mean number of large flakes in a cell of directions
-  double diameter_;                         // [m] mean of the small flakes
-  double recall_;                           // camera: share that is left
+  double extinction_;      // [1/m]
+  double chance_;          // of a false return, a beam
+  double large_per_cell_;  // mean number of large flakes in a cell of directions
+  double diameter_;        // [m] mean of the small flakes
+  double recall_;          // camera: share that is left
+  AimGrid grid_;
+  std::vector<LargeFlake> large_;  // by cell, for the sensor of the last advance()
 };
 
 }  // namespace perception

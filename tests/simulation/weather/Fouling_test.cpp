@@ -30,13 +30,16 @@ TEST(Fouling, WetRadomeTakesPowerBothWays) {
 }
 
 TEST(Fouling, BlursACamerasImageInPatches) {
-  const Fouling dirt(0.3, 0, 7);
+  const World world(test::scenarioOf(test::kStanding + test::kCamera));
+  const SensorParams& camera = world.scenario().sensors.front();
+  Fouling dirt(0.3, 0, 7);
+  dirt.advance(world, camera, 0);
   Rng rng({1, 0, 0, 0});
   int blurred = 0;
   for (int i = 0; i < 36; ++i) {
     CameraLook look;
     look.chance = 1, look.azimuth = radians(10 * i + 5);
-    dirt.alter(SensorParams(), look, rng);
+    dirt.alter(camera, look, rng);
     blurred += look.chance < 1;
   }
   EXPECT_GE(blurred, 4);

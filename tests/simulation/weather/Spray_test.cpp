@@ -66,7 +66,7 @@ TEST(Spray, BeamsThroughItReturnDimlyAndBeforeTheSurface) {
     LidarPulse pulse = test::wallPulse(8);
     const double azimuth = radians(-180 + 0.09 * i);
     pulse.origin = {0, 0, 1};
-    pulse.direction = pulse.aim = {std::cos(azimuth), std::sin(azimuth), 0};
+    pulse.direction = {std::cos(azimuth), std::sin(azimuth), 0};
     spray.alter(sensor, pulse, rng);
     through += pulse.optical_depth > 0;
     for (const auto& s : pulse.scatterers) {

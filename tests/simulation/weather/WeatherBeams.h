@@ -17,7 +17,7 @@ inline LidarPulse skyPulse(double azimuth, double up) {
   pulse.origin = {0, 0, 1.9};
   pulse.direction = {std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth),
                      std::sin(up)};
-  pulse.aim = pulse.direction;
+  pulse.azimuth = azimuth, pulse.elevation = up;
   return pulse;
 }
 
@@ -40,7 +40,7 @@ inline void scanSky(SimulatedWeather& weather, int scans,
     for (int ring = 0; ring < 16; ++ring) {
       for (int i = 0; i < 720; ++i) {
         Rng rng({5, static_cast<std::uint64_t>(s), static_cast<std::uint32_t>(ring * 720 + i), 1});
-        LidarPulse pulse = skyPulse(kTwoPi * i / 720, radians(0.37 * ring));
+        LidarPulse pulse = skyPulse(kTwoPi * i / 720 - kPi, radians(0.37 * ring));
         weather.alter(sensor, pulse, rng);
         see(ring, i, pulse);
       }
