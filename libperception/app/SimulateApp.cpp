@@ -59,6 +59,7 @@ void SimulateApp::declare(CLI::App& cli) {
   cli.add_option("--gzip", gzip_level, "Compression of the log")
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
+  declareRecording(cli);
 }
 
 std::optional<Scenario> SimulateApp::loadScenario() {
@@ -116,6 +117,7 @@ void SimulateApp::drawContactSheet() {
 }
 
 void SimulateApp::run() {
+  if (recording_->parsed()) return alterRecording();
   if (!contact_sheet.empty()) return drawContactSheet();
   if (config_file.empty()) throw Error(ExitCode::kUsage, "-c SCENARIO.ini is required");
   if (!coverage.empty()) return drawCoverage();

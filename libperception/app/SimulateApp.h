@@ -9,7 +9,8 @@
 
 namespace perception {
 
-/// perception-simulate: a scenario INI becomes a rawlog with ground truth.
+/// perception-simulate: a scenario INI becomes a rawlog with ground truth; a recording, one in
+/// simulated weather.
 class SimulateApp : public App {
  public:
   std::uint64_t seed = 1;     ///< --seed
@@ -25,6 +26,7 @@ class SimulateApp : public App {
   std::int64_t out_frames = 0;
   std::uint64_t out_entries = 0, out_bytes = 0, out_points = 0, out_boxes = 0, out_beams = 0,
                 out_targets = 0;
+  std::uint64_t out_lost = 0, out_phantoms = 0;  ///< returns of a recording in weather
 
   std::string name() const override { return "perception-simulate"; }
   std::string description() const override;
@@ -32,9 +34,13 @@ class SimulateApp : public App {
   void run() override;
 
  private:
+  CLI::App* recording_ = nullptr;  // the subcommand
   /// The scenario of -c with --vehicle, --weather and --trial applied; nothing after
   /// --print-config.
   std::optional<Scenario> loadScenario();
+  /// The subcommand: weather on a recording.
+  void declareRecording(CLI::App& cli);
+  void alterRecording();
   void drawCoverage();
   void drawContactSheet();
 };

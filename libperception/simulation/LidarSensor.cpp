@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/LidarEcho.h"
 #include "libperception/simulation/LidarSurface.h"
 #include "libperception/simulation/World.h"
 
@@ -42,48 +43,20 @@ LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& dir
   return pulse;
 }
 
-// The nearest scatterer of known intensity; null where there is none.
-const LidarPulse::Scatterer* knownReturn(const LidarPulse& pulse, const LidarParams& p) {
-  const LidarPulse::Scatterer* first = nullptr;
-  for (const LidarPulse::Scatterer& s : pulse.scatterers) {
-    if (s.intensity < 0 || s.range < p.range_min || s.range > p.range_max) continue;
-    if (!first || s.range < first->range) first = &s;
-  }
-  return first;
-}
-
-// Hard target: P0 = rho_t exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2, method.md (57); the
-// strongest echo of the pulse is received.
-Echo echoOf(const LidarPulse& pulse, const LidarParams& p, Rng& rng) {
-  Echo echo;
-  if (pulse.blocked) return echo;
-  if (const LidarPulse::Scatterer* known = knownReturn(pulse, p)) {
-    echo.received = true;
-    echo.range = known->range + rng.normal() * p.range_noise;
-    echo.intensity = known->intensity, echo.phantom = known->phantom;
-    return echo;
-  }
+// Speckle, losses and noise of one pulse's echo.
+Echo received(const LidarPulse& pulse, const LidarParams& p, Rng& rng) {
   const bool surface = pulse.hit.object != BeamHit::kNothing && pulse.hit.range >= p.range_min;
-  if (!surface && pulse.scatterers.empty()) return echo;
-  const bool lost = surface && rng.uniform() < pulse.lost + p.loss;
-  double range = pulse.hit.range, returned = 0;
-  if (surface && !lost) {
-    returned = pulse.reflectivity * std::max(0.0, 1 + kSpeckle * rng.normal());
-    if (pulse.optical_depth > 0) returned *= std::exp(-2 * pulse.optical_depth);
-    echo.on_object = pulse.hit.object >= 0;
-  }
-  for (const LidarPulse::Scatterer& s : pulse.scatterers) {
-    if (s.range < p.range_min || s.range > p.range_max) continue;
-    if (returned > 0 && s.power * range * range <= returned) continue;
-    range = s.range, returned = s.power * s.range * s.range;
-    echo.on_object = false, echo.phantom = s.phantom;
-  }
-  const double far = p.reference_range / range;
-  const double snr = returned / (0.9 * pulse.threshold) * far * far;
-  if (!(snr >= 1)) return echo;
-  echo.received = true;
-  echo.range = range + rng.normal() * std::hypot(p.range_noise, kRangeUnit / std::sqrt(2 * snr));
-  echo.intensity = std::min(1.0, returned);
+  double reflectivity = 0;
+  if (surface && rng.uniform() >= pulse.lost + p.loss)
+    reflectivity = pulse.reflectivity * std::max(0.0, 1 + kSpeckle * rng.normal());
+  const LidarEcho found = echoOf(pulse, reflectivity, p);
+  Echo echo;
+  echo.received = found.received;
+  if (!found.received) return echo;
+  echo.on_object = found.of_surface && pulse.hit.object >= 0;
+  const double noise = found.snr > 0 ? kRangeUnit / std::sqrt(2 * found.snr) : 0;
+  echo.range = found.range + rng.normal() * std::hypot(p.range_noise, noise);
+  echo.intensity = found.intensity, echo.phantom = found.phantom;
   return echo;
 }
 
@@ -184,7 +157,7 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
           hook(pulses[i], weather_rng);
         }
         Rng rng(key.withSlot(slot));
-        echoes[i] = echoOf(pulses[i], params_, rng);
+        echoes[i] = received(pulses[i], params_, rng);
         if (echoes[i].received && params_.layout == LidarParams::Layout::kFourLayer) {
           echoes[i].object_label = echoes[i].on_object != (rng.uniform() < params_.label_error);
         }

@@ -93,7 +93,7 @@ bool inView(const RadarReflection& r, const RadarUnitParams& p) {
 }
 
 double snrOf(double cross_section, double range, const RadarUnitParams& p) {
-  return thresholdSnr(p) * cross_section / kCarSection * std::pow(p.reference_range / range, 4);
+  return cross_section / kCarSection * carSnr(range, p);
 }
 
 // Share of the power received from `to` [m]: none through walls, a little under vehicles.
@@ -193,6 +193,10 @@ void RadarUnitParams::visit(ParamVisitor& v) {
   v.expert();
   v.boolean("upside_down", upside_down,
             "mounted upside down: bearings are mirrored, the pose is not");
+}
+
+double carSnr(double range, const RadarUnitParams& p) {
+  return thresholdSnr(p) * std::pow(p.reference_range / range, 4);
 }
 
 std::vector<RadarReflection> radarReflections(const LidarCaster& caster, double t,

@@ -51,6 +51,9 @@ struct RadarCell {
 /// Effect of weather on a reflection; empty: clear air.
 using RadarHook = std::function<void(RadarReflection&, Rng&)>;
 
+/// Mean ratio of signal to noise of a car at `range` [m] (method.md 9.8).
+double carSnr(double range, const RadarUnitParams& params);
+
 /// Scattering centers of all objects in the unit's view at t [s], with their mean power; `caster`
 /// must be set to t. Vehicles: corners and sides that face the unit, the nearest strongest.
 std::vector<RadarReflection> radarReflections(const LidarCaster& caster, double t,

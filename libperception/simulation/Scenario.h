@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,9 @@ struct ObjectParams {
   std::string
       party;  ///< objects of the same party get the same variation in a trial; "": own variation
   WaypointParams waypoints;  ///< of the footprint's center
+  /// [s] in the scene from and to; not in an INI: objects of a recording come and go.
+  double from = -std::numeric_limits<double>::infinity(),
+         to = std::numeric_limits<double>::infinity();
 
   void visit(ParamVisitor& v);
 };

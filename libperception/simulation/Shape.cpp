@@ -218,15 +218,14 @@ Pose3 partPose(const Shape& shape, const Part& part, double traveled, double spe
   return pose;
 }
 
-Mesh makeRoad(const Vector2& center, double half_side, double roughness) {
-  constexpr double kCell = 1;  // [m] bumps of the size of a patch of road
+Mesh makeRoad(const Vector2& center, double half_side, double cell, double roughness) {
   Mesh mesh;
-  const auto n = static_cast<std::uint32_t>(2 * std::ceil(half_side / kCell)) + 1;
-  const Vector2 corner = center - Vector2::Constant(kCell * (n - 1) / 2);
+  const auto n = static_cast<std::uint32_t>(2 * std::ceil(half_side / cell)) + 1;
+  const Vector2 corner = center - Vector2::Constant(cell * (n - 1) / 2);
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::uint32_t j = 0; j < n; ++j) {
       Rng rng({0, i, j, kRoadStream});
-      addVertex(mesh, {corner.x() + kCell * i, corner.y() + kCell * j, roughness * rng.normal()});
+      addVertex(mesh, {corner.x() + cell * i, corner.y() + cell * j, roughness * rng.normal()});
     }
   }
   for (std::uint32_t i = 0; i + 1 < n; ++i) {

@@ -34,8 +34,8 @@ Wheels wheelsOf(const ObjectParams& object);
 /// Pose of a part in the object's frame after `traveled` [m] at `speed` [m/s].
 Pose3 partPose(const Shape& shape, const Part& part, double traveled, double speed);
 
-/// A square of ground about `center` with smoothly varying height, standard deviation `roughness`
-/// [m]; world frame, mean z = 0.
-Mesh makeRoad(const Vector2& center, double half_side, double roughness);
+/// A square of ground about `center` of cells of `cell` [m], with heights of standard deviation
+/// `roughness` [m] at their corners; world frame, mean z = 0.
+Mesh makeRoad(const Vector2& center, double half_side, double cell, double roughness);
 
 }  // namespace perception

@@ -11,12 +11,14 @@ namespace {
 constexpr double kRoadMargin =
     120;  // [m] around the ego's path: beyond it no ground return is detected
 
-Mesh roadAround(const WaypointParams& way, double roughness) {
+Mesh roadAround(const WaypointParams& way, double roughness, bool uniform) {
   const auto [x0, x1] = std::minmax_element(way.x.begin(), way.x.end());
   const auto [y0, y1] = std::minmax_element(way.y.begin(), way.y.end());
   // Centered on whole meters, so that the ground does not change when a waypoint moves a little.
   const Vector2 center(std::round(.5 * (*x0 + *x1)), std::round(.5 * (*y0 + *y1)));
-  return makeRoad(center, kRoadMargin + .5 * std::max(*x1 - *x0, *y1 - *y0), roughness);
+  const double half_side = kRoadMargin + .5 * std::max(*x1 - *x0, *y1 - *y0);
+  constexpr double kBumps = 1;  // [m] of the size of a patch of road
+  return makeRoad(center, half_side, uniform ? half_side : kBumps, roughness);
 }
 
 double distanceToLine(const Vector2& p, const RoadParams& road) {
@@ -50,7 +52,8 @@ void seed(Mesh& ground, const std::vector<RoadParams>& roads) {
 World::World(Scenario scenario)
     : scenario_(std::move(scenario)),
       ego_(scenario_.ego.waypoints.trajectory()),
-      road_(roadAround(scenario_.ego.waypoints, scenario_.params.ground_roughness)) {
+      road_(roadAround(scenario_.ego.waypoints, scenario_.params.ground_roughness,
+                       scenario_.params.ground_roughness <= 0 && scenario_.roads.empty())) {
   seed(road_, scenario_.roads);
   for (const ObjectParams& object : scenario_.objects) {
     trajectories_.push_back(object.waypoints.trajectory());

@@ -30,6 +30,10 @@ class World {
   Stamp stamp(double t) const;
   EgoState ego(double t) const;
   ObjectState object(std::size_t object, double t) const;
+  bool present(std::size_t object, double t) const {
+    const ObjectParams& o = scenario_.objects[object];
+    return t >= o.from && t <= o.to;
+  }
   /// Poses of the object's parts, world.
   std::vector<Pose3> parts(std::size_t object, double t) const;
 

@@ -41,7 +41,7 @@ void Daylight::advance(const World& world, const SensorParams& sensor, double t)
   if (sky_ != Sky::kNight) return;
   const Vector2 eye = (world.ego(t).T_world_ego * sensor.T_ego_sensor()).translation().head<2>();
   for (std::size_t i = 0; i < world.objects(); ++i) {
-    if (!hasHeadlights(world.scenario().objects[i])) continue;
+    if (!hasHeadlights(world.scenario().objects[i]) || !world.present(i, t)) continue;
     const Pose3 pose = world.object(i, t).T_world_object;
     const Vector2 arm = pose.translation().head<2>() - eye;
     const double azimuth = std::atan2(arm.y(), arm.x());

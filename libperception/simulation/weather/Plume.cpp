@@ -60,7 +60,7 @@ void Plume::advance(const World& world, const SensorParams& sensor, double t) {
   const double moved = ego.velocity.norm() / sensor.rate;  // during a scan
   for (std::size_t i = 0; i < world.objects(); ++i) {
     const std::size_t first = puffs_.size();
-    if (exhausts(world.scenario().objects[i])) addPuffs(world, i, t);
+    if (exhausts(world.scenario().objects[i]) && world.present(i, t)) addPuffs(world, i, t);
     if (puffs_.size() == first) continue;
     Cloud cloud{first, puffs_.size(), .5 * (puffs_[first].place + puffs_.back().place), 0};
     for (std::size_t k = first; k < puffs_.size(); ++k) {

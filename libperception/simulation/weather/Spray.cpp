@@ -54,8 +54,9 @@ void Spray::advance(const World& world, const SensorParams& sensor, double t) {
   for (; static_cast<double>(cycle_) * kCycle <= t + 1e-9; ++cycle_) {
     step();
     for (std::size_t i = 0; i < world.objects(); ++i) {
-      if (whirls(world.scenario().objects[i].kind)) {
-        emit(world, i, static_cast<double>(cycle_) * kCycle);
+      const double now = static_cast<double>(cycle_) * kCycle;
+      if (whirls(world.scenario().objects[i].kind) && world.present(i, now)) {
+        emit(world, i, now);
       }
     }
   }

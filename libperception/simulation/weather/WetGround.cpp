@@ -28,6 +28,7 @@ void WetGround::advance(const World& world, const SensorParams& sensor, double t
   table_.reset((world.ego(t).T_world_ego * sensor.T_ego_sensor()).translation().head<2>());
   standers_.clear();
   for (std::size_t i = 0; i < world.objects(); ++i) {
+    if (!world.present(i, t)) continue;
     const ObjectParams& object = world.scenario().objects[i];
     const Vector2 place = world.object(i, t).T_world_object.translation().head<2>();
     const double reach = .5 * std::hypot(object.length, object.width) + kMotion,

@@ -1,0 +1,172 @@
+// perception-simulate weather: simulated weather on a recording.
+#include <fmt/format.h>
+#include <mrpt/obs/CObservationComment.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "libperception/app/SimulateApp.h"
+#include "libperception/core/GroundTruth.h"
+#include "libperception/pipeline/Progress.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/EgoPose.h"
+#include "libperception/sensors/FromObservation.h"
+#include "libperception/sensors/RawlogReader.h"
+#include "libperception/sensors/RawlogWriter.h"
+#include "libperception/sensors/registerClasses.h"
+#include "libperception/simulation/Simulator.h"
+#include "libperception/simulation/recorded/RecordedScene.h"
+#include "libperception/simulation/recorded/WeatheredLog.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What has to be known of a recording before its first scan.
+struct Recording {
+  std::optional<Stamp> first, last;
+  std::vector<RecordedPose> poses;
+  std::uint64_t bytes = 0;
+};
+
+Recording surveyOf(const std::string& file) {
+  Recording found;
+  EgoPose ego;
+  RawlogReader log(file);
+  while (const auto observation = log.next()) {
+    stopIfAsked();
+    const auto stamp = toStamp(observation->timestamp);
+    if (!stamp) continue;
+    if (!found.first) found.first = stamp;
+    found.last = stamp;
+    ego.add(*observation);
+    if (!isSensorData(*observation)) continue;
+    if (const auto state = ego.at(*stamp))
+      found.poses.push_back({*stamp - *found.first, state->T_world_ego});
+  }
+  if (!found.first) throw DataError(file + ": no observation with a stamp");
+  found.bytes = log.fileBytes();
+  return found;
+}
+
+/// One file of labels a scan of the first lidar of the log, as of PointLabels.
+class LabelFolder {
+ public:
+  explicit LabelFolder(const std::string& rawlog)
+      : folder_(fs::path(rawlog).replace_extension().string() + "_Labels") {}
+
+  void write(const WeatheredLog::Labels& labels) {
+    if (sensor_.empty()) sensor_ = labels.sensor;
+    if (labels.frame < 0 || labels.sensor != sensor_) return;
+    std::string bytes;
+    for (const Phantom p : labels.phantoms) {
+      const std::uint32_t label = labelOf(p);
+      for (int shift = 0; shift < 32; shift += 8)
+        bytes.push_back(static_cast<char>(label >> shift & 0xFF));
+    }
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    const std::string path = fmt::format("{}/{:06d}.label", folder_, labels.frame);
+    std::ofstream out(path, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (!out.flush()) throw OutputError(path + ": cannot write");
+    ++files_;
+  }
+  const std::string& folder() const { return folder_; }
+  std::uint64_t files() const { return files_; }
+
+ private:
+  std::string folder_, sensor_;
+  std::uint64_t files_ = 0;
+};
+
+}  // namespace
+
+void SimulateApp::declareRecording(CLI::App& cli) {
+  recording_ = cli.add_subcommand("weather", "Simulated weather on a recording: lidar returns, "
+                                             "radar targets, boxes of image detectors");
+  recording_->add_option("-i,--input", inputs, "Rawlog; its truth (LOG.truth.csv), if any, beside")
+      ->required()
+      ->expected(1);
+  recording_->add_option("-c,--config", config_file, "INI with [weather]")->required();
+  recording_->add_option("--set", settings, "section.key=value: overrides the INI");
+  recording_->add_option("-o,--output", output, "Rawlog; truth and FILE_Labels/ beside")
+      ->required();
+  recording_->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
+  recording_->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
+      ->check(CLI::Range(0, 4096));
+  recording_->add_option("--gzip", gzip_level, "Compression of the log")
+      ->check(CLI::Range(0, 9))
+      ->capture_default_str();
+}
+
+void SimulateApp::alterRecording() {
+  Config config = loadConfig();
+  const auto conditions = config.read<SimulatedWeatherParams>("weather", {}, true);
+  if (configDone(config)) return;
+  const std::string& input = inputs.front();
+  std::error_code error;
+  if (fs::equivalent(input, output, error))
+    throw Error(ExitCode::kUsage, "-o: is the recording itself");
+  registerPerceptionClasses();
+  const auto start = std::chrono::steady_clock::now();
+  const Recording recording = surveyOf(input);
+  const std::string truth_file = truthFileOf(input);
+  const bool has_truth = fs::exists(truth_file);
+  const GroundTruth truth = has_truth ? readGroundTruth(truth_file) : GroundTruth{};
+  const double duration = *recording.last - *recording.first;
+  Scenario scene = recordedScene(truth, recording.poses, duration);
+  scene.weather = conditions;
+  WeatheredLog weathered(std::move(scene), *recording.first, seed, threads);
+
+  RawlogReader log(input);
+  RawlogWriter out(output, gzip_level);
+  LabelFolder labels(output);
+  mrpt::obs::CObservationComment comment;
+  comment.timestamp = fromStamp(*recording.first);
+  comment.sensorLabel = "SIMULATED";
+  comment.text = kSimulatedText + weathered.text();
+  out.write(comment);
+  {
+    Progress progress("weather", recording.bytes);
+    while (const auto observation = log.next()) {
+      stopIfAsked();
+      if (const auto altered = weathered.apply(observation)) out.write(*altered);
+      if (weathered.labels()) labels.write(*weathered.labels());
+      progress.update(log.bytesRead(), weathered.counts().scans);
+    }
+  }
+  if (log.end() != RawlogReader::End::kClean) warn(log.endMessage());
+  if (has_truth) {
+    out_truth_file = truthFileOf(output);
+    fs::copy_file(truth_file, out_truth_file, fs::copy_options::overwrite_existing, error);
+    if (error) throw OutputError(out_truth_file + ": cannot write: " + error.message());
+  }
+  out.close();
+
+  const WeatheredLog::Counts& n = weathered.counts();
+  out_entries = out.entries(), out_bytes = out.bytes();
+  out_points = n.returns, out_lost = n.lost, out_phantoms = n.phantoms;
+  fmt::print("{}: {}, {} entries, {:.2f} MB\n", output, weathered.text(), out_entries,
+             static_cast<double>(out_bytes) * 1e-6);
+  fmt::print("  lidar: {} scans, {} returns: {} lost, {} phantoms\n", n.scans, n.returns, n.lost,
+             n.phantoms);
+  if (n.targets > 0) fmt::print("  radar: {} targets, {} lost\n", n.targets, n.targets_lost);
+  if (n.boxes > 0) fmt::print("  boxes: {}, {} lost\n", n.boxes, n.boxes_lost);
+  if (labels.files() > 0)
+    fmt::print("  {}: what each return is, {} scans\n", labels.folder(), labels.files());
+  if (n.images > 0)
+    warn(fmt::format("{} images left out: their weather is not simulated", n.images));
+  if (!has_truth && (conditions.water_film_mm > 0 || conditions.snow_cover > 0))
+    warn(truth_file + ": not there, so that no object whirls up spray");
+  if (recording.poses.empty()) warn(input + ": no poses: the vehicle is taken to stand");
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  say(1, fmt::format("{:.2f} s for {:.1f} s of log: {:.2f} times real time", wall, duration,
+                     duration / wall));
+}
+
+}  // namespace perception

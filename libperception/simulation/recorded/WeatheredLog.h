@@ -1,0 +1,76 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/core/GroundTruth.h"
+#include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/SimulatedWeather.h"
+#include "libperception/simulation/World.h"
+#include "libperception/simulation/recorded/BeamPattern.h"
+
+namespace perception {
+
+/// Numbers of phantoms in label files, beside SemanticKITTI's classes: 110 is WADS's falling snow.
+std::uint32_t labelOf(Phantom phantom);
+
+/// Simulated weather on a recording, observation by observation: lidar returns, radar targets and
+/// boxes of image detectors as the same sensors would have given them in that weather. Everything
+/// else is kept as it is, but for images: their weather is not simulated, and they are left out.
+/// A function of recording, weather and seed.
+class WeatheredLog {
+ public:
+  /// `scene` with its `weather`, as of recordedScene(); `first`: stamp of the log; `threads` 0 =
+  /// number of cores.
+  WeatheredLog(Scenario scene, Stamp first, std::uint64_t seed, int threads = 1);
+  ~WeatheredLog();
+
+  /// A scan of a lidar of the log with what its returns are.
+  struct Labels {
+    std::string sensor;
+    std::int64_t frame = -1;           ///< the log's frame number; -1: none
+    std::vector<Phantom> phantoms;     ///< of each return
+    std::vector<std::uint32_t> source; ///< as in WeatheredScan
+    std::uint64_t before = 0;          ///< returns of the recording
+  };
+  struct Counts {
+    std::uint64_t scans = 0, returns = 0, lost = 0, phantoms = 0;  ///< of lidars
+    std::uint64_t targets = 0, targets_lost = 0;                   ///< of radars
+    std::uint64_t boxes = 0, boxes_lost = 0;                       ///< of image detectors
+    std::uint64_t images = 0;                                      ///< left out
+  };
+
+  /// The observation in this weather; null: left out. Observations must come in order of the log.
+  std::shared_ptr<mrpt::obs::CObservation> apply(
+      const std::shared_ptr<mrpt::obs::CObservation>& observation);
+  /// Of the last observation, where it was a lidar scan.
+  const std::optional<Labels>& labels() const { return labels_; }
+  const Counts& counts() const { return counts_; }
+  /// For the log's first comment.
+  std::string text() const;
+
+ private:
+  void alterScan(const SensorParams& sensor, double t, const RngKey& key, SensorFrame& frame);
+  void alterReturns(const SensorParams& sensor, const RngKey& key, RadarReturns& radar,
+                    const Pose3& T_world_sensor);
+  void alterBoxes(const SensorParams& sensor, const RngKey& key, ObjectDetections& detections,
+                  const Pose3& T_world_camera);
+
+  World world_;
+  LidarCaster caster_;
+  Stamp first_;
+  std::uint64_t seed_;
+  std::unique_ptr<SimulatedWeather> weather_;
+  std::map<std::string, BeamPattern> patterns_;      // by lidar
+  std::map<std::string, std::uint64_t> frames_of_;   // frames so far, by sensor
+  std::int64_t frame_ = -1;
+  std::optional<Labels> labels_;
+  Counts counts_;
+};
+
+}  // namespace perception
