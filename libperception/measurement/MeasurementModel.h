@@ -100,6 +100,9 @@ class MeasurementModel {
   virtual double innovationShare() const { return 1; }
   /// How the errors of Measurement::log_class repeat; null: they do not. Replaces labelExponent().
   virtual const EvidenceMemory* evidenceMemory() const { return nullptr; }
+  /// How the errors of detection, label and score of one object repeat, missed detections included;
+  /// null: they do not. Replaces labelExponent() and detectionExponent().
+  virtual const EvidenceMemory* lookMemory() const { return nullptr; }
   /// log P(label | clutter).
   virtual double logLabelClutter(int label) const = 0;
   /// Log of the expected number of false measurements per scan and unit of the axes seen at z.

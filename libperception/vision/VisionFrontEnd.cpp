@@ -12,6 +12,25 @@ namespace {
 
 constexpr double kNearest = 0.1;  // [m] least range: below it the object is under the camera
 
+/// Footprints by a detector whose errors on one object repeat.
+class RememberedBoxes final : public FootprintModel {
+ public:
+  RememberedBoxes(ClassTable classes, DetectionModel detection_model, const EvidenceMemory& memory)
+      : FootprintModel(std::move(classes), std::move(detection_model)), memory_(memory) {}
+  const EvidenceMemory* lookMemory() const override { return &memory_; }
+
+ private:
+  EvidenceMemory memory_;
+};
+
+std::shared_ptr<const FootprintModel> modelOf(const EvidenceMemory& memory,
+                                              const ClassTable& classes,
+                                              const DetectionModel& detection_model) {
+  if (memory.lasting > 0)
+    return std::make_shared<const RememberedBoxes>(classes, detection_model, memory);
+  return std::make_shared<const FootprintModel>(classes, detection_model);
+}
+
 /// "Car=car" -> {"Car", "car"}; empty when it is not of that form.
 std::optional<std::pair<std::string, std::string>> splitName(const std::string& text) {
   const auto equals = text.find('=');
@@ -67,6 +86,13 @@ void DetectorParams::visit(ParamVisitor& v) {
   v.boolean("base", base, "the lower edge also measures the base height of the object");
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
          "log-odds of an object per unit of score; 0: no evidence");
+  v.boolean("score_by_class", score_by_class,
+            "scores are evidence against things, not of the object alone");
+  v.real("memory_lasting", memory.lasting, {0, 0.999}, "",
+         "share of its errors on one object that stays, missed detections included: replaces "
+         "label_exponent and detection_exponent; 0: off");
+  v.real("memory_kept", memory.kept, {0, 0.999}, "", "correlation of the rest at once");
+  v.real("memory_time", memory.time, {1e-3, 1e9}, "s", "... which falls to 1/e after that time");
   v.angle("heading_sigma_deg", heading_sigma, {0.1, 90},
           "noise of the detector's headings, as axes");
   v.real("heading_flip", heading_flip, {0, 0.5}, "",
@@ -84,7 +110,8 @@ VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geomet
                                const ClassTable& classes, const DetectionModel& detection_model)
     : detector_(std::move(detector)),
       geometry_(geometry),
-      model_(std::make_shared<const FootprintModel>(classes, detection_model)) {
+      classes_(classes),
+      model_(modelOf(detector_.memory, classes, detection_model)) {
   for (const auto& n : detector_.names) {
     if (const auto pair = splitName(n))
       label_of_[pair->first] = detection_model.labelIndex(pair->second);
@@ -120,6 +147,7 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
   }
   m.log_score_ratio = std::clamp(detector_.score_slope * (object.score - offset),
                                  -detector_.score_limit, detector_.score_limit);
+  if (detector_.score_by_class) addClassEvidence(m);
   m.z = Vector3(box->left, box->right, box->range.value_or(0));
   m.seen = static_cast<AxisMask>((box->left_seen ? 1 << FootprintModel::kLeft : 0) |
                                  (box->right_seen ? 1 << FootprintModel::kRight : 0) |
@@ -156,6 +184,16 @@ std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object
         ScalarEstimate{(frame.ego.T_world_ego * foot).z(), box->base_sigma * box->base_sigma};
   }
   return m;
+}
+
+void VisionFrontEnd::addClassEvidence(Measurement& m) const {
+  const DetectionModel& tables = model_->detection_model();
+  constexpr double kOffLabel = 0.5;  // as of boxes in space (method.md 8.9)
+  for (ClassId c = 0; c < classes_.size(); ++c) {
+    const double share = !classes_[c].reported ? 0 : tables.labelOf(c) == m.label ? 1 : kOffLabel;
+    m.log_class.push_back(tables.logLabel(m.label, c) + share * m.log_score_ratio);
+  }
+  m.log_clutter = tables.logLabelClutter(m.label);
 }
 
 /// Occlusion by the boxes, at their ranges; null: none occludes.

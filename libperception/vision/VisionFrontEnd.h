@@ -24,7 +24,13 @@ struct DetectorParams {
   double score_offset = 0;
   double score_slope = 0;  ///< [1/score]; 0: scores are no evidence
   std::vector<std::pair<std::string, double>> label_offsets;  ///< score_offset of single labels
-  double score_limit = 4;                                     ///< of that logarithm; assumed
+  /// Share of that logarithm that is evidence of the class: all for road users that the label
+  /// names, half for other ones, none for things, as clutter; false: the same for all classes.
+  bool score_by_class = false;
+  /// How errors of one object repeat (method.md 5.6): with its time, whatever the change of view;
+  /// `lasting` 0: they do not.
+  EvidenceMemory memory{0, 0.5, 0.2, 0.3, 1, 0.5};
+  double score_limit = 4;  ///< of that logarithm; assumed
   /// [m] height of the objects of a label, mean and spread: a second source of range (method.md
   /// (15)).
   std::vector<std::pair<std::string, double>> height_priors, height_prior_sigmas;
@@ -64,11 +70,14 @@ class VisionFrontEnd final : public FrontEnd {
                                      const CameraModel& camera, const Pose3& T_ego_camera,
                                      const SensorState& state) const;
 
+  /// Label and score as evidence of the class (method.md 8.8).
+  void addClassEvidence(Measurement& m) const;
   std::shared_ptr<const OcclusionMap> occlusion(const MeasurementScan& scan,
                                                 const std::vector<ObjectDetection>& objects) const;
 
   DetectorParams detector_;
   BoxGeometryParams geometry_;
+  ClassTable classes_;
   std::map<std::string, int> label_of_;
   std::vector<std::optional<ScalarEstimate>> height_prior_;  ///< by label
   std::shared_ptr<const FootprintModel> model_;

@@ -154,6 +154,57 @@ TEST(VisionFrontEnd, SureBoxesHideWhatStandsBehindThem) {
   EXPECT_EQ(doubtful->visibility(-0.02, 0.02, 15, 0.5), 1);
 }
 
+/// One box of a pedestrian by a detector with these keys.
+MeasurementScan scanOf(const std::string& detector, double score) {
+  Config config = Config::fromText(
+      "[class.pedestrian]\nmotion = constant-velocity\n[class.cyclist]\nmotion = wheeled\n"
+      "[class.car]\nmotion = wheeled\n[class.pole]\nmotion = static\nreported = false\n"
+      "[sensor.A]\nkind = boxes\nmodality = C\n[sensor.A.class.pedestrian]\nlabel.person = 0.9\n"
+      "[sensor.A.class.cyclist]\nlabel.person = 0.6\n[sensor.A.class.car]\nlabel.car = 0.8\n"
+      "[sensor.A.class.pole]\nlabel.person = 0.5\n[sensor.A.detector]\nscore_slope = 2\n"
+      "score_offset = 0.5\n" +
+          detector,
+      "a.ini");
+  const auto front_end = makeVisionFrontEnd(config, "A", readClassTable(config));
+  EXPECT_NO_THROW(config.finish());
+  SensorFrame frame;
+  frame.sensor = "A";
+  frame.T_ego_sensor = cameraPose(1.65);
+  ObjectDetections detections;
+  detections.camera = kCamera;
+  ObjectDetection o;
+  o.label = "Pedestrian";
+  o.score = score;
+  o.image_box = boardBox(12, 0.4, -0.4, 1.7, frame.T_ego_sensor);
+  detections.objects.push_back(o);
+  frame.data = detections;
+  return front_end->extract(frame);
+}
+
+TEST(VisionFrontEnd, ScoresAreEvidenceAgainstThings) {
+  const MeasurementScan scan = scanOf("score_by_class = true\n", 0.9);
+  ASSERT_EQ(scan.measurements.size(), 1u);
+  const auto& log_class = scan.measurements[0].log_class;
+  ASSERT_EQ(log_class.size(), 4u);
+  EXPECT_NEAR(log_class[0], std::log(0.9) + 0.8, 1e-9);
+  EXPECT_NEAR(log_class[1], std::log(0.6) + 0.8, 1e-9) << "a rider is most often called a person";
+  EXPECT_NEAR(log_class[2], std::log(0.2) + 0.4, 1e-9);
+  EXPECT_NEAR(log_class[3], std::log(0.5), 1e-9);
+  EXPECT_NEAR(scan.measurements[0].log_clutter, std::log(0.5), 1e-9);
+  EXPECT_TRUE(scanOf("", 0.9).measurements.at(0).log_class.empty());
+}
+
+TEST(VisionFrontEnd, ErrorsRepeatWhereTheIniSaysSo) {
+  EXPECT_EQ(scanOf("", 0.9).model->lookMemory(), nullptr);
+  const MeasurementScan scan =
+      scanOf("memory_lasting = 0.3\nmemory_kept = 0.4\nmemory_time = 2\n", 0.9);
+  const EvidenceMemory* memory = scan.model->lookMemory();
+  ASSERT_TRUE(memory);
+  EXPECT_EQ(memory->lasting, 0.3);
+  EXPECT_EQ(memory->kept, 0.4);
+  EXPECT_EQ(memory->time, 2);
+}
+
 TEST(VisionFrontEnd, MapsNamesToLabelsAndDropsTheRest) {
   Config config = Config::fromText(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = "

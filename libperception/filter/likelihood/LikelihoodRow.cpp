@@ -38,6 +38,7 @@ bool setDetection(const Track& track, const std::vector<Vector2>& places, const 
   row.in_view = std::any_of(detection.begin(), detection.end(), [](double d) { return d > 0; });
   if (!row.in_view) return false;
   const double visibility = visibilityOf(track, terms.scan, terms.model);
+  row.visible = visibility;
   for (std::size_t j = 0; j < places.size(); ++j) {
     detection[j] = std::min(kMaxDetection, detection[j] * visibility);
     if (detection[j] > 0) row.detection += std::exp(track.log_class[j]) * detection[j];
@@ -65,7 +66,7 @@ ScanTerms::ScanTerms(const MeasurementScan& s, const FilterModel& m)
       model(m),
       gates(Gates::of(m.params.gate_probability)),
       label_exponent(s.model->labelExponent()),
-      detection_exponent(s.model->detectionExponent()),
+      detection_exponent(s.model->lookMemory() ? 0 : s.model->detectionExponent()),
       kinematic_exponent(m.params.kinematic_exponent * s.model->innovationShare()),
       classes_(static_cast<std::size_t>(m.classes.size())) {
   for (const ObjectClass& c : model.classes.classes) log_prior.push_back(std::log(c.prior));
@@ -83,13 +84,11 @@ double visibilityOf(const Track& track, const MeasurementScan& scan, const Filte
   return std::max(shareNotHidden(track, scan, model), model.params.occluded_detection);
 }
 
-PairTerms::PairTerms(const Track& track, std::size_t measurement, const ScanTerms& terms,
-                     PairLikelihood& pair)
-    : track_(track),
-      terms_(terms),
-      m_(terms.scan.measurements[measurement]),
-      pair_(pair),
-      evidence_(track, m_, terms.scan, terms.model.params.class_epsilon) {
+PairTerms::PairTerms(const Track& track, const ClassValues& detection, std::size_t measurement,
+                     const ScanTerms& terms, PairLikelihood& pair)
+    : track_(track), terms_(terms), m_(terms.scan.measurements[measurement]), pair_(pair) {
+  if (auto look = lookOf(track, m_, terms.scan, detection))
+    evidence_.emplace(track, std::move(*look), terms.scan, terms.model.params.class_epsilon);
   const std::size_t classes = track.bank.size();
   pair.measurement = measurement;
   pair.log_prior = 0;
@@ -112,7 +111,7 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
       density.log_density + terms_.labelAndScore(k, j) + log_detection + heading;
   pair_.log_class_evidence[j] =
       terms_.kinematic_exponent * density.log_density +
-      (evidence_.applies() ? evidence_.added(j) : terms_.label_exponent * terms_.label(k, j)) +
+      (evidence_ ? evidence_->added(j) : terms_.label_exponent * terms_.label(k, j)) +
       terms_.detection_exponent * log_detection;
   mixture_[j] = track_.log_class[j] + pair_.log_by_class[j];
 }
@@ -166,7 +165,7 @@ void positionRow(const Track& track, const std::vector<std::size_t>& near, const
     }
     if (row.pairs.empty()) row.pairs.reserve(2);  // most have no more
     PairLikelihood& pair = row.pairs.emplace_back();
-    PairTerms sum(track, k, terms, pair);
+    PairTerms sum(track, row.detection_by_class, k, terms, pair);
     for (std::size_t j = 0; j < classes; ++j) {
       if (row.detection_by_class[j] <= 0 || residuals[j].determinant <= 0) continue;
       constexpr double kTwoLogTwoPi = 2 * 1.8378770664093454836;

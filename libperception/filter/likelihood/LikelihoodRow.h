@@ -40,8 +40,8 @@ class ScanTerms {
 /// Accumulates the likelihoods of one track-measurement pair over the classes.
 class PairTerms {
  public:
-  PairTerms(const Track& track, std::size_t measurement, const ScanTerms& terms,
-            PairLikelihood& pair);
+  PairTerms(const Track& track, const ClassValues& detection, std::size_t measurement,
+            const ScanTerms& terms, PairLikelihood& pair);
   /// `log_detection`: log P_D of the class.
   void add(std::size_t j, const Density& density, double log_detection);
   /// Sets the mixture likelihood of all classes added; -inf if none was.
@@ -53,7 +53,7 @@ class PairTerms {
   const ScanTerms& terms_;
   const Measurement& m_;
   PairLikelihood& pair_;
-  const RepeatedEvidence evidence_;
+  std::optional<RepeatedEvidence> evidence_;
   ClassValues mixture_;
 };
 

@@ -51,7 +51,7 @@ double pairLikelihood(const Track& track, const ClassValues& detection_by_class,
                       const AxisList& axes, const ScanTerms& terms, double gate, Scratch& scratch) {
   const Measurement& m = terms.scan.measurements[k];
   PairLikelihood& pair = scratch.pair;
-  PairTerms sum(track, k, terms, pair);
+  PairTerms sum(track, detection_by_class, k, terms, pair);
   double min_excess = std::numeric_limits<double>::infinity();
   const RegionSeen* region = regionOf(track, terms.scan, terms.model);
   ClassValues with_region;
@@ -97,6 +97,7 @@ void setDetection(const Track& track, const ScanTerms& terms, const Scratch& scr
                   TrackLikelihoods& row) {
   const MeasurementScan& scan = terms.scan;
   const double visibility = visibilityOf(track, scan, terms.model);
+  row.visible = visibility;
   row.detection_by_class.resize(track.bank.size());
   for (std::size_t j = 0; j < track.bank.size(); ++j) {
     const auto detection = [&](double visible) {
@@ -192,16 +193,33 @@ TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
   return row;
 }
 
+/// log of P_D over its mean by the class prior where looks repeat, else 0: the detection is a look,
+/// too, and the rate of births is that of first detections.
+ClassValues logFirstDetected(const Measurement& m, const ScanTerms& terms) {
+  ClassValues result;
+  result.assign(terms.log_prior.size(), 0);
+  if (!terms.scan.model->lookMemory()) return result;
+  const ClassValues detection = detectionAtBirth(m, terms.scan, terms.model);
+  double mean = 0;
+  for (std::size_t j = 0; j < detection.size(); ++j)
+    mean += std::exp(terms.log_prior[j]) * detection[j];
+  if (mean <= 0) return result;
+  for (std::size_t j = 0; j < detection.size(); ++j)
+    result[j] = std::log(std::max(detection[j], 1e-6) / mean);
+  return result;
+}
+
 BirthLikelihood birthLikelihood(std::size_t k, const ScanTerms& terms) {
   const MeasurementScan& scan = terms.scan;
   const FilterModel& model = terms.model;
   const Measurement& m = scan.measurements[k];
   const int classes = model.classes.size();
+  const auto log_detected = logFirstDetected(m, terms);
   BirthLikelihood result;
   result.log_class.assign(static_cast<std::size_t>(classes), kMinusInfinity);
   for (ClassId j = 0; j < classes; ++j) {
     result.log_class[static_cast<std::size_t>(j)] =
-        terms.log_prior[static_cast<std::size_t>(j)] +
+        terms.log_prior[static_cast<std::size_t>(j)] + log_detected[static_cast<std::size_t>(j)] +
         terms.labelAndScore(k, static_cast<std::size_t>(j)) +
         scan.model->logBirthDensity(m, j, scan.state);
   }

@@ -26,6 +26,7 @@ struct PairLikelihood {
 struct TrackLikelihoods {
   double detection = 0;  ///< P_D = sum_j p(class j) P_D(class j)
   ClassValues detection_by_class;
+  double visible = 1;                       ///< share of the object's directions that are open
   bool in_view = false;                     ///< P_D of some class is positive, occlusion aside
   std::vector<AxisPrediction> predictions;  ///< by class; empty for position-only models
   std::vector<PairLikelihood> pairs;        ///< in order of measurement

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "libperception/core/LogMath.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
+
 namespace perception {
 namespace {
 
@@ -15,29 +18,94 @@ const EvidenceSeen* seenBy(const Track& track, const std::string& sensor) {
   return nullptr;
 }
 
-double meanWith(double views, double mean, double worth, double value) {
-  return (views * mean + worth * value) / (views + worth);
+constexpr double kNearest = 0.1;    // [m] least range of a view
+constexpr double kLeastSaid = -12;  // under the likeliest class: a class never detected there
+
+EvidenceView viewOf(const Track& track, const MeasurementScan& scan) {
+  const auto c = static_cast<std::size_t>(track.likeliestClass());
+  const Vector2 d =
+      scan.state.T_world_sensor.translation().head<2>() - track.bank[track.filterOf(c)].x.head<2>();
+  return {std::atan2(d.y(), d.x()), std::log(std::max(d.norm(), kNearest))};
+}
+
+/// Relative to the likeliest class.
+void limit(ClassValues& said) {
+  const double best = *std::max_element(said.begin(), said.end());
+  for (double& value : said) value = best > kMinusInfinity ? std::max(value - best, kLeastSaid) : 0;
 }
 
 }  // namespace
 
-RepeatedEvidence::RepeatedEvidence(const Track& track, const Measurement& m,
-                                   const MeasurementScan& scan, double epsilon)
-    : m_(m) {
-  if (!m.view) return;
-  memory_ = scan.model->evidenceMemory();
-  if (!memory_) return;
+std::optional<Look> lookOf(const Track& track, const Measurement& m, const MeasurementScan& scan,
+                           const ClassValues& detection) {
+  Look look;
+  if (m.view && (look.memory = scan.model->evidenceMemory())) {
+    look.view = *m.view;
+    look.said.resize(m.log_class.size());
+    std::copy(m.log_class.begin(), m.log_class.end(), look.said.begin());
+    return look;
+  }
+  look.memory = scan.model->lookMemory();
+  if (!look.memory) return {};
+  look.view = viewOf(track, scan);
+  look.said.resize(detection.size());
+  for (std::size_t j = 0; j < detection.size(); ++j)
+    look.said[j] =
+        logLabelAndScore(*scan.model, m, static_cast<ClassId>(j)) + std::log(detection[j]);
+  limit(look.said);
+  return look;
+}
+
+std::optional<Look> missedLook(const Track& track, const MeasurementScan& scan,
+                               const ClassValues& detection, double visible) {
+  Look look;
+  look.memory = scan.model->lookMemory();
+  if (!look.memory || visible <= 0) return {};
+  look.view = viewOf(track, scan);
+  look.weight = visible;
+  look.said.resize(detection.size());
+  for (std::size_t j = 0; j < detection.size(); ++j) look.said[j] = std::log1p(-detection[j]);
+  limit(look.said);
+  return look;
+}
+
+ClassValues detectionAtBirth(const Measurement& m, const MeasurementScan& scan,
+                             const FilterModel& model) {
+  ClassValues detection;
+  detection.assign(static_cast<std::size_t>(model.classes.size()), 0);
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const auto birth = scan.model->birth(m, j, scan.state);
+    if (!birth) continue;
+    ClassFilter f;
+    f.x.head<2>() = birth->position;
+    detection[static_cast<std::size_t>(j)] = scan.model->detectionProbability(
+        j, kinematicsOf(model.classes[j], f), birth->extent, scan.state, 1);
+  }
+  return detection;
+}
+
+std::optional<Look> lookAtBirth(const Track& track, const Measurement& m,
+                                const MeasurementScan& scan, const FilterModel& model) {
+  ClassValues detection;
+  if (scan.model->lookMemory()) detection = detectionAtBirth(m, scan, model);
+  return lookOf(track, m, scan, detection);
+}
+
+RepeatedEvidence::RepeatedEvidence(const Track& track, Look look, const MeasurementScan& scan,
+                                   double epsilon)
+    : look_(std::move(look)) {
   seen_ = seenBy(track, scan.sensor);
   if (!seen_) return;
+  const EvidenceMemory& memory = *look_.memory;
   worth_ = EvidenceMemory::worth(
-      memory_->correlation(*m.view, seen_->view, scan.state.stamp - seen_->stamp));
-  kept_ = seen_->views * memory_->say(*m.view, seen_->view);
+      memory.correlation(look_.view, seen_->view, scan.state.stamp - seen_->stamp));
+  kept_ = seen_->views * memory.say(look_.view, seen_->view);
   if (epsilon <= 0) return;
   floor_ = std::log(epsilon);
   best_before_ = best_now_ = -std::numeric_limits<double>::infinity();
-  for (std::size_t j = 0; j < m.log_class.size(); ++j) {
-    best_before_ = std::max(best_before_, memory_->looks(seen_->views) * seen_->mean[j]);
-    best_now_ = std::max(best_now_, memory_->looks(views()) * mean(j));
+  for (std::size_t j = 0; j < look_.said.size(); ++j) {
+    best_before_ = std::max(best_before_, memory.looks(seen_->views) * seen_->mean[j]);
+    best_now_ = std::max(best_now_, memory.looks(views()) * mean(j));
   }
 }
 
@@ -46,21 +114,21 @@ double RepeatedEvidence::total(double looks, double value, double best) const {
 }
 
 double RepeatedEvidence::added(std::size_t j) const {
-  if (!seen_) return m_.log_class[j];
-  return total(memory_->looks(views()), mean(j), best_now_) -
-         total(memory_->looks(seen_->views), seen_->mean[j], best_before_);
+  if (!seen_) return look_.said[j];
+  return total(look_.memory->looks(views()), mean(j), best_now_) -
+         total(look_.memory->looks(seen_->views), seen_->mean[j], best_before_);
 }
 
 double RepeatedEvidence::mean(std::size_t j) const {
-  return seen_ ? meanWith(kept_, seen_->mean[j], worth_, m_.log_class[j]) : m_.log_class[j];
+  if (!seen_) return look_.said[j];
+  return (kept_ * seen_->mean[j] + worth_ * look_.said[j]) / (kept_ + worth_ * look_.weight);
 }
 
-void rememberEvidence(const Measurement& m, const MeasurementScan& scan, Track& track) {
-  const RepeatedEvidence evidence(track, m, scan);
-  if (!evidence.applies()) return;
+void rememberEvidence(const Look& look, const MeasurementScan& scan, Track& track) {
+  const RepeatedEvidence evidence(track, look, scan);
   const std::uint64_t key = sensorKey(scan.sensor);
-  EvidenceSeen now{key, scan.state.stamp, *m.view, evidence.views(), {}};
-  for (std::size_t j = 0; j < m.log_class.size(); ++j) now.mean.push_back(evidence.mean(j));
+  EvidenceSeen now{key, scan.state.stamp, look.view, evidence.views(), {}};
+  for (std::size_t j = 0; j < look.said.size(); ++j) now.mean.push_back(evidence.mean(j));
   const auto seen = std::find_if(track.evidence.begin(), track.evidence.end(),
                                  [&](const EvidenceSeen& e) { return e.sensor == key; });
   if (seen == track.evidence.end()) {

@@ -1,42 +1,63 @@
 #pragma once
 #include <algorithm>
 #include <limits>
+#include <optional>
 
+#include "libperception/filter/state/ClassValues.h"
+#include "libperception/filter/state/FilterModel.h"
 #include "libperception/filter/state/Track.h"
 #include "libperception/measurement/MeasurementModel.h"
 
 namespace perception {
 
-/// What a measurement adds to the evidence of a track's class by a sensor whose errors repeat
-/// (method.md 5.6): the evidence of all views is their mean times the number of independent looks
-/// that they are worth; what it was before is taken back, so that each view counts once.
+/// What a sensor whose errors repeat says of a track's class at one time.
+struct Look {
+  const EvidenceMemory* memory = nullptr;  ///< never null
+  EvidenceView view;
+  ClassValues said;   ///< log likelihood by class
+  double weight = 1;  ///< below 1: a part of the object was in view, and `said` is of that part
+};
+
+/// Of a measurement taken for the track, or born from: its evidence by the shape, or, of a sensor
+/// with a lookMemory(), detection, label and score. Empty: the sensor has no memory.
+std::optional<Look> lookOf(const Track& track, const Measurement& m, const MeasurementScan& scan,
+                           const ClassValues& detection);
+/// Of a missed detection; `visible`: share of the object that nothing hides. Empty also where that
+/// is nothing.
+std::optional<Look> missedLook(const Track& track, const MeasurementScan& scan,
+                               const ClassValues& detection, double visible);
+/// P_D by class where a measurement would start an object, nothing hidden; 0: it cannot.
+ClassValues detectionAtBirth(const Measurement& m, const MeasurementScan& scan,
+                             const FilterModel& model);
+std::optional<Look> lookAtBirth(const Track& track, const Measurement& m,
+                                const MeasurementScan& scan, const FilterModel& model);
+
+/// What a look adds to the evidence of a track's class by a sensor whose errors repeat
+/// (method.md 5.6): the evidence of all looks is their mean times the number of independent ones
+/// that they are worth; what it was before is taken back, so that each counts once.
 class RepeatedEvidence {
  public:
-  /// Not `applies()` where the model has no memory or the measurement tells no view. `epsilon`:
-  /// floor of class probabilities; totals are limited to what it lets in, so that no more is taken
-  /// back than was given. 0: none. Borrows all.
-  RepeatedEvidence(const Track& track, const Measurement& m, const MeasurementScan& scan,
-                   double epsilon = 0);
+  /// `epsilon`: floor of class probabilities; totals are limited to what it lets in, so that no
+  /// more is taken back than was given. 0: none. Borrows the track.
+  RepeatedEvidence(const Track& track, Look look, const MeasurementScan& scan, double epsilon = 0);
 
-  bool applies() const { return memory_ != nullptr; }
   /// Difference of the log likelihood of class j.
   double added(std::size_t j) const;
-  /// With this view: mean log likelihood of class j, and the independent looks it is of.
+  /// With this look: mean log likelihood of class j, and the independent looks it is of.
   double mean(std::size_t j) const;
-  double views() const { return std::max(1.0, kept_ + worth_); }
+  double views() const { return std::max(1.0, kept_ + worth_ * look_.weight); }
 
  private:
   double total(double looks, double value, double best) const;
 
-  const Measurement& m_;
-  const EvidenceMemory* memory_ = nullptr;
+  Look look_;
   const EvidenceSeen* seen_ = nullptr;  ///< null: the first view
   double kept_ = 0, worth_ = 1;         ///< looks: of the views before, of this one
   double floor_ = -std::numeric_limits<double>::infinity();  ///< log epsilon
   double best_before_ = 0, best_now_ = 0;                    ///< totals of the likeliest class
 };
 
-/// Stores what a measurement said of a track that was just updated with it, or born of it.
-void rememberEvidence(const Measurement& m, const MeasurementScan& scan, Track& track);
+/// Stores what was said of a track.
+void rememberEvidence(const Look& look, const MeasurementScan& scan, Track& track);
 
 }  // namespace perception

@@ -147,6 +147,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
                const MeasurementScan& scan, std::uint64_t scan_index, const FilterModel& model) {
   const Measurement& m = scan.measurements[pair.measurement];
   Track track = std::move(predicted);
+  const std::optional<Look> look = lookOf(track, m, scan, row.detection_by_class);
   track.history = extendHistory(track.history, scan_index, pair.measurement);
   track.existence = model.params.existence_max;
   track.last_in_view = scan.state.stamp;
@@ -193,7 +194,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
-  rememberEvidence(m, scan, track);
+  if (look) rememberEvidence(*look, scan, track);
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
   decideClass(model, pair.nis[static_cast<std::size_t>(best)] > surprisingNis(axes_seen), track);
@@ -207,9 +208,17 @@ Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementS
   if (row.detection <= 0 || model.params.existence_decay > 0) return track;
   const double r = track.existence;
   track.existence = r * (1 - row.detection) / (1 - r * row.detection);
-  for (std::size_t j = 0; j < track.log_class.size(); ++j) {
-    // Missed detections of one object are correlated, as its labels are.
-    track.log_class[j] += scan.model->detectionExponent() * std::log1p(-row.detection_by_class[j]);
+  if (const auto look = missedLook(track, scan, row.detection_by_class, row.visible)) {
+    const RepeatedEvidence evidence(track, *look, scan, model.params.class_epsilon);
+    for (std::size_t j = 0; j < track.log_class.size(); ++j)
+      track.log_class[j] += evidence.added(j);
+    rememberEvidence(*look, scan, track);
+  } else {
+    for (std::size_t j = 0; j < track.log_class.size(); ++j) {
+      // Missed detections of one object are correlated, as its labels are.
+      track.log_class[j] +=
+          scan.model->detectionExponent() * std::log1p(-row.detection_by_class[j]);
+    }
   }
   clampClasses(model.params.class_epsilon, track.log_class);
   decideClass(model, false, track);
@@ -243,7 +252,7 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
   if (m.heading) updateBodyHeading(*m.heading, model.params, track);
   track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
-  rememberEvidence(m, scan, track);
+  if (const auto look = lookAtBirth(track, m, scan, model)) rememberEvidence(*look, scan, track);
   startSizes(model, track);
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);

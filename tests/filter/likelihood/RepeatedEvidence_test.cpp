@@ -14,21 +14,28 @@ namespace {
 
 using test::positionScan;
 
-/// Positions with evidence whose errors repeat; `remembers` false: with evidence that does not.
+enum class Repeats { kNothing, kEvidence, kLooks };
+
+/// Positions whose evidence repeats, or whose detections and labels do, or neither.
 class RememberingModel final : public PositionModel {
  public:
-  RememberingModel(Params params, const EvidenceMemory& memory, bool remembers)
-      : PositionModel(std::move(params)), memory_(memory), remembers_(remembers) {}
-  const EvidenceMemory* evidenceMemory() const override { return remembers_ ? &memory_ : nullptr; }
+  RememberingModel(Params params, const EvidenceMemory& memory, Repeats repeats)
+      : PositionModel(std::move(params)), memory_(memory), repeats_(repeats) {}
+  const EvidenceMemory* evidenceMemory() const override {
+    return repeats_ == Repeats::kEvidence ? &memory_ : nullptr;
+  }
+  const EvidenceMemory* lookMemory() const override {
+    return repeats_ == Repeats::kLooks ? &memory_ : nullptr;
+  }
 
  private:
   EvidenceMemory memory_;
-  bool remembers_;
+  Repeats repeats_;
 };
 
 struct Fixture {
   EvidenceMemory memory{0.2, 0.9, 0.2, 0.3, 1, 0.5};
-  bool remembers = true;
+  Repeats repeats = Repeats::kEvidence;
   FilterModel model = test::exactModel(test::linearClasses());
 
   Fixture() { model.params.kinematic_exponent = 0; }
@@ -36,7 +43,7 @@ struct Fixture {
   std::shared_ptr<const PositionModel> sensor() const {
     PositionModel::Params params = test::linearSensor();
     params.classes[1].detection = params.classes[0].detection;  // tells nothing of the class
-    return std::make_shared<const RememberingModel>(params, memory, remembers);
+    return std::make_shared<const RememberingModel>(params, memory, repeats);
   }
   MeasurementScan seen(double t, std::optional<EvidenceView> view,
                        std::vector<double> log_class = {1.5, -0.5}) const {
@@ -61,10 +68,9 @@ const EvidenceView kAhead{0.1, 3};
 
 /// What a view adds; remembers it.
 double add(Track& track, const MeasurementScan& scan, std::size_t j = 0) {
-  const RepeatedEvidence evidence(track, scan.measurements[0], scan);
-  EXPECT_TRUE(evidence.applies());
-  const double added = evidence.added(j);
-  rememberEvidence(scan.measurements[0], scan, track);
+  const Look look = lookOf(track, scan.measurements[0], scan, {}).value();
+  const double added = RepeatedEvidence(track, look, scan).added(j);
+  rememberEvidence(look, scan, track);
   return added;
 }
 
@@ -72,7 +78,7 @@ TEST(RepeatedEvidence, TheFirstViewCountsFully) {
   const Fixture f;
   Track track;
   const auto scan = f.seen(0, kAhead);
-  const RepeatedEvidence evidence(track, scan.measurements[0], scan);
+  const RepeatedEvidence evidence(track, *lookOf(track, scan.measurements[0], scan, {}), scan);
   EXPECT_EQ(evidence.added(0), 1.5);
   EXPECT_EQ(evidence.added(1), -0.5);
   EXPECT_EQ(evidence.views(), 1);
@@ -157,12 +163,10 @@ TEST(RepeatedEvidence, WithoutAViewOrAMemoryNothingIsKept) {
   Fixture f;
   Track track;
   const auto check = [&](const MeasurementScan& scan) {
-    EXPECT_FALSE(RepeatedEvidence(track, scan.measurements[0], scan).applies());
-    rememberEvidence(scan.measurements[0], scan, track);
-    EXPECT_TRUE(track.evidence.empty());
+    EXPECT_FALSE(lookOf(track, scan.measurements[0], scan, {}));
   };
   check(f.seen(0, std::nullopt));
-  f.remembers = false;
+  f.repeats = Repeats::kNothing;
   check(f.seen(0, kAhead));
 }
 
@@ -193,7 +197,7 @@ TEST(RepeatedEvidence, IndependentEvidenceGrowsAsBefore) {
     return odds(track);
   };
   EXPECT_NEAR(after(std::nullopt), prior + 6 * 2, 1e-9);
-  f.remembers = false;
+  f.repeats = Repeats::kNothing;
   EXPECT_NEAR(after(kAhead), prior + 6 * 2, 1e-9);
 }
 
@@ -203,6 +207,101 @@ TEST(RepeatedEvidence, AHitMayTakeBackWhatWasSaidBefore) {
   const double before = odds(track);
   track = f.hit(track, f.seen(0.1, EvidenceView{kAhead.bearing + 3, 3}, {0, 0}));
   EXPECT_NEAR(odds(track), before - 3, 0.05);
+}
+
+// Looks: detection and label
+// -----------------------------------------------------------------------
+
+/// P_D .8 and .6, label 0 with .7 and .4, classes alike but for that.
+struct Looking : Fixture {
+  Looking() { repeats = Repeats::kLooks; }
+  MeasurementScan scan(double t, bool detected) const {
+    PositionModel::Params params = test::linearSensor();
+    params.classes[1].noise = params.classes[0].noise;
+    const auto model = std::make_shared<const RememberingModel>(params, memory, repeats);
+    MeasurementScan scan = positionScan(model, t, {{1, 2, 0}});
+    if (!detected) scan.measurements.clear();
+    return scan;
+  }
+  Track missed(const Track& before, const MeasurementScan& scan) const {
+    const Track track = predictTrack(before, scan.state.stamp, model);
+    return missTrack(track, likelihoodTable({track}, scan, model).tracks[0], scan, model);
+  }
+};
+
+const double kHit = std::log(0.8 * 0.7) - std::log(0.6 * 0.4);
+const double kMiss = std::log(0.2) - std::log(0.4);
+
+TEST(RepeatedEvidence, ABirthIsADetection) {
+  const Looking f;
+  const Track track = f.born(f.scan(0, true));
+  EXPECT_NEAR(odds(track), std::log(0.6 / 0.4) + kHit, 1e-6);
+  ASSERT_EQ(track.evidence.size(), 1u);
+  EXPECT_NEAR(track.evidence[0].mean[0] - track.evidence[0].mean[1], kHit, 1e-6);
+}
+
+TEST(RepeatedEvidence, TheRateOfBirthsIsThatOfFirstDetections) {
+  Looking f;
+  const auto rate = [&](double detection) {
+    PositionModel::Params params = test::linearSensor();
+    for (auto& row : params.classes) row.detection = detection, row.labels = {0.5, 0.5};
+    const auto model = std::make_shared<const RememberingModel>(params, f.memory, f.repeats);
+    return likelihoodTable({}, positionScan(model, 0, {{1, 2, 0}}), f.model).births[0].log_birth;
+  };
+  EXPECT_NEAR(rate(0.9), rate(0.1), 1e-9);
+}
+
+TEST(RepeatedEvidence, DetectionsAlikeAreBounded) {
+  const Looking f;
+  const double prior = std::log(0.6 / 0.4);
+  Track track = f.born(f.scan(0, true));
+  for (int k = 1; k <= 300; ++k) track = f.hit(track, f.scan(0.1 * k, true));
+  EXPECT_GT(odds(track), prior + 0.8 * kHit / 0.2);
+  EXPECT_LT(odds(track), prior + kHit / 0.2);
+}
+
+TEST(RepeatedEvidence, MissesAreLooksAsWell) {
+  const Looking f;
+  const double prior = std::log(0.6 / 0.4);
+  Track track = f.born(f.scan(0, true));
+  double before = odds(track);
+  for (int k = 1; k <= 40; ++k) {
+    track = f.missed(track, f.scan(0.1 * k, false));
+    EXPECT_LT(odds(track), before) << k;
+    before = odds(track);
+  }
+  const EvidenceSeen& seen = track.evidence.at(0);
+  EXPECT_NEAR(odds(track), prior + f.memory.looks(seen.views) * (seen.mean[0] - seen.mean[1]),
+              1e-3);
+  EXPECT_GT(odds(track), prior + kMiss / 0.2);
+}
+
+TEST(RepeatedEvidence, WhatIsHiddenTellsNothing) {
+  const Looking f;
+  const auto scan = f.scan(1, false);
+  const Track track = f.born(f.scan(0, true));
+  ClassValues detection;
+  detection.assign(2, 0.01);
+  EXPECT_FALSE(missedLook(track, scan, detection, 0));
+  const auto look = missedLook(track, scan, detection, 0.1);
+  ASSERT_TRUE(look);
+  EXPECT_EQ(look->weight, 0.1);
+  Look whole = *look;
+  whole.weight = 1;
+  EXPECT_LT(RepeatedEvidence(track, *look, scan).views(),
+            RepeatedEvidence(track, whole, scan).views());
+}
+
+TEST(RepeatedEvidence, AClassNeverDetectedThereIsNotRuledOut) {
+  const Looking f;
+  const auto scan = f.scan(0, true);
+  const Track track = f.born(scan);
+  ClassValues detection;
+  detection.assign(2, 0);
+  const Look nowhere = *lookOf(track, scan.measurements[0], scan, detection);
+  for (const double value : nowhere.said) EXPECT_EQ(value, 0);
+  detection[0] = 0.5;
+  EXPECT_GT(lookOf(track, scan.measurements[0], scan, detection)->said[1], -20);
 }
 
 }  // namespace
