@@ -13,6 +13,7 @@
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/RawlogWriter.h"
+#include "libperception/simulation/PointTruth.h"
 #include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/Simulator.h"
 
@@ -86,6 +87,19 @@ std::optional<Scenario> SimulateApp::loadScenario() {
   return trialOf(std::move(scenario), trial, seed);
 }
 
+void SimulateApp::removeOldLabels() const {
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(labelFolderOf(output), error)) {
+    if (file.path().extension() == ".label") std::filesystem::remove(file.path(), error);
+  }
+}
+
+void SimulateApp::writeLabels(std::int64_t frame, const std::vector<std::uint32_t>& labels) {
+  const std::string folder = labelFolderOf(output);
+  if (out_labels++ == 0) createFolder(folder);
+  writeFile((std::filesystem::path(folder) / labelFileName(frame)).string(), labelBytes(labels));
+}
+
 void SimulateApp::drawCoverage() {
   Config config = loadConfig();
   // A vehicle INI has no scene; other sections of a scenario do not affect the picture.
@@ -134,12 +148,14 @@ void SimulateApp::run() {
   const std::vector<Lane> lanes = scenario.lanes;
   Simulator simulator(std::move(scenario), name, trialSeed(seed, trial), threads);
   RawlogWriter log(output, gzip_level);
+  removeOldLabels();
   {
     Progress progress("simulate", static_cast<std::uint64_t>(duration * 1e3));
     // An observation is compressed while the next one is simulated.
     std::future<void> packed;
     while (const auto observation = simulator.next()) {
       stopIfAsked();
+      if (const auto labels = simulator.takeLabels()) writeLabels(simulator.frames() - 1, *labels);
       if (packed.valid()) packed.get();
       packed = std::async(std::launch::async, [&log, observation] { log.write(*observation); });
       progress.update(static_cast<std::uint64_t>(simulator.time() * 1e3),
@@ -162,6 +178,7 @@ void SimulateApp::run() {
              simulator.scans(), out_points, out_boxes, out_targets);
   if (simulator.images() > 0) fmt::print("  camera: {} rendered images\n", simulator.images());
   fmt::print("{}: {} rows\n", out_truth_file, simulator.truth().size());
+  if (out_labels > 0) fmt::print("{}: labels of {} scans\n", labelFolderOf(output), out_labels);
   if (simulator.unwritten() > 0) {
     warn(fmt::format("{} frames omitted: there is no observation class for them",
                      simulator.unwritten()));

@@ -25,7 +25,7 @@ class SimulateApp : public App {
   std::string out_truth_file;
   std::int64_t out_frames = 0;
   std::uint64_t out_entries = 0, out_bytes = 0, out_points = 0, out_boxes = 0, out_beams = 0,
-                out_targets = 0;
+                out_targets = 0, out_labels = 0;
   std::uint64_t out_lost = 0, out_phantoms = 0;  ///< returns of a recording in weather
 
   std::string name() const override { return "perception-simulate"; }
@@ -41,6 +41,9 @@ class SimulateApp : public App {
   /// The subcommand: weather on a recording.
   void declareRecording(CLI::App& cli);
   void alterRecording();
+  /// Those of an earlier log of this name.
+  void removeOldLabels() const;
+  void writeLabels(std::int64_t frame, const std::vector<std::uint32_t>& labels);
   void drawCoverage();
   void drawContactSheet();
 };

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
+#include <set>
 
 #include "libperception/app/SimulateApp.h"
 #include "libperception/core/GroundTruth.h"
@@ -16,6 +16,7 @@
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/RawlogWriter.h"
 #include "libperception/sensors/registerClasses.h"
+#include "libperception/simulation/PointTruth.h"
 #include "libperception/simulation/Simulator.h"
 #include "libperception/simulation/recorded/RecordedScene.h"
 #include "libperception/simulation/recorded/WeatheredLog.h"
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 struct Recording {
   std::optional<Stamp> first, last;
   std::vector<RecordedPose> poses;
-  std::uint64_t bytes = 0;
+  std::set<std::string> sensors, lidars;  // labels
 };
 
 Recording surveyOf(const std::string& file) {
@@ -44,44 +45,17 @@ Recording surveyOf(const std::string& file) {
     found.last = stamp;
     ego.add(*observation);
     if (!isSensorData(*observation)) continue;
+    if (!isImage(*observation) && found.sensors.insert(observation->sensorLabel).second) {
+      const auto frame = frameFromObservation(*observation);
+      if (frame && std::holds_alternative<LidarCloud>(frame->data))
+        found.lidars.insert(frame->sensor);
+    }
     if (const auto state = ego.at(*stamp))
       found.poses.push_back({*stamp - *found.first, state->T_world_ego});
   }
   if (!found.first) throw DataError(file + ": no observation with a stamp");
-  found.bytes = log.fileBytes();
   return found;
 }
-
-/// One file of labels a scan of the first lidar of the log, as of PointLabels.
-class LabelFolder {
- public:
-  explicit LabelFolder(const std::string& rawlog)
-      : folder_(fs::path(rawlog).replace_extension().string() + "_Labels") {}
-
-  void write(const WeatheredLog::Labels& labels) {
-    if (sensor_.empty()) sensor_ = labels.sensor;
-    if (labels.frame < 0 || labels.sensor != sensor_) return;
-    std::string bytes;
-    for (const Phantom p : labels.phantoms) {
-      const std::uint32_t label = labelOf(p);
-      for (int shift = 0; shift < 32; shift += 8)
-        bytes.push_back(static_cast<char>(label >> shift & 0xFF));
-    }
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    const std::string path = fmt::format("{}/{:06d}.label", folder_, labels.frame);
-    std::ofstream out(path, std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!out.flush()) throw OutputError(path + ": cannot write");
-    ++files_;
-  }
-  const std::string& folder() const { return folder_; }
-  std::uint64_t files() const { return files_; }
-
- private:
-  std::string folder_, sensor_;
-  std::uint64_t files_ = 0;
-};
 
 }  // namespace
 
@@ -124,18 +98,24 @@ void SimulateApp::alterRecording() {
 
   RawlogReader log(input);
   RawlogWriter out(output, gzip_level);
-  LabelFolder labels(output);
+  removeOldLabels();
+  // Labels are by frame number.
+  const bool labeled = recording.lidars.size() == 1;
+  std::int64_t last_labeled = -1;
   mrpt::obs::CObservationComment comment;
   comment.timestamp = fromStamp(*recording.first);
   comment.sensorLabel = "SIMULATED";
   comment.text = kSimulatedText + weathered.text();
   out.write(comment);
   {
-    Progress progress("weather", recording.bytes);
+    Progress progress("weather", log.fileBytes());
     while (const auto observation = log.next()) {
       stopIfAsked();
       if (const auto altered = weathered.apply(observation)) out.write(*altered);
-      if (weathered.labels()) labels.write(*weathered.labels());
+      if (labeled && weathered.labels() && weathered.frame() > last_labeled) {
+        last_labeled = weathered.frame();
+        writeLabels(last_labeled, *weathered.labels());
+      }
       progress.update(log.bytesRead(), weathered.counts().scans);
     }
   }
@@ -156,8 +136,8 @@ void SimulateApp::alterRecording() {
              n.phantoms);
   if (n.targets > 0) fmt::print("  radar: {} targets, {} lost\n", n.targets, n.targets_lost);
   if (n.boxes > 0) fmt::print("  boxes: {}, {} lost\n", n.boxes, n.boxes_lost);
-  if (labels.files() > 0)
-    fmt::print("  {}: what each return is, {} scans\n", labels.folder(), labels.files());
+  if (out_labels > 0)
+    fmt::print("  {}: what each return is, {} scans\n", labelFolderOf(output), out_labels);
   if (n.images > 0)
     warn(fmt::format("{} images left out: their weather is not simulated", n.images));
   if (!has_truth && (conditions.water_film_mm > 0 || conditions.snow_cover > 0))

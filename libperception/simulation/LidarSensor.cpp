@@ -178,6 +178,7 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
         cloud.label.push_back(static_cast<std::uint8_t>(echo.object_label ? PointLabel::kObject
                                                                           : PointLabel::kGround));
       }
+      result.surfaces.push_back(pulses[i].hit.object);
       if (hook) result.phantoms.push_back(echo.phantom);
       if (echo.on_object) ++result.points_on[static_cast<std::size_t>(pulses[i].hit.object)];
     }

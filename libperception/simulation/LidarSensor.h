@@ -24,6 +24,7 @@ class LidarSensor {
   struct Scan {
     LidarCloud cloud;
     std::vector<int> points_on;
+    std::vector<int> surfaces;      ///< of each return: as BeamHit::object, of the beam's surface
     std::vector<Phantom> phantoms;  ///< of each return; empty in clear air
   };
   using PoseAt = std::function<Pose3(double t)>;  ///< T_world_sensor at t [s]

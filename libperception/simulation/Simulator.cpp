@@ -11,6 +11,7 @@
 
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/ToObservation.h"
+#include "libperception/simulation/PointTruth.h"
 #include "libperception/simulation/weather/WeatherChain.h"
 
 namespace perception {
@@ -280,6 +281,7 @@ LidarCloud Simulator::scanLidar(const Event& event, const RngKey& key) {
     hook = [&](LidarPulse& pulse, Rng& rng) { weather_->alter(sensor, pulse, rng); };
   }
   LidarSensor::Scan scan = lidar.scan(caster_, event.t, pose_at, key, hook);
+  if (weather_ && hasPointLabels(world_.scenario())) labels_ = pointLabels(scan, world_.scenario());
   if (!scanned_[event.sensor]) points_on_[event.sensor] = std::move(scan.points_on);
   scanned_[event.sensor] = true;
   ++scans_;

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
@@ -34,6 +36,11 @@ class Simulator {
 
   /// Truth of all completed frames.
   const std::vector<TruthObject>& truth() const { return truth_; }
+
+  /// Classes of the returns of the scan that next() gave (PointTruth.h), in weather; else nothing.
+  std::optional<std::vector<std::uint32_t>> takeLabels() {
+    return std::exchange(labels_, std::nullopt);
+  }
 
   double time() const { return next_ > 0 ? events_[next_ - 1].t : 0; }  ///< [s] of the last one
   std::int64_t frames() const { return frames_; }
@@ -79,6 +86,7 @@ class Simulator {
   std::vector<TruthObject> open_, truth_;    // rows of the frame being played, of all before
   std::vector<std::vector<int>> points_on_;  // [sensor][object] of the sensor's last scan
   std::vector<bool> scanned_;                // [sensor] since the frame began
+  std::optional<std::vector<std::uint32_t>> labels_;
   Rng pose_rng_;
   Vector3 pose_error_ = Vector3::Zero();  // x, y [m], yaw [rad] of the reported pose
   double pose_error_time_ = 0;            // [s]

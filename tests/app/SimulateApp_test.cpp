@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "libperception/core/GroundTruth.h"
@@ -57,6 +59,34 @@ TEST(SimulateApp, WeatherOfAnIniReplacesThatOfTheScenario) {
   std::ostringstream text;
   reader.next()->getDescriptionAsText(text);
   EXPECT_NE(text.str().find("weather: fog 50 m"), std::string::npos) << text.str();
+}
+
+TEST(SimulateApp, LabelsOfScansInWeatherLieBesideTheLog) {
+  const test::TemporaryFolder folder;
+  const auto labelsIn = [&](const std::string& weather) {
+    SimulateApp app;
+    EXPECT_EQ(simulate(app, {"-c", kIni + "scenarios/demo.ini", "--set", "scenario.duration=0.2",
+                             "--weather", kIni + "weather/" + weather, "-o", folder / "d.rawlog"}),
+              0);
+    std::set<std::uint32_t> classes;
+    std::size_t labels = 0;
+    std::error_code none;
+    for (const auto& file : std::filesystem::directory_iterator(folder / "d_Labels", none)) {
+      const std::string bytes = bytesOf(file.path().string());
+      std::vector<std::uint32_t> of_frame(bytes.size() / 4);
+      std::memcpy(of_frame.data(), bytes.data(), bytes.size());
+      labels += of_frame.size(), classes.insert(of_frame.begin(), of_frame.end());
+    }
+    EXPECT_EQ(labels, app.out_labels > 0 ? app.out_points : 0);
+    return classes;
+  };
+  const auto snow = labelsIn("snow_2.5.ini");
+  for (const std::uint32_t label : {10u, 40u, 110u}) EXPECT_EQ(snow.count(label), 1u) << label;
+  SimulateApp clear;
+  ASSERT_EQ(simulate(clear, {"-c", kIni + "scenarios/demo.ini", "--set", "scenario.duration=0.2",
+                             "-o", folder / "d.rawlog"}),
+            0);
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "d_Labels")) << "those of the snow are gone";
 }
 
 TEST(SimulateApp, UnknownKeyOfTheWeatherIsAConfigurationError) {

@@ -144,7 +144,6 @@ WeatheredScan throughWeather(const LidarCloud& cloud, const std::vector<BeamPatt
     addIf(out.echo, cloud.echo, like), addIf(out.pulse_width, cloud.pulse_width, like);
     addIf(out.label, cloud.label, like);
     result.phantoms.push_back(shot.echo.phantom);
-    result.source.push_back(i < n ? static_cast<std::uint32_t>(i) : WeatheredScan::kNewReturn);
   }
   return result;
 }

@@ -12,10 +12,8 @@ class LidarCaster;
 /// What a recorded lidar would have returned through weather.
 struct WeatheredScan {
   LidarCloud cloud;
-  std::vector<Phantom> phantoms;      ///< of each return
-  std::vector<std::uint32_t> source;  ///< index of its return in the recording; kNewReturn
-  std::uint64_t lost = 0;             ///< returns of the recording that are gone
-  static constexpr std::uint32_t kNewReturn = ~0u;  ///< a phantom on a beam without a return
+  std::vector<Phantom> phantoms;  ///< of each return
+  std::uint64_t lost = 0;         ///< returns of the recording that are gone
 };
 
 /// Runs a recorded scan through `weather`. Every return is a pulse that has met a surface whose

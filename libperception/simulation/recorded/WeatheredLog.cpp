@@ -11,6 +11,7 @@
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/ToObservation.h"
 #include "libperception/simulation/CameraBoxes.h"
+#include "libperception/simulation/PointTruth.h"
 #include "libperception/simulation/recorded/RecordedScan.h"
 #include "libperception/simulation/weather/Beam.h"
 #include "libperception/simulation/weather/WeatherChain.h"
@@ -49,28 +50,6 @@ SensorParams sensorOf(const SensorFrame& frame) {
 double detectionOf(double snr, double false_alarm) { return std::pow(false_alarm, 1 / (1 + snr)); }
 
 }  // namespace
-
-std::uint32_t labelOf(Phantom phantom) {
-  switch (phantom) {
-    case Phantom::kNone:
-      return 0;
-    case Phantom::kSnow:
-      return 110;
-    case Phantom::kRain:
-      return 120;
-    case Phantom::kFog:
-      return 121;
-    case Phantom::kSpray:
-      return 122;
-    case Phantom::kPlume:
-      return 123;
-    case Phantom::kMirror:
-      return 124;
-    case Phantom::kNoise:
-      return 125;
-  }
-  return 0;
-}
 
 WeatheredLog::WeatheredLog(Scenario scene, Stamp first, std::uint64_t seed, int threads)
     : world_(std::move(scene)), caster_(world_, threads), first_(first), seed_(seed) {
@@ -130,7 +109,8 @@ void WeatheredLog::alterScan(const SensorParams& sensor, double t, const RngKey&
   counts_.phantoms += static_cast<std::uint64_t>(
       std::count_if(scan.phantoms.begin(), scan.phantoms.end(),
                     [](Phantom p) { return p != Phantom::kNone; }));
-  labels_ = {frame.sensor, frame_, std::move(scan.phantoms), std::move(scan.source), cloud.size()};
+  labels_.emplace();
+  for (const Phantom p : scan.phantoms) labels_->push_back(labelOf(p));
   cloud = std::move(scan.cloud);
 }
 

@@ -16,9 +16,6 @@
 
 namespace perception {
 
-/// Numbers of phantoms in label files, beside SemanticKITTI's classes: 110 is WADS's falling snow.
-std::uint32_t labelOf(Phantom phantom);
-
 /// Simulated weather on a recording, observation by observation: lidar returns, radar targets and
 /// boxes of image detectors as the same sensors would have given them in that weather. Everything
 /// else is kept as it is, but for images: their weather is not simulated, and they are left out.
@@ -30,14 +27,6 @@ class WeatheredLog {
   WeatheredLog(Scenario scene, Stamp first, std::uint64_t seed, int threads = 1);
   ~WeatheredLog();
 
-  /// A scan of a lidar of the log with what its returns are.
-  struct Labels {
-    std::string sensor;
-    std::int64_t frame = -1;           ///< the log's frame number; -1: none
-    std::vector<Phantom> phantoms;     ///< of each return
-    std::vector<std::uint32_t> source; ///< as in WeatheredScan
-    std::uint64_t before = 0;          ///< returns of the recording
-  };
   struct Counts {
     std::uint64_t scans = 0, returns = 0, lost = 0, phantoms = 0;  ///< of lidars
     std::uint64_t targets = 0, targets_lost = 0;                   ///< of radars
@@ -48,8 +37,9 @@ class WeatheredLog {
   /// The observation in this weather; null: left out. Observations must come in order of the log.
   std::shared_ptr<mrpt::obs::CObservation> apply(
       const std::shared_ptr<mrpt::obs::CObservation>& observation);
-  /// Of the last observation, where it was a lidar scan.
-  const std::optional<Labels>& labels() const { return labels_; }
+  /// Of the last observation, where it was a lidar scan: what each return is, as labelOf(Phantom).
+  const std::optional<std::vector<std::uint32_t>>& labels() const { return labels_; }
+  std::int64_t frame() const { return frame_; }  ///< the log's number of the last one; -1: none
   const Counts& counts() const { return counts_; }
   /// For the log's first comment.
   std::string text() const;
@@ -69,7 +59,7 @@ class WeatheredLog {
   std::map<std::string, BeamPattern> patterns_;      // by lidar
   std::map<std::string, std::uint64_t> frames_of_;   // frames so far, by sensor
   std::int64_t frame_ = -1;
-  std::optional<Labels> labels_;
+  std::optional<std::vector<std::uint32_t>> labels_;
   Counts counts_;
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "libperception/core/Angle.h"
+#include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/weather/Beam.h"
 
 namespace perception {
@@ -17,6 +18,8 @@ constexpr double kBlind = 0.9, kOverlap = 1.0;  // [m] the receiver sees nothing
 // Assumed: a lidar whose weakest echo is a 90 % surface at 200 m just sees fog of this range of
 // sight by itself. [hahner2021] leaves the ratio of fog and surfaces to calibration.
 constexpr double kSeenMor = 100, kWeakest = 0.9 / (200.0 * 200);
+
+constexpr double kFaint = 0.2;  // of the surface's echo
 
 double backscatter(double mor) { return 0.046 / mor; }  // [1/(m sr)] [rasshofer2011]
 
@@ -62,15 +65,19 @@ Fog::Fog(double mor) : extinction_(fogExtinction(mor)), echo_(extinction_) {
   gain_ = backscatter(mor) * kWeakest / (backscatter(kSeenMor) * seen.before(far).value);
 }
 
-// The peak's range is spread by a factor of 1/2 to 2 [hahner2021], up to the surface.
-void Fog::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
+// Echoes that no threshold passes, or that are weak beside the surface's, are not made: most. The
+// peak's range is spread by a factor of 1/2 to 2 [hahner2021], up to the surface.
+void Fog::alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const {
   attenuate(pulse, extinction_);
   const double open = openRange(pulse);
   const FogEcho::Peak peak = echo_.before(open);
-  if (peak.value <= 0) return;
+  const double power = gain_ * peak.value, far = sensor.lidar.reference_range;
+  if (peak.value <= 0 || power < 0.9 / (far * far)) return;
+  const double surface = std::isinf(open) ? 0 : pulse.reflectivity / (open * open);
+  if (pulse.lost <= 0 && power < kFaint * surface * std::exp(-2 * pulse.optical_depth)) return;
   LidarPulse::Scatterer fog;
   fog.range = std::min(open, peak.range * std::exp2(rng.uniform(-1, 1)));
-  fog.power = gain_ * peak.value;
+  fog.power = power;
   fog.phantom = Phantom::kFog;
   pulse.scatterers.push_back(fog);
 }

@@ -31,7 +31,7 @@ class Fog final : public SimulatedWeather {
   explicit Fog(double mor);  ///< [m]
 
   using SimulatedWeather::alter;
-  void alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const override;
+  void alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const override;
   void alter(const SensorParams&, CameraLook& look, Rng&) const override;
   void alter(const SensorParams&, Lighting& light, Rng&) const override;
   bool actsOnPulses() const override { return true; }
