@@ -60,8 +60,9 @@ Recording surveyOf(const std::string& file) {
 }  // namespace
 
 void SimulateApp::declareRecording(CLI::App& cli) {
-  recording_ = cli.add_subcommand("weather", "Simulated weather on a recording: lidar returns, "
-                                             "radar targets, boxes of image detectors");
+  recording_ = cli.add_subcommand("weather",
+                                  "Simulated weather on a recording: lidar returns, "
+                                  "radar targets, boxes of image detectors");
   recording_->add_option("-i,--input", inputs, "Rawlog; its truth (LOG.truth.csv), if any, beside")
       ->required()
       ->expected(1);

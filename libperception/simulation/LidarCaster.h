@@ -14,9 +14,9 @@ class World;
 struct BeamHit {
   static constexpr int kNothing = -2, kRoad = -1;
   static constexpr int kRecorded = 1 << 30;  ///< no object of the scenario: of a recording
-  float range = 0;          ///< [m]
-  float cos_incidence = 0;  ///< [0, 1] between beam and surface normal
-  int object = kNothing;    ///< index into the scenario's objects, or one of the above
+  float range = 0;                           ///< [m]
+  float cos_incidence = 0;                   ///< [0, 1] between beam and surface normal
+  int object = kNothing;  ///< index into the scenario's objects, or one of the above
   Material material = Material::kRoad;
 };
 

@@ -175,5 +175,52 @@ TEST(SimulateApp, NoScenarioIsAUsageError) {
   EXPECT_EQ(simulate(app, {"-o", "nowhere.rawlog"}), static_cast<int>(ExitCode::kUsage));
 }
 
+/// A second of a clear street with one lidar, as a recording.
+void record(const test::TemporaryFolder& folder) {
+  SimulateApp app;
+  ASSERT_EQ(
+      simulate(app, {"-c", kIni + "scenarios/E.ini", "--set", "scenario.duration=1", "--vehicle",
+                     kIni + "vehicles/kitti.ini", "-o", folder / "clear.rawlog"}),
+      0);
+}
+
+TEST(SimulateApp, WeatherOnARecordingKeepsItsTruthAndLabelsItsPhantoms) {
+  const test::TemporaryFolder folder;
+  record(folder);
+  const std::vector<std::string> arguments = {
+      "weather", "-i", folder / "clear.rawlog", "-c", kIni + "weather/snow_2.5.ini", "-o"};
+  std::vector<std::string> first = arguments, again = arguments;
+  first.push_back(folder / "snow.rawlog"), again.push_back(folder / "again.rawlog");
+  SimulateApp app, twin;
+  ASSERT_EQ(simulate(app, first), 0);
+  ASSERT_EQ(simulate(twin, again), 0);
+  EXPECT_EQ(bytesOf(folder / "snow.rawlog"), bytesOf(folder / "again.rawlog"));
+  EXPECT_EQ(bytesOf(folder / "snow.truth.csv"), bytesOf(folder / "clear.truth.csv"));
+  EXPECT_GT(app.out_phantoms, app.out_points / 100);
+  EXPECT_GT(app.out_labels, 8u);
+  EXPECT_TRUE(std::filesystem::exists(folder / "snow_Labels/000003.label"));
+  RawlogReader reader(folder / "snow.rawlog");
+  std::ostringstream text;
+  reader.next()->getDescriptionAsText(text);
+  EXPECT_NE(text.str().find("simulated weather on a recording: snow 2.5 mm/h"), std::string::npos);
+}
+
+TEST(SimulateApp, FaultyWeatherOnARecordingIsRefused) {
+  const test::TemporaryFolder folder;
+  record(folder);
+  SimulateApp key, itself, missing;
+  EXPECT_EQ(
+      simulate(key, {"weather", "-i", folder / "clear.rawlog", "-c", kIni + "weather/snow_2.5.ini",
+                     "--set", "weather.hail=1", "-o", folder / "x.rawlog"}),
+      static_cast<int>(ExitCode::kBadConfig));
+  EXPECT_EQ(simulate(itself, {"weather", "-i", folder / "clear.rawlog", "-c",
+                              kIni + "weather/snow_2.5.ini", "-o", folder / "clear.rawlog"}),
+            static_cast<int>(ExitCode::kUsage));
+  EXPECT_EQ(simulate(missing, {"weather", "-i", folder / "none.rawlog", "-c",
+                               kIni + "weather/snow_2.5.ini", "-o", folder / "x.rawlog"}),
+            static_cast<int>(ExitCode::kNoInput));
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.rawlog"));
+}
+
 }  // namespace
 }  // namespace perception

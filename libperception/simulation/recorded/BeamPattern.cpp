@@ -1,5 +1,6 @@
 #include "libperception/simulation/recorded/BeamPattern.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace perception {
@@ -9,8 +10,9 @@ constexpr double kAcross = radians(0.2), kUp = radians(0.4);
 constexpr std::uint32_t kMostInCell = 16;
 
 std::uint32_t keyOf(const Vector3& direction) {
-  const double azimuth = std::atan2(direction.y(), direction.x()) + kPi,
-               elevation = std::asin(direction.z()) + kPi / 2;
+  // Beams at round angles lie in the middle of a cell.
+  const double azimuth = std::atan2(direction.y(), direction.x()) + kPi + kAcross / 2,
+               elevation = std::asin(std::clamp(direction.z(), -1.0, 1.0)) + kPi / 2 + kUp / 2;
   return static_cast<std::uint32_t>(elevation / kUp) << 16 |
          static_cast<std::uint32_t>(azimuth / kAcross);
 }

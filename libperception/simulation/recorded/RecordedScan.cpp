@@ -68,9 +68,9 @@ WeatheredScan throughWeather(const LidarCloud& cloud, const std::vector<BeamPatt
   const Vector3 origin = T_world_sensor.translation();
   std::vector<Vector3> places(n);
   for (std::size_t i = 0; i < n; ++i)
-    places[i] = T_world_sensor * Vector3(static_cast<double>(cloud.x[i]),
-                                         static_cast<double>(cloud.y[i]),
-                                         static_cast<double>(cloud.z[i]));
+    places[i] =
+        T_world_sensor * Vector3(static_cast<double>(cloud.x[i]), static_cast<double>(cloud.y[i]),
+                                 static_cast<double>(cloud.z[i]));
   const RoadReturns road(places, origin);
   const LidarParams& lidar = sensor.lidar;
   const double least = 0.9 / (lidar.reference_range * lidar.reference_range);
@@ -93,8 +93,8 @@ WeatheredScan throughWeather(const LidarCloud& cloud, const std::vector<BeamPatt
         pulse.hit.material = on_road ? Material::kRoad : Material::kWall;
         pulse.hit.cos_incidence =
             static_cast<float>(on_road ? std::abs(pulse.direction.z()) : kIncidence);
-        const double intensity =
-            cloud.intensity.empty() ? kUnknownReflectivity : static_cast<double>(cloud.intensity[i]);
+        const double intensity = cloud.intensity.empty() ? kUnknownReflectivity
+                                                         : static_cast<double>(cloud.intensity[i]);
         // Of a return at the threshold it is not known by how much it exceeds that.
         Rng margin(key.withSlot(slot).withPurpose(key.purpose ^ kMarginPurpose));
         pulse.reflectivity = shot.clear =
@@ -122,9 +122,9 @@ WeatheredScan throughWeather(const LidarCloud& cloud, const std::vector<BeamPatt
       continue;
     }
     LidarCloud& out = result.cloud;
-    const bool moved = i >= n || !shot.echo.of_surface ||
-                       shot.echo.range != static_cast<double>(static_cast<float>(
-                                              (places[i] - origin).norm()));
+    const bool moved =
+        i >= n || !shot.echo.of_surface ||
+        shot.echo.range != static_cast<double>(static_cast<float>((places[i] - origin).norm()));
     if (moved) {
       const Vector3 p = shot.aim * shot.echo.range;
       out.x.push_back(static_cast<float>(p.x())), out.y.push_back(static_cast<float>(p.y()));
@@ -134,7 +134,8 @@ WeatheredScan throughWeather(const LidarCloud& cloud, const std::vector<BeamPatt
     }
     if (!cloud.intensity.empty()) {
       // What the unit called this surface, times what the weather leaves of it.
-      const double scale = i < n && shot.echo.of_surface ? shot.echo.intensity / std::min(1.0, shot.clear) : 0;
+      const double scale =
+          i < n && shot.echo.of_surface ? shot.echo.intensity / std::min(1.0, shot.clear) : 0;
       out.intensity.push_back(scale > 0 ? cloud.intensity[i] * static_cast<float>(scale)
                                         : static_cast<float>(shot.echo.intensity));
     }

@@ -8,7 +8,7 @@ namespace perception {
 
 /// Pose of the vehicle at a time of a recording.
 struct RecordedPose {
-  double t = 0;           ///< [s] since the log's first stamp
+  double t = 0;  ///< [s] since the log's first stamp
   Pose3 T_world_ego = Pose3::Identity();
 };
 

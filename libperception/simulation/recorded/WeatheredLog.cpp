@@ -101,14 +101,12 @@ void WeatheredLog::alterScan(const SensorParams& sensor, double t, const RngKey&
   auto& cloud = std::get<LidarCloud>(frame.data);
   caster_.setTime(t);
   const auto missing = patterns_[frame.sensor].missing(cloud);
-  WeatheredScan scan =
-      throughWeather(cloud, missing, *weather_, sensor,
-                     world_.ego(t).T_world_ego * frame.T_ego_sensor, caster_, key);
+  WeatheredScan scan = throughWeather(cloud, missing, *weather_, sensor,
+                                      world_.ego(t).T_world_ego * frame.T_ego_sensor, caster_, key);
   ++counts_.scans;
   counts_.returns += cloud.size(), counts_.lost += scan.lost;
-  counts_.phantoms += static_cast<std::uint64_t>(
-      std::count_if(scan.phantoms.begin(), scan.phantoms.end(),
-                    [](Phantom p) { return p != Phantom::kNone; }));
+  counts_.phantoms += static_cast<std::uint64_t>(std::count_if(
+      scan.phantoms.begin(), scan.phantoms.end(), [](Phantom p) { return p != Phantom::kNone; }));
   labels_.emplace();
   for (const Phantom p : scan.phantoms) labels_->push_back(labelOf(p));
   cloud = std::move(scan.cloud);
@@ -126,8 +124,7 @@ void WeatheredLog::alterReturns(const SensorParams& sensor, const RngKey& key, R
     target.position =
         (T_world_sensor * Vector3(r.range * std::cos(r.bearing), r.range * std::sin(r.bearing), 0))
             .head<2>();
-    const double clear =
-        carSnr(std::max(r.range, 1.0), unit);
+    const double clear = carSnr(std::max(r.range, 1.0), unit);
     target.snr = clear;
     Rng rng(key.withSlot(static_cast<std::uint32_t>(i)));
     weather_->alter(sensor, target, rng);
@@ -178,8 +175,8 @@ void WeatheredLog::alterBoxes(const SensorParams& sensor, const RngKey& key,
       ++counts_.boxes_lost;
       continue;
     }
-    const double added = std::sqrt(std::max(
-        0.0, look.edge_noise * look.edge_noise - clear_noise * clear_noise));
+    const double added =
+        std::sqrt(std::max(0.0, look.edge_noise * look.edge_noise - clear_noise * clear_noise));
     const double tall = box.y2 - box.y1;
     for (double* edge : {&box.x1, &box.y1, &box.x2, &box.y2}) *edge += added * tall * rng.normal();
     if (box.x2 <= box.x1 || box.y2 <= box.y1) {

@@ -56,8 +56,8 @@ class WeatheredLog {
   Stamp first_;
   std::uint64_t seed_;
   std::unique_ptr<SimulatedWeather> weather_;
-  std::map<std::string, BeamPattern> patterns_;      // by lidar
-  std::map<std::string, std::uint64_t> frames_of_;   // frames so far, by sensor
+  std::map<std::string, BeamPattern> patterns_;     // by lidar
+  std::map<std::string, std::uint64_t> frames_of_;  // frames so far, by sensor
   std::int64_t frame_ = -1;
   std::optional<std::vector<std::uint32_t>> labels_;
   Counts counts_;
