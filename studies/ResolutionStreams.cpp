@@ -4,17 +4,15 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
+#include <utility>
 
-#include "libperception/core/Error.h"
 #include "libperception/measurement/CameraResolution.h"
-#include "libperception/pipeline/LogRecorder.h"
-#include "libperception/pipeline/Pipeline.h"
+#include "studies/SensorSetRun.h"
 
 namespace perception {
 
-/// A sensor set with its tracker; keeps what its front ends found and its scenes.
-class ResolutionStreams::Stream : public PipelineObserver {
+/// A sensor set with its tracker.
+class ResolutionStreams::Stream {
  public:
   Stream(const ResolutionSite& site, const std::string& letters, int resolution, bool log_odds) {
     run.name = letters;
@@ -33,48 +31,20 @@ class ResolutionStreams::Stream : public PipelineObserver {
     }
     for (const std::string& setting : site.settings) config.set(setting);
     config.set("run.sensors=" + letters);
-    PipelineSetup setup = PipelineSetup::read(config);
-    config.finish();
-    for (const ObjectClass& c : setup.model.classes.classes)
-      run.tracks.class_names.push_back(c.name);
-    run.measurements.class_names = run.tracks.class_names;
-    pipeline_ = std::make_unique<Pipeline>(std::move(setup), events_, timing_);
-    pipeline_->observe(this);
+    kept_ = std::make_unique<SensorSetRun>(run.name, config);
   }
 
-  void onScan(const MeasurementScan& scan) override {
-    auto& sensors = run.measurements.sensors;
-    const auto known = std::find_if(sensors.begin(), sensors.end(), [&](const RecordedSensor& s) {
-      return s.label == scan.sensor;
-    });
-    const auto index = static_cast<std::size_t>(known - sensors.begin());
-    if (known == sensors.end()) sensors.push_back(describeSensor(pipeline_->setup(), scan));
-    RecordedScan recorded = recordScan(scan, sensors[index]);
-    recorded.sensor = index;
-    run.measurements.scans.push_back(std::move(recorded));
-  }
-
-  void add(const mrpt::obs::CObservation& observation) {
-    pipeline_->add(observation);
-    take(false);
-  }
+  void add(const mrpt::obs::CObservation& observation) { kept_->add(observation); }
   void finish() {
-    take(true);
-    if (run.tracks.scenes.empty())
-      throw DataError(run.name + ": no scene came of it: no frame of its sensors in the log");
-    run.tracks.first_stamp = run.measurements.first_stamp = *pipeline_->firstStamp();
+    kept_->finish();
+    run.tracks = std::move(kept_->tracks);
+    run.measurements = std::move(kept_->measurements);
   }
 
   ResolutionRun run;
 
  private:
-  void take(bool flush) {
-    while (auto scene = pipeline_->next(flush)) run.tracks.scenes.push_back(std::move(*scene));
-  }
-
-  EventLog events_;
-  RunTiming timing_;
-  std::unique_ptr<Pipeline> pipeline_;
+  std::unique_ptr<SensorSetRun> kept_;
 };
 
 ResolutionStreams::ResolutionStreams(const ResolutionSite& site, const std::set<char>& letters,

@@ -19,6 +19,7 @@
 #include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/Simulator.h"
 #include "studies/ResolutionImages.h"
+#include "studies/SensorSetRun.h"
 
 namespace perception {
 namespace {
@@ -46,30 +47,11 @@ PipelineSetup siteOf(const ResolutionOptions& options) {
   return setup;
 }
 
-/// Its section when the sensor is in use.
-const PipelineSetup::Sensor* inUse(const PipelineSetup& site, const std::string& label) {
-  for (const auto& s : site.sensors) {
-    if (s.active && (s.label == label || s.scan.merges(label))) return &s;
-  }
-  return nullptr;
-}
-
 std::string lidarOf(const PipelineSetup& site) {
   for (const auto& s : site.sensors) {
     if (s.active && s.params.modality == Modality::kLidar) return s.label;
   }
   return "";
-}
-
-/// The simulator's rows by instant.
-GroundTruth byInstant(const std::vector<TruthObject>& rows) {
-  GroundTruth truth;
-  for (const TruthObject& row : rows) {
-    if (truth.instants.empty() || truth.instants.back().frame != row.frame)
-      truth.instants.push_back({row.frame, row.t, {}});
-    truth.instants.back().objects.push_back(row);
-  }
-  return truth;
 }
 
 ResolutionData simulated(const ResolutionOptions& options) {
@@ -91,7 +73,7 @@ ResolutionData simulated(const ResolutionOptions& options) {
         cameras[copy.label] = r;
         sensors.push_back(std::move(copy));
       }
-    } else if (const auto* used = inUse(site, s.label)) {
+    } else if (const auto* used = sensorInUse(site, s.label)) {
       letters.insert(letterOf(used->params.modality));
       sensors.push_back(s);
     }
@@ -117,7 +99,7 @@ ResolutionData simulated(const ResolutionOptions& options) {
   data.camera = options.site.camera;
   data.lidar = lidarOf(site);
   data.runs = streams.finish();
-  data.truth = byInstant(simulator.truth());
+  data.truth = truthByInstant(simulator.truth());
   data.remarks = {
       "The simulated camera's detector has the ranges, recall and false boxes of Radecki et al.: "
       "the first two tables show that filter and front end keep them, not that a detector has "
@@ -141,7 +123,7 @@ LogContent lookInto(const ResolutionOptions& options, const PipelineSetup& site,
     const auto now = reader.lastStamp();
     if (!first) first = now;
     if (!content.resolutions.empty() && now && first && *now - *first > kLook) break;
-    const auto* used = inUse(site, o->sensorLabel);
+    const auto* used = sensorInUse(site, o->sensorLabel);
     if (used && used->label != options.site.camera)
       content.letters.insert(letterOf(used->params.modality));
     if (!content.resolutions.empty()) continue;
