@@ -36,7 +36,7 @@ struct Study {
   bool scenario = false;    ///< reads a scenario INI
   bool labels = false;      ///< reads rawlogs with detections and truth
   bool scan = false;        ///< takes a scan of a rawlog
-  void (*declare)(CLI::App& cli, ResolutionOptions& options) = nullptr;  ///< options of its own
+  void (*declare)(CLI::App& cli, StudyApp& app) = nullptr;  ///< options of its own
 };
 
 const Study kStudies[] = {
@@ -97,7 +97,18 @@ const Study kStudies[] = {
        app.resolution.seed = app.seed;
        return resolutionStudy(app.resolution);
      },
-     false, false, false, false, false, &declareResolution},
+     false, false, false, false, false,
+     [](CLI::App& cli, StudyApp& app) { declareResolution(cli, app.resolution); }},
+    {"paper", "every table of Radecki et al. beside its own numbers (simulated), 15 min on 2 cores",
+     [](StudyApp& app) {
+       app.paper.site.seed = app.seed;
+       return paperStudy(app.paper);
+     },
+     false, false, false, false, false,
+     [](CLI::App& cli, StudyApp& app) { declarePaper(cli, app.paper); }},
+    {"trust", "trust of lidar returns against labels of points (a rawlog)",
+     [](StudyApp& app) { return trustStudy(app.trust); }, false, false, false, false, false,
+     [](CLI::App& cli, StudyApp& app) { declareTrust(cli, app.trust); }},
     {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
      [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
 };
@@ -130,7 +141,7 @@ void StudyApp::declare(CLI::App& cli) {
     if (s.recordings) declareRecordings(*sub);
     if (s.log) declareLog(*sub);
     if (s.labels) declareLabels(*sub);
-    if (s.declare) s.declare(*sub, resolution);
+    if (s.declare) s.declare(*sub, *this);
     if (s.scan) sub->add_option("--log", log, "Rawlog whose first lidar scan is filtered");
     if (s.scenario) {
       sub->add_option("-c,--config", scenario,

@@ -5,7 +5,9 @@
 #include "libperception/app/App.h"
 #include "libperception/evaluation/StudyReport.h"
 #include "libperception/pipeline/RecordedLog.h"
+#include "studies/PaperStudy.h"
 #include "studies/ResolutionStudy.h"
+#include "studies/TrustStudy.h"
 
 namespace perception {
 
@@ -25,6 +27,8 @@ class StudyApp : public App {
   double range = 30, fov_deg = 360;  ///< particles: sector of counted objects [m, deg]
   std::string scenario;              ///< ego: INI of the scenario
   ResolutionOptions resolution;      ///< resolution: all of its options
+  PaperOptions paper;                ///< paper: all of its options
+  TrustOptions trust;                ///< trust: all of its options
   double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
 
   StudyReport out_report;

@@ -80,8 +80,8 @@ inline const std::vector<Module>& modules() {
         "gui-offscreen", "boxes3d", "scene", "grid", "sensors", "measurement", "config", "core"}},
       {"studies",
        "experiments about the method",
-       {"app", "pipeline", "simulation", "detectors", "evaluation", "scene", "filter", "lidar",
-        "sensors", "measurement", "config", "core"}},
+       {"app", "pipeline", "calibration", "simulation", "detectors", "evaluation", "scene",
+        "filter", "lidar", "sensors", "measurement", "config", "core"}},
       {"apps", "a short main for every program", {"app", "studies"}},
   };
   return all;
