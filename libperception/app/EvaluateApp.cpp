@@ -180,6 +180,8 @@ EvaluatedRun EvaluateApp::evaluateEntry(const RunEntry& entry, const std::string
   EvaluatedRun evaluated{name, entry.dir, evaluate(run, known, params)};
   if (!reference.empty())
     evaluated.count_difference = countDifference(run, readTrackedRun(reference));
+  const std::string record = entry.dir + "/done.json";
+  if (fs::exists(record)) evaluated.weather = readRunRecord(record).weather;
   evaluateFrontEnds(entry, known, evaluated);
   warnOfGaps(evaluated, entry.truth);
   return evaluated;
@@ -261,6 +263,7 @@ void EvaluateApp::writeReports() {
     if (!run.trials.empty()) continue;
     EvaluationReport own = emptyReport();
     own.runs.push_back(run);
+    dropRowsOfOtherWeathers(own);
     std::string dir = run.dir + "/evaluation";
     // Names that are paths (two runs of the same name) cannot be folder names: these runs are
     // numbered.
@@ -283,6 +286,8 @@ void EvaluateApp::run() {
   out_report = emptyReport();
   addPaperRows();
   evaluateRuns();
+  for (const std::string& table : dropRowsOfOtherWeathers(out_report))
+    warn(fmt::format("--paper {}: no run is of that weather: its rows are left out", table));
   writeReports();
   const std::string text = textReport(out_report);
   std::fwrite(text.data(), 1, text.size(), stdout);

@@ -99,6 +99,8 @@ ReportTable summaryTable(const std::vector<Named>& all, const EvaluationReport& 
     if (hasFurtherLabels(*named.front_end)) table.rows.push_back(summaryRow(named, false));
   }
   for (const PaperFrontEndRow& p : paperFrontEndRows()) {
+    if (!anyRunOfWeather(report, [&](auto& w) { return paperConditionHasWeather(p.condition, w); }))
+      continue;
     table.rows.push_back({"Radecki et al.", fmt::format("{}, {}", p.sensor, p.condition), "",
                           percent(p.car_recall), percent(p.car_size_precision),
                           percent(p.car_precision), "", percent(p.person_recall),

@@ -1,6 +1,7 @@
 #include "libperception/evaluation/PaperTables.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace perception {
 
@@ -64,6 +65,41 @@ const std::vector<PaperRateRow>& paperRateRows() {
       {"C-8k+L+R", true, 81.86, 27.67, 9.44},
   };
   return rows;
+}
+
+namespace {
+
+// A word of a weather's text with an amount ("snow 1 mm/h", not "snow cover .5") or alone.
+bool says(const std::string& weather, const std::string& word) {
+  std::size_t at = 0;
+  while (at < weather.size()) {
+    const std::size_t end = std::min(weather.find(", ", at), weather.size());
+    const std::string part = weather.substr(at, end - at);
+    if (part == word) return true;
+    if (part.rfind(word + ' ', 0) == 0 && part.size() > word.size() + 1 &&
+        std::isdigit(static_cast<unsigned char>(part[word.size() + 1])))
+      return true;
+    at = end + 2;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool paperTableHasWeather(const std::string& table, const std::string& weather) {
+  if (table == "pedestrian" || table == "vehicle") return true;
+  const bool snow = says(weather, "snow"), rain = says(weather, "rain"), fog = says(weather, "fog");
+  if (table == "snow") return snow;
+  if (snow || rain || fog) return false;
+  const bool night = says(weather, "night"), wet = says(weather, "water film");
+  if (table == "night") return night;
+  if (table == "wet") return wet && !night;
+  return !night && !wet && !says(weather, "cloudy");
+}
+
+bool paperConditionHasWeather(const std::string& condition, const std::string& weather) {
+  if (condition == "Rainy") return says(weather, "rain") && !says(weather, "snow");
+  return paperTableHasWeather("sunny", weather);
 }
 
 std::vector<std::string> paperTableNames() {

@@ -52,6 +52,13 @@ const std::vector<PaperParticlesRow>& paperParticlesRows();
 /// Tables Detection-Rate and Tracking-Rate: the uncontrolled drive.
 const std::vector<PaperRateRow>& paperRateRows();
 
+/// Whether a simulated log's weather (RunRecord) is that of the table of rows: sunny (clear air,
+/// too) and particles, night, wet (no precipitation), snow; pedestrian and vehicle are of all
+/// weathers.
+bool paperTableHasWeather(const std::string& table, const std::string& weather);
+/// The same of the conditions of paperFrontEndRows(): Sunny, Rainy.
+bool paperConditionHasWeather(const std::string& condition, const std::string& weather);
+
 /// Names that --paper takes.
 std::vector<std::string> paperTableNames();
 

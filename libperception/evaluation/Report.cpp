@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "libperception/scene/NumberFormat.h"
 
@@ -75,7 +76,35 @@ std::string scope(const EvaluationOptions& o) {
       o.selection.min_points);
 }
 
+// Of a run and its trials.
+bool mayBeOfWeather(const EvaluatedRun& run,
+                    const std::function<bool(const std::string& weather)>& has) {
+  if (run.trials.empty()) return !run.weather || has(*run.weather);
+  return std::any_of(run.trials.begin(), run.trials.end(),
+                     [&](const EvaluatedRun& trial) { return mayBeOfWeather(trial, has); });
+}
+
 }  // namespace
+
+bool anyRunOfWeather(const EvaluationReport& report,
+                     const std::function<bool(const std::string& weather)>& has) {
+  return std::any_of(report.runs.begin(), report.runs.end(),
+                     [&](const EvaluatedRun& run) { return mayBeOfWeather(run, has); });
+}
+
+std::vector<std::string> dropRowsOfOtherWeathers(EvaluationReport& report) {
+  std::vector<std::string> dropped;
+  std::vector<PaperTrackingRow> kept;
+  for (const PaperTrackingRow& row : report.paper) {
+    if (anyRunOfWeather(report, [&](auto& w) { return paperTableHasWeather(row.table, w); })) {
+      kept.push_back(row);
+    } else if (std::find(dropped.begin(), dropped.end(), row.table) == dropped.end()) {
+      dropped.emplace_back(row.table);
+    }
+  }
+  report.paper = std::move(kept);
+  return dropped;
+}
 
 EvaluatedRun pooledRun(std::string name, std::vector<EvaluatedRun> trials) {
   EvaluatedRun run;

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct EvaluatedRun {
   std::optional<CountDifference> count_difference = {};  ///< against EvaluationReport::reference
   std::vector<FrontEndEvaluation> front_ends = {};       ///< in the order of --front-end
   std::vector<EvaluatedRun> trials = {};  ///< the pooled runs; empty for a single run
+  /// Of a simulated log ("" in clear air); unknown of recordings and of pooled runs.
+  std::optional<std::string> weather = {};
 };
 
 /// Pools the runs of one condition; they are kept in `trials`. Throws DataError when their classes
@@ -38,6 +41,13 @@ struct EvaluationReport {
   std::vector<PaperTrackingRow> paper;  ///< rows of [radecki2016] to list for comparison
   std::vector<std::string> plots;       ///< paths relative to the report, for Markdown
 };
+
+/// Whether some run of the report may be of a weather for which `has` holds; of unknown weathers
+/// that is so. A row of [radecki2016] of another weather must not stand beside the runs.
+bool anyRunOfWeather(const EvaluationReport& report,
+                     const std::function<bool(const std::string& weather)>& has);
+/// Removes the rows of [radecki2016] of weathers that no run is of; returns the tables' names.
+std::vector<std::string> dropRowsOfOtherWeathers(EvaluationReport& report);
 
 /// A table of a report; the first `labels` columns are text, the others numbers.
 struct ReportTable {

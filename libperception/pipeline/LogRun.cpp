@@ -104,6 +104,7 @@ void LogRun::fillRecord() {
   record.input_end = nameOf(reader_.end());
   record.input_end_detail = reader_.end() == RawlogReader::End::kClean ? "" : reader_.endMessage();
   record.simulated = facts_.simulated;
+  record.weather = facts_.weather;
   record.seed = setup_.run.seed;
   record.sensors_used = setup_.run.sensors;
   record.association =

@@ -7,10 +7,29 @@
 #include "libperception/sensors/FromObservation.h"
 
 namespace perception {
+namespace {
+
+/// As the simulator (scenarios) and simulated weather on recordings write it.
+std::string weatherOf(const std::string& comment) {
+  const std::string of_scenario = "; weather: ", of_recording = "weather on a recording: ";
+  if (const auto at = comment.rfind(of_scenario); at != std::string::npos)
+    return comment.substr(at + of_scenario.size());
+  if (const auto at = comment.find(of_recording); at != std::string::npos) {
+    const auto from = at + of_recording.size();
+    const std::string text = comment.substr(from, comment.rfind(", seed ") - from);
+    return text == "clear" ? "" : text;
+  }
+  return "";
+}
+
+}  // namespace
 
 void LogFacts::look(const mrpt::obs::CObservation& observation) {
   if (const auto* comment = dynamic_cast<const mrpt::obs::CObservationComment*>(&observation)) {
-    simulated = simulated || comment->text.rfind("simulated log", 0) == 0;
+    if (comment->text.rfind("simulated log", 0) == 0) {
+      simulated = true;
+      if (!weather) weather = weatherOf(comment->text);
+    }
   }
   if (camera || !isSensorData(observation)) return;
   const auto frame = frameFromObservation(observation);

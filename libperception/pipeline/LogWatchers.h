@@ -18,6 +18,7 @@ namespace perception {
 /// exports.
 struct LogFacts {
   bool simulated = false;
+  std::optional<std::string> weather;  ///< of a simulated log; "": clear air
   std::optional<KittiCamera> camera;
 
   void look(const mrpt::obs::CObservation& observation);

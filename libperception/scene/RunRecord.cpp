@@ -64,6 +64,7 @@ RunRecord recordFrom(const Json& j, const std::string& path) {
   r.first_stamp = stampFrom(input.at("first_stamp"), path);
   r.last_stamp = stampFrom(input.at("last_stamp"), path);
   j.at("simulated").get_to(r.simulated);
+  if (j.contains("weather")) r.weather = j.at("weather").get<std::string>();
   j.at("config").get_to(r.config);
   j.at("seed").get_to(r.seed);
   j.at("sensors_used").get_to(r.sensors_used);
@@ -92,6 +93,7 @@ std::string toJson(const RunRecord& r) {
                 {"first_stamp", decimalSeconds(r.first_stamp.ns)},
                 {"last_stamp", decimalSeconds(r.last_stamp.ns)}};
   j["simulated"] = r.simulated;
+  if (r.weather) j["weather"] = *r.weather;
   j["config"] = fileName(r.config);
   j["seed"] = r.seed;
   j["sensors_used"] = r.sensors_used;

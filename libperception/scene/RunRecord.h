@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,10 @@ struct RunRecord {
       "clean";  ///< end of the log: clean, torn (truncated), unknown class, newer version, damaged
   std::string input_end_detail;  ///< position and reason; empty if clean
   bool simulated = false;        ///< the log is marked as simulated
-  std::string config;            ///< file name of the INI
+  /// Of a simulated log, as its first comment says it ("rain 10 mm/h", "" in clear air); else
+  /// unknown.
+  std::optional<std::string> weather;
+  std::string config;  ///< file name of the INI
   std::uint64_t seed = 0;
   std::string sensors_used;  ///< as given with --sensors
   std::string association;

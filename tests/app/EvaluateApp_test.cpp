@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "libperception/core/GroundTruth.h"
+#include "libperception/scene/RunRecord.h"
 #include "libperception/scene/TrackedRun.h"
 
 namespace perception {
@@ -178,6 +179,21 @@ TEST_F(EvaluateAppTest, RunsOfOneConditionArePooled) {
   EXPECT_EQ(all["paper"].size(), 3u);
   EXPECT_NE(out_.find("Radecki et al.: L+R, Sunny"), std::string::npos);
   EXPECT_FALSE(fs::exists(dir_ + "/t/one_L/evaluation"));
+}
+
+TEST_F(EvaluateAppTest, NoRowOfAnotherWeatherStandsBesideARun) {
+  RunRecord record;
+  record.simulated = true;
+  record.weather = "";  // clear air
+  writeRunRecord(dir_ + "/late/done.json", record);
+  run({"-r", dir_ + "/late", "-t", truth(), "--no-plots", "--paper", "snow,sunny"});
+  EXPECT_NE(err_.find("--paper snow: no run is of that weather"), std::string::npos) << err_;
+  EXPECT_EQ(report(dir_ + "/late/evaluation")["paper"].size(), 3u);
+  EXPECT_EQ(out_.find("Snow & Rain"), std::string::npos);
+  record.weather = "snow 1 mm/h";
+  writeRunRecord(dir_ + "/late/done.json", record);
+  run({"-r", dir_ + "/late", "-t", truth(), "--no-plots", "--paper", "snow"});
+  EXPECT_NE(out_.find("Snow & Rain"), std::string::npos);
 }
 
 TEST_F(EvaluateAppTest, AManifestNamesConditionsRunsAndTruths) {

@@ -59,6 +59,24 @@ TEST(SideBySide, ShowsMeanDeviationAndRangeOverTheTrials) {
   for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
 }
 
+TEST(PaperTables, AWeatherIsOfOneTableAtMost) {
+  const auto of = [](const std::string& weather) {
+    std::string tables;
+    for (const char* table : {"sunny", "night", "wet", "snow"})
+      if (paperTableHasWeather(table, weather)) tables += table;
+    return tables;
+  };
+  EXPECT_EQ(of(""), "sunny");
+  EXPECT_EQ(of("sunny"), "sunny");
+  EXPECT_EQ(of("night"), "night");
+  EXPECT_EQ(of("water film 0.6 mm, cloudy"), "wet");
+  EXPECT_EQ(of("rain 5 mm/h, snow 1 mm/h, water film 0.6 mm, snow cover 0.5, cloudy"), "snow");
+  EXPECT_EQ(of("snow cover 0.5"), "sunny");  // lies, does not fall
+  EXPECT_EQ(of("fog 50 m"), "");
+  EXPECT_TRUE(paperConditionHasWeather("Rainy", "rain 10 mm/h"));
+  EXPECT_FALSE(paperConditionHasWeather("Rainy", ""));
+}
+
 TEST(PaperTables, RowsSumToTheirParts) {
   // Correct, mis- and unclassified are shares of one whole; returns of L+R and C+L+R are those of
   // persons and vehicles together (3972 + 2565 and 3964 + 2594).
