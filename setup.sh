@@ -40,6 +40,7 @@ packages=(
   libembree-dev          # ray casting of the simulator
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG
   libopencv-dnn-dev libopencv-objdetect-dev libopencv-contrib-dev   # detectors: networks, people, part models
+  libopencv-ml-dev       # random forests of a study
   libmatio-dev           # part models as MATLAB files
   # to run
   libgl1-mesa-dri        # draws without a graphics card

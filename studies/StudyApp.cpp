@@ -23,6 +23,7 @@
 #include "studies/MonteCarloStudy.h"
 #include "studies/ParticlesStudy.h"
 #include "studies/PersonFilterStudy.h"
+#include "studies/SnowRealismStudy.h"
 
 namespace perception {
 namespace {
@@ -37,6 +38,7 @@ struct Study {
   bool labels = false;      ///< reads rawlogs with detections and truth
   bool scan = false;        ///< takes a scan of a rawlog
   void (*declare)(CLI::App& cli, StudyApp& app) = nullptr;  ///< options of its own
+  bool snow = false;  ///< reads rawlogs with labelled snow
 };
 
 const Study kStudies[] = {
@@ -111,6 +113,9 @@ const Study kStudies[] = {
      [](CLI::App& cli, StudyApp& app) { declareTrust(cli, app.trust); }},
     {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
      [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
+    {"snow-realism", "whether a forest tells simulated from recorded snow (labelled rawlogs)",
+     [](StudyApp& app) { return app.snowOfLogs(); }, false, false, false, false, false, nullptr,
+     true},
 };
 
 /// --range [m] and --fov-deg [deg] of what counts.
@@ -143,6 +148,7 @@ void StudyApp::declare(CLI::App& cli) {
     if (s.labels) declareLabels(*sub);
     if (s.declare) s.declare(*sub, *this);
     if (s.scan) sub->add_option("--log", log, "Rawlog whose first lidar scan is filtered");
+    if (s.snow) declareSnow(*sub);
     if (s.scenario) {
       sub->add_option("-c,--config", scenario,
                       "Scenario INI with sensors of kind gnss, imu, wheels")
@@ -186,6 +192,16 @@ void StudyApp::declareLabels(CLI::App& sub) {
   sub.add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
   addSector(sub, "Truth counts up to this distance [m]",
             "Whole angle ahead in which truth counts [deg]", labels_range, labels_fov_deg);
+}
+
+void StudyApp::declareSnow(CLI::App& sub) {
+  sub.add_option("-i,--input", inputs,
+                 "Rawlogs with LOG_Labels beside: recorded snow, then simulated snow")
+      ->required()
+      ->expected(2, 1000);
+  sub.add_option("--snow-mm-h", snow_mm_h, "Rate [mm/h] whose flakes the control has")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 100.0));
 }
 
 void StudyApp::run() {
@@ -244,6 +260,17 @@ StudyReport StudyApp::labelsOfLogs() {
     logs.push_back(std::move(entry));
   }
   return labelsStudy(params, logs);
+}
+
+StudyReport StudyApp::snowOfLogs() {
+  SnowRealismParams params;
+  params.seed = seed;
+  params.plain_mm_h = snow_mm_h;
+  std::vector<SnowLog> logs;
+  for (const std::string& file : inputs)
+    logs.push_back(
+        {std::filesystem::path(file).stem().string(), readSnowScans(file, params.sector)});
+  return snowRealismStudy(params, logs.front(), {logs.begin() + 1, logs.end()});
 }
 
 }  // namespace perception

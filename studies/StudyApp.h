@@ -31,6 +31,8 @@ class StudyApp : public App {
   TrustOptions trust;                ///< trust: all of its options
   double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
 
+  double snow_mm_h = 2.5;  ///< snow-realism: of the control
+
   StudyReport out_report;
 
   std::string name() const override { return "perception-study"; }
@@ -42,11 +44,14 @@ class StudyApp : public App {
   StudyReport particlesOfLog();
   /// The labels study on the logs of -i.
   StudyReport labelsOfLogs();
+  /// The snow study on the logs of -i, the first one recorded.
+  StudyReport snowOfLogs();
 
  private:
   void declareRecordings(CLI::App& sub);
   void declareLog(CLI::App& sub);
   void declareLabels(CLI::App& sub);
+  void declareSnow(CLI::App& sub);
   RecordedLog record(const std::string& config);
 };
 
