@@ -53,6 +53,9 @@ struct Shot {
   LidarEcho echo;
 };
 
+// As instruments report it, in 8 bits: the faintest have 0.
+double inSteps(double intensity) { return std::round(255 * intensity) / 255; }
+
 template <class T>
 void addIf(std::vector<T>& to, const std::vector<T>& from, std::size_t i) {
   if (!from.empty()) to.push_back(from[i]);
@@ -137,7 +140,7 @@ WeatheredScan throughWeather(const LidarCloud& cloud, const std::vector<BeamPatt
       const double scale =
           i < n && shot.echo.of_surface ? shot.echo.intensity / std::min(1.0, shot.clear) : 0;
       out.intensity.push_back(scale > 0 ? cloud.intensity[i] * static_cast<float>(scale)
-                                        : static_cast<float>(shot.echo.intensity));
+                                        : static_cast<float>(inSteps(shot.echo.intensity)));
     }
     // What a pulse without a return would have had is not known: as the return before it.
     const std::size_t like = std::min(i, n - 1);

@@ -12,9 +12,10 @@ namespace {
 
 constexpr double kReflectivity = 0.9;  // of a flake [hahner2022]
 constexpr double kDivergence = 0.003;  // [rad] method.md 9
+constexpr double kDetected = 1.0001;   // of the threshold, so that rounding hides no flake
 // Large flakes (method.md 9.2, assumed): share of the returns within 5 m, their angular diameter
 // (2 to 4 beams of a 64-beam lidar), brightness as the beam is filled.
-constexpr double kLargeShare = 0.3, kLargeWithin = 5;            // [m]
+constexpr double kLargeShare = 0.1, kLargeWithin = 5;            // [m]
 constexpr double kSmallest = 0.4, kLargest = 0.6;                // [cells]
 constexpr double kLeastBrightness = 0.2, kMostBrightness = 0.6;  // of its reflectivity
 constexpr double kCell = radians(1);                             // of directions
@@ -25,6 +26,15 @@ constexpr std::uint32_t kFlakes = 0x57EA1000;                    // purpose of r
 double meanArea() {
   const double middle = .5 * (kSmallest + kLargest), width = kLargest - kSmallest;
   return kPi / 4 * (middle * middle + width * width / 12);
+}
+
+// By its power: a surface behind it with a stronger echo hides it.
+void addFlake(double range, double intensity, LidarPulse& pulse) {
+  if (range >= openRange(pulse)) return;
+  LidarPulse::Scatterer flake;
+  flake.range = range, flake.power = intensity / (range * range);
+  flake.phantom = Phantom::kSnow;
+  pulse.scatterers.push_back(flake);
 }
 
 }  // namespace
@@ -59,22 +69,22 @@ void Snow::advance(const World&, const SensorParams& sensor, double t) {
   }
 }
 
-void Snow::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
+void Snow::alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const {
   attenuate(pulse, extinction_);
-  addSmallFlake(pulse, rng);
+  addSmallFlake(sensor.lidar, pulse, rng);
   addLargeFlake(pulse);
 }
 
-// Those that belong to large flakes are left out here.
-void Snow::addSmallFlake(LidarPulse& pulse, Rng& rng) const {
+// Those that belong to large flakes are left out here. The law is of flakes that are detected: the
+// smallest one that is fills range / reference range of the beam's diameter, and how much larger a
+// flake is has the distribution of all (exponential).
+void Snow::addSmallFlake(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) const {
   if (rng.uniform() >= chance_) return;
-  LidarPulse::Scatterer flake;
-  flake.range = kSnowReturns.range(rng);
-  if (flake.range < kLargeWithin && rng.uniform() < kLargeShare) return;
-  const double filled = rng.exponential(diameter_) / (flake.range * kDivergence);
-  flake.intensity = kReflectivity * std::min(1.0, filled * filled);
-  flake.phantom = Phantom::kSnow;
-  if (flake.range < openRange(pulse)) pulse.scatterers.push_back(flake);
+  const double range = kSnowReturns.range(rng);
+  if (range < kLargeWithin && rng.uniform() < kLargeShare) return;
+  const double filled = kDetected * range / lidar.reference_range +
+                        rng.exponential(diameter_) / (range * kDivergence);
+  addFlake(range, kReflectivity * std::min(1.0, filled * filled), pulse);
 }
 
 void Snow::addLargeFlake(LidarPulse& pulse) const {
@@ -84,10 +94,7 @@ void Snow::addLargeFlake(LidarPulse& pulse) const {
       std::hypot(place.across - large.across, place.up - large.up) > large.radius) {
     return;
   }
-  LidarPulse::Scatterer flake;
-  flake.range = large.range, flake.intensity = large.intensity;
-  flake.phantom = Phantom::kSnow;
-  pulse.scatterers.push_back(flake);
+  addFlake(large.range, large.intensity, pulse);
 }
 
 void Snow::alter(const SensorParams&, CameraLook& look, Rng&) const {

@@ -6,6 +6,8 @@
 
 namespace perception {
 
+struct LidarParams;
+
 /// Falling snow (method.md 9.2, 9.9). Lidar: extinction by the flakes' sizes, false returns by the
 /// measured law [linnhoff2022]; some of those within 5 m are large flakes that neighboring beams
 /// see together, as bright as objects. Camera: contrast, lost edges, haze. Radar: dry snow
@@ -22,7 +24,7 @@ class Snow final : public SimulatedWeather {
   bool actsOnPulses() const override { return true; }
 
  private:
-  void addSmallFlake(LidarPulse& pulse, Rng& rng) const;
+  void addSmallFlake(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) const;
   void addLargeFlake(LidarPulse& pulse) const;
 
   /// A flake that several beams see: a disk in a cell of directions.

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "libperception/simulation/LidarEcho.h"
 #include "libperception/simulation/weather/Precipitation.h"
 #include "tests/simulation/weather/WeatherBeams.h"
 
@@ -64,7 +65,7 @@ TEST(Snow, LargeFlakesFillNeighboringBeamsBrightly) {
   std::map<double, double> brightness;
   test::scanSky(snow, 60, [&](int, int, const LidarPulse& pulse) {
     for (const auto& flake : pulse.scatterers)
-      ++flakes[flake.range], brightness[flake.range] = flake.intensity;
+      ++flakes[flake.range], brightness[flake.range] = flake.power * flake.range * flake.range;
   });
   int several = 0, of_them_far = 0, dim = 0, most = 0;
   for (const auto& [range, beams] : flakes) {
@@ -76,6 +77,47 @@ TEST(Snow, LargeFlakesFillNeighboringBeamsBrightly) {
   EXPECT_EQ(of_them_far, 0);
   EXPECT_EQ(dim, 0);
   EXPECT_LE(most, 6);
+}
+
+TEST(Snow, EveryFlakeInFrontOfTheSkyIsReceived) {
+  Snow snow(2.5, 7);
+  const LidarParams lidar;
+  int flakes = 0, dark = 0;
+  test::scanSky(snow, 20, [&](int, int, const LidarPulse& pulse) {
+    if (pulse.scatterers.empty() || pulse.scatterers.front().range < lidar.range_min) return;
+    const LidarEcho echo = echoOf(pulse, 0, lidar);
+    ++flakes, dark += echo.intensity < .5 / 255;
+    EXPECT_TRUE(echo.received);
+    EXPECT_EQ(echo.phantom, Phantom::kSnow);
+  });
+  EXPECT_GT(flakes, 5000);
+  EXPECT_GT(dark, flakes / 4);  // instruments of 8 bits report no intensity
+}
+
+// Share of flakes that hide a wall of 30 % at `range`.
+double shareBefore(double range) {
+  Snow snow(10, 7);
+  const World world(test::scenarioOf(test::kStanding + test::kRoofLidar));
+  const SensorParams& sensor = world.scenario().sensors.front();
+  snow.advance(world, sensor, 0);
+  double flakes = 0, received = 0;
+  for (std::uint32_t i = 0; i < 100000; ++i) {
+    Rng rng({5, 0, i, 1});
+    LidarPulse pulse = test::wallPulse(range);
+    pulse.azimuth = radians(.0036) * i;
+    snow.alter(sensor, pulse, rng);
+    if (pulse.scatterers.empty()) continue;
+    ++flakes, received += !echoOf(pulse, pulse.reflectivity, LidarParams()).of_surface;
+  }
+  return received / flakes;
+}
+
+TEST(Snow, TheStrongerEchoHidesTheOther) {
+  const double near = shareBefore(15), middle = shareBefore(50), far = shareBefore(150);
+  EXPECT_LT(near, .5);
+  EXPECT_LT(near + .1, middle);
+  EXPECT_LT(middle + .02, far);
+  EXPECT_GT(far, .9);
 }
 
 TEST(Snow, FlakesDifferFromScanToScanAndAreRepeated) {
