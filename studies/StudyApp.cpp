@@ -101,7 +101,7 @@ const Study kStudies[] = {
      },
      false, false, false, false, false,
      [](CLI::App& cli, StudyApp& app) { declareResolution(cli, app.resolution); }},
-    {"paper", "every table of Radecki et al. beside its own numbers (simulated), 15 min on 2 cores",
+    {"paper", "every table of Radecki et al. beside its own numbers (simulated)",
      [](StudyApp& app) {
        app.paper.site.seed = app.seed;
        return paperStudy(app.paper);

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Every table of [radecki2016] beside simulated encounters, the long form: perception-study paper with
 # more trials of each scenario in each weather. Leaves OUT/report.md and its tables as CSV.
-# Twenty trials take about an hour on two cores.
 #   tests/bench/paper.sh [OUT, default out/paper] [options of perception-study paper, e.g. --seed 2]
 #   TRIALS=20  PERCEPTION_BIN=build/bin
 set -euo pipefail
