@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <variant>
@@ -87,10 +88,14 @@ struct View {
 
 /// Forests of both halves, each judged on the other.
 struct Judgment {
-  double area = 0;
+  double area = 0;  ///< NaN: nothing in common to judge
   std::vector<double> falls = std::vector<double>(kSnowFeatures), alone = falls;
   std::size_t rows = 0;  ///< of a kind, judged
 };
+
+std::string areaText(const Judgment& j) {
+  return std::isnan(j.area) ? "-" : fmt::format("{:.3f}", j.area);
+}
 
 void blind(std::vector<SnowRow>& rows, const std::vector<std::size_t>& features) {
   for (SnowRow& row : rows)
@@ -108,6 +113,10 @@ Judgment judge(const Halves& real, const Halves& simulated, const View& view,
       return rows;
     };
     const auto train = draw(fold), test = draw(1 - fold);
+    if (train.empty() || test.empty()) {  // no range in common
+      j.area = std::numeric_limits<double>::quiet_NaN();
+      return j;
+    }
     const SnowForest forest(train, params.seed);
     j.area += .5 * forest.area(test);
     j.rows += test.size() / 2;
@@ -234,9 +243,9 @@ StudyReport snowRealismStudy(const SnowRealismParams& params, const SnowLog& rea
     const Judgment whole = judge(recorded, halves, {0, {}, true}, params);
     const auto area = [&](const std::vector<std::size_t>& hidden) {
       const View view{params.range_bin, hidden, false};
-      return fmt::format("{:.3f}", judge(recorded_alike, alike, view, params).area);
+      return areaText(judge(recorded_alike, alike, view, params));
     };
-    areas.rows.push_back({log.name, fmt::format("{:.3f}", whole.area), area({}), area({kIntensity}),
+    areas.rows.push_back({log.name, areaText(whole), area({}), area({kIntensity}),
                           fmt::format("2 x {}", whole.rows), fmt::format("{:.0f}", halves.per_scan),
                           fmt::format("{:.3f}", halves.share)});
     report.tables.push_back(featuresTable(log.name, recorded, halves, whole, ++number));

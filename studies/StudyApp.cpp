@@ -38,7 +38,7 @@ struct Study {
   bool labels = false;      ///< reads rawlogs with detections and truth
   bool scan = false;        ///< takes a scan of a rawlog
   void (*declare)(CLI::App& cli, StudyApp& app) = nullptr;  ///< options of its own
-  bool snow = false;  ///< reads rawlogs with labelled snow
+  bool snow = false;                                        ///< reads rawlogs with labelled snow
 };
 
 const Study kStudies[] = {

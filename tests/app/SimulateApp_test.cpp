@@ -196,7 +196,7 @@ TEST(SimulateApp, WeatherOnARecordingKeepsItsTruthAndLabelsItsPhantoms) {
   ASSERT_EQ(simulate(twin, again), 0);
   EXPECT_EQ(bytesOf(folder / "snow.rawlog"), bytesOf(folder / "again.rawlog"));
   EXPECT_EQ(bytesOf(folder / "snow.truth.csv"), bytesOf(folder / "clear.truth.csv"));
-  EXPECT_GT(app.out_phantoms, app.out_points / 100);
+  EXPECT_GT(app.out_phantoms, app.out_points / 200);
   EXPECT_GT(app.out_labels, 8u);
   EXPECT_TRUE(std::filesystem::exists(folder / "snow_Labels/000003.label"));
   RawlogReader reader(folder / "snow.rawlog");

@@ -141,7 +141,8 @@ TEST(ClusterClassifier, MixesNinePartsOfTheMappedProbabilityWithOneOfTheRaw) {
 }
 
 TEST(ClusterClassifier, EvidenceIsTheLogRatioToAThingWithoutThePrior) {
-  const auto e = constant({0.3, 0.1, 0.2, 0.2, 0.2}, {0.1, 0.1, 0.2, 0.5, 0.1}).evidence(Descriptor{});
+  const auto e =
+      constant({0.3, 0.1, 0.2, 0.2, 0.2}, {0.1, 0.1, 0.2, 0.5, 0.1}).evidence(Descriptor{});
   // 20 % of "mixed" weakens it by as much.
   EXPECT_NEAR(e[0], 0.8 * std::log((0.3 / 0.1) / (0.2 / 0.5)), 1e-14);
   EXPECT_NEAR(e[1], 0.8 * std::log((0.1 / 0.1) / (0.2 / 0.5)), 1e-14);

@@ -73,7 +73,7 @@ TEST(Snow, LargeFlakesFillNeighboringBeamsBrightly) {
     ++several, of_them_far += range > 5, dim += brightness[range] < 0.18;
     most = std::max(most, beams);
   }
-  EXPECT_GT(several, 300);
+  EXPECT_GT(several, 150);
   EXPECT_EQ(of_them_far, 0);
   EXPECT_EQ(dim, 0);
   EXPECT_LE(most, 6);
