@@ -48,8 +48,9 @@ class RoadReturns {
 /// One pulse and what comes back.
 struct Shot {
   LidarPulse pulse;
-  Vector3 aim;       // unit, sensor frame
-  double clear = 0;  // reflectivity in clear air
+  Vector3 aim;             // unit, sensor frame
+  double clear = 0;        // reflectivity in clear air; of a pulse without a return 0
+  std::uint32_t slot = 0;  // of its random numbers
   LidarEcho echo;
 };
 
@@ -61,93 +62,131 @@ void addIf(std::vector<T>& to, const std::vector<T>& from, std::size_t i) {
   if (!from.empty()) to.push_back(from[i]);
 }
 
+/// The pulses of a recorded scan: first those with a return.
+class RecordedPulses {
+ public:
+  RecordedPulses(const LidarCloud& cloud, const std::vector<BeamPattern::Beam>& missing,
+                 const LidarParams& lidar, const Pose3& T_world_sensor, const RngKey& key)
+      : cloud_(cloud),
+        missing_(missing),
+        T_world_sensor_(T_world_sensor),
+        key_(key),
+        least_(0.9 / (lidar.reference_range * lidar.reference_range)),
+        places_(placesOf(cloud, T_world_sensor)),
+        road_(places_, T_world_sensor.translation()) {}
+
+  std::size_t size() const { return cloud_.size() + missing_.size(); }
+  /// In clear air.
+  Shot at(std::size_t i) const {
+    Shot shot = i < cloud_.size() ? ofReturn(i) : ofMissing(missing_[i - cloud_.size()]);
+    shot.pulse.origin = T_world_sensor_.translation();
+    shot.pulse.azimuth = std::atan2(shot.aim.y(), shot.aim.x());
+    shot.pulse.elevation = std::asin(std::clamp(shot.aim.z(), -1.0, 1.0));
+    return shot;
+  }
+  /// What the instrument writes of pulse i.
+  void append(std::size_t i, const Shot& shot, LidarCloud& out) const {
+    const bool of_surface = shot.echo.of_surface && i < cloud_.size();
+    if (of_surface && shot.echo.range == static_cast<double>(rangeOf(i))) {
+      out.x.push_back(cloud_.x[i]), out.y.push_back(cloud_.y[i]), out.z.push_back(cloud_.z[i]);
+    } else {
+      const Vector3 p = shot.aim * shot.echo.range;
+      out.x.push_back(static_cast<float>(p.x())), out.y.push_back(static_cast<float>(p.y()));
+      out.z.push_back(static_cast<float>(p.z()));
+    }
+    if (!cloud_.intensity.empty()) {
+      // What the unit called this surface, times what the weather leaves of it.
+      out.intensity.push_back(
+          of_surface ? cloud_.intensity[i] *
+                           static_cast<float>(shot.echo.intensity / std::min(1.0, shot.clear))
+                     : static_cast<float>(inSteps(shot.echo.intensity)));
+    }
+    // What a pulse without a return would have had is not known: as the last one with a return.
+    const std::size_t like = std::min(i, cloud_.size() - 1);
+    addIf(out.ring, cloud_.ring, like), addIf(out.time_offset, cloud_.time_offset, like);
+    addIf(out.echo, cloud_.echo, like), addIf(out.pulse_width, cloud_.pulse_width, like);
+    addIf(out.label, cloud_.label, like);
+  }
+
+ private:
+  static std::vector<Vector3> placesOf(const LidarCloud& cloud, const Pose3& T_world_sensor) {
+    std::vector<Vector3> places(cloud.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+      places[i] =
+          T_world_sensor * Vector3(static_cast<double>(cloud.x[i]), static_cast<double>(cloud.y[i]),
+                                   static_cast<double>(cloud.z[i]));
+    return places;
+  }
+  float rangeOf(std::size_t i) const {
+    constexpr double kLeast = 1e-3;  // [m] has a direction
+    return static_cast<float>(
+        std::max(kLeast, (places_[i] - T_world_sensor_.translation()).norm()));
+  }
+
+  Shot ofReturn(std::size_t i) const {
+    Shot shot;
+    LidarPulse& pulse = shot.pulse;
+    const auto range = static_cast<double>(rangeOf(i));
+    pulse.direction = (places_[i] - T_world_sensor_.translation()).normalized();
+    shot.aim = T_world_sensor_.linear().transpose() * pulse.direction;
+    shot.slot = static_cast<std::uint32_t>(i);
+    const bool on_road = road_.contains(places_[i]);
+    pulse.hit.range = rangeOf(i);
+    pulse.hit.object = on_road ? BeamHit::kRoad : BeamHit::kRecorded;
+    pulse.hit.material = on_road ? Material::kRoad : Material::kWall;
+    pulse.hit.cos_incidence =
+        static_cast<float>(on_road ? std::abs(pulse.direction.z()) : kIncidence);
+    const double intensity =
+        cloud_.intensity.empty() ? kUnknownReflectivity : static_cast<double>(cloud_.intensity[i]);
+    // Of a return at the threshold it is not known by how much it exceeds that.
+    Rng margin(key_.withSlot(shot.slot).withPurpose(key_.purpose ^ kMarginPurpose));
+    pulse.reflectivity = shot.clear =
+        std::max(intensity, least_ * range * range * margin.uniform(1.001, 2));
+    return shot;
+  }
+  Shot ofMissing(const BeamPattern::Beam& beam) const {
+    Shot shot;
+    shot.aim = beam.direction, shot.slot = kMissingSlot + beam.slot;
+    shot.pulse.direction = T_world_sensor_.linear() * shot.aim;
+    return shot;
+  }
+
+  const LidarCloud& cloud_;
+  const std::vector<BeamPattern::Beam>& missing_;
+  Pose3 T_world_sensor_;
+  RngKey key_;
+  double least_;                 // P_min [1/m^2]
+  std::vector<Vector3> places_;  // [m] world
+  RoadReturns road_;
+};
+
 }  // namespace
 
 WeatheredScan throughWeather(const LidarCloud& cloud, const std::vector<BeamPattern::Beam>& missing,
                              const SimulatedWeather& weather, const SensorParams& sensor,
                              const Pose3& T_world_sensor, const LidarCaster& scene,
                              const RngKey& key) {
-  const std::size_t n = cloud.size();
-  const Vector3 origin = T_world_sensor.translation();
-  std::vector<Vector3> places(n);
-  for (std::size_t i = 0; i < n; ++i)
-    places[i] =
-        T_world_sensor * Vector3(static_cast<double>(cloud.x[i]), static_cast<double>(cloud.y[i]),
-                                 static_cast<double>(cloud.z[i]));
-  const RoadReturns road(places, origin);
-  const LidarParams& lidar = sensor.lidar;
-  const double least = 0.9 / (lidar.reference_range * lidar.reference_range);
-
-  std::vector<Shot> shots(n + missing.size());
+  const RecordedPulses pulses(cloud, missing, sensor.lidar, T_world_sensor, key);
+  std::vector<Shot> shots(pulses.size());
   scene.parallel(shots.size(), kGrain, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
-      Shot& shot = shots[i];
-      LidarPulse& pulse = shot.pulse;
-      pulse.origin = origin, pulse.scene = &scene;
-      std::uint32_t slot = static_cast<std::uint32_t>(i);
-      if (i < n) {
-        const Vector3 arm = places[i] - origin;
-        const double range = std::max(arm.norm(), 1e-3);
-        pulse.direction = arm / range;
-        shot.aim = T_world_sensor.linear().transpose() * pulse.direction;
-        const bool on_road = road.contains(places[i]);
-        pulse.hit.range = static_cast<float>(range);
-        pulse.hit.object = on_road ? BeamHit::kRoad : BeamHit::kRecorded;
-        pulse.hit.material = on_road ? Material::kRoad : Material::kWall;
-        pulse.hit.cos_incidence =
-            static_cast<float>(on_road ? std::abs(pulse.direction.z()) : kIncidence);
-        const double intensity = cloud.intensity.empty() ? kUnknownReflectivity
-                                                         : static_cast<double>(cloud.intensity[i]);
-        // Of a return at the threshold it is not known by how much it exceeds that.
-        Rng margin(key.withSlot(slot).withPurpose(key.purpose ^ kMarginPurpose));
-        pulse.reflectivity = shot.clear =
-            std::max(intensity, least * range * range * margin.uniform(1.001, 2));
-      } else {
-        shot.aim = missing[i - n].direction;
-        pulse.direction = T_world_sensor.linear() * shot.aim;
-        slot = kMissingSlot + missing[i - n].slot;
-      }
-      pulse.azimuth = std::atan2(shot.aim.y(), shot.aim.x());
-      pulse.elevation = std::asin(std::clamp(shot.aim.z(), -1.0, 1.0));
-      Rng rng(key.withSlot(slot));
-      weather.alter(sensor, pulse, rng);
-      shot.echo = echoOf(pulse, pulse.reflectivity, lidar);
-      if (!shot.echo.of_surface) shot.echo.range += lidar.range_noise * rng.normal();
+      Shot& shot = shots[i] = pulses.at(i);
+      shot.pulse.scene = &scene;
+      Rng rng(key.withSlot(shot.slot));
+      weather.alter(sensor, shot.pulse, rng);
+      shot.echo = echoOf(shot.pulse, shot.pulse.reflectivity, sensor.lidar);
+      if (!shot.echo.of_surface) shot.echo.range += sensor.lidar.range_noise * rng.normal();
     }
   });
-
   WeatheredScan result;
   result.cloud.max_range = cloud.max_range;
   for (std::size_t i = 0; i < shots.size(); ++i) {
-    const Shot& shot = shots[i];
-    if (!shot.echo.received) {
-      result.lost += i < n;
-      continue;
-    }
-    LidarCloud& out = result.cloud;
-    const bool moved =
-        i >= n || !shot.echo.of_surface ||
-        shot.echo.range != static_cast<double>(static_cast<float>((places[i] - origin).norm()));
-    if (moved) {
-      const Vector3 p = shot.aim * shot.echo.range;
-      out.x.push_back(static_cast<float>(p.x())), out.y.push_back(static_cast<float>(p.y()));
-      out.z.push_back(static_cast<float>(p.z()));
+    if (shots[i].echo.received) {
+      pulses.append(i, shots[i], result.cloud);
+      result.phantoms.push_back(shots[i].echo.phantom);
     } else {
-      out.x.push_back(cloud.x[i]), out.y.push_back(cloud.y[i]), out.z.push_back(cloud.z[i]);
+      result.lost += i < cloud.size();
     }
-    if (!cloud.intensity.empty()) {
-      // What the unit called this surface, times what the weather leaves of it.
-      const double scale =
-          i < n && shot.echo.of_surface ? shot.echo.intensity / std::min(1.0, shot.clear) : 0;
-      out.intensity.push_back(scale > 0 ? cloud.intensity[i] * static_cast<float>(scale)
-                                        : static_cast<float>(inSteps(shot.echo.intensity)));
-    }
-    // What a pulse without a return would have had is not known: as the return before it.
-    const std::size_t like = std::min(i, n - 1);
-    addIf(out.ring, cloud.ring, like), addIf(out.time_offset, cloud.time_offset, like);
-    addIf(out.echo, cloud.echo, like), addIf(out.pulse_width, cloud.pulse_width, like);
-    addIf(out.label, cloud.label, like);
-    result.phantoms.push_back(shot.echo.phantom);
   }
   return result;
 }
