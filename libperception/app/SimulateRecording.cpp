@@ -57,6 +57,22 @@ Recording surveyOf(const std::string& file) {
   return found;
 }
 
+/// The log's first entry.
+mrpt::obs::CObservationComment simulatedComment(Stamp stamp, const std::string& text) {
+  mrpt::obs::CObservationComment comment;
+  comment.timestamp = fromStamp(stamp);
+  comment.sensorLabel = "SIMULATED";
+  comment.text = kSimulatedText + text;
+  return comment;
+}
+
+void printCounts(const WeatheredLog::Counts& n) {
+  fmt::print("  lidar: {} scans, {} returns: {} lost, {} phantoms\n", n.scans, n.returns, n.lost,
+             n.phantoms);
+  if (n.targets > 0) fmt::print("  radar: {} targets, {} lost\n", n.targets, n.targets_lost);
+  if (n.boxes > 0) fmt::print("  boxes: {}, {} lost\n", n.boxes, n.boxes_lost);
+}
+
 }  // namespace
 
 void SimulateApp::declareRecording(CLI::App& cli) {
@@ -103,11 +119,7 @@ void SimulateApp::alterRecording() {
   // Labels are by frame number.
   const bool labeled = recording.lidars.size() == 1;
   std::int64_t last_labeled = -1;
-  mrpt::obs::CObservationComment comment;
-  comment.timestamp = fromStamp(*recording.first);
-  comment.sensorLabel = "SIMULATED";
-  comment.text = kSimulatedText + weathered.text();
-  out.write(comment);
+  out.write(simulatedComment(*recording.first, weathered.text()));
   {
     Progress progress("weather", log.fileBytes());
     while (const auto observation = log.next()) {
@@ -133,10 +145,7 @@ void SimulateApp::alterRecording() {
   out_points = n.returns, out_lost = n.lost, out_phantoms = n.phantoms;
   fmt::print("{}: {}, {} entries, {:.2f} MB\n", output, weathered.text(), out_entries,
              static_cast<double>(out_bytes) * 1e-6);
-  fmt::print("  lidar: {} scans, {} returns: {} lost, {} phantoms\n", n.scans, n.returns, n.lost,
-             n.phantoms);
-  if (n.targets > 0) fmt::print("  radar: {} targets, {} lost\n", n.targets, n.targets_lost);
-  if (n.boxes > 0) fmt::print("  boxes: {}, {} lost\n", n.boxes, n.boxes_lost);
+  printCounts(n);
   if (out_labels > 0)
     fmt::print("  {}: what each return is, {} scans\n", labelFolderOf(output), out_labels);
   if (n.images > 0)
