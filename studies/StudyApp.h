@@ -7,6 +7,7 @@
 #include "libperception/pipeline/RecordedLog.h"
 #include "studies/PaperStudy.h"
 #include "studies/ResolutionStudy.h"
+#include "studies/SafetyStudy.h"
 #include "studies/TrustStudy.h"
 
 namespace perception {
@@ -29,6 +30,7 @@ class StudyApp : public App {
   ResolutionOptions resolution;      ///< resolution: all of its options
   PaperOptions paper;                ///< paper: all of its options
   TrustOptions trust;                ///< trust: all of its options
+  SafetyOptions safety;              ///< safety: all of its options
   double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
 
   double snow_mm_h = 2.5;  ///< snow-realism: of the control

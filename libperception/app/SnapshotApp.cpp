@@ -95,11 +95,13 @@ Config SnapshotApp::readSite(const std::string& run_dir) {
     sensors.ground = config.read<GroundParams>("ground");
     sensors.weather = WeatherParams::read(config);
     sensors.grid = config.read<GridParams>("grid");
+    sensors.stop = config.read<StopParams>("grid.stop");
   } else {
     PipelineSetup site = PipelineSetup::read(config);
     sensors.ground = site.ground;
     sensors.weather = site.weather;
     sensors.grid = site.grid;
+    sensors.stop = site.stop;
     sensors.sensors = std::move(site.sensors);
   }
   config_file = given;

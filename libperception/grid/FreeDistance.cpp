@@ -7,6 +7,7 @@ namespace perception {
 namespace {
 
 constexpr double kStraight = 1e-6;  // [1/m] below it the arc is a line
+constexpr double kTogether = 0.5;   // [m] along the arc: returns of one surface
 constexpr double kGap = 1;          // [m] largest unknown gap between beams
 
 // A column is known when any of a few heights of it is.
@@ -49,10 +50,44 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
     if (place.s + half < corridor.from || place.s - half > result.distance) continue;
     result.distance = std::max(place.s - half, corridor.from);
     result.blocked = true;
+    result.place = cell.center;
   }
   result.seen = corridor.from;
   for (double s = corridor.from; s <= result.distance && s - result.seen <= kGap; s += step) {
     if (isKnown(corridor, s, log_odds_at)) result.seen = s;
+  }
+  return result;
+}
+
+FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,
+                          const std::vector<float>& weights, double least) {
+  struct Return {
+    double s, weight;
+    std::size_t index;
+  };
+  std::vector<Return> inside;
+  const Pose3 T_ego_world = corridor.T_world_ego.inverse();
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const Vector3 p = T_ego_world * returns[i];
+    const ArcPlace place = arcPlace(corridor, p.x(), p.y());
+    if (std::abs(place.d) > corridor.width / 2) continue;
+    if (place.s < corridor.from || place.s > corridor.max) continue;
+    inside.push_back({place.s, weights.empty() ? 1 : static_cast<double>(weights[i]), i});
+  }
+  std::sort(inside.begin(), inside.end(), [](const Return& a, const Return& b) {
+    return a.s < b.s || (a.s == b.s && a.index < b.index);
+  });
+  FreeDistance result;
+  result.distance = corridor.max;
+  double sum = 0;
+  for (std::size_t first = 0, last = 0; last < inside.size(); ++last) {
+    sum += inside[last].weight;
+    while (inside[last].s - inside[first].s > kTogether) sum -= inside[first++].weight;
+    if (sum < least) continue;
+    result.distance = inside[first].s;
+    result.blocked = true;
+    result.place = returns[inside[first].index];
+    return result;
   }
   return result;
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "libperception/core/Frames.h"
+#include "libperception/grid/GridPoints.h"
 
 namespace perception {
 
@@ -26,8 +27,9 @@ struct Corridor {
 struct FreeDistance {
   double distance =
       0;  ///< [m] along the arc from the ego origin to the first occupied cell, or max
-  bool blocked = false;  ///< an occupied cell was found
-  double seen = 0;       ///< [m] observed without a gap longer than 1 m
+  bool blocked = false;             ///< an occupied cell was found
+  Vector3 place = Vector3::Zero();  ///< [m] center of that cell, world
+  double seen = 0;                  ///< [m] observed without a gap longer than 1 m
 };
 
 /// Coordinates along (s) and across (d, positive left) the corridor's arc.
@@ -42,5 +44,11 @@ Vector2 onArc(const Corridor& corridor, const ArcPlace& place);
 /// point [m, world], 0 = unknown.
 FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>& occupied,
                           double step, const std::function<double(const Vector3&)>& log_odds_at);
+
+/// Nearest place in the corridor where the returns of one scan together weigh `least` within .5 m:
+/// what moves too fast to hit a cell twice. `weights` [0, 1] of each; empty: all 1. Not blocked:
+/// none nearer than corridor.max.
+FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,
+                          const std::vector<float>& weights, double least);
 
 }  // namespace perception

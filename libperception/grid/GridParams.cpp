@@ -3,6 +3,8 @@
 namespace perception {
 
 void GridParams::visit(ParamVisitor& v) {
+  v.boolean("enabled", enabled,
+            "free distance and stop advice in scenes.csv; pictures have the grid all the same");
   v.expert();
   v.choiceOf("back_end", back_end, {"octomap", "mrpt2d", "rolling", "rolling2d"},
              "octomap, rolling: 3D cells; mrpt2d, rolling2d: 2D cells, cheaper; "

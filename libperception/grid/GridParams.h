@@ -8,7 +8,8 @@ namespace perception {
 struct GridParams {
   enum class BackEnd { kOctomap, kMrpt2d, kRolling, kRolling2d };
 
-  BackEnd back_end = BackEnd::kOctomap;
+  bool enabled = true;  ///< free distance and stop advice in the scenes of a run with a lidar
+  BackEnd back_end = BackEnd::kRolling;
   double resolution = 0.2;        ///< [m] edge of a cell
   double size = 80;               ///< [m] edge of the window around the vehicle
   double hit = 0.85;              ///< [log-odds] a scan with a return in the cell [hornung2013]

@@ -113,11 +113,25 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   return found;
 }
 
+PlacedReturns placedReturns(EgoPoints points, std::vector<float> height, const PointParams& point,
+                            const ObstacleParams& obstacle) {
+  PlacedReturns returns;
+  returns.x = std::move(points.x), returns.y = std::move(points.y), returns.z = std::move(points.z);
+  returns.height = std::move(height);
+  returns.source = std::move(points.source);
+  returns.sensor = points.sensor;
+  returns.height_min = obstacle.height_min;
+  returns.height_max = obstacle.height_max;
+  returns.vehicle_front = point.vehicle_front;
+  return returns;
+}
+
 void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const {
-  const LidarDetections found = detect(frame);
+  LidarDetections found = detect(frame);
+  const ObstacleParams& obstacles = params_.obstacles;
   scan.dropped_points = found.points.dropped + found.points.capped;
   const auto occlusion =
-      occlusionMapOf(found, frame.ego.T_world_ego, scan.state.T_world_sensor, params_.obstacles);
+      occlusionMapOf(found, frame.ego.T_world_ego, scan.state.T_world_sensor, obstacles);
   scan.occlusion = occlusion;
 
   const ScanContext context{frame,      found, params_,        scan.state.T_world_sensor,
@@ -141,6 +155,8 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
   for (const Cluster& cluster : found.clusters)
     if (distanceToHull(cluster.hull, sensor) > 0) add(measurementOf(context, cluster));
   for (const PersonPeak& peak : found.persons) add(measurementOf(context, peak));
+  scan.returns = std::make_shared<const PlacedReturns>(
+      placedReturns(std::move(found.points), std::move(found.height), params_.points, obstacles));
 }
 
 std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& sensor_label,

@@ -64,6 +64,10 @@ struct LidarParams {
   LidarParams();
 };
 
+/// The returns of a scan as the safety grid takes them; `height` [m] of each above the ground.
+PlacedReturns placedReturns(EgoPoints points, std::vector<float> height, const PointParams& point,
+                            const ObstacleParams& obstacle);
+
 /// The lidar front end: obstacle returns, clusters among them and their outlines as measurements.
 /// With a classifier, segments in space with evidence of the class by their shape; without,
 /// car-sized clusters and person peaks with labels by their size. Labels: car_sized, person_sized

@@ -12,6 +12,7 @@
 #include "libperception/core/Time.h"
 #include "libperception/measurement/EvidenceMemory.h"
 #include "libperception/measurement/OcclusionMap.h"
+#include "libperception/measurement/PlacedReturns.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -84,6 +85,7 @@ struct MeasurementScan {
   SensorState state;
   std::shared_ptr<const MeasurementModel> model;
   std::shared_ptr<const OcclusionMap> occlusion;  ///< null: nothing is occluded
+  std::shared_ptr<const PlacedReturns> returns;   ///< of a lidar; null: none
   std::vector<Measurement> measurements;
   std::size_t dropped = 0;  ///< detections that could not be used: unknown label, invalid box
   std::size_t dropped_points =

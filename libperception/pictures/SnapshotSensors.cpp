@@ -15,24 +15,6 @@ namespace {
 constexpr double kLastScan = 0.5;  // [s] after which returns are too old to be drawn
 constexpr double kLastImage = 1;   // [s]
 constexpr double kLookAhead = 3;   // [s] of log in which every sensor has had a frame
-constexpr double kMirrored =
-    -0.3;                      // [m] lower returns are mirror images in a wet road (method.md 8.1)
-constexpr double kSteers = 2;  // [m/s] speed below which the curvature is undefined
-constexpr double kSharpest = 0.2;  // [1/m] of a car's steering
-
-// The vehicle on the ground plane: z = 0 is the ground.
-Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
-  return T_world_ego * makePose(0, 0, plane.c, 0, -std::atan(plane.a), std::atan(plane.b));
-}
-
-Corridor laneOf(const EgoState& ego, double vehicle_front) {
-  Corridor lane;
-  lane.T_world_ego = ego.T_world_ego;
-  lane.from = vehicle_front;
-  const double speed = ego.velocity.norm();
-  if (speed > kSteers) lane.curvature = std::clamp(ego.yaw_rate / speed, -kSharpest, kSharpest);
-  return lane;
-}
 
 bool hasImageBoxes(const ObjectDetections& detections) {
   if (detections.camera.width <= 0) return false;
@@ -86,7 +68,7 @@ SnapshotSensors::SnapshotSensors(const std::string& log, const TrackedRun& run,
       reader_(log),
       run_(run),
       params_(std::move(params)),
-      grid_(makeSafetyGrid(params_.grid)) {
+      safety_(params_.grid, params_.stop) {
   lookAhead(log);
 }
 
@@ -186,28 +168,19 @@ void SnapshotSensors::takeLidar(SensorFrame& frame) {
   ground_ = frame.ground = lidar.ground.update(frame);
   if (lidar.weather) lidar.weather->apply(frame);
   const LidarSettings settings = settingsOf(frame.sensor);
-  const EgoPoints points = usablePoints(frame, settings.points);
-  const std::vector<float> heights =
-      GroundSurface(frame.ground, points, settings.surface).heightsAbove(points);
-
+  EgoPoints points = usablePoints(frame, settings.points);
+  std::vector<float> heights;
+  GroundSurface(frame.ground, points, settings.surface, &heights);
+  const PlacedReturns returns =
+      placedReturns(std::move(points), std::move(heights), settings.points, settings.obstacles);
   const std::vector<float>& trust = std::get<LidarCloud>(frame.data).trust;
-  const ObstacleParams& obstacles = settings.obstacles;
-  GridScan scan;
-  scan.stamp = frame.stamp;
-  scan.origin = frame.T_world_sensor().translation();
-  scan.T_world_ground = groundPose(frame.ego.T_world_ego, frame.ground);
   lidar.points.clear();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector3 place = frame.ego.T_world_ego * Vector3(points.x[i], points.y[i], points.z[i]);
-    const bool hit = heights[i] > obstacles.height_min && heights[i] < obstacles.height_max;
-    const float trusted = trust.empty() ? 1.0F : trust[points.source[i]];
-    if (heights[i] > kMirrored) {
-      (hit ? scan.hits : scan.clear).push_back(place);
-      if (hit && !trust.empty()) scan.weights.push_back(trusted);
-    }
-    lidar.points.push_back({place, heights[i], trusted});
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const Vector3 place = frame.ego.T_world_ego * Vector3(returns.x[i], returns.y[i], returns.z[i]);
+    lidar.points.push_back(
+        {place, returns.height[i], trust.empty() ? 1.0F : trust[returns.source[i]]});
   }
-  grid_->insert(scan);
+  safety_.add(frame, returns);
   ++scans_;
 }
 
@@ -291,10 +264,11 @@ void SnapshotSensors::fill(SceneView& view) {
     addMeasurements(frame, view);
   }
   addImage(view);
-  view.occupied = grid_->occupiedCells();
-  if (lidars_.empty()) return;
-  view.corridor = laneOf(view.scene.ego, settingsOf(lidars_.begin()->first).points.vehicle_front);
-  view.free = grid_->freeDistance(*view.corridor);
+  view.occupied = safety_.grid().occupiedCells();
+  const PathAhead path = safety_.pathAhead(view.scene.ego);
+  if (!path.known) return;
+  view.corridor = path.corridor;
+  view.free = path.free;
 }
 
 }  // namespace perception

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "gui-offscreen/SceneView.h"
-#include "libperception/grid/SafetyGrid.h"
 #include "libperception/lidar/GroundPlane.h"
 #include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/pipeline/Pipeline.h"
+#include "libperception/pipeline/SafetyMonitor.h"
 #include "libperception/scene/TrackedRun.h"
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/RawlogReader.h"
@@ -18,6 +18,7 @@ namespace perception {
 /// Parameters of the drawing of sensor data.
 struct SnapshotSensorParams {
   GridParams grid;
+  StopParams stop;
   GroundParams ground;
   WeatherParams weather;
   double memory = 5;  ///< [s] lidar scans of this time before the instant are in the grid
@@ -42,7 +43,7 @@ class SnapshotSensors {
   void fill(SceneView& view);
 
   const ViewLayers& layers() const { return layers_; }
-  const SafetyGrid& grid() const { return *grid_; }  ///< as of the last instant
+  const SafetyGrid& grid() const { return safety_.grid(); }  ///< as of the last instant
   const RawlogReader& reader() const { return reader_; }
   std::uint64_t scans() const { return scans_; }    ///< number added to the grid so far
   std::uint64_t frames() const { return frames_; }  ///< of any sensor, within the run's time
@@ -78,7 +79,7 @@ class SnapshotSensors {
   const TrackedRun& run_;
   SnapshotSensorParams params_;
   ViewLayers layers_;
-  std::unique_ptr<SafetyGrid> grid_;
+  SafetyMonitor safety_;
   std::map<std::string, Lidar> lidars_;      ///< by label
   std::map<std::string, SensorFrame> last_;  ///< last frame by label; images and boxes, too
   GroundPlane ground_;                       ///< newest, ego frame

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "libperception/pipeline/PipelineSetup.h"
+#include "libperception/pipeline/SafetyMonitor.h"
 
 namespace perception {
 
@@ -17,6 +19,7 @@ class OutputSchedule {
   struct Instant {
     EgoState ego;
     std::int64_t frame = -1;
+    PathAhead path;  ///< ahead, as of this instant
   };
 
   OutputSchedule(const RunParams& run, const std::vector<PipelineSetup::Sensor>& sensors);
@@ -32,7 +35,7 @@ class OutputSchedule {
   /// The next instant of the fixed rate if it is before `stamp`; call until empty.
   std::optional<Stamp> takeBefore(Stamp stamp);
 
-  void push(const EgoState& ego, std::int64_t frame) { waiting_.push_back({ego, frame}); }
+  void push(Instant instant) { waiting_.push_back(std::move(instant)); }
   /// The oldest waiting instant whose lag has passed at `now`; without `now` (end of log) the
   /// oldest.
   std::optional<Instant> takeDue(std::optional<Stamp> now);

@@ -21,7 +21,9 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
       queue_({setup_.run.reorder_window, 70}),
       watch_(setup_.sensors, setup_.run.sensor_timeout, events),
       scan_maker_(setup_, timing),
-      outputs_(setup_.run, setup_.sensors) {}
+      outputs_(setup_.run, setup_.sensors) {
+  if (setup_.grid.enabled) safety_.emplace(setup_.grid, setup_.stop);
+}
 
 void Pipeline::add(const mrpt::obs::CObservation& observation) {
   const auto stamp = toStamp(observation.timestamp);
@@ -134,15 +136,24 @@ bool Pipeline::processNext(bool flush) {
 void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
   scan_maker_.addGround(sensor, frame);
   if (setup_.sensors[sensor].active) {
-    const MeasurementScan scan = scan_maker_.measure(sensor, frame);
+    MeasurementScan scan = scan_maker_.measure(sensor, frame);
     watch_.addFrame(sensor, frame.stamp, &scan);
     if (observer_) observer_->onFrame(frame), observer_->onScan(scan);
+    addToGrid(frame, scan);
     const auto scope = timing_.stage("filter");
     tracker_.process(scan);
   } else {
     watch_.addFrame(sensor, frame.stamp, nullptr);
   }
   watch_.setSeen(sensor, frame.stamp);
+}
+
+void Pipeline::addToGrid(const SensorFrame& frame, MeasurementScan& scan) {
+  if (safety_ && scan.returns) {
+    const auto scope = timing_.stage("grid");
+    safety_->add(frame, *scan.returns);
+  }
+  scan.returns.reset();
 }
 
 EgoState Pipeline::egoAt(Stamp stamp) {
@@ -152,15 +163,23 @@ EgoState Pipeline::egoAt(Stamp stamp) {
 
 void Pipeline::addOutput(const EgoState& ego, std::int64_t frame) {
   if (observer_) observer_->onScene(ego, frame);
-  outputs_.push(ego, frame);
+  OutputSchedule::Instant instant{ego, frame, {}};
+  if (safety_) {
+    const auto scope = timing_.stage("grid");
+    instant.path = safety_->pathAhead(ego);
+  }
+  outputs_.push(std::move(instant));
   makeScenes(ego.stamp);
 }
 
 /// Makes the scenes whose lag has passed; without `now` (end of log) all.
 void Pipeline::makeScenes(std::optional<Stamp> now) {
   const auto scope = timing_.stage("scene");
-  while (const auto instant = outputs_.takeDue(now))
+  while (const auto instant = outputs_.takeDue(now)) {
     ready_.push_back(scenes_.make(tracker_.mapHypothesis(), instant->ego, instant->frame));
+    if (instant->path.known) ready_.back().path = safety_->advise(instant->path, ready_.back());
+    if (observer_) observer_->onOutput(ready_.back());
+  }
 }
 
 void Pipeline::restartTracks() {
@@ -168,6 +187,7 @@ void Pipeline::restartTracks() {
   tracker_.reset();
   if (observer_) observer_->onRestart();
   scan_maker_.forgetOcclusion();
+  if (safety_) safety_->restart();
 }
 
 }  // namespace perception

@@ -10,6 +10,7 @@
 #include "libperception/pipeline/FrameQueue.h"
 #include "libperception/pipeline/OutputSchedule.h"
 #include "libperception/pipeline/PipelineSetup.h"
+#include "libperception/pipeline/SafetyMonitor.h"
 #include "libperception/pipeline/ScanMaker.h"
 #include "libperception/pipeline/SensorWatch.h"
 #include "libperception/scene/EventLog.h"
@@ -26,6 +27,8 @@ class PipelineObserver {
   virtual void onScan(const MeasurementScan& scan) { (void)scan; }  ///< goes into the filter
   /// A scene of this instant is due.
   virtual void onScene(const EgoState& ego, std::int64_t frame) { (void)ego, (void)frame; }
+  /// The scene as it goes out; with [run] output_lag later than its instant.
+  virtual void onOutput(const Scene& scene) { (void)scene; }
   virtual void onRestart() {}  ///< all tracks are deleted
 };
 
@@ -58,6 +61,7 @@ class Pipeline {
   bool processNext(bool flush);
   void processFrame(std::size_t sensor, SensorFrame& frame);
   EgoState egoAt(Stamp stamp);
+  void addToGrid(const SensorFrame& frame, MeasurementScan& scan);
   void addOutput(const EgoState& ego, std::int64_t frame);
   void makeScenes(std::optional<Stamp> now);
   void restartTracks();
@@ -72,6 +76,7 @@ class Pipeline {
   FrameNumbers frame_numbers_;
   SensorWatch watch_;
   ScanMaker scan_maker_;
+  std::optional<SafetyMonitor> safety_;  ///< empty: [grid] enabled = false
   OutputSchedule outputs_;
   std::deque<Scene> ready_;
   std::optional<Stamp> first_stamp_;

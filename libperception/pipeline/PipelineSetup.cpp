@@ -161,6 +161,7 @@ PipelineSetup PipelineSetup::read(Config& config) {
   s.ground = config.read<GroundParams>("ground");
   s.weather = WeatherParams::read(config);
   s.grid = config.read<GridParams>("grid");
+  s.stop = config.read<StopParams>("grid.stop");
   const auto set = readSensorSet(s.run.sensors);
   if (!set) {
     config.fault(

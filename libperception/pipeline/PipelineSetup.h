@@ -6,6 +6,7 @@
 
 #include "libperception/filter/CRbpfTracker.h"
 #include "libperception/grid/GridParams.h"
+#include "libperception/grid/StopAdvice.h"
 #include "libperception/lidar/GroundPlane.h"
 #include "libperception/measurement/DetectionModel.h"
 #include "libperception/measurement/FrontEnd.h"
@@ -67,7 +68,8 @@ struct PipelineSetup {
   EgoPoseParams ego;
   GroundParams ground;
   WeatherParams weather;
-  GridParams grid;              ///< safety grid, for pictures
+  GridParams grid;              ///< safety grid
+  StopParams stop;              ///< its advice
   std::vector<Sensor> sensors;  ///< in the order of the INI
 
   /// Reads all sections. Faults are collected in the configuration; Config::finish() throws them.

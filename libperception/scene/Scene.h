@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +27,22 @@ struct SceneObject {
   std::map<Modality, Stamp> last_hit;                   ///< last measurement of each modality
 };
 
+/// What the safety grid says of the way ahead, along the arc that the vehicle drives.
+struct FreePath {
+  double distance = 0;      ///< [m] from the ego origin to the first occupied cell, or the largest
+  double seen = 0;          ///< [m] to which the path was observed
+  bool blocked = false;     ///< an occupied cell was found
+  bool stop = false;        ///< it is nearer than the vehicle can stop
+  std::uint64_t owner = 0;  ///< id of the object that covers the cell; 0: none
+};
+
 /// The objects around the vehicle at one instant: the output of a run.
 struct Scene {
   Stamp stamp;
   std::int64_t frame = -1;  ///< the log's frame number; -1 = none
   EgoState ego;
   std::vector<SceneObject> objects;  ///< by id
+  std::optional<FreePath> path;      ///< empty: no grid, or no lidar scan lately
 };
 
 }  // namespace perception

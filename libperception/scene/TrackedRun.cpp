@@ -91,6 +91,14 @@ std::string trackLine(const Scene& scene, const SceneObject& object, const Class
   return line.end();
 }
 
+void addPath(Line& line, const std::optional<FreePath>& path) {
+  if (!path) return line.text(",,,");
+  line.meters(path->distance);
+  line.meters(path->seen);
+  line.integer(path->stop ? 1 : 0);
+  line.text(!path->blocked ? "" : path->owner == 0 ? "unknown" : fmt::format("{}", path->owner));
+}
+
 std::string sceneLine(const Scene& scene, std::size_t objects, Stamp first_stamp) {
   Line line;
   addInstant(line, scene, first_stamp);
@@ -100,6 +108,7 @@ std::string sceneLine(const Scene& scene, std::size_t objects, Stamp first_stamp
   for (const double v : scene.ego.velocity) line.meters(v);
   line.radians(scene.ego.yaw_rate);
   line.integer(objects);
+  addPath(line, scene.path);
   return line.end();
 }
 
@@ -142,6 +151,17 @@ class Table {
   std::size_t row_ = 0;
 };
 
+std::optional<FreePath> readPath(const Table& row) {
+  if (row.text("free_distance").empty()) return std::nullopt;
+  FreePath path;
+  path.distance = row.real("free_distance");
+  path.seen = row.real("free_seen");
+  path.stop = row.flag("stop");
+  path.blocked = !row.text("obstacle").empty();
+  if (path.blocked && row.text("obstacle") != "unknown") path.owner = row.natural("obstacle");
+  return path;
+}
+
 Scene readScene(const Table& row) {
   Scene scene;
   scene.frame = row.integer("frame");
@@ -151,6 +171,7 @@ Scene readScene(const Table& row) {
                                    row.real("pitch"), row.real("roll"));
   scene.ego.velocity = {row.real("vx"), row.real("vy")};
   scene.ego.yaw_rate = row.real("yaw_rate");
+  scene.path = readPath(row);
   return scene;
 }
 
@@ -190,7 +211,9 @@ TrackedRunWriter::TrackedRunWriter(const std::string& dir, const ClassTable& cla
       classes_(classes),
       first_stamp_(first_stamp) {
   tracks_.write(tracksHeader(classes_));
-  scenes_.write("frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects\n");
+  scenes_.write(
+      "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,stop,"
+      "obstacle\n");
 }
 
 void TrackedRunWriter::write(const Scene& scene) {

@@ -81,7 +81,7 @@ inline const std::vector<Module>& modules() {
       {"studies",
        "experiments about the method",
        {"app", "pipeline", "calibration", "simulation", "detectors", "evaluation", "scene",
-        "filter", "lidar", "sensors", "measurement", "config", "core"}},
+        "filter", "lidar", "grid", "sensors", "measurement", "config", "core"}},
       {"apps", "a short main for every program", {"app", "studies"}},
   };
   return all;

@@ -58,8 +58,8 @@ TEST(OutputSchedule, AnInstantWaitsForItsLag) {
   OutputSchedule outputs(run, {sensor("L", Modality::kLidar)});
   EXPECT_TRUE(outputs.isOutput(kStart, true));
   EXPECT_FALSE(outputs.isOutput(kStart, false));
-  outputs.push(egoAt(0), 7);
-  outputs.push(egoAt(1), 8);
+  outputs.push({egoAt(0), 7, {}});
+  outputs.push({egoAt(1), 8, {}});
   EXPECT_FALSE(outputs.takeDue(kStart + 0.4));
   EXPECT_EQ(outputs.takeDue(kStart + 0.6)->frame, 7);
   EXPECT_FALSE(outputs.takeDue(kStart + 0.6));

@@ -81,6 +81,26 @@ TEST(TrackedRun, ReadsBackWhatItWrote) {
   }
 }
 
+TEST(TrackedRun, TellsTheWayAheadWhereThereIsAGrid) {
+  const TemporaryFolder folder;
+  std::vector<Scene> scenes = {someScene(0, {}), someScene(1, {}), someScene(2, {}),
+                               someScene(3, {})};
+  scenes[1].path = FreePath{80, 47.2, false, false, 0};
+  scenes[2].path = FreePath{9.5, 9.4, true, true, 0};
+  scenes[3].path = FreePath{12.25, 12, true, false, 7};
+  writeRun(folder.path(), scenes);
+  const TrackedRun run = readTrackedRun(folder.path());
+  EXPECT_FALSE(run.scenes[0].path);
+  for (std::size_t i = 1; i < scenes.size(); ++i) {
+    ASSERT_TRUE(run.scenes[i].path);
+    EXPECT_EQ(run.scenes[i].path->distance, scenes[i].path->distance);
+    EXPECT_EQ(run.scenes[i].path->seen, scenes[i].path->seen);
+    EXPECT_EQ(run.scenes[i].path->blocked, scenes[i].path->blocked);
+    EXPECT_EQ(run.scenes[i].path->stop, scenes[i].path->stop);
+    EXPECT_EQ(run.scenes[i].path->owner, scenes[i].path->owner);
+  }
+}
+
 TEST(TrackedRun, HasTheColumnsOfTheFormat) {
   const TemporaryFolder folder;
   writeRun(folder.path(), {someScene(1, {someCar(3)})});
@@ -93,10 +113,11 @@ TEST(TrackedRun, HasTheColumnsOfTheFormat) {
       "2500,-3.141592,1,"
       "-5.5000,0.1250,-5.5014,4.5000,1.8000,1.5000,0.1000,0.2000,0.030000,0.4000,,0.000000001,\n");
   EXPECT_EQ(readText(folder.file("scenes.csv")),
-            "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects\n"
+            "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,"
+            "stop,obstacle\n"
             "1,0.103519669,1700000000.226976458,100.5000,-3.2500,0.1250,2.500000,0.010000,-0."
             "020000,3.0000,4.0000,"
-            "0.100000,1\n");
+            "0.100000,1,,,,\n");
 }
 
 TEST(TrackedRun, WritesTheSameBytesInALocaleWithDecimalComma) {

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+
+namespace perception {
+
+/// Returns of one lidar scan with their heights above the ground, for the safety grid. Ego frame;
+/// the vectors have the same size.
+struct PlacedReturns {
+  std::vector<float> x, y, z;             ///< [m]
+  std::vector<float> height;              ///< [m] above the local ground
+  std::vector<std::uint32_t> source;      ///< index in the frame's cloud
+  Vector3 sensor = Vector3::Zero();       ///< [m] position of the sensor
+  double height_min = 0, height_max = 0;  ///< [m] above ground: the slab of obstacles
+  double vehicle_front = 0;               ///< [m] x of the own vehicle's front
+
+  std::size_t size() const { return x.size(); }
+};
+
+}  // namespace perception

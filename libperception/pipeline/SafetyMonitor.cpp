@@ -1,0 +1,108 @@
+#include "libperception/pipeline/SafetyMonitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace perception {
+namespace {
+
+constexpr double kMirrored = -0.3;  // [m] lower returns are mirror images in a wet road
+constexpr double kLeaves = 0.5;     // [s] for which a cell belongs to what has left it; assumed
+constexpr double kFresh = 0.5;      // [s] after which a scan says nothing of the way ahead; assumed
+
+// The vehicle on the ground plane: z = 0 is the ground.
+Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
+  return T_world_ego * makePose(0, 0, plane.c, 0, -std::atan(plane.a), std::atan(plane.b));
+}
+
+// Within the outline, or where it was up to half a second ago: cells that it left are cleared only
+// by the beams that pass later.
+bool owns(const SceneObject& object, const Vector3& place, double grow) {
+  const Vector2 p = rotate2(-object.yaw, place.head<2>() - Vector2(object.position.head<2>()));
+  const double left = kLeaves * object.speed;
+  const double rear = object.length / 2 + grow + std::max(left, 0.0);
+  const double front = object.length / 2 + grow + std::max(-left, 0.0);
+  return p.x() >= -rear && p.x() <= front && std::abs(p.y()) <= object.width / 2 + grow;
+}
+
+// The most certain object that covers the place; null: none.
+const SceneObject* ownerOf(const Scene& scene, const Vector3& place, double grow) {
+  const SceneObject* owner = nullptr;
+  for (const SceneObject& object : scene.objects) {
+    if (!owns(object, place, grow)) continue;
+    if (owner == nullptr || object.existence > owner->existence) owner = &object;
+  }
+  return owner;
+}
+
+}  // namespace
+
+GridScan gridScanOf(const SensorFrame& frame, const PlacedReturns& returns) {
+  GridScan scan;
+  scan.stamp = frame.stamp;
+  scan.origin = frame.T_world_sensor().translation();
+  scan.T_world_ground = groundPose(frame.ego.T_world_ego, frame.ground);
+  const auto* cloud = std::get_if<LidarCloud>(&frame.data);
+  const bool weighted = cloud != nullptr && !cloud->trust.empty();
+  scan.clear.reserve(returns.size());
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const double height = static_cast<double>(returns.height[i]);
+    if (height <= kMirrored) continue;
+    const Vector3 place = frame.ego.T_world_ego * Vector3(static_cast<double>(returns.x[i]),
+                                                          static_cast<double>(returns.y[i]),
+                                                          static_cast<double>(returns.z[i]));
+    const bool hit = height > returns.height_min && height < returns.height_max;
+    (hit ? scan.hits : scan.clear).push_back(place);
+    if (hit && weighted) scan.weights.push_back(cloud->trust[returns.source[i]]);
+  }
+  return scan;
+}
+
+SafetyMonitor::SafetyMonitor(const GridParams& grid, const StopParams& stop)
+    : params_(grid), stop_(stop), grid_(makeSafetyGrid(grid)) {}
+
+void SafetyMonitor::add(const SensorFrame& frame, const PlacedReturns& returns) {
+  last_ = gridScanOf(frame, returns);
+  grid_->insert(last_);
+  front_ = returns.vehicle_front;
+  any_ = true;
+}
+
+PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
+  PathAhead path;
+  path.known = any_ && std::abs(ego.stamp - last_.stamp) <= kFresh;
+  if (!path.known) return path;
+  path.corridor = drivenCorridor(ego.T_world_ego, ego.velocity.norm(), ego.yaw_rate, front_, stop_);
+  path.free = grid_->freeDistance(path.corridor);
+  path.corridor.max = path.free.distance;
+  const FreeDistance dense = denseReturns(path.corridor, last_.hits, last_.weights, stop_.returns);
+  path.corridor.max = stop_.look_ahead;
+  if (!dense.blocked) return path;
+  path.free.distance = dense.distance;
+  path.free.blocked = true;
+  path.free.place = dense.place;
+  path.free.seen = std::min(path.free.seen, dense.distance);
+  return path;
+}
+
+FreePath SafetyMonitor::advise(const PathAhead& path, const Scene& scene) const {
+  FreePath advice;
+  advice.distance = path.free.distance;
+  advice.seen = path.free.seen;
+  advice.blocked = path.free.blocked;
+  if (!advice.blocked) return advice;
+  const SceneObject* owner = ownerOf(scene, path.free.place, stop_.obstacle_grow);
+  const double speed = scene.ego.velocity.norm();
+  const Vector2 ahead = scene.ego.T_world_ego.linear().col(0).head<2>();
+  const double along = owner == nullptr ? 0 : owner->velocity.dot(ahead);
+  advice.owner = owner == nullptr ? 0 : owner->id;
+  advice.stop = path.free.distance - path.corridor.from < stoppingDistance(speed, along, stop_);
+  return advice;
+}
+
+void SafetyMonitor::restart() {
+  grid_ = makeSafetyGrid(params_);
+  any_ = false;
+}
+
+}  // namespace perception

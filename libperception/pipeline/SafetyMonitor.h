@@ -1,0 +1,48 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "libperception/grid/SafetyGrid.h"
+#include "libperception/grid/StopAdvice.h"
+#include "libperception/measurement/Measurement.h"
+#include "libperception/scene/Scene.h"
+
+namespace perception {
+
+/// The scan of a frame for the grid: obstacle returns by their height, weighted by the cloud's
+/// trust, and those that only clear; mirror images below the road are left out (method.md 8.1).
+GridScan gridScanOf(const SensorFrame& frame, const PlacedReturns& returns);
+
+/// The way ahead at one instant.
+struct PathAhead {
+  bool known = false;  ///< false: no lidar scan within half a second
+  Corridor corridor;
+  FreeDistance free;
+};
+
+/// Keeps the safety grid of a run and tells how far the driven path is free (method.md 8.4).
+class SafetyMonitor {
+ public:
+  SafetyMonitor(const GridParams& grid, const StopParams& stop);
+
+  /// A lidar scan, in order of time; `frame` with trust.
+  void add(const SensorFrame& frame, const PlacedReturns& returns);
+  /// The path ahead as of the last scan.
+  PathAhead pathAhead(const EgoState& ego) const;
+  /// For a known path: free distance, advice and cause for a scene with its objects.
+  FreePath advise(const PathAhead& path, const Scene& scene) const;
+  /// Forgets the grid, as when the world frame changes.
+  void restart();
+
+  const SafetyGrid& grid() const { return *grid_; }
+
+ private:
+  GridParams params_;
+  StopParams stop_;
+  std::unique_ptr<SafetyGrid> grid_;
+  GridScan last_;  ///< the newest scan's returns
+  bool any_ = false;
+  double front_ = 0;  ///< [m] x of the own vehicle's front, ego frame
+};
+
+}  // namespace perception
