@@ -19,7 +19,7 @@ namespace perception {
 namespace {
 
 constexpr const char* kMonitors[] = {"Euclidean clusters", "grid, every return trusted",
-                                     "grid with trust"};
+                                     "advice of the run"};
 constexpr std::size_t kMonitorCount = std::size(kMonitors);
 constexpr double kGrow = 0.3;             // [m] of a track's outline
 constexpr int kPhantomReturns = 3;        // that a phantom track stands on
@@ -45,14 +45,12 @@ struct SafetyCounts {
 /// Judges every labeled scan, then the scene made at it.
 class SafetyObserver : public PipelineObserver {
  public:
-  SafetyObserver(const std::string& log, const PipelineSetup& setup, double least_speed)
+  SafetyObserver(const std::string& log, const PipelineSetup& setup)
       : labels_(log),
         classes_(setup.model.classes),
         stop_(setup.stop),
         speeds_(log),
-        trusting_(std::make_unique<SafetyMonitor>(setup.grid, setup.stop)),
-        trusted_(std::make_unique<SafetyMonitor>(setup.grid, setup.stop)),
-        least_speed_(least_speed) {
+        trusting_(std::make_unique<SafetyMonitor>(setup.grid, setup.stop)) {
     counts.log = std::filesystem::path(log).stem().string();
   }
 
@@ -71,9 +69,10 @@ class SafetyObserver : public PipelineObserver {
   void onScan(const MeasurementScan& scan) override {
     if (!frame_ || !scan.returns) return;
     if (!first_) first_ = frame_->stamp;
-    trusted_->add(*frame_, *scan.returns);
     std::get<LidarCloud>(frame_->data).trust.clear();
-    trusting_->add(*frame_, *scan.returns);
+    PlacedReturns plain = *scan.returns;
+    plain.phantom.clear();
+    trusting_->add(*frame_, plain);
     obstacles_ = obstaclesOf(*scan.returns, frame_->ego.T_world_ego, *scan_labels_);
     front_ = scan.returns->vehicle_front;
     truth_.add(frame_->stamp, frame_->stamp - *first_, obstacles_, speeds_);
@@ -104,17 +103,17 @@ class SafetyObserver : public PipelineObserver {
     rule.corridor = drivenCorridor(scene.ego.T_world_ego, speed, scene.ego.yaw_rate, front_, stop_);
     rule.params = stop_;
     rule.t = scene.stamp - *first_;
-    rule.speed = std::max(speed, least_speed_);
+    rule.speed = speed;
     rule.speeds = &speeds_;
     const auto aheadOf = [](const FreeDistance& free) {
       return free.blocked ? Ahead{free.distance, free.place} : Ahead{};
     };
     const InTheWay real = truth_.judge(scene.stamp, rule);
-    const Ahead found[] = {nearestCluster(obstacles_, rule.corridor),
-                           aheadOf(trusting_->pathAhead(scene.ego).free),
-                           aheadOf(trusted_->pathAhead(scene.ego).free)};
+    const bool stops[] = {rule.within(nearestCluster(obstacles_, rule.corridor)) > 0,
+                          rule.within(aheadOf(trusting_->pathAhead(scene.ego).free)) > 0,
+                          scene.path->stop};
     for (std::size_t k = 0; k < kMonitorCount; ++k)
-      counts.stops[k].add(scene.stamp, rule.within(found[k]) > 0, real);
+      counts.stops[k].add(scene.stamp, stops[k], real);
   }
 
   void judgeTrack(const SceneObject& object) {
@@ -135,9 +134,8 @@ class SafetyObserver : public PipelineObserver {
   ClassTable classes_;
   StopParams stop_;
   TruthSpeeds speeds_;
-  std::unique_ptr<SafetyMonitor> trusting_, trusted_;
+  std::unique_ptr<SafetyMonitor> trusting_;
   std::optional<Stamp> first_;
-  double least_speed_;
   std::optional<SensorFrame> frame_;
   std::optional<std::vector<std::uint16_t>> scan_labels_;
   LabeledObstacles obstacles_;
@@ -173,7 +171,7 @@ SafetyCounts countLog(const std::string& log, const SafetyOptions& options,
   config.finish();
   if (!setup.grid.enabled) throw ConfigError({options.config + ": [grid] enabled must be true"});
   setup.run.output_lag = setup.model.history = 0;  // a stop cannot wait
-  SafetyObserver observer(log, setup, options.least_speed);
+  SafetyObserver observer(log, setup);
   passLog(log, std::move(setup), options.seconds, observer);
   observer.finish();
   if (observer.counts.scans == 0)
@@ -192,10 +190,6 @@ void declareSafety(CLI::App& cli, SafetyOptions& o) {
       ->capture_default_str()
       ->check(CLI::ExistingFile);
   cli.add_option("--set", o.settings, "section.key=value: overrides the INI");
-  cli.add_option("--least-speed", o.least_speed,
-                 "Least speed [m/s] for which the stopping distance is taken")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 60.0));
   cli.add_option("--seconds", o.seconds, "Of each log; 0 = all")->check(CLI::Range(0.0, 1e6));
 }
 
@@ -230,11 +224,10 @@ StudyReport safetyStudy(const SafetyOptions& options, unsigned long long seed) {
                             all.minutes, options.config);
   report.tables = {std::move(stops), std::move(tracks)};
   report.remarks = {
-      fmt::format(
-          "A stop: an obstacle within the stopping distance along the driven arc, at the "
-          "vehicle's speed or {:g} m/s if that is more; the way that an obstacle ahead still "
-          "covers is taken off, by its true speed for every monitor.",
-          options.least_speed),
+      "A stop: an obstacle within the stopping distance along the driven arc; the way that an "
+      "obstacle ahead still covers is taken off: by its true speed for clusters and the plain "
+      "grid, "
+      "by that of the tracks for the run's advice (trust, clusters told by shape, grid, tracks).",
       "False: no surface within that distance and a meter more in the last half second. Missed: "
       "three "
       "returns of a surface for three scans, and no stop. Scans apart by at most .5 s are one "

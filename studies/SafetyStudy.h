@@ -16,13 +16,13 @@ struct SafetyOptions {
   std::vector<std::string> logs;  ///< rawlogs with LOG_Labels/ beside them
   std::string config = "ini/kitti.ini";
   std::vector<std::string> settings;  ///< section.key=value
-  double least_speed = 8.3;           ///< [m/s] for which the stopping distance is taken at least
   double seconds = 0;                 ///< of each log; 0: all
 };
 void declareSafety(CLI::App& cli, SafetyOptions& options);
 
 /// False and missed stops for what is in the driven path, and tracks that stand on phantoms, by the
-/// labels of the returns: by plain Euclidean clusters, by the safety grid without and with trust.
+/// labels of the returns: by plain Euclidean clusters, by the safety grid without trust, and
+/// by the run's own advice.
 /// Throws DataError where no scan has labels.
 StudyReport safetyStudy(const SafetyOptions& options, unsigned long long seed);
 

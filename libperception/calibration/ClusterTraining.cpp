@@ -119,7 +119,8 @@ ClusterClassifier ClusterTrainer::classifier(std::size_t without, Provenance pro
   for (std::size_t k = 0; k < kClusterKinds; ++k) {
     const auto n = static_cast<double>(std::count(is_kind[k].begin(), is_kind[k].end(), true));
     const double share = n / (n + kFewSamples);
-    calibrations[k].knots = isotonic(values[k], is_kind[k], weights);
+    if (!recorded_ || k != static_cast<std::size_t>(ClusterKind::kPhantom))
+      calibrations[k].knots = isotonic(values[k], is_kind[k], weights);
     for (Knot& knot : calibrations[k].knots)
       knot.calibrated = share * knot.calibrated + (1 - share) * knot.raw;
     prior[k] = (prior[k] + 0.002 * all) / (all * (1 + 0.002 * kClusterKinds));

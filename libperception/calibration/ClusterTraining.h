@@ -31,6 +31,7 @@ class ClusterTrainer {
 
   /// A classifier of all logs but `without` (logs().size(): of all). Calibrated on the
   /// probabilities that trees without the very log give: those of recordings where there are any.
+  /// P(phantom) stays as it is then: how many there are is a matter of the weather of the log.
   ClusterClassifier classifier(std::size_t without, Provenance provenance);
 
   /// Samples of a log, as indices.

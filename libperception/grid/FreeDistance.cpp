@@ -20,6 +20,26 @@ bool isKnown(const Corridor& corridor, double s,
   });
 }
 
+/// Something in the corridor.
+struct Inside {
+  double s, weight;
+  std::size_t index;
+};
+
+/// The first of those that together weigh `least` within half a meter; null: none.
+const Inside* firstTogether(std::vector<Inside>& inside, double least) {
+  std::sort(inside.begin(), inside.end(), [](const Inside& a, const Inside& b) {
+    return a.s < b.s || (a.s == b.s && a.index < b.index);
+  });
+  double sum = 0;
+  for (std::size_t first = 0, last = 0; last < inside.size(); ++last) {
+    sum += inside[last].weight;
+    while (inside[last].s - inside[first].s > kTogether) sum -= inside[first++].weight;
+    if (sum >= least) return &inside[first];
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 ArcPlace arcPlace(const Corridor& corridor, double x, double y) {
@@ -42,15 +62,19 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
   FreeDistance result;
   result.distance = corridor.max;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
-  for (const GridCell& cell : occupied) {
-    const Vector3 p = T_ego_world * cell.center;
-    const double half = cell.size.x() / 2;
+  std::vector<Inside> inside;
+  for (std::size_t i = 0; i < occupied.size(); ++i) {
+    const Vector3 p = T_ego_world * occupied[i].center;
+    const double half = occupied[i].size.x() / 2;
     const ArcPlace place = arcPlace(corridor, p.x(), p.y());
     if (std::abs(place.d) > corridor.width / 2 + half) continue;
-    if (place.s + half < corridor.from || place.s - half > result.distance) continue;
-    result.distance = std::max(place.s - half, corridor.from);
+    if (place.s + half < corridor.from || place.s - half > corridor.max) continue;
+    inside.push_back({place.s - half, 1, i});
+  }
+  if (const Inside* first = firstTogether(inside, corridor.cells)) {
+    result.distance = std::max(first->s, corridor.from);
     result.blocked = true;
-    result.place = cell.center;
+    result.place = occupied[first->index].center;
   }
   result.seen = corridor.from;
   for (double s = corridor.from; s <= result.distance && s - result.seen <= kGap; s += step) {
@@ -61,11 +85,7 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
 
 FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,
                           const std::vector<float>& weights, double least) {
-  struct Return {
-    double s, weight;
-    std::size_t index;
-  };
-  std::vector<Return> inside;
+  std::vector<Inside> inside;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const Vector3 p = T_ego_world * returns[i];
@@ -74,20 +94,12 @@ FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,
     if (place.s < corridor.from || place.s > corridor.max) continue;
     inside.push_back({place.s, weights.empty() ? 1 : static_cast<double>(weights[i]), i});
   }
-  std::sort(inside.begin(), inside.end(), [](const Return& a, const Return& b) {
-    return a.s < b.s || (a.s == b.s && a.index < b.index);
-  });
   FreeDistance result;
   result.distance = corridor.max;
-  double sum = 0;
-  for (std::size_t first = 0, last = 0; last < inside.size(); ++last) {
-    sum += inside[last].weight;
-    while (inside[last].s - inside[first].s > kTogether) sum -= inside[first++].weight;
-    if (sum < least) continue;
-    result.distance = inside[first].s;
+  if (const Inside* first = firstTogether(inside, least)) {
+    result.distance = first->s;
     result.blocked = true;
-    result.place = returns[inside[first].index];
-    return result;
+    result.place = returns[first->index];
   }
   return result;
 }

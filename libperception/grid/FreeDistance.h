@@ -21,13 +21,13 @@ struct Corridor {
   double curvature = 0;  ///< [1/m] of the steering; positive turns left
   double from = 2.5;     ///< [m] along the arc: end of the own vehicle and the lidar's blind spot
   double max = 60;       ///< [m] along the arc: largest distance
+  int cells = 1;         ///< occupied cells within half a meter along the arc that block it
 };
 
 /// Free distance along a corridor.
 struct FreeDistance {
-  double distance =
-      0;  ///< [m] along the arc from the ego origin to the first occupied cell, or max
-  bool blocked = false;             ///< an occupied cell was found
+  double distance = 0;   ///< [m] along the arc from the ego origin to the first obstacle, or max
+  bool blocked = false;  ///< an occupied cell was found
   Vector3 place = Vector3::Zero();  ///< [m] center of that cell, world
   double seen = 0;                  ///< [m] observed without a gap longer than 1 m
 };

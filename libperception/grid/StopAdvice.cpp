@@ -16,6 +16,7 @@ Corridor drivenCorridor(const Pose3& T_world_ego, double speed, double yaw_rate,
   lane.width = params.width;
   lane.from = front;
   lane.max = params.look_ahead;
+  lane.cells = params.cells;
   if (speed > params.steers_above)
     lane.curvature = std::clamp(yaw_rate / speed, -params.sharpest, params.sharpest);
   return lane;

@@ -13,6 +13,7 @@ struct StopParams {
   double look_ahead = 80;      ///< [m] largest distance; bounded by the grid's window
   double steers_above = 2;     ///< [m/s] speed below which the path is taken for straight (assumed)
   double sharpest = 0.2;       ///< [1/m] curvature of a car's sharpest turn (assumed)
+  int cells = 3;               ///< occupied, within half a meter: an obstacle (assumed)
   double obstacle_grow = 0.4;  ///< [m] by which an object's outline is grown to own a cell: two
                                ///< cells (assumed)
 

@@ -11,6 +11,7 @@ constexpr double kIsotonicShare = 0.9;       // the rest keeps what the map make
 constexpr double kMostEvidence = 6;          // |log ratio|: 400 to 1
 constexpr double kLeastProbability = 1e-12;  // keeps logs finite
 constexpr auto kThing = static_cast<std::size_t>(ClusterKind::kThing);
+constexpr auto kPhantom = static_cast<std::size_t>(ClusterKind::kPhantom);
 constexpr auto kMixed = static_cast<std::size_t>(ClusterKind::kMixed);
 
 /// Without a branch: that would often be foreseen wrongly.
@@ -86,12 +87,15 @@ std::array<double, kClusterKinds> ClusterClassifier::probabilities(
 
 std::array<double, kShapes> ClusterClassifier::evidence(
     const std::array<double, kClusterKinds>& p) const {
-  const auto likelihood = [&](std::size_t k) {
-    return std::log(std::max(p[k], kLeastProbability) / prior_[k]);
+  const auto likelihood = [](double probability, double prior) {
+    return std::log(std::max(probability, kLeastProbability) / prior);
   };
+  const double no_road_user =
+      likelihood(p[kThing] + p[kPhantom], prior_[kThing] + prior_[kPhantom]);
   std::array<double, kShapes> evidence{};
   for (std::size_t k = 0; k < kShapes; ++k) {
-    const double ratio = likelihood(k) - likelihood(kThing);
+    if (k == kThing) continue;
+    const double ratio = likelihood(p[k], prior_[k]) - no_road_user;
     evidence[k] = std::clamp(ratio, -kMostEvidence, kMostEvidence) * (1 - p[kMixed]);
   }
   return evidence;

@@ -19,7 +19,7 @@ struct BoostedTrees {
     std::int32_t left = 0, right = 0;  ///< indices into `nodes`, greater than that of this node
   };
   std::array<double, kClusterKinds> base{};  ///< scores before the first tree
-  std::vector<std::int32_t> roots;           ///< indices into `nodes`; tree i is of kind i % 5
+  std::vector<std::int32_t> roots;           ///< indices into `nodes`; tree i is of kind i % 6
   std::vector<Node> nodes;                   ///< tree by tree
 
   /// Scores (unnormalized log probabilities) of all kinds.
@@ -58,8 +58,8 @@ class ClusterClassifier {
   /// Calibrated probabilities of the kinds; their sum is 1.
   std::array<double, kClusterKinds> probabilities(const Descriptor& descriptor) const;
 
-  /// log p(descriptor | kind) / p(descriptor | thing), by Bayes' rule from the probabilities and
-  /// the prior. Limited to +-6 and then multiplied by 1 - P(mixed): the shape of several objects
+  /// log p(descriptor | kind) / p(descriptor | thing or phantom), by Bayes' rule from the
+  /// probabilities and the prior; 0 for a thing. Limited to +-6 and then multiplied by 1 - P(mixed): the shape of several objects
   /// grown together tells little of any one of them.
   std::array<double, kShapes> evidence(const Descriptor& descriptor) const {
     return evidence(probabilities(descriptor));

@@ -11,13 +11,15 @@ enum class ClusterKind : std::uint8_t {
   kPedestrian,
   kCyclist,
   kVehicle,
-  kThing,  ///< no road user: a wall, a pole, a bush
-  kMixed,  ///< not one object: several grown together, or a fragment of one
+  kThing,    ///< no road user: a wall, a pole, a bush
+  kPhantom,  ///< no surface: spray, snow, rain, exhaust, a mirror image in a wet road
+  kMixed,    ///< not one object: several grown together, or a fragment of one
 };
-inline constexpr std::size_t kClusterKinds = 5;
-inline constexpr std::size_t kShapes = 4;  ///< kinds that a class can have (ObjectShape)
+inline constexpr std::size_t kClusterKinds = 6;
+inline constexpr std::size_t kRoadUsers = 3;  ///< the first kinds
+inline constexpr std::size_t kShapes = 5;     ///< kinds that a class can have (ObjectShape)
 
 inline constexpr std::array<const char*, kClusterKinds> kClusterKindNames = {
-    "pedestrian", "cyclist", "vehicle", "thing", "mixed"};
+    "pedestrian", "cyclist", "vehicle", "thing", "phantom", "mixed"};
 
 }  // namespace perception

@@ -13,20 +13,28 @@ namespace {
 using Probabilities = std::array<double, kClusterKinds>;
 
 /// Probability of the likeliest road user.
-double roadUser(const Probabilities& p) { return *std::max_element(p.begin(), p.begin() + 3); }
+double roadUser(const Probabilities& p) {
+  return *std::max_element(p.begin(), p.begin() + kRoadUsers);
+}
+
+double at(const Probabilities& p, ClusterKind kind) { return p[static_cast<std::size_t>(kind)]; }
 
 double roadUserEvidence(const JudgedCluster& c) {
-  return *std::max_element(c.evidence.begin(), c.evidence.begin() + 3);
+  return *std::max_element(c.evidence.begin(), c.evidence.begin() + kRoadUsers);
 }
 
 /// Least probability at which a part stands for itself, and that of a whole which is not looked
 /// into (assumed).
 constexpr double kLeastPart = 0.3, kSureWhole = 0.7;
-/// Probability of a thing from which a whole is not looked into (assumed).
+/// Probability of a thing or a phantom from which a whole is not looked into (assumed).
 constexpr double kSureThing = 0.98;
-/// Evidence of the likeliest road user below which a cluster is surely a thing: with one road user
+/// Evidence of the likeliest road user below which a cluster is surely none: with one road user
 /// in ten clusters, 1 in 66 is one (assumed).
 constexpr double kSurelyThing = -2;
+
+/// Probability from which a cluster is surely a phantom, if that of every road user is below the
+/// second one (assumed).
+constexpr double kSurePhantom = 0.7, kHardlyRoadUser = 0.05;
 
 /// Drops what lies in the footprint of a likely vehicle: its seats, its roof, what is seen through
 /// its windows.
@@ -76,14 +84,15 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
 
 }  // namespace
 
-std::vector<JudgedCluster> judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
-                                          const ClusterClassifier& classifier) {
+Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
+                         const ClusterClassifier& classifier) {
   std::vector<Probabilities> probabilities;
   std::vector<double> own;  // of the likeliest road user
   auto clusters = describedClusters(found, cloud, [&](const DescribedCluster& cluster) {
     const auto p = classifier.probabilities(cluster.descriptor);
     probabilities.push_back(p), own.push_back(roadUser(p));
-    return own.back() < kSureWhole && p[static_cast<std::size_t>(ClusterKind::kThing)] < kSureThing;
+    return own.back() < kSureWhole &&
+           at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
   });
   const std::size_t n = clusters.size();
   std::vector<double> best_part(n, 0);  // over all parts of parts
@@ -100,9 +109,15 @@ std::vector<JudgedCluster> judgedClusters(const LidarDetections& found, const Li
     in_parts[i] = reached && own[i] < kSureWhole && best_part[i] > std::max(kLeastPart, own[i]);
     stands[i] = reached && !in_parts[i];
   }
-  std::vector<JudgedCluster> judged;
+  Judgement judgement;
+  std::vector<JudgedCluster>& judged = judgement.clusters;
+  judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
   for (std::size_t i = 0; i < n; ++i) {
     if (!stands[i]) continue;
+    const double phantom = at(probabilities[i], ClusterKind::kPhantom);
+    for (const std::uint32_t point : clusters[i].segment.points)
+      judgement.phantom[point] = static_cast<float>(phantom);
+    if (phantom > kSurePhantom && own[i] < kHardlyRoadUser) continue;
     JudgedCluster cluster;
     cluster.evidence = classifier.evidence(probabilities[i]);
     if (roadUserEvidence(cluster) < kSurelyThing) continue;
@@ -112,7 +127,7 @@ std::vector<JudgedCluster> judgedClusters(const LidarDetections& found, const Li
     judged.push_back(std::move(cluster));
   }
   dropFragments(found, judged);
-  return judged;
+  return judgement;
 }
 
 }  // namespace perception

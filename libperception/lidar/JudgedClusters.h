@@ -6,10 +6,16 @@
 
 namespace perception {
 
-/// The clusters of a scan that may be road users (method.md 8.10): a segment, or its parts where
-/// one of them is likelier a road user than the whole; without those that are surely none and
-/// without those in the footprint of a likely vehicle.
-std::vector<JudgedCluster> judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
-                                          const ClusterClassifier& classifier);
+/// The clusters of a scan that may be road users, and what is known of its obstacles besides.
+struct Judgement {
+  std::vector<JudgedCluster> clusters;
+  std::vector<float> phantom;  ///< of each obstacle, see PlacedReturns::phantom
+};
+
+/// Clusters (method.md 8.10): a segment, or its parts where one of them is likelier a road user
+/// than the whole; without those that are surely a thing or a phantom and without those in the
+/// footprint of a likely vehicle.
+Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
+                         const ClusterClassifier& classifier);
 
 }  // namespace perception

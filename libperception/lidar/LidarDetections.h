@@ -29,7 +29,9 @@ struct LidarDetections {
   std::vector<std::uint32_t> obstacles;  ///< indices into points, in the scan's order
   std::vector<float> x, y, above;        ///< [m] position of the obstacles and height above ground
   std::vector<float> trust;              ///< [0, 1] of each obstacle; empty: all 1
-  std::vector<Cluster> clusters;         ///< car-sized; indices into the obstacles
+  /// With a classifier: of each obstacle, see PlacedReturns::phantom.
+  std::vector<float> phantom;
+  std::vector<Cluster> clusters;     ///< car-sized; indices into the obstacles
   std::vector<PersonPeak> persons;   ///< outside of the clusters' hulls; indices into the obstacles
   std::vector<std::uint8_t> ground;  ///< per return of the frame's cloud: 1 = ground
   std::vector<JudgedCluster> judged;  ///< with a classifier, in place of clusters and persons

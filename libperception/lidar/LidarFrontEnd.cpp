@@ -103,7 +103,9 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
               found.obstacles);
   gatherObstacles(*cloud, found);
   if (classifier_) {
-    found.judged = judgedClusters(found, *cloud, *classifier_);
+    Judgement judgement = judgedClusters(found, *cloud, *classifier_);
+    found.judged = std::move(judgement.clusters);
+    found.phantom = std::move(judgement.phantom);
     return found;
   }
   found.clusters = findClusters(found.x, found.y, found.above, params_.clusters, found.trust);
@@ -155,8 +157,14 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
   for (const Cluster& cluster : found.clusters)
     if (distanceToHull(cluster.hull, sensor) > 0) add(measurementOf(context, cluster));
   for (const PersonPeak& peak : found.persons) add(measurementOf(context, peak));
-  scan.returns = std::make_shared<const PlacedReturns>(
-      placedReturns(std::move(found.points), std::move(found.height), params_.points, obstacles));
+  PlacedReturns returns =
+      placedReturns(std::move(found.points), std::move(found.height), params_.points, obstacles);
+  if (!found.phantom.empty()) {
+    returns.phantom.assign(returns.size(), PlacedReturns::kNoCluster);
+    for (std::size_t k = 0; k < found.obstacles.size(); ++k)
+      returns.phantom[found.obstacles[k]] = found.phantom[k];
+  }
+  scan.returns = std::make_shared<const PlacedReturns>(std::move(returns));
 }
 
 std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& sensor_label,

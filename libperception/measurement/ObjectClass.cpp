@@ -23,7 +23,7 @@ void visitMotion(ParamVisitor& v, const MotionModel*& motion) {
 
 void ObjectClass::visit(ParamVisitor& v) {
   visitMotion(v, motion);
-  v.choiceOf("shape", shape, {"pedestrian", "cyclist", "vehicle", "thing"},
+  v.choiceOf("shape", shape, {"pedestrian", "cyclist", "vehicle", "thing", "phantom"},
              "looks: what a classifier of lidar clusters tells of the class");
   v.real("accel_psd", accel_psd, {0, 100}, "m^2/s^3", "white acceleration, power spectral density");
   v.reals("mode_accel_psd", mode_accel_psd, -1, {0, 100}, "m^2/s^3",

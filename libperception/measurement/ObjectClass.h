@@ -11,8 +11,8 @@ namespace perception {
 using ClassId = int;  ///< index into ClassTable
 
 /// What objects of a class look like to a sensor that tells shapes: [class.NAME] shape.
-enum class ObjectShape { kPedestrian, kCyclist, kVehicle, kThing };
-inline constexpr std::size_t kObjectShapes = 4;
+enum class ObjectShape { kPedestrian, kCyclist, kVehicle, kThing, kPhantom };
+inline constexpr std::size_t kObjectShapes = 5;
 
 /// One kind of object: [class.NAME] of classes.ini. Defaults: method.md 2.2.
 struct ObjectClass {

@@ -7,11 +7,14 @@
 namespace perception {
 
 /// Returns of one lidar scan with their heights above the ground, for the safety grid. Ego frame;
-/// the vectors have the same size.
+/// the vectors have the same size, or are empty.
 struct PlacedReturns {
-  std::vector<float> x, y, z;             ///< [m]
-  std::vector<float> height;              ///< [m] above the local ground
-  std::vector<std::uint32_t> source;      ///< index in the frame's cloud
+  std::vector<float> x, y, z;         ///< [m]
+  std::vector<float> height;          ///< [m] above the local ground
+  std::vector<std::uint32_t> source;  ///< index in the frame's cloud
+  /// [0, 1] P(phantom) of its cluster, or kNoCluster. Empty: clusters are not told by their shape.
+  std::vector<float> phantom;
+  static constexpr float kNoCluster = -1;
   Vector3 sensor = Vector3::Zero();       ///< [m] position of the sensor
   double height_min = 0, height_max = 0;  ///< [m] above ground: the slab of obstacles
   double vehicle_front = 0;               ///< [m] x of the own vehicle's front

@@ -37,8 +37,9 @@ const SceneObject* ownerOf(const Scene& scene, const Vector3& place, double grow
 
 }  // namespace
 
-GridScan gridScanOf(const SensorFrame& frame, const PlacedReturns& returns) {
-  GridScan scan;
+ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& returns) {
+  ObstacleScan obstacles;
+  GridScan& scan = obstacles.scan;
   scan.stamp = frame.stamp;
   scan.origin = frame.T_world_sensor().translation();
   scan.T_world_ground = groundPose(frame.ego.T_world_ego, frame.ground);
@@ -53,29 +54,35 @@ GridScan gridScanOf(const SensorFrame& frame, const PlacedReturns& returns) {
                                                           static_cast<double>(returns.z[i]));
     const bool hit = height > returns.height_min && height < returns.height_max;
     (hit ? scan.hits : scan.clear).push_back(place);
-    if (hit && weighted) scan.weights.push_back(cloud->trust[returns.source[i]]);
+    if (!hit) continue;
+    const float trust = weighted ? cloud->trust[returns.source[i]] : 1;
+    const float phantom = returns.phantom.empty() ? 0 : returns.phantom[i];
+    const bool alone = phantom == PlacedReturns::kNoCluster;
+    if (weighted) scan.weights.push_back(alone ? trust : trust * (1 - phantom));
+    obstacles.clustered.push_back(alone ? 0 : trust * (1 - phantom));
   }
-  return scan;
+  return obstacles;
 }
 
 SafetyMonitor::SafetyMonitor(const GridParams& grid, const StopParams& stop)
     : params_(grid), stop_(stop), grid_(makeSafetyGrid(grid)) {}
 
 void SafetyMonitor::add(const SensorFrame& frame, const PlacedReturns& returns) {
-  last_ = gridScanOf(frame, returns);
-  grid_->insert(last_);
+  last_ = obstacleScanOf(frame, returns);
+  grid_->insert(last_.scan);
   front_ = returns.vehicle_front;
   any_ = true;
 }
 
 PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   PathAhead path;
-  path.known = any_ && std::abs(ego.stamp - last_.stamp) <= kFresh;
+  path.known = any_ && std::abs(ego.stamp - last_.scan.stamp) <= kFresh;
   if (!path.known) return path;
   path.corridor = drivenCorridor(ego.T_world_ego, ego.velocity.norm(), ego.yaw_rate, front_, stop_);
   path.free = grid_->freeDistance(path.corridor);
   path.corridor.max = path.free.distance;
-  const FreeDistance dense = denseReturns(path.corridor, last_.hits, last_.weights, stop_.returns);
+  const FreeDistance dense =
+      denseReturns(path.corridor, last_.scan.hits, last_.clustered, stop_.returns);
   path.corridor.max = stop_.look_ahead;
   if (!dense.blocked) return path;
   path.free.distance = dense.distance;

@@ -1,6 +1,6 @@
 #pragma once
 #include <memory>
-#include <optional>
+#include <vector>
 
 #include "libperception/grid/SafetyGrid.h"
 #include "libperception/grid/StopAdvice.h"
@@ -9,9 +9,16 @@
 
 namespace perception {
 
-/// The scan of a frame for the grid: obstacle returns by their height, weighted by the cloud's
-/// trust, and those that only clear; mirror images below the road are left out (method.md 8.1).
-GridScan gridScanOf(const SensorFrame& frame, const PlacedReturns& returns);
+/// The obstacle returns of a scan.
+struct ObstacleScan {
+  GridScan scan;  ///< hits weighted by trust and by P(no phantom) of their clusters
+  /// [0, 1] weight of each hit as part of an obstacle seen in one scan: 0 without a cluster.
+  std::vector<float> clustered;
+};
+
+/// Obstacle returns by their height, and those that only clear; mirror images below the road are
+/// left out (method.md 8.1).
+ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& returns);
 
 /// The way ahead at one instant.
 struct PathAhead {
@@ -40,7 +47,7 @@ class SafetyMonitor {
   GridParams params_;
   StopParams stop_;
   std::unique_ptr<SafetyGrid> grid_;
-  GridScan last_;  ///< the newest scan's returns
+  ObstacleScan last_;  ///< the newest scan's returns
   bool any_ = false;
   double front_ = 0;  ///< [m] x of the own vehicle's front, ego frame
 };

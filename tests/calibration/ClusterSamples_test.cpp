@@ -272,5 +272,22 @@ TEST(ClusterSamples, WhatIsLabeledHalfOrNotAtAllIsNotNamed) {
   EXPECT_EQ(log.at({10, -4}).kind, ClusterKind::kThing);
 }
 
+TEST(ClusterSamples, ReturnsOfNoSurfaceMakeAPhantom) {
+  Log log;
+  log.add(street(), Pose3::Identity(), {});
+  const test::TemporaryFolder folder;
+  constexpr std::uint32_t kCar = 10, kSpray = 114, kSnowOnTheGround = 111;
+  labelBy(
+      [&](double x, double y) {
+        if (x > 20) return kSnowOnTheGround;
+        return y < -3 ? kSpray : kCar;
+      },
+      folder, log);
+  log.sample();
+  EXPECT_EQ(log.at({12, 0}).kind, ClusterKind::kVehicle);
+  EXPECT_EQ(log.at({10, -4}).kind, ClusterKind::kPhantom);
+  EXPECT_EQ(log.at({25, 6}).kind, ClusterKind::kThing);
+}
+
 }  // namespace
 }  // namespace perception

@@ -64,7 +64,7 @@ double shareRight(const BoostedTrees& trees, const Samples& samples) {
 }
 
 std::string bytes(const BoostedTrees& trees) {
-  return ClusterClassifier(trees, {}, {0.2, 0.2, 0.2, 0.2, 0.2}, {}, {}).write();
+  return ClusterClassifier(trees, {}, {0.2, 0.2, 0.2, 0.2, 0.1, 0.1}, {}, {}).write();
 }
 
 TEST(TreeTraining, LearnsTheExclusiveOrOfTwoFeatures) {

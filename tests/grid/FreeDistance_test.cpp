@@ -78,6 +78,19 @@ TEST(FreeDistance, SmallGapsBetweenBeamsDoNotEndWhatWasSeen) {
   EXPECT_GT(freeDistance({}, {}, 0.1, striped).seen, Corridor{}.max - 1);
 }
 
+TEST(FreeDistance, SeveralCellsWithinHalfAMeterBlockWhereTheCorridorAsksForThem) {
+  Corridor corridor;
+  corridor.cells = 3;
+  const std::vector<GridCell> apart = {cellAt(10, 0), cellAt(10.4, 0), cellAt(11, 0)};
+  EXPECT_FALSE(freeDistance(corridor, apart, 0.2, kAllKnown).blocked);
+  const std::vector<GridCell> together = {cellAt(10, 0), cellAt(20, 0), cellAt(20.2, 0),
+                                          cellAt(20.4, 0.2)};
+  const FreeDistance found = freeDistance(corridor, together, 0.2, kAllKnown);
+  EXPECT_TRUE(found.blocked);
+  EXPECT_NEAR(found.distance, 19.9, 1e-9);
+  EXPECT_NEAR(found.place.x(), 20, 1e-9);
+}
+
 GridPoints wallAt(double x, int returns, double spacing = 0.03) {
   GridPoints points;
   for (int i = 0; i < returns; ++i) points.push_back({x + spacing * i, 0.1 * (i % 5), 1});

@@ -28,7 +28,7 @@ BoostedTrees constantTrees(const Kinds& scores) {
   return trees;
 }
 
-ClusterClassifier constant(const Kinds& p, const Kinds& prior = {0.2, 0.2, 0.2, 0.2, 0.2}) {
+ClusterClassifier constant(const Kinds& p, const Kinds& prior = {0.2, 0.2, 0.2, 0.2, 0.1, 0.1}) {
   Kinds scores{};
   for (std::size_t k = 0; k < kClusterKinds; ++k) scores[k] = std::log(p[k]);
   return ClusterClassifier(constantTrees(scores), {}, prior, {}, {});
@@ -38,12 +38,12 @@ float anyFloat(Rng& rng) {
   return static_cast<float>(rng.normal() * std::pow(10, rng.uniform(-30, 3)));
 }
 
-/// Ten random trees of 7 nodes; maps for all kinds but the last.
+/// Twelve random trees of 7 nodes; maps for all kinds but the last.
 ClusterClassifier example() {
   Rng rng(RngKey{5, 0, 0, 11});
   BoostedTrees trees;
   for (double& b : trees.base) b = rng.normal();
-  for (int t = 0; t < 10; ++t) {
+  for (int t = 0; t < 12; ++t) {
     const auto root = static_cast<std::int32_t>(trees.nodes.size());
     trees.roots.push_back(root);
     for (std::int32_t i = 0; i < 3; ++i)
@@ -57,7 +57,7 @@ ClusterClassifier example() {
   for (std::size_t k = 0; k < 4; ++k) maps[k].knots = {{0.1 / 3, 0.002}, {0.5, 1.0 / 3}, {1, 1}};
   EvidenceMemory memory;
   memory.kept = 0.7, memory.bearing = 0.1;
-  return ClusterClassifier(trees, maps, {0.1, 0.1, 0.3, 0.4, 0.1}, memory,
+  return ClusterClassifier(trees, maps, {0.1, 0.1, 0.3, 0.3, 0.1, 0.1}, memory,
                            {"1 \"a\"", "2025-01-01", "CC0", {"log a", "log\nb"}, true});
 }
 
@@ -96,10 +96,10 @@ std::string withTree(const std::string& nodes) {
   EXPECT_NE(refusal(text).find(words), std::string::npos) << refusal(text)
 
 TEST(BoostedTrees, AddTheLeavesThatTheDescriptorFallsInto) {
-  BoostedTrees trees = constantTrees({1, 2, 3, 4, 5});
-  trees.roots[1] = 5;
+  BoostedTrees trees = constantTrees({1, 2, 3, 4, 5, 6});
+  trees.roots[1] = 6;
   trees.nodes.insert(trees.nodes.end(),
-                     {Node{2, 0.5F, 6, 7}, Node{-1, 10.0F, 0, 0}, Node{-1, 20.0F, 0, 0}});
+                     {Node{2, 0.5F, 7, 8}, Node{-1, 10.0F, 0, 0}, Node{-1, 20.0F, 0, 0}});
   Descriptor d{};
   double scores[kClusterKinds];
   d[2] = 0.5F;  // up to the threshold: left
@@ -125,7 +125,7 @@ TEST(Calibration, IsLinearBetweenKnotsAndConstantOutside) {
 }
 
 TEST(ClusterClassifier, ProbabilitiesWithoutMapsAreTheSoftmax) {
-  const Kinds p = constant({0.1, 0.2, 0.3, 0.25, 0.15}).probabilities({});
+  const Kinds p = constant({0.1, 0.2, 0.3, 0.2, 0.05, 0.15}).probabilities({});
   EXPECT_NEAR(p[0], 0.1, 1e-15);
   EXPECT_NEAR(p[2], 0.3, 1e-15);
 }
@@ -133,24 +133,27 @@ TEST(ClusterClassifier, ProbabilitiesWithoutMapsAreTheSoftmax) {
 TEST(ClusterClassifier, MixesNinePartsOfTheMappedProbabilityWithOneOfTheRaw) {
   std::array<Calibration, kClusterKinds> maps;
   maps[0].knots = {{0, 0.6}, {1, 0.6}};
-  const Kinds p = ClusterClassifier(constantTrees({}), maps, {0.2, 0.2, 0.2, 0.2, 0.2}, {}, {})
+  const Kinds p = ClusterClassifier(constantTrees({}), maps, {0.2, 0.2, 0.2, 0.2, 0.1, 0.1}, {}, {})
                       .probabilities({});
-  const double first = 0.9 * 0.6 + 0.1 * 0.2, others = 0.2;
-  EXPECT_NEAR(p[0], first / (first + 4 * others), 1e-15);
+  const double first = 0.9 * 0.6 + 0.1 / 6, others = 1.0 / 6;
+  EXPECT_NEAR(p[0], first / (first + 5 * others), 1e-15);
   EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1, 1e-15);
 }
 
-TEST(ClusterClassifier, EvidenceIsTheLogRatioToAThingWithoutThePrior) {
-  const auto e =
-      constant({0.3, 0.1, 0.2, 0.2, 0.2}, {0.1, 0.1, 0.2, 0.5, 0.1}).evidence(Descriptor{});
+TEST(ClusterClassifier, EvidenceIsTheLogRatioToAThingOrAPhantomWithoutThePrior) {
+  const auto e = constant({0.3, 0.1, 0.1, 0.2, 0.1, 0.2}, {0.1, 0.1, 0.1, 0.5, 0.1, 0.1})
+                     .evidence(Descriptor{});
   // 20 % of "mixed" weakens it by as much.
-  EXPECT_NEAR(e[0], 0.8 * std::log((0.3 / 0.1) / (0.2 / 0.5)), 1e-14);
-  EXPECT_NEAR(e[1], 0.8 * std::log((0.1 / 0.1) / (0.2 / 0.5)), 1e-14);
+  const double none = (0.2 + 0.1) / (0.5 + 0.1);
+  EXPECT_NEAR(e[0], 0.8 * std::log((0.3 / 0.1) / none), 1e-14);
+  EXPECT_NEAR(e[1], 0.8 * std::log((0.1 / 0.1) / none), 1e-14);
   EXPECT_EQ(e[static_cast<std::size_t>(ClusterKind::kThing)], 0);
+  EXPECT_NEAR(e[static_cast<std::size_t>(ClusterKind::kPhantom)],
+              0.8 * std::log((0.1 / 0.1) / none), 1e-14);
 }
 
 TEST(ClusterClassifier, EvidenceIsLimited) {
-  const auto e = constant({1, 1e-300, 1e-9, 1e-6, 1e-300}).evidence(Descriptor{});
+  const auto e = constant({1, 1e-300, 1e-9, 1e-6, 1e-9, 1e-300}).evidence(Descriptor{});
   EXPECT_NEAR(e[0], 6, 1e-12);
   EXPECT_NEAR(e[1], -6, 1e-12);
 }
@@ -180,7 +183,7 @@ TEST(ClusterClassifier, WritesOneTreeALine) {
   std::size_t lines = 0;
   for (std::size_t at = text.find("\n{\"node\":"); at != std::string::npos; ++lines)
     at = text.find("\n{\"node\":", at + 1);
-  EXPECT_EQ(lines, 10u);
+  EXPECT_EQ(lines, 12u);
 }
 
 TEST(ClusterClassifier, AMissingFileHasAnExitCodeOfItsOwn) {
@@ -210,7 +213,7 @@ TEST(ClusterClassifier, RefusesWhatIsNotItsFormat) {
 
 TEST(ClusterClassifier, RefusesDamagedParameters) {
   EXPECT_REFUSED(damaged("[0.1,0.1,0.3", "[0.2,0.1,0.3"),
-                 "prior: found an array of 5, expected a "
+                 "prior: found an array of 6, expected a "
                  "sum of 1, not 1.1");
   EXPECT_REFUSED(damaged("[0.1,0.1,0.3", "[0,0.2,0.3"), "prior[0]: found 0");
   EXPECT_REFUSED(damaged("[0.1,0.1,0.3", "[-0.1,0.3,0.3"), "prior[0]: found -0.1");
@@ -227,7 +230,7 @@ TEST(ClusterClassifier, RefusesDamagedParameters) {
   EXPECT_REFUSED(damaged(",0.002]", ",0.4]"), "calibration.pedestrian[1].calibrated: found 0.333");
   EXPECT_REFUSED(damaged("[1,1]", "[1,1.5]"), "calibration.pedestrian[2].calibrated: found 1.5");
   EXPECT_REFUSED(damaged("\"mixed\":", "\"more\":"), "no member \"more\"");
-  EXPECT_REFUSED(damaged("\"base\":[", "\"base\":[1e9,"), "base: found an array of 6");
+  EXPECT_REFUSED(damaged("\"base\":[", "\"base\":[1e9,"), "base: found an array of 7");
   EXPECT_REFUSED(damaged("\"base\":[", "\"base\":[1e999,"), "1e999");
 }
 
@@ -251,7 +254,7 @@ TEST(ClusterClassifier, RefusesDamagedTrees) {
   EXPECT_REFUSED(withTree("[[0,1e39,1,2],[1],[2]]"), "trees[0].node[0].threshold: found 1e+39");
   EXPECT_REFUSED(withTree("[[0,0.5,1,2],[\"1\"],[2]]"), "trees[0].node[1].value: found \"1\"");
   EXPECT_REFUSED(damaged("\"trees\":[\n", "\"trees\":[\n{\"node\":[[0]]},"),
-                 "a multiple of 5 trees");
+                 "a multiple of 6 trees");
   EXPECT_REFUSED(damaged("{\"node\":", "{\"leaf\":"), "trees[0]: found an object of 1 members");
 }
 

@@ -14,7 +14,8 @@ using test::SolidScene;
 
 /// Scores by length [m]: up to 0.8 that of a `person`, to 2 that of a `pair` of them, to 6 that of
 /// a vehicle, above that of a thing.
-std::shared_ptr<const ClusterClassifier> byLength(float pair = -4, float person = 4) {
+std::shared_ptr<const ClusterClassifier> byLength(float pair = -4, float person = 4,
+                                                  float phantom = -20) {
   const auto length = static_cast<std::int16_t>(Feature::kLength);
   BoostedTrees trees;
   const auto add = [&](const std::array<float, 4>& values) {
@@ -31,12 +32,13 @@ std::shared_ptr<const ClusterClassifier> byLength(float pair = -4, float person 
   add({-4, -4, -4, -4});
   add({-4, -4, 2, -4});
   add({0, 0, 0, 4});
+  add({phantom, -20, -20, -20});  // as short as a person
   add({-20, -20, -20, -20});
   EvidenceMemory memory;
   memory.lasting = 0.35;
   return std::make_shared<const ClusterClassifier>(
       trees, std::array<Calibration, kClusterKinds>{},
-      std::array<double, kClusterKinds>{0.2, 0.2, 0.2, 0.2, 0.2}, memory, Provenance{});
+      std::array<double, kClusterKinds>{0.2, 0.2, 0.2, 0.15, 0.05, 0.2}, memory, Provenance{});
 }
 
 /// A van seen from the side, a person, and a wall of 8 m.
@@ -63,7 +65,7 @@ struct Judged {
                   const std::shared_ptr<const ClusterClassifier>& classifier = byLength())
       : frame(test::castScan(scene, test::narrowLidar())),
         found(test::plainFrontEnd().detect(frame)),
-        clusters(judgedClusters(found, std::get<LidarCloud>(frame.data), *classifier)) {}
+        clusters(judgedClusters(found, std::get<LidarCloud>(frame.data), *classifier).clusters) {}
 
   Vector2 middleOf(const JudgedCluster& c) const {
     Vector2 sum = Vector2::Zero();
@@ -91,6 +93,20 @@ TEST(JudgedClusters, ThingsAreLeftOut) {
   EXPECT_EQ(of(car, ClusterKind::kThing), 0);
   EXPECT_TRUE(person.alone);
   EXPECT_TRUE(std::is_sorted(car.points.begin(), car.points.end()));
+}
+
+TEST(JudgedClusters, WhatIsSurelyAPhantomIsLeftOutAndSaidOfItsReturns) {
+  const SolidScene scene = street();
+  const Judged doubted(scene, byLength(-4, 4, 3)), judged(scene, byLength(-4, 4, 9));
+  EXPECT_EQ(doubted.clusters.size(), 2u) << "a phantom by .27, a person by .72";
+  ASSERT_EQ(judged.clusters.size(), 1u) << "the car";
+  const Judgement judgement =
+      judgedClusters(judged.found, std::get<LidarCloud>(judged.frame.data), *byLength(-4, 4, 9));
+  ASSERT_EQ(judgement.phantom.size(), judged.found.obstacles.size());
+  for (std::size_t i = 0; i < judgement.phantom.size(); ++i) {
+    if (judgement.phantom[i] == PlacedReturns::kNoCluster) continue;
+    EXPECT_EQ(judgement.phantom[i] > 0.9f, judged.found.y[i] < -3) << "the person alone";
+  }
 }
 
 TEST(JudgedClusters, PartsReplaceAWholeThatIsLessLikely) {
@@ -143,7 +159,7 @@ TEST(JudgedClusters, APersonInTheFootprintOfAVehicleStands) {
 
 TEST(JudgedClusters, NoReturnsHaveNone) {
   LidarDetections nothing(EgoPoints{}, {}, GroundSurface(GroundPlane{}, EgoPoints{}, {}, nullptr));
-  EXPECT_TRUE(judgedClusters(nothing, LidarCloud{}, *byLength()).empty());
+  EXPECT_TRUE(judgedClusters(nothing, LidarCloud{}, *byLength()).clusters.empty());
 }
 
 // The front end ---------------------------------------------------------------------------------

@@ -88,6 +88,30 @@ TEST(SafetyMonitor, WhatIsDoubtedBlocksNothing) {
   EXPECT_FALSE(monitor.pathAhead(egoAt(0.2, 10)).free.blocked);
 }
 
+TEST(SafetyMonitor, AClusterThatIsAPhantomBlocksNothing) {
+  for (const float phantom : {0.99F, 0.01F}) {
+    SafetyMonitor monitor(smallGrid(), {});
+    for (const double t : {0.0, 0.1, 0.2}) {
+      Scan scan(t, 20);
+      scan.returns.phantom.assign(scan.returns.size(), phantom);
+      monitor.add(scan.frame, scan.returns);
+    }
+    EXPECT_EQ(monitor.pathAhead(egoAt(0.2, 10)).free.blocked, phantom < 0.5F);
+  }
+}
+
+TEST(SafetyMonitor, OneScanBlocksOnlyByItsClusters) {
+  Scan scan(0, 20);
+  scan.returns.phantom.assign(scan.returns.size(), PlacedReturns::kNoCluster);
+  SafetyMonitor monitor(smallGrid(), {});
+  monitor.add(scan.frame, scan.returns);
+  EXPECT_FALSE(monitor.pathAhead(egoAt(0, 10)).free.blocked);
+  scan.returns.phantom.assign(scan.returns.size(), 0);
+  SafetyMonitor told(smallGrid(), {});
+  told.add(scan.frame, scan.returns);
+  EXPECT_TRUE(told.pathAhead(egoAt(0, 10)).free.blocked);
+}
+
 TEST(SafetyMonitor, AVehicleThatMovesOnEveryScanIsSeenAllTheSame) {
   SafetyMonitor monitor(smallGrid(), {});
   for (int i = 0; i < 4; ++i)
