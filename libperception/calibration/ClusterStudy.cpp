@@ -45,8 +45,7 @@ struct Counts {
     of[kind] += 1, called[best] += 1, right[kind] += is_right;
     if (q[best] >= kSure) {
       sure += 1, sure_wrong += !is_right;
-      if (best < kRoadUsers)
-        sure_users += 1, sure_users_wrong += !is_right;
+      if (best < kRoadUsers) sure_users += 1, sure_users_wrong += !is_right;
     }
     for (std::size_t k = 0; k < kShapes; ++k) {
       Bin& bin = bins[std::min<std::size_t>(9, static_cast<std::size_t>(q[k] * 10))];
