@@ -233,6 +233,12 @@ StudyReport safetyStudy(const SafetyOptions& options, unsigned long long seed) {
       "returns of a surface for three scans, and no stop. Scans apart by at most .5 s are one "
       "stop.",
       "Of a simulated log, everything here is simulated."};
+  for (const std::string& log : options.logs) {
+    if (!std::filesystem::exists(truthFileOf(log)))
+      report.remarks.push_back(log +
+                               " has no truth: what drives ahead counts as standing, and the run's "
+                               "advice, which knows better, as missing it.");
+  }
   return report;
 }
 
