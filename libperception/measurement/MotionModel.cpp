@@ -146,7 +146,7 @@ void stepWheeled(const GaussianStep& s, Matrix4* transition) {
   if (!s.oriented) return stepConstantVelocity(s, transition);
   Matrix4 whole = Matrix4::Identity();
   const int steps =
-      needsSubSteps(s) ? std::max(1, static_cast<int>(std::ceil(s.dt / 0.1 - 1e-9))) : 1;
+      needsSubSteps(s) ? static_cast<int>(std::clamp(std::ceil(s.dt / 0.1 - 1e-9), 1.0, 1e4)) : 1;
   for (int i = 0; i < steps; ++i) {
     const auto predict = hasUncertainHeading(s) ? predictUncertainHeading : predictWheeled;
     const Matrix4 F = predict(*s.object_class, s.psd, s.damping, s.dt / steps, *s.x, *s.P);

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
 #include <utility>
+
+#include "libperception/sensors/Conversions.h"
 
 namespace perception {
 namespace {
@@ -13,10 +16,30 @@ constexpr double kGapDrift = 1.0;
 
 }  // namespace
 
+void EgoTimeline::add(const mrpt::obs::CObservation& observation) {
+  const auto accepted = pose_.accepted(), jumps = pose_.rejectedJumps(),
+             invalid = pose_.rejectedInvalid(), relocations = pose_.relocations();
+  pose_.add(observation);
+  const auto report = [&](const std::string& what) {
+    events_.warn(toStamp(observation.timestamp), event_kind::kEgoJump,
+                 observation.sensorLabel + ": " + what);
+  };
+  if (pose_.relocations() > relocations) {
+    report("the rejected poses agree with each other: the vehicle is there, tracks start anew");
+  } else if (pose_.rejectedJumps() > jumps && !std::exchange(in_jump_, true)) {
+    report(fmt::format("a pose away from the one before by more than {:g} m/s: rejected",
+                       params_.max_speed));
+  } else if (pose_.rejectedInvalid() > invalid && !std::exchange(in_invalid_, true)) {
+    report("a pose without stamp or place on Earth: rejected");
+  }
+  if (pose_.accepted() > accepted || pose_.relocations() > relocations)
+    in_jump_ = in_invalid_ = false;
+}
+
 bool EgoTimeline::changedFrame(Stamp stamp) {
   const bool changed = std::exchange(frame_epoch_, pose_.frameEpoch()) != pose_.frameEpoch();
   if (!changed || !last_seen_) return false;
-  events_.add(stamp, event_kind::kEgoGap, "the world's frame is known now: tracks start anew");
+  events_.add(stamp, event_kind::kEgoGap, "another world frame from here: tracks start anew");
   return true;
 }
 
@@ -61,7 +84,7 @@ void EgoTimeline::clear() {
   pose_.clear();
   last_seen_.reset();
   none_reported_ = false;
-  in_gap_ = false;
+  in_gap_ = in_jump_ = in_invalid_ = false;
 }
 
 }  // namespace perception

@@ -14,7 +14,8 @@ class EgoTimeline {
   EgoTimeline(const EgoPoseParams& params, EventLog& events)
       : params_(params), events_(events), pose_(params) {}
 
-  void add(const mrpt::obs::CObservation& observation) { pose_.add(observation); }
+  /// Reports rejected poses, each run of them once.
+  void add(const mrpt::obs::CObservation& observation);
   /// True at the first call after a change of the world frame, if a frame was used before: the
   /// tracks are in the former world frame and must be deleted.
   bool changedFrame(Stamp stamp);
@@ -35,7 +36,7 @@ class EgoTimeline {
   std::optional<Stamp> last_seen_;
   std::uint64_t frame_epoch_ = 0;  ///< EgoPose::frameEpoch() of the tracks
   bool none_reported_ = false;     ///< the event "no pose yet"
-  bool in_gap_ = false;
+  bool in_gap_ = false, in_jump_ = false, in_invalid_ = false;
 };
 
 }  // namespace perception

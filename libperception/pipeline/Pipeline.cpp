@@ -5,11 +5,20 @@
 #include <algorithm>
 #include <utility>
 
+#include "libperception/filter/predict/Prediction.h"
 #include "libperception/pipeline/MergedScanners.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
 
 namespace perception {
+namespace {
+
+/// [s] longest gap in a recording, ten years; a larger one is a clock that was set. Assumed.
+constexpr double kLongestGap = 10 * 365.25 * 86400;
+/// [m] a sensor beyond is not on the vehicle; assumed, generous for roadside sensors.
+constexpr double kFarthestMount = 1000;
+
+}  // namespace
 
 Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
     : setup_(std::move(setup)),
@@ -41,23 +50,32 @@ void Pipeline::add(const mrpt::obs::CObservation& observation) {
 
 void Pipeline::addTime(Stamp stamp) {
   if (!first_stamp_) first_stamp_ = stamp;
-  if (last_stamp_.ns != 0 && last_stamp_ - stamp > setup_.run.clock_jump)
-    startEpoch(stamp, last_stamp_ - stamp);
-  if (last_stamp_.ns != 0 && stamp - last_stamp_ > setup_.run.clock_jump) {
-    // Before the first pose after the gap, which would remove the poses of these frames from the
-    // buffer.
-    while (processNext(true)) continue;
-    events_.add(stamp, event_kind::kClockJump,
-                fmt::format("nothing for {:.3f} s", stamp - last_stamp_));
-  }
+  const double step = last_stamp_.ns != 0 ? stamp - last_stamp_ : 0;
+  if (step < -setup_.run.clock_jump)
+    startEpoch(stamp, fmt::format("the clock went back by {:.3f} s", -step));
+  if (step > setup_.run.clock_jump) passGap(stamp, step);
   last_stamp_ = std::max(last_stamp_, stamp);
   queue_.advance(stamp);
 }
 
-void Pipeline::startEpoch(Stamp stamp, double back) {
+void Pipeline::passGap(Stamp stamp, double gap) {
+  if (gap > kLongestGap)
+    return startEpoch(stamp, fmt::format("the clock went ahead by {:.3f} s", gap));
+  // Before the first pose after the gap, which would remove the poses of these frames from the
+  // buffer.
   while (processNext(true)) continue;
-  events_.warn(stamp, event_kind::kClockJump,
-               fmt::format("the clock went back by {:.3f} s: tracks start anew", back));
+  const bool all_end = gap > longestLife(setup_.model.params);
+  events_.add(stamp, event_kind::kClockJump,
+              fmt::format("nothing for {:.3f} s{}", gap, all_end ? ": tracks start anew" : ""));
+  watch_.restart(stamp);  // no sensor is lost where nothing comes from any
+  if (!all_end) return;
+  restartTracks();
+  outputs_.restart();
+}
+
+void Pipeline::startEpoch(Stamp stamp, const std::string& why) {
+  while (processNext(true)) continue;
+  events_.warn(stamp, event_kind::kClockJump, why + ": tracks start anew");
   restartTracks();
   ego_.clear();
   queue_.clear();
@@ -82,6 +100,14 @@ void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
   }
   if (const auto& pose = setup_.sensors[*sensor].params.pose) frame->T_ego_sensor = *pose;
   const Stamp stamp = frame->stamp;
+  const Pose3& mount = frame->T_ego_sensor;
+  if (!mount.matrix().allFinite() || mount.translation().norm() > kFarthestMount) {
+    watch_.addDroppedFrame(
+        *sensor, stamp, event_kind::kDroppedFrame,
+        fmt::format("its sensor is more than {} m from the vehicle's origin", kFarthestMount),
+        true);
+    return;
+  }
   switch (queue_.push(std::move(*frame))) {
     case FrameQueue::Verdict::kTaken:
       break;
@@ -118,19 +144,29 @@ bool Pipeline::processNext(bool flush) {
   if (ego_.isBlindGap(stamp)) restartTracks();
   const EgoState ego = egoAt(stamp);
   const std::int64_t number = frame_numbers_.at(stamp);
-  bool output = false;
   for (auto& frame : frames) {
     const std::size_t sensor = *setup_.sensorOf(frame.sensor);
     frame.ego = ego;
     frame.frame = number;
     processFrame(sensor, frame);
-    output = output || sensor == outputs_.sensor();
+    outputs_.addFrame(sensor, stamp);
   }
   watch_.check(stamp);
   ego_.setSeen(stamp);
   if (setup_.run.output_lag > 0) makeScenes(stamp);
-  if (outputs_.isOutput(stamp, output)) addOutput(ego, number);
+  if (isOutput(stamp)) addOutput(ego, number);
   return true;
+}
+
+bool Pipeline::isOutput(Stamp stamp) {
+  const std::size_t before = outputs_.sensor();
+  const bool output = outputs_.isOutput(stamp);
+  if (const std::size_t now = outputs_.sensor(); now != before) {
+    events_.add(stamp, event_kind::kOutputSensor,
+                fmt::format("scenes at the scans of {} in place of {}", setup_.sensors[now].label,
+                            setup_.sensors[before].label));
+  }
+  return output;
 }
 
 void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {

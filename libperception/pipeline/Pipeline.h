@@ -56,9 +56,11 @@ class Pipeline {
 
  private:
   void addTime(Stamp stamp);
-  void startEpoch(Stamp stamp, double back);
+  void passGap(Stamp stamp, double gap);
+  void startEpoch(Stamp stamp, const std::string& why);
   void addFrame(const mrpt::obs::CObservation& observation);
   bool processNext(bool flush);
+  bool isOutput(Stamp stamp);
   void processFrame(std::size_t sensor, SensorFrame& frame);
   EgoState egoAt(Stamp stamp);
   void addToGrid(const SensorFrame& frame, MeasurementScan& scan);

@@ -22,6 +22,7 @@ inline constexpr char kOutOfOrder[] = "out_of_order";     ///< older than the re
 inline constexpr char kClockJump[] = "clock_jump";        ///< back: new epoch; forward: a gap
 inline constexpr char kEgoGap[] = "ego_gap";              ///< no ego pose near an instant
 inline constexpr char kEgoJump[] = "ego_jump";            ///< pose rejected by the jump gate
+inline constexpr char kOutputSensor[] = "output_sensor";  ///< scenes at the scans of another one
 inline constexpr char kSensorLost[] = "sensor_lost";
 inline constexpr char kSensorBack[] = "sensor_back";
 inline constexpr char kSensorMissing[] = "sensor_missing";  ///< configured, not in the log

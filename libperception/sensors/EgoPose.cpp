@@ -21,6 +21,9 @@ constexpr std::size_t kRelocation = 10;
 constexpr double kDifference = 0.1;
 /// Bound of the memory at any rate of the poses.
 constexpr std::size_t kMostPoses = 20000;
+/// [m] Largest coordinate, that of a pole in UTM with a margin: what is beyond is no place on
+/// Earth.
+constexpr double kFarthest = 2e7;
 
 bool before(const EgoState& pose, Stamp stamp) { return pose.stamp < stamp; }
 
@@ -114,7 +117,7 @@ void EgoPose::add(const mrpt::obs::CObservation& observation) {
   if (params_.source == EgoPoseParams::Source::kFusion || !wants(pose->sensorLabel)) return;
   const auto stamp = toStamp(pose->timestamp);
   if (!stamp) {
-    ++rejected_other_;
+    ++rejected_invalid_;
     return;
   }
   EgoState state;
@@ -148,8 +151,9 @@ bool EgoPose::isJump(const EgoState& pose) {
 }
 
 void EgoPose::add(const EgoState& pose) {
-  if (!pose.T_world_ego.matrix().allFinite()) {
-    ++rejected_other_;
+  const auto& T = pose.T_world_ego;
+  if (!T.matrix().allFinite() || T.translation().cwiseAbs().maxCoeff() > kFarthest) {
+    ++rejected_invalid_;
     return;
   }
   if (poses_.empty() && !fusion_->poses().empty())
@@ -166,6 +170,8 @@ void EgoPose::add(const EgoState& pose) {
       if (relocated_.size() < kRelocation) return;
       poses_.swap(relocated_);
       relocated_.clear();
+      ++relocations_;
+      ++frame_epoch_;
       return;
     }
   }

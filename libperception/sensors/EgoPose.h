@@ -44,6 +44,9 @@ struct EgoPoseParams {
 /// Without poses in the log, EgoFusion computes them from GNSS, inertial unit or wheels, until the
 /// first pose of the log.
 ///
+/// A pose that implies more than max_speed is rejected; several that agree with each other are a
+/// relocation: a new world frame.
+///
 /// Without any of these, empty() stays true and at() returns nothing; callers then use parked():
 /// the vehicle stands at the origin of the world frame.
 class EgoPose {
@@ -63,8 +66,9 @@ class EgoPose {
   /// Of the oldest and the newest pose; only when not empty().
   Stamp earliest() const { return poses().front().stamp; }
   Stamp latest() const { return poses().back().stamp; }
-  /// Number of changes of the world frame: when the first pose of the log replaces EgoFusion, or
-  /// when EgoFusion finds its heading. Positions in the former world frame are invalid.
+  /// Number of changes of the world frame: when the first pose of the log replaces EgoFusion, when
+  /// EgoFusion finds its heading, after a relocation. Positions in the former world frame are
+  /// invalid.
   std::uint64_t frameEpoch() const;
   const EgoFusion& fusion() const { return *fusion_; }
   /// Resets, as after a jump of the clock.
@@ -73,9 +77,11 @@ class EgoPose {
 
   std::uint64_t accepted() const { return accepted_; }
   std::uint64_t rejectedJumps() const { return rejected_jumps_; }  ///< faster than max_speed
-  std::uint64_t rejectedOther() const {
-    return rejected_other_;
-  }  ///< invalid, too old, same instant
+  std::uint64_t rejectedInvalid() const {
+    return rejected_invalid_;
+  }                                                                ///< no stamp, no place on Earth
+  std::uint64_t rejectedOther() const { return rejected_other_; }  ///< too old, same instant
+  std::uint64_t relocations() const { return relocations_; }  ///< rejected poses that were right
 
  private:
   const std::deque<EgoState>& poses() const;
@@ -89,7 +95,8 @@ class EgoPose {
   std::string label_;               ///< in use
   std::deque<EgoState> poses_;      ///< by stamp; velocities are not set
   std::deque<EgoState> relocated_;  ///< consecutive consistent rejected poses
-  std::uint64_t accepted_ = 0, rejected_jumps_ = 0, rejected_other_ = 0;
+  std::uint64_t accepted_ = 0, rejected_jumps_ = 0, rejected_invalid_ = 0, rejected_other_ = 0;
+  std::uint64_t relocations_ = 0;
   std::uint64_t frame_epoch_ = 0;
 };
 

@@ -200,5 +200,22 @@ TEST(EgoTimeline, ClearedItKnowsNothingOfBefore) {
   EXPECT_EQ(timeline.gaps(), 4U) << "a gap of the new epoch";
 }
 
+TEST(EgoTimeline, ARunOfJumpsIsOneEventAndARelocationStartsTracksAnew) {
+  Timeline timeline;
+  for (int k = 0; k < 10; ++k) timeline.add(0.1 * k, k);
+  timeline.ego.setSeen(kStart + 0.9);
+  timeline.add(1.0, 5000);
+  timeline.add(1.1, 1e300);
+  timeline.add(1.2, -7000);
+  EXPECT_EQ(timeline.events.counts().at(event_kind::kEgoJump), 2U) << timeline.text();
+  timeline.add(1.3, 13);
+  EXPECT_FALSE(timeline.ego.changedFrame(kStart + 1.3));
+  EXPECT_NEAR(xOf(timeline.at(1.2)), 12, 1e-9);
+  for (int k = 14; k < 24; ++k) timeline.add(0.1 * k, 5000 + k);
+  EXPECT_EQ(timeline.events.counts().at(event_kind::kEgoJump), 4U) << timeline.text();
+  EXPECT_TRUE(timeline.ego.changedFrame(kStart + 2.3));
+  EXPECT_NEAR(xOf(timeline.at(2.3)), 5023, 1e-9);
+}
+
 }  // namespace
 }  // namespace perception

@@ -99,6 +99,8 @@ TEST(EgoPose, RejectsJumpsAndBelievesARelocation) {
   EXPECT_NEAR(ego.at(kStart + 1.1)->T_world_ego.translation().x(), 11, 1e-9);
   for (int k = 0; k < 10; ++k) ego.add(pose(1.3 + 0.1 * k, 800 + k, 0, 0));
   EXPECT_NEAR(ego.at(kStart + 2.2)->T_world_ego.translation().x(), 809, 1e-9);
+  EXPECT_EQ(ego.relocations(), 1U);
+  EXPECT_EQ(ego.frameEpoch(), 1U) << "nothing says that the two places are of one world frame";
 }
 
 TEST(EgoPose, MemoryIsBounded) {
@@ -155,7 +157,10 @@ TEST(EgoPose, BadPosesAreCounted) {
   ego.add(nan);
   ego.add(pose(0, 0, 0, 0));
   ego.add(pose(0, 0, 0, 0));
-  EXPECT_EQ(ego.rejectedOther(), 3U);
+  ego.add(pose(1, 1e300, 0, 0));
+  ego.add(pose(1, 0, -3e7, 0));
+  EXPECT_EQ(ego.rejectedInvalid(), 4U);
+  EXPECT_EQ(ego.rejectedOther(), 1U);
   EXPECT_EQ(ego.accepted(), 1U);
 }
 

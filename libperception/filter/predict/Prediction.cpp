@@ -158,6 +158,12 @@ double timeToLive(const Track& track, const FilterModel& model) {
   return rest > 0 ? in_view + rest * p.survival_out_of_view : lives * p.survival_in_view;
 }
 
+double longestLife(const FilterParams& p) {
+  const double lives = -std::log(p.existence_min);
+  if (p.existence_decay > 0) return lives * p.existence_decay / 3;
+  return kOutOfViewAfter + lives * p.survival_out_of_view;
+}
+
 Track predictTrack(const Track& track, Stamp to, const FilterModel& model) {
   Track next = track;
   std::vector<GaussianStep> steps;

@@ -22,6 +22,9 @@ TrackOdds predictOdds(const Track& track, Stamp to, const FilterModel& model);
 /// [s] until the existence probability falls below `existence_min` without detections.
 double timeToLive(const Track& track, const FilterModel& model);
 
+/// [s] after which no track is left without detections: timeToLive() of a track just seen.
+double longestLife(const FilterParams& params);
+
 /// predictTrack() of all `touched` tracks, their Gaussians in batches (see BankBatch); equal up to
 /// rounding. Other entries stay empty.
 std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,

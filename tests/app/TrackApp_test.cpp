@@ -1,0 +1,132 @@
+#include "libperception/app/TrackApp.h"
+
+#include <gtest/gtest.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "libperception/sensors/ToObservation.h"
+#include "tests/app/LogFaults.h"
+
+namespace perception::test {
+namespace {
+
+/// The demo's first seconds with a gap in the clock after two of them.
+std::vector<Observation> withGap(double gap) {
+  auto log = demoStart(4);
+  const Stamp first = *toStamp(log.front()->timestamp);
+  for (auto& o : log) {
+    const Stamp stamp = *toStamp(o->timestamp);
+    if (stamp - first > 2) o->timestamp = fromStamp(stamp + gap);
+  }
+  return log;
+}
+
+double seconds(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TEST(TrackApp, AGapOfADayAWeekOrAYearIsOneEventAndCostsNoTime) {
+  constexpr double kDay = 86400;
+  Tracking whole;
+  whole.track(demoStart(4));
+  for (const double gap : {kDay, 7 * kDay, 365 * kDay}) {
+    for (const std::vector<std::string>& options : {std::vector<std::string>{}, {"--rate", "10"}}) {
+      Tracking t;
+      EXPECT_LT(seconds([&] { t.track(withGap(gap), options); }), 20);
+      ASSERT_EQ(t.ended.code, 0) << t.ended.err;
+      EXPECT_EQ(t.events("clock_jump"), 1U);
+      EXPECT_EQ(t.events("sensor_lost"), 0U);
+      EXPECT_NEAR(static_cast<double>(t.scenes()), static_cast<double>(whole.scenes()), 2);
+    }
+  }
+}
+
+TEST(TrackApp, NoObjectOutlivesAGapOfADay) {
+  Tracking t;
+  ASSERT_EQ(t.track(withGap(86400)).code, 0) << t.ended.err;
+  const auto table = CsvTable::fromFile(t.dir + "/tracks.csv");
+  std::set<std::uint64_t> before, after;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    (table.real(i, table.column("t")) < 1000 ? before : after)
+        .insert(table.natural(i, table.column("id")));
+  }
+  EXPECT_GT(before.size(), 3U);
+  EXPECT_GT(after.size(), 3U);
+  for (const auto id : after) EXPECT_EQ(before.count(id), 0U) << id;
+}
+
+TEST(TrackApp, AClockThatGoesAheadByFiftyYearsIsAnEpoch) {
+  Tracking t;
+  ASSERT_EQ(t.track(withGap(50 * 365.25 * 86400)).code, 3) << t.ended.err;
+  EXPECT_EQ(t.events("clock_jump"), 1U);
+  EXPECT_NE(contentOf(t.dir + "/events.jsonl").find("the clock went ahead by 1577880000"),
+            std::string::npos);
+}
+
+/// The demo's first seconds without what `drop` says.
+std::vector<Observation> without(
+    const std::function<bool(const mrpt::obs::CObservation&, double)>& drop) {
+  const auto log = demoStart(6);
+  std::vector<Observation> out;
+  for (const auto& o : log) {
+    if (!drop(*o, timeIn(log, o))) out.push_back(o);
+  }
+  return out;
+}
+
+TEST(TrackApp, ScenesGoOnWhenTheLidarDies) {
+  Tracking t;
+  t.track(without([](const auto& o, double at) { return o.sensorLabel == "LIDAR_TOP" && at > 2; }));
+  ASSERT_EQ(t.ended.code, 3) << t.ended.err;
+  EXPECT_EQ(t.events("sensor_lost"), 1U);
+  EXPECT_EQ(t.events("output_sensor"), 1U);
+  const auto table = CsvTable::fromFile(t.dir + "/scenes.csv");
+  EXPECT_GT(table.real(table.rows() - 1, table.column("t")), 5.7);
+}
+
+TEST(TrackApp, ScenesComeWithoutAnyLidarFrame) {
+  Tracking t;
+  t.track(without([](const auto& o, double) { return o.sensorLabel == "LIDAR_TOP"; }));
+  ASSERT_EQ(t.ended.code, 3) << t.ended.err;
+  EXPECT_EQ(t.events("sensor_missing"), 1U);
+  EXPECT_GT(t.scenes(), 40U);
+}
+
+TEST(TrackApp, AbsurdPosesAreRejectedAndReported) {
+  auto log = demoStart(4);
+  int poses = 0;
+  for (auto& o : log) {
+    auto* pose = dynamic_cast<mrpt::obs::CObservationRobotPose*>(o.get());
+    if (pose && ++poses % 20 == 7) pose->pose.mean.x(poses > 20 ? 1e300 : 4000);
+  }
+  ASSERT_GT(poses, 30);
+  Tracking t;
+  ASSERT_EQ(t.track(log).code, 3) << t.ended.err;
+  EXPECT_GE(t.events("ego_jump"), 2U);
+  const auto table = CsvTable::fromFile(t.dir + "/tracks.csv");
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    EXPECT_LT(std::abs(table.real(i, table.column("x"))), 1000);
+}
+
+TEST(TrackApp, WhereThePosesMoveToAnotherPlaceTracksStartAnew) {
+  auto log = demoStart(5);
+  for (auto& o : log) {
+    auto* pose = dynamic_cast<mrpt::obs::CObservationRobotPose*>(o.get());
+    if (pose && timeIn(log, o) > 2) pose->pose.mean.x_incr(3000);
+  }
+  Tracking t;
+  ASSERT_EQ(t.track(log).code, 3) << t.ended.err;
+  EXPECT_EQ(t.events("ego_jump"), 2U) << "rejected, then believed";
+  const auto table = CsvTable::fromFile(t.dir + "/tracks.csv");
+  std::map<std::uint64_t, std::set<bool>> there;
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    there[table.natural(i, table.column("id"))].insert(table.real(i, table.column("x")) > 1500);
+  for (const auto& [id, places] : there) EXPECT_EQ(places.size(), 1U) << id;
+}
+
+}  // namespace
+}  // namespace perception::test
