@@ -9,13 +9,14 @@
 #include <thread>
 
 #include "libperception/pipeline/LogRun.h"
+#include "libperception/pipeline/Progress.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {
 namespace fs = std::filesystem;
 
 void TrackApp::declare(CLI::App& cli) {
-  addConfigOptions(cli, true);
+  addConfigOptions(cli, false);
   addInputOption(cli, false);
   addOutputOption(cli, false);
   addRunOptions(cli);
@@ -28,6 +29,7 @@ void TrackApp::declare(CLI::App& cli) {
       ->check(CLI::Range(0.0, 1000.0));
   cli.add_flag("--measurements", measurements,
                "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
+  cli.add_flag("--info", info, "Say what the logs of -i hold (labels, classes, rates) and stop");
   cli.add_option("--export", exports,
                  "kitti:FILE: also write the objects in KITTI's tracking format")
       ->allow_extra_args(false);
@@ -57,8 +59,28 @@ Config TrackApp::configWithOptions() const {
   return config;
 }
 
+void TrackApp::printContents(const std::string& log) {
+  RawlogReader reader(log);
+  LogContents contents;
+  while (const auto observation = reader.next()) {
+    stopIfAsked();
+    contents.look(*observation);
+  }
+  fmt::print("{}\n", log);
+  fmt::print("{}", contents.table());
+  if (reader.end() == RawlogReader::End::kClean) return;
+  if (strict) throw DataError(reader.endMessage());
+  warn(reader.endMessage());
+}
+
 void TrackApp::run() {
   registerPerceptionClasses();
+  if (info && inputs.empty()) throw Error(ExitCode::kUsage, "--info needs -i/--input");
+  if (info) {
+    for (const auto& log : inputs) printContents(log);
+    return;
+  }
+  if (config_file.empty()) throw Error(ExitCode::kUsage, "-c/--config is needed");
   {
     Config config = configWithOptions();
     PipelineSetup::read(config);

@@ -19,6 +19,7 @@ class TrackApp : public App {
   double rate = 0;                    ///< --rate [Hz]: scenes at a fixed rate instead of at scans
   std::vector<std::string> exports;   ///< --export FORMAT:FILE
   bool measurements = false;          ///< --measurements: also record the filter's input
+  bool info = false;                  ///< --info: say what the logs hold and stop
   bool keep_scenes = false;           ///< keep all scenes in out_scenes (tests)
 
   std::string name() const override { return "perception-track"; }
@@ -34,6 +35,7 @@ class TrackApp : public App {
 
  private:
   void trackLog(const std::string& log, const std::string& dir, const std::string& export_file);
+  void printContents(const std::string& log);
   Config configWithOptions() const;
   std::string exportFileFor(const std::string& log) const;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
+#include "libperception/pipeline/LogContents.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/registerClasses.h"
@@ -78,13 +79,18 @@ RecordedLog recordLog(const std::string& log, Config& config, double seconds,
   recorded.particles = setup.particles;
   recorded.scene = setup.scene;
   Recorder recorder(recorded);
+  const PipelineSetup wanted = setup;
   const LogPass pass = passLog(log, std::move(setup), seconds, recorder, edit);
   recorded.simulated = pass.simulated;
   const bool any =
       std::any_of(recorded.entries.begin(), recorded.entries.end(),
                   [](const RecordedLog::Entry& e) { return e.kind == RecordedLog::Entry::kScene; });
-  if (!any)
-    throw DataError(log + ": no scene came of it: the log holds no frame of a sensor in use");
+  if (!any) {
+    LogContents contents;
+    RawlogReader reader(log);
+    while (const auto observation = reader.next()) contents.look(*observation);
+    throw DataError(noSceneMessage(log, contents, wanted, reader.endMessage()));
+  }
   recorded.first_stamp = *pass.first_stamp;
   return recorded;
 }

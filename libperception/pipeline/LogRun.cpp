@@ -61,6 +61,7 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
     }()) {
       stopIfAsked();
       facts_.look(*observation);
+      contents_.look(*observation);
       pipeline_.add(*observation);
       take(false);
       progress.update(reader_.bytesRead(), ++count);
@@ -78,11 +79,8 @@ std::vector<std::string> LogRun::finish(bool strict) {
     record.warnings.push_back(reader_.endMessage());
     said.push_back(reader_.endMessage());
   }
-  if (record.scenes == 0) {
-    throw DataError(files_.log +
-                    ": no scene came of it: the log holds no frame of a sensor in use (" +
-                    setup_.run.sensors + ")");
-  }
+  if (record.scenes == 0)
+    throw DataError(noSceneMessage(files_.log, contents_, setup_, reader_.endMessage()));
   if (!files_.export_file.empty() && !kitti_) {
     throw DataError(files_.log +
                     ": --export kitti needs a camera model, and the log's detections carry none");

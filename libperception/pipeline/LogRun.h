@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libperception/pipeline/LogContents.h"
 #include "libperception/pipeline/LogWatchers.h"
 #include "libperception/pipeline/OutputFolder.h"
 #include "libperception/pipeline/Pipeline.h"
@@ -54,6 +55,7 @@ class LogRun {
   Pipeline pipeline_;
   ObjectEvents object_events_;
   LogFacts facts_;
+  LogContents contents_;
   std::optional<MeasurementRecorder> recorder_;
   std::optional<TrackedRunWriter> writer_;
   std::optional<KittiExport> kitti_;

@@ -128,5 +128,41 @@ TEST(TrackApp, WhereThePosesMoveToAnotherPlaceTracksStartAnew) {
   for (const auto& [id, places] : there) EXPECT_EQ(places.size(), 1U) << id;
 }
 
+TEST(TrackApp, AWrongLabelIsAnErrorThatNamesTheLabelsOfBothSides) {
+  auto log = demoStart(2);
+  for (auto& o : log) {
+    if (o->sensorLabel == "LIDAR_TOP" || o->sensorLabel == "CAMERA") o->sensorLabel += "_2";
+  }
+  Tracking t;
+  ASSERT_EQ(t.track(log).code, 65);
+  for (const char* part :
+       {"LIDAR_TOP_2 (perception::CObservationLidarScan, 21)", "CAMERA_2 (", "EGO_POSE (",
+        "The configuration wants: LIDAR_TOP (lidar), CAMERA (boxes)", "whole,"})
+    EXPECT_NE(t.ended.err.find(part), std::string::npos) << part << "\n" << t.ended.err;
+  EXPECT_FALSE(std::filesystem::exists(t.dir));
+}
+
+TEST(TrackApp, ALogDamagedBeforeItsFirstFrameIsAnErrorThatSaysSo) {
+  Tracking t;
+  writeLog(demoStart(2), t.folder / "whole.rawlog");
+  std::ofstream(t.folder / "cut.rawlog", std::ios::binary)
+      << contentOf(t.folder / "whole.rawlog").substr(0, 700);
+  ASSERT_EQ(t.track(t.folder / "cut.rawlog").code, 65);
+  EXPECT_NE(t.ended.err.find("the file ends inside its gzip container"), std::string::npos)
+      << t.ended.err;
+}
+
+TEST(TrackApp, InfoSaysWhatALogHolds) {
+  Tracking t;
+  TrackApp app;
+  testing::internal::CaptureStdout();
+  const char* arguments[] = {"perception-track", "--info", "-i", kDemoLog.c_str()};
+  ASSERT_EQ(runApp(app, 4, arguments), 0);
+  std::fflush(stdout);
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_NE(text.find("LIDAR_TOP"), std::string::npos) << text;
+  EXPECT_NE(text.find("10.0"), std::string::npos) << "[Hz]\n" << text;
+}
+
 }  // namespace
 }  // namespace perception::test
