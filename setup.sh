@@ -36,6 +36,7 @@ packages=(
   libtinyxml2-dev        # GPX files
   liblzf-dev             # compressed PCD files
   zlib1g-dev             # rawlogs are gzip files; check sums
+  libssl-dev             # SHA-256 of inputs
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG
@@ -117,7 +118,7 @@ demo() {
   build release OFF --target perception-track perception-evaluate perception-snapshot perception-report
   local dir=out/demo log=rawlogs/demo.rawlog truth=rawlogs/demo.truth.csv
   say "Tracking the simulated log $log"
-  run perception-track -c ini/demo.ini -i "$log" -o "$dir"
+  run perception-track -c ini/demo.ini -i "$log" -o "$dir" --overwrite
   run perception-evaluate -r "$dir" -t "$truth" -o "$dir/evaluation"
   local drawn=(-r "$dir" -i "$log" -t "$truth")
   run perception-snapshot "${drawn[@]}" --time 8 --view all -o "$dir/scene.png" --scene "$dir/scene.3Dscene"

@@ -8,6 +8,7 @@
 #include <map>
 #include <thread>
 
+#include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/LogRun.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/sensors/registerClasses.h"
@@ -29,6 +30,8 @@ void TrackApp::declare(CLI::App& cli) {
       ->check(CLI::Range(0.0, 1000.0));
   cli.add_flag("--measurements", measurements,
                "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
+  cli.add_flag("--overwrite", overwrite,
+               "Replace the results of another run in the folder, evaluation and film too");
   cli.add_flag("--info", info, "Say what the logs of -i hold (labels, classes, rates) and stop");
   cli.add_option("--export", exports,
                  "kitti:FILE: also write the objects in KITTI's tracking format")
@@ -100,37 +103,55 @@ void TrackApp::run() {
                                                 log_of[name], log, output, name));
     }
   }
+  for (const Shard& shard : shards()) trackLog(shard);
+}
+
+std::vector<TrackApp::Shard> TrackApp::shards() const {
+  Config config = configWithOptions();
+  PipelineSetup::read(config);
+  const std::string effective_ini = config.effectiveText();
+  std::vector<Shard> out;
   for (const auto& log : inputs) {
     const std::string dir =
         inputs.size() == 1 ? output : output + "/" + fs::path(log).stem().string();
-    trackLog(log, dir, exportFileFor(log));
+    Shard shard{log, dir, exportFileFor(log), effective_ini,
+                runHash(log, effective_ini, PERCEPTION_VERSION)};
+    const bool exported = shard.export_file.empty() || fs::exists(shard.export_file);
+    // All folders are looked at before the first log is tracked.
+    if (!isFinished(dir, shard.hash, overwrite || !exported)) {
+      out.push_back(std::move(shard));
+    } else {
+      fmt::print("{}: already done, results in {}\n", log, dir);
+    }
   }
+  return out;
 }
 
-void TrackApp::trackLog(const std::string& log, const std::string& dir,
-                        const std::string& export_file) {
+void TrackApp::trackLog(const Shard& shard) {
   Config config = configWithOptions();
   const PipelineSetup setup = PipelineSetup::read(config);
   config.finish();
   out_scenes.clear();
   out_record = {};
-  LogRun run(setup, {log, dir, export_file});
+  LogRun run(setup, {shard.log, shard.dir, shard.export_file});
   run.read([this](const Scene& scene) {
     if (keep_scenes) out_scenes.push_back(scene);
   });
   for (const std::string& message : run.finish(strict)) warn(message);
   run.record.program = name();
   run.record.version = PERCEPTION_VERSION;
+  run.record.hash = shard.hash;
   run.record.config = config_file;
   out_real_time_factor = run.realTimeFactor();
-  run.commit(config.effectiveText(),
+  run.commit(shard.effective_ini,
              threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency()));
   out_record = run.record;
   fmt::print(
       "{}: {} scenes, {} objects, {:.1f} s of log in {:.1f} s ({:.1f} times real time), results in "
       "{}\n",
-      log, out_record.scenes, out_record.tracks, out_record.last_stamp - out_record.first_stamp,
-      run.wallSeconds(), out_real_time_factor, dir);
+      shard.log, out_record.scenes, out_record.tracks,
+      out_record.last_stamp - out_record.first_stamp, run.wallSeconds(), out_real_time_factor,
+      shard.dir);
 }
 
 }  // namespace perception

@@ -19,6 +19,7 @@ class TrackApp : public App {
   double rate = 0;                    ///< --rate [Hz]: scenes at a fixed rate instead of at scans
   std::vector<std::string> exports;   ///< --export FORMAT:FILE
   bool measurements = false;          ///< --measurements: also record the filter's input
+  bool overwrite = false;             ///< --overwrite: replace the results of another run
   bool info = false;                  ///< --info: say what the logs hold and stop
   bool keep_scenes = false;           ///< keep all scenes in out_scenes (tests)
 
@@ -34,7 +35,12 @@ class TrackApp : public App {
   double out_real_time_factor = 0;  ///< seconds of log per second of work, last log
 
  private:
-  void trackLog(const std::string& log, const std::string& dir, const std::string& export_file);
+  /// One log and its result folder.
+  struct Shard {
+    std::string log, dir, export_file, effective_ini, hash;
+  };
+  std::vector<Shard> shards() const;
+  void trackLog(const Shard& shard);
   void printContents(const std::string& log);
   Config configWithOptions() const;
   std::string exportFileFor(const std::string& log) const;

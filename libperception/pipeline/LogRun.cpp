@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "libperception/core/Error.h"
+#include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
 
@@ -21,6 +22,7 @@ LogRun::LogRun(const PipelineSetup& setup, LogRunFiles files)
       object_events_(pipeline_.setup().model.classes, events_) {
   written_to_ = fs::path(folder_.pathFor("tracks.csv")).parent_path().string();
   folder_.pathFor("scenes.csv");  // TrackedRunWriter writes both
+  for (const auto& name : productsIn(files_.dir)) folder_.replace(name);
   if (!setup_.run.write_measurements) return;
   for (const char* name : {"measurements.csv", "scans.csv", "sensors.csv"}) folder_.pathFor(name);
   recorder_.emplace(written_to_, pipeline_);
@@ -101,6 +103,7 @@ void LogRun::fillRecord() {
   record.input_entries = reader_.entries();
   record.input_end = nameOf(reader_.end());
   record.input_end_detail = reader_.end() == RawlogReader::End::kClean ? "" : reader_.endMessage();
+  record.input_verifiable = reader_.verifiable();
   record.simulated = facts_.simulated;
   record.weather = facts_.weather;
   record.seed = setup_.run.seed;

@@ -157,6 +157,11 @@ void OutputFolder::commit(const std::string& last) {
   for (const auto& name : names_) handToDisk(temporary_ + "/" + name);
   const std::string marker = path_ + "/" + last;
   if (::unlink(marker.c_str()) != 0 && errno != ENOENT) failWriting(marker, errno);
+  for (const auto& name : replaced_) {
+    std::error_code error;
+    if (staysInside(name)) fs::remove_all(path_ + "/" + name, error);
+    if (error) failWriting(path_ + "/" + name, error.value());
+  }
   handToDisk(path_);
   bool has_last = false;
   for (const auto& name : names_) {

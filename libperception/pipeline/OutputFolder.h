@@ -21,6 +21,8 @@ class OutputFolder {
   const std::string& path() const { return path_; }
   /// Temporary path of the file that commit() renames to `name` (relative; folders are created).
   std::string pathFor(const std::string& name);
+  /// A file or folder of an earlier run in it: commit() removes it before the new files come.
+  void replace(const std::string& name) { replaced_.push_back(name); }
   /// Syncs all files to disk and renames them into place, `last` as the last one; the `last` of an
   /// earlier run is removed first, so that it never exists beside files of two runs. Throws
   /// OutputError (kIoError), also for a file that was not written.
@@ -38,7 +40,8 @@ class OutputFolder {
   std::string path_, temporary_;
   std::vector<std::string> made_;   ///< folders created here, outermost first
   std::vector<std::string> names_;  ///< of the files, in the order of pathFor()
-  int lock_ = -1;                   ///< file descriptor of the folder, locked
+  std::vector<std::string> replaced_;
+  int lock_ = -1;  ///< file descriptor of the folder, locked
   bool committed_ = false;
 };
 

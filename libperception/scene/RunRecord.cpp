@@ -15,6 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// A log that may be cut between two entries.
+constexpr char kNotVerifiable[] = "not verifiable";
+
 std::string fileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
@@ -55,12 +58,14 @@ RunRecord recordFrom(const Json& j, const std::string& path) {
   RunRecord r;
   j.at("program").get_to(r.program);
   j.at("version").get_to(r.version);
+  r.hash = j.value("hash", "");
   const Json& input = j.at("input");
   input.at("name").get_to(r.input);
   input.at("bytes").get_to(r.input_bytes);
   input.at("entries").get_to(r.input_entries);
   input.at("end").get_to(r.input_end);
   input.at("end_detail").get_to(r.input_end_detail);
+  r.input_verifiable = input.value("whole", "") != kNotVerifiable;
   r.first_stamp = stampFrom(input.at("first_stamp"), path);
   r.last_stamp = stampFrom(input.at("last_stamp"), path);
   j.at("simulated").get_to(r.simulated);
@@ -85,11 +90,15 @@ std::string toJson(const RunRecord& r) {
   Json j;
   j["program"] = r.program;
   j["version"] = r.version;
+  j["hash"] = r.hash;
   j["input"] = {{"name", fileName(r.input)},
                 {"bytes", r.input_bytes},
                 {"entries", r.input_entries},
                 {"end", r.input_end},
                 {"end_detail", r.input_end_detail},
+                {"whole", r.input_end != "clean" ? "no"
+                          : r.input_verifiable   ? "verified"
+                                                 : kNotVerifiable},
                 {"first_stamp", decimalSeconds(r.first_stamp.ns)},
                 {"last_stamp", decimalSeconds(r.last_stamp.ns)}};
   j["simulated"] = r.simulated;

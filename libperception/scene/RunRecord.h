@@ -26,12 +26,14 @@ struct SensorRecord {
 struct RunRecord {
   std::string program;  ///< "perception-track"
   std::string version;
+  std::string hash;   ///< runHash(): of log, effective INI and version
   std::string input;  ///< file name of the log; folders are removed when written
   std::uint64_t input_bytes = 0;
   std::uint64_t input_entries = 0;  ///< objects read from the log
   std::string input_end =
       "clean";  ///< end of the log: clean, torn (truncated), unknown class, newer version, damaged
   std::string input_end_detail;  ///< position and reason; empty if clean
+  bool input_verifiable = true;  ///< a clean end proves that nothing is missing
   bool simulated = false;        ///< the log is marked as simulated
   /// Of a simulated log, as its first comment says it ("rain 10 mm/h", "" in clear air); else
   /// unknown.

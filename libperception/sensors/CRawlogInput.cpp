@@ -53,6 +53,7 @@ CRawlogInput::CRawlogInput(const std::string& path) : path_(path) {
   raw_.reserve(kRawBytes);
   if (readFile() && raw_.size() >= 2 && raw_[0] == 0x1f && raw_[1] == 0x8b) {
     compressed_ = true;
+    members_ = 1;
     inflater_ = std::make_unique<Inflater>();
     inflater_->z.next_in = raw_.data();
     inflater_->z.avail_in = static_cast<uInt>(raw_.size());
@@ -115,6 +116,7 @@ bool CRawlogInput::fillInflated() {
       }
       inflateReset2(&z, kGzipWindow);
       inflater_->in_member = true;
+      ++members_;
     }
     const int result = inflate(&z, Z_NO_FLUSH);
     if (result == Z_STREAM_END) {

@@ -37,6 +37,7 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   std::uint64_t fileBytes() const { return file_bytes_; }     ///< [bytes] size of the file
   std::uint64_t fileBytesRead() const { return file_read_; }  ///< [bytes] read so far
   bool compressed() const { return compressed_; }
+  std::uint64_t members() const { return members_; }  ///< of the gzip container, begun so far
   std::string getArchiveDescription() const override { return path_; }
 
  protected:
@@ -56,6 +57,7 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   int file_ = -1;
   std::uint64_t file_bytes_ = 0, file_read_ = 0, position_ = 0;
   bool compressed_ = false;
+  std::uint64_t members_ = 0;
   std::unique_ptr<Inflater> inflater_;
   std::vector<unsigned char> raw_;    ///< as read from the file
   std::vector<unsigned char> ready_;  ///< inflated; [ready_begin_, end) is not consumed yet

@@ -126,6 +126,7 @@ RawlogReader::RawlogReader(const std::string& path) : path_(path) {
 
 RawlogReader::~RawlogReader() = default;
 
+bool RawlogReader::verifiable() const { return input_->compressed() && input_->members() == 1; }
 std::uint64_t RawlogReader::bytesRead() const { return input_->fileBytesRead(); }
 std::uint64_t RawlogReader::fileBytes() const { return input_->fileBytes(); }
 

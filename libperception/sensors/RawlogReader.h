@@ -28,7 +28,8 @@ class CRawlogInput;
 /// A bit error in gzip data is detected where decoding fails, at the latest by the checksum at the
 /// end of the file: observations returned before that may be wrong, see end().
 ///
-/// Not detectable: an uncompressed log truncated exactly between two entries. Implausible sizes
+/// Not detectable: an uncompressed log truncated exactly between two entries, see verifiable().
+/// Implausible sizes
 /// inside MRPT's own classes may allocate gigabytes before they fail: a program that reads
 /// untrusted logs sets a MemoryLimit, as runApp() does.
 class RawlogReader {
@@ -53,6 +54,9 @@ class RawlogReader {
   End end() const { return end_; }
   /// One line about the end: file, fault, byte offset, index of the entry, last stamp.
   const std::string& endMessage() const { return end_message_; }
+  /// Whether kClean proves that nothing is missing: one gzip container, with its length and
+  /// checksum. An uncompressed log, or one of several containers, may be cut between two entries.
+  bool verifiable() const;
 
   std::uint64_t entries() const { return entries_; }  ///< whole ones so far
   /// Number of entries that are no observations, by class.

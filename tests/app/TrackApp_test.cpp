@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationRobotPose.h>
+#include <zlib.h>
 
 #include <chrono>
 #include <cmath>
@@ -162,6 +163,71 @@ TEST(TrackApp, InfoSaysWhatALogHolds) {
   const std::string text = testing::internal::GetCapturedStdout();
   EXPECT_NE(text.find("LIDAR_TOP"), std::string::npos) << text;
   EXPECT_NE(text.find("10.0"), std::string::npos) << "[Hz]\n" << text;
+}
+
+TEST(TrackApp, AFinishedFolderIsLeftAsItIs) {
+  Tracking t;
+  ASSERT_EQ(t.track(demoStart(2)).code, 0) << t.ended.err;
+  EXPECT_EQ(t.done().at("hash").get<std::string>().size(), 64U);
+  const std::string timing = contentOf(t.dir + "/timing.json");
+  const auto at = std::filesystem::last_write_time(t.dir + "/tracks.csv");
+  ASSERT_EQ(t.track(t.folder / "log.rawlog", {"--threads", "1"}).code, 0) << t.ended.err;
+  EXPECT_EQ(contentOf(t.dir + "/timing.json"), timing);
+  EXPECT_EQ(std::filesystem::last_write_time(t.dir + "/tracks.csv"), at);
+}
+
+TEST(TrackApp, AFolderOfAnotherRunIsRefusedUnlessOverwritten) {
+  const std::vector<std::function<Ended(Tracking&, std::vector<std::string>)>> others = {
+      [](Tracking& t, std::vector<std::string> o) { return t.track(demoStart(2.5), o); },
+      [](Tracking& t, std::vector<std::string> o) {
+        o.insert(o.end(), {"--seed", "7"});
+        return t.track(t.folder / "log.rawlog", o);
+      }};
+  for (const auto& other : others) {
+    Tracking t;
+    ASSERT_EQ(t.track(demoStart(2)).code, 0) << t.ended.err;
+    const std::string before = contentOf(t.dir + "/done.json");
+    std::filesystem::create_directories(t.dir + "/evaluation");
+    for (const char* name : {"evaluation/report.json", "scene.mp4", "index.html", "notes.txt"})
+      std::ofstream(t.dir + "/" + name) << "old";
+    EXPECT_EQ(other(t, {}).code, 78);
+    EXPECT_NE(t.ended.err.find("--overwrite"), std::string::npos);
+    EXPECT_EQ(contentOf(t.dir + "/done.json"), before);
+    EXPECT_TRUE(std::filesystem::exists(t.dir + "/scene.mp4"));
+    ASSERT_EQ(other(t, {"--overwrite"}).code, 0) << t.ended.err;
+    EXPECT_NE(contentOf(t.dir + "/done.json"), before);
+    for (const char* name : {"evaluation", "scene.mp4", "index.html"})
+      EXPECT_FALSE(std::filesystem::exists(t.dir + "/" + name)) << name;
+    EXPECT_TRUE(std::filesystem::exists(t.dir + "/notes.txt")) << "of the user";
+  }
+}
+
+/// The bytes inside a gzip file.
+std::string inflated(const std::string& path) {
+  std::string out;
+  const gzFile file = gzopen(path.c_str(), "rb");
+  char part[65536];
+  for (int got = 0; (got = gzread(file, part, sizeof part)) > 0;)
+    out.append(part, static_cast<std::size_t>(got));
+  gzclose(file);
+  return out;
+}
+
+TEST(TrackApp, ALogThatMayBeCutBetweenTwoEntriesIsNotVerifiable) {
+  Tracking t;
+  ASSERT_EQ(t.track(demoStart(2)).code, 0) << t.ended.err;
+  EXPECT_EQ(t.done().at("input").at("whole"), "verified");
+  Tracking plain;
+  std::ofstream(plain.folder / "plain.rawlog", std::ios::binary)
+      << inflated(t.folder / "log.rawlog");
+  ASSERT_EQ(plain.track(plain.folder / "plain.rawlog").code, 0) << plain.ended.err;
+  EXPECT_EQ(plain.done().at("input").at("whole"), "not verifiable");
+  EXPECT_EQ(contentOf(plain.dir + "/tracks.csv"), contentOf(t.dir + "/tracks.csv"));
+  Tracking cut;
+  std::ofstream(cut.folder / "cut.rawlog", std::ios::binary)
+      << contentOf(t.folder / "log.rawlog").substr(0, 900000);
+  ASSERT_EQ(cut.track(cut.folder / "cut.rawlog").code, 3) << cut.ended.err;
+  EXPECT_EQ(cut.done().at("input").at("whole"), "no");
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ for scene in A B C; do for seed in ${SEEDS:-61 62 63 64}; do for trial in 1 2 3 
   xargs -P "$(nproc)" -n 3 bash -c 'log=$out/$0$2s$1
     [[ -f $log.rawlog ]] || "$bin/perception-simulate" -c "ini/scenarios/$0.ini" --vehicle "$out/vehicle.ini" --seed "$1" \
       --trial "$2" --threads 1 -o "$log.rawlog" >"$log.log"
-    for set in C+R C/H+R; do "$bin/perception-track" -c ini/skynet.ini -i "$log.rawlog" -o "${log}_${set//\//}" --sensors "$set" \
+    for set in C+R C/H+R; do "$bin/perception-track" -c ini/skynet.ini -i "$log.rawlog" -o "${log}_${set//\//}" --overwrite --sensors "$set" \
       --threads 1 >>"$log.log" 2>&1; done'
 
 "$bin/perception-evaluate" -r "C+R=$out/*_C+R" -r "C/H+R=$out/*_CH+R" -t "$out/{log}.truth.csv" --paper vehicle --no-plots \

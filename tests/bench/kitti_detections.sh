@@ -52,7 +52,7 @@ import() {
 track() {
   local n=$1 code=0
   shift
-  "$bin/perception-track" -c "$ini" -i "$logs/$n.rawlog" -o "$out/run/$n" --threads 1 \
+  "$bin/perception-track" -c "$ini" -i "$logs/$n.rawlog" -o "$out/run/$n" --overwrite --threads 1 \
     --export "kitti:$out/res/$n.txt" "$@" >"$out/track_$n.log" 2>&1 || code=$?
   (( code == 0 || code == 3 )) || { cat "$out/track_$n.log" >&2; return 1; }  # 3: done, with warnings
 }

@@ -30,7 +30,7 @@ def track(binaries, data, out, sequence, options):
     run([binaries + '/perception-import', 'kitti', '--calib', f'{data}/calib/{name}.txt', '--poses', f'{data}/velo_poses/{name}.txt',
          '--rate', '9.66', '--labels', f'{data}/label_02/{name}.txt', '--detections', f'dpm:Car={data}/det_dpm/Car/{name}.txt',
          '-o', log])
-    run([binaries + '/perception-track', '-c', 'ini/kitti-detections-viewpoint.ini', '-i', log, '-o', os.path.join(out, name),
+    run([binaries + '/perception-track', '-c', 'ini/kitti-detections-viewpoint.ini', '-i', log, '-o', os.path.join(out, name), '--overwrite',
          '--export', 'kitti:' + result] + options)
     return result
 

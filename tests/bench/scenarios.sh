@@ -16,7 +16,7 @@ for scene in A B C; do for seed in $seeds; do for trial in $trials; do echo "$sc
     "$bin/perception-simulate" -c "ini/scenarios/$0.ini" --seed "$1" --trial "$2" --threads 1 -o "$log.rawlog" >"$log.log"'
 
 for log in "$out"/*.rawlog; do for set in $sets; do echo "$(basename "$log" .rawlog) $set"; done; done |
-  xargs -P "$(nproc)" -n 2 bash -c 'run=$out/$0_${1//\//}; "$bin/perception-track" -c ini/skynet.ini -i "$out/$0.rawlog" -o "$run" \
+  xargs -P "$(nproc)" -n 2 bash -c 'run=$out/$0_${1//\//}; "$bin/perception-track" -c ini/skynet.ini -i "$out/$0.rawlog" -o "$run" --overwrite \
     --sensors "$1" --measurements --threads 1 >"$run.log" 2>&1'
 
 runs=()

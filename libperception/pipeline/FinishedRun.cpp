@@ -1,0 +1,128 @@
+#include "libperception/pipeline/FinishedRun.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include "libperception/core/Error.h"
+#include "libperception/pipeline/Progress.h"
+#include "libperception/scene/RunRecord.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Written by perception-track, -report, -snapshot and -evaluate as the README and the page have
+/// it.
+constexpr const char* kProducts[] = {
+    "tracks.csv",       "scenes.csv", "events.jsonl",  "effective.ini", "timing.json",
+    "measurements.csv", "scans.csv",  "sensors.csv",   "index.html",    "scene.png",
+    "contact.png",      "scene.mp4",  "scene.3Dscene", "evaluation"};
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1)
+      throw Error(ExitCode::kInternal, "SHA-256 is not available");
+  }
+  void add(const void* data, std::size_t bytes) { EVP_DigestUpdate(context_.get(), data, bytes); }
+  void add(const std::string& text) {
+    add(text.data(), text.size());
+    add("", 1);  // "ab", "c" is not "a", "bc"
+  }
+  void addFile(const std::string& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+      throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);
+    const std::unique_ptr<const int, void (*)(const int*)> closer(
+        &file, [](const int* f) { ::close(*f); });
+    std::vector<char> part(1U << 20);
+    while (true) {
+      stopIfAsked();
+      const ssize_t got = ::read(file, part.data(), part.size());
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0)
+        throw DataError(fmt::format("{}: reading failed: {}", path, std::strerror(errno)),
+                        ExitCode::kIoError);
+      if (got == 0) return;
+      add(part.data(), static_cast<std::size_t>(got));
+    }
+  }
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned size = 0;
+    EVP_DigestFinal_ex(context_.get(), digest.data(), &size);
+    std::string out;
+    for (unsigned i = 0; i < size; ++i) out += fmt::format("{:02x}", digest[i]);
+    return out;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
+};
+
+/// Values of an INI that are files: models, maps.
+std::vector<std::string> filesNamedIn(const std::string& ini) {
+  std::vector<std::string> out;
+  std::istringstream lines(ini);
+  for (std::string line; std::getline(lines, line);) {
+    const auto equals = line.find(" = ");
+    if (line.empty() || line[0] == ';' || equals == std::string::npos) continue;
+    std::string value = line.substr(equals + 3, line.find(" ;") - equals - 3);
+    value.erase(value.find_last_not_of(" \t") + 1);
+    std::error_code ignored;
+    if (!value.empty() && fs::is_regular_file(value, ignored)) out.push_back(value);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string runHash(const std::string& log, const std::string& effective_ini,
+                    const std::string& version) {
+  if (!fs::is_regular_file(log)) return "";  // whoever reads it says what it is
+  Sha256 hash;
+  hash.add(version);
+  hash.add(effective_ini);
+  for (const auto& file : filesNamedIn(effective_ini)) hash.addFile(file);
+  hash.addFile(log);
+  return hash.hex();
+}
+
+bool isFinished(const std::string& dir, const std::string& hash, bool overwrite) {
+  const std::string done = dir + "/done.json";
+  std::error_code ignored;
+  if (hash.empty() || !fs::exists(done, ignored)) return false;
+  std::string there;
+  try {
+    there = readRunRecord(done).hash;
+  } catch (const DataError&) {  // of another version or program: another run
+  }
+  if (!there.empty() && there == hash) return true;
+  if (overwrite) return false;
+  throw Error(ExitCode::kBadConfig,
+              fmt::format("{}: holds the results of another log, configuration or version; give "
+                          "another folder, or --overwrite to remove them",
+                          dir));
+}
+
+std::vector<std::string> productsIn(const std::string& dir) {
+  std::vector<std::string> out;
+  std::error_code ignored;
+  if (!fs::exists(dir + "/done.json", ignored)) return out;
+  for (const char* name : kProducts) {
+    if (fs::exists(dir + "/" + name, ignored)) out.emplace_back(name);
+  }
+  return out;
+}
+
+}  // namespace perception
