@@ -1,6 +1,7 @@
 #include "libperception/app/SnapshotApp.h"
+#include "libperception/app/Supervisor.h"
 
 int main(int argc, char** argv) {
   perception::SnapshotApp app;
-  return perception::runApp(app, argc, argv);
+  return perception::runSupervised(app, argc, argv);
 }

@@ -1,6 +1,7 @@
+#include "libperception/app/Supervisor.h"
 #include "studies/StudyApp.h"
 
 int main(int argc, char** argv) {
   perception::StudyApp app;
-  return perception::runApp(app, argc, argv);
+  return perception::runSupervised(app, argc, argv);
 }

@@ -1,6 +1,7 @@
+#include "libperception/app/Supervisor.h"
 #include "libperception/app/TrackApp.h"
 
 int main(int argc, char** argv) {
   perception::TrackApp app;
-  return perception::runApp(app, argc, argv);
+  return perception::runSupervised(app, argc, argv);
 }

@@ -19,7 +19,7 @@ namespace {
 
 void printLine(const std::string& line) {
   clearProgressBar();
-  fmt::print(stderr, "{}\n", line);
+  std::fputs((line + "\n").c_str(), stderr);  // whoever does not hear it still gets the result
 }
 
 // A single line unchanged; several faults as an indented list.
@@ -53,7 +53,8 @@ int parse(App& app, CLI::App& cli, int argc, const char* const* argv) {
 
 bool isOfTheDisk(const std::error_code& code) {
   return code == std::errc::no_space_on_device || code == std::errc::io_error ||
-         code == std::errc::read_only_file_system || code == std::errc::file_too_large;
+         code == std::errc::read_only_file_system || code == std::errc::file_too_large ||
+         code == std::errc::broken_pipe || code == std::errc::bad_file_descriptor;
 }
 
 ExitCode runGuarded(App& app) {

@@ -11,8 +11,10 @@
 namespace perception {
 namespace {
 
-constexpr double kCell = 10;         // [m] cell size of the spatial index
-constexpr double kLeastStep = 1e-3;  // [m] between points of a lane
+constexpr double kCell = 10;          // [m] cell size of the spatial index
+constexpr double kLeastStep = 1e-3;   // [m] between points of a lane
+constexpr double kLongestStep = 1e3;  // [m] the same
+constexpr double kFarthest = 2e7;     // [m] a pole in UTM, with a margin
 
 /// The point of the segment a-b nearest to p.
 struct Foot {
@@ -113,6 +115,11 @@ LaneMap LaneMap::fromFile(const std::string& path) {
     if (table.flag(r, one_way) != lane.one_way)
       table.fault(r, one_way, "the same for the whole lane");
     const Vector2 p(table.real(r, x), table.real(r, y));
+    for (const auto& [column, value] : {std::pair(x, p.x()), std::pair(y, p.y())}) {
+      if (std::abs(value) > kFarthest) table.fault(r, column, "[m] at most 2e7");
+    }
+    if (!lane.points.empty() && (p - lane.points.back()).norm() > kLongestStep)
+      table.fault(r, x, "a place within 1000 m of the one before");
     if (!lane.points.empty() && (p - lane.points.back()).norm() < kLeastStep)
       table.fault(r, x, "a place apart from the one before");
     lane.points.push_back(p);

@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/Supervision.h"
 
 namespace perception {
 namespace {
@@ -23,11 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kTemporaryPrefix = ".unfinished.";
-
-std::string hostName() {
-  char name[256] = {};
-  return ::gethostname(name, sizeof name - 1) == 0 ? name : "localhost";
-}
 
 [[noreturn]] void failCreating(const std::string& path, const std::string& reason) {
   throw OutputError(fmt::format("{}: cannot be created: {}", path, reason));
@@ -47,6 +42,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
     lock();
     removeLeftovers();
     temporary_ = fmt::format("{}/{}{}.{}", path_, kTemporaryPrefix, hostName(), ::getpid());
+    removed_if_killed_.emplace(temporary_);
     std::error_code error;
     fs::create_directory(temporary_, error);
     if (error) failCreating(temporary_, error.message());
@@ -97,7 +93,7 @@ void OutputFolder::removeLeftovers() const {
     if (name.compare(0, prefix.size(), prefix) != 0) continue;
     const auto process = static_cast<pid_t>(std::strtol(name.c_str() + prefix.size(), nullptr, 10));
     const bool ours = process == ::getpid();
-    const bool gone = process > 0 && ::kill(process, 0) != 0 && errno == ESRCH;
+    const bool gone = process > 0 && !isAlive(process);
     std::error_code ignored;
     if (ours || gone) fs::remove_all(i->path(), ignored);
   }

@@ -1,7 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "libperception/core/Supervision.h"
 
 namespace perception {
 
@@ -38,6 +41,7 @@ class OutputFolder {
   void moveIntoPlace(const std::string& name) const;
 
   std::string path_, temporary_;
+  std::optional<TemporaryPath> removed_if_killed_;
   std::vector<std::string> made_;   ///< folders created here, outermost first
   std::vector<std::string> names_;  ///< of the files, in the order of pathFor()
   std::vector<std::string> replaced_;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <utility>
 
 #include "libperception/core/Error.h"
@@ -15,13 +16,25 @@ namespace perception {
 namespace {
 
 volatile std::sig_atomic_t signal_seen = 0;  // number of the first SIGINT or SIGTERM
+timespec signal_at{};                        // its time
 bool bar_shown = false;  // a progress bar stands in the last line of the terminal
 struct sigaction before_int = {}, before_term = {};
+using Handler = void (*)(int);
+Handler before_file_size = SIG_DFL, before_pipe = SIG_DFL;
 
+// One stop may come as several signals: of the terminal or of `timeout` to all processes of the
+// group, and of the supervisor.
 extern "C" void onStopSignal(int number) {
-  signal_seen = number;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  constexpr time_t kAgain = 1;  // [s]
+  timespec at{};
+  ::clock_gettime(CLOCK_MONOTONIC, &at);
+  if (signal_seen == 0) {
+    signal_seen = number;
+    signal_at = at;
+  } else if (signal_seen != number || at.tv_sec > signal_at.tv_sec + kAgain) {
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+  }
 }
 
 double now() {
@@ -44,15 +57,25 @@ StopSignals::StopSignals() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, &before_int);
   sigaction(SIGTERM, &action, &before_term);
+  // These are errors of the write that causes them.
+  before_file_size = std::signal(SIGXFSZ, SIG_IGN);
+  before_pipe = std::signal(SIGPIPE, SIG_IGN);
+  sigset_t held;
+  sigemptyset(&held);
+  sigaddset(&held, SIGINT);
+  sigaddset(&held, SIGTERM);
+  ::pthread_sigmask(SIG_UNBLOCK, &held, nullptr);
 }
 
 StopSignals::~StopSignals() {
   sigaction(SIGINT, &before_int, nullptr);
   sigaction(SIGTERM, &before_term, nullptr);
+  std::signal(SIGXFSZ, before_file_size);
+  std::signal(SIGPIPE, before_pipe);
 }
 
 void clearProgressBar() {
-  if (std::exchange(bar_shown, false)) fmt::print(stderr, "\r\x1b[K");
+  if (std::exchange(bar_shown, false)) std::fputs("\r\x1b[K", stderr);
 }
 
 bool stopAsked() { return signal_seen != 0; }
@@ -89,7 +112,7 @@ void Progress::update(std::uint64_t done, std::uint64_t items) {
     if (share > 0) line += fmt::format(", {} left", clockText(elapsed * (1 - share) / share));
   }
   line += fmt::format(", {} ({:.1f}/s)", items, static_cast<double>(items) / elapsed);
-  fmt::print(stderr, "\r{}\x1b[K", line);
+  std::fputs(("\r" + line + "\x1b[K").c_str(), stderr);
   std::fflush(stderr);
   bar_shown = true;
 }

@@ -5,7 +5,8 @@
 namespace perception {
 
 /// Handles SIGINT and SIGTERM during its lifetime: the first signal requests the end of the run at
-/// the next frame, the second one has the default action.
+/// the next frame, another one after it (the same one only after a second) has the default action.
+/// A file that gets too large and a pipe without a reader are failed writes.
 class StopSignals {
  public:
   StopSignals();

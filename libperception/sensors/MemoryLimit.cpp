@@ -1,5 +1,6 @@
 #include "libperception/sensors/MemoryLimit.h"
 
+#include <fcntl.h>
 #include <mrpt/core/aligned_allocator.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -31,6 +32,13 @@ std::uint64_t machineMemory() {
 }
 
 }  // namespace
+
+std::uint64_t addressSpace() {
+  static const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  char text[64] = {};
+  if (file < 0 || ::pread(file, text, sizeof text - 1, 0) <= 0) return 0;
+  return std::strtoull(text, nullptr, 10) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
 
 bool MemoryLimit::supported() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

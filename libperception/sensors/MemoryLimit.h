@@ -25,4 +25,7 @@ class MemoryLimit {
   std::optional<std::uint64_t> before_;  ///< [bytes] former soft limit
 };
 
+/// [bytes] of the process, as RLIMIT_AS counts them; 0 if unknown.
+std::uint64_t addressSpace();
+
 }  // namespace perception

@@ -11,8 +11,10 @@
 #include <new>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/Supervision.h"
 #include "libperception/sensors/CRawlogInput.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/JpegErrors.h"
 #include "libperception/sensors/MemoryLimit.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -27,6 +29,8 @@ struct EntryHeader {
 };
 
 constexpr std::size_t kHeaderBytes = 4 + 127;
+/// [bytes] of memory that reading one entry may take: 50 million points and half as much again.
+constexpr std::uint64_t kLargestEntry = 1500ULL << 20;
 
 bool isNameCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -109,6 +113,7 @@ const char* nameOf(RawlogReader::End end) {
 RawlogReader::RawlogReader(const std::string& path) : path_(path) {
   registerPerceptionClasses();
   MemoryLimit::link();
+  linkJpegErrors();
   input_ = std::make_unique<CRawlogInput>(path);
   const std::string begin = input_->peek(kHeaderBytes);
   if (input_->state() == CRawlogInput::State::kFailed) {
@@ -201,6 +206,8 @@ bool RawlogReader::readEntry() {
   }
   mrpt::serialization::CSerializable::Ptr object;
   try {
+    const ReadingScope scope(path_, entry_offset_);
+    const MemoryLimit limit(addressSpace() + kLargestEntry);
     object = input_->ReadObject();
   } catch (const std::bad_alloc&) {
     finish(End::kDamaged,

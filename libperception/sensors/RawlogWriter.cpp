@@ -19,11 +19,6 @@ namespace perception {
 
 namespace {
 
-std::string temporaryName(const std::string& path) {
-  const std::filesystem::path p(path);
-  return (p.parent_path() / fmt::format(".{}.{}.part", p.filename().string(), ::getpid())).string();
-}
-
 /// Inflates the whole file; true when its checksums match and it holds `bytes` bytes.
 bool holds(const std::string& path, std::uint64_t bytes) {
   CRawlogInput input(path);
@@ -53,7 +48,7 @@ void syncFolderOf(const std::string& path) {
 }  // namespace
 
 RawlogWriter::RawlogWriter(const std::string& path, int gzip_level)
-    : path_(path), temporary_(temporaryName(path)) {
+    : path_(path), temporary_(partialPath(path)), removed_if_killed_(temporary_) {
   registerPerceptionClasses();
   if (std::filesystem::is_directory(path))
     throw OutputError(fmt::format("{}: is a directory", path));

@@ -3,6 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "libperception/core/Supervision.h"
+
 namespace mrpt::serialization {
 class CSerializable;
 }
@@ -33,6 +35,7 @@ class RawlogWriter {
 
  private:
   std::string path_, temporary_;
+  TemporaryPath removed_if_killed_;
   std::unique_ptr<CRawlogOutput> output_;
   std::uint64_t entries_ = 0;
   bool closed_ = false;

@@ -1,0 +1,19 @@
+#pragma once
+
+namespace perception {
+
+class App;
+
+struct SupervisorLimits {
+  double reading = 20;  ///< [s] of processor time for one entry of data of others; assumed
+  double stop = 4.5;    ///< [s] from a signal to the end
+};
+
+/// runApp() in a process of its own, watched by this one: whatever libraries do on bad data, the
+/// program ends with a message and a code of ExitCode, and nothing temporary is left. A child that
+/// crashes, that a library ends, or that does not get on while it reads data of others
+/// (ReadingScope): kBadInput with file and position; elsewhere: kInternal. SIGTERM and SIGINT are
+/// passed on; a child that does not end is killed: kTryAgain.
+int runSupervised(App& app, int argc, const char* const* argv, SupervisorLimits limits = {});
+
+}  // namespace perception

@@ -1,0 +1,62 @@
+#pragma once
+#include <sys/types.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace perception {
+
+/// What a process lets its supervisor know (app/Supervisor.h), in memory that both share: what it
+/// reads just now, and its temporary files, which it cannot remove when it is killed. Without a
+/// supervisor the record is the process's own and nobody looks at it.
+struct SupervisionRecord {
+  static constexpr std::size_t kMostPaths = 64, kLongestPath = 4096;
+
+  std::atomic<std::uint64_t> reading{0};   ///< counts ReadingScopes: odd inside of one
+  std::atomic<std::uint64_t> position{0};  ///< [bytes] in what is read
+  std::array<char, kLongestPath> read_from{};
+  std::array<std::array<char, kLongestPath>, kMostPaths> temporaries{};  ///< empty: a free place
+
+  static SupervisionRecord& ofThisProcess();
+  /// Replaces the record; before the first use. Not owned.
+  static void set(SupervisionRecord* record);
+};
+
+/// While it lives, data of others are parsed by a library that may crash, hang or end the process
+/// on them. One at a time; those inside another have no effect. One thread.
+class ReadingScope {
+ public:
+  explicit ReadingScope(const std::string& path, std::uint64_t position = 0);
+  ~ReadingScope();
+  ReadingScope(const ReadingScope&) = delete;
+  ReadingScope& operator=(const ReadingScope&) = delete;
+
+ private:
+  bool outer_ = false;
+};
+
+/// A file or folder that is to go away if this process is killed.
+class TemporaryPath {
+ public:
+  /// `path` is not created.
+  explicit TemporaryPath(const std::string& path);
+  ~TemporaryPath();
+  TemporaryPath(const TemporaryPath&) = delete;
+  TemporaryPath& operator=(const TemporaryPath&) = delete;
+
+ private:
+  std::size_t place_;
+};
+
+/// ".NAME.HOST.PID.part" beside `path`: a file of this name is renamed to `path` once it is
+/// complete. Removes those that killed processes of this host left.
+std::string partialPath(const std::string& path);
+
+/// True if a process of that number of this host lives.
+bool isAlive(pid_t process);
+std::string hostName();
+
+}  // namespace perception
