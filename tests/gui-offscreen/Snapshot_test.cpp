@@ -130,7 +130,7 @@ TEST(Snapshot, EverySymbolChangesThePicture) {
   view.occupied = {{{104, 65, 1}, Vector3::Constant(0.2), 3}};
   changes("occupied cell");
   view.corridor = Corridor{};
-  view.free = {20, true, 15};
+  view.free.distance = 20, view.free.blocked = true, view.free.seen = 15;
   changes("free lane");
   TruthObject truth;
   truth.position = Vector3(101, 70, 0);
