@@ -77,19 +77,16 @@ std::vector<std::string> arguments(const Picture& first, double rate, const std:
 }  // namespace
 
 VideoFile::VideoFile(const std::string& path, double rate)
-    : path_(path), partial_(path + ".part"), said_(path + ".log"), rate_(rate) {
+    : path_(path), partial_(path), said_(path + ".log"), rate_(rate) {
   if (onPath("ffmpeg").empty()) {
     throw Error(ExitCode::kUnavailable,
                 path + ": ffmpeg, which writes videos, is not installed (Debian package ffmpeg)");
   }
-  OutputFile(partial_).close();  // throws with the reason if the folder is missing or not writable
+  OutputFile probe(path);  // throws with the reason if the folder is missing or not writable
 }
 
 VideoFile::~VideoFile() {
   if (pipe_ >= 0) finish();
-  std::error_code ignored;
-  fs::remove(partial_, ignored);
-  fs::remove(said_, ignored);
 }
 
 void VideoFile::start(const Picture& first) {
@@ -101,9 +98,9 @@ void VideoFile::start(const Picture& first) {
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, ends[0], 0);
   ::posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  ::posix_spawn_file_actions_addopen(&actions, 2, said_.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                     0644);
-  std::vector<std::string> words = arguments(first, rate_, partial_);
+  ::posix_spawn_file_actions_addopen(&actions, 2, said_.path().c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  std::vector<std::string> words = arguments(first, rate_, partial_.path());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -150,7 +147,7 @@ int VideoFile::finish() {
 }
 
 void VideoFile::fail(const std::string& what) {
-  std::ifstream log(said_);
+  std::ifstream log(said_.path());
   const std::string said((std::istreambuf_iterator<char>(log)), {});
   throw OutputError(fmt::format("{}: ffmpeg: {}{}{}", path_, what, said.empty() ? "" : ": ",
                                 said.substr(0, said.find('\n'))),
@@ -161,9 +158,7 @@ void VideoFile::close() {
   if (frames_ == 0) throw OutputError(path_ + ": a video without pictures");
   const int status = finish();
   if (status != 0) fail(fmt::format("ended with status {}", WEXITSTATUS(status)));
-  std::error_code failed;
-  fs::rename(partial_, path_, failed);
-  if (failed) throw OutputError(path_ + ": " + failed.message());
+  partial_.commit();
 }
 
 }  // namespace perception

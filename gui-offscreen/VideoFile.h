@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gui-offscreen/Picture.h"
+#include "libperception/core/PartialFile.h"
 
 namespace perception {
 
@@ -31,7 +32,8 @@ class VideoFile {
   [[noreturn]] void fail(const std::string& what);
   int finish();  ///< ffmpeg's exit status
 
-  std::string path_, partial_, said_;  ///< final path, temporary path, ffmpeg's messages
+  std::string path_;
+  PartialFile partial_, said_;  ///< the video, ffmpeg's messages
   double rate_;
   int width_ = 0, height_ = 0;  ///< [px]
   int pipe_ = -1;

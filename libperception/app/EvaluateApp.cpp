@@ -9,6 +9,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/evaluation/Plots.h"
+#include "libperception/pipeline/OutputFolder.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/MeasurementRun.h"
 #include "libperception/scene/OutputFile.h"
@@ -234,20 +235,27 @@ void EvaluateApp::warnOfGaps(const EvaluatedRun& run, const std::string& truth) 
 }
 
 void EvaluateApp::write(EvaluationReport report, const std::string& dir) {
-  createFolder(dir);
+  OutputFolder folder(dir);
+  const std::string text = folder.pathFor("report.txt");
+  const fs::path temporary = fs::path(text).parent_path();
   if (plots && !report.runs.empty()) {
     const bool single = report.runs.size() == 1 && report.runs.front().trials.empty();
-    const PlotResult drawn = single
-                                 ? writePlots(report.runs.front(), report.options, dir, max_plots)
-                                 : writeComparisonPlots(report, dir);
+    const PlotResult drawn =
+        single ? writePlots(report.runs.front(), report.options, temporary.string(), max_plots)
+               : writeComparisonPlots(report, temporary.string());
     report.plots = drawn.files;
     if (!drawn.fault.empty()) warn(drawn.fault);
   }
-  writeFile(dir + "/report.txt", textReport(report));
-  writeFile(dir + "/report.md", markdownReport(report));
-  writeFile(dir + "/report.json", jsonReport(report));
+  for (const auto& entry : fs::recursive_directory_iterator(temporary)) {
+    if (!entry.is_directory()) folder.pathFor(entry.path().lexically_relative(temporary).string());
+  }
+  writeFile(text, textReport(report));
+  writeFile(folder.pathFor("report.md"), markdownReport(report));
+  writeFile(folder.pathFor("report.json"), jsonReport(report));
   if (report.runs.size() == 1 && report.runs.front().trials.empty())
-    writeFile(dir + "/instants.csv", instantsCsv(report.runs.front()));
+    writeFile(folder.pathFor("instants.csv"), instantsCsv(report.runs.front()));
+  if (fs::exists(fs::path(dir) / "report.json")) folder.replace("plots");
+  folder.commit("report.json");
   out_folders.push_back(dir);
 }
 

@@ -164,6 +164,7 @@ void SimulateApp::run() {
     if (packed.valid()) packed.get();
   }
   // The truth first, so that a log with its final name always has one.
+  log.finish();
   out_truth_file = truthFileOf(output);
   writeGroundTruth(out_truth_file, simulator.truth());
   if (!lanes.empty()) writeFile(lanesFileOf(output), lanesText(lanes));

@@ -133,6 +133,7 @@ void SimulateApp::alterRecording() {
     }
   }
   if (log.end() != RawlogReader::End::kClean) warn(log.endMessage());
+  out.finish();
   if (has_truth) {
     out_truth_file = truthFileOf(output);
     fs::copy_file(truth_file, out_truth_file, fs::copy_options::overwrite_existing, error);

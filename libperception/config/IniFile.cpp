@@ -9,6 +9,8 @@
 #include <memory>
 #include <system_error>
 
+#include "libperception/core/PartialFile.h"
+
 namespace perception {
 namespace {
 
@@ -22,6 +24,8 @@ struct Closer {
 }  // namespace
 
 std::string readWhole(const std::string& path, std::string& content) {
+  if (const auto what = irregularity(path); !what.empty() && what != "a directory")
+    return fmt::format("is {}, expected a configuration file", what);
   const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rbe"));
   if (!file) return fmt::format("cannot be read: {}", std::strerror(errno));
   char block[1 << 14];

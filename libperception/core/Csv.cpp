@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/PartialFile.h"
 
 namespace perception {
 namespace {
@@ -21,6 +22,8 @@ std::string readWhole(const std::string& path) {
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
+  if (const auto what = irregularity(path); !what.empty())
+    throw DataError(fmt::format("{}: not a table but {}", path, what));
   const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rbe"));
   if (!file) {
     const ExitCode code = errno == ENOENT ? ExitCode::kNoInput : ExitCode::kBadInput;

@@ -1,6 +1,7 @@
 #include "libperception/core/GroundTruth.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -16,6 +17,7 @@
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/PartialFile.h"
 
 namespace perception {
 namespace {
@@ -145,7 +147,8 @@ void writeGroundTruth(const std::string& path, const std::vector<TruthObject>& r
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "wbe"));
+  PartialFile partial(path);
+  std::unique_ptr<std::FILE, Closer> file(std::fopen(partial.path().c_str(), "wbe"));
   if (!file) {
     throw OutputError(fmt::format("{}: cannot be created: {}", path, std::strerror(errno)));
   }
@@ -153,10 +156,12 @@ void writeGroundTruth(const std::string& path, const std::vector<TruthObject>& r
   for (const TruthObject& row : rows) text += line(row);
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
-  if (!written || std::fflush(file.get()) != 0 || std::fclose(file.release()) != 0) {
+  if (!written || std::fflush(file.get()) != 0 || ::fsync(::fileno(file.get())) != 0 ||
+      std::fclose(file.release()) != 0) {
     throw OutputError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)),
                       ExitCode::kIoError);
   }
+  partial.commit();
 }
 
 }  // namespace perception

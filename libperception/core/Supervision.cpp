@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
+#include <set>
 #include <system_error>
 
 namespace perception {
@@ -25,6 +26,29 @@ void put(std::array<char, N>& to, const std::string& text) {
   const std::size_t size = std::min(text.size(), N - 1);
   std::memcpy(to.data(), text.data(), size);
   to[size] = '\0';
+}
+
+constexpr char kPartialEnd[] = ".part";
+
+/// Partial files of killed processes of this host, ".NAME.HOST.PID.part"; once for each folder.
+void removeLeftovers(const fs::path& folder) {
+  static std::set<std::string> done;
+  const std::lock_guard<std::mutex> lock(places);
+  std::error_code error;
+  if (!done.insert(fs::absolute(folder, error).lexically_normal().string()).second) return;
+  const std::string host = "." + hostName() + ".", end = kPartialEnd;
+  for (fs::directory_iterator i(folder, error), none; !error && i != none; i.increment(error)) {
+    const std::string name = i->path().filename().string();
+    if (name.size() <= end.size() || name[0] != '.') continue;
+    const std::size_t tail = name.size() - end.size(), at = name.rfind(host);
+    if (name.compare(tail, end.size(), end) != 0 || at == std::string::npos) continue;
+    char* stop = nullptr;
+    const auto process =
+        static_cast<pid_t>(std::strtol(name.c_str() + at + host.size(), &stop, 10));
+    std::error_code ignored;
+    if (stop == name.c_str() + tail && process > 0 && !isAlive(process))
+      fs::remove(i->path(), ignored);
+  }
 }
 
 }  // namespace
@@ -50,6 +74,7 @@ ReadingScope::~ReadingScope() {
 }
 
 TemporaryPath::TemporaryPath(const std::string& path) : place_(SupervisionRecord::kMostPaths) {
+  if (path.empty()) return;
   std::error_code error;
   const std::string whole = fs::absolute(path, error).string();
   auto& all = SupervisionRecord::ofThisProcess().temporaries;
@@ -75,20 +100,10 @@ std::string hostName() {
 
 std::string partialPath(const std::string& path) {
   const fs::path whole(path), folder = whole.parent_path();
-  const std::string begin = fmt::format(".{}.{}.", whole.filename().string(), hostName());
-  const std::string end = ".part";
-  std::error_code error;
-  for (fs::directory_iterator i(folder.empty() ? "." : folder, error), none; !error && i != none;
-       i.increment(error)) {
-    const std::string name = i->path().filename().string();
-    if (name.size() <= begin.size() + end.size() || name.compare(0, begin.size(), begin) != 0 ||
-        name.compare(name.size() - end.size(), end.size(), end) != 0)
-      continue;
-    const auto process = static_cast<pid_t>(std::strtol(name.c_str() + begin.size(), nullptr, 10));
-    std::error_code ignored;
-    if (process > 0 && !isAlive(process)) fs::remove(i->path(), ignored);
-  }
-  return (folder / fmt::format("{}{}{}", begin, ::getpid(), end)).string();
+  removeLeftovers(folder.empty() ? "." : folder);
+  return (folder / fmt::format(".{}.{}.{}{}", whole.filename().string(), hostName(), ::getpid(),
+                               kPartialEnd))
+      .string();
 }
 
 }  // namespace perception

@@ -41,7 +41,7 @@ class ReadingScope {
 /// A file or folder that is to go away if this process is killed.
 class TemporaryPath {
  public:
-  /// `path` is not created.
+  /// `path` is not created; empty: none.
   explicit TemporaryPath(const std::string& path);
   ~TemporaryPath();
   TemporaryPath(const TemporaryPath&) = delete;
@@ -52,7 +52,7 @@ class TemporaryPath {
 };
 
 /// ".NAME.HOST.PID.part" beside `path`: a file of this name is renamed to `path` once it is
-/// complete. Removes those that killed processes of this host left.
+/// complete. Removes what killed processes of this host left in the folder, once.
 std::string partialPath(const std::string& path);
 
 /// True if a process of that number of this host lives.

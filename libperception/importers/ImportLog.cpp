@@ -192,7 +192,8 @@ void ImportLog::setTruthVelocities() {
 
 ImportResult ImportLog::close() {
   warnOfMissing();
-  if (has_truth_) {  // before the log, so that a complete log has its truth
+  log_.finish();
+  if (has_truth_) {  // before the log has its name, so that a complete log has its truth
     std::vector<TruthObject> objects;
     for (auto& [stamp, object] : truth_) object.t = stamp - first_stamp_.value_or(stamp);
     setTruthVelocities();

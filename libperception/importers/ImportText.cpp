@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/PartialFile.h"
 
 namespace perception {
 
@@ -135,7 +136,8 @@ std::string_view TextRow::at(std::size_t i) const {
 }
 
 std::string readBytes(const std::string& path, std::size_t most) {
-  if (fs::is_directory(path)) throw DataError(path + ": a folder, expected a file");
+  if (const auto what = irregularity(path); !what.empty())
+    throw DataError(fmt::format("{}: {}, expected a file", path, what));
   const gzFile file = gzopen(path.c_str(), "rb");  // reads plain files, too
   if (file == nullptr)
     throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/PartialFile.h"
 #include "libperception/lidar/ClusterClassifier.h"
 #include "libperception/lidar/JsonItem.h"
 
@@ -25,6 +26,8 @@ constexpr int kMostDepth = 8;          // of arrays and objects in each other; 5
 constexpr double kLeastPrior = 1e-12;  // keeps its log finite
 
 std::string contents(const std::string& file) {
+  if (const auto what = irregularity(file); !what.empty())
+    throw DataError(fmt::format("{}: is {}, expected a file", file, what));
   std::ifstream in(file, std::ios::binary);
   if (!in)
     throw DataError(fmt::format("{}: no such file, or it cannot be read", file),

@@ -39,7 +39,7 @@ void LogRun::put(const Scene& scene) {
 
 void LogRun::writeExport(const Scene& scene) {
   if (!kitti_ && facts_.camera) {
-    kitti_.emplace(files_.export_file + ".partial", setup_.model.classes, *facts_.camera,
+    kitti_.emplace(files_.export_file, setup_.model.classes, *facts_.camera,
                    KittiSelection{setup_.scene.road_user_from, setup_.scene.in_image});
     for (const auto& s : before_camera_) kitti_->write(s);
     before_camera_.clear();
@@ -129,10 +129,7 @@ void LogRun::commit(const std::string& effective_ini, int threads) {
   writeFile(folder_.pathFor("effective.ini"), effective_ini);
   timing_.write(folder_.pathFor("timing.json"), logSeconds(), threads);
   writeRunRecord(folder_.pathFor("done.json"), record);
-  if (kitti_) {
-    kitti_->close();
-    fs::rename(files_.export_file + ".partial", files_.export_file);
-  }
+  if (kitti_) kitti_->close();
   folder_.commit();
 }
 

@@ -14,7 +14,7 @@
 namespace perception {
 
 OutputFile::OutputFile(const std::string& path)
-    : path_(path), file_(std::fopen(path.c_str(), "wbe")) {
+    : path_(path), partial_(path), file_(std::fopen(partial_.path().c_str(), "wbe")) {
   if (!file_)
     throw OutputError(fmt::format("{}: cannot be created: {}", path, std::strerror(errno)));
 }
@@ -31,6 +31,7 @@ void OutputFile::close() {
   // Some file systems report a full disk only on sync; pipes and devices cannot be synced.
   if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL && errno != EROFS) fail(errno);
   if (std::fclose(file_.release()) != 0) fail(errno);
+  partial_.commit();
 }
 
 void OutputFile::fail(int reason) const {

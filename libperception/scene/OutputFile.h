@@ -4,13 +4,16 @@
 #include <string>
 #include <string_view>
 
+#include "libperception/core/PartialFile.h"
+
 namespace perception {
 
 /// A checked output file: failures to create, write or close throw OutputError with path, reason
 /// and free space. A full disk is detected at the latest in close().
 class OutputFile {
  public:
-  /// Creates or truncates the file. Throws OutputError (kCannotCreate).
+  /// The file has its name after close() and is removed without it; a device is written to as it
+  /// is. Throws OutputError (kCannotCreate).
   explicit OutputFile(const std::string& path);
 
   /// Throws OutputError (kIoError).
@@ -25,6 +28,7 @@ class OutputFile {
   };
   [[noreturn]] void fail(int reason) const;
   std::string path_;
+  PartialFile partial_;
   std::unique_ptr<std::FILE, Closer> file_;
 };
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/PartialFile.h"
 #include "libperception/scene/NumberFormat.h"
 #include "libperception/scene/OutputFile.h"
 
@@ -123,6 +124,8 @@ void writeRunRecord(const std::string& path, const RunRecord& record) {
 }
 
 RunRecord readRunRecord(const std::string& path) {
+  if (const auto what = irregularity(path); !what.empty())
+    throw DataError(fmt::format("{}: is {}, expected a file", path, what));
   std::ifstream in(path, std::ios::binary);
   if (!in)
     throw DataError(fmt::format("{}: no such file, or it cannot be read", path),

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/PartialFile.h"
 
 namespace perception {
 
@@ -20,13 +21,6 @@ constexpr std::size_t kRawBytes = 1U << 18;
 constexpr std::size_t kReadyBytes = 1U << 20;
 constexpr int kGzipWindow =
     15 + 16;  ///< zlib: largest window, gzip container with check of CRC and length
-
-const char* kindOf(mode_t mode) {
-  if (S_ISDIR(mode)) return "a directory";
-  if (S_ISFIFO(mode)) return "a pipe";
-  if (S_ISSOCK(mode)) return "a socket";
-  return "a device";
-}
 
 }  // namespace
 
@@ -43,8 +37,8 @@ CRawlogInput::CRawlogInput(const std::string& path) : path_(path) {
   if (::stat(path.c_str(), &info) != 0) {
     throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);
   }
-  if (!S_ISREG(info.st_mode))
-    throw DataError(fmt::format("{}: not a rawlog but {}", path, kindOf(info.st_mode)));
+  if (const auto what = irregularity(path); !what.empty())
+    throw DataError(fmt::format("{}: not a rawlog but {}", path, what));
   if (info.st_size == 0) throw DataError(fmt::format("{}: not a rawlog but an empty file", path));
   file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file_ < 0)

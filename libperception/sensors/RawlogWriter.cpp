@@ -1,12 +1,7 @@
 #include "libperception/sensors/RawlogWriter.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <vector>
 
@@ -35,31 +30,16 @@ bool holds(const std::string& path, std::uint64_t bytes) {
   return left == 0 && input.atEnd() && input.state() == CRawlogInput::State::kEnd;
 }
 
-/// Syncs the folder, so that the new name survives a power failure; errors are ignored.
-void syncFolderOf(const std::string& path) {
-  const auto parent = std::filesystem::path(path).parent_path();
-  const int folder =
-      ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return;
-  ::fsync(folder);
-  ::close(folder);
-}
-
 }  // namespace
 
-RawlogWriter::RawlogWriter(const std::string& path, int gzip_level)
-    : path_(path), temporary_(partialPath(path)), removed_if_killed_(temporary_) {
+RawlogWriter::RawlogWriter(const std::string& path, int gzip_level) : path_(path), file_(path) {
   registerPerceptionClasses();
   if (std::filesystem::is_directory(path))
     throw OutputError(fmt::format("{}: is a directory", path));
-  output_ = std::make_unique<CRawlogOutput>(temporary_, gzip_level);
+  output_ = std::make_unique<CRawlogOutput>(file_.path(), gzip_level);
 }
 
-RawlogWriter::~RawlogWriter() {
-  if (closed_) return;
-  output_.reset();
-  std::remove(temporary_.c_str());
-}
+RawlogWriter::~RawlogWriter() = default;
 
 std::uint64_t RawlogWriter::bytes() const { return output_->bytesOut(); }
 std::uint64_t RawlogWriter::bytesInflated() const { return output_->bytesIn(); }
@@ -74,20 +54,22 @@ void RawlogWriter::write(const mrpt::serialization::CSerializable& entry) {
   ++entries_;
 }
 
-void RawlogWriter::close() {
-  if (closed_) return;
+void RawlogWriter::finish() {
+  if (finished_) return;
   output_->finish();
-  if (!holds(temporary_, output_->bytesIn())) {
-    throw OutputError(fmt::format("{}: what was read back is not what was written", temporary_),
+  if (!holds(file_.path(), output_->bytesIn())) {
+    throw OutputError(fmt::format("{}: what was read back is not what was written", file_.path()),
                       ExitCode::kIoError);
   }
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
-    throw OutputError(
-        fmt::format("{}: cannot rename {} to it: {}", path_, temporary_, std::strerror(errno)),
-        ExitCode::kIoError);
-  }
-  closed_ = true;
-  syncFolderOf(path_);
+  finished_ = true;
+  std::error_code error;
+  std::filesystem::remove(path_, error);
+  if (error) throw OutputError(fmt::format("{}: cannot be replaced: {}", path_, error.message()));
+}
+
+void RawlogWriter::close() {
+  finish();
+  file_.commit();
 }
 
 }  // namespace perception

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "libperception/core/Supervision.h"
+#include "libperception/core/PartialFile.h"
 
 namespace mrpt::serialization {
 class CSerializable;
@@ -26,7 +26,10 @@ class RawlogWriter {
 
   /// Throws OutputError (kIoError) when the disk is full or fails.
   void write(const mrpt::serialization::CSerializable& entry);
-  /// Throws OutputError (kIoError) when the verification fails.
+  /// Verifies the file and removes an earlier one of the name: what belongs to the log, its truth,
+  /// is written now, so that no log has that of another. Throws OutputError (kIoError).
+  void finish();
+  /// finish(), and gives the file its name. Throws OutputError (kIoError).
   void close();
 
   std::uint64_t entries() const { return entries_; }
@@ -34,11 +37,11 @@ class RawlogWriter {
   std::uint64_t bytesInflated() const;
 
  private:
-  std::string path_, temporary_;
-  TemporaryPath removed_if_killed_;
+  std::string path_;
+  PartialFile file_;
   std::unique_ptr<CRawlogOutput> output_;
   std::uint64_t entries_ = 0;
-  bool closed_ = false;
+  bool finished_ = false;
 };
 
 }  // namespace perception

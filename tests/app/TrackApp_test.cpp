@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationRobotPose.h>
+#include <sys/stat.h>
 #include <zlib.h>
 
 #include <chrono>
@@ -228,6 +229,18 @@ TEST(TrackApp, ALogThatMayBeCutBetweenTwoEntriesIsNotVerifiable) {
       << contentOf(t.folder / "log.rawlog").substr(0, 900000);
   ASSERT_EQ(cut.track(cut.folder / "cut.rawlog").code, 3) << cut.ended.err;
   EXPECT_EQ(cut.done().at("input").at("whole"), "no");
+}
+
+TEST(TrackApp, APipeAsConfigurationOrIncludeIsRefused) {
+  Tracking t;
+  ASSERT_EQ(::mkfifo((t.folder / "pipe.ini").c_str(), 0600), 0);
+  std::ofstream(t.folder / "with.ini") << "include = pipe.ini\n";
+  for (const char* ini : {"pipe.ini", "with.ini"}) {
+    TrackApp app;
+    const Ended ended = runProgram(app, {"-c", t.folder / ini, "-i", kDemoLog, "-o", t.dir});
+    EXPECT_EQ(ended.code, 78);
+    EXPECT_NE(ended.err.find("is a pipe"), std::string::npos) << ended.err;
+  }
 }
 
 }  // namespace

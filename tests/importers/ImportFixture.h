@@ -62,7 +62,8 @@ class ImportRun : public ::testing::Test {
     app.keep_scenes = true;
     const int code = runQuietly(
         app, {"perception-track", "-c", std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + ini, "-i",
-              file("out.rawlog"), "-o", file("run"), "--sensors", sensors, "--threads", "2"});
+              file("out.rawlog"), "-o", file("run"), "--overwrite", "--sensors", sensors,
+              "--threads", "2"});
     EXPECT_TRUE(code == 0 || code == 3) << error_;
     return app.out_scenes;
   }

@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+
+#include "libperception/core/Supervision.h"
+
+namespace perception {
+
+/// A file that has its name once it is complete: written as path(), renamed by commit(), removed
+/// without it. Where the name is one of a device or pipe, that is written to directly.
+class PartialFile {
+ public:
+  explicit PartialFile(const std::string& name);
+  ~PartialFile();
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  /// Syncs the folder; the file itself is synced by whoever writes it. Throws OutputError
+  /// (kIoError).
+  void commit();
+
+ private:
+  std::string name_, path_;
+  TemporaryPath removed_if_killed_;
+  bool pending_ = true;
+};
+
+/// What a path is where a regular file was expected: "a directory", "a pipe", ...; empty if it is
+/// one, or nothing. Opening a pipe would wait for a writer, for ever.
+std::string irregularity(const std::string& path);
+
+}  // namespace perception
