@@ -59,8 +59,8 @@ class ClusterClassifier {
   std::array<double, kClusterKinds> probabilities(const Descriptor& descriptor) const;
 
   /// log p(descriptor | kind) / p(descriptor | thing or phantom), by Bayes' rule from the
-  /// probabilities and the prior; 0 for a thing. Limited to +-6 and then multiplied by 1 - P(mixed): the shape of several objects
-  /// grown together tells little of any one of them.
+  /// probabilities and the prior; 0 for a thing. Limited to +-6 and then multiplied by 1 -
+  /// P(mixed): the shape of several objects grown together tells little of any one of them.
   std::array<double, kShapes> evidence(const Descriptor& descriptor) const {
     return evidence(probabilities(descriptor));
   }
