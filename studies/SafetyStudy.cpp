@@ -164,12 +164,10 @@ std::vector<std::string> stopRow(const SafetyCounts& counts, std::size_t k) {
 
 SafetyCounts countLog(const std::string& log, const SafetyOptions& options,
                       unsigned long long seed) {
-  Config config = Config::fromFile(options.config);
-  for (const std::string& setting : options.settings) config.set(setting);
-  config.set(fmt::format("run.seed={}", seed));
-  PipelineSetup setup = PipelineSetup::read(config);
-  config.finish();
-  if (!setup.grid.enabled) throw ConfigError({options.config + ": [grid] enabled must be true"});
+  std::vector<std::string> settings = options.settings;
+  settings.push_back(fmt::format("run.seed={}", seed));
+  PipelineSetup setup = PipelineSetup::fromFile(options.config, settings);
+  if (!setup.grid.enabled) throw ConfigError(options.config + ": [grid] enabled must be true");
   setup.run.output_lag = setup.model.history = 0;  // a stop cannot wait
   SafetyObserver observer(log, setup);
   passLog(log, std::move(setup), options.seconds, observer);
@@ -239,6 +237,8 @@ StudyReport safetyStudy(const SafetyOptions& options, unsigned long long seed) {
                                " has no truth: what drives ahead counts as standing, and the run's "
                                "advice, which knows better, as missing it.");
   }
+  if (all.unlabeled > 0)
+    report.remarks.push_back(fmt::format("{} scans have no labels.", all.unlabeled));
   return report;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/calibration/PointLabels.h"
+
 namespace perception {
 namespace {
 
@@ -16,8 +18,6 @@ std::optional<double> shareOf(std::size_t part, std::size_t whole) {
 }
 
 }  // namespace
-
-bool isPhantomLabel(std::uint16_t label) { return label == 110 || (label >= 112 && label <= 117); }
 
 std::string nameOfPhantom(std::uint16_t label) {
   switch (label) {

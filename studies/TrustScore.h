@@ -9,8 +9,6 @@
 
 namespace perception {
 
-/// Labels 110 to 117: snow, rain, fog, spray, exhaust, mirror, noise (PointTruth.h).
-bool isPhantomLabel(std::uint16_t label);
 /// "snow"; for other labels the number.
 std::string nameOfPhantom(std::uint16_t label);
 

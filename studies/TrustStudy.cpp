@@ -183,13 +183,12 @@ void declareTrust(CLI::App& cli, TrustOptions& o) {
 
 StudyReport trustStudy(const TrustOptions& options) {
   const std::string name = std::filesystem::path(options.log).stem().string();
-  Config config = Config::fromFile(options.config);
-  for (const std::string& setting : options.settings) config.set(setting);
-  config.set("run.sensors=L");
-  PipelineSetup setup = PipelineSetup::read(config);
-  config.finish();
+  std::vector<std::string> settings = options.settings;
+  settings.emplace_back("run.sensors=L");
+  PipelineSetup setup = PipelineSetup::fromFile(options.config, settings);
   TrustObserver observer(options);
-  const LogPass passed = passLog(options.log, std::move(setup), options.seconds, observer);
+  const LogPass passed =
+      passLog(options.log, forFrontEnds(std::move(setup)), options.seconds, observer);
   // A simulation knows what every return comes from.
   observer.all.unlabeled_is_surface = passed.simulated;
   for (TrustScore& s : observer.by_range) s.unlabeled_is_surface = passed.simulated;

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "libperception/calibration/PointLabels.h"
 #include "libperception/lidar/SpaceLinkage.h"
-#include "studies/TrustScore.h"
 
 namespace perception {
 namespace {

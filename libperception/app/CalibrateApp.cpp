@@ -185,7 +185,7 @@ StudyReport CalibrateApp::lidarClasses() {
     rules.fov = radians(complete_fov[std::min(i, complete_fov.size() - 1)]);
     ClusterSampler sampler(sensor->label, dynamic_cast<const LidarFrontEnd&>(*sensor->front_end),
                            truth, labels, i, rules, samples);
-    const LogPass pass = passLog(inputs[i], setup, seconds, sampler);
+    const LogPass pass = passLog(inputs[i], forFrontEnds(setup), seconds, sampler);
     logs.push_back({std::filesystem::path(inputs[i]).stem().string(), pass.simulated});
     provenance.data.push_back(logs.back().name + (pass.simulated ? " (simulated)" : ""));
     provenance.simulated_only = provenance.simulated_only && pass.simulated;

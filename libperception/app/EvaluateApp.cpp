@@ -236,24 +236,19 @@ void EvaluateApp::warnOfGaps(const EvaluatedRun& run, const std::string& truth) 
 
 void EvaluateApp::write(EvaluationReport report, const std::string& dir) {
   OutputFolder folder(dir);
-  const std::string text = folder.pathFor("report.txt");
-  const fs::path temporary = fs::path(text).parent_path();
+  const bool single = report.runs.size() == 1 && report.runs.front().trials.empty();
   if (plots && !report.runs.empty()) {
-    const bool single = report.runs.size() == 1 && report.runs.front().trials.empty();
     const PlotResult drawn =
-        single ? writePlots(report.runs.front(), report.options, temporary.string(), max_plots)
-               : writeComparisonPlots(report, temporary.string());
+        single ? writePlots(report.runs.front(), report.options, folder.temporary(), max_plots)
+               : writeComparisonPlots(report, folder.temporary());
     report.plots = drawn.files;
     if (!drawn.fault.empty()) warn(drawn.fault);
   }
-  for (const auto& entry : fs::recursive_directory_iterator(temporary)) {
-    if (!entry.is_directory()) folder.pathFor(entry.path().lexically_relative(temporary).string());
-  }
-  writeFile(text, textReport(report));
+  folder.adoptAll();
+  writeFile(folder.pathFor("report.txt"), textReport(report));
   writeFile(folder.pathFor("report.md"), markdownReport(report));
   writeFile(folder.pathFor("report.json"), jsonReport(report));
-  if (report.runs.size() == 1 && report.runs.front().trials.empty())
-    writeFile(folder.pathFor("instants.csv"), instantsCsv(report.runs.front()));
+  if (single) writeFile(folder.pathFor("instants.csv"), instantsCsv(report.runs.front()));
   if (fs::exists(fs::path(dir) / "report.json")) folder.replace("plots");
   folder.commit("report.json");
   out_folders.push_back(dir);

@@ -32,7 +32,7 @@ sigset_t supervisedSignals() {
   return set;
 }
 
-/// Before any library of the process is initialized: a signal waits until somebody handles it.
+/// Before any library of the process is initialized: signals stay pending until they are handled.
 void holdSignals(int, char** argv, char**) {
   const char* name = argv != nullptr && argv[0] != nullptr ? std::strrchr(argv[0], '/') : nullptr;
   name = name != nullptr ? name + 1 : (argv != nullptr ? argv[0] : nullptr);

@@ -48,16 +48,8 @@ std::optional<ClusterKind> kindOfLabel(std::uint16_t label) {
     case 32:
     case 255:
       return ClusterKind::kMixed;  // two-wheelers alone, motorcyclists: neither a kind nor a thing
-    case 110:
-    case 112:
-    case 113:
-    case 114:
-    case 115:
-    case 116:
-    case 117:
-      return ClusterKind::kPhantom;  // the numbers of libperception/simulation/PointTruth.h
     default:
-      return std::nullopt;
+      return isPhantomLabel(label) ? std::optional(ClusterKind::kPhantom) : std::nullopt;
   }
 }
 

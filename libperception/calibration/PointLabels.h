@@ -8,6 +8,10 @@
 
 namespace perception {
 
+/// Labels 110 and 112 to 117: snow, rain, fog, spray, exhaust, mirror, noise
+/// (simulation/PointTruth.h); 111 is lying snow.
+bool isPhantomLabel(std::uint16_t label);
+
 /// Labels of the points of a log's scans in SemanticKITTI's layout (one uint32 a point, the class
 /// in its lower half: 10 car, 30 person ...), as perception-import puts them beside a log:
 /// FILE_Labels/NUMBER.label[.gz].

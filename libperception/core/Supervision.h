@@ -11,7 +11,7 @@ namespace perception {
 
 /// What a process lets its supervisor know (app/Supervisor.h), in memory that both share: what it
 /// reads just now, and its temporary files, which it cannot remove when it is killed. Without a
-/// supervisor the record is the process's own and nobody looks at it.
+/// supervisor the record is the process's own and not read.
 struct SupervisionRecord {
   static constexpr std::size_t kMostPaths = 64, kLongestPath = 4096;
 

@@ -27,8 +27,8 @@ struct Corridor {
 /// Free distance along a corridor.
 struct FreeDistance {
   double distance = 0;   ///< [m] along the arc from the ego origin to the first obstacle, or max
-  bool blocked = false;  ///< an occupied cell was found
-  Vector3 place = Vector3::Zero();  ///< [m] center of that cell, world
+  bool blocked = false;  ///< an obstacle was found
+  Vector3 place = Vector3::Zero();  ///< [m] of its nearest cell or return, world
   double seen = 0;                  ///< [m] observed without a gap longer than 1 m
 };
 

@@ -16,8 +16,7 @@ struct StopParams {
   int cells = 3;               ///< occupied, within half a meter: an obstacle (assumed)
   double obstacle_grow = 0.4;  ///< [m] by which an object's outline is grown to own a cell: two
                                ///< cells (assumed)
-
-  double returns = 10;  ///< of one scan within half a meter that block the path (assumed)
+  double returns = 10;         ///< of one scan within half a meter that block the path (assumed)
 
   void visit(ParamVisitor& v);
 };

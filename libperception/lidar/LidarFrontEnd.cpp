@@ -121,7 +121,6 @@ PlacedReturns placedReturns(EgoPoints points, std::vector<float> height, const P
   returns.x = std::move(points.x), returns.y = std::move(points.y), returns.z = std::move(points.z);
   returns.height = std::move(height);
   returns.source = std::move(points.source);
-  returns.sensor = points.sensor;
   returns.height_min = obstacle.height_min;
   returns.height_max = obstacle.height_max;
   returns.vehicle_front = point.vehicle_front;

@@ -1,8 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
-
-#include "libperception/core/Frames.h"
 
 namespace perception {
 
@@ -15,7 +14,6 @@ struct PlacedReturns {
   /// [0, 1] P(phantom) of its cluster, or kNoCluster. Empty: clusters are not told by their shape.
   std::vector<float> phantom;
   static constexpr float kNoCluster = -1;
-  Vector3 sensor = Vector3::Zero();       ///< [m] position of the sensor
   double height_min = 0, height_max = 0;  ///< [m] above ground: the slab of obstacles
   double vehicle_front = 0;               ///< [m] x of the own vehicle's front
 

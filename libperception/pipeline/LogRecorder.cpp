@@ -38,13 +38,16 @@ class Recorder : public PipelineObserver {
 
 }  // namespace
 
+PipelineSetup forFrontEnds(PipelineSetup setup) {
+  if (!setup.model.params.sampled_births) setup.model.proposal = Proposal::kNearest;
+  setup.particles.sample_size = 1;
+  setup.grid.enabled = false;
+  return setup;
+}
+
 LogPass passLog(const std::string& log, PipelineSetup setup, double seconds,
                 PipelineObserver& observer, const ObservationEdit& edit) {
   registerPerceptionClasses();
-  // The tracks are not used: cheapest settings.
-  if (!setup.model.params.sampled_births) setup.model.proposal = Proposal::kNearest;
-  setup.particles.sample_size = 1;
-
   LogPass pass;
   EventLog events;
   RunTiming timing;
@@ -80,7 +83,7 @@ RecordedLog recordLog(const std::string& log, Config& config, double seconds,
   recorded.scene = setup.scene;
   Recorder recorder(recorded);
   const PipelineSetup wanted = setup;
-  const LogPass pass = passLog(log, std::move(setup), seconds, recorder, edit);
+  const LogPass pass = passLog(log, forFrontEnds(std::move(setup)), seconds, recorder, edit);
   recorded.simulated = pass.simulated;
   const bool any =
       std::any_of(recorded.entries.begin(), recorded.entries.end(),

@@ -26,8 +26,11 @@ struct LogPass {
   std::optional<Stamp> first_stamp;
 };
 
-/// Passes the first `seconds` of a log (0 = all) through the front ends of a configuration, to the
-/// observer. The tracks are not used.
+/// The configuration for a pass whose tracks and free distance are not used: what is cheapest.
+PipelineSetup forFrontEnds(PipelineSetup setup);
+
+/// Passes the first `seconds` of a log (0 = all) through the pipeline of a configuration, to the
+/// observer.
 LogPass passLog(const std::string& log, PipelineSetup setup, double seconds,
                 PipelineObserver& observer, const ObservationEdit& edit = {});
 

@@ -120,6 +120,12 @@ std::string OutputFolder::pathFor(const std::string& name) {
   return path;
 }
 
+void OutputFolder::adoptAll() {
+  for (const auto& entry : fs::recursive_directory_iterator(temporary_)) {
+    if (!entry.is_directory()) pathFor(entry.path().lexically_relative(temporary_).string());
+  }
+}
+
 void OutputFolder::failWriting(const std::string& path, int reason) const {
   std::error_code error;
   const auto space = fs::space(path_, error);

@@ -24,6 +24,9 @@ class OutputFolder {
   const std::string& path() const { return path_; }
   /// Temporary path of the file that commit() renames to `name` (relative; folders are created).
   std::string pathFor(const std::string& name);
+  /// Folder in which others write files whose names they choose; adoptAll() makes them its own.
+  const std::string& temporary() const { return temporary_; }
+  void adoptAll();
   /// A file or folder of an earlier run in it: commit() removes it before the new files come.
   void replace(const std::string& name) { replaced_.push_back(name); }
   /// Syncs all files to disk and renames them into place, `last` as the last one; the `last` of an

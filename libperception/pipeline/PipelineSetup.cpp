@@ -183,6 +183,15 @@ PipelineSetup PipelineSetup::read(Config& config) {
   return s;
 }
 
+PipelineSetup PipelineSetup::fromFile(const std::string& ini,
+                                      const std::vector<std::string>& settings) {
+  Config config = Config::fromFile(ini);
+  for (const std::string& setting : settings) config.set(setting);
+  PipelineSetup setup = read(config);
+  config.finish();
+  return setup;
+}
+
 std::optional<std::size_t> PipelineSetup::sensorOf(const std::string& label) const {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     if (sensors[i].label == label || sensors[i].scan.merges(label)) return i;

@@ -74,6 +74,8 @@ struct PipelineSetup {
 
   /// Reads all sections. Faults are collected in the configuration; Config::finish() throws them.
   static PipelineSetup read(Config& config);
+  /// Reads an INI file with settings "section.key=value" that override it. Throws ConfigError.
+  static PipelineSetup fromFile(const std::string& ini, const std::vector<std::string>& settings);
   /// Index of the sensor with this label, or into which the scanner of this label is merged.
   std::optional<std::size_t> sensorOf(const std::string& label) const;
 };

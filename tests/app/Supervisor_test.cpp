@@ -152,7 +152,7 @@ TEST(Supervisor, AClosedStandardErrorChangesNothing) {
   const TemporaryFolder folder;
   const auto body = [&] {
     std::ofstream(folder / "result") << "whole";
-    throw DataError("nobody hears this");
+    throw DataError("not shown");
   };
   const Ended ended = run([] {});
   ASSERT_EQ(ended.code, 0);

@@ -45,6 +45,15 @@ struct LabeledLog {
   }
 };
 
+TEST(PointLabels, LyingSnowIsASurfaceAndFallingSnowIsNone) {
+  EXPECT_TRUE(isPhantomLabel(110));
+  EXPECT_FALSE(isPhantomLabel(111));
+  EXPECT_TRUE(isPhantomLabel(112));
+  EXPECT_TRUE(isPhantomLabel(117));
+  EXPECT_FALSE(isPhantomLabel(118));
+  EXPECT_FALSE(isPhantomLabel(10));
+}
+
 TEST(PointLabels, ReadsPlainAndZippedFilesOfTheFrame) {
   const LabeledLog log;
   log.write("000007.label", bytesOf({10, 30, 0}));

@@ -55,7 +55,7 @@ TEST(PartialFile, ThatOfAKilledProcessIsRemovedByTheNextOne) {
     ::raise(SIGKILL);
   }
   ::waitpid(process, nullptr, 0);
-  std::ofstream(folder / ".other.part") << "of nobody";
+  std::ofstream(folder / ".other.part") << "without a process";
   ASSERT_EQ(namesIn(folder.path()).size(), 2U);
   const PartialFile file(folder / "b.csv");
   EXPECT_EQ(namesIn(folder.path()), std::set<std::string>{".other.part"});

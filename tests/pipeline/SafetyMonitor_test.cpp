@@ -33,7 +33,6 @@ struct Scan {
     frame.data = cloud;
     returns.height_min = 0.3, returns.height_max = 3;
     returns.vehicle_front = 2;
-    returns.sensor = {0, 0, 1.7};
   }
 };
 

@@ -38,7 +38,6 @@ TEST(TrustScore, HalfIsNotDoubted) {
 }
 
 TEST(TrustScore, LyingSnowIsASurface) {
-  EXPECT_FALSE(isPhantomLabel(111));
   EXPECT_EQ(score().surfaces().total(), 5u);
 }
 
