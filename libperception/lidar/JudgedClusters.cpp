@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "libperception/lidar/BoxFit.h"
+#include "libperception/lidar/PhantomMix.h"
 #include "libperception/measurement/FootprintInView.h"
 
 namespace perception {
 namespace {
 
-using Probabilities = std::array<double, kClusterKinds>;
+using Probabilities = PhantomMix::Probabilities;
 
 /// Probability of the likeliest road user.
 double roadUser(const Probabilities& p) {
@@ -95,6 +96,10 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
   });
   const std::size_t n = clusters.size();
+  std::vector<Probabilities> wholes;
+  for (std::size_t i = 0; i < n; ++i)
+    if (clusters[i].segment.whole < 0) wholes.push_back(probabilities[i]);
+  const PhantomMix mix(wholes, classifier.prior());
   std::vector<double> best_part(n, 0);  // over all parts of parts
   for (std::size_t i = n; i-- > 0;) {   // parts come after their whole
     if (const int whole = clusters[i].segment.whole; whole >= 0) {
@@ -114,12 +119,13 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
   for (std::size_t i = 0; i < n; ++i) {
     if (!stands[i]) continue;
-    const double phantom = at(probabilities[i], ClusterKind::kPhantom);
+    const Probabilities p = mix(probabilities[i]);
+    const double phantom = at(p, ClusterKind::kPhantom);
     for (const std::uint32_t point : clusters[i].segment.points)
       judgement.phantom[point] = static_cast<float>(phantom);
     if (phantom > kSurePhantom && own[i] < kHardlyRoadUser) continue;
     JudgedCluster cluster;
-    cluster.evidence = classifier.evidence(probabilities[i]);
+    cluster.evidence = classifier.evidence(p);
     if (roadUserEvidence(cluster) < kSurelyThing) continue;
     cluster.points = std::move(clusters[i].segment.points);
     const float isolation = clusters[i].descriptor[static_cast<std::size_t>(Feature::kIsolation)];
