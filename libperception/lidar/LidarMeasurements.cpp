@@ -56,11 +56,17 @@ Outline outlineInWorld(const ScanContext& scan, const std::vector<Vector2>& hull
   return outline;
 }
 
-void fillOutline(const ScanContext& scan, const Outline& outline, const OutlineNoise& noise,
+void fillOutline(const ScanContext& scan, Outline outline, const OutlineNoise& noise,
                  Measurement& m) {
-  fillFootprint(outline, std::hypot(noise.sigma_bearing, noise.sigma_edge / outline.left_range),
-                std::hypot(noise.sigma_bearing, noise.sigma_edge / outline.right_range),
-                noise.sigma_range, scan.frame.ego.uncertainty, yawOf(scan.T_world_sensor), m);
+  // With both edges hidden the object still stands where a part of it is seen: else the track of a
+  // car behind spray drifts sideways for as long as its middle is all that is seen of it.
+  constexpr double kHiddenEdge = 2.5;  // [m] that it may go on behind what hides it (assumed)
+  const bool both = scan.classified && outline.left_hidden && outline.right_hidden;
+  const double edge = both ? kHiddenEdge : noise.sigma_edge;
+  if (both) outline.left_hidden = outline.right_hidden = false;
+  fillFootprint(outline, std::hypot(noise.sigma_bearing, edge / outline.left_range),
+                std::hypot(noise.sigma_bearing, edge / outline.right_range), noise.sigma_range,
+                scan.frame.ego.uncertainty, yawOf(scan.T_world_sensor), m);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ struct ScanContext {
   const OcclusionMap& occlusion;
   double fov;        ///< [rad]
   double top_slope;  ///< [-] tangent of the highest beam's elevation
+  bool classified;   ///< clusters are told by their shape
 };
 
 /// Occlusion map from the second nearest occluding return of every direction: a single one may be a

@@ -46,7 +46,7 @@ Matrix4 predictWheeled(const ObjectClass& object_class, double psd, double dampi
   F(1, 3) = noise.effective_dt * v * c;
   F(2, 2) = noise.decay;
   const Vector2 u(c, s), n(-v * s, v * c);
-  const double qw = object_class.yaw_rate_psd;
+  const double qw = object_class.yawRatePsd(v);
   Matrix4 Q = Matrix4::Zero();
   Q.topLeftCorner<2, 2>() =
       psd * noise.pp * u * u.transpose() + dt * dt * dt / 3 * qw * n * n.transpose();
@@ -93,7 +93,7 @@ Matrix4 predictUncertainHeading(const ObjectClass& object_class, double psd, dou
   Matrix4 F = Matrix4::Identity();
   F.block<2, 2>(0, 2) = noise.effective_dt * slope;
   F(2, 2) = noise.decay;
-  const double qw = object_class.yaw_rate_psd;
+  const double qw = object_class.yawRatePsd(v);
   // E[u u'] of the unit vector along the motion, E[n n'] of v times that across it.
   Matrix2 along;
   along << 0.5 * (1 + twice.x()), 0.5 * twice.y(), 0.5 * twice.y(), 0.5 * (1 - twice.x());

@@ -35,6 +35,8 @@ void ObjectClass::visit(ParamVisitor& v) {
             "mode_accel_psd, mode_damping, mode_sojourn: expected one number per mode in each, two "
             "modes or more");
   v.real("yaw_rate_psd", yaw_rate_psd, {0, 10}, "rad^2/s", "white yaw rate (wheeled)");
+  v.real("lateral_psd", lateral_psd, {0, 100}, "m^2/s^3",
+         "white lateral acceleration (wheeled), bounds the yaw rate of fast objects; 0: no bound");
   v.real("position_psd", position_psd, {0, 10}, "m^2/s",
          "slip and model mismatch; the only process noise of a static object");
   v.real("length", length, {0.05, 40}, "m", "mean length");
@@ -49,6 +51,11 @@ void ObjectClass::visit(ParamVisitor& v) {
             "false: not a road user, but still in tracks.csv; the KITTI export and "
             "perception-calibrate use it, perception-evaluate takes --unnamed instead");
   v.text("kitti_type", kitti_type, "type in KITTI exports");
+}
+
+double ObjectClass::yawRatePsd(double speed) const {
+  const double v2 = speed * speed;
+  return lateral_psd > 0 && yaw_rate_psd * v2 > lateral_psd ? lateral_psd / v2 : yaw_rate_psd;
 }
 
 ClassId ClassTable::find(const std::string& name) const {

@@ -26,6 +26,7 @@ struct ObjectClass {
   std::vector<double> mode_damping;    ///< [1/s] rate at which the speed decays; 0: constant speed
   std::vector<double> mode_sojourn;    ///< [s] mean time in the mode
   double yaw_rate_psd = 0.0685;        ///< [rad^2/s] wheeled only
+  double lateral_psd = 0;              ///< [m^2/s^3] wheeled only: bounds yaw_rate_psd; 0: no bound
   double position_psd =
       1e-4;  ///< [m^2/s] slip and model mismatch; the only process noise of static objects
   double length = 1, width = 1, height = 1.5;  ///< [m] mean size
@@ -39,6 +40,9 @@ struct ObjectClass {
              ///< its truth; perception-evaluate does not read it: EvaluationOptions::unnamed
   std::string kitti_type = "Misc";  ///< type written by the KITTI export
 
+  /// [rad^2/s] White yaw rate at a speed [m/s]: what turns the vehicle pushes it sideways, and tires
+  /// bound that (method.md 3.2).
+  double yawRatePsd(double speed) const;
   std::size_t modes() const { return mode_accel_psd.size(); }  ///< 0: a single model
   void visit(ParamVisitor& v);
 };

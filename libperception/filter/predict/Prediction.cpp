@@ -71,7 +71,7 @@ void putMotion(const GaussianStep& s, const SpeedNoise& n, std::size_t i, Motion
   motion[MotionBatch::kPv][i] = s.psd * n.pv;
   motion[MotionBatch::kVv][i] = s.psd * n.vv;
   motion[MotionBatch::kSlip][i] = s.object_class->position_psd * s.dt;
-  const double qw = s.object_class->yaw_rate_psd;
+  const double qw = s.object_class->yawRatePsd((*s.x)[2]);
   motion[MotionBatch::kYawPp][i] = qw * s.dt * s.dt * s.dt / 3;
   motion[MotionBatch::kYawPy][i] = qw * s.dt * s.dt / 2;
   motion[MotionBatch::kYawYy][i] = qw * s.dt;
@@ -205,7 +205,8 @@ std::vector<Track> predictTracks(const std::vector<TrackHandle>& tracks,
     moveBatch(all, move);
   }
   const auto& classes = model.classes.classes;
-  if (std::none_of(classes.begin(), classes.end(), [](const auto& c) { return c.modes() > 0; }))
+  if (model.params.fast_births <= 0 &&
+      std::none_of(classes.begin(), classes.end(), [](const auto& c) { return c.modes() > 0; }))
     return predicted;
   parallelFor(tracks.size(), [&](std::size_t i) {
     if (!touched[i]) return;

@@ -70,6 +70,24 @@ void startModes(const ObjectClass& c, ClassFilter& f) {
     f.modes.push_back({std::log(sojourn / total), f.x, f.P});
 }
 
+void startTwoSpeeds(double share, double sigma, ClassFilter& f) {
+  f.modes = {{std::log1p(-share), f.x, f.P}, {std::log(share), f.x, f.P}};
+  Matrix4& P = f.modes.back().P;
+  P(2, 2) = P(3, 3) = sigma * sigma;
+  combineModes(f);
+}
+
+void settleSpeeds(const ObjectClass& c, ClassFilter& f) {
+  constexpr double kBeyondDoubt = 0.9;  // (assumed)
+  if (c.modes() > 0) return;
+  for (const ModeFilter& m : f.modes) {
+    if (m.log_probability < std::log(kBeyondDoubt)) continue;
+    f.x = m.x, f.P = m.P;
+    f.modes.clear();
+    return;
+  }
+}
+
 void combineModes(ClassFilter& f) {
   if (f.modes.empty()) return;
   std::vector<double> weights;
@@ -86,10 +104,12 @@ void listSteps(const ObjectClass& c, double dt, ClassFilter& f, std::vector<Gaus
     out.push_back({&f.x, &f.P, &c, c.accel_psd, 0, dt, oriented});
     return;
   }
-  interact(c, dt, f);
+  const bool interacting = c.modes() > 0;
+  if (interacting) interact(c, dt, f);
   for (std::size_t i = 0; i < f.modes.size(); ++i) {
-    out.push_back(
-        {&f.modes[i].x, &f.modes[i].P, &c, c.mode_accel_psd[i], c.mode_damping[i], dt, oriented});
+    const double psd = interacting ? c.mode_accel_psd[i] : c.accel_psd;
+    const double damping = interacting ? c.mode_damping[i] : 0;
+    out.push_back({&f.modes[i].x, &f.modes[i].P, &c, psd, damping, dt, oriented});
   }
 }
 

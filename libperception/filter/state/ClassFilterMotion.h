@@ -21,6 +21,11 @@ inline Kinematics kinematicsOf(const ObjectClass& object_class, const ClassFilte
 
 /// Initializes the motion modes of a new filter with their stationary probabilities.
 void startModes(const ObjectClass& object_class, ClassFilter& filter);
+/// Gives a new filter of a class without modes two components of its speed, as modes that do not
+/// interact: with probability 1 - `share` its own covariance, else `sigma` [m/s] an axis.
+void startTwoSpeeds(double share, double sigma, ClassFilter& filter);
+/// Ends them once one component is beyond doubt.
+void settleSpeeds(const ObjectClass& object_class, ClassFilter& filter);
 /// Sets x and P of a filter with modes to the moments of the mixture.
 void combineModes(ClassFilter& filter);
 

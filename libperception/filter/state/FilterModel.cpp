@@ -8,6 +8,8 @@ void FilterParams::visit(ParamVisitor& v) {
   v.real("class_forgetting", class_forgetting, {0.1, 1e9}, "s", "time constant of the class chain");
   v.real("side_exponent", side_exponent, {0, 1}, "",
          "tempers length and width of complete sides in the class update; 0: not used");
+  v.real("fast_births", fast_births, {0, 1}, "",
+         "share of new objects on wheels that may be as fast as their class can");
   v.real("occluded_detection", occluded_detection, {0, 1}, "",
          "share of P_D that occluded objects keep");
   v.real("occlusion_tolerance", occlusion_tolerance, {0, 20}, "m",

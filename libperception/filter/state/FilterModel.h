@@ -47,6 +47,9 @@ struct FilterParams {
   /// [m/s] standard deviation of the initial velocity of moving objects, limited to half of the
   /// max_speed of the class (method.md 3.4).
   double start_speed_sigma = 5;
+  /// Share of newborn objects on wheels whose speed may be any up to the max_speed of the class:
+  /// the rest has start_speed_sigma (method.md 3.4).
+  double fast_births = 0;
   double orient_min_speed =
       1;  ///< [m/s] speed from which the velocity initializes the heading (method.md 3.4) ...
   double orient_max_sigma = 0.5;  ///< [rad] ... if its standard deviation is below this

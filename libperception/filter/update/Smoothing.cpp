@@ -79,7 +79,7 @@ void smoothFilter(const ObjectClass& c, double dt, const ClassFilter& newer, Cla
   f.P = (0.5 * (f.P + f.P.transpose())).eval();
   f.modes.clear();
   if (f.oriented) f.x[3] = wrapAngle(f.x[3]);
-  if (found_heading) orientAlong(newer.x[3], newer.P(3, 3) + c.yaw_rate_psd * dt, f);
+  if (found_heading) orientAlong(newer.x[3], newer.P(3, 3) + c.yawRatePsd(newer.x[2]) * dt, f);
   if (newer.oriented) f.heading = newer.heading;
 }
 

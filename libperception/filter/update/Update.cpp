@@ -62,6 +62,17 @@ double speedSigma(const ObjectClass& c, const FilterModel& model) {
   return std::min(model.params.start_speed_sigma, std::max(0.5 * c.max_speed, 0.1));
 }
 
+/// The same of an object that may be as fast as its class can.
+double fastSigma(const ObjectClass& c) { return 0.5 * c.max_speed; }
+
+/// Whether a newborn's filter of this class holds a slow and a fast object: of those that are
+/// unlikely, a slow one is enough.
+bool hasTwoSpeeds(const ObjectClass& c, double log_class, const FilterModel& model) {
+  constexpr double kLikely = 0.05;  // (assumed)
+  return model.params.fast_births > 0 && c.motion->has_heading && log_class > std::log(kLikely) &&
+         fastSigma(c) > speedSigma(c, model);
+}
+
 /// Initial velocity of a newborn, with the range rate if measured (method.md 4.3).
 void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
   const auto measure = [&](const Vector2& u, double speed, double variance) {
@@ -75,7 +86,8 @@ void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
 
 /// The class's filter from one measurement. Wheeled objects start without heading unless the box
 /// shows it.
-ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const FilterModel& model) {
+ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const FilterModel& model,
+                        bool two_speeds = false) {
   ClassFilter f;
   f.x.head<2>() = birth.position;
   f.P.topLeftCorner<2, 2>() = birth.covariance;
@@ -85,6 +97,8 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   f.P(2, 2) = f.P(3, 3) = sigma * sigma;
   if (birth.radial_speed) applyRadialSpeed(*birth.radial_speed, f);
   startModes(c, f);
+  if (two_speeds && f.modes.empty() && !birth.radial_speed && !birth.speed)
+    startTwoSpeeds(model.params.fast_births, fastSigma(c), f);
   if (c.motion->has_heading && birth.yaw) {
     const double extra = model.params.shape_yaw_sigma;
     orientByAxis(birth.yaw->mean, birth.yaw->variance + extra * extra, f);
@@ -181,6 +195,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
       } else {
         const Kinematics k = kinematicsOf(c, f);
         updateClassFilter(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
+        settleSpeeds(c, f);
       }
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
@@ -240,7 +255,8 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
     const ObjectClass& c = model.classes[j];
     const auto birth = scan.model->birth(m, j, scan.state);
     if (birth) {
-      track.bank.push_back(startFilter(c, *birth, model));
+      const bool two = hasTwoSpeeds(c, track.log_class[static_cast<std::size_t>(j)], model);
+      track.bank.push_back(startFilter(c, *birth, model, two));
     } else {
       track.bank.emplace_back();
       track.log_class[static_cast<std::size_t>(j)] = kMinusInfinity;
