@@ -68,7 +68,7 @@ double fastSigma(const ObjectClass& c) { return 0.5 * c.max_speed; }
 /// Whether a newborn's filter of this class holds a slow and a fast object: of those that are
 /// unlikely, a slow one is enough.
 bool hasTwoSpeeds(const ObjectClass& c, double log_class, const FilterModel& model) {
-  constexpr double kLikely = 0.05;  // (assumed)
+  constexpr double kLikely = 0.5;  // (assumed)
   return model.params.fast_births > 0 && c.motion->has_heading && log_class > std::log(kLikely) &&
          fastSigma(c) > speedSigma(c, model);
 }
