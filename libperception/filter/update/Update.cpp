@@ -65,12 +65,14 @@ double speedSigma(const ObjectClass& c, const FilterModel& model) {
 /// The same of an object that may be as fast as its class can.
 double fastSigma(const ObjectClass& c) { return 0.5 * c.max_speed; }
 
-/// Whether a newborn's filter of this class holds a slow and a fast object: of those that are
-/// unlikely, a slow one is enough.
-bool hasTwoSpeeds(const ObjectClass& c, double log_class, const FilterModel& model) {
-  constexpr double kLikely = 0.5;  // (assumed)
-  return model.params.fast_births > 0 && c.motion->has_heading && log_class > std::log(kLikely) &&
-         fastSigma(c) > speedSigma(c, model);
+/// Whether a newborn's filter of this class holds a slow and a fast object. Not of a part of
+/// something longer: what is seen of a crash barrier beside the vehicle goes along with it.
+bool hasTwoSpeeds(const ObjectClass& c, double log_class, const Measurement& m,
+                  const FilterModel& model) {
+  constexpr double kLikely = 0.05;  // of an unlikely class a slow object is enough (assumed)
+  const bool a_part = m.sides && !m.sides->length_complete && !m.sides->width_complete;
+  return model.params.fast_births > 0 && c.motion->has_heading && !a_part &&
+         fastSigma(c) > speedSigma(c, model) && log_class > std::log(kLikely);
 }
 
 /// Initial velocity of a newborn, with the range rate if measured (method.md 4.3).
@@ -255,7 +257,7 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
     const ObjectClass& c = model.classes[j];
     const auto birth = scan.model->birth(m, j, scan.state);
     if (birth) {
-      const bool two = hasTwoSpeeds(c, track.log_class[static_cast<std::size_t>(j)], model);
+      const bool two = hasTwoSpeeds(c, track.log_class[static_cast<std::size_t>(j)], m, model);
       track.bank.push_back(startFilter(c, *birth, model, two));
     } else {
       track.bank.emplace_back();
