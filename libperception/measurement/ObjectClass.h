@@ -40,8 +40,8 @@ struct ObjectClass {
              ///< its truth; perception-evaluate does not read it: EvaluationOptions::unnamed
   std::string kitti_type = "Misc";  ///< type written by the KITTI export
 
-  /// [rad^2/s] White yaw rate at a speed [m/s]: what turns the vehicle pushes it sideways, and tires
-  /// bound that (method.md 3.2).
+  /// [rad^2/s] White yaw rate at a speed [m/s]: what turns the vehicle pushes it sideways, and
+  /// tires bound that (method.md 3.2).
   double yawRatePsd(double speed) const;
   std::size_t modes() const { return mode_accel_psd.size(); }  ///< 0: a single model
   void visit(ParamVisitor& v);

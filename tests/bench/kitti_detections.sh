@@ -3,20 +3,22 @@
 # with ini/kitti-detections.ini and scores the result by CLEAR MOT, sAMOTA and HOTA (3D overlap of .25): at the threshold of
 # the best MOTA, as is the custom, and of all that is output at one score, as a vehicle would use it. Leaves OUT/report.md,
 # OUT/res (KITTI's format) and OUT/run. Half a minute for `dev` on four cores.
-#   tests/bench/kitti_detections.sh [-t SCORE] [-m 2d] [-c INI] [-o OUT] [dev | train | SEQUENCE ...] [perception-track options]
+#   tests/bench/kitti_detections.sh [-t SCORE] [-m 2d] [-c INI] [-d DETECTOR] [-o OUT] [dev | train | SEQUENCE ...] [perception-track options]
 #   -m   2d: image boxes at an overlap of .5, for cameras alone (--sensors C --set run.output_sensor=rrc) [3d]
+#   -d   boxes of cars of virconv, casa, pvcnn, second_iou or pointrcnn in data/kitti_tracking_detectors, as kitti3d-boxes
 #   -t   the one score, log-odds that it exists and is a road user [0]
 # PERCEPTION_SHARED: folder with data/kitti_tracking and tools/mot_eval.py [../shared]; PERCEPTION_BIN: programs [build/bin].
 # Needs python3-numpy and python3-scipy. What decides is `dev`; the configuration was counted on `train`.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
 
-threshold=0 mode=3d ini=ini/kitti-detections.ini out=out/kitti_detections
-while getopts t:m:c:o: option; do
+threshold=0 mode=3d detector= ini=ini/kitti-detections.ini out=out/kitti_detections
+while getopts t:m:c:d:o: option; do
   case $option in
     t) threshold=$OPTARG ;;
     m) mode=$OPTARG ;;
     c) ini=$OPTARG ;;
+    d) detector=$OPTARG ;;
     o) out=$OPTARG ;;
     *) exit 64 ;;
   esac
@@ -35,14 +37,20 @@ readonly data=$shared/data/kitti_tracking logs=${out%/}/logs
 for needed in "$data/label_02" "$data/det_pointrcnn" "$shared/tools/mot_eval.py"; do
   [[ -e $needed ]] || { echo "skipped: $needed is not there (PERCEPTION_SHARED)"; exit 0; }
 done
-export bin data logs ini out
+readonly detectors=${data}_detectors
+export bin data logs ini out detector detectors
 mkdir -p "$logs" "$out/res"
 rm -f "$out"/res/*.txt "$out"/*.log
 
 import() {
   local n=$1 detections=() class
   [[ -f $logs/$n.rawlog ]] && return
-  for class in Car Pedestrian Cyclist; do detections+=(--detections "pointrcnn:$class=$data/det_pointrcnn/$class/$n.txt"); done
+  if [[ -n $detector ]]; then
+    gunzip -c "$detectors/$detector/$n.txt.gz" >"$logs/$n.$detector.txt"
+    detections=(--detections "kitti3d-boxes:Car=$logs/$n.$detector.txt")
+  else
+    for class in Car Pedestrian Cyclist; do detections+=(--detections "pointrcnn:$class=$data/det_pointrcnn/$class/$n.txt"); done
+  fi
   for class in Car Pedestrian; do detections+=(--detections "rrc:$class=$data/det_rrc/$class/$n.txt"); done
   "$bin/perception-import" kitti --calib "$data/calib/$n.txt" --poses "$data/velo_poses/$n.txt" \
     --labels "$data/label_02/$n.txt" "${detections[@]}" -o "$logs/$n.rawlog" >"$out/import_$n.log" 2>&1 ||

@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <limits>
 
 #include "libperception/core/Error.h"
 #include "libperception/core/Random.h"
-#include "tests/support/SyntheticCloud.h"
+#include "tests/support/ClusterScenes.h"
 
 namespace perception {
 namespace {
@@ -30,6 +31,16 @@ SolidScene carAndPerson() {
   scene.boxes = {{{14, 4}, 0.5, 4.4, 1.8, 0.25, 1.5}};
   scene.cylinders = {{{10, -3}, 0.25, 0, 1.75}};
   return scene;
+}
+
+/// To which every cluster is a vehicle.
+std::shared_ptr<const ClusterClassifier> alwaysVehicle() {
+  BoostedTrees trees;
+  trees.base = {0, 0, 5, 0, 0, 0};
+  std::array<double, kClusterKinds> prior;
+  prior.fill(1.0 / static_cast<double>(kClusterKinds));
+  return std::make_shared<const ClusterClassifier>(trees, std::array<Calibration, kClusterKinds>{},
+                                                   prior, EvidenceMemory{}, Provenance{});
 }
 
 const Measurement* withLabel(const MeasurementScan& scan, int label) {
@@ -120,6 +131,27 @@ TEST(LidarFrontEnd, AnEdgeBehindATallerObjectIsNotSeen) {
   const double bearing = std::atan2(1.5, 10);
   EXPECT_LT(scan.occlusion->visibility(bearing - 0.03, bearing + 0.03, 25, 1), 0.05);
   EXPECT_GT(scan.occlusion->visibility(-0.5, -0.4, 25, 1), 0.95);
+}
+
+TEST(LidarFrontEnd, WhatIsSeenBetweenTwoTallerObjectsHasAPlace) {
+  SolidScene scene;
+  scene.boxes = {{{20, 0}, kPi / 2, 4.4, 1.8, 0.25, 1.5},
+                 {{10, 1.5}, 0, 1.5, 2, 0.25, 2.5},
+                 {{10, -1.5}, 0, 1.5, 2, 0.25, 2.5}};  // hide both its ends
+  const SensorFrame frame = castScan(scene, SpinningLidar());
+  const auto carOf = [](const MeasurementScan& scan) {
+    const auto car = std::find_if(scan.measurements.begin(), scan.measurements.end(),
+                                  [](const Measurement& m) { return m.position.x() > 15; });
+    EXPECT_NE(car, scan.measurements.end());
+    return *car;
+  };
+  const Measurement by_size = carOf(frontEnd().extract(frame));
+  EXPECT_EQ(by_size.seen, 1 << FootprintModel::kRange) << "told by size: the range alone";
+  const Measurement by_shape =
+      carOf(test::shapedFrontEnd({ObjectShape::kVehicle}, alwaysVehicle()).extract(frame));
+  ASSERT_EQ(by_shape.seen, FootprintModel::kAll);
+  const double edge = std::sqrt(by_shape.R(FootprintModel::kLeft, FootprintModel::kLeft));
+  EXPECT_NEAR(edge, 2.5 / 19, 0.03) << "[rad] 2.5 m";
 }
 
 TEST(LidarFrontEnd, ObjectsCloseTogetherAreUnstableOrLeftOut) {

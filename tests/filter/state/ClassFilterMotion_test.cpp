@@ -45,6 +45,40 @@ TEST(ConstantVelocity, StepsCompose) {
   EXPECT_LT((once.P - twice.P).norm(), 1e-12);
 }
 
+TEST(TwoSpeeds, AreTheirMixtureUntilOneIsBeyondDoubt) {
+  const ObjectClass c = wheeled();
+  ClassFilter f;
+  f.P.diagonal() << 0.2, 0.2, 25, 25;
+  startTwoSpeeds(0.1, 20, f);
+  ASSERT_EQ(f.modes.size(), 2u);
+  EXPECT_NEAR(f.P(2, 2), 0.9 * 25 + 0.1 * 400, 1e-12);
+  ClassFilter slow = f;
+  slow.modes.clear(), slow.P = f.modes[0].P;
+  predictClassFilter(c, 0.1, f);
+  predictClassFilter(c, 0.1, slow);
+  EXPECT_LT((f.modes[0].P - slow.P).norm(), 1e-12) << "each moves as if it were alone";
+  EXPECT_NEAR(std::exp(f.modes[1].log_probability), 0.1, 1e-12);
+  settleSpeeds(c, f);
+  ASSERT_EQ(f.modes.size(), 2u) << "0.9 is the prior, not beyond doubt";
+  f.modes[0].log_probability = std::log(0.05), f.modes[1].log_probability = std::log(0.95);
+  const Matrix4 fast = f.modes[1].P;
+  settleSpeeds(c, f);
+  EXPECT_TRUE(f.modes.empty());
+  EXPECT_EQ(f.P, fast);
+}
+
+TEST(Wheeled, AFastVehicleCannotTurnAsASlowOne) {
+  ObjectClass c = wheeled();
+  c.lateral_psd = 4;
+  EXPECT_EQ(c.yawRatePsd(7), c.yaw_rate_psd);
+  EXPECT_DOUBLE_EQ(c.yawRatePsd(-20), 4.0 / 400);
+  ClassFilter f = orientedFilter(0, 0, 20, 0);
+  f.P.setZero();
+  predictClassFilter(c, 0.1, f);
+  EXPECT_NEAR(f.P(3, 3), 0.1 * 4 / 400, 1e-12);
+  EXPECT_NEAR(f.P(1, 1), 0.001 / 3 * 4 + 0.01 * 0.1, 1e-12);
+}
+
 TEST(Wheeled, AnUncertainHeadingMovesByItsMoments) {
   // Against the moments of half a million drawn states moved exactly; bounds: five standard errors.
   ObjectClass c = wheeled();

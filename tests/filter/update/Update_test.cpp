@@ -94,6 +94,50 @@ TEST(HitTrack, MakesExistenceCertainAndClassesSumToOne) {
   EXPECT_EQ(after.hits[modalityIndex(scan.modality)], 2);
 }
 
+TEST(HitTrack, FindsAnOncomingCarAtItsSecondScan) {
+  Fixture f;
+  ObjectClass& car = f.model.classes.classes[0];
+  car.motion = findMotionModel("wheeled");
+  car.max_speed = 50;
+  f.model.params.gate_probability = 0.999;
+  const auto second = positionScan(f.sensor, 0.1, {{1 - 2.8, 2, 0}});  // 28 m/s
+  const auto pairs = [&](double fast) {
+    f.model.params.fast_births = fast;
+    const Track t = predictTrack(f.born(), second.state.stamp, f.model);
+    return likelihoodTable({t}, second, f.model).tracks[0].pairs.size();
+  };
+  EXPECT_EQ(pairs(0), 0u) << "5.6 standard deviations of 5 m/s";
+  ASSERT_EQ(pairs(0.1), 1u);
+  const Track t = predictTrack(f.born(), second.state.stamp, f.model);
+  const auto table = likelihoodTable({t}, second, f.model);
+  const Track hit = hitTrack(t, table.tracks[0], table.tracks[0].pairs[0], second, 1, f.model);
+  const ClassFilter& filter = hit.bank[0];
+  EXPECT_TRUE(filter.modes.empty()) << "settled";
+  const double speed = filter.oriented ? std::abs(filter.x[2]) : filter.x.tail<2>().norm();
+  EXPECT_NEAR(speed, 28, 3);
+}
+
+TEST(NewTrack, APartOfSomethingLongerIsNotFast) {
+  Fixture f;
+  f.model.classes.classes[0].motion = findMotionModel("wheeled");
+  f.model.classes.classes[0].max_speed = 50;
+  f.model.params.fast_births = 0.1;
+  auto scan = positionScan(f.sensor, 0, {{1, 2, 0}});
+  const auto modes = [&] {
+    return newTrack(likelihoodTable({}, scan, f.model).births[0], 0, scan, 0, f.model)
+        .bank[0]
+        .modes.size();
+  };
+  EXPECT_EQ(modes(), 2u);
+  PartialBox sides;
+  sides.length = 4.5, sides.width = 0.1;
+  scan.measurements[0].sides = sides;
+  scan.measurements[0].sides->length_complete = scan.measurements[0].sides->width_complete = false;
+  EXPECT_EQ(modes(), 0u);
+  scan.measurements[0].sides->length_complete = true;
+  EXPECT_EQ(modes(), 2u);
+}
+
 TEST(HitTrack, NeverLetsAClassDie) {
   Fixture f;
   f.model.params.class_epsilon = 1e-3;
