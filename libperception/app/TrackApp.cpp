@@ -31,7 +31,7 @@ void TrackApp::declare(CLI::App& cli) {
   cli.add_flag("--measurements", measurements,
                "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
   cli.add_flag("--overwrite", overwrite,
-               "Replace the results of another run in the folder, evaluation and film too");
+               "Replace the results in the folder, also of another run, evaluation and film too");
   cli.add_flag("--info", info, "Say what the logs of -i hold (labels, classes, rates) and stop");
   cli.add_option("--export", exports,
                  "kitti:FILE: also write the objects in KITTI's tracking format")
@@ -118,7 +118,7 @@ std::vector<TrackApp::Shard> TrackApp::shards() const {
                 runHash(log, effective_ini, PERCEPTION_VERSION)};
     const bool exported = shard.export_file.empty() || fs::exists(shard.export_file);
     // All folders are looked at before the first log is tracked.
-    if (!isFinished(dir, shard.hash, overwrite || !exported)) {
+    if (!isFinished(dir, shard.hash, overwrite) || !exported) {
       out.push_back(std::move(shard));
     } else {
       fmt::print("{}: already done, results in {}\n", log, dir);

@@ -25,7 +25,7 @@ PhantomMix::PhantomMix(const std::vector<Probabilities>& clusters, const Probabi
       const Probabilities p = (*this)(raw);
       phantoms += p[kPhantom], all += p[kPhantom] + p[kThing];
     }
-    share_ = std::min(phantoms / all, kMostShare);
+    share_ = std::max(prior_share_, std::min(phantoms / all, kMostShare));
   }
 }
 

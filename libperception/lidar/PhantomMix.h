@@ -9,7 +9,8 @@ namespace perception {
 /// Share of phantoms among the clusters of a scan that are no road users: it differs by orders of
 /// magnitude between clear air and the spray behind a car, and with it what a cluster that looks
 /// like spray is worth. Found by expectation maximization [saerens2002] from the probabilities of
-/// the scan's clusters, beside those of a classifier for its training samples: method.md 8.10.
+/// the scan's clusters, beside those of a classifier for its training samples; at least that of
+/// these samples, so that clear air is judged as the classifier learned it: method.md 8.10.
 class PhantomMix {
  public:
   using Probabilities = std::array<double, kClusterKinds>;

@@ -101,14 +101,13 @@ std::string runHash(const std::string& log, const std::string& effective_ini,
 bool isFinished(const std::string& dir, const std::string& hash, bool overwrite) {
   const std::string done = dir + "/done.json";
   std::error_code ignored;
-  if (hash.empty() || !fs::exists(done, ignored)) return false;
+  if (overwrite || hash.empty() || !fs::exists(done, ignored)) return false;
   std::string there;
   try {
     there = readRunRecord(done).hash;
   } catch (const DataError&) {  // of another version or program: another run
   }
   if (!there.empty() && there == hash) return true;
-  if (overwrite) return false;
   throw Error(ExitCode::kBadConfig,
               fmt::format("{}: holds the results of another log, configuration or version; give "
                           "another folder, or --overwrite to remove them",

@@ -10,8 +10,8 @@ namespace perception {
 std::string runHash(const std::string& log, const std::string& effective_ini,
                     const std::string& version);
 
-/// True if `dir` holds the finished run of this hash: there is nothing to do. Throws Error
-/// (kBadConfig) if it holds another one and not `overwrite`.
+/// True if `dir` holds the finished run of this hash: there is nothing to do. With `overwrite` there
+/// always is; without, throws Error (kBadConfig) if it holds another one.
 bool isFinished(const std::string& dir, const std::string& hash, bool overwrite);
 
 /// Results in `dir` of earlier programs on an earlier run, relative: tables, page, pictures, film,

@@ -203,6 +203,20 @@ TEST(TrackApp, AFolderOfAnotherRunIsRefusedUnlessOverwritten) {
   }
 }
 
+TEST(TrackApp, OverwriteTracksAgainAndAnExportNeverReplacesAnotherRun) {
+  Tracking t;
+  ASSERT_EQ(t.track(demoStart(2)).code, 0) << t.ended.err;
+  std::ofstream(t.dir + "/tracks.csv") << "spoiled";
+  ASSERT_EQ(t.track(demoStart(2)).code, 0);
+  EXPECT_EQ(contentOf(t.dir + "/tracks.csv"), "spoiled") << "left alone";
+  ASSERT_EQ(t.track(demoStart(2), {"--overwrite"}).code, 0);
+  EXPECT_NE(contentOf(t.dir + "/tracks.csv"), "spoiled");
+  const std::string before = contentOf(t.dir + "/done.json");
+  EXPECT_EQ(t.track(demoStart(2), {"--seed", "7", "--export", "kitti:" + t.dir + "/k.txt"}).code,
+            78);
+  EXPECT_EQ(contentOf(t.dir + "/done.json"), before);
+}
+
 /// The bytes inside a gzip file.
 std::string inflated(const std::string& path) {
   std::string out;

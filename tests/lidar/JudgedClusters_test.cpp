@@ -12,9 +12,6 @@ namespace {
 
 using test::SolidScene;
 
-/// By which the share of phantoms in so small a scene moves the evidence against all others.
-constexpr double kMixed = 0.05;
-
 /// Scores by length [m]: up to 0.8 that of a `person`, to 2 that of a `pair` of them, to 6 that of
 /// a vehicle, above that of a thing.
 std::shared_ptr<const ClusterClassifier> byLength(float pair = -4, float person = 4,
@@ -90,9 +87,9 @@ TEST(JudgedClusters, ThingsAreLeftOut) {
                       &car = judged.clusters[person_first ? 1 : 0];
   EXPECT_LT((judged.middleOf(person) - Vector2(10, -4)).norm(), 0.5);
   EXPECT_LT((judged.middleOf(car) - Vector2(12, 0)).norm(), 0.5);
-  EXPECT_NEAR(of(person, ClusterKind::kPedestrian), 4, kMixed);
-  EXPECT_NEAR(of(person, ClusterKind::kVehicle), -4, kMixed);
-  EXPECT_NEAR(of(car, ClusterKind::kVehicle), 2, kMixed);
+  EXPECT_NEAR(of(person, ClusterKind::kPedestrian), 4, 1e-6);
+  EXPECT_NEAR(of(person, ClusterKind::kVehicle), -4, 1e-6);
+  EXPECT_NEAR(of(car, ClusterKind::kVehicle), 2, 1e-6);
   EXPECT_EQ(of(car, ClusterKind::kThing), 0);
   EXPECT_TRUE(person.alone);
   EXPECT_TRUE(std::is_sorted(car.points.begin(), car.points.end()));
@@ -119,7 +116,7 @@ TEST(JudgedClusters, PartsReplaceAWholeThatIsLessLikely) {
   for (const JudgedCluster& c : judged.clusters) {
     EXPECT_NEAR(std::abs(judged.middleOf(c).y() - 2), 0.36, 0.1);
     sum += judged.middleOf(c).y() - 2;
-    EXPECT_NEAR(of(c, ClusterKind::kPedestrian), 4, kMixed);
+    EXPECT_NEAR(of(c, ClusterKind::kPedestrian), 4, 1e-6);
     EXPECT_FALSE(c.alone);
   }
   EXPECT_NEAR(sum, 0, 0.1) << "one to each side";
@@ -189,7 +186,7 @@ TEST(JudgedClusters, MeasurementsTellClassesByTheirShape) {
   const Measurement* person = nearest(scan, place);
   ASSERT_EQ(person->log_class.size(), 5u);
   const double expected[] = {-4, 0, 4, -4, -4};
-  for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(person->log_class[j], expected[j], kMixed) << j;
+  for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(person->log_class[j], expected[j], 1e-6) << j;
   EXPECT_EQ(person->log_clutter, 0) << "clutter looks as things do";
   ASSERT_TRUE(person->view);
   const Vector2 sight = Vector2(100, -50) - place;
