@@ -133,7 +133,12 @@ TEST_F(RealImport, Comma2k19sTrafficIsTracked) {
   ASSERT_EQ(scenes.size(), 400u);
   std::map<std::uint64_t, int> scans_of;
   for (const Scene& scene : scenes) {
-    for (const auto& object : scene.objects) ++scans_of[object.id];
+    for (const auto& object : scene.objects) {
+      ++scans_of[object.id];
+      constexpr ClassId kCyclist = 1;
+      EXPECT_FALSE(object.classified && object.class_id == kCyclist)
+          << "a highway; " << object.speed << " m/s";
+    }
   }
   const auto lasting = std::count_if(scans_of.begin(), scans_of.end(),
                                      [](const auto& entry) { return entry.second > 100; });
