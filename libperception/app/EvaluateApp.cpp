@@ -292,7 +292,8 @@ void EvaluateApp::run() {
   for (const std::string& table : dropRowsOfOtherWeathers(out_report))
     warn(fmt::format("--paper {}: no run is of that weather: its rows are left out", table));
   writeReports();
-  const std::string text = textReport(out_report);
+  std::string text = summaryText(out_report);
+  if (verbosity > 0 || !paper.empty() || !front_ends.empty()) text += "\n" + textReport(out_report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   for (const std::string& dir : out_folders) say(1, "written: " + dir);
 }

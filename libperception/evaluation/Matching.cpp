@@ -46,7 +46,8 @@ std::vector<int> match(const std::vector<Vector2>& truth, const std::vector<Vect
   std::vector<int> result =
       pairing == Pairing::kClosest ? closest(distance) : oneToOne(distance, tolerance);
   for (std::size_t r = 0; r < result.size(); ++r) {
-    if (result[r] >= 0 && distance(static_cast<Eigen::Index>(r), result[r]) > tolerance)
+    // A truth without a place (NaN) matches nothing.
+    if (result[r] >= 0 && !(distance(static_cast<Eigen::Index>(r), result[r]) <= tolerance))
       result[r] = -1;
   }
   return result;

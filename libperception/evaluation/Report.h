@@ -67,6 +67,8 @@ std::vector<ReportTable> frontEndTables(const EvaluationReport& report);
 /// trials.
 ReportTable sideBySideTable(const EvaluationReport& report);
 
+/// The figures that decide, seven lines a run: of all classes, false objects and headings included.
+std::string summaryText(const EvaluationReport& report);
 std::string textReport(const EvaluationReport& report);
 std::string markdownReport(const EvaluationReport& report);
 /// One line per instant: frame,t,truth,estimates,gospa,localization,missed,false,ospa,outputs,

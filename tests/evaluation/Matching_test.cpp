@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <random>
 
 namespace perception {
@@ -28,6 +29,14 @@ TEST(Matching, ThePairMayBeAsFarApartAsTheToleranceAndNoFarther) {
     EXPECT_EQ(match({{0, 0}}, {{2.001, 0}}, 2, p), std::vector<int>{-1});
     EXPECT_EQ(match({{0, 0}}, {}, 2, p), std::vector<int>{-1});
     EXPECT_TRUE(match({}, {{0, 0}}, 2, p).empty());
+  }
+}
+
+TEST(Matching, ATruthWithoutAPlaceMatchesNothing) {
+  const double none = std::numeric_limits<double>::quiet_NaN();  // KITTI's DontCare
+  for (const Pairing p : {Pairing::kClosest, Pairing::kOneToOne}) {
+    EXPECT_EQ(match({{none, none}}, {{2, 0}}, 2, p), std::vector<int>{-1});
+    EXPECT_EQ(match({{none, none}, {9, 0}}, {{2, 0}, {9, 0}}, 2, p), (std::vector<int>{-1, 1}));
   }
 }
 

@@ -38,6 +38,21 @@ TEST(Report, ThePapersTableComesFirstWithItsColumnsInItsOrder) {
   EXPECT_EQ(table.rows[1][1], "car");
 }
 
+TEST(Report, TheSummaryHasTheFiguresThatDecide) {
+  const std::string text = summaryText(sampleReport());
+  EXPECT_NE(text.find("first_run: 3 instants, 3 views of true objects that count\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("0.667 of the views; 0 id switches, 0 gaps"), std::string::npos) << text;
+  EXPECT_NE(text.find("right and sure 1.000, wrong and sure 0.000, not sure 0.000"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("0.33 an instant, of a sure class 0.33"), std::string::npos) << text;
+  EXPECT_NE(text.find("MOTA 0.333"), std::string::npos) << "one miss, one false of three" << text;
+  const std::string nothing = summaryText(sampleReport(false));
+  EXPECT_NE(nothing.find("n/a of the views; n/a id switches"), std::string::npos) << nothing;
+}
+
 TEST(Report, EveryRowHasTheHeadersCells) {
   for (const ReportTable& table : reportTables(sampleReport())) {
     EXPECT_FALSE(table.rows.empty()) << table.title;
