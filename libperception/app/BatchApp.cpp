@@ -17,6 +17,7 @@
 #include "libperception/config/IniValue.h"
 #include "libperception/pipeline/OutputFolder.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/scene/RunTiming.h"
 
 namespace perception {
 namespace {
@@ -195,7 +196,10 @@ void BatchApp::runShards() {
   BatchRun runner(batch, dir, options);
   const std::vector<std::size_t> pending = runner.pending(places);
   std::size_t done = 0;
+  double log_seconds = 0;
+  const RunTiming timing;
   runner.run(pending, [&](const Shard& shard, const ShardStatus& status, double seconds) {
+    if (status.record) log_seconds += status.record->last_stamp - status.record->first_stamp;
     fmt::print("[{}/{}] {}: {}{}{}, {:.1f} s\n", ++done, pending.size(), labelOf(shard),
                nameOf(status.state), status.reason.empty() ? "" : ": ", shortened(status.reason),
                seconds);
@@ -203,6 +207,10 @@ void BatchApp::runShards() {
   });
   out_completeness = completenessOf(batch, dir);
   if (place) return concludeShard(batch, *place);
+  if (log_seconds > 0) {
+    fmt::print("{:.0f} s of log in {:.0f} s: {:.1f} times real time, {} processes\n", log_seconds,
+               timing.wallSeconds(), log_seconds / timing.wallSeconds(), options.jobs);
+  }
   conclude(batch);
   if (const auto n = out_completeness.count(ShardState::kMissing); n > 0) {
     throw Error(ExitCode::kTryAgain,

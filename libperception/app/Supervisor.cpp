@@ -120,6 +120,10 @@ class Child {
     };
     const char* signal = stop_ == SIGINT ? "SIGINT" : "SIGTERM";
     if (stop_ != 0) return say(fmt::format("stopped by {}", signal), ExitCode::kTryAgain);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL && !hangs_) {
+      return say("killed from outside (SIGKILL): is the machine out of memory?",
+                 ExitCode::kTryAgain);
+    }
     std::string how = WIFSIGNALED(status)
                           ? fmt::format("ended the program ({})", ::strsignal(WTERMSIG(status)))
                           : fmt::format("ended the program with code {}", WEXITSTATUS(status));

@@ -48,11 +48,13 @@ std::pair<ExitCode, std::string> failureOf(const ChildProcess& process, const Sh
                                            const std::string& program, const std::string& said) {
   if (process.wasOutOfTime())
     return {ExitCode::kBadInput, fmt::format("did not end within {:g} s", limits.time)};
-  if (process.wasStopped() || process.signal() == SIGTERM || process.signal() == SIGINT)
-    return {ExitCode::kTryAgain, "stopped"};
-  if (process.signal() != 0) {
-    return {ExitCode::kInternal, fmt::format("ended by signal {} ({})", process.signal(),
-                                             ::strsignal(process.signal()))};
+  // Of somebody else, or of a machine out of memory: nothing that the shard is to blame for.
+  const int signal = process.signal();
+  if (process.wasStopped() || signal == SIGTERM || signal == SIGINT || signal == SIGKILL)
+    return {ExitCode::kTryAgain, "stopped or killed from outside"};
+  if (signal != 0) {
+    return {ExitCode::kInternal,
+            fmt::format("ended by signal {} ({})", signal, ::strsignal(signal))};
   }
   if (process.exitCode() == kNoProgram)
     return {ExitCode::kUnavailable, program + ": cannot be run"};

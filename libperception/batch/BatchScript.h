@@ -8,6 +8,7 @@ inline constexpr const char* kBatchStyle = R"css(
 th { cursor: pointer; white-space: nowrap; }
 td.number, th.number { text-align: right; }
 tr.failed td, tr.missing td { background: #fbeee6; }
+td.reason { max-width: 420px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 #histogram { height: 190px; cursor: default; }
 #histogram rect { fill: #0072b2; }
 #histogram rect:hover { fill: #d55e00; }
@@ -17,7 +18,7 @@ select, input { font: inherit; margin: 0 12px 8px 0; }
 inline constexpr const char* kBatchBody = R"html(
 <h2>One figure over all shards</h2>
 <p><select id="figure" aria-label="figure"></select></p>
-<svg id="histogram" viewBox="0 0 1100 190" role="img" aria-label="histogram"></svg>
+<svg id="histogram" role="img" aria-label="histogram"></svg>
 <p id="ends"></p>
 <div class="wide"><table id="conditions"></table></div>
 <h2>All shards</h2>
@@ -36,7 +37,9 @@ inline constexpr const char* kBatchScript = R"js(
   var shown = ['closest.all.object_tracked_a', 'closest.all.correct', 'closest.all.mis',
     'closest.all.position_rms_m', 'one_to_one.all.id_switches', 'false_objects.all.per_instant',
     'set_distance.gospa_mean_m'].filter(function (f) { return data.figures.indexOf(f) >= 0; });
-  var hidden = ['code', 'simulated'].map(column), chosen = 0, sorted = 'log', down = false;
+  var columns = ['id', 'log', 'config', 'sensors', 'particles', 'seed', 'state'].concat(shown,
+    ['tracks', 'warnings', 'reason']);
+  var chosen = 0, sorted = 'log', down = false;
   function add(parent, tag, text, attributes) {
     var svg = parent.namespaceURI.indexOf('svg') > 0;
     var e = svg ? document.createElementNS(parent.namespaceURI, tag) : document.createElement(tag);
@@ -62,7 +65,9 @@ inline constexpr const char* kBatchScript = R"js(
   }
   function histogram() {
     var chart = at('histogram'), all = withFigure(), bins = [], k;
+    var wide = Math.max(200, chart.clientWidth), inside = wide - 40;
     chart.textContent = '';
+    chart.setAttribute('viewBox', '0 0 ' + wide + ' 190');
     if (!all.length) return;
     var low = all[0].figures[chosen], high = all[all.length - 1].figures[chosen];
     var count = Math.min(30, Math.max(1, Math.ceil(2 * Math.sqrt(all.length))));
@@ -72,7 +77,7 @@ inline constexpr const char* kBatchScript = R"js(
       var place = high > low ? (s.figures[chosen] - low) / (high - low) * count : 0;
       ++bins[Math.min(count - 1, Math.floor(place))];
     });
-    var most = Math.max.apply(null, bins), width = 1060 / count;
+    var most = Math.max.apply(null, bins), width = inside / count;
     bins.forEach(function (n, i) {
       var tall = 140 * n / most, from = low + (high - low) * i / count;
       var bar = add(chart, 'rect', null, {x: 20 + i * width + 1, y: 160 - tall,
@@ -82,7 +87,7 @@ inline constexpr const char* kBatchScript = R"js(
         'text-anchor': 'middle'});
     });
     add(chart, 'text', short(low), {x: 20, y: 180});
-    add(chart, 'text', short(high), {x: 1080, y: 180, 'text-anchor': 'end'});
+    add(chart, 'text', short(high), {x: 20 + inside, y: 180, 'text-anchor': 'end'});
   }
   function ends() {
     var all = withFigure(), box = at('ends'), k;
@@ -129,30 +134,28 @@ inline constexpr const char* kBatchScript = R"js(
     var table = at('shards'), head, part = at('filter').value.toLowerCase();
     table.textContent = '';
     head = add(table, 'tr');
-    data.columns.filter(function (c) { return hidden.indexOf(column(c)) < 0; }).concat(shown)
-      .forEach(function (name) {
-        var figure = column(name) < 0, mark = name === sorted ? (down ? ' \u25bc' : ' \u25b2') : '';
-        add(head, 'th', name.replace('closest.all.', '').replace('.all.', ' ')
-          .replace(/[._]/g, ' ') + mark, figure ? {'class': 'number'} : {})
-          .addEventListener('click', function () {
-            down = name === sorted ? !down : figure;
-            sorted = name;
-            shards();
-          });
-      });
+    columns.forEach(function (name) {
+      var figure = column(name) < 0, mark = name === sorted ? (down ? ' \u25bc' : ' \u25b2') : '';
+      add(head, 'th', name.replace('closest.all.', '').replace('.all.', ' ')
+        .replace(/[._]/g, ' ') + mark, figure ? {'class': 'number'} : {})
+        .addEventListener('click', function () {
+          down = name === sorted ? !down : figure;
+          sorted = name;
+          shards();
+        });
+    });
     data.shards.filter(function (s) {
       return s.cells.join(' ').toLowerCase().indexOf(part) >= 0;
     }).sort(compare).forEach(function (s) {
       var row = add(table, 'tr', null, {'class': s.cells[column('state')]});
-      s.cells.forEach(function (text, c) {
-        if (hidden.indexOf(c) >= 0) return;
-        var box = add(row, 'td');
-        if (c === 0) return link(box, s, text);
-        box.textContent = data.columns[c] === 'log' || data.columns[c] === 'config'
-          ? text.split('/').pop() : text;
-        box.title = text;
+      columns.forEach(function (name) {
+        var value = valueOf(s, name), figure = column(name) < 0;
+        var box = add(row, 'td', null, {'class': figure ? 'number' : name});
+        if (name === 'id') return link(box, s, value);
+        box.textContent = figure ? short(value)
+          : name === 'log' || name === 'config' ? value.split('/').pop() : value;
+        box.title = value;
       });
-      shown.forEach(function (f) { add(row, 'td', short(valueOf(s, f)), {'class': 'number'}); });
     });
   }
   function figure() { histogram(); ends(); conditions(); }
@@ -161,6 +164,7 @@ inline constexpr const char* kBatchScript = R"js(
   at('figure').value = chosen;
   at('figure').addEventListener('change', function () { chosen = +this.value; figure(); });
   at('filter').addEventListener('input', shards);
+  window.addEventListener('resize', histogram);
   figure();
   shards();
 })();

@@ -98,7 +98,8 @@ TEST_F(RunsOfABatch, AFullDiskIsTriedAgain) {
 
 TEST_F(RunsOfABatch, AnInterruptedShardIsMissingNotFailed) {
   addShard("a");
-  EXPECT_EQ(run("exit 75")["a"].state, ShardState::kMissing);
+  for (const char* end : {"exit 75", "kill -TERM $$", "kill -KILL $$"})
+    EXPECT_EQ(run(end)["a"].state, ShardState::kMissing) << end;
   EXPECT_EQ(completenessOf(batch, dir).count(ShardState::kMissing), 1U);
 }
 
