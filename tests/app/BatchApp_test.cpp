@@ -1,8 +1,10 @@
 #include "libperception/app/BatchApp.h"
 
-#include <set>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <thread>
 
-#include "libperception/core/GroundTruth.h"
 #include "tests/app/LogFaults.h"
 
 namespace perception::test {
@@ -165,6 +167,31 @@ TEST_F(BatchOfDemo, AChangedPlanReplacesRunsOnlyWhenAsked) {
   EXPECT_EQ(call("run").code, 78);
   EXPECT_EQ(call("run", {"--overwrite"}).code, 0);
   EXPECT_EQ(call("reduce").code, 0);
+}
+
+TEST_F(BatchOfDemo, SlurmGivesTheSameBytes) {
+  if (std::system("sinfo --noheader >/dev/null 2>&1") != 0) GTEST_SKIP() << "no Slurm answers";
+  writeIni("sensors = L\nseeds = 1..3\n");
+  ASSERT_EQ(plan().code, 0);
+  ASSERT_EQ(call("submit").code, 0);
+  EXPECT_EQ(last.out_jobs.size(), 2U);
+  EXPECT_EQ(call("submit").code, 0);
+  EXPECT_TRUE(last.out_jobs.empty());  // all wait or run already
+  constexpr auto kLongest = std::chrono::minutes(3);
+  const auto start = std::chrono::steady_clock::now();
+  while (!std::filesystem::exists(dir + "/index.html") &&
+         std::chrono::steady_clock::now() - start < kLongest)
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const auto queued = filesIn(dir);
+  dir = folder / "here";
+  ASSERT_EQ(plan().code, 0);
+  ASSERT_EQ(call("run").code, 0);
+  ASSERT_EQ(call("reduce").code, 0);
+  for (const auto& [name, content] : filesIn(dir)) {
+    if (name.rfind("log/", 0) == 0) continue;  // names of folders, run times
+    ASSERT_EQ(queued.count(name), 1U) << name;
+    EXPECT_EQ(queued.at(name), content) << name;
+  }
 }
 
 TEST_F(BatchOfDemo, FaultsHaveTheirCodes) {
