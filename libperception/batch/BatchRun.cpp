@@ -46,12 +46,17 @@ std::string lastWords(const std::string& log) {
 /// Code and reason of a process that did not do its work.
 std::pair<ExitCode, std::string> failureOf(const ChildProcess& process, const ShardLimits& limits,
                                            const std::string& program, const std::string& said) {
+  // It waited for something: by itself it would have used up its processor time before.
   if (process.wasOutOfTime())
-    return {ExitCode::kBadInput, fmt::format("did not end within {:g} s", limits.time)};
+    return {ExitCode::kUnavailable, fmt::format("did not end within {:g} s", limits.longest())};
   // Of somebody else, or of a machine out of memory: nothing that the shard is to blame for.
   const int signal = process.signal();
   if (process.wasStopped() || signal == SIGTERM || signal == SIGINT || signal == SIGKILL)
     return {ExitCode::kTryAgain, "stopped or killed from outside"};
+  if (signal == SIGXCPU) {
+    return {ExitCode::kBadInput,
+            fmt::format("took more than {:g} s of processor time", limits.time)};
+  }
   if (signal != 0) {
     return {ExitCode::kInternal,
             fmt::format("ended by signal {} ({})", signal, ::strsignal(signal))};
@@ -117,7 +122,8 @@ void BatchRun::start(std::size_t place) {
                                              fmt::format("{}", options_.threads)});
   if (options_.overwrite) command.words.emplace_back("--overwrite");
   command.memory = static_cast<std::uint64_t>(batch_.limits.memory * kBytesOfGigabyte);
-  command.seconds = batch_.limits.time;
+  command.processor_seconds = static_cast<std::uint64_t>(batch_.limits.time);
+  command.seconds = batch_.limits.longest();
   Job job;
   job.place = place;
   // Named by shard and process: another machine may run the same one.

@@ -85,7 +85,7 @@ std::string Shard::runHash() const { return hashOfRun(sha256, config_sha); }
 
 void ShardLimits::visit(ParamVisitor& v) {
   v.real("memory", memory, {1, 4096}, "GB", "address space of the process of a shard");
-  v.real("time", time, {1, 1e6}, "s", "a shard that takes longer has failed");
+  v.real("time", time, {1, 1e6}, "s", "processor time; a shard that takes more has failed");
 }
 
 std::string manifestText(const Batch& batch) {

@@ -108,7 +108,7 @@ std::vector<std::string> SlurmQueue::submit(const std::vector<std::size_t>& plac
     const std::string said = call(words);
     return said.substr(0, said.find_first_of(";\n"));
   };
-  const double minutes = std::ceil(batch_.limits.time / 60) + kGraceMinutes;
+  const double minutes = std::ceil(batch_.limits.longest() / 60) + kGraceMinutes;
   std::vector<std::string> ids;
   for (auto& [offset, tasks] : arrays) {
     std::sort(tasks.begin(), tasks.end());

@@ -25,15 +25,19 @@ double now() {
 }
 
 /// In the child, between fork and exec: nothing that allocates.
-[[noreturn]] void become(char* const* words, const char* folder, int output, std::uint64_t memory) {
+[[noreturn]] void become(char* const* words, const char* folder, int output, std::uint64_t memory,
+                         std::uint64_t processor_seconds) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   ::setpgid(0, 0);
   const int input = ::open("/dev/null", O_RDONLY);
   const bool placed = input >= 0 && ::dup2(input, STDIN_FILENO) >= 0 &&
                       ::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(output, STDERR_FILENO) >= 0 &&
                       (folder[0] == '\0' || ::chdir(folder) == 0);
-  const rlimit limit{memory, memory};
-  if (!placed || (memory > 0 && ::setrlimit(RLIMIT_AS, &limit) != 0)) ::_exit(kNoProgram);
+  constexpr rlim_t kToDie = 5;  // [s] for whoever does not mind SIGXCPU
+  const rlimit space{memory, memory}, time{processor_seconds, processor_seconds + kToDie};
+  const bool limited = (memory == 0 || ::setrlimit(RLIMIT_AS, &space) == 0) &&
+                       (processor_seconds == 0 || ::setrlimit(RLIMIT_CPU, &time) == 0);
+  if (!placed || !limited) ::_exit(kNoProgram);
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -56,7 +60,7 @@ ChildProcess::ChildProcess(const ChildCommand& command) : limit_(command.seconds
   process_ = ::fork();
   if (process_ == 0) {
     if (::getppid() != parent) ::_exit(kNoProgram);
-    become(words.data(), command.folder.c_str(), output, command.memory);
+    become(words.data(), command.folder.c_str(), output, command.memory, command.processor_seconds);
   }
   const int reason = errno;
   ::close(output);

@@ -13,7 +13,10 @@ struct ChildCommand {
   std::string folder;              ///< working folder; empty: that of this process
   std::string output;              ///< file of standard output and error; standard input is empty
   std::uint64_t memory = 0;        ///< [bytes] of address space (RLIMIT_AS); 0: as this process
-  double seconds = 0;              ///< it is stopped after as long; 0: never
+  /// [s] of processor time of each of its processes, at which it is ended by SIGXCPU (RLIMIT_CPU);
+  /// 0: as this process
+  std::uint64_t processor_seconds = 0;
+  double seconds = 0;  ///< it is stopped after as long; 0: never
 };
 
 /// A process that runs another program beside this one, with a limit of memory and time. It is

@@ -55,6 +55,15 @@ TEST_F(Children, StopAtTheirTimeLimit) {
   EXPECT_LT(child.seconds(), 3);
 }
 
+TEST_F(Children, EndAtTheirLimitOfProcessorTime) {
+  ChildCommand command = shell("while :; do :; done");
+  command.processor_seconds = 1;
+  ChildProcess child(command);
+  child.wait();
+  EXPECT_EQ(child.signal(), SIGXCPU);
+  EXPECT_FALSE(child.wasOutOfTime());
+}
+
 TEST_F(Children, KnowTheirMemoryLimit) {
   ChildCommand command = shell("ulimit -v");
   command.memory = 1024ULL * 1000000;
