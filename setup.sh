@@ -37,6 +37,7 @@ packages=(
   liblzf-dev             # compressed PCD files
   zlib1g-dev             # rawlogs are gzip files; check sums
   libssl-dev             # SHA-256 of inputs
+  libsqlite3-dev         # database of a batch
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG

@@ -1,14 +1,14 @@
 #include "libperception/app/RunList.h"
 
 #include <fmt/format.h>
-#include <glob.h>
-
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
 #include "libperception/app/App.h"
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/PathPattern.h"
 #include "libperception/scene/RunRecord.h"
 
 namespace perception {
@@ -18,14 +18,9 @@ namespace fs = std::filesystem;
 
 // Folders that match a shell pattern, sorted by name.
 std::vector<std::string> foldersOf(const std::string& pattern) {
-  std::vector<std::string> folders;
-  glob_t found{};
-  if (glob(pattern.c_str(), GLOB_ONLYDIR, nullptr, &found) == 0) {
-    for (std::size_t i = 0; i < found.gl_pathc; ++i) {
-      if (fs::is_directory(found.gl_pathv[i])) folders.emplace_back(found.gl_pathv[i]);
-    }
-  }
-  globfree(&found);
+  std::vector<std::string> folders = pathsMatching(pattern);
+  const auto is_none = [](const std::string& path) { return !fs::is_directory(path); };
+  folders.erase(std::remove_if(folders.begin(), folders.end(), is_none), folders.end());
   return folders;
 }
 

@@ -7,8 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -60,15 +58,6 @@ double seconds(clockid_t clock) {
              : 0;
 }
 
-bool isDocumented(int code) {
-  constexpr std::array<ExitCode, 11> kAll = {
-      ExitCode::kOk,      ExitCode::kDataWarnings, ExitCode::kUsage,    ExitCode::kBadInput,
-      ExitCode::kNoInput, ExitCode::kUnavailable,  ExitCode::kInternal, ExitCode::kCannotCreate,
-      ExitCode::kIoError, ExitCode::kTryAgain,     ExitCode::kBadConfig};
-  return std::any_of(kAll.begin(), kAll.end(),
-                     [&](ExitCode c) { return static_cast<int>(c) == code; });
-}
-
 /// The child and what is known of it.
 class Child {
  public:
@@ -87,7 +76,7 @@ class Child {
       if (number == SIGTERM || number == SIGINT) passOn(number);
       watch();
     }
-    if (WIFEXITED(status) && isDocumented(WEXITSTATUS(status))) return WEXITSTATUS(status);
+    if (WIFEXITED(status) && isExitCode(WEXITSTATUS(status))) return WEXITSTATUS(status);
     removeTemporaries();
     return tellOf(status);
   }
@@ -131,6 +120,10 @@ class Child {
     };
     const char* signal = stop_ == SIGINT ? "SIGINT" : "SIGTERM";
     if (stop_ != 0) return say(fmt::format("stopped by {}", signal), ExitCode::kTryAgain);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL && !hangs_) {
+      return say("killed from outside (SIGKILL): is the machine out of memory?",
+                 ExitCode::kTryAgain);
+    }
     std::string how = WIFSIGNALED(status)
                           ? fmt::format("ended the program ({})", ::strsignal(WTERMSIG(status)))
                           : fmt::format("ended the program with code {}", WEXITSTATUS(status));

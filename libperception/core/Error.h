@@ -19,6 +19,25 @@ enum class ExitCode : int {
   kBadConfig = 78      ///< a configuration file or value is wrong
 };
 
+/// Whether a program may end with this code.
+constexpr bool isExitCode(int code) {
+  switch (static_cast<ExitCode>(code)) {
+    case ExitCode::kOk:
+    case ExitCode::kDataWarnings:
+    case ExitCode::kUsage:
+    case ExitCode::kBadInput:
+    case ExitCode::kNoInput:
+    case ExitCode::kUnavailable:
+    case ExitCode::kInternal:
+    case ExitCode::kCannotCreate:
+    case ExitCode::kIoError:
+    case ExitCode::kTryAgain:
+    case ExitCode::kBadConfig:
+      return true;
+  }
+  return false;
+}
+
 /// Base of all errors that end a run with a message and an exit code; only app/runApp catches them.
 class Error : public std::runtime_error {
  public:

@@ -87,15 +87,34 @@ std::vector<std::string> filesNamedIn(const std::string& ini) {
 
 }  // namespace
 
-std::string runHash(const std::string& log, const std::string& effective_ini,
-                    const std::string& version) {
-  if (!fs::is_regular_file(log)) return "";  // whoever reads it says what it is
+std::string sha256OfFile(const std::string& path) {
+  Sha256 hash;
+  hash.addFile(path);
+  return hash.hex();
+}
+
+std::string sha256OfText(const std::string& text) {
+  Sha256 hash;
+  hash.add(text);
+  return hash.hex();
+}
+
+std::string configurationHash(const std::string& effective_ini, const std::string& version) {
   Sha256 hash;
   hash.add(version);
   hash.add(effective_ini);
   for (const auto& file : filesNamedIn(effective_ini)) hash.addFile(file);
-  hash.addFile(log);
   return hash.hex();
+}
+
+std::string hashOfRun(const std::string& log_sha256, const std::string& configuration_hash) {
+  return sha256OfText(configuration_hash + log_sha256);
+}
+
+std::string runHash(const std::string& log, const std::string& effective_ini,
+                    const std::string& version) {
+  if (!fs::is_regular_file(log)) return "";  // whoever reads it says what it is
+  return hashOfRun(sha256OfFile(log), configurationHash(effective_ini, version));
 }
 
 bool isFinished(const std::string& dir, const std::string& hash, bool overwrite) {

@@ -4,9 +4,17 @@
 
 namespace perception {
 
-/// SHA-256 of what the results of a run are a function of: the log, the effective INI, the files
-/// that it names, the version of the program. 64 hexadecimal digits; empty
-/// if the log is no regular file. Throws DataError.
+/// 64 hexadecimal digits. Throws DataError for a file that cannot be read.
+std::string sha256OfFile(const std::string& path);
+std::string sha256OfText(const std::string& text);
+
+/// SHA-256 of what the results of a run are a function of beside the log: the effective INI, the
+/// files that it names, the version of the program. Throws DataError.
+std::string configurationHash(const std::string& effective_ini, const std::string& version);
+/// SHA-256 of all that the results are a function of, from sha256OfFile() of the log and
+/// configurationHash().
+std::string hashOfRun(const std::string& log_sha256, const std::string& configuration_hash);
+/// The same; empty if the log is no regular file. Throws DataError.
 std::string runHash(const std::string& log, const std::string& effective_ini,
                     const std::string& version);
 

@@ -113,6 +113,11 @@ TEST(Supervisor, ACrashElsewhereIsInternal) {
   EXPECT_EQ(run([] { std::terminate(); }).code, 70);
 }
 
+TEST(Supervisor, AProgramThatSomebodyKillsMayBeTriedAgain) {
+  EXPECT_EQ(run(reading([] { ::raise(SIGKILL); })).code, 75);
+  EXPECT_EQ(run([] { ::raise(SIGKILL); }).code, 75);
+}
+
 TEST(Supervisor, NothingTemporaryIsLeftOfAProgramThatCrashed) {
   const TemporaryFolder folder;
   EXPECT_EQ(run([&] {

@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace perception {
+
+/// Files and folders that match a shell pattern (* ? [...]), sorted by name; the path itself where
+/// it is no pattern and exists.
+std::vector<std::string> pathsMatching(const std::string& pattern);
+
+}  // namespace perception
