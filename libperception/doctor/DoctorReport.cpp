@@ -134,6 +134,10 @@ void addPoses(Findings& out, const LogSurvey& survey) {
   for (const auto& [what, count] : survey.motion())
     motion += fmt::format("{}{} ({})", motion.empty() ? "" : ", ", what, count);
   if (!motion.empty()) out.add(Weight::kFine, "ego motion", motion);
+  if (motion.empty() && survey.poses().empty())
+    out.add(Weight::kNote, "ego motion",
+            "no poses, GNSS, inertial unit or wheels: odometry from the lidar ([ego] source = "
+            "lidar), or, without a lidar, the vehicle is taken to stand still");
 }
 
 void addMissing(Findings& out, const LogSurvey& survey) {

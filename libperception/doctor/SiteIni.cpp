@@ -234,6 +234,8 @@ std::string siteIni(const LogSurvey& survey, const SiteFiles& files, const std::
                                 fmt::arg("letters", letters.empty() ? "L" : letters));
   if (clouds && !files.model.empty()) out += kShapes;
   if (clouds) out += kGrid;
+  if (clouds && survey.poses().empty() && survey.motion().empty())
+    out += "\n[ego]\nsource = lidar               ; the log has no other ego motion\n";
   if (intensity) out += "\n[weather]\nfilter = trust\n";
   return out + sections;
 }
