@@ -36,6 +36,21 @@ void EgoTimeline::add(const mrpt::obs::CObservation& observation) {
     in_jump_ = in_invalid_ = false;
 }
 
+void EgoTimeline::addScan(const SensorFrame& frame) {
+  if (params_.source != EgoPoseParams::Source::kLidar) return;
+  const auto lost = odometry_.lost();
+  const auto pose = odometry_.update(frame);
+  if (!pose) return;
+  EgoState state = EgoPose::parked(frame.stamp, params_.minimum);
+  state.T_world_ego = *pose;
+  pose_.add(state);
+  const bool is_lost = odometry_.lost() > lost;
+  if (is_lost && !in_lost_)
+    events_.warn(frame.stamp, event_kind::kEgoGap,
+                 frame.sensor + ": a scan that fits none before: the vehicle is taken to go on");
+  in_lost_ = is_lost;
+}
+
 bool EgoTimeline::changedFrame(Stamp stamp) {
   const bool changed = std::exchange(frame_epoch_, pose_.frameEpoch()) != pose_.frameEpoch();
   if (!changed || !last_seen_) return false;
@@ -82,9 +97,10 @@ EgoState EgoTimeline::at(Stamp stamp) {
 
 void EgoTimeline::clear() {
   pose_.clear();
+  odometry_.clear();
   last_seen_.reset();
   none_reported_ = false;
-  in_gap_ = in_jump_ = in_invalid_ = false;
+  in_gap_ = in_jump_ = in_invalid_ = in_lost_ = false;
 }
 
 }  // namespace perception

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "libperception/odometry/LidarOdometry.h"
 #include "libperception/scene/EventLog.h"
 #include "libperception/sensors/EgoPose.h"
 
@@ -16,6 +17,10 @@ class EgoTimeline {
 
   /// Reports rejected poses, each run of them once.
   void add(const mrpt::obs::CObservation& observation);
+  /// The pose at a scan, with [ego] source = lidar (method.md 1.7); no effect otherwise. Scans in
+  /// order of time, of one lidar. Reports scans that could not be registered, each run of them
+  /// once.
+  void addScan(const SensorFrame& frame);
   /// True at the first call after a change of the world frame, if a frame was used before: the
   /// tracks are in the former world frame and must be deleted.
   bool changedFrame(Stamp stamp);
@@ -33,10 +38,11 @@ class EgoTimeline {
   EgoPoseParams params_;
   EventLog& events_;
   EgoPose pose_;
+  LidarOdometry odometry_;
   std::optional<Stamp> last_seen_;
   std::uint64_t frame_epoch_ = 0;  ///< EgoPose::frameEpoch() of the tracks
   bool none_reported_ = false;     ///< the event "no pose yet"
-  bool in_gap_ = false, in_jump_ = false, in_invalid_ = false;
+  bool in_gap_ = false, in_jump_ = false, in_invalid_ = false, in_lost_ = false;
 };
 
 }  // namespace perception

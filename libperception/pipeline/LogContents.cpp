@@ -50,20 +50,37 @@ std::string LogContents::text() const {
   return out.empty() ? "no observation" : out;
 }
 
-std::string LogContents::table() const {
-  std::string out = fmt::format("{:24} {:34} {:>8} {:>9} {:>10} {:>10}\n", "label", "class",
-                                "number", "rate/Hz", "from/s", "to/s");
+std::vector<std::string> LogContents::columns() {
+  return {"label", "class", "number", "rate/Hz", "from/s", "to/s"};
+}
+
+std::vector<std::vector<std::string>> LogContents::rows() const {
+  std::vector<std::vector<std::string>> out;
   for (const auto& [kind, entry] : entries_) {
-    out += fmt::format("{:24} {:34} {:>8}", shown(kind.first), kind.second, entry.count);
-    if (entry.first) {
-      const double span = *entry.last - *entry.first;
-      const std::string rate =
-          span > 0 ? fmt::format("{:.2f}", static_cast<double>(entry.count - 1) / span) : "-";
-      out += fmt::format(" {:>9} {:>10.3f} {:>10.3f}", rate, *entry.first - *first_,
-                         *entry.last - *first_);
-    }
-    out += '\n';
+    out.push_back({shown(kind.first), kind.second, std::to_string(entry.count)});
+    if (!entry.first) continue;
+    const double span = *entry.last - *entry.first;
+    const auto periods = static_cast<double>(entry.count - 1);
+    out.back().push_back(span > 0 ? fmt::format("{:.2f}", periods / span) : "-");
+    for (const Stamp& stamp : {*entry.first, *entry.last})
+      out.back().push_back(fmt::format("{:.3f}", stamp - *first_));
   }
+  return out;
+}
+
+std::string LogContents::table() const {
+  constexpr int kWidths[] = {24, 34, 8, 9, 10, 10};
+  const auto line = [&](const std::vector<std::string>& cells) {
+    std::string text;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      text += (i == 0 ? "" : " ");
+      text += i < 2 ? fmt::format("{:{}}", cells[i], kWidths[i])
+                    : fmt::format("{:>{}}", cells[i], kWidths[i]);
+    }
+    return text + '\n';
+  };
+  std::string out = line(columns());
+  for (const auto& row : rows()) out += line(row);
   if (others_ > 0) out += fmt::format("{} observations of other labels\n", others_);
   return out;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "libperception/pipeline/PipelineSetup.h"
 
@@ -17,7 +18,10 @@ class LogContents {
   void look(const mrpt::obs::CObservation& observation);
   /// One line: labels with class and number.
   std::string text() const;
-  /// A line per label and class: number, rate, first and last time in the log.
+  /// A row per label and class: number, rate, first and last time in the log.
+  std::vector<std::vector<std::string>> rows() const;
+  static std::vector<std::string> columns();  ///< names of the columns of rows()
+  /// The rows as text.
   std::string table() const;
 
  private:

@@ -139,6 +139,7 @@ bool Pipeline::processNext(bool flush) {
   auto frames = mergeScanners(setup_.sensors, std::move(popped), queue_);
   if (frames.empty()) return true;
   const Stamp stamp = frames.front().stamp;
+  addToOdometry(frames);
   while (const auto earlier = outputs_.takeBefore(stamp))
     addOutput(egoAt(*earlier), frame_numbers_.at(*earlier));
   if (ego_.isBlindGap(stamp)) restartTracks();
@@ -156,6 +157,18 @@ bool Pipeline::processNext(bool flush) {
   if (setup_.run.output_lag > 0) makeScenes(stamp);
   if (isOutput(stamp)) addOutput(ego, number);
   return true;
+}
+
+/// Scans of the first lidar in use, or of one that gives the ground.
+void Pipeline::addToOdometry(const std::vector<SensorFrame>& frames) {
+  if (setup_.ego.source != EgoPoseParams::Source::kLidar) return;
+  const auto lidar = std::find_if(setup_.sensors.begin(), setup_.sensors.end(), [](const auto& s) {
+    return s.params.kind == "lidar" && s.used();
+  });
+  if (lidar == setup_.sensors.end()) return;
+  const auto scope = timing_.stage("odometry");
+  for (const auto& frame : frames)
+    if (setup_.sensorOf(frame.sensor) == lidar - setup_.sensors.begin()) ego_.addScan(frame);
 }
 
 bool Pipeline::isOutput(Stamp stamp) {

@@ -60,6 +60,7 @@ class Pipeline {
   void startEpoch(Stamp stamp, const std::string& why);
   void addFrame(const mrpt::obs::CObservation& observation);
   bool processNext(bool flush);
+  void addToOdometry(const std::vector<SensorFrame>& frames);
   bool isOutput(Stamp stamp);
   void processFrame(std::size_t sensor, SensorFrame& frame);
   EgoState egoAt(Stamp stamp);

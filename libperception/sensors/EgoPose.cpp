@@ -49,9 +49,9 @@ EgoState between(const EgoState& a, const EgoState& b, Stamp stamp) {
 }  // namespace
 
 void EgoPoseParams::visit(ParamVisitor& v) {
-  v.choiceOf("source", source, {"auto", "poses", "fusion"},
-             "the log's poses; fusion of satellites, inertial unit and wheels; auto: poses where "
-             "there are some");
+  v.choiceOf("source", source, {"auto", "poses", "fusion", "lidar"},
+             "the log's poses; fusion of satellites, inertial unit and wheels; odometry from the "
+             "first lidar in use; auto: poses where there are some, else fusion");
   v.text("label", label,
          "label of the pose observations; empty: EGO_POSE, or the first pose label of the log");
   v.real("sigma_xy", minimum.sigma_xy, {0, 10}, "m",
@@ -108,6 +108,7 @@ bool EgoPose::wants(const std::string& label) {
 }
 
 void EgoPose::add(const mrpt::obs::CObservation& observation) {
+  if (params_.source == EgoPoseParams::Source::kLidar) return;
   const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation);
   if (pose == nullptr) {
     if (poses_.empty() && params_.source != EgoPoseParams::Source::kPoses)

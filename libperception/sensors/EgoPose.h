@@ -19,8 +19,9 @@ class EgoFusion;
 
 /// Source of the vehicle's pose: [ego].
 struct EgoPoseParams {
-  /// Poses of the log; fusion of GNSS, inertial unit and wheels; or fusion if the log has no poses.
-  enum class Source { kAuto, kPoses, kFusion };
+  /// Fusion if the log has no poses; poses of the log; fusion of GNSS, inertial unit and wheels;
+  /// odometry from the scans of a lidar, which the caller adds.
+  enum class Source { kAuto, kPoses, kFusion, kLidar };
   Source source = Source::kAuto;
   FusionParams fusion;
   std::string
@@ -55,7 +56,7 @@ class EgoPose {
   ~EgoPose();
 
   /// Processes a CObservationRobotPose of the selected label and, unless `source` is kPoses, the
-  /// observations of EgoFusion; others are ignored.
+  /// observations of EgoFusion; others are ignored, and all with kLidar.
   void add(const mrpt::obs::CObservation& observation);
   /// The same for a pose from another source (velocity and yaw rate are ignored).
   void add(const EgoState& pose);

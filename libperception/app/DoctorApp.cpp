@@ -1,0 +1,73 @@
+#include "libperception/app/DoctorApp.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "libperception/app/StudyFolder.h"
+#include "libperception/core/Supervision.h"
+#include "libperception/doctor/SiteIni.h"
+#include "libperception/pipeline/Progress.h"
+#include "libperception/sensors/RawlogReader.h"
+#include "libperception/sensors/registerClasses.h"
+
+namespace perception {
+namespace fs = std::filesystem;
+namespace {
+
+/// ini/ of the tree in whose build folder the program lies, else of the working folder.
+fs::path iniFolder(const std::string& asked) {
+  if (!asked.empty()) return asked;
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  const fs::path tree = program.parent_path().parent_path().parent_path();
+  return fs::exists(tree / "ini" / "classes.ini", none) ? tree / "ini" : fs::path("ini");
+}
+
+SiteFiles siteFiles(const fs::path& ini, const fs::path& output) {
+  if (!fs::exists(ini / "classes.ini"))
+    throw Error(ExitCode::kNoInput,
+                fmt::format("{}: not found; --ini names the folder of classes.ini",
+                            (ini / "classes.ini").string()));
+  const fs::path from = fs::absolute(output);
+  const fs::path model = ini / "models" / "lidar_recordings.json";
+  SiteFiles files;
+  files.classes = fs::proximate(fs::absolute(ini / "classes.ini"), from).string();
+  if (fs::exists(model)) files.model = fs::proximate(fs::absolute(model), from).string();
+  return files;
+}
+
+}  // namespace
+
+void DoctorApp::declare(CLI::App& cli) {
+  addInputOption(cli, true);
+  addOutputOption(cli, true);
+  cli.add_option("--ini", ini_folder, "Folder of classes.ini and models/ (ini/ of this tree)");
+  cli.add_flag("--strict", strict, "Damaged input is an error instead of a warning");
+}
+
+void DoctorApp::run() {
+  registerPerceptionClasses();
+  if (inputs.size() != 1) throw Error(ExitCode::kUsage, "-i/--input: one rawlog");
+  const SiteFiles files = siteFiles(iniFolder(ini_folder), output);
+  RawlogReader reader(inputs[0]);
+  LogSurvey survey;
+  while (const auto observation = reader.next()) {
+    stopIfAsked();
+    survey.look(*observation);
+  }
+  if (reader.end() != RawlogReader::End::kClean) {
+    if (strict) throw DataError(reader.endMessage());
+    warn(reader.endMessage());
+  }
+  const std::string log = fs::path(inputs[0]).filename().string();
+  out_findings = findingsOf(survey);
+  StudyReport report = doctorReport(survey, out_findings, log);
+  report.files.emplace_back("site.ini", siteIni(survey, files, log));
+  for (const auto& message : writeStudyReport(report, output)) warn(message);
+  fmt::print("{}\n{}\n{}\nreport.md, doctor.png and site.ini in {}\n", inputs[0],
+             survey.contents().table(), reportText(out_findings), output);
+}
+
+}  // namespace perception

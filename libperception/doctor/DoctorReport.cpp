@@ -1,0 +1,201 @@
+#include "libperception/doctor/DoctorReport.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libperception/doctor/DoctorPicture.h"
+#include "libperception/doctor/SiteIni.h"
+
+namespace perception {
+namespace {
+
+using Weight = Finding::Weight;
+
+/// A gap of this many periods is one: single frames are lost everywhere.
+constexpr double kGapPeriods = 3;
+/// [Hz] Slower, objects move by more than their size from frame to frame.
+constexpr double kSlow = 2;
+
+const char* wordOf(Weight weight) {
+  return weight == Weight::kFine ? "ok" : weight == Weight::kNote ? "note" : "FAULT";
+}
+
+struct Findings {
+  std::vector<Finding> all;
+  void add(Weight weight, const std::string& about, const std::string& text) {
+    all.push_back({weight, about, text});
+  }
+};
+
+void addTiming(Findings& out, const std::string& label, const SensorFacts& facts) {
+  const double rate = facts.rate(), gap = facts.longestGap();
+  if (facts.unusable > 0)
+    out.add(Weight::kFault, label, fmt::format("{} observations cannot be used", facts.unusable));
+  if (facts.frames < 2) return;
+  if (rate > 0 && rate < kSlow)
+    out.add(Weight::kNote, label,
+            fmt::format("{:.2f} Hz: too slow to follow objects from frame to frame", rate));
+  if (gap * rate > kGapPeriods)
+    out.add(Weight::kNote, label,
+            fmt::format("longest gap {:.2f} s, {:.0f} periods", gap, gap * rate));
+}
+
+void addValues(Findings& out, const std::string& label, const SensorFacts& facts) {
+  const DecodeCounts& n = facts.counts;
+  if (n.not_finite + n.bad_returns + n.bad_boxes > 0) {
+    out.add(Weight::kNote, label,
+            fmt::format("{} values that are not finite or no sizes: dropped",
+                        n.not_finite + n.bad_returns + n.bad_boxes));
+  }
+  if (facts.frames > 0 && facts.returns == 0 && facts.kind != "image")
+    out.add(Weight::kFault, label, "no return or box in any frame");
+  if (facts.pose_varies)
+    out.add(Weight::kNote, label, "its mounting changes within the log; the first is checked");
+}
+
+void addLidar(Findings& out, const std::string& label, const SensorFacts& facts) {
+  out.add(Weight::kFine, label,
+          fmt::format("{:.0f} returns a scan, 99.9 % within {:.0f} m, {:.0f} deg wide",
+                      static_cast<double>(facts.returns) / static_cast<double>(facts.frames),
+                      facts.rangeBelow(0.999), degrees(facts.angleOf(0.999))));
+  if (!facts.high) {
+    out.add(Weight::kNote, label, "no intensity: [weather] filter is left off");
+  } else if (*facts.high > 1.001 || *facts.low < 0) {
+    out.add(Weight::kFault, label,
+            fmt::format("intensity {:g} to {:g}: expected 0 to 1", *facts.low, *facts.high));
+  } else {
+    out.add(Weight::kFine, label,
+            fmt::format("intensity {:.3f} to {:.3f}", *facts.low, *facts.high));
+  }
+  const auto m = groundMounting(facts);
+  if (!m) {
+    out.add(Weight::kNote, label,
+            "mounting not observable: fewer than three scans show the ground");
+    return;
+  }
+  if (!m->steady()) {
+    out.add(Weight::kNote, label,
+            fmt::format("mounting not observable: the ground's pitch varies by {:.2f} deg from "
+                        "scan to scan, so little of it is seen",
+                        degrees(m->spread)));
+    return;
+  }
+  const std::string found = fmt::format(
+      "{:.2f} m above the ground, pitch {:.2f} deg, roll {:.2f} deg (median of {} scans, pitch "
+      "varies by {:.2f} deg)",
+      m->height, degrees(m->pitch), degrees(m->roll), m->scans, degrees(m->spread));
+  if (!m->wrong()) return out.add(Weight::kFine, label, found + ", as the log says");
+  out.add(Weight::kFault, label,
+          fmt::format("{}; the log's mounting is off by {:+.2f} m, {:+.2f} deg, {:+.2f} deg: "
+                      "corrected in site.ini",
+                      found, m->height_error, degrees(m->pitch_error), degrees(m->roll_error)));
+}
+
+void addNames(Findings& out, const std::string& label, const SensorFacts& facts) {
+  std::string known, unknown;
+  for (const auto& [name, count] : facts.names) {
+    std::string& list = knownName(name).empty() ? unknown : known;
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", name, count);
+  }
+  if (!known.empty()) out.add(Weight::kFine, label, "classes " + known);
+  if (!unknown.empty())
+    out.add(Weight::kNote, label, "class names to add to `names` by hand: " + unknown);
+  if (facts.high)
+    out.add(Weight::kNote, label,
+            fmt::format("scores {:.3g} to {:.3g} count as no evidence until perception-calibrate "
+                        "detector has counted them",
+                        *facts.low, *facts.high));
+}
+
+void addPoses(Findings& out, const LogSurvey& survey) {
+  for (const auto& [label, poses] : survey.poses()) {
+    double way = 0, fastest = 0, gap = 0;
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      const double step =
+          (poses[i].T_world_ego.translation() - poses[i - 1].T_world_ego.translation()).norm();
+      const double dt = poses[i].stamp - poses[i - 1].stamp;
+      way += step, gap = std::max(gap, dt);
+      if (dt > 0) fastest = std::max(fastest, step / dt);
+    }
+    const std::string text =
+        fmt::format("{} poses, {:.1f} m driven, at most {:.1f} m/s, longest gap {:.2f} s",
+                    poses.size(), way, fastest, gap);
+    const bool jump = fastest > EgoPoseParams{}.max_speed;
+    out.add(jump ? Weight::kFault : Weight::kFine, label.empty() ? "poses" : label,
+            text + (jump ? ": jumps" : ""));
+  }
+  if (survey.poseFaults() > 0)
+    out.add(Weight::kFault, "poses",
+            fmt::format("{} without stamp or not finite", survey.poseFaults()));
+  std::string motion;
+  for (const auto& [what, count] : survey.motion())
+    motion += fmt::format("{}{} ({})", motion.empty() ? "" : ", ", what, count);
+  if (!motion.empty()) out.add(Weight::kFine, "ego motion", motion);
+  if (motion.empty() && survey.poses().empty())
+    out.add(Weight::kNote, "ego motion",
+            "no poses, GNSS, inertial unit or wheels: odometry from the lidar ([ego] source = "
+            "lidar), or, without a lidar, the vehicle is taken to stand still");
+}
+
+void addMissing(Findings& out, const LogSurvey& survey) {
+  const auto has = [&](const char* kind) {
+    return std::any_of(survey.sensors().begin(), survey.sensors().end(), [&](const auto& entry) {
+      return entry.second.kind == kind && entry.second.frames > 0;
+    });
+  };
+  const auto lack = [&out](const std::string& text) { out.add(Weight::kNote, "missing", text); };
+  if (!has("lidar")) lack("no lidar: no free distance, no ground plane, no shapes of clusters");
+  if (!has("boxes") && has("image"))
+    lack("images without boxes: perception-detect writes boxes into the log");
+  else if (!has("boxes"))
+    lack("no image boxes: pedestrians and cyclists are named later and less surely");
+  if (!has("radar")) lack("no radar: speeds come from positions alone");
+  if (!has("lidar") && !has("boxes") && !has("radar") && !has("positions"))
+    out.add(Weight::kFault, "missing", "no sensor that perception-track can use");
+}
+
+}  // namespace
+
+std::vector<Finding> findingsOf(const LogSurvey& survey) {
+  Findings out;
+  for (const auto& [label, facts] : survey.sensors()) {
+    const std::string about = label.empty() ? "(no label)" : label;
+    if (label.empty() || label.find('.') != std::string::npos)
+      out.add(Weight::kFault, about, "a label without a dot is needed for its section of the INI");
+    addTiming(out, about, facts);
+    addValues(out, about, facts);
+    if (facts.frames == 0) continue;
+    if (facts.kind == "lidar") addLidar(out, about, facts);
+    if (facts.kind == "boxes" || facts.kind == "positions") addNames(out, about, facts);
+  }
+  addPoses(out, survey);
+  addMissing(out, survey);
+  return out.all;
+}
+
+std::string reportText(const std::vector<Finding>& findings) {
+  std::string out;
+  for (const auto& f : findings)
+    out += fmt::format("{:5} {:16} {}\n", wordOf(f.weight), f.about, f.text);
+  return out;
+}
+
+StudyReport doctorReport(const LogSurvey& survey, const std::vector<Finding>& findings,
+                         const std::string& log) {
+  StudyReport report;
+  report.title = "What " + log + " holds";
+  report.data = log;
+  report.tables.push_back(
+      {"contents", "Observations", LogContents::columns(), survey.contents().rows()});
+  StudyTable table{"findings", "Findings", {"", "about", "finding"}, {}};
+  for (const auto& f : findings) table.rows.push_back({wordOf(f.weight), f.about, f.text});
+  report.tables.push_back(std::move(table));
+  report.plots.push_back(doctorPicture(survey));
+  report.remarks.push_back("Next: perception-track -c site.ini -i LOG -o DIR");
+  return report;
+}
+
+}  // namespace perception

@@ -1,0 +1,84 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/lidar/GroundPlane.h"
+#include "libperception/pipeline/LogContents.h"
+#include "libperception/sensors/FromObservation.h"
+
+namespace perception {
+
+/// What the frames of one sensor label hold.
+struct SensorFacts {
+  /// As [sensor.LABEL] kind (lidar, boxes, positions, radar), or "image".
+  std::string kind;
+  bool planar = false;  ///< one layer of a scanner: CObservation2DRangeScan
+  std::uint64_t frames = 0, unusable = 0;
+  DecodeCounts counts;
+  std::vector<Stamp> stamps;               ///< of usable frames
+  Pose3 T_ego_sensor = Pose3::Identity();  ///< of the first frame
+  bool pose_varies = false;                ///< over the log
+
+  std::uint64_t returns = 0;                   ///< or boxes
+  std::vector<std::uint64_t> ranges;           ///< number of returns by horizontal range, 1 m bins
+  std::vector<std::uint64_t> bearings;         ///< the same by |bearing|, bins of 1 deg
+  double farthest_bearing = 0;                 ///< [rad] of radars and cameras
+  std::optional<double> low, high;             ///< least and largest intensity or score
+  std::map<std::string, std::uint64_t> names;  ///< the detector's class names
+  std::vector<GroundPlane> planes;             ///< of single scans, ego frame
+
+  /// [m] below which a share of the returns lies, rounded up to 1 m; 0 without returns.
+  double rangeBelow(double share) const;
+  /// [rad] about the forward axis, both sides, that holds a share of the returns.
+  double angleOf(double share) const;
+  double longestGap() const;  ///< [s] between two frames
+  double rate() const;        ///< [Hz] median; 0 with less than two frames
+};
+
+/// Mounting of a lidar as the ground shows it: medians over the scans (method.md 8.11).
+struct GroundMounting {
+  double height = 0, pitch = 0, roll = 0;  ///< [m, rad, rad] of the sensor above the ground plane
+  /// [m, rad, rad] by which the log's mounting differs from it.
+  double height_error = 0, pitch_error = 0, roll_error = 0;
+  double spread = 0;  ///< [rad] median deviation of the scans' pitch from the median
+  std::size_t scans = 0;
+  Pose3 T_ego_sensor =
+      Pose3::Identity();  ///< the log's, turned and lifted so that the ground is z = 0
+  bool steady() const;    ///< the scans agree: what they show is the ground
+  /// Steady, and larger than what a crowned road or a loaded trunk explains.
+  bool wrong() const;
+};
+/// Empty with less than three scans that show the ground.
+std::optional<GroundMounting> groundMounting(const SensorFacts& facts);
+
+/// A log as perception-doctor sees it: call look() with every observation.
+class LogSurvey {
+ public:
+  void look(const mrpt::obs::CObservation& observation);
+
+  const LogContents& contents() const { return contents_; }
+  const std::map<std::string, SensorFacts>& sensors() const { return sensors_; }
+  /// Poses of the log by label, in order of arrival.
+  const std::map<std::string, std::vector<EgoState>>& poses() const { return poses_; }
+  /// Numbers of GNSS, inertial and wheel observations by class name.
+  const std::map<std::string, std::uint64_t>& motion() const { return motion_; }
+  const std::optional<SensorFrame>& sample() const { return sample_; }  ///< a scan, for pictures
+  std::uint64_t poseFaults() const { return pose_faults_; }  ///< not finite or without stamp
+
+ private:
+  void lookAt(SensorFacts& facts, const SensorFrame& frame);
+
+  LogContents contents_;
+  std::map<std::string, SensorFacts> sensors_;
+  std::map<std::string, std::vector<EgoState>> poses_;
+  std::map<std::string, std::uint64_t> motion_;
+  std::optional<SensorFrame> sample_;
+  std::uint64_t pose_faults_ = 0;
+};
+
+}  // namespace perception
