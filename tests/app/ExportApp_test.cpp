@@ -73,11 +73,12 @@ TEST_F(ExportAppTest, ALogOfOtherTimesIsRefused) {
 }
 
 TEST_F(ExportAppTest, PythonReadsTheRun) {
-  if (outputOf("python3 -c 'import numpy'").first != 0) GTEST_SKIP() << "python3-numpy is missing";
+  if (outputOf("/usr/bin/python3 -c 'import numpy'").first != 0)
+    GTEST_SKIP() << "python3-numpy is missing";
   writeRun(Stamp{1'600'000'000'123'456'789});
   const auto [code, text] = outputOf(
       "cd " PERCEPTION_SOURCE_DIR
-      "/apps/perception-export && python3 -B -c \""
+      "/apps/perception-export && /usr/bin/python3 -B -c \""
       "from perception_run import Run; r = Run('" +
       dir_ +
       "'); "

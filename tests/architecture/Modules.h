@@ -66,7 +66,7 @@ inline const std::vector<Module>& modules() {
       {"gui-offscreen", "pictures, films, pages", {"scene", "grid", "measurement", "core"}},
       {"interop",
        "logs and tracks in the formats of other tools",
-       {"scene", "sensors", "measurement", "core"}},
+       {"scene", "measurement", "core"}},
       {"importers", "other recordings to rawlogs", {"sensors", "measurement", "core"}},
       {"simulation", "scenarios to rawlogs", {"sensors", "measurement", "config", "core"}},
       {"capture", "drivers for MRPT's recorder", {"simulation", "sensors", "config", "core"}},
