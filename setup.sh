@@ -53,6 +53,7 @@ test_packages=(
   libgtest-dev           # tests
   mrpt-apps              # rawlog-edit, rawlog-grabber: stock MRPT must read and record our logs
   clang-format-14 clang-tidy-14  # .clang-format, .clang-tidy
+  python3-numpy          # the reader of runs in apps/perception-export
   locales                # definition of a locale with decimal comma: it must not change a byte
 )
 

@@ -1,0 +1,28 @@
+#pragma once
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "libperception/scene/Scene.h"
+
+namespace perception {
+
+// Messages of Foxglove's schemas as JSON text. Frames: "world", "ego", and one a sensor with the
+// sensor's label; SI units.
+
+/// foxglove.SceneUpdate in frame "world": every object as a cube with its class, id and speed in
+/// text and metadata. Objects of `shown` that are not in the scene are deleted; `shown` becomes the
+/// ids of the scene. `class_names`: indexed by class_id.
+std::string sceneUpdate(const Scene& scene, const std::vector<std::string>& class_names,
+                        std::set<std::uint64_t>& shown);
+/// foxglove.PointCloud: x, y, z and intensity as 32-bit floats, sensor frame; intensity is 0 where
+/// the log has none.
+std::string pointCloud(const LidarCloud& cloud, Stamp stamp, const std::string& frame_id);
+/// foxglove.FrameTransform: p_parent = T p_child.
+std::string frameTransform(const Pose3& T, Stamp stamp, const std::string& parent,
+                           const std::string& child);
+/// foxglove.CompressedImage as JPEG; the frame is the camera's optical one.
+std::string compressedImage(const Raster& raster, Stamp stamp, const std::string& frame_id);
+
+}  // namespace perception
