@@ -11,6 +11,9 @@
 namespace perception {
 namespace {
 
+/// KITTI's kit writes -10 where there is no angle. Angles are not always wrapped: below -2 pi too.
+bool isObservationAngle(double alpha) { return alpha != -10 && std::abs(alpha) <= 4 * kPi; }
+
 /// The layout is given by the detector's name, or its part before the first dash (kitti2d-mine).
 const KittiDetectionLayout& layoutOf(const std::string& name) {
   const std::string base = name.substr(0, name.find('-'));
@@ -67,7 +70,7 @@ void KittiDetections::write(std::int64_t frame, Stamp stamp, const KittiCalibrat
           object.image_box = d.image_box;
         if (detector.layout.space_boxes && d.box)
           object.space_box = boxInVelodyne(*d.box, calibration);
-        if (detector.layout.has_alpha && std::abs(d.alpha) <= 2 * kPi)
+        if (detector.layout.has_alpha && isObservationAngle(d.alpha))
           object.heading = wrapAngle(d.alpha);
       }
     }

@@ -228,6 +228,25 @@ TEST_F(ImportTest, DetectionsOfOneNameMergeAndEmptyFramesAreSaid) {
   EXPECT_TRUE(by_sensor["pointrcnn"][1].T_ego_camera->isApprox(camera, 1e-9));
 }
 
+TEST_F(ImportTest, ObservationAnglesNeedNotBeWrappedAndMinusTenIsNone) {
+  const std::string rest = " 10 20 110 90 1.5 2 4 0 1.73 10 -7.8539816 3.5\n";
+  write("mine.txt",
+        "0 Car -1 -1 -9.25" + rest + "1 Car -1 -1 -10" + rest + "2 Car -1 -1 -1000" + rest);
+  ASSERT_EQ(import({"--detections", "kitti3d-mine:Car=" + file("mine.txt")}), 0) << error_;
+  std::vector<ObjectDetection> found;
+  for (const auto& o : readLog()) {
+    if (o->sensorLabel != "kitti3d-mine") continue;
+    for (const auto& d : std::get<ObjectDetections>(frameFromObservation(*o)->data).objects)
+      found.push_back(d);
+  }
+  ASSERT_EQ(found.size(), 3U);
+  ASSERT_TRUE(found[0].heading);
+  EXPECT_NEAR(*found[0].heading, 4 * kPi / 2 - 9.25, 1e-9);
+  EXPECT_NEAR(wrapAxis(found[0].space_box->yaw), 0, 1e-6);
+  EXPECT_FALSE(found[1].heading);
+  EXPECT_FALSE(found[2].heading);
+}
+
 TEST_F(ImportTest, ImagesAreEmbeddedOrStandBesideTheLog) {
   const cv::Mat gray(400, 600, CV_8UC3, cv::Scalar(10, 20, 30));
   fs::create_directories(folder_ / "images");
