@@ -256,7 +256,8 @@ void BatchApp::submit() {
   const auto waits = [&](std::size_t place) { return queued.count(place) != 0; };
   places.erase(std::remove_if(places.begin(), places.end(), waits), places.end());
   if (places.empty()) {
-    fmt::print("nothing to submit: {} shards in the queue, no other to run\n", queued.size());
+    fmt::print("nothing to submit: {} shards in the queue, no other to run{}\n", queued.size(),
+               queued.empty() ? fmt::format(" ({} reduce -o {})", name(), output) : "");
     return;
   }
   out_jobs = queue.submit(places, sbatch, jobs);

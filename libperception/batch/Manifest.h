@@ -27,11 +27,11 @@ struct Shard {
 
 /// [limits]: bounds of one shard. A shard that exceeds them has failed.
 struct ShardLimits {
-  double memory = 4;   ///< [GB] address space of the process (RLIMIT_AS); assumed
-  double time = 1800;  ///< [s] of processor time; assumed
+  double memory = 4;  ///< [GB] address space of the process (RLIMIT_AS); assumed
+  double time = 900;  ///< [s] of processor time; assumed
 
   /// [s] that a shard may last: a machine may have other work, a disk may be away for a while.
-  double longest() const { return 4 * time; }
+  double longest() const { return 8 * time; }
   void visit(ParamVisitor& v);
 };
 

@@ -83,12 +83,14 @@ std::size_t SlurmQueue::mostTasks() const {
 std::set<std::size_t> SlurmQueue::queued() const {
   std::istringstream lines(
       call({"squeue", "--noheader", "--array", "--name", name_, "--states",
-            "PENDING,CONFIGURING,RUNNING,COMPLETING,SUSPENDED,REQUEUED", "--format", "%K %k"}));
+            "PENDING,CONFIGURING,RUNNING,COMPLETING,SUSPENDED,REQUEUED", "--format", "%K %k %r"}));
   std::set<std::size_t> places;
   std::size_t task = 0, offset = 0;
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
-    if (words >> task >> offset) places.insert(offset + task);
+    // A task that could not be launched is held for ever: it is as if it were lost.
+    const bool held = line.find("requeued held") != std::string::npos;
+    if (words >> task >> offset && !held) places.insert(offset + task);
   }
   return places;
 }

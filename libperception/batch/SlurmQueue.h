@@ -16,8 +16,8 @@ class SlurmQueue {
   /// node.
   SlurmQueue(const Batch& batch, std::string program, std::string dir);
 
-  /// Shards (places in the manifest) that wait or run. Throws Error (kUnavailable) with what Slurm
-  /// says.
+  /// Shards (places in the manifest) that wait or run, without those that Slurm holds after it
+  /// could not launch them. Throws Error (kUnavailable) with what Slurm says.
   std::set<std::size_t> queued() const;
   /// Submits these shards and the reduce job; `options` go to sbatch as they are. At most `jobs` of
   /// an array run at a time (0: all). Returns the job ids, that of reduce last. Throws as queued().

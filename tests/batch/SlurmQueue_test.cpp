@@ -54,7 +54,7 @@ TEST_F(Queue, AShardIsATaskOfAnArrayAndReduceComesAfterAny) {
   const std::string calls = contentOf(folder / "calls");
   EXPECT_NE(calls.find("|--requeue|--array|0-1,5%3|"), std::string::npos) << calls;
   EXPECT_NE(calls.find("|--time|122|"), std::string::npos)
-      << calls;  // four times half an hour and a bit
+      << calls;  // eight times a quarter of an hour, and a bit
   EXPECT_NE(calls.find("|--partition=p|--wrap|exec '/bin/perception-batch' run -o '" + dir +
                        "' --index $((0 + SLURM_ARRAY_TASK_ID))|"),
             std::string::npos)
@@ -73,7 +73,7 @@ TEST_F(Queue, LargeBatchesAreSeveralArrays) {
 }
 
 TEST_F(Queue, KnowsWhatWaitsAlready) {
-  command("squeue", "printf '3 0\\n1 8\\n'");
+  command("squeue", "printf '3 0 Resources\\n1 8 None\\n4 0 launch failed requeued held\\n'");
   EXPECT_EQ(queue().queued(), (std::set<std::size_t>{3, 9}));
 }
 
