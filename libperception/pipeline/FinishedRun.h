@@ -18,8 +18,8 @@ std::string hashOfRun(const std::string& log_sha256, const std::string& configur
 std::string runHash(const std::string& log, const std::string& effective_ini,
                     const std::string& version);
 
-/// True if `dir` holds the finished run of this hash: there is nothing to do. With `overwrite` there
-/// always is; without, throws Error (kBadConfig) if it holds another one.
+/// True if `dir` holds the finished run of this hash: there is nothing to do. With `overwrite`
+/// there always is; without, throws Error (kBadConfig) if it holds another one.
 bool isFinished(const std::string& dir, const std::string& hash, bool overwrite);
 
 /// Results in `dir` of earlier programs on an earlier run, relative: tables, page, pictures, film,

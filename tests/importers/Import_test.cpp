@@ -236,8 +236,8 @@ TEST_F(ImportTest, ObservationAnglesNeedNotBeWrappedAndMinusTenIsNone) {
   std::vector<ObjectDetection> found;
   for (const auto& o : readLog()) {
     if (o->sensorLabel != "kitti3d-mine") continue;
-    for (const auto& d : std::get<ObjectDetections>(frameFromObservation(*o)->data).objects)
-      found.push_back(d);
+    const auto frame = frameFromObservation(*o);
+    for (const auto& d : std::get<ObjectDetections>(frame->data).objects) found.push_back(d);
   }
   ASSERT_EQ(found.size(), 3U);
   ASSERT_TRUE(found[0].heading);

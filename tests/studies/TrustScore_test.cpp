@@ -37,9 +37,7 @@ TEST(TrustScore, HalfIsNotDoubted) {
   EXPECT_EQ(s.at(0.5).found, 1u);
 }
 
-TEST(TrustScore, LyingSnowIsASurface) {
-  EXPECT_EQ(score().surfaces().total(), 5u);
-}
+TEST(TrustScore, LyingSnowIsASurface) { EXPECT_EQ(score().surfaces().total(), 5u); }
 
 TEST(TrustScore, UnlabeledCountsInSimulationsAlone) {
   TrustScore s = score();
