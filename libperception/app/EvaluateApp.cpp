@@ -221,14 +221,15 @@ void EvaluateApp::warnOfGaps(const EvaluatedRun& run, const std::string& truth) 
         fmt::format("{}: no scene has a truth in {} (other log, or times more than {:g} s apart): "
                     "every figure is n/a",
                     run.dir, truth, params.alignment.time_limit));
-  } else if (run.evaluation.samples.empty()) {
-    warn(fmt::format("{}: no truth object counts: tracking figures are n/a", run.dir));
+    return;
   }
-  if (!run.evaluation.instants.empty() && alignment.scenes_without_truth > 0) {
+  if (run.evaluation.samples.empty())
+    warn(fmt::format("{}: no truth object counts: tracking figures are n/a", run.dir));
+  if (alignment.scenes_without_truth > 0) {
     say(1, fmt::format("{}: {} scenes without truth are in no figure", run.dir,
                        alignment.scenes_without_truth));
   }
-  if (!run.evaluation.instants.empty() && alignment.truth_without_scene > 0) {
+  if (alignment.truth_without_scene > 0) {
     say(1, fmt::format("{}: {} truth instants without scene are in no figure", run.dir,
                        alignment.truth_without_scene));
   }
@@ -256,8 +257,8 @@ void EvaluateApp::write(EvaluationReport report, const std::string& dir) {
 
 // One report per run, and a joint one of several runs or of conditions.
 void EvaluateApp::writeReports() {
-  bool pooled = false;
-  for (const EvaluatedRun& run : out_report.runs) pooled = pooled || !run.trials.empty();
+  const bool pooled = std::any_of(out_report.runs.begin(), out_report.runs.end(),
+                                  [](const EvaluatedRun& run) { return !run.trials.empty(); });
   const bool several = out_report.runs.size() > 1 || pooled;
   if (pooled && output.empty())
     throw Error(ExitCode::kUsage, "-o/--output is needed for the report of conditions");

@@ -49,7 +49,7 @@ std::pair<ExitCode, std::string> failureOf(const ChildProcess& process, const Sh
   // It waited for something: by itself it would have used up its processor time before.
   if (process.wasOutOfTime())
     return {ExitCode::kUnavailable, fmt::format("did not end within {:g} s", limits.longest())};
-  // Of somebody else, or of a machine out of memory: nothing that the shard is to blame for.
+  // From outside, or of a machine out of memory: no fault of the shard.
   const int signal = process.signal();
   if (process.wasStopped() || signal == SIGTERM || signal == SIGINT || signal == SIGKILL)
     return {ExitCode::kTryAgain, "stopped or killed from outside"};

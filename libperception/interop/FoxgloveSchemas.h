@@ -3,8 +3,8 @@
 
 namespace perception {
 
-// JSON schemas of Foxglove's messages, as its package @foxglove/schemas 2.1.0 has them (MIT
-// license).
+// JSON schemas of those fields of Foxglove's messages that FoxgloveMessages.h writes; names and
+// types as published (https://docs.foxglove.dev/docs/sdk/schemas).
 McapWriter::Schema sceneUpdateSchema();
 McapWriter::Schema pointCloudSchema();
 McapWriter::Schema frameTransformSchema();

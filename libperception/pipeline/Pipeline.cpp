@@ -162,9 +162,8 @@ bool Pipeline::processNext(bool flush) {
 /// Scans of the first lidar in use, or of one that gives the ground.
 void Pipeline::addToOdometry(const std::vector<SensorFrame>& frames) {
   if (setup_.ego.source != EgoPoseParams::Source::kLidar) return;
-  const auto lidar = std::find_if(setup_.sensors.begin(), setup_.sensors.end(), [](const auto& s) {
-    return s.params.kind == "lidar" && s.used();
-  });
+  const auto lidar = std::find_if(setup_.sensors.begin(), setup_.sensors.end(),
+                                  [](const auto& s) { return s.isLidarInUse(); });
   if (lidar == setup_.sensors.end()) return;
   const auto scope = timing_.stage("odometry");
   for (const auto& frame : frames)

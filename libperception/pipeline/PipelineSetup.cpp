@@ -99,11 +99,9 @@ void checkSensors(Config& config, const PipelineSetup& s) {
     if (std::none_of(s.sensors.begin(), s.sensors.end(), is_it))
       config.fault("run", "without", "there is no [sensor." + label + "]");
   }
-  const auto is_lidar = [](const auto& sensor) {
-    return sensor.params.kind == "lidar" && sensor.used();
-  };
   if (s.ego.source == EgoPoseParams::Source::kLidar &&
-      std::none_of(s.sensors.begin(), s.sensors.end(), is_lidar))
+      std::none_of(s.sensors.begin(), s.sensors.end(),
+                   [](const auto& sensor) { return sensor.isLidarInUse(); }))
     config.fault("ego", "source", "lidar: no lidar is in use");
   const auto active = [](const auto& sensor) { return sensor.active; };
   if (std::none_of(s.sensors.begin(), s.sensors.end(), active)) {

@@ -60,6 +60,7 @@ struct PipelineSetup {
     bool gives_ground = false;  ///< the ground plane is estimated from its point clouds
 
     bool used() const { return active || gives_ground; }
+    bool isLidarInUse() const { return params.kind == "lidar" && used(); }
   };
   RunParams run;
   FilterModel model;

@@ -5,7 +5,7 @@
 # OUT/res (KITTI's format) and OUT/run. Half a minute for `dev` on four cores.
 #   tests/bench/kitti_detections.sh [-t SCORE] [-m 2d] [-c INI] [-d DETECTOR] [-o OUT] [dev | train | SEQUENCE ...] [perception-track options]
 #   -m   2d: image boxes at an overlap of .5, for cameras alone (--sensors C --set run.output_sensor=rrc) [3d]
-#   -d   boxes of cars of virconv, casa, pvcnn, second_iou or pointrcnn in data/kitti_tracking_detectors, as kitti3d-boxes
+#   -d   boxes of cars of virconv, casa, pvcnn, second_iou or pointrcnn in data/kitti_tracking_detectors, as sensor kitti3d-boxes
 #   -t   the one score, log-odds that it exists and is a road user [0]
 # PERCEPTION_SHARED: folder with data/kitti_tracking and tools/mot_eval.py [../shared]; PERCEPTION_BIN: programs [build/bin].
 # Needs python3-numpy and python3-scipy. What decides is `dev`; the configuration was counted on `train`.
@@ -40,6 +40,10 @@ done
 readonly detectors=${data}_detectors
 export bin data logs ini out detector detectors
 mkdir -p "$logs" "$out/res"
+if [[ -n $detector ]]; then  # the same configuration, of a sensor of that name
+  sed "s/pointrcnn/kitti3d-boxes/g; s|^include = |include = $PWD/ini/|" "$ini" >"$out/detector.ini"
+  ini=$out/detector.ini
+fi
 rm -f "$out"/res/*.txt "$out"/*.log
 
 import() {

@@ -77,7 +77,7 @@ TEST_F(Children, LeaveNoneOfTheirOwnBehind) {
   child.wait();
   const pid_t grandchild = std::stoi(said());
   for (int i = 0; i < 100 && ::kill(grandchild, 0) == 0; ++i) ::usleep(20000);
-  // A zombie that nobody has collected yet still has its number.
+  // A process that has ended keeps its number until its parent has waited for it.
   std::ifstream stat("/proc/" + std::to_string(grandchild) + "/stat");
   std::string number, name, state = "gone";
   stat >> number >> name >> state;
