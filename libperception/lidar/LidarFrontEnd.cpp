@@ -1,5 +1,7 @@
 #include "libperception/lidar/LidarFrontEnd.h"
 
+#include <algorithm>
+
 #include "libperception/lidar/JudgedClusters.h"
 #include "libperception/lidar/LidarMeasurements.h"
 #include "libperception/lidar/Overlaps.h"
@@ -44,6 +46,17 @@ class ClusterModel final : public FootprintModel {
   /// The width of an outline is in the shape already, and stays what it is from scan to scan; tuned
   /// on KITTI 0000.
   double innovationShare() const override { return 0.1; }
+  double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
+                              const SensorState& sensor, double visibility) const override {
+    // Of what goes over the view's border the part within gives a cluster: all of P_D as long as a
+    // quarter of its width is within (assumed).
+    constexpr double kEnough = 0.25;
+    const double distance =
+        (object.q.head<2>() - sensor.T_world_sensor.translation().head<2>()).norm();
+    const double nearest = std::max(0.0, distance - 0.25 * (extent.length + extent.width));
+    const double share = std::min(1.0, shareInView(object, extent, sensor) / kEnough);
+    return share * detection_model().detection(c, nearest, 0, visibility);
+  }
 
  private:
   EvidenceMemory memory_;

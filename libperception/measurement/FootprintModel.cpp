@@ -144,6 +144,22 @@ double FootprintModel::detectionProbability(ClassId c, const Kinematics& object,
       c, range, std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor), visibility);
 }
 
+double FootprintModel::shareInView(const Kinematics& object, const Extent& extent,
+                                   const SensorState& sensor) const {
+  const double border = 0.5 * detection_model_.params().fov;
+  if (border >= kPi) return 1;
+  const Vector2 d = object.q.head<2>() - sensorPosition(sensor);
+  const double bearing = std::atan2(d.y(), d.x());
+  const double angle = object.q[Kinematics::kYaw] - bearing;
+  const double across = object.has_yaw ? extent.length * std::abs(std::sin(angle)) +
+                                             extent.width * std::abs(std::cos(angle))
+                                       : 0.5 * (extent.length + extent.width);
+  const double half = std::atan2(0.5 * across, d.norm());
+  const double middle = wrapAngle(bearing - yawOf(sensor.T_world_sensor));
+  const double seen = std::min(middle + half, border) - std::max(middle - half, -border);
+  return half > 0 ? std::clamp(seen / (2 * half), 0.0, 1.0) : std::abs(middle) < border;
+}
+
 double FootprintModel::logClutterDensity(const Measurement& m, const SensorState& sensor) const {
   return std::log(detection_model_.params().clutter_per_scan) +
          logUniform(m, detection_model_, sensor, 1 / kWidestClutter);

@@ -47,6 +47,11 @@ class FootprintModel : public MeasurementModel {
 
   const DetectionModel& detection_model() const { return detection_model_; }
 
+ protected:
+  /// [0, 1] share of the object's width, as seen from the sensor, within the field of view.
+  double shareInView(const Kinematics& object, const Extent& extent,
+                     const SensorState& sensor) const;
+
  private:
   ClassTable classes_;
   DetectionModel detection_model_;

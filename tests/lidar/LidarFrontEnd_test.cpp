@@ -154,6 +154,32 @@ TEST(LidarFrontEnd, WhatIsSeenBetweenTwoTallerObjectsHasAPlace) {
   EXPECT_NEAR(edge, 2.5 / 19, 0.03) << "[rad] 2.5 m";
 }
 
+TEST(LidarFrontEnd, ByItsShapeACarIsDetectedAsLongAsAQuarterOfItsWidthIsInView) {
+  ClassTable classes;
+  classes.classes.resize(1);
+  DetectionParams params;
+  params.fov = radians(90);
+  const LidarFrontEnd front_end(
+      {}, classes, DetectionModel(params, {ClassDetection{}}, LidarFrontEnd::labels({})),
+      alwaysVehicle());
+  const auto model = front_end.extract(castScan(carAndPerson(), SpinningLidar())).model;
+  const Extent extent{4, 2, 0.1, 0.1};
+  const auto detected = [&](double bearing_deg) {
+    Kinematics car;
+    car.has_yaw = true;
+    car.q[Kinematics::kYaw] = radians(bearing_deg + 90);  // seen from its side
+    car.q.head<2>() = 10 * Vector2(std::cos(radians(bearing_deg)), std::sin(radians(bearing_deg)));
+    return model->detectionProbability(0, car, extent, SensorState{}, 1);
+  };
+  const double half = degrees(std::atan2(2, 10));  // 11.3 deg to each side of its center
+  EXPECT_DOUBLE_EQ(detected(0), 0.9);
+  EXPECT_DOUBLE_EQ(detected(45), 0.9) << "half of it";
+  EXPECT_NEAR(detected(45 + half * 0.5), 0.9, 1e-9) << "a quarter of it";
+  EXPECT_NEAR(detected(45 + half * 0.75), 0.45, 1e-9) << "an eighth";
+  EXPECT_DOUBLE_EQ(detected(45 + half + 1), 0);
+  EXPECT_DOUBLE_EQ(detected(-45), 0.9);
+}
+
 TEST(LidarFrontEnd, ObjectsCloseTogetherAreUnstableOrLeftOut) {
   SolidScene scene;
   scene.boxes = {{{14, 4}, 0, 4.4, 1.8, 0.25, 1.5},
