@@ -9,11 +9,26 @@ namespace perception {
 namespace {
 
 TEST(SiteInis, AllLoadWithoutAFault) {
-  for (const char* name :
-       {"demo.ini", "kitti.ini", "kitti_object.ini", "vod.ini", "wads.ini", "radiate.ini",
-        "comma2k19.ini", "udacity.ini", "gps_object.ini", "skynet.ini", "skynet_duc.ini",
-        "skynet_paper.ini", "skynet_crowds.ini", "skynet_lanes.ini", "gnss_gap.ini",
-        "kitti-detections.ini", "kitti-detections-unlabelled.ini", "av2.ini", "aimotive.ini"}) {
+  for (const char* name : {"demo.ini",
+                           "kitti.ini",
+                           "kitti_object.ini",
+                           "vod.ini",
+                           "wads.ini",
+                           "radiate.ini",
+                           "comma2k19.ini",
+                           "udacity.ini",
+                           "gps_object.ini",
+                           "skynet.ini",
+                           "skynet_duc.ini",
+                           "skynet_paper.ini",
+                           "skynet_crowds.ini",
+                           "skynet_shapes.ini",
+                           "skynet_lanes.ini",
+                           "gnss_gap.ini",
+                           "kitti-detections.ini",
+                           "kitti-detections-unlabelled.ini",
+                           "av2.ini",
+                           "aimotive.ini"}) {
     Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + name);
     PipelineSetup::read(config);
     EXPECT_NO_THROW(config.finish()) << name;
