@@ -9,6 +9,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/evaluation/Plots.h"
+#include "libperception/evaluation/Summary.h"
 #include "libperception/pipeline/OutputFolder.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/MeasurementRun.h"
@@ -56,7 +57,6 @@ void EvaluateApp::declareInputs(CLI::App& cli) {
       ->type_name("NAME,...");
 }
 
-/// Options of the truth selection.
 void EvaluateApp::declareTruth(CLI::App& cli) {
   cli.add_option("--range", params.selection.range, "truth counts up to this distance [m]")
       ->capture_default_str()
@@ -79,7 +79,6 @@ void EvaluateApp::declareTruth(CLI::App& cli) {
       ->check(CLI::Range(0, 3));
 }
 
-/// Options of matching and reports.
 void EvaluateApp::declareFigures(CLI::App& cli) {
   cli.add_option("--tolerance", params.tolerance,
                  "greatest distance of the centers of truth and estimate [m]")
@@ -96,6 +95,7 @@ void EvaluateApp::declareFigures(CLI::App& cli) {
                  "nearest truth of a scene matched by time [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
+  cli.add_flag("--any-truth", any_truth, "evaluate even where no scene of a run has a truth");
   cli.add_flag("--empty-frames", params.alignment.empty_frames,
                "a scene without a truth line holds no objects (else nothing is known of it)");
   cli.add_option("--unnamed", params.unnamed, "classes that are neither true nor false to output")
@@ -217,22 +217,20 @@ void EvaluateApp::addPaperRows() {
 void EvaluateApp::warnOfGaps(const EvaluatedRun& run, const std::string& truth) {
   const TruthAlignment& alignment = run.evaluation.alignment;
   if (run.evaluation.instants.empty()) {
-    warn(
-        fmt::format("{}: no scene has a truth in {} (other log, or times more than {:g} s apart): "
-                    "every figure is n/a",
-                    run.dir, truth, params.alignment.time_limit));
-    return;
-  }
-  if (run.evaluation.samples.empty())
+    const std::string fault =
+        fmt::format("{}: no scene has a truth in {} (other log, or times more than {:g} s apart)",
+                    run.dir, truth, params.alignment.time_limit);
+    if (!any_truth) throw DataError(fault + "; with --any-truth every figure is n/a");
+    warn(fault + ": every figure is n/a");
+  } else if (run.evaluation.samples.empty()) {
     warn(fmt::format("{}: no truth object counts: tracking figures are n/a", run.dir));
-  if (alignment.scenes_without_truth > 0) {
-    say(1, fmt::format("{}: {} scenes without truth are in no figure", run.dir,
-                       alignment.scenes_without_truth));
   }
-  if (alignment.truth_without_scene > 0) {
-    say(1, fmt::format("{}: {} truth instants without scene are in no figure", run.dir,
-                       alignment.truth_without_scene));
-  }
+  if (run.evaluation.instants.empty()) return;
+  const auto count = [&](std::size_t number, const char* what) {
+    if (number > 0) say(1, fmt::format("{}: {} {} are in no figure", run.dir, number, what));
+  };
+  count(alignment.scenes_without_truth, "scenes without truth");
+  count(alignment.truth_without_scene, "truth instants without scene");
 }
 
 void EvaluateApp::write(EvaluationReport report, const std::string& dir) {

@@ -106,7 +106,7 @@ class EvaluateAppTest : public testing::Test {
 };
 
 TEST_F(EvaluateAppTest, WritesTheReportBesideTheRun) {
-  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots", "-v"}), 0) << err_;
   for (const char* file : {"report.txt", "report.md", "report.json"}) {
     EXPECT_TRUE(fs::exists(dir_ + "/late/evaluation/" + file)) << file;
   }
@@ -151,14 +151,26 @@ TEST_F(EvaluateAppTest, TheSameRunGivesTheSameBytes) {
   EXPECT_EQ(read(), first);
 }
 
-TEST_F(EvaluateAppTest, WithoutOverlapItSaysNotAvailableAndEndsWithAWarning) {
+TEST_F(EvaluateAppTest, SixLinesAreOnTheTerminalAndTheTablesInTheFile) {
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
+  EXPECT_EQ(std::count(out_.begin(), out_.end(), '\n'), 7) << out_;
+  EXPECT_EQ(out_.find("  tracked       0.900 of 20 instants"), 0u) << out_;
+  EXPECT_NE(out_.find("all tables: " + dir_ + "/late/evaluation/report.txt"), std::string::npos);
+}
+
+TEST_F(EvaluateAppTest, TheTruthOfAnotherLogIsRefusedUnlessToldOtherwise) {
   std::vector<TruthObject> other = {truthAt(0)};
   other[0].frame = 5000;
   other[0].t = 500;
-  writeGroundTruth(dir_ + "/other.truth.csv", other);
-  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", dir_ + "/other.truth.csv", "--no-plots"}),
+  const std::string file = dir_ + "/other.truth.csv";
+  writeGroundTruth(file, other);
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", file, "--no-plots"}),
+            static_cast<int>(ExitCode::kBadInput));
+  EXPECT_NE(err_.find("no scene has a truth in " + file), std::string::npos) << err_;
+  EXPECT_FALSE(fs::exists(dir_ + "/late/evaluation"));
+  app_ = EvaluateApp();
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", file, "--no-plots", "--any-truth"}),
             static_cast<int>(ExitCode::kDataWarnings));
-  EXPECT_NE(err_.find("no scene has a truth"), std::string::npos) << err_;
   EXPECT_NE(out_.find("n/a"), std::string::npos);
   EXPECT_TRUE(
       report(dir_ + "/late/evaluation")["runs"][0]["closest"]["all"]["object_tracked_a"].is_null());
@@ -168,8 +180,8 @@ TEST_F(EvaluateAppTest, RunsOfOneConditionArePooled) {
   fs::create_directories(dir_ + "/t");
   fs::rename(dir_ + "/late", dir_ + "/t/one_L");
   fs::rename(dir_ + "/perfect", dir_ + "/t/two_L");
-  EXPECT_EQ(run({"-r", "L+R=" + dir_ + "/t/*_L", "-t", truth(), "-o", dir_ + "/out", "--no-plots",
-                 "--paper", "sunny"}),
+  EXPECT_EQ(run({"-r", "L+R=" + dir_ + "/t/*_L", "-t", truth(), "-o", dir_ + "/out", "-v",
+                 "--no-plots", "--paper", "sunny"}),
             0)
       << err_;
   const auto all = report(dir_ + "/out");
@@ -189,13 +201,13 @@ TEST_F(EvaluateAppTest, NoRowOfAnotherWeatherStandsBesideARun) {
   record.simulated = true;
   record.weather = "";  // clear air
   writeRunRecord(dir_ + "/late/done.json", record);
-  run({"-r", dir_ + "/late", "-t", truth(), "--no-plots", "--paper", "snow,sunny"});
+  run({"-r", dir_ + "/late", "-t", truth(), "-v", "--no-plots", "--paper", "snow,sunny"});
   EXPECT_NE(err_.find("--paper snow: no run is of that weather"), std::string::npos) << err_;
   EXPECT_EQ(report(dir_ + "/late/evaluation")["paper"].size(), 3u);
   EXPECT_EQ(out_.find("Snow & Rain"), std::string::npos);
   record.weather = "snow 1 mm/h";
   writeRunRecord(dir_ + "/late/done.json", record);
-  run({"-r", dir_ + "/late", "-t", truth(), "--no-plots", "--paper", "snow"});
+  run({"-r", dir_ + "/late", "-t", truth(), "-v", "--no-plots", "--paper", "snow"});
   EXPECT_NE(out_.find("Snow & Rain"), std::string::npos);
 }
 
@@ -204,7 +216,8 @@ TEST_F(EvaluateAppTest, AManifestNamesConditionsRunsAndTruths) {
                                        "first,late,log.truth.csv\n"
                                        "second,perfect,log.truth.csv\n"
                                        "second,late,log.truth.csv\n";
-  EXPECT_EQ(run({"--manifest", dir_ + "/runs.csv", "-o", dir_ + "/out", "--no-plots"}), 0) << err_;
+  EXPECT_EQ(run({"--manifest", dir_ + "/runs.csv", "-o", dir_ + "/out", "-v", "--no-plots"}), 0)
+      << err_;
   const auto runs = report(dir_ + "/out")["runs"];
   ASSERT_EQ(runs.size(), 2u);
   EXPECT_EQ(runs[0]["closest"]["all"]["returns"], 18);
