@@ -10,13 +10,28 @@
 
 namespace perception {
 
+namespace {
+
+// A message of the command line library would not name the formats.
+void requireFormat(const CLI::App& cli) {
+  const std::vector<std::string> unknown = cli.remaining();
+  if (!cli.get_subcommands().empty() && unknown.empty()) return;
+  std::string formats;
+  for (const ImporterRow& row : importers()) formats += fmt::format(" {}", row.name);
+  throw CLI::ValidationError(
+      unknown.empty() ? "no format is given; there are:" + formats
+                      : fmt::format("{}: no such format; there are:{}", unknown.front(), formats));
+}
+
+}  // namespace
+
 std::string ImportApp::description() const {
   return "Turns recordings of other formats into a rawlog and, with labels, FILE.truth.csv beside "
          "it.";
 }
 
 void ImportApp::declare(CLI::App& cli) {
-  cli.require_subcommand(1);
+  cli.require_subcommand(0, 1);  // none: named by requireFormat()
   importers_.clear();
   for (std::size_t i = 0; i < importers().size(); ++i) {
     const ImporterRow& row = importers()[i];
@@ -40,6 +55,8 @@ void ImportApp::declare(CLI::App& cli) {
     }
     addOutputOption(sub, true);
   }
+  cli.allow_extras();
+  cli.callback([&cli] { requireFormat(cli); });
 }
 
 void ImportApp::checkOptions() const {

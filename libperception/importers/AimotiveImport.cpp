@@ -178,7 +178,7 @@ void AimotiveImporter::run(ImportLog& log) {
   calibration_ = readAimotiveCalibration(path("calib.json"));
   std::vector<AimotiveTurn> turns = readAimotiveTurns(path("scans.csv"));
   turns.erase(std::remove_if(turns.begin(), turns.end(),
-                             [&](const auto& t) { return !log.options().wants(t.number); }),
+                             [&](const auto& t) { return !log.wants(t.number); }),
               turns.end());
   if (turns.empty()) throw DataError(path("scans.csv") + ": none of the wanted turns");
   from_ = turns.front().start;

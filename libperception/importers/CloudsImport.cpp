@@ -143,12 +143,15 @@ void CloudsImporter::run(ImportLog& log) {
   const Pose3 T_ego_lidar = mount();
   const Pose3 T_ego_pose = poses_frame_ == "ego" ? Pose3::Identity() : T_ego_lidar;
   const bool has_poses = !poses_file_.empty();
+  if (!has_poses) log.note("no --poses: the vehicle is taken to stand still");
+  if (stamps_file_.empty())
+    log.note(fmt::format("no --stamps: taken as {:g} scans a second (--rate)", log.options().rate));
   // World: the ego frame at the first pose of the file.
   const Pose3 origin = !has_poses         ? Pose3::Identity()
                        : stamped_.empty() ? poses_.front()
                                           : stamped_.front().pose;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!log.options().wants(files[i].number)) continue;
+    if (!log.wants(files[i].number)) continue;
     const auto pose = poseAt(i);
     if (pose) {
       log.ego(stamps_[i], T_ego_pose * origin.inverse() * *pose * T_ego_pose.inverse());

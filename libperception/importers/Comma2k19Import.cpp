@@ -167,7 +167,7 @@ void Comma2k19Importer::readRadar(ImportLog& log) {
     const std::int64_t frame = number++;
     const double t = radar.time(end - 1) - delay_;  // the scan is whole with its last slot
     i = end;
-    if (!log.options().wants(frame)) continue;
+    if (!log.wants(frame)) continue;
     if (!any) from_ = t;
     any = true;
     to_ = t;

@@ -67,7 +67,7 @@ void TrackImporter::run(ImportLog& log) {
   PoseUncertainty uncertainty{sigma_, 0, 0};
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const auto number = static_cast<std::int64_t>(i);
-    if (!log.options().wants(number)) continue;
+    if (!log.wants(number)) continue;
     const Stamp stamp = fixes[i].stamp;
     log.ego(stamp, as_object_ ? Pose3::Identity() : poses[i].pose,
             as_object_ ? PoseUncertainty{0, 0, 0} : uncertainty);

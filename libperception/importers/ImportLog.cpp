@@ -54,6 +54,24 @@ void ImportLog::ego(Stamp stamp, const Pose3& T_world_ego, const PoseUncertainty
   ++result_.poses;
 }
 
+bool ImportLog::wants(std::int64_t frame) {
+  if (!numbers_) numbers_.emplace(frame, frame);
+  numbers_->first = std::min(numbers_->first, frame);
+  numbers_->second = std::max(numbers_->second, frame);
+  const bool wanted = options_.wants(frame);
+  any_wanted_ = any_wanted_ || wanted;
+  return wanted;
+}
+
+void ImportLog::failWithoutFrames() const {
+  if (any_wanted_ || !numbers_) return;
+  const std::string last = options_.last < 0 ? "" : fmt::format(" --last {}", options_.last);
+  throw DataError(
+      fmt::format("no frame is within --first {}{}: the recording has the frames {} to {}",
+                  options_.first, last, numbers_->first, numbers_->second),
+      ExitCode::kNoInput);
+}
+
 void ImportLog::frame(Stamp stamp, std::int64_t number) {
   write(*frameComment(stamp, number));
   ++result_.frames;
@@ -191,6 +209,7 @@ void ImportLog::setTruthVelocities() {
 }
 
 ImportResult ImportLog::close() {
+  failWithoutFrames();
   warnOfMissing();
   log_.finish();
   if (has_truth_) {  // before the log has its name, so that a complete log has its truth

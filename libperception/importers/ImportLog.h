@@ -76,6 +76,9 @@ class ImportLog {
 
   const ImportOptions& options() const { return options_; }
 
+  /// Whether the options want this frame of the recording; remembers which ones there are.
+  bool wants(std::int64_t frame);
+
   /// Entries are in the order of calls. Uncertainty of 0: unknown, the minimum of the site INI
   /// applies.
   void ego(Stamp stamp, const Pose3& T_world_ego, const PoseUncertainty& uncertainty = {0, 0, 0});
@@ -100,8 +103,8 @@ class ImportLog {
   void warn(const std::string& text) { result_.warnings.push_back(text); }
   void progress(std::int64_t done, std::int64_t total) const;
 
-  /// Writes the truth and closes the log. Throws DataError (kNoInput) if every frame misses data,
-  /// OutputError.
+  /// Writes the truth and closes the log. Throws DataError (kNoInput) if every frame misses data or
+  /// no frame of the recording was wanted, OutputError.
   ImportResult close();
 
  private:
@@ -109,12 +112,16 @@ class ImportLog {
   std::string storedImage(const ImportedImage& image, std::int64_t frame);
   void setTruthVelocities();
   void warnOfMissing();
+  void failWithoutFrames() const;
 
   ImportOptions options_;
   ImportProgress progress_;
   RawlogWriter log_;
   ImportResult result_;
   bool has_truth_ = false;
+  bool any_wanted_ = false;
+  std::optional<std::pair<std::int64_t, std::int64_t>>
+      numbers_;  ///< least, greatest frame there is
   std::optional<Stamp> first_stamp_;
   std::vector<std::pair<Stamp, TruthObject>> truth_;
   std::vector<std::pair<Stamp, std::function<void()>>> queue_;

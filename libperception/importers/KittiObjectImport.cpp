@@ -151,7 +151,7 @@ void KittiObjectImporter::run(ImportLog& log) {
   if (fs::exists(path(kLabels))) log.expectTruth();
   std::int64_t place = 0;  // frame numbers of single frames are not times
   for (const FrameFile& file : files) {
-    if (!log.options().wants(file.number)) continue;
+    if (!log.wants(file.number)) continue;
     Frame frame = read(file, log);
     if (alone_) frame.T_world_ego = makePose(kAloneDistance * static_cast<double>(place), 0, 0, 0);
     const Stamp begin = stampAtRate(kUndatedStart, place++, log.options().rate);

@@ -110,7 +110,7 @@ std::vector<TimedFile> timedFiles(const std::filesystem::path& folder,
   std::vector<TimedFile> timed;
   std::vector<std::int64_t> untimed;
   for (const FrameFile& file : frameFiles(dir, endings)) {
-    if (wanted && !log.options().wants(file.number)) continue;
+    if (wanted && !log.wants(file.number)) continue;
     const auto time = times.find(file.number);
     if (time == times.end()) {
       untimed.push_back(file.number);

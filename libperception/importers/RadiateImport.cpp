@@ -218,7 +218,7 @@ void RadiateImporter::addGps(ImportLog& log) {
   if (first_ && *first_ < fixes.front().stamp) {
     for (const auto& [frame, time] : radar_times_) {
       const Stamp stamp = radarStamp(time);
-      if (!log.options().wants(frame) || stamp >= fixes.front().stamp) continue;
+      if (!log.wants(frame) || stamp >= fixes.front().stamp) continue;
       const auto pose = egoAt(stamp);
       if (pose) log.at(stamp, [stamp, pose = *pose, &log] { log.ego(stamp, pose); });
     }
@@ -235,7 +235,7 @@ void RadiateImporter::addTruth(ImportLog& log) {
   const double center_u = picture.cols * 0.5, center_v = picture.rows * 0.5;
   for (const auto& [frame, boxes] : readRadiateAnnotations(file)) {
     const auto time = radar_times_.find(frame);
-    if (time == radar_times_.end() || !log.options().wants(frame)) continue;
+    if (time == radar_times_.end() || !log.wants(frame)) continue;
     const Stamp stamp = radarStamp(time->second);
     const auto ego = egoAt(stamp);
     for (const RadiateAnnotation& a : boxes) {

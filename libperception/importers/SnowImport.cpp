@@ -117,7 +117,7 @@ void SnowImporter::run(ImportLog& log) {
   format.max_range = set_.max_range;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const FrameFile& file = files[i];
-    if (!log.options().wants(file.number)) continue;
+    if (!log.wants(file.number)) continue;
     const Stamp stamp =
         stampAtRate(kUndatedStart, file.number - files.front().number, log.options().rate);
     if (!poses.empty())

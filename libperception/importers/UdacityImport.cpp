@@ -95,7 +95,7 @@ void UdacityImporter::write(const TextRow& row, std::int64_t number, ImportLog& 
 void UdacityImporter::run(ImportLog& log) {
   std::int64_t number = 0;
   forEachRow(file_, kSpaces, [&](const TextRow& row) {
-    if (log.options().wants(number)) write(row, number, log);
+    if (log.wants(number)) write(row, number, log);
     ++number;
   });
   if (number == 0) throw DataError(file_ + ": no line in it");

@@ -226,7 +226,7 @@ void VodImporter::run(ImportLog& log) {
   const auto files = frameFiles(scans, {".bin", ".bin.gz"});
   std::int64_t done = 0, carried = 0;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!log.options().wants(files[i].number)) continue;
+    if (!log.wants(files[i].number)) continue;
     Frame frame = read(files[i], log);
     frame.alone = (i == 0 || files[i].number - files[i - 1].number > 2) &&
                   (i + 1 == files.size() || files[i + 1].number - files[i].number > 2);

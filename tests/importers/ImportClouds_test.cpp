@@ -173,6 +173,8 @@ TEST_F(CloudsImport, PosesOfTheLidarBecomeTheVehicles) {
   write("poses.txt",
         "1 0 0 7 0 1 0 0 0 0 1 0\n0 -1 0 9 1 0 0 0 0 0 1 0\n0 -1 0 9 1 0 0 2 0 0 1 0\n");
   ASSERT_EQ(import("clouds", with({"--poses", file("poses.txt")})), 0) << error_;
+  EXPECT_EQ(result_.notes,
+            std::vector<std::string>{"no --stamps: taken as 10 scans a second (--rate)"});
   const auto frames = framesOf("LIDAR_TOP");
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_TRUE(frames[0].ego.T_world_ego.isApprox(Pose3::Identity(), 1e-9));

@@ -42,6 +42,11 @@ TEST(Importers, EachHasANameOfItsOwnAndSaysWhatItReads) {
 
 class ImportOptionsOfFormats : public test::ImportRun {};
 
+TEST_F(ImportOptionsOfFormats, AnUnknownFormatIsToldWhichThereAre) {
+  for (const std::string& line : {"rosbag: no such format; there are:", " wads", " clouds"})
+    expectFault(64, line, "rosbag", {});
+}
+
 TEST_F(ImportOptionsOfFormats, WhatAFormatCannotUseIsRefused) {
   expectFault(64, "--rate", "udacity", {"--measurements", file("u.txt"), "--rate", "5"});
   expectFault(64, "--repeat", "clouds", {"--clouds", file("c"), "--repeat", "5"});
@@ -87,6 +92,13 @@ TEST_F(SnowImport, WithoutPosesTheMotionIsNotKnown) {
   ASSERT_EQ(import("snowykitti", {"--dir", file("set"), "--lidar-height", "1.8"}), 0) << error_;
   EXPECT_EQ(result_.poses, 0);
   EXPECT_EQ(result_.scans, 2);
+}
+
+TEST_F(SnowImport, NoFrameIsAnErrorThatNamesTheFramesThereAre) {
+  expectFault(66, "no frame is within --first 0 --last 2: the recording has the frames 7 to 8",
+              "wads", {"--dir", file("set"), "--last", "2"});
+  expectFault(66, "no frame is within --first 9: the recording has the frames 7 to 8", "wads",
+              {"--dir", file("set"), "--first", "9"});
 }
 
 TEST_F(SnowImport, FaultsNameTheFile) {
