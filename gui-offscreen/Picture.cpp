@@ -1,5 +1,8 @@
 #include "gui-offscreen/Picture.h"
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -9,6 +12,16 @@
 #include "libperception/scene/OutputFile.h"
 
 namespace perception {
+namespace {
+
+std::string endingOf(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
+  return ending;
+}
+
+}  // namespace
 
 std::size_t colorsOf(const Picture& picture) {
   std::set<std::uint32_t> colors;
@@ -19,14 +32,21 @@ std::size_t colorsOf(const Picture& picture) {
   return colors.size();
 }
 
+void requirePictureName(const std::string& path) {
+  const std::string ending = endingOf(path);
+  if (ending == ".png" || ending == ".jpg" || ending == ".jpeg") return;
+  throw Error(ExitCode::kUsage, path + ": expected a picture, .png, .jpg or .jpeg");
+}
+
 // Encoded in memory and written by OutputFile: OpenCV's imwrite() does not report a full disk.
-void writePng(const std::string& path, const Picture& picture) {
+void writePicture(const std::string& path, const Picture& picture) {
+  requirePictureName(path);
   const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
                     const_cast<std::uint8_t*>(picture.rgb.data()));
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".png", bgr, bytes)) {
+  if (!cv::imencode(endingOf(path), bgr, bytes)) {
     throw OutputError(path + ": the picture cannot be encoded", ExitCode::kIoError);
   }
   writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});

@@ -18,8 +18,11 @@ struct Picture {
 /// Number of distinct colors; 1 = blank.
 std::size_t colorsOf(const Picture& picture);
 
-/// Writes a PNG. Throws OutputError naming the path.
-void writePng(const std::string& path, const Picture& picture);
+/// Throws Error (kUsage) unless the name ends with .png, .jpg or .jpeg.
+void requirePictureName(const std::string& path);
+/// Writes a PNG or JPEG, by the ending of the name. Throws as requirePictureName(), OutputError
+/// naming the path.
+void writePicture(const std::string& path, const Picture& picture);
 
 struct Raster;
 /// Converts a gray or color raster; empty for an empty raster.

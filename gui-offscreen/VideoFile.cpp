@@ -78,6 +78,8 @@ std::vector<std::string> arguments(const Picture& first, double rate, const std:
 
 VideoFile::VideoFile(const std::string& path, double rate)
     : path_(path), partial_(path), said_(path + ".log"), rate_(rate) {
+  if (fs::path(path).extension() != ".mp4")
+    throw Error(ExitCode::kUsage, path + ": expected a video, .mp4");
   if (onPath("ffmpeg").empty()) {
     throw Error(ExitCode::kUnavailable,
                 path + ": ffmpeg, which writes videos, is not installed (Debian package ffmpeg)");

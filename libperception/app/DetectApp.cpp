@@ -184,7 +184,7 @@ void DetectApp::draw(OutputFolder& folder, const Result& result) const {
   bool calibrated = false;
   for (std::size_t i = 0; i < objects.size(); ++i)
     calibrated = calibrated || objects[i].score != result.raw[i];
-  writePng(
+  writePicture(
       folder.pathFor("pictures/" + fs::path(result.name).stem().string() + ".png"),
       detectionPicture(result.image, objects, result.truth, calibrated || scores_are_log_odds_));
 }

@@ -12,6 +12,9 @@
 namespace perception {
 namespace {
 
+/// [rad] KITTI's mark of a label without a heading.
+constexpr double kUnknownAlpha = -10;
+
 namespace fs = std::filesystem;
 
 // Truth types that KITTI's benchmark ignores for a class.
@@ -68,7 +71,7 @@ std::vector<LabeledBox> ImageLabels::of(const std::string& file_name) const {
   for (const KittiLabel& l : readKittiObjectLabels(path, 0)) {
     const bool hidden = l.truncated > rules_.max_truncation || l.occluded > rules_.max_occlusion;
     LabeledBox box = labeled(l.type, l.image_box, hidden, rules_);
-    if (!box.area) box.heading = wrapAngle(l.alpha);
+    if (!box.area && l.alpha > kUnknownAlpha) box.heading = wrapAngle(l.alpha);
     out.push_back(box);
   }
   return out;

@@ -106,17 +106,17 @@ void SimulateApp::drawCoverage() {
   if (config.has("scenario")) {
     const Scenario scenario = readScenario(config);
     if (configDone(config)) return;
-    writePng(coverage,
-             coveragePicture(scenario.sensors, "Coverage of the sensors: " + config_file));
+    writePicture(coverage,
+                 coveragePicture(scenario.sensors, "Coverage of the sensors: " + config_file));
     return;
   }
   config.read<PoseParams>("ego");
   const std::vector<SensorParams> sensors = readSensors(config);
   if (sensors.empty()) config.fault("", "", "no [sensor.LABEL] section");
   if (configDone(config)) return;
-  writePng(coverage,
-           coveragePicture(sensors, "Coverage of the sensors: " +
-                                        std::filesystem::path(config_file).stem().string()));
+  writePicture(coverage,
+               coveragePicture(sensors, "Coverage of the sensors: " +
+                                            std::filesystem::path(config_file).stem().string()));
 }
 
 void SimulateApp::drawContactSheet() {
@@ -127,7 +127,7 @@ void SimulateApp::drawContactSheet() {
     config.finish();
   }
   if (scenarios.empty()) throw Error(ExitCode::kUsage, "--contact-sheet: no scenario INI is named");
-  writePng(contact_sheet, scenarioSheet(scenarios));
+  writePicture(contact_sheet, scenarioSheet(scenarios));
 }
 
 void SimulateApp::run() {

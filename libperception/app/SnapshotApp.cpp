@@ -56,7 +56,7 @@ void SnapshotApp::declare(CLI::App& cli) {
   when->require_option(1);
   cli.add_option("--from", video_from, "start of the video, time of the log [s]");
   cli.add_option("--to", video_to, "end of the video [s]");
-  cli.add_option("-o,--output", output, "PNG file; with --every a folder");
+  cli.add_option("-o,--output", output, "PNG or JPEG file; with --every a folder");
   cli.add_option("--scene", scene_file,
                  "with --time or --frame: also a file for MRPT's SceneViewer3D")
       ->type_name("FILE.3Dscene");
@@ -144,7 +144,7 @@ std::string SnapshotApp::fileFor(const SceneView& shown) const {
 }
 
 void SnapshotApp::write(const std::string& path, Picture picture) {
-  writePng(path, picture);
+  writePicture(path, picture);
   out_files.push_back(path);
   out_picture = std::move(picture);
   say(1, path);
@@ -172,6 +172,7 @@ void SnapshotApp::run() {
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the runs");
   if (output.empty() && video.empty())
     throw Error(ExitCode::kUsage, "-o: expected a file or folder");
+  if (every <= 0 && !output.empty()) requirePictureName(output);
   if ((!scene_file.empty() || !grid_files.empty()) && !time && !frame) {
     throw Error(ExitCode::kUsage, "--scene, --grid: of one instant, --time or --frame");
   }

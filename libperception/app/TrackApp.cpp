@@ -16,6 +16,9 @@
 namespace perception {
 namespace fs = std::filesystem;
 
+/// [s] The real-time factor of a shorter log says nothing.
+constexpr double kShortLog = 1;
+
 void TrackApp::declare(CLI::App& cli) {
   addConfigOptions(cli, false);
   addInputOption(cli, false);
@@ -146,12 +149,11 @@ void TrackApp::trackLog(const Shard& shard) {
   run.commit(shard.effective_ini,
              threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency()));
   out_record = run.record;
-  fmt::print(
-      "{}: {} scenes, {} objects, {:.1f} s of log in {:.1f} s ({:.1f} times real time), results in "
-      "{}\n",
-      shard.log, out_record.scenes, out_record.tracks,
-      out_record.last_stamp - out_record.first_stamp, run.wallSeconds(), out_real_time_factor,
-      shard.dir);
+  const double length = out_record.last_stamp - out_record.first_stamp;
+  const std::string factor =
+      length < kShortLog ? "" : fmt::format(" ({:.1f} times real time)", out_real_time_factor);
+  fmt::print("{}: {} scenes, {} objects, {:.1f} s of log in {:.1f} s{}, results in {}\n", shard.log,
+             out_record.scenes, out_record.tracks, length, run.wallSeconds(), factor, shard.dir);
 }
 
 }  // namespace perception

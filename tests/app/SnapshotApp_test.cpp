@@ -84,6 +84,21 @@ TEST_F(SnapshotAppTest, DrawsOneInstantWithoutLog) {
   EXPECT_GT(colorsOf(app_->out_picture), 100U);
 }
 
+TEST_F(SnapshotAppTest, TheEndingOfTheNameIsTheFormat) {
+  const auto firstBytes = [this](const std::string& name) {
+    std::string bytes(4, ' ');
+    std::ifstream(dir_ + "/" + name, std::ios::binary).read(bytes.data(), 4);
+    return bytes;
+  };
+  ASSERT_EQ(run({"--time", "1", "--view", "top", "-o", dir_ + "/a.jpg"}), 0);
+  EXPECT_EQ(firstBytes("a.jpg").substr(0, 3), "\xff\xd8\xff");
+  ASSERT_EQ(run({"--time", "1", "--view", "top", "-o", dir_ + "/a.PNG"}), 0);
+  EXPECT_EQ(firstBytes("a.PNG"), "\x89PNG");
+  EXPECT_EQ(run({"--time", "1", "--view", "top", "-o", dir_ + "/a.tiff"}), 64);
+  EXPECT_EQ(run({"--video", dir_ + "/a.avi"}), 64);
+  EXPECT_FALSE(fs::exists(dir_ + "/a.tiff") || fs::exists(dir_ + "/a.avi"));
+}
+
 TEST_F(SnapshotAppTest, LogAndTruthAddToThePicture) {
   ASSERT_EQ(run({"--frame", "20", "--view", "top", "-o", dir_ + "/a.png"}), 0);
   const Picture bare = app_->out_picture;

@@ -286,7 +286,8 @@ TEST(Trails, HoldTheLastSecondsOfTheSceneShown) {
 }
 
 TEST(Picture, UnwritablePathIsAnOutputError) {
-  EXPECT_THROW(writePng("/nonexistent/folder/x.png", snapshot().tile(emptyView())), OutputError);
+  EXPECT_THROW(writePicture("/nonexistent/folder/x.png", snapshot().tile(emptyView())),
+               OutputError);
 }
 
 TEST(Renderer, ASecondOneIsRefused) {
