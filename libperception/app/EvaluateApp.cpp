@@ -9,7 +9,6 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/evaluation/Plots.h"
-#include "libperception/evaluation/Summary.h"
 #include "libperception/pipeline/OutputFolder.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/MeasurementRun.h"

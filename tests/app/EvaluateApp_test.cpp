@@ -106,7 +106,7 @@ class EvaluateAppTest : public testing::Test {
 };
 
 TEST_F(EvaluateAppTest, WritesTheReportBesideTheRun) {
-  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots", "-v"}), 0) << err_;
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
   for (const char* file : {"report.txt", "report.md", "report.json"}) {
     EXPECT_TRUE(fs::exists(dir_ + "/late/evaluation/" + file)) << file;
   }
@@ -149,13 +149,6 @@ TEST_F(EvaluateAppTest, TheSameRunGivesTheSameBytes) {
   app_ = EvaluateApp();
   ASSERT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
   EXPECT_EQ(read(), first);
-}
-
-TEST_F(EvaluateAppTest, SixLinesAreOnTheTerminalAndTheTablesInTheFile) {
-  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
-  EXPECT_EQ(std::count(out_.begin(), out_.end(), '\n'), 7) << out_;
-  EXPECT_EQ(out_.find("  tracked       0.900 of 20 instants"), 0u) << out_;
-  EXPECT_NE(out_.find("all tables: " + dir_ + "/late/evaluation/report.txt"), std::string::npos);
 }
 
 TEST_F(EvaluateAppTest, TheTruthOfAnotherLogIsRefusedUnlessToldOtherwise) {

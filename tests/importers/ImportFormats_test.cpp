@@ -43,7 +43,7 @@ TEST(Importers, EachHasANameOfItsOwnAndSaysWhatItReads) {
 class ImportOptionsOfFormats : public test::ImportRun {};
 
 TEST_F(ImportOptionsOfFormats, AnUnknownFormatIsToldWhichThereAre) {
-  for (const std::string& line : {"rosbag: no such format; there are:", " wads", " clouds"})
+  for (const char* line : {"rosbag: no such format; there are:", " wads", " clouds"})
     expectFault(64, line, "rosbag", {});
 }
 
