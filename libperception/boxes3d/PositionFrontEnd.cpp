@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/boxes3d/ConfidenceLearner.h"
+
 namespace perception {
 namespace {
 
@@ -88,6 +90,9 @@ void PositionParams::visit(ParamVisitor& v) {
   v.real("range_share", range_share, {0, 1}, "", "share of the range added to sigma");
   v.real("clutter_sigma_growth", clutter_sigma_growth, {0, 100}, "",
          "relative growth of both for a box that is clutter by its score");
+  v.choiceOf(
+      "confidence", confidence, {"fixed", "learnt"},
+      "scores as evidence: by the keys score_*, or learned while running from boxes that stay");
   table("score_slope.", score_slope, "1/score",
         "by label: P(object | score) = 1 / (1 + exp(-slope (score - offset) + fade range)); none: "
         "scores are no evidence");
@@ -116,7 +121,8 @@ void PositionParams::visit(ParamVisitor& v) {
 PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& classes,
                                    const DetectionModel& detection_model)
     : params_(std::move(params)),
-      modality_(detection_model.params().modality),
+      view_(detection_model.params()),
+      modality_(view_.modality),
       model_(std::make_shared<const PositionModel>(modelParams(classes, detection_model))) {
   for (const auto& n : params_.names) {
     const auto [name, label] = splitName(n);
@@ -125,10 +131,14 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
   for (std::size_t l = 0; l < params_.labels.size(); ++l) {
     const std::string& name = params_.labels[l];
     Label label;
-    label.odds.slope = entry(params_.score_slope, name);
-    label.odds.offset = entry(params_.score_offset, name);
-    label.odds.fade = entry(params_.score_fade, name);
-    label.balance = entry(params_.score_balance, name);
+    if (params_.confidence == PositionParams::Confidence::kLearnt) {
+      label.odds.slope = 1;  // scores are log-likelihood ratios by then
+    } else {
+      label.odds.slope = entry(params_.score_slope, name);
+      label.odds.offset = entry(params_.score_offset, name);
+      label.odds.fade = entry(params_.score_fade, name);
+      label.balance = entry(params_.score_balance, name);
+    }
     label.length_excess = entry(params_.length_excess, name);
     label.width_excess = entry(params_.width_excess, name);
     label.height_excess = entry(params_.height_excess, name);
@@ -146,6 +156,16 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
     label.log_clutter = detection_model.logLabelClutter(static_cast<int>(l));
     labels_.push_back(std::move(label));
   }
+}
+
+std::unique_ptr<FramePreparation> PositionFrontEnd::preparation() const {
+  if (params_.confidence == PositionParams::Confidence::kFixed) return nullptr;
+  ConfidenceLearner::Params p;
+  p.label_of = label_of_;
+  p.labels = params_.labels;
+  p.fov = view_.fov;
+  p.clutter_per_scan = view_.clutter_per_scan;
+  return std::make_unique<ConfidenceLearner>(std::move(p));
 }
 
 double PositionFrontEnd::clutterProbability(const Candidate& c) const {

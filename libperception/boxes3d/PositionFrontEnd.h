@@ -24,6 +24,9 @@ struct PositionParams {
   double range_share = 0;           ///< [-] share of the range added to sigma (method.md 8.9)
   double clutter_sigma_growth = 0;  ///< [-] growth of both at P(clutter) = 1 (method.md 8.9)
 
+  /// How scores become evidence: by the figures below, or learned while running (method.md 8.12).
+  enum class Confidence { kFixed, kLearnt };
+  Confidence confidence = Confidence::kFixed;
   /// Score as evidence, method.md (52), fitted on recordings with truth: P(object | score, range) =
   /// 1 / (1 + exp(-slope (score - offset) + fade range)), [1/score], [score], [1/m]; slope 0:
   /// scores are no evidence. balance: log of (objects / clutter) in those; it converts the odds
@@ -58,6 +61,7 @@ class PositionFrontEnd final : public FrontEnd {
                    const DetectionModel& detection_model);
 
   std::vector<std::string> labelNames() const override { return params_.labels; }
+  std::unique_ptr<FramePreparation> preparation() const override;
 
  protected:
   Modality modality() const override { return modality_; }
@@ -92,6 +96,7 @@ class PositionFrontEnd final : public FrontEnd {
   double logScoreRatio(const Candidate& c) const;
 
   PositionParams params_;
+  DetectionParams view_;
   Modality modality_;
   std::map<std::string, int> label_of_;
   std::vector<Label> labels_;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "libperception/measurement/FramePreparation.h"
 #include "libperception/measurement/Measurement.h"
 
 namespace perception {
@@ -16,6 +17,8 @@ class FrontEnd {
   MeasurementScan extract(const SensorFrame& frame) const;
   /// Names of what Measurement::label indexes; empty: no labels.
   virtual std::vector<std::string> labelNames() const { return {}; }
+  /// What its frames have to go through first, for one sensor of one run; null: nothing.
+  virtual std::unique_ptr<FramePreparation> preparation() const { return nullptr; }
 
  protected:
   virtual Modality modality() const = 0;

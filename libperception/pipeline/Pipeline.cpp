@@ -122,6 +122,13 @@ void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
   }
 }
 
+void Pipeline::finish() {
+  watch_.finish();
+  const auto learned = scan_maker_.learned();
+  if (!learned.empty())
+    events_.add(std::nullopt, event_kind::kLearned, fmt::format("{}", fmt::join(learned, "\n")));
+}
+
 std::optional<Scene> Pipeline::next(bool flush) {
   while (ready_.empty() && processNext(flush)) continue;
   if (ready_.empty() && flush) makeScenes(std::nullopt);
@@ -234,7 +241,7 @@ void Pipeline::restartTracks() {
   makeScenes(std::nullopt);
   tracker_.reset();
   if (observer_) observer_->onRestart();
-  scan_maker_.forgetOcclusion();
+  scan_maker_.restart();
   if (safety_) safety_->restart();
 }
 

@@ -42,8 +42,9 @@ class Pipeline {
 
   void add(const mrpt::obs::CObservation& observation);
   std::optional<Scene> next(bool flush = false);
-  /// Reports events known at the end of the log: sensors without frames, labels without a section.
-  void finish() { watch_.finish(); }
+  /// Reports events known at the end of the log: sensors without frames, labels without a section,
+  /// what was learned of detectors.
+  void finish();
   /// Called from now on; null: none. Not owned.
   void observe(PipelineObserver* observer) { observer_ = observer; }
 

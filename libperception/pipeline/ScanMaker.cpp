@@ -13,17 +13,18 @@ constexpr double kOcclusionMapAge = 0.2;
 ScanMaker::ScanMaker(const PipelineSetup& setup, RunTiming& timing)
     : setup_(setup), timing_(timing) {
   for (const auto& sensor : setup.sensors) {
-    Lidar lidar;
+    Stages stages;
     if (sensor.gives_ground) {
-      lidar.ground = std::make_unique<GroundEstimator>(setup.ground, setup.run.seed);
-      if (sensor.active) lidar.weather = makePointFilter(setup.weather);
+      stages.ground = std::make_unique<GroundEstimator>(setup.ground, setup.run.seed);
+      if (sensor.active) stages.weather = makePointFilter(setup.weather);
     }
-    lidars_.push_back(std::move(lidar));
+    if (sensor.active) stages.preparation = sensor.front_end->preparation();
+    stages_.push_back(std::move(stages));
   }
 }
 
 void ScanMaker::addGround(std::size_t sensor, SensorFrame& frame) {
-  const auto& estimator = lidars_[sensor].ground;
+  const auto& estimator = stages_[sensor].ground;
   if (estimator && std::holds_alternative<LidarCloud>(frame.data)) {
     const auto scope = timing_.stage("ground");
     ground_ = estimator->update(frame);
@@ -32,11 +33,12 @@ void ScanMaker::addGround(std::size_t sensor, SensorFrame& frame) {
 }
 
 MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
-  if (lidars_[sensor].weather) {
+  if (stages_[sensor].weather) {
     const auto scope = timing_.stage("weather");
-    lidars_[sensor].weather->apply(frame);
+    stages_[sensor].weather->apply(frame);
   }
   const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
+  if (const auto& preparation = stages_[sensor].preparation) preparation->apply(frame);
   MeasurementScan scan = setup_.sensors[sensor].front_end->extract(frame);
   if (scan.occlusion) {
     occlusion_ = scan.occlusion;
@@ -45,6 +47,24 @@ MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
     scan.occlusion = occlusion_;
   }
   return scan;
+}
+
+void ScanMaker::restart() {
+  occlusion_.reset();
+  for (const Stages& stages : stages_)
+    if (stages.preparation) stages.preparation->restart();
+}
+
+std::vector<std::string> ScanMaker::learned() const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < stages_.size(); ++i) {
+    if (!stages_[i].preparation) continue;
+    const auto learned = stages_[i].preparation->learned();
+    if (learned.empty()) continue;
+    lines.push_back("[sensor." + setup_.sensors[i].label + ".positions]");
+    lines.insert(lines.end(), learned.begin(), learned.end());
+  }
+  return lines;
 }
 
 }  // namespace perception

@@ -18,18 +18,21 @@ class ScanMaker {
   /// For sensors in use, after addGround().
   MeasurementScan measure(std::size_t sensor, SensorFrame& frame);
   /// Call when the world frame changes.
-  void forgetOcclusion() { occlusion_.reset(); }
+  void restart();
+  /// What the preparations of frames have learned: INI lines, section by section.
+  std::vector<std::string> learned() const;
 
  private:
-  struct Lidar {
+  struct Stages {
     std::unique_ptr<GroundEstimator> ground;  ///< null: this sensor does not give the ground plane
     std::unique_ptr<PointFilter> weather;     ///< null: trust 1 for every return
+    std::unique_ptr<FramePreparation> preparation;  ///< null: none
   };
 
   const PipelineSetup& setup_;
   RunTiming& timing_;
-  std::vector<Lidar> lidars_;  ///< index as in setup_.sensors
-  GroundPlane ground_;         ///< newest, ego frame
+  std::vector<Stages> stages_;  ///< index as in setup_.sensors
+  GroundPlane ground_;          ///< newest, ego frame
   std::shared_ptr<const OcclusionMap> occlusion_;
   Stamp occlusion_stamp_;
 };

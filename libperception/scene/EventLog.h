@@ -25,6 +25,7 @@ inline constexpr char kEgoJump[] = "ego_jump";            ///< pose rejected by 
 inline constexpr char kOutputSensor[] = "output_sensor";  ///< scenes at the scans of another one
 inline constexpr char kSensorLost[] = "sensor_lost";
 inline constexpr char kSensorBack[] = "sensor_back";
+inline constexpr char kLearned[] = "learned";               ///< of detectors, as INI lines
 inline constexpr char kSensorMissing[] = "sensor_missing";  ///< configured, not in the log
 inline constexpr char kSensorIgnored[] = "sensor_ignored";  ///< in the log, not configured
 inline constexpr char kLogDamaged[] = "log_damaged";    ///< torn, wrong check sum, unknown class

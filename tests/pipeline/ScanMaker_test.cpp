@@ -178,7 +178,7 @@ TEST(ScanMaker, AfterTheClockWentBackAnOldOcclusionDoesNotHold) {
 TEST(ScanMaker, AForgottenOcclusionDoesNotHold) {
   const Maker maker;
   maker.measure(kLidar, emptyAt(0));
-  maker.maker->forgetOcclusion();
+  maker.maker->restart();
   EXPECT_FALSE(maker.measure(kCamera, imageAt(0)).occlusion);
   EXPECT_TRUE(maker.measure(kLidar, emptyAt(0.1)).occlusion) << "its own";
 }
