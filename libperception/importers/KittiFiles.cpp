@@ -106,6 +106,14 @@ KittiLabel pointRcnnFrom(const TextRow& row) {
   return d;
 }
 
+/// A 3D detector's row in either layout, told by the number of columns.
+KittiLabel anyBoxFrom(const TextRow& row) {
+  row.expect(row.size() >= 15 && row.size() <= 18,
+             "15 (frame, type number, image box, score, h w l, x y z, rotation_y, alpha) or 17 "
+             "(KITTI's label with score; 18 with an id)");
+  return row.size() == 15 ? pointRcnnFrom(row) : labelFrom(row);
+}
+
 /// frame,x1,y1,x2,y2,score; the class is that of the file.
 KittiLabel rrcFrom(const TextRow& row, const std::string& class_name) {
   row.expect(row.size() == 6, "6");
@@ -123,6 +131,7 @@ const std::vector<KittiDetectionLayout>& kittiDetectionLayouts() {
   static const std::vector<KittiDetectionLayout> kLayouts = {
       {"pointrcnn", true, true}, {"pointgnn", true, false}, {"rrc", false, false},
       {"dpm", false, true},      {"kitti3d", true, true},   {"kitti2d", false, true},
+      {"boxes3d", true, true},
   };
   return kLayouts;
 }
@@ -206,11 +215,13 @@ std::vector<KittiLabel> readKittiDetections(const std::string& path, const std::
                                             const std::string& class_name) {
   std::vector<KittiLabel> detections;
   const bool commas = layout == "pointrcnn" || layout == "rrc";
-  forEachRow(path, commas ? kCommas : kSpaces, [&](const TextRow& row) {
-    KittiLabel d = layout == "pointrcnn" ? pointRcnnFrom(row)
-                   : layout == "rrc"     ? rrcFrom(row, class_name)
-                                         : labelFrom(row);
-    const bool needs_box = layout == "pointgnn" || layout == "kitti3d";
+  const bool any = layout == "boxes3d";
+  forEachRow(path, any || commas ? kCommas : kSpaces, [&](const TextRow& row) {
+    KittiLabel d = any                     ? anyBoxFrom(row)
+                   : layout == "pointrcnn" ? pointRcnnFrom(row)
+                   : layout == "rrc"       ? rrcFrom(row, class_name)
+                                           : labelFrom(row);
+    const bool needs_box = any || layout == "pointgnn" || layout == "kitti3d";
     if (needs_box && !d.box) row.failLine("a box whose size is not positive");
     if (class_name == "all" || d.type == class_name) detections.push_back(std::move(d));
   });

@@ -213,9 +213,11 @@ void KittiImporter::declare(CLI::App& cli) {
   cli.add_option("--images", p.images_dir,
                  "folder of left color images, FRAME.png or FRAME.jpg; copied beside the log "
                  "unless --embed-images");
-  cli.add_option("--detections", detections_,
-                 "NAME:CLASS=FILE, repeatable; NAME: pointrcnn, pointgnn, rrc, dpm, kitti3d, "
-                 "kitti2d (or one of them and -anything); CLASS: rows of this type, or all");
+  cli.add_option(
+      "--detections", detections_,
+      "NAME:CLASS=FILE, repeatable; NAME: boxes3d (AB3DMOT's or KITTI's columns), pointrcnn, "
+      "pointgnn, rrc, dpm, kitti3d, kitti2d (or one of them and -anything); CLASS: rows of this "
+      "type, or all");
 }
 
 void KittiImporter::prepare(ImportOptions& options) {

@@ -5,7 +5,7 @@
 # OUT/res (KITTI's format) and OUT/run. Half a minute for `dev` on four cores.
 #   tests/bench/kitti_detections.sh [-t SCORE] [-m 2d] [-c INI] [-d DETECTOR] [-o OUT] [dev | train | SEQUENCE ...] [perception-track options]
 #   -m   2d: image boxes at an overlap of .5, for cameras alone (--sensors C --set run.output_sensor=rrc) [3d]
-#   -d   boxes of cars of virconv, casa, pvcnn, second_iou or pointrcnn in data/kitti_tracking_detectors, as sensor kitti3d-boxes
+#   -d   boxes of cars of virconv, casa, pvcnn, second_iou or pointrcnn in data/kitti_tracking_detectors, as sensor boxes3d (ini/any-detector.ini)
 #   -t   the one score, log-odds that it exists and is a road user [0]
 # PERCEPTION_SHARED: folder with data/kitti_tracking and tools/mot_eval.py [../shared]; PERCEPTION_BIN: programs [build/bin].
 # Needs python3-numpy and python3-scipy. What decides is `dev`; the configuration was counted on `train`.
@@ -41,7 +41,7 @@ readonly detectors=${data}_detectors
 export bin data logs ini out detector detectors
 mkdir -p "$logs" "$out/res"
 if [[ -n $detector ]]; then  # the same configuration, of a sensor of that name
-  sed "s/pointrcnn/kitti3d-boxes/g; s|^include = |include = $PWD/ini/|" "$ini" >"$out/detector.ini"
+  sed "s/pointrcnn/boxes3d/g; s|^include = |include = $PWD/ini/|" "$ini" >"$out/detector.ini"
   ini=$out/detector.ini
 fi
 rm -f "$out"/res/*.txt "$out"/*.log
@@ -51,7 +51,7 @@ import() {
   [[ -f $logs/$n.rawlog ]] && return
   if [[ -n $detector ]]; then
     gunzip -c "$detectors/$detector/$n.txt.gz" >"$logs/$n.$detector.txt"
-    detections=(--detections "kitti3d-boxes:Car=$logs/$n.$detector.txt")
+    detections=(--detections "boxes3d:Car=$logs/$n.$detector.txt")
   else
     for class in Car Pedestrian Cyclist; do detections+=(--detections "pointrcnn:$class=$data/det_pointrcnn/$class/$n.txt"); done
   fi

@@ -247,6 +247,23 @@ TEST_F(ImportTest, ObservationAnglesNeedNotBeWrappedAndMinusTenIsNone) {
   EXPECT_FALSE(found[2].heading);
 }
 
+TEST_F(ImportTest, BoxesInSpaceAreReadInTwoLayouts) {
+  write("mine.txt",
+        "0 Car -1 -1 0 10 20 110 90 1.5 2 4 0 1.73 10 0 3.5\n"
+        "0,2,10,20,110,90,2.5,1.5,2,4,0,1.73,20,0,0\n");
+  ASSERT_EQ(import({"--detections", "boxes3d:Car=" + file("mine.txt")}), 0) << error_;
+  std::vector<double> scores;
+  for (const auto& o : readLog()) {
+    if (o->sensorLabel != "boxes3d") continue;
+    const auto frame = frameFromObservation(*o);
+    for (const auto& d : std::get<ObjectDetections>(frame->data).objects) scores.push_back(d.score);
+  }
+  EXPECT_EQ(scores, (std::vector<double>{3.5, 2.5}));
+  write("short.txt", "0 Car -1 -1\n");
+  EXPECT_NE(import({"--detections", "boxes3d:Car=" + file("short.txt")}), 0);
+  EXPECT_NE(error_.find("15 (frame"), std::string::npos) << error_;
+}
+
 TEST_F(ImportTest, ImagesAreEmbeddedOrStandBesideTheLog) {
   const cv::Mat gray(400, 600, CV_8UC3, cv::Scalar(10, 20, 30));
   fs::create_directories(folder_ / "images");

@@ -25,6 +25,7 @@ TEST(SiteInis, AllLoadWithoutAFault) {
                            "skynet_shapes.ini",
                            "skynet_lanes.ini",
                            "gnss_gap.ini",
+                           "any-detector.ini",
                            "kitti-detections.ini",
                            "kitti-detections-unlabelled.ini",
                            "av2.ini",
