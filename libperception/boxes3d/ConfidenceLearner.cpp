@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMostSamples = 2000;  // about a hundred frames of KITTI
 constexpr std::size_t kFewSamples = 400;    // up to which every frame is fitted
 constexpr int kFramesPerFit = 5, kSteps = 3;
-constexpr double kWeight = 1;    // of a sample: frames alike persist alike (assumed)
+constexpr double kWeight = 1;      // of a sample: frames alike persist alike (assumed)
 constexpr double kMostSpread = 4;  // standard deviations of scores: farther ones count as that
 
 // Share of the surest boxes of five networks that the next three frames have again.
