@@ -3,13 +3,14 @@
 #   ./setup.sh build   installs what is needed and builds the programs into build/bin
 #   ./setup.sh demo    the same, then tracks, evaluates and draws the simulated log rawlogs/demo.rawlog
 #   ./setup.sh bench   builds the benchmarks against other libraries and runs them one after the other
-#   ./setup.sh test    the same with the tests, and runs them: all of them, and the core ones once more with sanitizers;
+#   ./setup.sh sanitize   all tests with sanitizers, an hour
+#   ./setup.sh test    the same with the tests, and runs them: all of them, and some once more with sanitizers;
 #                      before them clang-format on all sources and clang-tidy on a few
 # As root or with sudo that asks nothing; a second run installs nothing. JOBS=N sets the number of compilers at once.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-readonly usage="usage: ./setup.sh build | demo | bench | test"
+readonly usage="usage: ./setup.sh build | demo | bench | test | sanitize"
 readonly exit_warnings=3 exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
 
 packages=(
@@ -190,14 +191,14 @@ checkFormat() {
   sources libperception gui-offscreen studies apps tests | xargs -n 40 -P "$(jobs)" clang-format-14 --dry-run -Werror
 }
 
-# Modules that are clean and cheap: 1 to 6 s a source, 2 CPU-minutes in all. Tests stay out, and so
+# Modules that are clean and cheap: 1 to 6 s a source, a CPU-minute in all. Tests stay out, and so
 # do loops that shuffle g++'s vectors. Clang cannot read g++'s precompiled headers: it gets compile
 # commands of its own, without.
 checkHabits() {
   say "Checking with clang-tidy"
   cmake --preset release -B build-tidy -DPERCEPTION_TESTS=OFF -DPERCEPTION_PRECOMPILE=OFF >"$scratch" ||
     { cat "$scratch" >&2; return 1; }
-  sources libperception/{core,config,simd,radar,boxes3d,vision,weather,capture} | grep -E '[.]cpp$' |
+  sources libperception/{core,config,simd,radar,boxes3d} | grep -E '[.]cpp$' |
     xargs -n 1 -P "$(jobs)" clang-tidy-14 --quiet -p build-tidy 2>&1 | { grep -vE '^[0-9]+ warnings? generated' || true; }
 }
 
@@ -210,16 +211,37 @@ tests() {
   build release ON
   checkHabits || failed=1
   runTests release build || failed=1
-  local checked=() module
-  for module in core config measurement filter sensors; do
-    if compgen -G "tests/$module/*_test.cpp" >/dev/null; then checked+=("$module"); fi
-  done
-  build asan ON --target "${checked[@]/%/_tests}"
-  runTests asan build-asan -R "^($(IFS='|'; echo "${checked[*]}"))\$" || failed=1
+  sanitized asan core config sensors || failed=1
+  closingLines
+  return "$failed"
+}
+
+# sanitized PRESET MODULE...: builds the tests of these modules with sanitizers and runs them
+sanitized() {
+  local preset=$1 modules=("${@:2}")
+  build "$preset" ON --target "${modules[@]/%/_tests}"
+  runTests "$preset" "build-$preset" -R "^($(IFS='|'; echo "${modules[*]}"))\$"
+}
+
+closingLines() {
   say "Skipped tests and why"
   printf '%s' "$skipped" | sort -u | sed '/^ *$/d'
   say "Closing lines"
   printf '%s' "$closing"
+}
+
+# Longer than a change should wait for: all modules with AddressSanitizer and UBSan, those with threads with ThreadSanitizer.
+sanitize() {
+  installPackages "${packages[@]}" "${test_packages[@]}"
+  makeCommaLocale
+  closing="" skipped=""
+  local failed=0 modules
+  mapfile -t modules < <(cd tests && for folder in */; do
+    if compgen -G "${folder}*_test.cpp" >/dev/null && [[ $folder != architecture/ && $folder != studies/ ]]; then echo "${folder%/}"; fi
+  done)
+  sanitized asan "${modules[@]}" || failed=1
+  sanitized tsan filter pipeline || failed=1
+  closingLines
   return "$failed"
 }
 
@@ -232,5 +254,6 @@ case $1 in
   demo) demo ;;
   bench) benches ;;
   test) tests ;;
+  sanitize) sanitize ;;
   *) echo "$usage" >&2; exit $exit_usage ;;
 esac
