@@ -73,6 +73,7 @@ inline const std::vector<Module>& modules() {
        {"scene", "measurement", "core"}},
       {"importers", "other recordings to rawlogs", {"sensors", "measurement", "core"}},
       {"simulation", "scenarios to rawlogs", {"sensors", "measurement", "config", "core"}},
+      {"packets", "decodes packets of real sensors", {"core"}},
       {"capture", "drivers for MRPT's recorder", {"simulation", "sensors", "config", "core"}},
       {"calibration",
        "fits parameters by their likelihood, learns what clusters look like",
