@@ -1,13 +1,12 @@
 #include "libperception/packets/Pcap.h"
 
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <tuple>
 
 #include "libperception/core/Error.h"
 #include "libperception/packets/Bytes.h"
+#include "libperception/packets/GzipFile.h"
 
 namespace perception {
 namespace {
@@ -166,10 +165,7 @@ PcapContents parsePcap(std::string_view bytes, const std::string& name) {
 }
 
 PcapContents readPcap(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw DataError(path + ": cannot be read", ExitCode::kNoInput);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
-  return parsePcap(bytes, path);
+  return parsePcap(readPossiblyGzipped(path), path);
 }
 
 }  // namespace perception

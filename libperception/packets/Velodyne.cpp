@@ -1,26 +1,25 @@
-#include "libperception/packets/Velodyne.h"
-
 #include <array>
 
 #include "libperception/core/Error.h"
+#include "libperception/packets/Beams.h"
 #include "libperception/packets/Bytes.h"
+#include "libperception/packets/Decoders.h"
 
 namespace perception {
 namespace {
 
-constexpr std::size_t kSize = 1206, kBlock = 100, kTail = 1200;
-constexpr int kBlocks = 12, kChannels = 32, kTurn = 36000;
+constexpr std::size_t kSize = 1206, kBlock = 100, kTail = 1200, kBlocks = 12, kChannels = 32;
+constexpr int kTurn = 36000;
 constexpr double kFiring = 55.296, kLaser = 2.304;  ///< [us]
 
 struct Model {
-  int lasers;
   double unit;  ///< [m]
   std::vector<BeamAngles> beams;
   std::vector<std::uint16_t> rings;
 };
 
 Model modelOf(double unit, const std::vector<BeamAngles>& beams) {
-  return {static_cast<int>(beams.size()), unit, beams, ringsOf(beams)};
+  return {unit, beams, ringsOf(beams)};
 }
 
 const Model& vlp16() {
@@ -66,7 +65,7 @@ const Model& modelIn(std::string_view payload) {
 /// Azimuth of each block [0.01 deg].
 std::array<int, kBlocks> azimuthsOf(std::string_view payload) {
   std::array<int, kBlocks> azimuths{};
-  for (int b = 0; b < kBlocks; ++b) {
+  for (std::size_t b = 0; b < kBlocks; ++b) {
     if (littleEndian(payload, b * kBlock, 2) != 0xEEFF) {
       throw DataError("Velodyne packet: byte " + std::to_string(b * kBlock) +
                       ": block flag FF EE expected");
@@ -80,41 +79,61 @@ std::array<int, kBlocks> azimuthsOf(std::string_view payload) {
   return azimuths;
 }
 
-}  // namespace
+/// The manual's: lasers of a VLP-32C fire in pairs.
+double timeInBlock(std::size_t j, bool two_firings) {
+  return two_firings ? kFiring * static_cast<double>(j / 16) + kLaser * static_cast<double>(j % 16)
+                     : kLaser * static_cast<double>(j / 2);
+}
 
-LidarPacket decodeVelodyne(std::string_view payload) {
-  if (payload.size() != kSize) {
-    throw DataError("Velodyne packet: " + std::to_string(payload.size()) + " bytes, expected 1206");
+class VelodyneDecoder final : public PacketDecoder {
+ public:
+  DecodedPacket decode(std::string_view payload) override {
+    if (payload.size() != kSize) {
+      throw DataError("Velodyne packet: " + std::to_string(payload.size()) +
+                      " bytes, expected 1206");
+    }
+    const Model& model = modelIn(payload);
+    const auto azimuths = azimuthsOf(payload);
+    const std::size_t echoes = littleEndian(payload, kTail + 4, 1) == 0x39 ? 2 : 1;
+    DecodedPacket packet;
+    packet.stamp_ns = static_cast<std::int64_t>(littleEndian(payload, kTail, 4)) * 1000;
+    packet.turn = static_cast<float>(azimuths[0]) / kTurn;
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      const std::size_t from = b + echoes < kBlocks ? b : b - echoes;  // the last: the step before
+      const int step = (azimuths[from + echoes] - azimuths[from] + kTurn) % kTurn;
+      addBlock(payload, model, b, echoes, azimuths[b], step, packet);
+    }
+    return packet;
   }
-  const Model& model = modelIn(payload);
-  const auto azimuths = azimuthsOf(payload);
-  const int echoes = littleEndian(payload, kTail + 4, 1) == 0x39 ? 2 : 1;
-  const int firings = kChannels / model.lasers;  // per block
-  LidarPacket packet;
-  packet.stamp_us = static_cast<std::uint32_t>(littleEndian(payload, kTail, 4));
-  for (int b = 0; b < kBlocks; ++b) {
-    const int from = b + echoes < kBlocks ? b : b - echoes;  // the last: the step before
-    const int step = (azimuths[from + echoes] - azimuths[from] + kTurn) % kTurn;
-    for (int j = 0; j < kChannels; ++j) {
+
+ private:
+  static void addBlock(std::string_view payload, const Model& model, std::size_t b,
+                       std::size_t echoes, int azimuth, int step, DecodedPacket& packet) {
+    const std::size_t lasers = model.beams.size(), echo = b % echoes;
+    const bool two = lasers < kChannels;
+    const double period = two ? 2 * kFiring : kFiring;
+    for (std::size_t j = 0; j < kChannels; ++j) {
       const std::size_t at = b * kBlock + 4 + 3 * j;
       const auto raw = littleEndian(payload, at, 2);
-      const int echo = b % echoes;
       if (raw == 0 || (echo > 0 && payload.substr(at, 3) == payload.substr(at - kBlock, 3))) {
         continue;
       }
-      const int laser = j % model.lasers;
-      const double after = firings == 2 ? kFiring * (j / 16) + kLaser * laser : kLaser * (j / 2);
-      const BeamAngles& beam = model.beams[laser];
-      const double azimuth = (azimuths[b] + step * after / (kFiring * firings)) / 100;
-      LidarReturn point = returnAt(raw * model.unit, azimuth + beam.azimuth, beam.elevation);
+      const BeamAngles& beam = model.beams[j % lasers];
+      const double after = timeInBlock(j, two);
+      const double angle = (azimuth + step * after / period) / 100;
+      LidarReturn point =
+          returnAt(static_cast<double>(raw) * model.unit, angle + beam.azimuth, beam.elevation);
       point.intensity = static_cast<std::uint8_t>(payload[at + 2]);
-      point.ring = model.rings[laser];
+      point.ring = model.rings[j % lasers];
       point.echo = static_cast<std::uint8_t>(echo);
-      point.time_us = static_cast<float>(kFiring * firings * (b / echoes) + after);
+      point.time_us = static_cast<float>(period * static_cast<double>(b / echoes) + after);
       packet.returns.push_back(point);
     }
   }
-  return packet;
-}
+};
+
+}  // namespace
+
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder() { return std::make_unique<VelodyneDecoder>(); }
 
 }  // namespace perception
