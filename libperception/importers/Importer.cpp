@@ -30,6 +30,7 @@ std::vector<ImporterRow>& importers() {
        &makeComma2k19Importer},
       {"udacity", "Udacity's radar and laser measurements of one object (simulated)", 0,
        &makeUdacityImporter},
+      {"packets", "a pcap of a lidar's or radar's UDP packets", 0, &makePacketsImporter},
       {"nmea", "a GPS receiver's NMEA 0183 log: the vehicle's own way, or an object's", 0,
        &makeNmeaImporter},
       {"gpx", "a GPX track: the vehicle's own way, or an object's", 0, &makeGpxImporter},

@@ -49,6 +49,7 @@ std::unique_ptr<Importer> makeComma2k19Importer();
 std::unique_ptr<Importer> makeUdacityImporter();
 std::unique_ptr<Importer> makeImagesImporter();
 std::unique_ptr<Importer> makeKittiObjectImporter();
+std::unique_ptr<Importer> makePacketsImporter();
 std::unique_ptr<Importer> makeNmeaImporter();
 std::unique_ptr<Importer> makeGpxImporter();
 

@@ -1,0 +1,31 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "libperception/packets/Decoder.h"
+
+namespace perception {
+
+/// Velodyne VLP-16 and VLP-32C (1206 bytes; the model is in the packet; azimuths interpolated by
+/// the time of each firing, without vertical offsets of the lasers). Of equal dual returns the
+/// first alone. Stamp: past the hour. No packet numbers are sent. Source: the manuals of the
+/// sensors.
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder();
+
+/// Hesai Pandar40P and XT32. `file`: beams of the unit, "Laser id,Elevation,Azimuth"; empty: the
+/// nominal ones. Stamp: of the packet, since 1970. Source: the manuals of the sensors.
+std::unique_ptr<PacketDecoder> makePandar40pDecoder(const std::string& file);
+std::unique_ptr<PacketDecoder> makeXt32Decoder(const std::string& file);
+
+/// Ouster, with its metadata file. Stamp: by the sensor's timestamp mode. See Ouster.h.
+std::unique_ptr<PacketDecoder> makeOusterDecoder(const std::string& file);
+
+/// Continental ARS548: detections and objects. Stamp: since 1970.
+std::unique_ptr<PacketDecoder> makeArs548Decoder();
+
+/// Continental SRR520: CAN FD messages, each as four bytes of identifier (big endian) and its data.
+/// Near and far detections become targets, and objects objects, with the message that closes the
+/// group. Stamp: since 1970.
+std::unique_ptr<PacketDecoder> makeSrr520Decoder();
+
+}  // namespace perception

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libperception/measurement/SensorFrame.h"
+#include "libperception/packets/Decoder.h"
+
+namespace perception {
+
+/// Turns one device's packets into its frames: a lidar's turn, a radar's list. A frame is stamped
+/// with the reception of its first packet (the devices' clocks need not be set), its returns with
+/// the time after that by the device's clock.
+class FrameAssembler {
+ public:
+  using Take = std::function<void(SensorFrame&&)>;
+
+  /// `file`: of calibration or metadata. Throws DataError, ConfigError for an unknown kind.
+  FrameAssembler(const DeviceKind& kind, const std::string& file, std::string label,
+                 const Pose3& T_ego_sensor, Take take);
+
+  /// Adds one packet, received at `received`. A packet that cannot be decoded is counted, gives a
+  /// warning and costs itself alone; one that came before is left out.
+  void add(std::string_view payload, Stamp received);
+  /// Gives the frame that has begun, which may be part of a turn.
+  void finish();
+
+  const PacketLedger& ledger() const { return counter_.ledger(); }
+  std::vector<std::string> lostRanges() const { return counter_.lostRanges(); }
+  std::uint64_t frames() const { return frames_; }
+  /// One for each damaged packet, with its number; the first 100.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  void warn(const std::string& what);
+  void addTurn(const DecodedPacket& packet, Stamp received);
+  void addTargets(const DecodedPacket& packet, Stamp received);
+
+  const DeviceKind& kind_;
+  std::unique_ptr<PacketDecoder> decoder_;
+  SequenceCounter counter_;
+  SensorFrame frame_;  ///< the next one, without its data
+  Take take_;
+  LidarCloud cloud_;
+  std::uint16_t rings_ = 0;
+  std::int64_t first_clock_ = 0;  ///< [ns] the device's at the frame's first packet
+  float turn_ = 0;                ///< of the packet before
+  bool begun_ = false;
+  std::uint64_t frames_ = 0;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace perception

@@ -1,0 +1,112 @@
+#include "libperception/packets/Decoder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+#include "libperception/core/Error.h"
+#include "tests/packets/Recorded.h"
+
+namespace perception {
+namespace {
+
+/// A packet of the device that its decoder takes, without any return.
+std::string packetOf(const std::string& kind) {
+  std::string bytes;
+  if (kind == "velodyne") {
+    bytes.assign(1206, '\1');
+    for (std::size_t b = 0; b < 12; ++b) bytes.replace(100 * b, 2, "\xFF\xEE");
+    bytes.replace(1204, 2, "\x39\x22");
+  } else if (kind == "pandar40p") {
+    bytes.assign(1262, '\1');
+    for (std::size_t b = 0; b < 10; ++b) bytes.replace(124 * b, 2, "\xFF\xEE");
+    bytes[1254] = '\x39';
+  } else if (kind == "xt32") {
+    bytes.assign(1080, '\1');
+    bytes.replace(0, 10, std::string("\xEE\xFF\6\1\0\0\x20\x08\1\4", 10));
+    bytes[1062] = '\x39';
+  } else if (kind == "ouster") {
+    bytes.assign(16 * (16 + 32 * 12 + 4), '\1');
+    for (std::size_t c = 0; c < 16; ++c) bytes.replace(c * 404 + 400, 4, "\xFF\xFF\xFF\xFF");
+  } else if (kind == "ars548") {
+    bytes.assign(35336, '\1');
+    bytes.replace(2, 6, std::string("\1\x50\0\0\x8A\0", 6));
+    bytes.replace(35309, 4, std::string("\0\0\1\0", 4));
+  } else {
+    bytes = std::string("\0\0\3\x84", 4) + std::string(32, '\1');
+  }
+  return bytes;
+}
+
+std::string fileOf(const DeviceKind& kind) {
+  if (!kind.needs_file) return "";
+  const std::string path = testing::TempDir() + "/ouster metadata.json";
+  std::string angles = "1";
+  for (int i = 1; i < 32; ++i) angles += "," + std::to_string(i);
+  std::ofstream(path) << "{\"beam_altitude_angles\":[" << angles << "],\"beam_azimuth_angles\":["
+                      << angles
+                      << "],\"data_format\":{\"pixels_per_column\":32,\"columns_per_frame\":1024,"
+                         "\"columns_per_packet\":16}}";
+  return path;
+}
+
+TEST(Decoder, MutatedPacketsAreDecodedOrRefused) {
+  std::mt19937 random(1);
+  for (const DeviceKind& kind : deviceKinds()) {
+    const auto decoder = kind.make(fileOf(kind));
+    const std::string sound = packetOf(kind.name);
+    ASSERT_NO_THROW(decoder->decode(sound)) << kind.name;
+    int refused = 0, decoded = 0;
+    for (int i = 0; i < 10000; ++i) {
+      std::string bytes = sound;
+      for (auto changes = random() % 10 + 1; changes-- > 0;)
+        bytes[random() % bytes.size()] = static_cast<char>(random());
+      if (random() % 4 == 0) bytes.resize(random() % (bytes.size() + 100));
+      if (random() % 2 == 0) bytes.resize(std::min<std::size_t>(bytes.size(), sound.size()));
+      try {
+        const DecodedPacket packet = decoder->decode(bytes);
+        EXPECT_LE(packet.returns.size() + packet.targets.size() + packet.objects.size(),
+                  bytes.size());
+        ++decoded;
+      } catch (const DataError&) {
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, 500) << kind.name;
+    EXPECT_GT(decoded, 500) << kind.name;
+  }
+}
+
+DecodedPacket numbered(std::uint64_t number) {
+  DecodedPacket packet;
+  packet.number = number;
+  packet.numbers = 65536;
+  return packet;
+}
+
+TEST(SequenceCounter, ListsWhatIsMissing) {
+  SequenceCounter counter;
+  for (const std::uint64_t n : {65534, 65535, 2, 3, 6}) EXPECT_TRUE(counter.count(numbered(n)));
+  EXPECT_EQ(counter.ledger().lost, 4U);
+  EXPECT_TRUE(counter.count(numbered(4)));   // late
+  EXPECT_FALSE(counter.count(numbered(4)));  // again
+  EXPECT_TRUE(counter.count(numbered(0)));
+  EXPECT_EQ(counter.ledger().lost, 2U);
+  EXPECT_EQ(counter.ledger().late, 2U);
+  EXPECT_EQ(counter.ledger().repeated, 1U);
+  EXPECT_EQ(counter.ledger().received, 8U);
+  EXPECT_EQ(counter.lostRanges(), (std::vector<std::string>{"131073", "131077"}));
+}
+
+TEST(DeviceKinds, AnUnknownOneIsToldWhichThereAre) {
+  try {
+    deviceKind("vlp64");
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("xt32"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace perception
