@@ -37,6 +37,8 @@ packages=(
   libtinyxml2-dev        # GPX files
   liblzf-dev             # compressed PCD files
   zlib1g-dev             # rawlogs are gzip files; check sums
+  libzstd-dev            # rawlogs of newer MRPT; MCAP
+  liblz4-dev libbz2-dev  # MCAP, ROS bags
   libssl-dev             # SHA-256 of inputs
   libsqlite3-dev         # database of a batch
   liboctomap-dev         # safety grid

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -12,6 +11,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/core/PartialFile.h"
+#include "libperception/sensors/Inflater.h"
 
 namespace perception {
 
@@ -19,17 +19,8 @@ namespace {
 
 constexpr std::size_t kRawBytes = 1U << 18;
 constexpr std::size_t kReadyBytes = 1U << 20;
-constexpr int kGzipWindow =
-    15 + 16;  ///< zlib: largest window, gzip container with check of CRC and length
 
 }  // namespace
-
-struct CRawlogInput::Inflater {
-  z_stream z{};
-  bool in_member = true;  ///< between the header and the trailer of a member
-  Inflater() { inflateInit2(&z, kGzipWindow); }
-  ~Inflater() { inflateEnd(&z); }
-};
 
 CRawlogInput::CRawlogInput(const std::string& path) : path_(path) {
   struct stat info {};
@@ -45,13 +36,8 @@ CRawlogInput::CRawlogInput(const std::string& path) : path_(path) {
     throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);
   file_bytes_ = static_cast<std::uint64_t>(info.st_size);
   raw_.reserve(kRawBytes);
-  if (readFile() && raw_.size() >= 2 && raw_[0] == 0x1f && raw_[1] == 0x8b) {
-    compressed_ = true;
-    members_ = 1;
-    inflater_ = std::make_unique<Inflater>();
-    inflater_->z.next_in = raw_.data();
-    inflater_->z.avail_in = static_cast<uInt>(raw_.size());
-  }
+  if (readFile()) inflater_ = inflaterFor(raw_.data(), raw_.size());
+  if (inflater_) members_ = 1;
 }
 
 CRawlogInput::~CRawlogInput() {
@@ -86,42 +72,43 @@ bool CRawlogInput::fillPlain() {
   return true;
 }
 
+/// The next block of the file, where the one before is used up; false at the end.
+bool CRawlogInput::haveRaw() {
+  if (raw_begin_ < raw_.size()) return true;
+  raw_begin_ = 0;
+  if (readFile()) return true;
+  stop(in_member_ ? State::kTorn : State::kEnd,
+       fmt::format("the file ends inside its {} container", inflater_->name()));
+  return false;
+}
+
 bool CRawlogInput::fillInflated() {
-  z_stream& z = inflater_->z;
   const std::size_t before = ready_.size();
   ready_.resize(before + kReadyBytes);
-  z.next_out = ready_.data() + before;
-  z.avail_out = kReadyBytes;
+  Inflater::Out out{ready_.data() + before, kReadyBytes};
   // Loop: an input block may inflate to nothing (headers, trailers).
-  while (z.avail_out == kReadyBytes && state_ == State::kGood) {
-    if (z.avail_in == 0) {
-      if (!readFile()) {
-        stop(inflater_->in_member ? State::kTorn : State::kEnd,
-             "the file ends inside its gzip container");
+  while (out.size == kReadyBytes && state_ == State::kGood && haveRaw()) {
+    Inflater::In in{raw_.data() + raw_begin_, raw_.size() - raw_begin_};
+    if (!in_member_) {  // only another member may follow
+      if (!inflater_->begins(in.data[0])) {
+        stop(State::kDamaged,
+             fmt::format("other data follow the end of the {} container", inflater_->name()));
         break;
       }
-      z.next_in = raw_.data();
-      z.avail_in = static_cast<uInt>(raw_.size());
-    }
-    if (!inflater_->in_member) {  // only another member may follow
-      if (z.next_in[0] != 0x1f) {
-        stop(State::kDamaged, "other data follow the end of the gzip container");
-        break;
-      }
-      inflateReset2(&z, kGzipWindow);
-      inflater_->in_member = true;
+      inflater_->reset();
+      in_member_ = true;
       ++members_;
     }
-    const int result = inflate(&z, Z_NO_FLUSH);
-    if (result == Z_STREAM_END) {
-      inflater_->in_member = false;
-    } else if (result != Z_OK && result != Z_BUF_ERROR) {
+    const Inflater::Step step = inflater_->step(in, out);
+    raw_begin_ = raw_.size() - in.size;
+    if (step == Inflater::Step::kMemberEnd) in_member_ = false;
+    if (step == Inflater::Step::kBad) {
       stop(State::kDamaged,
-           fmt::format("bad gzip data near byte {} of the file ({})", file_read_ - z.avail_in,
-                       z.msg != nullptr ? z.msg : "zlib error"));
+           fmt::format("bad {} data near byte {} of the file ({})", inflater_->name(),
+                       file_read_ - in.size, inflater_->fault()));
     }
   }
-  ready_.resize(before + kReadyBytes - z.avail_out);
+  ready_.resize(before + kReadyBytes - out.size);
   return ready_.size() > before;
 }
 
@@ -129,8 +116,10 @@ bool CRawlogInput::fill() {
   if (state_ != State::kGood) return false;
   ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(ready_begin_));
   ready_begin_ = 0;
-  return compressed_ ? fillInflated() : fillPlain();
+  return inflater_ ? fillInflated() : fillPlain();
 }
+
+std::string CRawlogInput::container() const { return inflater_ ? inflater_->name() : ""; }
 
 bool CRawlogInput::atEnd() { return ready_begin_ == ready_.size() && !fill(); }
 

@@ -8,16 +8,18 @@
 
 namespace perception {
 
-/// Reads a rawlog file, plain or gzip (several members allowed). Unlike MRPT's CFileGZInputStream
-/// it checks length and CRC of every gzip member, never returns fewer bytes than requested, and
-/// reports why it ended.
+class Inflater;
+
+/// Reads a rawlog file, plain, gzip or zstd (several members allowed; MRPT writes zstd since
+/// 2.15.7). Unlike MRPT's CFileGZInputStream it checks length and CRC of every gzip member, never
+/// returns fewer bytes than requested, and reports why it ended.
 class CRawlogInput final : public mrpt::serialization::CArchive {
  public:
   enum class State {
     kGood,
     kEnd,      ///< all bytes were read and the container is complete
-    kTorn,     ///< the file ends inside the gzip container or inside the requested bytes
-    kDamaged,  ///< invalid gzip data, wrong checksum, or other data behind the end
+    kTorn,     ///< the file ends inside its container or inside the requested bytes
+    kDamaged,  ///< invalid compressed data, wrong checksum, or other data behind the end
     kFailed    ///< read error of the operating system
   };
 
@@ -36,8 +38,9 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   std::uint64_t position() const { return position_; }        ///< [bytes] consumed, after inflating
   std::uint64_t fileBytes() const { return file_bytes_; }     ///< [bytes] size of the file
   std::uint64_t fileBytesRead() const { return file_read_; }  ///< [bytes] read so far
-  bool compressed() const { return compressed_; }
-  std::uint64_t members() const { return members_; }  ///< of the gzip container, begun so far
+  bool compressed() const { return inflater_ != nullptr; }
+  std::uint64_t members() const { return members_; }  ///< of the container, begun so far
+  std::string container() const;                      ///< "gzip", "zstd"; empty: plain
   std::string getArchiveDescription() const override { return path_; }
 
  protected:
@@ -46,20 +49,21 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   std::size_t write(const void*, std::size_t) override;
 
  private:
-  struct Inflater;
   bool fill();  ///< appends bytes to ready_; false at the end
   bool fillPlain();
   bool fillInflated();
+  bool haveRaw();
   bool readFile();  ///< reads the next part of the file into raw_
   void stop(State state, const std::string& reason);
 
   std::string path_;
   int file_ = -1;
   std::uint64_t file_bytes_ = 0, file_read_ = 0, position_ = 0;
-  bool compressed_ = false;
   std::uint64_t members_ = 0;
-  std::unique_ptr<Inflater> inflater_;
-  std::vector<unsigned char> raw_;    ///< as read from the file
+  std::unique_ptr<Inflater> inflater_;  ///< null: plain
+  bool in_member_ = true;               ///< between the header and the trailer of a member
+  std::vector<unsigned char> raw_;  ///< as read from the file; [raw_begin_, end) is not used yet
+  std::size_t raw_begin_ = 0;
   std::vector<unsigned char> ready_;  ///< inflated; [ready_begin_, end) is not consumed yet
   std::size_t ready_begin_ = 0;
   State state_ = State::kGood;

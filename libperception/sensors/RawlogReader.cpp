@@ -120,12 +120,15 @@ RawlogReader::RawlogReader(const std::string& path) : path_(path) {
     throw DataError(fmt::format("{}: {}", path, input_->reason()));
   }
   if (begin.empty() && input_->state() == CRawlogInput::State::kEnd) {
-    throw DataError(fmt::format("{}: a gzip container without a single entry in it", path));
+    throw DataError(
+        fmt::format("{}: a {} container without a single entry in it", path, input_->container()));
   }
   bool complete = false;
   if (!begin.empty() && !parseHeader(begin, complete)) {
-    throw DataError(fmt::format("{}: not a rawlog but {}{}", path, describe(begin),
-                                input_->compressed() ? " inside a gzip container" : ""));
+    const std::string container = input_->container();
+    throw DataError(
+        fmt::format("{}: not a rawlog but {}{}", path, describe(begin),
+                    container.empty() ? "" : fmt::format(" inside a {} container", container)));
   }
 }
 
