@@ -29,7 +29,8 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
       ego_(setup_.ego, events),
       queue_({setup_.run.reorder_window, 70}),
       watch_(setup_.sensors, setup_.run.sensor_timeout, events),
-      scan_maker_(setup_, timing),
+      weather_(events),
+      scan_maker_(setup_, timing, weather_),
       outputs_(setup_.run, setup_.sensors) {
   if (setup_.grid.enabled) safety_.emplace(setup_.grid, setup_.stop);
 }

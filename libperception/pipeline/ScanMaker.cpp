@@ -10,8 +10,8 @@ constexpr double kOcclusionMapAge = 0.2;
 
 }  // namespace
 
-ScanMaker::ScanMaker(const PipelineSetup& setup, RunTiming& timing)
-    : setup_(setup), timing_(timing) {
+ScanMaker::ScanMaker(const PipelineSetup& setup, RunTiming& timing, WeatherWatch& weather)
+    : setup_(setup), timing_(timing), weather_(weather) {
   for (const auto& sensor : setup.sensors) {
     Lidar lidar;
     if (sensor.gives_ground) {
@@ -31,11 +31,20 @@ void ScanMaker::addGround(std::size_t sensor, SensorFrame& frame) {
   frame.ground = ground_;
 }
 
-MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
-  if (lidars_[sensor].weather) {
+void ScanMaker::weighReturns(std::size_t sensor, SensorFrame& frame) {
+  const auto& filter = lidars_[sensor].weather;
+  if (!filter || !std::holds_alternative<LidarCloud>(frame.data)) return;
+  TrustStats trust;
+  {
     const auto scope = timing_.stage("weather");
-    lidars_[sensor].weather->apply(frame);
+    trust = filter->apply(frame);
   }
+  const auto scope = timing_.stage("weather_state");
+  weather_.add(frame.sensor, frame.stamp, filter->census(frame), trust);
+}
+
+MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
+  weighReturns(sensor, frame);
   const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
   MeasurementScan scan = setup_.sensors[sensor].front_end->extract(frame);
   if (scan.occlusion) {
