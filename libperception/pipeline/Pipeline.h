@@ -12,6 +12,7 @@
 #include "libperception/pipeline/PipelineSetup.h"
 #include "libperception/pipeline/SafetyMonitor.h"
 #include "libperception/pipeline/ScanMaker.h"
+#include "libperception/pipeline/SensorHealth.h"
 #include "libperception/pipeline/SensorWatch.h"
 #include "libperception/pipeline/WeatherWatch.h"
 #include "libperception/scene/EventLog.h"
@@ -83,6 +84,7 @@ class Pipeline {
   FrameQueue queue_;
   FrameNumbers frame_numbers_;
   SensorWatch watch_;
+  SensorHealth health_;
   WeatherWatch weather_;
   ScanMaker scan_maker_;
   std::optional<SafetyMonitor> safety_;  ///< empty: [grid] enabled = false

@@ -31,6 +31,7 @@ class WeatherWatch {
            const TrustStats& trust);
   /// Mean of the lidars with a scan in the last second.
   std::array<double, kWeatherTypes> probabilities() const;
+  double fog() const { return fog_; }  ///< probability of fog at the last scan
   /// Rows since the last call.
   std::vector<WeatherRow> take();
 
@@ -42,6 +43,7 @@ class WeatherWatch {
   EventLog& events_;
   std::map<std::string, Lidar> lidars_;
   Stamp now_;
+  double fog_ = 0;
   WeatherType reported_ = WeatherType::kClear;
   std::vector<WeatherRow> rows_;
 };
