@@ -9,6 +9,7 @@
 #include "studies/ResolutionStudy.h"
 #include "studies/SafetyStudy.h"
 #include "studies/TrustStudy.h"
+#include "studies/WeatherStudy.h"
 
 namespace perception {
 
@@ -30,6 +31,7 @@ class StudyApp : public App {
   ResolutionOptions resolution;      ///< resolution: all of its options
   PaperOptions paper;                ///< paper: all of its options
   TrustOptions trust;                ///< trust: all of its options
+  WeatherOptions weather;            ///< weather: all of its options
   SafetyOptions safety;              ///< safety: all of its options
   double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
 

@@ -64,9 +64,11 @@ LogPass passLog(const std::string& log, PipelineSetup setup, double seconds,
     pipeline.add(*observation);
     while (pipeline.next()) {
     }
+    for (const WeatherRow& row : pipeline.takeWeather()) observer.onWeather(row);
   }
   while (pipeline.next(true)) {
   }
+  for (const WeatherRow& row : pipeline.takeWeather()) observer.onWeather(row);
   pass.first_stamp = pipeline.firstStamp();
   return pass;
 }

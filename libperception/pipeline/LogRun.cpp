@@ -37,6 +37,14 @@ void LogRun::put(const Scene& scene) {
   if (!files_.export_file.empty()) writeExport(scene);
 }
 
+// Only of runs whose returns are weighed.
+void LogRun::putWeather() {
+  for (const WeatherRow& row : pipeline_.takeWeather()) {
+    if (!weather_) weather_.emplace(folder_.pathFor("weather.csv"), *pipeline_.firstStamp());
+    weather_->write(row);
+  }
+}
+
 void LogRun::writeExport(const Scene& scene) {
   if (!kitti_ && facts_.camera) {
     kitti_.emplace(files_.export_file, setup_.model.classes, *facts_.camera,
@@ -53,6 +61,7 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
       put(*scene);
       keep(*scene);
     }
+    putWeather();
   };
   {
     Progress progress(files_.log, reader_.fileBytes());
@@ -125,6 +134,7 @@ void LogRun::commit(const std::string& effective_ini, int threads) {
   fillRecord();
   writer_->close();
   if (recorder_) recorder_->close();
+  if (weather_) weather_->close();
   events_.write(folder_.pathFor("events.jsonl"), record.first_stamp);
   writeFile(folder_.pathFor("effective.ini"), effective_ini);
   timing_.write(folder_.pathFor("timing.json"), logSeconds(), threads);

@@ -29,7 +29,9 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
       ego_(setup_.ego, events),
       queue_({setup_.run.reorder_window, 70}),
       watch_(setup_.sensors, setup_.run.sensor_timeout, events),
-      scan_maker_(setup_, timing),
+      health_(setup_.sensors, events),
+      weather_(events),
+      scan_maker_(setup_, timing, weather_),
       outputs_(setup_.run, setup_.sensors) {
   if (setup_.grid.enabled) safety_.emplace(setup_.grid, setup_.stop);
 }
@@ -191,6 +193,7 @@ bool Pipeline::isOutput(Stamp stamp) {
 void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
   scan_maker_.addGround(sensor, frame);
   if (setup_.sensors[sensor].active) {
+    health_.addFrame(sensor, frame, weather_.fog());
     MeasurementScan scan = scan_maker_.measure(sensor, frame);
     watch_.addFrame(sensor, frame.stamp, &scan);
     if (observer_) observer_->onFrame(frame), observer_->onScan(scan);
@@ -233,6 +236,7 @@ void Pipeline::makeScenes(std::optional<Stamp> now) {
   while (const auto instant = outputs_.takeDue(now)) {
     ready_.push_back(scenes_.make(tracker_.mapHypothesis(), instant->ego, instant->frame));
     if (instant->path.known) ready_.back().path = safety_->advise(instant->path, ready_.back());
+    health_.addScene(ready_.back());
     if (observer_) observer_->onOutput(ready_.back());
   }
 }
@@ -240,6 +244,7 @@ void Pipeline::makeScenes(std::optional<Stamp> now) {
 void Pipeline::restartTracks() {
   makeScenes(std::nullopt);
   tracker_.reset();
+  health_.restart();
   if (observer_) observer_->onRestart();
   scan_maker_.restart();
   if (safety_) safety_->restart();

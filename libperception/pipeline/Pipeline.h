@@ -12,7 +12,9 @@
 #include "libperception/pipeline/PipelineSetup.h"
 #include "libperception/pipeline/SafetyMonitor.h"
 #include "libperception/pipeline/ScanMaker.h"
+#include "libperception/pipeline/SensorHealth.h"
 #include "libperception/pipeline/SensorWatch.h"
+#include "libperception/pipeline/WeatherWatch.h"
 #include "libperception/scene/EventLog.h"
 #include "libperception/scene/RunTiming.h"
 
@@ -27,6 +29,8 @@ class PipelineObserver {
   virtual void onScan(const MeasurementScan& scan) { (void)scan; }  ///< goes into the filter
   /// A scene of this instant is due.
   virtual void onScene(const EgoState& ego, std::int64_t frame) { (void)ego, (void)frame; }
+  /// A lidar scan's weather; from passLog() alone.
+  virtual void onWeather(const WeatherRow& row) { (void)row; }
   /// The scene as it goes out; with [run] output_lag later than its instant.
   virtual void onOutput(const Scene& scene) { (void)scene; }
   virtual void onRestart() {}  ///< all tracks are deleted
@@ -53,6 +57,8 @@ class Pipeline {
   std::optional<Stamp> firstStamp() const { return first_stamp_; }  ///< of the log; t = 0
   Stamp lastStamp() const { return last_stamp_; }
   std::vector<SensorRecord> sensorRecords() const { return watch_.records(); }
+  /// What lidar scans showed of the weather since the last call.
+  std::vector<WeatherRow> takeWeather() { return weather_.take(); }
   std::uint64_t objects() const { return scenes_.objectsSoFar(); }
 
  private:
@@ -79,6 +85,8 @@ class Pipeline {
   FrameQueue queue_;
   FrameNumbers frame_numbers_;
   SensorWatch watch_;
+  SensorHealth health_;
+  WeatherWatch weather_;
   ScanMaker scan_maker_;
   std::optional<SafetyMonitor> safety_;  ///< empty: [grid] enabled = false
   OutputSchedule outputs_;

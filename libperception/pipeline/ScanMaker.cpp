@@ -10,8 +10,8 @@ constexpr double kOcclusionMapAge = 0.2;
 
 }  // namespace
 
-ScanMaker::ScanMaker(const PipelineSetup& setup, RunTiming& timing)
-    : setup_(setup), timing_(timing) {
+ScanMaker::ScanMaker(const PipelineSetup& setup, RunTiming& timing, WeatherWatch& weather)
+    : setup_(setup), timing_(timing), weather_(weather) {
   for (const auto& sensor : setup.sensors) {
     Stages stages;
     if (sensor.gives_ground) {
@@ -32,11 +32,20 @@ void ScanMaker::addGround(std::size_t sensor, SensorFrame& frame) {
   frame.ground = ground_;
 }
 
-MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
-  if (stages_[sensor].weather) {
+void ScanMaker::weighReturns(std::size_t sensor, SensorFrame& frame) {
+  const auto& filter = stages_[sensor].weather;
+  if (!filter || !std::holds_alternative<LidarCloud>(frame.data)) return;
+  TrustStats trust;
+  {
     const auto scope = timing_.stage("weather");
-    stages_[sensor].weather->apply(frame);
+    trust = filter->apply(frame);
   }
+  const auto scope = timing_.stage("weather_state");
+  weather_.add(frame.sensor, frame.stamp, filter->census(frame), trust);
+}
+
+MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
+  weighReturns(sensor, frame);
   const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
   if (const auto& preparation = stages_[sensor].preparation) preparation->apply(frame);
   MeasurementScan scan = setup_.sensors[sensor].front_end->extract(frame);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "libperception/pipeline/PipelineSetup.h"
+#include "libperception/pipeline/WeatherWatch.h"
 #include "libperception/scene/RunTiming.h"
 
 namespace perception {
@@ -11,7 +12,7 @@ namespace perception {
 /// Passes ground plane and occlusion map of one sensor to the others.
 class ScanMaker {
  public:
-  ScanMaker(const PipelineSetup& setup, RunTiming& timing);
+  ScanMaker(const PipelineSetup& setup, RunTiming& timing, WeatherWatch& weather);
 
   /// Updates the ground plane if the sensor gives it, and sets the newest one in the frame.
   void addGround(std::size_t sensor, SensorFrame& frame);
@@ -23,6 +24,7 @@ class ScanMaker {
   std::vector<std::string> learned() const;
 
  private:
+  void weighReturns(std::size_t sensor, SensorFrame& frame);
   struct Stages {
     std::unique_ptr<GroundEstimator> ground;  ///< null: this sensor does not give the ground plane
     std::unique_ptr<PointFilter> weather;     ///< null: trust 1 for every return
@@ -31,6 +33,7 @@ class ScanMaker {
 
   const PipelineSetup& setup_;
   RunTiming& timing_;
+  WeatherWatch& weather_;
   std::vector<Stages> stages_;  ///< index as in setup_.sensors
   GroundPlane ground_;          ///< newest, ego frame
   std::shared_ptr<const OcclusionMap> occlusion_;

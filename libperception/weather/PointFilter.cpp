@@ -23,6 +23,8 @@ class WithMultipath final : public PointFilter {
     return stats;
   }
 
+  AirCensus census(const SensorFrame& frame) const override { return filter_->census(frame); }
+
  private:
   std::unique_ptr<PointFilter> filter_;
   MultipathParams params_;

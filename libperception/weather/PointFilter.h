@@ -6,6 +6,7 @@
 
 #include "libperception/config/Config.h"
 #include "libperception/measurement/SensorFrame.h"
+#include "libperception/weather/AirCensus.h"
 #include "libperception/weather/Multipath.h"
 #include "libperception/weather/TrustParams.h"
 
@@ -26,6 +27,11 @@ class PointFilter {
   virtual ~PointFilter() = default;
   /// Uses `frame.ground`. No effect on a frame without a point cloud.
   virtual TrustStats apply(SensorFrame& frame) = 0;
+  /// Of the last scan filtered, with its frame; empty where the filter does not count.
+  virtual AirCensus census(const SensorFrame& frame) const {
+    (void)frame;
+    return {};
+  }
 };
 
 /// [weather], [weather.trust] and [weather.multipath].

@@ -259,6 +259,11 @@ TrustStats PointTrust::apply(SensorFrame& frame) {
   return stats;
 }
 
+AirCensus PointTrust::census(const SensorFrame& frame) const {
+  const auto* cloud = std::get_if<LidarCloud>(&frame.data);
+  return cloud != nullptr ? AirCensus::of(frame, *cloud, suspects_) : AirCensus();
+}
+
 std::vector<SuspectReturn> PointTrust::suspects() const {
   std::vector<SuspectReturn> all;
   all.reserve(suspects_.count);

@@ -33,6 +33,7 @@ class PointTrust final : public PointFilter {
   explicit PointTrust(const TrustParams& params);
 
   TrustStats apply(SensorFrame& frame) override;
+  AirCensus census(const SensorFrame& frame) const override;
 
   /// Of the last scan, for studies and fits.
   std::vector<SuspectReturn> suspects() const;

@@ -45,14 +45,16 @@ struct Maker {
                                   none = std::make_shared<NotingFrontEnd>(false);
   PipelineSetup setup;
   RunTiming timing;
+  EventLog events;
+  WeatherWatch weather{events};
   std::unique_ptr<ScanMaker> maker;
 
-  explicit Maker(const std::string& weather = "off") {
-    setup.weather.filter = weather;
+  explicit Maker(const std::string& filter = "off") {
+    setup.weather.filter = filter;
     add("LIDAR", "lidar", lidar, true, true);
     add("CAMERA", "boxes", camera, true, false);
     add("ROAD", "lidar", none, false, true);
-    maker = std::make_unique<ScanMaker>(setup, timing);
+    maker = std::make_unique<ScanMaker>(setup, timing, weather);
   }
   void add(const char* label, const char* kind, std::shared_ptr<const FrontEnd> front_end,
            bool active, bool gives_ground) {
@@ -201,7 +203,7 @@ TEST(ScanMaker, TimesItsStages) {
   std::string names;
   for (const auto& stage : maker.timing.stages())
     names += stage.name + ":" + std::to_string(stage.calls) + " ";
-  EXPECT_EQ(names, "ground:1 weather:1 lidar:1 boxes:1 ");
+  EXPECT_EQ(names, "ground:1 weather:1 weather_state:1 lidar:1 boxes:1 ");
 }
 
 }  // namespace

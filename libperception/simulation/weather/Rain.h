@@ -4,10 +4,9 @@
 namespace perception {
 
 /// Falling rain (method.md 9.1, 9.8, 9.9). Lidar: extinction by the drops' sizes, false returns by
-/// the measured law [linnhoff2022]. The law of drops in a beam's cone is not used: it has no
-/// calibrated detector, the measured law has one. Radar: attenuation. Camera: contrast, edges,
-/// haze.
-class Rain final : public SimulatedWeather {
+/// the measured law [linnhoff2022]; RainDrops draws single drops instead. Radar: attenuation.
+/// Camera: contrast, edges, haze.
+class Rain : public SimulatedWeather {
  public:
   explicit Rain(double mm_h);
 

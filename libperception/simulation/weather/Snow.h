@@ -12,7 +12,7 @@ struct LidarParams;
 /// measured law [linnhoff2022]; some of those within 5 m are large flakes that neighboring beams
 /// see together, as bright as objects. Camera: contrast, lost edges, haze. Radar: dry snow
 /// attenuates too little to matter at these ranges.
-class Snow final : public SimulatedWeather {
+class Snow : public SimulatedWeather {
  public:
   Snow(double mm_h, std::uint64_t seed);
 

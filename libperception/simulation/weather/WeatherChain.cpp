@@ -8,7 +8,9 @@
 #include "libperception/simulation/weather/Fouling.h"
 #include "libperception/simulation/weather/Plume.h"
 #include "libperception/simulation/weather/Rain.h"
+#include "libperception/simulation/weather/RainDrops.h"
 #include "libperception/simulation/weather/Snow.h"
+#include "libperception/simulation/weather/SnowFlakes.h"
 #include "libperception/simulation/weather/Spray.h"
 #include "libperception/simulation/weather/TargetSurfaces.h"
 #include "libperception/simulation/weather/WetGround.h"
@@ -20,6 +22,19 @@ template <class What>
 void pass(const std::vector<std::unique_ptr<SimulatedWeather>>& phenomena,
           const SensorParams& sensor, What& what, Rng& rng) {
   for (const auto& phenomenon : phenomena) phenomenon->alter(sensor, what, rng);
+}
+
+void addPrecipitation(const SimulatedWeatherParams& p, std::uint64_t seed,
+                      std::vector<std::unique_ptr<SimulatedWeather>>& phenomena) {
+  const bool particles = p.precipitation == SimulatedWeatherParams::Precipitation::kParticles;
+  if (p.rain_mm_h > 0 && particles)
+    phenomena.push_back(std::make_unique<RainDrops>(p.rain_mm_h));
+  else if (p.rain_mm_h > 0)
+    phenomena.push_back(std::make_unique<Rain>(p.rain_mm_h));
+  if (p.snow_mm_h > 0 && particles)
+    phenomena.push_back(std::make_unique<SnowFlakes>(p.snow_mm_h, seed));
+  else if (p.snow_mm_h > 0)
+    phenomena.push_back(std::make_unique<Snow>(p.snow_mm_h, seed));
 }
 
 }  // namespace
@@ -64,8 +79,7 @@ std::unique_ptr<SimulatedWeather> makeWeather(const SimulatedWeatherParams& p,
   if (p.fouling > 0 || p.radome_db > 0)
     add(std::make_unique<Fouling>(p.fouling, p.radome_db, seed));
   if (p.wet() || p.snow_cover > 0) add(std::make_unique<TargetSurfaces>(p.wet(), p.snow_cover));
-  if (p.rain_mm_h > 0) add(std::make_unique<Rain>(p.rain_mm_h));
-  if (p.snow_mm_h > 0) add(std::make_unique<Snow>(p.snow_mm_h, seed));
+  addPrecipitation(p, seed, phenomena);
   if (p.fog_mor > 0) add(std::make_unique<Fog>(p.fog_mor));
   if (p.water_film_mm > 0)
     add(std::make_unique<WetGround>(p.water_film_mm * (1 - p.snow_cover),

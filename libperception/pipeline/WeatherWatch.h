@@ -1,0 +1,64 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/core/Time.h"
+#include "libperception/scene/EventLog.h"
+#include "libperception/scene/OutputFile.h"
+#include "libperception/weather/PointFilter.h"
+#include "libperception/weather/WeatherState.h"
+
+namespace perception {
+
+/// What a lidar scan showed of the weather, and what was done about it.
+struct WeatherRow {
+  Stamp stamp;
+  std::string sensor;
+  WeatherState state;
+  TrustStats trust;
+};
+
+/// The weather by all lidars whose returns are weighed ([weather] filter = trust): estimates it
+/// with each and reports changes of its type. Tracks do not depend on it.
+class WeatherWatch {
+ public:
+  explicit WeatherWatch(EventLog& events) : events_(events) {}
+
+  /// A scan, in order of time.
+  void add(const std::string& sensor, Stamp stamp, const AirCensus& census,
+           const TrustStats& trust);
+  /// Mean of the lidars with a scan in the last second.
+  std::array<double, kWeatherTypes> probabilities() const;
+  double fog() const { return fog_; }  ///< probability of fog at the last scan
+  /// Rows since the last call.
+  std::vector<WeatherRow> take();
+
+ private:
+  struct Lidar {
+    WeatherEstimator estimator;
+    Stamp stamp;
+  };
+  EventLog& events_;
+  std::map<std::string, Lidar> lidars_;
+  Stamp now_;
+  double fog_ = 0;
+  WeatherType reported_ = WeatherType::kClear;
+  std::vector<WeatherRow> rows_;
+};
+
+/// weather.csv: a line per lidar scan (libperception/README.md).
+class WeatherFile {
+ public:
+  /// Throws OutputError.
+  WeatherFile(const std::string& path, Stamp first_stamp);
+  void write(const WeatherRow& row);
+  void close() { file_.close(); }
+
+ private:
+  OutputFile file_;
+  Stamp first_stamp_;
+};
+
+}  // namespace perception

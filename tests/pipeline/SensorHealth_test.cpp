@@ -1,0 +1,151 @@
+#include "libperception/pipeline/SensorHealth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libperception/core/Random.h"
+
+namespace perception {
+namespace {
+
+constexpr Stamp kStart{1'577'836'800'000'000'000};
+enum Place : std::size_t { kLidar, kCamera, kRadar };
+
+PipelineSetup::Sensor sensor(const char* label, Modality modality) {
+  PipelineSetup::Sensor s;
+  s.label = label;
+  s.params.modality = modality;
+  s.active = true;
+  return s;
+}
+
+/// A lidar 1.8 m above a flat road; `dirty` of the patches of 2 deg on its window return nothing.
+LidarCloud road(double dirty) {
+  LidarCloud cloud;
+  for (int step = 0; step < 1800; ++step) {
+    for (int beam = 0; beam < 40; ++beam) {
+      const double a = step * 0.2 - 179.9, e = -24.3 + 0.42 * beam;
+      Rng patch({1, static_cast<std::uint64_t>((a + 180) / 2),
+                 static_cast<std::uint32_t>((e + 90) / 2), 0});
+      if (patch.uniform() < dirty) continue;
+      const double range = 1.8 / std::sin(radians(-e));
+      const Vector3 p =
+          range * Vector3(std::cos(radians(e)) * std::cos(radians(a)),
+                          std::cos(radians(e)) * std::sin(radians(a)), std::sin(radians(e)));
+      cloud.x.push_back(static_cast<float>(p.x())), cloud.y.push_back(static_cast<float>(p.y()));
+      cloud.z.push_back(static_cast<float>(p.z()));
+    }
+  }
+  return cloud;
+}
+
+/// A lidar, a camera and a radar, all forward, watched at 10 Hz.
+struct Watched {
+  std::vector<PipelineSetup::Sensor> sensors = {sensor("LIDAR", Modality::kLidar),
+                                                sensor("CAMERA", Modality::kCamera),
+                                                sensor("RADAR", Modality::kRadar)};
+  EventLog events;
+  SensorHealth health{sensors, events};
+
+  template <class Data>
+  void see(std::size_t place, double t, Data data, double fog = 0) {
+    SensorFrame frame;
+    frame.stamp = kStart + t;
+    frame.sensor = sensors[place].label;
+    // Cameras look along z of their frame, x to the right.
+    if (place == kCamera) frame.T_ego_sensor.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    frame.data = std::move(data);
+    health.addFrame(place, frame, fog);
+  }
+  /// A scene with a car at `x` [m] ahead, seen by the lidar just now.
+  void showCar(double t, double x, double speed) {
+    Scene scene;
+    scene.stamp = kStart + t;
+    SceneObject car;
+    car.classified = true, car.existence = 0.99;
+    car.position = {x, 0, 0}, car.velocity = {speed, 0};
+    car.last_hit[Modality::kLidar] = scene.stamp;
+    scene.objects.push_back(car);
+    health.addScene(scene);
+  }
+  std::size_t count(const char* kind) const {
+    const auto found = events.counts().find(kind);
+    return found == events.counts().end() ? 0 : found->second;
+  }
+  std::string text() const { return events.text(kStart); }
+};
+
+TEST(SensorHealth, ALidarThatHardlyReturnsAnythingIsBlindWithinTwoSeconds) {
+  Watched w;
+  for (int k = 0; k < 10; ++k) w.see(kLidar, 0.1 * k, road(0));
+  EXPECT_EQ(w.count(event_kind::kSensorBlind), 0U);
+  for (int k = 10; k <= 30; ++k) w.see(kLidar, 0.1 * k, LidarCloud());
+  EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
+  EXPECT_NE(w.text().find("\"remaining\":\"CR\""), std::string::npos);
+  EXPECT_EQ(w.events.warnings(), 1U);
+  w.see(kLidar, 3.1, road(0));
+  EXPECT_EQ(w.count(event_kind::kSensorBack), 1U);
+}
+
+TEST(SensorHealth, ACameraThatMissesWhatTheLidarSeesIsBlind) {
+  Watched w;
+  for (int k = 0; k <= 20; ++k) {
+    w.see(kCamera, 0.1 * k, ObjectDetections());
+    w.showCar(0.1 * k, 15, 0);
+  }
+  EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
+}
+
+TEST(SensorHealth, NoSensorIsBlindToWhatIsOutOfItsView) {
+  Watched w;
+  for (int k = 0; k <= 50; ++k) {
+    w.see(kCamera, 0.1 * k, ObjectDetections());
+    w.see(kRadar, 0.1 * k, RadarReturns());
+    w.showCar(0.1 * k, 60, 10);
+  }
+  EXPECT_EQ(w.count(event_kind::kSensorBlind), 0U);
+}
+
+TEST(SensorHealth, ARadarIsJudgedByWhatMoves) {
+  for (const double speed : {0.0, 10.0}) {
+    Watched w;
+    for (int k = 0; k <= 20; ++k) {
+      w.see(kRadar, 0.1 * k, RadarReturns());
+      w.showCar(0.1 * k, 15, speed);
+    }
+    EXPECT_EQ(w.count(event_kind::kSensorBlind), speed > 0 ? 1U : 0U);
+  }
+}
+
+TEST(SensorHealth, DirtOnAWindowIsNamedWithinTwoSeconds) {
+  Watched w;
+  for (int k = 0; k <= 20; ++k) w.see(kLidar, 0.1 * k, road(0.2));
+  EXPECT_EQ(w.count(event_kind::kSensorFouled), 1U);
+}
+
+TEST(SensorHealth, ACleanWindowAndDirtInFogAreNotNamed) {
+  Watched clean, fog;
+  for (int k = 0; k <= 30; ++k) clean.see(kLidar, 0.1 * k, road(0));
+  for (int k = 0; k <= 30; ++k) fog.see(kLidar, 0.1 * k, road(0.2), 0.9);
+  EXPECT_TRUE(clean.events.counts().empty());
+  EXPECT_TRUE(fog.events.counts().empty());
+}
+
+TEST(WindowDirt, TheShareIsThatOfThePatches) {
+  for (const double dirty : {0.0, 0.1, 0.3}) {
+    WindowDirt window;
+    for (int k = 0; k <= 12; ++k) window.add(road(dirty), kStart + 0.1 * k);
+    ASSERT_TRUE(window.share().has_value());
+    EXPECT_NEAR(*window.share(), dirty, 0.06);
+  }
+}
+
+TEST(WindowDirt, LessThanASecondSaysNothing) {
+  WindowDirt window;
+  for (int k = 0; k <= 8; ++k) window.add(road(0), kStart + 0.1 * k);
+  EXPECT_FALSE(window.share().has_value());
+}
+
+}  // namespace
+}  // namespace perception
