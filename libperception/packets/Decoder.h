@@ -94,6 +94,7 @@ class SequenceCounter {
 
  private:
   PacketLedger ledger_;
+  std::uint64_t numbers_ = 1;
   std::optional<std::uint64_t> last_;                          ///< unwrapped
   std::vector<std::pair<std::uint64_t, std::uint64_t>> gaps_;  ///< first and last lost number
 };

@@ -27,7 +27,7 @@ const Profile& profileOf(const std::string& name) {
   for (const Profile& profile : kProfiles) {
     if (name == profile.name) return profile;
   }
-  throw DataError("udp_profile_lidar: unknown profile " + name);
+  throw DataError("Ouster: udp_profile_lidar: unknown profile " + name);
 }
 
 /// CRC-64 of the packet without its last eight bytes (reflected polynomial).
@@ -177,7 +177,12 @@ std::vector<OusterColumn> ousterColumns(std::string_view payload, const OusterMe
 }
 
 std::unique_ptr<PacketDecoder> makeOusterDecoder(const std::string& file) {
-  return std::make_unique<OusterDecoder>(readOusterMetadata(file));
+  try {
+    return std::make_unique<OusterDecoder>(readOusterMetadata(file));
+  } catch (const DataError& error) {
+    if (std::string(error.what()).rfind(file, 0) == 0) throw;
+    throw DataError(file + ": " + error.what());
+  }
 }
 
 }  // namespace perception

@@ -11,6 +11,7 @@ constexpr std::size_t kListed = 1000;
 bool SequenceCounter::count(const DecodedPacket& packet) {
   ++ledger_.received;
   if (!packet.number || packet.numbers == 0) return true;
+  numbers_ = packet.numbers;
   const std::uint64_t window = std::min(kWindow, packet.numbers / 4);
   if (!last_) {
     last_ = *packet.number + packet.numbers;  // so that what was sent before it has a number, too
@@ -46,8 +47,8 @@ std::vector<std::string> SequenceCounter::lostRanges() const {
   std::vector<std::string> ranges;
   for (const auto& [from, to] : gaps_) {
     if (ranges.size() == kListed) break;
-    ranges.push_back(from == to ? std::to_string(from)
-                                : std::to_string(from) + "-" + std::to_string(to));
+    const std::string first = std::to_string(from % numbers_);
+    ranges.push_back(from == to ? first : first + "-" + std::to_string(to % numbers_));
   }
   return ranges;
 }

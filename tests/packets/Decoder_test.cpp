@@ -96,7 +96,7 @@ TEST(SequenceCounter, ListsWhatIsMissing) {
   EXPECT_EQ(counter.ledger().late, 2U);
   EXPECT_EQ(counter.ledger().repeated, 1U);
   EXPECT_EQ(counter.ledger().received, 8U);
-  EXPECT_EQ(counter.lostRanges(), (std::vector<std::string>{"131073", "131077"}));
+  EXPECT_EQ(counter.lostRanges(), (std::vector<std::string>{"1", "5"}));
 }
 
 TEST(DeviceKinds, AnUnknownOneIsToldWhichThereAre) {

@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+
+#include "libperception/app/App.h"
+
+namespace perception {
+
+/// perception-grabber: records the sensors of an INI of rawlog-grabber, every packet accounted for.
+class GrabberApp : public App {
+ public:
+  double duration = 0;  ///< --duration [s]; 0: until SIGINT or SIGTERM
+
+  std::string name() const override { return "perception-grabber"; }
+  std::string description() const override;
+  void declare(CLI::App& cli) override;
+  void run() override;
+};
+
+}  // namespace perception

@@ -1,0 +1,157 @@
+// Packets of a simulated device through driver and recorder, to the packet.
+#include "libperception/capture/CPacketSensor.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "libperception/capture/Grabber.h"
+#include "libperception/core/Error.h"
+#include "libperception/sensors/CObservationLidarScan.h"
+#include "libperception/sensors/RawlogReader.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kPackets = 2000;
+
+void put(std::string& bytes, std::size_t at, std::uint64_t value, int count) {
+  for (int i = 0; i < count; ++i)
+    bytes[at + static_cast<std::size_t>(i)] = static_cast<char>(value >> 8 * i);
+}
+
+/// A packet of an XT32 that turns ten times in 2000 packets; each channel sees a wall at 10 m.
+std::string xt32Packet(int number) {
+  std::string bytes(1080, '\0');
+  bytes.replace(0, 12, std::string("\xEE\xFF\6\1\0\0\x20\x08\1\4\1\1", 12));
+  for (std::size_t b = 0; b < 8; ++b) {
+    put(bytes, 12 + 130 * b,
+        static_cast<std::uint64_t>(number * 180 + 22 * static_cast<int>(b)) % 36000, 2);
+    for (std::size_t c = 0; c < 32; ++c) put(bytes, 12 + 130 * b + 2 + 4 * c, 2500, 2);
+  }
+  bytes[1062] = '\x37';
+  bytes[1065] = 100, bytes[1066] = 1, bytes[1067] = 1;
+  put(bytes, 1071, static_cast<std::uint64_t>(number) * 500, 4);
+  put(bytes, 1076, static_cast<std::uint64_t>(number), 4);
+  return bytes;
+}
+
+/// A capture of the packets, 0.5 ms apart.
+void writePcap(const std::string& path) {
+  std::ofstream file(path, std::ios::binary);
+  std::string header(24, '\0');
+  put(header, 0, 0xA1B2C3D4, 4), put(header, 4, 2, 2), put(header, 6, 4, 2), put(header, 20, 1, 4);
+  file << header;
+  for (int i = 0; i < kPackets; ++i) {
+    const std::string payload = xt32Packet(i);
+    std::string record(16 + 42, '\0');
+    put(record, 0, 1000, 4), put(record, 4, static_cast<std::uint64_t>(i) * 500, 4);
+    put(record, 8, 42 + payload.size(), 4), put(record, 12, 42 + payload.size(), 4);
+    const std::size_t ip = 20 + 8 + payload.size(), udp = 8 + payload.size();
+    record[28] = 8, record[30] = 0x45, record[39] = 17;
+    record[32] = static_cast<char>(ip >> 8), record[33] = static_cast<char>(ip);
+    record[52] = 9, record[53] = 0x40;
+    record[54] = static_cast<char>(udp >> 8), record[55] = static_cast<char>(udp);
+    file << record << payload;
+  }
+}
+
+class Recorded : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(dir_);
+    fs::create_directories(dir_);
+    writePcap((dir_ / "xt32.pcap").string());
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  std::string ini(const std::string& global, const std::string& more) const {
+    const std::string path = (dir_ / "capture.ini").string();
+    std::ofstream(path) << "[global]\n"
+                        << global << "\n[XT32]\ndriver = CPacketSensor\n"
+                        << "process_rate = 50\nsensorLabel = XT32\ndevice = xt32\nport = 42371\n"
+                        << "replay = " << (dir_ / "xt32.pcap").string() << "\n"
+                        << more;
+    return path;
+  }
+  std::string out() const { return (dir_ / "out").string(); }
+
+  /// The lines of capture.jsonl that have `key`.
+  std::vector<nlohmann::json> notes(const char* key) const {
+    std::vector<nlohmann::json> lines;
+    std::ifstream file(out() + "/capture.jsonl");
+    for (std::string line; std::getline(file, line);) {
+      const auto json = nlohmann::json::parse(line);
+      if (json.contains(key)) lines.push_back(json);
+    }
+    return lines;
+  }
+
+  fs::path dir_ = fs::path(testing::TempDir()) / "packet sensor test";
+};
+
+TEST_F(Recorded, WhatWasSentAndWhatWasLostIsKnownToThePacket) {
+  Grabber grabber(ini("chunk_seconds = 1",
+                      "replay_loss = 0.02\nreplay_repeat = 0.02\n"
+                      "replay_swap = 0.02\nseed = 3\n"),
+                  out());
+  int polls = 0;
+  grabber.run([&] { return ++polls > 130; }, [] {});
+  const auto sensors = notes("sensor");
+  ASSERT_EQ(sensors.size(), 1U);
+  const auto& sent = sensors[0]["simulator"];
+  const auto& got = sensors[0]["packets"];
+  EXPECT_EQ(sent["made"], kPackets);
+  EXPECT_GT(sent["dropped"], 10);
+  EXPECT_EQ(got["received"], sent["sent"]);
+  EXPECT_EQ(got["lost"], sent["dropped"]);
+  EXPECT_EQ(got["repeated"], sent["repeated"]);
+  EXPECT_GT(got["late"], 10);
+  EXPECT_EQ(got["damaged"], 0);
+  std::uint64_t points = 0, entries = 0;
+  for (const auto& chunk : notes("chunk")) {
+    RawlogReader reader(out() + "/" + chunk["chunk"].get<std::string>());
+    while (const auto observation = reader.next())
+      points += dynamic_cast<const CObservationLidarScan&>(*observation).cloud.size();
+    EXPECT_EQ(reader.end(), RawlogReader::End::kClean);
+    EXPECT_EQ(reader.entries(), chunk["entries"]);
+    entries += reader.entries();
+  }
+  EXPECT_EQ(entries, sensors[0]["written"]);
+  const auto whole = static_cast<std::uint64_t>(kPackets) - sent["dropped"].get<std::uint64_t>();
+  EXPECT_EQ(points, whole * 256);  // every return of every packet, the tail included
+}
+
+TEST_F(Recorded, AFullDiskEndsTheCaptureWithWholeChunks) {
+  Grabber grabber(ini("chunk_seconds = 60\nfree_mb = 1e12", ""), out());
+  try {
+    grabber.run([] { return false; }, [] {});
+    FAIL();
+  } catch (const OutputError& error) {
+    EXPECT_EQ(error.code(), ExitCode::kIoError);
+  }
+  ASSERT_EQ(notes("chunk").size(), 1U);
+  RawlogReader reader(out() + "/capture_0001.rawlog");
+  while (reader.next()) {
+  }
+  EXPECT_EQ(reader.end(), RawlogReader::End::kClean);
+  EXPECT_GT(reader.entries(), 0U);
+}
+
+TEST_F(Recorded, FaultsOfTheIniAreNamed) {
+  EXPECT_THROW(Grabber(ini("", "").substr(1), out()), DataError);
+  const std::string wrong = (dir_ / "wrong.ini").string();
+  std::ofstream(wrong) << "[global]\n[A]\ndriver = CNoSuchSensor\n";
+  try {
+    Grabber grabber(wrong, out());
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("[A] driver CNoSuchSensor"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace perception
