@@ -13,9 +13,9 @@ constexpr std::size_t kObject = 187, kFirstDetection = 101, kFirstObject = 51;
 
 [[noreturn]] void refuse(const std::string& what) { throw DataError("ARS548 message: " + what); }
 
-RadarTarget detectionAt(std::string_view bytes, std::size_t at) {
+PacketTarget detectionAt(std::string_view bytes, std::size_t at) {
   const auto f = [&](std::size_t offset) { return bigEndianFloat(bytes, at + offset); };
-  RadarTarget target;
+  PacketTarget target;
   target.azimuth = f(0);
   target.elevation = f(9);
   target.has_elevation = true;
@@ -41,7 +41,7 @@ RadarObject objectAt(std::string_view bytes, std::size_t at) {
 }
 
 /// Whether range, azimuth, elevation and rate are valid and finite.
-bool usable(std::string_view bytes, std::size_t at, const RadarTarget& target) {
+bool usable(std::string_view bytes, std::size_t at, const PacketTarget& target) {
   constexpr int kValues = 0x55;  // the other bits are of the standard deviations
   return (static_cast<std::uint8_t>(bytes[at + 8]) & kValues) == 0 && std::isfinite(target.range) &&
          target.range >= 0 && std::isfinite(target.azimuth) && std::isfinite(target.elevation) &&
@@ -56,7 +56,7 @@ void addDetections(std::string_view payload, DecodedPacket& packet) {
   std::size_t left_out = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t at = kFirstDetection + kDetection * k;
-    const RadarTarget target = detectionAt(payload, at);
+    const PacketTarget target = detectionAt(payload, at);
     if (usable(payload, at, target)) {
       packet.targets.push_back(target);
     } else {

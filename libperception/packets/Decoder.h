@@ -18,7 +18,7 @@ struct LidarReturn {
 };
 
 /// One detection of a radar, polar in the sensor's frame.
-struct RadarTarget {
+struct PacketTarget {
   float range = 0;       ///< [m]
   float azimuth = 0;     ///< [rad], left positive
   float elevation = 0;   ///< [rad], up positive; see has_elevation
@@ -46,7 +46,7 @@ struct DecodedPacket {
   float turn = 0;          ///< lidar: share of its turn, [0, 1), at the packet's beginning
   bool ends_scan = false;  ///< radar: its list of targets is whole with this packet
   std::vector<LidarReturn> returns;
-  std::vector<RadarTarget> targets;
+  std::vector<PacketTarget> targets;
   std::vector<RadarObject> objects;
   std::vector<std::string> warnings;  ///< faults that cost nothing of this packet
 };

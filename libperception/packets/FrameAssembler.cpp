@@ -68,7 +68,7 @@ void FrameAssembler::addTargets(const DecodedPacket& packet, Stamp received) {
   if (!packet.ends_scan) return;
   RadarReturns scan;
   scan.max_range = kind_.max_range;
-  for (const RadarTarget& target : packet.targets) {
+  for (const PacketTarget& target : packet.targets) {
     RadarReturn r;
     r.range = target.range;
     r.bearing = target.azimuth;

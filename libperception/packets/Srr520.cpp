@@ -48,9 +48,9 @@ class BitReader {
   std::size_t bit_;
 };
 
-RadarTarget targetAt(std::string_view bytes, std::size_t bit) {
+PacketTarget targetAt(std::string_view bytes, std::size_t bit) {
   BitReader reader(bytes, bit);
-  RadarTarget target;
+  PacketTarget target;
   target.range = static_cast<float>(reader.next(12, .024420024));
   target.azimuth = static_cast<float>(reader.next(9, .006159986, -M_PI / 2));
   target.range_rate = static_cast<float>(reader.next(11, .014662757, -15));

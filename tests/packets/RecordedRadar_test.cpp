@@ -30,7 +30,7 @@ std::vector<std::map<std::string, double>> readEntries(const std::string& path,
   return entries;
 }
 
-void expectTargets(const std::vector<RadarTarget>& targets, const std::string& truth) {
+void expectTargets(const std::vector<PacketTarget>& targets, const std::string& truth) {
   const auto entries = readEntries(recordedFolder() + truth, "detections");
   ASSERT_EQ(targets.size(), entries.size());
   for (std::size_t i = 0; i < targets.size(); ++i) {
