@@ -129,7 +129,7 @@ demo() {
   run perception-snapshot "${drawn[@]}" --time 8 --view all -o "$dir/scene.png" --scene "$dir/scene.3Dscene"
   run perception-snapshot "${drawn[@]}" --contact 9 --view top --no-measurements -o "$dir/contact.png"
   run perception-snapshot "${drawn[@]}" --video "$dir/scene.mp4" --view both
-  run perception-report -r "$dir"
+  run perception-report -r "$dir" -i "$log"
   demoSummary "$dir"
 }
 

@@ -6,6 +6,7 @@
 
 #include "gui-offscreen/HtmlText.h"
 #include "gui-offscreen/ObjectLives.h"
+#include "gui-offscreen/PageBundle.h"
 #include "gui-offscreen/ReportStyle.h"
 #include "gui-offscreen/ReportTimeline.h"
 #include "libperception/scene/ClassColors.h"
@@ -44,17 +45,19 @@ class Page {
   std::string html() {
     out_ = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width\">\n"
-        "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n",
-        escaped(title()), kReportStyle);
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n",
+        escaped(title()), kReportStyle, pageStyle());
     head();
-    video();
+    if (!content_.data.empty()) out_ += "<div id=\"viewer\" data-run=\"run\"></div>\n";
     timeline();
+    video();
     pictures();
     evaluation();
     objects();
+    out_ += "<div id=\"events\"></div>\n";
     provenance();
-    out_ += fmt::format("<script>{}</script>\n</body>\n</html>\n", kReportScript);
+    out_ += fmt::format("{}<script>{}</script>\n</body>\n</html>\n", content_.data, pageScript());
     return std::move(out_);
   }
 
@@ -164,7 +167,7 @@ void Page::timeline() {
       "<h2>Who was there, and when</h2>\n<p>One row for each road user that was tracked, from "
       "when it was first seen until it was lost; color: its class at that time, pale while "
       "that was less than 95 % sure.";
-  if (!content_.video.empty()) out_ += " A click goes to that time of the film.";
+  out_ += " A click goes to that time.";
   if (left_out_ > 0)
     out_ += fmt::format(" The {} seen longest; {} more are not shown.", kMostRows, left_out_);
   out_ += "</p>\n<p class=\"legend\">";
@@ -176,7 +179,7 @@ void Page::timeline() {
   }
   out_ += fmt::format("<span><i style=\"background:{}\"></i>something that stands</span>",
                       hexOf(colorOfClass("static-other", 0)));
-  out_ += "</p>\n" + timelineChart(run_, lives_, end_);
+  out_ += "</p>\n<div class=\"wide\">" + timelineChart(run_, lives_, end_) + "</div>\n";
 }
 
 void Page::pictures() {
@@ -230,9 +233,9 @@ void Page::objects() {
       "</tr>\n";
   for (const ObjectLife& life : lives_) {
     out_ += fmt::format(
-        "<tr><td>{}</td><td style=\"color:{}\">{}</td><td>{:.2f}</td><td>{:.1f} s</td>"
-        "<td>{:.1f} s</td><td>{:.0f} km/h</td><td>{:.1f} m</td></tr>\n",
-        life.id, hexOf(colorOfClass(nameOfClass(run_, life.last_class), life.last_class)),
+        "<tr data-id=\"{}\"><td>{}</td><td style=\"color:{}\">{}</td><td>{:.2f}</td>"
+        "<td>{:.1f} s</td><td>{:.1f} s</td><td>{:.0f} km/h</td><td>{:.1f} m</td></tr>\n",
+        life.id, life.id, hexOf(colorOfClass(nameOfClass(run_, life.last_class), life.last_class)),
         spaced(nameOfClass(run_, life.last_class)), life.probability, life.from(), life.to(),
         life.top_speed * 3.6, life.nearest);
   }
@@ -249,6 +252,7 @@ void Page::provenance() {
   row("configuration", fmt::format("{}, seed {}, sensors {}, {} particles, {} association",
                                    r.config, r.seed, r.sensors_used, r.particles, r.association));
   row("program", r.program + " " + r.version);
+  row("run", r.hash);
   for (const SensorRecord& s : r.sensors) {
     row("sensor " + escaped(s.label), fmt::format("{} frames, {} measurements, {} points dropped",
                                                   s.frames, s.measurements, s.dropped_points));

@@ -22,6 +22,7 @@ struct ReportContent {
   nlohmann::json evaluation;    ///< report.json of perception-evaluate, or null
   std::vector<Figure> video;    ///< at most one
   std::vector<Figure> pictures, plots;
+  std::string data;  ///< RunData::html("run")
 };
 
 /// A self-contained HTML page: inputs of a run, tracked objects over time, comparison with the

@@ -17,7 +17,7 @@ h3 { font-size: 16px; margin: 24px 0 4px; }
 figure { margin: 0; }
 figure img, figure video { width: 100%; border: 1px solid #ddd; }
 figcaption { color: #555; font-size: 14px; }
-table { border-collapse: collapse; }
+table { border-collapse: collapse; display: block; overflow-x: auto; }
 td, th { border-bottom: 1px solid #ddd; padding: 3px 12px 3px 0; text-align: left; }
 th { font-weight: 600; }
 svg { width: 100%; cursor: pointer; }
@@ -27,28 +27,5 @@ svg .grid { stroke: #ddd; }
 .legend span { margin-right: 18px; }
 .legend i { display: inline-block; width: 14px; height: 12px; margin-right: 5px; }
 )css";
-
-/// Synchronizes video and timeline: a line marks the current time, a click seeks.
-inline constexpr const char* kReportScript = R"js(
-(function () {
-  var film = document.getElementById('film'), chart = document.getElementById('timeline');
-  if (!film || !chart) return;
-  var left = +chart.dataset.left, width = +chart.dataset.width, end = +chart.dataset.end;
-  var start = +chart.dataset.start, now = document.getElementById('now');
-  function show() {
-    var x = left + width * (film.currentTime + start) / end;
-    now.setAttribute('x1', x);
-    now.setAttribute('x2', x);
-    requestAnimationFrame(show);
-  }
-  show();
-  chart.addEventListener('click', function (event) {
-    var box = chart.getBoundingClientRect();
-    var x = (event.clientX - box.left) / box.width * chart.viewBox.baseVal.width;
-    film.currentTime = Math.max(0, (x - left) / width * end - start);
-    film.scrollIntoView({block: 'nearest'});
-  });
-})();
-)js";
 
 }  // namespace perception

@@ -38,13 +38,15 @@ std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& 
   double y = kAxis;
   for (const ObjectLife& life : lives) {
     const std::string name = spaced(nameOfClass(run, life.last_class));
-    out += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\">{} {}</text>\n",
-                       kLabelWidth - 8, y + 12, life.id, name);
+    out += fmt::format(
+        "<text data-id=\"{2}\" x=\"{0:.0f}\" y=\"{1:.1f}\" text-anchor=\"end\">{2} {3}</text>\n",
+        kLabelWidth - 8, y + 12, life.id, name);
     for (const ObjectLife::Stretch& s : life.stretches) {
       out += fmt::format(
-          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" fill=\"{}\" "
+          "<rect data-id=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" "
+          "fill=\"{}\" "
           "fill-opacity=\"{}\"><title>{}: {}{}, {:.1f} to {:.1f} s</title></rect>\n",
-          x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kRow - 4,
+          life.id, x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kRow - 4,
           hexOf(colorOfClass(nameOfClass(run, s.class_id), s.class_id)), s.sure ? "1" : "0.4",
           life.id, s.sure ? "" : "probably ", spaced(nameOfClass(run, s.class_id)), s.from, s.to);
     }

@@ -6,8 +6,15 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <optional>
+#include <sstream>
 
+#include "gui-offscreen/RunData.h"
+#include "libperception/pictures/RunScenes.h"
+#include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/sensors/registerClasses.h"
 
 namespace perception {
 namespace {
@@ -54,6 +61,21 @@ nlohmann::json jsonOf(const fs::path& path) {
   }
 }
 
+/// JSON lines as an array.
+nlohmann::json linesOf(const fs::path& path) {
+  nlohmann::json all = nlohmann::json::array();
+  std::istringstream lines(contentsOf(path));
+  for (std::string line; std::getline(lines, line);) {
+    try {
+      all.push_back(nlohmann::json::parse(line));
+    } catch (const nlohmann::json::exception& error) {
+      throw DataError(
+          fmt::format("{}: line {}: no JSON: {}", path.string(), all.size() + 1, error.what()));
+    }
+  }
+  return all;
+}
+
 template <std::size_t N>
 std::vector<ReportContent::Figure> figuresIn(const fs::path& dir, const FigureRow (&rows)[N]) {
   std::vector<ReportContent::Figure> figures;
@@ -74,6 +96,11 @@ void ReportApp::declare(CLI::App& cli) {
   cli.add_option("-r,--run", run_dir, "folder of a run of perception-track")
       ->required()
       ->type_name("DIR");
+  addInputOption(cli, false);
+  addConfigOptions(cli, false);
+  cli.add_option("-t,--truth", truth_file,
+                 "truth of the log; default: LOG.truth.csv beside the log of -i")
+      ->type_name("FILE");
   cli.add_option("--evaluation", evaluation_dir,
                  "folder of perception-evaluate; default: evaluation/ of the run")
       ->type_name("DIR");
@@ -90,10 +117,61 @@ void ReportApp::run() {
   if (fs::exists(timing)) content.real_time_factor = jsonOf(timing).value("real_time_factor", 0.0);
   addFigures(content);
   addEvaluation(content);
+  content.data = dataOf(tracked, content.record);
   const std::string path = output.empty() ? (fs::path(run_dir) / "index.html").string() : output;
   out_page = htmlPage(content);
   writeFile(path, out_page);
   say(1, path);
+}
+
+std::string ReportApp::dataOf(const TrackedRun& run, const RunRecord& record) {
+  RunData data(run, record);
+  const fs::path dir(run_dir);
+  if (fs::exists(dir / "events.jsonl")) data.setEvents(linesOf(dir / "events.jsonl"));
+  if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the run");
+  std::optional<GroundTruth> truth;
+  std::string truth_path = truth_file;
+  if (truth_path.empty() && !inputs.empty()) {
+    const fs::path beside = fs::path(inputs[0]).replace_extension(".truth.csv");
+    if (fs::exists(beside)) truth_path = beside.string();
+  }
+  if (!truth_path.empty()) truth = readGroundTruth(truth_path);
+  std::unique_ptr<SnapshotSensors> sensors;
+  if (!inputs.empty()) {
+    const std::string log = fs::path(inputs[0]).filename().string();
+    if (log != fs::path(record.input).filename().string()) {
+      throw DataError(
+          fmt::format("{}: {} is a run of another log: {}", inputs[0], run_dir, record.input));
+    }
+    registerPerceptionClasses();
+    sensors = std::make_unique<SnapshotSensors>(inputs[0], run, sensorParams());
+  }
+  Progress progress("collecting", run.scenes.size());
+  for (std::size_t i = 0; i < run.scenes.size(); ++i) {
+    stopIfAsked();
+    SceneView view = viewOfScene(run, i, truth ? &*truth : nullptr);
+    if (sensors) {
+      sensors->advanceTo(run.scenes[i].stamp);
+      sensors->fill(view);
+    }
+    data.add(i, view);
+    progress.update(i + 1, i + 1);
+  }
+  return data.html("run");
+}
+
+// Of -c, else of the run's effective.ini, so that returns and measurements are those of the
+// tracker.
+SnapshotSensorParams ReportApp::sensorParams() {
+  const std::string given = config_file;
+  const std::string own = (fs::path(run_dir) / "effective.ini").string();
+  if (given.empty() && fs::exists(own)) config_file = own;
+  SnapshotSensorParams params;
+  Config config = loadConfig();
+  params.read(config, !config_file.empty());
+  config_file = given;
+  config.finish();
+  return params;
 }
 
 void ReportApp::addFigures(ReportContent& content) const {

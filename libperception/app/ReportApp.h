@@ -3,6 +3,7 @@
 
 #include "gui-offscreen/ReportPage.h"
 #include "libperception/app/App.h"
+#include "libperception/pictures/SnapshotSensors.h"
 
 namespace perception {
 
@@ -11,6 +12,7 @@ class ReportApp : public App {
  public:
   std::string run_dir;         ///< -r: folder of perception-track
   std::string evaluation_dir;  ///< --evaluation; empty: evaluation/ of the run, when it is there
+  std::string truth_file;      ///< -t; empty: LOG.truth.csv beside the log, when it is there
   std::string out_page;        ///< path of the page
 
   std::string name() const override { return "perception-report"; }
@@ -21,6 +23,8 @@ class ReportApp : public App {
  private:
   void addFigures(ReportContent& content) const;
   void addEvaluation(ReportContent& content) const;
+  SnapshotSensorParams sensorParams();
+  std::string dataOf(const TrackedRun& run, const RunRecord& record);
 };
 
 }  // namespace perception

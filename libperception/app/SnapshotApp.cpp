@@ -91,19 +91,7 @@ Config SnapshotApp::readSite(const std::string& run_dir) {
   const std::string own = (fs::path(run_dir) / "effective.ini").string();
   if (given.empty() && fs::exists(own)) config_file = own;
   Config config = loadConfig();
-  if (config_file.empty()) {
-    sensors.ground = config.read<GroundParams>("ground");
-    sensors.weather = WeatherParams::read(config);
-    sensors.grid = config.read<GridParams>("grid");
-    sensors.stop = config.read<StopParams>("grid.stop");
-  } else {
-    PipelineSetup site = PipelineSetup::read(config);
-    sensors.ground = site.ground;
-    sensors.weather = site.weather;
-    sensors.grid = site.grid;
-    sensors.stop = site.stop;
-    sensors.sensors = std::move(site.sensors);
-  }
+  sensors.read(config, !config_file.empty());
   config_file = given;
   return config;
 }

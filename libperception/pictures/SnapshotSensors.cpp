@@ -62,6 +62,22 @@ std::vector<Vector3> outlineOf(const PartialBox& sides, double z) {
 
 }  // namespace
 
+void SnapshotSensorParams::read(Config& config, bool site) {
+  if (!site) {
+    ground = config.read<GroundParams>("ground");
+    weather = WeatherParams::read(config);
+    grid = config.read<GridParams>("grid");
+    stop = config.read<StopParams>("grid.stop");
+    return;
+  }
+  PipelineSetup setup = PipelineSetup::read(config);
+  ground = setup.ground;
+  weather = setup.weather;
+  grid = setup.grid;
+  stop = setup.stop;
+  sensors = std::move(setup.sensors);
+}
+
 SnapshotSensors::SnapshotSensors(const std::string& log, const TrackedRun& run,
                                  SnapshotSensorParams params)
     : log_(log),

@@ -27,6 +27,9 @@ struct SnapshotSensorParams {
   /// Sensors of the site INI: returns used and measurements. Other sensors are drawn with default
   /// settings and without measurements.
   std::vector<PipelineSetup::Sensor> sensors;
+
+  /// Sets everything that an INI says; `site`: it names sensors.
+  void read(Config& config, bool site);
 };
 
 /// Sensor data of a log up to an instant, for pictures of a run: last lidar returns and safety grid

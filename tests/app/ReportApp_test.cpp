@@ -87,7 +87,9 @@ TEST_F(ReportAppTest, HoldsEveryFileInsideAndNoAddress) {
   ASSERT_EQ(run({"-o", dir_ + "/page.html"}), 0);
   EXPECT_TRUE(says("data:image/png;base64,cGljdHVyZQ=="));
   EXPECT_TRUE(says("data:video/mp4;base64,ZmlsbQ=="));
-  EXPECT_FALSE(says("http"));
+  EXPECT_FALSE(says("src=\"http"));
+  EXPECT_FALSE(says("<link"));
+  EXPECT_FALSE(says("@import"));
   EXPECT_TRUE(fs::exists(dir_ + "/page.html"));
 }
 
@@ -106,6 +108,11 @@ TEST_F(ReportAppTest, MissingFilesAreSaidByExitCode) {
   EXPECT_EQ(run({"--evaluation", dir_ + "/nowhere"}), 66);
   fs::remove(dir_ + "/done.json");
   EXPECT_EQ(run(), 66);
+}
+
+TEST_F(ReportAppTest, RefusesTheLogOfAnotherRun) {
+  std::ofstream(dir_ + "/other.rawlog") << "x";
+  EXPECT_EQ(run({"-i", dir_ + "/other.rawlog"}), 65);
 }
 
 TEST(Base64, IsThatOfRfc4648) {
