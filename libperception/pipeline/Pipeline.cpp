@@ -236,7 +236,7 @@ void Pipeline::makeScenes(std::optional<Stamp> now) {
   while (const auto instant = outputs_.takeDue(now)) {
     ready_.push_back(scenes_.make(tracker_.mapHypothesis(), instant->ego, instant->frame));
     if (instant->path.known) ready_.back().path = safety_->advise(instant->path, ready_.back());
-    health_.addScene(ready_.back());
+    health_.addScene(ready_.back(), setup_.model.classes);
     if (observer_) observer_->onOutput(ready_.back());
   }
 }

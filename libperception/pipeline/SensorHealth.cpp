@@ -22,7 +22,7 @@ constexpr double kUsualOver = 5;                      // [s] memory
 constexpr double kBlindLidar = 1, kBlindOther = 1.5;  // [s] of empty frames
 constexpr double kWitnessed = 1;                      // [s] summed over objects
 constexpr double kOthersHit = 0.3;                    // [s] since another modality saw the object
-constexpr double kNear = 0.6, kFarthest = 40;         // of range_max, [m]: surely in view
+constexpr double kNear = 0.6, kFarthest = 20;         // of range_max, [m]: surely in view
 constexpr double kMargin = radians(5);                // from the edge of the view
 constexpr double kRadarSpeed = 2;                     // [m/s] that a radar tells from the ground
 constexpr double kExists = 0.8;
@@ -144,13 +144,14 @@ bool SensorHealth::shouldSee(std::size_t sensor, const SceneObject& object,
          std::abs(std::atan2(left, ahead)) < s.params.fov / 2 - kMargin;
 }
 
-void SensorHealth::addScene(const Scene& scene) {
+void SensorHealth::addScene(const Scene& scene, const ClassTable& classes) {
   const double dt = last_scene_ ? std::clamp(scene.stamp - *last_scene_, 0.0, 0.2) : 0;
   last_scene_ = scene.stamp;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     if (!sensors_[k].active || !states_[k].empty_since) continue;
     for (const SceneObject& object : scene.objects)
-      if (shouldSee(k, object, scene)) states_[k].witnessed += dt;
+      if (classes[object.class_id].reported && shouldSee(k, object, scene))
+        states_[k].witnessed += dt;
   }
 }
 

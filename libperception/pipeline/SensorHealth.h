@@ -37,8 +37,8 @@ class SensorHealth {
   /// A frame of a sensor in use, in order of time. In fog (`fog`: its probability) the road is lost
   /// in many directions, and windows are not judged.
   void addFrame(std::size_t sensor, const SensorFrame& frame, double fog);
-  /// Objects that some sensors see, others should see, too.
-  void addScene(const Scene& scene);
+  /// Road users that some sensors see, others should see, too.
+  void addScene(const Scene& scene, const ClassTable& classes);
   /// After a clock jump: forgets what was seen.
   void restart();
 

@@ -67,7 +67,11 @@ struct Watched {
     car.position = {x, 0, 0}, car.velocity = {speed, 0};
     car.last_hit[Modality::kLidar] = scene.stamp;
     scene.objects.push_back(car);
-    health.addScene(scene);
+    ObjectClass kind;
+    kind.reported = true;
+    ClassTable classes;
+    classes.classes.push_back(kind);
+    health.addScene(scene, classes);
   }
   std::size_t count(const char* kind) const {
     const auto found = events.counts().find(kind);
