@@ -22,7 +22,7 @@ constexpr double kUsualOver = 5;                      // [s] memory
 constexpr double kBlindLidar = 1, kBlindOther = 1.5;  // [s] of empty frames
 constexpr double kWitnessed = 1;                      // [s] summed over objects
 constexpr double kOthersHit = 0.3;                    // [s] since another modality saw the object
-constexpr double kNear = 0.6, kFarthest = 20;         // of range_max, [m]: surely in view
+constexpr double kNear = 0.4, kFarthest = 20;         // of range_max, [m]: surely in view
 constexpr double kMargin = radians(5);                // from the edge of the view
 constexpr double kRadarSpeed = 2;                     // [m/s] that a radar tells from the ground
 constexpr double kExists = 0.8;
