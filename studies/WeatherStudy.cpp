@@ -194,8 +194,8 @@ StudyReport weatherStudy(const WeatherOptions& options, std::uint64_t seed) {
       "The type is the most probable one after each scan. Rates are judged 5 s after the log's "
       "beginning and later, whatever type was found.",
       "Weather put on recordings and in scenarios is simulated, and so is what is said of it. The "
-      "estimator was made on the measured law and its physics; the second generator has another "
-      "law and another threshold."};
+      "second generator has another law and another threshold than the one that the estimator's "
+      "rates were made for, but its scans on two recordings were seen when thresholds were set."};
   return report;
 }
 
