@@ -10,7 +10,7 @@ namespace {
 
 // Of all returns every seventh is counted, for seven: no number of beams is a multiple of it.
 constexpr std::size_t kStep = 7;
-constexpr float kInAir = 0.4F;    // [m] above the ground
+constexpr float kInAir = 0.4F;  // [m] above the ground
 // Sines of elevations.
 const float kLevelFrom = std::sin(static_cast<float>(radians(-2))),
             kLevelTo = std::sin(static_cast<float>(radians(1)));
