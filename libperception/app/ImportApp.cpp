@@ -53,7 +53,7 @@ void ImportApp::declare(CLI::App& cli) {
       sub.add_flag("--embed-images", embed_images_, "images as JPEG inside the log")
           ->excludes(copy);
     }
-    addOutputOption(sub, true);
+    addOutputOption(sub, (row.uses & kLists) == 0);
   }
   cli.allow_extras();
   cli.callback([&cli] { requireFormat(cli); });
@@ -69,6 +69,8 @@ void ImportApp::checkOptions() const {
 
 void ImportApp::run() {
   checkOptions();
+  if (importers_[chosen_]->list()) return;
+  if (output.empty()) failUsage("-o: expected the log to be written");
   options.output = output;
   if (copy_images_) options.images = ImportOptions::Images::kCopy;
   if (embed_images_) options.images = ImportOptions::Images::kEmbed;

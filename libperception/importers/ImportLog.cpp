@@ -86,6 +86,8 @@ void ImportLog::sensor(const SensorFrame& frame) {
     result_.radar_returns += radar->returns.size();
   } else if (const auto* found = std::get_if<ObjectDetections>(&frame.data)) {
     result_.detections[frame.sensor] += found->objects.size();
+  } else {
+    ++result_.images;
   }
   write(*observationFromFrame(frame));
 }

@@ -21,11 +21,13 @@ class Importer {
   /// Sets format-specific defaults of options not given on the command line; called before the log
   /// is opened.
   virtual void prepare(ImportOptions&) {}
+  /// Prints what the recording holds, if the options ask for that in place of an import.
+  virtual bool list() { return false; }
   virtual void run(ImportLog& log) = 0;
 };
 
 /// Options of ImportOptions that only some formats use.
-enum SharedOption : unsigned { kUsesRate = 1, kUsesImages = 2, kUsesRepeat = 4 };
+enum SharedOption : unsigned { kUsesRate = 1, kUsesImages = 2, kUsesRepeat = 4, kLists = 8 };
 
 /// Registry entry: a sub-command of perception-import.
 struct ImporterRow {
@@ -52,6 +54,7 @@ std::unique_ptr<Importer> makeKittiObjectImporter();
 std::unique_ptr<Importer> makePacketsImporter();
 std::unique_ptr<Importer> makeNmeaImporter();
 std::unique_ptr<Importer> makeGpxImporter();
+std::unique_ptr<Importer> makeBagImporter();
 
 /// Throws Error (kUsage).
 [[noreturn]] void failUsage(const std::string& message);

@@ -1,0 +1,67 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/config/Config.h"
+#include "libperception/importers/ImportText.h"
+#include "libperception/interop/ReadingBag.h"
+#include "libperception/interop/RosMessages.h"
+#include "libperception/interop/TransformTree.h"
+
+namespace perception {
+
+/// [bag]: whose poses and frames a recording is imported with. Empty: found.
+struct BagParams {
+  std::string base_frame;         ///< of the vehicle
+  std::vector<double> base_pose;  ///< of that frame on the vehicle (ego origin: on the ground)
+  std::string poses;              ///< tf, none, or a topic
+
+  void visit(ParamVisitor& v);
+};
+
+/// [topic.TOPIC]: one topic.
+struct BagTopicParams {
+  std::string label;         ///< sensor label in the log
+  std::vector<double> pose;  ///< of the sensor on the vehicle; wins over the recording's
+  double intensity_max = 0;  ///< intensities are divided by it
+  bool use = true;           ///< chosen: what can be read is read
+
+  void visit(ParamVisitor& v);
+};
+
+/// x y z [m], yaw pitch roll [deg].
+Pose3 poseOfNumbers(const std::vector<double>& numbers);
+
+/// What a recording holds, but for the data of its sensors.
+struct BagContents {
+  struct Row {
+    BagTopic topic;
+    std::uint64_t messages = 0;
+    Stamp first, last;  ///< of recording
+  };
+  /// Poses of one topic: nav_msgs/Odometry, geometry_msgs/PoseStamped.
+  struct Poses {
+    std::string frame;  ///< whose poses they are; empty: not said
+    std::vector<StampedPose> poses;
+  };
+
+  std::map<std::string, Row> topics;
+  TransformTree tree;
+  std::map<std::string, Poses> poses;              ///< by topic
+  std::map<std::string, ros::CameraInfo> cameras;  ///< first message by topic
+  std::vector<std::string> faults;                 ///< damage, messages that cannot be read
+};
+
+/// Reads all messages once. `progress(done, total)` in bytes.
+BagContents readContents(const std::vector<std::string>& files,
+                         const std::function<void(std::uint64_t, std::uint64_t)>& progress);
+
+/// One line a topic: messages, type, rate, and what the import makes of it.
+std::string listOf(const BagContents& contents);
+
+/// What the import makes of messages of a type; empty: nothing.
+std::string useOfType(const std::string& type);
+
+}  // namespace perception

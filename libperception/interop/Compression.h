@@ -1,0 +1,16 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace perception {
+
+/// The bytes of a block of a recording; `method`: "" or "none", bz2, lz4 (a frame), zstd. Throws
+/// std::runtime_error unless they are exactly `size` bytes; at most kMostInflated.
+std::string inflated(std::string_view method, std::string_view bytes, std::uint64_t size);
+inline constexpr std::uint64_t kMostInflated = std::uint64_t{1} << 30;
+
+/// One zstd frame.
+std::string zstdOf(std::string_view bytes);
+
+}  // namespace perception

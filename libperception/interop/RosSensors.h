@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/interop/RosMessages.h"
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception::ros {
+
+/// The cloud of a message, order and number of points kept, NaN points too. Needs the fields x, y,
+/// z; used are intensity (or i, reflectivity), ring (or channel, line) and a time: t, offset_time
+/// [ns] and time, time_offset [s] after the header's stamp; timestamp [s] since 1970. Intensities
+/// are divided by `intensity_max`; 0: bytes by 255, others stay as they are. Throws
+/// std::runtime_error.
+LidarCloud cloudOf(const PointCloud2& message, double intensity_max = 0);
+/// x, y, z, intensity as 32-bit floats, and ring and time_offset where the cloud has them. `data`:
+/// holds the bytes of the message.
+PointCloud2 messageOf(const LidarCloud& cloud, const Header& header, std::string& data);
+
+/// Throws std::runtime_error: another encoding than mono8, mono16, rgb8, bgr8, rgba8, bgra8 (8UC1,
+/// 8UC3, 16UC1), or fewer bytes than rows need.
+Raster rasterOf(const Image& message);
+/// Any format of OpenCV's imdecode(). Throws std::runtime_error.
+Raster rasterOf(const CompressedImage& message);
+/// A pinhole; empty without a focal length. Of the rectified image where `rectified`.
+std::optional<CameraModel> cameraOf(const CameraInfo& message, bool rectified);
+
+}  // namespace perception::ros

@@ -1,0 +1,45 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+#include "libperception/core/Time.h"
+
+namespace perception {
+
+/// Coordinate frames, each with its pose in its parent: fixed, or moving with time (ROS's tf2).
+class TransformTree {
+ public:
+  /// p_parent = T p_child. Stamps in any order. Of a fixed frame the last one holds for all times.
+  void add(const std::string& parent, const std::string& child, Stamp stamp, const Pose3& T,
+           bool fixed);
+
+  /// T_to_from. Between stamps: linear in position, slerp in attitude; up to 0.2 s beyond the ends
+  /// the pose there. Empty: no chain, or no pose near the stamp.
+  std::optional<Pose3> at(const std::string& to, const std::string& from, Stamp stamp) const;
+
+  bool has(const std::string& frame) const;
+  /// The highest ancestor of a frame, if one of the steps to it moves; empty: none.
+  std::string movesIn(const std::string& frame) const;
+  /// Stamps of the nearest moving step above a frame, in order.
+  std::vector<Stamp> stampsOf(const std::string& frame) const;
+  /// Frames that move in a parent without a parent of its own, by name.
+  std::vector<std::string> moving() const;
+
+ private:
+  struct Step {
+    std::string parent;
+    bool fixed = true;
+    std::map<Stamp, Pose3> poses;
+  };
+  /// From a frame upward; each frame once, even in a ring.
+  std::vector<std::string> ancestors(const std::string& frame) const;
+  std::optional<Pose3> inParent(const Step& step, Stamp stamp) const;
+
+  std::map<std::string, Step> steps_;  ///< by child
+};
+
+}  // namespace perception
