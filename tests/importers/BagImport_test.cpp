@@ -1,0 +1,197 @@
+// The recordings are written here, field by field as ROS defines them.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "libperception/interop/McapWriter.h"
+#include "libperception/sensors/FromObservation.h"
+#include "tests/importers/ImportFixture.h"
+
+namespace perception {
+namespace {
+
+/// A message as ROS 1 or, aligned and behind four bytes, as CDR.
+class Message {
+ public:
+  explicit Message(bool cdr) : cdr_(cdr) {
+    if (cdr) bytes_.assign("\0\1\0\0", 4);
+  }
+  template <class T>
+  Message& put(T value) {
+    if (cdr_)
+      while ((bytes_.size() - 4) % sizeof value != 0) bytes_.push_back('\0');
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    bytes_.append(raw, sizeof value);
+    return *this;
+  }
+  Message& text(const std::string& value) {
+    put(static_cast<std::uint32_t>(value.size() + cdr_));
+    bytes_ += value;
+    if (cdr_) bytes_.push_back('\0');
+    return *this;
+  }
+  Message& header(std::uint32_t second, const std::string& frame) {
+    if (!cdr_) put(std::uint32_t{0});  // seq
+    return put(second).put(std::uint32_t{500'000'000}).text(frame);
+  }
+  const std::string& bytes() const { return bytes_; }
+  bool cdr() const { return cdr_; }
+
+ private:
+  bool cdr_;
+  std::string bytes_;
+};
+
+std::string cloudMessage(bool cdr, std::uint32_t second) {
+  Message m(cdr);
+  m.header(second, "velodyne").put(std::uint32_t{1}).put(std::uint32_t{2}).put(std::uint32_t{4});
+  std::uint32_t offset = 0;
+  for (const char* name : {"x", "y", "z", "intensity"}) {
+    m.text(name).put(offset).put(std::uint8_t{7}).put(std::uint32_t{1});
+    offset += 4;
+  }
+  m.put(std::uint8_t{0}).put(std::uint32_t{16}).put(std::uint32_t{32}).put(std::uint32_t{32});
+  const float points[] = {10, 1, -1, 0.25F, 20, -2, -1.5F, 0.5F};
+  for (const float v : points) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &v, sizeof bits);
+    for (int shift = 0; shift < 32; shift += 8) m.put(static_cast<std::uint8_t>(bits >> shift));
+  }
+  m.put(std::uint8_t{1});
+  return m.bytes();
+}
+
+/// A transform without rotation.
+std::string transformMessage(bool cdr, std::uint32_t second, const std::string& parent,
+                             const std::string& child, const Vector3& at) {
+  Message m(cdr);
+  m.put(std::uint32_t{1}).header(second, parent).text(child);
+  for (int i = 0; i < 3; ++i) m.put(at[i]);
+  for (const double q : {0.0, 0.0, 0.0, 1.0}) m.put(q);
+  return m.bytes();
+}
+
+struct Topic {
+  std::string name, type;
+  std::vector<std::pair<std::uint32_t, std::string>> messages;  ///< [s], bytes
+};
+
+/// A vehicle that drives 2 m in a second, with a lidar 1.8 m above the ground; three scans.
+std::vector<Topic> drive(bool cdr) {
+  const std::string types = cdr ? "/msg/" : "/";
+  Topic clouds{"/points", "sensor_msgs" + types + "PointCloud2", {}};
+  Topic moving{"/tf", "tf2_msgs" + types + "TFMessage", {}};
+  Topic fixed{"/tf_static", "tf2_msgs" + types + "TFMessage", {}};
+  fixed.messages.emplace_back(100,
+                              transformMessage(cdr, 100, "base_link", "velodyne", {0.5, 0, 1.8}));
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    moving.messages.emplace_back(
+        100 + k, transformMessage(cdr, 100 + k, "map", "base_link", {2.0 * k, 0, 0}));
+    clouds.messages.emplace_back(100 + k, cloudMessage(cdr, 100 + k));
+  }
+  return {fixed, moving, clouds};
+}
+
+template <class T>
+std::string raw(T value) {
+  return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+}
+std::string sized(const std::string& bytes) {
+  return raw(static_cast<std::uint32_t>(bytes.size())) + bytes;
+}
+using Fields = std::vector<std::pair<std::string, std::string>>;
+std::string record(const Fields& fields, const std::string& data) {
+  std::string header;
+  for (const auto& [name, value] : fields) header += sized(name + "=" + value);
+  return sized(header) + sized(data);
+}
+
+/// A ROS 1 bag 2.0 of one chunk.
+std::string rosBag(const std::vector<Topic>& topics) {
+  std::string chunk;
+  std::uint32_t id = 0;
+  for (const Topic& topic : topics) {
+    std::string data;
+    for (const auto& [name, value] : Fields{{"topic", topic.name},
+                                            {"type", topic.type},
+                                            {"md5sum", "*"},
+                                            {"message_definition", ""}})
+      data += sized(name + "=" + value);
+    chunk += record({{"op", "\x07"}, {"conn", raw(id)}, {"topic", topic.name}}, data);
+    for (const auto& [second, bytes] : topic.messages)
+      chunk +=
+          record({{"op", "\x02"}, {"conn", raw(id)}, {"time", raw(std::uint64_t{second})}}, bytes);
+    ++id;
+  }
+  return "#ROSBAG V2.0\n" +
+         record({{"op", "\x03"},
+                 {"index_pos", raw(std::uint64_t{4117})},
+                 {"conn_count", raw(id)},
+                 {"chunk_count", raw(std::uint32_t{1})}},
+                std::string(4027, ' ')) +
+         record({{"op", "\x05"},
+                 {"compression", "none"},
+                 {"size", raw(static_cast<std::uint32_t>(chunk.size()))}},
+                chunk);
+}
+
+class BagImport : public test::ImportRun {
+ protected:
+  void writeMcap(const std::string& name) {
+    McapWriter writer(file(name), "ros2");
+    for (const Topic& topic : drive(true)) {
+      const auto channel = writer.addChannel(topic.name, "cdr", {topic.type, "ros2msg", ""});
+      for (const auto& [second, bytes] : topic.messages)
+        writer.write(channel, Stamp{second * std::int64_t{1'000'000'000}}, bytes);
+    }
+    writer.close();
+  }
+  /// Three scans of two returns, where the vehicle was.
+  void expectTheDrive() {
+    int scans = 0, poses = 0;
+    for (const auto& o : readLog()) {
+      if (o->sensorLabel == "EGO_POSE") ++poses;
+      if (o->sensorLabel != "points") continue;
+      const auto frame = frameFromObservation(*o);
+      ASSERT_TRUE(frame);
+      const auto& cloud = std::get<LidarCloud>(frame->data);
+      ASSERT_EQ(cloud.size(), 2U);
+      EXPECT_EQ(cloud.x[1], 20);
+      EXPECT_EQ(cloud.intensity[1], 0.5F);
+      EXPECT_NEAR(frame->T_ego_sensor.translation().z(), 1.8, 1e-9);
+      EXPECT_EQ(frame->stamp.ns, (100 + scans) * std::int64_t{1'000'000'000} + 500'000'000);
+      ++scans;
+    }
+    EXPECT_EQ(scans, 3);
+    EXPECT_EQ(poses, 3);
+  }
+};
+
+TEST_F(BagImport, ABagOfRos1GivesScansMountingAndPoses) {
+  write("drive.bag", rosBag(drive(false)));
+  ASSERT_EQ(import("bag", {"--bag", file("drive.bag")}), 0) << error_;
+  expectTheDrive();
+}
+
+TEST_F(BagImport, AnMcapFileOfRos2GivesTheSame) {
+  writeMcap("drive.mcap");
+  ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 0) << error_;
+  expectTheDrive();
+}
+
+TEST_F(BagImport, ATornBagKeepsWhatIsWholeAndSaysWhere) {
+  write("torn.bag", rosBag(drive(false)) + raw(std::uint32_t{4096}) + "op=");
+  EXPECT_EQ(import("bag", {"--bag", file("torn.bag")}), 3);
+  EXPECT_NE(error_.find("byte"), std::string::npos) << error_;
+  expectTheDrive();
+}
+
+TEST_F(BagImport, WhatIsNoRecordingIsRefused) {
+  write("text.bag", "hello, this is not a bag");
+  EXPECT_EQ(import("bag", {"--bag", file("text.bag")}), 65);
+  EXPECT_NE(error_.find("#ROSBAG V2.0"), std::string::npos) << error_;
+}
+
+}  // namespace
+}  // namespace perception
