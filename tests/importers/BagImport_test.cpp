@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
 
+#include "libperception/core/Random.h"
 #include "libperception/interop/McapWriter.h"
 #include "libperception/sensors/FromObservation.h"
 #include "tests/importers/ImportFixture.h"
@@ -185,6 +189,31 @@ TEST_F(BagImport, ATornBagKeepsWhatIsWholeAndSaysWhere) {
   EXPECT_EQ(import("bag", {"--bag", file("torn.bag")}), 3);
   EXPECT_NE(error_.find("byte"), std::string::npos) << error_;
   expectTheDrive();
+}
+
+TEST_F(BagImport, DamagedBytesAreSaidAndNeverFollowed) {
+  writeMcap("drive.mcap");
+  std::ostringstream mcap;
+  mcap << std::ifstream(file("drive.mcap"), std::ios::binary).rdbuf();
+  Rng rng({1, 0, 0, 0});
+  std::map<int, int> codes;
+  for (const std::string& whole : {rosBag(drive(false)), mcap.str()}) {
+    for (int i = 0; i < 150; ++i) {
+      std::string damaged = whole;
+      for (int k = 0; k < 3; ++k) {
+        // Not the padding of a bag's first record.
+        auto at = static_cast<std::size_t>(rng.uniform() * static_cast<double>(whole.size()));
+        if (whole[at] == ' ') at = whole.size() - 1 - at % 1000;
+        damaged[at] = static_cast<char>(256 * rng.uniform());
+      }
+      write("damaged.bag", damaged);
+      ++codes[import("bag", {"--bag", file("damaged.bag")})];
+    }
+  }
+  for (const auto& [code, count] : codes)
+    EXPECT_TRUE(code == 0 || code == 3 || code == 65 || code == 66) << code << ": " << count;
+  EXPECT_GT(codes[0] + codes[3], 20);
+  EXPECT_GT(codes[3] + codes[65], 20);
 }
 
 TEST_F(BagImport, WhatIsNoRecordingIsRefused) {
