@@ -2,6 +2,7 @@
 # Everything from a bare Debian 12 on: packages, build, a first result, all tests.
 #   ./setup.sh build   installs what is needed and builds the programs into build/bin
 #   ./setup.sh demo    the same, then tracks, evaluates and draws the simulated log rawlogs/demo.rawlog
+#   ./setup.sh package builds the Debian packages: build-package/*.deb
 #   ./setup.sh bench   builds the benchmarks against other libraries and runs them one after the other
 #   ./setup.sh sanitize   all tests with sanitizers, an hour
 #   ./setup.sh test    the same with the tests, and runs them: all of them, and some once more with sanitizers;
@@ -10,8 +11,8 @@
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-readonly usage="usage: ./setup.sh build | demo | bench | test | sanitize"
-readonly exit_warnings=3 exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
+readonly usage="usage: ./setup.sh build | demo | package | bench | test | sanitize"
+readonly exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
 
 packages=(
   # to build
@@ -60,6 +61,11 @@ test_packages=(
   locales                # definition of a locale with decimal comma: it must not change a byte
 )
 
+package_packages=(
+  dpkg-dev file          # dependencies of what is packed
+  help2man               # manual pages
+)
+
 bench_packages=(
   libopencv-video-dev    # cv::KalmanFilter, a peer
   python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti_*
@@ -106,46 +112,21 @@ build() {
   cmake --build --preset "$preset" -j "$(jobs)" "$@"
 }
 
-# run PROGRAM ARGUMENTS...: shown, and a finish with data warnings is a finish
-run() {
-  local program=$1 code=0
-  shift
-  printf '\n$ %s %s\n' "$program" "$*"
-  "build/bin/$program" "$@" || code=$?
-  (( code == 0 || code == exit_warnings )) || exit "$code"
-}
-
-# number FILE KEY: the first number behind "KEY" in a JSON file
-number() { sed -n 's/.*"'"$2"'": *\(-\{0,1\}[0-9][0-9.e+-]*\).*/\1/p' "$1" | head -n 1; }
-
 demo() {
   installPackages "${packages[@]}"
   build release OFF --target perception-track perception-evaluate perception-snapshot perception-report
-  local dir=out/demo log=rawlogs/demo.rawlog truth=rawlogs/demo.truth.csv
-  say "Tracking the simulated log $log"
-  run perception-track -c ini/demo.ini -i "$log" -o "$dir" --overwrite
-  run perception-evaluate -r "$dir" -t "$truth" -o "$dir/evaluation"
-  local drawn=(-r "$dir" -i "$log" -t "$truth")
-  run perception-snapshot "${drawn[@]}" --time 8 --view all -o "$dir/scene.png" --scene "$dir/scene.3Dscene"
-  run perception-snapshot "${drawn[@]}" --contact 9 --view top --no-measurements -o "$dir/contact.png"
-  run perception-snapshot "${drawn[@]}" --video "$dir/scene.mp4" --view both
-  run perception-report -r "$dir" -i "$log"
-  demoSummary "$dir"
+  PERCEPTION_DATA=. PATH=$PWD/build/bin:$PATH apps/perception-demo/perception-demo out/demo
 }
 
-# share VALUE: a fraction as a percentage
-share() { LC_ALL=C awk -v v="$1" 'BEGIN { if (v == "") print "n/a"; else printf "%.1f %%\n", 100 * v }'; }
-
-demoSummary() {
-  local dir=$1 report=$1/evaluation/report.json
-  say "Result (simulated log, truth within 20 m ahead)"
-  printf '%-18s %s\n' \
-    "objects" "$(number "$dir/done.json" tracks) (poles, walls and bushes included)" \
-    "tracked fraction" "$(share "$(number "$report" object_tracked_a)")" \
-    "correct class" "$(share "$(number "$report" correct)")" \
-    "id switches" "$(number "$report" id_switches)" \
-    "real-time factor" "$(number "$dir/timing.json" real_time_factor)"
-  printf '\nopen in a browser: %s\n' "$dir/index.html"
+# Programs, library and headers as Debian packages, and what `apt install` of them does: README.
+package() {
+  installPackages "${packages[@]}" "${package_packages[@]}"
+  if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
+  say "Building the packages"
+  cmake --preset release -B build-package -DPERCEPTION_TESTS=OFF -DPERCEPTION_MANUALS=ON -DCMAKE_INSTALL_PREFIX=/usr \
+    >"$scratch" || { cat "$scratch" >&2; exit 1; }
+  cmake --build build-package -j "$(jobs)"
+  (cd build-package && cpack -G DEB)
 }
 
 # Every program of tests/bench; quiet machines give steadier figures.
@@ -254,6 +235,7 @@ trap 'rm -f "$scratch"' EXIT
 case $1 in
   build) installPackages "${packages[@]}"; build release OFF ;;
   demo) demo ;;
+  package) package ;;
   bench) benches ;;
   test) tests ;;
   sanitize) sanitize ;;

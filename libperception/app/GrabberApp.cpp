@@ -5,25 +5,49 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <filesystem>
 
 #include "libperception/capture/Grabber.h"
 #include "libperception/pipeline/Progress.h"
 
 namespace perception {
+namespace fs = std::filesystem;
+namespace {
+
+/// The plugin beside this program, as installed or as built; throws Error where there is none.
+std::string pluginPath() {
+  std::error_code ignored;
+  const fs::path prefix = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path();
+  for (const char* folder : {PERCEPTION_PLUGIN_DIR, "lib"}) {
+    const fs::path plugin = prefix / folder / "libperception_mrpt_plugin.so";
+    if (fs::exists(plugin, ignored)) return plugin.string();
+  }
+  throw Error(ExitCode::kUnavailable,
+              fmt::format("{}: no libperception_mrpt_plugin.so below it, in {} or lib",
+                          prefix.string(), PERCEPTION_PLUGIN_DIR));
+}
+
+}  // namespace
 
 std::string GrabberApp::description() const {
   return "Records the sensors of a capture INI into rawlogs, each whole; lists what was lost.";
 }
 
 void GrabberApp::declare(CLI::App& cli) {
-  cli.add_option("-c,--config", config_file, "INI of rawlog-grabber, as ini/capture.ini")
-      ->required();
-  addOutputOption(cli, true);
+  cli.add_option("-c,--config", config_file, "INI of rawlog-grabber, as ini/capture.ini");
+  addOutputOption(cli, false);
   cli.add_option("--duration", duration, "[s]; without: until SIGINT or SIGTERM")
       ->check(CLI::Range(0.01, 1e9));
+  cli.add_flag(
+      "--plugin", plugin,
+      "Print the path of the plugin for MRPT's own tools (rawlog-edit -p, RawLogViewer -l, "
+      "rawlog-grabber -p) and stop");
 }
 
 void GrabberApp::run() {
+  if (plugin) return fmt::print("{}\n", pluginPath());
+  if (config_file.empty()) throw Error(ExitCode::kUsage, "-c/--config is needed");
+  if (output.empty()) throw Error(ExitCode::kUsage, "-o/--output is needed");
   Grabber grabber(config_file, output);
   const auto begin = std::chrono::steady_clock::now();
   const auto passed = [&] {

@@ -9,6 +9,7 @@ namespace perception {
 class GrabberApp : public App {
  public:
   double duration = 0;  ///< --duration [s]; 0: until SIGINT or SIGTERM
+  bool plugin = false;  ///< --plugin: print the path of MRPT's plugin and stop
 
   std::string name() const override { return "perception-grabber"; }
   std::string description() const override;

@@ -38,7 +38,7 @@ struct IniFault {
 class IniDocument {
  public:
   /// Call one of readFile and readText, once.
-  void readFile(const std::string& path);
+  void readFile(const std::string& given);
   void readText(const std::string& text, const std::string& name);
   /// Applies `section.key=value` after reading; a later one overrides.
   void set(const std::string& assignment);

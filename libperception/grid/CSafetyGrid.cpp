@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "libperception/grid/CGridExport.h"
+#include "libperception/grid/CMrptCompatibility.h"
 
 MAP_DEFINITION_REGISTER("perception::CSafetyGrid,safetyGrid", perception::CSafetyGrid)
 
@@ -66,9 +67,10 @@ void CSafetyGrid::TMapDefinition::dumpToTextStream_map_specific(std::ostream& ou
       params.z_min, params.z_max);
 }
 
-mrpt::maps::CMetricMap* CSafetyGrid::internal_CreateFromMapDefinition(
+NewMetricMap CSafetyGrid::internal_CreateFromMapDefinition(
     const mrpt::maps::TMetricMapInitializer& definition) {
-  return new CSafetyGrid(dynamic_cast<const CSafetyGrid::TMapDefinition&>(definition).params);
+  return NewMetricMap(
+      new CSafetyGrid(dynamic_cast<const CSafetyGrid::TMapDefinition&>(definition).params));
 }
 
 void CSafetyGrid::internal_clear() { grid_ = makeSafetyGrid(grid_->params()); }

@@ -44,10 +44,10 @@ const Calibration* calibrationOf(const Scan& scan) {
   if (scan.scan_packets.empty()) return nullptr;
   const auto model = scan.scan_packets.front().velodyne_model_ID;
   try {
-    const Calibration& usual =
-        Calibration::LoadDefaultCalibration(model == kModelVlp16   ? "VLP16"
-                                            : model == kModelHdl32 ? "HDL32"
-                                                                   : "HDL64");
+    const std::string name = model == kModelVlp16   ? "VLP16"
+                             : model == kModelHdl32 ? "HDL32"
+                                                    : "HDL64";
+    const Calibration& usual = Calibration::LoadDefaultCalibration(name);
     return usual.empty() ? nullptr : &usual;
   } catch (const std::exception&) {  // MRPT 2.5.8 cannot read its own HDL64 file
     return nullptr;

@@ -1,6 +1,10 @@
 #include "libperception/simulation/LidarCaster.h"
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -65,9 +69,24 @@ RTCRayHit makeRay(const Vector3& origin, const Vector3& direction, double range_
 }
 
 void intersect(RTCScene scene, RTCRayHit& ray) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(scene, &ray);
+#else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(scene, &context, &ray);
+#endif
+}
+
+bool isOccluded(RTCScene scene, RTCRay& ray) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded1(scene, &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+#endif
+  return ray.tfar < 0;
 }
 
 }  // namespace
@@ -141,10 +160,7 @@ struct LidarCaster::Impl {
 
   bool blocked(const Vector3& origin, const Vector3& direction, double range_max) const {
     RTCRay ray = makeRay(origin, direction, range_max).ray;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(top.get(), &context, &ray);
-    return ray.tfar < 0;
+    return isOccluded(top.get(), ray);
   }
 
   BeamHit hitOf(const RTCRayHit& r, const Vector3& direction) const {

@@ -78,7 +78,7 @@ inline const std::vector<Module>& modules() {
       {"simulation", "scenarios to rawlogs", {"sensors", "measurement", "config", "core"}},
       {"capture",
        "recorder, drivers, device simulators",
-       {"packets", "simulation", "sensors", "measurement", "config", "core"}},
+       {"packets", "simulation", "grid", "sensors", "measurement", "config", "core"}},
       {"calibration",
        "fits parameters by their likelihood, learns what clusters look like",
        {"pipeline", "evaluation", "lidar", "boxes3d", "measurement", "core"}},

@@ -1,13 +1,15 @@
-// Our observation classes and drivers for MRPT's stock programs: rawlog-edit -p, RawLogViewer -l,
-// rawlog-grabber -p.
+// Our observation classes, drivers and the safety grid as a metric map for MRPT's stock programs:
+// rawlog-edit -p, RawLogViewer -l, rawlog-grabber -p.
 #include <mrpt/core/initializer.h>
 
 #include "libperception/capture/CPacketSensor.h"
 #include "libperception/capture/CScenarioSensor.h"
+#include "libperception/grid/CSafetyGrid.h"
 #include "libperception/sensors/registerClasses.h"
 
 MRPT_INITIALIZER(registerPerceptionPlugin) {
   perception::registerPerceptionClasses();
+  perception::registerSafetyGrid();
   perception::CScenarioSensor::doRegister();
   perception::CPacketSensor::doRegister();
 }

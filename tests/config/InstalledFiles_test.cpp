@@ -1,0 +1,66 @@
+#include "libperception/config/InstalledFiles.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/config/ConfigFixture.h"
+
+namespace perception::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A working folder, and PERCEPTION_DATA with ini/site.ini, which includes ini/classes.ini.
+class InstalledInis : public ::testing::Test {
+ protected:
+  InstalledInis() : inside_(folder_.path()) {
+    fs::create_directories("data/ini/detectors");
+    fs::create_directories("mine");
+    writeText("data/ini/classes.ini", "[a]\nbeams = 7\n");
+    writeText("data/ini/site.ini", "include = classes.ini\n[a]\ngain = 2\n");
+    ::setenv("PERCEPTION_DATA", fs::absolute("data").c_str(), 1);
+  }
+  ~InstalledInis() override { ::unsetenv("PERCEPTION_DATA"); }
+
+  static AllKinds read(const std::string& path, const std::string& faults = "") {
+    Config config = Config::fromFile(path);
+    const auto params = config.read<AllKinds>("a");
+    EXPECT_EQ(faultsOf(config), faults);
+    return params;
+  }
+
+  TemporaryFolder folder_;
+  WorkingFolder inside_;
+};
+
+TEST_F(InstalledInis, AreFoundByThePathInTheCheckoutAndByName) {
+  EXPECT_EQ(read("ini/site.ini").beams, 7);
+  EXPECT_EQ(read("site.ini").gain, 2);
+}
+
+TEST_F(InstalledInis, GiveWayToFilesOfThatPath) {
+  writeText("site.ini", "[a]\ngain = 3\n");
+  EXPECT_EQ(read("site.ini").gain, 3);
+  EXPECT_EQ(read("ini/site.ini").gain, 2);
+}
+
+TEST_F(InstalledInis, AreIncludedByNameByAnIniElsewhere) {
+  writeText("mine/car.ini", "include = site.ini\n[a]\nbeams = 9\n");
+  EXPECT_EQ(read("mine/car.ini").gain, 2);
+  EXPECT_EQ(read("mine/car.ini").beams, 9);
+}
+
+TEST_F(InstalledInis, OfNoSuchNameLeaveTheErrorOfThePath) {
+  Config config = Config::fromFile("mine/none.ini");
+  EXPECT_EQ(faultsOf(config), "mine/none.ini: cannot be read: No such file or directory");
+}
+
+TEST(InstalledFolder, OfABuildTreeIsNone) {
+  ::unsetenv("PERCEPTION_DATA");
+  EXPECT_EQ(installedFolder(), "");
+}
+
+}  // namespace
+}  // namespace perception::test
