@@ -88,7 +88,7 @@ std::string faultOf(const SourceFile& file, const Include& include) {
   }
   if (beginsWith(include.path, "mrpt/")) {
     if (std::count(include.path.begin(), include.path.end(), '/') == 1 &&
-        include.path != "mrpt/config.h") {
+        include.path != "mrpt/version.h") {
       return "is an umbrella header: name what is used";
     }
     if (kWithoutMrpt.count(module) && !isMrptClassFile(file) &&
