@@ -1,7 +1,6 @@
 #include "gui-offscreen/SceneView.h"
 
 #include <mrpt/opengl/CBox.h>
-#include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSetOfTriangles.h>

@@ -1,4 +1,6 @@
 #pragma once
+#include <mrpt/opengl/COpenGLScene.h>
+
 #include <array>
 #include <cstdint>
 #include <map>
@@ -12,10 +14,6 @@
 #include "libperception/core/GroundTruth.h"
 #include "libperception/grid/SafetyGrid.h"
 #include "libperception/scene/Scene.h"
-
-namespace mrpt::opengl {
-class COpenGLScene;
-}
 
 namespace perception {
 
