@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstring>
 #include <stdexcept>
+#include <type_traits>
 
 #include "libperception/core/Error.h"
 
@@ -45,6 +46,16 @@ Picture pictureOf(const mrpt::img::CImage& image) {
   return picture;
 }
 
+/// White light: a color in MRPT 2.5, one value in 2.14.
+template <class Light>
+void setLight(Light& light, float value) {
+  if constexpr (std::is_floating_point_v<Light>) {
+    light = value;
+  } else {
+    light = {value, value, value, 1.0F};
+  }
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -81,9 +92,10 @@ Picture Renderer::render(const SceneView& view, const ViewCamera& camera) {
   viewport->setViewportClipDistances(static_cast<float>(camera.near),
                                      static_cast<float>(camera.far));
   // Nearly flat shading, since colors have a meaning.
-  viewport->lightParameters().ambient = {0.85F, 0.85F, 0.85F, 1.0F};
-  viewport->lightParameters().diffuse = {0.15F, 0.15F, 0.15F, 1.0F};
-  viewport->lightParameters().specular = {0.0F, 0.0F, 0.0F, 1.0F};
+  auto& light = viewport->lightParameters();
+  setLight(light.ambient, 0.85F);
+  setLight(light.diffuse, 0.15F);
+  setLight(light.specular, 0);
   impl_->framebuffer.setCamera(*scene, cameraOf(camera, width_, height_));
   mrpt::img::CImage image;
   impl_->framebuffer.render_RGB(*scene, image);
