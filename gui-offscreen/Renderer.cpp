@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cstring>
 #include <stdexcept>
-#include <type_traits>
 
+#include "libperception/core/CMrptCompatibility.h"
 #include "libperception/core/Error.h"
 
 namespace perception {
@@ -44,16 +44,6 @@ Picture pictureOf(const mrpt::img::CImage& image) {
     for (std::size_t x = 0; swapped && x < row; x += 3) std::swap(to[x], to[x + 2]);
   }
   return picture;
-}
-
-/// White light: a color in MRPT 2.5, one value in 2.14.
-template <class Light>
-void setLight(Light& light, float value) {
-  if constexpr (std::is_floating_point_v<Light>) {
-    light = value;
-  } else {
-    light = {value, value, value, 1.0F};
-  }
 }
 
 }  // namespace

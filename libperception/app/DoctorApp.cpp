@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "libperception/app/StudyFolder.h"
+#include "libperception/config/ShippedFiles.h"
 #include "libperception/core/Supervision.h"
 #include "libperception/doctor/SiteIni.h"
 #include "libperception/pipeline/Progress.h"
@@ -16,25 +17,19 @@ namespace perception {
 namespace fs = std::filesystem;
 namespace {
 
-/// ini/ of the tree in whose build folder the program lies, else of the working folder.
 fs::path iniFolder(const std::string& asked) {
-  if (!asked.empty()) return asked;
-  std::error_code none;
-  const fs::path program = fs::read_symlink("/proc/self/exe", none);
-  const fs::path tree = program.parent_path().parent_path().parent_path();
-  return fs::exists(tree / "ini" / "classes.ini", none) ? tree / "ini" : fs::path("ini");
+  return asked.empty() ? fs::path(shippedFolder()) / "ini" : fs::path(asked);
 }
 
-SiteFiles siteFiles(const fs::path& ini, const fs::path& output) {
+SiteFiles siteFiles(const fs::path& ini) {
   if (!fs::exists(ini / "classes.ini"))
     throw Error(ExitCode::kNoInput,
                 fmt::format("{}: not found; --ini names the folder of classes.ini",
                             (ini / "classes.ini").string()));
-  const fs::path from = fs::absolute(output);
   const fs::path model = ini / "models" / "lidar_recordings.json";
   SiteFiles files;
-  files.classes = fs::proximate(fs::absolute(ini / "classes.ini"), from).string();
-  if (fs::exists(model)) files.model = fs::proximate(fs::absolute(model), from).string();
+  files.classes = fs::absolute(ini / "classes.ini").lexically_normal().string();
+  if (fs::exists(model)) files.model = fs::absolute(model).lexically_normal().string();
   return files;
 }
 
@@ -43,14 +38,14 @@ SiteFiles siteFiles(const fs::path& ini, const fs::path& output) {
 void DoctorApp::declare(CLI::App& cli) {
   addInputOption(cli, true);
   addOutputOption(cli, true);
-  cli.add_option("--ini", ini_folder, "Folder of classes.ini and models/ (ini/ of this tree)");
+  cli.add_option("--ini", ini_folder, "Folder of classes.ini and models/ (the shipped ini/)");
   cli.add_flag("--strict", strict, "Damaged input is an error instead of a warning");
 }
 
 void DoctorApp::run() {
   registerPerceptionClasses();
   if (inputs.size() != 1) throw Error(ExitCode::kUsage, "-i/--input: one rawlog");
-  const SiteFiles files = siteFiles(iniFolder(ini_folder), output);
+  const SiteFiles files = siteFiles(iniFolder(ini_folder));
   RawlogReader reader(inputs[0]);
   LogSurvey survey;
   while (const auto observation = reader.next()) {

@@ -10,6 +10,7 @@
 
 #include "libperception/capture/CPacketSensor.h"
 #include "libperception/capture/CScenarioSensor.h"
+#include "libperception/core/CMrptCompatibility.h"
 #include "libperception/core/Error.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -76,9 +77,7 @@ void Grabber::poll() {
   CGenericSensor::TListObservations all;
   for (const auto& driver : drivers_) {
     driver->doProcess();
-    CGenericSensor::TListObservations some;
-    driver->getObservations(some);
-    for (auto& [stamp, object] : some) {
+    for (auto& [stamp, object] : observationsOf(*driver)) {
       const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object);
       if (!observation) continue;
       SensorLedger& ledger = ledgers_[driver->getSensorLabel()];

@@ -17,8 +17,8 @@ namespace perception {
 /// that it includes, --set overrides all files.
 class Config {
  public:
-  /// Reads the file and its includes, from the installed INIs where there is none of that relative
-  /// path (InstalledFiles.h); syntax errors are collected for finish().
+  /// Reads the file and its includes, from the shipped INIs where there is none of that relative
+  /// path (ShippedFiles.h); syntax errors are collected for finish().
   static Config fromFile(const std::string& path);
   static Config fromText(const std::string& text, const std::string& name = "(text)");
   ~Config();

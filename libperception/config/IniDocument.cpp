@@ -8,7 +8,7 @@
 
 #include "libperception/config/IniFile.h"
 #include "libperception/config/IniValue.h"
-#include "libperception/config/InstalledFiles.h"
+#include "libperception/config/ShippedFiles.h"
 
 namespace perception {
 namespace {
@@ -45,7 +45,7 @@ int IniDocument::addSource(const std::string& name) {
 }
 
 void IniDocument::readFile(const std::string& given) {
-  const std::string path = foundOrInstalled(given, given);
+  const std::string path = foundOrShipped(given, given);
   const int source = addSource(path);
   std::string content;
   const std::string trouble = readWhole(path, content);
@@ -148,7 +148,7 @@ void IniDocument::include(const IniPlace& place, const std::string& value) {
   // Relative to the including file's folder, whatever its relative_paths says.
   const auto& includer = sources_[static_cast<std::size_t>(place.source)];
   const std::string folder = includer.identity.empty() ? "" : folderOf(includer.name);
-  const std::string path = foundOrInstalled(joined(folder, value), value);
+  const std::string path = foundOrShipped(joined(folder, value), value);
   const std::string identity = identityOf(path);
   const auto known = std::find_if(sources_.begin(), sources_.end(),
                                   [&](const Source& s) { return s.identity == identity; });

@@ -14,8 +14,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/core/CMrptCompatibility.h"
 #include "libperception/grid/CGridExport.h"
-#include "libperception/grid/CMrptCompatibility.h"
 
 MAP_DEFINITION_REGISTER("perception::CSafetyGrid,safetyGrid", perception::CSafetyGrid)
 

@@ -1,4 +1,4 @@
-#include "libperception/config/InstalledFiles.h"
+#include "libperception/config/ShippedFiles.h"
 
 #include <dlfcn.h>
 
@@ -13,7 +13,7 @@ namespace {
 /// The file that holds this code: a program or a shared library; "": unknown.
 fs::path ownFile() {
   Dl_info info{};
-  if (::dladdr(reinterpret_cast<const void*>(&installedFolder), &info) == 0 ||
+  if (::dladdr(reinterpret_cast<const void*>(&shippedFolder), &info) == 0 ||
       info.dli_fname == nullptr)
     return {};
   std::error_code ignored;
@@ -29,7 +29,7 @@ bool isThere(const fs::path& path) {
 
 }  // namespace
 
-std::string installedFolder() {
+std::string shippedFolder() {
   if (const char* given = std::getenv("PERCEPTION_DATA"); given != nullptr && *given != '\0')
     return given;
   constexpr int kLevels = 3;  // PREFIX/lib/x86_64-linux-gnu/libX.so
@@ -37,15 +37,16 @@ std::string installedFolder() {
   for (int level = 0; level < kLevels && folder.has_relative_path(); ++level) {
     folder = folder.parent_path();
     if (isThere(folder / "share/perception/ini")) return (folder / "share/perception").string();
+    if (isThere(folder / "ini/classes.ini")) return folder.string();
   }
   return {};
 }
 
-std::string foundOrInstalled(const std::string& path, const std::string& name) {
+std::string foundOrShipped(const std::string& path, const std::string& name) {
   if (isThere(path) || name.empty() || name.front() == '/') return path;
-  const fs::path installed = installedFolder();
-  if (installed.empty()) return path;
-  for (const fs::path& candidate : {installed / name, installed / "ini" / name})
+  const fs::path shipped = shippedFolder();
+  if (shipped.empty()) return path;
+  for (const fs::path& candidate : {shipped / name, shipped / "ini" / name})
     if (isThere(candidate)) return candidate.string();
   return path;
 }

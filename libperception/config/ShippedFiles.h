@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+
+namespace perception {
+
+/// Folder of what comes with the programs, ini/ with its models and rawlogs/: the environment's
+/// PERCEPTION_DATA; else, of the folders above the one that holds the program or the library, the
+/// next with share/perception/ini (installed) or ini/classes.ini (the tree it was built in); ""
+/// where there is none.
+std::string shippedFolder();
+
+/// `path` where it exists; else the shipped INI of that relative `name`, with or without its
+/// leading ini/; else `path`.
+std::string foundOrShipped(const std::string& path, const std::string& name);
+
+}  // namespace perception
