@@ -38,6 +38,7 @@ packages=(
   libtinyxml2-dev        # GPX files
   liblzf-dev             # compressed PCD files
   zlib1g-dev             # rawlogs are gzip files; check sums
+  libisal-dev            # inflates rawlogs, twice as fast as zlib
   libzstd-dev            # rawlogs of newer MRPT; MCAP
   liblz4-dev libbz2-dev  # MCAP, ROS bags
   libssl-dev             # SHA-256 of inputs

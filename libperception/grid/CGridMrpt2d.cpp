@@ -44,8 +44,8 @@ class CGridMrpt2d final : public SafetyGrid {
     return at ? valueOf(*at) : 0;
   }
 
-  std::vector<GridCell> occupiedCells() const override {
-    return cellsWhere([this](double v) { return v > params().occupied; });
+  std::vector<GridCell> occupiedWithin(const GridArea& area) const override {
+    return within(area, cellsWhere([this](double v) { return v > params().occupied; }));
   }
   std::vector<GridCell> knownCells() const override {
     return cellsWhere([](double v) { return v != 0; });

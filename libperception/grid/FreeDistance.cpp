@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace perception {
 namespace {
@@ -55,6 +56,32 @@ Vector2 onArc(const Corridor& corridor, const ArcPlace& place) {
   if (std::abs(k) < kStraight) return {place.s, place.d};
   const double radius = 1 / k - place.d;
   return {radius * std::sin(k * place.s), 1 / k - radius * std::cos(k * place.s)};
+}
+
+GridArea areaOf(const Corridor& corridor) {
+  constexpr double kAround = 0.5,
+                   kSlack = 1;  // [m] asked for; for slopes, and arcs between samples
+  constexpr double kStep = 0.5, kTurn = 0.25;  // [m], [rad] from sample to sample
+  const double side = corridor.width / 2 + kAround;
+  GridArea area;
+  std::swap(area.x_min, area.x_max), std::swap(area.y_min, area.y_max);
+  const double bend = std::max(std::abs(corridor.curvature), kStraight);
+  const double step = std::min(kStep, kTurn / bend);
+  const double round = 2 * kPi / bend;  // [m] a whole circle
+  const double begin = corridor.from - kAround;
+  const double end = begin + std::min(corridor.max + kAround - begin, round);
+  const auto samples = static_cast<int>(std::max(end - begin, 0.0) / step) + 1;
+  for (int i = 0; i <= samples; ++i) {
+    for (const double d : {-side, side}) {
+      const Vector2 p = onArc(corridor, {begin + i * step, d});
+      const Vector3 place = corridor.T_world_ego * Vector3(p.x(), p.y(), 0);
+      area.x_min = std::min(area.x_min, place.x() - kSlack);
+      area.x_max = std::max(area.x_max, place.x() + kSlack);
+      area.y_min = std::min(area.y_min, place.y() - kSlack);
+      area.y_max = std::max(area.y_max, place.y() + kSlack);
+    }
+  }
+  return area;
 }
 
 FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>& occupied,

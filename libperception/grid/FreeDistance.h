@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "libperception/core/Frames.h"
@@ -23,6 +24,17 @@ struct Corridor {
   double max = 60;       ///< [m] along the arc: largest distance
   int cells = 1;         ///< occupied cells within half a meter along the arc that block it
 };
+
+/// A rectangle along the world's axes [m]; by default everything.
+struct GridArea {
+  double x_min = -std::numeric_limits<double>::infinity(), x_max = -x_min;
+  double y_min = x_min, y_max = x_max;
+  bool holds(const Vector3& p) const {
+    return p.x() >= x_min && p.x() <= x_max && p.y() >= y_min && p.y() <= y_max;
+  }
+};
+/// Holds every place that is within half a meter of the corridor.
+GridArea areaOf(const Corridor& corridor);
 
 /// Free distance along a corridor.
 struct FreeDistance {

@@ -111,13 +111,13 @@ class GridOctomap final : public SafetyGrid {
   }
 
   // Uses the list of candidates: the tree holds about a hundred thousand free cells.
-  std::vector<GridCell> occupiedCells() const override {
+  std::vector<GridCell> occupiedWithin(const GridArea& area) const override {
     std::vector<GridCell> cells;
     for (const octomap::OcTreeKey& key : listed_) {
       const StampedNode* node = tree_->search(key);
       const double log_odds = node ? decayed(*node) : 0;
       const Vector3 center = centerOf(key);
-      if (log_odds > params().occupied && inWindow(center)) {
+      if (log_odds > params().occupied && inWindow(center) && area.holds(center)) {
         cells.push_back({center, Vector3::Constant(params().resolution), log_odds});
       }
     }

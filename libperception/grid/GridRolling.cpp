@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libperception/grid/ColumnRun.h"
 #include "libperception/grid/RollingSquare.h"
@@ -63,17 +64,19 @@ class GridRolling final : public SafetyGrid {
     return valueOf(values_[slot * static_cast<std::size_t>(layers_) + layer], slot);
   }
 
-  std::vector<GridCell> occupiedCells() const override {
+  std::vector<GridCell> occupiedWithin(const GridArea& area) const override {
     const auto least = static_cast<std::int16_t>(params().occupied * kUnits);
     return cellsWhere(
+        area,
         [=](const std::int16_t* begin, const std::int16_t* end) {
           return *std::max_element(begin, end) >= least;
         },
         [this](double v) { return v > params().occupied; });
   }
   std::vector<GridCell> knownCells() const override {
-    return cellsWhere([](const std::int16_t*, const std::int16_t*) { return true; },
-                      [](double v) { return v != 0; });
+    return cellsWhere(
+        {}, [](const std::int16_t*, const std::int16_t*) { return true; },
+        [](double v) { return v != 0; });
   }
 
   void restore(const std::vector<GridCell>& cells) override {
@@ -101,6 +104,15 @@ class GridRolling final : public SafetyGrid {
   double centerOf(std::int64_t i) const {
     return (static_cast<double>(i) + 0.5) * params().resolution;
   }
+  /// Columns of the window, which begins at `first`, with centers from `low` to `high` [m].
+  std::pair<std::int64_t, std::int64_t> columnsIn(std::int64_t first, double low,
+                                                  double high) const {
+    const double begin = centerOf(first), res = params().resolution;
+    const auto count = static_cast<double>(cells_);
+    const double from = std::clamp(std::ceil((low - begin) / res), 0.0, count);
+    const double to = std::clamp(std::floor((high - begin) / res) + 1, from, count);
+    return {first + static_cast<std::int64_t>(from), first + static_cast<std::int64_t>(to)};
+  }
   std::size_t slotOf(const CellIndex& cell) const { return square_.slotOf(cell.x, cell.y); }
   bool inWindow(const CellIndex& c) const {
     return started_ && square_.holds(first_, c.x, c.y) && c.z >= first_.z &&
@@ -109,12 +121,15 @@ class GridRolling final : public SafetyGrid {
 
   /// `column_may`: fast test of a column of values; `wanted`: test of a cell's log-odds.
   template <class ColumnMay, class Wanted>
-  std::vector<GridCell> cellsWhere(const ColumnMay& column_may, const Wanted& wanted) const {
+  std::vector<GridCell> cellsWhere(const GridArea& area, const ColumnMay& column_may,
+                                   const Wanted& wanted) const {
     std::vector<GridCell> cells;
     if (!started_) return cells;
-    for (std::int64_t y = first_.y; y < first_.y + cells_; ++y) {
-      std::int64_t x = first_.x;
-      square_.forRow(x, y, cells_, [&](std::size_t begin, std::size_t count) {
+    const auto [x_begin, x_end] = columnsIn(first_.x, area.x_min, area.x_max);
+    const auto [y_begin, y_end] = columnsIn(first_.y, area.y_min, area.y_max);
+    for (std::int64_t y = y_begin; y < y_end; ++y) {
+      std::int64_t x = x_begin;
+      square_.forRow(x, y, x_end - x_begin, [&](std::size_t begin, std::size_t count) {
         for (std::size_t slot = begin; slot < begin + count; ++slot, ++x) {
           const std::int16_t* values = values_.data() + slot * static_cast<std::size_t>(layers_);
           if (!column_may(values, values + layers_)) continue;

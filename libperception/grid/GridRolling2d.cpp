@@ -46,8 +46,8 @@ class GridRolling2d final : public SafetyGrid {
     return square_.holds(first_, x, y) ? valueOf(values_[square_.slotOf(x, y)]) : 0;
   }
 
-  std::vector<GridCell> occupiedCells() const override {
-    return cellsWhere([this](double v) { return v > params().occupied; });
+  std::vector<GridCell> occupiedWithin(const GridArea& area) const override {
+    return within(area, cellsWhere([this](double v) { return v > params().occupied; }));
   }
   std::vector<GridCell> knownCells() const override {
     return cellsWhere([](double v) { return v != 0; });

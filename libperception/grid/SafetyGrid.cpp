@@ -1,5 +1,9 @@
 #include "libperception/grid/SafetyGrid.h"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "libperception/grid/CGridMrpt2d.h"
 #include "libperception/grid/GridOctomap.h"
 #include "libperception/grid/GridRolling.h"
@@ -20,8 +24,14 @@ constexpr BackEndRow kBackEnds[] = {{GridParams::BackEnd::kOctomap, &makeGridOct
 }  // namespace
 
 FreeDistance SafetyGrid::freeDistance(const Corridor& corridor) const {
-  return perception::freeDistance(corridor, occupiedCells(), params_.resolution,
+  return perception::freeDistance(corridor, occupiedWithin(areaOf(corridor)), params_.resolution,
                                   [this](const Vector3& place) { return logOdds(place); });
+}
+
+std::vector<GridCell> SafetyGrid::within(const GridArea& area, std::vector<GridCell> cells) {
+  const auto outside = [&](const GridCell& cell) { return !area.holds(cell.center); };
+  cells.erase(std::remove_if(cells.begin(), cells.end(), outside), cells.end());
+  return cells;
 }
 
 std::unique_ptr<SafetyGrid> makeSafetyGrid(const GridParams& params) {

@@ -42,8 +42,10 @@ class SafetyGrid {
   virtual GridStats insert(const GridScan& scan) = 0;
   /// At the time of the last scan; 0 = unknown, also outside the window.
   virtual double logOdds(const Vector3& place) const = 0;
-  /// All cells above params().occupied, in an order that depends on the scans alone.
-  virtual std::vector<GridCell> occupiedCells() const = 0;
+  /// The cells above params().occupied whose centers the area holds, in an order that depends on
+  /// the scans alone.
+  virtual std::vector<GridCell> occupiedWithin(const GridArea& area) const = 0;
+  std::vector<GridCell> occupiedCells() const { return occupiedWithin({}); }
   /// All known cells, in such an order.
   virtual std::vector<GridCell> knownCells() const = 0;
   /// Inserts stored cells of another grid into the window of the last scan, at its time.
@@ -56,6 +58,7 @@ class SafetyGrid {
   FreeDistance freeDistance(const Corridor& corridor) const;
 
  protected:
+  static std::vector<GridCell> within(const GridArea& area, std::vector<GridCell> cells);
   explicit SafetyGrid(const GridParams& params) : params_(params) {}
 
  private:

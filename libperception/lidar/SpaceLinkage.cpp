@@ -15,7 +15,10 @@ constexpr std::uint32_t kNone = ~0u;
 /// Numbers of keys in the order of their first appearance: open addressing, at most half full.
 class KeyNumbers {
  public:
-  KeyNumbers() : slots_(1024) {}
+  /// For about `keys` of them.
+  explicit KeyNumbers(std::size_t keys) : slots_(kFewest) {
+    while (slots_.size() < keys) slots_.resize(2 * slots_.size());
+  }
   std::uint32_t add(std::uint64_t key) {
     if (2 * count_ >= slots_.size()) grow();
     Slot& slot = slots_[slotOf(key)];
@@ -26,6 +29,7 @@ class KeyNumbers {
   std::uint32_t count() const { return count_; }
 
  private:
+  static constexpr std::size_t kFewest = 16;
   struct Slot {
     std::uint64_t key = 0;
     std::uint32_t number = kNone;
@@ -82,6 +86,7 @@ class CubeLinkage {
         cubes_per_block_(static_cast<std::int32_t>(std::ceil(most * per_cube_)) + 1),
         cube_of_(cubes()),
         in_cube_(cube_of_, cube_count_),
+        block_table_(cube_count_),
         block_of_(blocks()),
         in_block_(block_of_, block_key_.size()),
         groups_(cube_count_) {}
@@ -103,13 +108,29 @@ class CubeLinkage {
   }
 
  private:
+  /// Least box around returns, and their longest link [m].
   struct Bounds {
     float x0, x1, y0, y1, z0, z1, length;
+
+    void add(const Bounds& b) {
+      x0 = std::min(x0, b.x0), x1 = std::max(x1, b.x1);
+      y0 = std::min(y0, b.y0), y1 = std::max(y1, b.y1);
+      z0 = std::min(z0, b.z0), z1 = std::max(z1, b.z1);
+      length = std::max(length, b.length);
+    }
+    /// False: no return in one is linked to one in the other.
+    bool mayLink(const Bounds& b) const {
+      const float link = std::min(length, b.length);
+      const float dx = std::max({0.0f, x0 - b.x1, b.x0 - x1}),
+                  dy = std::max({0.0f, y0 - b.y1, b.y0 - y1}),
+                  dz = std::max({0.0f, z0 - b.z1, b.z0 - z1});
+      return dx * dx + dy * dy + dz * dz <= link * link;
+    }
   };
 
   /// The cube of every return; sets the bounds of the cubes.
   std::vector<std::uint32_t> cubes() {
-    KeyNumbers table;
+    KeyNumbers table(returns_.size());
     std::vector<std::uint32_t> cube_of;
     cube_of.reserve(returns_.size());
     std::uint64_t last = 0;  // neighbors in the scan are often in one cube
@@ -118,11 +139,7 @@ class CubeLinkage {
           keyOf(cellOf(r.x, per_cube_), cellOf(r.y, per_cube_), cellOf(r.z, per_cube_));
       const std::uint32_t cube = !cube_of.empty() && key == last ? cube_of.back() : table.add(key);
       if (cube == bounds_.size()) bounds_.push_back({r.x, r.x, r.y, r.y, r.z, r.z, r.length});
-      Bounds& b = bounds_[cube];
-      b.x0 = std::min(b.x0, r.x), b.x1 = std::max(b.x1, r.x);
-      b.y0 = std::min(b.y0, r.y), b.y1 = std::max(b.y1, r.y);
-      b.z0 = std::min(b.z0, r.z), b.z1 = std::max(b.z1, r.z);
-      b.length = std::max(b.length, r.length);
+      bounds_[cube].add({r.x, r.x, r.y, r.y, r.z, r.z, r.length});
       cube_of.push_back(cube), last = key;
     }
     cube_count_ = table.count();
@@ -136,7 +153,9 @@ class CubeLinkage {
       const LinkedReturn& r = returns_[in_cube_.member[in_cube_.start[c]]];
       const std::array<std::int32_t, 3> key = {blockOf(r.x), blockOf(r.y), blockOf(r.z)};
       block_of.push_back(block_table_.add(keyOf(key[0], key[1], key[2])));
-      if (block_of.back() == block_key_.size()) block_key_.push_back(key);
+      if (block_of.back() == block_key_.size())
+        block_key_.push_back(key), block_bounds_.push_back(bounds_[c]);
+      block_bounds_[block_of.back()].add(bounds_[c]);
     }
     return block_of;
   }
@@ -149,12 +168,7 @@ class CubeLinkage {
   }
 
   bool near(std::uint32_t a, std::uint32_t b) const {
-    const Bounds &p = bounds_[a], &q = bounds_[b];
-    const float length = std::min(p.length, q.length);
-    const float dx = std::max({0.0f, p.x0 - q.x1, q.x0 - p.x1}),
-                dy = std::max({0.0f, p.y0 - q.y1, q.y0 - p.y1}),
-                dz = std::max({0.0f, p.z0 - q.z1, q.z0 - p.z1});
-    if (dx * dx + dy * dy + dz * dz > length * length) return false;
+    if (!bounds_[a].mayLink(bounds_[b])) return false;
     for (std::uint32_t i = in_cube_.start[a]; i < in_cube_.start[a + 1]; ++i) {
       const LinkedReturn& r = returns_[in_cube_.member[i]];
       for (std::uint32_t j = in_cube_.start[b]; j < in_cube_.start[b + 1]; ++j) {
@@ -183,16 +197,28 @@ class CubeLinkage {
     return true;
   }
 
+  /// The cubes of block c that may be linked to some of block d.
+  void facing(std::uint32_t c, std::uint32_t d, std::vector<std::uint32_t>& cubes) const {
+    cubes.clear();
+    for (std::uint32_t i = in_block_.start[c]; i < in_block_.start[c + 1]; ++i) {
+      const std::uint32_t cube = in_block_.member[i];
+      if (bounds_[cube].mayLink(block_bounds_[d])) cubes.push_back(cube);
+    }
+  }
+
   void linkBlocks(std::uint32_t c, std::uint32_t d) {
+    if (!block_bounds_[c].mayLink(block_bounds_[d])) return;
     const bool whole = uniform(c) && uniform(d);
     const auto same = [&] {
       return groups_.find(in_block_.member[in_block_.start[c]]) ==
              groups_.find(in_block_.member[in_block_.start[d]]);
     };
-    for (std::uint32_t i = in_block_.start[c]; i < in_block_.start[c + 1]; ++i) {
-      for (std::uint32_t j = in_block_.start[d]; j < in_block_.start[d + 1]; ++j) {
+    if (whole && same()) return;
+    facing(c, d, of_one_), facing(d, c, of_other_);
+    for (const std::uint32_t i : of_one_) {
+      for (const std::uint32_t j : of_other_) {
+        join(i, j);
         if (whole && same()) return;
-        join(in_block_.member[i], in_block_.member[j]);
       }
     }
   }
@@ -205,10 +231,12 @@ class CubeLinkage {
   std::vector<std::uint32_t> cube_of_;
   Buckets in_cube_;
   std::vector<std::array<std::int32_t, 3>> block_key_;
+  std::vector<Bounds> block_bounds_;
   KeyNumbers block_table_;
   std::vector<std::uint32_t> block_of_;
   Buckets in_block_;
   Forest groups_;
+  std::vector<std::uint32_t> of_one_, of_other_;  ///< cubes of two blocks that face each other
 };
 
 }  // namespace

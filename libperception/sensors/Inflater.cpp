@@ -1,6 +1,6 @@
 #include "libperception/sensors/Inflater.h"
 
-#include <zlib.h>
+#include <isa-l/igzip_lib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -12,31 +12,54 @@ namespace {
 
 class GzipInflater final : public Inflater {
  public:
-  GzipInflater() { inflateInit2(&z_, kWindow); }
-  ~GzipInflater() override { inflateEnd(&z_); }
+  GzipInflater() : state_(std::make_unique<inflate_state>()) {
+    isal_inflate_init(state_.get());
+    state_->crc_flag = ISAL_GZIP;
+  }
   const char* name() const override { return "gzip"; }
   bool begins(unsigned char byte) const override { return byte == 0x1f; }
-  void reset() override { inflateReset2(&z_, kWindow); }
+  void reset() override {
+    isal_inflate_reset(state_.get());
+    state_->crc_flag = ISAL_GZIP;
+  }
   Step step(In& in, Out& out) override {
     const auto sized = [](std::size_t size) {
-      return static_cast<uInt>(std::min<std::size_t>(size, std::numeric_limits<uInt>::max()));
+      return static_cast<std::uint32_t>(
+          std::min<std::size_t>(size, std::numeric_limits<std::uint32_t>::max()));
     };
-    z_.next_in = const_cast<unsigned char*>(in.data);  // zlib does not write to it
-    const uInt given = z_.avail_in = sized(in.size);
-    z_.next_out = out.data;
-    const uInt room = z_.avail_out = sized(out.size);
-    const int result = inflate(&z_, Z_NO_FLUSH);
-    in = {in.data + (given - z_.avail_in), in.size - (given - z_.avail_in)};
-    out = {out.data + (room - z_.avail_out), out.size - (room - z_.avail_out)};
-    if (result == Z_STREAM_END) return Step::kMemberEnd;
-    if (result == Z_OK || result == Z_BUF_ERROR) return Step::kMore;
-    fault_ = z_.msg != nullptr ? z_.msg : "zlib error";
-    return Step::kBad;
+    state_->next_in = const_cast<unsigned char*>(in.data);  // it is not written to
+    const std::uint32_t given = state_->avail_in = sized(in.size);
+    state_->next_out = out.data;
+    const std::uint32_t room = state_->avail_out = sized(out.size);
+    const int result = isal_inflate(state_.get());
+    in = {in.data + (given - state_->avail_in), in.size - (given - state_->avail_in)};
+    out = {out.data + (room - state_->avail_out), out.size - (room - state_->avail_out)};
+    if (result < 0) {
+      fault_ = faultOf(result);
+      return Step::kBad;
+    }
+    return state_->block_state == ISAL_BLOCK_FINISH ? Step::kMemberEnd : Step::kMore;
   }
 
  private:
-  static constexpr int kWindow = 15 + 16;  ///< largest window, gzip with check of CRC and length
-  z_stream z_{};
+  static const char* faultOf(int result) {
+    switch (result) {
+      case ISAL_INVALID_BLOCK:
+        return "invalid block";
+      case ISAL_INVALID_SYMBOL:
+        return "invalid symbol";
+      case ISAL_INVALID_LOOKBACK:
+        return "invalid distance";
+      case ISAL_INVALID_WRAPPER:
+        return "invalid header";
+      case ISAL_UNSUPPORTED_METHOD:
+        return "unknown method of compression";
+      case ISAL_INCORRECT_CHECKSUM:
+        return "incorrect checksum";
+    }
+    return "invalid data";
+  }
+  std::unique_ptr<inflate_state> state_;
 };
 
 class ZstdInflater final : public Inflater {

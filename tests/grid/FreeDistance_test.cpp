@@ -30,6 +30,25 @@ TEST(ArcPlace, RightTurnIsTheMirrorImageOfALeftTurn) {
   EXPECT_NEAR(a.d, -b.d, 1e-12);
 }
 
+TEST(AreaOf, HoldsWhatIsHalfAMeterFromTheCorridorHoweverItBends) {
+  for (const double curvature : {0.0, 0.02, -0.08, 0.3, -0.9}) {
+    Corridor corridor;
+    corridor.T_world_ego = makePose(200, -80, 1, 2.2, radians(3), radians(-2));
+    corridor.curvature = curvature;
+    corridor.max = 40;
+    const GridArea area = areaOf(corridor);
+    for (double s = corridor.from - 0.5; s <= corridor.max + 0.5; s += 0.07) {
+      for (const double d : {-corridor.width / 2 - 0.5, 0.0, corridor.width / 2 + 0.5}) {
+        const Vector2 p = onArc(corridor, {s, d});
+        for (const double z : {0.0, 2.5})
+          EXPECT_TRUE(area.holds(corridor.T_world_ego * Vector3(p.x(), p.y(), z)))
+              << curvature << " " << s << " " << d;
+      }
+    }
+    EXPECT_LT(area.x_max - area.x_min, 50);
+  }
+}
+
 TEST(ArcPlace, OnArcIsItsInverse) {
   for (const double k : {-0.1, 0.0, 0.04}) {
     Corridor corridor;

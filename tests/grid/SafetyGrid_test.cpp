@@ -154,6 +154,19 @@ TEST_P(SafetyGridContract, TwoTrustedScansMarkWhatDrivesIntoFreeSpace) {
   EXPECT_LT(before, places / 2) << "two flakes in a place would block as well";
 }
 
+TEST_P(SafetyGridContract, CellsOfAnAreaAreThoseOfAllWithTheirCentersInIt) {
+  const auto g = grid();
+  for (int k = 0; k < 4; ++k) g->insert(sceneWithWall(k * kPeriod, 20));
+  const GridArea area{19, 21, -2.3, 1.1};
+  std::vector<Vector3> wanted, found;
+  for (const GridCell& cell : g->occupiedCells())
+    if (area.holds(cell.center)) wanted.push_back(cell.center);
+  for (const GridCell& cell : g->occupiedWithin(area)) found.push_back(cell.center);
+  EXPECT_GT(found.size(), 5u);
+  EXPECT_LT(found.size(), g->occupiedCells().size());
+  EXPECT_EQ(found, wanted);
+}
+
 TEST_P(SafetyGridContract, EmptyScansAreHarmless) {
   const auto g = grid();
   EXPECT_TRUE(g->occupiedCells().empty());

@@ -63,7 +63,7 @@ TEST(PaperReport, AWeatherThatWasNotRunIsEmptyWithThePapersNumberAlone) {
 
 TEST(PaperReport, KindsAreSeparate) {
   const auto tables = paperTables({outcome("night", 1, 10, 1), outcome("night", 1, 5, 0)});
-  const StudyTable& sensors = tableOf(tables, "sensors");
+  const StudyTable sensors = tableOf(tables, "sensors");
   EXPECT_EQ(rowOf(sensors, "Vehicle", "C+L+R")[2], "1.000");
   EXPECT_EQ(rowOf(sensors, "Pedestrian", "C+L+R")[2], "0.500");
   EXPECT_EQ(rowOf(sensors, "both", "C+L+R")[2], "0.750");
