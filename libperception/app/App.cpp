@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/MemoryLimit.h"
 #include "libperception/pipeline/Progress.h"
-#include "libperception/sensors/MemoryLimit.h"
 
 namespace perception {
 namespace {

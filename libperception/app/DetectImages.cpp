@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/Supervision.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/sensors/CameraImages.h"
 
@@ -49,6 +50,7 @@ std::vector<std::string> imageFiles(const std::vector<std::string>& inputs) {
 }
 
 std::optional<Raster> readImage(const std::string& path) {
+  const ReadingScope scope(path);
   const cv::Mat pixels = cv::imread(path, cv::IMREAD_COLOR);
   if (pixels.empty()) return std::nullopt;
   Raster raster{pixels.cols, pixels.rows, 3, {}};

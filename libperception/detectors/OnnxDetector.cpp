@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -11,6 +12,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/MemoryLimit.h"
+#include "libperception/core/Supervision.h"
 #include "libperception/detectors/CvRaster.h"
 #include "libperception/detectors/Detector.h"
 #include "libperception/detectors/OnnxOutput.h"
@@ -19,6 +22,8 @@
 namespace perception {
 namespace {
 
+// [bytes] that reading and one run may take: 20 times as much as common networks of this kind.
+constexpr std::uint64_t kLargestNetwork = 2ULL << 30;
 constexpr double kLeastScore = 0.01;   // weaker boxes of a network are noise
 constexpr double kWindowAspect = 1.3;  // ratio of sides above which square windows are added
 constexpr double kTruncated = 0.03;    // of its width: a box this close to its edge is truncated
@@ -37,6 +42,8 @@ class OnnxDetector final : public Detector {
     if (!std::filesystem::exists(path_))
       throw DataError(fmt::format("{}: no such file (a network)", path_), ExitCode::kNoInput);
     try {
+      const ReadingScope scope(path_);
+      const MemoryLimit limit(addressSpace() + kLargestNetwork);
       net_ = cv::dnn::readNetFromONNX(path_);
       net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
       run(cv::Mat::zeros(side_, side_, CV_8UC3));  // fails here when the network cannot run

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <opencv2/core.hpp>
@@ -9,12 +10,16 @@
 #include <opencv2/objdetect.hpp>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/MemoryLimit.h"
+#include "libperception/core/Supervision.h"
 #include "libperception/detectors/CvRaster.h"
 #include "libperception/detectors/Detector.h"
 #include "libperception/detectors/Suppression.h"
 
 namespace perception {
 namespace {
+
+constexpr std::uint64_t kLargestCascade = 512ULL << 20;  // [bytes] that reading may take; assumed
 
 bool admitted(const ObjectDetection& o, const std::optional<GroundGate>& gate, double low,
               double high) {
@@ -51,6 +56,8 @@ class CvDpmDetector final : public Detector {
       params_.push_back(params);
     }
     try {
+      const ReadingScope scope(files.front());
+      const MemoryLimit limit(addressSpace() + kLargestCascade);
       detector_ = cv::dpm::DPMDetector::create(files, names);
     } catch (const cv::Exception& e) {
       throw DataError(fmt::format("{}: cv::dpm cannot read it: {}", files.front(), e.err));
@@ -58,6 +65,7 @@ class CvDpmDetector final : public Detector {
     if (!detector_ || detector_->isEmpty())
       throw DataError(fmt::format("{}: cv::dpm cannot read it", files.front()));
     names_ = names;
+    file_ = files.front();
   }
 
   std::vector<ObjectDetection> detect(const Raster& image,
@@ -66,7 +74,15 @@ class CvDpmDetector final : public Detector {
     std::vector<cv::dpm::DPMDetector::ObjectDetection> found;
     {
       const std::lock_guard<std::mutex> lock(one_at_a_time_);
-      detector_->detect(pixels, found);
+      const ReadingScope scope(file_);  // a damaged cascade shows only when it is used
+      try {
+        detector_->detect(pixels, found);
+      } catch (const cv::Exception& e) {
+        throw DataError(
+            fmt::format("{}: cv::dpm fails on an image of {} x {}: smaller than the "
+                        "model, or the file is damaged ({})",
+                        file_, image.width, image.height, e.err));
+      }
     }
     std::vector<ObjectDetection> out;
     for (const auto& f : found) {
@@ -84,6 +100,7 @@ class CvDpmDetector final : public Detector {
  private:
   mutable std::mutex one_at_a_time_;
   cv::Ptr<cv::dpm::DPMDetector> detector_;
+  std::string file_;  ///< the first cascade
   std::vector<std::string> names_;
   std::vector<DetectorModelParams> params_;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/Supervision.h"
 
 namespace perception {
 namespace {
@@ -85,6 +86,7 @@ class BoundingDisc {
 }  // namespace
 
 RadarReturns radarReturnsOf(const std::string& path, const RadarPictureParams& params) {
+  const ReadingScope scope(path);
   const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
   if (picture.empty()) throw DataError(path + ": not an image");
   const cv::Mat polar = polarOf(picture, params);

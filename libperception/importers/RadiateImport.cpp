@@ -10,6 +10,7 @@
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/Supervision.h"
 #include "libperception/importers/ImportClock.h"
 #include "libperception/importers/ImportRadarPicture.h"
 #include "libperception/importers/ImportText.h"
@@ -230,8 +231,9 @@ void RadiateImporter::addTruth(ImportLog& log) {
   const std::string file = radiateAnnotationFile(params_.dir);
   if (file.empty()) return;
   log.expectTruth();
-  const cv::Mat picture = cv::imread(
-      frameFiles(path("Navtech_Cartesian").string(), {".png"}).front().path, cv::IMREAD_GRAYSCALE);
+  const std::string first = frameFiles(path("Navtech_Cartesian").string(), {".png"}).front().path;
+  const ReadingScope scope(first);
+  const cv::Mat picture = cv::imread(first, cv::IMREAD_GRAYSCALE);
   const double center_u = picture.cols * 0.5, center_v = picture.rows * 0.5;
   for (const auto& [frame, boxes] : readRadiateAnnotations(file)) {
     const auto time = radar_times_.find(frame);

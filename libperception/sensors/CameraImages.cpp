@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/Supervision.h"
 
 namespace perception {
 namespace {
@@ -29,6 +30,7 @@ std::optional<Raster> loadFile(const std::string& path) {
   std::error_code fault;
   if (!std::filesystem::is_regular_file(path, fault)) return std::nullopt;
   try {
+    const ReadingScope scope(path);
     return rasterOf(cv::imread(path, cv::IMREAD_COLOR));
   } catch (const std::exception&) {  // OpenCV throws on sizes beyond its limits
     return std::nullopt;

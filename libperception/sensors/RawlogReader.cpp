@@ -11,11 +11,12 @@
 #include <new>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/MemoryLimit.h"
 #include "libperception/core/Supervision.h"
 #include "libperception/sensors/CRawlogInput.h"
+#include "libperception/sensors/CheckedAllocation.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/JpegErrors.h"
-#include "libperception/sensors/MemoryLimit.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {
@@ -112,7 +113,7 @@ const char* nameOf(RawlogReader::End end) {
 
 RawlogReader::RawlogReader(const std::string& path) : path_(path) {
   registerPerceptionClasses();
-  MemoryLimit::link();
+  linkCheckedAllocation();
   linkJpegErrors();
   input_ = std::make_unique<CRawlogInput>(path);
   const std::string begin = input_->peek(kHeaderBytes);

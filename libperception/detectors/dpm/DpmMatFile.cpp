@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -13,10 +14,14 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/MemoryLimit.h"
+#include "libperception/core/Supervision.h"
 #include "libperception/detectors/simd/VisionKernels.h"
 
 namespace perception {
 namespace {
+
+constexpr std::uint64_t kLargestModel = 512ULL << 20;  // [bytes] that reading may take; assumed
 
 // Permutation of the features of a cell under mirroring (voc-release5, flipfeat.m).
 constexpr std::array<int, kFeatures> kMirrored = {9,  8,  7,  6,  5,  4,  3,  2,  1,  0,  17,
@@ -26,7 +31,7 @@ constexpr std::array<int, kFeatures> kMirrored = {9,  8,  7,  6,  5,  4,  3,  2,
 /// The variable `model` of a MATLAB file, read field by field.
 class MatModel {
  public:
-  explicit MatModel(const std::string& path) : path_(path) {
+  explicit MatModel(const std::string& path) : path_(path), scope_(path) {
     if (!std::filesystem::exists(path))
       throw DataError(fmt::format("{}: no such file (a part model)", path), ExitCode::kNoInput);
     file_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
@@ -61,6 +66,7 @@ class MatModel {
   }
   std::vector<double> numbers(const matvar_t* v, const char* what) const {
     const std::size_t n = count(v);
+    if (n > 0 && v->data == nullptr) fail(fmt::format(".{}: without its values", what));
     std::vector<double> out(n);
     for (std::size_t i = 0; i < n; ++i) {
       if (v->class_type == MAT_C_DOUBLE) {
@@ -102,6 +108,9 @@ class MatModel {
     void operator()(matvar_t* v) const { Mat_VarFree(v); }
   };
   std::string path_;
+  // As long as the values of the file are read.
+  ReadingScope scope_;
+  MemoryLimit limit_{addressSpace() + kLargestModel};
   std::unique_ptr<mat_t, CloseFile> file_;
   std::unique_ptr<matvar_t, FreeVariable> model_;
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/Supervision.h"
 #include "libperception/detectors/dpm/DpmModel.h"
 #include "tests/support/TemporaryFolder.h"
 
@@ -129,6 +130,16 @@ TEST(DpmMatFile, ReleasesFourAndFiveGiveOneModel) {
   }
   EXPECT_EQ(four.components[0].root.weights, five.components[0].root.weights);
   EXPECT_EQ(four.components[0].parts[0].filter.weights, five.components[0].parts[0].filter.weights);
+}
+
+TEST(DpmMatFile, IsReadAsDataOfOthers) {
+  const TemporaryFolder folder;
+  const std::string path = writeModel(folder, 5);
+  const auto& record = SupervisionRecord::ofThisProcess();
+  const auto before = record.reading.load();
+  readDpmModel(path);
+  EXPECT_EQ(record.reading, before + 2) << "a scope that was entered and left";
+  EXPECT_EQ(std::string(record.read_from.data()), path);
 }
 
 TEST(DpmMatFile, ReleaseFiveWeighsTheOctaveOfTheRoot) {

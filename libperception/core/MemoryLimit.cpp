@@ -1,22 +1,11 @@
-#include "libperception/sensors/MemoryLimit.h"
+#include "libperception/core/MemoryLimit.h"
 
 #include <fcntl.h>
-#include <mrpt/core/aligned_allocator.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <new>
-
-// MRPT's version returns null when out of memory, which its containers do not check. This
-// definition overrides that of the library, whose aligned_free() is free().
-void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
-  const std::size_t whole = (size + alignment - 1) / alignment * alignment;
-  void* const memory = whole < size ? nullptr : std::aligned_alloc(alignment, whole);
-  if (memory == nullptr && size > 0) throw std::bad_alloc();
-  return memory;
-}
 
 namespace perception {
 
@@ -47,8 +36,6 @@ bool MemoryLimit::supported() {
   return true;
 #endif
 }
-
-void MemoryLimit::link() {}
 
 MemoryLimit::MemoryLimit(std::uint64_t bytes) {
   if (!supported()) return;

@@ -1,15 +1,15 @@
-#include "libperception/sensors/MemoryLimit.h"
+#include "libperception/sensors/CheckedAllocation.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/io/CFileOutputStream.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/serialization/CArchive.h>
-#include <sys/resource.h>
 
 #include <cstdlib>
 #include <cstring>
 
+#include "libperception/core/MemoryLimit.h"
 #include "libperception/sensors/Conversions.h"
 #include "tests/sensors/TestFiles.h"
 
@@ -19,24 +19,6 @@ namespace {
 using namespace perception::testing;
 
 constexpr std::uint64_t kGigabyte = 1ULL << 30;
-
-rlim_t softLimit() {
-  struct rlimit limit {};
-  ::getrlimit(RLIMIT_AS, &limit);
-  return limit.rlim_cur;
-}
-
-TEST(MemoryLimit, HoldsWhileItLives) {
-  if (!MemoryLimit::supported()) GTEST_SKIP() << "sanitizers reserve terabytes";
-  const rlim_t before = softLimit();
-  {
-    const MemoryLimit limit(64 * kGigabyte);
-    EXPECT_EQ(softLimit(), 64 * kGigabyte);
-    const MemoryLimit wider(128 * kGigabyte);  // a limit is never raised
-    EXPECT_EQ(softLimit(), 64 * kGigabyte);
-  }
-  EXPECT_EQ(softLimit(), before);
-}
 
 /// An uncompressed log of one cloud with five points, their number replaced by `count`.
 void writeForgedLog(const std::string& file, std::uint32_t count) {
@@ -60,7 +42,7 @@ void writeForgedLog(const std::string& file, std::uint32_t count) {
 }
 
 // MRPT alone dies of these (its aligned allocator gives null, its vectors write to it).
-TEST(MemoryLimit, ForgedNumbersOfPointsEndTheLogAndNotTheProgram) {
+TEST(CheckedAllocation, ForgedNumbersOfPointsEndTheLogAndNotTheProgram) {
   if (!MemoryLimit::supported()) GTEST_SKIP() << "sanitizers reserve terabytes";
   const TemporaryFolder folder;
   const std::string file = folder.file("forged.rawlog");

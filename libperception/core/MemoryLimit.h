@@ -5,9 +5,7 @@
 namespace perception {
 
 /// Limits the memory of the process (RLIMIT_AS) during its lifetime, so that implausible sizes in a
-/// truncated or forged rawlog cause an exception that RawlogReader reports instead of exhausting
-/// the machine. MRPT's aligned allocation, whose failure MRPT 2.5.8 does not check, throws
-/// std::bad_alloc in every program that links RawlogReader.
+/// truncated or forged file cause an exception where it is read instead of exhausting the machine.
 class MemoryLimit {
  public:
   /// `bytes` 0: nine tenths of the machine's memory. No limit under address and thread sanitizers,
@@ -18,8 +16,6 @@ class MemoryLimit {
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 
   static bool supported();
-  /// No operation; forces the linker to include the checked allocation.
-  static void link();
 
  private:
   std::optional<std::uint64_t> before_;  ///< [bytes] former soft limit
