@@ -285,7 +285,9 @@ void writeImageLog(const std::string& path, bool embedded) {
     if (embedded) {
       image.image = pixels;
     } else {
-      if (k > 0) EXPECT_TRUE(pixels.saveToFile(folder + "/" + name));
+      if (k > 0) {
+        EXPECT_TRUE(pixels.saveToFile(folder + "/" + name));
+      }
       image.image.setExternalStorage(name);
     }
     log.write(image);
