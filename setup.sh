@@ -4,6 +4,7 @@
 #   ./setup.sh demo    the same, then tracks, evaluates and draws the simulated log rawlogs/demo.rawlog
 #   ./setup.sh package builds the Debian packages: build-package/*.deb
 #   ./setup.sh bench   builds the benchmarks against other libraries and runs them one after the other
+#   ./setup.sh fuzz MINUTES   feeds every parser with a fuzzer's bytes for so many minutes together
 #   ./setup.sh sanitize   all tests with sanitizers, an hour
 #   ./setup.sh test    the same with the tests, and runs them: all of them, and some once more with sanitizers;
 #                      before them clang-format on all sources and clang-tidy on a few
@@ -11,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-readonly usage="usage: ./setup.sh build | demo | package | bench | test | sanitize"
+readonly usage="usage: ./setup.sh build | demo | package | bench | test | sanitize | fuzz MINUTES"
 readonly exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
 
 packages=(
@@ -65,6 +66,10 @@ test_packages=(
 package_packages=(
   dpkg-dev file          # dependencies of what is packed
   help2man               # manual pages
+)
+
+fuzz_packages=(
+  clang-14 libclang-rt-14-dev  # libFuzzer
 )
 
 bench_packages=(
@@ -229,7 +234,36 @@ sanitize() {
   return "$failed"
 }
 
-[[ $# == 1 ]] || { echo "$usage" >&2; exit $exit_usage; }
+# Parsers one after the other, from the corpus in build-fuzz/corpus (kept) and the seeds of the tree. A finding stays as
+# build-fuzz/NAME-crash-...; its target and how to run it again are said.
+fuzz() {
+  local minutes=$1 name names seconds failed=0
+  installPackages "${packages[@]}" "${fuzz_packages[@]}"
+  say "Building with clang"
+  cmake -B build-fuzz -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+    -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1 -DNDEBUG" -DPERCEPTION_PRECOMPILE=OFF -DPERCEPTION_WERROR=OFF \
+    -DPERCEPTION_TESTS=OFF -DPERCEPTION_FUZZ=ON -DPERCEPTION_SANITIZE=fuzzer-no-link,address,undefined >"$scratch" ||
+    { cat "$scratch" >&2; exit 1; }
+  cmake --build build-fuzz -j "$(jobs)" --target perception_fuzz
+  mapfile -t names < <(build-fuzz/bin/perception_fuzz 2>/dev/null </dev/null)
+  (( ${#names[@]} )) || die 70 "build-fuzz/bin/perception_fuzz names no target"
+  seconds=$(( minutes * 60 / ${#names[@]} + 1 ))
+  for name in "${names[@]}"; do
+    local seeds=()
+    mkdir -p "build-fuzz/corpus/$name"
+    [[ ! -d tests/fuzz/seeds/$name ]] || seeds=("tests/fuzz/seeds/$name")
+    local code=0
+    FUZZ_TARGET=$name ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=halt_on_error=1 \
+      build-fuzz/bin/perception_fuzz -max_total_time="$seconds" -timeout=2 -rss_limit_mb=1024 -max_len=20000 \
+      -print_final_stats=1 -artifact_prefix="build-fuzz/$name-" "build-fuzz/corpus/$name" "${seeds[@]}" \
+      >"$scratch" 2>&1 || code=$?
+    printf '%-18s %s inputs, code %s\n' "$name" "$(sed -n 's/stat::number_of_executed_units: //p' "$scratch")" "$code"
+    (( code == 0 )) || { failed=1; tail -n 30 "$scratch"; }
+  done
+  return "$failed"
+}
+
+[[ $# == 1 || ( $# == 2 && $1 == fuzz && $2 =~ ^[1-9][0-9]*$ ) ]] || { echo "$usage" >&2; exit $exit_usage; }
 scratch=$(mktemp)
 readonly scratch
 trap 'rm -f "$scratch"' EXIT
@@ -240,5 +274,6 @@ case $1 in
   bench) benches ;;
   test) tests ;;
   sanitize) sanitize ;;
+  fuzz) fuzz "${2:-10}" ;;
   *) echo "$usage" >&2; exit $exit_usage ;;
 esac

@@ -145,8 +145,9 @@ std::string readBytes(const std::string& path, std::size_t most) {
   int got = 0;
   do {
     const std::size_t begin = bytes.size();
-    bytes.resize(begin + (1U << 20));
-    got = gzread(file, bytes.data() + begin, 1U << 20);
+    const auto block = std::clamp<std::size_t>(begin, 1U << 16, 1U << 20);
+    bytes.resize(begin + block);
+    got = gzread(file, bytes.data() + begin, static_cast<unsigned>(block));
     bytes.resize(begin + static_cast<std::size_t>(std::max(got, 0)));
   } while (got > 0 && bytes.size() <= most);
   // A truncated gzip file is detected only on close.

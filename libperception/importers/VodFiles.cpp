@@ -20,7 +20,7 @@ std::vector<VodRadarPoint> readVodRadar(const std::string& path) {
         path, bytes.size()));
   }
   std::vector<VodRadarPoint> points(bytes.size() / sizeof(VodRadarPoint));
-  std::memcpy(points.data(), bytes.data(), bytes.size());
+  if (!points.empty()) std::memcpy(points.data(), bytes.data(), bytes.size());
   return points;
 }
 

@@ -46,11 +46,11 @@ ObjectDetection readDetection(CArchive& in) {
     in >> score;
   }
   if (archive::readFlag(in)) {
-    auto& b = d.image_box.emplace();
+    auto& b = *(d.image_box = ObjectDetection::ImageBox{});
     in >> b.x1 >> b.y1 >> b.x2 >> b.y2;
   }
   if (archive::readFlag(in)) {
-    auto& b = d.space_box.emplace();
+    auto& b = *(d.space_box = ObjectDetection::SpaceBox{});
     in >> b.bottom_center.x() >> b.bottom_center.y() >> b.bottom_center.z() >> b.yaw >> b.length >>
         b.width >> b.height;
   }

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "libperception/core/GroundTruth.h"
+#include "libperception/importers/VodFiles.h"
 #include "tests/importers/ImportFixture.h"
 
 namespace perception {
@@ -28,6 +29,14 @@ constexpr const char* kCalibration =
 std::string textOf(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Found by a fuzzer.
+TEST(VodFiles, AnEmptyRadarFileIsAScanWithoutPoints) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("00001.bin");
+  std::ofstream(path, std::ios::binary).flush();
+  EXPECT_TRUE(readVodRadar(path).empty());
 }
 
 TEST(Importers, EachHasANameOfItsOwnAndSaysWhatItReads) {
