@@ -33,8 +33,8 @@ std::string textOf(const std::string& path) {
 
 // Found by a fuzzer.
 TEST(VodFiles, AnEmptyRadarFileIsAScanWithoutPoints) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("00001.bin");
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path() + "/00001.bin";
   std::ofstream(path, std::ios::binary).flush();
   EXPECT_TRUE(readVodRadar(path).empty());
 }
