@@ -217,14 +217,18 @@ class Evaluator {
       if (e >= 0) paired[static_cast<std::size_t>(e)] = true;
     }
     std::vector<Vector2> set;
+    std::vector<std::uint64_t> ids;
     for (std::size_t i = 0; i < named.size(); ++i) {
       if (paired[i] || (isNamedInSector(named[i]) && !anyNear(others, named[i]))) {
-        set.push_back(named[i].footprint.center);
+        set.push_back(named[i].footprint.center), ids.push_back(named[i].object->id);
       }
     }
     figures.estimates = set.size();
     figures.gospa = gospa(centers(counted), set, options_.cutoff);
     figures.ospa = ospa(centers(counted), set, options_.cutoff);
+    std::vector<std::int64_t> truth_ids;
+    for (const SeenTruth& truth : counted) truth_ids.push_back(truth.object->id);
+    figures.identities = identityView(truth_ids, centers(counted), ids, set, options_.tolerance);
   }
 
   // Denominator B: truth within the range of the sensor set. A lidar covers the sector; without

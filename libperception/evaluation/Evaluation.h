@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libperception/evaluation/Footprint.h"
+#include "libperception/evaluation/Identities.h"
 #include "libperception/evaluation/Matching.h"
 #include "libperception/evaluation/SetDistance.h"
 #include "libperception/evaluation/TruthAlignment.h"
@@ -91,7 +92,8 @@ struct InstantFigures {
   std::vector<OutputCounts> outputs;  ///< by class
   std::vector<FalseObject> false_objects;
   Gospa gospa;
-  double ospa = 0;  ///< [m]
+  double ospa = 0;          ///< [m]
+  IdentityView identities;  ///< of the same sets
 
   OutputCounts allOutputs() const;
 };

@@ -227,6 +227,12 @@ ClearFigures clearFigures(const Evaluation& evaluation) {
   return figures;
 }
 
+IdentityFigures identityFigures(const Evaluation& evaluation) {
+  std::vector<IdentityView> views;
+  for (const InstantFigures& instant : evaluation.instants) views.push_back(instant.identities);
+  return identityFigures(views);
+}
+
 CountDifference countDifference(const TrackedRun& run, const TrackedRun& reference) {
   const auto classified = [](const Scene& scene) {
     return std::count_if(scene.objects.begin(), scene.objects.end(),

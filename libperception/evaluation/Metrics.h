@@ -121,6 +121,8 @@ struct ClearFigures {
 /// Equals the definition if EvaluationOptions::exclusion = tolerance: outputs between the two
 /// distances are ignored.
 ClearFigures clearFigures(const Evaluation& evaluation);
+/// HOTA and IDF1 of all classes.
+IdentityFigures identityFigures(const Evaluation& evaluation);
 
 /// RMS difference in the number of objects between two runs (in [radecki2016] against a run of 50
 /// particles) at common instants; empty when there are none.

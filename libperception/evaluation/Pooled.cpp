@@ -6,6 +6,7 @@ namespace {
 
 // Truth ids are made unique over the runs.
 constexpr std::int64_t kIdsOfARun = 1000000;
+constexpr std::uint64_t kTracksOfARun = 1'000'000'000;
 
 }  // namespace
 
@@ -21,7 +22,13 @@ Evaluation pooled(const std::vector<const Evaluation*>& parts) {
       throw DataError("runs with different classes cannot be pooled");
     }
     const std::size_t first = sum.instants.size();
-    sum.instants.insert(sum.instants.end(), part->instants.begin(), part->instants.end());
+    for (InstantFigures instant : part->instants) {
+      for (auto& id : instant.identities.truth)
+        if (id >= 0) id = run * kIdsOfARun + id % kIdsOfARun;
+      for (auto& id : instant.identities.estimates)
+        id += static_cast<std::uint64_t>(run) * kTracksOfARun;
+      sum.instants.push_back(std::move(instant));
+    }
     for (TruthSample sample : part->samples) {
       sample.instant += first;
       if (sample.id >= 0) sample.id = run * kIdsOfARun + sample.id % kIdsOfARun;

@@ -225,6 +225,15 @@ Json coverageJson(const Evaluation& evaluation) {
           {"truth_lines", uses}};
 }
 
+Json identitiesJson(const Evaluation& e) {
+  const IdentityFigures f = identityFigures(e);
+  return {{"mota", json(clearFigures(e).mota)},
+          {"hota", json(f.hota)},
+          {"det_a", json(f.detection)},
+          {"ass_a", json(f.association)},
+          {"idf1", json(f.idf1)}};
+}
+
 Json optionsJson(const EvaluationOptions& o) {
   return {{"range_m", o.selection.range},
           {"fov_deg", degrees(o.selection.fov)},
@@ -257,7 +266,8 @@ std::string jsonReport(const EvaluationReport& report) {
                   {"closest", pairingJson(e, Pairing::kClosest)},
                   {"one_to_one", pairingJson(e, Pairing::kOneToOne)},
                   {"false_objects", falseObjectsJson(e)},
-                  {"set_distance", json(setFigures(e, report.options.cutoff))}};
+                  {"set_distance", json(setFigures(e, report.options.cutoff))},
+                  {"identities", identitiesJson(e)}};
     if (run.count_difference) {
       entry["count_rms"] = {{"all", json(run.count_difference->all)},
                             {"classified", json(run.count_difference->classified)},

@@ -25,8 +25,11 @@ std::string summaryOf(const EvaluatedRun& run, const EvaluationOptions& options)
   text += line("false objects",
                fmt::format("{} an instant, of a sure class {}", number(wrong.per_instant, 2),
                            number(wrong.classified_per_instant, 2)));
-  text += line("together", fmt::format("MOTA {}, GOSPA {} m", number(clearFigures(e).mota),
-                                       number(setFigures(e, options.cutoff).gospa_mean, 2)));
+  const IdentityFigures identities = identityFigures(e);
+  text += line("together",
+               fmt::format("MOTA {}, HOTA {}, IDF1 {}, GOSPA {} m", number(clearFigures(e).mota),
+                           number(identities.hota), number(identities.idf1),
+                           number(setFigures(e, options.cutoff).gospa_mean, 2)));
   text += line("errors (rms)",
                fmt::format("position {} m, velocity {} m/s", number(single.position_rms, 2),
                            number(single.velocity_rms, 2)));
