@@ -6,10 +6,11 @@
 
 namespace perception {
 
-/// perception-export: a log and its tracks as one MCAP file with Foxglove's messages.
+/// perception-export: a log and its tracks as one MCAP file.
 class ExportApp : public App {
  public:
   std::string run_dir;                ///< -r: folder of perception-track
+  std::string format = "foxglove";    ///< --format: foxglove, ros2
   std::uint64_t out_messages = 0;     ///< messages written
   std::uint64_t out_frames = 0;       ///< sensor frames among them
   std::uint64_t out_without_ego = 0;  ///< sensor frames left out: no scene near gives the pose

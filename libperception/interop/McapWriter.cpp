@@ -65,7 +65,8 @@ void McapWriter::put(std::string_view bytes) {
 }
 
 std::uint16_t McapWriter::addChannel(const std::string& topic, const std::string& encoding,
-                                     const Schema& schema) {
+                                     const Schema& schema,
+                                     const std::map<std::string, std::string>& metadata) {
   const auto [known, is_new] =
       schema_ids_.try_emplace(schema.name, static_cast<std::uint16_t>(schema_ids_.size() + 1));
   if (is_new) {
@@ -75,8 +76,10 @@ std::uint16_t McapWriter::addChannel(const std::string& topic, const std::string
     chunk_ += bytes;
   }
   const auto id = static_cast<std::uint16_t>(counts_.size());
-  const std::string bytes = record(
-      kChannel, number(id) + number(known->second) + sized(topic) + sized(encoding) + sized(""));
+  std::string entries;
+  for (const auto& [name, value] : metadata) entries += sized(name) + sized(value);
+  const std::string bytes = record(kChannel, number(id) + number(known->second) + sized(topic) +
+                                                 sized(encoding) + sized(entries));
   channels_ += bytes;
   chunk_ += bytes;
   counts_.push_back(0);

@@ -25,9 +25,10 @@ class McapWriter {
   /// Throws OutputError. `profile`: "" for none.
   explicit McapWriter(const std::string& path, const std::string& profile = "");
 
-  /// Adds a channel whose messages are encoded as `encoding` ("json"); returns its number.
+  /// Adds a channel whose messages are encoded as `encoding` ("json", "cdr"); returns its number.
   std::uint16_t addChannel(const std::string& topic, const std::string& encoding,
-                           const Schema& schema);
+                           const Schema& schema,
+                           const std::map<std::string, std::string>& metadata = {});
   /// Stamps may come in any order; they are not before 1970. Throws OutputError (kIoError).
   void write(std::uint16_t channel, Stamp stamp, std::string_view message);
   /// Throws OutputError (kIoError).

@@ -180,6 +180,9 @@ struct CameraInfo {
 template <class Wire>
 void fields(Wire& w, CameraInfo& m) {
   w(m.header), w(m.height), w(m.width), w(m.distortion_model), w(m.D), w(m.K), w(m.R), w(m.P);
+  if constexpr (!Wire::kReads) {  // no binning, no region of interest
+    w(std::array<std::uint32_t, 6>{}), w(std::uint8_t{0});
+  }
 }
 
 /// vision_msgs/ObjectHypothesisWithPose of ROS 2.

@@ -107,6 +107,16 @@ bool EgoPose::wants(const std::string& label) {
   return label == label_ || (label.empty() && label_ == "(none)");
 }
 
+std::optional<EgoState> loggedPose(const mrpt::obs::CObservation& observation) {
+  const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation);
+  const auto stamp = toStamp(observation.timestamp);
+  if (pose == nullptr || !stamp) return std::nullopt;
+  EgoState state;
+  state.stamp = *stamp;
+  state.T_world_ego = toPose3(pose->pose.mean);
+  return state;
+}
+
 void EgoPose::add(const mrpt::obs::CObservation& observation) {
   if (params_.source == EgoPoseParams::Source::kLidar) return;
   const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation);
@@ -116,14 +126,12 @@ void EgoPose::add(const mrpt::obs::CObservation& observation) {
     return;
   }
   if (params_.source == EgoPoseParams::Source::kFusion || !wants(pose->sensorLabel)) return;
-  const auto stamp = toStamp(pose->timestamp);
-  if (!stamp) {
+  const auto logged = loggedPose(*pose);
+  if (!logged) {
     ++rejected_invalid_;
     return;
   }
-  EgoState state;
-  state.stamp = *stamp;
-  state.T_world_ego = toPose3(pose->pose.mean);
+  EgoState state = *logged;
   const auto& cov = pose->pose.cov;  // order of MRPT: x y z yaw pitch roll
   state.uncertainty.sigma_xy = sigmaOf((cov(0, 0) + cov(1, 1)) / 2, params_.minimum.sigma_xy);
   state.uncertainty.sigma_yaw = sigmaOf(cov(3, 3), params_.minimum.sigma_yaw);

@@ -38,6 +38,10 @@ struct EgoPoseParams {
   void visit(ParamVisitor& v);
 };
 
+/// The vehicle's pose of a CObservationRobotPose with a stamp, without its uncertainty; empty for
+/// all others.
+std::optional<EgoState> loggedPose(const mrpt::obs::CObservation& observation);
+
 /// Pose of the vehicle at any recent instant: positions interpolated linearly, attitudes by slerp,
 /// extrapolated for a short time with the last velocity. Poses may come in any order within the
 /// history.

@@ -5,7 +5,12 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
 
+#include "libperception/app/ImportApp.h"
+#include "libperception/app/TrackApp.h"
 #include "libperception/scene/TrackedRun.h"
 
 namespace perception {
@@ -86,6 +91,56 @@ TEST_F(ExportAppTest, PythonReadsTheRun) {
       "r.probability('car')[0], r.classes)\"");
   EXPECT_EQ(code, 0);
   EXPECT_EQ(text, "11 5 1600000000123456789 2.5 1.0 ['car']\n");
+}
+
+// What a ROS 2 recording of the log gives is what the log gives.
+TEST_F(ExportAppTest, RosMessagesComeBackAsTheSameTracks) {
+  const std::string mcap = dir_ + "/log.mcap", back = dir_ + "/back.rawlog";
+  const auto call = [](App& app, const std::vector<const char*>& words) {
+    return runApp(app, static_cast<int>(words.size()), words.data());
+  };
+  ASSERT_EQ(
+      call(app_, {"perception-export", "-i", kLog.c_str(), "--format", "ros2", "-o", mcap.c_str()}),
+      0);
+  EXPECT_EQ(app_.out_frames, 111u);
+  ImportApp import;
+  ASSERT_EQ(call(import, {"perception-import", "bag", "--bag", mcap.c_str(), "-o", back.c_str()}),
+            0);
+  std::vector<std::vector<Scene>> runs;
+  for (const std::string& log : {kLog, back}) {
+    TrackApp track;
+    track.keep_scenes = true;
+    const std::string out = dir_ + "/run" + std::to_string(runs.size());
+    ASSERT_EQ(call(track, {"perception-track", "-c", PERCEPTION_SOURCE_DIR "/ini/demo.ini", "-i",
+                           log.c_str(), "--sensors", "L", "-o", out.c_str()}),
+              0);
+    runs.push_back(track.out_scenes);
+  }
+  ASSERT_EQ(runs[0].size(), runs[1].size());
+  std::size_t objects = 0;
+  for (std::size_t k = 0; k < runs[0].size(); ++k) {
+    const auto &a = runs[0][k].objects, &b = runs[1][k].objects;
+    ASSERT_EQ(a.size(), b.size()) << k;
+    EXPECT_EQ(runs[0][k].stamp, runs[1][k].stamp);
+    for (std::size_t i = 0; i < a.size(); ++i, ++objects) {
+      EXPECT_EQ(a[i].id, b[i].id);
+      EXPECT_EQ(a[i].class_id, b[i].class_id);
+      EXPECT_LT((a[i].position - b[i].position).norm(), 1e-3) << k;
+    }
+  }
+  EXPECT_GT(objects, 1000u);
+}
+
+TEST_F(ExportAppTest, RosMessagesHoldTheTracksOfARun) {
+  writeRun(Stamp::fromSeconds(1577836800));
+  const std::string out = dir_ + "/b.mcap";
+  const char* argv[] = {"perception-export", "-i",   kLog.c_str(), "-r",       dir_.c_str(),
+                        "--format",          "ros2", "-o",         out.c_str()};
+  ASSERT_EQ(runApp(app_, 9, argv), 0);
+  std::ifstream file(out, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(bytes.find("vision_msgs/msg/Detection3DArray"), std::string::npos);
+  EXPECT_NE(bytes.find("MSG: geometry_msgs/PoseWithCovariance"), std::string::npos);
 }
 
 }  // namespace
