@@ -4,7 +4,7 @@
 #   ./setup.sh demo    the same, then tracks, evaluates and draws the simulated log rawlogs/demo.rawlog
 #   ./setup.sh package builds the Debian packages: build-package/*.deb
 #   ./setup.sh bench   builds the benchmarks against other libraries and runs them one after the other
-#   ./setup.sh fuzz MINUTES   feeds every parser with a fuzzer's bytes for so many minutes together
+#   ./setup.sh fuzz [MINUTES]   feeds every parser with a fuzzer's bytes, 10 minutes together
 #   ./setup.sh sanitize   all tests with sanitizers, an hour
 #   ./setup.sh test    the same with the tests, and runs them: all of them, and some once more with sanitizers;
 #                      before them clang-format on all sources and clang-tidy on a few
@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-readonly usage="usage: ./setup.sh build | demo | package | bench | test | sanitize | fuzz MINUTES"
+readonly usage="usage: ./setup.sh build | demo | package | bench | test | sanitize | fuzz [MINUTES]"
 readonly exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
 
 packages=(
@@ -235,7 +235,7 @@ sanitize() {
 }
 
 # Parsers one after the other, from the corpus in build-fuzz/corpus (kept) and the seeds of the tree. A finding stays as
-# build-fuzz/NAME-crash-...; its target and how to run it again are said.
+# build-fuzz/NAME-crash-...; FUZZ_TARGET=NAME build-fuzz/bin/perception_fuzz FILE runs it again.
 fuzz() {
   local minutes=$1 name names seconds failed=0
   installPackages "${packages[@]}" "${fuzz_packages[@]}"

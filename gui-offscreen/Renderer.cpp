@@ -7,8 +7,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "libperception/core/CMrptCompatibility.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/MrptCompatibility.h"
 
 namespace perception {
 namespace {

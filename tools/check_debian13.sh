@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tree on Debian 13 (MRPT 2.14), by hand and as root: tools/check_debian13.sh FOLDER
+# The tree on Debian 13 (MRPT 2.14), by hand, as root, with debootstrap installed: tools/check_debian13.sh FOLDER
 # makes a Debian 13 in FOLDER (debootstrap) or takes the one that is there, builds a copy of the committed tree in it, runs all tests
 # and the demo. Without clang-format and clang-tidy, whose versions are Debian 12's.
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The package on a bare Debian 12, by hand and as root: tools/check_package.sh PACKAGE.deb FOLDER
+# The package on a bare Debian 12, by hand, as root, with debootstrap installed: tools/check_package.sh PACKAGE.deb FOLDER
 # makes a Debian 12 in FOLDER (debootstrap), installs the package, runs the demo and removes the package again. Prints the
 # seconds of each, downloads apart, and what was left behind.
 set -euo pipefail

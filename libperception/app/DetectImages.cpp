@@ -7,9 +7,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/Supervision.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/sensors/CameraImages.h"
+#include "libperception/sensors/ImageFile.h"
 
 namespace perception {
 namespace {
@@ -50,8 +50,7 @@ std::vector<std::string> imageFiles(const std::vector<std::string>& inputs) {
 }
 
 std::optional<Raster> readImage(const std::string& path) {
-  const ReadingScope scope(path);
-  const cv::Mat pixels = cv::imread(path, cv::IMREAD_COLOR);
+  const cv::Mat pixels = readImageFile(path, cv::IMREAD_COLOR);
   if (pixels.empty()) return std::nullopt;
   Raster raster{pixels.cols, pixels.rows, 3, {}};
   for (int y = 0; y < pixels.rows; ++y) {

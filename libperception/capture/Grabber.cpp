@@ -10,8 +10,8 @@
 
 #include "libperception/capture/CPacketSensor.h"
 #include "libperception/capture/CScenarioSensor.h"
-#include "libperception/core/CMrptCompatibility.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/MrptCompatibility.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {

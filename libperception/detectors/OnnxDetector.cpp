@@ -22,8 +22,9 @@
 namespace perception {
 namespace {
 
-// [bytes] that reading and one run may take: 20 times as much as common networks of this kind.
-constexpr std::uint64_t kLargestNetwork = 2ULL << 30;
+// [bytes] that reading and one run may take, 20 times as much as common networks of this kind; and
+// each of the threads that OpenCV starts with the first run (stack and heap, reserved).
+constexpr std::uint64_t kLargestNetwork = 2ULL << 30, kThread = 256ULL << 20;
 constexpr double kLeastScore = 0.01;   // weaker boxes of a network are noise
 constexpr double kWindowAspect = 1.3;  // ratio of sides above which square windows are added
 constexpr double kTruncated = 0.03;    // of its width: a box this close to its edge is truncated
@@ -43,7 +44,8 @@ class OnnxDetector final : public Detector {
       throw DataError(fmt::format("{}: no such file (a network)", path_), ExitCode::kNoInput);
     try {
       const ReadingScope scope(path_);
-      const MemoryLimit limit(addressSpace() + kLargestNetwork);
+      const MemoryLimit limit(addressSpace() + kLargestNetwork +
+                              static_cast<std::uint64_t>(cv::getNumThreads()) * kThread);
       net_ = cv::dnn::readNetFromONNX(path_);
       net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
       run(cv::Mat::zeros(side_, side_, CV_8UC3));  // fails here when the network cannot run

@@ -57,13 +57,16 @@ class CvDpmDetector final : public Detector {
     }
     try {
       const ReadingScope scope(files.front());
-      const MemoryLimit limit(addressSpace() + kLargestCascade);
-      detector_ = cv::dpm::DPMDetector::create(files, names);
+      {
+        const MemoryLimit limit(addressSpace() + kLargestCascade);
+        detector_ = cv::dpm::DPMDetector::create(files, names);
+      }
+      if (!detector_ || detector_->isEmpty())
+        throw DataError(fmt::format("{}: cv::dpm cannot read it", files.front()));
+      probe();
     } catch (const cv::Exception& e) {
       throw DataError(fmt::format("{}: cv::dpm cannot read it: {}", files.front(), e.err));
     }
-    if (!detector_ || detector_->isEmpty())
-      throw DataError(fmt::format("{}: cv::dpm cannot read it", files.front()));
     names_ = names;
     file_ = files.front();
   }
@@ -74,7 +77,6 @@ class CvDpmDetector final : public Detector {
     std::vector<cv::dpm::DPMDetector::ObjectDetection> found;
     {
       const std::lock_guard<std::mutex> lock(one_at_a_time_);
-      const ReadingScope scope(file_);  // a damaged cascade shows only when it is used
       try {
         detector_->detect(pixels, found);
       } catch (const cv::Exception& e) {
@@ -98,6 +100,14 @@ class CvDpmDetector final : public Detector {
   }
 
  private:
+  /// What a damaged cascade does to the library it does here, within the scope of its reading.
+  void probe() const {
+    cv::Mat gray(kProbeSide, kProbeSide, CV_8UC3, cv::Scalar::all(128));
+    std::vector<cv::dpm::DPMDetector::ObjectDetection> found;
+    detector_->detect(gray, found);
+  }
+
+  static constexpr int kProbeSide = 320;  // [px] all common cascades fit into it
   mutable std::mutex one_at_a_time_;
   cv::Ptr<cv::dpm::DPMDetector> detector_;
   std::string file_;  ///< the first cascade

@@ -132,25 +132,25 @@ void setHota(const std::vector<IdentityView>& views, const Tracks& tracks, doubl
   figures.hota = hota, figures.detection = detection, figures.association = association;
 }
 
-/// Most instants of pairs of identities, one to one.
+/// Most instants of pairs of identities, one to one; a truth may stay alone.
 double identityMatches(const std::vector<IdentityView>& views, const Tracks& tracks) {
   std::map<Ids, double> together;
+  double most = 0;
   for (std::size_t i = 0; i < views.size(); ++i)
     for (const auto& p : views[i].pairs)
-      ++together[{tracks.instants[i].truth[p.truth], tracks.instants[i].estimates[p.estimate]}];
-  std::map<std::size_t, std::size_t> column;  // of the estimates that are near some truth
-  for (const auto& [ids, both] : together) column.emplace(ids.second, column.size());
-  if (together.empty()) return 0;
-  Eigen::MatrixXd cost = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(tracks.truth.count.size()),
-                                               static_cast<Eigen::Index>(column.size()));
-  for (const auto& [ids, both] : together)
-    cost(static_cast<Eigen::Index>(ids.first), static_cast<Eigen::Index>(column.at(ids.second))) =
-        -both;
-  const std::vector<int> taken = optimalAssignment(cost);
-  double sum = 0;
-  for (std::size_t r = 0; r < taken.size(); ++r)
-    if (taken[r] >= 0) sum -= cost(static_cast<Eigen::Index>(r), taken[r]);
-  return sum;
+      most = std::max(most, ++together[{tracks.instants[i].truth[p.truth],
+                                        tracks.instants[i].estimates[p.estimate]}]);
+  const std::size_t rows = tracks.truth.count.size(), columns = tracks.estimates.count.size();
+  AssignmentSolver solver;
+  solver.begin(static_cast<int>(columns + rows));
+  auto next = together.begin();
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (; next != together.end() && next->first.first == r; ++next)
+      solver.addOption(static_cast<int>(next->first.second), most - next->second);
+    solver.addOption(static_cast<int>(columns + r), most);
+    solver.endRow();
+  }
+  return most * static_cast<double>(rows) - solver.solve().cost;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/CMrptCompatibility.h"
+#include "libperception/core/MrptCompatibility.h"
 #include "libperception/grid/CGridExport.h"
 
 MAP_DEFINITION_REGISTER("perception::CSafetyGrid,safetyGrid", perception::CSafetyGrid)
@@ -67,9 +67,10 @@ void CSafetyGrid::TMapDefinition::dumpToTextStream_map_specific(std::ostream& ou
       params.z_min, params.z_max);
 }
 
-NewMetricMap CSafetyGrid::internal_CreateFromMapDefinition(
+using NewMap = decltype(resultOf(&CSafetyGrid::internal_CreateFromMapDefinition));
+NewMap CSafetyGrid::internal_CreateFromMapDefinition(
     const mrpt::maps::TMetricMapInitializer& definition) {
-  return NewMetricMap(
+  return NewMap(
       new CSafetyGrid(dynamic_cast<const CSafetyGrid::TMapDefinition&>(definition).params));
 }
 

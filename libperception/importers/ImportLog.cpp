@@ -9,9 +9,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/Supervision.h"
 #include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/ImageFile.h"
 #include "libperception/sensors/ToObservation.h"
 
 namespace perception {
@@ -122,8 +122,7 @@ std::string ImportLog::storedImage(const ImportedImage& image, std::int64_t fram
 }
 
 void ImportLog::image(const ImportedImage& in, std::int64_t frame) {
-  const ReadingScope scope(in.path);
-  const cv::Mat pixels = cv::imread(in.path, cv::IMREAD_COLOR);
+  const cv::Mat pixels = readImageFile(in.path, cv::IMREAD_COLOR);
   if (pixels.empty()) throw DataError(fmt::format("{}: not an image", in.path));
   mrpt::obs::CObservationImage out;
   out.timestamp = fromStamp(in.stamp);

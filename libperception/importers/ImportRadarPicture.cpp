@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/Supervision.h"
+#include "libperception/sensors/ImageFile.h"
 
 namespace perception {
 namespace {
@@ -86,8 +86,7 @@ class BoundingDisc {
 }  // namespace
 
 RadarReturns radarReturnsOf(const std::string& path, const RadarPictureParams& params) {
-  const ReadingScope scope(path);
-  const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
+  const cv::Mat picture = readImageFile(path, cv::IMREAD_GRAYSCALE);
   if (picture.empty()) throw DataError(path + ": not an image");
   const cv::Mat polar = polarOf(picture, params);
   RadarReturns out;

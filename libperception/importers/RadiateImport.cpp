@@ -10,12 +10,12 @@
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/Supervision.h"
 #include "libperception/importers/ImportClock.h"
 #include "libperception/importers/ImportRadarPicture.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/RadiateFiles.h"
+#include "libperception/sensors/ImageFile.h"
 
 namespace perception {
 
@@ -231,9 +231,8 @@ void RadiateImporter::addTruth(ImportLog& log) {
   const std::string file = radiateAnnotationFile(params_.dir);
   if (file.empty()) return;
   log.expectTruth();
-  const std::string first = frameFiles(path("Navtech_Cartesian").string(), {".png"}).front().path;
-  const ReadingScope scope(first);
-  const cv::Mat picture = cv::imread(first, cv::IMREAD_GRAYSCALE);
+  const cv::Mat picture = readImageFile(
+      frameFiles(path("Navtech_Cartesian").string(), {".png"}).front().path, cv::IMREAD_GRAYSCALE);
   const double center_u = picture.cols * 0.5, center_v = picture.rows * 0.5;
   for (const auto& [frame, boxes] : readRadiateAnnotations(file)) {
     const auto time = radar_times_.find(frame);

@@ -8,8 +8,8 @@ namespace perception {
 /// The bytes of a block of a recording; `method`: "" or "none", bz2, lz4 (a frame), zstd. Throws
 /// std::runtime_error unless they are exactly `size` bytes; at most kMostInflated.
 std::string inflated(std::string_view method, std::string_view bytes, std::uint64_t size);
-inline constexpr std::uint64_t kMostInflated = std::uint64_t{1}
-                                               << 28;  // 256 MB; usual: up to 10 MB
+/// [bytes] 256 MB; usual blocks have up to 10.
+inline constexpr std::uint64_t kMostInflated = std::uint64_t{1} << 28;
 
 /// One zstd frame.
 std::string zstdOf(std::string_view bytes);

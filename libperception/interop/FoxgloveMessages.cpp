@@ -4,7 +4,9 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+
+#include "libperception/interop/Jpeg.h"
 
 namespace perception {
 namespace {
@@ -14,7 +16,9 @@ using nlohmann::json;
 constexpr int kFloat32 = 7;                            // foxglove.PackedElementField
 constexpr double kTextHeight = 0.5, kTextAbove = 0.4;  // [m]
 
-std::string base64(const std::uint8_t* bytes, std::size_t size) {
+std::string base64(std::string_view data) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(data.data());
+  const std::size_t size = data.size();
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((size + 2) / 3 * 4);
@@ -103,7 +107,7 @@ std::string sceneUpdate(const Scene& scene, const std::vector<std::string>& clas
 
 std::string pointCloud(const LidarCloud& cloud, Stamp stamp, const std::string& frame_id) {
   const std::size_t stride = 4 * sizeof(float);
-  std::vector<std::uint8_t> data(cloud.size() * stride);
+  std::string data(cloud.size() * stride, '\0');
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float intensity = cloud.intensity.empty() ? 0.0F : cloud.intensity[i];
     const float values[] = {cloud.x[i], cloud.y[i], cloud.z[i], intensity};
@@ -114,12 +118,9 @@ std::string pointCloud(const LidarCloud& cloud, Stamp stamp, const std::string& 
     fields.push_back(
         {{"name", name}, {"offset", fields.size() * sizeof(float)}, {"type", kFloat32}});
   }
-  return json{{"timestamp", time(stamp)},
-              {"frame_id", frame_id},
-              {"pose", pose(Vector3::Zero(), 0)},
-              {"point_stride", stride},
-              {"fields", fields},
-              {"data", base64(data.data(), data.size())}}
+  return json{
+      {"timestamp", time(stamp)}, {"frame_id", frame_id}, {"pose", pose(Vector3::Zero(), 0)},
+      {"point_stride", stride},   {"fields", fields},     {"data", base64(data)}}
       .dump();
 }
 
@@ -134,12 +135,10 @@ std::string frameTransform(const Pose3& T, Stamp stamp, const std::string& paren
 }
 
 std::string compressedImage(const Raster& raster, Stamp stamp, const std::string& frame_id) {
-  std::vector<std::uint8_t> pixels = raster.pixels, bytes;
-  const cv::Mat image(raster.height, raster.width, CV_8UC(raster.channels), pixels.data());
-  cv::imencode(".jpg", image, bytes);
+  const std::string bytes = jpegOf(raster);
   return json{{"timestamp", time(stamp)},
               {"frame_id", frame_id},
-              {"data", base64(bytes.data(), bytes.size())},
+              {"data", base64(bytes)},
               {"format", "jpeg"}}
       .dump();
 }

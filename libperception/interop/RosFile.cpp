@@ -1,8 +1,8 @@
 #include <array>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 
 #include "libperception/interop/ExportFile.h"
+#include "libperception/interop/Jpeg.h"
 #include "libperception/interop/RosMessages.h"
 #include "libperception/interop/RosSchemas.h"
 #include "libperception/interop/RosSensors.h"
@@ -21,26 +21,14 @@ constexpr const char* kLatched =
     "  liveliness_lease_duration: {sec: 9223372036, nsec: 854775807}\n"
     "  avoid_ros_namespace_conventions: false\n";
 
-ros::CameraInfo infoOf(const CameraModel& camera, const ros::Header& header) {
-  ros::CameraInfo info;
-  info.header = header;
-  info.height = static_cast<std::uint32_t>(camera.height);
-  info.width = static_cast<std::uint32_t>(camera.width);
-  info.distortion_model = "plumb_bob";
-  info.D.assign(5, 0.0);
-  info.K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
-  info.R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  info.P = {camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0};
-  return info;
-}
-
+/// The object's box; classes with their probability times that of its existence.
 ros::Detection3D detectionOf(const SceneObject& object, const ros::Header& header,
                              const std::vector<std::string>& class_names) {
   constexpr double kLeast = 0.01;  // probability of classes that are named
   ros::Detection3D d;
   d.header = header;
-  Pose3 T = makePose(object.position.x(), object.position.y(),
-                     object.position.z() + object.height / 2, object.yaw);
+  const Pose3 T = makePose(object.position.x(), object.position.y(),
+                           object.position.z() + object.height / 2, object.yaw);
   d.center = ros::messageOf(T);
   d.size = {object.length, object.width, object.height};
   d.id = std::to_string(object.id);
@@ -58,6 +46,7 @@ ros::Detection3D detectionOf(const SceneObject& object, const ros::Header& heade
   return d;
 }
 
+/// Frames map, base_link and one a sensor; channels begin with their first message.
 class RosFile final : public ExportFile {
  public:
   RosFile(const std::string& path, const std::vector<std::string>& class_names)
@@ -90,16 +79,12 @@ class RosFile final : public ExportFile {
     const auto raster = image && image->load ? image->load() : std::nullopt;
     if (!raster) return false;
     place(frame);
-    std::vector<std::uint8_t> pixels = raster->pixels, bytes;
-    cv::imencode(".jpg",
-                 cv::Mat(raster->height, raster->width, CV_8UC(raster->channels), pixels.data()),
-                 bytes);
-    data.assign(bytes.begin(), bytes.end());
+    data = jpegOf(*raster);
     CameraModel camera = image->camera;
     camera.width = raster->width, camera.height = raster->height;
     if (camera.projection == CameraModel::Projection::kPinhole && camera.fx > 0)
       write("/" + frame.sensor + "/camera_info", "sensor_msgs/CameraInfo", frame.stamp,
-            infoOf(camera, header));
+            ros::messageOf(camera, header));
     write("/" + frame.sensor + "/image", "sensor_msgs/CompressedImage", frame.stamp,
           ros::CompressedImage{header, "jpeg", data});
     return true;

@@ -242,6 +242,19 @@ Raster rasterOf(const CompressedImage& m) {
   return raster;
 }
 
+CameraInfo messageOf(const CameraModel& camera, const Header& header) {
+  CameraInfo info;
+  info.header = header;
+  info.height = static_cast<std::uint32_t>(camera.height);
+  info.width = static_cast<std::uint32_t>(camera.width);
+  info.distortion_model = "plumb_bob";
+  info.D.assign(5, 0.0);
+  info.K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
+  info.R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.P = {camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0};
+  return info;
+}
+
 std::optional<CameraModel> cameraOf(const CameraInfo& m, bool rectified) {
   CameraModel camera;
   camera.width = static_cast<int>(m.width);

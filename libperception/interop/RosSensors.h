@@ -23,6 +23,8 @@ PointCloud2 messageOf(const LidarCloud& cloud, const Header& header, std::string
 Raster rasterOf(const Image& message);
 /// Any format of OpenCV's imdecode(). Throws std::runtime_error.
 Raster rasterOf(const CompressedImage& message);
+/// A pinhole without distortion.
+CameraInfo messageOf(const CameraModel& camera, const Header& header);
 /// A pinhole; empty without a focal length. Of the rectified image where `rectified`.
 std::optional<CameraModel> cameraOf(const CameraInfo& message, bool rectified);
 

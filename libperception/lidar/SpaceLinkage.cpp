@@ -15,10 +15,7 @@ constexpr std::uint32_t kNone = ~0u;
 /// Numbers of keys in the order of their first appearance: open addressing, at most half full.
 class KeyNumbers {
  public:
-  /// For about `keys` of them.
-  explicit KeyNumbers(std::size_t keys) : slots_(kFewest) {
-    while (slots_.size() < keys) slots_.resize(2 * slots_.size());
-  }
+  KeyNumbers() : slots_(1024) {}
   std::uint32_t add(std::uint64_t key) {
     if (2 * count_ >= slots_.size()) grow();
     Slot& slot = slots_[slotOf(key)];
@@ -29,7 +26,6 @@ class KeyNumbers {
   std::uint32_t count() const { return count_; }
 
  private:
-  static constexpr std::size_t kFewest = 16;
   struct Slot {
     std::uint64_t key = 0;
     std::uint32_t number = kNone;
@@ -86,7 +82,6 @@ class CubeLinkage {
         cubes_per_block_(static_cast<std::int32_t>(std::ceil(most * per_cube_)) + 1),
         cube_of_(cubes()),
         in_cube_(cube_of_, cube_count_),
-        block_table_(cube_count_),
         block_of_(blocks()),
         in_block_(block_of_, block_key_.size()),
         groups_(cube_count_) {}
@@ -130,7 +125,7 @@ class CubeLinkage {
 
   /// The cube of every return; sets the bounds of the cubes.
   std::vector<std::uint32_t> cubes() {
-    KeyNumbers table(returns_.size());
+    KeyNumbers table;
     std::vector<std::uint32_t> cube_of;
     cube_of.reserve(returns_.size());
     std::uint64_t last = 0;  // neighbors in the scan are often in one cube

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "libperception/core/Angle.h"
-#include "libperception/core/Supervision.h"
+#include "libperception/sensors/ImageFile.h"
 
 namespace perception {
 namespace {
@@ -30,8 +30,7 @@ std::optional<Raster> loadFile(const std::string& path) {
   std::error_code fault;
   if (!std::filesystem::is_regular_file(path, fault)) return std::nullopt;
   try {
-    const ReadingScope scope(path);
-    return rasterOf(cv::imread(path, cv::IMREAD_COLOR));
+    return rasterOf(readImageFile(path, cv::IMREAD_COLOR));
   } catch (const std::exception&) {  // OpenCV throws on sizes beyond its limits
     return std::nullopt;
   }

@@ -68,25 +68,16 @@ RTCRayHit makeRay(const Vector3& origin, const Vector3& direction, double range_
   return r;
 }
 
-void intersect(RTCScene scene, RTCRayHit& ray) {
+/// `query`: rtcIntersect1 or rtcOccluded1; Embree 4 asks without a context.
+template <class Query, class Ray>
+void ask(Query query, RTCScene scene, Ray& ray) {
 #if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(scene, &ray);
+  query(scene, &ray, nullptr);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, &ray);
+  query(scene, &context, &ray);
 #endif
-}
-
-bool isOccluded(RTCScene scene, RTCRay& ray) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded1(scene, &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene, &context, &ray);
-#endif
-  return ray.tfar < 0;
 }
 
 }  // namespace
@@ -141,13 +132,13 @@ struct LidarCaster::Impl {
 
   BeamHit hit(const Vector3& origin, const Vector3& direction, double range_max) const {
     RTCRayHit r = makeRay(origin, direction, range_max);
-    intersect(top.get(), r);
+    ask(&rtcIntersect1, top.get(), r);
     return hitOf(r, direction);
   }
 
   SurfaceHit surface(const Vector3& origin, const Vector3& direction, double range_max) const {
     RTCRayHit r = makeRay(origin, direction, range_max);
-    intersect(top.get(), r);
+    ask(&rtcIntersect1, top.get(), r);
     SurfaceHit result;
     static_cast<BeamHit&>(result) = hitOf(r, direction);
     if (result.object == BeamHit::kNothing) return result;
@@ -160,7 +151,8 @@ struct LidarCaster::Impl {
 
   bool blocked(const Vector3& origin, const Vector3& direction, double range_max) const {
     RTCRay ray = makeRay(origin, direction, range_max).ray;
-    return isOccluded(top.get(), ray);
+    ask(&rtcOccluded1, top.get(), ray);
+    return ray.tfar < 0;
   }
 
   BeamHit hitOf(const RTCRayHit& r, const Vector3& direction) const {
@@ -184,7 +176,7 @@ struct LidarCaster::Impl {
       RTCRayHit r =
           makeRay(instance.T_part_world * origin, instance.T_part_world.linear() * direction,
                   std::numeric_limits<double>::infinity());
-      intersect(instance.scene.get(), r);
+      ask(&rtcIntersect1, instance.scene.get(), r);
       if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) return true;
     }
     return false;

@@ -1,4 +1,6 @@
 #pragma once
+#include <gtest/gtest.h>
+
 #include <fstream>
 #include <functional>
 #include <string>
@@ -59,6 +61,14 @@ inline std::string faultsOfText(const std::string& text) {
   Config config = Config::fromText(text, "t.ini");
   config.read<AllKinds>("a");
   return faultsOf(config);
+}
+
+/// Section [a] of a file, which has these faults.
+inline AllKinds readFile(const std::string& path, const std::string& faults = "") {
+  Config config = Config::fromFile(path);
+  const auto params = config.read<AllKinds>("a");
+  EXPECT_EQ(faultsOf(config), faults);
+  return params;
 }
 
 inline void writeText(const std::string& path, const std::string& text) {

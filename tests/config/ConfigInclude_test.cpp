@@ -14,13 +14,6 @@ class ConfigInclude : public ::testing::Test {
  protected:
   ConfigInclude() : inside_(folder_.path()) { fs::create_directories("ini/common"); }
 
-  static AllKinds read(const std::string& path, const std::string& faults = "") {
-    Config config = Config::fromFile(path);
-    const auto params = config.read<AllKinds>("a");
-    EXPECT_EQ(faultsOf(config), faults);
-    return params;
-  }
-
   TemporaryFolder folder_;
   WorkingFolder inside_;
 };
@@ -30,9 +23,10 @@ TEST_F(ConfigInclude, TheIncludingFileWinsWhereverTheLineStands) {
   writeText("ini/first.ini", "include = common/base.ini\n[a]\ngain = 2\n");
   writeText("ini/last.ini",
             "[a]\ngain = 2\n[z]\ninclude = common/base.ini ; classes\n[a]\nlabel = q\n");
-  EXPECT_EQ(read("ini/first.ini").gain, 2);
-  EXPECT_EQ(read("ini/first.ini").beams, 5);
-  const auto last = read("ini/last.ini", "ini/last.ini:3: [z]: unknown section, did you mean [a]?");
+  EXPECT_EQ(readFile("ini/first.ini").gain, 2);
+  EXPECT_EQ(readFile("ini/first.ini").beams, 5);
+  const auto last =
+      readFile("ini/last.ini", "ini/last.ini:3: [z]: unknown section, did you mean [a]?");
   EXPECT_EQ(last.gain, 2);
   EXPECT_EQ(last.beams, 5);
   EXPECT_EQ(last.label, "q");
@@ -51,9 +45,9 @@ TEST_F(ConfigInclude, TwoIncludedFilesMustNotSayDifferentThings) {
   writeText("ini/x.ini", "[a]\ngain = 1\n");
   writeText("ini/y.ini", "\n[a]\ngain = 1\n");
   writeText("ini/site.ini", "include = x.ini\ninclude = y.ini\n");
-  read("ini/site.ini", "ini/y.ini:3: [a] gain: duplicate, first in ini/x.ini:2");
+  readFile("ini/site.ini", "ini/y.ini:3: [a] gain: duplicate, first in ini/x.ini:2");
   writeText("ini/site.ini", "include = x.ini\ninclude = y.ini\n[a]\ngain = 3\n");
-  EXPECT_EQ(read("ini/site.ini").gain, 3);
+  EXPECT_EQ(readFile("ini/site.ini").gain, 3);
 }
 
 TEST_F(ConfigInclude, AFileReachedByTwoWaysCountsOnceAndBothWinOverIt) {
@@ -61,7 +55,7 @@ TEST_F(ConfigInclude, AFileReachedByTwoWaysCountsOnceAndBothWinOverIt) {
   writeText("ini/x.ini", "include = base.ini\n");
   writeText("ini/y.ini", "[a]\ngain = 2\n[a]\ninclude = ./base.ini\n");
   writeText("ini/site.ini", "include = x.ini\ninclude = y.ini\n");
-  const auto a = read("ini/site.ini");
+  const auto a = readFile("ini/site.ini");
   EXPECT_EQ(a.gain, 2);
   EXPECT_EQ(a.beams, 9);
 }
@@ -69,13 +63,13 @@ TEST_F(ConfigInclude, AFileReachedByTwoWaysCountsOnceAndBothWinOverIt) {
 TEST_F(ConfigInclude, CirclesAreNamed) {
   writeText("ini/x.ini", "include = common/y.ini\n");
   writeText("ini/common/y.ini", "[a]\ninclude = ../x.ini\n");
-  read("ini/x.ini",
-       "ini/common/y.ini:2: include: files include each other in a circle: ini/x.ini includes "
-       "ini/common/y.ini includes ini/x.ini");
+  readFile("ini/x.ini",
+           "ini/common/y.ini:2: include: files include each other in a circle: ini/x.ini includes "
+           "ini/common/y.ini includes ini/x.ini");
   writeText("ini/self.ini", "include = self.ini\n");
-  read("ini/self.ini",
-       "ini/self.ini:1: include: files include each other in a circle: ini/self.ini includes "
-       "ini/self.ini");
+  readFile("ini/self.ini",
+           "ini/self.ini:1: include: files include each other in a circle: ini/self.ini includes "
+           "ini/self.ini");
 }
 
 TEST_F(ConfigInclude, AMissingIncludeHidesWhatOnlySeemsToBeMissing) {
@@ -91,11 +85,11 @@ TEST_F(ConfigInclude, AMissingIncludeHidesWhatOnlySeemsToBeMissing) {
 TEST_F(ConfigInclude, PathsStartAtTheFileThatHoldsTheLine) {
   writeText("ini/common/base.ini", "[a]\nmodel = ../nets/a.onnx\n");
   writeText("ini/site.ini", "include = common/base.ini\n");
-  EXPECT_EQ(read("ini/site.ini").model, "ini/common/../nets/a.onnx");
+  EXPECT_EQ(readFile("ini/site.ini").model, "ini/common/../nets/a.onnx");
   const std::string absolute = folder_ / "ini/site.ini";
-  EXPECT_EQ(read(absolute).model, folder_ / "ini/common/../nets/a.onnx");
+  EXPECT_EQ(readFile(absolute).model, folder_ / "ini/common/../nets/a.onnx");
   writeText("ini/rooted.ini", "[a]\nmodel = /srv/a.onnx\n");
-  EXPECT_EQ(read("ini/rooted.ini").model, "/srv/a.onnx");
+  EXPECT_EQ(readFile("ini/rooted.ini").model, "/srv/a.onnx");
   Config config = Config::fromFile("ini/site.ini");
   config.set("a.model=b.onnx");
   EXPECT_EQ(config.read<AllKinds>("a").model, "b.onnx");
@@ -109,7 +103,7 @@ TEST_F(ConfigInclude, EffectivePathsStillResolveFromAnyFolderOfTheFile) {
   EXPECT_EQ(effective.find(folder_.path()), std::string::npos);
   fs::create_directories("out/deep");
   writeText("out/deep/effective.ini", effective);
-  EXPECT_EQ(read("out/deep/effective.ini").model, params.model);
+  EXPECT_EQ(readFile("out/deep/effective.ini").model, params.model);
   Config again = Config::fromFile("out/deep/effective.ini");
   again.read<AllKinds>("a");
   EXPECT_EQ(again.effectiveText(), effective);
@@ -119,7 +113,7 @@ TEST_F(ConfigInclude, NamesMayHoldSpacesAndUmlauts) {
   fs::create_directories("m\xC3\xBC ll");
   writeText("m\xC3\xBC ll/b c.ini", "[a]\ngain = 2\n");
   writeText("m\xC3\xBC ll/site.ini", "include = b c.ini\n");
-  EXPECT_EQ(read("m\xC3\xBC ll/site.ini").gain, 2);
+  EXPECT_EQ(readFile("m\xC3\xBC ll/site.ini").gain, 2);
 }
 
 }  // namespace

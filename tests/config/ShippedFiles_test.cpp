@@ -24,32 +24,25 @@ class ShippedInis : public ::testing::Test {
   }
   ~ShippedInis() override { ::unsetenv("PERCEPTION_DATA"); }
 
-  static AllKinds read(const std::string& path, const std::string& faults = "") {
-    Config config = Config::fromFile(path);
-    const auto params = config.read<AllKinds>("a");
-    EXPECT_EQ(faultsOf(config), faults);
-    return params;
-  }
-
   TemporaryFolder folder_;
   WorkingFolder inside_;
 };
 
 TEST_F(ShippedInis, AreFoundByThePathInTheCheckoutAndByName) {
-  EXPECT_EQ(read("ini/site.ini").beams, 7);
-  EXPECT_EQ(read("site.ini").gain, 2);
+  EXPECT_EQ(readFile("ini/site.ini").beams, 7);
+  EXPECT_EQ(readFile("site.ini").gain, 2);
 }
 
 TEST_F(ShippedInis, GiveWayToFilesOfThatPath) {
   writeText("site.ini", "[a]\ngain = 3\n");
-  EXPECT_EQ(read("site.ini").gain, 3);
-  EXPECT_EQ(read("ini/site.ini").gain, 2);
+  EXPECT_EQ(readFile("site.ini").gain, 3);
+  EXPECT_EQ(readFile("ini/site.ini").gain, 2);
 }
 
 TEST_F(ShippedInis, AreIncludedByNameByAnIniElsewhere) {
   writeText("mine/car.ini", "include = site.ini\n[a]\nbeams = 9\n");
-  EXPECT_EQ(read("mine/car.ini").gain, 2);
-  EXPECT_EQ(read("mine/car.ini").beams, 9);
+  EXPECT_EQ(readFile("mine/car.ini").gain, 2);
+  EXPECT_EQ(readFile("mine/car.ini").beams, 9);
 }
 
 TEST_F(ShippedInis, OfNoSuchNameLeaveTheErrorOfThePath) {

@@ -25,6 +25,9 @@ run(build "Built target" ${CMAKE_COMMAND} --build ${EXAMPLES} -j 2)
 
 # The library needs nothing that draws, simulates, parses command lines or runs networks.
 file(GLOB_RECURSE LIBRARY ${PREFIX}/*/libperception_pipeline.so)
+if(NOT LIBRARY)
+  message(FATAL_ERROR "no libperception_pipeline.so below ${PREFIX}")
+endif()
 foreach(BINARY ${LIBRARY} ${EXAMPLES}/track_log)
   execute_process(COMMAND readelf -d ${BINARY} OUTPUT_VARIABLE DYNAMIC COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL "NEEDED[^\n]*(libGL|libOpenGL|glut|libEGL|embree|CLI11|opencv_dnn)[^\n]*" UNWANTED "${DYNAMIC}")
