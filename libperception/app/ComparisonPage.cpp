@@ -14,6 +14,9 @@ namespace {
 
 constexpr char kStyle[] = R"css(
 svg { cursor: default; }
+td { vertical-align: top; }
+.sides td { max-width: 460px; overflow-wrap: anywhere; }
+.time { white-space: nowrap; }
 td.n, th.n { text-align: right; }
 td small { color: #555; }
 .gone { color: #777; }
@@ -51,7 +54,8 @@ std::string evaluated(const ComparedRun& run, const EvaluatedFigure& figure) {
 class SideBySide {
  public:
   explicit SideBySide(const std::string& what)
-      : out_(fmt::format("<table>\n<tr><th>{}</th><th>A</th><th>B</th></tr>\n", escaped(what))) {}
+      : out_(fmt::format("<table class=\"sides\">\n<tr><th>{}</th><th>A</th><th>B</th></tr>\n",
+                         escaped(what))) {}
   void row(const std::string& what, const std::string& a, const std::string& b) {
     const char* tag = a == b ? "span" : "b";
     out_ += fmt::format("<tr><td>{0}</td><td><{3}>{1}</{3}></td><td><{3}>{2}</{3}></td></tr>\n",
@@ -178,7 +182,8 @@ std::string classCell(const RunDifference& d, const std::optional<ComparedIdenti
 }
 
 std::string timeCell(const std::optional<ComparedIdentity>& identity) {
-  return identity ? fmt::format("<td>{:.1f} to {:.1f}</td>", identity->first, identity->last)
+  return identity ? fmt::format("<td class=\"time\">{:.1f} to {:.1f}</td>", identity->first,
+                                identity->last)
                   : "<td></td>";
 }
 
@@ -194,7 +199,7 @@ std::string objectsTable(const RunDifference& d) {
       "<th>class in A</th><th>class in B</th><th>in A [s]</th><th>in B [s]</th>"
       "<th class=\"n\">in common [instants]</th><th class=\"n\">distance, rms [m]</th>"
       "<th class=\"n\">other class [instants]</th><th class=\"n\">id switches of A</th>"
-      "<th class=\"n\">of B</th><th class=\"n\">any other value [instants]</th></tr>\n",
+      "<th class=\"n\">of B</th><th class=\"n\">any value [instants]</th></tr>\n",
       DifferenceOptions().reach);
   for (const IdentityDifference& row : d.rows) {
     const auto cell = [](const auto& value) {
@@ -232,13 +237,14 @@ std::string timelineSection(const RunDifference& d) {
 
 std::string comparisonPage(const RunComparison& comparison) {
   const RunDifference& d = comparison.difference;
-  const std::string title = fmt::format("Two runs of {}{}", comparison.a.record.input,
-                                        comparison.a.record.simulated ? " (simulated)" : "");
+  const std::string title =
+      fmt::format("What differs between two runs of {}{}", comparison.a.record.input,
+                  comparison.a.record.simulated ? " (simulated)" : "");
   return fmt::format(
              "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
              "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
              "<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n"
-             "<h1>What differs: {0}</h1>\n",
+             "<h1>{0}</h1>\n",
              escaped(title), kReportStyle, kStyle) +
          lead(d) + "<h2>The runs</h2>\n" + runsTable(comparison.a, comparison.b) +
          keysTable(comparison) + figuresTable(comparison) + timelineSection(d) + objectsTable(d) +

@@ -13,6 +13,7 @@ namespace {
 
 constexpr TimelineSpan kSpan{130, 900};                               // [px]
 constexpr double kRow = 18, kBar = 6, kGap = 2, kTop = kTimelineTop;  // [px]
+constexpr double kMargin = 20;  // [px] right of the axis, for half of its last figure
 
 // White stripes over the color of the class.
 constexpr char kHatch[] =
@@ -67,7 +68,7 @@ std::string comparisonTimeline(const RunDifference& d) {
   const std::size_t rows = std::min(d.rows.size(), kMostComparedRows);
   const double height = kTop + kRow * static_cast<double>(rows) + 4;
   std::string out =
-      fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\">\n{}{}", kSpan.left + kSpan.width + 10,
+      fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\">\n{}{}", kSpan.left + kSpan.width + kMargin,
                   height, kHatch, timeAxis(std::max(d.end, 1e-3), kSpan, height));
   double y = kTop;
   for (std::size_t r = 0; r < rows; ++r, y += kRow) {
