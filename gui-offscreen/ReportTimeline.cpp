@@ -10,13 +10,26 @@
 namespace perception {
 namespace {
 
-constexpr double kLabelWidth = 130, kChartWidth = 900, kRow = 16, kAxis = 24;  // [px]
+constexpr double kLabelWidth = 130, kChartWidth = 900, kRow = 16, kAxis = kTimelineTop;  // [px]
 
 }  // namespace
 
 std::string nameOfClass(const TrackedRun& run, ClassId c) {
   const auto i = static_cast<std::size_t>(c);
   return c >= 0 && i < run.class_names.size() ? run.class_names[i] : "?";
+}
+
+std::string timeAxis(double end, const TimelineSpan& span, double bottom) {
+  const double step = end > 120 ? 20 : end > 40 ? 5 : end > 15 ? 2 : 1;  // [s]
+  std::string out;
+  for (double t = 0; t <= end; t += step) {
+    out += fmt::format(
+        "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" "
+        "y2=\"{2:.0f}\"/><text x=\"{0:.1f}\" y=\"14\" "
+        "text-anchor=\"middle\">{3:g} s</text>\n",
+        span.left + span.width * t / end, kTimelineTop - 4, bottom, t);
+  }
+  return out;
 }
 
 std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& lives, double end) {
@@ -27,14 +40,7 @@ std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& 
       "data-width=\"{:.0f}\" data-end=\"{:.3f}\" data-start=\"{:.3f}\">\n",
       kLabelWidth + kChartWidth + 10, height, kLabelWidth, kChartWidth, end,
       run.scenes.empty() ? 0 : run.scenes.front().stamp - run.first_stamp);
-  const double step = end > 120 ? 20 : end > 40 ? 5 : end > 15 ? 2 : 1;  // [s]
-  for (double t = 0; t <= end; t += step) {
-    out += fmt::format(
-        "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" "
-        "y2=\"{2:.0f}\"/><text x=\"{0:.1f}\" y=\"14\" "
-        "text-anchor=\"middle\">{3:g} s</text>\n",
-        x(t), kAxis - 4, height, t);
-  }
+  out += timeAxis(end, {kLabelWidth, kChartWidth}, height);
   double y = kAxis;
   for (const ObjectLife& life : lives) {
     const std::string name = spaced(nameOfClass(run, life.last_class));
