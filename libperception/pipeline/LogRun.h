@@ -42,6 +42,7 @@ class LogRun {
  private:
   void put(const Scene& scene);
   void putWeather();
+  void putLedger();
   void writeExport(const Scene& scene);
   void fillRecord();
   double logSeconds() const { return pipeline_.lastStamp() - *pipeline_.firstStamp(); }
@@ -60,6 +61,7 @@ class LogRun {
   std::optional<MeasurementRecorder> recorder_;
   std::optional<TrackedRunWriter> writer_;
   std::optional<WeatherFile> weather_;
+  std::optional<LedgerFile> ledger_;
   std::optional<KittiExport> kitti_;
   std::vector<Scene>
       before_camera_;  ///< scenes before the first camera observation, which exports need
