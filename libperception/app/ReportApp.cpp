@@ -99,13 +99,16 @@ void ReportApp::run() {
   if (fs::exists(timing)) content.real_time_factor = jsonOf(timing).value("real_time_factor", 0.0);
   addFigures(content);
   addEvaluation(content);
-  content.data = dataOf(tracked, content.record);
+  if (const fs::path events = fs::path(run_dir) / "events.jsonl"; fs::exists(events))
+    content.events = linesOf(events);
+  content.data = dataOf(tracked, content);
   const std::string path = output.empty() ? (fs::path(run_dir) / "index.html").string() : output;
   out_page = htmlPage(content);
   writeFile(path, out_page);
   say(1, path);
 }
 
+<<<<<<< HEAD
 void ReportApp::compare() {
   if (output.empty()) throw Error(ExitCode::kUsage, "--compare: -o is required");
   out_page = comparisonPage(readComparison(compared_dirs.at(0), compared_dirs.at(1)));
@@ -115,8 +118,12 @@ void ReportApp::compare() {
 
 std::string ReportApp::dataOf(const TrackedRun& run, const RunRecord& record) {
   RunData data(run, record);
+=======
+std::string ReportApp::dataOf(const TrackedRun& run, const ReportContent& content) {
+  RunData data(run, content.record);
+>>>>>>> h2
   const fs::path dir(run_dir);
-  if (fs::exists(dir / "events.jsonl")) data.setEvents(linesOf(dir / "events.jsonl"));
+  if (!content.events.is_null()) data.setEvents(content.events);
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the run");
   std::optional<GroundTruth> truth;
   std::string truth_path = truth_file;
@@ -128,9 +135,9 @@ std::string ReportApp::dataOf(const TrackedRun& run, const RunRecord& record) {
   std::unique_ptr<SnapshotSensors> sensors;
   if (!inputs.empty()) {
     const std::string log = fs::path(inputs[0]).filename().string();
-    if (log != fs::path(record.input).filename().string()) {
-      throw DataError(
-          fmt::format("{}: {} is a run of another log: {}", inputs[0], run_dir, record.input));
+    if (log != fs::path(content.record.input).filename().string()) {
+      throw DataError(fmt::format("{}: {} is a run of another log: {}", inputs[0], run_dir,
+                                  content.record.input));
     }
     registerPerceptionClasses();
     sensors = std::make_unique<SnapshotSensors>(inputs[0], run, sensorParams());

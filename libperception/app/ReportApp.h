@@ -28,7 +28,7 @@ class ReportApp : public App {
   void addFigures(ReportContent& content) const;
   void addEvaluation(ReportContent& content) const;
   SnapshotSensorParams sensorParams();
-  std::string dataOf(const TrackedRun& run, const RunRecord& record);
+  std::string dataOf(const TrackedRun& run, const ReportContent& content);
 };
 
 }  // namespace perception

@@ -65,6 +65,14 @@ void LogRun::putWeather() {
   }
 }
 
+// Of the same runs.
+void LogRun::putLedger() {
+  for (const LedgerRow& row : pipeline_.takeLedger()) {
+    if (!ledger_) ledger_.emplace(folder_.pathFor("ledger.csv"), *pipeline_.firstStamp());
+    ledger_->write(row);
+  }
+}
+
 void LogRun::writeExport(const Scene& scene) {
   if (!kitti_ && facts_.camera) {
     kitti_.emplace(files_.export_file, setup_.model.classes, *facts_.camera,
@@ -82,6 +90,7 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
       keep(*scene);
     }
     putWeather();
+    putLedger();
   };
   {
     Progress progress(files_.log, input_->fileBytes());
@@ -162,6 +171,7 @@ void LogRun::commit(const std::string& effective_ini, int threads) {
   writer_->close();
   if (recorder_) recorder_->close();
   if (weather_) weather_->close();
+  if (ledger_) ledger_->close();
   events_.write(folder_.pathFor("events.jsonl"), record.first_stamp);
   writeFile(folder_.pathFor("effective.ini"), effective_ini);
   timing_.write(folder_.pathFor("timing.json"), logSeconds(), threads);

@@ -48,6 +48,7 @@ class LogRun {
   void addArrival(const mrpt::obs::CObservation& observation);
   void addLatency(Stamp scene);
   void putWeather();
+  void putLedger();
   void writeExport(const Scene& scene);
   void fillRecord();
   double logSeconds() const { return pipeline_.lastStamp() - *pipeline_.firstStamp(); }
@@ -66,6 +67,7 @@ class LogRun {
   std::optional<MeasurementRecorder> recorder_;
   std::optional<TrackedRunWriter> writer_;
   std::optional<WeatherFile> weather_;
+  std::optional<LedgerFile> ledger_;
   std::optional<KittiExport> kitti_;
   /// When sensor data of an instant came, of sensors at work; the newest second.
   std::map<Stamp, std::chrono::steady_clock::time_point> arrivals_;
