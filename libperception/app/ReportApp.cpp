@@ -108,7 +108,6 @@ void ReportApp::run() {
   say(1, path);
 }
 
-<<<<<<< HEAD
 void ReportApp::compare() {
   if (output.empty()) throw Error(ExitCode::kUsage, "--compare: -o is required");
   out_page = comparisonPage(readComparison(compared_dirs.at(0), compared_dirs.at(1)));
@@ -116,13 +115,8 @@ void ReportApp::compare() {
   say(1, output);
 }
 
-std::string ReportApp::dataOf(const TrackedRun& run, const RunRecord& record) {
-  RunData data(run, record);
-=======
 std::string ReportApp::dataOf(const TrackedRun& run, const ReportContent& content) {
   RunData data(run, content.record);
->>>>>>> h2
-  const fs::path dir(run_dir);
   if (!content.events.is_null()) data.setEvents(content.events);
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the run");
   std::optional<GroundTruth> truth;

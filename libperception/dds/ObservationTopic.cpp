@@ -6,8 +6,8 @@
 #include <array>
 #include <random>
 
+#include <messages.h>  // of messages.idl
 #include "libperception/sensors/registerClasses.h"
-#include "messages.h"
 
 namespace perception {
 namespace {

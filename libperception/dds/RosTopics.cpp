@@ -7,9 +7,9 @@
 #include <utility>
 #include <variant>
 
+#include <messages.h>  // of messages.idl
 #include "libperception/interop/RosScene.h"
 #include "libperception/interop/RosSensors.h"
-#include "messages.h"
 
 namespace perception {
 namespace {
