@@ -18,8 +18,9 @@ IMPLEMENTS_GENERIC_SENSOR(CRawlogSensor, perception)
 
 namespace {
 
-constexpr double kAhead = 0.5;  ///< [s] read before it is due
-constexpr double kPause = 0.1;  ///< [s] between two times through the log
+constexpr double kAhead = 0.5;    ///< [s] read before it is due
+constexpr double kMissed = 0.05;  ///< [s] a device sends nothing of what was before it came up
+constexpr double kPause = 0.1;    ///< [s] between two times through the log
 
 double secondsNow() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -82,7 +83,9 @@ void CRawlogSensor::read() {
           const std::int64_t move = (start.ns - first->ns) / 100 * 100;
           observation->timestamp = fromStamp({stamp->ns + move});
         }
-        if (!put(start_at_ + (begin + length) / speed_, observation)) return;
+        const double due = start_at_ + (begin + length) / speed_;
+        if (secondsNow() - due > kMissed) continue;
+        if (!put(due, observation)) return;
       }
       begin += length + kPause;
     }
