@@ -50,6 +50,7 @@ packages=(
   libopencv-dnn-dev libopencv-objdetect-dev libopencv-contrib-dev   # detectors: networks, people, part models
   libopencv-ml-dev       # random forests of a study
   libmatio-dev           # part models as MATLAB files
+  cyclonedds-dev cyclonedds-tools  # observations and scenes between computers
   # to run
   libgl1-mesa-dri        # draws without a graphics card
   gnuplot-nox            # plots of the evaluation

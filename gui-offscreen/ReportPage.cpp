@@ -167,6 +167,9 @@ void Page::timeline() {
       "<h2>Who was there, and when</h2>\n<p>One row for each road user that was tracked, from "
       "when it was first seen until it was lost; color: its class at that time, pale while "
       "that was less than 95 % sure.";
+  const TimelineNote phantoms = phantomNote(content_.events, end_);
+  if (!phantoms.stretches.empty())
+    out_ += " First row: many clusters of returns were phantoms (spray, snow, rain).";
   out_ += " A click goes to that time.";
   if (left_out_ > 0)
     out_ += fmt::format(" The {} seen longest; {} more are not shown.", kMostRows, left_out_);
@@ -179,7 +182,7 @@ void Page::timeline() {
   }
   out_ += fmt::format("<span><i style=\"background:{}\"></i>something that stands</span>",
                       hexOf(colorOfClass("static-other", 0)));
-  out_ += "</p>\n<div class=\"wide\">" + timelineChart(run_, lives_, end_) + "</div>\n";
+  out_ += "</p>\n<div class=\"wide\">" + timelineChart(run_, lives_, end_, phantoms) + "</div>\n";
 }
 
 void Page::pictures() {

@@ -19,6 +19,7 @@ struct ReportContent {
   const TrackedRun* run = nullptr;
   RunRecord record;
   double real_time_factor = 0;  ///< 0: unknown
+  nlohmann::json events;        ///< events.jsonl as an array, or null
   nlohmann::json evaluation;    ///< report.json of perception-evaluate, or null
   std::vector<Figure> video;    ///< at most one
   std::vector<Figure> pictures, plots;

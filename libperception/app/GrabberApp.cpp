@@ -38,6 +38,12 @@ void GrabberApp::declare(CLI::App& cli) {
   addOutputOption(cli, false);
   cli.add_option("--duration", duration, "[s]; without: until SIGINT or SIGTERM")
       ->check(CLI::Range(0.01, 1e9));
+  cli.add_option("--stream", stream,
+                 "Pipe or file to which observations go as they come, for perception-track; -o may "
+                 "be left out then");
+  cli.add_option("--publish", publish,
+                 "INTERFACE[:DOMAIN], as lo:0: observations by DDS, for CDdsSensor of other "
+                 "processes and computers, clouds for ROS 2 as well");
   cli.add_flag(
       "--plugin", plugin,
       "Print the path of the plugin for MRPT's own tools (rawlog-edit -p, RawLogViewer -l, "
@@ -47,8 +53,11 @@ void GrabberApp::declare(CLI::App& cli) {
 void GrabberApp::run() {
   if (plugin) return fmt::print("{}\n", pluginPath());
   if (config_file.empty()) throw Error(ExitCode::kUsage, "-c/--config is needed");
-  if (output.empty()) throw Error(ExitCode::kUsage, "-o/--output is needed");
-  Grabber grabber(config_file, output);
+  if (output.empty() && stream.empty() && publish.empty())
+    throw Error(ExitCode::kUsage, "-o/--output, --stream or --publish is needed");
+  GrabberOutputs outputs{output, stream, {}};
+  if (!publish.empty()) outputs.network = NetworkName::parse(publish);
+  Grabber grabber(config_file, outputs);
   const auto begin = std::chrono::steady_clock::now();
   const auto passed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -63,8 +72,9 @@ void GrabberApp::run() {
     before = grabber.sensors();
   };
   grabber.run([&] { return stopAsked() || (duration > 0 && passed() >= duration); }, showRates);
-  fmt::print("{}: {} chunks, {:.2f} MB, {:.1f} s\n", output, grabber.chunks(),
-             static_cast<double>(grabber.bytes()) * 1e-6, passed());
+  if (!output.empty())
+    fmt::print("{}: {} chunks, {:.2f} MB, {:.1f} s\n", output, grabber.chunks(),
+               static_cast<double>(grabber.bytes()) * 1e-6, passed());
   for (const auto& [label, ledger] : grabber.sensors())
     fmt::print("  {}: {} observations, {} late\n", label, ledger.written, ledger.late);
   for (const std::string& warning : grabber.warnings()) warn(warning);

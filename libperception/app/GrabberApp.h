@@ -9,6 +9,8 @@ namespace perception {
 class GrabberApp : public App {
  public:
   double duration = 0;  ///< --duration [s]; 0: until SIGINT or SIGTERM
+  std::string stream;   ///< --stream: pipe or file for observations as they come
+  std::string publish;  ///< --publish INTERFACE[:DOMAIN] of DDS
   bool plugin = false;  ///< --plugin: print the path of MRPT's plugin and stop
 
   std::string name() const override { return "perception-grabber"; }

@@ -4,13 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include "gui-offscreen/RunData.h"
+#include "libperception/app/CompareRuns.h"
+#include "libperception/app/ComparisonPage.h"
+#include "libperception/app/ResultFiles.h"
 #include "libperception/pictures/RunScenes.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
@@ -46,36 +46,6 @@ constexpr FigureRow kPlots[] = {
     {"plots/reliability.png", "image/png", "Calibration of the class probability",
      "Observed frequency of the correct class over its stated probability; ideal: the diagonal."}};
 
-std::string contentsOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(file)), {});
-  if (!file && !file.eof()) throw DataError(path.string() + ": cannot be read");
-  return bytes;
-}
-
-nlohmann::json jsonOf(const fs::path& path) {
-  try {
-    return nlohmann::json::parse(contentsOf(path));
-  } catch (const nlohmann::json::exception& error) {
-    throw DataError(path.string() + ": no JSON: " + error.what());
-  }
-}
-
-/// JSON lines as an array.
-nlohmann::json linesOf(const fs::path& path) {
-  nlohmann::json all = nlohmann::json::array();
-  std::istringstream lines(contentsOf(path));
-  for (std::string line; std::getline(lines, line);) {
-    try {
-      all.push_back(nlohmann::json::parse(line));
-    } catch (const nlohmann::json::exception& error) {
-      throw DataError(
-          fmt::format("{}: line {}: no JSON: {}", path.string(), all.size() + 1, error.what()));
-    }
-  }
-  return all;
-}
-
 template <std::size_t N>
 std::vector<ReportContent::Figure> figuresIn(const fs::path& dir, const FigureRow (&rows)[N]) {
   std::vector<ReportContent::Figure> figures;
@@ -89,13 +59,13 @@ std::vector<ReportContent::Figure> figuresIn(const fs::path& dir, const FigureRo
 }  // namespace
 
 std::string ReportApp::description() const {
-  return "Makes one HTML page of a run: video, pictures, timeline, metrics, inputs.";
+  return "Makes one HTML page of a run: video, pictures, timeline, metrics, inputs; or of what "
+         "differs "
+         "between two.";
 }
 
 void ReportApp::declare(CLI::App& cli) {
-  cli.add_option("-r,--run", run_dir, "folder of a run of perception-track")
-      ->required()
-      ->type_name("DIR");
+  cli.add_option("-r,--run", run_dir, "folder of a run of perception-track")->type_name("DIR");
   addInputOption(cli, false);
   addConfigOptions(cli, false);
   cli.add_option("-t,--truth", truth_file,
@@ -106,9 +76,21 @@ void ReportApp::declare(CLI::App& cli) {
       ->type_name("DIR");
   cli.add_option("-o,--output", output, "output; default: index.html in the run's folder")
       ->type_name("FILE.html");
+  CLI::Option* compare =
+      cli.add_option(
+             "--compare", compared_dirs,
+             "folders of two runs of the same log: what differs, object by object; needs -o")
+          ->expected(2)
+          ->type_name("A B");
+  for (const char* option :
+       {"--run", "--input", "--config", "--set", "--print-config", "--truth", "--evaluation"}) {
+    compare->excludes(cli.get_option(option));
+  }
 }
 
 void ReportApp::run() {
+  if (!compared_dirs.empty()) return compare();
+  if (run_dir.empty()) throw Error(ExitCode::kUsage, "-r or --compare is required");
   const TrackedRun tracked = readTrackedRun(run_dir);
   ReportContent content;
   content.run = &tracked;
@@ -117,17 +99,25 @@ void ReportApp::run() {
   if (fs::exists(timing)) content.real_time_factor = jsonOf(timing).value("real_time_factor", 0.0);
   addFigures(content);
   addEvaluation(content);
-  content.data = dataOf(tracked, content.record);
+  if (const fs::path events = fs::path(run_dir) / "events.jsonl"; fs::exists(events))
+    content.events = linesOf(events);
+  content.data = dataOf(tracked, content);
   const std::string path = output.empty() ? (fs::path(run_dir) / "index.html").string() : output;
   out_page = htmlPage(content);
   writeFile(path, out_page);
   say(1, path);
 }
 
-std::string ReportApp::dataOf(const TrackedRun& run, const RunRecord& record) {
-  RunData data(run, record);
-  const fs::path dir(run_dir);
-  if (fs::exists(dir / "events.jsonl")) data.setEvents(linesOf(dir / "events.jsonl"));
+void ReportApp::compare() {
+  if (output.empty()) throw Error(ExitCode::kUsage, "--compare: -o is required");
+  out_page = comparisonPage(readComparison(compared_dirs.at(0), compared_dirs.at(1)));
+  writeFile(output, out_page);
+  say(1, output);
+}
+
+std::string ReportApp::dataOf(const TrackedRun& run, const ReportContent& content) {
+  RunData data(run, content.record);
+  if (!content.events.is_null()) data.setEvents(content.events);
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the run");
   std::optional<GroundTruth> truth;
   std::string truth_path = truth_file;
@@ -139,9 +129,9 @@ std::string ReportApp::dataOf(const TrackedRun& run, const RunRecord& record) {
   std::unique_ptr<SnapshotSensors> sensors;
   if (!inputs.empty()) {
     const std::string log = fs::path(inputs[0]).filename().string();
-    if (log != fs::path(record.input).filename().string()) {
-      throw DataError(
-          fmt::format("{}: {} is a run of another log: {}", inputs[0], run_dir, record.input));
+    if (log != fs::path(content.record.input).filename().string()) {
+      throw DataError(fmt::format("{}: {} is a run of another log: {}", inputs[0], run_dir,
+                                  content.record.input));
     }
     registerPerceptionClasses();
     sensors = std::make_unique<SnapshotSensors>(inputs[0], run, sensorParams());

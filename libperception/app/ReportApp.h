@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "gui-offscreen/ReportPage.h"
 #include "libperception/app/App.h"
@@ -7,13 +8,15 @@
 
 namespace perception {
 
-/// perception-report: HTML page of a run, from the results of the other programs in its folder.
+/// perception-report: HTML page of a run, from the results of the other programs in its folder, or
+/// of what differs between two runs.
 class ReportApp : public App {
  public:
   std::string run_dir;         ///< -r: folder of perception-track
   std::string evaluation_dir;  ///< --evaluation; empty: evaluation/ of the run, when it is there
   std::string truth_file;      ///< -t; empty: LOG.truth.csv beside the log, when it is there
-  std::string out_page;        ///< path of the page
+  std::vector<std::string> compared_dirs;  ///< --compare: two folders; empty: the page of run_dir
+  std::string out_page;                    ///< text of the page
 
   std::string name() const override { return "perception-report"; }
   std::string description() const override;
@@ -21,10 +24,11 @@ class ReportApp : public App {
   void run() override;
 
  private:
+  void compare();
   void addFigures(ReportContent& content) const;
   void addEvaluation(ReportContent& content) const;
   SnapshotSensorParams sensorParams();
-  std::string dataOf(const TrackedRun& run, const RunRecord& record);
+  std::string dataOf(const TrackedRun& run, const ReportContent& content);
 };
 
 }  // namespace perception

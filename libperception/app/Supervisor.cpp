@@ -76,8 +76,8 @@ class Child {
       if (number == SIGTERM || number == SIGINT) passOn(number);
       watch();
     }
-    if (WIFEXITED(status) && isExitCode(WEXITSTATUS(status))) return WEXITSTATUS(status);
     removeTemporaries();
+    if (WIFEXITED(status) && isExitCode(WEXITSTATUS(status))) return WEXITSTATUS(status);
     return tellOf(status);
   }
 

@@ -4,13 +4,19 @@
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <thread>
 
+#include "libperception/dds/RosTopics.h"
 #include "libperception/pipeline/FinishedRun.h"
+#include "libperception/pipeline/LiveInput.h"
 #include "libperception/pipeline/LogRun.h"
 #include "libperception/pipeline/Progress.h"
+#include "libperception/pipeline/StageWatchdog.h"
+#include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {
@@ -18,6 +24,26 @@ namespace fs = std::filesystem;
 
 /// [s] The real-time factor of a shorter log says nothing.
 constexpr double kShortLog = 1;
+/// [s] A stage that takes as long hangs: the slowest takes a tenth of a second. Assumed.
+constexpr double kLongestStage = 10;
+
+namespace {
+
+std::vector<std::string> namesOf(const ClassTable& classes) {
+  std::vector<std::string> names;
+  for (const ObjectClass& c : classes.classes) names.push_back(c.name);
+  return names;
+}
+
+/// Nothing that hangs can be asked to end.
+[[noreturn]] void endHungRun(const std::string& stage) {
+  fmt::print(stderr, "perception-track: error: {} does not get on for {} s: the run ends\n",
+             stage.empty() ? "something between stages" : "stage " + stage, kLongestStage);
+  std::fflush(stderr);
+  std::_Exit(static_cast<int>(ExitCode::kTryAgain));
+}
+
+}  // namespace
 
 void TrackApp::declare(CLI::App& cli) {
   addConfigOptions(cli, false);
@@ -33,6 +59,13 @@ void TrackApp::declare(CLI::App& cli) {
       ->check(CLI::Range(0.0, 1000.0));
   cli.add_flag("--measurements", measurements,
                "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
+  cli.add_option(
+         "--duration", duration,
+         "[s] Of -i live:INI, the sensors of a capture INI at work; without: until a signal")
+      ->check(CLI::Range(0.01, 1e9));
+  cli.add_option("--record", record, "Folder in which the sensors of -i live:INI are recorded");
+  cli.add_option("--publish", publish,
+                 "INTERFACE[:DOMAIN], as lo:0: scenes by DDS, as nodes of ROS 2 read them");
   cli.add_flag("--overwrite", overwrite,
                "Replace the results in the folder, also of another run, evaluation and film too");
   cli.add_flag("--info", info, "Say what the logs of -i hold (labels, classes, rates) and stop");
@@ -94,7 +127,7 @@ void TrackApp::run() {
   }
   if (inputs.empty()) throw Error(ExitCode::kUsage, "-i/--input: at least one rawlog is needed");
   if (output.empty()) throw Error(ExitCode::kUsage, "-o/--output is needed");
-  for (const auto& log : inputs) exportFileFor(log);
+  checkInputs();
   std::optional<tbb::global_control> limit;
   if (threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -107,6 +140,27 @@ void TrackApp::run() {
     }
   }
   for (const Shard& shard : shards()) trackLog(shard);
+}
+
+void TrackApp::checkInputs() const {
+  bool live = false;
+  for (const auto& log : inputs) {
+    exportFileFor(log);
+    live = live || liveIniOf(log);
+  }
+  if (live && inputs.size() > 1)
+    throw Error(ExitCode::kUsage, "-i live:INI is the only input of a run");
+  if (!live && (duration > 0 || !record.empty()))
+    throw Error(ExitCode::kUsage, "--duration and --record belong to -i live:INI");
+  if (live && !overwrite && fs::exists(output + "/done.json"))
+    throw Error(ExitCode::kBadConfig,
+                output + ": holds a run; give another folder, or --overwrite to remove it");
+}
+
+std::unique_ptr<ObservationInput> TrackApp::openInput(const std::string& log) const {
+  if (const auto ini = liveIniOf(log))
+    return std::make_unique<LiveInput>(LiveInput::Params{*ini, duration, record});
+  return std::make_unique<RawlogReader>(log);
 }
 
 std::vector<TrackApp::Shard> TrackApp::shards() const {
@@ -136,8 +190,14 @@ void TrackApp::trackLog(const Shard& shard) {
   config.finish();
   out_scenes.clear();
   out_record = {};
-  LogRun run(setup, {shard.log, shard.dir, shard.export_file});
-  run.read([this](const Scene& scene) {
+  LogRun run(setup, {shard.log, shard.dir, shard.export_file}, openInput(shard.log));
+  std::optional<StageWatchdog> watchdog;
+  if (liveIniOf(shard.log)) watchdog.emplace(run.timing(), kLongestStage, endHungRun);
+  std::unique_ptr<RosTopics> topics;
+  if (!publish.empty())
+    topics = std::make_unique<RosTopics>(NetworkName::parse(publish), namesOf(setup.model.classes));
+  run.read([&](const Scene& scene) {
+    if (topics) topics->publish(scene);
     if (keep_scenes) out_scenes.push_back(scene);
   });
   for (const std::string& message : run.finish(strict)) warn(message);

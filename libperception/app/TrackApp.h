@@ -8,10 +8,11 @@
 #include "libperception/app/App.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/scene/KittiExport.h"
+#include "libperception/sensors/ObservationInput.h"
 
 namespace perception {
 
-/// perception-track: from rawlogs to tracked and classified objects.
+/// perception-track: from rawlogs, or sensors at work, to tracked and classified objects.
 class TrackApp : public App {
  public:
   std::string sensors;                ///< --sensors: overrides [run] sensors
@@ -19,13 +20,16 @@ class TrackApp : public App {
   double rate = 0;                    ///< --rate [Hz]: scenes at a fixed rate instead of at scans
   std::vector<std::string> exports;   ///< --export FORMAT:FILE
   bool measurements = false;          ///< --measurements: also record the filter's input
+  double duration = 0;                ///< --duration [s]: of sensors at work; 0: until a signal
+  std::string record;                 ///< --record: folder; sensors at work are recorded, too
+  std::string publish;                ///< --publish INTERFACE[:DOMAIN]: scenes by DDS
   bool overwrite = false;             ///< --overwrite: replace the results of another run
   bool info = false;                  ///< --info: say what the logs hold and stop
   bool keep_scenes = false;           ///< keep all scenes in out_scenes (tests)
 
   std::string name() const override { return "perception-track"; }
   std::string description() const override {
-    return "Tracks and classifies the objects around a vehicle in rawlogs";
+    return "Tracks and classifies the objects around a vehicle, in rawlogs or live";
   }
   void declare(CLI::App& cli) override;
   void run() override;
@@ -41,6 +45,8 @@ class TrackApp : public App {
   };
   std::vector<Shard> shards() const;
   void trackLog(const Shard& shard);
+  void checkInputs() const;
+  std::unique_ptr<ObservationInput> openInput(const std::string& log) const;
   void printContents(const std::string& log);
   Config configWithOptions() const;
   std::string exportFileFor(const std::string& log) const;

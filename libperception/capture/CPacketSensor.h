@@ -7,23 +7,11 @@
 #include <thread>
 #include <vector>
 
+#include "libperception/capture/LedgerSource.h"
 #include "libperception/capture/PacketReplay.h"
 #include "libperception/packets/FrameAssembler.h"
 
 namespace perception {
-
-/// A driver that can end without loss, and knows what came.
-class LedgerSource {
- public:
-  virtual ~LedgerSource() = default;
-  /// Receives what is under way, then no more; the last frame is output with the next doProcess().
-  virtual void endCapture() = 0;
-  virtual PacketLedger packets() const = 0;
-  virtual std::vector<std::string> lostPackets() const = 0;
-  virtual std::vector<std::string> warnings() const = 0;
-  /// Of the device simulator; null without one.
-  virtual const PacketReplay* simulator() const = 0;
-};
 
 /// A lidar or radar that sends UDP packets (packets/Decoder.h) as a driver for perception-grabber
 /// and MRPT's rawlog-grabber; with `replay`, it starts a simulator of its device on loopback. Keys:

@@ -2,23 +2,26 @@
 
 #include <fmt/format.h>
 #include <mrpt/config/CConfigFile.h>
+#include <mrpt/obs/CObservationComment.h>
 
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
+#include <utility>
 
-#include "libperception/capture/CPacketSensor.h"
-#include "libperception/capture/CScenarioSensor.h"
+#include "libperception/capture/LedgerSource.h"
+#include "libperception/capture/PacketReplay.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/MrptCompatibility.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/FromObservation.h"
 
 namespace perception {
 namespace {
 
-using mrpt::hwdrivers::CGenericSensor;
-constexpr auto kPollPeriod = std::chrono::milliseconds(10);
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr std::size_t kMostUnpublished = 1000;  ///< that wait
+constexpr auto kWait = milliseconds(10);
+constexpr auto kSilence = milliseconds(20);  ///< after which a stream is told that time goes on
 
 mrpt::config::CConfigFile openIni(const std::string& path) {
   if (!std::filesystem::is_regular_file(path))
@@ -39,93 +42,132 @@ ChunkLimits limitsOf(const std::string& ini) {
   return limits;
 }
 
-CGenericSensor::Ptr startDriver(const mrpt::config::CConfigFile& config, const std::string& ini,
-                                const std::string& section) {
-  const std::string name = config.read_string(section, "driver", "");
-  const auto driver = CGenericSensor::createSensorPtr(name);
-  if (!driver)
-    throw ConfigError(fmt::format("{}: [{}] driver {} is not known", ini, section, name));
-  try {
-    driver->loadConfig(config, section);
-    driver->initialize();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw ConfigError(fmt::format("{}: [{}] {}: {}", ini, section, name, error.what()));
-  }
-  return driver;
+std::size_t streamLimitOf(const std::string& ini) {
+  const auto limit = openIni(ini).read_uint64_t("global", "stream_limit", 200);
+  if (limit == 0) throw ConfigError(ini + ": [global] stream_limit must be above 0");
+  return limit;
 }
 
 }  // namespace
 
-Grabber::Grabber(const std::string& ini, const std::string& folder) : log_(folder, limitsOf(ini)) {
-  registerPerceptionClasses();
-  CScenarioSensor::doRegister();
-  CPacketSensor::doRegister();
-  const auto config = openIni(ini);
-  std::vector<std::string> sections;
-  config.getAllSections(sections);
-  for (const std::string& section : sections) {
-    if (!config.read_string(section, "driver", "").empty())
-      drivers_.push_back(startDriver(config, ini, section));
-  }
-  if (drivers_.empty()) throw ConfigError(ini + ": no section with a driver");
-  for (const auto& driver : drivers_) ledgers_[driver->getSensorLabel()];
+Grabber::Grabber(const std::string& ini, const GrabberOutputs& outputs) : drivers_(ini) {
+  for (std::size_t i = 0; i < drivers_.size(); ++i) ledgers_[drivers_.label(i)];
+  if (!outputs.folder.empty()) startRecord(outputs.folder, limitsOf(ini));
+  if (!outputs.stream.empty()) startStream(outputs.stream, streamLimitOf(ini));
+  if (outputs.network) startPublishing(*outputs.network);
 }
 
-void Grabber::poll() {
-  CGenericSensor::TListObservations all;
-  for (const auto& driver : drivers_) {
-    driver->doProcess();
-    for (auto& [stamp, object] : observationsOf(*driver)) {
-      const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object);
-      if (!observation) continue;
-      SensorLedger& ledger = ledgers_[driver->getSensorLabel()];
-      ++ledger.written;
-      auto& last = last_[observation->sensorLabel];
-      if (observation->timestamp < last) ++ledger.late;
-      last = std::max(last, observation->timestamp);
-      all.emplace(stamp, object);
-    }
+void Grabber::startPublishing(const NetworkName& network) {
+  publisher_ = std::make_unique<ObservationPublisher>(network);
+  ros_ = std::make_unique<RosTopics>(network, std::vector<std::string>());
+  Outlet::Params params;
+  params.limit = kMostUnpublished;
+  params.take = [this](const Drivers::Arrival& arrival, std::uint64_t) {
+    if (!publisher_->publish(*arrival.observation)) ++unpublished_;
+    if (!isSensorData(*arrival.observation)) return;
+    if (const auto frame = frameFromObservation(*arrival.observation)) ros_->publish(*frame);
+  };
+  network_ = std::make_unique<Outlet>(std::move(params));
+}
+
+void Grabber::startRecord(const std::string& folder, const ChunkLimits& limits) {
+  log_.emplace(folder, limits);
+  const auto note = [this] { bytes_ = log_->bytes(), chunks_ = log_->chunks(); };
+  Outlet::Params params;
+  params.take = [this, note](const Drivers::Arrival& arrival, std::uint64_t) {
+    log_->write(*arrival.observation);
+    note();
+  };
+  params.tend = [this, note] {
+    log_->tend();
+    note();
+  };
+  record_ = std::make_unique<Outlet>(std::move(params));
+}
+
+void Grabber::startStream(const std::string& path, std::size_t limit) {
+  writer_.emplace(path);
+  Outlet::Params params;
+  params.limit = limit;
+  params.take = [this](const Drivers::Arrival& arrival, std::uint64_t dropped) {
+    if (!reader_gone_ &&
+        !writer_->write({arrival.observation, arrival.at, static_cast<std::uint32_t>(dropped)}))
+      reader_gone_ = true;
+  };
+  stream_ = std::make_unique<Outlet>(std::move(params));
+}
+
+void Grabber::put(const Drivers::Arrival& arrival) {
+  if (stream_) stream_->put(arrival);
+  if (network_) network_->put(arrival);
+  if (record_) record_->put(arrival);
+}
+
+void Grabber::count(const Drivers::Arrival& arrival) {
+  SensorLedger& ledger = ledgers_[drivers_.label(arrival.driver)];
+  ++ledger.written;
+  const auto stamp = arrival.observation->timestamp;
+  auto& last = last_[arrival.observation->sensorLabel];
+  if (stamp < last) ++ledger.late;
+  last = std::max(last, stamp);
+  if (!newest_ || stamp > newest_->stamp) newest_ = {stamp, arrival.at};
+}
+
+void Grabber::pass(std::vector<Drivers::Arrival> arrivals) {
+  for (const Drivers::Arrival& arrival : arrivals) {
+    count(arrival);
+    put(arrival);
   }
-  for (const auto& [stamp, object] : all)
-    log_.write(dynamic_cast<const mrpt::obs::CObservation&>(*object));
+  if (!arrivals.empty()) last_passed_ = steady_clock::now();
+}
+
+/// A reader waits for what may come late until the time has passed; in silence, nothing else would
+/// say that it has.
+void Grabber::passTime() {
+  const auto now = steady_clock::now();
+  if (!stream_ || !newest_ || now - last_passed_ < kSilence) return;
+  auto comment = std::make_shared<mrpt::obs::CObservationComment>();
+  comment->text = kClockText;
+  comment->timestamp =
+      newest_->stamp + std::chrono::duration_cast<mrpt::Clock::duration>(now - newest_->at);
+  put({comment, 0, now});
+  last_passed_ = now;
 }
 
 void Grabber::run(const std::function<bool()>& done, const std::function<void()>& tick) {
-  auto next_tick = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+  auto next_tick = steady_clock::now() + std::chrono::seconds(1);
   try {
-    while (!done()) {
-      poll();
-      std::this_thread::sleep_for(kPollPeriod);
-      if (std::chrono::steady_clock::now() < next_tick) continue;
+    while (!done() && !reader_gone_) {
+      pass(drivers_.take(kWait));
+      passTime();
+      if (record_) record_->check();
+      if (steady_clock::now() < next_tick) continue;
       next_tick += std::chrono::seconds(1);
-      log_.tend();
       tick();
     }
   } catch (const OutputError&) {
-    endDrivers();
+    drivers_.end();
     noteLedgers();  // a line fits where no scan does
     throw;
   }
-  endDrivers();
-  poll();
-  log_.close();
+  drivers_.end();
+  pass(drivers_.take(milliseconds(0)));
+  if (stream_) stream_->close();
+  if (network_) network_->close();
+  if (!record_) return;
+  record_->close();
+  log_->close();
+  bytes_ = log_->bytes(), chunks_ = log_->chunks();
   noteLedgers();
 }
 
-void Grabber::endDrivers() {
-  for (const auto& driver : drivers_) {
-    if (auto* source = dynamic_cast<LedgerSource*>(driver.get())) source->endCapture();
-  }
-}
-
 void Grabber::noteLedgers() {
-  for (const auto& driver : drivers_) {
-    const SensorLedger& ledger = ledgers_[driver->getSensorLabel()];
+  if (!log_) return;
+  for (std::size_t i = 0; i < drivers_.size(); ++i) {
+    const SensorLedger& ledger = ledgers_[drivers_.label(i)];
     nlohmann::json line{
-        {"sensor", driver->getSensorLabel()}, {"written", ledger.written}, {"late", ledger.late}};
-    if (const auto* source = dynamic_cast<const LedgerSource*>(driver.get())) {
+        {"sensor", drivers_.label(i)}, {"written", ledger.written}, {"late", ledger.late}};
+    if (const auto* source = dynamic_cast<const LedgerSource*>(&drivers_[i])) {
       const PacketLedger p = source->packets();
       line["packets"] = {{"received", p.received}, {"damaged", p.damaged},
                          {"lost", p.lost},         {"repeated", p.repeated},
@@ -139,19 +181,24 @@ void Grabber::noteLedgers() {
                              {"sent", s.sent}};
       }
     }
-    log_.note(line.dump());
+    log_->note(line.dump());
   }
 }
 
 std::vector<std::string> Grabber::warnings() const {
-  std::vector<std::string> all;
-  for (const auto& driver : drivers_) {
-    const auto* source = dynamic_cast<const LedgerSource*>(driver.get());
+  std::vector<std::string> all = drivers_.faults();
+  if (stream_ && stream_->dropped() > 0)
+    all.push_back(fmt::format("{} observations were not streamed: the reader was too slow",
+                              stream_->dropped()));
+  if (const auto missed = unpublished_ + (network_ ? network_->dropped() : 0); missed > 0)
+    all.push_back(fmt::format("{} observations were not published: a reader was too slow", missed));
+  for (std::size_t i = 0; i < drivers_.size(); ++i) {
+    const auto* source = dynamic_cast<const LedgerSource*>(&drivers_[i]);
     if (!source) continue;
     for (const std::string& warning : source->warnings()) all.push_back(warning);
     const PacketLedger p = source->packets();
     if (p.lost > 0)
-      all.push_back(fmt::format("{}: {} of {} packets lost", driver->getSensorLabel(), p.lost,
+      all.push_back(fmt::format("{}: {} of {} packets lost", drivers_.label(i), p.lost,
                                 p.lost + p.received - p.repeated));
   }
   return all;

@@ -1,5 +1,6 @@
 #include "libperception/capture/ScenarioPlayer.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -9,6 +10,8 @@
 
 namespace perception {
 namespace {
+
+constexpr double kAhead = 0.5;  ///< [s] simulated before it is due
 
 Scenario scenarioOf(const std::string& path) {
   Config config = Config::fromFile(path);
@@ -26,12 +29,21 @@ ScenarioPlayer::ScenarioPlayer(const ScenarioSource& source) {
   first_ = scenario.params.start_utc;
   simulator_ = std::make_unique<Simulator>(
       std::move(scenario), std::filesystem::path(source.scenario).stem().string(), source.seed);
-  next_ = simulator_->next();
   const auto delay = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double>(source.start_delay));
   start_ = std::chrono::steady_clock::now() + delay;
   shift_ = mrpt::Clock::now() - fromStamp(Stamp::fromSeconds(first_)) +
            std::chrono::duration_cast<mrpt::Clock::duration>(delay);
+  thread_ = std::thread([this] { simulate(); });
+}
+
+ScenarioPlayer::~ScenarioPlayer() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
 }
 
 std::shared_ptr<ScenarioPlayer> ScenarioPlayer::shared(const ScenarioSource& source) {
@@ -46,21 +58,49 @@ std::shared_ptr<ScenarioPlayer> ScenarioPlayer::shared(const ScenarioSource& sou
   return player;
 }
 
-void ScenarioPlayer::advanceTo(double t) {
-  while (next_ && mrpt::Clock::toDouble(next_->timestamp) - first_ <= t) {
-    const auto queue = waiting_.find(next_->sensorLabel);
-    next_->timestamp += shift_;
+void ScenarioPlayer::simulate() {
+  for (;;) {
+    std::shared_ptr<mrpt::obs::CObservation> observation;
+    std::exception_ptr failure;
+    try {
+      observation = simulator_->next();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    std::unique_lock<std::mutex> lock(mutex_);
+    failure_ = failure;
+    if (!observation) {
+      over_ = true;
+      changed_.notify_all();
+      return;
+    }
+    const double t = mrpt::Clock::toDouble(observation->timestamp) - first_;
+    observation->timestamp += shift_;
     // Comments have no sensor label: they are assigned to the vehicle.
-    (queue != waiting_.end() ? queue->second : waiting_[kVehicle]).push_back(std::move(next_));
-    next_ = simulator_->next();
+    const auto queue = waiting_.find(observation->sensorLabel);
+    (queue != waiting_.end() ? queue->second : waiting_[kVehicle])
+        .push_back({t, std::move(observation)});
+    simulated_ = t;
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return stop_ || simulated_ <= wanted_ + kAhead; });
+    if (stop_) return;
   }
 }
 
 ScenarioPlayer::Observations ScenarioPlayer::takeUntil(const std::string& label, double t) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  advanceTo(t);
+  std::unique_lock<std::mutex> lock(mutex_);
+  wanted_ = std::max(wanted_, t);
+  changed_.notify_all();
+  changed_.wait(lock, [&] { return over_ || stop_ || simulated_ > t; });
+  if (failure_) std::rethrow_exception(failure_);
+  Observations out;
   const auto queue = waiting_.find(label);
-  return queue == waiting_.end() ? Observations() : std::exchange(queue->second, {});
+  if (queue == waiting_.end()) return out;
+  while (!queue->second.empty() && queue->second.front().t <= t) {
+    out.push_back(std::move(queue->second.front().observation));
+    queue->second.pop_front();
+  }
+  return out;
 }
 
 ScenarioPlayer::Observations ScenarioPlayer::take(const std::string& label) {
@@ -81,7 +121,7 @@ bool ScenarioPlayer::ended() {
   for (const auto& [label, queue] : waiting_) {
     if (!queue.empty()) return false;
   }
-  return !next_;
+  return over_;
 }
 
 }  // namespace perception

@@ -2,11 +2,15 @@
 #include <mrpt/obs/CObservation.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -27,7 +31,8 @@ struct ScenarioSource {
 };
 
 /// A simulated vehicle in real time. Each driver takes its sensor's observations. They equal those
-/// of perception-simulate except for the stamps, which are of the time of playback. Thread-safe.
+/// of perception-simulate except for the stamps, which are of the time of playback. Simulates half
+/// a second ahead in a thread of its own, so that no sensor waits for another. Thread-safe.
 class ScenarioPlayer {
  public:
   using Observations = std::vector<std::shared_ptr<mrpt::obs::CObservation>>;
@@ -37,6 +42,9 @@ class ScenarioPlayer {
 
   /// Throws ConfigError with all faults of the scenario.
   explicit ScenarioPlayer(const ScenarioSource& source);
+  ~ScenarioPlayer();
+  ScenarioPlayer(const ScenarioPlayer&) = delete;
+  ScenarioPlayer& operator=(const ScenarioPlayer&) = delete;
 
   /// The player of a source, shared while anyone holds it.
   static std::shared_ptr<ScenarioPlayer> shared(const ScenarioSource& source);
@@ -52,15 +60,25 @@ class ScenarioPlayer {
   bool ended();  ///< true when the scenario is over and all observations were taken
 
  private:
-  void advanceTo(double t);
+  void simulate();
 
-  std::mutex mutex_;
-  std::map<std::string, Observations> waiting_;  ///< by label
+  struct Waiting {
+    double t = 0;  ///< [s] of the scenario
+    std::shared_ptr<mrpt::obs::CObservation> observation;
+  };
+
+  std::mutex mutex_;  ///< of what follows, but not of the simulator
+  std::condition_variable changed_;
+  std::map<std::string, std::deque<Waiting>> waiting_;  ///< by label
+  double wanted_ = 0, simulated_ = 0;                   ///< [s] of the scenario
+  bool over_ = false, stop_ = false;
+  std::exception_ptr failure_;  ///< of the simulator
+
   std::unique_ptr<Simulator> simulator_;
-  std::shared_ptr<mrpt::obs::CObservation> next_;  ///< null at the end
   double first_ = 0;                             ///< [s] since 1970: stamp of the scenario's t = 0
   std::chrono::steady_clock::time_point start_;  ///< when t = 0 is played
   mrpt::Clock::duration shift_{0};               ///< offset from scenario stamps to playback stamps
+  std::thread thread_;
 };
 
 }  // namespace perception

@@ -51,7 +51,10 @@ ChildProcess::ChildProcess(const ChildCommand& command) : limit_(command.seconds
   std::vector<char*> words;
   for (const auto& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  const int output = ::open(command.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int output =
+      command.output.empty()
+          ? ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)
+          : ::open(command.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (output < 0) {
     throw OutputError(
         fmt::format("{}: cannot be created: {}", command.output, std::strerror(errno)));

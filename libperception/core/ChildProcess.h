@@ -11,8 +11,10 @@ namespace perception {
 struct ChildCommand {
   std::vector<std::string> words;  ///< program, looked up on PATH if it has no '/', and arguments
   std::string folder;              ///< working folder; empty: that of this process
-  std::string output;              ///< file of standard output and error; standard input is empty
-  std::uint64_t memory = 0;        ///< [bytes] of address space (RLIMIT_AS); 0: as this process
+  /// File of standard output and error; empty: both to this process's standard error. Standard
+  /// input is empty.
+  std::string output;
+  std::uint64_t memory = 0;  ///< [bytes] of address space (RLIMIT_AS); 0: as this process
   /// [s] of processor time of each of its processes, at which it is ended by SIGXCPU (RLIMIT_CPU);
   /// 0: as this process
   std::uint64_t processor_seconds = 0;

@@ -135,12 +135,23 @@ void setHota(const std::vector<IdentityView>& views, const Tracks& tracks, doubl
 /// Most instants of pairs of identities, one to one; a truth may stay alone.
 double identityMatches(const std::vector<IdentityView>& views, const Tracks& tracks) {
   std::map<Ids, double> together;
-  double most = 0;
   for (std::size_t i = 0; i < views.size(); ++i)
     for (const auto& p : views[i].pairs)
-      most = std::max(most, ++together[{tracks.instants[i].truth[p.truth],
-                                        tracks.instants[i].estimates[p.estimate]}]);
-  const std::size_t rows = tracks.truth.count.size(), columns = tracks.estimates.count.size();
+      ++together[{tracks.instants[i].truth[p.truth], tracks.instants[i].estimates[p.estimate]}];
+  const std::vector<int> column =
+      pairIdentities(together, tracks.truth.count.size(), tracks.estimates.count.size());
+  double instants = 0;
+  for (std::size_t r = 0; r < column.size(); ++r)
+    if (column[r] >= 0) instants += together.at({r, static_cast<std::size_t>(column[r])});
+  return instants;
+}
+
+}  // namespace
+
+std::vector<int> pairIdentities(const std::map<Ids, double>& together, std::size_t rows,
+                                std::size_t columns) {
+  double most = 0;
+  for (const auto& [ids, instants] : together) most = std::max(most, instants);
   AssignmentSolver solver;
   solver.begin(static_cast<int>(columns + rows));
   auto next = together.begin();
@@ -150,10 +161,11 @@ double identityMatches(const std::vector<IdentityView>& views, const Tracks& tra
     solver.addOption(static_cast<int>(columns + r), most);
     solver.endRow();
   }
-  return most * static_cast<double>(rows) - solver.solve().cost;
+  std::vector<int> column = solver.solve().column;
+  for (int& c : column)
+    if (c >= static_cast<int>(columns)) c = -1;
+  return column;
 }
-
-}  // namespace
 
 IdentityView identityView(std::vector<std::int64_t> truth, const std::vector<Vector2>& truth_at,
                           std::vector<std::uint64_t> estimates,

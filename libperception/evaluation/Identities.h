@@ -1,7 +1,9 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/Frames.h"
@@ -23,6 +25,13 @@ struct IdentityView {
 IdentityView identityView(std::vector<std::int64_t> truth, const std::vector<Vector2>& truth_at,
                           std::vector<std::uint64_t> estimates,
                           const std::vector<Vector2>& estimates_at, double reach);
+
+/// Pairs identities one to one so that they have most instants in common. `together`: instants that
+/// two identities share, by their numbers (from 0) among `rows` and `columns` of them. Returns the
+/// column of each row or -1; identities without a common instant are not paired.
+std::vector<int> pairIdentities(
+    const std::map<std::pair<std::size_t, std::size_t>, double>& together, std::size_t rows,
+    std::size_t columns);
 
 /// HOTA with its parts [luiten2021], means over the similarities .05, .10 ... .95, and IDF1
 /// [ristani2016] of all pairs within reach: method.md 11.

@@ -4,15 +4,13 @@
 #include "libperception/interop/ExportFile.h"
 #include "libperception/interop/Jpeg.h"
 #include "libperception/interop/RosMessages.h"
+#include "libperception/interop/RosScene.h"
 #include "libperception/interop/RosSchemas.h"
 #include "libperception/interop/RosSensors.h"
 
 namespace perception {
 namespace {
 
-// Frames of ROS's REP 105.
-constexpr const char* kWorld = "map";
-constexpr const char* kVehicle = "base_link";
 // Who comes late still gets what does not change (rosbag2's metadata up to version 8).
 constexpr const char* kLatched =
     "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n"
@@ -20,31 +18,6 @@ constexpr const char* kLatched =
     "  lifespan: {sec: 9223372036, nsec: 854775807}\n  liveliness: 1\n"
     "  liveliness_lease_duration: {sec: 9223372036, nsec: 854775807}\n"
     "  avoid_ros_namespace_conventions: false\n";
-
-/// The object's box; classes with their probability times that of its existence.
-ros::Detection3D detectionOf(const SceneObject& object, const ros::Header& header,
-                             const std::vector<std::string>& class_names) {
-  constexpr double kLeast = 0.01;  // probability of classes that are named
-  ros::Detection3D d;
-  d.header = header;
-  const Pose3 T = makePose(object.position.x(), object.position.y(),
-                           object.position.z() + object.height / 2, object.yaw);
-  d.center = ros::messageOf(T);
-  d.size = {object.length, object.width, object.height};
-  d.id = std::to_string(object.id);
-  const double variances[] = {object.sd_x, object.sd_y, object.sd_yaw};
-  for (std::size_t c = 0; c < object.class_probability.size(); ++c) {
-    if (object.class_probability[c] < kLeast) continue;
-    ros::ObjectHypothesis h;
-    h.class_id = class_names[c];
-    h.score = object.class_probability[c] * object.existence;
-    h.pose = d.center;
-    for (const auto& [at, k] : {std::pair(0, 0), std::pair(7, 1), std::pair(35, 2)})
-      h.covariance[static_cast<std::size_t>(at)] = variances[k] * variances[k];
-    d.results.push_back(std::move(h));
-  }
-  return d;
-}
 
 /// Frames map, base_link and one a sensor; channels begin with their first message.
 class RosFile final : public ExportFile {
@@ -54,16 +27,14 @@ class RosFile final : public ExportFile {
 
   void writePose(Stamp stamp, const Pose3& T_world_ego) override {
     has_poses_ = true;
-    transform("/tf", stamp, T_world_ego, kWorld, kVehicle);
+    transform("/tf", stamp, T_world_ego, ros::kWorld, ros::kVehicle);
   }
 
   void writeScene(const Scene& scene) override {
-    if (!has_poses_) transform("/tf", scene.stamp, scene.ego.T_world_ego, kWorld, kVehicle);
-    ros::Detection3DArray array;
-    array.header = {scene.stamp, kWorld};
-    for (const SceneObject& object : scene.objects)
-      array.detections.push_back(detectionOf(object, array.header, class_names_));
-    write("/tracks", "vision_msgs/Detection3DArray", scene.stamp, array);
+    if (!has_poses_)
+      transform("/tf", scene.stamp, scene.ego.T_world_ego, ros::kWorld, ros::kVehicle);
+    write("/tracks", "vision_msgs/Detection3DArray", scene.stamp,
+          ros::messageOf(scene, class_names_));
   }
 
   bool writeFrame(const SensorFrame& frame) override {
@@ -101,7 +72,7 @@ class RosFile final : public ExportFile {
     const auto [known, is_new] = placed_.try_emplace(frame.sensor, frame.T_ego_sensor);
     if (!is_new && known->second.isApprox(frame.T_ego_sensor, 1e-12)) return;
     known->second = frame.T_ego_sensor;
-    transform("/tf_static", frame.stamp, frame.T_ego_sensor, kVehicle, frame.sensor);
+    transform("/tf_static", frame.stamp, frame.T_ego_sensor, ros::kVehicle, frame.sensor);
   }
 
   void transform(const char* topic, Stamp stamp, const Pose3& T, const std::string& parent,

@@ -36,6 +36,9 @@ constexpr double kSurelyThing = -2;
 /// Probability from which a cluster is surely a phantom, if that of every road user is below the
 /// second one (assumed).
 constexpr double kSurePhantom = 0.7, kHardlyRoadUser = 0.05;
+/// P(phantom) above which a cluster that is kept counts as suspicious: more likely one than not.
+constexpr double kSuspicious = 0.5;
+constexpr float kDoubted = 0.5f;  // trust of a return below which it is doubted
 
 /// Drops what lies in the footprint of a likely vehicle: its seats, its roof, what is seen through
 /// its windows.
@@ -83,6 +86,38 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
   judged.resize(kept);
 }
 
+PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles,
+                         double probability) {
+  PhantomCluster phantom;
+  phantom.returns = obstacles.size(), phantom.probability = probability;
+  if (found.trust.empty()) return phantom;
+  for (const std::uint32_t i : obstacles)
+    if (found.trust[i] < kDoubted)
+      phantom.doubted.push_back(found.points.source[found.obstacles[i]]);
+  return phantom;
+}
+
+/// Marks the clusters that stand for themselves; `own`: probability of the likeliest road user.
+std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
+                           const std::vector<double>& own) {
+  const std::size_t n = clusters.size();
+  std::vector<double> best_part(n, 0);  // over all parts of parts
+  for (std::size_t i = n; i-- > 0;) {   // parts come after their whole
+    if (const int whole = clusters[i].segment.whole; whole >= 0) {
+      double& best = best_part[static_cast<std::size_t>(whole)];
+      best = std::max({best, own[i], best_part[i]});
+    }
+  }
+  std::vector<char> stands(n, 0), in_parts(n, 0);  // reached from above; is given as its parts
+  for (std::size_t i = 0; i < n; ++i) {
+    const int whole = clusters[i].segment.whole;
+    const bool reached = whole < 0 || in_parts[static_cast<std::size_t>(whole)];
+    in_parts[i] = reached && own[i] < kSureWhole && best_part[i] > std::max(kLeastPart, own[i]);
+    stands[i] = reached && !in_parts[i];
+  }
+  return stands;
+}
+
 }  // namespace
 
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
@@ -100,20 +135,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   for (std::size_t i = 0; i < n; ++i)
     if (clusters[i].segment.whole < 0) wholes.push_back(probabilities[i]);
   const PhantomMix mix(wholes, classifier.prior());
-  std::vector<double> best_part(n, 0);  // over all parts of parts
-  for (std::size_t i = n; i-- > 0;) {   // parts come after their whole
-    if (const int whole = clusters[i].segment.whole; whole >= 0) {
-      double& best = best_part[static_cast<std::size_t>(whole)];
-      best = std::max({best, own[i], best_part[i]});
-    }
-  }
-  std::vector<char> stands(n, 0), in_parts(n, 0);  // reached from above; is given as its parts
-  for (std::size_t i = 0; i < n; ++i) {
-    const int whole = clusters[i].segment.whole;
-    const bool reached = whole < 0 || in_parts[static_cast<std::size_t>(whole)];
-    in_parts[i] = reached && own[i] < kSureWhole && best_part[i] > std::max(kLeastPart, own[i]);
-    stands[i] = reached && !in_parts[i];
-  }
+  const std::vector<char> stands = standing(clusters, own);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
@@ -123,8 +145,13 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     const double phantom = at(p, ClusterKind::kPhantom);
     for (const std::uint32_t point : clusters[i].segment.points)
       judgement.phantom[point] = static_cast<float>(phantom);
-    if (phantom > kSurePhantom && own[i] < kHardlyRoadUser) continue;
+    ++judgement.verdicts.clusters;
+    if (phantom > kSurePhantom && own[i] < kHardlyRoadUser) {
+      judgement.verdicts.phantoms.push_back(phantomOf(found, clusters[i].segment.points, phantom));
+      continue;
+    }
     JudgedCluster cluster;
+    cluster.phantom = phantom;
     cluster.evidence = classifier.evidence(p);
     if (roadUserEvidence(cluster) < kSurelyThing) continue;
     cluster.points = std::move(clusters[i].segment.points);
@@ -133,6 +160,9 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     judged.push_back(std::move(cluster));
   }
   dropFragments(found, judged);
+  judgement.verdicts.suspicious = static_cast<std::size_t>(
+      std::count_if(judged.begin(), judged.end(),
+                    [](const JudgedCluster& c) { return c.phantom > kSuspicious; }));
   return judgement;
 }
 

@@ -10,6 +10,7 @@ namespace perception {
 struct Judgement {
   std::vector<JudgedCluster> clusters;
   std::vector<float> phantom;  ///< of each obstacle, see PlacedReturns::phantom
+  ClusterVerdicts verdicts;
 };
 
 /// Clusters (method.md 8.10): a segment, or its parts where one of them is likelier a road user

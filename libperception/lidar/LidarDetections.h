@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "libperception/lidar/EgoPoints.h"
 #include "libperception/lidar/GroundSurface.h"
 #include "libperception/lidar/PersonPeaks.h"
+#include "libperception/measurement/ClusterVerdicts.h"
 
 namespace perception {
 
@@ -17,6 +19,7 @@ struct JudgedCluster {
   std::vector<std::uint32_t> points;       ///< indices into the obstacles, ascending
   std::array<double, kShapes> evidence{};  ///< ClusterClassifier::evidence()
   bool alone = false;                      ///< no other return within 0.5 m
+  double phantom = 0;                      ///< [0, 1] P(phantom)
 };
 
 /// Detections of one scan, in the ego frame: for the tracker, for pictures and for the safety grid.
@@ -34,8 +37,9 @@ struct LidarDetections {
   std::vector<Cluster> clusters;     ///< car-sized; indices into the obstacles
   std::vector<PersonPeak> persons;   ///< outside of the clusters' hulls; indices into the obstacles
   std::vector<std::uint8_t> ground;  ///< per return of the frame's cloud: 1 = ground
-  std::vector<JudgedCluster> judged;  ///< with a classifier, in place of clusters and persons
-  GroundSurface surface;              ///< the local ground
+  std::vector<JudgedCluster> judged;        ///< with a classifier, in place of clusters and persons
+  std::optional<ClusterVerdicts> verdicts;  ///< with a classifier
+  GroundSurface surface;                    ///< the local ground
 };
 
 }  // namespace perception

@@ -119,6 +119,7 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
     Judgement judgement = judgedClusters(found, *cloud, *classifier_);
     found.judged = std::move(judgement.clusters);
     found.phantom = std::move(judgement.phantom);
+    found.verdicts = std::move(judgement.verdicts);
     return found;
   }
   found.clusters = findClusters(found.x, found.y, found.above, params_.clusters, found.trust);
@@ -169,6 +170,7 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
   for (const Cluster& cluster : found.clusters)
     if (distanceToHull(cluster.hull, sensor) > 0) add(measurementOf(context, cluster));
   for (const PersonPeak& peak : found.persons) add(measurementOf(context, peak));
+  scan.verdicts = std::move(found.verdicts);
   PlacedReturns returns =
       placedReturns(std::move(found.points), std::move(found.height), params_.points, obstacles);
   if (!found.phantom.empty()) {

@@ -10,6 +10,7 @@
 #include "libperception/core/Frames.h"
 #include "libperception/core/KalmanUpdate.h"
 #include "libperception/core/Time.h"
+#include "libperception/measurement/ClusterVerdicts.h"
 #include "libperception/measurement/EvidenceMemory.h"
 #include "libperception/measurement/OcclusionMap.h"
 #include "libperception/measurement/PlacedReturns.h"
@@ -86,6 +87,7 @@ struct MeasurementScan {
   std::shared_ptr<const MeasurementModel> model;
   std::shared_ptr<const OcclusionMap> occlusion;  ///< null: nothing is occluded
   std::shared_ptr<const PlacedReturns> returns;   ///< of a lidar; null: none
+  std::optional<ClusterVerdicts> verdicts;        ///< empty: no clusters told by their shape
   std::vector<Measurement> measurements;
   std::size_t dropped = 0;  ///< detections that could not be used: unknown label, invalid box
   std::size_t dropped_points =

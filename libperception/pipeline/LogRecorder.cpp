@@ -65,6 +65,7 @@ LogPass passLog(const std::string& log, PipelineSetup setup, double seconds,
     while (pipeline.next()) {
     }
     for (const WeatherRow& row : pipeline.takeWeather()) observer.onWeather(row);
+    pipeline.takeLedger();  // nobody reads it
   }
   while (pipeline.next(true)) {
   }

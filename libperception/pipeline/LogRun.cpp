@@ -9,14 +9,16 @@
 #include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/sensors/Conversions.h"
 
 namespace perception {
 namespace fs = std::filesystem;
 
-LogRun::LogRun(const PipelineSetup& setup, LogRunFiles files)
+LogRun::LogRun(const PipelineSetup& setup, LogRunFiles files,
+               std::unique_ptr<ObservationInput> input)
     : setup_(setup),
       files_(std::move(files)),
-      reader_(files_.log),
+      input_(std::move(input)),
       folder_(files_.dir),
       pipeline_(setup_, events_, timing_),
       object_events_(pipeline_.setup().model.classes, events_) {
@@ -34,7 +36,25 @@ void LogRun::put(const Scene& scene) {
   writer_->write(scene);
   object_events_.add(scene);
   ++record.scenes;
+  addLatency(scene.stamp);
   if (!files_.export_file.empty()) writeExport(scene);
+}
+
+void LogRun::addArrival(const mrpt::obs::CObservation& observation) {
+  constexpr double kKept = 5;  // [s] longer than a scene waits
+  const auto at = input_->arrival();
+  const auto stamp = toStamp(observation.timestamp);
+  if (!at || !stamp) return;
+  arrivals_[*stamp] = *at;
+  while (*stamp - arrivals_.begin()->first > kKept) arrivals_.erase(arrivals_.begin());
+}
+
+/// Since the first observation at or behind the scene's instant came.
+void LogRun::addLatency(Stamp scene) {
+  const auto arrival = arrivals_.lower_bound(scene);
+  if (arrival == arrivals_.end()) return;
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - arrival->second;
+  timing_.addLatency(passed.count());
 }
 
 // Only of runs whose returns are weighed.
@@ -42,6 +62,14 @@ void LogRun::putWeather() {
   for (const WeatherRow& row : pipeline_.takeWeather()) {
     if (!weather_) weather_.emplace(folder_.pathFor("weather.csv"), *pipeline_.firstStamp());
     weather_->write(row);
+  }
+}
+
+// Of the same runs.
+void LogRun::putLedger() {
+  for (const LedgerRow& row : pipeline_.takeLedger()) {
+    if (!ledger_) ledger_.emplace(folder_.pathFor("ledger.csv"), *pipeline_.firstStamp());
+    ledger_->write(row);
   }
 }
 
@@ -62,20 +90,22 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
       keep(*scene);
     }
     putWeather();
+    putLedger();
   };
   {
-    Progress progress(files_.log, reader_.fileBytes());
+    Progress progress(files_.log, input_->fileBytes());
     std::uint64_t count = 0;
     while (const auto observation = [&] {
       const auto scope = timing_.stage("read");
-      return reader_.next();
+      return input_->next();
     }()) {
-      stopIfAsked();
+      addArrival(*observation);
+      if (!input_->arrival()) stopIfAsked();  // sensors at work end their input themselves
       facts_.look(*observation);
       contents_.look(*observation);
       pipeline_.add(*observation);
       take(false);
-      progress.update(reader_.bytesRead(), ++count);
+      progress.update(input_->bytesRead(), ++count);
     }
   }
   take(true);
@@ -84,14 +114,20 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
 
 std::vector<std::string> LogRun::finish(bool strict) {
   std::vector<std::string> said;
-  if (reader_.end() != RawlogReader::End::kClean) {
-    if (strict) throw DataError(reader_.endMessage());
-    events_.warn(reader_.lastStamp(), event_kind::kLogDamaged, reader_.endMessage());
-    record.warnings.push_back(reader_.endMessage());
-    said.push_back(reader_.endMessage());
+  if (!input_->isComplete()) {
+    if (strict) throw DataError(input_->endMessage());
+    events_.warn(input_->lastStamp(), event_kind::kLogDamaged, input_->endMessage());
+    record.warnings.push_back(input_->endMessage());
+    said.push_back(input_->endMessage());
+  }
+  if (input_->dropped() > 0) {
+    said.push_back(fmt::format("{}: {} observations came faster than they were taken", files_.log,
+                               input_->dropped()));
+    events_.warn(input_->lastStamp(), event_kind::kDroppedFrame, said.back());
+    record.warnings.push_back(said.back());
   }
   if (record.scenes == 0)
-    throw DataError(noSceneMessage(files_.log, contents_, setup_, reader_.endMessage()));
+    throw DataError(noSceneMessage(files_.log, contents_, setup_, input_->endMessage()));
   if (!files_.export_file.empty() && !kitti_) {
     throw DataError(files_.log +
                     ": --export kitti needs a camera model, and the log's detections carry none");
@@ -108,11 +144,11 @@ std::vector<std::string> LogRun::finish(bool strict) {
 
 void LogRun::fillRecord() {
   record.input = files_.log;
-  record.input_bytes = reader_.fileBytes();
-  record.input_entries = reader_.entries();
-  record.input_end = nameOf(reader_.end());
-  record.input_end_detail = reader_.end() == RawlogReader::End::kClean ? "" : reader_.endMessage();
-  record.input_verifiable = reader_.verifiable();
+  record.input_bytes = input_->fileBytes();
+  record.input_entries = input_->entries();
+  record.input_end = input_->endName();
+  record.input_end_detail = input_->isComplete() ? "" : input_->endMessage();
+  record.input_verifiable = input_->verifiable();
   record.simulated = facts_.simulated;
   record.weather = facts_.weather;
   record.seed = setup_.run.seed;
@@ -135,6 +171,7 @@ void LogRun::commit(const std::string& effective_ini, int threads) {
   writer_->close();
   if (recorder_) recorder_->close();
   if (weather_) weather_->close();
+  if (ledger_) ledger_->close();
   events_.write(folder_.pathFor("events.jsonl"), record.first_stamp);
   writeFile(folder_.pathFor("effective.ini"), effective_ini);
   timing_.write(folder_.pathFor("timing.json"), logSeconds(), threads);

@@ -1,5 +1,7 @@
 #pragma once
+#include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,7 +13,7 @@
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/scene/KittiExport.h"
 #include "libperception/scene/TrackedRun.h"
-#include "libperception/sensors/RawlogReader.h"
+#include "libperception/sensors/ObservationInput.h"
 
 namespace perception {
 
@@ -21,11 +23,12 @@ struct LogRunFiles {
   std::string export_file;  ///< KITTI's tracking format; empty: none
 };
 
-/// Tracks one log into one result folder. Call read(), finish(), commit(), each once.
+/// Tracks one log, or sensors at work, into one result folder. Call read(), finish(), commit(),
+/// each once.
 class LogRun {
  public:
-  /// Throws DataError for the log, OutputError or Error for the folder.
-  LogRun(const PipelineSetup& setup, LogRunFiles files);
+  /// Throws OutputError or Error for the folder.
+  LogRun(const PipelineSetup& setup, LogRunFiles files, std::unique_ptr<ObservationInput> input);
 
   /// Processes the log to its end; `keep` is called with each scene.
   void read(const std::function<void(const Scene&)>& keep);
@@ -36,19 +39,23 @@ class LogRun {
   void commit(const std::string& effective_ini, int threads);
 
   RunRecord record;  ///< program and configuration are set by the caller
+  const RunTiming& timing() const { return timing_; }
   double wallSeconds() const { return timing_.wallSeconds(); }
   double realTimeFactor() const;  ///< seconds of log per second of work
 
  private:
   void put(const Scene& scene);
+  void addArrival(const mrpt::obs::CObservation& observation);
+  void addLatency(Stamp scene);
   void putWeather();
+  void putLedger();
   void writeExport(const Scene& scene);
   void fillRecord();
   double logSeconds() const { return pipeline_.lastStamp() - *pipeline_.firstStamp(); }
 
   const PipelineSetup setup_;
   const LogRunFiles files_;
-  RawlogReader reader_;
+  const std::unique_ptr<ObservationInput> input_;
   OutputFolder folder_;
   std::string written_to_;  ///< temporary folder until commit()
   EventLog events_;
@@ -60,7 +67,10 @@ class LogRun {
   std::optional<MeasurementRecorder> recorder_;
   std::optional<TrackedRunWriter> writer_;
   std::optional<WeatherFile> weather_;
+  std::optional<LedgerFile> ledger_;
   std::optional<KittiExport> kitti_;
+  /// When sensor data of an instant came, of sensors at work; the newest second.
+  std::map<Stamp, std::chrono::steady_clock::time_point> arrivals_;
   std::vector<Scene>
       before_camera_;  ///< scenes before the first camera observation, which exports need
 };

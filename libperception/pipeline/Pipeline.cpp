@@ -31,7 +31,8 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
       watch_(setup_.sensors, setup_.run.sensor_timeout, events),
       health_(setup_.sensors, events),
       weather_(events),
-      scan_maker_(setup_, timing, weather_),
+      ledger_(events),
+      scan_maker_(setup_, timing, weather_, ledger_),
       outputs_(setup_.run, setup_.sensors) {
   if (setup_.grid.enabled) safety_.emplace(setup_.grid, setup_.stop);
 }
@@ -126,6 +127,7 @@ void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
 
 void Pipeline::finish() {
   watch_.finish();
+  ledger_.finish();
   const auto learned = scan_maker_.learned();
   if (!learned.empty())
     events_.add(std::nullopt, event_kind::kLearned, fmt::format("{}", fmt::join(learned, "\n")));

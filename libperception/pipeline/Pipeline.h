@@ -9,6 +9,7 @@
 #include "libperception/pipeline/FrameNumbers.h"
 #include "libperception/pipeline/FrameQueue.h"
 #include "libperception/pipeline/OutputSchedule.h"
+#include "libperception/pipeline/PhantomLedger.h"
 #include "libperception/pipeline/PipelineSetup.h"
 #include "libperception/pipeline/SafetyMonitor.h"
 #include "libperception/pipeline/ScanMaker.h"
@@ -47,7 +48,7 @@ class Pipeline {
   void add(const mrpt::obs::CObservation& observation);
   std::optional<Scene> next(bool flush = false);
   /// Reports events known at the end of the log: sensors without frames, labels without a section,
-  /// what was learned of detectors.
+  /// what was learned of detectors, what was taken as phantoms.
   void finish();
   /// Called from now on; null: none. Not owned.
   void observe(PipelineObserver* observer) { observer_ = observer; }
@@ -59,6 +60,8 @@ class Pipeline {
   std::vector<SensorRecord> sensorRecords() const { return watch_.records(); }
   /// What lidar scans showed of the weather since the last call.
   std::vector<WeatherRow> takeWeather() { return weather_.take(); }
+  /// What was taken as phantoms since the last call.
+  std::vector<LedgerRow> takeLedger() { return ledger_.take(); }
   std::uint64_t objects() const { return scenes_.objectsSoFar(); }
 
  private:
@@ -87,6 +90,7 @@ class Pipeline {
   SensorWatch watch_;
   SensorHealth health_;
   WeatherWatch weather_;
+  PhantomLedger ledger_;
   ScanMaker scan_maker_;
   std::optional<SafetyMonitor> safety_;  ///< empty: [grid] enabled = false
   OutputSchedule outputs_;

@@ -1,6 +1,7 @@
 #include "libperception/pipeline/ScanMaker.h"
 
 #include <cmath>
+#include <utility>
 
 namespace perception {
 namespace {
@@ -10,8 +11,9 @@ constexpr double kOcclusionMapAge = 0.2;
 
 }  // namespace
 
-ScanMaker::ScanMaker(const PipelineSetup& setup, RunTiming& timing, WeatherWatch& weather)
-    : setup_(setup), timing_(timing), weather_(weather) {
+ScanMaker::ScanMaker(const PipelineSetup& setup, RunTiming& timing, WeatherWatch& weather,
+                     PhantomLedger& ledger)
+    : setup_(setup), timing_(timing), weather_(weather), ledger_(ledger) {
   for (const auto& sensor : setup.sensors) {
     Stages stages;
     if (sensor.gives_ground) {
@@ -32,9 +34,9 @@ void ScanMaker::addGround(std::size_t sensor, SensorFrame& frame) {
   frame.ground = ground_;
 }
 
-void ScanMaker::weighReturns(std::size_t sensor, SensorFrame& frame) {
+std::optional<TrustStats> ScanMaker::weighReturns(std::size_t sensor, SensorFrame& frame) {
   const auto& filter = stages_[sensor].weather;
-  if (!filter || !std::holds_alternative<LidarCloud>(frame.data)) return;
+  if (!filter || !std::holds_alternative<LidarCloud>(frame.data)) return std::nullopt;
   TrustStats trust;
   {
     const auto scope = timing_.stage("weather");
@@ -42,13 +44,29 @@ void ScanMaker::weighReturns(std::size_t sensor, SensorFrame& frame) {
   }
   const auto scope = timing_.stage("weather_state");
   weather_.add(frame.sensor, frame.stamp, filter->census(frame), trust);
+  return trust;
+}
+
+void ScanMaker::addToLedger(std::size_t sensor, const SensorFrame& frame, const TrustStats& trust,
+                            const MeasurementScan& scan) {
+  const auto scope = timing_.stage("ledger");
+  LedgerRow row{frame.stamp, frame.sensor, trust, std::nullopt};
+  if (scan.verdicts) {
+    row.clusters = ClusterLedger::of(
+        *scan.verdicts, [&](std::uint32_t i) { return stages_[sensor].weather->doubtAbout(i); });
+  }
+  ledger_.add(std::move(row));
 }
 
 MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
-  weighReturns(sensor, frame);
-  const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
-  if (const auto& preparation = stages_[sensor].preparation) preparation->apply(frame);
-  MeasurementScan scan = setup_.sensors[sensor].front_end->extract(frame);
+  const auto trust = weighReturns(sensor, frame);
+  MeasurementScan scan;
+  {
+    const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
+    if (const auto& preparation = stages_[sensor].preparation) preparation->apply(frame);
+    scan = setup_.sensors[sensor].front_end->extract(frame);
+  }
+  if (trust) addToLedger(sensor, frame, *trust, scan);
   if (scan.occlusion) {
     occlusion_ = scan.occlusion;
     occlusion_stamp_ = frame.stamp;

@@ -1,7 +1,9 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "libperception/pipeline/PhantomLedger.h"
 #include "libperception/pipeline/PipelineSetup.h"
 #include "libperception/pipeline/WeatherWatch.h"
 #include "libperception/scene/RunTiming.h"
@@ -12,7 +14,8 @@ namespace perception {
 /// Passes ground plane and occlusion map of one sensor to the others.
 class ScanMaker {
  public:
-  ScanMaker(const PipelineSetup& setup, RunTiming& timing, WeatherWatch& weather);
+  ScanMaker(const PipelineSetup& setup, RunTiming& timing, WeatherWatch& weather,
+            PhantomLedger& ledger);
 
   /// Updates the ground plane if the sensor gives it, and sets the newest one in the frame.
   void addGround(std::size_t sensor, SensorFrame& frame);
@@ -24,7 +27,10 @@ class ScanMaker {
   std::vector<std::string> learned() const;
 
  private:
-  void weighReturns(std::size_t sensor, SensorFrame& frame);
+  /// Empty: its returns are not weighed.
+  std::optional<TrustStats> weighReturns(std::size_t sensor, SensorFrame& frame);
+  void addToLedger(std::size_t sensor, const SensorFrame& frame, const TrustStats& trust,
+                   const MeasurementScan& scan);
   struct Stages {
     std::unique_ptr<GroundEstimator> ground;  ///< null: this sensor does not give the ground plane
     std::unique_ptr<PointFilter> weather;     ///< null: trust 1 for every return
@@ -34,6 +40,7 @@ class ScanMaker {
   const PipelineSetup& setup_;
   RunTiming& timing_;
   WeatherWatch& weather_;
+  PhantomLedger& ledger_;
   std::vector<Stages> stages_;  ///< index as in setup_.sensors
   GroundPlane ground_;          ///< newest, ego frame
   std::shared_ptr<const OcclusionMap> occlusion_;

@@ -18,6 +18,9 @@ double processCpuSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+// Bins of latencies.
+constexpr double kLeastLatency = 1e-4, kLatencyStep = 1.02;  // [s]; factor
+
 double milli(double seconds) { return std::round(seconds * 1e3) / 1e3; }
 double micro(double seconds) { return std::round(seconds * 1e6) / 1e6; }
 
@@ -34,6 +37,28 @@ void RunTiming::add(const std::string& name, double seconds) {
   ++stage->calls;
   stage->seconds += seconds;
   stage->longest = std::max(stage->longest, seconds);
+}
+
+void RunTiming::addLatency(double seconds) {
+  const double step =
+      std::log(std::max(seconds, kLeastLatency) / kLeastLatency) / std::log(kLatencyStep);
+  const auto most = static_cast<double>(latencies_.size() - 1);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++latencies_[static_cast<std::size_t>(std::min(step, most))];
+  ++latency_count_;
+  longest_latency_ = std::max(longest_latency_, seconds);
+}
+
+/// [s] The upper end of the bin, and never more than the longest.
+double RunTiming::latencyQuantile(double share) const {
+  const double wanted = share * static_cast<double>(latency_count_);
+  double below = 0, upper = kLeastLatency;
+  for (const std::uint64_t count : latencies_) {
+    upper *= kLatencyStep;
+    below += static_cast<double>(count);
+    if (below >= wanted) break;
+  }
+  return std::min(upper, longest_latency_);
 }
 
 double RunTiming::cpuSeconds() const { return processCpuSeconds() - cpu_start_; }
@@ -58,6 +83,12 @@ std::string RunTiming::toJson(double log_seconds, int threads) const {
   j["real_time_factor"] = wall > 0 ? milli(log_seconds / wall) : 0;
   j["threads"] = threads;
   j["peak_memory_bytes"] = peakMemoryBytes();
+  if (latency_count_ > 0) {
+    j["latency"] = {{"scenes", latency_count_},
+                    {"p50_seconds", micro(latencyQuantile(0.5))},
+                    {"p99_seconds", micro(latencyQuantile(0.99))},
+                    {"longest_seconds", micro(longest_latency_)}};
+  }
   j["stages"] = nlohmann::ordered_json::array();
   for (const Stage& stage : stages()) {
     j["stages"].push_back({{"name", stage.name},

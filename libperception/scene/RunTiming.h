@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <mutex>
@@ -21,14 +23,22 @@ class RunTiming {
   /// Measures its own lifetime.
   class Scope {
    public:
-    Scope(RunTiming& timing, const char* name) : timing_(timing), name_(name) {}
+    Scope(RunTiming& timing, const char* name)
+        : timing_(timing), name_(name), outer_(timing.current_.exchange(name)) {
+      ++timing_.changes_;
+    }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
-    ~Scope() { timing_.add(name_, secondsSince(start_)); }
+    ~Scope() {
+      timing_.current_ = outer_;
+      ++timing_.changes_;
+      timing_.add(name_, secondsSince(start_));
+    }
 
    private:
     RunTiming& timing_;
     const char* name_;
+    const char* outer_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   };
 
@@ -37,6 +47,12 @@ class RunTiming {
   /// `const auto scope = timing.stage("lidar");` Any thread.
   Scope stage(const char* name) { return Scope(*this, name); }
   void add(const std::string& name, double seconds);
+
+  /// From the arrival of a scene's observation to the scene, of sensors at work [s].
+  void addLatency(double seconds);
+  /// The stage that began last of those that have not ended; "" between stages. Any thread.
+  const char* current() const { return current_; }
+  std::uint64_t changes() const { return changes_; }  ///< stages begun and ended so far. Any thread
 
   double wallSeconds() const { return secondsSince(start_); }
   double cpuSeconds() const;               ///< [s] of all threads, since the construction
@@ -49,6 +65,7 @@ class RunTiming {
   void write(const std::string& path, double log_seconds, int threads) const;
 
  private:
+  double latencyQuantile(double share) const;
   static double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
@@ -56,6 +73,11 @@ class RunTiming {
   double cpu_start_;
   mutable std::mutex mutex_;
   std::vector<Stage> stages_;
+  std::atomic<const char*> current_{""};
+  std::atomic<std::uint64_t> changes_{0};
+  std::array<std::uint64_t, 400> latencies_{};  ///< number by latency, 2 % a step from 0.1 ms
+  std::uint64_t latency_count_ = 0;
+  double longest_latency_ = 0;  ///< [s]
 };
 
 }  // namespace perception

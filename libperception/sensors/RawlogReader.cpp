@@ -105,6 +105,8 @@ std::string unknownClassIn(const std::string& text) {
 
 }  // namespace
 
+std::string RawlogReader::endName() const { return nameOf(end_); }
+
 const char* nameOf(RawlogReader::End end) {
   static constexpr const char* kNames[] = {"not_yet",       "clean",         "torn",
                                            "unknown_class", "newer_version", "damaged"};

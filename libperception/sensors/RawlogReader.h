@@ -11,6 +11,7 @@
 #include <string>
 
 #include "libperception/core/Time.h"
+#include "libperception/sensors/ObservationInput.h"
 
 namespace mrpt::obs {
 class CActionCollection;
@@ -32,7 +33,7 @@ class CRawlogInput;
 /// Implausible sizes
 /// inside MRPT's own classes may allocate gigabytes before they fail: a program that reads
 /// untrusted logs sets a MemoryLimit, as runApp() does.
-class RawlogReader {
+class RawlogReader final : public ObservationInput {
  public:
   enum class End {
     kNotYet,
@@ -46,24 +47,26 @@ class RawlogReader {
   /// Throws DataError: kNoInput when missing, kBadInput (with a description of the content) when it
   /// is no rawlog.
   explicit RawlogReader(const std::string& path);
-  ~RawlogReader();
+  ~RawlogReader() override;
 
   /// The next observation; null at the end. All whole entries before a fault are returned.
-  std::shared_ptr<mrpt::obs::CObservation> next();
+  std::shared_ptr<mrpt::obs::CObservation> next() override;
 
   End end() const { return end_; }
+  bool isComplete() const override { return end_ == End::kClean; }
+  std::string endName() const override;
   /// One line about the end: file, fault, byte offset, index of the entry, last stamp.
-  const std::string& endMessage() const { return end_message_; }
+  const std::string& endMessage() const override { return end_message_; }
   /// Whether kClean proves that nothing is missing: one gzip container, with its length and
   /// checksum. An uncompressed log, or one of several containers, may be cut between two entries.
-  bool verifiable() const;
+  bool verifiable() const override;
 
-  std::uint64_t entries() const { return entries_; }  ///< whole ones so far
+  std::uint64_t entries() const override { return entries_; }  ///< whole ones so far
   /// Number of entries that are no observations, by class.
   const std::map<std::string, std::uint64_t>& skipped() const { return skipped_; }
-  std::optional<Stamp> lastStamp() const { return last_stamp_; }
-  std::uint64_t bytesRead() const;  ///< compressed bytes, for a progress bar
-  std::uint64_t fileBytes() const;
+  std::optional<Stamp> lastStamp() const override { return last_stamp_; }
+  std::uint64_t bytesRead() const override;  ///< compressed bytes, for a progress bar
+  std::uint64_t fileBytes() const override;
 
  private:
   bool readEntry();

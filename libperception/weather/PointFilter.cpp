@@ -1,5 +1,7 @@
 #include "libperception/weather/PointFilter.h"
 
+#include <algorithm>
+
 #include "libperception/weather/PointTrust.h"
 
 namespace perception {
@@ -14,9 +16,14 @@ class WithMultipath final : public PointFilter {
   TrustStats apply(SensorFrame& frame) override {
     TrustStats stats = filter_->apply(frame);
     auto* cloud = std::get_if<LidarCloud>(&frame.data);
+    mirrored_.clear();
     if (cloud == nullptr || !params_.enabled) return stats;
-    for (const std::uint32_t i : findMirrorImages(frame, params_)) {
+    mirrored_ = findMirrorImages(frame, params_);
+    for (const std::uint32_t i : mirrored_) {
       stats.phantoms += cloud->trust[i] >= 0.5F;
+      if (const auto doubt = filter_->doubtAbout(i)) stats.doubts.remove(*doubt);
+      stats.doubts.add({DoubtCause::kMirror, 0});
+      stats.weight_lost += static_cast<double>(cloud->trust[i]);
       cloud->trust[i] = 0;
       ++stats.mirrored;
     }
@@ -25,9 +32,16 @@ class WithMultipath final : public PointFilter {
 
   AirCensus census(const SensorFrame& frame) const override { return filter_->census(frame); }
 
+  std::optional<Doubt> doubtAbout(std::uint32_t i) const override {
+    if (std::binary_search(mirrored_.begin(), mirrored_.end(), i))
+      return Doubt{DoubtCause::kMirror, 0};
+    return filter_->doubtAbout(i);
+  }
+
  private:
   std::unique_ptr<PointFilter> filter_;
   MultipathParams params_;
+  std::vector<std::uint32_t> mirrored_;  // of the last scan, ascending
 };
 
 }  // namespace

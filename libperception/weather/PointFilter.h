@@ -1,12 +1,15 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "libperception/config/Config.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/weather/AirCensus.h"
+#include "libperception/weather/Doubt.h"
 #include "libperception/weather/Multipath.h"
 #include "libperception/weather/TrustParams.h"
 
@@ -17,6 +20,8 @@ struct TrustStats {
   std::size_t returns = 0;
   std::size_t phantoms = 0;  ///< with a trust below one half
   std::size_t mirrored = 0;  ///< of these: mirror images in a wet road
+  double weight_lost = 0;    ///< [returns] sum of 1 - trust
+  DoubtCounts doubts;        ///< the phantoms by cause
   double share = 0;          ///< [-] of phantoms near the sensor, over the last scans
 };
 
@@ -31,6 +36,12 @@ class PointFilter {
   virtual AirCensus census(const SensorFrame& frame) const {
     (void)frame;
     return {};
+  }
+  /// Why return `i` of the last scan filtered is doubted; empty: it is not, or the filter does not
+  /// know.
+  virtual std::optional<Doubt> doubtAbout(std::uint32_t i) const {
+    (void)i;
+    return std::nullopt;
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "libperception/simd/Compress.h"
 #include "libperception/simd/Dispatch.h"
+#include "libperception/weather/SensorVerdict.h"
 
 namespace perception {
 namespace {
@@ -40,18 +41,6 @@ PERCEPTION_WIDEST int countWithin(const float* ranges, std::size_t count, float 
   int within = 0;
   for (std::size_t i = 0; i < count; ++i) within += (ranges[i] > 0) & (ranges[i] <= far);
   return within;
-}
-
-/// The first of two echoes of a pulse is rain when it is weaker or shorter.
-bool isRainEcho(const LidarCloud& c, std::size_t i) {
-  if (i + 1 >= c.size() || c.echo[i] != 0 || c.echo[i + 1] != 1) return false;
-  const float dot = c.x[i] * c.x[i + 1] + c.y[i] * c.y[i + 1] + c.z[i] * c.z[i + 1];
-  const float a = c.x[i] * c.x[i] + c.y[i] * c.y[i] + c.z[i] * c.z[i];
-  const float b = c.x[i + 1] * c.x[i + 1] + c.y[i + 1] * c.y[i + 1] + c.z[i + 1] * c.z[i + 1];
-  if (!(a < b) || !(dot * std::abs(dot) > 0.99999F * a * b)) return false;  // of different pulses
-  const bool weaker = !c.intensity.empty() && c.intensity[i] < c.intensity[i + 1];
-  const bool shorter = !c.pulse_width.empty() && c.pulse_width[i] < c.pulse_width[i + 1];
-  return weaker || shorter;
 }
 
 }  // namespace
@@ -171,14 +160,10 @@ void PointTrust::countNeighbors() {
 
 void PointTrust::applySensorLabels(const LidarCloud& cloud) {
   if (cloud.label.empty() && cloud.echo.empty()) return;
-  const auto rain = static_cast<std::uint8_t>(PointLabel::kRain);
-  const auto dirt = static_cast<std::uint8_t>(PointLabel::kDirt);
   for (std::size_t s = 0; s < suspects_.count; ++s) {
     const std::size_t i = suspects_.index[s];
-    if (!cloud.label.empty() && (cloud.label[i] == rain || cloud.label[i] == dirt))
-      suspects_.geometry[s] += static_cast<float>(params_.sensor_label);
-    if (!cloud.echo.empty() && isRainEcho(cloud, i))
-      suspects_.geometry[s] += static_cast<float>(params_.rain_rule);
+    suspects_.geometry[s] += labelOdds(cloud, i, params_);
+    suspects_.geometry[s] += echoOdds(cloud, i, params_);
   }
 }
 
@@ -200,14 +185,14 @@ void PointTrust::learnIntensity() {
 
 // Completes the first pass with the intensity.
 void PointTrust::weighIntensity() {
-  std::array<float, IntensityLaw::kBins> ratios{};
+  intensity_odds_ = {};
   if (uses_intensity_) {
     learnIntensity();
-    ratios = law_.logRatios();
-    for (float& ratio : ratios) ratio *= static_cast<float>(params_.intensity_gain);
+    intensity_odds_ = law_.logRatios();
+    for (float& odds : intensity_odds_) odds *= static_cast<float>(params_.intensity_gain);
   }
-  addIntensity(suspects_.geometry.data(), suspects_.cube.data(), suspects_.count, ratios.data(),
-               suspects_.first.data(), suspects_.second.data());
+  addIntensity(suspects_.geometry.data(), suspects_.cube.data(), suspects_.count,
+               intensity_odds_.data(), suspects_.first.data(), suspects_.second.data());
 }
 
 // Second pass: adds the first pass's result for the returns within half a meter.
@@ -232,20 +217,51 @@ void PointTrust::applyNeighborhood() {
 
 void PointTrust::writeTrust(LidarCloud& cloud, TrustStats& stats) {
   cloud.trust.assign(cloud.size(), 1);
+  doubted_.clear();
   const auto weather = static_cast<float>(share_.logOdds());
+  const float nothing_near = curve(TrustFeature::kSurroundings).at(0);
   const std::size_t open =
       findOpen(-kCertainOdds - weather, suspects_.second.data(), suspects_.count, open_.data());
   for (std::size_t k = 0; k < open; ++k) {
     const std::uint32_t s = open_[k];
-    const float odds = suspects_.second[s] + weather;
-    cloud.trust[suspects_.index[s]] = sigmoid(-odds);
-    stats.phantoms += odds > kPhantom;
+    const float odds = suspects_.second[s] + weather, trust = sigmoid(-odds);
+    cloud.trust[suspects_.index[s]] = trust;
+    stats.weight_lost += static_cast<double>(1 - trust);
+    if (!(odds > kPhantom)) continue;
+    const Doubt doubt = oddsParts(cloud, s, odds, nothing_near).largest();
+    doubted_.emplace_back(suspects_.index[s], doubt);
+    stats.doubts.add(doubt);
   }
+  stats.phantoms += doubted_.size();
+}
+
+// Parts beside that of a return without label, echo, intensity and anything within half a meter.
+OddsParts PointTrust::oddsParts(const LidarCloud& cloud, std::size_t s, float odds,
+                                float nothing_near) const {
+  const auto own = static_cast<float>(params_.gain);
+  const std::size_t i = suspects_.index[s];
+  OddsParts parts;
+  parts[DoubtCause::kIntensity] = own * intensity_odds_[suspects_.binOf(s)];
+  parts[DoubtCause::kSensorLabel] = own * labelOdds(cloud, i, params_);
+  parts[DoubtCause::kEcho] = own * echoOdds(cloud, i, params_);
+  parts[DoubtCause::kAmongPhantoms] =
+      curve(TrustFeature::kSurroundings).at(suspects_.surroundings[s]) - nothing_near;
+  for (const float part : parts.of) odds -= part;
+  parts[DoubtCause::kIsolated] = odds;
+  return parts;
+}
+
+std::optional<Doubt> PointTrust::doubtAbout(std::uint32_t i) const {
+  const auto found = std::lower_bound(doubted_.begin(), doubted_.end(), i,
+                                      [](const auto& d, std::uint32_t at) { return d.first < at; });
+  if (found == doubted_.end() || found->first != i) return std::nullopt;
+  return found->second;
 }
 
 TrustStats PointTrust::apply(SensorFrame& frame) {
   TrustStats stats;
   auto* cloud = std::get_if<LidarCloud>(&frame.data);
+  doubted_.clear();
   if (cloud == nullptr) return stats;
   placeReturns(frame, *cloud);
   countNeighbors();

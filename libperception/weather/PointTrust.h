@@ -2,6 +2,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "libperception/weather/HeightAboveGround.h"
@@ -34,6 +36,7 @@ class PointTrust final : public PointFilter {
 
   TrustStats apply(SensorFrame& frame) override;
   AirCensus census(const SensorFrame& frame) const override;
+  std::optional<Doubt> doubtAbout(std::uint32_t i) const override;
 
   /// Of the last scan, for studies and fits.
   std::vector<SuspectReturn> suspects() const;
@@ -57,6 +60,8 @@ class PointTrust final : public PointFilter {
   void weighIntensity();
   void applyNeighborhood();
   void writeTrust(LidarCloud& cloud, TrustStats& stats);
+  /// Of suspect `s` with those log-odds; `nothing_near`: those of empty surroundings.
+  OddsParts oddsParts(const LidarCloud& cloud, std::size_t s, float odds, float nothing_near) const;
 
   const TrustCurve& curve(TrustFeature feature) const {
     return curves_[static_cast<std::size_t>(feature)];
@@ -67,13 +72,15 @@ class PointTrust final : public PointFilter {
   CountCurves count_curves_;
   RangeImage image_;
   IntensityLaw law_;
-  bool uses_intensity_ = false;  // available in this scan and enabled
+  std::array<float, IntensityLaw::kBins> intensity_odds_{};  // [log-odds] of this scan, by bin
+  bool uses_intensity_ = false;                              // available in this scan and enabled
   PhantomShare share_;
   Census census_;
   NeighborCounter neighbors_;
   SuspectReturns suspects_;
   std::vector<std::uint32_t> open_;  // indices of the suspects under evaluation
   SurroundingCubes cubes_;
+  std::vector<std::pair<std::uint32_t, Doubt>> doubted_;  // by index in the cloud, ascending
 };
 
 std::unique_ptr<PointFilter> makePointTrust(const TrustParams& params);

@@ -25,8 +25,8 @@ const std::set<std::string> kWithoutMrpt = {
     "lidar", "radar",  "boxes3d", "vision",      "weather", "detectors", "evaluation"};
 
 // Libraries that stay behind our own headers.
-const std::vector<std::string> kOnlyInSources = {"octomap/", "opencv2/", "GL/",     "GLES",
-                                                 "EGL/",     "embree3/", "embree4/"};
+const std::vector<std::string> kOnlyInSources = {"octomap/", "opencv2/", "GL/",      "GLES",
+                                                 "EGL/",     "embree3/", "embree4/", "dds/dds.h"};
 
 // What core may know besides the standard library.
 const std::vector<std::string> kLibrariesOfCore = {"Eigen/", "unsupported/Eigen/", "fmt/",

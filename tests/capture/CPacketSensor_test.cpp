@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -97,9 +98,9 @@ TEST_F(Recorded, WhatWasSentAndWhatWasLostIsKnownToThePacket) {
   Grabber grabber(ini("chunk_seconds = 1",
                       "replay_loss = 0.02\nreplay_repeat = 0.02\n"
                       "replay_swap = 0.02\nseed = 3\n"),
-                  out());
-  int polls = 0;
-  grabber.run([&] { return ++polls > 130; }, [] {});
+                  {out(), "", {}});
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
+  grabber.run([&] { return std::chrono::steady_clock::now() > end; }, [] {});
   const auto sensors = notes("sensor");
   ASSERT_EQ(sensors.size(), 1U);
   const auto& sent = sensors[0]["simulator"];
@@ -125,7 +126,7 @@ TEST_F(Recorded, WhatWasSentAndWhatWasLostIsKnownToThePacket) {
 }
 
 TEST_F(Recorded, AFullDiskEndsTheCaptureWithWholeChunks) {
-  Grabber grabber(ini("chunk_seconds = 60\nfree_mb = 1e12", ""), out());
+  Grabber grabber(ini("chunk_seconds = 60\nfree_mb = 1e12", ""), {out(), "", {}});
   try {
     grabber.run([] { return false; }, [] {});
     FAIL();
@@ -141,11 +142,11 @@ TEST_F(Recorded, AFullDiskEndsTheCaptureWithWholeChunks) {
 }
 
 TEST_F(Recorded, FaultsOfTheIniAreNamed) {
-  EXPECT_THROW(Grabber(ini("", "").substr(1), out()), DataError);
+  EXPECT_THROW(Grabber(ini("", "").substr(1), {out(), "", {}}), DataError);
   const std::string wrong = (dir_ / "wrong.ini").string();
   std::ofstream(wrong) << "[global]\n[A]\ndriver = CNoSuchSensor\n";
   try {
-    Grabber grabber(wrong, out());
+    Grabber grabber(wrong, {out(), "", {}});
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find("[A] driver CNoSuchSensor"), std::string::npos);

@@ -109,6 +109,35 @@ TEST(JudgedClusters, WhatIsSurelyAPhantomIsLeftOutAndSaidOfItsReturns) {
   }
 }
 
+TEST(JudgedClusters, PhantomsAreAccountedForAndWhatIsKeptInDoubtIsSuspicious) {
+  const SolidScene scene = street();
+  const auto verdictsOf = [&](float phantom, float trust) {
+    Judged judged(scene);
+    judged.found.trust.assign(judged.found.obstacles.size(), trust);
+    return judgedClusters(judged.found, std::get<LidarCloud>(judged.frame.data),
+                          *byLength(-4, 4, phantom))
+        .verdicts;
+  };
+  const ClusterVerdicts none = verdictsOf(-20, 1);
+  EXPECT_EQ(none.clusters, 3u) << "van, person and wall";
+  EXPECT_EQ(none.suspicious, 0u);
+  EXPECT_TRUE(none.phantoms.empty());
+  const ClusterVerdicts kept = verdictsOf(5, 1);
+  EXPECT_EQ(kept.suspicious, 1u) << "a person by .2";
+  EXPECT_TRUE(kept.phantoms.empty());
+  const ClusterVerdicts trusted = verdictsOf(9, 1), doubted = verdictsOf(9, 0.4f);
+  ASSERT_EQ(trusted.phantoms.size(), 1u);
+  EXPECT_EQ(trusted.suspicious, 0u);
+  EXPECT_GT(trusted.phantoms[0].probability, 0.9);
+  EXPECT_GT(trusted.phantoms[0].returns, 10u);
+  EXPECT_TRUE(trusted.phantoms[0].doubted.empty());
+  ASSERT_EQ(doubted.phantoms.size(), 1u);
+  EXPECT_EQ(doubted.phantoms[0].doubted.size(), doubted.phantoms[0].returns);
+  const SensorFrame frame = test::castScan(scene, test::narrowLidar());
+  for (const std::uint32_t i : doubted.phantoms[0].doubted)
+    EXPECT_LT(std::get<LidarCloud>(frame.data).y[i], -3) << "indices in the cloud, of the person";
+}
+
 TEST(JudgedClusters, PartsReplaceAWholeThatIsLessLikely) {
   const Judged judged(couple());
   ASSERT_EQ(judged.clusters.size(), 2u);
@@ -208,6 +237,7 @@ TEST(JudgedClusters, WithoutAClassifierLabelsAreBySize) {
   const SensorFrame frame = test::castScan(street(), test::narrowLidar());
   const LidarFrontEnd lidar = test::plainFrontEnd();
   EXPECT_TRUE(lidar.detect(frame).judged.empty());
+  EXPECT_FALSE(lidar.extract(frame).verdicts);
   const MeasurementScan scan = lidar.extract(frame);
   ASSERT_EQ(scan.measurements.size(), 3u) << "the wall as well";
   for (const Measurement& m : scan.measurements) {

@@ -47,6 +47,7 @@ struct Maker {
   RunTiming timing;
   EventLog events;
   WeatherWatch weather{events};
+  PhantomLedger ledger{events};
   std::unique_ptr<ScanMaker> maker;
 
   explicit Maker(const std::string& filter = "off") {
@@ -54,7 +55,7 @@ struct Maker {
     add("LIDAR", "lidar", lidar, true, true);
     add("CAMERA", "boxes", camera, true, false);
     add("ROAD", "lidar", none, false, true);
-    maker = std::make_unique<ScanMaker>(setup, timing, weather);
+    maker = std::make_unique<ScanMaker>(setup, timing, weather, ledger);
   }
   void add(const char* label, const char* kind, std::shared_ptr<const FrontEnd> front_end,
            bool active, bool gives_ground) {
@@ -196,6 +197,20 @@ TEST(ScanMaker, ReturnsGetATrustOnlyWhereTheWeatherFilterIsOn) {
   EXPECT_EQ(on.lidar->trusts, returns);
 }
 
+TEST(ScanMaker, OnlyScansWhoseReturnsAreWeighedAreInTheLedger) {
+  Maker off, on("trust");
+  const SensorFrame road = roadAt(0, 0);
+  for (Maker* maker : {&off, &on})
+    maker->measure(kLidar, road), maker->measure(kCamera, imageAt(0));
+  EXPECT_TRUE(off.ledger.take().empty());
+  const auto rows = on.ledger.take();
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].sensor, "LIDAR");
+  EXPECT_EQ(rows[0].stamp, kStart);
+  EXPECT_EQ(rows[0].trust.returns, std::get<LidarCloud>(road.data).size());
+  EXPECT_FALSE(rows[0].clusters) << "this front end has none";
+}
+
 TEST(ScanMaker, TimesItsStages) {
   Maker maker("trust");
   maker.measure(kLidar, roadAt(0, 0));
@@ -203,7 +218,7 @@ TEST(ScanMaker, TimesItsStages) {
   std::string names;
   for (const auto& stage : maker.timing.stages())
     names += stage.name + ":" + std::to_string(stage.calls) + " ";
-  EXPECT_EQ(names, "ground:1 weather:1 weather_state:1 lidar:1 boxes:1 ");
+  EXPECT_EQ(names, "ground:1 weather:1 weather_state:1 lidar:1 ledger:1 boxes:1 ");
 }
 
 }  // namespace

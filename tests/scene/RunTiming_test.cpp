@@ -59,5 +59,16 @@ TEST(RunTiming, ReportsTheRealTimeFactorAndMemory) {
   EXPECT_EQ(report["stages"][0]["name"], "lidar");
 }
 
+TEST(RunTiming, LatenciesAreGivenByTheirQuantiles) {
+  RunTiming timing;
+  EXPECT_EQ(timing.toJson(1, 1).find("latency"), std::string::npos);
+  for (int i = 1; i <= 1000; ++i) timing.addLatency(1e-4 * i);
+  const auto latency = nlohmann::json::parse(timing.toJson(1, 1)).at("latency");
+  EXPECT_EQ(latency.at("scenes"), 1000);
+  EXPECT_NEAR(latency.at("p50_seconds"), 0.050, 0.0011);  // 2 % of bins
+  EXPECT_NEAR(latency.at("p99_seconds"), 0.099, 0.0021);
+  EXPECT_NEAR(latency.at("longest_seconds"), 0.1, 1e-9);
+}
+
 }  // namespace
 }  // namespace perception

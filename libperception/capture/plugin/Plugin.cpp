@@ -2,14 +2,12 @@
 // rawlog-edit -p, RawLogViewer -l, rawlog-grabber -p.
 #include <mrpt/core/initializer.h>
 
-#include "libperception/capture/CPacketSensor.h"
-#include "libperception/capture/CScenarioSensor.h"
+#include "libperception/capture/registerDrivers.h"
 #include "libperception/grid/CSafetyGrid.h"
 #include "libperception/sensors/registerClasses.h"
 
 MRPT_INITIALIZER(registerPerceptionPlugin) {
   perception::registerPerceptionClasses();
   perception::registerSafetyGrid();
-  perception::CScenarioSensor::doRegister();
-  perception::CPacketSensor::doRegister();
+  perception::registerDrivers();
 }

@@ -1,0 +1,52 @@
+#pragma once
+#include <mrpt/hwdrivers/CGenericSensor.h>
+#include <mrpt/obs/CObservation.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace perception {
+
+/// The sensors of an INI of MRPT's rawlog-grabber: every section with a `driver` is one. Each is
+/// asked in a thread of its own, so that one that hangs or fails costs nothing but itself.
+class Drivers {
+ public:
+  /// An observation as it came.
+  struct Arrival {
+    std::shared_ptr<mrpt::obs::CObservation> observation;
+    std::size_t driver = 0;  ///< index
+    std::chrono::steady_clock::time_point at;
+  };
+
+  /// Creates and starts the drivers. Throws ConfigError, DataError, Error.
+  explicit Drivers(const std::string& ini);
+  ~Drivers();
+  Drivers(const Drivers&) = delete;
+  Drivers& operator=(const Drivers&) = delete;
+
+  std::size_t size() const { return drivers_.size(); }
+  const mrpt::hwdrivers::CGenericSensor& operator[](std::size_t i) const { return *drivers_[i]; }
+  /// [sensorLabel] of the section.
+  std::string label(std::size_t i) const { return drivers_[i]->getSensorLabel(); }
+
+  /// What came since the last call, in order of arrival; waits up to `wait` for the first.
+  std::vector<Arrival> take(std::chrono::milliseconds wait);
+  /// Ends the drivers: what is under way is received first, and left for a last take(). A driver
+  /// that does not return within two seconds is left alone.
+  void end();
+  /// Drivers that failed or did not return, a line each.
+  std::vector<std::string> faults() const;
+
+ private:
+  struct Shared;
+  static void ask(const mrpt::hwdrivers::CGenericSensor::Ptr& driver, std::size_t index,
+                  const std::shared_ptr<Shared>& shared);
+
+  std::vector<mrpt::hwdrivers::CGenericSensor::Ptr> drivers_;
+  std::shared_ptr<Shared> shared_;  ///< outlives a driver that hangs
+  bool ended_ = false;
+};
+
+}  // namespace perception

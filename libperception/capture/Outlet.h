@@ -1,0 +1,53 @@
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "libperception/capture/Drivers.h"
+
+namespace perception {
+
+/// Where a capture's observations go, in a thread of its own: a log, a stream. One that is slow
+/// does not hold up the sensors or another one.
+class Outlet {
+ public:
+  struct Params {
+    /// Most observations that wait; of more, the oldest one of the sensor with most waiting is left
+    /// out. 0: no limit, nothing is left out.
+    std::size_t limit = 0;
+    /// Takes one; `dropped`: left out so far.
+    std::function<void(const Drivers::Arrival& arrival, std::uint64_t dropped)> take;
+    std::function<void()> tend;  ///< called about once a second; may be empty
+  };
+
+  explicit Outlet(Params params);
+  ~Outlet();
+  Outlet(const Outlet&) = delete;
+  Outlet& operator=(const Outlet&) = delete;
+
+  void put(const Drivers::Arrival& arrival);
+  /// Throws what `take` or `tend` threw; after that nothing is taken any more.
+  void check();
+  /// Returns once all was taken; throws as check().
+  void close();
+  std::uint64_t dropped() const;
+
+ private:
+  void run();
+  void dropOne();
+
+  const Params params_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Drivers::Arrival> waiting_;
+  std::uint64_t dropped_ = 0;
+  bool closing_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace perception

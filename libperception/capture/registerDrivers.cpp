@@ -1,0 +1,17 @@
+#include "libperception/capture/registerDrivers.h"
+
+#include "libperception/capture/CDdsSensor.h"
+#include "libperception/capture/CPacketSensor.h"
+#include "libperception/capture/CRawlogSensor.h"
+#include "libperception/capture/CScenarioSensor.h"
+
+namespace perception {
+
+void registerDrivers() {
+  CScenarioSensor::doRegister();
+  CPacketSensor::doRegister();
+  CRawlogSensor::doRegister();
+  CDdsSensor::doRegister();
+}
+
+}  // namespace perception

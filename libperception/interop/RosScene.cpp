@@ -1,0 +1,42 @@
+#include "libperception/interop/RosScene.h"
+
+#include <utility>
+
+namespace perception::ros {
+namespace {
+
+Detection3D detectionOf(const SceneObject& object, const Header& header,
+                        const std::vector<std::string>& class_names) {
+  constexpr double kLeast = 0.01;  // probability of classes that are named
+  Detection3D d;
+  d.header = header;
+  const Pose3 T = makePose(object.position.x(), object.position.y(),
+                           object.position.z() + object.height / 2, object.yaw);
+  d.center = messageOf(T);
+  d.size = {object.length, object.width, object.height};
+  d.id = std::to_string(object.id);
+  const double variances[] = {object.sd_x, object.sd_y, object.sd_yaw};
+  for (std::size_t c = 0; c < object.class_probability.size(); ++c) {
+    if (object.class_probability[c] < kLeast) continue;
+    ObjectHypothesis h;
+    h.class_id = class_names[c];
+    h.score = object.class_probability[c] * object.existence;
+    h.pose = d.center;
+    for (const auto& [at, k] : {std::pair(0, 0), std::pair(7, 1), std::pair(35, 2)})
+      h.covariance[static_cast<std::size_t>(at)] = variances[k] * variances[k];
+    d.results.push_back(std::move(h));
+  }
+  return d;
+}
+
+}  // namespace
+
+Detection3DArray messageOf(const Scene& scene, const std::vector<std::string>& class_names) {
+  Detection3DArray array;
+  array.header = {scene.stamp, kWorld};
+  for (const SceneObject& object : scene.objects)
+    array.detections.push_back(detectionOf(object, array.header, class_names));
+  return array;
+}
+
+}  // namespace perception::ros

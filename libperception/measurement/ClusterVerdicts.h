@@ -1,0 +1,24 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace perception {
+
+/// A cluster that is judged a phantom (method.md 8.10): no measurement comes of it.
+struct PhantomCluster {
+  std::size_t returns = 0;
+  double probability = 0;  ///< [0, 1] P(phantom)
+  /// Indices in the frame's cloud of its returns with a trust below one half.
+  std::vector<std::uint32_t> doubted;
+};
+
+/// What a front end made of the clusters of a lidar scan whose kind is told by their shape.
+struct ClusterVerdicts {
+  std::size_t clusters = 0;  ///< judged: wholes, or the parts given in their place
+  /// Given as measurements although likelier a phantom than not.
+  std::size_t suspicious = 0;
+  std::vector<PhantomCluster> phantoms;
+};
+
+}  // namespace perception

@@ -1,0 +1,57 @@
+#include "libperception/capture/Outlet.h"
+
+#include <gtest/gtest.h>
+#include <mrpt/obs/CObservationOdometry.h>
+
+#include <future>
+
+namespace perception {
+namespace {
+
+Drivers::Arrival arrivalOf(const std::string& label) {
+  auto observation = std::make_shared<mrpt::obs::CObservationOdometry>();
+  observation->sensorLabel = label;
+  return {observation, 0, {}};
+}
+
+TEST(Outlet, TakesAllInOrderBeforeItCloses) {
+  std::string taken;
+  Outlet outlet(
+      {0, [&](const auto& a, std::uint64_t) { taken += a.observation->sensorLabel; }, {}});
+  for (const char* label : {"a", "b", "c", "a"}) outlet.put(arrivalOf(label));
+  outlet.close();
+  EXPECT_EQ(taken, "abca");
+  EXPECT_EQ(outlet.dropped(), 0U);
+}
+
+TEST(Outlet, LeavesOutTheOldestOfTheSensorWithMostWaiting) {
+  std::promise<void> go;
+  auto wait = go.get_future().share();
+  std::string taken;
+  std::uint64_t dropped = 0;
+  Outlet outlet({3,
+                 [&](const auto& a, std::uint64_t left_out) {
+                   if (a.observation->sensorLabel == "first") return wait.wait();
+                   taken += a.observation->sensorLabel;
+                   dropped = left_out;
+                 },
+                 {}});
+  outlet.put(arrivalOf("first"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it is being taken now
+  for (const char* label : {"pose", "lidar", "lidar", "lidar", "pose"})
+    outlet.put(arrivalOf(label));
+  go.set_value();
+  outlet.close();
+  EXPECT_EQ(taken, "poselidarpose");
+  EXPECT_EQ(dropped, 2U);
+}
+
+TEST(Outlet, ThrowsWhatItsConsumerThrew) {
+  Outlet outlet({0, [](const auto&, std::uint64_t) { throw std::runtime_error("full"); }, {}});
+  outlet.put(arrivalOf("a"));
+  EXPECT_THROW(outlet.close(), std::runtime_error);
+  EXPECT_THROW(outlet.check(), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace perception
