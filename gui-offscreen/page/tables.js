@@ -67,10 +67,10 @@ export function events(viewer, host) {
     table.classList.remove("sorts");
     for (const e of all.filter((x) => !choice.value || x.kind === choice.value).slice(0, 2000)) {
       const row = table.insertRow();
-      for (const text of [`${e.t.toFixed(2)} s`, e.kind.replaceAll("_", " "), e.message]) row.insertCell().textContent = text;
+      for (const text of [Number.isFinite(e.t) ? `${e.t.toFixed(2)} s` : "", e.kind.replaceAll("_", " "), e.message]) row.insertCell().textContent = text;
       if (e.severity === "warning") row.className = "warning";
       row.addEventListener("click", () => {
-        viewer.seek(e.t);
+        if (Number.isFinite(e.t)) viewer.seek(e.t);
         if (e.fields?.id && viewer.run.byId.has(e.fields.id)) viewer.choose(e.fields.id);
       });
     }
