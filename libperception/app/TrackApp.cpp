@@ -200,6 +200,7 @@ void TrackApp::trackLog(const Shard& shard) {
     if (topics) topics->publish(scene);
     if (keep_scenes) out_scenes.push_back(scene);
   });
+  watchdog.reset();  // writing the results may take a slow disk longer
   for (const std::string& message : run.finish(strict)) warn(message);
   run.record.program = name();
   run.record.version = PERCEPTION_VERSION;

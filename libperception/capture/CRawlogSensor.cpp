@@ -18,9 +18,10 @@ IMPLEMENTS_GENERIC_SENSOR(CRawlogSensor, perception)
 
 namespace {
 
-constexpr double kAhead = 0.5;    ///< [s] read before it is due
-constexpr double kMissed = 0.05;  ///< [s] a device sends nothing of what was before it came up
-constexpr double kPause = 0.1;    ///< [s] between two times through the log
+constexpr double kAhead = 0.5;  ///< [s] read before it is due
+constexpr double kMissed =
+    0.05;  ///< [s] overdue: was before this device came up, which does not send it
+constexpr double kPause = 0.1;  ///< [s] between two times through the log
 
 double secondsNow() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -42,7 +43,8 @@ void CRawlogSensor::loadConfig_sensorSpecific(const mrpt::config::CConfigFileBas
 
 void CRawlogSensor::initialize() {
   RawlogReader{log_};  // says what is wrong with it, here and not in the thread
-  if (start_at_ <= 0) start_at_ = secondsNow();
+  joins_ = start_at_ > 0;
+  if (!joins_) start_at_ = secondsNow();
   thread_ = std::thread([this] { read(); });
   m_state = ssWorking;
 }
@@ -67,6 +69,7 @@ bool CRawlogSensor::put(double due, std::shared_ptr<mrpt::obs::CObservation> obs
 
 void CRawlogSensor::read() {
   double begin = 0;  // [s] of this time through the log after the start of the first
+  bool joined = !joins_;
   try {
     for (std::uint64_t i = 0; (repeats_ == 0 || i < repeats_) && !stop_; ++i) {
       RawlogReader reader(log_);
@@ -84,7 +87,8 @@ void CRawlogSensor::read() {
           observation->timestamp = fromStamp({stamp->ns + move});
         }
         const double due = start_at_ + (begin + length) / speed_;
-        if (secondsNow() - due > kMissed) continue;
+        joined = joined || secondsNow() - due < kMissed;
+        if (!joined) continue;
         if (!put(due, observation)) return;
       }
       begin += length + kPause;

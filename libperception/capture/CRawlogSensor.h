@@ -45,6 +45,7 @@ class CRawlogSensor : public mrpt::hwdrivers::CGenericSensor {
   std::string log_;
   std::set<std::string> labels_;
   double speed_ = 1, start_at_ = 0;  ///< [s] since 1970
+  bool joins_ = false;               ///< start_at is given: what was before this start is left out
   std::uint64_t repeats_ = 1;
   std::mutex mutex_;  ///< of waiting_
   std::condition_variable taken_;

@@ -65,7 +65,7 @@ LogPass passLog(const std::string& log, PipelineSetup setup, double seconds,
     while (pipeline.next()) {
     }
     for (const WeatherRow& row : pipeline.takeWeather()) observer.onWeather(row);
-    pipeline.takeLedger();  // nobody reads it
+    pipeline.takeLedger();  // not used here, and must not pile up
   }
   while (pipeline.next(true)) {
   }

@@ -69,7 +69,8 @@ class LogRun {
   std::optional<WeatherFile> weather_;
   std::optional<LedgerFile> ledger_;
   std::optional<KittiExport> kitti_;
-  /// When sensor data of an instant came, of sensors at work; the newest second.
+  /// When sensor data of an instant came, of sensors at work; the newest five
+  /// seconds.
   std::map<Stamp, std::chrono::steady_clock::time_point> arrivals_;
   std::vector<Scene>
       before_camera_;  ///< scenes before the first camera observation, which exports need

@@ -109,5 +109,24 @@ TEST(Drivers, ARawlogIsPlayedWithItsOwnIntervals) {
   EXPECT_TRUE(late.take(milliseconds(0)).empty());
 }
 
+TEST(Drivers, ARawlogJoinsWhereItStartedBefore) {
+  const TemporaryFolder folder;
+  const double start = mrpt::Clock::nowDouble() - 5;
+  std::ofstream(folder / "log.ini")
+      << "[LOG]\ndriver = CRawlogSensor\nsensorLabel = LOG\n"
+         "process_rate = 500\nlabels = LIDAR_TOP\nstart_at = "
+      << std::to_string(start) << "\nrawlog = " << PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog\n";
+  Drivers drivers(folder / "log.ini");
+  std::vector<Stamp> played;
+  const auto end = std::chrono::steady_clock::now() + milliseconds(800);
+  while (std::chrono::steady_clock::now() < end)
+    for (const auto& arrival : drivers.take(milliseconds(20)))
+      played.push_back(*toStamp(arrival.observation->timestamp));
+  ASSERT_GT(played.size(), 3U);
+  EXPECT_GT(played.front().seconds(), start + 4.8);
+  for (std::size_t i = 1; i < played.size(); ++i)  // from then on without a gap
+    EXPECT_NEAR(played[i] - played[i - 1], 0.1, 0.02);
+}
+
 }  // namespace
 }  // namespace perception::test
