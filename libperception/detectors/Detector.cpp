@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "libperception/core/Error.h"
@@ -90,7 +91,9 @@ void DetectorSetup::visit(ParamVisitor& v) {
   std::vector<std::string> names;
   for (const auto& row : detectorBackends()) names.emplace_back(row.name);
   v.choice("backend", backend, names, "detector; file: the boxes in the log");
-  v.path("folder", folder, "of the models' files");
+  v.path("folder", folder,
+         "of the models' files; what is not there is looked for in the environment's "
+         "PERCEPTION_MODELS");
   v.boolean("ground_gate", ground_gate,
             "search only where objects of the models' heights can stand, if the camera's pose is "
             "known");
@@ -126,7 +129,18 @@ std::string DetectorSetup::backendName() const {
 }
 
 std::string DetectorSetup::pathOf(const DetectorModelParams& model) const {
-  return (std::filesystem::path(folder) / model.file).string();
+  namespace fs = std::filesystem;
+  std::vector<fs::path> folders{folder};
+  if (const char* more = std::getenv("PERCEPTION_MODELS"); more != nullptr && *more != '\0')
+    folders.emplace_back(more);
+  for (const fs::path& place : folders) {
+    if (fs::exists(place / model.file)) return (place / model.file).string();
+  }
+  throw DataError(fmt::format("{}: no such file (a model of back end {}). Models do not come with "
+                              "the programs: [detector] folder or the environment's "
+                              "PERCEPTION_MODELS names the folder of yours",
+                              (folders.back() / model.file).string(), backendName()),
+                  ExitCode::kNoInput);
 }
 
 const std::vector<DetectorBackend>& detectorBackends() {

@@ -74,6 +74,8 @@ struct DetectorSetup {
   static DetectorSetup read(Config& config);
   void visit(ParamVisitor& v);
   std::string backendName() const;
+  /// Where the model's file lies: in `folder`, else in the environment's PERCEPTION_MODELS.
+  /// @throws DataError kNoInput where it is in neither
   std::string pathOf(const DetectorModelParams& model) const;
 };
 

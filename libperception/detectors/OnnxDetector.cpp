@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <mutex>
 #include <opencv2/core.hpp>
@@ -40,8 +39,6 @@ class OnnxDetector final : public Detector {
     if (setup.models.size() != 1)
       throw ConfigError("[detector] backend = onnx: exactly one [model.NAME] section");
     readNames();
-    if (!std::filesystem::exists(path_))
-      throw DataError(fmt::format("{}: no such file (a network)", path_), ExitCode::kNoInput);
     try {
       const ReadingScope scope(path_);
       const MemoryLimit limit(addressSpace() + kLargestNetwork +

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <opencv2/dpm.hpp>
@@ -47,11 +46,7 @@ class CvDpmDetector final : public Detector {
   explicit CvDpmDetector(const DetectorSetup& setup) {
     std::vector<std::string> files, names;
     for (const auto& [name, params] : setup.models) {
-      const std::string path = setup.pathOf(params);
-      if (!std::filesystem::exists(path))
-        throw DataError(fmt::format("{}: no such file (a cascade of cv::dpm)", path),
-                        ExitCode::kNoInput);
-      files.push_back(path);
+      files.push_back(setup.pathOf(params));
       names.push_back(params.label.empty() ? name : params.label);
       params_.push_back(params);
     }

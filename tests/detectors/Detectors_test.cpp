@@ -164,6 +164,21 @@ TEST(OnnxOutput, EveryLayoutGivesTheSameBox) {
   expectBox(decodeOnnxOutput(v8.data(), {4 + kClasses, kCells}, OnnxLayout::kYolov8, kSide, 0.1));
 }
 
+TEST(DetectorSetup, ModelsAreInItsFolderOrWhereTheEnvironmentSays) {
+  const TemporaryFolder here, elsewhere;
+  DetectorSetup setup;
+  setup.folder = here / "";
+  DetectorModelParams model;
+  model.file = "a.xml";
+  ::setenv("PERCEPTION_MODELS", (elsewhere / "").c_str(), 1);
+  EXPECT_THROW(setup.pathOf(model), DataError);
+  std::ofstream(elsewhere / "a.xml") << "of the environment";
+  EXPECT_EQ(setup.pathOf(model), elsewhere / "a.xml");
+  std::ofstream(here / "a.xml") << "of the folder";
+  EXPECT_EQ(setup.pathOf(model), here / "a.xml");
+  ::unsetenv("PERCEPTION_MODELS");
+}
+
 TEST(OnnxDetector, RefusesWhatIsNoNetwork) {
   const TemporaryFolder folder;
   DetectorSetup setup;
