@@ -214,7 +214,8 @@ void Config::finish() const {
 std::string Config::effectiveText() const {
   std::string text =
       "; Effective configuration: every section that was read, includes and --set folded in.\n"
-      "; Relative paths start at the folder in which the program was started.\n"
+      "; Relative paths start at the folder in which the program was started, or at that of the\n"
+      "; files that come with it.\n"
       "relative_paths = working-folder\n";
   for (const auto& section : impl_->read) appendSection(section, false, text);
   std::string expert;

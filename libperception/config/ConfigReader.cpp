@@ -9,6 +9,7 @@
 
 #include "libperception/config/ConfigText.h"
 #include "libperception/config/IniValue.h"
+#include "libperception/config/ShippedFiles.h"
 #include "libperception/core/Angle.h"
 
 namespace perception {
@@ -108,8 +109,9 @@ class ConfigReader final : public ParamVisitor {
 
   void path(const char* key, std::string& value, const char* doc) override {
     const std::string usual = value;
-    if (const IniEntry* entry = take(key)) value = document_.resolved(entry->value, entry->place);
-    note(key, value, usual, comment("", "path", doc));
+    if (const IniEntry* entry = take(key))
+      value = foundOrShipped(document_.resolved(entry->value, entry->place), entry->value);
+    note(key, shippedName(value), shippedName(usual), comment("", "path", doc));
   }
 
   void reals(const char* key, std::vector<double>& values, int count, Bounds allowed,

@@ -51,4 +51,12 @@ std::string foundOrShipped(const std::string& path, const std::string& name) {
   return path;
 }
 
+std::string shippedName(const std::string& path) {
+  const std::string shipped = shippedFolder();
+  if (path.empty() || shipped.empty() || !isThere(path)) return path;
+  std::error_code ignored;
+  const fs::path name = fs::relative(path, shipped, ignored);
+  return name.empty() || *name.begin() == ".." || name == "." ? path : name.string();
+}
+
 }  // namespace perception

@@ -9,8 +9,12 @@ namespace perception {
 /// where there is none.
 std::string shippedFolder();
 
-/// `path` where it exists; else the shipped INI of that relative `name`, with or without its
+/// `path` where it exists; else the shipped file of that relative `name`, with or without its
 /// leading ini/; else `path`.
 std::string foundOrShipped(const std::string& path, const std::string& name);
+
+/// What foundOrShipped() finds in every working folder: a file below shippedFolder() as the path
+/// from there, any other path as it is.
+std::string shippedName(const std::string& path);
 
 }  // namespace perception

@@ -132,7 +132,8 @@ TEST(EffectiveText, IsThisOne) {
   ASSERT_EQ(faultsOf(config), "");
   EXPECT_EQ(config.effectiveText(),
             R"(; Effective configuration: every section that was read, includes and --set folded in.
-; Relative paths start at the folder in which the program was started.
+; Relative paths start at the folder in which the program was started, or at that of the
+; files that come with it.
 relative_paths = working-folder
 
 [a]

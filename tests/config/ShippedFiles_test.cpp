@@ -45,6 +45,17 @@ TEST_F(ShippedInis, AreIncludedByNameByAnIniElsewhere) {
   EXPECT_EQ(readFile("mine/car.ini").beams, 9);
 }
 
+TEST_F(ShippedInis, AreNamedInTheEffectiveTextAsEveryFolderFindsThem) {
+  writeText("data/ini/model.json", "{}");
+  EXPECT_EQ(foundOrShipped("mine/model.json", "model.json"), fs::absolute("data/ini/model.json"));
+  EXPECT_EQ(shippedName(fs::absolute("data/ini/model.json")), "ini/model.json");
+  EXPECT_EQ(shippedName("data/ini/../ini/model.json"), "ini/model.json");
+  writeText("mine/model.json", "{}");
+  EXPECT_EQ(shippedName("mine/model.json"), "mine/model.json");
+  EXPECT_EQ(shippedName("none.json"), "none.json");
+  EXPECT_EQ(shippedName(""), "");
+}
+
 TEST_F(ShippedInis, OfNoSuchNameLeaveTheErrorOfThePath) {
   Config config = Config::fromFile("mine/none.ini");
   EXPECT_EQ(faultsOf(config), "mine/none.ini: cannot be read: No such file or directory");
