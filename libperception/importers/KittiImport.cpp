@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -34,6 +35,8 @@ class Import {
   void checkParams() const;
   void readAll();
   void readPoses();
+  void framesOfFiles();
+  bool hasPoses() const { return !params_.poses.empty() || !params_.oxts.empty(); }
   Stamp stampOf(std::int64_t frame) const;
   Pose3 egoAt(std::int64_t frame) const;
   void writeFrame(std::int64_t frame);
@@ -54,7 +57,12 @@ class Import {
 };
 
 void Import::checkParams() const {
-  if (params_.poses.empty() == params_.oxts.empty()) failUsage("give either --poses or --oxts");
+  if (!params_.poses.empty() && !params_.oxts.empty())
+    failUsage("give --poses or --oxts, not both");
+  if (!hasPoses() && params_.lidar_dir.empty() && params_.images_dir.empty())
+    failUsage("give either --poses or --oxts, or --lidar or --images, which count the frames");
+  if (!hasPoses() && !params_.labels.empty())
+    failUsage("--labels needs --poses or --oxts: the truth is written in the world frame");
   for (const auto* dir : {&params_.lidar_dir, &params_.images_dir}) {
     if (!dir->empty()) requireFolder(*dir);
   }
@@ -88,9 +96,40 @@ void Import::readPoses() {
   }
 }
 
+/// Number of the frame of FRAME.EXT or FRAME.EXT.gz; -1: the name is no number.
+std::int64_t frameOf(const fs::path& file) {
+  const std::string name = file.filename().string();
+  std::int64_t frame = -1;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), frame);
+  return error == std::errc() && end != name.data() + name.size() && *end == '.' ? frame : -1;
+}
+
+/// Without poses the scans and images say which frames there are.
+void Import::framesOfFiles() {
+  std::int64_t newest = -1;
+  for (const auto* dir : {&params_.lidar_dir, &params_.images_dir}) {
+    if (dir->empty()) continue;
+    for (const auto& entry : fs::directory_iterator(*dir))
+      newest = std::max(newest, frameOf(entry.path()));
+  }
+  if (newest < 0) {
+    throw DataError(
+        fmt::format("{}: no frame (000000.bin, 000000.png), and no --poses that count them",
+                    params_.lidar_dir.empty() ? params_.images_dir : params_.lidar_dir));
+  }
+  last_ = options_.last < 0 ? newest : options_.last;
+  log_.note(
+      "no --poses and no --oxts: the log has no poses; [ego] source = lidar finds them in the "
+      "scans");
+}
+
 void Import::readAll() {
   calibration_ = readKittiCalibration(params_.calibration);
-  readPoses();
+  if (hasPoses()) {
+    readPoses();
+  } else {
+    framesOfFiles();
+  }
   for (const auto& wanted : params_.detections) detections_.add(wanted);
   if (!params_.labels.empty()) {
     for (auto& label : readKittiLabels(params_.labels))
@@ -132,7 +171,7 @@ std::optional<LidarCloud> Import::readScan(std::int64_t frame) {
 
 void Import::writeFrame(std::int64_t frame) {
   const Stamp stamp = stampOf(frame);
-  log_.ego(stamp, egoAt(frame));
+  if (hasPoses()) log_.ego(stamp, egoAt(frame));
   log_.frame(stamp, frame);
   const std::optional<LidarCloud> cloud = readScan(frame);
   if (cloud) {
@@ -199,7 +238,8 @@ void KittiImporter::declare(CLI::App& cli) {
   auto& p = params_;
   cli.add_option("--calib", p.calibration, "calibration file (P2, R0_rect, Tr_velo_to_cam)")
       ->required();
-  auto* poses = cli.add_option("--poses", p.poses, "ego poses, one line a frame");
+  auto* poses = cli.add_option("--poses", p.poses,
+                               "ego poses, one line a frame; without and without --oxts: none");
   cli.add_option("--poses-frame", p.poses_frame, "whose poses they are")
       ->check(CLI::IsMember({"velodyne", "camera", "imu"}))
       ->capture_default_str();

@@ -130,6 +130,18 @@ TEST_F(ImportTest, FrameNumbersAndStampsSurviveFirstAndLast) {
   EXPECT_NEAR(truth.instants[1].t, 0.125, 1e-9);
 }
 
+TEST_F(ImportTest, WithoutPosesTheFilesSayWhichFramesThereAre) {
+  for (const char* name : {"velo/000001.bin", "velo/000002.bin", "velo/readme.bin"})
+    write(name, bytesOf<float>({8.1F, 0, -1, 0.5F}));
+  ASSERT_EQ(import({"--lidar", file("velo"), "--first", "1"}, ""), 0) << error_;
+  EXPECT_EQ(result_.scans, 2);
+  for (const auto& o : readLog()) EXPECT_NE(o->sensorLabel, "EGO_POSE");
+  ASSERT_FALSE(result_.notes.empty());
+  EXPECT_NE(result_.notes[0].find("source = lidar"), std::string::npos) << result_.notes[0];
+  EXPECT_EQ(import({"--lidar", file("velo"), "--labels", file("labels.txt")}, ""), 64);
+  EXPECT_NE(error_.find("--labels needs --poses"), std::string::npos) << error_;
+}
+
 TEST_F(ImportTest, TruthStandsInTheWorld) {
   ASSERT_EQ(import({"--labels", file("labels.txt")}), 0) << error_;
   const auto truth = readGroundTruth(file("out.truth.csv"));
