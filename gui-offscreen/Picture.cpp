@@ -21,6 +21,14 @@ std::string endingOf(const std::string& path) {
   return ending;
 }
 
+cv::Mat bgrOf(const Picture& picture) {
+  const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
+                    const_cast<std::uint8_t*>(picture.rgb.data()));
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  return bgr;
+}
+
 }  // namespace
 
 std::size_t colorsOf(const Picture& picture) {
@@ -41,15 +49,22 @@ void requirePictureName(const std::string& path) {
 // Encoded in memory and written by OutputFile: OpenCV's imwrite() does not report a full disk.
 void writePicture(const std::string& path, const Picture& picture) {
   requirePictureName(path);
-  const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
-                    const_cast<std::uint8_t*>(picture.rgb.data()));
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(endingOf(path), bgr, bytes)) {
+  if (!cv::imencode(endingOf(path), bgrOf(picture), bytes)) {
     throw OutputError(path + ": the picture cannot be encoded", ExitCode::kIoError);
   }
   writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::string jpegOf(const Picture& picture, int widest, int quality) {
+  cv::Mat bgr = bgrOf(picture);
+  if (bgr.cols > widest) {
+    const int height = std::max(1, bgr.rows * widest / bgr.cols);
+    cv::resize(bgr, bgr, {widest, height}, 0, 0, cv::INTER_AREA);
+  }
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".jpg", bgr, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  return {bytes.begin(), bytes.end()};
 }
 
 Picture pictureOf(const Raster& raster) {

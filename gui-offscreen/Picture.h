@@ -24,6 +24,9 @@ void requirePictureName(const std::string& path);
 /// naming the path.
 void writePicture(const std::string& path, const Picture& picture);
 
+/// The picture as JPEG of a quality (1 to 100), made smaller if it is wider than `widest` [px].
+std::string jpegOf(const Picture& picture, int widest, int quality);
+
 struct Raster;
 /// Converts a gray or color raster; empty for an empty raster.
 Picture pictureOf(const Raster& raster);

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "gui-offscreen/HtmlText.h"
 #include "gui-offscreen/Palette.h"
+#include "gui-offscreen/Picture.h"
 
 namespace perception {
 namespace {
@@ -25,6 +24,7 @@ constexpr double kFarthest = 320;            // [m] that 16 bits of centimeters 
 constexpr double kHeightStep = 0.02;         // [m] of a return's height
 constexpr float kGround = 0.15F;             // [m] height of returns of the ground
 constexpr int kImageWidth = 720;             // [px]
+constexpr int kImageQuality = 72;            // of JPEG
 constexpr std::size_t kImageBytes = 70'000;  // of the page, about, for one image
 
 Json rounded(double value, double step = 0.01) {
@@ -72,20 +72,6 @@ void putBlock(std::string& to, const std::vector<std::size_t>& kept, Place place
   }
   for (const std::size_t i : kept) to += byteOf(first(i));
   for (const std::size_t i : kept) to += byteOf(second(i));
-}
-
-std::string jpegOf(const Picture& picture) {
-  cv::Mat rgb(picture.height, picture.width, CV_8UC3,
-              const_cast<std::uint8_t*>(picture.rgb.data()));
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  if (bgr.cols > kImageWidth) {
-    const int height = std::max(1, bgr.rows * kImageWidth / bgr.cols);
-    cv::resize(bgr, bgr, {kImageWidth, height}, 0, 0, cv::INTER_AREA);
-  }
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", bgr, bytes, {cv::IMWRITE_JPEG_QUALITY, 72});
-  return {bytes.begin(), bytes.end()};
 }
 
 Json matrixOf(const Pose3& T, const Vector3& origin) {
@@ -253,7 +239,7 @@ void RunData::addImage(const ViewImage& image, Json& scene) {
   }
   if (image.picture.width > 0 && images_bytes_ < budget_.images) {
     shown["jpeg"] = images_.size();
-    images_.push_back(base64(jpegOf(image.picture)));
+    images_.push_back(base64(jpegOf(image.picture, kImageWidth, kImageQuality)));
     images_bytes_ += images_.back().get_ref<const std::string&>().size();
   }
   scene["image"] = std::move(shown);

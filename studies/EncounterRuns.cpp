@@ -6,6 +6,7 @@
 
 #include "libperception/core/Assignment.h"
 #include "libperception/evaluation/SetDistance.h"
+#include "libperception/evaluation/ShareInterval.h"
 #include "libperception/filter/CRbpfTracker.h"
 #include "libperception/scene/SceneFromPosterior.h"
 
@@ -120,9 +121,7 @@ EncounterScore runEncounter(const std::string& name, const EncounterConditions& 
 }
 
 double wilsonUpper(int events, int trials) {
-  const double z = 1.959963984540054, n = trials, p = events / n;
-  return (p + z * z / (2 * n) + z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n))) /
-         (1 + z * z / n);
+  return wilsonInterval(static_cast<double>(events) / trials, trials).high;
 }
 
 }  // namespace perception

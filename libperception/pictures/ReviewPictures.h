@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+
+#include "gui-offscreen/Renderer.h"
+#include "gui-offscreen/SceneView.h"
+
+namespace perception {
+
+/// Pictures of a single object for a person who is asked what it is: its outline and what the
+/// sensors saw, without classes and other objects. One instance per process (see Renderer).
+class ReviewPictures {
+ public:
+  static constexpr int kWidth = 420, kHeight = 360;  ///< [px]
+
+  ReviewPictures();
+
+  /// From above, forward up, 24 m across. `index`: of view.scene.objects.
+  Picture fromAbove(const SceneView& view, std::size_t index);
+  /// From the vehicle's roof towards the object.
+  Picture fromVehicle(const SceneView& view, std::size_t index);
+  /// The part of the camera's image around the object; empty if it is not in it.
+  std::optional<Picture> fromCamera(const SceneView& view, std::size_t index) const;
+
+ private:
+  Picture draw(const SceneView& view, const SceneObject& object, const ViewCamera& camera);
+
+  Renderer renderer_;
+};
+
+}  // namespace perception
