@@ -10,6 +10,7 @@
 #include "libperception/core/Error.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/scene/RunMark.h"
 
 namespace perception {
 namespace {
@@ -39,7 +40,7 @@ void requirePictureName(const std::string& path) {
 }
 
 // Encoded in memory and written by OutputFile: OpenCV's imwrite() does not report a full disk.
-void writePicture(const std::string& path, const Picture& picture) {
+void writePicture(const std::string& path, const Picture& picture, const std::string& mark) {
   requirePictureName(path);
   const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
                     const_cast<std::uint8_t*>(picture.rgb.data()));
@@ -49,7 +50,7 @@ void writePicture(const std::string& path, const Picture& picture) {
   if (!cv::imencode(endingOf(path), bgr, bytes)) {
     throw OutputError(path + ": the picture cannot be encoded", ExitCode::kIoError);
   }
-  writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  writeFile(path, withMark({bytes.begin(), bytes.end()}, mark));
 }
 
 Picture pictureOf(const Raster& raster) {
