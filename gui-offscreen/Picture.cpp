@@ -10,6 +10,7 @@
 #include "libperception/core/Error.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/scene/RunMark.h"
 
 namespace perception {
 namespace {
@@ -47,13 +48,13 @@ void requirePictureName(const std::string& path) {
 }
 
 // Encoded in memory and written by OutputFile: OpenCV's imwrite() does not report a full disk.
-void writePicture(const std::string& path, const Picture& picture) {
+void writePicture(const std::string& path, const Picture& picture, const std::string& mark) {
   requirePictureName(path);
   std::vector<std::uint8_t> bytes;
   if (!cv::imencode(endingOf(path), bgrOf(picture), bytes)) {
     throw OutputError(path + ": the picture cannot be encoded", ExitCode::kIoError);
   }
-  writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  writeFile(path, withMark({bytes.begin(), bytes.end()}, mark));
 }
 
 std::string jpegOf(const Picture& picture, int widest, int quality) {

@@ -20,9 +20,9 @@ std::size_t colorsOf(const Picture& picture);
 
 /// Throws Error (kUsage) unless the name ends with .png, .jpg or .jpeg.
 void requirePictureName(const std::string& path);
-/// Writes a PNG or JPEG, by the ending of the name. Throws as requirePictureName(), OutputError
-/// naming the path.
-void writePicture(const std::string& path, const Picture& picture);
+/// Writes a PNG or JPEG, by the ending of the name, with runMark() `mark` in it. Throws as
+/// requirePictureName(), OutputError naming the path.
+void writePicture(const std::string& path, const Picture& picture, const std::string& mark = "");
 
 /// The picture as JPEG of a quality (1 to 100), made smaller if it is wider than `widest` [px].
 std::string jpegOf(const Picture& picture, int widest, int quality);

@@ -10,6 +10,7 @@
 #include "gui-offscreen/ReportStyle.h"
 #include "gui-offscreen/ReportTimeline.h"
 #include "libperception/scene/ClassColors.h"
+#include "libperception/scene/RunMark.h"
 
 namespace perception {
 namespace {
@@ -46,11 +47,13 @@ class Page {
     out_ = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta name=\"perception-run\" content=\"{}\">\n"
         "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n",
-        escaped(title()), kReportStyle, pageStyle());
+        runMark({content_.id}), escaped(title()), kReportStyle, pageStyle());
     head();
     if (!content_.data.empty()) out_ += "<div id=\"viewer\" data-run=\"run\"></div>\n";
     timeline();
+    out_ += "<div id=\"weather\"></div>\n";
     video();
     pictures();
     evaluation();
@@ -137,7 +140,8 @@ void Page::head() {
          "false road users per instant, named for sure");
   }
   if (content_.real_time_factor > 0) {
-    tile(fmt::format("{:.0f} x", content_.real_time_factor), "faster than real time");
+    const double factor = content_.real_time_factor;
+    tile(fmt::format("{:.{}f} x", factor, factor < 10 ? 1 : 0), "as fast as real time");
   }
   out_ += "</div>\n";
 }
@@ -255,7 +259,7 @@ void Page::provenance() {
   row("configuration", fmt::format("{}, seed {}, sensors {}, {} particles, {} association",
                                    r.config, r.seed, r.sensors_used, r.particles, r.association));
   row("program", r.program + " " + r.version);
-  row("run", r.hash);
+  row("run", content_.id);
   for (const SensorRecord& s : r.sensors) {
     row("sensor " + escaped(s.label), fmt::format("{} frames, {} measurements, {} points dropped",
                                                   s.frames, s.measurements, s.dropped_points));

@@ -18,6 +18,7 @@ struct ReportContent {
   };
   const TrackedRun* run = nullptr;
   RunRecord record;
+  std::string id;               ///< of the run, as its products carry it
   double real_time_factor = 0;  ///< 0: unknown
   nlohmann::json events;        ///< events.jsonl as an array, or null
   nlohmann::json evaluation;    ///< report.json of perception-evaluate, or null

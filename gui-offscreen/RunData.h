@@ -28,6 +28,9 @@ class RunData {
   /// events.jsonl, one object per event.
   void setEvents(nlohmann::json events) { json_["events"] = std::move(events); }
 
+  /// weatherOf() of the run's folder.
+  void setWeather(nlohmann::json weather) { json_["weather"] = std::move(weather); }
+
   /// Elements <script id="PREFIX-..."> with the data: gzip, base64. Ends the collection.
   std::string html(const std::string& prefix);
 

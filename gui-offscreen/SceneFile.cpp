@@ -98,7 +98,8 @@ void addTruthAndMeasurements(mrpt::opengl::COpenGLScene& scene, const SceneView&
 
 }  // namespace
 
-void writeSceneFile(const std::string& path, const SceneView& view, double range) {
+void writeSceneFile(const std::string& path, const SceneView& view, double range,
+                    const std::string& mark) {
   ViewCamera ground;
   ground.range = range;
   const auto scene = openGlScene(view, ground);
@@ -110,6 +111,11 @@ void writeSceneFile(const std::string& path, const SceneView& view, double range
     addMotion(*scene, view, object, T_ego_world, color);
   }
   addTruthAndMeasurements(*scene, view, T_ego_world);
+  if (!mark.empty()) {
+    auto nothing = mrpt::opengl::CSetOfLines::Create();
+    nothing->setName(mark);
+    scene->insert(nothing);
+  }
   const auto viewport = scene->getViewport();
   viewport->setCustomBackgroundColor({1.0F, 1.0F, 1.0F});
   auto& camera = viewport->getCamera();

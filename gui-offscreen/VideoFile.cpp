@@ -14,6 +14,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/Error.h"
@@ -37,7 +38,8 @@ std::string onPath(const std::string& program) {
 }
 
 // One thread and no metadata of version or time: reproducible output.
-std::vector<std::string> arguments(const Picture& first, double rate, const std::string& file) {
+std::vector<std::string> arguments(const Picture& first, double rate, const std::string& mark,
+                                   const std::string& file) {
   return {"ffmpeg",
           "-hide_banner",
           "-loglevel",
@@ -69,6 +71,8 @@ std::vector<std::string> arguments(const Picture& first, double rate, const std:
           "+bitexact",
           "-flags:v",
           "+bitexact",
+          "-metadata",
+          "comment=" + mark,
           "-f",
           "mp4",
           file};
@@ -76,8 +80,8 @@ std::vector<std::string> arguments(const Picture& first, double rate, const std:
 
 }  // namespace
 
-VideoFile::VideoFile(const std::string& path, double rate)
-    : path_(path), partial_(path), said_(path + ".log"), rate_(rate) {
+VideoFile::VideoFile(const std::string& path, double rate, std::string mark)
+    : path_(path), partial_(path), said_(path + ".log"), rate_(rate), mark_(std::move(mark)) {
   if (fs::path(path).extension() != ".mp4")
     throw Error(ExitCode::kUsage, path + ": expected a video, .mp4");
   if (onPath("ffmpeg").empty()) {
@@ -102,7 +106,7 @@ void VideoFile::start(const Picture& first) {
   ::posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
   ::posix_spawn_file_actions_addopen(&actions, 2, said_.path().c_str(),
                                      O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  std::vector<std::string> words = arguments(first, rate_, partial_.path());
+  std::vector<std::string> words = arguments(first, rate_, mark_, partial_.path());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -151,9 +155,14 @@ int VideoFile::finish() {
 void VideoFile::fail(const std::string& what) {
   std::ifstream log(said_.path());
   const std::string said((std::istreambuf_iterator<char>(log)), {});
-  throw OutputError(fmt::format("{}: ffmpeg: {}{}{}", path_, what, said.empty() ? "" : ": ",
-                                said.substr(0, said.find('\n'))),
-                    ExitCode::kIoError);
+  // On a full disk its own messages find no room either.
+  std::error_code error;
+  const auto space = fs::space(fs::absolute(path_).parent_path(), error);
+  throw OutputError(
+      fmt::format("{}: ffmpeg: {}{}{}{}", path_, what, said.empty() ? "" : ": ",
+                  said.substr(0, said.find('\n')),
+                  error ? "" : fmt::format(" ({} bytes free in its folder)", space.available)),
+      ExitCode::kIoError);
 }
 
 void VideoFile::close() {

@@ -12,9 +12,9 @@ namespace perception {
 /// only after close().
 class VideoFile {
  public:
-  /// `rate` [1/s] of the pictures. Throws Error(kUnavailable) if ffmpeg is not installed,
-  /// OutputError if the file cannot be created.
-  VideoFile(const std::string& path, double rate);
+  /// `rate` [1/s] of the pictures; `mark`: runMark(). Throws Error(kUnavailable) if ffmpeg is not
+  /// installed, OutputError if the file cannot be created.
+  VideoFile(const std::string& path, double rate, std::string mark = "");
   /// Removes the file if it was not closed.
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;
@@ -35,6 +35,7 @@ class VideoFile {
   std::string path_;
   PartialFile partial_, said_;  ///< the video, ffmpeg's messages
   double rate_;
+  std::string mark_;
   int width_ = 0, height_ = 0;  ///< [px]
   int pipe_ = -1;
   pid_t process_ = -1;

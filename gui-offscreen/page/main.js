@@ -1,6 +1,7 @@
 // The interactive page of a run (perception-report); bundled by bundle.sh.
 import { Viewer } from "./viewer.js";
 import { events, objectRows, sortable, timeline } from "./tables.js";
+import { Weather } from "./weather.js";
 
 async function start() {
   const viewers = [...document.querySelectorAll("[data-run]")].map((host) => new Viewer(host));
@@ -11,6 +12,8 @@ async function start() {
   if (!first?.run?.scenes.length) return;
   timeline(first);
   objectRows(first);
+  const weather = document.getElementById("weather");
+  if (weather) first.weather = new Weather(weather, first);
   events(first, document.getElementById("events") ?? first.host.parentNode);
   for (const viewer of viewers) {  // two runs of one log go in step
     viewer.onTime.push((t) => viewers.forEach((other) => {

@@ -23,6 +23,13 @@ export function changesOf(run, o) {
   return list;
 }
 
+// A line at time t in a chart.
+export function markAt(u, t) {
+  const x = u.valToPos(t, "x", true);
+  u.ctx.fillStyle = "#141414";
+  if (x >= u.bbox.left && x <= u.bbox.left + u.bbox.width) u.ctx.fillRect(x - 1, u.bbox.top, 2, u.bbox.height);
+}
+
 export class Panel {
   constructor(host, run, seek, choose) {
     Object.assign(this, { host, run, seek, choose });
@@ -72,23 +79,15 @@ export class Panel {
   addChart(title, values, color, range) {
     const times = this.object.k.map((k) => this.run.times[k]), host = el("div", undefined, "chart");
     this.host.append(el("h4", title), host);
-    const self = this;
     const chart = new uPlot({
       width: Math.max(this.host.clientWidth - 4, 200), height: 88, legend: { show: false }, cursor: { y: false, drag: { x: false } },
       scales: { x: { time: false }, y: range ? { range } : { range: (u, a, b) => [Math.min(0, a), Math.max(b * 1.1, 5)] } },
       axes: [{ size: 24, values: (u, v) => v.map((t) => t + " s"), grid: { stroke: "#eee" } }, { size: 40, grid: { stroke: "#eee" } }],
       series: [{}, { stroke: color, width: 2, spanGaps: false, points: { show: times.length < 3 } }],
-      hooks: { draw: [(u) => self.markNow(u)] },
+      hooks: { draw: [(u) => this.t !== undefined && markAt(u, this.t)] },
     }, [times, values], host);
     chart.over.addEventListener("click", (e) => this.seek(chart.posToVal(e.offsetX, "x")));
     this.charts.push(chart);
-  }
-
-  markNow(u) {
-    if (this.t === undefined) return;
-    const x = u.valToPos(this.t, "x", true);
-    u.ctx.fillStyle = "#141414";
-    if (x >= u.bbox.left && x <= u.bbox.left + u.bbox.width) u.ctx.fillRect(x - 1, u.bbox.top, 2, u.bbox.height);
   }
 
   // Marks time t of scene k.

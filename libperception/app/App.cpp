@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <system_error>
 #include <utility>
@@ -21,6 +22,23 @@ void printLine(const std::string& line) {
   clearProgressBar();
   std::fputs((line + "\n").c_str(), stderr);  // whoever does not hear it still gets the result
 }
+
+/// Of an option that takes one value and may be repeated, CLI11 says "...".
+class Formatter : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override {
+    std::string text = CLI::Formatter::make_option_opts(option);
+    const std::string many = " ...";
+    if (const auto at = text.find(many); at != std::string::npos && !takesMany(*option))
+      text.replace(at, many.size(), option->get_delimiter() == '\0' ? " (repeatable)" : "");
+    return text;
+  }
+
+ private:
+  static bool takesMany(const CLI::Option& option) {
+    return option.get_allow_extra_args() && option.get_delimiter() == '\0';
+  }
+};
 
 // A single line unchanged; several faults as an indented list.
 void printError(const App& app, const std::string& message) {
@@ -132,6 +150,7 @@ void App::warn(const std::string& message) {
 int runApp(App& app, int argc, const char* const* argv) {
   app.warnings_ = 0;
   CLI::App cli(app.description(), app.name());
+  cli.formatter(std::make_shared<Formatter>());
   cli.set_version_flag("--version", fmt::format("{} {}", app.name(), PERCEPTION_VERSION));
   cli.add_flag("-v,--verbose", app.verbosity, "Say more; may be repeated");
   try {

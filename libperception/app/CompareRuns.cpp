@@ -7,6 +7,7 @@
 #include "libperception/app/ResultFiles.h"
 #include "libperception/config/IniDocument.h"
 #include "libperception/core/Error.h"
+#include "libperception/pipeline/FinishedRun.h"
 #include "libperception/scene/NumberFormat.h"
 
 namespace perception {
@@ -16,15 +17,14 @@ namespace fs = std::filesystem;
 
 constexpr char kIni[] = "effective.ini";
 
-ComparedRun readRun(const std::string& dir) {
+ComparedRun readRun(const std::string& dir, std::vector<std::string>& without_origin) {
   ComparedRun run;
   run.dir = dir;
   run.record = readRunRecord((fs::path(dir) / "done.json").string());
   const fs::path report = fs::path(dir) / "evaluation" / "report.json";
   if (!fs::exists(report)) return run;
-  const nlohmann::json json = jsonOf(report);
-  const auto runs = json.find("runs");
-  if (runs != json.end() && runs->is_array() && !runs->empty()) run.evaluation = runs->front();
+  run.evaluation = figuresOf(report, idOfRun(run.record));
+  if (run.evaluation.is_null()) without_origin.push_back(report.string());
   return run;
 }
 
@@ -72,8 +72,8 @@ std::vector<KeyDifference> keysThatDiffer(const std::string& ini_a, const std::s
 
 RunComparison readComparison(const std::string& dir_a, const std::string& dir_b) {
   RunComparison comparison;
-  comparison.a = readRun(dir_a);
-  comparison.b = readRun(dir_b);
+  comparison.a = readRun(dir_a, comparison.without_origin);
+  comparison.b = readRun(dir_b, comparison.without_origin);
   requireSameLog(comparison.a, comparison.b);
   const std::string ini_a = (fs::path(dir_a) / kIni).string();
   const std::string ini_b = (fs::path(dir_b) / kIni).string();

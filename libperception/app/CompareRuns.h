@@ -27,6 +27,8 @@ struct RunComparison {
   std::vector<KeyDifference> keys;       ///< those of A in the order of its file, then others of B
   std::vector<std::string> without_ini;  ///< folders without effective.ini: keys are not compared
   RunDifference difference;
+  std::vector<std::string> without_origin;  ///< evaluations that do not say of which run they are
+  std::string film;                         ///< bytes of an MP4 of both, or empty
 };
 
 /// Reads the folders of two runs. Throws DataError where a file is missing or wrong, and for runs

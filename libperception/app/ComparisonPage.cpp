@@ -8,6 +8,8 @@
 #include "gui-offscreen/HtmlText.h"
 #include "gui-offscreen/ReportStyle.h"
 #include "libperception/app/ComparisonTimeline.h"
+#include "libperception/pipeline/FinishedRun.h"
+#include "libperception/scene/RunMark.h"
 
 namespace perception {
 namespace {
@@ -216,6 +218,23 @@ std::string objectsTable(const RunDifference& d) {
   return out + "</table>\n";
 }
 
+// The film, or how it is made.
+std::string filmSection(const RunComparison& comparison) {
+  const std::string title = "<h2>Side by side</h2>\n";
+  if (comparison.film.empty()) {
+    return title +
+           fmt::format(
+               "<p>A film of both is made by <code>perception-snapshot -r {} -r {} -i LOG --video "
+               "both.mp4</code> and comes into this page by <code>--film both.mp4</code>.</p>\n",
+               escaped(comparison.a.dir), escaped(comparison.b.dir));
+  }
+  return title + fmt::format(
+                     "<figure>\n<video id=\"film\" controls muted loop preload=\"auto\" "
+                     "src=\"data:video/mp4;base64,{}\"></video>\n<figcaption>{}</figcaption>\n"
+                     "</figure>\n",
+                     base64(comparison.film), "A on the left, B on the right.");
+}
+
 std::string timelineSection(const RunDifference& d) {
   if (d.rows.empty()) return "";
   std::string out =
@@ -237,18 +256,20 @@ std::string timelineSection(const RunDifference& d) {
 
 std::string comparisonPage(const RunComparison& comparison) {
   const RunDifference& d = comparison.difference;
+  const std::string mark = runMark({idOfRun(comparison.a.record), idOfRun(comparison.b.record)});
   const std::string title =
       fmt::format("What differs between two runs of {}{}", comparison.a.record.input,
                   comparison.a.record.simulated ? " (simulated)" : "");
   return fmt::format(
              "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
              "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+             "<meta name=\"perception-run\" content=\"{3}\">\n"
              "<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n"
              "<h1>{0}</h1>\n",
-             escaped(title), kReportStyle, kStyle) +
-         lead(d) + "<h2>The runs</h2>\n" + runsTable(comparison.a, comparison.b) +
-         keysTable(comparison) + figuresTable(comparison) + timelineSection(d) + objectsTable(d) +
-         "</body>\n</html>\n";
+             escaped(title), kReportStyle, kStyle, mark) +
+         lead(d) + filmSection(comparison) + "<h2>The runs</h2>\n" +
+         runsTable(comparison.a, comparison.b) + keysTable(comparison) + figuresTable(comparison) +
+         timelineSection(d) + objectsTable(d) + "</body>\n</html>\n";
 }
 
 }  // namespace perception

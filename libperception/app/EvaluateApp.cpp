@@ -9,10 +9,12 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/evaluation/Plots.h"
+#include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/OutputFolder.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/MeasurementRun.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/scene/RunMark.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/scene/TrackedRun.h"
 
@@ -94,7 +96,8 @@ void EvaluateApp::declareFigures(CLI::App& cli) {
                  "nearest truth of a scene matched by time [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
-  cli.add_flag("--any-truth", any_truth, "evaluate even where no scene of a run has a truth");
+  cli.add_flag("--any-truth", any_truth,
+               "evaluate also with the truth of another log, and where no scene has one");
   cli.add_flag("--empty-frames", params.alignment.empty_frames,
                "a scene without a truth line holds no objects (else nothing is known of it)");
   cli.add_option("--unnamed", params.unnamed, "classes that are neither true nor false to output")
@@ -180,8 +183,12 @@ EvaluatedRun EvaluateApp::evaluateEntry(const RunEntry& entry, const std::string
   EvaluatedRun evaluated{name, entry.dir, evaluate(run, known, params)};
   if (!reference.empty())
     evaluated.count_difference = countDifference(run, readTrackedRun(reference));
-  const std::string record = entry.dir + "/done.json";
-  if (fs::exists(record)) evaluated.weather = readRunRecord(record).weather;
+  if (const std::string file = entry.dir + "/done.json"; fs::exists(file)) {
+    const RunRecord record = readRunRecord(file);
+    evaluated.weather = record.weather;
+    evaluated.id = idOfRun(record);
+    if (!any_truth) requireTruthOf(record, entry.truth);
+  }
   evaluateFrontEnds(entry, known, evaluated);
   warnOfGaps(evaluated, entry.truth);
   return evaluated;
@@ -243,6 +250,7 @@ void EvaluateApp::write(EvaluationReport report, const std::string& dir) {
     if (!drawn.fault.empty()) warn(drawn.fault);
   }
   folder.adoptAll();
+  if (single) markPictures(folder.temporary(), runMark({report.runs.front().id}));
   writeFile(folder.pathFor("report.txt"), textReport(report));
   writeFile(folder.pathFor("report.md"), markdownReport(report));
   writeFile(folder.pathFor("report.json"), jsonReport(report));

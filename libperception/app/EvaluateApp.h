@@ -22,7 +22,7 @@ class EvaluateApp : public App {
   std::vector<std::string> paper;       ///< --paper: tables of [radecki2016] to list for comparison
   EvaluationOptions params;
   double fov_deg = 180, complete_fov_deg = 360;
-  bool any_truth = false;      ///< --any-truth: also where no scene of a run has a truth
+  bool any_truth = false;      ///< --any-truth: also of another log, or where no scene has one
   bool surroundings = false;   ///< --surroundings: the truth includes poles and hedges
   std::size_t max_plots = 40;  ///< --max-plots: most truth objects with their own plot, per run
   bool plots = true;           ///< --no-plots clears it

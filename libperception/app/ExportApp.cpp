@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "libperception/interop/ExportFile.h"
+#include "libperception/pipeline/FinishedRun.h"
 #include "libperception/scene/TrackedRun.h"
 #include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/EgoPose.h"
@@ -41,6 +42,7 @@ std::string ExportApp::description() const {
 
 void ExportApp::declare(CLI::App& cli) {
   addInputOption(cli, true);
+  cli.get_option("--input")->expected(1);
   cli.add_option("-r,--run", run_dir, "folder of a run of perception-track on that log")
       ->type_name("DIR");
   cli.add_option("--format", format,
@@ -56,9 +58,10 @@ void ExportApp::run() {
   const bool ros = format == "ros2";
   if (run_dir.empty() && !ros) throw Error(ExitCode::kUsage, "-r/--run is needed for foxglove");
   const TrackedRun tracked = run_dir.empty() ? TrackedRun{} : readTrackedRun(run_dir);
+  const std::string mark = markOfRuns({run_dir});
   RawlogReader reader(inputs.front());
-  const auto file = ros ? makeRosFile(output, tracked.class_names)
-                        : makeFoxgloveFile(output, tracked.class_names);
+  const auto file = ros ? makeRosFile(output, tracked.class_names, mark)
+                        : makeFoxgloveFile(output, tracked.class_names, mark);
   SceneWriter scenes(tracked, *file);
   std::string poses_of;  // a log may hold those of several estimators
   const std::string images = imagesBeside(inputs.front());

@@ -3,17 +3,22 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 
 #include "gui-offscreen/RunData.h"
+#include "gui-offscreen/RunWeather.h"
 #include "libperception/app/CompareRuns.h"
 #include "libperception/app/ComparisonPage.h"
 #include "libperception/app/ResultFiles.h"
 #include "libperception/pictures/RunScenes.h"
+#include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/scene/RunMark.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {
@@ -46,16 +51,6 @@ constexpr FigureRow kPlots[] = {
     {"plots/reliability.png", "image/png", "Calibration of the class probability",
      "Observed frequency of the correct class over its stated probability; ideal: the diagonal."}};
 
-template <std::size_t N>
-std::vector<ReportContent::Figure> figuresIn(const fs::path& dir, const FigureRow (&rows)[N]) {
-  std::vector<ReportContent::Figure> figures;
-  for (const FigureRow& row : rows) {
-    if (!fs::exists(dir / row.file)) continue;
-    figures.push_back({row.title, row.caption, row.media_type, contentsOf(dir / row.file)});
-  }
-  return figures;
-}
-
 }  // namespace
 
 std::string ReportApp::description() const {
@@ -67,6 +62,7 @@ std::string ReportApp::description() const {
 void ReportApp::declare(CLI::App& cli) {
   cli.add_option("-r,--run", run_dir, "folder of a run of perception-track")->type_name("DIR");
   addInputOption(cli, false);
+  cli.get_option("--input")->expected(1);
   addConfigOptions(cli, false);
   cli.add_option("-t,--truth", truth_file,
                  "truth of the log; default: LOG.truth.csv beside the log of -i")
@@ -82,6 +78,10 @@ void ReportApp::declare(CLI::App& cli) {
              "folders of two runs of the same log: what differs, object by object; needs -o")
           ->expected(2)
           ->type_name("A B");
+  cli.add_option("--film", film,
+                 "with --compare: the film of both, of perception-snapshot -r A -r B --video FILE")
+      ->needs(compare)
+      ->type_name("FILE.mp4");
   for (const char* option :
        {"--run", "--input", "--config", "--set", "--print-config", "--truth", "--evaluation"}) {
     compare->excludes(cli.get_option(option));
@@ -97,7 +97,10 @@ void ReportApp::run() {
   content.record = readRunRecord((fs::path(run_dir) / "done.json").string());
   const fs::path timing = fs::path(run_dir) / "timing.json";
   if (fs::exists(timing)) content.real_time_factor = jsonOf(timing).value("real_time_factor", 0.0);
-  addFigures(content);
+  content.id = idOfRun(content.record);
+  content.video = figuresIn(run_dir, kVideos, content.id);
+  content.pictures = figuresIn(run_dir, kPictures, content.id);
+  addOtherPictures(content);
   addEvaluation(content);
   if (const fs::path events = fs::path(run_dir) / "events.jsonl"; fs::exists(events))
     content.events = linesOf(events);
@@ -105,19 +108,29 @@ void ReportApp::run() {
   const std::string path = output.empty() ? (fs::path(run_dir) / "index.html").string() : output;
   out_page = htmlPage(content);
   writeFile(path, out_page);
-  say(1, path);
+  fmt::print("{}\n", path);
 }
 
 void ReportApp::compare() {
   if (output.empty()) throw Error(ExitCode::kUsage, "--compare: -o is required");
-  out_page = comparisonPage(readComparison(compared_dirs.at(0), compared_dirs.at(1)));
+  RunComparison comparison = readComparison(compared_dirs.at(0), compared_dirs.at(1));
+  for (const std::string& file : comparison.without_origin) warnOfOrigin(file);
+  if (!film.empty()) {
+    if (!fs::exists(film)) throw DataError(film + ": there is no such file", ExitCode::kNoInput);
+    if (!isOfRuns(film, {idOfRun(comparison.a.record), idOfRun(comparison.b.record)}))
+      throw DataError(film +
+                      ": does not say of which runs it is: make it with perception-snapshot");
+    comparison.film = contentsOf(film);
+  }
+  out_page = comparisonPage(comparison);
   writeFile(output, out_page);
-  say(1, output);
+  fmt::print("{}\n", output);
 }
 
 std::string ReportApp::dataOf(const TrackedRun& run, const ReportContent& content) {
   RunData data(run, content.record);
   if (!content.events.is_null()) data.setEvents(content.events);
+  data.setWeather(weatherOf(run.dir));
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the run");
   std::optional<GroundTruth> truth;
   std::string truth_path = truth_file;
@@ -164,12 +177,45 @@ SnapshotSensorParams ReportApp::sensorParams() {
   return params;
 }
 
-void ReportApp::addFigures(ReportContent& content) const {
-  content.video = figuresIn(run_dir, kVideos);
-  content.pictures = figuresIn(run_dir, kPictures);
+template <class Rows>
+std::vector<ReportContent::Figure> ReportApp::figuresIn(const fs::path& dir, const Rows& rows,
+                                                        const std::string& id) {
+  std::vector<ReportContent::Figure> figures;
+  for (const auto& row : rows) {
+    const fs::path file = dir / row.file;
+    if (!fs::exists(file)) continue;
+    if (isOfRuns(file, {id})) {
+      figures.push_back({row.title, row.caption, row.media_type, contentsOf(file)});
+    } else {
+      warnOfOrigin(file);
+    }
+  }
+  return figures;
 }
 
-void ReportApp::addEvaluation(ReportContent& content) const {
+void ReportApp::warnOfOrigin(const fs::path& file) {
+  warn(fmt::format("{}: does not say of which run it is: left out; make it again", file.string()));
+}
+
+// Pictures of other names in the folder that say that they are of the run.
+void ReportApp::addOtherPictures(ReportContent& content) const {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(run_dir)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    const bool png = file.extension() == ".png", jpeg = file.extension() == ".jpg";
+    const bool known =
+        std::any_of(std::begin(kPictures), std::end(kPictures),
+                    [&](const FigureRow& row) { return file.filename() == row.file; });
+    if ((!png && !jpeg) || known || !fs::is_regular_file(file)) continue;
+    const auto ids = markedRunsOf(file.string());
+    if (std::find(ids.begin(), ids.end(), content.id) == ids.end()) continue;
+    content.pictures.push_back({file.filename().string(), "From the run's folder.",
+                                png ? "image/png" : "image/jpeg", contentsOf(file)});
+  }
+}
+
+void ReportApp::addEvaluation(ReportContent& content) {
   const fs::path dir =
       evaluation_dir.empty() ? fs::path(run_dir) / "evaluation" : fs::path(evaluation_dir);
   const fs::path report = dir / "report.json";
@@ -177,8 +223,11 @@ void ReportApp::addEvaluation(ReportContent& content) const {
     if (evaluation_dir.empty()) return;
     throw DataError(report.string() + ": there is no such file", ExitCode::kNoInput);
   }
+  const nlohmann::json figures = figuresOf(report, content.id);
+  if (figures.is_null()) return warnOfOrigin(report);
   content.evaluation = jsonOf(report);
-  content.plots = figuresIn(dir, kPlots);
+  content.evaluation["runs"] = nlohmann::json::array({figures});
+  content.plots = figuresIn(dir, kPlots, content.id);
 }
 
 }  // namespace perception

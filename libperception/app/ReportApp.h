@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ class ReportApp : public App {
   std::string evaluation_dir;  ///< --evaluation; empty: evaluation/ of the run, when it is there
   std::string truth_file;      ///< -t; empty: LOG.truth.csv beside the log, when it is there
   std::vector<std::string> compared_dirs;  ///< --compare: two folders; empty: the page of run_dir
+  std::string film;                        ///< --film: of both, for the page of --compare
   std::string out_page;                    ///< text of the page
 
   std::string name() const override { return "perception-report"; }
@@ -25,8 +27,13 @@ class ReportApp : public App {
 
  private:
   void compare();
-  void addFigures(ReportContent& content) const;
-  void addEvaluation(ReportContent& content) const;
+  /// Those of the run among `rows` of names.
+  template <class Rows>
+  std::vector<ReportContent::Figure> figuresIn(const std::filesystem::path& dir, const Rows& rows,
+                                               const std::string& id);
+  void warnOfOrigin(const std::filesystem::path& file);
+  void addOtherPictures(ReportContent& content) const;
+  void addEvaluation(ReportContent& content);
   SnapshotSensorParams sensorParams();
   std::string dataOf(const TrackedRun& run, const ReportContent& content);
 };

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 
 #include "libperception/core/Error.h"
+#include "libperception/scene/RunMark.h"
 
 namespace perception {
 
@@ -39,6 +41,30 @@ nlohmann::json linesOf(const fs::path& path) {
     }
   }
   return all;
+}
+
+bool isOfRuns(const fs::path& path, const std::vector<std::string>& ids) {
+  const std::vector<std::string> said = markedRunsOf(path.string());
+  if (said.empty()) return false;
+  for (const std::string& id : ids) {
+    if (std::find(said.begin(), said.end(), id) == said.end()) {
+      throw DataError(fmt::format("{}: is of run {}, expected run {}: make it again, or remove it",
+                                  path.string(), fmt::join(said, " and "), id));
+    }
+  }
+  return true;
+}
+
+nlohmann::json figuresOf(const fs::path& report, const std::string& id) {
+  const nlohmann::json json = jsonOf(report);
+  if (!isOfRuns(report, {id})) return nullptr;
+  const auto runs = json.find("runs");
+  if (runs != json.end() && runs->is_array()) {
+    for (const auto& run : *runs) {
+      if (run.is_object() && run.contains("run") && run["run"] == runMark({id})) return run;
+    }
+  }
+  return nullptr;  // one of pooled trials: it has no figures of its own
 }
 
 }  // namespace perception

@@ -96,4 +96,18 @@ std::vector<RunEntry> runEntries(const std::vector<std::string>& runs,
   return result;
 }
 
+void requireTruthOf(const RunRecord& record, const std::string& truth) {
+  const std::string ending = ".truth.csv", name = fs::path(truth).filename().string();
+  const std::string log = fs::path(record.input).filename().string();
+  const auto dot = log.find(".rawlog");
+  if (name.size() <= ending.size() || dot == std::string::npos ||
+      name.compare(name.size() - ending.size(), ending.size(), ending) != 0 ||
+      name.substr(0, name.size() - ending.size()) == log.substr(0, dot))
+    return;
+  throw DataError(
+      fmt::format("{}: the run is of {}, whose truth is {}{}; with --any-truth this one "
+                  "is taken all the same",
+                  truth, log, log.substr(0, dot), ending));
+}
+
 }  // namespace perception

@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "libperception/scene/RunRecord.h"
+
 namespace perception {
 
 /// One run to be evaluated; empty condition: not pooled.
@@ -15,5 +17,9 @@ std::vector<RunEntry> runEntries(const std::vector<std::string>& runs,
 
 /// Last folders if they are unique, else the paths as given.
 std::vector<std::string> namesOfRuns(const std::vector<std::string>& runs);
+
+/// Throws DataError where a truth, LOG.truth.csv, is by its name of another log than the run's
+/// LOG.rawlog: frame numbers and times are alike in many logs.
+void requireTruthOf(const RunRecord& record, const std::string& truth);
 
 }  // namespace perception

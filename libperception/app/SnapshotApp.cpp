@@ -14,9 +14,11 @@
 #include "gui-offscreen/VideoFile.h"
 #include "libperception/grid/CGridExport.h"
 #include "libperception/pictures/RunScenes.h"
+#include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/OutputFile.h"
+#include "libperception/scene/RunMark.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -42,6 +44,7 @@ void SnapshotApp::declare(CLI::App& cli) {
       ->type_name("DIR")
       ->allow_extra_args(false);
   addInputOption(cli, false);
+  cli.get_option("--input")->expected(1);
   addConfigOptions(cli, false);
   cli.add_option("-t,--truth", truth_file, "truth of the log, FILE.truth.csv")->type_name("FILE");
   auto* when = cli.add_option_group("when", "which instants");
@@ -132,10 +135,10 @@ std::string SnapshotApp::fileFor(const SceneView& shown) const {
 }
 
 void SnapshotApp::write(const std::string& path, Picture picture) {
-  writePicture(path, picture);
+  writePicture(path, picture, mark_);
   out_files.push_back(path);
   out_picture = std::move(picture);
-  say(1, path);
+  fmt::print("{}\n", path);
 }
 
 void SnapshotApp::readRuns() {
@@ -171,6 +174,7 @@ void SnapshotApp::run() {
   params.views = viewsNamed(view);
   registerPerceptionClasses();
   readRuns();
+  mark_ = markOfRuns(run_dirs);
   const auto camera = std::find(params.views.begin(), params.views.end(), ViewKind::kCamera);
   if (camera != params.views.end() && (!shown_[0].sensors || !shown_[0].sensors->layers().camera)) {
     // "all" shows the views available; a camera requested explicitly must exist.
@@ -226,12 +230,15 @@ void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
   }
   if (!scene_file.empty()) {
     createFolder(fs::path(scene_file).parent_path().string());
-    writeSceneFile(scene_file, views[0], params.range);
+    writeSceneFile(scene_file, views[0], params.range, mark_);
+    fmt::print("{}\n", scene_file);
     out_files.push_back(scene_file);
   }
   for (const std::string& file : grid_files) {
     createFolder(fs::path(file).parent_path().string());
     saveGrid(shown_[0].sensors->grid(), file);
+    markFile(file, mark_);
+    fmt::print("{}\n", file);
     out_files.push_back(file);
   }
 }
@@ -247,7 +254,7 @@ void SnapshotApp::drawVideo(const std::vector<std::size_t>& chosen) {
   const double gap =
       gaps.empty() ? kSlowestFilm : std::clamp(gaps[gaps.size() / 2], 1e-2, kSlowestFilm);
   createFolder(fs::path(video).parent_path().string());
-  VideoFile film(video, 1 / gap);
+  VideoFile film(video, 1 / gap, mark_);
   Snapshot snapshot(params);
   Progress progress("filming", chosen.size());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -261,7 +268,7 @@ void SnapshotApp::drawVideo(const std::vector<std::size_t>& chosen) {
   }
   film.close();
   out_files.push_back(video);
-  say(1, fmt::format("{}: {} frames, {:.2f} a second", video, film.frames(), 1 / gap));
+  fmt::print("{}: {} frames, {:.2f} a second\n", video, film.frames(), 1 / gap);
 }
 
 void SnapshotApp::reportLog() {

@@ -55,6 +55,7 @@ class SnapshotApp : public App {
 
   std::vector<ShownRun> shown_;
   std::optional<GroundTruth> truth_;
+  std::string mark_;  ///< of the runs that are drawn
 };
 
 }  // namespace perception

@@ -213,6 +213,13 @@ void TrackApp::trackLog(const Shard& shard) {
   const double length = out_record.last_stamp - out_record.first_stamp;
   const std::string factor =
       length < kShortLog ? "" : fmt::format(" ({:.1f} times real time)", out_real_time_factor);
+  for (const SensorRecord& s : out_record.sensors) {
+    say(1, fmt::format("{}: {} frames, {} measurements; left out: {} frames, {} measurements, {} "
+                       "returns",
+                       s.label, s.frames, s.measurements, s.dropped_frames, s.dropped_measurements,
+                       s.dropped_points));
+  }
+  for (const auto& [kind, count] : out_record.events) say(1, fmt::format("{}: {}", kind, count));
   fmt::print("{}: {} scenes, {} objects, {:.1f} s of log in {:.1f} s{}, results in {}\n", shard.log,
              out_record.scenes, out_record.tracks, length, run.wallSeconds(), factor, shard.dir);
 }

@@ -60,7 +60,7 @@ inline constexpr const char* kBatchScript = R"js(
     return shard.link ? add(parent, 'a', text, {href: shard.link}) : add(parent, 'span', text);
   }
   function withFigure() {
-    return data.shards.filter(function (s) { return s.figures[chosen] !== null; })
+    return data.shards.filter(function (s) { return typeof s.figures[chosen] === 'number'; })
       .sort(function (a, b) { return a.figures[chosen] - b.figures[chosen]; });
   }
   function histogram() {
@@ -159,6 +159,8 @@ inline constexpr const char* kBatchScript = R"js(
     });
   }
   function figure() { histogram(); ends(); conditions(); }
+  at('figure').hidden = !data.figures.length;
+  if (!data.figures.length) at('histogram').style.display = 'none';
   data.figures.forEach(function (name, i) { add(at('figure'), 'option', name, {value: i}); });
   chosen = Math.max(0, data.figures.indexOf(shown[0]));
   at('figure').value = chosen;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libperception/scene/NumberFormat.h"
+#include "libperception/scene/RunMark.h"
 
 namespace perception {
 namespace {
@@ -140,8 +141,25 @@ std::vector<EvaluatedRun> pooledByCondition(const std::vector<std::string>& cond
   return pooled_runs;
 }
 
+namespace {
+
+/// Of which runs it is.
+std::string marks(const EvaluationReport& report) {
+  std::string text;
+  const auto add = [&](const EvaluatedRun& run) {
+    if (!run.id.empty()) text += fmt::format("{}: {}\n", run.name, runMark({run.id}));
+  };
+  for (const EvaluatedRun& run : report.runs) {
+    add(run);
+    for (const EvaluatedRun& trial : run.trials) add(trial);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string textReport(const EvaluationReport& report) {
-  std::string text = report.command + "\n" + scope(report.options) + "\n\n";
+  std::string text = report.command + "\n" + scope(report.options) + "\n" + marks(report) + "\n";
   for (const ReportTable& table : reportTables(report)) text += textTable(table) + "\n";
   return text;
 }
@@ -161,8 +179,8 @@ std::string instantsCsv(const EvaluatedRun& run) {
 }
 
 std::string markdownReport(const EvaluationReport& report) {
-  std::string text =
-      "# Evaluation\n\n```\n" + report.command + "\n```\n\n" + scope(report.options) + "\n\n";
+  std::string text = "# Evaluation\n\n```\n" + report.command + "\n```\n\n" +
+                     scope(report.options) + "\n\n" + marks(report) + "\n";
   for (const ReportTable& table : reportTables(report)) text += markdownTable(table);
   if (!report.plots.empty()) text += "## Plots\n\n";
   for (const std::string& plot : report.plots) text += fmt::format("![{0}](<{0}>)\n\n", plot);

@@ -20,6 +20,7 @@ struct EvaluatedRun {
   std::vector<EvaluatedRun> trials = {};  ///< the pooled runs; empty for a single run
   /// Of a simulated log ("" in clear air); unknown of recordings and of pooled runs.
   std::optional<std::string> weather = {};
+  std::string id = {};  ///< of the run, as its products carry it; empty: it did not finish
 };
 
 /// Pools the runs of one condition; they are kept in `trials`. Throws DataError when their classes

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libperception/evaluation/Report.h"
+#include "libperception/scene/RunMark.h"
 
 namespace perception {
 namespace {
@@ -139,9 +140,15 @@ Json json(const FrontEndEvaluation& f) {
           {"labels", labels}};
 }
 
+/// As runMark() does, so that whoever looks for marks finds it.
+Json idJson(const EvaluatedRun& run) {
+  return run.id.empty() ? Json(nullptr) : Json(runMark({run.id}));
+}
+
 Json trialJson(const EvaluatedRun& trial, double cutoff) {
   return {{"name", trial.name},
           {"dir", trial.dir},
+          {"run", idJson(trial)},
           {"closest", json(trackingFigures(trial.evaluation, Pairing::kClosest))},
           {"one_to_one", json(trackingFigures(trial.evaluation, Pairing::kOneToOne))},
           {"false_objects", json(falseObjectFigures(trial.evaluation))},
@@ -261,6 +268,7 @@ std::string jsonReport(const EvaluationReport& report) {
     const Evaluation& e = run.evaluation;
     Json entry = {{"name", run.name},
                   {"dir", run.dir},
+                  {"run", idJson(run)},
                   {"sensors", e.sensors.empty() ? Json(nullptr) : Json(e.sensors)},
                   {"coverage", coverageJson(e)},
                   {"closest", pairingJson(e, Pairing::kClosest)},

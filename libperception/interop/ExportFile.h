@@ -23,11 +23,14 @@ class ExportFile {
   virtual std::uint64_t close() = 0;
 };
 
-/// MCAP of Foxglove's messages in JSON. `class_names`: indexed by class_id. Throws OutputError.
+/// MCAP of Foxglove's messages in JSON. `class_names`: indexed by class_id; `mark`: runMark(), in
+/// the metadata of the channel of tracks. Throws OutputError.
 std::unique_ptr<ExportFile> makeFoxgloveFile(const std::string& path,
-                                             const std::vector<std::string>& class_names);
+                                             const std::vector<std::string>& class_names,
+                                             const std::string& mark);
 /// MCAP of ROS 2 messages in CDR, as `ros2 bag` and perception-import bag read it.
 std::unique_ptr<ExportFile> makeRosFile(const std::string& path,
-                                        const std::vector<std::string>& class_names);
+                                        const std::vector<std::string>& class_names,
+                                        const std::string& mark);
 
 }  // namespace perception

@@ -11,10 +11,11 @@ namespace {
 /// Channels of sensors begin with their first frame.
 class FoxgloveFile final : public ExportFile {
  public:
-  FoxgloveFile(const std::string& path, const std::vector<std::string>& class_names)
+  FoxgloveFile(const std::string& path, const std::vector<std::string>& class_names,
+               const std::string& mark)
       : mcap_(path),
         class_names_(class_names),
-        tracks_(mcap_.addChannel("/tracks", "json", sceneUpdateSchema())),
+        tracks_(mcap_.addChannel("/tracks", "json", sceneUpdateSchema(), {{"run", mark}})),
         transforms_(mcap_.addChannel("/tf", "json", frameTransformSchema())) {}
 
   // Every scene and frame has a transform of its own.
@@ -67,8 +68,9 @@ class FoxgloveFile final : public ExportFile {
 }  // namespace
 
 std::unique_ptr<ExportFile> makeFoxgloveFile(const std::string& path,
-                                             const std::vector<std::string>& class_names) {
-  return std::make_unique<FoxgloveFile>(path, class_names);
+                                             const std::vector<std::string>& class_names,
+                                             const std::string& mark) {
+  return std::make_unique<FoxgloveFile>(path, class_names, mark);
 }
 
 }  // namespace perception

@@ -1,5 +1,6 @@
 #include <array>
 #include <map>
+#include <string>
 
 #include "libperception/interop/ExportFile.h"
 #include "libperception/interop/Jpeg.h"
@@ -19,11 +20,14 @@ constexpr const char* kLatched =
     "  liveliness_lease_duration: {sec: 9223372036, nsec: 854775807}\n"
     "  avoid_ros_namespace_conventions: false\n";
 
+constexpr const char* kObjects = "vision_msgs/Detection3DArray";
+
 /// Frames map, base_link and one a sensor; channels begin with their first message.
 class RosFile final : public ExportFile {
  public:
-  RosFile(const std::string& path, const std::vector<std::string>& class_names)
-      : mcap_(path, "ros2"), class_names_(class_names) {}
+  RosFile(const std::string& path, const std::vector<std::string>& class_names,
+          const std::string& mark)
+      : mcap_(path, "ros2"), class_names_(class_names), mark_(mark) {}
 
   void writePose(Stamp stamp, const Pose3& T_world_ego) override {
     has_poses_ = true;
@@ -33,8 +37,7 @@ class RosFile final : public ExportFile {
   void writeScene(const Scene& scene) override {
     if (!has_poses_)
       transform("/tf", scene.stamp, scene.ego.T_world_ego, ros::kWorld, ros::kVehicle);
-    write("/tracks", "vision_msgs/Detection3DArray", scene.stamp,
-          ros::messageOf(scene, class_names_));
+    write("/tracks", kObjects, scene.stamp, ros::messageOf(scene, class_names_));
   }
 
   bool writeFrame(const SensorFrame& frame) override {
@@ -87,8 +90,9 @@ class RosFile final : public ExportFile {
     auto known = channels_.find(topic);
     if (known == channels_.end()) {
       const std::string qos = topic == "/tf_static" ? kLatched : "";
-      const auto id =
-          mcap_.addChannel(topic, "cdr", ros::schemaOf(type), {{"offered_qos_profiles", qos}});
+      std::map<std::string, std::string> metadata = {{"offered_qos_profiles", qos}};
+      if (type == kObjects && !mark_.empty()) metadata["run"] = mark_;
+      const auto id = mcap_.addChannel(topic, "cdr", ros::schemaOf(type), metadata);
       known = channels_.emplace(topic, id).first;
     }
     mcap_.write(known->second, stamp, ros::encoded(message, ros::Encoding::kCdr));
@@ -96,6 +100,7 @@ class RosFile final : public ExportFile {
 
   McapWriter mcap_;
   const std::vector<std::string> class_names_;
+  const std::string mark_;
   std::map<std::string, std::uint16_t> channels_;
   std::map<std::string, Pose3> placed_;
   bool has_poses_ = false;
@@ -104,8 +109,9 @@ class RosFile final : public ExportFile {
 }  // namespace
 
 std::unique_ptr<ExportFile> makeRosFile(const std::string& path,
-                                        const std::vector<std::string>& class_names) {
-  return std::make_unique<RosFile>(path, class_names);
+                                        const std::vector<std::string>& class_names,
+                                        const std::string& mark) {
+  return std::make_unique<RosFile>(path, class_names, mark);
 }
 
 }  // namespace perception

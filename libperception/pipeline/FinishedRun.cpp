@@ -5,6 +5,7 @@
 #include <openssl/evp.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -14,6 +15,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/Progress.h"
+#include "libperception/scene/RunMark.h"
 #include "libperception/scene/RunRecord.h"
 
 namespace perception {
@@ -86,6 +88,33 @@ std::vector<std::string> filesNamedIn(const std::string& ini) {
   return out;
 }
 
+bool carries(const fs::path& file, const std::string& id) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return false;
+  const auto ids = markedRunsOf(file.string());
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
+/// Files below `dir`, and folders of evaluations, that carry the id and are not in `out` yet.
+void addMarked(const std::string& dir, const std::string& id, std::vector<std::string>& out) {
+  std::error_code error;
+  fs::recursive_directory_iterator i(dir, error), end;
+  for (; !error && i != end; i.increment(error)) {
+    stopIfAsked();
+    const std::string name = i->path().lexically_relative(dir).string();
+    const bool known = std::find(out.begin(), out.end(), name) != out.end();
+    std::error_code ignored;
+    if (i->is_directory(ignored)) {
+      const bool other = fs::exists(i->path() / "done.json", ignored);
+      const bool evaluation = !known && !other && carries(i->path() / "report.json", id);
+      if (evaluation) out.push_back(name);
+      if (known || other || evaluation) i.disable_recursion_pending();
+    } else if (!known && name != "done.json") {
+      if (carries(i->path(), id)) out.push_back(name);
+    }
+  }
+}
+
 }  // namespace
 
 std::string sha256OfFile(const std::string& path) {
@@ -134,12 +163,29 @@ bool isFinished(const std::string& dir, const std::string& hash, bool overwrite)
                           dir));
 }
 
+std::string idOfRun(const RunRecord& record) {
+  return record.hash.empty() ? sha256OfText(toJson(record)) : record.hash;
+}
+
+std::string markOfRuns(const std::vector<std::string>& dirs) {
+  std::vector<std::string> ids;
+  for (const std::string& dir : dirs) {
+    const std::string done = dir + "/done.json";
+    if (!dir.empty() && fs::exists(done)) ids.push_back(idOfRun(readRunRecord(done)));
+  }
+  return runMark(ids);
+}
+
 std::vector<std::string> productsIn(const std::string& dir) {
   std::vector<std::string> out;
   std::error_code ignored;
   if (!fs::exists(dir + "/done.json", ignored)) return out;
   for (const char* name : kProducts) {
     if (fs::exists(dir + "/" + name, ignored)) out.emplace_back(name);
+  }
+  try {
+    addMarked(dir, idOfRun(readRunRecord(dir + "/done.json")), out);
+  } catch (const DataError&) {  // of another version or program: its products carry no known id
   }
   return out;
 }

@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "libperception/scene/RunRecord.h"
+
 namespace perception {
 
 /// 64 hexadecimal digits. Throws DataError for a file that cannot be read.
@@ -22,8 +24,15 @@ std::string runHash(const std::string& log, const std::string& effective_ini,
 /// there always is; without, throws Error (kBadConfig) if it holds another one.
 bool isFinished(const std::string& dir, const std::string& hash, bool overwrite);
 
-/// Results in `dir` of earlier programs on an earlier run, relative: tables, page, pictures, film,
-/// evaluation. They would be taken as those of the next run.
+/// The id that a run's products carry (runMark()): its hash, of a live run the SHA-256 of the
+/// record.
+std::string idOfRun(const RunRecord& record);
+/// runMark() of the runs in these folders; those that did not finish have no id. Throws DataError.
+std::string markOfRuns(const std::vector<std::string>& dirs);
+
+/// Results in `dir` of earlier programs on the run there, relative: tables, page, pictures, film,
+/// evaluation, and under whatever name what carries the run's id; not those in folders of other
+/// runs inside. They would be taken as those of the next run.
 std::vector<std::string> productsIn(const std::string& dir);
 
 }  // namespace perception

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/FinishedRun.h"
@@ -13,6 +15,27 @@
 
 namespace perception {
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kSaid = 3;        ///< warnings that are said and not only counted
+constexpr std::size_t kFewFrames = 10;  ///< of a lidar that may have seen nothing
+
+/// The first warnings of events.jsonl, each message once.
+std::vector<std::string> firstWarnings(const std::string& events) {
+  std::vector<std::string> messages;
+  std::istringstream lines(events);
+  for (std::string line; messages.size() < kSaid && std::getline(lines, line);) {
+    const auto event = nlohmann::json::parse(line);
+    if (event.value("severity", "") != "warning") continue;
+    const std::string message = event.value("message", "");
+    if (std::find(messages.begin(), messages.end(), message) == messages.end())
+      messages.push_back(message);
+  }
+  return messages;
+}
+
+}  // namespace
 
 LogRun::LogRun(const PipelineSetup& setup, LogRunFiles files,
                std::unique_ptr<ObservationInput> input)
@@ -132,12 +155,23 @@ std::vector<std::string> LogRun::finish(bool strict) {
     throw DataError(files_.log +
                     ": --export kitti needs a camera model, and the log's detections carry none");
   }
+  for (const SensorRecord& sensor : pipeline_.sensorRecords()) {
+    if (sensor.modality != "L" || sensor.frames < kFewFrames || sensor.measurements > 0) continue;
+    events_.warn(std::nullopt, event_kind::kSensorBlind,
+                 fmt::format("'{}': {} scans and no measurement came of them: is it a planar or "
+                             "low scanner, or are height, pitch or range_max of its section wrong? "
+                             "perception-doctor looks into it",
+                             sensor.label, sensor.frames));
+  }
   for (const auto& [kind, n] : events_.counts()) record.events[kind] = n;
   if (events_.warnings() > record.warnings.size()) {
     const auto more = events_.warnings() - record.warnings.size();
     record.warnings.push_back(fmt::format("{} warnings in events.jsonl", more));
-    said.push_back(
-        fmt::format("{}: {} warnings, see {}/events.jsonl", files_.log, more, files_.dir));
+    for (const auto& message : firstWarnings(events_.text(*pipeline_.firstStamp())))
+      said.push_back(fmt::format("{}: {}", files_.log, message));
+    if (more > kSaid)
+      said.push_back(
+          fmt::format("{}: {} warnings in all, see {}/events.jsonl", files_.log, more, files_.dir));
   }
   return said;
 }

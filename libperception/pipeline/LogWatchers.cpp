@@ -35,13 +35,15 @@ void LogFacts::look(const mrpt::obs::CObservation& observation) {
   const auto frame = frameFromObservation(observation);
   const auto* detections = frame ? std::get_if<ObjectDetections>(&frame->data) : nullptr;
   if (!detections || detections->camera.width <= 0) return;
-  // 3D boxes are given in another sensor's frame: only pure image detections have the camera's
-  // pose.
-  for (const auto& o : detections->objects) {
-    if (o.space_box || !o.image_box) return;
+  // 3D boxes are given in another sensor's frame: beside them the camera's pose is said, else it is
+  // that of pure image detections.
+  if (!detections->T_ego_camera) {
+    for (const auto& o : detections->objects) {
+      if (o.space_box || !o.image_box) return;
+    }
+    if (detections->objects.empty()) return;
   }
-  if (detections->objects.empty()) return;
-  camera = KittiCamera{detections->camera, frame->T_ego_sensor,
+  camera = KittiCamera{detections->camera, detections->T_ego_camera.value_or(frame->T_ego_sensor),
                        simulated ? Vector3(Vector3::Zero()) : KittiCamera::kittiOffset()};
 }
 

@@ -58,6 +58,12 @@ Ended run(std::function<void(SmallApp&)> body, std::vector<const char*> argument
   return run(app, std::move(arguments));
 }
 
+TEST(App, HelpTellsOptionsOfManyValuesFromThoseThatMayBeRepeated) {
+  const std::string help = run([](SmallApp&) {}, {"--help"}).out;
+  EXPECT_NE(help.find("--input TEXT ... "), std::string::npos) << help;
+  EXPECT_NE(help.find("--set TEXT (repeatable) "), std::string::npos) << help;
+}
+
 TEST(App, ExceptionsBecomeExitCodesAndOneLine) {
   const std::pair<std::function<void()>, std::pair<int, std::string>> cases[] = {
       {[] {}, {0, ""}},

@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "gui-offscreen/HtmlText.h"
 #include "libperception/app/ReportApp.h"
+#include "libperception/pipeline/FinishedRun.h"
+#include "libperception/scene/RunMark.h"
 
 namespace perception {
 namespace {
@@ -21,7 +24,7 @@ class CompareRunsTest : public testing::Test {
     fs::remove_all(dir_);
     record_.input = "<street> & co.rawlog";
     record_.config = "site.ini";
-    record_.hash = "0123abcd";
+    record_.hash = std::string(64, 'a');
     record_.first_stamp = Stamp::fromSeconds(1000);
     record_.last_stamp = Stamp::fromSeconds(1002);
     writeRun("a");
@@ -77,7 +80,12 @@ class CompareRunsTest : public testing::Test {
     for (const std::string& option : options) argv.push_back(option.c_str());
     return runApp(app_, static_cast<int>(argv.size()), argv.data());
   }
-  int compare() { return run({"--compare", folder("a"), folder("b"), "-o", dir_ + "/page.html"}); }
+  int compare(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> options = {"--compare", folder("a"), folder("b"), "-o",
+                                        dir_ + "/page.html"};
+    options.insert(options.end(), more.begin(), more.end());
+    return run(options);
+  }
   bool says(const std::string& text) const { return app_.out_page.find(text) != std::string::npos; }
   std::size_t rows() const {
     const std::size_t table = app_.out_page.find("<table id=\"differences\">");
@@ -98,7 +106,7 @@ TEST_F(CompareRunsTest, IdenticalRunsHaveNoDifference) {
   EXPECT_TRUE(fs::exists(dir_ + "/page.html"));
   EXPECT_TRUE(says("no difference"));
   EXPECT_TRUE(says("All keys have the same values"));
-  EXPECT_TRUE(says("0123abcd"));
+  EXPECT_TRUE(says(std::string(64, 'a')));
   EXPECT_FALSE(says("<svg"));
   EXPECT_EQ(rows(), 0u);
 }
@@ -130,7 +138,8 @@ TEST_F(CompareRunsTest, KeysAndFiguresStandSideBySide) {
   std::ofstream(folder("b") + "/effective.ini") << "[run]\nseed = 2\nsensors = C+L\nnew = <b>\n";
   for (const char* name : {"a", "b"})
     std::ofstream(folder(name) + "/evaluation/report.json")
-        << R"({"runs":[{"identities":{"mota":0.)" << (*name == 'a' ? 5 : 6) << "}}]}";
+        << R"({"runs":[{"run":")" << runMark({idOfRun(record_)}) << R"(","identities":{"mota":0.)"
+        << (*name == 'a' ? 5 : 6) << "}}]}";
   ASSERT_EQ(compare(), 0);
   EXPECT_TRUE(says("<tr><td>run.seed</td><td><b>1</b></td><td><b>2</b></td></tr>"));
   EXPECT_TRUE(says("<td>run.new</td><td><b></b></td><td><b>&lt;b&gt;</b></td>"));
@@ -139,6 +148,25 @@ TEST_F(CompareRunsTest, KeysAndFiguresStandSideBySide) {
   fs::remove(folder("b") + "/effective.ini");
   ASSERT_EQ(compare(), 0);
   EXPECT_TRUE(says("has no effective.ini"));
+}
+
+TEST_F(CompareRunsTest, TheFilmOfBothIsInThePageAndThatOfOthersIsRefused) {
+  record_.hash = std::string(64, 'b');
+  writeRun("b");
+  const std::string a = markOfRuns({folder("a")}), b = markOfRuns({folder("b")});
+  ASSERT_NE(a, b);
+  ASSERT_EQ(compare(), 0);
+  EXPECT_TRUE(says("perception-snapshot -r ")) << "how the film is made";
+  EXPECT_EQ(markedRuns(app_.out_page).size(), 2u) << "the page says of which runs it is";
+  const std::string film = dir_ + "/both.mp4";
+  std::ofstream(film) << "film " << a << b;
+  ASSERT_EQ(compare({"--film", film}), 0);
+  EXPECT_TRUE(says("data:video/mp4;base64," + base64("film " + a + b)));
+  std::ofstream(film) << a;
+  EXPECT_EQ(compare({"--film", film}), 65) << "of one alone";
+  std::ofstream(film) << "unmarked";
+  EXPECT_EQ(compare({"--film", film}), 65);
+  EXPECT_EQ(compare({"--film", dir_ + "/none.mp4"}), 66);
 }
 
 TEST_F(CompareRunsTest, NamesAreNoMarkupAndNothingIsLoaded) {

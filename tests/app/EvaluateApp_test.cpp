@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "libperception/core/GroundTruth.h"
+#include "libperception/scene/RunMark.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/scene/TrackedRun.h"
 
@@ -104,6 +105,42 @@ class EvaluateAppTest : public testing::Test {
   EvaluateApp app_;
   std::string dir_, out_, err_;
 };
+
+TEST_F(EvaluateAppTest, TheTruthOfALogOfAnotherNameIsRefusedUnlessTold) {
+  RunRecord record;
+  record.input = "other.rawlog";
+  writeRunRecord(dir_ + "/late/done.json", record);
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 65);
+  EXPECT_NE(err_.find("the run is of other.rawlog, whose truth is other.truth.csv"),
+            std::string::npos)
+      << err_;
+  EXPECT_FALSE(fs::exists(dir_ + "/late/evaluation"));
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots", "--any-truth"}), 0) << err_;
+  record.input = "log.rawlog";
+  writeRunRecord(dir_ + "/late/done.json", record);
+  app_.any_truth = false;
+  EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
+}
+
+TEST_F(EvaluateAppTest, TheReportSaysOfWhichRunItIs) {
+  RunRecord record;
+  record.hash = std::string(64, 'a');
+  writeRunRecord(dir_ + "/late/done.json", record);
+  ASSERT_EQ(run({"-r", dir_ + "/late", "-t", truth()}), 0) << err_;
+  const std::string mark = runMark({record.hash}), folder = dir_ + "/late/evaluation/";
+  EXPECT_EQ(report(folder)["runs"][0]["run"], mark);
+  std::size_t pictures = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const auto ending = entry.path().extension();
+    if (ending == ".png" || ending == ".txt" || ending == ".md") {
+      EXPECT_EQ(runMark(markedRunsOf(entry.path().string())), mark) << entry.path();
+      pictures += ending == ".png" ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(pictures > 0, fs::exists("/usr/bin/gnuplot"));
+  ASSERT_EQ(run({"-r", dir_ + "/perfect", "-t", truth(), "--no-plots"}), 0) << err_;
+  EXPECT_TRUE(report(dir_ + "/perfect/evaluation")["runs"][0]["run"].is_null()) << "not finished";
+}
 
 TEST_F(EvaluateAppTest, WritesTheReportBesideTheRun) {
   EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;

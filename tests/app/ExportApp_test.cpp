@@ -11,6 +11,8 @@
 
 #include "libperception/app/ImportApp.h"
 #include "libperception/app/TrackApp.h"
+#include "libperception/scene/RunMark.h"
+#include "libperception/scene/RunRecord.h"
 #include "libperception/scene/TrackedRun.h"
 
 namespace perception {
@@ -75,6 +77,18 @@ TEST_F(ExportAppTest, ALogOfOtherTimesIsRefused) {
   writeRun(Stamp::fromSeconds(1));
   EXPECT_EQ(run(), static_cast<int>(ExitCode::kBadInput));
   EXPECT_FALSE(fs::exists(dir_ + "/a.mcap"));
+}
+
+TEST_F(ExportAppTest, TheFileSaysOfWhichRunItIs) {
+  writeRun(Stamp::fromSeconds(1577836800));
+  RunRecord record;
+  record.hash = std::string(64, 'a');
+  writeRunRecord(dir_ + "/done.json", record);
+  for (const char* format : {"foxglove", "ros2"}) {
+    app_.format = format;
+    ASSERT_EQ(run(), 0);
+    EXPECT_EQ(markedRunsOf(dir_ + "/a.mcap"), std::vector<std::string>{record.hash}) << format;
+  }
 }
 
 TEST_F(ExportAppTest, PythonReadsTheRun) {

@@ -6,6 +6,8 @@
 #include <fstream>
 
 #include "gui-offscreen/HtmlText.h"
+#include "libperception/pipeline/FinishedRun.h"
+#include "libperception/scene/RunMark.h"
 #include "libperception/scene/RunRecord.h"
 
 namespace perception {
@@ -33,6 +35,7 @@ class ReportAppTest : public testing::Test {
     record.input = "<street> & co.rawlog";
     record.simulated = true;
     writeRunRecord(dir_ + "/done.json", record);
+    mark_ = runMark({idOfRun(record)});
   }
   void TearDown() override { fs::remove_all(dir_); }
 
@@ -60,7 +63,7 @@ class ReportAppTest : public testing::Test {
   }
   bool says(const std::string& text) const { return app_.out_page.find(text) != std::string::npos; }
 
-  std::string dir_;
+  std::string dir_, mark_;
   ReportApp app_;
 };
 
@@ -82,11 +85,11 @@ TEST_F(ReportAppTest, NamesOfFilesAreNoMarkup) {
 }
 
 TEST_F(ReportAppTest, HoldsEveryFileInsideAndNoAddress) {
-  std::ofstream(dir_ + "/scene.png") << "picture";
-  std::ofstream(dir_ + "/scene.mp4") << "film";
+  std::ofstream(dir_ + "/scene.png") << "picture" << mark_;
+  std::ofstream(dir_ + "/scene.mp4") << "film" << mark_;
   ASSERT_EQ(run({"-o", dir_ + "/page.html"}), 0);
-  EXPECT_TRUE(says("data:image/png;base64,cGljdHVyZQ=="));
-  EXPECT_TRUE(says("data:video/mp4;base64,ZmlsbQ=="));
+  EXPECT_TRUE(says("data:image/png;base64," + base64("picture" + mark_)));
+  EXPECT_TRUE(says("data:video/mp4;base64," + base64("film" + mark_)));
   EXPECT_FALSE(says("src=\"http"));
   EXPECT_FALSE(says("<link"));
   EXPECT_FALSE(says("@import"));
@@ -95,13 +98,66 @@ TEST_F(ReportAppTest, HoldsEveryFileInsideAndNoAddress) {
 
 TEST_F(ReportAppTest, FiguresOfTheEvaluationStandInTheTable) {
   std::ofstream(dir_ + "/evaluation/report.json")
-      << R"({"options":{"range_m":20.0},"runs":[{"closest":{"all":{"object_tracked_a":0.75,)"
+      << R"({"options":{"range_m":20.0},"runs":[{"run":")" << mark_
+      << R"(","closest":{"all":{"object_tracked_a":0.75,)"
       << R"("correct":null,"active":8},"classes":{}}}]})";
   ASSERT_EQ(run(), 0);
   EXPECT_TRUE(says("<b>75.0 %</b>"));
   EXPECT_TRUE(says("<td>n/a</td>"));
   std::ofstream(dir_ + "/evaluation/report.json") << "{";
   EXPECT_EQ(run(), 65);
+}
+
+TEST_F(ReportAppTest, ProductsOfAnotherRunAreRefusedAndThoseOfNoneLeftOut) {
+  const std::string other = runMark({std::string(64, 'b')});
+  for (const char* name : {"scene.png", "contact.png", "scene.mp4", "evaluation/report.json"}) {
+    const bool figures = fs::path(name).extension() == ".json";
+    const auto write = [&](const std::string& mark) {
+      std::ofstream(dir_ + "/" + name)
+          << (figures ? R"({"runs":[{"run":")" + mark + R"(","closest":{}}]})" : mark);
+    };
+    write(other);
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(run(), 65) << name;
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find(name), std::string::npos) << said;
+    EXPECT_NE(said.find("is of run " + std::string(64, 'b')), std::string::npos) << said;
+    EXPECT_FALSE(fs::exists(dir_ + "/index.html"));
+    write("");
+    EXPECT_EQ(run(), 3) << "left out with a warning";
+    EXPECT_FALSE(says("<figure>") || says("Against the truth"));
+    fs::remove(dir_ + "/index.html");
+    write(mark_);
+    EXPECT_EQ(run(), 0) << name;
+    EXPECT_TRUE(says("<figure>") || says("Against the truth"));
+    fs::remove(dir_ + "/" + name);
+    fs::remove(dir_ + "/index.html");
+  }
+}
+
+TEST_F(ReportAppTest, PicturesOfAnyNameThatAreOfTheRunAreShown) {
+  std::ofstream(dir_ + "/frame50.png") << "picture" << mark_;
+  std::ofstream(dir_ + "/holiday.png") << "picture";
+  std::ofstream(dir_ + "/other.png") << runMark({std::string(64, 'b')});
+  testing::internal::CaptureStdout();
+  ASSERT_EQ(run(), 0);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), dir_ + "/index.html\n") << "says what it wrote";
+  EXPECT_TRUE(says("<h2>frame50.png</h2>"));
+  EXPECT_FALSE(says("holiday.png") || says("other.png"));
+}
+
+TEST_F(ReportAppTest, ThePageSaysOfWhichRunItIs) {
+  ASSERT_EQ(run(), 0);
+  EXPECT_EQ(runMark(markedRunsOf(dir_ + "/index.html")), mark_);
+}
+
+TEST_F(ReportAppTest, OfSeveralRunsInAnEvaluationThePageShowsItsOwn) {
+  std::ofstream(dir_ + "/evaluation/report.json")
+      << R"({"runs":[{"run":")" << runMark({std::string(64, 'b')})
+      << R"(","closest":{"all":{"object_tracked_a":0.1}}},{"run":")" << mark_
+      << R"(","closest":{"all":{"object_tracked_a":0.75}}}]})";
+  ASSERT_EQ(run(), 0);
+  EXPECT_TRUE(says("<b>75.0 %</b>"));
 }
 
 TEST_F(ReportAppTest, MissingFilesAreSaidByExitCode) {

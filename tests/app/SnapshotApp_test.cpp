@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 #include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationImage.h>
+#include <octomap/AbstractOcTree.h>
+#include <octomap/OcTree.h>
 
 #include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "libperception/pipeline/FinishedRun.h"
+#include "libperception/scene/RunMark.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/RawlogWriter.h"
@@ -77,7 +81,9 @@ class SnapshotAppTest : public testing::Test {
 };
 
 TEST_F(SnapshotAppTest, DrawsOneInstantWithoutLog) {
+  testing::internal::CaptureStdout();
   ASSERT_EQ(run({"--time", "1", "--view", "top", "-o", dir_ + "/new folder/a.png"}), 0);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), dir_ + "/new folder/a.png\n");
   EXPECT_GT(fs::file_size(dir_ + "/new folder/a.png"), 5000U);
   EXPECT_EQ(app_->out_picture.width, 1280);
   EXPECT_EQ(app_->out_picture.height, 720);
@@ -176,6 +182,39 @@ TEST_F(SnapshotAppTest, VideoPlaysAtTheLogsRate) {
   std::string said;
   std::getline(std::ifstream(dir_ + "/said.txt"), said);
   EXPECT_EQ(said, "10/1,7");
+}
+
+TEST_F(SnapshotAppTest, EveryProductSaysOfWhichRunItIs) {
+  const std::string mark = markOfRuns({dir_ + "/run"});
+  const auto marked = [&](const std::string& name) { return runMark(markedRunsOf(dir_ + name)); };
+  ASSERT_EQ(run({"--frame", "20", "--view", "top", "-i", kDemoLog, "-o", dir_ + "/a.png", "--scene",
+                 dir_ + "/a.3Dscene", "--grid", dir_ + "/g.ot", "--grid", dir_ + "/g.bt", "--grid",
+                 dir_ + "/g.gridmap.gz", "--grid", dir_ + "/g.png"}),
+            0);
+  for (const char* name : {"/a.png", "/a.3Dscene", "/g.ot", "/g.bt", "/g.gridmap.gz", "/g.png"})
+    EXPECT_EQ(marked(name), mark) << name;
+  ASSERT_EQ(run({"--time", "1", "--view", "top", "-o", dir_ + "/a.jpg"}), 0);
+  EXPECT_EQ(marked("/a.jpg"), mark);
+  for (const char* name : {"/a.png", "/a.jpg", "/g.png"}) {
+    mrpt::img::CImage image;
+    ASSERT_TRUE(image.loadFromFile(dir_ + name)) << name;
+    EXPECT_GT(image.getWidth(), 100u);
+  }
+  octomap::OcTree binary(0.1);
+  EXPECT_TRUE(binary.readBinary(dir_ + "/g.bt"));
+  const std::unique_ptr<octomap::AbstractOcTree> tree(
+      octomap::AbstractOcTree::read(dir_ + "/g.ot"));
+  EXPECT_TRUE(tree != nullptr);
+  if (std::system("command -v ffmpeg > /dev/null") != 0) GTEST_SKIP() << "ffmpeg is not here";
+  RunRecord other;
+  other.input = "demo.rawlog";
+  other.hash = std::string(64, 'b');
+  fs::copy(dir_ + "/run", dir_ + "/other");
+  writeRunRecord(dir_ + "/other/done.json", other);
+  ASSERT_EQ(
+      run({"-r", dir_ + "/other", "--video", dir_ + "/both.mp4", "--view", "top", "--to", "0.3"}),
+      0);
+  EXPECT_EQ(marked("/both.mp4"), markOfRuns({dir_ + "/run", dir_ + "/other"}));
 }
 
 TEST_F(SnapshotAppTest, WithoutFfmpegSaysWhatIsMissing) {

@@ -94,6 +94,10 @@ TEST(TrackApp, ScenesComeWithoutAnyLidarFrame) {
   Tracking t;
   t.track(without([](const auto& o, double) { return o.sensorLabel == "LIDAR_TOP"; }));
   ASSERT_EQ(t.ended.code, 3) << t.ended.err;
+  EXPECT_NE(
+      t.ended.err.find("LIDAR_TOP: in use by the configuration, but nothing of it in the log"),
+      std::string::npos)
+      << "warnings are said, not only counted: " << t.ended.err;
   EXPECT_EQ(t.events("sensor_missing"), 1U);
   EXPECT_GT(t.scenes(), 40U);
 }
@@ -175,6 +179,17 @@ TEST(TrackApp, AFinishedFolderIsLeftAsItIs) {
   ASSERT_EQ(t.track(t.folder / "log.rawlog", {"--threads", "1"}).code, 0) << t.ended.err;
   EXPECT_EQ(contentOf(t.dir + "/timing.json"), timing);
   EXPECT_EQ(std::filesystem::last_write_time(t.dir + "/tracks.csv"), at);
+}
+
+TEST(TrackApp, ALidarThatMeasuresNothingIsSaid) {
+  auto log = demoStart(2);
+  for (auto& o : log) {
+    if (o->sensorLabel == "LIDAR_TOP") o->setSensorPose(mrpt::poses::CPose3D(0, 0, 60, 0, 0, 0));
+  }
+  Tracking t;
+  ASSERT_EQ(t.track(log, {"--sensors", "L"}).code, 3) << t.ended.err;
+  EXPECT_NE(t.ended.err.find("scans and no measurement came of them"), std::string::npos)
+      << t.ended.err;
 }
 
 TEST(TrackApp, AFolderOfAnotherRunIsRefusedUnlessOverwritten) {

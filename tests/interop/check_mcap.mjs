@@ -2,9 +2,9 @@
 // published schema of its name (@foxglove/schemas) and against the one in the file: node check_mcap.mjs FOLDER_WITH_node_modules FILE.mcap
 import { createRequire } from "node:module";
 import { open } from "node:fs/promises";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 
-const require = createRequire(join(process.argv[2], "package.json"));
+const require = createRequire(join(resolve(process.argv[2]), "package.json"));
 const { McapIndexedReader } = require("@mcap/core");
 const { FileHandleReadable } = require("@mcap/nodejs");
 const schemas = require("@foxglove/schemas/jsonschema");
