@@ -35,6 +35,7 @@ void LogRun::put(const Scene& scene) {
   if (!writer_) writer_.emplace(written_to_, setup_.model.classes, *pipeline_.firstStamp());
   writer_->write(scene);
   object_events_.add(scene);
+  if (object_events_.isFull()) object_events_.keepOnly(pipeline_.livingObjects());
   ++record.scenes;
   addLatency(scene.stamp);
   if (!files_.export_file.empty()) writeExport(scene);
@@ -104,6 +105,8 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
       facts_.look(*observation);
       contents_.look(*observation);
       pipeline_.add(*observation);
+      if (!events_.isWritten() && pipeline_.firstStamp())
+        events_.writeTo(folder_.pathFor("events.jsonl"), *pipeline_.firstStamp());
       take(false);
       progress.update(input_->bytesRead(), ++count);
     }
@@ -172,7 +175,7 @@ void LogRun::commit(const std::string& effective_ini, int threads) {
   if (recorder_) recorder_->close();
   if (weather_) weather_->close();
   if (ledger_) ledger_->close();
-  events_.write(folder_.pathFor("events.jsonl"), record.first_stamp);
+  events_.close();
   writeFile(folder_.pathFor("effective.ini"), effective_ini);
   timing_.write(folder_.pathFor("timing.json"), logSeconds(), threads);
   writeRunRecord(folder_.pathFor("done.json"), record);
