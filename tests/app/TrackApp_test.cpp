@@ -177,6 +177,19 @@ TEST(TrackApp, AFinishedFolderIsLeftAsItIs) {
   EXPECT_EQ(std::filesystem::last_write_time(t.dir + "/tracks.csv"), at);
 }
 
+TEST(TrackApp, ARerunOfALogThatEndedWithWarningsSaysThemAgain) {
+  Tracking t;
+  writeLog(demoStart(1), t.folder / "whole.rawlog");
+  const std::string bytes = contentOf(t.folder / "whole.rawlog"), log = t.folder / "cut.rawlog";
+  std::ofstream(log, std::ios::binary) << bytes.substr(0, bytes.size() * 9 / 10);
+  ASSERT_EQ(t.track(log).code, 3) << t.ended.err;
+  const std::string timing = contentOf(t.dir + "/timing.json");
+  ASSERT_EQ(t.track(log).code, 3) << t.ended.err;
+  EXPECT_NE(t.ended.err.find("already done, with a warning: " + log + ": torn"), std::string::npos)
+      << t.ended.err;
+  EXPECT_EQ(contentOf(t.dir + "/timing.json"), timing);
+}
+
 TEST(TrackApp, AFolderOfAnotherRunIsRefusedUnlessOverwritten) {
   const std::vector<std::function<Ended(Tracking&, std::vector<std::string>)>> others = {
       [](Tracking& t, std::vector<std::string> o) { return t.track(demoStart(2.5), o); },
