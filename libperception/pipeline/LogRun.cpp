@@ -135,6 +135,11 @@ std::vector<std::string> LogRun::finish(bool strict) {
     throw DataError(files_.log +
                     ": --export kitti needs a camera model, and the log's detections carry none");
   }
+  if (const auto lost = writer_->notFinite(); lost > 0) {
+    events_.warn(pipeline_.lastStamp(), event_kind::kFilterReset,
+                 fmt::format("{} states of objects are not written: they are not finite", lost),
+                 {{"states", lost}});
+  }
   for (const auto& [kind, n] : events_.counts()) record.events[kind] = n;
   if (events_.warnings() > record.warnings.size()) {
     const auto more = events_.warnings() - record.warnings.size();
