@@ -5,6 +5,8 @@
 #   ./setup.sh package builds the Debian packages: build-package/*.deb
 #   ./setup.sh bench   builds the benchmarks against other libraries and runs them one after the other
 #   ./setup.sh fuzz [MINUTES]   feeds every parser with a fuzzer's bytes, 10 minutes together
+#   ./setup.sh faults  every program with each of its calls failing, killed and stopped 200 times; half an hour
+#   ./setup.sh soak [HOURS]    memory of a log of 10 hours
 #   ./setup.sh sanitize   all tests with sanitizers, an hour
 #   ./setup.sh test    the same with the tests, and runs them: all of them, and some once more with sanitizers;
 #                      before them clang-format on all sources and clang-tidy on a few
@@ -12,7 +14,7 @@
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-readonly usage="usage: ./setup.sh build | demo | package | bench | test | sanitize | fuzz [MINUTES]"
+readonly usage="usage: ./setup.sh build | demo | package | bench | test | sanitize | faults | soak [HOURS] | fuzz [MINUTES]"
 readonly exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
 
 packages=(
@@ -264,7 +266,21 @@ fuzz() {
   return "$failed"
 }
 
-[[ $# == 1 || ( $# == 2 && $1 == fuzz && $2 =~ ^[1-9][0-9]*$ ) ]] || { echo "$usage" >&2; exit $exit_usage; }
+# Every call of every program fails once; 200 are killed, 200 stopped.
+faults() {
+  installPackages "${packages[@]}" "${test_packages[@]}"
+  build release ON --target faults_tests
+  PERCEPTION_FAULTS=all build/bin/faults_tests
+}
+
+# Eight radars that repeat an encounter: the cheapest log with objects that come and go.
+soak() {
+  installPackages "${packages[@]}" "${test_packages[@]}"
+  build release ON --target perception_soak
+  build/bin/perception_soak rawlogs/radar.rawlog ini/skynet.ini "$1" run.sensors=R
+}
+
+[[ $# == 1 || ( $# == 2 && ( $1 == fuzz || $1 == soak ) && $2 =~ ^[1-9][0-9]*$ ) ]] || { echo "$usage" >&2; exit $exit_usage; }
 scratch=$(mktemp)
 readonly scratch
 trap 'rm -f "$scratch"' EXIT
@@ -275,6 +291,8 @@ case $1 in
   bench) benches ;;
   test) tests ;;
   sanitize) sanitize ;;
+  faults) faults ;;
+  soak) soak "${2:-10}" ;;
   fuzz) fuzz "${2:-10}" ;;
   *) echo "$usage" >&2; exit $exit_usage ;;
 esac

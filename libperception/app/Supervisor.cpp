@@ -10,8 +10,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <exception>
 #include <filesystem>
 #include <new>
 #include <system_error>
@@ -30,6 +32,15 @@ sigset_t supervisedSignals() {
   return set;
 }
 
+/// An exception of the supervising process, or before it is one: its memory is at an end.
+[[noreturn]] void endSupervisor() {
+  constexpr char kText[] = "perception: error: internal: the program cannot be watched\n";
+  [[maybe_unused]] const auto heard = ::write(STDERR_FILENO, kText, sizeof kText - 1);
+  std::_Exit(static_cast<int>(ExitCode::kInternal));
+}
+
+std::terminate_handler of_libraries = nullptr;
+
 /// Before any library of the process is initialized: signals stay pending until they are handled.
 void holdSignals(int, char** argv, char**) {
   const char* name = argv != nullptr && argv[0] != nullptr ? std::strrchr(argv[0], '/') : nullptr;
@@ -38,6 +49,7 @@ void holdSignals(int, char** argv, char**) {
   sigset_t stops = supervisedSignals();
   sigdelset(&stops, SIGCHLD);
   ::sigprocmask(SIG_BLOCK, &stops, nullptr);
+  of_libraries = std::set_terminate(&endSupervisor);
 }
 __attribute__((section(".preinit_array"), used)) void (*hold_signals)(int, char**,
                                                                       char**) = &holdSignals;
@@ -163,6 +175,7 @@ int runSupervised(App& app, int argc, const char* const* argv, SupervisorLimits 
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) return static_cast<int>(ExitCode::kTryAgain);
     SupervisionRecord::set(record);
+    if (of_libraries != nullptr) std::set_terminate(of_libraries);  // the supervisor tells of it
     return runApp(app, argc, argv);
   }
   return Child(process, *record, app.name(), limits).wait();

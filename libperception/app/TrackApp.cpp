@@ -16,6 +16,7 @@
 #include "libperception/pipeline/LogRun.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/pipeline/StageWatchdog.h"
+#include "libperception/scene/RunRecord.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -163,7 +164,7 @@ std::unique_ptr<ObservationInput> TrackApp::openInput(const std::string& log) co
   return std::make_unique<RawlogReader>(log);
 }
 
-std::vector<TrackApp::Shard> TrackApp::shards() const {
+std::vector<TrackApp::Shard> TrackApp::shards() {
   Config config = configWithOptions();
   PipelineSetup::read(config);
   const std::string effective_ini = config.effectiveText();
@@ -179,6 +180,9 @@ std::vector<TrackApp::Shard> TrackApp::shards() const {
       out.push_back(std::move(shard));
     } else {
       fmt::print("{}: already done, results in {}\n", log, dir);
+      // The same code as of the run itself.
+      for (const auto& warning : readRunRecord(dir + "/done.json").warnings)
+        warn(fmt::format("{}: already done, with a warning: {}", log, warning));
     }
   }
   return out;

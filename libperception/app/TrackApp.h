@@ -43,7 +43,8 @@ class TrackApp : public App {
   struct Shard {
     std::string log, dir, export_file, effective_ini, hash;
   };
-  std::vector<Shard> shards() const;
+  /// Those that are left to do.
+  std::vector<Shard> shards();
   void trackLog(const Shard& shard);
   void checkInputs() const;
   std::unique_ptr<ObservationInput> openInput(const std::string& log) const;

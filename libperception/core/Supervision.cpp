@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <set>
 #include <system_error>
@@ -91,7 +92,16 @@ TemporaryPath::~TemporaryPath() {
     SupervisionRecord::ofThisProcess().temporaries[place_][0] = '\0';
 }
 
-bool isAlive(pid_t process) { return process > 0 && (::kill(process, 0) == 0 || errno != ESRCH); }
+bool isAlive(pid_t process) {
+  if (process <= 0 || (::kill(process, 0) != 0 && errno == ESRCH)) return false;
+  // Where nobody collects the dead (a container without init) their numbers stay in use.
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string stat;
+  std::getline(file, stat);
+  const auto name_end = stat.rfind(')');
+  return name_end == std::string::npos || name_end + 2 >= stat.size() ||
+         (stat[name_end + 2] != 'Z' && stat[name_end + 2] != 'X');
+}
 
 std::string hostName() {
   char name[256] = {};

@@ -55,7 +55,7 @@ class TemporaryPath {
 /// complete. Removes what killed processes of this host left in the folder, once.
 std::string partialPath(const std::string& path);
 
-/// True if a process of that number of this host lives.
+/// True if a process of that number of this host has not ended, waited for or not.
 bool isAlive(pid_t process);
 std::string hostName();
 

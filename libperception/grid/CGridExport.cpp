@@ -1,15 +1,27 @@
 #include "libperception/grid/CGridExport.h"
 
-#include <mrpt/io/CFileGZOutputStream.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <mrpt/img/CImage.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
 #include <octomap/OcTree.h>
+#include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/PartialFile.h"
 
 namespace perception {
 namespace {
@@ -34,6 +46,53 @@ std::map<std::pair<int, int>, double> groundOf(const std::vector<GridCell>& cell
   return ground;
 }
 
+/// Formats are made in memory, since neither OctoMap nor MRPT reports a full disk. A file of this
+/// name is whole or absent.
+void writeWhole(const std::string& path, std::string_view bytes) {
+  PartialFile partial(path);
+  const auto fail = [&path](ExitCode code) {
+    throw OutputError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)), code);
+  };
+  const int file = ::open(partial.path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) fail(ExitCode::kCannotCreate);
+  bool good = true;
+  while (good && !bytes.empty()) {
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
+    good = written > 0 || (written < 0 && errno == EINTR);
+    bytes.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
+  }
+  good = good && (::fsync(file) == 0 || errno == EINVAL);
+  const int reason = errno;
+  good = ::close(file) == 0 && good;
+  if (!good) errno = reason, fail(ExitCode::kIoError);
+  partial.commit();
+}
+
+std::string gzipped(const mrpt::io::CMemoryStream& bytes) {
+  z_stream z{};
+  z.next_in = static_cast<Bytef*>(const_cast<void*>(bytes.getRawBufferData()));
+  z.avail_in = static_cast<uInt>(bytes.getTotalBytesCount());
+  if (deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::bad_alloc();
+  std::string out(deflateBound(&z, z.avail_in), '\0');
+  z.next_out = reinterpret_cast<Bytef*>(out.data());
+  z.avail_out = static_cast<uInt>(out.size());
+  const int end = deflate(&z, Z_FINISH);
+  out.resize(z.total_out);
+  deflateEnd(&z);
+  if (end != Z_STREAM_END) throw Error(ExitCode::kInternal, "a grid cannot be compressed");
+  return out;
+}
+
+std::string pngOf(const mrpt::maps::COccupancyGridMap2D& map) {
+  mrpt::img::CImage image;
+  map.getAsImage(image);
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", image.asCvMatRef(), bytes))
+    throw Error(ExitCode::kInternal, "a grid cannot be drawn");
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace
 
 void saveGrid(const SafetyGrid& grid, const std::string& file) {
@@ -55,8 +114,10 @@ void saveOctree(const SafetyGrid& grid, const std::string& file) {
                       static_cast<float>(cell.log_odds), true);
   tree.updateInnerOccupancy();
   tree.prune();
-  const bool written = endsWith(file, ".bt") ? tree.writeBinary(file) : tree.write(file);
-  if (!written) throw OutputError(file + ": cannot be written");
+  std::ostringstream bytes;
+  const bool made = endsWith(file, ".bt") ? tree.writeBinary(bytes) : tree.write(bytes);
+  if (!made || !bytes) throw Error(ExitCode::kInternal, file + ": OctoMap does not write the tree");
+  writeWhole(file, bytes.str());
 }
 
 void saveGround(const SafetyGrid& grid, const std::string& file) {
@@ -74,13 +135,10 @@ void saveGround(const SafetyGrid& grid, const std::string& file) {
                                       static_cast<float>(resolution));
   for (const auto& [place, log_odds] : groundOf(cells, resolution, corner))
     map.setCell(place.first, place.second, static_cast<float>(1 / (1 + std::exp(log_odds))));
-  if (endsWith(file, ".png")) {
-    if (!map.saveAsBitmapFile(file)) throw OutputError(file + ": cannot be written");
-    return;
-  }
-  mrpt::io::CFileGZOutputStream stream;
-  if (!stream.open(file)) throw OutputError(file + ": cannot be written");
-  mrpt::serialization::archiveFrom(stream) << map;
+  if (endsWith(file, ".png")) return writeWhole(file, pngOf(map));
+  mrpt::io::CMemoryStream bytes;
+  mrpt::serialization::archiveFrom(bytes) << map;
+  writeWhole(file, gzipped(bytes));
 }
 
 }  // namespace perception

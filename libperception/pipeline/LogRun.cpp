@@ -58,6 +58,7 @@ void LogRun::put(const Scene& scene) {
   if (!writer_) writer_.emplace(written_to_, setup_.model.classes, *pipeline_.firstStamp());
   writer_->write(scene);
   object_events_.add(scene);
+  if (object_events_.isFull()) object_events_.keepOnly(pipeline_.livingObjects());
   ++record.scenes;
   addLatency(scene.stamp);
   if (!files_.export_file.empty()) writeExport(scene);
@@ -127,6 +128,8 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
       facts_.look(*observation);
       contents_.look(*observation);
       pipeline_.add(*observation);
+      if (!events_.isWritten() && pipeline_.firstStamp())
+        events_.writeTo(folder_.pathFor("events.jsonl"), *pipeline_.firstStamp());
       take(false);
       progress.update(input_->bytesRead(), ++count);
     }
@@ -162,6 +165,11 @@ std::vector<std::string> LogRun::finish(bool strict) {
                              "low scanner, or are height, pitch or range_max of its section wrong? "
                              "perception-doctor looks into it",
                              sensor.label, sensor.frames));
+  }
+  if (const auto lost = writer_->notFinite(); lost > 0) {
+    events_.warn(pipeline_.lastStamp(), event_kind::kFilterReset,
+                 fmt::format("{} states of objects are not written: they are not finite", lost),
+                 {{"states", lost}});
   }
   for (const auto& [kind, n] : events_.counts()) record.events[kind] = n;
   if (events_.warnings() > record.warnings.size()) {
@@ -206,7 +214,7 @@ void LogRun::commit(const std::string& effective_ini, int threads) {
   if (recorder_) recorder_->close();
   if (weather_) weather_->close();
   if (ledger_) ledger_->close();
-  events_.write(folder_.pathFor("events.jsonl"), record.first_stamp);
+  events_.close();
   writeFile(folder_.pathFor("effective.ini"), effective_ini);
   timing_.write(folder_.pathFor("timing.json"), logSeconds(), threads);
   writeRunRecord(folder_.pathFor("done.json"), record);

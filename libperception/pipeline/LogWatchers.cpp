@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <mrpt/obs/CObservationComment.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "libperception/pipeline/LogRecorder.h"
 #include "libperception/sensors/FromObservation.h"
 
@@ -53,6 +56,7 @@ void ObjectEvents::add(const Scene& scene) {
     now.insert(o.id);
     const std::string& name = classes_[o.class_id].name;
     if (born_.insert(o.id).second) {
+      ++objects_;
       events_.add(scene.stamp, event_kind::kTrackBorn, fmt::format("object {}", o.id),
                   {{"id", o.id}, {"class", name}});
     }
@@ -66,6 +70,16 @@ void ObjectEvents::add(const Scene& scene) {
       events_.add(scene.stamp, event_kind::kTrackLost, fmt::format("object {}", id), {{"id", id}});
   }
   last_ = std::move(now);
+}
+
+void ObjectEvents::keepOnly(const std::set<std::uint64_t>& ids) {
+  for (auto* known : {&born_, &classified_}) {
+    std::set<std::uint64_t> kept;
+    std::set_intersection(known->begin(), known->end(), ids.begin(), ids.end(),
+                          std::inserter(kept, kept.end()));
+    known->swap(kept);
+  }
+  full_ = 2 * born_.size() + kFewIds;
 }
 
 void MeasurementRecorder::onScan(const MeasurementScan& scan) {

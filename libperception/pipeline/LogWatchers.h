@@ -24,17 +24,26 @@ struct LogFacts {
   void look(const mrpt::obs::CObservation& observation);
 };
 
-/// Writes events when objects appear and disappear, and counts them.
+/// Writes events when objects appear and disappear, and counts them. Memory is bounded by
+/// keepOnly().
 class ObjectEvents {
  public:
   ObjectEvents(const ClassTable& classes, EventLog& events) : classes_(classes), events_(events) {}
 
+  static constexpr std::size_t kFewIds = 1000;  ///< not worth forgetting
+
   void add(const Scene& scene);
-  std::size_t objects() const { return born_.size(); }  ///< so far
+  std::uint64_t objects() const { return objects_; }  ///< so far
+  /// True once so many ids are known that keepOnly() is worth its time.
+  bool isFull() const { return born_.size() >= full_; }
+  /// Forgets the ids of all other objects, which must not come again.
+  void keepOnly(const std::set<std::uint64_t>& ids);
 
  private:
   const ClassTable& classes_;
   EventLog& events_;
+  std::uint64_t objects_ = 0;
+  std::size_t full_ = kFewIds;
   std::set<std::uint64_t> born_, classified_, last_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_set>
 #include <utility>
 
 #include "libperception/filter/predict/Prediction.h"
@@ -241,6 +242,17 @@ void Pipeline::makeScenes(std::optional<Stamp> now) {
     health_.addScene(ready_.back(), setup_.model.classes);
     if (observer_) observer_->onOutput(ready_.back());
   }
+}
+
+std::set<std::uint64_t> Pipeline::livingObjects() {
+  std::unordered_set<std::uint64_t> tracks;
+  for (const auto& track : tracker_.mapHypothesis().tracks) tracks.insert(track->id);
+  for (const auto& particle : tracker_.m_particles)
+    for (const auto& track : particle.d->tracks) tracks.insert(track->id);
+  std::set<std::uint64_t> ids = scenes_.keepOnly(tracks);
+  for (const Scene& scene : ready_)
+    for (const SceneObject& object : scene.objects) ids.insert(object.id);
+  return ids;
 }
 
 void Pipeline::restartTracks() {

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "libperception/pipeline/EgoTimeline.h"
@@ -63,6 +64,8 @@ class Pipeline {
   /// What was taken as phantoms since the last call.
   std::vector<LedgerRow> takeLedger() { return ledger_.take(); }
   std::uint64_t objects() const { return scenes_.objectsSoFar(); }
+  /// Ids that may be in a scene to come, beside new ones. Forgets all others: memory of a long run.
+  std::set<std::uint64_t> livingObjects();
 
  private:
   void addTime(Stamp stamp);

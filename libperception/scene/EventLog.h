@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libperception/core/Time.h"
+#include "libperception/scene/OutputFile.h"
 
 namespace perception {
 
@@ -52,8 +53,8 @@ class EventLog {
  public:
   using Fields = nlohmann::ordered_json;
 
-  /// Memory is bounded: of each kind the first `kept_per_kind` events are stored, the others only
-  /// counted.
+  /// Memory is bounded: without a file the first `kept_per_kind` events of each kind are stored,
+  /// the others only counted.
   explicit EventLog(std::size_t kept_per_kind = 100000) : kept_per_kind_(kept_per_kind) {}
 
   /// `fields`: an object of numbers and texts, {{"sensor", "LIDAR_TOP"}, {"points", 12}}.
@@ -67,10 +68,14 @@ class EventLog {
   const std::map<std::string, std::uint64_t>& counts() const { return counts_; }
   std::uint64_t warnings() const { return warnings_; }
 
-  /// Contents of the file; a last line per truncated kind gives the number of omitted events.
+  /// The stored events as lines; a last line per truncated kind gives the number of omitted events.
   std::string text(Stamp first_stamp) const;
-  /// Throws OutputError.
-  void write(const std::string& path, Stamp first_stamp) const;
+  /// Writes the stored events, and from now on each as it comes: none is stored or omitted any
+  /// more. Throws OutputError, as add() does from then on.
+  void writeTo(const std::string& path, Stamp first_stamp);
+  bool isWritten() const { return file_.has_value(); }
+  /// Completes the file of writeTo(). Throws OutputError.
+  void close();
 
  private:
   struct Event {
@@ -79,8 +84,12 @@ class EventLog {
     Fields fields;
     Severity severity;
   };
+  static std::string lineOf(const Event& event, Stamp first_stamp);
+
   std::size_t kept_per_kind_;
   std::vector<Event> events_;
+  std::optional<OutputFile> file_;
+  Stamp first_stamp_;  ///< of the file
   std::map<std::string, std::uint64_t> counts_;
   std::uint64_t warnings_ = 0;
 };

@@ -63,7 +63,22 @@ void SceneParams::visit(ParamVisitor& v) {
 }
 
 std::uint64_t SceneFromPosterior::numberOf(std::uint64_t track_id) {
-  return numbers_.try_emplace(track_id, numbers_.size() + 1).first->second;
+  const auto [number, fresh] = numbers_.try_emplace(track_id, last_number_ + 1);
+  if (fresh) ++last_number_;
+  return number->second;
+}
+
+std::set<std::uint64_t> SceneFromPosterior::keepOnly(
+    const std::unordered_set<std::uint64_t>& tracks) {
+  std::unordered_map<std::uint64_t, std::uint64_t> kept;
+  std::set<std::uint64_t> ids;
+  for (const auto& [track, number] : numbers_) {
+    if (tracks.count(track) == 0) continue;
+    kept.emplace(track, number);
+    ids.insert(number);
+  }
+  numbers_ = std::move(kept);
+  return ids;
 }
 
 SceneObject SceneFromPosterior::objectOf(const Track& track) {

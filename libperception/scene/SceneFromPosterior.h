@@ -1,5 +1,8 @@
 #pragma once
+#include <cstdint>
+#include <set>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -39,7 +42,10 @@ class SceneFromPosterior {
   /// the most probable class.
   Scene make(const Hypothesis& hypothesis, const EgoState& ego, std::int64_t frame);
 
-  std::uint64_t objectsSoFar() const { return numbers_.size(); }
+  std::uint64_t objectsSoFar() const { return last_number_; }
+  /// Forgets the ids of tracks that are not among these, which must not come again. Returns the ids
+  /// that are left.
+  std::set<std::uint64_t> keepOnly(const std::unordered_set<std::uint64_t>& tracks);
 
  private:
   /// A track with deferred prediction and its prediction at the last scene, from which the next one
@@ -59,7 +65,8 @@ class SceneFromPosterior {
 
   FilterModel model_;
   SceneParams params_;
-  std::unordered_map<std::uint64_t, std::uint64_t> numbers_;
+  std::unordered_map<std::uint64_t, std::uint64_t> numbers_;  ///< by track
+  std::uint64_t last_number_ = 0;
   std::unordered_map<const Track*, Sleeper> sleepers_;
 };
 

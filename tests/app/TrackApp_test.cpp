@@ -192,6 +192,20 @@ TEST(TrackApp, ALidarThatMeasuresNothingIsSaid) {
       << t.ended.err;
 }
 
+TEST(TrackApp, ARerunOfALogThatEndedWithWarningsSaysThemAgain) {
+  Tracking t;
+  writeLog(demoStart(1), t.folder / "whole.rawlog");
+  const std::string bytes = contentOf(t.folder / "whole.rawlog"), log = t.folder / "cut.rawlog";
+  std::ofstream(log, std::ios::binary) << bytes.substr(0, bytes.size() * 9 / 10);
+  ASSERT_EQ(t.track(log).code, 3) << t.ended.err;
+  const std::string timing = contentOf(t.dir + "/timing.json");
+  ASSERT_EQ(t.track(log).code, 3) << t.ended.err;
+  EXPECT_NE(t.ended.err.find("already done, with a warning: " + log + ": the file ends"),
+            std::string::npos)
+      << t.ended.err;
+  EXPECT_EQ(contentOf(t.dir + "/timing.json"), timing);
+}
+
 TEST(TrackApp, AFolderOfAnotherRunIsRefusedUnlessOverwritten) {
   const std::vector<std::function<Ended(Tracking&, std::vector<std::string>)>> others = {
       [](Tracking& t, std::vector<std::string> o) { return t.track(demoStart(2.5), o); },
@@ -258,6 +272,14 @@ TEST(TrackApp, ALogThatMayBeCutBetweenTwoEntriesIsNotVerifiable) {
       << contentOf(t.folder / "log.rawlog").substr(0, 900000);
   ASSERT_EQ(cut.track(cut.folder / "cut.rawlog").code, 3) << cut.ended.err;
   EXPECT_EQ(cut.done().at("input").at("whole"), "no");
+}
+
+TEST(TrackApp, ASensorSetWithoutASensorIsRefused) {
+  Tracking t;
+  EXPECT_EQ(t.track(demoStart(0.2), {"--sensors", "R"}).code, 78);
+  EXPECT_NE(t.ended.err.find("no [sensor.LABEL] section has a modality of 'R'"), std::string::npos)
+      << t.ended.err;
+  EXPECT_FALSE(std::filesystem::exists(t.dir));
 }
 
 TEST(TrackApp, APipeAsConfigurationOrIncludeIsRefused) {

@@ -61,6 +61,17 @@ TEST(PartialFile, ThatOfAKilledProcessIsRemovedByTheNextOne) {
   EXPECT_EQ(namesIn(folder.path()), std::set<std::string>{".other.part"});
 }
 
+TEST(PartialFile, WhoeverHasEndedIsNotAliveEvenIfNobodyWaits) {
+  const pid_t process = ::fork();
+  if (process == 0) ::_exit(0);
+  siginfo_t info{};
+  ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOWAIT), 0);
+  EXPECT_EQ(::kill(process, 0), 0) << "its number is in use";
+  EXPECT_FALSE(isAlive(process));
+  EXPECT_TRUE(isAlive(::getpid()));
+  ::waitpid(process, nullptr, 0);
+}
+
 TEST(PartialFile, ADeviceIsWrittenToAsItIs) {
   EXPECT_EQ(PartialFile("/dev/null").path(), "/dev/null");
 }

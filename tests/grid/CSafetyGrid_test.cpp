@@ -15,6 +15,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "libperception/core/Error.h"
+#include "libperception/grid/CGridExport.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
@@ -107,6 +109,22 @@ TEST_P(CSafetyGridOf, IsDrawn) {
   mrpt::opengl::CSetOfObjects scene;
   map.getVisualizationInto(scene);
   EXPECT_EQ(scene.size(), 1U);
+}
+
+TEST(GridExport, AFullDiskIsAnErrorAndAFileIsWholeOrAbsent) {
+  const auto grid = makeSafetyGrid(GridParams());
+  for (void (*save)(const SafetyGrid&, const std::string&) : {&saveOctree, &saveGround}) {
+    try {
+      save(*grid, "/dev/full");
+      FAIL() << "a full disk was not noticed";
+    } catch (const OutputError& error) {
+      EXPECT_EQ(error.code(), ExitCode::kIoError);
+    }
+    EXPECT_THROW(save(*grid, "/no/such/folder/grid.bt"), OutputError);
+  }
+  const test::TemporaryFolder folder;
+  saveGrid(*grid, folder / "grid.png");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(BackEnds, CSafetyGridOf,

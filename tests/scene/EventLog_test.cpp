@@ -62,11 +62,38 @@ TEST(EventLog, TextThatIsNotUtf8DoesNotEndTheRun) {
   EXPECT_EQ(line["kind"], "x");
 }
 
+TEST(EventLog, AsTheyComeTheyAreTheSameBytesInAFile) {
+  const TemporaryFolder folder;
+  EventLog stored, written;
+  for (EventLog* log : {&stored, &written}) {
+    log->add(std::nullopt, event_kind::kSensorIgnored, "before the first stamp");
+    if (log == &written) written.writeTo(folder.file("events.jsonl"), kFirstStamp);
+    log->add(kFirstStamp, event_kind::kTrackBorn, "", {{"id", 1}});
+    log->warn(Stamp{kFirstStamp.ns + 50000000}, event_kind::kEgoGap, "for 2 s");
+  }
+  written.close();
+  EXPECT_EQ(readText(folder.file("events.jsonl")), stored.text(kFirstStamp));
+  EXPECT_EQ(written.counts(), stored.counts());
+  EXPECT_EQ(written.warnings(), 1U);
+}
+
+TEST(EventLog, InAFileNoneIsOmitted) {
+  const TemporaryFolder folder;
+  EventLog log(3);
+  log.writeTo(folder.file("events.jsonl"), kFirstStamp);
+  for (int i = 0; i < 10; ++i) log.add(kFirstStamp, "often", "again", {{"i", i}});
+  log.close();
+  const std::string text = readText(folder.file("events.jsonl"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
+  EXPECT_EQ(text.find("events_not_written"), std::string::npos);
+}
+
 TEST(EventLog, AFullDiskIsAnError) {
   EventLog log;
   log.add(kFirstStamp, "x", "m");
   try {
-    log.write("/dev/full", kFirstStamp);
+    log.writeTo("/dev/full", kFirstStamp);
+    log.close();
     FAIL() << "a full disk was not noticed";
   } catch (const OutputError& e) {
     EXPECT_EQ(e.code(), ExitCode::kIoError);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <set>
 
 #include "tests/scene/SceneFixture.h"
 
@@ -42,6 +43,21 @@ TEST(Scene, LeavesOutObjectsWhosePlaceIsTooUncertainForTheirSize) {
 }
 
 TEST(Scene, PutsOutEveryPlaceUnlessAsked) { EXPECT_EQ(putOut(20, 0), 1U); }
+
+TEST(Scene, AForgottenIdIsNotGivenAgain) {
+  FilterModel model;
+  model.classes = test::pedestrianAndCar();
+  SceneFromPosterior scenes(model, {});
+  EgoState ego;
+  ego.stamp = test::kFirstStamp;
+  const Hypothesis one = oneCar(0.1);
+  EXPECT_EQ(scenes.make(one, ego, 0).objects.at(0).id, 1U);
+  EXPECT_EQ(scenes.keepOnly({1}), std::set<std::uint64_t>{1});
+  EXPECT_EQ(scenes.make(one, ego, 0).objects.at(0).id, 1U) << "it lives";
+  EXPECT_TRUE(scenes.keepOnly({}).empty());
+  EXPECT_EQ(scenes.make(one, ego, 0).objects.at(0).id, 2U);
+  EXPECT_EQ(scenes.objectsSoFar(), 2U);
+}
 
 }  // namespace
 }  // namespace perception

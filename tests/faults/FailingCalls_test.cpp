@@ -1,0 +1,103 @@
+// Each program with each of its calls of the system failing once, or from one on; the whole of it
+// by
+// ./setup.sh faults, a few calls otherwise.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "libperception/core/Error.h"
+#include "tests/faults/Workshop.h"
+
+namespace perception::test {
+namespace {
+
+Workshop& workshop() {
+  static Workshop made;
+  return made;
+}
+
+/// 1 ... calls. Of memory, of which a program asks some hundred thousand times, the first ones and
+/// about as many at equal distances to the end.
+std::vector<long> numbersOf(const std::string& kind, long calls) {
+  constexpr long kFirst = 150;
+  std::vector<long> out;
+  if (!isWhole()) return {(calls + 1) / 2, calls};
+  const long all = kind == "memory" ? std::min(calls, kFirst) : calls;
+  for (long i = 1; i <= all; ++i) out.push_back(i);
+  for (long i = 1; i <= kFirst && all < calls; ++i)
+    out.push_back(all + std::max(1L, (calls - all) * i / kFirst));
+  return out;
+}
+
+/// What a program may end with when a call of that kind fails.
+std::set<int> codesOf(const std::string& kind) {
+  if (kind == "memory") return {0, 3, 65, 69, 70, 73, 74, 78};
+  return {0, 73, 74};
+}
+
+/// Empty, or what is wrong with this job when that call fails.
+std::string faultOf(const Job& job, const FailingCall& failing) {
+  const TemporaryFolder out;
+  const Contents& whole = workshop().results(job);
+  const Ending ending = workshop().run(job, out.path(), failing);
+  if (ending.hung) return "hangs";
+  if (ending.signal != 0) return fmt::format("is ended by signal {}", ending.signal);
+  if (codesOf(failing.kind).count(ending.code) == 0)
+    return fmt::format("ends with {}: {}", ending.code, ending.said);
+  if (ending.code != 0 && ending.said.find(": error: ") == std::string::npos &&
+      failing.kind != "memory")
+    return fmt::format("ends with {} without a word: {}", ending.code, ending.said);
+  const bool done = ending.code == 0 || ending.code == 3;
+  std::string fault = faultIn(out.path(), job, whole, done, false);
+  if (!fault.empty()) return fmt::format("ends with {}, {}", ending.code, fault);
+  if (done || contentsOf(out.path()).empty()) return "";  // as it was before
+  const Ending again = workshop().run(job, out.path());
+  fault = faultIn(out.path(), job, whole, true, false);
+  if (again.code != job.code || !fault.empty())
+    return fmt::format("when run again ends with {}: {}{}", again.code, fault, again.said);
+  return "";
+}
+
+/// All programs, or two of them.
+std::vector<std::string> programs() {
+  if (!isWhole()) return {"track", "import"};
+  std::vector<std::string> names;
+  for (const Job& job : workshop().jobs()) names.push_back(job.name);
+  return names;
+}
+
+class FailingCalls : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(FailingCalls, EndWithACodeOfTheTableAndNoTornFile) {
+  const auto& [name, kind] = GetParam();
+  const Job& job = workshop().job(name);
+  const long calls = workshop().calls(job, kind);
+  ASSERT_GT(calls, 0);
+  std::size_t runs = 0;
+  for (const bool on : {false, true}) {
+    if (on && (!isWhole() || (kind != "write" && kind != "sync"))) continue;  // as on a full disk
+    for (const long at : numbersOf(kind, calls)) {
+      ++runs;
+      EXPECT_EQ(faultOf(job, {kind, at, on, ""}), "")
+          << name << ": call " << at << " of " << calls << " (" << kind
+          << (on ? ", and all later ones)" : ")");
+    }
+  }
+  if (isWhole())
+    std::printf("%s: %ld calls (%s), %zu runs\n", name.c_str(), calls, kind.c_str(), runs);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, FailingCalls,
+    testing::Combine(testing::ValuesIn(programs()),
+                     testing::Values("write", "sync", "rename", "open", "memory")),
+    [](const auto& info) { return std::get<0>(info.param) + "_" + std::get<1>(info.param); });
+
+}  // namespace
+}  // namespace perception::test

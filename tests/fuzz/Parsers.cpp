@@ -1,0 +1,179 @@
+#include "tests/fuzz/Parsers.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "libperception/config/Config.h"
+#include "libperception/core/Csv.h"
+#include "libperception/core/Error.h"
+#include "libperception/core/GroundTruth.h"
+#include "libperception/core/LaneMap.h"
+#include "libperception/importers/AimotiveFiles.h"
+#include "libperception/importers/CloudTable.h"
+#include "libperception/importers/ImportText.h"
+#include "libperception/importers/Importer.h"
+#include "libperception/importers/KittiFiles.h"
+#include "libperception/importers/RadiateFiles.h"
+#include "libperception/importers/VodFiles.h"
+#include "libperception/interop/ReadingBag.h"
+#include "libperception/measurement/ObjectClass.h"
+#include "libperception/packets/Beams.h"
+#include "libperception/packets/Decoder.h"
+#include "libperception/packets/Ouster.h"
+#include "libperception/packets/Pcap.h"
+#include "libperception/sensors/PositionTrack.h"
+
+namespace perception {
+namespace {
+
+/// A file in memory, by its path.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view bytes) : file_(::memfd_create("fuzz", 0)) {
+    if (file_ < 0 ||
+        ::write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+      std::abort();
+  }
+  ~MemoryFile() { ::close(file_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
+
+ private:
+  int file_;
+};
+
+/// Calls a reader of files with the path of the bytes.
+template <class Reader>
+std::function<void(std::string_view)> ofFile(Reader reader) {
+  return [reader](std::string_view bytes) { reader(MemoryFile(bytes).path()); };
+}
+
+void readBag(const std::string& path) {
+  const auto bag = openBag(path);
+  for (BagMessage message; bag->next(message);) {
+  }
+}
+
+/// The first byte chooses the device.
+void decodePackets(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const auto& kinds = deviceKinds();
+  const auto& kind = kinds[static_cast<unsigned char>(bytes[0]) % kinds.size()];
+  if (kind.needs_file) return;
+  const auto decoder = kind.make("");
+  SequenceCounter counter;
+  for (int again = 0; again < 2; ++again) counter.count(decoder->decode(bytes.substr(1)));
+}
+
+void readClasses(std::string_view bytes) {
+  Config config = Config::fromText(std::string(bytes), "fuzz.ini");
+  readClassTable(config);
+  config.finish();
+}
+
+/// A folder of this process for readers that choose by the names of files; gone at its end.
+const std::string& scratch() {
+  struct Folder {
+    std::string path = (std::filesystem::temp_directory_path() / "perception_fuzz_XXXXXX").string();
+    Folder() {
+      if (::mkdtemp(path.data()) == nullptr) std::abort();
+    }
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder folder;
+  return folder.path;
+}
+
+std::string written(const std::string& name, std::string_view bytes) {
+  const std::string path = scratch() + "/" + name;
+  std::ofstream(path, std::ios::binary)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return path;
+}
+
+void readTrackOf(const std::string& ending, std::string_view bytes) {
+  readPositionTrack(written("track." + ending, bytes)).local();
+}
+
+/// A whole importer, but for the end of its log, which waits for the disk.
+void import(std::unique_ptr<Importer> importer, const std::string& options) {
+  CLI::App cli;
+  importer->declare(cli);
+  cli.parse(options);
+  ImportOptions to;
+  to.output = scratch() + "/log.rawlog";
+  ImportLog log(to);
+  importer->run(log);
+}
+
+void importUdacity(std::string_view bytes) {
+  import(makeUdacityImporter(), "--measurements " + written("u.txt", bytes));
+}
+
+/// Five tables, one behind the other, an empty line between them.
+void importComma2k19(std::string_view bytes) {
+  for (const char* name : {"gnss_ublox_10hz.csv", "radar_tracks.csv", "pose_20hz_ecef.csv",
+                           "ego_speed.csv", "gyro.csv"}) {
+    const auto end = std::min(bytes.find("\n\n"), bytes.size());
+    written(name, bytes.substr(0, end));
+    bytes.remove_prefix(std::min(end + 2, bytes.size()));
+  }
+  import(makeComma2k19Importer(), "--dir " + scratch());
+}
+
+}  // namespace
+
+const std::vector<Parser>& parsers() {
+  static const std::vector<Parser> all = {
+      {"ini", &readClasses},
+      {"csv", [](std::string_view b) { CsvTable::fromText(std::string(b)); }},
+      {"truth", ofFile([](const std::string& p) { readGroundTruth(p); })},
+      {"lanes", ofFile([](const std::string& p) { LaneMap::fromFile(p); })},
+      {"bag", ofFile(&readBag)},
+      {"packets", &decodePackets},
+      {"pcap", [](std::string_view b) { parsePcap(b, "fuzz.pcap"); }},
+      {"ouster", [](std::string_view b) { parseOusterMetadata(std::string(b), "fuzz.json"); }},
+      {"beams", ofFile([](const std::string& p) { readBeams(p, 40); })},
+      {"kitti_calibration", ofFile([](const std::string& p) { readKittiCalibration(p); })},
+      {"kitti_labels", ofFile([](const std::string& p) { readKittiLabels(p); })},
+      {"kitti_boxes",
+       ofFile([](const std::string& p) { readKittiDetections(p, "boxes3d", "Car"); })},
+      {"kitti_oxts", ofFile([](const std::string& p) { readKittiOxts(p); })},
+      {"poses", ofFile([](const std::string& p) { readKittiPoses(p, "kitti"); })},
+      {"tum", ofFile([](const std::string& p) { readTumPoses(p); })},
+      {"pcd", [](std::string_view b) { readPcd("fuzz.pcd", std::string(b)); }},
+      {"ply", [](std::string_view b) { readPly("fuzz.ply", std::string(b)); }},
+      {"vod_radar", ofFile([](const std::string& p) { readVodRadar(p); })},
+      {"vod_pose", ofFile([](const std::string& p) { readVodPose(p); })},
+      {"radiate", ofFile([](const std::string& p) { readRadiateAnnotations(p); })},
+      {"radiate_times", ofFile([](const std::string& p) { readRadiateTimes(p); })},
+      {"aimotive_boxes", ofFile([](const std::string& p) { readAimotiveBoxes(p); })},
+      {"aimotive_radar", ofFile([](const std::string& p) { readAimotiveRadar(p); })},
+      {"nmea", [](std::string_view b) { readTrackOf("nmea", b); }},
+      {"gpx", [](std::string_view b) { readTrackOf("gpx", b); }},
+      {"udacity", &importUdacity},
+      {"comma2k19", &importComma2k19},
+  };
+  return all;
+}
+
+void parse(const Parser& parser, std::string_view bytes) {
+  try {
+    parser.run(bytes);
+  } catch (const Error&) {  // refused, as it should be
+  }
+}
+
+}  // namespace perception
