@@ -25,7 +25,7 @@ class CDdsSensor : public mrpt::hwdrivers::CGenericSensor, public LedgerSource {
   PacketLedger packets() const override;
   std::vector<std::string> lostPackets() const override { return {}; }
   std::vector<std::string> warnings() const override;
-  const PacketReplay* simulator() const override { return nullptr; }
+  const DeviceSimulator* simulator() const override { return nullptr; }
 
  protected:
   void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,

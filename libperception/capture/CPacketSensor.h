@@ -7,21 +7,23 @@
 #include <thread>
 #include <vector>
 
+#include "libperception/capture/DeviceSimulator.h"
 #include "libperception/capture/LedgerSource.h"
-#include "libperception/capture/PacketReplay.h"
+#include "libperception/capture/PacketSource.h"
+#include "libperception/capture/SenderGuard.h"
 #include "libperception/packets/FrameAssembler.h"
 
 namespace perception {
 
-/// A lidar or radar that sends UDP packets (packets/Decoder.h) as a driver for perception-grabber
-/// and MRPT's rawlog-grabber; with `replay`, it starts a simulator of its device on loopback. Keys:
-/// README.md of this folder.
+/// A lidar or radar that sends packets (packets/Decoder.h) by UDP, TCP or CAN, as a driver for
+/// perception-grabber and MRPT's rawlog-grabber; with `replay` or `scenario`, it starts a simulator
+/// of its device on this computer. Keys: README.md of this folder.
 class CPacketSensor : public mrpt::hwdrivers::CGenericSensor, public LedgerSource {
   DEFINE_GENERIC_SENSOR(CPacketSensor)
 
  public:
   ~CPacketSensor() override;
-  /// Throws ConfigError, DataError, Error (kUnavailable) if the port is taken.
+  /// Throws ConfigError, DataError, Error (kUnavailable) if port or interface cannot be had.
   void initialize() override;
   void doProcess() override;
 
@@ -29,24 +31,44 @@ class CPacketSensor : public mrpt::hwdrivers::CGenericSensor, public LedgerSourc
   PacketLedger packets() const override;
   std::vector<std::string> lostPackets() const override;
   std::vector<std::string> warnings() const override;
-  const PacketReplay* simulator() const override { return replay_.get(); }
+  std::uint64_t refused() const override;
+  std::uint64_t overrun() const override;
+  ClockLedger clock() const override;
+  const DeviceSimulator* simulator() const override { return simulator_.get(); }
 
  protected:
   void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
                                  const std::string& section) override;
 
  private:
-  void receive();
+  struct Keys {
+    std::string device, device_file, host, multicast, interface;
+    Transport transport = Transport::kUdp;
+    std::uint16_t port = 0;
+    double time_offset = 0;  ///< [s]
+    std::string replay;
+    std::uint16_t replay_port = 0;
+    double replay_speed = 1;
+    DeviceSource source;
+    PacketFaults faults;
+    bool simulated() const { return !replay.empty() || !source.scenario.scenario.empty(); }
+  };
 
-  std::string device_, file_, bind_ = "0.0.0.0";
-  std::uint16_t port_ = 0;
-  Pose3 T_ego_sensor_ = Pose3::Identity();
-  ReplayParams replay_params_;
-  std::unique_ptr<PacketReplay> replay_;
-  mutable std::mutex mutex_;  ///< of assembler_ and frames_
+  static void readSimulator(const mrpt::config::CConfigFileBase& config, const std::string& section,
+                            Keys& keys);
+  std::unique_ptr<PacketSource> openSource() const;
+  void startSimulator();
+  void receive();
+  void take(const ReceivedPacket& packet);
+
+  Keys keys_;
+  std::unique_ptr<DeviceSimulator> simulator_;
+  mutable std::mutex mutex_;  ///< of what follows, up to frames_
+  std::unique_ptr<PacketSource> source_;
   std::unique_ptr<FrameAssembler> assembler_;
+  SenderGuard senders_;
+  std::uint64_t overrun_ = 0;
   std::vector<SensorFrame> frames_;
-  int socket_ = -1;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

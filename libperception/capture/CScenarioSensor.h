@@ -10,7 +10,7 @@ namespace perception {
 /// One sensor of a simulated vehicle as a driver for MRPT's rawlog-grabber: outputs its
 /// observations of a scenario in real time. Sensor: `sensorLabel`, as in the scenario's
 /// [sensor.LABEL]; EGO_POSE is the vehicle itself (poses and frame numbers). Drivers with the same
-/// scenario, seed and start_delay share one vehicle. Keys: ini/capture.ini.
+/// scenario, seed and start_delay share one vehicle. Keys: ini/capture_stock.ini.
 class CScenarioSensor : public mrpt::hwdrivers::CGenericSensor {
   DEFINE_GENERIC_SENSOR(CScenarioSensor)
 

@@ -35,7 +35,7 @@ ChunkedLog::ChunkedLog(const std::string& folder, const ChunkLimits& limits)
 void ChunkedLog::write(const mrpt::obs::CObservation& observation) {
   if (!chunk_) {
     name_ = fmt::format("capture_{:04}.rawlog", chunks_ + 1);
-    chunk_ = std::make_unique<RawlogWriter>(folder_ + "/" + name_);
+    chunk_ = std::make_unique<RawlogWriter>(folder_ + "/" + name_, limits_.gzip_level);
     opened_ = now();
     first_.reset();
     last_.reset();

@@ -16,6 +16,7 @@ struct ChunkLimits {
   double seconds = 60;                   ///< a chunk is closed after as long
   std::uint64_t bytes = 1000000000;      ///< and at this size of its file
   std::uint64_t free_bytes = 200000000;  ///< the capture ends when the disk has less
+  int gzip_level = 1;                    ///< 0: not compressed, for more than a disk of 60 MB/s
 };
 
 /// A capture as a sequence of rawlogs, DIR/capture_0001.rawlog ...: each is closed, read back,

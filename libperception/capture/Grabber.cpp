@@ -8,9 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "libperception/capture/DeviceSimulator.h"
 #include "libperception/capture/LedgerSource.h"
-#include "libperception/capture/PacketReplay.h"
 #include "libperception/core/Error.h"
+#include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
 
 namespace perception {
@@ -29,6 +30,29 @@ mrpt::config::CConfigFile openIni(const std::string& path) {
   return mrpt::config::CConfigFile(path);
 }
 
+/// What a driver knows of its packets.
+void addPackets(const LedgerSource& source, nlohmann::json& line) {
+  const PacketLedger p = source.packets();
+  line["packets"] = {{"received", p.received},
+                     {"damaged", p.damaged},
+                     {"lost", p.lost},
+                     {"repeated", p.repeated},
+                     {"late", p.late},
+                     {"restarts", p.restarts},
+                     {"refused", source.refused()},
+                     {"overrun", source.overrun()},
+                     {"lost_numbers", source.lostPackets()}};
+  const ClockLedger clock = source.clock();
+  line["clock"] = {{"state", nameOf(clock.state)}, {"steps", clock.steps}};
+  if (clock.offset) line["clock"]["offset_s"] = *clock.offset;
+  line["events"] = source.warnings();
+  if (!source.simulator()) return;
+  const SentLedger& s = source.simulator()->ledger();
+  line["simulator"] = {{"made", s.made},       {"dropped", s.dropped}, {"repeated", s.repeated},
+                       {"swapped", s.swapped}, {"torn", s.torn},       {"sent", s.sent},
+                       {"missing", s.missing}};
+}
+
 ChunkLimits limitsOf(const std::string& ini) {
   const auto config = openIni(ini);
   ChunkLimits limits;
@@ -37,9 +61,17 @@ ChunkLimits limitsOf(const std::string& ini) {
       config.read_double("global", "chunk_mb", static_cast<double>(limits.bytes) * 1e-6) * 1e6);
   limits.free_bytes = static_cast<std::uint64_t>(
       config.read_double("global", "free_mb", static_cast<double>(limits.free_bytes) * 1e-6) * 1e6);
+  limits.gzip_level = config.read_int("global", "rawlog_GZ_compress_level", limits.gzip_level);
   if (!(limits.seconds > 0) || limits.bytes == 0)
     throw ConfigError(ini + ": [global] chunk_seconds and chunk_mb must be above 0");
   return limits;
+}
+
+/// [bytes] of observations that wait for the disk.
+std::uint64_t queueOf(const std::string& ini) {
+  const double megabytes = openIni(ini).read_double("global", "queue_mb", 2000);
+  if (!(megabytes > 0)) throw ConfigError(ini + ": [global] queue_mb must be above 0");
+  return static_cast<std::uint64_t>(megabytes * 1e6);
 }
 
 std::size_t streamLimitOf(const std::string& ini) {
@@ -52,7 +84,7 @@ std::size_t streamLimitOf(const std::string& ini) {
 
 Grabber::Grabber(const std::string& ini, const GrabberOutputs& outputs) : drivers_(ini) {
   for (std::size_t i = 0; i < drivers_.size(); ++i) ledgers_[drivers_.label(i)];
-  if (!outputs.folder.empty()) startRecord(outputs.folder, limitsOf(ini));
+  if (!outputs.folder.empty()) startRecord(outputs.folder, limitsOf(ini), queueOf(ini));
   if (!outputs.stream.empty()) startStream(outputs.stream, streamLimitOf(ini));
   if (outputs.network) startPublishing(*outputs.network);
 }
@@ -70,7 +102,8 @@ void Grabber::startPublishing(const NetworkName& network) {
   network_ = std::make_unique<Outlet>(std::move(params));
 }
 
-void Grabber::startRecord(const std::string& folder, const ChunkLimits& limits) {
+void Grabber::startRecord(const std::string& folder, const ChunkLimits& limits,
+                          std::uint64_t queue_bytes) {
   log_.emplace(folder, limits);
   const auto note = [this] { bytes_ = log_->bytes(), chunks_ = log_->chunks(); };
   Outlet::Params params;
@@ -81,6 +114,14 @@ void Grabber::startRecord(const std::string& folder, const ChunkLimits& limits) 
   params.tend = [this, note] {
     log_->tend();
     note();
+  };
+  params.most_bytes = queue_bytes;
+  params.left_out = [this](const Drivers::Arrival& arrival) {
+    SensorLedger& ledger = ledgers_[drivers_.label(arrival.driver)];
+    --ledger.written;
+    ++ledger.left_out;
+    if (const auto stamp = toStamp(arrival.observation->timestamp))
+      ledger.left_out_stamps.push_back(stamp->ns);
   };
   record_ = std::make_unique<Outlet>(std::move(params));
 }
@@ -167,20 +208,12 @@ void Grabber::noteLedgers() {
     const SensorLedger& ledger = ledgers_[drivers_.label(i)];
     nlohmann::json line{
         {"sensor", drivers_.label(i)}, {"written", ledger.written}, {"late", ledger.late}};
-    if (const auto* source = dynamic_cast<const LedgerSource*>(&drivers_[i])) {
-      const PacketLedger p = source->packets();
-      line["packets"] = {{"received", p.received}, {"damaged", p.damaged},
-                         {"lost", p.lost},         {"repeated", p.repeated},
-                         {"late", p.late},         {"lost_numbers", source->lostPackets()}};
-      if (source->simulator()) {
-        const SentLedger s = source->simulator()->ledger();
-        line["simulator"] = {{"made", s.made},
-                             {"dropped", s.dropped},
-                             {"repeated", s.repeated},
-                             {"swapped", s.swapped},
-                             {"sent", s.sent}};
-      }
+    if (ledger.left_out > 0) {
+      line["left_out"] = ledger.left_out;
+      line["left_out_stamps_ns"] = ledger.left_out_stamps;
     }
+    if (const auto* source = dynamic_cast<const LedgerSource*>(&drivers_[i]))
+      addPackets(*source, line);
     log_->note(line.dump());
   }
 }
@@ -192,11 +225,21 @@ std::vector<std::string> Grabber::warnings() const {
                               stream_->dropped()));
   if (const auto missed = unpublished_ + (network_ ? network_->dropped() : 0); missed > 0)
     all.push_back(fmt::format("{} observations were not published: a reader was too slow", missed));
+  for (const auto& [label, ledger] : ledgers_)
+    if (ledger.left_out > 0)
+      all.push_back(fmt::format("{}: {} observations were not recorded: the disk was too slow",
+                                label, ledger.left_out));
   for (std::size_t i = 0; i < drivers_.size(); ++i) {
     const auto* source = dynamic_cast<const LedgerSource*>(&drivers_[i]);
     if (!source) continue;
     for (const std::string& warning : source->warnings()) all.push_back(warning);
     const PacketLedger p = source->packets();
+    if (source->overrun() > 0)
+      all.push_back(fmt::format("{}: this computer had no room for {} packets", drivers_.label(i),
+                                source->overrun()));
+    if (source->refused() > 0)
+      all.push_back(fmt::format("{}: {} packets of another sender refused", drivers_.label(i),
+                                source->refused()));
     if (p.lost > 0)
       all.push_back(fmt::format("{}: {} of {} packets lost", drivers_.label(i), p.lost,
                                 p.lost + p.received - p.repeated));

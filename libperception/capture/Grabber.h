@@ -35,6 +35,9 @@ struct GrabberOutputs {
 struct SensorLedger {
   std::uint64_t written = 0;  ///< observations
   std::uint64_t late = 0;     ///< of these, stamped before the sensor's one before
+  /// Not recorded, as the disk was too slow ([global] queue_mb), and which ones.
+  std::uint64_t left_out = 0;
+  std::vector<std::int64_t> left_out_stamps;  ///< [ns] since 1970
 };
 
 /// Records and streams the sensors of an INI of MRPT's rawlog-grabber (Drivers). Nothing of the
@@ -58,7 +61,7 @@ class Grabber {
  private:
   void startStream(const std::string& path, std::size_t limit);
   void startPublishing(const NetworkName& network);
-  void startRecord(const std::string& folder, const ChunkLimits& limits);
+  void startRecord(const std::string& folder, const ChunkLimits& limits, std::uint64_t queue_bytes);
   void pass(std::vector<Drivers::Arrival> arrivals);
   void count(const Drivers::Arrival& arrival);
   void passTime();

@@ -1,12 +1,14 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "libperception/packets/ClockWatch.h"
 #include "libperception/packets/Decoder.h"
 
 namespace perception {
 
-class PacketReplay;
+class DeviceSimulator;
 
 /// A driver that can end without loss, and knows what came.
 class LedgerSource {
@@ -17,8 +19,13 @@ class LedgerSource {
   virtual PacketLedger packets() const = 0;
   virtual std::vector<std::string> lostPackets() const = 0;
   virtual std::vector<std::string> warnings() const = 0;
+  /// Packets that came from another sender than the device, and were refused.
+  virtual std::uint64_t refused() const { return 0; }
+  /// Packets that the kernel had no room for.
+  virtual std::uint64_t overrun() const { return 0; }
+  virtual ClockLedger clock() const { return {}; }
   /// Of the device simulator; null without one.
-  virtual const PacketReplay* simulator() const = 0;
+  virtual const DeviceSimulator* simulator() const = 0;
 };
 
 }  // namespace perception

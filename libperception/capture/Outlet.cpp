@@ -1,11 +1,16 @@
 #include "libperception/capture/Outlet.h"
 
+#include <mrpt/obs/CObservationImage.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
+
 #include <algorithm>
 #include <chrono>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
+
+#include "libperception/sensors/CObservationLidarScan.h"
 
 namespace perception {
 
@@ -20,24 +25,56 @@ Outlet::~Outlet() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Outlet::put(const Drivers::Arrival& arrival) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (failure_) return;
-  waiting_.push_back(arrival);
-  if (params_.limit > 0 && waiting_.size() > params_.limit) dropOne();
-  changed_.notify_all();
+std::uint64_t sizeInMemory(const mrpt::obs::CObservation& observation) {
+  constexpr std::uint64_t kAny = 1000;
+  if (const auto* scan = dynamic_cast<const CObservationLidarScan*>(&observation)) {
+    const LidarCloud& c = scan->cloud;
+    return kAny +
+           4 * (c.x.size() + c.y.size() + c.z.size() + c.intensity.size() + c.time_offset.size() +
+                c.pulse_width.size()) +
+           2 * c.ring.size() + c.echo.size() + c.label.size();
+  }
+  if (const auto* scan = dynamic_cast<const mrpt::obs::CObservationVelodyneScan*>(&observation))
+    return kAny + scan->scan_packets.size() *
+                      sizeof(mrpt::obs::CObservationVelodyneScan::TVelodyneRawPacket);
+  if (const auto* image = dynamic_cast<const mrpt::obs::CObservationImage*>(&observation))
+    return kAny + (image->image.isExternallyStored()
+                       ? 0
+                       : image->image.getWidth() * image->image.getHeight() *
+                             (image->image.isColor() ? 3U : 1U));
+  return kAny;
 }
 
-void Outlet::dropOne() {
+void Outlet::put(const Drivers::Arrival& arrival) {
+  std::vector<Drivers::Arrival> left_out;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (failure_) return;
+    waiting_.push_back(arrival);
+    if (params_.most_bytes > 0) waiting_bytes_ += sizeInMemory(*arrival.observation);
+    if (params_.limit > 0 && waiting_.size() > params_.limit) left_out.push_back(dropOne());
+    while (params_.most_bytes > 0 && waiting_bytes_ > params_.most_bytes && waiting_.size() > 1)
+      left_out.push_back(dropOne());
+  }
+  changed_.notify_all();
+  if (!params_.left_out) return;
+  for (const auto& one : left_out) params_.left_out(one);
+}
+
+Drivers::Arrival Outlet::dropOne() {
   std::map<std::string, std::size_t> waiting;
   for (const auto& arrival : waiting_) ++waiting[arrival.observation->sensorLabel];
   const auto most =
       std::max_element(waiting.begin(), waiting.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
-  waiting_.erase(std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& arrival) {
+  const auto oldest = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& arrival) {
     return arrival.observation->sensorLabel == most->first;
-  }));
+  });
+  Drivers::Arrival dropped = std::move(*oldest);
+  waiting_.erase(oldest);
+  if (params_.most_bytes > 0) waiting_bytes_ -= sizeInMemory(*dropped.observation);
   ++dropped_;
+  return dropped;
 }
 
 void Outlet::run() {
@@ -52,6 +89,7 @@ void Outlet::run() {
       if (!waiting_.empty()) {
         next = std::move(waiting_.front());
         waiting_.pop_front();
+        if (params_.most_bytes > 0) waiting_bytes_ -= sizeInMemory(*next->observation);
       }
       const std::uint64_t dropped = dropped_;
       lock.unlock();

@@ -11,6 +11,9 @@
 
 namespace perception {
 
+/// [bytes] of an observation, roughly: its points, packets or pixels.
+std::uint64_t sizeInMemory(const mrpt::obs::CObservation& observation);
+
 /// Where a capture's observations go, in a thread of its own: a log, a stream. One that is slow
 /// does not hold up the sensors or another one.
 class Outlet {
@@ -22,6 +25,10 @@ class Outlet {
     /// Takes one; `dropped`: left out so far.
     std::function<void(const Drivers::Arrival& arrival, std::uint64_t dropped)> take;
     std::function<void()> tend;  ///< called about once a second; may be empty
+    /// The same limit in bytes, as sizeInMemory(); 0: none.
+    std::uint64_t most_bytes = 0;
+    /// Told what is left out, from the thread that puts; may be empty.
+    std::function<void(const Drivers::Arrival& arrival)> left_out;
   };
 
   explicit Outlet(Params params);
@@ -38,12 +45,13 @@ class Outlet {
 
  private:
   void run();
-  void dropOne();
+  Drivers::Arrival dropOne();
 
   const Params params_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Drivers::Arrival> waiting_;
+  std::uint64_t waiting_bytes_ = 0;  ///< where there is a limit
   std::uint64_t dropped_ = 0;
   bool closing_ = false;
   std::exception_ptr failure_;

@@ -18,7 +18,7 @@ class PacketsImporter final : public Importer {
   void declare(CLI::App& cli) override {
     std::string kinds;
     for (const DeviceKind& kind : deviceKinds()) {
-      if (kind.port == 0) continue;
+      if (kind.transport != Transport::kUdp) continue;
       names_.emplace_back(kind.name);
       kinds += fmt::format("{}{}: {}", kinds.empty() ? "" : "; ", kind.name, kind.description);
     }

@@ -93,6 +93,10 @@ class Ars548Decoder final : public PacketDecoder {
     DecodedPacket packet;
     packet.stamp_ns = static_cast<std::int64_t>(bigEndian(payload, 40, 4)) * 1000000000 +
                       static_cast<std::int64_t>(bigEndian(payload, 36, 4));
+    const auto sync = bigEndian(payload, 44, 1);
+    packet.clock = sync == 1   ? ClockState::kSynchronized
+                   : sync == 3 ? ClockState::kLost
+                               : ClockState::kNeverSet;
     const auto method = bigEndian(payload, 2, 2);
     if (method == 336) {
       addDetections(payload, packet);

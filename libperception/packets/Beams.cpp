@@ -42,4 +42,49 @@ LidarReturn returnAt(double range, double azimuth, double elevation) {
   return point;
 }
 
+const std::vector<BeamAngles>& vlp16Beams() {
+  static const std::vector<BeamAngles> beams = [] {
+    std::vector<BeamAngles> list;
+    for (int laser = 0; laser < 16; ++laser)
+      list.push_back({laser % 2 == 0 ? laser - 15.0 : laser + 0.0, 0});
+    return list;
+  }();
+  return beams;
+}
+
+const std::vector<BeamAngles>& vlp32cBeams() {
+  static const std::vector<BeamAngles> beams = {
+      {-25, 1.4},    {-1, -4.2},     {-1.667, 1.4}, {-15.639, -1.4}, {-11.31, 1.4}, {0, -1.4},
+      {-.667, 4.2},  {-8.843, -1.4}, {-7.254, 1.4}, {.333, -4.2},    {-.333, 1.4},  {-6.148, -1.4},
+      {-5.333, 4.2}, {1.333, -1.4},  {.667, 4.2},   {-4, -1.4},      {-4.667, 1.4}, {1.667, -4.2},
+      {1, 1.4},      {-3.667, -4.2}, {-3.333, 4.2}, {3.333, -1.4},   {2.333, 1.4},  {-2.667, -1.4},
+      {-3, 1.4},     {7, -1.4},      {4.667, 1.4},  {-2.333, -4.2},  {-2, 4.2},     {15, -1.4},
+      {10.333, 1.4}, {-1.333, -1.4}};
+  return beams;
+}
+
+const std::vector<BeamAngles>& pandar40pBeams() {
+  static const std::vector<BeamAngles> beams = [] {
+    std::vector<BeamAngles> list;
+    const double high[] = {14.79, 10.94, 7.97, 4.97, 2.95, 1.94};
+    const double low[] = {-7.15,  -8.15,  -9.15,  -10.13, -11.12,
+                          -12.09, -13.06, -14.02, -18.98, -24.99};
+    const double cycle[] = {3.125, -5.208, -1.042};
+    for (const double e : high) list.push_back({e, -1.042});
+    for (int k = 0; k < 24; ++k) list.push_back({1.60 - .337 * k, k < 23 ? cycle[k % 3] : -1.042});
+    for (const double e : low) list.push_back({e, -1.042});
+    return list;
+  }();
+  return beams;
+}
+
+const std::vector<BeamAngles>& xt32Beams() {
+  static const std::vector<BeamAngles> beams = [] {
+    std::vector<BeamAngles> list;
+    for (int channel = 1; channel <= 32; ++channel) list.push_back({16.0 - channel, 0});
+    return list;
+  }();
+  return beams;
+}
+
 }  // namespace perception

@@ -20,6 +20,13 @@ std::vector<std::uint16_t> ringsOf(const std::vector<BeamAngles>& beams);
 /// Throws DataError with file and line; `count`: of the lasers expected.
 std::vector<BeamAngles> readBeams(const std::string& path, std::size_t count);
 
+/// Beams of the models, in the order of their channels: those of the manuals, of Hesai's the
+/// nominal ones.
+const std::vector<BeamAngles>& vlp16Beams();
+const std::vector<BeamAngles>& vlp32cBeams();
+const std::vector<BeamAngles>& pandar40pBeams();
+const std::vector<BeamAngles>& xt32Beams();
+
 /// A return at a range [m] and a clockwise azimuth [deg] from the x axis.
 LidarReturn returnAt(double range, double azimuth, double elevation);
 

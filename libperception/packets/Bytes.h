@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 namespace perception {
@@ -36,6 +37,36 @@ inline std::uint32_t bitsMsbFirst(std::string_view bytes, std::size_t first, std
     value = value << 1 | (static_cast<std::uint8_t>(bytes[bit / 8]) >> (7 - bit % 8) & 1U);
   }
   return value;
+}
+
+/// The same written: into bytes that are there.
+inline void putLittle(std::string& bytes, std::size_t at, std::uint64_t value, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) bytes[at + i] = static_cast<char>(value >> 8 * i);
+}
+
+inline void putBig(std::string& bytes, std::size_t at, std::uint64_t value, std::size_t count) {
+  for (std::size_t i = count; i-- > 0; value >>= 8) bytes[at + i] = static_cast<char>(value);
+}
+
+inline void putBigFloat(std::string& bytes, std::size_t at, float value) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, &value, sizeof word);
+  putBig(bytes, at, word, 4);
+}
+
+inline void putBitsMsbFirst(std::string& bytes, std::size_t first, std::size_t count,
+                            std::uint32_t value) {
+  for (std::size_t bit = first + count; bit-- > first; value >>= 1) {
+    const int mask = 1 << (7 - bit % 8);
+    const int byte = static_cast<unsigned char>(bytes[bit / 8]);
+    bytes[bit / 8] = static_cast<char>((value & 1U) != 0 ? byte | mask : byte & ~mask);
+  }
+}
+
+/// Two's complement of `count` bits.
+inline int signedBitsMsbFirst(std::string_view bytes, std::size_t first, std::size_t count) {
+  const auto value = static_cast<int>(bitsMsbFirst(bytes, first, count));
+  return value >= 1 << (count - 1) ? value - (1 << count) : value;
 }
 
 }  // namespace perception

@@ -2,6 +2,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/packets/Decoders.h"
+#include "libperception/packets/Encoder.h"
 
 namespace perception {
 namespace {
@@ -11,18 +12,24 @@ using File = const std::string&;
 }  // namespace
 
 const std::vector<DeviceKind>& deviceKinds() {
+  constexpr auto kUdp = Transport::kUdp;
   static const std::vector<DeviceKind> kinds = {
-      {"velodyne", "Velodyne VLP-16, VLP-32C", true, 2368, false, 200,
-       [](File) { return makeVelodyneDecoder(); }},
-      {"pandar40p", "Hesai Pandar40P; file: beams of the unit", true, 2368, false, 200,
-       &makePandar40pDecoder},
-      {"xt32", "Hesai XT32; file: beams of the unit", true, 2368, false, 120, &makeXt32Decoder},
-      {"ouster", "Ouster OS-0, OS-1, OS-2; file: the sensor's metadata", true, 7502, true, 120,
-       &makeOusterDecoder},
-      {"ars548", "Continental ARS548: detections", false, 42102, false, 300,
-       [](File) { return makeArs548Decoder(); }},
-      {"srr520", "Continental SRR520: detections, by CAN FD", false, 0, false, 100,
-       [](File) { return makeSrr520Decoder(); }},
+      {"velodyne", "Velodyne VLP-16, VLP-32C", true, kUdp, 2368, false, 200,
+       [](File) { return makeVelodyneDecoder(); }, &makeVelodyneEncoder},
+      {"pandar40p", "Hesai Pandar40P; file: beams of the unit", true, kUdp, 2368, false, 200,
+       &makePandar40pDecoder, &makePandar40pEncoder},
+      {"xt32", "Hesai XT32; file: beams of the unit", true, kUdp, 2368, false, 120,
+       &makeXt32Decoder, &makeXt32Encoder},
+      {"ouster", "Ouster OS-0, OS-1, OS-2; file: the sensor's metadata", true, kUdp, 7502, true,
+       120, &makeOusterDecoder, &makeOusterEncoder},
+      {"ibeo", "Ibeo LUX, ALASCA XT, ECU: scans", true, Transport::kTcp, 12002, false, 200,
+       [](File) { return makeIbeoDecoder(); }, &makeIbeoEncoder},
+      {"ars548", "Continental ARS548: detections", false, kUdp, 42102, false, 300,
+       [](File) { return makeArs548Decoder(); }, &makeArs548Encoder},
+      {"srr520", "Continental SRR520: detections, by CAN FD", false, Transport::kCan, 0, false, 100,
+       [](File) { return makeSrr520Decoder(); }, &makeSrr520Encoder},
+      {"esr", "Delphi ESR: tracks with a measurement, by CAN", false, Transport::kCan, 0, false,
+       175, [](File) { return makeEsrDecoder(); }, &makeEsrEncoder},
   };
   return kinds;
 }

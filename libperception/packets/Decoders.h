@@ -8,8 +8,8 @@ namespace perception {
 
 /// Velodyne VLP-16 and VLP-32C (1206 bytes; the model is in the packet; azimuths interpolated by
 /// the time of each firing, without vertical offsets of the lasers). Of equal dual returns the
-/// first alone. Stamp: past the hour. No packet numbers are sent. Source: the manuals of the
-/// sensors.
+/// first alone. Stamp: past the hour. No packet numbers are sent: they follow from the stamps, as
+/// firings never pause. Source: the manuals of the sensors.
 std::unique_ptr<PacketDecoder> makeVelodyneDecoder();
 
 /// Hesai Pandar40P and XT32. `file`: beams of the unit, "Laser id,Elevation,Azimuth"; empty: the
@@ -27,5 +27,16 @@ std::unique_ptr<PacketDecoder> makeArs548Decoder();
 /// Near and far detections become targets, and objects objects, with the message that closes the
 /// group. Stamp: since 1970.
 std::unique_ptr<PacketDecoder> makeSrr520Decoder();
+
+/// Ibeo LUX (2202), ECU (2204, 2205) and ALASCA XT: scans with echo number, pulse width and the
+/// sensor's own labels, a message each, with its header. Points of an ECU are in its own frame.
+/// Stamp: of the scan's end; since 1970, of the ALASCA XT since it was switched on.
+std::unique_ptr<PacketDecoder> makeIbeoDecoder();
+
+/// Delphi ESR 2.5: CAN messages, each as four bytes of identifier (big endian) and its data, laid
+/// out as in the public DBC. A scan ends with the last group of powers, or with the next index.
+/// Tracks without a measurement in the scan (coasted) are left out. No stamp is sent; its packets'
+/// numbers are those of the scans.
+std::unique_ptr<PacketDecoder> makeEsrDecoder();
 
 }  // namespace perception

@@ -1,9 +1,11 @@
 #include "libperception/packets/FrameAssembler.h"
 
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "libperception/core/Error.h"
+#include "libperception/packets/CanBundle.h"
 
 namespace perception {
 namespace {
@@ -17,7 +19,7 @@ constexpr std::size_t kMostReturns = 2000000;  ///< bounds the memory of a turn 
 
 FrameAssembler::FrameAssembler(const DeviceKind& kind, const std::string& file, std::string label,
                                const Pose3& T_ego_sensor, Take take)
-    : kind_(kind), decoder_(kind.make(file)), take_(std::move(take)) {
+    : kind_(kind), decoder_(kind.make(file)), transport_(kind.transport), take_(std::move(take)) {
   frame_.sensor = std::move(label);
   frame_.T_ego_sensor = T_ego_sensor;
 }
@@ -29,6 +31,7 @@ void FrameAssembler::warn(const std::string& what) {
 }
 
 void FrameAssembler::add(std::string_view payload, Stamp received) {
+  if (transport_ == Transport::kCanUdp) return addBundle(payload, received);
   DecodedPacket packet;
   try {
     packet = decoder_->decode(payload);
@@ -36,19 +39,61 @@ void FrameAssembler::add(std::string_view payload, Stamp received) {
     counter_.countDamaged();
     return warn(error.what());
   }
-  if (!counter_.count(packet)) return;
+  if (isNew(packet)) take(packet, received);
+}
+
+/// A datagram with a frame that is refused counts as received; its other frames are taken.
+void FrameAssembler::addBundle(std::string_view datagram, Stamp received) {
+  CanBundle bundle;
+  try {
+    bundle = parseCanBundle(datagram);
+  } catch (const DataError& error) {
+    counter_.countDamaged();
+    return warn(error.what());
+  }
+  DecodedPacket packet;
+  packet.number = bundle.number;
+  packet.numbers = 256;
+  packet.identity = std::hash<std::string_view>()(datagram) | 1;
+  if (!isNew(packet)) return;
+  for (const std::string& message : bundle.messages) addMessage(message, received);
+}
+
+void FrameAssembler::addMessage(std::string_view message, Stamp received) {
+  try {
+    const DecodedPacket packet = decoder_->decode(message);
+    if (scans_.count(packet)) take(packet, received);
+  } catch (const DataError& error) {
+    warn(error.what());
+  }
+}
+
+bool FrameAssembler::isNew(const DecodedPacket& packet) {
+  const auto restarts = counter_.ledger().restarts;
+  const bool is_new = counter_.count(packet);
+  if (counter_.ledger().restarts > restarts)
+    warn("its numbers begin anew: the device was restarted");
+  return is_new;
+}
+
+void FrameAssembler::take(const DecodedPacket& packet, Stamp received) {
   for (const std::string& warning : packet.warnings) warn(warning);
+  if (const auto change = clock_.add(packet, received)) warn(*change);
   kind_.lidar ? addTurn(packet, received) : addTargets(packet, received);
 }
 
 void FrameAssembler::addTurn(const DecodedPacket& packet, Stamp received) {
-  double after = static_cast<double>(packet.stamp_ns - first_clock_) * 1e-9;
+  if (packet.returns.empty() && packet.stamp_ns == 0) return;  // a message without a scan
+  std::int64_t since = packet.stamp_ns - first_clock_;
+  if (since < -packet.clock_period_ns / 2) since += packet.clock_period_ns;
+  double after = static_cast<double>(since) * 1e-9;
   const bool passed_zero = packet.turn < turn_ - 0.5F;  // less: packets out of order
-  if (begun_ && (passed_zero || std::abs(after) > kLongestTurn || cloud_.size() > kMostReturns))
+  if (begun_ && (packet.ends_scan || passed_zero || std::abs(after) > kLongestTurn ||
+                 cloud_.size() > kMostReturns))
     finish();
   if (!begun_) {
     begun_ = true;
-    frame_.stamp = received;
+    frame_.stamp = received + time_offset_;
     first_clock_ = packet.stamp_ns;
     after = 0;
   }
@@ -61,7 +106,11 @@ void FrameAssembler::addTurn(const DecodedPacket& packet, Stamp received) {
     cloud_.ring.push_back(p.ring);
     cloud_.echo.push_back(p.echo);
     cloud_.time_offset.push_back(static_cast<float>(after + 1e-6 * p.time_us));
+    if (!packet.labeled) continue;
+    cloud_.pulse_width.push_back(p.pulse_width);
+    cloud_.label.push_back(p.label);
   }
+  if (packet.ends_scan) finish();
 }
 
 void FrameAssembler::addTargets(const DecodedPacket& packet, Stamp received) {
@@ -75,10 +124,11 @@ void FrameAssembler::addTargets(const DecodedPacket& packet, Stamp received) {
     r.range_rate = target.range_rate;
     r.amplitude = target.rcs;
     if (target.has_elevation) r.elevation = target.elevation;
+    r.id = target.id;
     scan.returns.push_back(r);
   }
   SensorFrame frame = frame_;
-  frame.stamp = received;
+  frame.stamp = received + time_offset_;
   frame.data = std::move(scan);
   ++frames_;
   take_(std::move(frame));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libperception/measurement/SensorFrame.h"
+#include "libperception/packets/ClockWatch.h"
 #include "libperception/packets/Decoder.h"
 
 namespace perception {
@@ -21,27 +22,43 @@ class FrameAssembler {
   FrameAssembler(const DeviceKind& kind, const std::string& file, std::string label,
                  const Pose3& T_ego_sensor, Take take);
 
+  /// How packets come; default: the kind's.
+  void setTransport(Transport transport) { transport_ = transport; }
+  /// Added to the frames' stamps [s].
+  void setTimeOffset(double seconds) { time_offset_ = seconds; }
+
   /// Adds one packet, received at `received`. A packet that cannot be decoded is counted, gives a
   /// warning and costs itself alone; one that came before is left out.
   void add(std::string_view payload, Stamp received);
   /// Gives the frame that has begun, which may be part of a turn.
   void finish();
 
+  /// A fault of the whole, as one for each damaged packet.
+  void warn(const std::string& what);
+
   const PacketLedger& ledger() const { return counter_.ledger(); }
+  ClockLedger clock() const { return clock_.ledger(); }
   std::vector<std::string> lostRanges() const { return counter_.lostRanges(); }
   std::uint64_t frames() const { return frames_; }
   /// One for each damaged packet, with its number; the first 100.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  void warn(const std::string& what);
+  void addBundle(std::string_view datagram, Stamp received);
+  void addMessage(std::string_view message, Stamp received);
+  bool isNew(const DecodedPacket& packet);
+  void take(const DecodedPacket& packet, Stamp received);
   void addTurn(const DecodedPacket& packet, Stamp received);
   void addTargets(const DecodedPacket& packet, Stamp received);
 
   const DeviceKind& kind_;
   std::unique_ptr<PacketDecoder> decoder_;
-  SequenceCounter counter_;
-  SensorFrame frame_;  ///< the next one, without its data
+  SequenceCounter counter_;  ///< of packets; of CAN frames in datagrams: of datagrams
+  SequenceCounter scans_;    ///< of CAN frames in datagrams: what the frames count
+  ClockWatch clock_;
+  Transport transport_;
+  double time_offset_ = 0;  ///< [s]
+  SensorFrame frame_;       ///< the next one, without its data
   Take take_;
   LidarCloud cloud_;
   std::uint16_t rings_ = 0;

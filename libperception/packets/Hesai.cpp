@@ -24,24 +24,6 @@ constexpr Layout kPandar40p{"Pandar40P", 1262, 1262, false, 0,    124,  10,
                             40,          3,    2,    1254,  1256, 1250, 2000};
 constexpr Layout kXt32{"XT32", 1080, 1076, true, 12, 130, 8, 32, 4, 0, 1062, 1065, 1071, 1900};
 
-std::vector<BeamAngles> nominal40p() {
-  std::vector<BeamAngles> beams;
-  const double high[] = {14.79, 10.94, 7.97, 4.97, 2.95, 1.94};
-  const double low[] = {-7.15,  -8.15,  -9.15,  -10.13, -11.12,
-                        -12.09, -13.06, -14.02, -18.98, -24.99};
-  const double cycle[] = {3.125, -5.208, -1.042};
-  for (const double e : high) beams.push_back({e, -1.042});
-  for (int k = 0; k < 24; ++k) beams.push_back({1.60 - .337 * k, k < 23 ? cycle[k % 3] : -1.042});
-  for (const double e : low) beams.push_back({e, -1.042});
-  return beams;
-}
-
-std::vector<BeamAngles> nominalXt32() {
-  std::vector<BeamAngles> beams;
-  for (int channel = 1; channel <= 32; ++channel) beams.push_back({16.0 - channel, 0});
-  return beams;
-}
-
 class HesaiDecoder final : public PacketDecoder {
  public:
   HesaiDecoder(const Layout& layout, std::vector<BeamAngles> beams)
@@ -142,11 +124,11 @@ class HesaiDecoder final : public PacketDecoder {
 
 std::unique_ptr<PacketDecoder> makePandar40pDecoder(const std::string& file) {
   return std::make_unique<HesaiDecoder>(kPandar40p,
-                                        file.empty() ? nominal40p() : readBeams(file, 40));
+                                        file.empty() ? pandar40pBeams() : readBeams(file, 40));
 }
 
 std::unique_ptr<PacketDecoder> makeXt32Decoder(const std::string& file) {
-  return std::make_unique<HesaiDecoder>(kXt32, file.empty() ? nominalXt32() : readBeams(file, 32));
+  return std::make_unique<HesaiDecoder>(kXt32, file.empty() ? xt32Beams() : readBeams(file, 32));
 }
 
 }  // namespace perception

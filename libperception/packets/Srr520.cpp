@@ -5,6 +5,7 @@
 #include "libperception/core/Error.h"
 #include "libperception/packets/Bytes.h"
 #include "libperception/packets/Decoders.h"
+#include "libperception/packets/Srr520.h"
 
 namespace perception {
 namespace {
@@ -20,17 +21,6 @@ struct List {
 constexpr std::array<List, 3> kLists{
     {{"near", 900, 50, 10}, {"far", 1100, 20, 10}, {"objects", 1200, 20, 2}}};
 constexpr std::size_t kHeaderSize = 32, kElementSize = 64, kCloseSize = 4, kId = 4;
-
-/// CRC-16/CCITT-FALSE.
-std::uint16_t crc16(std::string_view bytes) {
-  std::uint32_t crc = 0xFFFF;
-  for (const char byte : bytes) {
-    crc ^= static_cast<std::uint32_t>(static_cast<std::uint8_t>(byte)) << 8;
-    for (int i = 0; i < 8; ++i) crc = (crc & 0x8000) ? (crc << 1) ^ 0x1021 : crc << 1;
-    crc &= 0xFFFF;
-  }
-  return static_cast<std::uint16_t>(crc);
-}
 
 /// Reads fields one after the other, the most significant bit first.
 class BitReader {
@@ -117,7 +107,7 @@ class Srr520Decoder final : public PacketDecoder {
     const std::string group = std::move(group_[i]);
     group_[i].clear();
     if (group.empty()) refuse(std::string(kLists[i].name) + ": closed without header");
-    if (crc16(group) != bigEndian(data, 1, 2))
+    if (srr520Checksum(group) != bigEndian(data, 1, 2))
       refuse(std::string(kLists[i].name) + ": checksum is wrong, the list is left out");
     return decodeList(kLists[i], group);
   }
@@ -133,6 +123,10 @@ class Srr520Decoder final : public PacketDecoder {
     packet.stamp_ns = static_cast<std::int64_t>(bigEndian(group, 4, 4)) * 1000000000 +
                       static_cast<std::int64_t>(bigEndian(group, 8, 4));
     packet.ends_scan = !objects;
+    const auto sync = bigEndian(group, 12, 1);
+    packet.clock = sync == 1   ? ClockState::kSynchronized
+                   : sync == 3 ? ClockState::kLost
+                               : ClockState::kNeverSet;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t element = kHeaderSize + k / list.in_element * kElementSize;
       const std::size_t bits = (objects ? 248 : 48) * (k % list.in_element);
@@ -149,6 +143,16 @@ class Srr520Decoder final : public PacketDecoder {
 };
 
 }  // namespace
+
+std::uint16_t srr520Checksum(std::string_view bytes) {
+  std::uint32_t crc = 0xFFFF;
+  for (const char byte : bytes) {
+    crc ^= static_cast<std::uint32_t>(static_cast<std::uint8_t>(byte)) << 8;
+    for (int i = 0; i < 8; ++i) crc = (crc & 0x8000) ? (crc << 1) ^ 0x1021 : crc << 1;
+    crc &= 0xFFFF;
+  }
+  return static_cast<std::uint16_t>(crc);
+}
 
 std::unique_ptr<PacketDecoder> makeSrr520Decoder() { return std::make_unique<Srr520Decoder>(); }
 

@@ -1,4 +1,6 @@
 #include <array>
+#include <cmath>
+#include <optional>
 
 #include "libperception/core/Error.h"
 #include "libperception/packets/Beams.h"
@@ -18,39 +20,13 @@ struct Model {
   std::vector<std::uint16_t> rings;
 };
 
-Model modelOf(double unit, const std::vector<BeamAngles>& beams) {
-  return {unit, beams, ringsOf(beams)};
-}
-
 const Model& vlp16() {
-  static const Model model = modelOf(0.002, {{-15, 0},
-                                             {1, 0},
-                                             {-13, 0},
-                                             {3, 0},
-                                             {-11, 0},
-                                             {5, 0},
-                                             {-9, 0},
-                                             {7, 0},
-                                             {-7, 0},
-                                             {9, 0},
-                                             {-5, 0},
-                                             {11, 0},
-                                             {-3, 0},
-                                             {13, 0},
-                                             {-1, 0},
-                                             {15, 0}});
+  static const Model model{0.002, vlp16Beams(), ringsOf(vlp16Beams())};
   return model;
 }
 
 const Model& vlp32c() {
-  static const Model model = modelOf(
-      0.004,
-      {{-25, 1.4},    {-1, -4.2},     {-1.667, 1.4}, {-15.639, -1.4}, {-11.31, 1.4}, {0, -1.4},
-       {-.667, 4.2},  {-8.843, -1.4}, {-7.254, 1.4}, {.333, -4.2},    {-.333, 1.4},  {-6.148, -1.4},
-       {-5.333, 4.2}, {1.333, -1.4},  {.667, 4.2},   {-4, -1.4},      {-4.667, 1.4}, {1.667, -4.2},
-       {1, 1.4},      {-3.667, -4.2}, {-3.333, 4.2}, {3.333, -1.4},   {2.333, 1.4},  {-2.667, -1.4},
-       {-3, 1.4},     {7, -1.4},      {4.667, 1.4},  {-2.333, -4.2},  {-2, 4.2},     {15, -1.4},
-       {10.333, 1.4}, {-1.333, -1.4}});
+  static const Model model{0.004, vlp32cBeams(), ringsOf(vlp32cBeams())};
   return model;
 }
 
@@ -96,7 +72,13 @@ class VelodyneDecoder final : public PacketDecoder {
     const auto azimuths = azimuthsOf(payload);
     const std::size_t echoes = littleEndian(payload, kTail + 4, 1) == 0x39 ? 2 : 1;
     DecodedPacket packet;
-    packet.stamp_ns = static_cast<std::int64_t>(littleEndian(payload, kTail, 4)) * 1000;
+    const auto micros = static_cast<std::int64_t>(littleEndian(payload, kTail, 4));
+    packet.stamp_ns = micros * 1000;
+    packet.clock_period_ns = kHour * 1000;
+    const double firings = kBlocks * (model.beams.size() < kChannels ? 2.0 : 1.0);
+    packet.number =
+        numberAt(micros, kFiring * firings / static_cast<double>(echoes), azimuths[0], packet);
+    packet.numbers = std::uint64_t{1} << 32;
     packet.turn = static_cast<float>(azimuths[0]) / kTurn;
     for (std::size_t b = 0; b < kBlocks; ++b) {
       const std::size_t from = b + echoes < kBlocks ? b : b - echoes;  // the last: the step before
@@ -107,6 +89,49 @@ class VelodyneDecoder final : public PacketDecoder {
   }
 
  private:
+  /// From 0. Firings follow each other without a pause: how many packets lie between two stamps
+  /// [us] is known. A clock that was set is no loss. Nor is certainly a gap of a good part of a
+  /// turn: a field of view can be set, outside of which nothing is sent. It is told, once for gaps
+  /// that are alike.
+  std::uint64_t numberAt(std::int64_t micros, double period, int azimuth, DecodedPacket& packet) {
+    if (!last_) {
+      last_ = micros;
+      return number_;
+    }
+    std::int64_t since = (micros - *last_) % kHour;
+    if (since > kHour / 2) since -= kHour;
+    if (since < -kHour / 2) since += kHour;
+    const auto count = std::llround(static_cast<double>(since) / period);
+    const double rest = static_cast<double>(since) - static_cast<double>(count) * period;
+    const bool fits = std::abs(rest) < kJitter + kDrift * std::abs(static_cast<double>(since));
+    if (fits && count <= 0) return (number_ - static_cast<std::uint64_t>(-count)) & 0xFFFFFFFF;
+    last_ = micros;
+    if (!fits) return ++number_;
+    if (static_cast<double>(since) > kLargeGap) {
+      tellGap(count - 1, azimuth, packet);
+      return ++number_;
+    }
+    return number_ += static_cast<std::uint64_t>(count);
+  }
+
+  void tellGap(std::int64_t count, int azimuth, DecodedPacket& packet) {
+    const bool again = std::abs(count - gap_) <= 2 && std::abs(azimuth - gap_end_) < 500;
+    gap_ = count;
+    gap_end_ = azimuth;
+    if (again) return;
+    packet.warnings.push_back(
+        "Velodyne: " + std::to_string(count) + " packets missing by their stamps up to azimuth " +
+        std::to_string(azimuth / 100) + " deg: lost, or outside of the field of view that is set");
+  }
+
+  static constexpr std::int64_t kHour = 3600000000;     ///< [us]
+  static constexpr double kJitter = 60, kDrift = 1e-4;  ///< [us], [-] of the clock
+  static constexpr double kLargeGap = 8000;             ///< [us] 30 deg at ten turns a second
+  std::optional<std::int64_t> last_;                    ///< [us] of the newest packet
+  std::uint64_t number_ = 0;
+  std::int64_t gap_ = 0;
+  int gap_end_ = 0;  ///< [0.01 deg]
+
   static void addBlock(std::string_view payload, const Model& model, std::size_t b,
                        std::size_t echoes, int azimuth, int step, DecodedPacket& packet) {
     const std::size_t lasers = model.beams.size(), echo = b % echoes;

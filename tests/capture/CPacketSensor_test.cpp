@@ -1,12 +1,17 @@
 // Packets of a simulated device through driver and recorder, to the packet.
 #include "libperception/capture/CPacketSensor.h"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 
 #include "libperception/capture/Grabber.h"
 #include "libperception/core/Error.h"
@@ -96,8 +101,8 @@ class Recorded : public testing::Test {
 
 TEST_F(Recorded, WhatWasSentAndWhatWasLostIsKnownToThePacket) {
   Grabber grabber(ini("chunk_seconds = 1",
-                      "replay_loss = 0.02\nreplay_repeat = 0.02\n"
-                      "replay_swap = 0.02\nseed = 3\n"),
+                      "fault_loss = 0.02\nfault_repeat = 0.02\n"
+                      "fault_swap = 0.02\nseed = 3\n"),
                   {out(), "", {}});
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
   grabber.run([&] { return std::chrono::steady_clock::now() > end; }, [] {});
@@ -151,6 +156,153 @@ TEST_F(Recorded, FaultsOfTheIniAreNamed) {
   } catch (const ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find("[A] driver CNoSuchSensor"), std::string::npos);
   }
+}
+
+/// "3", "5-7" as numbers.
+std::vector<std::uint64_t> numbersOf(const nlohmann::json& ranges) {
+  std::vector<std::uint64_t> numbers;
+  for (const std::string range : ranges) {
+    const std::size_t mark = range.find('-');
+    const std::uint64_t from = std::stoull(range);
+    const std::uint64_t to = mark == std::string::npos ? from : std::stoull(range.substr(mark + 1));
+    for (std::uint64_t n = from; n <= to; ++n) numbers.push_back(n);
+  }
+  return numbers;
+}
+
+/// ini/capture.ini with faults in every device, wherever the test runs.
+std::string shippedIni(const std::string& dir, const std::string& faults) {
+  std::ifstream file(PERCEPTION_SOURCE_DIR "/ini/capture.ini");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string ini =
+      std::regex_replace(text.str(), std::regex("= ini/"), "= " PERCEPTION_SOURCE_DIR "/ini/");
+  ini = std::regex_replace(ini, std::regex("driver = CPacketSensor"),
+                           "driver = CPacketSensor\n" + faults);
+  ini = std::regex_replace(ini, std::regex("start_delay = 2"), "start_delay = 1");
+  ini = std::regex_replace(ini, std::regex("\nport = (.?)(...)(.)"), "\nport = 4$2$3");
+  const std::string path = dir + "/shipped.ini";
+  std::ofstream(path) << ini;
+  return path;
+}
+
+TEST_F(Recorded, TheShippedDevicesLoseWhatTheirSimulatorsDroppedAndNothingElse) {
+  Grabber grabber(shippedIni(dir_.string(),
+                             "fault_loss = 0.02\nfault_repeat = 0.02\nfault_swap = 0.02\n"
+                             "fault_torn = 0.02"),
+                  {out(), "", {}});
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(3500);
+  grabber.run([&] { return std::chrono::steady_clock::now() > end; }, [] {});
+  int devices = 0;
+  for (const auto& sensor : notes("sensor")) {
+    if (!sensor.contains("simulator")) continue;
+    ++devices;
+    const std::string name = sensor["sensor"];
+    const auto& sent = sensor["simulator"];
+    const auto& got = sensor["packets"];
+    EXPECT_GT(sensor["written"], 5) << name;
+    EXPECT_EQ(got["received"], sent["sent"]) << name;
+    EXPECT_EQ(got["damaged"], sent["torn"]) << name;
+    EXPECT_EQ(got["repeated"], sent["repeated"]) << name;
+    EXPECT_EQ(got["overrun"], 0) << name;
+    EXPECT_EQ(numbersOf(got["lost_numbers"]), sent["missing"].get<std::vector<std::uint64_t>>())
+        << name;
+    EXPECT_EQ(got["lost"], sent["missing"].size()) << name;
+    EXPECT_EQ(sent["made"].get<std::uint64_t>() - sent["dropped"].get<std::uint64_t>() +
+                  sent["repeated"].get<std::uint64_t>(),
+              sent["sent"])
+        << name;
+  }
+  EXPECT_EQ(devices, 9);
+}
+
+/// Sends to the loopback interface, from a port of its own.
+class Sender {
+ public:
+  Sender() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {}
+  ~Sender() { ::close(socket_); }
+  void send(const std::string& bytes, std::uint16_t port) const {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(port);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ::sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+             sizeof to);
+  }
+
+ private:
+  int socket_;
+};
+
+TEST_F(Recorded, ASecondSenderIsRefusedAndARestartIsRecognised) {
+  const std::string path = (dir_ / "two.ini").string();
+  std::ofstream(path) << "[global]\n[XT32]\ndriver = CPacketSensor\nsensorLabel = XT32\n"
+                         "device = xt32\nport = 42372\n";
+  Grabber grabber(path, {out(), "", {}});
+  const auto begin = std::chrono::steady_clock::now();
+  bool sent = false;
+  grabber.run(
+      [&] {
+        if (!std::exchange(sent, true)) {
+          const Sender first, second;
+          for (int i = 1000; i < 1200; ++i) {
+            first.send(xt32Packet(i), 42372);
+            if (i % 10 == 0) second.send(xt32Packet(50000 + i), 42372);
+          }
+          for (int i = 0; i < 100; ++i) first.send(xt32Packet(i), 42372);  // switched on again
+        }
+        return std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(600);
+      },
+      [] {});
+  const auto sensor = notes("sensor").at(0);
+  const auto& got = sensor["packets"];
+  EXPECT_EQ(got["received"], 300);
+  EXPECT_EQ(got["refused"], 20);
+  EXPECT_EQ(got["restarts"], 1);
+  EXPECT_EQ(got["lost"], 0);
+  const std::string events = sensor["events"].dump();
+  EXPECT_NE(events.find("a second sender, 127.0.0.1:"), std::string::npos) << events;
+  EXPECT_NE(events.find("restarted"), std::string::npos) << events;
+}
+
+TEST_F(Recorded, ACanInterfaceTakesFramesOfAnEsr) {
+  const std::string path = (dir_ / "can.ini").string();
+  std::ofstream(path)
+      << "[global]\n[ESR]\ndriver = CPacketSensor\nsensorLabel = ESR\ndevice = esr\n"
+         "interface = vcan0\nscenario = " PERCEPTION_SOURCE_DIR
+         "/ini/scenarios/devices.ini\n"
+         "pose_x = 2.4\npose_z = 0.4\n";
+  std::unique_ptr<Grabber> grabber;
+  try {
+    grabber = std::make_unique<Grabber>(path, GrabberOutputs{out(), "", {}});
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::kUnavailable);
+    EXPECT_NE(std::string(error.what()).find("vcan0"), std::string::npos) << error.what();
+    GTEST_SKIP() << error.what() << " (ip link add vcan0 type vcan; ip link set vcan0 up)";
+  }
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(2500);
+  grabber->run([&] { return std::chrono::steady_clock::now() > end; }, [] {});
+  const auto sensor = notes("sensor").at(0);
+  EXPECT_GT(sensor["written"], 10);
+  EXPECT_EQ(sensor["packets"]["received"], sensor["simulator"]["sent"]);
+}
+
+TEST_F(Recorded, KeysThatDoNotFitAreNamed) {
+  const auto said = [&](const std::string& keys) -> std::string {
+    const std::string path = (dir_ / "keys.ini").string();
+    std::ofstream(path) << "[global]\n[A]\ndriver = CPacketSensor\nsensorLabel = A\n" << keys;
+    try {
+      Grabber grabber(path, {out(), "", {}});
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(said("device = ibeo\n").find("host"), std::string::npos);
+  EXPECT_NE(said("device = esr\ntransport = udp\n").find("can or can_udp"), std::string::npos);
+  EXPECT_NE(said("device = xt32\nfault_loss = 2\n").find("fault_loss = 2"), std::string::npos);
+  EXPECT_NE(said("device = xt32\nreplay = a.pcap\nfault_clock_step = 1\n").find("scenario"),
+            std::string::npos);
 }
 
 }  // namespace

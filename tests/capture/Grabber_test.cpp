@@ -1,4 +1,4 @@
-// Recording as users do it: MRPT's own rawlog-grabber with our plugin and ini/capture.ini.
+// Recording as users do it: MRPT's own rawlog-grabber with our plugin and ini/capture_stock.ini.
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationComment.h>
 
@@ -28,7 +28,7 @@ TEST(Grabber, RecordsTheSensorsOfAScenario) {
   fs::remove_all(dir);
   fs::create_directories(dir);
   // The INI of the repository, with paths that hold wherever the test runs.
-  std::ifstream shipped(PERCEPTION_SOURCE_DIR "/ini/capture.ini");
+  std::ifstream shipped(PERCEPTION_SOURCE_DIR "/ini/capture_stock.ini");
   std::stringstream text;
   text << shipped.rdbuf();
   std::string ini = std::regex_replace(text.str(), std::regex("out/capture/demo"), "log");

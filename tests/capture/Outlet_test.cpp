@@ -17,7 +17,7 @@ Drivers::Arrival arrivalOf(const std::string& label) {
 TEST(Outlet, TakesAllInOrderBeforeItCloses) {
   std::string taken;
   Outlet outlet(
-      {0, [&](const auto& a, std::uint64_t) { taken += a.observation->sensorLabel; }, {}});
+      {0, [&](const auto& a, std::uint64_t) { taken += a.observation->sensorLabel; }, {}, 0, {}});
   for (const char* label : {"a", "b", "c", "a"}) outlet.put(arrivalOf(label));
   outlet.close();
   EXPECT_EQ(taken, "abca");
@@ -35,6 +35,8 @@ TEST(Outlet, LeavesOutTheOldestOfTheSensorWithMostWaiting) {
                    taken += a.observation->sensorLabel;
                    dropped = left_out;
                  },
+                 {},
+                 0,
                  {}});
   outlet.put(arrivalOf("first"));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it is being taken now
@@ -46,8 +48,31 @@ TEST(Outlet, LeavesOutTheOldestOfTheSensorWithMostWaiting) {
   EXPECT_EQ(dropped, 2U);
 }
 
+TEST(Outlet, TellsWhatDidNotFitInItsBytes) {
+  std::promise<void> go;
+  auto wait = go.get_future().share();
+  std::string taken, left_out;
+  Outlet::Params params;
+  params.take = [&](const auto& a, std::uint64_t) {
+    wait.wait();
+    taken += a.observation->sensorLabel;
+  };
+  params.most_bytes = 3 * sizeInMemory(*arrivalOf("a").observation);
+  params.left_out = [&](const auto& a) { left_out += a.observation->sensorLabel; };
+  Outlet outlet(params);
+  outlet.put(arrivalOf("a"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it is being taken now
+  for (const char* label : {"b", "c", "b", "b", "b"}) outlet.put(arrivalOf(label));
+  EXPECT_EQ(left_out, "bb");
+  go.set_value();
+  outlet.close();
+  EXPECT_EQ(taken, "acbb");
+  EXPECT_EQ(outlet.dropped(), 2U);
+}
+
 TEST(Outlet, ThrowsWhatItsConsumerThrew) {
-  Outlet outlet({0, [](const auto&, std::uint64_t) { throw std::runtime_error("full"); }, {}});
+  Outlet outlet(
+      {0, [](const auto&, std::uint64_t) { throw std::runtime_error("full"); }, {}, 0, {}});
   outlet.put(arrivalOf("a"));
   EXPECT_THROW(outlet.close(), std::runtime_error);
   EXPECT_THROW(outlet.check(), std::runtime_error);

@@ -26,7 +26,9 @@
 #include "libperception/interop/ReadingBag.h"
 #include "libperception/measurement/ObjectClass.h"
 #include "libperception/packets/Beams.h"
+#include "libperception/packets/CanBundle.h"
 #include "libperception/packets/Decoder.h"
+#include "libperception/packets/Ibeo.h"
 #include "libperception/packets/Ouster.h"
 #include "libperception/packets/Pcap.h"
 #include "libperception/sensors/PositionTrack.h"
@@ -72,6 +74,23 @@ void decodePackets(std::string_view bytes) {
   const auto decoder = kind.make("");
   SequenceCounter counter;
   for (int again = 0; again < 2; ++again) counter.count(decoder->decode(bytes.substr(1)));
+}
+
+/// In two parts; the first byte says where. Each message is decoded.
+void cutIbeo(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::size_t first =
+      std::min<std::size_t>(static_cast<unsigned char>(bytes[0]), bytes.size());
+  IbeoStream stream;
+  const auto decoder = deviceKind("ibeo").make("");
+  for (const std::string_view part : {bytes.substr(0, first), bytes.substr(first)}) {
+    for (const std::string& message : stream.add(part)) {
+      try {
+        decoder->decode(message);
+      } catch (const DataError&) {  // the next one is decoded all the same
+      }
+    }
+  }
 }
 
 void readClasses(std::string_view bytes) {
@@ -143,6 +162,9 @@ const std::vector<Parser>& parsers() {
       {"lanes", ofFile([](const std::string& p) { LaneMap::fromFile(p); })},
       {"bag", ofFile(&readBag)},
       {"packets", &decodePackets},
+      {"candump", [](std::string_view b) { parseCandump(b); }},
+      {"can_bundle", [](std::string_view b) { parseCanBundle(b); }},
+      {"ibeo_stream", &cutIbeo},
       {"pcap", [](std::string_view b) { parsePcap(b, "fuzz.pcap"); }},
       {"ouster", [](std::string_view b) { parseOusterMetadata(std::string(b), "fuzz.json"); }},
       {"beams", ofFile([](const std::string& p) { readBeams(p, 40); })},

@@ -6,6 +6,8 @@
 #include <random>
 
 #include "libperception/core/Error.h"
+#include "libperception/packets/CanBundle.h"
+#include "libperception/packets/Ibeo.h"
 #include "tests/packets/Recorded.h"
 
 namespace perception {
@@ -33,6 +35,12 @@ std::string packetOf(const std::string& kind) {
     bytes.assign(35336, '\1');
     bytes.replace(2, 6, std::string("\1\x50\0\0\x8A\0", 6));
     bytes.replace(35309, 4, std::string("\0\0\1\0", 4));
+  } else if (kind == "ibeo") {
+    std::string body(44 + 50 * 10, '\1');
+    body.replace(28, 2, std::string("\x32\0", 2));
+    bytes = ibeoMessage(IbeoType::kLuxScan, 1600000000000000000, 0, body);
+  } else if (kind == "esr") {
+    bytes = canMessage(0x540, "\1\x62\3\4\5\6\7\x10");
   } else {
     bytes = std::string("\0\0\3\x84", 4) + std::string(32, '\1');
   }
@@ -97,6 +105,26 @@ TEST(SequenceCounter, ListsWhatIsMissing) {
   EXPECT_EQ(counter.ledger().repeated, 1U);
   EXPECT_EQ(counter.ledger().received, 8U);
   EXPECT_EQ(counter.lostRanges(), (std::vector<std::string>{"1", "5"}));
+}
+
+TEST(SequenceCounter, ADeviceThatStartsAnewLosesNothing) {
+  SequenceCounter counter;
+  const auto stamped = [](std::uint64_t number, std::int64_t stamp) {
+    DecodedPacket packet = numbered(number);
+    packet.stamp_ns = stamp;
+    return packet;
+  };
+  for (int i = 0; i < 500; ++i)
+    EXPECT_TRUE(counter.count(stamped(static_cast<std::uint64_t>(i), i)));
+  EXPECT_FALSE(counter.count(stamped(499, 499)));  // the same packet again
+  for (int i = 0; i < 5000; ++i) {
+    EXPECT_TRUE(counter.count(stamped(static_cast<std::uint64_t>(i), 1000 + i)));
+  }
+  EXPECT_EQ(counter.ledger().restarts, 1U);
+  EXPECT_TRUE(counter.count(stamped(0, 9000)));  // from far
+  EXPECT_EQ(counter.ledger().restarts, 2U);
+  EXPECT_EQ(counter.ledger().lost, 0U);
+  EXPECT_EQ(counter.ledger().repeated, 1U);
 }
 
 TEST(DeviceKinds, AnUnknownOneIsToldWhichThereAre) {

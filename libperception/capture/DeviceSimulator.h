@@ -1,0 +1,71 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "libperception/capture/PacketFeed.h"
+#include "libperception/capture/PacketSink.h"
+
+namespace perception {
+
+/// What a device simulator does to its packets on the way: probabilities of a packet, [0, 1).
+struct PacketFaults {
+  double loss = 0, repeat = 0, swap = 0, torn = 0;
+  std::uint64_t seed = 1;
+};
+
+/// What a device simulator has done, to the packet.
+struct SentLedger {
+  std::uint64_t made = 0;      ///< packets
+  std::uint64_t dropped = 0;   ///< not sent on purpose
+  std::uint64_t repeated = 0;  ///< sent twice
+  std::uint64_t swapped = 0;   ///< sent after the next one
+  std::uint64_t torn = 0;      ///< sent without their end
+  std::uint64_t sent = 0;      ///< packets, of those sent twice both
+  /// Which ones came not whole: dropped and torn ones, the first packet is 0.
+  std::vector<std::uint64_t> missing;
+};
+
+/// A device simulator: sends packets of a feed when they are due. The first packet and the last one
+/// are sent whole, this one late: no receiver can tell what was lost before or after all it got.
+class DeviceSimulator {
+ public:
+  DeviceSimulator(std::unique_ptr<PacketFeed> feed, std::unique_ptr<PacketSink> sink,
+                  const PacketFaults& faults);
+  ~DeviceSimulator();
+  DeviceSimulator(const DeviceSimulator&) = delete;
+  DeviceSimulator& operator=(const DeviceSimulator&) = delete;
+
+  void start();
+  /// Returns after the packet that is being sent.
+  void stop();
+  bool ended() const { return ended_; }
+  const SentLedger& ledger() const { return ledger_; }  ///< after stop() or ended()
+  /// Why it ended before its time; empty: it did not.
+  const std::string& fault() const { return fault_; }
+
+ private:
+  void run();
+  void sendAll();
+  void sendOne(std::string payload);
+  void send(const std::string& payload);
+  bool happens(double probability);
+
+  std::unique_ptr<PacketFeed> feed_;
+  std::unique_ptr<PacketSink> sink_;
+  const PacketFaults faults_;
+  std::mt19937_64 random_;
+  std::string held_;    ///< sent after the next one
+  std::string unseen_;  ///< the newest packet, if it came not whole: no later one shows that
+  bool unseen_was_dropped_ = false;
+  SentLedger ledger_;
+  std::string fault_;
+  std::atomic<bool> stop_{false}, ended_{false};
+  std::thread thread_;
+};
+
+}  // namespace perception
