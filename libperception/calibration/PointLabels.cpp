@@ -13,7 +13,7 @@ namespace perception {
 
 namespace fs = std::filesystem;
 
-bool isPhantomLabel(std::uint16_t label) { return label == 110 || (label >= 112 && label <= 117); }
+bool isPhantomLabel(std::uint16_t label) { return label == 110 || (label >= 112 && label <= 118); }
 
 PointLabels::PointLabels(const std::string& rawlog) {
   const std::string folder = fs::path(rawlog).replace_extension().string() + "_Labels";

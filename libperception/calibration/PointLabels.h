@@ -8,7 +8,7 @@
 
 namespace perception {
 
-/// Labels 110 and 112 to 117: snow, rain, fog, spray, exhaust, mirror, noise
+/// Labels 110 and 112 to 118: snow, rain, fog, spray, exhaust, mirror, noise, dirt
 /// (simulation/PointTruth.h); 111 is lying snow.
 bool isPhantomLabel(std::uint16_t label);
 

@@ -6,6 +6,12 @@
 namespace perception {
 namespace {
 
+// Ratio of an echo's power to the threshold, method.md (57).
+double ratioOf(double intensity, double range, const LidarPulse& pulse, const LidarParams& p) {
+  const double far = p.reference_range / range;
+  return intensity / (0.9 * pulse.threshold) * far * far;
+}
+
 bool inReach(const LidarPulse::Scatterer& s, const LidarParams& p) {
   return s.range >= p.range_min && s.range <= p.range_max;
 }
@@ -28,6 +34,9 @@ LidarEcho echoOf(const LidarPulse& pulse, double reflectivity, const LidarParams
   if (const LidarPulse::Scatterer* known = knownReturn(pulse, p)) {
     echo.received = true;
     echo.range = known->range, echo.intensity = known->intensity, echo.phantom = known->phantom;
+    // Reported in steps; it was received, so it is at least at the threshold.
+    const double dimmest = .5 / 255;
+    echo.level = std::max(1.0, ratioOf(std::max(dimmest, echo.intensity), echo.range, pulse, p));
     return echo;
   }
   double returned = 0;
@@ -44,11 +53,33 @@ LidarEcho echoOf(const LidarPulse& pulse, double reflectivity, const LidarParams
     echo.of_surface = false, echo.phantom = s.phantom;
   }
   if (!(returned > 0)) return echo;
-  const double far = p.reference_range / echo.range;
-  echo.snr = returned / (0.9 * pulse.threshold) * far * far;
+  echo.snr = echo.level = ratioOf(returned, echo.range, pulse, p);
   echo.received = echo.snr >= 1;
   echo.intensity = std::min(1.0, returned);
   return echo;
+}
+
+std::optional<LidarEcho> secondEchoOf(const LidarPulse& pulse, const LidarEcho& first,
+                                      double reflectivity, const LidarParams& p) {
+  constexpr double kApart = 0.75;  // [m] 5 ns there and back
+  if (!first.received || first.of_surface || pulse.hit.object == BeamHit::kNothing) return {};
+  LidarPulse open = pulse;
+  open.scatterers.clear();
+  const LidarEcho second = echoOf(open, reflectivity, p);
+  if (!second.received || second.range < first.range + kApart) return {};
+  return second;
+}
+
+// A Gaussian pulse of 4 ns at half its height, 0.6 m, widened by the surface's depth (assumed).
+double pulseWidth(double snr, double slant) {
+  constexpr double kHalfHeight = 0.6;  // [m]
+  const double sigma =
+      std::hypot(kHalfHeight / std::sqrt(8 * std::log(2.0)), slant / std::sqrt(12));
+  return 2 * sigma * std::sqrt(2 * std::log(std::max(1.0, snr)));
+}
+
+bool isRain(const LidarEcho& first, const LidarEcho& second) {
+  return first.level < second.level || first.width < second.width;
 }
 
 }  // namespace perception

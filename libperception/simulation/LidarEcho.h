@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "libperception/simulation/LidarParams.h"
 #include "libperception/simulation/SimulatedWeather.h"
 
@@ -11,6 +13,8 @@ struct LidarEcho {
   double range = 0;         ///< [m] without noise
   double intensity = 0;     ///< [0, 1] corrected for range, as instruments report it
   double snr = 0;           ///< against the detection threshold; of known returns not known: 0
+  double level = 0;         ///< amplitude against the threshold; of known returns from intensity
+  double width = 0;         ///< [m] duration above the threshold, where it was asked for
   Phantom phantom = Phantom::kNone;
 };
 
@@ -19,5 +23,18 @@ struct LidarEcho {
 /// is above the threshold: P0 = rho exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2, method.md
 /// (57).
 LidarEcho echoOf(const LidarPulse& pulse, double reflectivity, const LidarParams& params);
+
+/// The surface behind a received drop, flake or cloud, where a four-layer scanner resolves it: a
+/// pulse's length or more behind and above the threshold (method.md 9.9).
+std::optional<LidarEcho> secondEchoOf(const LidarPulse& pulse, const LidarEcho& first,
+                                      double reflectivity, const LidarParams& params);
+
+/// [m] for how long an echo is above the threshold (method.md 9.9); `slant` [m]: depth of the
+/// surface within the beam.
+double pulseWidth(double snr, double slant);
+
+/// The rain rule of the four-layer scanners of [radecki2016]: of two echoes the first is rain if it
+/// is lower or shorter.
+bool isRain(const LidarEcho& first, const LidarEcho& second);
 
 }  // namespace perception

@@ -22,15 +22,16 @@ constexpr std::uint32_t kWeatherPurpose = 0x57EA0000;  // its own stream of rand
 
 double quantized(double value, double unit) { return std::round(value / unit) * unit; }
 
-/// The echo of one pulse; nothing when it stays below the threshold.
+/// A received echo of a pulse.
 struct Echo {
-  bool received = false;
-  bool on_object = false;     ///< else road or air
-  bool object_label = false;  ///< the sensor's own point label (four layers)
-  double range = 0;           ///< [m]
-  double intensity = 0;       ///< [0, 1] corrected for range, as the instrument reports it
+  bool on_object = false;                   ///< else road or air
+  PointLabel label = PointLabel::kUnknown;  ///< the sensor's own (four layers)
+  double range = 0;                         ///< [m]
+  double intensity = 0;  ///< [0, 1] corrected for range, as the instrument reports it
+  double width = 0;      ///< [m] of the pulse (four layers, in weather)
   Phantom phantom = Phantom::kNone;
 };
+using Echoes = std::vector<Echo>;  // of one pulse, by range
 
 LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& direction,
                    double reflectivity_factor) {
@@ -43,21 +44,77 @@ LidarPulse pulseOn(const BeamHit& hit, const Vector3& origin, const Vector3& dir
   return pulse;
 }
 
-// Speckle, losses and noise of one pulse's echo.
-Echo received(const LidarPulse& pulse, const LidarParams& p, Rng& rng) {
+// Depth of the surface within the beam [m].
+double slantOf(const LidarPulse& pulse, const LidarEcho& echo) {
+  constexpr double kDivergence = 3e-3, kLeast = 0.02;  // [rad]; cosine
+  if (!echo.of_surface) return 0;
+  const double cosine = std::max(kLeast, static_cast<double>(pulse.hit.cos_incidence));
+  return kDivergence * echo.range * std::sqrt(std::max(0.0, 1 - cosine * cosine)) / cosine;
+}
+
+// Of a scanner with own labels in weather: the surface behind is a second echo, and the first is
+// rain by the rule; what it keeps in the air is an object to it, but for images below the road.
+void addSecondEcho(const LidarPulse& pulse, LidarEcho found, double reflectivity,
+                   const LidarParams& p, Echoes& echoes) {
+  found.width = echoes[0].width = pulseWidth(found.level, slantOf(pulse, found));
+  if (found.of_surface) return;
+  const bool below = found.phantom == Phantom::kMirror;
+  echoes[0].label = below ? PointLabel::kGround : PointLabel::kObject;
+  auto second = secondEchoOf(pulse, found, reflectivity, p);
+  if (!second) return;
+  second->width = pulseWidth(second->level, slantOf(pulse, *second));
+  if (isRain(found, *second)) echoes[0].label = PointLabel::kRain;
+  Echo behind;
+  behind.on_object = pulse.hit.object >= 0;
+  behind.label = behind.on_object ? PointLabel::kObject : PointLabel::kGround;
+  behind.range = second->range, behind.intensity = second->intensity, behind.width = second->width;
+  echoes.push_back(behind);
+}
+
+// Dirt on the window before a scanner with own labels.
+Echo dirtEcho() {
+  constexpr double kWindow = 0.1;  // [m], assumed
+  Echo echo;
+  echo.range = kWindow, echo.label = PointLabel::kDirt;
+  echo.intensity = 1, echo.phantom = Phantom::kDirt;
+  return echo;
+}
+
+// Speckle, losses and noise of one pulse's echoes; `several`: of a scanner that reports more than
+// one, with labels, in weather.
+Echoes received(const LidarPulse& pulse, const LidarParams& p, bool several, Rng& rng) {
   const bool surface = pulse.hit.object != BeamHit::kNothing && pulse.hit.range >= p.range_min;
   double reflectivity = 0;
   if (surface && rng.uniform() >= pulse.lost + p.loss)
     reflectivity = pulse.reflectivity * std::max(0.0, 1 + kSpeckle * rng.normal());
   const LidarEcho found = echoOf(pulse, reflectivity, p);
+  if (!found.received) return several && pulse.blocked ? Echoes{dirtEcho()} : Echoes{};
   Echo echo;
-  echo.received = found.received;
-  if (!found.received) return echo;
   echo.on_object = found.of_surface && pulse.hit.object >= 0;
   const double noise = found.snr > 0 ? kRangeUnit / std::sqrt(2 * found.snr) : 0;
   echo.range = found.range + rng.normal() * std::hypot(p.range_noise, noise);
   echo.intensity = found.intensity, echo.phantom = found.phantom;
-  return echo;
+  if (p.layout == LidarParams::Layout::kFourLayer) {
+    const bool object = echo.on_object != (rng.uniform() < p.label_error);
+    echo.label = object ? PointLabel::kObject : PointLabel::kGround;
+  }
+  Echoes echoes{echo};
+  if (several) addSecondEcho(pulse, found, reflectivity, p, echoes);
+  return echoes;
+}
+
+// Appends an echo to the scan; `several` as in received().
+void append(const Echo& echo, const Vector3& direction, bool labelled, bool several, int order,
+            LidarCloud& cloud) {
+  const Vector3 point = direction * echo.range;
+  cloud.x.push_back(static_cast<float>(quantized(point.x(), kCoordinateUnit)));
+  cloud.y.push_back(static_cast<float>(quantized(point.y(), kCoordinateUnit)));
+  cloud.z.push_back(static_cast<float>(quantized(point.z(), kCoordinateUnit)));
+  cloud.intensity.push_back(static_cast<float>(quantized(echo.intensity, kIntensityUnit)));
+  if (labelled) cloud.label.push_back(static_cast<std::uint8_t>(echo.label));
+  if (!several) return;
+  cloud.echo.push_back(static_cast<std::uint8_t>(order));
+  cloud.pulse_width.push_back(static_cast<float>(quantized(echo.width, kCoordinateUnit)));
 }
 
 /// Part of a beam's section.
@@ -138,6 +195,8 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
   LidarCloud& cloud = result.cloud;
   result.points_on.assign(objects.size(), 0);
   cloud.max_range = params_.range_max;
+  const bool labelled = params_.layout == LidarParams::Layout::kFourLayer,
+             several = labelled && static_cast<bool>(hook);
   std::vector<Vector3> directions;
   for (std::size_t s = 0; s < slices_.size(); ++s) {
     const double offset = params_.sweep ? (static_cast<double>(s) + .5) * slice_time_ : 0;
@@ -146,7 +205,7 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
     directions.clear();
     for (const Beam& beam : slices_[s]) directions.push_back(pose.linear() * beam.direction);
     std::vector<LidarPulse> pulses = pulsesOf(caster, s, pose, directions);
-    std::vector<Echo> echoes(pulses.size());
+    std::vector<Echoes> echoes(pulses.size());
     caster.parallel(pulses.size(), kGrain, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) {
         const std::uint32_t slot = slices_[s][i].slot;
@@ -157,30 +216,20 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
           hook(pulses[i], weather_rng);
         }
         Rng rng(key.withSlot(slot));
-        echoes[i] = received(pulses[i], params_, rng);
-        if (echoes[i].received && params_.layout == LidarParams::Layout::kFourLayer) {
-          echoes[i].object_label = echoes[i].on_object != (rng.uniform() < params_.label_error);
-        }
+        echoes[i] = received(pulses[i], params_, several, rng);
       }
     });
     for (std::size_t i = 0; i < pulses.size(); ++i) {
       const Beam& beam = slices_[s][i];
-      const Echo& echo = echoes[i];
-      if (!echo.received) continue;
-      const Vector3 point = beam.direction * echo.range;
-      cloud.x.push_back(static_cast<float>(quantized(point.x(), kCoordinateUnit)));
-      cloud.y.push_back(static_cast<float>(quantized(point.y(), kCoordinateUnit)));
-      cloud.z.push_back(static_cast<float>(quantized(point.z(), kCoordinateUnit)));
-      cloud.intensity.push_back(static_cast<float>(quantized(echo.intensity, kIntensityUnit)));
-      cloud.ring.push_back(beam.ring);
-      if (params_.sweep) cloud.time_offset.push_back(static_cast<float>(offset));
-      if (params_.layout == LidarParams::Layout::kFourLayer) {
-        cloud.label.push_back(static_cast<std::uint8_t>(echo.object_label ? PointLabel::kObject
-                                                                          : PointLabel::kGround));
+      for (std::size_t k = 0; k < echoes[i].size(); ++k) {
+        const Echo& echo = echoes[i][k];
+        append(echo, beam.direction, labelled, several, static_cast<int>(k), cloud);
+        cloud.ring.push_back(beam.ring);
+        if (params_.sweep) cloud.time_offset.push_back(static_cast<float>(offset));
+        result.surfaces.push_back(pulses[i].hit.object);
+        if (hook) result.phantoms.push_back(echo.phantom);
+        if (echo.on_object) ++result.points_on[static_cast<std::size_t>(pulses[i].hit.object)];
       }
-      result.surfaces.push_back(pulses[i].hit.object);
-      if (hook) result.phantoms.push_back(echo.phantom);
-      if (echo.on_object) ++result.points_on[static_cast<std::size_t>(pulses[i].hit.object)];
     }
   }
   return result;

@@ -56,6 +56,8 @@ std::uint32_t labelOf(Phantom phantom) {
       return 116;
     case Phantom::kNoise:
       return 117;
+    case Phantom::kDirt:
+      return 118;
   }
   return 0;
 }

@@ -10,7 +10,8 @@ namespace perception {
 struct Scenario;
 
 /// Labels of phantoms: 110 falling snow as in WADS [kurup2021], and our own numbers for others: 112
-/// rain, 113 fog, 114 spray, 115 exhaust, 116 mirror image, 117 noise. 0 for none.
+/// rain, 113 fog, 114 spray, 115 exhaust, 116 mirror image, 117 noise, 118 dirt on the window. 0
+/// for none.
 std::uint32_t labelOf(Phantom phantom);
 
 /// What each return of a scan comes from: SemanticKITTI's classes of surfaces (10 car, 18 truck, 20

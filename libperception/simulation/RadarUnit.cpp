@@ -5,13 +5,15 @@
 #include <cmath>
 
 #include "libperception/simulation/LidarCaster.h"
+#include "libperception/simulation/RadarClutter.h"
 #include "libperception/simulation/World.h"
 
 namespace perception {
 namespace {
 
 // Slots of random numbers beside those of the objects.
-constexpr std::uint32_t kCellSlot = 1u << 20, kFalseSlot = 1u << 21, kWeatherPurpose = 0x57EA0000;
+constexpr std::uint32_t kCellSlot = 1u << 20, kFalseSlot = 1u << 21, kClutterSlot = 1u << 22,
+                        kWeatherPurpose = 0x57EA0000;
 constexpr double kUnderVehicle = 0.02;  // share of the power that propagates under a car, both ways
 constexpr double kShadowed = 0.1;  // power beside a stronger target of the same range: not resolved
 
@@ -22,7 +24,6 @@ struct RadarBody {
   double RadarUnitParams::*detection;  ///< share of scans in which it is resolved at all
   bool vehicle;                        ///< centers on corners and sides; else one
 };
-constexpr double kCarSection = 10;  // [m^2] the reference of reference_range
 
 RadarBody bodyOf(ObjectKind kind) {
   using P = RadarUnitParams;
@@ -155,9 +156,9 @@ RadarReturn measured(const RadarReflection& r, const RadarUnitParams& p, Rng& rn
   return out;
 }
 
-// Targets without an object: road echoes and false alarms.
+// Targets without an object: road echoes, which the weather attenuates, and false alarms.
 void addFalse(std::vector<RadarReturn>& list, const RadarUnitParams& p, const RadarMount& mount,
-              Rng& rng) {
+              Rng& rng, const RadarHook& hook, Rng& weather_rng) {
   constexpr double kGroundTo = 40;  // [m] grazing incidence beyond
   const double axis = yawOf(mount.T_world_sensor);
   for (int n = rng.poisson(p.ground_per_scan); n > 0; --n) {
@@ -165,9 +166,13 @@ void addFalse(std::vector<RadarReturn>& list, const RadarUnitParams& p, const Ra
     r.range = rng.uniform(2, std::min(kGroundTo, p.range_max));
     r.bearing = rng.uniform(-.5, .5) * p.fov;
     const double direction = axis + r.bearing;
-    r.range_rate = -mount.velocity.dot(Vector2(std::cos(direction), std::sin(direction)));
+    const Vector2 sight(std::cos(direction), std::sin(direction));
+    r.position = mount.T_world_sensor.translation().head<2>() + r.range * sight;
+    r.range_rate = -mount.velocity.dot(sight);
     r.snr = thresholdSnr(p) * rng.uniform(1, 10);
-    list.push_back(measured(r, p, rng));
+    if (hook) hook(r, weather_rng);
+    const RadarReturn echo = measured(r, p, rng);  // draws in any case: the rest stays the same
+    if (r.snr >= thresholdSnr(p)) list.push_back(echo);
   }
   for (int n = rng.poisson(p.false_per_scan); n > 0; --n) {
     constexpr double kFastest = 20;  // [m/s] of false targets
@@ -233,7 +238,8 @@ std::vector<RadarReflection> radarReflections(const LidarCaster& caster, double 
 }
 
 RadarReturns radarReturns(const LidarCaster& caster, double t, const RadarUnitParams& p,
-                          const RadarMount& mount, const RngKey& key, const RadarHook& hook) {
+                          const RadarMount& mount, const RngKey& key, const RadarHook& hook,
+                          const RadarAir& air) {
   const auto& objects = caster.world().scenario().objects;
   std::vector<char> resolved(objects.size());
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -271,7 +277,10 @@ RadarReturns radarReturns(const LidarCaster& caster, double t, const RadarUnitPa
     }
   }
   Rng false_rng(key.withSlot(kFalseSlot));
-  addFalse(list, p, mount, false_rng);
+  addFalse(list, p, mount, false_rng, hook, weather_rng);
+  Rng clutter_rng(key.withSlot(kClutterSlot));
+  for (const RadarReflection& r : radarClutter(air, p, mount, clutter_rng))
+    list.push_back(measured(r, p, clutter_rng));
   std::stable_sort(list.begin(), list.end(),
                    [](const auto& a, const auto& b) { return a.amplitude > b.amplitude; });
   if (list.size() > static_cast<std::size_t>(p.max_targets)) {

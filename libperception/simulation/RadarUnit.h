@@ -51,6 +51,9 @@ struct RadarCell {
 /// Effect of weather on a reflection; empty: clear air.
 using RadarHook = std::function<void(RadarReflection&, Rng&)>;
 
+/// Cross section of a car, the reference of RadarUnitParams::reference_range.
+inline constexpr double kCarSection = 10;  ///< [m^2]
+
 /// Mean ratio of signal to noise of a car at `range` [m] (method.md 9.8).
 double carSnr(double range, const RadarUnitParams& params);
 
@@ -62,6 +65,7 @@ std::vector<RadarReflection> radarReflections(const LidarCaster& caster, double 
 
 /// The unit's list of targets at t [s], by range.
 RadarReturns radarReturns(const LidarCaster& caster, double t, const RadarUnitParams& params,
-                          const RadarMount& mount, const RngKey& key, const RadarHook& hook = {});
+                          const RadarMount& mount, const RngKey& key, const RadarHook& hook = {},
+                          const RadarAir& air = {});
 
 }  // namespace perception

@@ -14,7 +14,17 @@ class World;
 struct SensorParams;
 
 /// What a lidar return comes from where it is no surface.
-enum class Phantom : std::uint8_t { kNone, kRain, kSnow, kFog, kSpray, kPlume, kMirror, kNoise };
+enum class Phantom : std::uint8_t {
+  kNone,
+  kRain,
+  kSnow,
+  kFog,
+  kSpray,
+  kPlume,
+  kMirror,
+  kNoise,
+  kDirt
+};
 
 /// A lidar pulse and its targets, before detection.
 struct LidarPulse {
@@ -49,6 +59,12 @@ struct RadarReflection {
   double snr = 0;         ///< mean ratio of signal to noise (power)
 };
 
+/// The air before a radar and its radome, where no object is.
+struct RadarAir {
+  double backscatter = 0;  ///< [1/m] radar cross section of a unit of volume
+  double passing = 1;      ///< share of the power that the radome lets through, both ways
+};
+
 /// One object in the view of an image detector.
 struct CameraLook {
   std::size_t object = 0;
@@ -72,6 +88,7 @@ class SimulatedWeather {
   virtual void advance(const World&, const SensorParams&, double /*t*/) {}
   virtual void alter(const SensorParams&, LidarPulse&, Rng&) const {}
   virtual void alter(const SensorParams&, RadarReflection&, Rng&) const {}
+  virtual void alter(const SensorParams&, RadarAir&, Rng&) const {}
   virtual void alter(const SensorParams&, CameraLook&, Rng&) const {}
   /// Light and air of one rendered image: fog, night, a low sun.
   virtual void alter(const SensorParams&, Lighting&, Rng&) const {}

@@ -265,8 +265,13 @@ RadarReturns Simulator::listenRadar(const Event& event, const RngKey& key) {
   const Vector2 arm =
       (mount.T_world_sensor.translation() - ego.T_world_ego.translation()).head<2>();
   mount.velocity = ego.velocity + ego.yaw_rate * Vector2(-arm.y(), arm.x());
+  RadarAir air;
+  if (weather_) {
+    Rng rng(key);  // no phenomenon draws from it
+    weather_->alter(sensor, air, rng);
+  }
   caster_.setTime(event.t);
-  RadarReturns returns = radarReturns(caster_, event.t, sensor.radar, mount, key, hook);
+  RadarReturns returns = radarReturns(caster_, event.t, sensor.radar, mount, key, hook, air);
   targets_ += returns.returns.size();
   return returns;
 }

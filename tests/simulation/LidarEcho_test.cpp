@@ -61,5 +61,35 @@ TEST(LidarEcho, NothingComesThroughDirtNorFromTheSky) {
   EXPECT_FALSE(echoOf(skyPulse(0, 0.1), 0.9, {}).received);
 }
 
+TEST(LidarEcho, TheSurfaceBehindAFlakeIsASecondEcho) {
+  LidarPulse pulse = wallPulse(20);
+  pulse.scatterers = {scatterer(10, .02)};  // the wall's power: 0.3 / 400
+  const LidarEcho first = echoOf(pulse, 0.3, {});
+  ASSERT_FALSE(first.of_surface);
+  const auto second = secondEchoOf(pulse, first, 0.3, {});
+  ASSERT_TRUE(second);
+  EXPECT_NEAR(second->range, 20, 1e-6);
+  EXPECT_FALSE(secondEchoOf(pulse, echoOf(wallPulse(20), 0.3, {}), 0.3, {}));  // no first
+  EXPECT_FALSE(secondEchoOf(skyPulse(0, 0), first, 0, {}));                        // nothing behind
+  pulse.scatterers = {scatterer(19.5, .02)};
+  EXPECT_FALSE(secondEchoOf(pulse, echoOf(pulse, 0.3, {}), 0.3, {}));  // one echo with it
+}
+
+TEST(LidarEcho, TheLowerOrShorterFirstEchoIsRain) {
+  LidarEcho first, second;
+  first.level = 5, second.level = 4;
+  first.width = pulseWidth(5, 0), second.width = pulseWidth(4, 0);
+  EXPECT_FALSE(isRain(first, second));
+  second.width = pulseWidth(4, 2);  // a road at a grazing angle
+  EXPECT_TRUE(isRain(first, second));
+  first.level = 3, first.width = 9;
+  EXPECT_TRUE(isRain(first, second));
+}
+
+TEST(LidarEcho, PulsesAreAsLongAsTheirGaussianIsAboveTheThreshold) {
+  EXPECT_EQ(pulseWidth(1, 0), 0);
+  EXPECT_NEAR(pulseWidth(2, 0), 0.6, 1e-9);  // at half its height
+}
+
 }  // namespace
 }  // namespace perception

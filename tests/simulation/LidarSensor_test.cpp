@@ -7,6 +7,8 @@
 
 #include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/World.h"
+#include "libperception/simulation/weather/Rain.h"
+#include "libperception/simulation/weather/Snow.h"
 #include "tests/simulation/SceneText.h"
 
 namespace perception {
@@ -138,6 +140,65 @@ TEST(LidarSensor, FourLayersLabelObjectsAndRoad) {
   }
   EXPECT_GT(objects, 50);
   EXPECT_LT(wrong, 0.06 * static_cast<double>(scan.cloud.size()));  // label_error is 1 %
+}
+
+/// Shares of the returns of rain or snow that four layers before a street label as rain.
+struct Removed {
+  double share = 0, echoes = 0;
+};
+Removed removed(SimulatedWeather& weather, Phantom phantom) {
+  const World world(scenarioOf(
+      kStanding + kRoofLidar + parked("car", "car", 12, 0) + parked("van", "van", 25, -4) +
+      parked("wall", "box", 30, 12, "length = 40\nwidth = 1\nheight = 4")));
+  LidarCaster caster(world);
+  const LidarSensor lidar(LidarParams::fourLayer(), 12.5);
+  SensorParams sensor;
+  sensor.lidar = LidarParams::fourLayer();
+  double all = 0, rain = 0, second = 0;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    weather.advance(world, sensor, .08 * static_cast<double>(i));
+    const auto scan = lidar.scan(
+        caster, 0, [](double) { return makePose(0, 0, 0.6, 0); }, {1, i, 0, 1},
+        [&](LidarPulse& pulse, Rng& rng) { weather.alter(sensor, pulse, rng); });
+    const LidarCloud& c = scan.cloud;
+    EXPECT_EQ(c.echo.size(), c.size());
+    EXPECT_EQ(c.pulse_width.size(), c.size());
+    EXPECT_EQ(scan.phantoms.size(), c.size());
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      second += c.echo[k] == 1;
+      if (scan.phantoms[k] != phantom) continue;
+      ++all;
+      rain += c.label[k] == static_cast<std::uint8_t>(PointLabel::kRain);
+      EXPECT_NE(c.label[k], static_cast<std::uint8_t>(PointLabel::kGround));
+    }
+  }
+  EXPECT_GT(all, 300);
+  return {rain / all, second / all};
+}
+
+// [radecki2016] saw a small portion of the drops go and little effect on flakes; the simulated rule
+// takes .48 and .18 in this street, more than that, as its surfaces stand close behind.
+TEST(LidarSensor, TheRainRuleTakesMoreDropsThanFlakesAndNoneWithoutASecondEcho) {
+  Rain rain(50);
+  Snow snow(2.5, 1);
+  const Removed drops = removed(rain, Phantom::kRain), flakes = removed(snow, Phantom::kSnow);
+  EXPECT_GT(drops.share, 0.1);
+  EXPECT_LT(drops.share, drops.echoes);
+  EXPECT_LT(flakes.share, 0.5 * flakes.echoes);
+  EXPECT_LT(flakes.share, 0.5 * drops.share);
+}
+
+TEST(LidarSensor, ADirtyWindowOfFourLayersIsLabelledSo) {
+  const World world(scenarioOf(kStanding + kRoofLidar + parked("car", "car", 12, 0)));
+  LidarCaster caster(world);
+  const LidarSensor lidar(LidarParams::fourLayer(), 12.5);
+  const auto scan = lidar.scan(
+      caster, 0, [](double) { return makePose(0, 0, 0.6, 0); }, {1, 0, 0, 1},
+      [](LidarPulse& pulse, Rng& rng) { pulse.blocked = rng.uniform() < 0.1; });
+  const auto& labels = scan.cloud.label;
+  const auto dirty =
+      std::count(labels.begin(), labels.end(), static_cast<std::uint8_t>(PointLabel::kDirt));
+  EXPECT_NEAR(static_cast<double>(dirty) / (4 * 441), 0.1, 0.03);
 }
 
 TEST(LidarSensor, SweepSeesThingsAtTheBeamsTime) {

@@ -35,6 +35,8 @@ void Fouling::alter(const SensorParams&, RadarReflection& reflection, Rng&) cons
   reflection.snr *= radome_;
 }
 
+void Fouling::alter(const SensorParams&, RadarAir& air, Rng&) const { air.passing *= radome_; }
+
 void Fouling::alter(const SensorParams&, CameraLook& look, Rng&) const {
   if (share_ <= 0) return;
   if (dirty_[grid_.at(wrapAngle(look.azimuth - yaw_), 0).cell]) look.chance *= kBlurredRecall;

@@ -17,6 +17,7 @@ class Fouling final : public SimulatedWeather {
   void advance(const World& world, const SensorParams& sensor, double t) override;
   void alter(const SensorParams&, LidarPulse& pulse, Rng&) const override;
   void alter(const SensorParams&, RadarReflection& reflection, Rng&) const override;
+  void alter(const SensorParams&, RadarAir& air, Rng&) const override;
   void alter(const SensorParams&, CameraLook& look, Rng&) const override;
   bool actsOnPulses() const override { return share_ > 0; }
 

@@ -36,6 +36,10 @@ double snowExtinction(double snow_mm_h) {
 
 double radarAttenuation(double rain_mm_h) { return 1.132 * std::pow(rain_mm_h, 0.718); }
 
+double radarBackscatter(double rain_mm_h) {
+  return rain_mm_h > 0 ? 1.156e-4 * std::pow(rain_mm_h, 0.714) : 0;
+}
+
 double FalseReturnLaw::chance(double mm_h) const { return std::min(1.0, per_mm_h * mm_h); }
 
 double FalseReturnLaw::range(Rng& rng) const { return std::exp(rng.normal(log_mean, log_sigma)); }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/simulation/weather/Beam.h"
+#include "libperception/simulation/weather/FalseBoxes.h"
 #include "libperception/simulation/weather/Precipitation.h"
 
 namespace perception {
@@ -12,6 +13,8 @@ namespace {
 constexpr double kMeanIntensity = 0.693;  // of false returns, of 255; Poisson [linnhoff2022]
 // Box edges in rain (method.md 9.9, assumed): 1.5 times the noise from this rate on.
 constexpr double kEdgeNoise = 1.5, kEdgeRate = 10;
+// The rate of [radecki2016]'s rainy precision is not known (assumed).
+constexpr double kWetRate = 10;
 // Drops on the lens: blurred share of the image in the lightest and from the heaviest rain on, and
 // what is found behind them (method.md 9.9, assumed).
 constexpr double kLeastDrops = 0.05, kMostDrops = 0.15, kMostDropsRate = 50, kBlurredRecall = 0.5;
@@ -22,7 +25,9 @@ Rain::Rain(double mm_h)
     : extinction_(rainExtinction(mm_h)),
       chance_(kRainReturns.chance(mm_h)),
       attenuation_(radarAttenuation(mm_h)),
+      backscatter_(radarBackscatter(mm_h)),
       drops_(kLeastDrops + (kMostDrops - kLeastDrops) * std::min(1.0, mm_h / kMostDropsRate)),
+      wetness_(std::min(1.0, mm_h / kWetRate)),
       edge_noise_(1 + (kEdgeNoise - 1) * std::min(1.0, mm_h / kEdgeRate)) {}
 
 void Rain::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
@@ -39,10 +44,18 @@ void Rain::alter(const SensorParams&, RadarReflection& reflection, Rng&) const {
   reflection.snr *= std::pow(10, -.1 * 2 * attenuation_ * reflection.range / 1000);
 }
 
+void Rain::alter(const SensorParams&, RadarAir& air, Rng&) const {
+  air.backscatter += backscatter_;
+}
+
 void Rain::alter(const SensorParams&, CameraLook& look, Rng& rng) const {
   look.optical_depth += extinction_ * look.range;
   look.edge_noise *= edge_noise_;
   if (rng.uniform() < drops_) look.chance *= kBlurredRecall;
+}
+
+void Rain::alter(const SensorParams&, SensorFrame& frame, Rng& rng) const {
+  addFalseBoxes(wetness_, frame, rng);
 }
 
 void Rain::alter(const SensorParams&, Lighting& light, Rng&) const { light.haze += extinction_; }

@@ -58,6 +58,10 @@ void WeatherChain::alter(const SensorParams& sensor, RadarReflection& r, Rng& rn
   pass(phenomena_, sensor, r, rng);
 }
 
+void WeatherChain::alter(const SensorParams& sensor, RadarAir& air, Rng& rng) const {
+  pass(phenomena_, sensor, air, rng);
+}
+
 void WeatherChain::alter(const SensorParams& sensor, CameraLook& look, Rng& rng) const {
   pass(phenomena_, sensor, look, rng);
 }

@@ -17,6 +17,7 @@ class WeatherChain final : public SimulatedWeather {
   void advance(const World& world, const SensorParams& sensor, double t) override;
   void alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const override;
   void alter(const SensorParams& sensor, RadarReflection& reflection, Rng& rng) const override;
+  void alter(const SensorParams& sensor, RadarAir& air, Rng& rng) const override;
   void alter(const SensorParams& sensor, CameraLook& look, Rng& rng) const override;
   void alter(const SensorParams& sensor, Lighting& light, Rng& rng) const override;
   void alter(const SensorParams& sensor, SensorFrame& frame, Rng& rng) const override;

@@ -27,6 +27,9 @@ TEST(Fouling, WetRadomeTakesPowerBothWays) {
   reflection.snr = 100;
   Fouling(0, 3, 1).alter(SensorParams(), reflection, rng);
   EXPECT_NEAR(reflection.snr, 25.1, 0.1);
+  RadarAir air;
+  Fouling(0, 3, 1).alter(SensorParams(), air, rng);
+  EXPECT_NEAR(air.passing, 0.251, 0.001);
 }
 
 TEST(Fouling, BlursACamerasImageInPatches) {
