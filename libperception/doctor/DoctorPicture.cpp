@@ -35,7 +35,7 @@ set xrange [-50:50]
 set yrange [-3:5]
 set ylabel 'z (m), vehicle frame of the log'
 plot 'scan.txt' using 1:4 with dots lc rgb '#0072B2', 0 lc rgb '#888888' lw 2, {a}*x+{c} lc rgb '#D55E00' lw 2
-set title 'ego motion by the poses'
+set title 'ego motion by poses and by odometry from lidars'
 set xrange [*:*]
 set yrange [*:*]
 set xlabel 'time since the first frame (s)'
@@ -105,18 +105,24 @@ StudyPlot doctorPicture(const LogSurvey& survey) {
   };
   for (const auto& [label, facts] : survey.sensors())
     addRow(label, facts.stamps, [](Stamp stamp) { return stamp; });
-  StudyPlot plot;
-  plot.name = "doctor", plot.caption = "Stamps, a scan from above and from the side, ego motion";
-  plot.width = 1400, plot.height = 900;
-  for (const auto& [label, poses] : survey.poses()) {
-    addRow(label, poses, [](const EgoState& pose) { return pose.stamp; });
+  const auto addMotion = [&](const std::string& label, const std::vector<EgoState>& poses,
+                             StudyPlot& plot) {
     const std::string file = fmt::format("poses{}.txt", plot.data.size());
     plot.data.emplace_back(file, motionText(poses, first));
     motion += fmt::format(
         ", '{0}' using 1:2 with lines lw 2 title {1}, '{0}' using 1:3 axes x1y2 "
         "with lines dt 2 title 'its speed'",
         file, gnuplotString(label));
+  };
+  StudyPlot plot;
+  plot.name = "doctor", plot.caption = "Stamps, a scan from above and from the side, ego motion";
+  plot.width = 1400, plot.height = 900;
+  for (const auto& [label, poses] : survey.poses()) {
+    addRow(label, poses, [](const EgoState& pose) { return pose.stamp; });
+    addMotion(label, poses, plot);
   }
+  for (const auto& [label, facts] : survey.sensors())
+    if (facts.odometry.size() > 1) addMotion("odometry from " + label, facts.odometry, plot);
   GroundPlane plane;
   std::string scan;
   if (const auto& sample = survey.sample()) {

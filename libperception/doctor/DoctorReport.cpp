@@ -94,6 +94,60 @@ void addLidar(Findings& out, const std::string& label, const SensorFacts& facts)
                       found, m->height_error, degrees(m->pitch_error), degrees(m->roll_error)));
 }
 
+/// "yaw +5.0 +- 0.1 deg" of those that are `wrong`, or of all that are observed.
+std::string valuesText(const MotionCheck& check, bool (MotionCheck::Value::*which)() const) {
+  std::string text;
+  const auto add = [&](const char* name, const MotionCheck::Value& v, double unit,
+                       const char* unit_name) {
+    if ((v.*which)())
+      text += fmt::format("{}{} {:+.2f} +- {:.2f} {}", text.empty() ? "" : ", ", name,
+                          v.error / unit, v.sigma / unit, unit_name);
+  };
+  add("yaw", check.yaw, radians(1), "deg"), add("pitch", check.pitch, radians(1), "deg");
+  add("roll", check.roll, radians(1), "deg");
+  add("ahead", check.ahead, 1, "m"), add("left", check.left, 1, "m");
+  add("clock", check.clock, 1e-3, "ms late");
+  return text;
+}
+
+std::string unseenText(const MotionCheck& check) {
+  std::string text;
+  const std::pair<const char*, const MotionCheck::Value*> all[] = {
+      {"yaw", &check.yaw},     {"pitch", &check.pitch}, {"roll", &check.roll},
+      {"ahead", &check.ahead}, {"left", &check.left},   {"clock", &check.clock}};
+  for (const auto& [name, value] : all)
+    if (!value->observable()) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+/// Mounting and clock against the poses' motion.
+void addMotion(Findings& out, const LogSurvey& survey, const std::string& label,
+               const SensorFacts& facts) {
+  if (survey.referencePoses() == nullptr || facts.planar) return;
+  const auto check = survey.motionCheck(facts);
+  if (!check) {
+    out.add(Weight::kNote, label,
+            "mounting and clock against the poses not observable: too few scans while driving");
+    return;
+  }
+  const std::string wrong = valuesText(*check, &MotionCheck::Value::isWrong),
+                    seen = valuesText(*check, &MotionCheck::Value::observable),
+                    unseen = unseenText(*check);
+  if (!seen.empty())
+    out.add(Weight::kFine, label,
+            fmt::format("error of mounting and clock by its own motion against the poses' "
+                        "({} scans): {}",
+                        check->used, seen));
+  if (!unseen.empty())
+    out.add(Weight::kNote, label, "not observable against the poses on this drive: " + unseen);
+  if (!wrong.empty())
+    out.add(Weight::kFault, label,
+            "off against the poses: " + wrong +
+                (check->clock.isWrong() ? "; stamps must be corrected when the log is written, "
+                                          "mountings are corrected in site.ini"
+                                        : "; corrected in site.ini"));
+}
+
 void addNames(Findings& out, const std::string& label, const SensorFacts& facts) {
   std::string known, unknown;
   for (const auto& [name, count] : facts.names) {
@@ -169,6 +223,7 @@ std::vector<Finding> findingsOf(const LogSurvey& survey) {
     addValues(out, about, facts);
     if (facts.frames == 0) continue;
     if (facts.kind == "lidar") addLidar(out, about, facts);
+    if (facts.kind == "lidar" || facts.kind == "radar") addMotion(out, survey, about, facts);
     if (facts.kind == "boxes" || facts.kind == "positions") addNames(out, about, facts);
   }
   addPoses(out, survey);

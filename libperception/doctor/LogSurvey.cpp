@@ -17,6 +17,8 @@ namespace {
 constexpr std::size_t kRangeBins = 400, kBearingBins = 181;
 /// Labels of a damaged log may be anything: memory is bounded.
 constexpr std::size_t kMostLabels = 200;
+/// Scans of a lidar that odometry follows: minutes show its mounting, and each costs 10 to 90 ms.
+constexpr std::size_t kMostFollowed = 2000;
 /// [rad], [m] A mounting this far off costs the tracks more than the ground estimator corrects:
 /// its planes are bounded at 5 deg and .3 m about the vehicle's frame (method.md 8.1).
 constexpr double kWrongTilt = radians(1), kWrongHeight = 0.1;
@@ -168,6 +170,7 @@ void LogSurvey::lookAt(SensorFacts& facts, const SensorFrame& frame) {
     addCloud(facts, *cloud);
     const GroundPlane plane = GroundEstimator(searchEverywhere()).update(frame);
     if (plane.measured) facts.planes.push_back(plane);
+    if (!facts.planar) follow(facts, frame);
     if (!sample_ || sample_->sensor == frame.sensor) sample_ = frame;
   } else if (const auto* boxes = std::get_if<ObjectDetections>(&frame.data)) {
     if (facts.kind.empty()) facts.kind = "boxes";
@@ -175,9 +178,34 @@ void LogSurvey::lookAt(SensorFacts& facts, const SensorFrame& frame) {
   } else if (const auto* radar = std::get_if<RadarReturns>(&frame.data)) {
     facts.kind = "radar";
     for (const auto& r : radar->returns) addReturn(facts, r.range, r.bearing);
+    if (const auto v = radarVelocity(*radar, frame.stamp)) facts.velocities.push_back(*v);
   } else {
     facts.kind = "image";
   }
+}
+
+void LogSurvey::follow(SensorFacts& facts, const SensorFrame& frame) {
+  if (facts.pose_varies || facts.odometry.size() >= kMostFollowed) return;
+  EgoState state;
+  state.stamp = frame.stamp;
+  if (const auto pose = odometry_[frame.sensor].update(frame)) {
+    state.T_world_ego = *pose;
+    facts.odometry.push_back(state);
+  }
+}
+
+const std::vector<EgoState>* LogSurvey::referencePoses() const {
+  const auto named = poses_.find("EGO_POSE");
+  if (named != poses_.end()) return &named->second;
+  const auto first = poses_.find(first_pose_label_);
+  return first == poses_.end() ? nullptr : &first->second;
+}
+
+std::optional<MotionCheck> LogSurvey::motionCheck(const SensorFacts& facts) const {
+  const auto* poses = referencePoses();
+  if (poses == nullptr || facts.pose_varies) return std::nullopt;
+  if (facts.kind == "radar") return checkRadarMotion(facts.velocities, facts.T_ego_sensor, *poses);
+  return checkLidarMotion(facts.odometry, facts.T_ego_sensor, *poses);
 }
 
 void LogSurvey::look(const mrpt::obs::CObservation& observation) {
@@ -192,6 +220,7 @@ void LogSurvey::look(const mrpt::obs::CObservation& observation) {
     if (!usable) ++pose_faults_;
     if (!usable || (poses_.size() >= kMostLabels && poses_.count(label) == 0)) return;
     state.stamp = *stamp;
+    if (poses_.empty()) first_pose_label_ = label;
     poses_[label].push_back(state);
   } else if (dynamic_cast<const CObservationGPS*>(&observation) != nullptr) {
     ++motion_["GNSS"];

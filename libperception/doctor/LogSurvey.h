@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "libperception/doctor/MotionCheck.h"
 #include "libperception/lidar/GroundPlane.h"
+#include "libperception/odometry/LidarOdometry.h"
 #include "libperception/pipeline/LogContents.h"
 #include "libperception/sensors/FromObservation.h"
 
@@ -31,6 +33,8 @@ struct SensorFacts {
   std::optional<double> low, high;             ///< least and largest intensity or score
   std::map<std::string, std::uint64_t> names;  ///< the detector's class names
   std::vector<GroundPlane> planes;             ///< of single scans, ego frame
+  std::vector<EgoState> odometry;              ///< of a lidar: the vehicle's poses by its scans
+  std::vector<SensorVelocity> velocities;      ///< of a radar
 
   /// [m] below which a share of the returns lies, rounded up to 1 m; 0 without returns.
   double rangeBelow(double share) const;
@@ -69,14 +73,22 @@ class LogSurvey {
   const std::map<std::string, std::uint64_t>& motion() const { return motion_; }
   const std::optional<SensorFrame>& sample() const { return sample_; }  ///< a scan, for pictures
   std::uint64_t poseFaults() const { return pose_faults_; }  ///< not finite or without stamp
+  /// Poses that mountings and clocks are compared with, as [ego] takes them: EGO_POSE, or the
+  /// first label; null in a log without.
+  const std::vector<EgoState>* referencePoses() const;
+  /// Mounting and clock of a lidar or radar against these poses.
+  std::optional<MotionCheck> motionCheck(const SensorFacts& facts) const;
 
  private:
   void lookAt(SensorFacts& facts, const SensorFrame& frame);
+  void follow(SensorFacts& facts, const SensorFrame& frame);
 
   LogContents contents_;
   std::map<std::string, SensorFacts> sensors_;
   std::map<std::string, std::vector<EgoState>> poses_;
   std::map<std::string, std::uint64_t> motion_;
+  std::map<std::string, LidarOdometry> odometry_;
+  std::string first_pose_label_;
   std::optional<SensorFrame> sample_;
   std::uint64_t pose_faults_ = 0;
 };

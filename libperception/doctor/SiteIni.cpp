@@ -131,9 +131,21 @@ std::string namesLine(const SensorFacts& facts, bool cyclists) {
 std::string poseLine(const Pose3& pose) {
   const Vector3 t = pose.translation();
   return fmt::format(
-      "pose = {:.3f}, {:.3f}, {:.3f}, {:.2f}, {:.2f}, {:.2f}   ; the log's, corrected by the "
-      "ground\n",
+      "pose = {:.3f}, {:.3f}, {:.3f}, {:.2f}, {:.2f}, {:.2f}   ; the log's, corrected by "
+      "ground and motion\n",
       t.x(), t.y(), t.z(), degrees(yawOf(pose)), degrees(pitchOf(pose)), degrees(rollOf(pose)));
+}
+
+/// The log's mounting, corrected where it is wrong: by the motion against the poses, height, pitch
+/// and roll by the ground where that is seen. Empty where nothing is wrong.
+std::string mountingLine(const LogSurvey& survey, const SensorFacts& facts) {
+  const auto ground = groundMounting(facts);
+  auto motion = survey.motionCheck(facts);
+  Pose3 pose = facts.T_ego_sensor;
+  if (ground && ground->steady() && motion) motion->pitch = motion->roll = MotionCheck::Value{};
+  if (ground && ground->wrong()) pose = ground->T_ego_sensor;
+  if (motion) pose = correctedMounting(*motion, pose);
+  return pose.isApprox(facts.T_ego_sensor, 1e-6) ? "" : poseLine(pose);
 }
 
 /// Where the own vehicle ends: beyond its outermost sensors.
@@ -156,20 +168,20 @@ std::string lidarSection(const LogSurvey& survey, const std::string& label,
   std::string out = section(label, "lidar", 'L', 2, 0.5, range, 360);
   out += fmt::format("label_exponent = 0.05\n");
   if (!files.model.empty()) out += "detection_exponent = 0.02\n";
-  const auto mounting = groundMounting(facts);
-  if (mounting && mounting->wrong()) out += poseLine(mounting->T_ego_sensor);
+  out += mountingLine(survey, facts);
   out += fmt::format("[sensor.{}.points]\n{}", label, vehicleLines(survey, facts));
   if (!files.model.empty())
     out += fmt::format("[sensor.{}.classifier]\nfile = {}\n", label, files.model);
   return out;
 }
 
-std::string radarSection(const std::string& label, const SensorFacts& facts) {
+std::string radarSection(const LogSurvey& survey, const std::string& label,
+                         const SensorFacts& facts) {
   const double returns = static_cast<double>(facts.returns) / static_cast<double>(facts.frames);
   std::string out =
       section(label, "radar", 'R', std::max(0.1, std::round(kRadarClutter * returns)), 0.1,
               std::max(10.0, tens(facts.rangeBelow(1))), fieldOf(2 * facts.farthest_bearing));
-  return out;
+  return out + mountingLine(survey, facts);
 }
 
 std::string boxesSection(const std::string& label, const SensorFacts& facts) {
@@ -215,7 +227,7 @@ std::string siteIni(const LogSurvey& survey, const SiteFiles& files, const std::
       sections += lidarSection(survey, label, facts, files);
       clouds = true, intensity = intensity || (facts.high && *facts.high > *facts.low);
     } else if (facts.kind == "radar") {
-      sections += radarSection(label, facts);
+      sections += radarSection(survey, label, facts);
       use('R');
     } else if (facts.kind == "boxes") {
       sections += boxesSection(label, facts);

@@ -66,7 +66,7 @@ inline const std::vector<Module>& modules() {
       {"evaluation", "tracks against truth", {"scene", "measurement", "core"}},
       {"doctor",
        "examines a log, writes a first INI",
-       {"pipeline", "evaluation", "lidar", "sensors", "measurement", "core"}},
+       {"pipeline", "evaluation", "odometry", "lidar", "sensors", "measurement", "core"}},
       {"gui-offscreen", "pictures, films, pages", {"scene", "grid", "measurement", "core"}},
       {"interop",
        "logs and tracks in the formats of other tools, and back",

@@ -1,0 +1,257 @@
+#include "libperception/doctor/MotionCheck.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libperception/doctor/MotionFit.h"
+
+namespace perception {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Parameters of the fit; kScale: of the way by odometry, which slips.
+enum Parameter { kYaw, kPitch, kRoll, kAhead, kLeft, kClock, kScale, kParameters };
+
+constexpr double kWindow = 0.4;      ///< [s] of a motion that is compared: several scans
+constexpr double kLongest = 1.0;     ///< [s] between poses or scans of one motion
+constexpr double kClockRange = 0.5;  ///< [s] clock offsets searched, on both sides
+constexpr double kClockStep = 0.02;  ///< [s]
+constexpr double kMoves = 1;         ///< [m/s] slower, the direction of travel is noise
+/// Largest standard deviations of what is observed: half of 1 deg, .1 m, 20 ms; and what a
+/// mounting measured with a tape, or a stamp at the wrong end of an exposure, is off by.
+constexpr double kAngleEnough = radians(0.5), kPlaceEnough = 0.05, kClockEnough = 0.01;
+constexpr double kAngleWrong = radians(1), kPlaceWrong = 0.1, kClockWrong = 0.02;
+/// [rad, m, s, 1] standard deviations before the log is seen (assumed).
+constexpr std::array<double, kParameters> kPrior{radians(15), radians(15), radians(15), 1,
+                                                 1,           0.3,         0.05};
+
+/// The vehicle's pose by the log at any time.
+class Course {
+ public:
+  explicit Course(std::vector<EgoState> poses) : poses_(std::move(poses)) {
+    std::stable_sort(poses_.begin(), poses_.end(),
+                     [](const EgoState& a, const EgoState& b) { return a.stamp < b.stamp; });
+    poses_.erase(std::unique(poses_.begin(), poses_.end(),
+                             [](const auto& a, const auto& b) { return a.stamp == b.stamp; }),
+                 poses_.end());
+  }
+  std::optional<Pose3> at(Stamp stamp, double later) const {
+    const Stamp t{stamp.ns + static_cast<std::int64_t>(std::llround(later * 1e9))};
+    const auto next = std::lower_bound(poses_.begin(), poses_.end(), t,
+                                       [](const EgoState& a, Stamp b) { return a.stamp < b; });
+    if (next == poses_.end() || (next == poses_.begin() && t < next->stamp)) return std::nullopt;
+    if (next->stamp == t) return next->T_world_ego;
+    const EgoState &a = *(next - 1), &b = *next;
+    const double dt = b.stamp - a.stamp, share = (t - a.stamp) / dt;
+    if (dt > kLongest) return std::nullopt;
+    Pose3 out = Pose3::Identity();
+    out.translation() =
+        (1 - share) * a.T_world_ego.translation() + share * b.T_world_ego.translation();
+    out.linear() = Eigen::Quaterniond(a.T_world_ego.linear())
+                       .slerp(share, Eigen::Quaterniond(b.T_world_ego.linear()))
+                       .toRotationMatrix();
+    return out;
+  }
+  /// Motion from one instant to another, in the vehicle frame of the first.
+  std::optional<Pose3> motion(Stamp from, Stamp to, double later) const {
+    const auto a = at(from, later), b = at(to, later);
+    if (!a || !b) return std::nullopt;
+    return a->inverse() * *b;
+  }
+
+ private:
+  std::vector<EgoState> poses_;
+};
+
+Vector3 turnOf(const Pose3& motion) {
+  const Eigen::AngleAxisd turn(motion.linear());
+  return turn.angle() * turn.axis();
+}
+
+/// A motion that the sensor saw.
+struct Seen {
+  Stamp from, to;
+  Pose3 motion = Pose3::Identity();
+};
+
+/// Clock offset at which the yaw and the length of the motions agree best with the poses': the
+/// largest profile likelihood of both, noise and mean difference unknown.
+double bestClock(const std::vector<Seen>& seen, const Course& course) {
+  double best = 0, least = 1e300;
+  for (double clock = -kClockRange; clock <= kClockRange; clock += kClockStep) {
+    double n = 0, sum[2] = {0, 0}, squares[2] = {0, 0};
+    for (const Seen& s : seen) {
+      const auto B = course.motion(s.from, s.to, -clock);
+      if (!B) continue;
+      const double r[2] = {turnOf(s.motion).z() - turnOf(*B).z(),
+                           s.motion.translation().norm() - B->translation().norm()};
+      for (int i = 0; i < 2; ++i) sum[i] += r[i], squares[i] += r[i] * r[i];
+      ++n;
+    }
+    if (n < 0.8 * static_cast<double>(seen.size()) || n < 1) continue;
+    // [rad^2, m^2] what odometry resolves: less is luck.
+    const double floor[2] = {1e-6, 1e-4};
+    double cost = 0;
+    for (int i = 0; i < 2; ++i)
+      cost += std::log(squares[i] / n - sum[i] * sum[i] / (n * n) + floor[i]);
+    if (cost < least) least = cost, best = clock;
+  }
+  return best;
+}
+
+FitProblem problemOf(std::size_t items, Eigen::Index rows, double clock) {
+  FitProblem p;
+  p.items = items, p.rows = rows;
+  p.start = p.mean = VectorXd::Zero(kParameters);
+  p.start[kClock] = clock;
+  p.sigma = Eigen::Map<const VectorXd>(kPrior.data(), kParameters);
+  p.step = VectorXd::Constant(kParameters, 1e-4);
+  p.step[kClock] = 0.01;
+  p.least = VectorXd::Constant(rows, 1e-4);
+  return p;
+}
+
+MotionCheck checkOf(const FitResult& fit) {
+  const auto value = [&fit](Parameter p, double enough, double wrong) {
+    return MotionCheck::Value{fit.value[p], fit.sigma[p], enough, wrong};
+  };
+  MotionCheck check;
+  check.yaw = value(kYaw, kAngleEnough, kAngleWrong);
+  check.pitch = value(kPitch, kAngleEnough, kAngleWrong);
+  check.roll = value(kRoll, kAngleEnough, kAngleWrong);
+  check.ahead = value(kAhead, kPlaceEnough, kPlaceWrong);
+  check.left = value(kLeft, kPlaceEnough, kPlaceWrong);
+  check.clock = value(kClock, kClockEnough, kClockWrong);
+  check.used = fit.used;
+  return check;
+}
+
+Eigen::Matrix3d rotationOf(const VectorXd& x) {
+  return makePose(0, 0, 0, x[kYaw], x[kPitch], x[kRoll]).linear();
+}
+
+}  // namespace
+
+bool MotionCheck::Value::isWrong() const {
+  return observable() && std::abs(error) > std::max(wrong, 3 * sigma);
+}
+
+std::optional<SensorVelocity> radarVelocity(const RadarReturns& radar, Stamp stamp) {
+  constexpr double kAgree = 0.3;                  // [m/s] about three times a radar's noise
+  constexpr std::size_t kFewest = 5, kMost = 40;  // returns; of the pairs that are tried
+  constexpr double kSpread = 0.02;                // least information across, per return
+  std::vector<std::pair<Vector2, double>> all;    // direction, range rate
+  for (const RadarReturn& r : radar.returns)
+    if (r.has_rate) all.emplace_back(rotate2(r.bearing, Vector2(1, 0)), r.range_rate);
+  if (all.size() < kFewest) return std::nullopt;
+  const auto agrees = [&](const auto& r, const Vector2& v) {
+    return std::abs(r.second + r.first.dot(v)) < kAgree;
+  };
+  const std::size_t every = all.size() / kMost + 1;
+  Vector2 velocity = Vector2::Zero();
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < all.size(); i += every) {
+    for (std::size_t j = i + every; j < all.size(); j += every) {
+      Matrix2 D;
+      D << all[i].first.transpose(), all[j].first.transpose();
+      if (std::abs(D.determinant()) < 0.1) continue;
+      const Vector2 v = D.inverse() * -Vector2(all[i].second, all[j].second);
+      const auto n = static_cast<std::size_t>(
+          std::count_if(all.begin(), all.end(), [&](const auto& r) { return agrees(r, v); }));
+      if (n > most) most = n, velocity = v;
+    }
+  }
+  if (most < kFewest || 2 * most < all.size()) return std::nullopt;
+  SensorVelocity out{stamp, velocity, Matrix2::Zero()};
+  Vector2 sum = Vector2::Zero();
+  for (const auto& r : all) {
+    if (!agrees(r, velocity)) continue;
+    out.information += r.first * r.first.transpose();
+    sum -= r.first * r.second;
+  }
+  if (out.information.determinant() < kSpread * static_cast<double>(most * most))
+    return std::nullopt;
+  out.velocity = out.information.inverse() * sum;
+  return out;
+}
+
+std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
+                                            const Pose3& T_ego_sensor,
+                                            const std::vector<EgoState>& poses) {
+  const Course course(poses);
+  std::vector<Seen> seen;
+  std::size_t steps = 0, j = 0;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    while (j < scans.size() && scans[j].stamp - scans[i].stamp < kWindow) ++j;
+    if (j == scans.size()) break;
+    const double dt = scans[j].stamp - scans[i].stamp;
+    const Seen s{scans[i].stamp, scans[j].stamp,
+                 scans[i].T_world_ego.inverse() * scans[j].T_world_ego};
+    if (dt > kLongest || s.motion.translation().norm() < kMoves * dt) continue;
+    seen.push_back(s), steps += j - i;
+  }
+  if (seen.empty()) return std::nullopt;
+  FitProblem p = problemOf(seen.size(), 6, bestClock(seen, course));
+  p.shared = static_cast<double>(steps) / static_cast<double>(seen.size());
+  const Vector3 place = T_ego_sensor.translation();
+  p.residuals = [&](std::size_t k, const VectorXd& x, VectorXd& r) {
+    const auto B = course.motion(seen[k].from, seen[k].to, -x[kClock]);
+    if (!B) return false;
+    const Pose3& A = seen[k].motion;
+    // X takes points of the true vehicle frame to that of the log's mounting: A X = X B.
+    const Eigen::Matrix3d R = rotationOf(x);
+    const Vector3 t = place - R * (place - Vector3(x[kAhead], x[kLeft], 0));
+    r.head<3>() = turnOf(A) - R * turnOf(*B);
+    r.tail<3>() = A.translation() - (1 + x[kScale]) * (R * B->translation() + t - A.linear() * t);
+    return true;
+  };
+  const auto fit = fitRobustly(p);
+  if (!fit) return std::nullopt;
+  return checkOf(*fit);
+}
+
+std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& scans,
+                                            const Pose3& T_ego_sensor,
+                                            const std::vector<EgoState>& poses) {
+  constexpr double kHalf = 0.1;  // [s] of the poses' motion on either side of a scan
+  const Course course(poses);
+  std::vector<SensorVelocity> moving;
+  for (const SensorVelocity& s : scans)
+    if (s.velocity.norm() > kMoves) moving.push_back(s);
+  if (moving.empty()) return std::nullopt;
+  const Vector2 place = T_ego_sensor.translation().head<2>();
+  const Matrix2 R_ego_sensor = Eigen::Rotation2Dd(yawOf(T_ego_sensor)).toRotationMatrix();
+  FitProblem p = problemOf(moving.size(), 2, 0);
+  p.residuals = [&](std::size_t k, const VectorXd& x, VectorXd& r) {
+    const auto center = course.at(moving[k].stamp, -x[kClock]);
+    const auto before = course.at(moving[k].stamp, -x[kClock] - kHalf);
+    const auto after = course.at(moving[k].stamp, -x[kClock] + kHalf);
+    if (!center || !before || !after) return false;
+    const Vector3 step =
+        center->linear().transpose() * (after->translation() - before->translation());
+    const double turn = turnOf(before->inverse() * *after).z() / (2 * kHalf);
+    const Vector2 lever = place - Vector2(x[kAhead], x[kLeft]);
+    const Vector2 v = step.head<2>() / (2 * kHalf) + turn * Vector2(-lever.y(), lever.x());
+    const Vector2 seen_v = (1 + x[kScale]) * (R_ego_sensor.transpose() * rotate2(x[kYaw], v));
+    const Matrix2 U = moving[k].information.llt().matrixU();
+    r = U * (moving[k].velocity - seen_v);
+    return true;
+  };
+  const auto fit = fitRobustly(p);
+  if (!fit) return std::nullopt;
+  return checkOf(*fit);
+}
+
+Pose3 correctedMounting(const MotionCheck& check, const Pose3& T_ego_sensor) {
+  const auto error = [](const MotionCheck::Value& v) { return v.isWrong() ? v.error : 0; };
+  const Pose3 turned = makePose(0, 0, 0, error(check.yaw), error(check.pitch), error(check.roll));
+  Pose3 out = T_ego_sensor;
+  out.linear() = turned.linear().transpose() * T_ego_sensor.linear();
+  out.translation() -= Vector3(error(check.ahead), error(check.left), 0);
+  return out;
+}
+
+}  // namespace perception

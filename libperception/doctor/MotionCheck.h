@@ -1,0 +1,48 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "libperception/measurement/SensorFrame.h"
+
+namespace perception {
+
+/// What a sensor's own motion says of its mounting and clock, as the log has them, against the
+/// poses: error = the log's minus the true one (method.md 8.13).
+struct MotionCheck {
+  struct Value {
+    double error = 0, sigma = 0;
+    double enough = 0;  ///< largest standard deviation with which the error counts as observed
+    double wrong = 0;   ///< errors up to this are none
+    bool observable() const { return sigma <= enough; }
+    bool isWrong() const;  ///< observable, and larger than its uncertainty and `wrong`
+  };
+  Value yaw, pitch, roll;  ///< [rad]
+  Value ahead, left;       ///< [m] place in the vehicle
+  Value clock;             ///< [s] stamps are late by this
+  std::size_t used = 0;    ///< scans
+};
+
+/// Velocity of a radar over ground, from the range rates of what stands.
+struct SensorVelocity {
+  Stamp stamp;
+  Vector2 velocity = Vector2::Zero();         ///< [m/s] sensor frame
+  Matrix2 information = Matrix2::Identity();  ///< sum of the squared directions of the returns
+};
+/// Of the largest set of returns whose range rates agree with one motion; empty where it is not
+/// the greater part of them or they lie in one direction.
+std::optional<SensorVelocity> radarVelocity(const RadarReturns& radar, Stamp stamp);
+
+/// `scans`: poses of the vehicle by odometry from the lidar under the log's mounting. `poses`: the
+/// log's, in any order. Empty without enough of both at the same time, or if the vehicle stands.
+std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
+                                            const Pose3& T_ego_sensor,
+                                            const std::vector<EgoState>& poses);
+std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& scans,
+                                            const Pose3& T_ego_sensor,
+                                            const std::vector<EgoState>& poses);
+
+/// The log's mounting without the errors that were observed and are wrong.
+Pose3 correctedMounting(const MotionCheck& check, const Pose3& T_ego_sensor);
+
+}  // namespace perception

@@ -1,0 +1,183 @@
+#include "libperception/doctor/MotionCheck.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace perception {
+namespace {
+
+constexpr double kDuration = 30;  // [s]
+
+Stamp stampAt(double t) { return Stamp{1'000'000'000'000 + std::llround(t * 1e9)}; }
+
+/// What of a drive shows the errors.
+struct Drive {
+  double speed_change = 3;  ///< [m/s] about 10 m/s, in a few seconds
+  double turn = 0.2;        ///< [rad/s] largest yaw rate
+};
+
+/// Poses every 20 ms of a vehicle that rolls without slip.
+std::vector<EgoState> posesOf(const Drive& drive) {
+  std::vector<EgoState> poses;
+  double x = 0, y = 0, yaw = 0;
+  for (int i = -50; i * 0.01 < kDuration; ++i) {
+    const double t = i * 0.01, speed = 10 + drive.speed_change * std::sin(0.9 * t);
+    if (i % 2 == 0) {
+      EgoState state;
+      state.stamp = stampAt(t);
+      state.T_world_ego = makePose(x, y, 0, yaw);
+      poses.push_back(state);
+    }
+    x += 0.01 * speed * std::cos(yaw), y += 0.01 * speed * std::sin(yaw);
+    yaw += 0.01 * drive.turn * std::sin(0.5 * t);
+  }
+  return poses;
+}
+
+Pose3 poseAt(const std::vector<EgoState>& poses, double t) {
+  const double i = (t + 0.5) / 0.02;
+  const auto k = static_cast<std::size_t>(i);
+  const Pose3 step = poses[k].T_world_ego.inverse() * poses[k + 1].T_world_ego;
+  const double share = i - static_cast<double>(k);
+  return poses[k].T_world_ego * makePose(share * step.translation().x(),
+                                         share * step.translation().y(), 0, share * yawOf(step));
+}
+
+const Pose3 kRight = makePose(1.2, 0.3, 1.7, radians(4), radians(1), 0);
+
+/// Poses by odometry from a lidar at kRight that the log has at `logged`, `late` by its clock.
+/// Noise of a step: 1 cm, .03 deg.
+std::vector<EgoState> odometryOf(const std::vector<EgoState>& poses, const Pose3& logged,
+                                 double late) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise;
+  const Pose3 X = logged * kRight.inverse();
+  std::vector<EgoState> scans;
+  Pose3 T = Pose3::Identity();
+  for (double t = 0; t + 0.1 < kDuration - 0.5; t += 0.1) {
+    EgoState state;
+    state.stamp = stampAt(t + late);
+    state.T_world_ego = T;
+    scans.push_back(state);
+    T = T * X * poseAt(poses, t).inverse() * poseAt(poses, t + 0.1) * X.inverse() *
+        makePose(0.01 * noise(random), 0.01 * noise(random), 0.01 * noise(random),
+                 radians(0.03) * noise(random), radians(0.03) * noise(random),
+                 radians(0.03) * noise(random));
+  }
+  return scans;
+}
+
+Pose3 wrongBy(double ahead, double left, double yaw, double pitch, double roll) {
+  Pose3 out = kRight;
+  out.linear() = makePose(0, 0, 0, yaw, pitch, roll).linear() * out.linear();
+  out.translation() += Vector3(ahead, left, 0);
+  return out;
+}
+
+TEST(MotionCheck, RightMountingAndClockOfALidarAreNotWrong) {
+  const auto poses = posesOf({});
+  const auto check = checkLidarMotion(odometryOf(poses, kRight, 0), kRight, poses);
+  ASSERT_TRUE(check);
+  for (const auto& v :
+       {check->yaw, check->pitch, check->roll, check->ahead, check->left, check->clock}) {
+    EXPECT_TRUE(v.observable());
+    EXPECT_FALSE(v.isWrong());
+    EXPECT_LT(std::abs(v.error), 4 * v.sigma);
+  }
+  EXPECT_TRUE(correctedMounting(*check, kRight).isApprox(kRight));
+}
+
+TEST(MotionCheck, LidarTurnedShiftedAndLateIsFound) {
+  const auto poses = posesOf({});
+  for (const double sign : {-1.0, 1.0}) {
+    const Pose3 logged =
+        wrongBy(sign * 0.2, -sign * 0.2, sign * radians(5), radians(-5), radians(5));
+    const auto check = checkLidarMotion(odometryOf(poses, logged, sign * 0.08), logged, poses);
+    ASSERT_TRUE(check);
+    EXPECT_NEAR(degrees(check->yaw.error), sign * 5, 1);
+    EXPECT_NEAR(degrees(check->pitch.error), -5, 1);
+    EXPECT_NEAR(degrees(check->roll.error), 5, 1);
+    EXPECT_NEAR(check->ahead.error, sign * 0.2, 0.1);
+    EXPECT_NEAR(check->left.error, -sign * 0.2, 0.1);
+    EXPECT_NEAR(check->clock.error, sign * 0.08, 0.02);
+    EXPECT_TRUE(check->yaw.isWrong() && check->clock.isWrong() && check->left.isWrong());
+    EXPECT_TRUE(correctedMounting(*check, logged).isApprox(kRight, 0.03));
+  }
+}
+
+TEST(MotionCheck, StraightDriveShowsNeitherPlaceNorRoll) {
+  const auto poses = posesOf({3, 0});
+  const auto check = checkLidarMotion(odometryOf(poses, kRight, 0.08), kRight, poses);
+  ASSERT_TRUE(check);
+  EXPECT_FALSE(check->roll.observable() || check->ahead.observable() || check->left.observable());
+  EXPECT_TRUE(check->yaw.observable() && check->pitch.observable());
+  EXPECT_NEAR(check->clock.error, 0.08, 0.02);  // braking shows it
+}
+
+TEST(MotionCheck, SteadyStraightDriveShowsNoClock) {
+  const auto poses = posesOf({0, 0});
+  const auto check = checkLidarMotion(odometryOf(poses, kRight, 0.08), kRight, poses);
+  ASSERT_TRUE(check);
+  EXPECT_FALSE(check->clock.observable());
+  EXPECT_FALSE(check->clock.isWrong());
+}
+
+TEST(MotionCheck, StandingVehicleShowsNothing) {
+  std::vector<EgoState> poses = posesOf({});
+  for (auto& pose : poses) pose.T_world_ego = Pose3::Identity();
+  EXPECT_FALSE(checkLidarMotion(odometryOf(poses, kRight, 0), kRight, poses));
+}
+
+/// Returns of standing things in front of a radar at `mounting`, a fifth of them on a moving
+/// vehicle; noise .1 m/s.
+RadarReturns radarAt(const std::vector<EgoState>& poses, const Pose3& mounting, double t,
+                     std::mt19937& random) {
+  std::normal_distribution<double> noise;
+  std::uniform_real_distribution<double> bearing(radians(-45), radians(45));
+  const Pose3 a = poseAt(poses, t - 0.01) * mounting, b = poseAt(poses, t + 0.01) * mounting;
+  const Vector3 v = mounting.linear().transpose() * poseAt(poses, t).linear().transpose() *
+                    (b.translation() - a.translation()) / 0.02;
+  RadarReturns radar;
+  for (int i = 0; i < 20; ++i) {
+    RadarReturn r;
+    r.range = 10 + i, r.bearing = bearing(random);
+    r.range_rate = -rotate2(r.bearing, Vector2(1, 0)).dot(v.head<2>()) + 0.1 * noise(random);
+    if (i % 5 == 0) r.range_rate += 4;
+    radar.returns.push_back(r);
+  }
+  return radar;
+}
+
+TEST(MotionCheck, RadarTurnedAndLateIsFound) {
+  const auto poses = posesOf({});
+  const Pose3 right = makePose(3.5, 0.5, 0.5, radians(20));
+  const Pose3 logged = makePose(3.5, 0.5, 0.5, radians(25));
+  std::mt19937 random(3);
+  std::vector<SensorVelocity> seen;
+  for (double t = 0; t < kDuration - 0.5; t += 0.06)
+    if (const auto v = radarVelocity(radarAt(poses, right, t, random), stampAt(t + 0.08)))
+      seen.push_back(*v);
+  EXPECT_GT(seen.size(), 450U);
+  const auto check = checkRadarMotion(seen, logged, poses);
+  ASSERT_TRUE(check);
+  EXPECT_NEAR(degrees(check->yaw.error), 5, 1);
+  EXPECT_NEAR(check->clock.error, 0.08, 0.02);
+  EXPECT_TRUE(check->yaw.isWrong() && check->clock.isWrong());
+  EXPECT_FALSE(check->pitch.observable() || check->roll.observable());
+  EXPECT_NEAR(degrees(yawOf(correctedMounting(*check, logged))), 20, 1);
+}
+
+TEST(RadarVelocity, ReturnsThatDisagreeGiveNone) {
+  RadarReturns radar;
+  for (int i = 0; i < 12; ++i) {
+    RadarReturn r;
+    r.range = 20, r.bearing = 0.1 * (i - 6), r.range_rate = 3.0 * ((i * 5) % 12);
+    radar.returns.push_back(r);
+  }
+  EXPECT_FALSE(radarVelocity(radar, stampAt(0)));
+}
+
+}  // namespace
+}  // namespace perception
