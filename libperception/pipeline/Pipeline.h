@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "libperception/pipeline/ConditionWatch.h"
 #include "libperception/pipeline/EgoTimeline.h"
 #include "libperception/pipeline/FrameNumbers.h"
 #include "libperception/pipeline/FrameQueue.h"
@@ -90,6 +91,7 @@ class Pipeline {
   SensorWatch watch_;
   SensorHealth health_;
   WeatherWatch weather_;
+  ConditionWatch conditions_;
   PhantomLedger ledger_;
   ScanMaker scan_maker_;
   std::optional<SafetyMonitor> safety_;  ///< empty: [grid] enabled = false
