@@ -157,6 +157,28 @@ std::vector<Child> rankedChildren(const DistinctHypotheses& groups,
   return children;
 }
 
+/// By measurement the posterior probability that a track of before the scan is its cause.
+std::vector<double> shareOfTracks(const std::vector<Child>& children, const Posterior& before,
+                                  bool sampled, std::size_t measurements) {
+  std::vector<double> log_weights, slots;
+  log_weights.reserve(children.size());
+  for (const Child& c : children) {
+    slots.clear();
+    for (const std::uint32_t s : c.slots)
+      slots.push_back(before.log_weights[s] + c.association.log_weight);
+    log_weights.push_back(sampled ? logSumExp(slots) : c.log_weight);
+  }
+  const double all = logSumExp(log_weights);
+  std::vector<double> share(measurements, 0);
+  if (!std::isfinite(all)) return share;
+  for (std::size_t c = 0; c < children.size(); ++c) {
+    const double weight = std::exp(log_weights[c] - all);
+    for (std::size_t k = 0; k < measurements; ++k)
+      if (children[c].association.cause[k] >= 0) share[k] += weight;
+  }
+  return share;
+}
+
 /// Children of equal history share a handle (sampled: slots stay) or become one (ranked).
 Posterior posteriorOf(std::vector<Child> children, std::vector<HypothesisHandle> handles,
                       const Posterior& before, bool sampled) {
@@ -220,6 +242,7 @@ StepResult step(const Posterior& before, const MeasurementScan& scan, const Filt
     result.stats.predicted += tracks.touched[t] != 0;
     result.stats.pairs += table.tracks[t].pairs.size();
   }
+  result.stats.of_tracks = shareOfTracks(children, before, sampled, scan.measurements.size());
   result.posterior = posteriorOf(std::move(children), std::move(handles), before, sampled);
   return result;
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "libperception/core/Random.h"
 #include "libperception/filter/state/FilterModel.h"
 #include "libperception/filter/state/Track.h"
@@ -13,6 +15,8 @@ struct StepStats {
   std::size_t pairs = 0;            ///< gated track-measurement pairs
   std::size_t measurements = 0;
   std::size_t updates = 0;  ///< distinct updated tracks
+  /// [0, 1] by measurement: posterior probability that a track of before the scan is its cause.
+  std::vector<double> of_tracks;
 };
 
 /// The posterior: weighted hypotheses, one slot a particle. With the sampled proposal, slots of

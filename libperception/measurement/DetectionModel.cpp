@@ -89,6 +89,8 @@ void DetectionParams::visit(ParamVisitor& v) {
   modality = modalities()[static_cast<std::size_t>(index)].letter;
   v.real("clutter_per_scan", clutter_per_scan, {1e-9, 1e4}, "",
          "expected number of false measurements per scan (kappa)");
+  v.choiceOf("clutter", clutter, {"fixed", "learnt"},
+             "clutter_per_scan holds, or is where learning starts, by range and bearing");
   v.real("births_per_scan", births_per_scan, {1e-9, 1e4}, "",
          "expected number of new objects per scan (beta)");
   v.real("range_min", range_min, {0, 1000}, "m", "nearest objects that it sees");

@@ -15,6 +15,8 @@ struct DetectionParams {
   std::string kind = "lidar";  ///< front end by name
   Modality modality = Modality::kLidar;
   double clutter_per_scan = 0.6;  ///< kappa: false measurements (method.md 5.3)
+  /// clutter_per_scan: kept, or the start of what is learned of it in the run (method.md 5.18).
+  enum class Clutter { kFixed, kLearnt } clutter = Clutter::kFixed;
   double births_per_scan = 0.03;  ///< beta: first measurements of new objects (method.md 5.3)
   double range_min = 0, range_max = 70;  ///< [m] of the nearest point of an object [radecki2016]
   double fov = kTwoPi;          ///< [rad] full horizontal angle about the sensor's forward axis

@@ -32,6 +32,7 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
       watch_(setup_.sensors, setup_.run.sensor_timeout, events),
       health_(setup_.sensors, events),
       weather_(events),
+      conditions_(setup_.sensors, weather_),
       ledger_(events),
       scan_maker_(setup_, timing, weather_, ledger_),
       outputs_(setup_.run, setup_.sensors) {
@@ -129,7 +130,8 @@ void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
 void Pipeline::finish() {
   watch_.finish();
   ledger_.finish();
-  const auto learned = scan_maker_.learned();
+  auto learned = scan_maker_.learned();
+  for (auto& line : conditions_.learned()) learned.push_back(std::move(line));
   if (!learned.empty())
     events_.add(std::nullopt, event_kind::kLearned, fmt::format("{}", fmt::join(learned, "\n")));
 }
@@ -198,11 +200,17 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
   if (setup_.sensors[sensor].active) {
     health_.addFrame(sensor, frame, weather_.fog());
     MeasurementScan scan = scan_maker_.measure(sensor, frame);
+    const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
     watch_.addFrame(sensor, frame.stamp, &scan);
     if (observer_) observer_->onFrame(frame), observer_->onScan(scan);
     addToGrid(frame, scan);
     const auto scope = timing_.stage("filter");
-    tracker_.process(scan);
+    const std::uint64_t index = tracker_.scans();
+    if (tracker_.process(scan)) {
+      conditions_.add(sensor, scan, tracker_, index);
+      health_.addScan(sensor, scan, tracker_.mapHypothesis(), setup_.model,
+                      conditions_.clutter(sensor), share);
+    }
   } else {
     watch_.addFrame(sensor, frame.stamp, nullptr);
   }
@@ -239,7 +247,6 @@ void Pipeline::makeScenes(std::optional<Stamp> now) {
   while (const auto instant = outputs_.takeDue(now)) {
     ready_.push_back(scenes_.make(tracker_.mapHypothesis(), instant->ego, instant->frame));
     if (instant->path.known) ready_.back().path = safety_->advise(instant->path, ready_.back());
-    health_.addScene(ready_.back(), setup_.model.classes);
     if (observer_) observer_->onOutput(ready_.back());
   }
 }
@@ -259,6 +266,7 @@ void Pipeline::restartTracks() {
   makeScenes(std::nullopt);
   tracker_.reset();
   health_.restart();
+  conditions_.restart();
   if (observer_) observer_->onRestart();
   scan_maker_.restart();
   if (safety_) safety_->restart();

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "libperception/pipeline/ConditionWatch.h"
 #include "libperception/pipeline/EgoTimeline.h"
 #include "libperception/pipeline/FrameNumbers.h"
 #include "libperception/pipeline/FrameQueue.h"
@@ -93,6 +94,7 @@ class Pipeline {
   SensorWatch watch_;
   SensorHealth health_;
   WeatherWatch weather_;
+  ConditionWatch conditions_;
   PhantomLedger ledger_;
   ScanMaker scan_maker_;
   std::optional<SafetyMonitor> safety_;  ///< empty: [grid] enabled = false

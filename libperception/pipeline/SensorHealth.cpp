@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace perception {
 namespace {
@@ -15,22 +16,15 @@ constexpr std::size_t kStep = 7;        // of the returns every seventh is looke
 constexpr std::size_t kReach = 4;       // [deg] to the neighbors that return
 constexpr double kLowest = -20;         // [deg] elevation of the lowest row
 constexpr double kLeastRow = 0.1;       // share of a row's directions that return: it has beams
-constexpr double kDirty = 0.08, kDirtyFor = 0.4;      // [-], [s]
-constexpr double kFewReturns = 0.05;                  // of the usual ones
-constexpr double kNoReturns = 20;                     // of a lidar of which nothing is known
-constexpr double kUsualOver = 5;                      // [s] memory
-constexpr double kBlindLidar = 1, kBlindOther = 1.5;  // [s] of empty frames
-constexpr double kWitnessed = 1;                      // [s] summed over objects
-constexpr double kOthersHit = 0.3;                    // [s] since another modality saw the object
-constexpr double kNear = 0.4, kFarthest = 20;         // of range_max, [m]: surely in view
-constexpr double kMargin = radians(5);                // from the edge of the view
-constexpr double kRadarSpeed = 2;                     // [m/s] that a radar tells from the ground
-constexpr double kExists = 0.8;
+constexpr double kDirty = 0.08, kDirtyFor = 0.4;        // [-], [s]
+constexpr double kFewReturns = 0.05;                    // of the usual ones
+constexpr double kNoReturns = 20;                       // of a lidar of which nothing is known
+constexpr double kUsualOver = 5;                        // [s] memory
+constexpr double kBlindLidar = 1, kBlindFromStart = 3;  // [s] of empty frames
+// Of the other sensors:
+constexpr double kLogBlind = -11.5;  // ln 1e-5
+constexpr double kFouledFrom = 8;    // log-likelihood ratio
 constexpr double kFog = 0.2;
-
-bool modalityIs(const PipelineSetup::Sensor& sensor, Modality m) {
-  return sensor.params.modality == m;
-}
 
 }  // namespace
 
@@ -94,17 +88,16 @@ bool SensorHealth::isEmpty(const SensorFrame& frame, State& state) const {
 
 void SensorHealth::addFrame(std::size_t sensor, const SensorFrame& frame, double fog) {
   State& state = states_[sensor];
-  state.T_ego_sensor = frame.T_ego_sensor;
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud != nullptr && fog < kFog) judgeWindow(sensor, *cloud, frame.stamp);
   if (isEmpty(frame, state)) {
     if (!state.empty_since) state.empty_since = frame.stamp;
     ++state.empty_frames;
-    judgeBlind(sensor, frame.stamp);
+    if (cloud != nullptr) judgeBlindLidar(sensor, frame.stamp);
     return;
   }
   state.empty_since.reset();
-  state.empty_frames = 0, state.witnessed = 0;
+  state.empty_frames = 0;
   if (state.fault == Fault::kBlind) report(sensor, frame.stamp, Fault::kNone, "sees again");
 }
 
@@ -124,47 +117,64 @@ void SensorHealth::judgeWindow(std::size_t sensor, const LidarCloud& cloud, Stam
            fmt::format("{:.0f} % of its window return nothing", 100 * *share));
 }
 
-bool SensorHealth::shouldSee(std::size_t sensor, const SceneObject& object,
-                             const Scene& scene) const {
-  const PipelineSetup::Sensor& s = sensors_[sensor];
-  if (!object.classified || object.existence < kExists) return false;
-  if (modalityIs(s, Modality::kRadar) && object.velocity.norm() < kRadarSpeed) return false;
-  const bool seen_by_others =
-      std::any_of(object.last_hit.begin(), object.last_hit.end(), [&](const auto& hit) {
-        return hit.first != s.params.modality && scene.stamp - hit.second <= kOthersHit;
-      });
-  if (!seen_by_others) return false;
-  const Vector3 p =
-      (scene.ego.T_world_ego * states_[sensor].T_ego_sensor).inverse() * object.position;
-  // Cameras look along z of their frame, x to the right.
-  const bool optical = modalityIs(s, Modality::kCamera);
-  const double ahead = optical ? p.z() : p.x(), left = optical ? -p.x() : p.y();
-  const double range = std::hypot(ahead, left);
-  return range > 2 && range < std::min(kFarthest, kNear * s.params.range_max) &&
-         std::abs(std::atan2(left, ahead)) < s.params.fov / 2 - kMargin;
-}
-
-void SensorHealth::addScene(const Scene& scene, const ClassTable& classes) {
-  const double dt = last_scene_ ? std::clamp(scene.stamp - *last_scene_, 0.0, 0.2) : 0;
-  last_scene_ = scene.stamp;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (!sensors_[k].active || !states_[k].empty_since) continue;
-    for (const SceneObject& object : scene.objects)
-      if (classes[object.class_id].reported && shouldSee(k, object, scene))
-        states_[k].witnessed += dt;
+void SensorHealth::addScan(std::size_t sensor, const MeasurementScan& scan,
+                           const Hypothesis& tracks, const FilterModel& model,
+                           const std::shared_ptr<const ClutterMap>& clutter, double seen_share) {
+  State& state = states_[sensor];
+  state.yaw = wrapAngle(yawOf(scan.state.T_world_sensor) - yawOf(scan.state.ego.T_world_ego));
+  if (scan.modality == Modality::kLidar || !scan.model) return;
+  if (state.empty_since) {
+    state.doubt.passSilence(clutter);
+  } else {
+    state.doubt.hear(clutter);
   }
+  state.doubt.add(scan, tracks, model, seen_share);
+  judge(sensor, scan.state.stamp);
 }
 
-void SensorHealth::judgeBlind(std::size_t sensor, Stamp stamp) {
+void SensorHealth::judge(std::size_t sensor, Stamp stamp) {
+  State& state = states_[sensor];
+  if (state.fault == Fault::kBlind) return;
+  if (state.empty_since && state.doubt.logSilence() < kLogBlind) {
+    const double empty = stamp - *state.empty_since;
+    return report(sensor, stamp, Fault::kBlind,
+                  fmt::format("nothing for {:.1f} s, which a healthy one would see", empty));
+  }
+  const double fouled = state.doubt.fouled();
+  if (state.fault == Fault::kNone && fouled > kFouledFrom)
+    return report(sensor, stamp, Fault::kFouled, "misses most of what other sensors see");
+  if (state.fault == Fault::kFouled && fouled <= 0)
+    return report(sensor, stamp, Fault::kNone, "sees what other sensors see");
+  const auto offset = state.doubt.offset(stamp);
+  if (state.fault == Fault::kNone && offset)
+    report(sensor, stamp, Fault::kMisaligned,
+           fmt::format("all that it sees is {:.1f} deg off to the {}", degrees(std::abs(*offset)),
+                       *offset > 0 ? "left" : "right"));
+}
+
+// A lidar that has returned something before and now hardly does, or never has.
+void SensorHealth::judgeBlindLidar(std::size_t sensor, Stamp stamp) {
   const State& state = states_[sensor];
   if (state.fault == Fault::kBlind || state.empty_frames < kLeastScans) return;
   const double empty = stamp - *state.empty_since;
-  const bool lidar = modalityIs(sensors_[sensor], Modality::kLidar);
-  const bool known = lidar && state.usual > 0;
-  if (known ? empty < kBlindLidar : empty < kBlindOther || state.witnessed < kWitnessed) return;
-  report(sensor, stamp, Fault::kBlind,
-         known ? fmt::format("hardly a return for {:.1f} s", empty)
-               : fmt::format("nothing for {:.1f} s of what other sensors see", empty));
+  if (empty < (state.usual > 0 ? kBlindLidar : kBlindFromStart)) return;
+  report(sensor, stamp, Fault::kBlind, fmt::format("hardly a return for {:.1f} s", empty));
+}
+
+double SensorHealth::coverage(Modality modality) const {
+  int degrees_seen = 0;
+  for (int bearing = 0; bearing < 360; ++bearing) {
+    const auto sees = [&](std::size_t k) {
+      const State& state = states_[k];
+      return sensors_[k].active && sensors_[k].params.modality == modality &&
+             state.fault != Fault::kBlind && state.yaw &&
+             std::abs(wrapAngle(radians(bearing) - *state.yaw)) <= 0.5 * sensors_[k].params.fov;
+    };
+    bool seen = false;
+    for (std::size_t k = 0; k < states_.size() && !seen; ++k) seen = sees(k);
+    degrees_seen += seen;
+  }
+  return degrees_seen;
 }
 
 void SensorHealth::report(std::size_t sensor, Stamp stamp, Fault fault, const std::string& why) {
@@ -176,17 +186,22 @@ void SensorHealth::report(std::size_t sensor, Stamp stamp, Fault fault, const st
     if (remaining.find(letter) == std::string::npos) remaining.push_back(letter);
   }
   std::sort(remaining.begin(), remaining.end());
+  EventLog::Fields covers = EventLog::Fields::object();
+  for (const char letter : remaining)
+    covers[std::string(1, letter)] = coverage(static_cast<Modality>(letter));
   const PipelineSetup::Sensor& s = sensors_[sensor];
   EventLog::Fields fields = {{"sensor", s.label},
                              {"modality", std::string(1, letterOf(s.params.modality))},
-                             {"remaining", remaining}};
+                             {"remaining", remaining},
+                             {"covers_deg", covers}};
   const std::string message = s.label + ": " + why;
   if (fault == Fault::kNone) {
     events_.add(stamp, event_kind::kSensorBack, message, std::move(fields));
   } else {
-    events_.warn(stamp,
-                 fault == Fault::kBlind ? event_kind::kSensorBlind : event_kind::kSensorFouled,
-                 message, std::move(fields));
+    const char* kind = fault == Fault::kBlind    ? event_kind::kSensorBlind
+                       : fault == Fault::kFouled ? event_kind::kSensorFouled
+                                                 : event_kind::kSensorMisaligned;
+    events_.warn(stamp, kind, message, std::move(fields));
   }
 }
 
@@ -196,7 +211,6 @@ void SensorHealth::restart() {
     state = State();
     state.fault = fault;
   }
-  last_scene_.reset();
 }
 
 }  // namespace perception

@@ -43,6 +43,7 @@ void WeatherWatch::add(const std::string& sensor, Stamp stamp, const AirCensus& 
   WeatherState state = lidar.estimator.state();
   rows_.push_back({stamp, sensor, state, trust});
   state.probability = probabilities();
+  clear_ = state.of(WeatherType::kClear);
   fog_ = state.of(WeatherType::kFog);
   const WeatherType type = state.type();
   if (type == reported_ || state.of(type) < kCertain) return;

@@ -21,7 +21,7 @@ struct WeatherRow {
 };
 
 /// The weather by all lidars whose returns are weighed ([weather] filter = trust): estimates it
-/// with each and reports changes of its type. Tracks do not depend on it.
+/// with each and reports changes of its type.
 class WeatherWatch {
  public:
   explicit WeatherWatch(EventLog& events) : events_(events) {}
@@ -31,7 +31,8 @@ class WeatherWatch {
            const TrustStats& trust);
   /// Mean of the lidars with a scan in the last second.
   std::array<double, kWeatherTypes> probabilities() const;
-  double fog() const { return fog_; }  ///< probability of fog at the last scan
+  double clear() const { return clear_; }  ///< probability of clear air at the last scan
+  double fog() const { return fog_; }      ///< probability of fog at the last scan
   /// Rows since the last call.
   std::vector<WeatherRow> take();
 
@@ -43,7 +44,7 @@ class WeatherWatch {
   EventLog& events_;
   std::map<std::string, Lidar> lidars_;
   Stamp now_;
-  double fog_ = 0;
+  double clear_ = 1, fog_ = 0;
   WeatherType reported_ = WeatherType::kClear;
   std::vector<WeatherRow> rows_;
 };

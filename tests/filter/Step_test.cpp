@@ -350,5 +350,25 @@ TEST(CRbpfTracker, RepeatsARunToTheBit) {
   EXPECT_NE(weights(1), weights(2));
 }
 
+TEST(Step, TellsWhichMeasurementsAreOfTracks) {
+  for (const Proposal proposal : {Proposal::kSampled, Proposal::kRanked}) {
+    const auto sensor = std::make_shared<const PositionModel>(linearSensor());
+    FilterModel model = exactModel(linearClasses());
+    model.proposal = proposal;
+    Posterior posterior = Posterior::empty(proposal == Proposal::kSampled ? 200 : 1);
+    const std::vector<std::vector<test::LabeledPoint>> points = {
+        {{0, 0, 0}}, {{0, 0, 0}}, {{0, 0, 0}}, {{0, 0, 0}, {20, 20, 1}}};
+    StepResult result;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto scan = positionScan(sensor, 0.1 * static_cast<double>(k), points[k]);
+      result = step(posterior, scan, model, {1, k, 0, 0}, 200);
+      posterior = result.posterior;
+    }
+    ASSERT_EQ(result.stats.of_tracks.size(), 2U);
+    EXPECT_GT(result.stats.of_tracks[0], 0.95);
+    EXPECT_LT(result.stats.of_tracks[1], 0.05);
+  }
+}
+
 }  // namespace
 }  // namespace perception

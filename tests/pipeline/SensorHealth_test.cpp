@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libperception/core/Random.h"
+#include "libperception/measurement/PositionModel.h"
 
 namespace perception {
 namespace {
@@ -58,20 +59,40 @@ struct Watched {
     frame.data = std::move(data);
     health.addFrame(place, frame, fog);
   }
-  /// A scene with a car at `x` [m] ahead, seen by the lidar just now.
-  void showCar(double t, double x, double speed) {
-    Scene scene;
-    scene.stamp = kStart + t;
-    SceneObject car;
-    car.classified = true, car.existence = 0.99;
-    car.position = {x, 0, 0}, car.velocity = {speed, 0};
-    car.last_hit[Modality::kLidar] = scene.stamp;
-    scene.objects.push_back(car);
+  /// The scan of `place` with what it detects, and a car at `x` [m] ahead that the lidar has just
+  /// seen, at `speed` [m/s].
+  void scan(std::size_t place, double t, double x, double speed, std::vector<Vector2> detections,
+            std::shared_ptr<const ClutterMap> clutter = nullptr) {
+    PositionModel::Params params;
+    params.classes.resize(1);
+    params.classes[0].detection = 0.85;
+    params.classes[0].labels = {1};
+    params.clutter_labels = {1};
+    params.range = 40;
+    MeasurementScan scan;
+    scan.modality = sensors[place].params.modality;
+    scan.model = std::make_shared<const PositionModel>(params);
+    scan.state.stamp = kStart + t;
+    for (const Vector2& d : detections) {
+      Measurement m;
+      m.z = m.position = d;
+      m.R = 0.01 * Matrix2::Identity();
+      m.seen = 3;
+      scan.measurements.push_back(m);
+    }
+    FilterModel model;
     ObjectClass kind;
+    kind.motion = findMotionModel("constant-velocity");
     kind.reported = true;
-    ClassTable classes;
-    classes.classes.push_back(kind);
-    health.addScene(scene, classes);
+    model.classes.classes = {kind};
+    Track car;
+    car.id = 1, car.existence = 0.99, car.birth = kStart + (t - 5), car.log_class = {0};
+    car.bank.resize(1);
+    car.bank[0].x << x, 0, speed, 0;
+    car.last_hit[modalityIndex(Modality::kLidar)] = scan.state.stamp;
+    if (!detections.empty()) car.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
+    if (!clutter) clutter = std::make_shared<const ClutterMap>(sensors[place].params);
+    health.addScan(place, scan, Hypothesis({std::make_shared<const Track>(car)}), model, clutter);
   }
   std::size_t count(const char* kind) const {
     const auto found = events.counts().find(kind);
@@ -96,17 +117,19 @@ TEST(SensorHealth, ACameraThatMissesWhatTheLidarSeesIsBlind) {
   Watched w;
   for (int k = 0; k <= 20; ++k) {
     w.see(kCamera, 0.1 * k, ObjectDetections());
-    w.showCar(0.1 * k, 15, 0);
+    w.scan(kCamera, 0.1 * k, 15, 0, {});
   }
   EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
+  EXPECT_NE(w.text().find("\"covers_deg\""), std::string::npos);
 }
 
 TEST(SensorHealth, NoSensorIsBlindToWhatIsOutOfItsView) {
   Watched w;
   for (int k = 0; k <= 50; ++k) {
     w.see(kCamera, 0.1 * k, ObjectDetections());
+    w.scan(kCamera, 0.1 * k, 60, 10, {});
     w.see(kRadar, 0.1 * k, RadarReturns());
-    w.showCar(0.1 * k, 60, 10);
+    w.scan(kRadar, 0.1 * k, 60, 10, {});
   }
   EXPECT_EQ(w.count(event_kind::kSensorBlind), 0U);
 }
@@ -116,9 +139,56 @@ TEST(SensorHealth, ARadarIsJudgedByWhatMoves) {
     Watched w;
     for (int k = 0; k <= 20; ++k) {
       w.see(kRadar, 0.1 * k, RadarReturns());
-      w.showCar(0.1 * k, 15, speed);
+      w.scan(kRadar, 0.1 * k, 15, speed, {});
     }
     EXPECT_EQ(w.count(event_kind::kSensorBlind), speed > 0 ? 1U : 0U);
+  }
+}
+
+TEST(SensorHealth, ARadarWithoutItsUsualClutterIsBlind) {
+  for (const double usual : {0.0, 1.0}) {
+    Watched w;
+    auto clutter = std::make_shared<ClutterMap>(w.sensors[kRadar].params);
+    for (int k = 0; k < 100; ++k) {
+      std::vector<double> counts(clutter->cells().size(), 0);
+      counts[0] = usual;
+      clutter->add(counts, 0.1);
+    }
+    for (int k = 0; k <= 20; ++k) {
+      w.see(kRadar, 0.1 * k, RadarReturns());
+      w.scan(kRadar, 0.1 * k, 60, 0, {}, clutter);
+    }
+    EXPECT_EQ(w.count(event_kind::kSensorBlind), usual > 0 ? 1U : 0U);
+  }
+}
+
+TEST(SensorHealth, ACameraThatSeesAThirdOfWhatItShouldIsFouledAndAHealthyOneIsNot) {
+  for (const double share : {0.3, 0.85}) {
+    Watched w;
+    Rng rng({5, 0, 0, 0});
+    for (int k = 0; k <= 100; ++k) {
+      ObjectDetections some;
+      some.objects.resize(1);  // something else, so that it is not silent
+      w.see(kCamera, 0.1 * k, some);
+      const bool seen = rng.uniform() < share;
+      w.scan(kCamera, 0.1 * k, 15, 0,
+             seen ? std::vector<Vector2>{{15, 0}} : std::vector<Vector2>{});
+    }
+    EXPECT_EQ(w.count(event_kind::kSensorFouled), share < 0.5 ? 1U : 0U);
+  }
+}
+
+TEST(SensorHealth, ASensorWhoseBearingsAreAllOffIsMisaligned) {
+  for (const double off : {0.0, radians(5)}) {
+    Watched w;
+    for (int k = 0; k <= 30; ++k) {
+      ObjectDetections some;
+      some.objects.resize(1);
+      w.see(kCamera, 0.1 * k, some);
+      const double noise = radians(k % 3 - 1.0);
+      w.scan(kCamera, 0.1 * k, 15, 0, {{15 * std::cos(off + noise), 15 * std::sin(off + noise)}});
+    }
+    EXPECT_EQ(w.count(event_kind::kSensorMisaligned), off > 0 ? 1U : 0U);
   }
 }
 

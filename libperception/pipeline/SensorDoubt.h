@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "libperception/filter/state/FilterModel.h"
+#include "libperception/filter/state/Track.h"
+#include "libperception/measurement/ClutterMap.h"
+#include "libperception/measurement/Measurement.h"
+
+namespace perception {
+
+/// What speaks against a sensor that is no lidar: objects that other sensors see in its view, its
+/// usual false measurements, and bearings that are all off to the same side (method.md 9.14).
+class SensorDoubt {
+ public:
+  /// A scan and the tracks after it; `seen_share`: what weather has left of P_D in its model.
+  void add(const MeasurementScan& scan, const Hypothesis& tracks, const FilterModel& model,
+           double seen_share);
+  /// An object that the sensor should have seen in a scan, with probability `detection`.
+  void addLook(double detection, bool seen);
+  /// Bearing of a detection minus that of its object as others see it, [rad].
+  void addBearing(Stamp stamp, std::uint64_t object, double error);
+  /// A scan with something in it, and what was known of the sensor's clutter then.
+  void hear(std::shared_ptr<const ClutterMap> clutter) {
+    silent_ = 0, log_missed_ = 0, usual_ = std::move(clutter);
+  }
+  /// A scan with nothing in it.
+  void passSilence(const std::shared_ptr<const ClutterMap>& clutter) {
+    ++silent_;
+    if (!usual_) usual_ = clutter;
+  }
+
+  /// Log probability that a healthy sensor has been silent for so long.
+  double logSilence() const;
+  /// (0, 1] share of the expected detections that came in the last ten seconds, from that of a
+  /// sensor in bad weather (method.md 4.8).
+  double seenShare() const;
+  /// Log-likelihood ratio of a sensor that misses more than half of what it should see, since when
+  /// that is likeliest to be so.
+  double fouled() const { return fouled_; }
+  /// [rad] mean error of the bearings of the last seconds where it is beyond chance; else empty.
+  std::optional<double> offset(Stamp now) const;
+
+ private:
+  struct Bearing {
+    Stamp stamp;
+    std::uint64_t object;
+    double error;
+  };
+  double log_missed_ = 0, fouled_ = 0;
+  double expected_ = 0, seen_ = 0;           ///< detections that are remembered
+  std::optional<Stamp> last_;                ///< scan
+  std::size_t silent_ = 0;                   ///< scans in a row
+  std::shared_ptr<const ClutterMap> usual_;  ///< before the silence
+  std::deque<Bearing> bearings_;
+};
+
+}  // namespace perception
