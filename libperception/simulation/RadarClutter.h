@@ -7,10 +7,10 @@
 namespace perception {
 
 /// Mean ratio of the echo of the air to the noise in one resolution cell at `range` [m], method.md
-/// (64).
+/// (63).
 double clutterRatio(const RadarAir& air, double range, const RadarUnitParams& params);
 
-/// Cells in which the air alone exceeds the threshold (method.md (61), (64)): object -1, snr as
+/// Cells in which the air alone exceeds the threshold (method.md (61), (63)): object -1, snr as
 /// received. Draws nothing in clear air.
 std::vector<RadarReflection> radarClutter(const RadarAir& air, const RadarUnitParams& params,
                                           const RadarMount& mount, Rng& rng);

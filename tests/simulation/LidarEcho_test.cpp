@@ -70,7 +70,7 @@ TEST(LidarEcho, TheSurfaceBehindAFlakeIsASecondEcho) {
   ASSERT_TRUE(second);
   EXPECT_NEAR(second->range, 20, 1e-6);
   EXPECT_FALSE(secondEchoOf(pulse, echoOf(wallPulse(20), 0.3, {}), 0.3, {}));  // no first
-  EXPECT_FALSE(secondEchoOf(skyPulse(0, 0), first, 0, {}));                        // nothing behind
+  EXPECT_FALSE(secondEchoOf(skyPulse(0, 0), first, 0, {}));                    // nothing behind
   pulse.scatterers = {scatterer(19.5, .02)};
   EXPECT_FALSE(secondEchoOf(pulse, echoOf(pulse, 0.3, {}), 0.3, {}));  // one echo with it
 }

@@ -19,7 +19,7 @@ double snowExtinction(double snow_mm_h);  ///< [1/m] method.md 9.2
 /// [dB/km] of a 77 GHz radar, one way: k R^a [itu2005], method.md 9.8.
 double radarAttenuation(double rain_mm_h);
 
-/// [1/m] backscatter cross section of a volume of rain at 77 GHz, method.md (63).
+/// [1/m] backscatter cross section of a volume of rain at 77 GHz, method.md (62).
 double radarBackscatter(double rain_mm_h);
 
 /// Returns of a lidar's beam from drops or flakes, as measured with a VLP-16 [linnhoff2022]
