@@ -118,4 +118,11 @@ void checkSize(const std::string& path, std::size_t got, std::size_t expected) {
         fmt::format("{}: {} bytes of points, expected {}: the file was cut", path, got, expected));
 }
 
+void checkPromise(const std::string& path, std::size_t points, std::size_t bytes, double least) {
+  constexpr std::size_t kFew = 1000;  // their memory is no matter, and their fault has its line
+  if (points > kFew && static_cast<double>(points) * least > static_cast<double>(bytes + 1))
+    throw DataError(
+        fmt::format("{}: {} points in {} bytes: the file was cut", path, points, bytes));
+}
+
 }  // namespace perception

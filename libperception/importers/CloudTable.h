@@ -64,6 +64,9 @@ void readTextRows(TextLines& lines, const char* separators, CloudTable& table);
 void checkCount(const std::string& path, std::size_t points);
 /// Throws DataError if there are fewer bytes than expected.
 void checkSize(const std::string& path, std::size_t got, std::size_t expected);
+/// Before memory for many points is taken: throws DataError if `bytes` of them are too few at
+/// `least` [bytes] a point.
+void checkPromise(const std::string& path, std::size_t points, std::size_t bytes, double least);
 
 /// PCD of PCL 0.7 (ascii, binary, binary_compressed) and PLY (ascii, binary of both byte orders).
 CloudTable readPcd(const std::string& path, const std::string& bytes);

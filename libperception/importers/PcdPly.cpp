@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <liblzf/lzf.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -83,6 +84,14 @@ CloudColumn plyColumn(const TextRow& row) {
   row.fail(1, "a type of PLY");
 }
 
+/// [bytes] that a point takes in the file at least.
+double leastBytes(const CloudTable& table, const std::string& data) {
+  constexpr double kLzf = 264.0 / 3;  // of the longest repetition that three bytes can name
+  const double binary = std::max(1.0, static_cast<double>(table.rowBytes()));
+  if (data == "ascii") return 2.0 * static_cast<double>(table.columns.size());  // digit, space
+  return data == "binary_compressed" ? binary / kLzf : binary;
+}
+
 }  // namespace
 
 CloudTable readPcd(const std::string& path, const std::string& bytes) {
@@ -108,6 +117,7 @@ CloudTable readPcd(const std::string& path, const std::string& bytes) {
           fmt::format("field {}: TYPE {} of SIZE {} is none of PCL's", c.name, c.kind, c.size));
   }
   checkCount(path, points);
+  checkPromise(path, points, lines.rest().size(), leastBytes(table, data));
   table.resize(points);
   if (data == "ascii") {
     readTextRows(lines, kSpaces, table);
@@ -144,6 +154,7 @@ CloudTable readPly(const std::string& path, const std::string& bytes) {
   }
   if (!points || table.columns.empty()) lines.fail("no element vertex, expected points");
   checkCount(path, *points);
+  checkPromise(path, *points, lines.rest().size(), leastBytes(table, format));
   table.resize(*points);
   if (format == "ascii") {
     readTextRows(lines, kSpaces, table);

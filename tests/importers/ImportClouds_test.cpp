@@ -121,6 +121,14 @@ TEST_F(CloudFiles, FaultsNameFileAndPlace) {
   EXPECT_NE(faultOf("strange.pcd").find("DATA ternary, expected ascii"), std::string::npos);
   write("huge.pcd", "FIELDS x\nSIZE 4\nTYPE F\nCOUNT 1\nPOINTS 999999999\nDATA binary\n");
   EXPECT_NE(faultOf("huge.pcd").find("999999999 points, expected at most"), std::string::npos);
+  // No memory for what the rest of the file cannot hold.
+  for (const char* data : {"ascii", "binary", "binary_compressed"}) {
+    write("promise.pcd", std::string("FIELDS x\nSIZE 4\nTYPE F\nCOUNT 1\nPOINTS 16000000\nDATA ") +
+                             data + "\n1\n2\n");
+    EXPECT_NE(faultOf("promise.pcd").find("16000000 points in 4 bytes: the file was cut"),
+              std::string::npos)
+        << data;
+  }
   write("wide.pcd", "FIELDS x y\nSIZE 4\n");
   EXPECT_NE(faultOf("wide.pcd").find("wide.pcd:2:"), std::string::npos);
   write("type.pcd", "FIELDS x y z\nSIZE 3 4 4\nTYPE F F F\nCOUNT 1 1 1\nPOINTS 0\nDATA ascii\n");
