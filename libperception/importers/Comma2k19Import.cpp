@@ -26,9 +26,9 @@ constexpr double kDeviceHeight = 1.22;
 /// [m] The radar ahead of the device, openpilot's RADAR_TO_CAMERA.
 constexpr double kRadarAhead = 1.52;
 constexpr double kRadarHeight = 0.5;  ///< [m] behind the grille; irrelevant on flat ground
-/// [deg] The device looks left of the car's course and up: medians over the example minute above
-/// 5 m/s (quartiles 0.74 and 0.89 deg, 3.63 and 3.93 deg).
-constexpr double kDeviceYawDeg = 0.81, kDeviceUpDeg = 3.81;
+/// [deg] The device looks left of the car's course and down: medians over the example minute above
+/// 5 m/s (quartiles 0.74 and 0.89 deg, -3.93 and -3.63 deg).
+constexpr double kDeviceYawDeg = 0.81, kDeviceUpDeg = -3.81;
 constexpr int kFirstSlot = 528;  ///< CAN address of the radar's first track slot
 /// [s] Largest time between rows of one scan: slots are sent one after the other.
 constexpr double kScanSpread = 0.025;

@@ -147,9 +147,9 @@ void DetectionParams::applyResolution() {
 
 void ClassDetection::visit(ParamVisitor& v) {
   v.real("detection", detection, {0, 1}, "", "P(detected) in view, near, not occluded");
-  v.real("full_range", full_range, {0.1, 1e4}, "m",
+  v.real("full_range", full_range, {0.1, 1e5}, "m",
          "up to which P(detected) is constant; falls to 0 at last_range");
-  v.real("last_range", last_range, {0.1, 1e4}, "m",
+  v.real("last_range", last_range, {0.1, 1e5}, "m",
          "where P(detected) is 0; at most the sensor's range_max");
   v.table("label.", labels, {0, 1}, "",
           "P(label | this class, detected); labels not listed share the rest");

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationGPS.h>
 #include <mrpt/obs/CObservationIMU.h>
@@ -640,6 +641,25 @@ TEST_F(TrackImport, AReceiversWayIsTheVehicles) {
   ASSERT_TRUE(end);
   EXPECT_NEAR(end->T_world_ego.translation().x(), 0.01 * minute, 0.01);
   EXPECT_NEAR(yawOf(ego.at(stamps[0])->T_world_ego), kPi / 2, 0.01);  // north
+}
+
+// 33 m/s, a fix a second, 13 km.
+TEST_F(TrackImport, AFastReceiverIsOneObjectAllTheWay) {
+  std::string gpx = "<gpx><trk><trkseg>";
+  for (int k = 0; k < 400; ++k)
+    gpx +=
+        fmt::format("<trkpt lat='{:.7f}' lon='0'><time>2020-02-03T12:{:02d}:{:02d}Z</time></trkpt>",
+                    k * 33 / 110574.0, k / 60, k % 60);
+  write("a.gpx", gpx + "</trkseg></trk></gpx>");
+  ASSERT_EQ(import("gpx", {"--track", file("a.gpx"), "--as-object"}), 0) << error_;
+  const auto scenes = track("gps_object.ini", "L");
+  ASSERT_EQ(scenes.size(), 400u);
+  std::set<std::uint64_t> ids;
+  for (const Scene& scene : scenes) {
+    for (const SceneObject& object : scene.objects) ids.insert(object.id);
+  }
+  EXPECT_EQ(ids.size(), 1u);
+  EXPECT_NEAR(scenes.back().objects.at(0).velocity.norm(), 33, 0.5);
 }
 
 TEST_F(TrackImport, AReceiverOnAnObjectIsMeasured) {

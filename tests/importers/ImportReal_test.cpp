@@ -125,6 +125,40 @@ TEST_F(RealImport, Comma2k19sStillObjectsCloseAtOwnSpeed) {
   EXPECT_LT(std::sqrt(square / n), 0.4);
 }
 
+/// [deg] Mean of how far the vehicle's nose points above its path, where it moves.
+double noseAbovePath(const std::vector<SensorFrame>& frames) {
+  constexpr std::size_t kReach = 10;  // frames to both sides
+  double sum = 0;
+  int n = 0;
+  for (std::size_t i = kReach; i + kReach < frames.size(); ++i) {
+    const Vector3 way = frames[i + kReach].ego.T_world_ego.translation() -
+                        frames[i - kReach].ego.T_world_ego.translation();
+    if (way.head<2>().norm() < 5) continue;
+    const Vector3 nose = frames[i].ego.T_world_ego.linear().col(0);
+    sum += degrees(std::asin(nose.z()) - std::atan2(way.z(), way.head<2>().norm()));
+    ++n;
+  }
+  EXPECT_GT(n, 20);
+  return sum / n;
+}
+
+TEST_F(RealImport, TheVehiclePointsAlongItsPath) {
+  NEEDS_SHARED_DATA("comma2k19_radar");
+  ASSERT_EQ(import("comma2k19", {"--dir", sharedData("comma2k19_radar")}), 0) << error_;
+  const double comma = noseAbovePath(framesOf("RADAR_FRONT"));
+  RecordProperty("comma2k19_deg", std::to_string(comma));
+  EXPECT_NEAR(comma, 0, 0.3);
+  const std::string kitti = sharedData("kitti_tracking");
+  ASSERT_EQ(import("kitti", {"--calib", kitti + "/calib/0000.txt", "--poses",
+                             kitti + "/velo_poses/0000.txt", "--rate", "9.66", "--detections",
+                             "rrc:Car=" + kitti + "/det_rrc/Car/0000.txt"}),
+            0)
+      << error_;
+  const double lidar = noseAbovePath(framesOf("rrc"));
+  RecordProperty("kitti_deg", std::to_string(lidar));
+  EXPECT_NEAR(lidar, 0, 0.7);
+}
+
 TEST_F(RealImport, Comma2k19sTrafficIsTracked) {
   NEEDS_SHARED_DATA("comma2k19_radar");
   ASSERT_EQ(import("comma2k19", {"--dir", sharedData("comma2k19_radar"), "--last", "399"}), 0)
