@@ -159,10 +159,12 @@ void countDetections(const RecordedLog& log, const GroundTruth& truth, std::size
     const auto objects = candidates(scan, *instant->second, classes);
     const auto of = match(scan, objects);
     std::vector<int> label_of(objects.size(), -1);
+    sum.clutter_scans.push_back({log_index, instant->second->t, 0});
     for (std::size_t k = 0; k < of.size(); ++k) {
       const Measurement& m = scan.measurements[k];
       if (of[k] < 0) {
-        if (!nearLabeled(m, *instant->second)) ++sum.clutter[static_cast<std::size_t>(m.label)];
+        if (nearLabeled(m, *instant->second)) continue;
+        ++sum.clutter[static_cast<std::size_t>(m.label)], ++sum.clutter_scans.back().number;
         continue;
       }
       const Candidate& o = objects[static_cast<std::size_t>(of[k])];
@@ -177,7 +179,8 @@ void countDetections(const RecordedLog& log, const GroundTruth& truth, std::size
       const double stated =
           scan.model->detectionProbability(o.class_id, o.kinematics, o.extent, scan.state, 1);
       if (stated <= 0 || o.truth->occluded > kSeenAtMost || o.truth->ignore) continue;
-      sum.chances.push_back({o.class_id, o.truth->occluded, o.range, label_of[i], stated});
+      sum.chances.push_back({o.class_id, o.truth->occluded, o.range, label_of[i], stated, log_index,
+                             instant->second->t});
       if (met[scan.sensor].insert(o.truth->id).second) ++sum.first_seen;
     }
   }

@@ -28,6 +28,15 @@ struct DetectorChance {
   double range = 0;   ///< [m]
   int label = -1;     ///< of the detection on it; -1: none
   double stated = 0;  ///< P_D by the INI
+  std::size_t log = 0;
+  double t = 0;  ///< [s]
+};
+
+/// Detections of one scan on no labeled object.
+struct ClutterCount {
+  std::size_t log = 0;
+  double t = 0;  ///< [s]
+  std::size_t number = 0;
 };
 
 /// Statistics of one sensor's detections against labeled objects.
@@ -38,8 +47,9 @@ struct DetectorCounts {
               first_seen = 0;  ///< number of scans; number of labeled objects that entered the view
   std::vector<DetectorChance> chances;
   std::vector<DetectorError> errors;
-  std::vector<std::size_t> clutter;        ///< by label: detections on no labeled object
-  std::vector<std::vector<double>> label;  ///< [class][label] of the INI
+  std::vector<std::size_t> clutter;         ///< by label: detections on no labeled object
+  std::vector<ClutterCount> clutter_scans;  ///< the same by scan
+  std::vector<std::vector<double>> label;   ///< [class][label] of the INI
 };
 
 /// Adds the counts of all sensors of a log. Detections are matched one-to-one, nearest first by

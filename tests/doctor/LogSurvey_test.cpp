@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "libperception/sensors/CObservationLidarScan.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/RawlogReader.h"
@@ -49,6 +51,54 @@ TEST(LogSurvey, WrongMountingIsFoundAndCorrected) {
   EXPECT_NEAR(degrees(found->roll_error), -5, 1);
   EXPECT_NEAR(found->height_error, 0.2, 0.1);
   EXPECT_NEAR(found->T_ego_sensor.translation().z(), right.translation().z(), 0.1);
+}
+
+/// Check of the demo's lidar after an error of its mounting and of its clock.
+std::optional<MotionCheck> checkOf(double yaw, double left, double late) {
+  registerPerceptionClasses();
+  RawlogReader reader(kLog);
+  LogSurvey survey;
+  while (const auto observation = reader.next()) {
+    if (auto* scan = dynamic_cast<CObservationLidarScan*>(observation.get())) {
+      mrpt::poses::CPose3D pose;
+      scan->getSensorPose(pose);
+      Pose3 wrong = toPose3(pose);
+      wrong.linear() = makePose(0, 0, 0, yaw).linear() * wrong.linear();
+      wrong.translation().y() += left;
+      scan->setSensorPose(toMrpt(wrong));
+      scan->timestamp +=
+          std::chrono::duration_cast<mrpt::Clock::duration>(std::chrono::duration<double>(late));
+    }
+    survey.look(*observation);
+  }
+  return survey.motionCheck(survey.sensors().at("LIDAR_TOP"));
+}
+
+/// Found within the tolerance, or said not to be observable.
+void expectFound(const MotionCheck::Value& value, double error, double tolerance) {
+  if (value.observable()) {
+    EXPECT_NEAR(value.error, error, tolerance);
+  } else {
+    EXPECT_FALSE(value.isWrong());
+  }
+}
+
+TEST(LogSurvey, MountingAndClockOfTheSimulatedLidarAgreeWithThePoses) {
+  const auto check = checkOf(0, 0, 0);
+  ASSERT_TRUE(check);
+  EXPECT_TRUE(check->yaw.observable());
+  for (const auto& v :
+       {check->yaw, check->pitch, check->roll, check->ahead, check->left, check->clock})
+    EXPECT_FALSE(v.isWrong()) << v.error << " +- " << v.sigma;
+}
+
+TEST(LogSurvey, LidarTurnedShiftedAndLateIsFoundOrSaidNotToBeObservable) {
+  const auto check = checkOf(radians(5), 0.2, 0.08);
+  ASSERT_TRUE(check);
+  EXPECT_TRUE(check->yaw.isWrong());
+  expectFound(check->yaw, radians(5), radians(1));
+  expectFound(check->left, 0.2, 0.1);
+  expectFound(check->clock, 0.08, 0.02);
 }
 
 TEST(LogSurvey, PlanesThatDifferAreNoGround) {
