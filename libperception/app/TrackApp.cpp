@@ -215,6 +215,8 @@ void TrackApp::trackLog(const Shard& shard) {
       length < kShortLog ? "" : fmt::format(" ({:.1f} times real time)", out_real_time_factor);
   fmt::print("{}: {} scenes, {} objects, {:.1f} s of log in {:.1f} s{}, results in {}\n", shard.log,
              out_record.scenes, out_record.tracks, length, run.wallSeconds(), factor, shard.dir);
+  if (const auto learned = run.learned(); !learned.empty())
+    fmt::print("learned, for the INI:\n{}\n", fmt::join(learned, "\n"));
 }
 
 }  // namespace perception
