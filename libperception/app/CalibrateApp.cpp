@@ -11,8 +11,8 @@
 
 #include "libperception/app/StudyFolder.h"
 #include "libperception/boxes3d/PositionFrontEnd.h"
-#include "libperception/calibration/BoxEvidenceStudy.h"
 #include "libperception/calibration/ClusterStudy.h"
+#include "libperception/calibration/ConfidenceStudy.h"
 #include "libperception/calibration/DetectorStudy.h"
 #include "libperception/calibration/TemperingStudy.h"
 #include "libperception/core/GroundTruth.h"
@@ -44,6 +44,8 @@ const CalibrateApp::Task CalibrateApp::kTasks[] = {
      &CalibrateApp::tempering, true},
     {"boxes", "what the scores of a 3D detector's boxes say of objects, fitted",
      &CalibrateApp::boxes},
+    {"confidence", "what those scores are worth and the output threshold: an INI",
+     &CalibrateApp::confidence},
     {"detector", "detection, labels, clutter and noise of detectors, counted",
      &CalibrateApp::detector},
     {"lidar-classes", "what clusters of lidar returns look like, learned",
@@ -116,10 +118,9 @@ StudyReport CalibrateApp::tempering() {
   return temperingStudy(params, logs);
 }
 
-StudyReport CalibrateApp::boxes() {
+CalibrateApp::JudgedLogs CalibrateApp::judgedBoxes() {
   registerPerceptionClasses();
-  std::vector<BoxLog> logs;
-  std::string sensor;
+  JudgedLogs judged;
   for (const std::string& file : inputs) {
     std::map<Stamp, ObjectDetections> seen;
     Config config = loadConfig();
@@ -128,18 +129,47 @@ StudyReport CalibrateApp::boxes() {
           const auto* boxes = dynamic_cast<CObservationObjectDetections*>(&observation);
           const auto stamp = toStamp(observation.timestamp);
           if (!boxes || !hasSpaceBoxes(boxes->detections) || !stamp) return;
-          sensor = observation.sensorLabel;
+          judged.sensor = observation.sensorLabel;
           seen[*stamp] = boxes->detections;
         });
-    logs.push_back(boxLog(log, sensor, seen, truthBeside(file)));
+    judged.logs.push_back(boxLog(log, judged.sensor, seen, truthBeside(file)));
   }
-  std::map<std::string, std::string> names;
   for (const std::string& name :
-       loadConfig().read<PositionParams>("sensor." + sensor + ".positions").names) {
+       loadConfig().read<PositionParams>("sensor." + judged.sensor + ".positions").names) {
     const auto equals = name.find('=');
-    names[name.substr(0, equals)] = name.substr(equals + 1);
+    judged.names[name.substr(0, equals)] = name.substr(equals + 1);
   }
-  return boxEvidenceStudy(sensor, logs, names);
+  return judged;
+}
+
+StudyReport CalibrateApp::boxes() {
+  const JudgedLogs judged = judgedBoxes();
+  return boxEvidenceStudy(judged.sensor, judged.logs, judged.names);
+}
+
+StudyReport CalibrateApp::confidence() {
+  JudgedLogs judged = judgedBoxes();
+  const auto view = loadConfig().read<DetectionParams>("sensor." + judged.sensor);
+  ConfidenceInput input;
+  input.sensor = judged.sensor;
+  input.names = std::move(judged.names);
+  input.clutter_per_scan = view.clutter_per_scan;
+  input.logs = std::move(judged.logs);
+  for (const std::string& file : inputs) input.truths.push_back(truthBeside(file));
+  input.evaluation.selection.min_points = 0;  // logs of boxes have no returns
+  input.evaluation.selection.range = view.range_max;
+  input.evaluation.selection.fov = input.evaluation.selection.complete_fov = view.fov;
+  input.evaluation.exclusion = input.evaluation.tolerance;
+  input.track = [&](std::size_t log, const ScoreKeys& keys) {
+    Config config = loadConfig();
+    const std::string section = "sensor." + input.sensor + ".positions.";
+    config.set(section + "confidence=fitted");
+    for (const auto& [key, value] : keys) config.set(section + key + "=" + value);
+    RecordedLog recorded = recordLog(inputs[log], config, seconds);
+    recorded.scene.min_existence = leastExistence();
+    return replay(recorded, {recorded.model.proposal, recorded.particles.sample_size, seed});
+  };
+  return confidenceStudy(input, std::filesystem::absolute(config_file).string());
 }
 
 StudyReport CalibrateApp::detector() {

@@ -1,9 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "libperception/app/App.h"
+#include "libperception/calibration/BoxEvidenceStudy.h"
 #include "libperception/evaluation/StudyReport.h"
 #include "libperception/pipeline/RecordedLog.h"
 
@@ -32,9 +34,17 @@ class CalibrateApp : public App {
  private:
   struct Task;
   static const Task kTasks[];
+  /// Boxes in space of the inputs, judged by their truth.
+  struct JudgedLogs {
+    std::string sensor;
+    std::map<std::string, std::string> names;  ///< the detector's class = label of the INI
+    std::vector<BoxLog> logs;
+  };
+  JudgedLogs judgedBoxes();
 
   StudyReport tempering();
   StudyReport boxes();
+  StudyReport confidence();
   StudyReport detector();
   StudyReport lidarClasses();
 };

@@ -226,6 +226,8 @@ void TrackApp::trackLog(const Shard& shard) {
   for (const auto& [kind, count] : out_record.events) say(1, fmt::format("{}: {}", kind, count));
   fmt::print("{}: {} scenes, {} objects, {:.1f} s of log in {:.1f} s{}, results in {}\n", shard.log,
              out_record.scenes, out_record.tracks, length, run.wallSeconds(), factor, shard.dir);
+  if (const auto learned = run.learned(); !learned.empty())
+    fmt::print("learned, for the INI:\n{}\n", fmt::join(learned, "\n"));
 }
 
 }  // namespace perception

@@ -221,6 +221,7 @@ std::vector<std::string> ConfidenceLearner::learned() const {
   for (std::size_t l = 0; l < labels_.size(); ++l) {
     const Label& label = labels_[l];
     if (!label.objects || label.fit.samples() == 0) continue;
+    if (lines.empty()) lines.emplace_back("confidence = fixed");
     const ScoreOdds odds = label.fit.odds();
     const std::string& name = params_.labels[l];
     lines.push_back(fmt::format("score_slope.{} = {:.4g}", name, odds.slope));

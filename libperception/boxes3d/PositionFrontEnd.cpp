@@ -90,9 +90,8 @@ void PositionParams::visit(ParamVisitor& v) {
   v.real("range_share", range_share, {0, 1}, "", "share of the range added to sigma");
   v.real("clutter_sigma_growth", clutter_sigma_growth, {0, 100}, "",
          "relative growth of both for a box that is clutter by its score");
-  v.choiceOf(
-      "confidence", confidence, {"fixed", "learnt"},
-      "scores as evidence: by the keys score_*, or learned while running from boxes that stay");
+  v.choiceOf("confidence", confidence, {"fixed", "learnt", "fitted"},
+             "how scores are evidence: keys score_*, which fitted requires; or learned at work");
   table("score_slope.", score_slope, "1/score",
         "by label: P(object | score) = 1 / (1 + exp(-slope (score - offset) + fade range)); none: "
         "scores are no evidence");
@@ -100,6 +99,8 @@ void PositionParams::visit(ParamVisitor& v) {
   table("score_fade.", score_fade, "1/m", "... decrease of the log-odds with range");
   table("score_balance.", score_balance, "",
         "... log of objects / clutter in the recordings of the fit");
+  v.require(confidence != Confidence::kFitted || !score_slope.empty(),
+            "confidence = fitted: no score_slope.LABEL; perception-calibrate confidence finds it");
   v.real("group_distance", group_distance, {0, 10}, "m",
          "boxes of different labels closer than this are of one object; 0: off");
   v.boolean("sizes", sizes, "length, width, height and direction of the boxes are measured, too");
@@ -159,7 +160,7 @@ PositionFrontEnd::PositionFrontEnd(PositionParams params, const ClassTable& clas
 }
 
 std::unique_ptr<FramePreparation> PositionFrontEnd::preparation() const {
-  if (params_.confidence == PositionParams::Confidence::kFixed) return nullptr;
+  if (params_.confidence != PositionParams::Confidence::kLearnt) return nullptr;
   ConfidenceLearner::Params p;
   p.label_of = label_of_;
   p.labels = params_.labels;

@@ -24,8 +24,10 @@ struct PositionParams {
   double range_share = 0;           ///< [-] share of the range added to sigma (method.md 8.9)
   double clutter_sigma_growth = 0;  ///< [-] growth of both at P(clutter) = 1 (method.md 8.9)
 
-  /// How scores become evidence: by the figures below, or learned while running (method.md 8.12).
-  enum class Confidence { kFixed, kLearnt };
+  /// How scores become evidence: by the figures below (fitted: those of perception-calibrate
+  /// confidence, so each label that has boxes must have them), or learned while running (method.md
+  /// 8.12).
+  enum class Confidence { kFixed, kLearnt, kFitted };
   Confidence confidence = Confidence::kFixed;
   /// Score as evidence, method.md (52), fitted on recordings with truth: P(object | score, range) =
   /// 1 / (1 + exp(-slope (score - offset) + fade range)), [1/score], [score], [1/m]; slope 0:

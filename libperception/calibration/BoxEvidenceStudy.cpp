@@ -58,13 +58,20 @@ double leftOutLoss(const ByLog& logs) {
 }
 
 std::string iniLines(const std::string& label, const ScoreOdds& odds, double balance) {
-  return fmt::format(
-      "score_slope.{0} = {1:.3f}\nscore_offset.{0} = {2:.2f}\nscore_fade.{0} = {3:.4f}\n"
-      "score_balance.{0} = {4:.2f}\n",
-      label, odds.slope, odds.offset, odds.fade, balance);
+  std::string lines;
+  for (const auto& [key, value] : scoreKeys(label, odds, balance))
+    lines += key + " = " + value + "\n";
+  return lines;
 }
 
 }  // namespace
+
+ScoreKeys scoreKeys(const std::string& label, const ScoreOdds& odds, double balance) {
+  return {{"score_slope." + label, fmt::format("{:.3f}", odds.slope)},
+          {"score_offset." + label, fmt::format("{:.2f}", odds.offset)},
+          {"score_fade." + label, fmt::format("{:.4f}", odds.fade)},
+          {"score_balance." + label, fmt::format("{:.2f}", balance)}};
+}
 
 BoxLog boxLog(const RecordedLog& log, const std::string& sensor,
               const std::map<Stamp, ObjectDetections>& detections, const GroundTruth& truth) {
@@ -81,6 +88,7 @@ BoxLog boxLog(const RecordedLog& log, const std::string& sensor,
     const auto instant = instants.find(entry.scan->frame);
     if (boxes == detections.end() || instant == instants.end()) continue;
     const SensorState& state = entry.scan->state;
+    ++out.scans;
     for (const ObjectDetection& o : boxes->second.objects) {
       if (!o.space_box) continue;
       const Vector2 place = (state.T_world_sensor * o.space_box->bottom_center).head<2>();

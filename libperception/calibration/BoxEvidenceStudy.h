@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/boxes3d/ScoreOdds.h"
@@ -22,8 +23,14 @@ struct JudgedBox {
 struct BoxLog {
   std::string name;
   bool simulated = false;
+  std::size_t scans = 0;  ///< that were compared with the truth
   std::vector<JudgedBox> boxes;
 };
+
+/// Keys of [sensor.LABEL.positions] and their values.
+using ScoreKeys = std::vector<std::pair<std::string, std::string>>;
+/// score_slope, score_offset, score_fade and score_balance of a label.
+ScoreKeys scoreKeys(const std::string& label, const ScoreOdds& odds, double balance);
 
 /// Compares the boxes of `sensor` in `detections` with the truth of the same frame. A box is on an
 /// object if the distance of their centers is less than a quarter of the object's length and 0.3 m.

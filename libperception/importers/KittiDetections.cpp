@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,28 @@ const KittiDetectionLayout& layoutOf(const std::string& name) {
       name, known));
 }
 
+bool sameWord(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+    return std::tolower(x) == std::tolower(y);
+  });
+}
+
+ObjectDetection detectionOf(const WorldBox& box, const Pose3& T_velo_poses) {
+  const Pose3 T_velo_box = T_velo_poses * box.pose;
+  const Vector3 axis = T_velo_box.linear().col(0);
+  ObjectDetection object;
+  object.label = box.name;
+  object.score = box.score;
+  ObjectDetection::SpaceBox space;
+  space.bottom_center = T_velo_box * Vector3(0, 0, -box.height / 2);
+  space.yaw = std::atan2(axis.y(), axis.x());
+  space.length = box.length;
+  space.width = box.width;
+  space.height = box.height;
+  object.space_box = space;
+  return object;
+}
+
 }  // namespace
 
 KittiImportParams::Detections kittiDetectionsOf(const std::string& text) {
@@ -45,15 +68,29 @@ void KittiDetections::add(const KittiImportParams::Detections& wanted) {
   auto detector = std::find_if(detectors_.begin(), detectors_.end(),
                                [&](const Detector& d) { return d.name == wanted.name; });
   if (detector == detectors_.end()) {
-    detector = detectors_.insert(detectors_.end(), Detector{wanted.name, layout, {}});
+    detector = detectors_.insert(detectors_.end(), Detector{wanted.name, layout, {}, {}});
+  }
+  if (layout.name == std::string("boxes3d") && isJsonFile(wanted.file)) {
+    for (auto& box : readNuscenesBoxes(wanted.file)) {
+      if (wanted.class_name != "all" && !sameWord(box.name, wanted.class_name)) continue;
+      if (wanted.class_name != "all") box.name = wanted.class_name;  // Car for car
+      detector->in_world[box.frame].push_back(std::move(box));
+    }
+    return;
   }
   for (auto& d : readKittiDetections(wanted.file, layout.name, wanted.class_name)) {
     detector->by_frame[d.frame].push_back(std::move(d));
   }
 }
 
+bool KittiDetections::needPoses() const {
+  return std::any_of(detectors_.begin(), detectors_.end(),
+                     [](const Detector& d) { return !d.in_world.empty(); });
+}
+
 void KittiDetections::write(std::int64_t frame, Stamp stamp, const KittiCalibration& calibration,
-                            const Pose3& T_ego_velo, ImportLog& log) const {
+                            const Pose3& T_ego_velo, const Pose3& T_poses_velo,
+                            ImportLog& log) const {
   const Pose3 T_ego_camera =
       T_ego_velo * calibration.T_cam0_velo.inverse() * calibration.T_cam0_cam2;
   for (const Detector& detector : detectors_) {
@@ -73,6 +110,11 @@ void KittiDetections::write(std::int64_t frame, Stamp stamp, const KittiCalibrat
         if (detector.layout.has_alpha && isObservationAngle(d.alpha))
           object.heading = wrapAngle(d.alpha);
       }
+    }
+    const auto placed = detector.in_world.find(frame);
+    if (placed != detector.in_world.end()) {
+      for (const WorldBox& box : placed->second)
+        found.objects.push_back(detectionOf(box, T_poses_velo.inverse()));
     }
     SensorFrame out;
     out.sensor = detector.name;

@@ -110,7 +110,7 @@ KittiLabel pointRcnnFrom(const TextRow& row) {
 KittiLabel anyBoxFrom(const TextRow& row) {
   row.expect(row.size() >= 15 && row.size() <= 18,
              "15 (frame, type number, image box, score, h w l, x y z, rotation_y, alpha) or 17 "
-             "(KITTI's label with score; 18 with an id)");
+             "(KITTI's label with score; 18 with an id), or a file of nuScenes' JSON");
   return row.size() == 15 ? pointRcnnFrom(row) : labelFrom(row);
 }
 

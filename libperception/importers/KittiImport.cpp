@@ -39,6 +39,7 @@ class Import {
   bool hasPoses() const { return !params_.poses.empty() || !params_.oxts.empty(); }
   Stamp stampOf(std::int64_t frame) const;
   Pose3 egoAt(std::int64_t frame) const;
+  Pose3 posesVelodyneAt(std::int64_t frame) const;
   void writeFrame(std::int64_t frame);
   std::optional<LidarCloud> readScan(std::int64_t frame);
   void writeImage(std::int64_t frame);
@@ -131,6 +132,8 @@ void Import::readAll() {
     framesOfFiles();
   }
   for (const auto& wanted : params_.detections) detections_.add(wanted);
+  if (detections_.needPoses() && !hasPoses())
+    failUsage("--detections in nuScenes' format need --poses or --oxts, in whose frame they are");
   if (!params_.labels.empty()) {
     for (auto& label : readKittiLabels(params_.labels))
       labels_[label.frame].push_back(std::move(label));
@@ -144,6 +147,12 @@ Stamp Import::stampOf(std::int64_t frame) const {
 Pose3 Import::egoAt(std::int64_t frame) const {
   const Pose3 moved = poses_.front().inverse() * poses_[static_cast<std::size_t>(frame)];
   return T_ego_pose_ * moved * T_ego_pose_.inverse();
+}
+
+/// Pose of the Velodyne in the frame of the file of poses; without poses identity.
+Pose3 Import::posesVelodyneAt(std::int64_t frame) const {
+  if (!hasPoses()) return Pose3::Identity();
+  return poses_[static_cast<std::size_t>(frame)] * T_ego_pose_.inverse() * T_ego_velo_;
 }
 
 /// DIR/000012.EXT as in the tracking benchmark or DIR/0000000012.EXT as in the raw data; empty when
@@ -182,7 +191,7 @@ void Import::writeFrame(std::int64_t frame) {
     scan.data = *cloud;
     log_.sensor(scan);
   }
-  detections_.write(frame, stamp, calibration_, T_ego_velo_, log_);
+  detections_.write(frame, stamp, calibration_, T_ego_velo_, posesVelodyneAt(frame), log_);
   if (!params_.images_dir.empty()) writeImage(frame);
   if (!params_.labels.empty()) addTruth(frame, cloud);
 }
@@ -255,7 +264,8 @@ void KittiImporter::declare(CLI::App& cli) {
                  "unless --embed-images");
   cli.add_option(
       "--detections", detections_,
-      "NAME:CLASS=FILE, repeatable; NAME: boxes3d (AB3DMOT's or KITTI's columns), pointrcnn, "
+      "NAME:CLASS=FILE, repeatable; NAME: boxes3d (AB3DMOT's or KITTI's columns, nuScenes' JSON), "
+      "pointrcnn, "
       "pointgnn, rrc, dpm, kitti3d, kitti2d (or one of them and -anything); CLASS: rows of this "
       "type, or all");
 }

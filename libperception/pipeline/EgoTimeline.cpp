@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -48,6 +49,22 @@ void EgoTimeline::addScan(const SensorFrame& frame) {
   if (is_lost && !in_lost_)
     events_.warn(frame.stamp, event_kind::kEgoGap,
                  frame.sensor + ": a scan that fits none before: the vehicle is taken to go on");
+  in_lost_ = is_lost;
+}
+
+void EgoTimeline::addRadars(const std::vector<const SensorFrame*>& frames) {
+  if (params_.source != EgoPoseParams::Source::kRadar || frames.empty()) return;
+  const auto lost = radar_odometry_.lost();
+  auto state = radar_odometry_.update(frames);
+  if (!state) return;
+  const PoseUncertainty least = params_.minimum;
+  state->uncertainty.sigma_xy = std::max(least.sigma_xy, state->uncertainty.sigma_xy);
+  state->uncertainty.sigma_yaw = std::max(least.sigma_yaw, state->uncertainty.sigma_yaw);
+  pose_.add(*state);
+  const bool is_lost = radar_odometry_.lost() > lost;
+  if (is_lost && !in_lost_)
+    events_.warn(state->stamp, event_kind::kEgoGap,
+                 "radar targets that fit no motion of the vehicle: it is taken to go on");
   in_lost_ = is_lost;
 }
 
@@ -98,6 +115,7 @@ EgoState EgoTimeline::at(Stamp stamp) {
 void EgoTimeline::clear() {
   pose_.clear();
   odometry_.clear();
+  radar_odometry_.clear();
   last_seen_.reset();
   none_reported_ = false;
   in_gap_ = in_jump_ = in_invalid_ = in_lost_ = false;

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "libperception/odometry/LidarOdometry.h"
+#include "libperception/odometry/RadarOdometry.h"
 #include "libperception/scene/EventLog.h"
 #include "libperception/sensors/EgoPose.h"
 
@@ -28,6 +30,8 @@ class EgoTimeline {
   /// tracks must then be deleted: without poses the vehicle is assumed to stand still, and if it
   /// moved in the gap, measurements would be associated with wrong tracks.
   bool isBlindGap(Stamp stamp);
+  /// The same with [ego] source = radar, from all radar frames of an instant (method.md 1.8).
+  void addRadars(const std::vector<const SensorFrame*>& frames);
   EgoState at(Stamp stamp);
   /// A frame of this stamp was used.
   void setSeen(Stamp stamp) { last_seen_ = stamp; }
@@ -39,6 +43,7 @@ class EgoTimeline {
   EventLog& events_;
   EgoPose pose_;
   LidarOdometry odometry_;
+  RadarOdometry radar_odometry_;
   std::optional<Stamp> last_seen_;
   std::uint64_t frame_epoch_ = 0;  ///< EgoPose::frameEpoch() of the tracks
   bool none_reported_ = false;     ///< the event "no pose yet"

@@ -39,6 +39,8 @@ class LogRun {
   void commit(const std::string& effective_ini, int threads);
 
   RunRecord record;  ///< program and configuration are set by the caller
+  /// What was learned of detectors: INI lines.
+  std::vector<std::string> learned() const { return pipeline_.learned(); }
   const RunTiming& timing() const { return timing_; }
   double wallSeconds() const { return timing_.wallSeconds(); }
   double realTimeFactor() const;  ///< seconds of log per second of work

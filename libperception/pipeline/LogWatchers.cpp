@@ -38,14 +38,11 @@ void LogFacts::look(const mrpt::obs::CObservation& observation) {
   const auto frame = frameFromObservation(observation);
   const auto* detections = frame ? std::get_if<ObjectDetections>(&frame->data) : nullptr;
   if (!detections || detections->camera.width <= 0) return;
-  // 3D boxes are given in another sensor's frame: beside them the camera's pose is said, else it is
-  // that of pure image detections.
-  if (!detections->T_ego_camera) {
-    for (const auto& o : detections->objects) {
-      if (o.space_box || !o.image_box) return;
-    }
-    if (detections->objects.empty()) return;
-  }
+  // Without a pose of the camera the boxes are in its own frame, if they are image boxes alone.
+  const bool of_image = !detections->objects.empty() &&
+                        std::all_of(detections->objects.begin(), detections->objects.end(),
+                                    [](const auto& o) { return !o.space_box && o.image_box; });
+  if (!detections->T_ego_camera && !of_image) return;
   camera = KittiCamera{detections->camera, detections->T_ego_camera.value_or(frame->T_ego_sensor),
                        simulated ? Vector3(Vector3::Zero()) : KittiCamera::kittiOffset()};
 }

@@ -130,10 +130,15 @@ void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
 void Pipeline::finish() {
   watch_.finish();
   ledger_.finish();
-  auto learned = scan_maker_.learned();
-  for (auto& line : conditions_.learned()) learned.push_back(std::move(line));
-  if (!learned.empty())
-    events_.add(std::nullopt, event_kind::kLearned, fmt::format("{}", fmt::join(learned, "\n")));
+  const auto lines = learned();
+  if (!lines.empty())
+    events_.add(std::nullopt, event_kind::kLearned, fmt::format("{}", fmt::join(lines, "\n")));
+}
+
+std::vector<std::string> Pipeline::learned() const {
+  auto lines = scan_maker_.learned();
+  for (auto& line : conditions_.learned()) lines.push_back(std::move(line));
+  return lines;
 }
 
 std::optional<Scene> Pipeline::next(bool flush) {
@@ -173,8 +178,15 @@ bool Pipeline::processNext(bool flush) {
   return true;
 }
 
-/// Scans of the first lidar in use, or of one that gives the ground.
+/// Scans of the first lidar in use, or of one that gives the ground; all radars in use.
 void Pipeline::addToOdometry(const std::vector<SensorFrame>& frames) {
+  if (setup_.ego.source == EgoPoseParams::Source::kRadar) {
+    const auto scope = timing_.stage("odometry");
+    std::vector<const SensorFrame*> radars;
+    for (const auto& frame : frames)
+      if (setup_.sensors[*setup_.sensorOf(frame.sensor)].isRadarInUse()) radars.push_back(&frame);
+    ego_.addRadars(radars);
+  }
   if (setup_.ego.source != EgoPoseParams::Source::kLidar) return;
   const auto lidar = std::find_if(setup_.sensors.begin(), setup_.sensors.end(),
                                   [](const auto& s) { return s.isLidarInUse(); });

@@ -52,6 +52,8 @@ class Pipeline {
   /// Reports events known at the end of the log: sensors without frames, labels without a section,
   /// what was learned of detectors, what was taken as phantoms.
   void finish();
+  /// What was learned of detectors and clutter so far: INI lines, section by section.
+  std::vector<std::string> learned() const;
   /// Called from now on; null: none. Not owned.
   void observe(PipelineObserver* observer) { observer_ = observer; }
 

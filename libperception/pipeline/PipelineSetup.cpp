@@ -103,6 +103,10 @@ void checkSensors(Config& config, const PipelineSetup& s) {
       std::none_of(s.sensors.begin(), s.sensors.end(),
                    [](const auto& sensor) { return sensor.isLidarInUse(); }))
     config.fault("ego", "source", "lidar: no lidar is in use");
+  if (s.ego.source == EgoPoseParams::Source::kRadar &&
+      std::none_of(s.sensors.begin(), s.sensors.end(),
+                   [](const auto& sensor) { return sensor.isRadarInUse(); }))
+    config.fault("ego", "source", "radar: no radar is in use");
   const auto active = [](const auto& sensor) { return sensor.active; };
   if (std::none_of(s.sensors.begin(), s.sensors.end(), active)) {
     config.fault("run", "sensors",

@@ -61,6 +61,7 @@ struct PipelineSetup {
 
     bool used() const { return active || gives_ground; }
     bool isLidarInUse() const { return params.kind == "lidar" && used(); }
+    bool isRadarInUse() const { return params.kind == "radar" && active; }
   };
   RunParams run;
   FilterModel model;

@@ -49,9 +49,11 @@ EgoState between(const EgoState& a, const EgoState& b, Stamp stamp) {
 }  // namespace
 
 void EgoPoseParams::visit(ParamVisitor& v) {
-  v.choiceOf("source", source, {"auto", "poses", "fusion", "lidar"},
-             "the log's poses; fusion of satellites, inertial unit and wheels; odometry from the "
-             "first lidar in use; auto: poses where there are some, else fusion");
+  v.choiceOf(
+      "source", source, {"auto", "poses", "fusion", "lidar", "radar"},
+      "the log's poses; fusion of satellites, inertial unit and wheels; odometry from the "
+      "first lidar in use, or from the range rates of all radars in use; auto: poses where there "
+      "are some, else fusion");
   v.text("label", label,
          "label of the pose observations; empty: EGO_POSE, or the first pose label of the log");
   v.real("sigma_xy", minimum.sigma_xy, {0, 10}, "m",
@@ -118,7 +120,7 @@ std::optional<EgoState> loggedPose(const mrpt::obs::CObservation& observation) {
 }
 
 void EgoPose::add(const mrpt::obs::CObservation& observation) {
-  if (params_.source == EgoPoseParams::Source::kLidar) return;
+  if (params_.isOdometry()) return;
   const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation);
   if (pose == nullptr) {
     if (poses_.empty() && params_.source != EgoPoseParams::Source::kPoses)

@@ -20,8 +20,9 @@ class EgoFusion;
 /// Source of the vehicle's pose: [ego].
 struct EgoPoseParams {
   /// Fusion if the log has no poses; poses of the log; fusion of GNSS, inertial unit and wheels;
-  /// odometry from the scans of a lidar, which the caller adds.
-  enum class Source { kAuto, kPoses, kFusion, kLidar };
+  /// odometry from the scans of a lidar or of all radars, which the caller adds.
+  enum class Source { kAuto, kPoses, kFusion, kLidar, kRadar };
+  bool isOdometry() const { return source == Source::kLidar || source == Source::kRadar; }
   Source source = Source::kAuto;
   FusionParams fusion;
   std::string
@@ -60,7 +61,7 @@ class EgoPose {
   ~EgoPose();
 
   /// Processes a CObservationRobotPose of the selected label and, unless `source` is kPoses, the
-  /// observations of EgoFusion; others are ignored, and all with kLidar.
+  /// observations of EgoFusion; others are ignored, and all with isOdometry().
   void add(const mrpt::obs::CObservation& observation);
   /// The same for a pose from another source (velocity and yaw rate are ignored).
   void add(const EgoState& pose);

@@ -41,7 +41,7 @@ readonly detectors=${data}_detectors
 export bin data logs ini out detector detectors
 mkdir -p "$logs" "$out/res"
 if [[ -n $detector ]]; then  # the same configuration, of a sensor of that name
-  sed "s/pointrcnn/boxes3d/g; s|^include = |include = $PWD/ini/|" "$ini" >"$out/detector.ini"
+  sed "s/pointrcnn/boxes3d/g; s|^include = \([^/]\)|include = $PWD/ini/\1|" "$ini" >"$out/detector.ini"
   ini=$out/detector.ini
 fi
 rm -f "$out"/res/*.txt "$out"/*.log

@@ -97,10 +97,11 @@ TEST(ConfidenceLearner, WhatWasLearnedIsWrittenAsKeysOfTheIni) {
   ConfidenceLearner learner(params());
   meansAfter(learner, 60, {});
   const auto lines = learner.learned();
-  ASSERT_EQ(lines.size(), 4U);
-  EXPECT_EQ(lines[0].find("score_slope.car = "), 0U);
-  const double slope = std::stod(lines[0].substr(lines[0].find('=') + 1));
-  const double even = std::stod(lines[1].substr(lines[1].find('=') + 1));
+  ASSERT_EQ(lines.size(), 5U);
+  EXPECT_EQ(lines[0], "confidence = fixed");
+  EXPECT_EQ(lines[1].find("score_slope.car = "), 0U);
+  const double slope = std::stod(lines[1].substr(lines[1].find('=') + 1));
+  const double even = std::stod(lines[2].substr(lines[2].find('=') + 1));
   EXPECT_GT(slope, 0.5);
   EXPECT_GT(even, -1) << "between the scores of clutter ...";
   EXPECT_LT(even, 2) << "... and of cars";

@@ -276,6 +276,79 @@ TEST_F(ImportTest, BoxesInSpaceAreReadInTwoLayouts) {
   EXPECT_NE(error_.find("15 (frame"), std::string::npos) << error_;
 }
 
+TEST_F(ImportTest, NuscenesBoxesStandInTheFrameOfThePoses) {
+  const std::string box =
+      R"({"translation": [X, 1, 2], "size": [1.8, 4.5, 1.5], "rotation": [1, 0, 0, 0],
+          "detection_name": "car", "detection_score": 0.75, "velocity": [1, 0]})";
+  const auto at = [&](const std::string& x) { return std::string(box).replace(17, 1, x); };
+  write("mine.json", "{\"meta\": {\"use_lidar\": true},\n\"results\": {\"0\": [" + at("20") +
+                         "], \"000002\": [" + at("30") + "]}}");
+  ASSERT_EQ(import({"--detections", "boxes3d:Car=" + file("mine.json")}), 0) << error_;
+  std::vector<ObjectDetection> found;
+  std::vector<std::size_t> counts;
+  for (const auto& o : readLog()) {
+    if (o->sensorLabel != "boxes3d") continue;
+    const auto frame = frameFromObservation(*o);
+    const auto& objects = std::get<ObjectDetections>(frame->data).objects;
+    counts.push_back(objects.size());
+    found.insert(found.end(), objects.begin(), objects.end());
+  }
+  ASSERT_EQ(counts, (std::vector<std::size_t>{1, 0, 1, 0}));
+  const std::vector<Pose3> poses = readKittiPoses(file("poses.txt"), "kitti");
+  const std::size_t frames[] = {0, 2};
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(found[i].label, "Car");
+    EXPECT_EQ(found[i].score, 0.75);
+    EXPECT_EQ(found[i].space_box->length, 4.5);
+    EXPECT_EQ(found[i].space_box->width, 1.8);
+    const Vector3 bottom(i == 0 ? 20 : 30, 1, 2 - 0.75);
+    EXPECT_TRUE((poses[frames[i]] * found[i].space_box->bottom_center).isApprox(bottom, 1e-6));
+  }
+}
+
+TEST_F(ImportTest, ALogOfBoxesInSpaceIsExportedAsKittisImageBoxes) {
+  std::string boxes, poses;
+  for (int k = 0; k < 30; ++k) {
+    boxes += std::to_string(k) + " Car -1 -1 -10 0 0 0 0 1.5 1.8 4.2 2 1.73 20 1.57 9\n";
+    poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  }
+  write("mine.txt", boxes);
+  write("standing.txt", poses);
+  ASSERT_EQ(import({"--detections", "boxes3d:Car=" + file("mine.txt")}, "standing.txt"), 0)
+      << error_;
+  TrackApp app;
+  const int code = runQuietly(
+      app, {"perception-track", "-c", std::string(PERCEPTION_SOURCE_DIR) + "/ini/any-detector.ini",
+            "-i", file("out.rawlog"), "-o", file("run"), "--export", "kitti:" + file("result.txt"),
+            "--threads", "1"});
+  EXPECT_TRUE(code == 0 || code == 3) << error_;
+  const auto lines = readKittiLabels(file("result.txt"));
+  ASSERT_FALSE(lines.empty());
+  const KittiLabel& last = lines.back();
+  EXPECT_EQ(last.frame, 29);
+  EXPECT_EQ(last.type, "Car");
+  ASSERT_TRUE(last.box);
+  EXPECT_TRUE(last.box->bottom_center.isApprox(Vector3(2, 1.73, 20), 0.05));
+  // The box of 1.5 m at 18 to 22 m, in the image of P2 = 700 px.
+  EXPECT_NEAR(last.image_box.y2 - last.image_box.y1, 700 * 1.5 / 18, 10);
+}
+
+TEST_F(ImportTest, NuscenesFaultsNameTheLineAndWhatWasExpected) {
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {"{\"results\":\n{\"ca9a28\": []}}", "mine.json:2: sample 'ca9a28': expected the number"},
+      {"{\"results\":\n\n{\"1\": [{\"translation\": [1, 2]}]}}",
+       "mine.json:3: translation: expected 3 numbers"},
+      {"{\"results\":\n{\"1\": 7}}", "mine.json:2: a sample: expected a list of boxes"},
+      {"{\"results\":\n{\"1\": [", "mine.json:2: not JSON"},
+      {"{\"boxes\": {}}", "no member 'results'"},
+  };
+  for (const auto& [text, message] : faults) {
+    write("mine.json", text);
+    EXPECT_EQ(import({"--detections", "boxes3d:Car=" + file("mine.json")}), 65);
+    EXPECT_NE(error_.find(message), std::string::npos) << error_;
+  }
+}
+
 TEST_F(ImportTest, ImagesAreEmbeddedOrStandBesideTheLog) {
   const cv::Mat gray(400, 600, CV_8UC3, cv::Scalar(10, 20, 30));
   fs::create_directories(folder_ / "images");
