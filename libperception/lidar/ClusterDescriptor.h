@@ -90,7 +90,7 @@ class ClusterDescriber {
   void describeDirections(const std::vector<std::uint32_t>& members, Descriptor& d) const;
   void describeIntensity(const std::vector<std::uint32_t>& members, Descriptor& d) const;
   void describeNeighbors(const std::vector<std::uint32_t>& members, Descriptor& d);
-  float nearestOther(std::uint32_t i) const;
+  float nearestOther(std::uint32_t i, float within) const;
 
   const LidarDetections& found_;
   DirectionCells cells_;

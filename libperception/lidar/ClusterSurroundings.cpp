@@ -158,23 +158,24 @@ void ClusterDescriber::describeIntensity(const std::vector<std::uint32_t>& membe
 
 void ClusterDescriber::describeNeighbors(const std::vector<std::uint32_t>& members, Descriptor& d) {
   const std::size_t stride = 1 + (members.size() - 1) / kNeighborSample;
+  constexpr float kTouch = 0.6f;  // [m]
   float least = kIsolated;
   int touching = 0, count = 0;
   for (std::size_t i = 0; i < members.size(); i += stride) {
-    const float other = nearestOther(members[i]);
+    const float other = nearestOther(members[i], std::max(least, kTouch));
     least = std::min(least, other);
-    touching += other < 0.6f, ++count;
+    touching += other < kTouch, ++count;
   }
   at(d, Feature::kIsolation) = least;
   at(d, Feature::kTouching) = static_cast<float>(touching) / static_cast<float>(count);
 }
 
-/// Horizontal distance [m] to the nearest obstacle that is no member; at most kIsolated.
-float ClusterDescriber::nearestOther(std::uint32_t i) const {
+/// Horizontal distance [m] to the nearest obstacle that is no member; at most `within`.
+float ClusterDescriber::nearestOther(std::uint32_t i, float within) const {
   const float x = dx_[i], y = dy_[i];
   const int c = std::min(static_cast<int>((x - x0_) / kPlaneCell), columns_ - 1),
             r = std::min(static_cast<int>((y - y0_) / kPlaneCell), rows_ - 1);
-  float best = kIsolated * kIsolated;
+  float best = within * within;
   const auto look = [&](int column, int row) {
     if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
     const std::size_t cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +

@@ -1,32 +1,67 @@
 #include "libperception/lidar/DirectionCells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 
-DirectionCells::Place DirectionCells::placeOf(float dx, float dy, float dz) {
-  constexpr auto kPerRadian = static_cast<float>(1 / kPitch);
-  const float flat = std::sqrt(dx * dx + dy * dy);
+namespace {
+
+struct RowColumn {
+  std::int32_t row, column;
+};
+
+inline __attribute__((always_inline)) RowColumn rowColumnOf(float dx, float dy, float dz,
+                                                            float flat) {
+  constexpr auto kPerRadian = static_cast<float>(1 / DirectionCells::kPitch);
+  constexpr std::int32_t kColumns = DirectionCells::kColumns, kRows = DirectionCells::kRows;
   const float azimuth = fastAtan2(dx, dy), elevation = fastAtan2(flat, dz);
-  const int column = static_cast<int>((azimuth + 2 * static_cast<float>(kPi)) * kPerRadian);
-  const int row = static_cast<int>(elevation * kPerRadian + kRows / 2.0f);
-  return {static_cast<std::int16_t>(column % kColumns),
-          static_cast<std::int16_t>(std::clamp(row, 0, kRows - 1))};
+  // Half a turn to one and a half, so that the modulus is one subtraction.
+  std::int32_t column =
+      static_cast<std::int32_t>((azimuth + 2 * static_cast<float>(kPi)) * kPerRadian);
+  column -= column >= kColumns ? kColumns : 0;
+  const auto row = static_cast<std::int32_t>(elevation * kPerRadian + kRows / 2.0f);
+  return {std::min(std::max(row, 0), kRows - 1), column};
+}
+
+/// Cell and range [m] of each point; without branches, so that the compiler vectorizes it.
+PERCEPTION_WIDEST void placeAll(const float* __restrict x, const float* __restrict y,
+                                const float* __restrict z, std::size_t count, float sx, float sy,
+                                float sz, std::int32_t* __restrict place, float* __restrict range) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = x[i] - sx, dy = y[i] - sy, dz = z[i] - sz;
+    const RowColumn at = rowColumnOf(dx, dy, dz, std::sqrt(dx * dx + dy * dy));
+    place[i] = at.row * DirectionCells::kColumns + at.column;
+    range[i] = std::sqrt(dx * dx + dy * dy + dz * dz);
+  }
+}
+
+}  // namespace
+
+DirectionCells::Place DirectionCells::placeOf(float dx, float dy, float dz) {
+  const RowColumn at = rowColumnOf(dx, dy, dz, std::sqrt(dx * dx + dy * dy));
+  return {static_cast<std::int16_t>(at.column), static_cast<std::int16_t>(at.row)};
 }
 
 DirectionCells::DirectionCells(const EgoPoints& points)
     : cells_(static_cast<std::size_t>(kColumns) * kRows) {
   const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
              sz = static_cast<float>(points.sensor.z());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const float dx = points.x[i] - sx, dy = points.y[i] - sy, dz = points.z[i] - sz;
-    const Place p = placeOf(dx, dy, dz);
-    Cell& cell =
-        cells_[static_cast<std::size_t>(p.row) * kColumns + static_cast<std::size_t>(p.column)];
-    const float range = std::sqrt(dx * dx + dy * dy + dz * dz);
-    cell.nearest = std::min(cell.nearest, range);
-    cell.farthest = std::max(cell.farthest, range);
+  constexpr std::size_t kBlock = 512;  // points that fit in the L1 cache
+  std::array<std::int32_t, kBlock> place;
+  std::array<float, kBlock> range;
+  for (std::size_t first = 0; first < points.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, points.size() - first);
+    placeAll(&points.x[first], &points.y[first], &points.z[first], count, sx, sy, sz, place.data(),
+             range.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      Cell& cell = cells_[static_cast<std::size_t>(place[k])];
+      cell.nearest = std::min(cell.nearest, range[k]);
+      cell.farthest = std::max(cell.farthest, range[k]);
+    }
   }
 }
 

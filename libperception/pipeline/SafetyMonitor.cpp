@@ -8,7 +8,10 @@ namespace {
 
 constexpr double kMirrored = -0.3;  // [m] lower returns are mirror images in a wet road
 constexpr double kLeaves = 0.5;     // [s] for which a cell belongs to what has left it; assumed
-constexpr double kFresh = 0.5;      // [s] after which a scan says nothing of the way ahead; assumed
+/// [-] x / |y| in the ego frame below which a return lies behind the vehicle (bearings beyond 117
+/// deg): it is ahead only after a turn, during which it is seen anew; assumed.
+constexpr float kBehind = -0.5f;
+constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
 
 // The vehicle on the ground plane: z = 0 is the ground.
 Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
@@ -48,7 +51,7 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
   scan.clear.reserve(returns.size());
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const double height = static_cast<double>(returns.height[i]);
-    if (height <= kMirrored) continue;
+    if (height <= kMirrored || returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
     const Vector3 place = frame.ego.T_world_ego * Vector3(static_cast<double>(returns.x[i]),
                                                           static_cast<double>(returns.y[i]),
                                                           static_cast<double>(returns.z[i]));
