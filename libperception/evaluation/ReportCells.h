@@ -27,5 +27,7 @@ ReportTable confusionTable(const EvaluatedRun& run, Pairing pairing);
 ReportTable reliabilityTable(const EvaluatedRun& run);
 ReportTable existenceTable(const EvaluatedRun& run);
 ReportTable objectTable(const EvaluatedRun& run);
+/// The instants with the most missed, wrong and falsely output objects; no rows: there are none.
+ReportTable worstInstantsTable(const EvaluatedRun& run);
 
 }  // namespace perception

@@ -249,7 +249,10 @@ std::vector<ReportTable> reportTables(const EvaluationReport& report) {
     for (const Pairing pairing : kAllPairings) tables.push_back(confusionTable(run, pairing));
     tables.push_back(reliabilityTable(run));
     if (!run.evaluation.existence.empty()) tables.push_back(existenceTable(run));
-    if (run.trials.empty()) tables.push_back(objectTable(run));
+    if (!run.trials.empty()) continue;
+    tables.push_back(objectTable(run));
+    ReportTable worst = worstInstantsTable(run);
+    if (!worst.rows.empty()) tables.push_back(std::move(worst));
   }
   tables.push_back(coverageTable(report));
   return tables;

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace perception {
 namespace {
 
 constexpr std::size_t kNewest = 101;
-/// [s] Between two packets the clocks may differ by as much: what waits in a computer's buffers.
-constexpr double kStep = 0.25;
+/// [s] What waits in a computer's buffers, and how long a clock must be late to be taken as set.
+constexpr double kStep = 0.25, kLateFor = 1;
+constexpr std::size_t kFew = 20;  // packets: the first ones may all be late
 
 /// [s] within half a period
 double difference(std::int64_t ns, std::int64_t period) {
@@ -32,29 +34,48 @@ std::optional<std::string> ClockWatch::add(const DecodedPacket& packet, Stamp re
     begun_ = true;
   }
   if (packet.stamp_ns == 0) return change;
-  const double offset = difference(received.ns - packet.stamp_ns, packet.clock_period_ns);
-  if (last_ns_) {
-    const double passed = difference(packet.stamp_ns - *last_ns_, packet.clock_period_ns);
-    const double here = static_cast<double>(received.ns - *last_received_ns_) * 1e-9;
-    if (std::abs(passed - here) > kStep) {
-      ++steps_;
-      offsets_.clear();
-      char text[80];
-      std::snprintf(text, sizeof text, "its clock was set by %+.3f s", passed - here);
-      change = text;
-    }
+  Offset now{received, difference(received.ns - packet.stamp_ns, packet.clock_period_ns)};
+  if (offsets_.empty()) {
+    offsets_.push_back(now);
+    return change;
   }
-  last_ns_ = packet.stamp_ns;
-  last_received_ns_ = received.ns;
-  offsets_.push_back(offset);
+  const auto least = [](const std::deque<Offset>& offsets) {
+    return std::min_element(offsets.begin(), offsets.end(),
+                            [](const Offset& a, const Offset& b) { return a.seconds < b.seconds; })
+        ->seconds;
+  };
+  const double usual = least(offsets_);
+  const auto more = static_cast<std::int64_t>(std::llround((now.seconds - usual) * 1e9));
+  now.seconds = usual + difference(more, packet.clock_period_ns);
+  if (now.seconds > usual + kStep) {
+    late_.push_back(now);
+    if (late_.size() < kFew || received - late_.front().received < kLateFor) return change;
+    const double step = least(late_) - usual;
+    return begin(std::exchange(late_, {}), step);
+  }
+  late_.clear();
+  if (now.seconds < usual - kStep) {
+    if (offsets_.size() >= kFew) return begin({now}, now.seconds - usual);
+    offsets_.clear();
+  }
+  offsets_.push_back(now);
   if (offsets_.size() > kNewest) offsets_.pop_front();
   return change;
+}
+
+std::string ClockWatch::begin(std::deque<Offset> offsets, double change) {
+  ++steps_;
+  offsets_ = std::move(offsets);
+  char text[80];
+  std::snprintf(text, sizeof text, "its clock was set by %+.3f s", -change);
+  return text;
 }
 
 ClockLedger ClockWatch::ledger() const {
   ClockLedger ledger{state_, {}, steps_};
   if (offsets_.empty()) return ledger;
-  std::vector<double> sorted(offsets_.begin(), offsets_.end());
+  std::vector<double> sorted;
+  for (const Offset& offset : offsets_) sorted.push_back(offset.seconds);
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   ledger.offset = *middle;

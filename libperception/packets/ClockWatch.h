@@ -20,7 +20,8 @@ struct ClockLedger {
   std::uint64_t steps = 0;  ///< times that the device's clock was set
 };
 
-/// Watches one device's clock.
+/// Watches one device's clock. A packet that comes late makes the offset greater for a moment, a
+/// clock that is set changes it for good: smaller at once, greater if it stays so for a second.
 class ClockWatch {
  public:
   /// What changed, for the user; empty for most packets. Packets of a device that sends no stamps
@@ -29,8 +30,14 @@ class ClockWatch {
   ClockLedger ledger() const;
 
  private:
-  std::deque<double> offsets_;  ///< [s]
-  std::optional<std::int64_t> last_ns_, last_received_ns_;
+  struct Offset {
+    Stamp received;
+    double seconds = 0;  ///< without jumps at the end of the clock's period
+  };
+  /// The newest offsets from now on; says by how much the clock was set.
+  std::string begin(std::deque<Offset> offsets, double change);
+
+  std::deque<Offset> offsets_, late_;  ///< of late packets, until it is known what they are
   ClockState state_ = ClockState::kUntold;
   bool begun_ = false;
   std::uint64_t steps_ = 0;

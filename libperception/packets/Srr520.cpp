@@ -1,3 +1,5 @@
+#include "libperception/packets/Srr520.h"
+
 #include <array>
 #include <cmath>
 #include <string>
@@ -5,7 +7,6 @@
 #include "libperception/core/Error.h"
 #include "libperception/packets/Bytes.h"
 #include "libperception/packets/Decoders.h"
-#include "libperception/packets/Srr520.h"
 
 namespace perception {
 namespace {

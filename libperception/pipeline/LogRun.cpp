@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/FinishedRun.h"
@@ -18,22 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kSaid = 3;        ///< warnings that are said and not only counted
 constexpr std::size_t kFewFrames = 10;  ///< of a lidar that may have seen nothing
-
-/// The first warnings of events.jsonl, each message once.
-std::vector<std::string> firstWarnings(const std::string& events) {
-  std::vector<std::string> messages;
-  std::istringstream lines(events);
-  for (std::string line; messages.size() < kSaid && std::getline(lines, line);) {
-    const auto event = nlohmann::json::parse(line);
-    if (event.value("severity", "") != "warning") continue;
-    const std::string message = event.value("message", "");
-    if (std::find(messages.begin(), messages.end(), message) == messages.end())
-      messages.push_back(message);
-  }
-  return messages;
-}
 
 }  // namespace
 
@@ -175,9 +158,9 @@ std::vector<std::string> LogRun::finish(bool strict) {
   if (events_.warnings() > record.warnings.size()) {
     const auto more = events_.warnings() - record.warnings.size();
     record.warnings.push_back(fmt::format("{} warnings in events.jsonl", more));
-    for (const auto& message : firstWarnings(events_.text(*pipeline_.firstStamp())))
+    for (const auto& message : events_.firstWarnings())
       said.push_back(fmt::format("{}: {}", files_.log, message));
-    if (more > kSaid)
+    if (more > EventLog::kFirst)
       said.push_back(
           fmt::format("{}: {} warnings in all, see {}/events.jsonl", files_.log, more, files_.dir));
   }

@@ -13,7 +13,7 @@
 namespace perception {
 
 /// What speaks against a sensor that is no lidar: objects that other sensors see in its view, its
-/// usual false measurements, and bearings that are all off to the same side (method.md 9.14).
+/// usual false measurements, and bearings that are all off to the same side (method.md 9.10).
 class SensorDoubt {
  public:
   /// A scan and the tracks after it; `seen_share`: what weather has left of P_D in its model.

@@ -1,5 +1,6 @@
 #include "libperception/scene/EventLog.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "libperception/scene/NumberFormat.h"
@@ -19,7 +20,12 @@ std::string jsonLine(const Json& event) {
 
 void EventLog::add(std::optional<Stamp> stamp, const std::string& kind, const std::string& message,
                    Fields fields, Severity severity) {
-  if (severity == Severity::kWarning) ++warnings_;
+  if (severity == Severity::kWarning) {
+    ++warnings_;
+    if (first_warnings_.size() < kFirst &&
+        std::find(first_warnings_.begin(), first_warnings_.end(), message) == first_warnings_.end())
+      first_warnings_.push_back(message);
+  }
   const std::uint64_t count = ++counts_[kind];
   if (fields.is_null()) fields = Fields::object();
   Event event{stamp, kind, message, std::move(fields), severity};

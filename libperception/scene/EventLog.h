@@ -68,6 +68,9 @@ class EventLog {
   /// Number of events by kind, including those not stored.
   const std::map<std::string, std::uint64_t>& counts() const { return counts_; }
   std::uint64_t warnings() const { return warnings_; }
+  static constexpr std::size_t kFirst = 3;
+  /// The messages of the first kFirst warnings with different ones.
+  const std::vector<std::string>& firstWarnings() const { return first_warnings_; }
 
   /// The stored events as lines; a last line per truncated kind gives the number of omitted events.
   std::string text(Stamp first_stamp) const;
@@ -93,6 +96,7 @@ class EventLog {
   Stamp first_stamp_;  ///< of the file
   std::map<std::string, std::uint64_t> counts_;
   std::uint64_t warnings_ = 0;
+  std::vector<std::string> first_warnings_;
 };
 
 }  // namespace perception

@@ -176,7 +176,8 @@ TEST_F(RunPage, KeysStepPlayAndChoose) {
   EXPECT_EQ(scene(), 1);
   browser_->press(" ");
   browser_->waitFor("perceptionViewers[0].k > 2");
-  browser_->press(" ");
+  // A slow machine may be at the end by now, where it stops by itself.
+  if (value("perceptionViewers[0].playing")) browser_->press(" ");
   EXPECT_EQ(value("perceptionViewers[0].playing"), false);
   browser_->press("n");
   EXPECT_TRUE(value("perceptionViewers[0].id").is_number());

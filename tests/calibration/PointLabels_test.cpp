@@ -50,7 +50,8 @@ TEST(PointLabels, LyingSnowIsASurfaceAndFallingSnowIsNone) {
   EXPECT_FALSE(isPhantomLabel(111));
   EXPECT_TRUE(isPhantomLabel(112));
   EXPECT_TRUE(isPhantomLabel(117));
-  EXPECT_FALSE(isPhantomLabel(118));
+  EXPECT_TRUE(isPhantomLabel(118)) << "dirt on the window";
+  EXPECT_FALSE(isPhantomLabel(119));
   EXPECT_FALSE(isPhantomLabel(10));
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <clocale>
 #include <locale>
 #include <nlohmann/json.hpp>
@@ -51,6 +52,30 @@ TEST(Report, TheSummaryHasTheFiguresThatDecide) {
   EXPECT_NE(text.find("MOTA 0.333"), std::string::npos) << "one miss, one false of three" << text;
   const std::string nothing = summaryText(sampleReport(false));
   EXPECT_NE(nothing.find("n/a of the views; n/a id switches"), std::string::npos) << nothing;
+}
+
+TEST(Report, TheWorstInstantsComeFirstWithWhatIsWrongInThem) {
+  TrackedRun run = makeRun();
+  run.scenes = {makeScene(0, {makeObject(1, 10, 0)}), makeScene(1),
+                makeScene(2, {makeObject(1, 10, 0, kPedestrian), makeObject(2, 3, 8)})};
+  EvaluationReport report;
+  report.runs.push_back({"run",
+                         "run",
+                         evaluate(run,
+                                  makeGroundTruth({makeTruth(0, 5, 10, 0), makeTruth(1, 5, 10, 0),
+                                                   makeTruth(2, 5, 10, 0)}),
+                                  {}),
+                         {}});
+  const auto tables = reportTables(report);
+  const auto worst = std::find_if(tables.begin(), tables.end(), [](const ReportTable& t) {
+    return t.title == "Worst instants: run";
+  });
+  ASSERT_NE(worst, tables.end());
+  ASSERT_EQ(worst->rows.size(), 2u) << "the first instant has no fault";
+  const std::vector<std::string> first(worst->rows[0].begin(), worst->rows[0].begin() + 5);
+  EXPECT_EQ(first, (std::vector<std::string>{"-", "Car 5 as pedestrian", "car 2", "0.20", "2"}));
+  const std::vector<std::string> second(worst->rows[1].begin(), worst->rows[1].begin() + 5);
+  EXPECT_EQ(second, (std::vector<std::string>{"Car 5", "-", "-", "0.10", "1"}));
 }
 
 TEST(Report, EveryRowHasTheHeadersCells) {

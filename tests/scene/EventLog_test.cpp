@@ -4,6 +4,7 @@
 
 #include "libperception/core/Error.h"
 #include "tests/scene/SceneFixture.h"
+#include "tests/support/TemporaryFolder.h"
 
 namespace perception {
 namespace {
@@ -33,6 +34,18 @@ TEST(EventLog, ASingleFieldIsAnObjectToo) {
   EventLog log;
   log.warn(kFirstStamp, "x", "m", {{"sensor", "CAMERA"}});
   EXPECT_NE(log.text(kFirstStamp).find(R"("fields":{"sensor":"CAMERA"})"), std::string::npos);
+}
+
+TEST(EventLog, KeepsTheFirstWarningsAlsoWhenTheyAreWrittenAsTheyCome) {
+  const test::TemporaryFolder folder;
+  EventLog log;
+  log.warn(kFirstStamp, "x", "one");
+  log.writeTo(folder / "events.jsonl", kFirstStamp);
+  for (const char* message : {"one", "two", "two", "three", "four"})
+    log.warn(kFirstStamp, "x", message);
+  EXPECT_EQ(log.firstWarnings(), (std::vector<std::string>{"one", "two", "three"}));
+  EXPECT_EQ(log.warnings(), 6U);
+  log.close();
 }
 
 TEST(EventLog, CountsByKindAndWarnings) {
