@@ -67,7 +67,9 @@ void GrabberApp::run() {
     if (isatty(STDOUT_FILENO) == 0) return;
     fmt::print("{:6.0f} s {:8.1f} MB", passed(), static_cast<double>(grabber.bytes()) * 1e-6);
     for (const auto& [label, ledger] : grabber.sensors())
-      fmt::print("  {} {}/s", label, ledger.written - before[label].written);
+      fmt::print("  {} {}/s", label,
+                 static_cast<std::int64_t>(ledger.written) -
+                     static_cast<std::int64_t>(before[label].written));
     fmt::print("\n");
     before = grabber.sensors();
   };

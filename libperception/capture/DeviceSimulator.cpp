@@ -1,5 +1,6 @@
 #include "libperception/capture/DeviceSimulator.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <utility>

@@ -1,6 +1,7 @@
 #include "libperception/capture/PacketFeed.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cmath>
 #include <thread>

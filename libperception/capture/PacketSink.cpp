@@ -92,7 +92,12 @@ class TcpSink final : public PacketSink {
 
 class CanSink final : public PacketSink {
  public:
-  explicit CanSink(const std::string& interface) : socket_(openCanSocket(interface)) {
+  explicit CanSink(const std::string& interface) {
+    // Not on the bus of a vehicle.
+    if (interface.rfind("vcan", 0) != 0)
+      throw ConfigError("a simulated device sends on virtual interfaces (vcan0) alone, not on " +
+                        interface);
+    socket_ = openCanSocket(interface);
     if (socket_ < 0) unavailable("CAN interface " + interface + " of a simulated device");
   }
   ~CanSink() override { ::close(socket_); }
@@ -109,7 +114,7 @@ class CanSink final : public PacketSink {
   }
 
  private:
-  int socket_;
+  int socket_ = -1;
 };
 
 }  // namespace

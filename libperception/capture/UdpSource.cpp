@@ -73,8 +73,12 @@ class UdpSource final : public PacketSource {
 
   void join(const std::string& name, const std::string& multicast) {
     ip_mreq group{};
-    if (::inet_pton(AF_INET, multicast.c_str(), &group.imr_multiaddr) != 1 ||
-        ::setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0)
+    if (::inet_pton(AF_INET, multicast.c_str(), &group.imr_multiaddr) != 1) {
+      ::close(socket_);
+      throw ConfigError(
+          fmt::format("[{}] multicast = {}: an IPv4 address expected", name, multicast));
+    }
+    if (::setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0)
       fail(fmt::format("[{}] multicast {}", name, multicast));
   }
 

@@ -62,9 +62,10 @@ void writeWhole(const std::string& path, std::string_view bytes) {
     bytes.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
   }
   good = good && (::fsync(file) == 0 || errno == EINVAL);
-  const int reason = errno;
+  const int reason = good ? 0 : errno;
   good = ::close(file) == 0 && good;
-  if (!good) errno = reason, fail(ExitCode::kIoError);
+  if (reason != 0) errno = reason;
+  if (!good) fail(ExitCode::kIoError);
   partial.commit();
 }
 

@@ -1,5 +1,6 @@
 #include "libperception/packets/CanBundle.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include "libperception/core/Error.h"
@@ -44,6 +45,7 @@ std::int64_t stampOf(std::string_view line, std::string_view text) {
       seconds = seconds * 10 + (c - '0');
     }
   }
+  if (seconds > 9000000000) refuseLine(line, "no stamp in seconds");
   return seconds * 1000000000 + nanoseconds;
 }
 

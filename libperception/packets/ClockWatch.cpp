@@ -23,6 +23,10 @@ double difference(std::int64_t ns, std::int64_t period) {
   return static_cast<double>(ns) * 1e-9;
 }
 
+std::string joined(const std::optional<std::string>& first, const std::string& second) {
+  return first ? *first + "; " + second : second;
+}
+
 }  // namespace
 
 std::optional<std::string> ClockWatch::add(const DecodedPacket& packet, Stamp received) {
@@ -51,11 +55,11 @@ std::optional<std::string> ClockWatch::add(const DecodedPacket& packet, Stamp re
     late_.push_back(now);
     if (late_.size() < kFew || received - late_.front().received < kLateFor) return change;
     const double step = least(late_) - usual;
-    return begin(std::exchange(late_, {}), step);
+    return joined(change, begin(std::exchange(late_, {}), step));
   }
   late_.clear();
   if (now.seconds < usual - kStep) {
-    if (offsets_.size() >= kFew) return begin({now}, now.seconds - usual);
+    if (offsets_.size() >= kFew) return joined(change, begin({now}, now.seconds - usual));
     offsets_.clear();
   }
   offsets_.push_back(now);

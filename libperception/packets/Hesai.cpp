@@ -20,6 +20,7 @@ struct Layout {
   int year;  ///< of the calendar's 0
 };
 
+constexpr std::int64_t kLastSecond = 9000000000;  // that fits in nanoseconds
 constexpr Layout kPandar40p{"Pandar40P", 1262, 1262, false, 0,    124,  10,
                             40,          3,    2,    1254,  1256, 1250, 2000};
 constexpr Layout kXt32{"XT32", 1080, 1076, true, 12, 130, 8, 32, 4, 0, 1062, 1065, 1071, 1900};
@@ -83,7 +84,9 @@ class HesaiDecoder final : public PacketDecoder {
     calendar.tm_hour = field(3);
     calendar.tm_min = field(4);
     calendar.tm_sec = field(5);
-    return static_cast<std::int64_t>(timegm(&calendar)) * 1000000000 +
+    const std::int64_t seconds = timegm(&calendar);
+    if (seconds > kLastSecond) refuse("its date lies centuries ahead");
+    return seconds * 1000000000 +
            static_cast<std::int64_t>(littleEndian(payload, at_.micros, 4)) * 1000;
   }
 

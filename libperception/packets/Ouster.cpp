@@ -16,6 +16,8 @@ struct Profile {
   const char* name;
   std::size_t pixel, packet_header, column_header, column_status, footer;
 };
+constexpr std::uint64_t kLastStamp = std::uint64_t{1} << 62;  // [ns] the year 2116
+
 constexpr std::array<Profile, 4> kProfiles{{{"LEGACY", 12, 0, 16, 4, 0},
                                             {"RNG19_RFL8_SIG16_NIR16", 12, 32, 12, 0, 32},
                                             {"RNG19_RFL8_SIG16_NIR16_DUAL", 16, 32, 12, 0, 32},
@@ -90,6 +92,7 @@ class OusterDecoder final : public PacketDecoder {
     DecodedPacket packet;
     const auto columns = ousterColumns(payload, metadata_, packet.warnings);
     const OusterColumn& first = columns.front();
+    if (first.stamp_ns > kLastStamp) refuse("its stamp lies centuries ahead");
     packet.stamp_ns = static_cast<std::int64_t>(first.stamp_ns);
     const std::size_t in_frame = metadata_.columns_per_frame / metadata_.columns_per_packet;
     packet.number = first.frame * in_frame + first.measurement / metadata_.columns_per_packet;

@@ -65,7 +65,8 @@ class SpinningEncoder : public PacketEncoder {
     bytes[at + 2] = static_cast<char>(std::lround(std::clamp(seen->intensity, 0.F, 1.F) * 255));
   }
   static std::uint64_t centidegrees(double azimuth) {
-    return static_cast<std::uint64_t>(std::lround(azimuth * 100)) % 36000;
+    const long hundredths = std::lround(azimuth * 100) % 36000;
+    return static_cast<std::uint64_t>(hundredths < 0 ? hundredths + 36000 : hundredths);
   }
 
  private:

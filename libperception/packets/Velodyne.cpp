@@ -104,9 +104,11 @@ class VelodyneDecoder final : public PacketDecoder {
     const auto count = std::llround(static_cast<double>(since) / period);
     const double rest = static_cast<double>(since) - static_cast<double>(count) * period;
     const bool fits = std::abs(rest) < kJitter + kDrift * std::abs(static_cast<double>(since));
-    if (fits && count <= 0) return (number_ - static_cast<std::uint64_t>(-count)) & 0xFFFFFFFF;
+    const bool set_back = -static_cast<double>(since) > kLargeGap;
+    if (fits && count <= 0 && !set_back)
+      return (number_ - static_cast<std::uint64_t>(-count)) & 0xFFFFFFFF;
     last_ = micros;
-    if (!fits) return ++number_;
+    if (!fits || set_back) return ++number_;
     if (static_cast<double>(since) > kLargeGap) {
       tellGap(count - 1, azimuth, packet);
       return ++number_;

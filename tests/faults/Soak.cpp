@@ -89,6 +89,8 @@ double trackLong(const std::string& log, const std::string& ini,
     shown += kShown;
   });
   run.finish(false);
+  if (warm == 0)
+    throw DataError(fmt::format("the log ended before {} s: nothing to compare with", kWarm));
   return most - warm;
 }
 

@@ -146,6 +146,13 @@ int mutate(int argc, char** argv) {
   const rlimit limit{kMemory, kMemory};
   ::setrlimit(RLIMIT_AS, &limit);
   const std::vector<std::string> names(argv + 3, argv + argc);
+  for (const std::string& name : names) {
+    if (std::any_of(parsers().begin(), parsers().end(),
+                    [&](const Parser& parser) { return name == parser.name; }))
+      continue;
+    fmt::print(stderr, "perception_mutate: no parser {}\n", name);
+    return 64;
+  }
   for (const Parser& parser : parsers()) {
     if (names.empty() || std::find(names.begin(), names.end(), parser.name) != names.end())
       tryOut(parser, std::strtoull(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10));

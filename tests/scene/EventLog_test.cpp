@@ -4,7 +4,6 @@
 
 #include "libperception/core/Error.h"
 #include "tests/scene/SceneFixture.h"
-#include "tests/support/TemporaryFolder.h"
 
 namespace perception {
 namespace {
@@ -40,7 +39,7 @@ TEST(EventLog, KeepsTheFirstWarningsAlsoWhenTheyAreWrittenAsTheyCome) {
   const test::TemporaryFolder folder;
   EventLog log;
   log.warn(kFirstStamp, "x", "one");
-  log.writeTo(folder / "events.jsonl", kFirstStamp);
+  log.writeTo(folder.file("events.jsonl"), kFirstStamp);
   for (const char* message : {"one", "two", "two", "three", "four"})
     log.warn(kFirstStamp, "x", message);
   EXPECT_EQ(log.firstWarnings(), (std::vector<std::string>{"one", "two", "three"}));
