@@ -94,7 +94,7 @@ TemporaryPath::~TemporaryPath() {
 
 bool isAlive(pid_t process) {
   if (process <= 0 || (::kill(process, 0) != 0 && errno == ESRCH)) return false;
-  // Where nobody collects the dead (a container without init) their numbers stay in use.
+  // A zombie that is not reaped (a container without init) keeps its number.
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string stat;
   std::getline(file, stat);

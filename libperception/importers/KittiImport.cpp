@@ -4,11 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kLidarLabel = "LIDAR_TOP";
+const std::vector<std::string> kScanEndings = {".bin", ".bin.gz"};
+const std::vector<std::string> kImageEndings = {".png", ".jpg", ".jpeg"};
 constexpr const char* kImageLabel = "CAMERA_LEFT";
 /// The whole import of one sequence.
 class Import {
@@ -97,27 +99,14 @@ void Import::readPoses() {
   }
 }
 
-/// Number of the frame of FRAME.EXT or FRAME.EXT.gz; -1: the name is no number.
-std::int64_t frameOf(const fs::path& file) {
-  const std::string name = file.filename().string();
-  std::int64_t frame = -1;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), frame);
-  return error == std::errc() && end != name.data() + name.size() && *end == '.' ? frame : -1;
-}
-
 /// Without poses the scans and images say which frames there are.
 void Import::framesOfFiles() {
   std::int64_t newest = -1;
-  for (const auto* dir : {&params_.lidar_dir, &params_.images_dir}) {
-    if (dir->empty()) continue;
-    for (const auto& entry : fs::directory_iterator(*dir))
-      newest = std::max(newest, frameOf(entry.path()));
-  }
-  if (newest < 0) {
-    throw DataError(
-        fmt::format("{}: no frame (000000.bin, 000000.png), and no --poses that count them",
-                    params_.lidar_dir.empty() ? params_.images_dir : params_.lidar_dir));
-  }
+  const auto look = [&newest](const std::string& dir, const std::vector<std::string>& endings) {
+    if (!dir.empty()) newest = std::max(newest, frameFiles(dir, endings).back().number);
+  };
+  look(params_.lidar_dir, kScanEndings);
+  look(params_.images_dir, kImageEndings);
   last_ = options_.last < 0 ? newest : options_.last;
   log_.note(
       "no --poses and no --oxts: the log has no poses; [ego] source = lidar finds them in the "
@@ -157,20 +146,15 @@ Pose3 Import::posesVelodyneAt(std::int64_t frame) const {
 
 /// DIR/000012.EXT as in the tracking benchmark or DIR/0000000012.EXT as in the raw data; empty when
 /// there is none.
-std::string frameFile(const std::string& dir, std::int64_t frame,
-                      std::initializer_list<const char*> extensions) {
-  for (const auto& name : {fmt::format("{:06}", frame), fmt::format("{:010}", frame)}) {
-    for (const char* extension : extensions) {
-      const auto path = fs::path(dir) / (name + extension);
-      if (fs::exists(path)) return path.string();
-    }
-  }
-  return {};
+std::string fileOfFrame(const std::string& dir, std::int64_t frame,
+                        const std::vector<std::string>& endings) {
+  const std::string path = fileOfStem(dir, fmt::format("{:06}", frame), endings);
+  return path.empty() ? fileOfStem(dir, fmt::format("{:010}", frame), endings) : path;
 }
 
 std::optional<LidarCloud> Import::readScan(std::int64_t frame) {
   if (params_.lidar_dir.empty()) return {};
-  const std::string path = frameFile(params_.lidar_dir, frame, {".bin", ".bin.gz"});
+  const std::string path = fileOfFrame(params_.lidar_dir, frame, kScanEndings);
   if (path.empty()) {
     log_.missing("scan", params_.lidar_dir, frame);
     return {};
@@ -197,7 +181,7 @@ void Import::writeFrame(std::int64_t frame) {
 }
 
 void Import::writeImage(std::int64_t frame) {
-  const std::string path = frameFile(params_.images_dir, frame, {".png", ".jpg", ".jpeg"});
+  const std::string path = fileOfFrame(params_.images_dir, frame, kImageEndings);
   if (path.empty()) return log_.missing("image", params_.images_dir, frame);
   ImportedImage image;
   image.label = kImageLabel;

@@ -131,7 +131,7 @@ TEST_F(ImportTest, FrameNumbersAndStampsSurviveFirstAndLast) {
 }
 
 TEST_F(ImportTest, WithoutPosesTheFilesSayWhichFramesThereAre) {
-  for (const char* name : {"velo/000001.bin", "velo/000002.bin", "velo/readme.bin"})
+  for (const char* name : {"velo/000001.bin", "velo/000002.bin", "velo/readme.txt"})
     write(name, bytesOf<float>({8.1F, 0, -1, 0.5F}));
   ASSERT_EQ(import({"--lidar", file("velo"), "--first", "1"}, ""), 0) << error_;
   EXPECT_EQ(result_.scans, 2);
