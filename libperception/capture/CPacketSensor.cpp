@@ -157,7 +157,7 @@ void CPacketSensor::receive() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       overrun_ = source_->overrun();
-      for (const std::string& event : source_->takeEvents()) assembler_->warn(event);
+      for (const std::string& event : source_->takeEvents()) assembler_->note(event);
     }
     if (stop_ && (!any || !simulator_)) return;
   }
@@ -166,7 +166,7 @@ void CPacketSensor::receive() {
 void CPacketSensor::take(const ReceivedPacket& packet) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool passes = senders_.passes(packet.sender, packet.at);
-  if (const auto event = senders_.takeEvent()) assembler_->warn(*event);
+  if (const auto event = senders_.takeEvent()) assembler_->note(*event);
   if (passes) assembler_->add(packet.bytes, packet.at);
 }
 
@@ -186,7 +186,7 @@ void CPacketSensor::endCapture() {
   const std::lock_guard<std::mutex> lock(mutex_);
   assembler_->finish();
   if (simulator_ && !simulator_->fault().empty())
-    assembler_->warn("its simulator ended: " + simulator_->fault());
+    assembler_->note("its simulator: " + simulator_->fault());
 }
 
 PacketLedger CPacketSensor::packets() const {

@@ -6,14 +6,16 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
-#include <algorithm>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
+#include <utility>
 
 #include "libperception/capture/CanSocket.h"
 #include "libperception/capture/PacketSource.h"
+#include "libperception/capture/ReceiveControl.h"
 #include "libperception/core/Error.h"
 #include "libperception/packets/CanBundle.h"
 
@@ -23,10 +25,11 @@ namespace {
 class CanSource final : public PacketSource {
  public:
   CanSource(const std::string& name, const std::string& interface)
-      : socket_(openCanSocket(interface)) {
+      : interface_(interface), socket_(openCanSocket(interface)) {
     if (socket_ < 0)
       throw Error(ExitCode::kUnavailable,
                   fmt::format("[{}] CAN interface {}: {}", name, interface, std::strerror(errno)));
+    ReceiveControl::request(socket_);
   }
   ~CanSource() override { ::close(socket_); }
 
@@ -34,21 +37,43 @@ class CanSource final : public PacketSource {
     pollfd wait{socket_, POLLIN, 0};
     if (::poll(&wait, 1, timeout_ms) <= 0) return false;
     canfd_frame frame{};
-    const auto count = ::recv(socket_, &frame, sizeof frame, MSG_DONTWAIT);
-    if (count != CAN_MTU && count != CANFD_MTU) return false;
+    iovec part{&frame, sizeof frame};
+    alignas(cmsghdr) std::array<char, ReceiveControl::kSize> control{};
+    msghdr header{};
+    header.msg_iov = &part;
+    header.msg_iovlen = 1;
+    header.msg_control = control.data();
+    header.msg_controllen = control.size();
+    const auto count = ::recvmsg(socket_, &header, MSG_DONTWAIT);
+    if (count < 0) return noteError();
+    noted_ = 0;
+    const Stamp at = control_.read(header);
+    if (count != CAN_MTU && count != CANFD_MTU) return true;
     if ((frame.can_id & (CAN_ERR_FLAG | CAN_RTR_FLAG)) != 0) return true;
-    const auto since = std::chrono::system_clock::now().time_since_epoch();
     const std::string message =
         canMessage(frame.can_id & CAN_EFF_MASK, {reinterpret_cast<const char*>(frame.data),
                                                  std::min<std::size_t>(frame.len, CANFD_MAX_DLEN)});
-    take({message,
-          {std::chrono::duration_cast<std::chrono::nanoseconds>(since).count() / 100 * 100},
-          0});
+    take({message, at, 0});
     return true;
   }
 
+  std::uint64_t overrun() const override { return control_.overrun(); }
+  std::vector<std::string> takeEvents() override { return std::exchange(events_, {}); }
+
  private:
+  /// Each kind once until a frame comes again: an interface that is down says so at every call.
+  bool noteError() {
+    if (errno == EAGAIN || errno == EINTR || errno == noted_) return false;
+    noted_ = errno;
+    events_.push_back(fmt::format("CAN interface {}: {}", interface_, std::strerror(noted_)));
+    return false;
+  }
+
+  std::string interface_;
   int socket_;
+  int noted_ = 0;
+  ReceiveControl control_;
+  std::vector<std::string> events_;
 };
 
 }  // namespace

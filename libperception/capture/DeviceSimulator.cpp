@@ -1,7 +1,11 @@
 #include "libperception/capture/DeviceSimulator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <exception>
 #include <utility>
 
@@ -27,7 +31,10 @@ bool DeviceSimulator::happens(double probability) {
 }
 
 void DeviceSimulator::send(const std::string& payload) {
-  if (sink_->send(payload)) ++ledger_.sent;
+  if (sink_->send(payload))
+    ++ledger_.sent;
+  else if (unsent_++ == 0)
+    unsent_why_ = std::strerror(errno);
 }
 
 void DeviceSimulator::run() {
@@ -36,6 +43,8 @@ void DeviceSimulator::run() {
   } catch (const std::exception& error) {
     fault_ = error.what();
   }
+  if (unsent_ > 0 && fault_.empty())
+    fault_ = fmt::format("{} packets could not be sent: {}", unsent_, unsent_why_);
   ended_ = true;
 }
 
@@ -51,7 +60,7 @@ void DeviceSimulator::sendAll() {
   if (unseen_.empty()) return;
   send(unseen_);
   ledger_.missing.pop_back();
-  if (unseen_was_dropped_) --ledger_.dropped;
+  unseen_was_dropped_ ? --ledger_.dropped : ++ledger_.resent;
 }
 
 void DeviceSimulator::sendOne(std::string payload) {

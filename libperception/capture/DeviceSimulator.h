@@ -25,6 +25,7 @@ struct SentLedger {
   std::uint64_t repeated = 0;  ///< sent twice
   std::uint64_t swapped = 0;   ///< sent after the next one
   std::uint64_t torn = 0;      ///< sent without their end
+  std::uint64_t resent = 0;    ///< of these sent once more, whole: the last packet, 0 or 1
   std::uint64_t sent = 0;      ///< packets, of those sent twice both
   /// Which ones came not whole: dropped and torn ones, the first packet is 0.
   std::vector<std::uint64_t> missing;
@@ -45,7 +46,8 @@ class DeviceSimulator {
   void stop();
   bool ended() const { return ended_; }
   const SentLedger& ledger() const { return ledger_; }  ///< after stop() or ended()
-  /// Why it ended before its time; empty: it did not.
+  /// Why it ended before its time, or what it could not send; empty: nothing. After stop() or
+  /// ended().
   const std::string& fault() const { return fault_; }
 
  private:
@@ -63,7 +65,8 @@ class DeviceSimulator {
   std::string unseen_;  ///< the newest packet, if it came not whole: no later one shows that
   bool unseen_was_dropped_ = false;
   SentLedger ledger_;
-  std::string fault_;
+  std::uint64_t unsent_ = 0;  ///< packets that the network refused
+  std::string unsent_why_, fault_;
   std::atomic<bool> stop_{false}, ended_{false};
   std::thread thread_;
 };

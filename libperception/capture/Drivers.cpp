@@ -58,6 +58,7 @@ struct Drivers::Shared {
   std::vector<State> states;         ///< by driver
   std::vector<std::string> faults;   ///< by driver
   std::vector<std::thread> threads;  ///< by driver
+  std::vector<bool> over;            ///< by driver: its thread was joined
 };
 
 Drivers::Drivers(const std::string& ini) : shared_(std::make_shared<Shared>()) {
@@ -75,6 +76,7 @@ Drivers::Drivers(const std::string& ini) : shared_(std::make_shared<Shared>()) {
   if (drivers_.empty()) throw ConfigError(ini + ": no section with a driver");
   shared_->states.assign(size(), Shared::State::kWorking);
   shared_->faults.resize(size());
+  shared_->over.assign(size(), false);
   for (std::size_t i = 0; i < size(); ++i)
     shared_->threads.emplace_back(
         [driver = drivers_[i], i, shared = shared_] { ask(driver, i, shared); });
@@ -139,7 +141,13 @@ void Drivers::end() {
     lock.unlock();
     over ? shared_->threads[i].join() : shared_->threads[i].detach();
     lock.lock();
+    shared_->over[i] = over;
   }
+}
+
+bool Drivers::isOver(std::size_t i) const {
+  const std::lock_guard<std::mutex> lock(shared_->mutex);
+  return shared_->over[i];
 }
 
 std::vector<std::string> Drivers::faults() const {

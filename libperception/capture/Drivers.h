@@ -36,6 +36,8 @@ class Drivers {
   /// Ends the drivers: what is under way is received first, and left for a last take(). A driver
   /// that does not return within two seconds is left alone.
   void end();
+  /// Whether the driver's thread has ended: only then may it be asked what it knows.
+  bool isOver(std::size_t i) const;
   /// Drivers that failed or did not return, a line each.
   std::vector<std::string> faults() const;
 

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "libperception/capture/DeviceSimulator.h"
-#include "libperception/capture/LedgerSource.h"
 #include "libperception/core/Error.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
@@ -49,8 +48,8 @@ void addPackets(const LedgerSource& source, nlohmann::json& line) {
   if (!source.simulator()) return;
   const SentLedger& s = source.simulator()->ledger();
   line["simulator"] = {{"made", s.made},       {"dropped", s.dropped}, {"repeated", s.repeated},
-                       {"swapped", s.swapped}, {"torn", s.torn},       {"sent", s.sent},
-                       {"missing", s.missing}};
+                       {"swapped", s.swapped}, {"torn", s.torn},       {"resent", s.resent},
+                       {"sent", s.sent},       {"missing", s.missing}};
 }
 
 ChunkLimits limitsOf(const std::string& ini) {
@@ -202,6 +201,11 @@ void Grabber::run(const std::function<bool()>& done, const std::function<void()>
   noteLedgers();
 }
 
+/// None of a driver that does not return: it may still change its ledger.
+const LedgerSource* Grabber::ledgerOf(std::size_t i) const {
+  return drivers_.isOver(i) ? dynamic_cast<const LedgerSource*>(&drivers_[i]) : nullptr;
+}
+
 void Grabber::noteLedgers() {
   if (!log_) return;
   for (std::size_t i = 0; i < drivers_.size(); ++i) {
@@ -212,8 +216,7 @@ void Grabber::noteLedgers() {
       line["left_out"] = ledger.left_out;
       line["left_out_stamps_ns"] = ledger.left_out_stamps;
     }
-    if (const auto* source = dynamic_cast<const LedgerSource*>(&drivers_[i]))
-      addPackets(*source, line);
+    if (const auto* source = ledgerOf(i)) addPackets(*source, line);
     log_->note(line.dump());
   }
 }
@@ -230,7 +233,7 @@ std::vector<std::string> Grabber::warnings() const {
       all.push_back(fmt::format("{}: {} observations were not recorded: the disk was too slow",
                                 label, ledger.left_out));
   for (std::size_t i = 0; i < drivers_.size(); ++i) {
-    const auto* source = dynamic_cast<const LedgerSource*>(&drivers_[i]);
+    const auto* source = ledgerOf(i);
     if (!source) continue;
     for (const std::string& warning : source->warnings()) all.push_back(warning);
     const PacketLedger p = source->packets();
@@ -240,6 +243,9 @@ std::vector<std::string> Grabber::warnings() const {
     if (source->refused() > 0)
       all.push_back(fmt::format("{}: {} packets of another sender refused", drivers_.label(i),
                                 source->refused()));
+    if (p.damaged > 0)
+      all.push_back(
+          fmt::format("{}: {} of {} packets damaged", drivers_.label(i), p.damaged, p.received));
     if (p.lost > 0)
       all.push_back(fmt::format("{}: {} of {} packets lost", drivers_.label(i), p.lost,
                                 p.lost + p.received - p.repeated));

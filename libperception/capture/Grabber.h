@@ -13,6 +13,7 @@
 
 #include "libperception/capture/ChunkedLog.h"
 #include "libperception/capture/Drivers.h"
+#include "libperception/capture/LedgerSource.h"
 #include "libperception/capture/Outlet.h"
 #include "libperception/dds/ObservationTopic.h"
 #include "libperception/dds/RosTopics.h"
@@ -67,6 +68,7 @@ class Grabber {
   void passTime();
   void put(const Drivers::Arrival& arrival);
   void noteLedgers();
+  const LedgerSource* ledgerOf(std::size_t i) const;
 
   struct Newest {
     mrpt::Clock::time_point stamp;

@@ -1,5 +1,6 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -83,10 +84,21 @@ class IbeoTcpSource final : public PacketSource {
         events_.push_back(fmt::format("{} does not answer", server_));
       return false;
     }
+    noticeSilence(socket);
     if (absent_) events_.push_back(fmt::format("connected to {}", server_));
     absent_ = false;
     socket_ = socket;
     return true;
+  }
+
+  /// A device without power does not close its connection: the kernel asks it after a silence of
+  /// three seconds, and two more, and then ends it.
+  static void noticeSilence(int socket) {
+    const int on = 1, idle = 3, again = 1, times = 2;
+    ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPIDLE, &idle, sizeof idle);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPINTVL, &again, sizeof again);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPCNT, &times, sizeof times);
   }
 
   void disconnect() {

@@ -45,6 +45,10 @@ std::uint64_t sizeInMemory(const mrpt::obs::CObservation& observation) {
   return kAny;
 }
 
+namespace {
+std::uint64_t countOne(const mrpt::obs::CObservation&) { return 1; }
+}  // namespace
+
 void Outlet::put(const Drivers::Arrival& arrival) {
   std::vector<Drivers::Arrival> left_out;
   {
@@ -52,18 +56,19 @@ void Outlet::put(const Drivers::Arrival& arrival) {
     if (failure_) return;
     waiting_.push_back(arrival);
     if (params_.most_bytes > 0) waiting_bytes_ += sizeInMemory(*arrival.observation);
-    if (params_.limit > 0 && waiting_.size() > params_.limit) left_out.push_back(dropOne());
+    if (params_.limit > 0 && waiting_.size() > params_.limit) left_out.push_back(dropOne(countOne));
     while (params_.most_bytes > 0 && waiting_bytes_ > params_.most_bytes && waiting_.size() > 1)
-      left_out.push_back(dropOne());
+      left_out.push_back(dropOne(sizeInMemory));
   }
   changed_.notify_all();
   if (!params_.left_out) return;
   for (const auto& one : left_out) params_.left_out(one);
 }
 
-Drivers::Arrival Outlet::dropOne() {
-  std::map<std::string, std::size_t> waiting;
-  for (const auto& arrival : waiting_) ++waiting[arrival.observation->sensorLabel];
+Drivers::Arrival Outlet::dropOne(Measure measure) {
+  std::map<std::string, std::uint64_t> waiting;
+  for (const auto& arrival : waiting_)
+    waiting[arrival.observation->sensorLabel] += measure(*arrival.observation);
   const auto most =
       std::max_element(waiting.begin(), waiting.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });

@@ -25,7 +25,7 @@ class Outlet {
     /// Takes one; `dropped`: left out so far.
     std::function<void(const Drivers::Arrival& arrival, std::uint64_t dropped)> take;
     std::function<void()> tend;  ///< called about once a second; may be empty
-    /// The same limit in bytes, as sizeInMemory(); 0: none.
+    /// The same limit in bytes, as sizeInMemory(), and by bytes of the sensors; 0: none.
     std::uint64_t most_bytes = 0;
     /// Told what is left out, from the thread that puts; may be empty.
     std::function<void(const Drivers::Arrival& arrival)> left_out;
@@ -45,7 +45,9 @@ class Outlet {
 
  private:
   void run();
-  Drivers::Arrival dropOne();
+  using Measure = std::uint64_t (*)(const mrpt::obs::CObservation&);
+  /// The oldest one of the sensor of which most waits by `measure`.
+  Drivers::Arrival dropOne(Measure measure);
 
   const Params params_;
   mutable std::mutex mutex_;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -10,6 +9,7 @@
 #include <cstring>
 
 #include "libperception/capture/PacketSource.h"
+#include "libperception/capture/ReceiveControl.h"
 #include "libperception/core/Error.h"
 
 namespace perception {
@@ -32,9 +32,7 @@ class UdpSource final : public PacketSource {
     // The privileged one is not bound by the system's limit.
     if (::setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &kBuffer, sizeof kBuffer) != 0)
       ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &kBuffer, sizeof kBuffer);
-    const int on = 1;
-    ::setsockopt(socket_, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-    ::setsockopt(socket_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+    ReceiveControl::request(socket_);
     if (socket_ < 0 || ::bind(socket_, reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0)
       fail(fmt::format("[{}] UDP port {}", name, port));
     if (!multicast.empty()) join(name, multicast);
@@ -56,13 +54,13 @@ class UdpSource final : public PacketSource {
       packet.bytes = {bytes_.data() + k * kDatagram, headers_[k].msg_len};
       packet.sender = static_cast<std::uint64_t>(ntohl(senders_[k].sin_addr.s_addr)) << 16 |
                       ntohs(senders_[k].sin_port);
-      packet.at = readControl(headers_[k].msg_hdr);
+      packet.at = control_.read(headers_[k].msg_hdr);
       take(packet);
     }
     return count > 0;
   }
 
-  std::uint64_t overrun() const override { return overrun_; }
+  std::uint64_t overrun() const override { return control_.overrun(); }
 
  private:
   [[noreturn]] void fail(const std::string& what) {
@@ -93,29 +91,13 @@ class UdpSource final : public PacketSource {
     }
   }
 
-  /// When it came; what was lost is told along with it.
-  Stamp readControl(const msghdr& header) {
-    timespec time{};
-    ::clock_gettime(CLOCK_REALTIME, &time);
-    for (cmsghdr* c = CMSG_FIRSTHDR(&header); c != nullptr;
-         c = CMSG_NXTHDR(const_cast<msghdr*>(&header), c)) {
-      if (c->cmsg_level != SOL_SOCKET) continue;
-      if (c->cmsg_type == SO_TIMESTAMPNS) std::memcpy(&time, CMSG_DATA(c), sizeof time);
-      if (c->cmsg_type != SO_RXQ_OVFL) continue;
-      std::uint32_t lost = 0;  // since the socket was opened
-      std::memcpy(&lost, CMSG_DATA(c), sizeof lost);
-      overrun_ += lost - static_cast<std::uint32_t>(overrun_);
-    }
-    return {(static_cast<std::int64_t>(time.tv_sec) * 1000000000 + time.tv_nsec) / 100 * 100};
-  }
-
   int socket_ = -1;
   std::vector<char> bytes_;
   std::array<mmsghdr, kAtOnce> headers_{};
   std::array<iovec, kAtOnce> parts_{};
   std::array<sockaddr_in, kAtOnce> senders_{};
-  alignas(cmsghdr) std::array<std::array<char, 128>, kAtOnce> controls_{};
-  std::uint64_t overrun_ = 0;
+  alignas(cmsghdr) std::array<std::array<char, ReceiveControl::kSize>, kAtOnce> controls_{};
+  ReceiveControl control_;
 };
 
 }  // namespace

@@ -112,14 +112,15 @@ class SequenceCounter {
   bool count(const DecodedPacket& packet);
   void countDamaged() { ++ledger_.received, ++ledger_.damaged; }
   const PacketLedger& ledger() const { return ledger_; }
-  /// Ranges of lost numbers as "12" or "12-15", at most 1000 of them. Numbers that run to 255 only
-  /// are counted on from turn to turn.
+  /// Ranges of lost numbers as "12" or "12-15", the first 1000 of them. Numbers that run to 255
+  /// only are counted on from turn to turn.
   std::vector<std::string> lostRanges() const;
 
  private:
   bool isAnotherOf(std::uint64_t number, const DecodedPacket& packet) const;
   void beginAt(const DecodedPacket& packet);
   bool countEarlier(std::uint64_t number, const DecodedPacket& packet);
+  void addGap(std::uint64_t from, std::uint64_t to);
   void remember(std::uint64_t number, const DecodedPacket& packet);
 
   PacketLedger ledger_;

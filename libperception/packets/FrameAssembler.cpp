@@ -1,5 +1,7 @@
 #include "libperception/packets/FrameAssembler.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -10,7 +12,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kWarnings = 100;
+constexpr std::size_t kTold = 100;  ///< of each kind
 /// [s] A turn takes at most 0.2 s (5 Hz); more is a gap, or a clock that was set.
 constexpr double kLongestTurn = 0.5;
 constexpr std::size_t kMostReturns = 2000000;  ///< bounds the memory of a turn that does not end
@@ -24,10 +26,25 @@ FrameAssembler::FrameAssembler(const DeviceKind& kind, const std::string& file, 
   frame_.T_ego_sensor = T_ego_sensor;
 }
 
-void FrameAssembler::warn(const std::string& what) {
-  if (warnings_.size() < kWarnings)
-    warnings_.push_back(frame_.sensor + ": packet " + std::to_string(counter_.ledger().received) +
-                        ": " + what);
+void FrameAssembler::Notes::add(std::string text) {
+  if (count++ < kTold) texts.push_back(std::move(text));
+}
+
+std::string FrameAssembler::sayWhere(const std::string& what) const {
+  return fmt::format("{}: packet {}: {}", frame_.sensor, counter_.ledger().received, what);
+}
+
+std::vector<std::string> FrameAssembler::warnings() const {
+  std::vector<std::string> all = faults_.texts;
+  const auto addRest = [&](const Notes& notes, const char* what) {
+    if (notes.count > notes.texts.size())
+      all.push_back(
+          fmt::format("{}: {} more {}", frame_.sensor, notes.count - notes.texts.size(), what));
+  };
+  addRest(faults_, "packets with a fault");
+  all.insert(all.end(), events_.texts.begin(), events_.texts.end());
+  addRest(events_, "events");
+  return all;
 }
 
 void FrameAssembler::add(std::string_view payload, Stamp received) {
@@ -72,13 +89,13 @@ bool FrameAssembler::isNew(const DecodedPacket& packet) {
   const auto restarts = counter_.ledger().restarts;
   const bool is_new = counter_.count(packet);
   if (counter_.ledger().restarts > restarts)
-    warn("its numbers begin anew: the device was restarted");
+    note("its numbers begin anew: the device was restarted");
   return is_new;
 }
 
 void FrameAssembler::take(const DecodedPacket& packet, Stamp received) {
   for (const std::string& warning : packet.warnings) warn(warning);
-  if (const auto change = clock_.add(packet, received)) warn(*change);
+  if (const auto change = clock_.add(packet, received)) note(*change);
   kind_.lidar ? addTurn(packet, received) : addTargets(packet, received);
 }
 

@@ -33,17 +33,27 @@ class FrameAssembler {
   /// Gives the frame that has begun, which may be part of a turn.
   void finish();
 
-  /// A fault of the whole, as one for each damaged packet.
-  void warn(const std::string& what);
+  /// An event of the device or its connection, to be told among the warnings.
+  void note(const std::string& what) { events_.add(sayWhere(what)); }
 
   const PacketLedger& ledger() const { return counter_.ledger(); }
   ClockLedger clock() const { return clock_.ledger(); }
   std::vector<std::string> lostRanges() const { return counter_.lostRanges(); }
   std::uint64_t frames() const { return frames_; }
-  /// One for each damaged packet, with its number; the first 100.
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Damaged packets, then events (a device that started anew, a clock that was set); each with the
+  /// number of its packet. The first 100 of either, and how many more there were.
+  std::vector<std::string> warnings() const;
 
  private:
+  /// The first texts of one kind, and the number of all.
+  struct Notes {
+    std::vector<std::string> texts;
+    std::uint64_t count = 0;
+    void add(std::string text);
+  };
+
+  void warn(const std::string& what) { faults_.add(sayWhere(what)); }
+  std::string sayWhere(const std::string& what) const;
   void addBundle(std::string_view datagram, Stamp received);
   void addMessage(std::string_view message, Stamp received);
   bool isNew(const DecodedPacket& packet);
@@ -66,7 +76,7 @@ class FrameAssembler {
   float turn_ = 0;                ///< of the packet before
   bool begun_ = false;
   std::uint64_t frames_ = 0;
-  std::vector<std::string> warnings_;
+  Notes faults_, events_;
 };
 
 }  // namespace perception

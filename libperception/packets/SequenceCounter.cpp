@@ -54,13 +54,21 @@ bool SequenceCounter::count(const DecodedPacket& packet) {
     return true;
   }
   if (onward) {
-    if (step > 1) gaps_.emplace_back(*last_ + 1, *last_ + step - 1);
+    if (step > 1) addGap(*last_ + 1, *last_ + step - 1);
     ledger_.lost += step - 1;
     *last_ += step;
     remember(*last_, packet);
     return true;
   }
   return countEarlier(*last_ - back, packet);
+}
+
+/// A day of losses does not fill the memory: of those that no late packet can fill any more, the
+/// first ones are kept.
+void SequenceCounter::addGap(std::uint64_t from, std::uint64_t to) {
+  gaps_.emplace_back(from, to);
+  if (gaps_.size() < 2 * (kListed + kWindow)) return;
+  gaps_.erase(gaps_.begin() + kListed, gaps_.end() - kWindow);
 }
 
 /// One that fills a gap, or one that came before.

@@ -16,22 +16,25 @@ class SpinningEncoder : public PacketEncoder {
   std::vector<TimedPacket> encode(const SensorFrame& frame, double period) final {
     const LidarCloud& cloud = cloudOf(frame);
     const BeamView view(cloud, beams());
-    const auto begin = static_cast<double>(frame.stamp.ns) * 1e-3;  // [us]
-    const double turn = period * 1e6, step = 360 * firing() / turn;
+    const std::int64_t begin = frame.stamp.ns, turn = std::llround(period * 1e9);
+    const auto share = [turn](auto ns) {
+      return 360 * static_cast<double>(ns) / static_cast<double>(turn);
+    };
+    const double step = share(firing());
     const bool goes_on = next_ > begin - turn && next_ < begin + turn;
     if (!goes_on) next_ = begin, firings_.clear();
     std::vector<TimedPacket> packets;
     for (; next_ < begin + turn; next_ += firing()) {
       Firing one;
       one.at = next_;
-      one.azimuth = 360 * (next_ - begin) / turn;
+      one.azimuth = share(next_ - begin);
       for (std::size_t i = 0; i < beams().size(); ++i) {
-        const double azimuth = one.azimuth + laserTime(i) / firing() * step + beams()[i].azimuth;
+        const double azimuth = one.azimuth + share(laserTime(i)) + beams()[i].azimuth;
         one.seen.push_back(view.at(i, azimuth, step));
       }
       firings_.push_back(std::move(one));
       if (firings_.size() < inPacket()) continue;
-      packets.push_back({std::max(0.0, 1e-6 * (next_ - begin)), pack(firings_)});
+      packets.push_back({std::max(0.0, 1e-9 * static_cast<double>(next_ - begin)), pack(firings_)});
       firings_.clear();
     }
     return packets;
@@ -44,15 +47,15 @@ class SpinningEncoder : public PacketEncoder {
 
  protected:
   struct Firing {
-    double at = 0;       ///< [us] of the device's clock
-    double azimuth = 0;  ///< [deg]
+    std::int64_t at = 0;  ///< [ns] since 1970, of the device's clock
+    double azimuth = 0;   ///< [deg]
     std::vector<std::optional<BeamView::Seen>> seen;
   };
 
   virtual const std::vector<BeamAngles>& beams() const = 0;
-  virtual double firing() const = 0;                         ///< [us] from one to the next
-  virtual double laserTime(std::size_t) const { return 0; }  ///< [us] after the firing's azimuth
-  virtual std::size_t inPacket() const = 0;                  ///< firings
+  virtual std::int64_t firing() const = 0;                         ///< [ns] from one to the next
+  virtual std::int64_t laserTime(std::size_t) const { return 0; }  ///< [ns] after the firing
+  virtual std::size_t inPacket() const = 0;                        ///< firings
   virtual std::string pack(const std::vector<Firing>& firings) = 0;
 
   /// Distance and reflectivity, three bytes.
@@ -70,7 +73,7 @@ class SpinningEncoder : public PacketEncoder {
   }
 
  private:
-  double next_ = 0;  ///< [us] the next firing
+  std::int64_t next_ = 0;  ///< [ns] since 1970, the next firing
   std::vector<Firing> firings_;
 };
 
@@ -83,9 +86,9 @@ class VelodyneEncoder final : public SpinningEncoder {
   const std::vector<BeamAngles>& beams() const override {
     return small_ ? vlp16Beams() : vlp32cBeams();
   }
-  double firing() const override { return 55.296; }
-  double laserTime(std::size_t i) const override {
-    return 2.304 * static_cast<double>(small_ ? i : i / 2);
+  std::int64_t firing() const override { return 55296; }
+  std::int64_t laserTime(std::size_t i) const override {
+    return 2304 * static_cast<std::int64_t>(small_ ? i : i / 2);
   }
   std::size_t inPacket() const override { return small_ ? 24 : 12; }
   std::string pack(const std::vector<Firing>& firings) override {
@@ -100,8 +103,8 @@ class VelodyneEncoder final : public SpinningEncoder {
         putReturn(bytes, block + 4 + 3 * (i + (second ? 16 : 0)), firings[f].seen[i],
                   small_ ? 0.002 : 0.004);
     }
-    constexpr double kHour = 3.6e9;
-    putLittle(bytes, 1200, static_cast<std::uint64_t>(std::fmod(firings.front().at, kHour)), 4);
+    constexpr std::int64_t kHour = 3'600'000'000;  // [us]
+    putLittle(bytes, 1200, static_cast<std::uint64_t>(firings.front().at / 1000 % kHour), 4);
     bytes.replace(1204, 2, small_ ? "\x37\x22" : "\x37\x28");
     return bytes;
   }
@@ -124,7 +127,7 @@ class HesaiEncoder final : public SpinningEncoder {
 
  private:
   const std::vector<BeamAngles>& beams() const override { return beams_; }
-  double firing() const override { return xt32_ ? 50 : 55.56; }
+  std::int64_t firing() const override { return xt32_ ? 50000 : 55560; }
   std::size_t inPacket() const override { return xt32_ ? 8 : 10; }
 
   std::string pack(const std::vector<Firing>& firings) override {
@@ -140,12 +143,12 @@ class HesaiEncoder final : public SpinningEncoder {
         putReturn(bytes, at + flag + 2 + channel * i, firings[f].seen[i], 0.004);
     }
     // The packet's stamp is that of its end.
-    putTail(bytes, firings.back().at + (xt32_ ? 0 : 28.58));
+    putTail(bytes, firings.back().at + (xt32_ ? 0 : 28580));
     return bytes;
   }
 
-  void putTail(std::string& bytes, double micros) {
-    const auto seconds = static_cast<std::time_t>(micros / 1e6);
+  void putTail(std::string& bytes, std::int64_t ns) {
+    const std::time_t seconds = ns / 1'000'000'000;
     std::tm calendar{};
     gmtime_r(&seconds, &calendar);
     const std::size_t at = xt32_ ? 1065 : 1256;
@@ -155,7 +158,7 @@ class HesaiEncoder final : public SpinningEncoder {
     bytes[at + 3] = static_cast<char>(calendar.tm_hour);
     bytes[at + 4] = static_cast<char>(calendar.tm_min);
     bytes[at + 5] = static_cast<char>(calendar.tm_sec);
-    const auto rest = static_cast<std::uint64_t>(micros - 1e6 * static_cast<double>(seconds));
+    const auto rest = static_cast<std::uint64_t>(ns % 1'000'000'000 / 1000);  // [us]
     putLittle(bytes, xt32_ ? 1071 : 1250, rest, 4);
     bytes[xt32_ ? 1062 : 1254] = '\x37';
     bytes[xt32_ ? 1075 : 1255] = '\x42';

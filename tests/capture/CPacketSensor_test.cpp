@@ -209,7 +209,7 @@ TEST_F(Recorded, TheShippedDevicesLoseWhatTheirSimulatorsDroppedAndNothingElse) 
         << name;
     EXPECT_EQ(got["lost"], sent["missing"].size()) << name;
     EXPECT_EQ(sent["made"].get<std::uint64_t>() - sent["dropped"].get<std::uint64_t>() +
-                  sent["repeated"].get<std::uint64_t>(),
+                  sent["repeated"].get<std::uint64_t>() + sent["resent"].get<std::uint64_t>(),
               sent["sent"])
         << name;
   }

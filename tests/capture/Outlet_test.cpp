@@ -5,6 +5,8 @@
 
 #include <future>
 
+#include "libperception/sensors/CObservationLidarScan.h"
+
 namespace perception {
 namespace {
 
@@ -68,6 +70,28 @@ TEST(Outlet, TellsWhatDidNotFitInItsBytes) {
   outlet.close();
   EXPECT_EQ(taken, "acbb");
   EXPECT_EQ(outlet.dropped(), 2U);
+}
+
+TEST(Outlet, OfWhatFillsItsBytesTheLargestSensorIsLeftOut) {
+  std::promise<void> go;
+  auto wait = go.get_future().share();
+  std::string left_out;
+  Outlet::Params params;
+  params.take = [&](const auto&, std::uint64_t) { wait.wait(); };
+  const auto scan = std::make_shared<CObservationLidarScan>();
+  scan->sensorLabel = "L";
+  scan->cloud.x.resize(10000);
+  params.most_bytes = sizeInMemory(*scan) * 3 / 2;
+  params.left_out = [&](const auto& a) { left_out += a.observation->sensorLabel; };
+  Outlet outlet(params);
+  outlet.put(arrivalOf("first"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it is being taken now
+  for (int i = 0; i < 5; ++i) outlet.put(arrivalOf("p"));      // more of them, and small
+  outlet.put({scan, 0, {}});
+  outlet.put({scan, 0, {}});
+  EXPECT_EQ(left_out, "L");
+  go.set_value();
+  outlet.close();
 }
 
 TEST(Outlet, ThrowsWhatItsConsumerThrew) {

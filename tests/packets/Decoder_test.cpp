@@ -107,6 +107,19 @@ TEST(SequenceCounter, ListsWhatIsMissing) {
   EXPECT_EQ(counter.lostRanges(), (std::vector<std::string>{"1", "5"}));
 }
 
+TEST(SequenceCounter, LossesWithoutEndKeepTheirFirstRangesAndTheirCount) {
+  SequenceCounter counter;
+  std::uint64_t number = 0;
+  for (int i = 0; i < 20000; ++i, number += 2) counter.count(numbered(number % 65536));
+  EXPECT_EQ(counter.ledger().lost, 19999U);
+  const std::vector<std::string> ranges = counter.lostRanges();
+  ASSERT_EQ(ranges.size(), 1000U);
+  EXPECT_EQ(ranges.front(), "1");
+  EXPECT_EQ(ranges.back(), "1999");
+  EXPECT_TRUE(counter.count(numbered((number - 501) % 65536)));  // late, and still known as lost
+  EXPECT_EQ(counter.ledger().lost, 19998U);
+}
+
 TEST(SequenceCounter, ADeviceThatStartsAnewLosesNothing) {
   SequenceCounter counter;
   const auto stamped = [](std::uint64_t number, std::int64_t stamp) {
