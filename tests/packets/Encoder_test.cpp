@@ -64,7 +64,7 @@ struct Sent {
 };
 
 /// Frames 0.1 s apart through encoder and decoder. `without`: the packet that is not sent.
-Sent passThrough(const char* kind_name, const std::function<SensorFrame(std::int64_t)>& make,
+Sent passThrough(const std::string& kind_name, const std::function<SensorFrame(std::int64_t)>& make,
                  const std::string& file = "", std::size_t without = SIZE_MAX) {
   Sent sent;
   const DeviceKind& kind = deviceKind(kind_name);
