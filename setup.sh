@@ -257,7 +257,7 @@ fuzz() {
     [[ ! -d tests/fuzz/seeds/$name ]] || seeds=("tests/fuzz/seeds/$name")
     local code=0
     FUZZ_TARGET=$name ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=halt_on_error=1 \
-      build-fuzz/bin/perception_fuzz -max_total_time="$seconds" -timeout=2 -rss_limit_mb=1024 -max_len=20000 \
+      build-fuzz/bin/perception_fuzz -max_total_time="$seconds" -timeout=2 -rss_limit_mb=1024 -max_len=40000 \
       -print_final_stats=1 -artifact_prefix="build-fuzz/$name-" "build-fuzz/corpus/$name" "${seeds[@]}" \
       >"$scratch" 2>&1 || code=$?
     printf '%-18s %s inputs, code %s\n' "$name" "$(sed -n 's/stat::number_of_executed_units: //p' "$scratch")" "$code"

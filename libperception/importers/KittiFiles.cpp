@@ -170,7 +170,10 @@ std::vector<Pose3> readKittiPoses(const std::string& path, const std::string& fo
   if (format == "tum") {
     for (const StampedPose& p : readTumPoses(path)) poses.push_back(p.pose);
   } else {
-    forEachRow(path, kSpaces, [&](const TextRow& row) { poses.push_back(row.pose34(0)); });
+    forEachRow(path, kSpaces, [&](const TextRow& row) {
+      row.expect(row.size() == 12, "12 (8 are those of --poses-format tum)");
+      poses.push_back(row.pose34(0));
+    });
   }
   if (poses.empty()) throw DataError(fmt::format("{}: no pose in it", path));
   return poses;

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongest = 20000;        // [bytes] of an input
+constexpr std::size_t kLongest = 40000;        // [bytes] of an input
 constexpr std::uint64_t kMemory = 1ULL << 30;  // [bytes] of address space; half of it are libraries
 
 std::string input, name;  // at work

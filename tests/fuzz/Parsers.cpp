@@ -28,6 +28,7 @@
 #include "libperception/packets/Beams.h"
 #include "libperception/packets/CanBundle.h"
 #include "libperception/packets/Decoder.h"
+#include "libperception/packets/FrameAssembler.h"
 #include "libperception/packets/Ibeo.h"
 #include "libperception/packets/Ouster.h"
 #include "libperception/packets/Pcap.h"
@@ -59,6 +60,29 @@ std::function<void(std::string_view)> ofFile(Reader reader) {
   return [reader](std::string_view bytes) { reader(MemoryFile(bytes).path()); };
 }
 
+/// A folder of this process for readers that choose by the names of files; gone at its end.
+const std::string& scratch() {
+  struct Folder {
+    std::string path = (std::filesystem::temp_directory_path() / "perception_fuzz_XXXXXX").string();
+    Folder() {
+      if (::mkdtemp(path.data()) == nullptr) std::abort();
+    }
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder folder;
+  return folder.path;
+}
+
+std::string written(const std::string& name, std::string_view bytes) {
+  const std::string path = scratch() + "/" + name;
+  std::ofstream(path, std::ios::binary)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return path;
+}
+
 void readBag(const std::string& path) {
   const auto bag = openBag(path);
   for (BagMessage message; bag->next(message);) {
@@ -74,6 +98,42 @@ void decodePackets(std::string_view bytes) {
   const auto decoder = kind.make("");
   SequenceCounter counter;
   for (int again = 0; again < 2; ++again) counter.count(decoder->decode(bytes.substr(1)));
+}
+
+/// An Ouster of 16 beams.
+std::string ousterMetadata() {
+  std::string altitudes, azimuths;
+  for (int i = 0; i < 16; ++i) {
+    altitudes += (i > 0 ? "," : "") + std::to_string(15 - 2 * i);
+    azimuths += i > 0 ? ",0" : "0";
+  }
+  const std::string path = written(
+      "ouster.json",
+      R"({"beam_altitude_angles":[)" + altitudes + R"(],"beam_azimuth_angles":[)" + azimuths +
+          R"(],"data_format":{"pixels_per_column":16,"columns_per_frame":1024,"columns_per_packet":16}})");
+  return path;
+}
+
+/// A device's packets one after the other, as they make its frames: a byte chooses the device, then
+/// each packet's length in two bytes (little-endian) and the packet.
+void assemblePackets(std::string_view bytes) {
+  static const std::string metadata = ousterMetadata();
+  if (bytes.empty()) return;
+  const auto& kinds = deviceKinds();
+  const auto& kind = kinds[static_cast<unsigned char>(bytes[0]) % kinds.size()];
+  bytes.remove_prefix(1);
+  FrameAssembler assembler(kind, kind.needs_file ? metadata : "", "S", Pose3::Identity(),
+                           [](SensorFrame&&) {});
+  if (kind.transport == Transport::kCan && bytes.size() % 2 == 1)
+    assembler.setTransport(Transport::kCanUdp);
+  for (std::int64_t at = 0; bytes.size() >= 2; at += 1000000) {
+    const std::size_t length = std::min<std::size_t>(
+        static_cast<unsigned char>(bytes[0]) | static_cast<unsigned char>(bytes[1]) << 8,
+        bytes.size() - 2);
+    assembler.add(bytes.substr(2, length), Stamp{at});
+    bytes.remove_prefix(2 + length);
+  }
+  assembler.finish();
 }
 
 /// In two parts; the first byte says where. Each message is decoded.
@@ -97,29 +157,6 @@ void readClasses(std::string_view bytes) {
   Config config = Config::fromText(std::string(bytes), "fuzz.ini");
   readClassTable(config);
   config.finish();
-}
-
-/// A folder of this process for readers that choose by the names of files; gone at its end.
-const std::string& scratch() {
-  struct Folder {
-    std::string path = (std::filesystem::temp_directory_path() / "perception_fuzz_XXXXXX").string();
-    Folder() {
-      if (::mkdtemp(path.data()) == nullptr) std::abort();
-    }
-    ~Folder() {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
-  };
-  static const Folder folder;
-  return folder.path;
-}
-
-std::string written(const std::string& name, std::string_view bytes) {
-  const std::string path = scratch() + "/" + name;
-  std::ofstream(path, std::ios::binary)
-      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  return path;
 }
 
 void readTrackOf(const std::string& ending, std::string_view bytes) {
@@ -162,6 +199,7 @@ const std::vector<Parser>& parsers() {
       {"lanes", ofFile([](const std::string& p) { LaneMap::fromFile(p); })},
       {"bag", ofFile(&readBag)},
       {"packets", &decodePackets},
+      {"packet_frames", &assemblePackets},
       {"candump", [](std::string_view b) { parseCandump(b); }},
       {"can_bundle", [](std::string_view b) { parseCanBundle(b); }},
       {"ibeo_stream", &cutIbeo},
