@@ -39,6 +39,21 @@ double probability(const CConfigFileBase& config, const std::string& section, co
   return value;
 }
 
+std::uint16_t portOf(const CConfigFileBase& config, const std::string& section, const char* key,
+                     std::uint16_t otherwise) {
+  const int port = config.read_int(section, key, otherwise);
+  // A device of a CAN bus has no usual one.
+  if (port < 0 || port > 65535 || (port == 0 && (otherwise != 0 || config.keyExists(section, key))))
+    throw ConfigError(fmt::format("[{}] {} = {}: 1 to 65535 expected", section, key, port));
+  return static_cast<std::uint16_t>(port);
+}
+
+/// Of a sensor's own faults: several with one seed do not lose the same packets.
+std::uint64_t seedOf(std::uint64_t seed, const std::string& label) {
+  for (const char c : label) seed = (seed ^ static_cast<unsigned char>(c)) * 0x100000001B3;
+  return seed;
+}
+
 }  // namespace
 
 // MRPT has read sensorLabel and process_rate before.
@@ -54,10 +69,7 @@ void CPacketSensor::loadConfig_sensorSpecific(const CConfigFileBase& config,
   if (kind.needs_file && keys_.device_file.empty())
     throw ConfigError("[" + section + "] device_file: needed by " + keys_.device);
   keys_.transport = transportOf(section, text("transport", ""), kind);
-  const int port = config.read_int(section, "port", kind.port);
-  if (keys_.transport != Transport::kCan && (port < 1 || port > 65535))
-    throw ConfigError(fmt::format("[{}] port = {}: 1 to 65535 expected", section, port));
-  keys_.port = static_cast<std::uint16_t>(port);
+  if (keys_.transport != Transport::kCan) keys_.port = portOf(config, section, "port", kind.port);
   keys_.host = text("host", "");
   keys_.multicast = text("multicast", "");
   keys_.interface = text("interface", "can0");
@@ -73,9 +85,11 @@ void CPacketSensor::loadConfig_sensorSpecific(const CConfigFileBase& config,
 void CPacketSensor::readSimulator(const CConfigFileBase& config, const std::string& section,
                                   Keys& keys) {
   keys.replay = config.read_string(section, "replay", "");
-  keys.replay_port = static_cast<std::uint16_t>(
-      config.read_int(section, "replay_port", deviceKind(keys.device).port));
+  keys.replay_port = portOf(config, section, "replay_port", deviceKind(keys.device).port);
   keys.replay_speed = config.read_double(section, "replay_speed", 1);
+  if (!(keys.replay_speed >= 0))
+    throw ConfigError(
+        fmt::format("[{}] replay_speed = {}: at least 0 expected", section, keys.replay_speed));
   for (const std::string old : {"loss", "repeat", "swap"})
     if (config.keyExists(section, "replay_" + old))
       throw ConfigError("[" + section + "] replay_" + old + " is fault_" + old + " now");
@@ -93,10 +107,12 @@ void CPacketSensor::readSimulator(const CConfigFileBase& config, const std::stri
   faults.repeat = probability(config, section, "fault_repeat");
   faults.swap = probability(config, section, "fault_swap");
   faults.torn = probability(config, section, "fault_torn");
-  faults.seed = source.scenario.seed;
+  faults.seed = seedOf(source.scenario.seed, section);
   source.clock_step = config.read_double(section, "fault_clock_step", 0);
   source.clock_step_after = config.read_double(section, "fault_clock_step_after", 0);
   source.restart_after = config.read_double(section, "fault_restart_after", 0);
+  if (!keys.simulated() && faults.any())
+    throw ConfigError("[" + section + "] fault_...: need a simulated device: replay or scenario");
   if (source.scenario.scenario.empty() && (source.clock_step != 0 || source.restart_after != 0))
     throw ConfigError("[" + section +
                       "] fault_clock_step, fault_restart_after: need a scenario, "

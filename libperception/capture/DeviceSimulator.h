@@ -16,6 +16,7 @@ namespace perception {
 struct PacketFaults {
   double loss = 0, repeat = 0, swap = 0, torn = 0;
   std::uint64_t seed = 1;
+  bool any() const { return loss > 0 || repeat > 0 || swap > 0 || torn > 0; }
 };
 
 /// What a device simulator has done, to the packet.

@@ -300,6 +300,12 @@ TEST_F(Recorded, KeysThatDoNotFitAreNamed) {
   };
   EXPECT_NE(said("device = ibeo\n").find("host"), std::string::npos);
   EXPECT_NE(said("device = esr\ntransport = udp\n").find("can or can_udp"), std::string::npos);
+  EXPECT_NE(said("device = xt32\nfault_loss = 0.1\n").find("need a simulated device"),
+            std::string::npos);
+  EXPECT_NE(said("device = xt32\nreplay_port = 70000\n").find("replay_port = 70000"),
+            std::string::npos);
+  EXPECT_NE(said("device = xt32\nreplay_speed = -1\n").find("replay_speed = -1"),
+            std::string::npos);
   EXPECT_NE(said("device = xt32\nfault_loss = 2\n").find("fault_loss = 2"), std::string::npos);
   EXPECT_NE(said("device = xt32\nreplay = a.pcap\nfault_clock_step = 1\n").find("scenario"),
             std::string::npos);

@@ -39,7 +39,7 @@ TEST(EventLog, KeepsTheFirstWarningsAlsoWhenTheyAreWrittenAsTheyCome) {
   const test::TemporaryFolder folder;
   EventLog log;
   log.warn(kFirstStamp, "x", "one");
-  log.writeTo(folder.file("events.jsonl"), kFirstStamp);
+  log.writeTo(folder / "events.jsonl", kFirstStamp);
   for (const char* message : {"one", "two", "two", "three", "four"})
     log.warn(kFirstStamp, "x", message);
   EXPECT_EQ(log.firstWarnings(), (std::vector<std::string>{"one", "two", "three"}));
@@ -79,12 +79,12 @@ TEST(EventLog, AsTheyComeTheyAreTheSameBytesInAFile) {
   EventLog stored, written;
   for (EventLog* log : {&stored, &written}) {
     log->add(std::nullopt, event_kind::kSensorIgnored, "before the first stamp");
-    if (log == &written) written.writeTo(folder.file("events.jsonl"), kFirstStamp);
+    if (log == &written) written.writeTo(folder / "events.jsonl", kFirstStamp);
     log->add(kFirstStamp, event_kind::kTrackBorn, "", {{"id", 1}});
     log->warn(Stamp{kFirstStamp.ns + 50000000}, event_kind::kEgoGap, "for 2 s");
   }
   written.close();
-  EXPECT_EQ(readText(folder.file("events.jsonl")), stored.text(kFirstStamp));
+  EXPECT_EQ(readText(folder / "events.jsonl"), stored.text(kFirstStamp));
   EXPECT_EQ(written.counts(), stored.counts());
   EXPECT_EQ(written.warnings(), 1U);
 }
@@ -92,10 +92,10 @@ TEST(EventLog, AsTheyComeTheyAreTheSameBytesInAFile) {
 TEST(EventLog, InAFileNoneIsOmitted) {
   const TemporaryFolder folder;
   EventLog log(3);
-  log.writeTo(folder.file("events.jsonl"), kFirstStamp);
+  log.writeTo(folder / "events.jsonl", kFirstStamp);
   for (int i = 0; i < 10; ++i) log.add(kFirstStamp, "often", "again", {{"i", i}});
   log.close();
-  const std::string text = readText(folder.file("events.jsonl"));
+  const std::string text = readText(folder / "events.jsonl");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
   EXPECT_EQ(text.find("events_not_written"), std::string::npos);
 }

@@ -193,13 +193,13 @@ TEST(KittiExport, AScoreGrowsWithExistenceAndStaysFinite) {
 
 TEST(KittiExport, WritesScenesWithAFrameNumberOnly) {
   const TemporaryFolder folder;
-  KittiExport out(folder.file("kitti.txt"), pedestrianAndCar(), frontCamera());
+  KittiExport out(folder / "kitti.txt", pedestrianAndCar(), frontCamera());
   Scene scene = atOrigin({carAt(20, 0, 0), carAt(-20, 0, 0), carAt(30, 1, 2)});
   out.write(scene);
   scene.frame = -1;
   out.write(scene);
   out.close();
-  const std::string text = readText(folder.file("kitti.txt"));
+  const std::string text = readText(folder / "kitti.txt");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
 }
 

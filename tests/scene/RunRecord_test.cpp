@@ -39,8 +39,8 @@ RunRecord someRecord() {
 TEST(RunRecord, ReadsBackWhatItWrote) {
   const TemporaryFolder folder;
   const RunRecord record = someRecord();
-  writeRunRecord(folder.file("done.json"), record);
-  const RunRecord read = readRunRecord(folder.file("done.json"));
+  writeRunRecord(folder / "done.json", record);
+  const RunRecord read = readRunRecord(folder / "done.json");
   EXPECT_EQ(read.input, "crossing.rawlog");
   EXPECT_EQ(read.seed, record.seed);
   EXPECT_EQ(read.first_stamp, record.first_stamp);
@@ -65,9 +65,9 @@ TEST(RunRecord, IsTheSameTextForTheSameRecord) {
 TEST(RunRecord, SaysWhatIsWrongWithAFileThatIsNone) {
   const TemporaryFolder folder;
   const auto codeAndMessage = [&](const std::string& text) {
-    writeText(folder.file("done.json"), text);
+    writeText(folder / "done.json", text);
     try {
-      readRunRecord(folder.file("done.json"));
+      readRunRecord(folder / "done.json");
     } catch (const DataError& e) {
       return std::make_pair(e.code(), std::string(e.what()));
     }
@@ -87,7 +87,7 @@ TEST(RunRecord, SaysWhatIsWrongWithAFileThatIsNone) {
 TEST(RunRecord, SaysThatAFileIsMissing) {
   const TemporaryFolder folder;
   try {
-    readRunRecord(folder.file("done.json"));
+    readRunRecord(folder / "done.json");
     FAIL() << "read a file that is not there";
   } catch (const DataError& e) {
     EXPECT_EQ(e.code(), ExitCode::kNoInput);

@@ -1,31 +1,13 @@
 #pragma once
-#include <unistd.h>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include "libperception/measurement/ObjectClass.h"
 #include "libperception/scene/Scene.h"
+#include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {
-
-/// An empty folder of its own that is gone at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "perception_XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  const std::string& path() const { return path_; }
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 inline std::string readText(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

@@ -105,14 +105,14 @@ TEST(TrackedRun, HasTheColumnsOfTheFormat) {
   const TemporaryFolder folder;
   writeRun(folder.path(), {someScene(1, {someCar(3)})});
   EXPECT_EQ(
-      readText(folder.file("tracks.csv")),
+      readText(folder / "tracks.csv"),
       "frame,t,stamp,id,class,classified,p_pedestrian,p_car,existence,x,y,z,yaw,has_yaw,vx,vy,"
       "speed,length,width,"
       "height,sd_x,sd_y,sd_yaw,sd_speed,last_hit_C,last_hit_L,last_hit_R\n"
       "1,0.103519669,1700000000.226976458,3,car,1,0.012300,0.987700,0.987654,12.3456,-7.0001,0."
       "2500,-3.141592,1,"
       "-5.5000,0.1250,-5.5014,4.5000,1.8000,1.5000,0.1000,0.2000,0.030000,0.4000,,0.000000001,\n");
-  EXPECT_EQ(readText(folder.file("scenes.csv")),
+  EXPECT_EQ(readText(folder / "scenes.csv"),
             "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,"
             "stop,obstacle\n"
             "1,0.103519669,1700000000.226976458,100.5000,-3.2500,0.1250,2.500000,0.010000,-0."
@@ -128,7 +128,7 @@ TEST(TrackedRun, WritesTheSameBytesInALocaleWithDecimalComma) {
     GTEST_SKIP() << "no locale de_DE.UTF-8 on this machine";
   writeRun(comma.path(), threeScenes());
   std::setlocale(LC_ALL, before.c_str());
-  EXPECT_EQ(readText(plain.file("tracks.csv")), readText(comma.file("tracks.csv")));
+  EXPECT_EQ(readText(plain / "tracks.csv"), readText(comma / "tracks.csv"));
 }
 
 TEST(TrackedRun, NeverWritesANumberThatIsNotFinite) {
@@ -145,11 +145,11 @@ TEST(TrackedRun, NeverWritesANumberThatIsNotFinite) {
 TEST(TrackedRun, FindsACutTracksFile) {
   const TemporaryFolder folder;
   writeRun(folder.path(), threeScenes());
-  std::string text = readText(folder.file("tracks.csv"));
+  std::string text = readText(folder / "tracks.csv");
   text.resize(text.rfind('\n', text.size() - 2) + 1);
-  writeText(folder.file("tracks.csv"), text);
+  writeText(folder / "tracks.csv", text);
   EXPECT_EQ(messageOf([&] { readTrackedRun(folder.path()); }),
-            folder.file("scenes.csv") +
+            folder / "scenes.csv" +
                 ":4: column 'objects': found '1', expected 1 fewer: tracks.csv ends before (was it "
                 "cut?)");
 }
@@ -157,9 +157,9 @@ TEST(TrackedRun, FindsACutTracksFile) {
 TEST(TrackedRun, FindsALineOfNoScene) {
   const TemporaryFolder folder;
   writeRun(folder.path(), threeScenes());
-  std::string text = readText(folder.file("scenes.csv"));
+  std::string text = readText(folder / "scenes.csv");
   text.resize(text.rfind('\n', text.size() - 2) + 1);
-  writeText(folder.file("scenes.csv"), text);
+  writeText(folder / "scenes.csv", text);
   EXPECT_NE(messageOf([&] { readTrackedRun(folder.path()); }).find("tracks.csv:4: column 'stamp'"),
             std::string::npos);
 }
@@ -167,11 +167,11 @@ TEST(TrackedRun, FindsALineOfNoScene) {
 TEST(TrackedRun, NamesFileLineAndColumnOfABadField) {
   const TemporaryFolder folder;
   writeRun(folder.path(), {someScene(0, {someCar(1)})});
-  std::string text = readText(folder.file("tracks.csv"));
+  std::string text = readText(folder / "tracks.csv");
   text.replace(text.find(",car,1,"), 7, ",tank,1,");
-  writeText(folder.file("tracks.csv"), text);
+  writeText(folder / "tracks.csv", text);
   EXPECT_EQ(messageOf([&] { readTrackedRun(folder.path()); }),
-            folder.file("tracks.csv") +
+            folder / "tracks.csv" +
                 ":2: column 'class': found 'tank', expected the name of a column p_NAME");
 }
 
@@ -188,7 +188,7 @@ TEST(TrackedRun, SaysThatTheFolderHoldsNoRun) {
 TEST(TrackedRun, SaysThatTheFolderToWriteIsMissing) {
   const TemporaryFolder folder;
   try {
-    writeRun(folder.file("missing"), {});
+    writeRun(folder / "missing", {});
     FAIL() << "wrote into a folder that is not there";
   } catch (const OutputError& e) {
     EXPECT_EQ(e.code(), ExitCode::kCannotCreate);
@@ -199,7 +199,7 @@ TEST(TrackedRun, SaysThatTheFolderToWriteIsMissing) {
 TEST(TrackedRun, AFullDiskIsAnError) {
   for (const std::string name : {"tracks.csv", "scenes.csv"}) {
     const TemporaryFolder folder;
-    std::filesystem::create_symlink("/dev/full", folder.file(name));
+    std::filesystem::create_symlink("/dev/full", folder / name);
     try {
       writeRun(folder.path(), threeScenes());
       FAIL() << "a full disk was not noticed in " << name;

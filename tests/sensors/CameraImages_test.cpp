@@ -44,8 +44,8 @@ TEST(CameraImages, PixelsInTheLogAreRowsOfBlueGreenRed) {
 
 TEST(CameraImages, FilesBesideTheLogAreReadWhenAskedForAndMissingOnesAreCounted) {
   const TemporaryFolder folder;
-  const std::string log = folder.file("drive.rawlog"), images = imagesBeside(log);
-  EXPECT_EQ(images, folder.file("drive_Images"));
+  const std::string log = folder / "drive.rawlog", images = imagesBeside(log);
+  EXPECT_EQ(images, folder / "drive_Images");
   std::filesystem::create_directory(images);
   mrpt::img::CImage pixels(8, 4, mrpt::img::CH_RGB);
   pixels.filledRectangle(0, 0, 7, 3, mrpt::img::TColor(1, 2, 3));

@@ -45,7 +45,7 @@ void writeForgedLog(const std::string& file, std::uint32_t count) {
 TEST(CheckedAllocation, ForgedNumbersOfPointsEndTheLogAndNotTheProgram) {
   if (!MemoryLimit::supported()) GTEST_SKIP() << "sanitizers reserve terabytes";
   const TemporaryFolder folder;
-  const std::string file = folder.file("forged.rawlog");
+  const std::string file = folder / "forged.rawlog";
   for (const std::uint32_t count : {6U, 100'000'000U, 0x3fffffffU, 0xffffffffU}) {
     writeForgedLog(file, count);
     EXPECT_EXIT(

@@ -34,14 +34,14 @@ std::string zstdOf(const std::string& bytes) {
 class ZstdLog : public ::testing::Test {
  protected:
   void SetUp() override {
-    writeLog(folder_.file("a"), 2, 1, 30);
-    plain_ = withoutGzip(folder_.file("a"));
+    writeLog(folder_ / "a", 2, 1, 30);
+    plain_ = withoutGzip(folder_ / "a");
     whole_ = zstdOf(plain_);
     ASSERT_LT(whole_.size(), plain_.size());
   }
   std::pair<std::size_t, End> entriesOf(const std::string& bytes) {
-    writeBytes(folder_.file("z"), bytes);
-    RawlogReader reader(folder_.file("z"));
+    writeBytes(folder_ / "z", bytes);
+    RawlogReader reader(folder_ / "z");
     const std::size_t count = drain(reader);
     message_ = reader.endMessage();
     return {count, reader.end()};

@@ -30,10 +30,10 @@ class Plugin : public ::testing::Test {
     if (!std::filesystem::exists(plugin_)) GTEST_SKIP() << "not built: " << plugin_;
     if (outputOf("command -v rawlog-edit").empty())
       GTEST_SKIP() << "rawlog-edit (package mrpt-apps) is not here";
-    writeLog(folder_.file("a.rawlog"), 5);
+    writeLog(folder_ / "a.rawlog", 5);
   }
   std::string edit(const std::string& arguments) const {
-    return outputOf("cd '" + folder_.path().string() + "' && rawlog-edit -i a.rawlog " + arguments);
+    return outputOf("cd '" + folder_.path() + "' && rawlog-edit -i a.rawlog " + arguments);
   }
   const std::string plugin_ =
       std::string(PERCEPTION_BINARY_DIR) + "/lib/libperception_mrpt_plugin.so";
@@ -48,8 +48,8 @@ TEST_F(Plugin, StockProgramReadsTheWholeLogOnlyWithIt) {
 
 TEST_F(Plugin, StockProgramExportsOurClassesAsText) {
   edit("-p '" + plugin_ + "' --export-txt");
-  EXPECT_NE(readBytes(folder_.file("a_pointrcnn.txt")).find("2 Car 8.2500"), std::string::npos);
-  EXPECT_NE(readBytes(folder_.file("a_LIDAR_TOP.txt")).find("200 200 10."), std::string::npos);
+  EXPECT_NE(readBytes(folder_ / "a_pointrcnn.txt").find("2 Car 8.2500"), std::string::npos);
+  EXPECT_NE(readBytes(folder_ / "a_LIDAR_TOP.txt").find("200 200 10."), std::string::npos);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ std::pair<ExitCode, std::string> refusal(const std::string& path) {
 class RawlogReaderTest : public ::testing::Test {
  protected:
   TemporaryFolder folder_;
-  std::string log_ = folder_.file("a.rawlog");
+  std::string log_ = folder_ / "a.rawlog";
 };
 
 TEST_F(RawlogReaderTest, GivesEveryObservationOfAWholeLog) {
@@ -71,7 +71,7 @@ TEST_F(RawlogReaderTest, GivesEveryObservationOfAWholeLog) {
 
 TEST_F(RawlogReaderTest, ReadsPlainFilesAndSeveralGzipMembers) {
   writeLog(log_, 3);
-  const std::string plain = folder_.file("plain.rawlog"), twice = folder_.file("twice.rawlog");
+  const std::string plain = folder_ / "plain.rawlog", twice = folder_ / "twice.rawlog";
   writeBytes(plain, inflated(log_));
   writeBytes(twice, readBytes(log_) + readBytes(log_));
   RawlogReader plain_reader(plain), twice_reader(twice);
@@ -120,15 +120,15 @@ TEST_F(RawlogReaderTest, EveryCutOfAGzipLogIsTorn) {
   const std::size_t all = drain(complete);
   std::size_t last_count = 0;
   for (std::size_t size = 3; size < whole.size(); size += size < 40 ? 1 : 7) {
-    writeBytes(folder_.file("cut"), whole.substr(0, size));
-    RawlogReader reader(folder_.file("cut"));
+    writeBytes(folder_ / "cut", whole.substr(0, size));
+    RawlogReader reader(folder_ / "cut");
     const std::size_t count = drain(reader);
     EXPECT_EQ(reader.end(), End::kTorn) << size << ": " << reader.endMessage();
     EXPECT_GE(count, last_count) << size;
     last_count = count;
   }
-  writeBytes(folder_.file("cut"), whole.substr(0, whole.size() - 1));
-  RawlogReader reader(folder_.file("cut"));
+  writeBytes(folder_ / "cut", whole.substr(0, whole.size() - 1));
+  RawlogReader reader(folder_ / "cut");
   EXPECT_EQ(drain(reader), all);  // all entries are there, but the container's trailer is not
   EXPECT_EQ(reader.end(), End::kTorn);
 }
@@ -148,8 +148,8 @@ TEST_F(RawlogReaderTest, EveryCutOfAPlainLogIsTornUnlessBetweenEntries) {
   const std::string whole = inflated(log_);
   ASSERT_EQ(whole.size(), boundaries.back());
   const auto endOfCut = [&](std::size_t size, std::size_t entries) {
-    writeBytes(folder_.file("cut"), whole.substr(0, size));
-    RawlogReader reader(folder_.file("cut"));
+    writeBytes(folder_ / "cut", whole.substr(0, size));
+    RawlogReader reader(folder_ / "cut");
     EXPECT_EQ(drain(reader), entries) << size;
     return reader.end();
   };
@@ -169,8 +169,8 @@ TEST_F(RawlogReaderTest, EveryCutOfAPlainLogIsTornUnlessBetweenEntries) {
 TEST_F(RawlogReaderTest, TornMessageNamesPlaceEntryAndStamp) {
   writeLog(log_, 4);
   const std::string whole = inflated(log_);
-  writeBytes(folder_.file("cut"), whole.substr(0, whole.size() - 50));
-  RawlogReader reader(folder_.file("cut"));
+  writeBytes(folder_ / "cut", whole.substr(0, whole.size() - 50));
+  RawlogReader reader(folder_ / "cut");
   EXPECT_EQ(drain(reader), 19U);
   EXPECT_NE(reader.endMessage().find("cut: the file ends inside an entry; entry 19 at byte "),
             std::string::npos)
@@ -188,13 +188,13 @@ TEST_F(RawlogReaderTest, NoBitFlipPassesAsAWholeGzipLog) {
     // Behind the ten bytes of gzip's header, which carry no data.
     const std::size_t at = 10 + random() % (bytes.size() - 10);
     bytes[at] = static_cast<char>(bytes[at] ^ 1 << random() % 8);
-    writeBytes(folder_.file("flip"), bytes);
+    writeBytes(folder_ / "flip", bytes);
     try {
-      RawlogReader reader(folder_.file("flip"));
+      RawlogReader reader(folder_ / "flip");
       drain(reader);
       // Some bits may stand either way: a copy from another place where the same bytes are.
       const bool clean = reader.end() == End::kClean;
-      EXPECT_TRUE(!clean || inflated(folder_.file("flip")) == content) << "byte " << at;
+      EXPECT_TRUE(!clean || inflated(folder_ / "flip") == content) << "byte " << at;
     } catch (const DataError&) {  // the first entry is hit
     }
   }
@@ -206,7 +206,7 @@ TEST_F(RawlogReaderTest, SomethingAppendedIsDamage) {
   RawlogReader reader(log_);
   EXPECT_EQ(drain(reader), 10U);
   EXPECT_EQ(reader.end(), End::kDamaged);
-  const std::string plain = folder_.file("plain");
+  const std::string plain = folder_ / "plain";
   writeLog(log_, 2);
   writeBytes(plain, inflated(log_) + "appended");
   RawlogReader plain_reader(plain);
@@ -230,8 +230,8 @@ std::string changedScan(const std::string& bytes, int nth, bool version) {
 
 TEST_F(RawlogReaderTest, UnknownClassIsNamedWithTheRemedy) {
   writeLog(log_, 3);
-  writeBytes(folder_.file("x"), changedScan(inflated(log_), 1, false));
-  RawlogReader reader(folder_.file("x"));
+  writeBytes(folder_ / "x", changedScan(inflated(log_), 1, false));
+  RawlogReader reader(folder_ / "x");
   EXPECT_EQ(drain(reader), 7U);
   EXPECT_EQ(reader.end(), End::kUnknownClass);
   EXPECT_NE(reader.endMessage().find("'perception::CObservationLidarScaX'"), std::string::npos);
@@ -247,8 +247,8 @@ TEST_F(RawlogReaderTest, UnknownClassInsideASensoryFrameIsNamed) {
     log.write(frame);
     log.close();
   }
-  writeBytes(folder_.file("x"), changedScan(inflated(log_), 0, false));
-  RawlogReader reader(folder_.file("x"));
+  writeBytes(folder_ / "x", changedScan(inflated(log_), 0, false));
+  RawlogReader reader(folder_ / "x");
   EXPECT_EQ(drain(reader), 0U);
   EXPECT_EQ(reader.end(), End::kUnknownClass) << reader.endMessage();
   EXPECT_NE(reader.endMessage().find("'perception::CObservationLidarScaX'"), std::string::npos);
@@ -256,28 +256,28 @@ TEST_F(RawlogReaderTest, UnknownClassInsideASensoryFrameIsNamed) {
 
 TEST_F(RawlogReaderTest, NewerVersionIsToldApartFromDamage) {
   writeLog(log_, 3);
-  writeBytes(folder_.file("x"), changedScan(inflated(log_), 2, true));
-  RawlogReader reader(folder_.file("x"));
+  writeBytes(folder_ / "x", changedScan(inflated(log_), 2, true));
+  RawlogReader reader(folder_ / "x");
   EXPECT_EQ(drain(reader), 12U);
   EXPECT_EQ(reader.end(), End::kNewerVersion) << reader.endMessage();
 }
 
 TEST_F(RawlogReaderTest, WhatIsNoRawlogIsRefusedWithWhatItIs) {
-  EXPECT_EQ(refusal(folder_.file("none")).first, ExitCode::kNoInput);
-  writeBytes(folder_.file("empty"), "");
-  EXPECT_EQ(refusal(folder_.file("empty")).first, ExitCode::kBadInput);
-  EXPECT_NE(refusal(folder_.file("empty")).second.find("empty file"), std::string::npos);
-  EXPECT_EQ(refusal(folder_.path().string()).first, ExitCode::kBadInput);
-  EXPECT_NE(refusal(folder_.path().string()).second.find("a directory"), std::string::npos);
-  ASSERT_EQ(::mkfifo(folder_.file("pipe").c_str(), 0600), 0);
-  EXPECT_NE(refusal(folder_.file("pipe")).second.find("a pipe"), std::string::npos);
-  writeBytes(folder_.file("text"), "frame,t,id\n1,2,3\n");
-  EXPECT_NE(refusal(folder_.file("text")).second.find("text that begins with \"frame,t,id\""),
+  EXPECT_EQ(refusal(folder_ / "none").first, ExitCode::kNoInput);
+  writeBytes(folder_ / "empty", "");
+  EXPECT_EQ(refusal(folder_ / "empty").first, ExitCode::kBadInput);
+  EXPECT_NE(refusal(folder_ / "empty").second.find("empty file"), std::string::npos);
+  EXPECT_EQ(refusal(folder_.path()).first, ExitCode::kBadInput);
+  EXPECT_NE(refusal(folder_.path()).second.find("a directory"), std::string::npos);
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_NE(refusal(folder_ / "pipe").second.find("a pipe"), std::string::npos);
+  writeBytes(folder_ / "text", "frame,t,id\n1,2,3\n");
+  EXPECT_NE(refusal(folder_ / "text").second.find("text that begins with \"frame,t,id\""),
             std::string::npos);
-  writeBytes(folder_.file("binary"), std::string("\x89PNG\r\n\x1a\n\0\0\0", 11));
-  EXPECT_NE(refusal(folder_.file("binary")).second.find("89 50 4e 47"), std::string::npos);
-  writeBytes(folder_.file("zeros"), std::string(1000, '\0'));
-  EXPECT_EQ(refusal(folder_.file("zeros")).first, ExitCode::kBadInput);
+  writeBytes(folder_ / "binary", std::string("\x89PNG\r\n\x1a\n\0\0\0", 11));
+  EXPECT_NE(refusal(folder_ / "binary").second.find("89 50 4e 47"), std::string::npos);
+  writeBytes(folder_ / "zeros", std::string(1000, '\0'));
+  EXPECT_EQ(refusal(folder_ / "zeros").first, ExitCode::kBadInput);
 }
 
 TEST_F(RawlogReaderTest, EmptyGzipLogIsRefused) {
@@ -295,9 +295,9 @@ TEST_F(RawlogReaderTest, RandomMutationsOfAPlainLogEndWithAReason) {
     for (unsigned changes = 1 + random() % 4; changes > 0; --changes) {
       bytes[random() % bytes.size()] = static_cast<char>(random());
     }
-    writeBytes(folder_.file("m"), bytes);
+    writeBytes(folder_ / "m", bytes);
     try {
-      RawlogReader reader(folder_.file("m"));
+      RawlogReader reader(folder_ / "m");
       drain(reader);
       EXPECT_NE(reader.end(), End::kNotYet);
       EXPECT_FALSE(reader.endMessage().empty());

@@ -20,16 +20,16 @@ std::size_t filesIn(const TemporaryFolder& folder) {
 
 TEST(RawlogWriter, SameObservationsGiveTheSameBytes) {
   TemporaryFolder folder;
-  writeLog(folder.file("a"), 3);
-  writeLog(folder.file("b"), 3);
-  EXPECT_EQ(readBytes(folder.file("a")), readBytes(folder.file("b")));
+  writeLog(folder / "a", 3);
+  writeLog(folder / "b", 3);
+  EXPECT_EQ(readBytes(folder / "a"), readBytes(folder / "b"));
   EXPECT_EQ(filesIn(folder), 2U);
 }
 
 TEST(RawlogWriter, NothingRemainsWithoutClose) {
   TemporaryFolder folder;
   {
-    RawlogWriter log(folder.file("a"));
+    RawlogWriter log(folder / "a");
     log.write(*fullScan(1000));
   }
   EXPECT_EQ(filesIn(folder), 0U);
@@ -37,24 +37,24 @@ TEST(RawlogWriter, NothingRemainsWithoutClose) {
 
 TEST(RawlogWriter, AnOldFileStaysUntilTheNewOneIsWhole) {
   TemporaryFolder folder;
-  writeBytes(folder.file("a"), "old");
-  RawlogWriter log(folder.file("a"));
+  writeBytes(folder / "a", "old");
+  RawlogWriter log(folder / "a");
   log.write(*fullScan(10));
-  EXPECT_EQ(readBytes(folder.file("a")), "old");
+  EXPECT_EQ(readBytes(folder / "a"), "old");
   log.close();
-  RawlogReader reader(folder.file("a"));
+  RawlogReader reader(folder / "a");
   EXPECT_EQ(drain(reader), 1U);
 }
 
 TEST(RawlogWriter, CannotCreateIsSaidAtOnce) {
   TemporaryFolder folder;
-  for (const std::string& path : {folder.file("none/a.rawlog"), folder.path().string()}) {
+  for (const std::string& path : {folder / "none/a.rawlog", folder.path()}) {
     try {
       RawlogWriter log(path);
       FAIL() << path;
     } catch (const OutputError& e) {
       EXPECT_EQ(e.code(), ExitCode::kCannotCreate);
-      EXPECT_NE(std::string(e.what()).find(folder.path().string()), std::string::npos);
+      EXPECT_NE(std::string(e.what()).find(folder.path()), std::string::npos);
     }
   }
 }
@@ -80,13 +80,13 @@ class FullDisk {
 
 TEST(RawlogWriter, AFullDiskIsAnErrorWhereverItHappens) {
   TemporaryFolder folder;
-  writeLog(folder.file("whole"), 3, 0);
-  const std::size_t size = readBytes(folder.file("whole")).size();
+  writeLog(folder / "whole", 3, 0);
+  const std::size_t size = readBytes(folder / "whole").size();
   ASSERT_GT(size, 10000U);
   for (std::size_t room = 0; room < size; room += size / 23) {
     const FullDisk disk(room);
     try {
-      writeLog(folder.file("cut"), 3, 0);
+      writeLog(folder / "cut", 3, 0);
       ADD_FAILURE() << "no error with room for " << room << " of " << size << " bytes";
     } catch (const OutputError& e) {
       EXPECT_EQ(e.code(), ExitCode::kIoError);
@@ -98,11 +98,11 @@ TEST(RawlogWriter, AFullDiskIsAnErrorWhereverItHappens) {
 
 TEST(RawlogWriter, CountsEntriesAndBytes) {
   TemporaryFolder folder;
-  RawlogWriter log(folder.file("a"));
+  RawlogWriter log(folder / "a");
   for (int i = 0; i < 4; ++i) log.write(*fullScan(500));
   log.close();
   EXPECT_EQ(log.entries(), 4U);
-  EXPECT_EQ(log.bytes(), std::filesystem::file_size(folder.file("a")));
+  EXPECT_EQ(log.bytes(), std::filesystem::file_size(folder / "a"));
   EXPECT_GT(log.bytesInflated(), 4 * 500 * 28U);
 }
 

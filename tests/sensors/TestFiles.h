@@ -1,8 +1,6 @@
 #pragma once
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -15,23 +13,11 @@
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/RawlogWriter.h"
 #include "libperception/sensors/ToObservation.h"
+#include "tests/support/TemporaryFolder.h"
 
 namespace perception::testing {
 
-/// A folder of its own for a test; gone afterwards.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "perception-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using test::TemporaryFolder;
 
 inline std::string readBytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
