@@ -69,7 +69,7 @@ void ImportApp::checkOptions() const {
 
 void ImportApp::run() {
   checkOptions();
-  if (importers_[chosen_]->list()) return;
+  if (importers_[chosen_]->runInstead(output)) return;
   if (output.empty()) failUsage("-o: expected the log to be written");
   options.output = output;
   if (copy_images_) options.images = ImportOptions::Images::kCopy;

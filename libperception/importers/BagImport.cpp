@@ -347,7 +347,7 @@ class BagImporter final : public Importer {
         ->type_name("INI");
     cli.add_flag("--list", list_, "prints the topics, writes nothing");
   }
-  bool list() override {
+  bool runInstead(const std::string&) override {
     if (!list_) return false;
     const BagContents contents = readContents(bagFiles(path_), [](auto, auto) {});
     fmt::print("{}", listOf(contents));

@@ -36,6 +36,8 @@ std::vector<ImporterRow>& importers() {
       {"nmea", "a GPS receiver's NMEA 0183 log: the vehicle's own way, or an object's", 0,
        &makeNmeaImporter},
       {"gpx", "a GPX track: the vehicle's own way, or an object's", 0, &makeGpxImporter},
+      {"vehicle-truth", "another vehicle's GNSS as the truth of a log: FILE.truth.csv", 0,
+       &makeVehicleTruthImporter},
   };
   return rows;
 }

@@ -21,8 +21,9 @@ class Importer {
   /// Sets format-specific defaults of options not given on the command line; called before the log
   /// is opened.
   virtual void prepare(ImportOptions&) {}
-  /// Prints what the recording holds, if the options ask for that in place of an import.
-  virtual bool list() { return false; }
+  /// Does what is not the import of a log, if the options ask for that: prints what the recording
+  /// holds, writes the truth of a log that is there. `output`: of the command line, may be empty.
+  virtual bool runInstead(const std::string&) { return false; }
   virtual void run(ImportLog& log) = 0;
 };
 
@@ -55,6 +56,7 @@ std::unique_ptr<Importer> makePacketsImporter();
 std::unique_ptr<Importer> makeNmeaImporter();
 std::unique_ptr<Importer> makeGpxImporter();
 std::unique_ptr<Importer> makeBagImporter();
+std::unique_ptr<Importer> makeVehicleTruthImporter();
 
 /// Throws Error (kUsage).
 [[noreturn]] void failUsage(const std::string& message);
