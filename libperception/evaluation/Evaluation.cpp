@@ -100,12 +100,15 @@ class Evaluator {
     figures.frame = scene.frame;
     figures.t = scene.stamp - run_.first_stamp;
     figures.truth = counted.size();
-    addExistence(estimates, counted, others);
+    for (const ExistenceSample& sample : realness(estimates, counted, others))
+      result_.existence.push_back(sample);
     estimates.erase(std::remove_if(estimates.begin(), estimates.end(),
                                    [&](const SeenEstimate& e) {
                                      return e.object->existence < options_.min_existence;
                                    }),
                     estimates.end());
+    for (const ExistenceSample& sample : realness(estimates, counted, others))
+      figures.not_real += !sample.real;
     countOutputs(estimates, counted, others, figures);
     setDistances(estimates, counted, others, figures);
     addSamples(estimates, counted, figures.t);
@@ -172,8 +175,10 @@ class Evaluator {
   // Real: matched to a truth object of any type. Not real: no truth object near, or only ones
   // matched to other outputs. Unmatched outputs near an unmatched truth object are ambiguous and
   // left out.
-  void addExistence(const std::vector<SeenEstimate>& estimates,
-                    const std::vector<SeenTruth>& counted, const std::vector<SeenTruth>& others) {
+  std::vector<ExistenceSample> realness(const std::vector<SeenEstimate>& estimates,
+                                        const std::vector<SeenTruth>& counted,
+                                        const std::vector<SeenTruth>& others) const {
+    std::vector<ExistenceSample> samples;
     std::vector<SeenTruth> truth = counted;
     truth.insert(truth.end(), others.begin(), others.end());
     std::vector<SeenEstimate> named;
@@ -196,9 +201,10 @@ class Evaluator {
         unclear = unclear || (isNear(truth[t], center, options_.exclusion) && !twice);
       }
       if (unclear) continue;
-      result_.existence.push_back(
+      samples.push_back(
           {result_.instants.size(), named[i].object->existence, static_cast<bool>(real[i])});
     }
+    return samples;
   }
 
   // The truth set is the counted one. Its estimates: of named classes, those that pair with it

@@ -91,6 +91,8 @@ struct InstantFigures {
   std::size_t estimates = 0;          ///< number of estimates in the GOSPA and OSPA sets
   std::vector<OutputCounts> outputs;  ///< by class
   std::vector<FalseObject> false_objects;
+  /// Outputs of a named class without a truth object of any type: false objects of MOTA.
+  std::size_t not_real = 0;
   Gospa gospa;
   double ospa = 0;          ///< [m]
   IdentityView identities;  ///< of the same sets

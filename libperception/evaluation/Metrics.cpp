@@ -222,7 +222,8 @@ ClearFigures clearFigures(const Evaluation& evaluation) {
   figures.truth = tracking.active;
   figures.misses = tracking.active - tracking.returns;
   figures.id_switches = tracking.id_switches;
-  for (const ExistenceSample& sample : evaluation.existence) figures.false_objects += !sample.real;
+  for (const InstantFigures& instant : evaluation.instants)
+    figures.false_objects += instant.not_real;
   figures.setMota();
   return figures;
 }

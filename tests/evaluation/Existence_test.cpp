@@ -58,6 +58,15 @@ TEST(Existence, LowOutputsAreLeftOutOfAllOtherFigures) {
   EXPECT_EQ(*trackingFigures(e, Pairing::kClosest).tracked_a, 0);
 }
 
+TEST(Existence, LowOutputsAreNoFalseObjectsOfMota) {
+  const std::vector<SceneObject> outputs = {believed(makeObject(1, 10, 0), .9),
+                                            believed(makeObject(2, 5, 8), .2)};
+  EXPECT_EQ(clearFigures(evaluateObjects(outputs)).false_objects, 1U);
+  EvaluationOptions options;
+  options.min_existence = 0.5;
+  EXPECT_EQ(clearFigures(evaluateObjects(outputs, options)).false_objects, 0U);
+}
+
 TEST(FalseObjects, AreKnownByTheirIdentities) {
   const auto e = evaluateObjects({makeObject(1, 10, 0), makeObject(9, 5, 8, kPedestrian)});
   ASSERT_EQ(e.instants[0].false_objects.size(), 1u);
