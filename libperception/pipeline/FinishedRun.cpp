@@ -26,10 +26,10 @@ namespace fs = std::filesystem;
 /// Written by perception-track, -report, -snapshot and -evaluate as the README and the page have
 /// it.
 constexpr const char* kProducts[] = {
-    "tracks.csv",   "scenes.csv",    "weather.csv",   "ledger.csv",
-    "events.jsonl", "effective.ini", "timing.json",   "measurements.csv",
-    "scans.csv",    "sensors.csv",   "index.html",    "scene.png",
-    "contact.png",  "scene.mp4",     "scene.3Dscene", "evaluation"};
+    "tracks.csv",    "scenes.csv",    "weather.csv", "ledger.csv",       "innovations.csv",
+    "events.jsonl",  "effective.ini", "timing.json", "measurements.csv", "scans.csv",
+    "sensors.csv",   "index.html",    "scene.png",   "contact.png",      "scene.mp4",
+    "scene.3Dscene", "evaluation"};
 
 class Sha256 {
  public:

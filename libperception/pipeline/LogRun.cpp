@@ -198,6 +198,8 @@ void LogRun::commit(const std::string& effective_ini, int threads) {
   if (weather_) weather_->close();
   if (ledger_) ledger_->close();
   events_.close();
+  writeFile(folder_.pathFor("innovations.csv"),
+            innovationsCsv(pipeline_.innovations(), setup_.model.classes));
   writeFile(folder_.pathFor("effective.ini"), effective_ini);
   timing_.write(folder_.pathFor("timing.json"), logSeconds(), threads);
   writeRunRecord(folder_.pathFor("done.json"), record);

@@ -218,7 +218,9 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     addToGrid(frame, scan);
     const auto scope = timing_.stage("filter");
     const std::uint64_t index = tracker_.scans();
+    innovations_.before(tracker_);
     if (tracker_.process(scan)) {
+      innovations_.after(tracker_, scan, index);
       conditions_.add(sensor, scan, tracker_, index);
       health_.addScan(sensor, scan, tracker_.mapHypothesis(), setup_.model,
                       conditions_.clutter(sensor), share);

@@ -10,6 +10,7 @@
 #include "libperception/pipeline/EgoTimeline.h"
 #include "libperception/pipeline/FrameNumbers.h"
 #include "libperception/pipeline/FrameQueue.h"
+#include "libperception/pipeline/InnovationWatch.h"
 #include "libperception/pipeline/OutputSchedule.h"
 #include "libperception/pipeline/PhantomLedger.h"
 #include "libperception/pipeline/PipelineSetup.h"
@@ -66,6 +67,7 @@ class Pipeline {
   std::vector<WeatherRow> takeWeather() { return weather_.take(); }
   /// What was taken as phantoms since the last call.
   std::vector<LedgerRow> takeLedger() { return ledger_.take(); }
+  const InnovationWatch::Sums& innovations() const { return innovations_.sums(); }
   std::uint64_t objects() const { return scenes_.objectsSoFar(); }
   /// Ids that may be in a scene to come, beside new ones. Forgets all others: memory of a long run.
   std::set<std::uint64_t> livingObjects();
@@ -97,6 +99,7 @@ class Pipeline {
   SensorHealth health_;
   WeatherWatch weather_;
   ConditionWatch conditions_;
+  InnovationWatch innovations_;
   PhantomLedger ledger_;
   ScanMaker scan_maker_;
   std::optional<SafetyMonitor> safety_;  ///< empty: [grid] enabled = false
