@@ -30,6 +30,8 @@ std::string EvaluateApp::description() const {
 void EvaluateApp::declare(CLI::App& cli) {
   declareInputs(cli);
   addOutputOption(cli, false);
+  cli.add_flag("--without-truth", without_truth,
+               "figures that need no truth; with one, their rank correlation with the true errors");
   declareTruth(cli);
   declareFigures(cli);
 }
@@ -292,6 +294,7 @@ void EvaluateApp::writeReports() {
 void EvaluateApp::run() {
   params.selection.fov = radians(fov_deg);
   params.selection.complete_fov = radians(complete_fov_deg);
+  if (without_truth) return judgeQuality();
   out_report = emptyReport();
   addPaperRows();
   evaluateRuns();

@@ -26,6 +26,7 @@ class EvaluateApp : public App {
   bool surroundings = false;   ///< --surroundings: the truth includes poles and hedges
   std::size_t max_plots = 40;  ///< --max-plots: most truth objects with their own plot, per run
   bool plots = true;           ///< --no-plots clears it
+  bool without_truth = false;  ///< --without-truth: judgeQuality() in place of an evaluation
 
   EvaluationReport out_report;
   std::vector<std::string> out_folders;  ///< with reports
@@ -47,6 +48,7 @@ class EvaluateApp : public App {
   const GroundTruth& truth(const std::string& path);
   void warnOfGaps(const EvaluatedRun& run, const std::string& truth);
   void addPaperRows();
+  void judgeQuality();
   void writeReports();
   void write(EvaluationReport report, const std::string& dir);
 

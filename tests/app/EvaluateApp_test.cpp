@@ -281,6 +281,37 @@ TEST_F(EvaluateAppTest, AFrontEndNeedsRecordedMeasurements) {
   EXPECT_NE(err_.find("--measurements"), std::string::npos) << err_;
 }
 
+TEST_F(EvaluateAppTest, WithoutATruthItShowsWhatFollowsTheTrueErrorsAndSeedsOfOneLog) {
+  RunRecord record;
+  record.input = "log.rawlog";
+  for (const char* name : {"late", "perfect"}) {
+    writeRunRecord(dir_ + "/" + name + "/done.json", record);
+    ++record.seed;
+  }
+  ASSERT_EQ(run({"--without-truth", "-r", dir_ + "/late"}), 0) << err_;
+  EXPECT_TRUE(fs::exists(dir_ + "/late/quality/report.md"));
+  EXPECT_NE(out_.find("off_velocity"), std::string::npos);
+  EXPECT_EQ(out_.find("handovers"), std::string::npos);  // does not follow them
+  app_.runs.clear();
+  ASSERT_EQ(
+      run({"--without-truth", "-r", dir_ + "/late", "-r", dir_ + "/perfect", "-o", dir_ + "/both"}),
+      0)
+      << err_;
+  // The run that begins late lacks the first two scenes of the other one; both are .5 m apart.
+  EXPECT_NE(out_.find("| perfect | 1 | 0.000 | 0.000 | 0.100 | n/a | 0.100 | 0.500 |"),
+            std::string::npos)
+      << out_;
+}
+
+TEST_F(EvaluateAppTest, WithATruthAllFiguresStandBesideTheTrueErrors) {
+  ASSERT_EQ(run({"--without-truth", "-r", dir_ + "/late", "-t", truth(), "-o", dir_ + "/q"}), 0)
+      << err_;
+  EXPECT_NE(out_.find("handovers"), std::string::npos);
+  EXPECT_NE(out_.find("| late | 0.100 | 0.000 | 0.500 | 0.000 | 0.000 | 0.000 | 0.100 |"),
+            std::string::npos)
+      << out_;
+}
+
 TEST_F(EvaluateAppTest, InstantsAreATable) {
   EXPECT_EQ(run({"-r", dir_ + "/late", "-t", truth(), "--no-plots"}), 0) << err_;
   std::ifstream file(dir_ + "/late/evaluation/instants.csv");
