@@ -59,10 +59,14 @@ void DoctorApp::run() {
   const std::string log = fs::path(inputs[0]).filename().string();
   out_findings = findingsOf(survey);
   StudyReport report = doctorReport(survey, out_findings, log);
-  report.files.emplace_back("site.ini", siteIni(survey, files, log));
+  const std::string ini = siteIni(survey, files, log);
+  if (!ini.empty()) report.files.emplace_back("site.ini", ini);
   for (const auto& message : writeStudyReport(report, output)) warn(message);
-  fmt::print("{}\n{}\n{}\nreport.md, doctor.png and site.ini in {}\n", inputs[0],
-             survey.contents().table(), reportText(out_findings), output);
+  fmt::print("{}\n{}\n{}\n{} in {}\n", inputs[0], survey.contents().table(),
+             reportText(out_findings),
+             ini.empty() ? "report.md and doctor.png (no site.ini: no sensor for it)"
+                         : "report.md, doctor.png and site.ini",
+             output);
 }
 
 }  // namespace perception

@@ -70,6 +70,10 @@ void addLidar(Findings& out, const std::string& label, const SensorFacts& facts)
     out.add(Weight::kFine, label,
             fmt::format("intensity {:.3f} to {:.3f}", *facts.low, *facts.high));
   }
+  if (facts.planar) {
+    out.add(Weight::kNote, label, "mounting not observable: one layer shows no ground plane");
+    return;
+  }
   const auto m = groundMounting(facts);
   if (!m) {
     out.add(Weight::kNote, label,

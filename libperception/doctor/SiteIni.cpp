@@ -194,7 +194,9 @@ std::string boxesSection(const std::string& label, const SensorFacts& facts) {
 std::string positionsSection(const std::string& label, const SensorFacts& facts) {
   std::string out = section(label, "positions", 'L', 4, 0.1,
                             std::max(10.0, tens(facts.rangeBelow(1))), fieldOf(facts.angleOf(1)));
-  return out + fmt::format(kPositions, fmt::arg("label", label)) + namesLine(facts, true);
+  const std::string names = namesLine(facts, true);
+  // Boxes without a known name are "object", which is the default.
+  return out + (names.empty() ? "" : fmt::format(kPositions, fmt::arg("label", label)) + names);
 }
 
 }  // namespace
@@ -242,8 +244,9 @@ std::string siteIni(const LogSurvey& survey, const SiteFiles& files, const std::
         section("SCANNERS", "lidar", 'L', 2, 0.5, kClusterRange, 360) + "merge = " + layers + "\n";
   }
   if (clouds || planar != nullptr) use('L');
+  if (letters.empty()) return "";
   std::string out = fmt::format(kHead, fmt::arg("log", log), fmt::arg("classes", files.classes),
-                                fmt::arg("letters", letters.empty() ? "L" : letters));
+                                fmt::arg("letters", letters));
   if (clouds && !files.model.empty()) out += kShapes;
   if (clouds) out += kGrid;
   if (clouds && survey.poses().empty() && survey.motion().empty())

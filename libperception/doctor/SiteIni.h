@@ -16,8 +16,8 @@ struct SiteFiles {
 std::string knownName(const std::string& name);
 
 /// A first INI for the log's vehicle: labels, kinds, ranges, fields of view and mountings as found,
-/// everything else as in ini/kitti.ini, which was tuned on recordings. Runs without edits if any
-/// sensor's observations can be used.
+/// everything else as in ini/kitti.ini, which was tuned on recordings. Runs without edits;
+/// empty if no sensor's observations can be used.
 std::string siteIni(const LogSurvey& survey, const SiteFiles& files, const std::string& log);
 
 }  // namespace perception

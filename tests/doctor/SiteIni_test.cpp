@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <mrpt/obs/CObservationOdometry.h>
+
 #include <filesystem>
 
 #include "libperception/doctor/DoctorReport.h"
@@ -9,6 +11,7 @@
 #include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/CObservationLidarScan.h"
 #include "libperception/sensors/RawlogReader.h"
+#include "libperception/sensors/ToObservation.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {
@@ -60,6 +63,33 @@ TEST(SiteIni, NamesWhatIsFound) {
   EXPECT_EQ(lidar.params.kind, "lidar");
   EXPECT_EQ(lidar.params.range_max, 50);
   EXPECT_FALSE(lidar.params.pose);
+}
+
+TEST(SiteIni, PositionsOfNamelessObjectsAreReadWithoutFault) {
+  LogSurvey survey;
+  for (int k = 0; k < 10; ++k) {
+    ObjectDetections found;
+    ObjectDetection& object = found.objects.emplace_back();
+    object.label = "object";
+    object.score = 1;
+    object.space_box = ObjectDetection::SpaceBox{Vector3(20 + k, 3, 0), 0, 0.1, 0.1, 0.1};
+    SensorFrame frame;
+    frame.sensor = "RECEIVER";
+    frame.stamp = Stamp::fromSeconds(1e9 + 0.1 * k);
+    frame.data = found;
+    survey.look(*observationFromFrame(frame));
+  }
+  const PipelineSetup setup = setupOf(survey);
+  ASSERT_TRUE(setup.sensorOf("RECEIVER"));
+  EXPECT_EQ(setup.sensors[*setup.sensorOf("RECEIVER")].params.kind, "positions");
+}
+
+TEST(SiteIni, IsEmptyWhereNoSensorCanBeUsed) {
+  LogSurvey survey;
+  mrpt::obs::CObservationOdometry wheels;
+  wheels.timestamp = mrpt::Clock::now();
+  survey.look(wheels);
+  EXPECT_EQ(siteIni(survey, {"classes.ini", "model.json"}, "log"), "");
 }
 
 TEST(SiteIni, WrongMountingIsCorrectedThere) {
