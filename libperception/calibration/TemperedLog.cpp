@@ -4,51 +4,25 @@
 #include <memory>
 #include <utility>
 
-#include "libperception/measurement/MeasurementModel.h"
+#include "libperception/measurement/ForwardedModel.h"
 
 namespace perception {
 namespace {
 
-/// A sensor's model with other exponents.
-class TemperedModel final : public MeasurementModel {
+/// A sensor's model with other exponents, in place of what tells how its errors repeat.
+class TemperedModel final : public ForwardedModel {
  public:
   TemperedModel(std::shared_ptr<const MeasurementModel> model, Exponents::OfSensor exponents)
-      : model_(std::move(model)), exponents_(std::move(exponents)) {}
+      : ForwardedModel(std::move(model)), exponents_(std::move(exponents)) {}
 
-  const std::vector<AxisKind>& axes() const override { return model_->axes(); }
-  AxisMask extentAxes() const override { return model_->extentAxes(); }
-  void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
-               const SensorState& sensor, AxisPrediction* out) const override {
-    model_->predict(objects, extents, count, sensor, out);
-  }
-  AspectLine aspectLine() const override { return model_->aspectLine(); }
-  double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
-                              const SensorState& sensor, double visibility) const override {
-    return model_->detectionProbability(c, object, extent, sensor, visibility);
-  }
-  bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override {
-    return model_->mayDetect(position, reach, sensor);
-  }
-  double logLabelLikelihood(int label, ClassId c) const override {
-    return model_->logLabelLikelihood(label, c);
-  }
+  const PositionOnlyModel* positionOnly() const override { return nullptr; }
   double labelExponent() const override { return exponents_.label; }
   double detectionExponent() const override { return exponents_.detection; }
-  double logLabelClutter(int label) const override { return model_->logLabelClutter(label); }
-  double logClutterDensity(const Measurement& m, const SensorState& sensor) const override {
-    return model_->logClutterDensity(m, sensor);
-  }
-  double logBirthDensity(const Measurement& m, ClassId c,
-                         const SensorState& sensor) const override {
-    return model_->logBirthDensity(m, c, sensor);
-  }
-  std::optional<BirthState> birth(const Measurement& m, ClassId c,
-                                  const SensorState& sensor) const override {
-    return model_->birth(m, c, sensor);
-  }
+  double innovationShare() const override { return 1; }
+  const EvidenceMemory* evidenceMemory() const override { return nullptr; }
+  const EvidenceMemory* lookMemory() const override { return nullptr; }
 
  private:
-  std::shared_ptr<const MeasurementModel> model_;
   Exponents::OfSensor exponents_;
 };
 

@@ -151,6 +151,8 @@ void ClassDetection::visit(ParamVisitor& v) {
          "up to which P(detected) is constant; falls to 0 at last_range");
   v.real("last_range", last_range, {0.1, 1e5}, "m",
          "where P(detected) is 0; at most the sensor's range_max");
+  v.real("edge_noise", edge_noise, {0, 5}, "m",
+         "noise of an outline's edges beyond the measurement's: the rider of a bicycle");
   v.table("label.", labels, {0, 1}, "",
           "P(label | this class, detected); labels not listed share the rest");
 }

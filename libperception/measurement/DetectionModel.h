@@ -49,6 +49,9 @@ struct ClassDetection {
   double full_range =
       1e3;  ///< [m] up to which that holds; from there it falls linearly to 0 at last_range
   double last_range = 1e4;  ///< [m] where P_D is 0; at most the sensor's range_max
+  /// [m] standard deviation of each edge of an outline across the line of sight, beyond that of the
+  /// measurement: what is detected is not the whole object (method.md 4.1).
+  double edge_noise = 0;
   std::vector<std::pair<std::string, double>> labels;  ///< P(label | class, detected), normalized
 
   void visit(ParamVisitor& v);

@@ -135,6 +135,17 @@ void FootprintModel::predict(const Kinematics* objects, const Extent* extents, s
   }
 }
 
+void FootprintModel::addClassNoise(ClassId c, const Kinematics& object, const SensorState& sensor,
+                                   AxisPrediction& prediction) const {
+  const double noise = detection_model_.row(c).edge_noise;
+  if (noise <= 0 || !prediction.defined) return;
+  if (prediction.R_model.size() == 0) prediction.R_model.setZero(kAxes, kAxes);
+  const Vector2 d = object.q.head<2>() - sensorPosition(sensor);
+  const double variance = noise * noise / std::max(d.squaredNorm(), kClearance * kClearance);
+  prediction.R_model(kLeft, kLeft) += variance;
+  prediction.R_model(kRight, kRight) += variance;
+}
+
 double FootprintModel::detectionProbability(ClassId c, const Kinematics& object,
                                             const Extent& extent, const SensorState& sensor,
                                             double visibility) const {

@@ -26,6 +26,8 @@ class FootprintModel : public MeasurementModel {
   AspectLine aspectLine() const override { return AspectLine::kChord; }
   void predict(const Kinematics* objects, const Extent* extents, std::size_t count,
                const SensorState& sensor, AxisPrediction* out) const override;
+  void addClassNoise(ClassId c, const Kinematics& object, const SensorState& sensor,
+                     AxisPrediction& prediction) const override;
   double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,
                               const SensorState& sensor, double visibility) const override;
   bool mayDetect(const Vector2& position, double reach, const SensorState& sensor) const override {

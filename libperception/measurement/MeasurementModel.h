@@ -78,6 +78,11 @@ class MeasurementModel {
                        const SensorState& sensor, AxisPrediction* out) const = 0;
   /// How h of an object with a heading is linearized in its aspect.
   virtual AspectLine aspectLine() const { return AspectLine::kNone; }
+  /// Adds to R_model what is measured less exactly of one class, whatever the aspect.
+  virtual void addClassNoise(ClassId c, const Kinematics& object, const SensorState& sensor,
+                             AxisPrediction& prediction) const {
+    (void)c, (void)object, (void)sensor, (void)prediction;
+  }
   /// P(detected | class, state), in [0, 1]: 0 outside the field of view; `visibility` in [0, 1] is
   /// the share not occluded.
   virtual double detectionProbability(ClassId c, const Kinematics& object, const Extent& extent,

@@ -42,6 +42,7 @@ std::optional<AxisVector> standardizedOf(const Track& predicted, ClassId c, cons
                       seen.data());
   if (!seen.back().defined) return {};
   linearizeAlongAspect(model.classes[c], f, at, *scan.model, scan.state, seen.back());
+  scan.model->addClassNoise(c, at, scan.state, seen.back());
   const Innovation innovation = innovationOf(f, at, seen.back(), m, *scan.model);
   const Eigen::LLT<AxisMatrix> llt(innovation.S);
   if (llt.info() != Eigen::Success) return {};

@@ -123,6 +123,25 @@ TEST(FootprintModel, JacobiansAreTheDerivatives) {
   EXPECT_GT(compared, 0.998 * total);
 }
 
+TEST(FootprintModel, NoiseOfAClassWidensItsEdgesByItsDistance) {
+  ClassDetection rider;
+  rider.edge_noise = 0.8;
+  const FootprintModel noisy(classes(),
+                             DetectionModel({}, {{}, rider}, {"car_sized", "person_sized"}));
+  const SensorState sensor = sensorAt(0, 0, 0);
+  AxisPrediction prediction;
+  prediction.defined = true;
+  noisy.addClassNoise(0, rectangle(20, 0, 0), sensor, prediction);
+  EXPECT_EQ(prediction.R_model.size(), 0);  // the other class
+  noisy.addClassNoise(1, rectangle(16, 12, 0), sensor, prediction);
+  ASSERT_EQ(prediction.R_model.rows(), 3);
+  EXPECT_NEAR(prediction.R_model(FootprintModel::kLeft, FootprintModel::kLeft), 0.0016, 1e-12);
+  EXPECT_NEAR(prediction.R_model(FootprintModel::kRight, FootprintModel::kRight), 0.0016, 1e-12);
+  EXPECT_EQ(prediction.R_model(FootprintModel::kRange, FootprintModel::kRange), 0);
+  noisy.addClassNoise(1, rectangle(16, 12, 0), sensor, prediction);  // adds to what is there
+  EXPECT_NEAR(prediction.R_model(FootprintModel::kLeft, FootprintModel::kLeft), 0.0032, 1e-12);
+}
+
 TEST(FootprintModel, OnlyRelativePlacesCount) {
   const Extent e{4.5, 1.8, 1, 1};
   const auto a = predict(rectangle(10, 3, 0.5), e, sensorAt(0, 0, 0.2));

@@ -142,6 +142,8 @@ void predictBank(const Track& track, const ScanTerms& terms, const TrackLikeliho
     if (track.filterOf(j) != j) continue;
     linearizeAlongAspect(terms.model.classes[static_cast<ClassId>(j)], track.bank[j],
                          scratch.kinematics[j], *scan.model, scan.state, predictions[j]);
+    scan.model->addClassNoise(static_cast<ClassId>(j), scratch.kinematics[j], scan.state,
+                              predictions[j]);
     scratch.bounds.emplace_back(track.bank[j], scratch.kinematics[j], predictions[j]);
     if (predictions[j].defined && track.bank[j].modes.empty())
       scratch.expected[j].set(track.bank[j], scratch.kinematics[j], predictions[j]);
