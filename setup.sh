@@ -158,6 +158,7 @@ benches() {
 makeCommaLocale() {
   export LOCPATH=$PWD/build/locale
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks.supp:print_suppressions=0
+  export TSAN_OPTIONS=suppressions=$PWD/tests/races.supp:print_suppressions=0
   mkdir -p "$LOCPATH"
   [[ -d $LOCPATH/de_DE.UTF-8 ]] || localedef -i de_DE -f UTF-8 "$LOCPATH/de_DE.UTF-8" || true
 }
