@@ -70,8 +70,13 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   ::_exit(127);
 }
 
-/// True while the dynamic loader is at work: SIGTERM has its default action and is not held back.
+/// True before and while the dynamic loader is at work: the process is still a copy of this one, or
+/// SIGTERM has its default action and is not held back.
 bool isLoading(pid_t process) {
+  std::error_code none;
+  if (fs::read_symlink(fmt::format("/proc/{}/exe", process), none) ==
+      fs::read_symlink("/proc/self/exe", none))
+    return true;
   std::ifstream file(fmt::format("/proc/{}/status", process));
   std::uint64_t heard = 0;
   for (std::string line; std::getline(file, line);)
