@@ -41,9 +41,16 @@ struct ClassFilter {
       modes;  ///< empty unless the class has several; x and P are then the moments of the mixture
 };
 
-/// One filter per class. TBB's allocator: banks are too large for malloc's thread caches and are
-/// allocated many times a scan.
-using Bank = std::vector<ClassFilter, tbb::scalable_allocator<ClassFilter>>;
+/// TBB's allocator: banks are too large for malloc's thread caches and are allocated many times a
+/// scan. ThreadSanitizer cannot see that it hands memory from thread to thread in order.
+#ifdef __SANITIZE_THREAD__
+using BankAllocator = std::allocator<ClassFilter>;
+#else
+using BankAllocator = tbb::scalable_allocator<ClassFilter>;
+#endif
+
+/// One filter per class.
+using Bank = std::vector<ClassFilter, BankAllocator>;
 
 /// Residual of a sensor's last measurement of an object after the update, for correlated errors
 /// ([filter] region_memory).
