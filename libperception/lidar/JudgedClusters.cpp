@@ -90,6 +90,8 @@ PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::ui
                          double probability) {
   PhantomCluster phantom;
   phantom.returns = obstacles.size(), phantom.probability = probability;
+  for (const std::uint32_t i : obstacles)
+    phantom.center += Vector2(found.x[i], found.y[i]) / static_cast<double>(obstacles.size());
   if (found.trust.empty()) return phantom;
   for (const std::uint32_t i : obstacles)
     if (found.trust[i] < kDoubted)

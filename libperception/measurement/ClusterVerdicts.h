@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "libperception/core/Frames.h"
+
 namespace perception {
 
 /// A cluster that is judged a phantom (method.md 8.10): no measurement comes of it.
@@ -11,6 +13,7 @@ struct PhantomCluster {
   double probability = 0;  ///< [0, 1] P(phantom)
   /// Indices in the frame's cloud of its returns with a trust below one half.
   std::vector<std::uint32_t> doubted;
+  Vector2 center = Vector2::Zero();  ///< [m] mean of its returns, ego frame
 };
 
 /// What a front end made of the clusters of a lidar scan whose kind is told by their shape.

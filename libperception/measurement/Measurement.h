@@ -15,6 +15,7 @@
 #include "libperception/measurement/OcclusionMap.h"
 #include "libperception/measurement/PlacedReturns.h"
 #include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/WakeMap.h"
 
 namespace perception {
 
@@ -86,6 +87,7 @@ struct MeasurementScan {
   SensorState state;
   std::shared_ptr<const MeasurementModel> model;
   std::shared_ptr<const OcclusionMap> occlusion;  ///< null: nothing is occluded
+  std::shared_ptr<const WakeMap> wakes;           ///< null: no phantoms in wakes
   std::shared_ptr<const PlacedReturns> returns;   ///< of a lidar; null: none
   std::optional<ClusterVerdicts> verdicts;        ///< empty: no clusters told by their shape
   std::vector<Measurement> measurements;

@@ -27,7 +27,7 @@ std::vector<double> bornIn(std::uint64_t index, std::size_t measurements,
     const double weight = std::exp(p.log_w - all);
     for (const TrackHandle& track : p.d->tracks) {
       const std::uint64_t k = track->id - birthId(index, 0);  // wraps for earlier births
-      if (k < measurements) exists[static_cast<std::size_t>(k)] += weight * track->existence;
+      if (k < measurements) exists[static_cast<std::size_t>(k)] += weight * track->real();
     }
   }
   return exists;

@@ -62,7 +62,7 @@ InnovationSums& InnovationSums::operator+=(const InnovationSums& other) {
 void InnovationWatch::before(const CRbpfTracker& tracker) {
   before_.clear();
   for (const TrackHandle& track : tracker.mapHypothesis().tracks)
-    if (track->existence >= kExistence && track->stamp - track->birth >= kSettled)
+    if (track->real() >= kExistence && track->stamp - track->birth >= kSettled)
       before_.push_back(track);
 }
 

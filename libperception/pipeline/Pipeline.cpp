@@ -33,6 +33,7 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
       health_(setup_.sensors, events),
       weather_(events),
       conditions_(setup_.sensors, weather_),
+      wakes_(setup_.sensors, setup_.model.classes),
       ledger_(events),
       scan_maker_(setup_, timing, weather_, ledger_),
       outputs_(setup_.run, setup_.sensors) {
@@ -213,6 +214,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     health_.addFrame(sensor, frame, weather_.fog());
     MeasurementScan scan = scan_maker_.measure(sensor, frame);
     const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
+    wakes_.apply(sensor, scan);
     watch_.addFrame(sensor, frame.stamp, &scan);
     if (observer_) observer_->onFrame(frame), observer_->onScan(scan);
     addToGrid(frame, scan);
@@ -222,6 +224,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     if (tracker_.process(scan)) {
       innovations_.after(tracker_, scan, index);
       conditions_.add(sensor, scan, tracker_, index);
+      wakes_.add(sensor, scan, tracker_.mapHypothesis());
       health_.addScan(sensor, scan, tracker_.mapHypothesis(), setup_.model,
                       conditions_.clutter(sensor), share);
     }
@@ -281,6 +284,7 @@ void Pipeline::restartTracks() {
   tracker_.reset();
   health_.restart();
   conditions_.restart();
+  wakes_.restart();
   if (observer_) observer_->onRestart();
   scan_maker_.restart();
   if (safety_) safety_->restart();

@@ -18,6 +18,7 @@
 #include "libperception/pipeline/ScanMaker.h"
 #include "libperception/pipeline/SensorHealth.h"
 #include "libperception/pipeline/SensorWatch.h"
+#include "libperception/pipeline/WakeWatch.h"
 #include "libperception/pipeline/WeatherWatch.h"
 #include "libperception/scene/EventLog.h"
 #include "libperception/scene/RunTiming.h"
@@ -99,6 +100,7 @@ class Pipeline {
   SensorHealth health_;
   WeatherWatch weather_;
   ConditionWatch conditions_;
+  WakeWatch wakes_;
   InnovationWatch innovations_;
   PhantomLedger ledger_;
   ScanMaker scan_maker_;

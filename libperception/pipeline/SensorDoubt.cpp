@@ -33,7 +33,7 @@ constexpr std::size_t kLeastBearings = 8;
 /// Whether an object is one that other sensors have just seen, so that this one should, too.
 bool isWitness(const Track& track, const MeasurementScan& scan, const FilterModel& model,
                ClassId c) {
-  if (track.existence < kExists || scan.state.stamp - track.birth < kSteady) return false;
+  if (track.real() < kExists || scan.state.stamp - track.birth < kSteady) return false;
   if (!model.classes[c].reported) return false;
   if (std::exp(track.log_class[static_cast<std::size_t>(c)]) < kExists) return false;
   const std::size_t own = modalityIndex(scan.modality);

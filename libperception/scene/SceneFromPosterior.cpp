@@ -88,7 +88,7 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   o.class_id = track.likeliestClass();
   const auto best = static_cast<std::size_t>(o.class_id);
   o.classified = o.class_probability[best] >= params_.classified_at;
-  o.existence = track.existence;
+  o.existence = track.real();
 
   const Mixture mixture = mixtureOf(track, model_, o.class_probability);
   o.position << mixture.mean[0], mixture.mean[1], track.base_z.mean;
@@ -140,10 +140,11 @@ bool SceneFromPosterior::knowsPlace(const SceneObject& o) const {
 TrackHandle SceneFromPosterior::trackAt(const TrackHandle& track, Stamp stamp) const {
   if (stamp < track->stamp && model_.history > 0) {
     const auto smoothed = smoothedTrack(*track, stamp, model_);
-    const double existence = smoothed ? smoothed->existence : -1;
+    const double existence = smoothed ? smoothed->real() : -1;
     return existence < params_.min_existence ? nullptr : std::make_shared<const Track>(*smoothed);
   }
-  if (predictExistence(*track, stamp, model_) < params_.min_existence) return nullptr;
+  if (predictExistence(*track, stamp, model_) * (1 - track->phantom) < params_.min_existence)
+    return nullptr;
   if (stamp <= track->stamp) return track;
   return std::make_shared<const Track>(predictTrack(latestOf(track, stamp), stamp, model_));
 }

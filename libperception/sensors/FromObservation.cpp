@@ -224,6 +224,8 @@ void dropBadPoints(LidarCloud& cloud, DecodeCounts& counts) {
   std::vector<char> keep(cloud.size());
   const std::uint64_t dropped_before = counts.dropped();
   counts.points += cloud.size();
+  // A return at the largest range may be rounded beyond it, as its coordinates are floats.
+  const double limit = static_cast<double>(cloud.max_range) * (1 + 1e-6);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double x = cloud.x[i], y = cloud.y[i], z = cloud.z[i];
     const double range2 = x * x + y * y + z * z;
@@ -231,8 +233,7 @@ void dropBadPoints(LidarCloud& cloud, DecodeCounts& counts) {
       ++counts.not_finite;
     } else if (!(range2 > 0)) {
       ++counts.no_range;
-    } else if (cloud.max_range > 0 &&
-               range2 > static_cast<double>(cloud.max_range) * cloud.max_range) {
+    } else if (cloud.max_range > 0 && range2 > limit * limit) {
       ++counts.beyond_range;
     } else {
       keep[i] = 1;

@@ -92,7 +92,9 @@ Echoes received(const LidarPulse& pulse, const LidarParams& p, bool several, Rng
   Echo echo;
   echo.on_object = found.of_surface && pulse.hit.object >= 0;
   const double noise = found.snr > 0 ? kRangeUnit / std::sqrt(2 * found.snr) : 0;
-  echo.range = found.range + rng.normal() * std::hypot(p.range_noise, noise);
+  const double measured = found.range + rng.normal() * std::hypot(p.range_noise, noise);
+  // No instrument reports more, rounding to its unit included.
+  echo.range = std::min(measured, p.range_max - kCoordinateUnit);
   echo.intensity = found.intensity, echo.phantom = found.phantom;
   if (p.layout == LidarParams::Layout::kFourLayer) {
     const bool object = echo.on_object != (rng.uniform() < p.label_error);

@@ -20,6 +20,21 @@ using namespace perception::testing;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
+TEST(FromObservation, AReturnAtTheLargestRangeIsKeptWhereFloatsRoundItBeyond) {
+  LidarCloud cloud;
+  cloud.max_range = 120;
+  for (int k = 0; k < 1000; ++k) {
+    const double bearing = kTwoPi * k / 1000;
+    cloud.x.push_back(static_cast<float>(120 * std::cos(bearing)));
+    cloud.y.push_back(static_cast<float>(120 * std::sin(bearing)));
+    cloud.z.push_back(0);
+  }
+  DecodeCounts counts;
+  dropBadPoints(cloud, counts);
+  EXPECT_EQ(counts.beyond_range, 0U);
+  EXPECT_EQ(cloud.size(), 1000U);
+}
+
 TEST(FrameFromObservation, LidarScanIsTheInverseOfToObservation) {
   const auto scan = fullScan(100, kStart + 1.25);
   const auto frame = frameFromObservation(*scan);

@@ -80,6 +80,20 @@ TEST(LidarSensor, RangeNoiseHasItsSpread) {
   EXPECT_NEAR(std::sqrt(squares / n), sigma, 4 * sigma / std::sqrt(2.0 * n));
 }
 
+TEST(LidarSensor, NothingIsReportedBeyondTheLargestRangeWhateverTheNoise) {
+  LidarParams params;
+  params.range_noise = 1, params.range_max = 20;
+  const auto scan =
+      scanOf(parked("wall", "box", 20, 0, "length = 1\nwidth = 6\nheight = 4"), params);
+  int at_the_end = 0;
+  for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
+    const double range = Vector3(scan.cloud.x[i], scan.cloud.y[i], scan.cloud.z[i]).norm();
+    EXPECT_LE(range, 20);
+    at_the_end += range > 19.99;
+  }
+  EXPECT_GT(at_the_end, 10) << "returns that the noise would have put beyond";
+}
+
 TEST(LidarSensor, PedestrianAtTwentyMetersGetsPlausibleReturns) {
   // The box .5 m by 1.7 m spans 8 columns of .18 deg and 14.6 rings of 1/3 deg: 117 beams; a body
   // fills about half of it.

@@ -99,7 +99,7 @@ AssociationIndex::AssociationIndex(const std::vector<Track>& predicted,
   for (std::size_t i = 0; i < predicted.size(); ++i) {
     const double r = predicted[i].existence;
     // With exponential decay (DUC) existence neither weighs nor is weighed by detections.
-    log_miss_.push_back(decays ? 0 : std::log1p(-r * table.tracks[i].detection));
+    log_miss_.push_back(decays ? 0 : std::log1p(-r * table.tracks[i].seen));
     for (const auto& pair : table.tracks[i].pairs) {
       const double log_odds =
           pair.log_likelihood + pair.log_prior + (decays ? 0 : std::log(r) - log_miss_.back());

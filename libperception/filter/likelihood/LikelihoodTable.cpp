@@ -10,6 +10,7 @@
 #include "libperception/filter/likelihood/LikelihoodRow.h"
 #include "libperception/filter/likelihood/Linearization.h"
 #include "libperception/filter/likelihood/PairDensity.h"
+#include "libperception/filter/likelihood/PhantomOdds.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/state/Parallel.h"
 
@@ -168,7 +169,8 @@ void setPairs(const Track& track, const ScanTerms& terms, Scratch& scratch, Trac
   }
 }
 
-TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
+/// Without phantoms in wakes.
+TrackLikelihoods objectLikelihoods(const Track& track, const ScanTerms& terms) {
   const MeasurementScan& scan = terms.scan;
   thread_local Scratch scratch;
   TrackLikelihoods row;
@@ -192,6 +194,16 @@ TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
   predictBank(track, terms, row, scratch);
   setPairs(track, terms, scratch, row);
   if (!row.pairs.empty()) row.predictions = scratch.predictions;
+  return row;
+}
+
+TrackLikelihoods trackLikelihoods(const Track& track, const ScanTerms& terms) {
+  TrackLikelihoods row = objectLikelihoods(track, terms);
+  row.seen = row.detection;
+  if (track.phantom <= 0 || row.detection <= 0) return row;
+  row.seen = detectionWithPhantom(track, terms.scan, row.detection);
+  const double log_ratio = std::log(row.seen / row.detection);
+  for (PairLikelihood& pair : row.pairs) pair.log_prior += log_ratio;
   return row;
 }
 
@@ -230,8 +242,15 @@ BirthLikelihood birthLikelihood(std::size_t k, const ScanTerms& terms) {
       scan.model->logClutterDensity(m, scan.state) + logClutterLabelAndScore(*scan.model, m);
   if (model.params.shape_prior) weighShape(m, scan.state, model, result);
   result.log_new = logAddExp(result.log_birth, result.log_clutter);
-  result.existence =
-      result.log_new > kMinusInfinity ? std::exp(result.log_birth - result.log_new) : 0;
+  double log_cause = result.log_birth;
+  const double over_clutter = phantomDensity(m.position, scan);
+  if (over_clutter > 0) {
+    const double log_phantom = result.log_clutter + std::log(over_clutter);
+    log_cause = logAddExp(result.log_birth, log_phantom);
+    result.log_new = logAddExp(result.log_new, log_phantom);
+    if (log_cause > kMinusInfinity) result.phantom = std::exp(log_phantom - log_cause);
+  }
+  result.existence = result.log_new > kMinusInfinity ? std::exp(log_cause - result.log_new) : 0;
   if (model.params.sampled_births && result.existence > 0) result.existence = 1;
   return result;
 }

@@ -89,8 +89,10 @@ struct Track {
   Stamp birth, stamp;         ///< of the first measurement; of the state
   Stamp last_in_view;         ///< last scan in whose field of view it was
   Stamp last_lane;            ///< last update by the lane prior; 0 = never
-  double existence = 0;       ///< probability that it is a real object
-  Bank bank;                  ///< one filter a class
+  double existence = 0;       ///< probability that its detections have a cause that goes on
+  /// Probability that this cause is no object but a phantom in a wake, given existence.
+  double phantom = 0;
+  Bank bank;  ///< one filter a class
   ClassId decided_class =
       -1;  ///< if >= 0 only this class's filter is updated ([filter] decide_class)
   std::vector<double> log_class;  ///< log class probabilities given existence; normalized
@@ -111,6 +113,8 @@ struct Track {
   /// FilterModel::history > 0.
   std::weak_ptr<const Track> previous;
 
+  /// Probability that it is a real object.
+  double real() const { return existence * (1 - phantom); }
   /// Index of the most probable class.
   ClassId likeliestClass() const;
   /// Whether the class's filter is updated.

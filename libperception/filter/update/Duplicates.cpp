@@ -55,6 +55,7 @@ TrackHandle takeOver(const Track& older, const Track& younger) {
   t.id = older.id;
   t.birth = older.birth;
   t.log_class = older.log_class;
+  t.phantom = std::min(older.phantom, younger.phantom);
   t.previous = older.previous;
   for (std::size_t i = 0; i < t.hits.size(); ++i) t.hits[i] += older.hits[i];
   return std::make_shared<const Track>(std::move(t));
@@ -84,7 +85,8 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
       const bool first = feet[i].id < feet[j].id;
       const std::size_t older = first ? i : j, younger = first ? j : i;
       Conflict conflict{older, younger, nullptr};
-      if (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now)
+      if (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now &&
+          tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
         conflict.replacement = takeOver(*tracks[older], *tracks[younger]);
       conflicts_.push_back(std::move(conflict));
     }

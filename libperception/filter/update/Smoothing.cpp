@@ -128,6 +128,7 @@ Track smoothedBefore(const Track& filtered, const Track& newer, const FilterMode
   Track track = filtered;
   track.id = newer.id;
   track.birth = newer.birth;
+  track.phantom = newer.phantom;  // the cause stays the same
   track.height = newer.height;
   if (dt <= 0) {
     track.bank = newer.bank;

@@ -8,6 +8,7 @@
 #include "libperception/core/Chi2.h"
 #include "libperception/core/KalmanUpdate.h"
 #include "libperception/core/LogMath.h"
+#include "libperception/filter/likelihood/PhantomOdds.h"
 #include "libperception/filter/likelihood/RepeatedEvidence.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/update/ClassDecision.h"
@@ -214,6 +215,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   if (look) rememberEvidence(*look, scan, track);
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
+  phantomHit(scan, row.detection, model, track);
   decideClass(model, pair.nis[static_cast<std::size_t>(best)] > surprisingNis(axes_seen), track);
   return track;
 }
@@ -224,7 +226,8 @@ Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementS
   if (row.in_view) track.last_in_view = scan.state.stamp;
   if (row.detection <= 0 || model.params.existence_decay > 0) return track;
   const double r = track.existence;
-  track.existence = r * (1 - row.detection) / (1 - r * row.detection);
+  track.existence = r * (1 - row.seen) / (1 - r * row.seen);
+  phantomMiss(scan, row.detection, track);
   if (const auto look = missedLook(track, scan, row.detection_by_class, row.visible)) {
     const RepeatedEvidence evidence(track, *look, scan, model.params.class_epsilon);
     for (std::size_t j = 0; j < track.log_class.size(); ++j)
@@ -252,6 +255,7 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
   track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
   track.hits[modalityIndex(scan.modality)] = 1;
   track.existence = std::min(births.existence, model.params.existence_max);
+  track.phantom = births.phantom;
   track.log_class = births.log_class;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ObjectClass& c = model.classes[j];

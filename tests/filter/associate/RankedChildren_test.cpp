@@ -26,7 +26,7 @@ struct Scene {
     for (auto& n : table.births) n.log_new = rng.normal(-3, 1);
     for (std::size_t t = 0; t < kTracks; ++t) {
       tracks[t].existence = rng.uniform(0.1, 0.99);
-      table.tracks[t].detection = rng.uniform(0.2, 0.9);
+      table.tracks[t].seen = rng.uniform(0.2, 0.9);
       for (std::size_t m = 0; m < kMeasurements; ++m) {
         if (rng.uniform() > 0.2) continue;
         PairLikelihood pair;
@@ -49,7 +49,7 @@ struct Scene {
       const double r = tracks[t].existence;
       const auto m = std::find(cause.begin(), cause.end(), static_cast<int>(t));
       if (m == cause.end()) {
-        sum += std::log1p(-r * table.tracks[t].detection);
+        sum += std::log1p(-r * table.tracks[t].seen);
         continue;
       }
       for (const auto& pair : table.tracks[t].pairs)

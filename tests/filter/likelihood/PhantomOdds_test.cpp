@@ -1,0 +1,88 @@
+#include "libperception/filter/likelihood/PhantomOdds.h"
+
+#include <gtest/gtest.h>
+
+#include "libperception/filter/CRbpfTracker.h"
+#include "tests/support/FilterWorld.h"
+
+namespace perception {
+namespace {
+
+/// A place that a car left at t = 0, seen at 10 Hz: what is there is at `start`, of speed `speed`.
+struct World {
+  FilterModel model = test::exactModel(test::linearClasses());
+  PositionModel::Params params = test::linearSensor();
+  bool wake = true;
+  Modality modality = Modality::kLidar;
+  Vector2 start = {10, 5};
+  double speed = 0;
+
+  World() {
+    model.proposal = Proposal::kRanked;
+    model.params.existence_max = 0.999, model.params.existence_min = 0.002;
+    model.classes.classes[0].max_speed = 20;
+    params.classes[0].detection = params.classes[1].detection = 0.8;
+    params.clutter_per_scan = 1, params.births_per_scan = 0.1;
+  }
+
+  /// P(a real object) after `seconds` of detections by a lidar and one by `modality` at the end.
+  double realAfter(double seconds) const {
+    CRbpfTracker tracker(model, ParticleFilterParams{}.toMrpt(), 1);
+    const auto sensor = std::make_shared<const PositionModel>(params);
+    const auto wakes = std::make_shared<WakeMap>();
+    VehicleFootprint car;
+    car.stamp = Stamp::fromSeconds(1000);
+    car.center = {12, 5}, car.half_length = 6, car.half_width = 1;
+    wakes->add(car);
+    wakes->density = 1000;  // times the clutter
+    const int scans = static_cast<int>(10 * seconds);
+    for (int k = 1; k <= scans; ++k) {
+      const double t = 0.1 * k;
+      auto scan = test::positionScan(sensor, t, {{start.x() + speed * t, start.y(), 1}});
+      if (k == scans) scan.modality = modality;
+      if (scan.modality != Modality::kLidar) wakes->density = 0;
+      if (wake) scan.wakes = wakes;
+      wakes->advance(scan.state.stamp);
+      EXPECT_TRUE(tracker.process(scan));
+    }
+    double real = 0;
+    for (const auto& track : tracker.mapHypothesis().tracks) real = std::max(real, track->real());
+    return real;
+  }
+};
+
+TEST(PhantomOdds, SprayThatHangsInAWakeIsNoObjectAndWithoutTheWakeItIs) {
+  World world;
+  EXPECT_LT(world.realAfter(0.8), 0.3);
+  world.wake = false;
+  EXPECT_GT(world.realAfter(0.8), 0.95);
+}
+
+TEST(PhantomOdds, WhatIsStillThereWhenTheWakeIsOldIsAnObject) {
+  EXPECT_GT(World().realAfter(3.2), 0.95);
+}
+
+TEST(PhantomOdds, WhatACameraOrARadarSeesIsAnObject) {
+  for (const Modality modality : {Modality::kCamera, Modality::kRadar}) {
+    World world;
+    const double before = world.realAfter(0.4);
+    world.modality = modality;
+    EXPECT_GT(world.realAfter(0.5), 5 * before);
+  }
+}
+
+TEST(PhantomOdds, WhatMovesIsAnObject) {
+  World world;
+  world.speed = 8;
+  EXPECT_GT(world.realAfter(0.8), 0.95);
+}
+
+TEST(PhantomOdds, OutsideOfTheWakeNothingChanges) {
+  World beside, dry;
+  beside.start = dry.start = {10, 12};
+  dry.wake = false;
+  EXPECT_EQ(beside.realAfter(0.5), dry.realAfter(0.5));
+}
+
+}  // namespace
+}  // namespace perception
