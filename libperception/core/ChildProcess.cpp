@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/MemoryLimit.h"
 
 namespace perception {
 namespace {
@@ -63,7 +64,8 @@ ChildProcess::ChildProcess(const ChildCommand& command) : limit_(command.seconds
   process_ = ::fork();
   if (process_ == 0) {
     if (::getppid() != parent) ::_exit(kNoProgram);
-    become(words.data(), command.folder.c_str(), output, command.memory, command.processor_seconds);
+    become(words.data(), command.folder.c_str(), output,
+           MemoryLimit::supported() ? command.memory : 0, command.processor_seconds);
   }
   const int reason = errno;
   ::close(output);

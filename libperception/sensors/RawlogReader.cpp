@@ -30,8 +30,8 @@ struct EntryHeader {
 };
 
 constexpr std::size_t kHeaderBytes = 4 + 127;
-/// [bytes] of memory that reading one entry may take: 50 million points and half as much again.
-constexpr std::uint64_t kLargestEntry = 1500ULL << 20;
+/// [MiB] of memory that reading one entry may take: 15 million points and half as much again.
+constexpr std::uint64_t kLargestEntry = 400;
 
 bool isNameCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -213,11 +213,11 @@ bool RawlogReader::readEntry() {
   mrpt::serialization::CSerializable::Ptr object;
   try {
     const ReadingScope scope(path_, entry_offset_);
-    const MemoryLimit limit(addressSpace() + kLargestEntry);
+    const MemoryLimit limit(addressSpace() + (kLargestEntry << 20));
     object = input_->ReadObject();
   } catch (const std::bad_alloc&) {
-    finish(End::kDamaged,
-           fmt::format("entry of class '{}' needs more memory than available", header->class_name));
+    finish(End::kDamaged, fmt::format("entry of class '{}' needs more than {} MiB of memory",
+                                      header->class_name, kLargestEntry));
     return false;
   } catch (const std::exception& e) {
     finishAtFault(header->class_name, e.what());

@@ -64,7 +64,7 @@ std::function<void()> reading(std::function<void()> what) {
 
 void crash() { ::raise(SIGSEGV); }
 void hang() {
-  for (volatile int i = 0;; i = i + 1) {
+  for (volatile unsigned i = 0;; i = i + 1) {
   }
 }
 

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/MemoryLimit.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {
@@ -65,6 +66,7 @@ TEST_F(Children, EndAtTheirLimitOfProcessorTime) {
 }
 
 TEST_F(Children, KnowTheirMemoryLimit) {
+  if (!MemoryLimit::supported()) GTEST_SKIP() << "no memory limit beneath this sanitizer";
   ChildCommand command = shell("ulimit -v");
   command.memory = 1024ULL * 1000000;
   ChildProcess child(command);

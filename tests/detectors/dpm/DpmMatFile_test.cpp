@@ -30,8 +30,10 @@ matvar_t* text(const char* name, std::string value) {
 }
 /// A struct array: one inner list an element, fields in one order.
 matvar_t* structs(const char* name, const std::vector<std::vector<matvar_t*>>& elements) {
+  std::vector<std::string> names;  // copies: setting a field gives its variable another name
+  for (const matvar_t* v : elements[0]) names.emplace_back(v->name);
   std::vector<const char*> fields;
-  for (const matvar_t* v : elements[0]) fields.push_back(v->name);
+  for (const auto& n : names) fields.push_back(n.c_str());
   std::size_t dims[2] = {1, elements.size()};
   matvar_t* out =
       Mat_VarCreateStruct(name, 2, dims, fields.data(), static_cast<unsigned>(fields.size()));
