@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "libperception/core/MemoryLimit.h"
 #include "libperception/pipeline/Progress.h"
 #include "tests/batch/BatchFixture.h"
 
@@ -79,6 +80,7 @@ TEST_F(RunsOfABatch, OneThatWaitsForEverCostsItsOwnShardAndMayBeTriedAgain) {
 }
 
 TEST_F(RunsOfABatch, MemoryIsLimited) {
+  if (!MemoryLimit::supported()) GTEST_SKIP() << "no memory limit beneath this sanitizer";
   batch.limits.memory = 1;
   for (const char* id : {"a", "bad", "c"}) addShard(id);
   // tail keeps what has no line end: 2 GB.

@@ -44,7 +44,7 @@ inline std::string gunzip(const std::string& path) {
 template <class Number>
 std::vector<Number> numbersOf(const std::string& bytes) {
   std::vector<Number> numbers(bytes.size() / sizeof(Number));
-  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
   return numbers;
 }
 

@@ -46,6 +46,12 @@ matvar_t* cells(const char* name, std::vector<matvar_t*> values) {
   std::size_t dims[2] = {1, values.size()};
   return Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, dims, values.data(), 0);
 }
+void writeAndFree(const std::string& path, matvar_t* variable) {
+  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
+  Mat_VarWrite(file, variable, MAT_COMPRESSION_NONE);
+  Mat_Close(file);
+  Mat_VarFree(variable);
+}
 
 std::vector<double> weights(const std::size_t (&size)[2], double seed) {
   std::vector<double> w(size[0] * size[1] * 32);
@@ -104,9 +110,7 @@ std::string writeModel(const TemporaryFolder& folder, int release) {
   }
   matvar_t* model = structs("model", {fields});
   const std::string path = folder / ("release" + std::to_string(release) + ".mat");
-  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
-  Mat_VarWrite(file, model, MAT_COMPRESSION_NONE);
-  Mat_Close(file);
+  writeAndFree(path, model);
   return path;
 }
 
@@ -177,10 +181,7 @@ TEST(DpmMatFile, AMirroredBlockOfReleaseFiveIsTurnedRound) {
 TEST(DpmMatFile, SaysWhatIsMissing) {
   const TemporaryFolder folder;
   const std::string path = folder / "empty.mat";
-  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
-  Mat_VarWrite(file, structs("model", {{text("class", "x"), numbers("sbin", {8})}}),
-               MAT_COMPRESSION_NONE);
-  Mat_Close(file);
+  writeAndFree(path, structs("model", {{text("class", "x"), numbers("sbin", {8})}}));
   try {
     readDpmModel(path);
     FAIL() << "a model without filters was read";
