@@ -4,9 +4,13 @@
 //   FAILING_AT      number of the call that fails, 1 is the first; 0: none
 //   FAILING_MODE    once (default) or on: all from that one on
 //   FAILING_REPORT  file to which each process appends its number of calls as it ends
+//   FAILING_PLACES  file to which each process appends the number of the first call from each
+//   place:
+//                   each sequence of the six innermost callers
 // Standard error is not counted. Other programs that are started (ffmpeg, gnuplot) are left alone.
 // A process that is forked goes on counting where its parent was.
 #include <dlfcn.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
@@ -15,6 +19,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -38,10 +43,44 @@ bool failing_on = false;
 std::atomic<long> calls{0};
 int (*real_main)(int, char**, char**) = nullptr;
 
+constexpr int kCallers = 6, kOwnFrames = 3;
+constexpr std::size_t kMostPlaces = 1 << 16;
+struct Place {
+  std::uint64_t hash = 0;  ///< 0: none
+  long first = 0;          ///< number of the first call
+};
+Place places[kMostPlaces];
+bool places_wanted = false;
+std::atomic_flag places_taken = ATOMIC_FLAG_INIT;
+/// No memory is asked for to reach it, and the search for callers may ask for some.
+__attribute__((tls_model("initial-exec"))) thread_local bool in_place = false;
+
+__attribute__((noinline)) void remember(long number) {
+  if (!places_wanted || in_place) return;
+  in_place = true;
+  void* callers[kCallers + kOwnFrames];
+  const int count = ::backtrace(callers, kCallers + kOwnFrames);
+  std::uint64_t hash = 1469598103934665603ULL;  // FNV-1a, by words
+  for (int i = kOwnFrames; i < count; ++i)
+    hash = (hash ^ reinterpret_cast<std::uintptr_t>(callers[i])) * 1099511628211ULL;
+  while (places_taken.test_and_set()) {
+  }
+  std::size_t at = hash % kMostPlaces;
+  for (std::size_t tries = 0; tries < kMostPlaces; ++tries, at = (at + 1) % kMostPlaces) {
+    if (places[at].hash == hash) break;
+    if (places[at].hash != 0) continue;
+    places[at] = {hash, number};
+    break;
+  }
+  places_taken.clear();
+  in_place = false;
+}
+
 /// True if this call is to fail.
-bool fails(Kind kind) {
+__attribute__((noinline)) bool fails(Kind kind) {
   if (kind != failing_kind) return false;
   const long number = ++calls;
+  remember(number);
   return failing_at > 0 && (number == failing_at || (failing_on && number > failing_at));
 }
 
@@ -50,19 +89,34 @@ Function next(Function, const char* name) {
   return reinterpret_cast<Function>(::dlsym(RTLD_NEXT, name));
 }
 
-void report() {
-  const char* path = std::getenv("FAILING_REPORT");
-  if (path == nullptr || failing_kind == Kind::kNone) return;
+/// A number and a line end, by calls that are not counted.
+void append(int file, long value) {
   char text[32];
-  long value = calls;
   int at = sizeof text;
   text[--at] = '\n';
   do text[--at] = static_cast<char>('0' + value % 10);
   while ((value /= 10) > 0);
-  const auto file =
-      static_cast<int>(::syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_APPEND, 0666));
-  if (file < 0) return;
   ::syscall(SYS_write, file, text + at, sizeof text - static_cast<unsigned>(at));
+}
+
+int appended(const char* path) {
+  if (path == nullptr) return -1;
+  return static_cast<int>(
+      ::syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_APPEND, 0666));
+}
+
+void report() {
+  if (failing_kind == Kind::kNone) return;
+  const long value = calls;
+  int file = appended(std::getenv("FAILING_REPORT"));
+  if (file >= 0) {
+    append(file, value);
+    ::syscall(SYS_close, file);
+  }
+  file = appended(std::getenv("FAILING_PLACES"));
+  if (file < 0) return;
+  for (const Place& place : places)
+    if (place.hash != 0) append(file, place.first);
   ::syscall(SYS_close, file);
 }
 
@@ -82,6 +136,9 @@ int mainThatFails(int argc, char** argv, char** environment) {
   std::atexit(&report);
   const Kind kind = kindOf(std::getenv("FAILING_CALLS"));
   ::unsetenv("LD_PRELOAD");  // not of what it starts
+  places_wanted = std::getenv("FAILING_PLACES") != nullptr;
+  void* first[1];
+  if (places_wanted) ::backtrace(first, 1);  // loads the unwinder
   failing_kind = kind;
   const int code = real_main(argc, argv, environment);
   report();

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
+#include <numeric>
 #include <set>
 #include <string>
 #include <tuple>
@@ -22,16 +22,13 @@ Workshop& workshop() {
   return made;
 }
 
-/// 1 ... calls. Of memory, of which a program asks some hundred thousand times, the first ones and
-/// about as many at equal distances to the end.
-std::vector<long> numbersOf(const std::string& kind, long calls) {
-  constexpr long kFirst = 150;
-  std::vector<long> out;
+/// 1 ... calls. Of memory, of which a program asks some hundred thousand times, the first call from
+/// each place.
+std::vector<long> numbersOf(const Job& job, const std::string& kind, long calls) {
   if (!isWhole()) return {(calls + 1) / 2, calls};
-  const long all = kind == "memory" ? std::min(calls, kFirst) : calls;
-  for (long i = 1; i <= all; ++i) out.push_back(i);
-  for (long i = 1; i <= kFirst && all < calls; ++i)
-    out.push_back(all + std::max(1L, (calls - all) * i / kFirst));
+  if (kind == "memory") return workshop().firstCalls(job, kind);
+  std::vector<long> out(static_cast<std::size_t>(calls));
+  std::iota(out.begin(), out.end(), 1L);
   return out;
 }
 
@@ -82,9 +79,9 @@ TEST_P(FailingCalls, EndWithACodeOfTheTableAndNoTornFile) {
   std::size_t runs = 0;
   for (const bool on : {false, true}) {
     if (on && (!isWhole() || (kind != "write" && kind != "sync"))) continue;  // as on a full disk
-    for (const long at : numbersOf(kind, calls)) {
+    for (const long at : numbersOf(job, kind, calls)) {
       ++runs;
-      EXPECT_EQ(faultOf(job, {kind, at, on, ""}), "")
+      EXPECT_EQ(faultOf(job, {kind, at, on, "", ""}), "")
           << name << ": call " << at << " of " << calls << " (" << kind
           << (on ? ", and all later ones)" : ")");
     }

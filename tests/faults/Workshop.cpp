@@ -62,6 +62,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     ::setenv("FAILING_AT", std::to_string(failing.at).c_str(), 1);
     ::setenv("FAILING_MODE", failing.on ? "on" : "once", 1);
     if (!failing.report.empty()) ::setenv("FAILING_REPORT", failing.report.c_str(), 1);
+    if (!failing.places.empty()) ::setenv("FAILING_PLACES", failing.places.c_str(), 1);
   }
   std::vector<char*> argv;
   for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));
@@ -251,6 +252,19 @@ long Workshop::calls(const Job& job, const std::string& kind) const {
   long most = 0;
   for (long number = 0; file >> number;) most = std::max(most, number);
   return most;
+}
+
+std::vector<long> Workshop::firstCalls(const Job& job, const std::string& kind) const {
+  const TemporaryFolder out;
+  FailingCall counted;
+  counted.kind = kind;
+  counted.places = folder_ / "places";
+  fs::remove(counted.places);
+  run(job, out.path(), counted);
+  std::ifstream file(counted.places);
+  std::set<long> numbers;
+  for (long number = 0; file >> number;) numbers.insert(number);
+  return {numbers.begin(), numbers.end()};
 }
 
 }  // namespace perception::test

@@ -25,7 +25,8 @@ struct FailingCall {
   std::string kind;    ///< write, sync, rename, open, memory; empty: none
   long at = 0;         ///< its number; 0: none, calls are counted
   bool on = false;     ///< all calls from that one on
-  std::string report;  /// < file of the numbers of calls
+  std::string report;  ///< file of the numbers of calls
+  std::string places;  ///< file of the numbers of the first call from each place
 };
 
 /// What is done to a running program.
@@ -61,6 +62,8 @@ class Workshop {
              const Blow& blow = {}) const;
   /// Number of calls of that kind; of the process with most.
   long calls(const Job& job, const std::string& kind) const;
+  /// Number of the first call of that kind from each place in any of its processes, in order.
+  std::vector<long> firstCalls(const Job& job, const std::string& kind) const;
 
  private:
   void makeInputs();
