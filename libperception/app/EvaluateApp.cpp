@@ -46,6 +46,10 @@ void EvaluateApp::declareInputs(CLI::App& cli) {
          "truth of the log, FILE.truth.csv; {log} stands for the name of a run's log, {run} "
          "for that of its folder")
       ->type_name("FILE");
+  cli.add_option("--truth-poses", truth_poses,
+                 "run of the same log with the poses that the truth was made with, where those of "
+                 "-r are odometry: truth counts as it is before the vehicle")
+      ->type_name("DIR");
   cli.add_option("--manifest", manifest,
                  "instead of both: CSV with the columns condition,run,truth; paths from its folder")
       ->type_name("FILE");
@@ -126,6 +130,7 @@ std::string EvaluateApp::command() const {
   std::string text = name();
   for (const std::string& run : runs) text += " -r " + run;
   if (!truth_file.empty()) text += " -t " + truth_file;
+  if (!truth_poses.empty()) text += " --truth-poses " + truth_poses;
   if (!manifest.empty()) text += " --manifest " + manifest;
   text += fmt::format(
       " --range {:g} --fov-deg {:g} --min-points {} --max-occluded {} --tolerance {:g} --exclusion "
@@ -182,6 +187,12 @@ EvaluatedRun EvaluateApp::evaluateEntry(const RunEntry& entry, const std::string
   stopIfAsked();
   const GroundTruth& known = truth(entry.truth);
   const TrackedRun run = readTrackedRun(entry.dir);
+  if (const auto& poses = params.alignment.truth_poses;
+      poses && poses->first_stamp != run.first_stamp)
+    throw DataError(
+        fmt::format("--truth-poses {}: not a run of the log of {}: the first stamps "
+                    "differ",
+                    truth_poses, entry.dir));
   EvaluatedRun evaluated{name, entry.dir, evaluate(run, known, params)};
   if (!reference.empty())
     evaluated.count_difference = countDifference(run, readTrackedRun(reference));
@@ -295,6 +306,8 @@ void EvaluateApp::run() {
   params.selection.fov = radians(fov_deg);
   params.selection.complete_fov = radians(complete_fov_deg);
   if (without_truth) return judgeQuality();
+  if (!truth_poses.empty())
+    params.alignment.truth_poses = std::make_shared<TrackedRun>(readTrackedRun(truth_poses));
   out_report = emptyReport();
   addPaperRows();
   evaluateRuns();

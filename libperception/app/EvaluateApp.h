@@ -16,6 +16,7 @@ class EvaluateApp : public App {
   std::vector<std::string> runs;  ///< -r: folders of perception-track, or CONDITION=PATTERN of such
   std::string
       truth_file;  ///< -t; {log} and {run} are replaced by the names of a run's log and folder
+  std::string truth_poses;              ///< --truth-poses: run with the poses of the truth's world
   std::string manifest;                 ///< --manifest: CSV with the columns condition, run, truth
   std::string reference;                ///< --reference: reference run of the number of objects
   std::vector<std::string> front_ends;  ///< --front-end: labels of sensors, or patterns of them

@@ -32,6 +32,7 @@ nlohmann::json jsonOf(const fs::path& path) {
 nlohmann::json linesOf(const fs::path& path) {
   nlohmann::json all = nlohmann::json::array();
   std::istringstream lines(contentsOf(path));
+  lines.exceptions(std::ios::badbit);  // a lack of memory is no end
   for (std::string line; std::getline(lines, line);) {
     try {
       all.push_back(nlohmann::json::parse(line));

@@ -236,8 +236,7 @@ void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
   }
   for (const std::string& file : grid_files) {
     createFolder(fs::path(file).parent_path().string());
-    saveGrid(shown_[0].sensors->grid(), file);
-    markFile(file, mark_);
+    writeFile(file, withMark(gridFileOf(shown_[0].sensors->grid(), file), mark_));
     fmt::print("{}\n", file);
     out_files.push_back(file);
   }

@@ -72,6 +72,7 @@ std::string SlurmQueue::call(const std::vector<std::string>& words) const {
 
 std::size_t SlurmQueue::mostTasks() const {
   std::istringstream lines(call({"scontrol", "show", "config"}));
+  lines.exceptions(std::ios::badbit);  // a lack of memory is no end
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("MaxArraySize", 0) != 0) continue;
     const auto number = line.find_first_of("0123456789");
@@ -84,6 +85,7 @@ std::set<std::size_t> SlurmQueue::queued() const {
   std::istringstream lines(
       call({"squeue", "--noheader", "--array", "--name", name_, "--states",
             "PENDING,CONFIGURING,RUNNING,COMPLETING,SUSPENDED,REQUEUED", "--format", "%K %k %r"}));
+  lines.exceptions(std::ios::badbit);
   std::set<std::size_t> places;
   std::size_t task = 0, offset = 0;
   for (std::string line; std::getline(lines, line);) {

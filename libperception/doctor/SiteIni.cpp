@@ -165,7 +165,7 @@ std::string vehicleLines(const LogSurvey& survey, const SensorFacts& lidar) {
 std::string lidarSection(const LogSurvey& survey, const std::string& label,
                          const SensorFacts& facts, const SiteFiles& files) {
   const double range = std::clamp(tens(facts.rangeBelow(kNearlyAll)), 10.0, kClusterRange);
-  std::string out = section(label, "lidar", 'L', 2, 0.5, range, 360);
+  std::string out = section(label, "lidar", 'L', 2, 0.5, range, fieldOf(facts.angleOf(kNearlyAll)));
   out += fmt::format("label_exponent = 0.05\n");
   if (!files.model.empty()) out += "detection_exponent = 0.02\n";
   out += mountingLine(survey, facts);

@@ -95,6 +95,25 @@ class TruthByTime {
   std::vector<bool>& used_;
 };
 
+/// The vehicle's pose in the truth's world at the stamp of a scene.
+std::optional<Pose3> truthPose(const TrackedRun& poses, Stamp stamp) {
+  auto ego = egoAt(poses, stamp);
+  for (const double off : {-kSameInstant, kSameInstant})  // at the ends
+    if (!ego) ego = egoAt(poses, stamp + off);
+  return ego ? std::optional(ego->T_world_ego) : std::nullopt;
+}
+
+void transform(const Pose3& T, std::vector<TruthObject>& objects) {
+  for (TruthObject& object : objects) {
+    object.position = T * object.position;
+    const Vector3 ahead = T.linear() * Vector3(std::cos(object.yaw), std::sin(object.yaw), 0);
+    object.yaw = std::atan2(ahead.y(), ahead.x());
+    const Vector3 v = T.linear() * Vector3(object.vx, object.vy, 0);
+    object.vx = v.x();
+    object.vy = v.y();
+  }
+}
+
 }  // namespace
 
 TruthAlignment alignTruth(const TrackedRun& run, const GroundTruth& truth,
@@ -126,6 +145,11 @@ TruthAlignment alignTruth(const TrackedRun& run, const GroundTruth& truth,
     if (!known && options.empty_frames) {
       known = true;
       ++alignment.assumed_empty;
+    }
+    if (known && options.truth_poses) {
+      const auto pose = truthPose(*options.truth_poses, scene.stamp);
+      known = pose.has_value();
+      if (pose) transform(scene.ego.T_world_ego * pose->inverse(), instant.objects);
     }
     if (known) {
       alignment.instants.push_back(std::move(instant));

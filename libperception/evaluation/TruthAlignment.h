@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
@@ -13,6 +14,9 @@ struct AlignmentOptions {
       0.06;  ///< [s] largest distance in time between a scene and its nearest truth instant
   bool empty_frames =
       false;  ///< true: a scene without truth lines has no objects; false: its truth is unknown
+  /// Of a run whose world frame is not that of the truth (its poses are odometry): another run of
+  /// the same log, by the poses that the truth was made with. Null: both have one world frame.
+  std::shared_ptr<const TrackedRun> truth_poses;
 };
 
 /// The truth at the instant of one scene.
@@ -32,7 +36,8 @@ struct TruthAlignment {
 
 /// By frame number if both have one, else by time: the truth at the same stamp (within 1 us), or
 /// interpolated between the two neighboring instants if these are at most twice the limit apart,
-/// else the nearest one within the limit, extrapolated by its velocity.
+/// else the nearest one within the limit, extrapolated by its velocity. With `truth_poses` every
+/// object is then where the vehicle of that run sees it, put before the vehicle of this run.
 TruthAlignment alignTruth(const TrackedRun& run, const GroundTruth& truth,
                           const AlignmentOptions& options);
 

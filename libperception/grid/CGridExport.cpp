@@ -94,19 +94,7 @@ std::string pngOf(const mrpt::maps::COccupancyGridMap2D& map) {
   return {bytes.begin(), bytes.end()};
 }
 
-}  // namespace
-
-void saveGrid(const SafetyGrid& grid, const std::string& file) {
-  if (endsWith(file, ".ot") || endsWith(file, ".bt")) {
-    saveOctree(grid, file);
-  } else if (endsWith(file, ".gridmap.gz") || endsWith(file, ".png")) {
-    saveGround(grid, file);
-  } else {
-    throw Error(ExitCode::kUsage, file + ": expected a grid as .ot, .bt, .gridmap.gz or .png");
-  }
-}
-
-void saveOctree(const SafetyGrid& grid, const std::string& file) {
+std::string octreeFile(const SafetyGrid& grid, const std::string& name) {
   octomap::OcTree tree(grid.params().resolution);
   tree.setClampingThresMin(octomap::probability(grid.params().low));
   tree.setClampingThresMax(octomap::probability(grid.params().high));
@@ -116,12 +104,13 @@ void saveOctree(const SafetyGrid& grid, const std::string& file) {
   tree.updateInnerOccupancy();
   tree.prune();
   std::ostringstream bytes;
-  const bool made = endsWith(file, ".bt") ? tree.writeBinary(bytes) : tree.write(bytes);
-  if (!made || !bytes) throw Error(ExitCode::kInternal, file + ": OctoMap does not write the tree");
-  writeWhole(file, bytes.str());
+  bytes.exceptions(std::ios::badbit);  // a lack of memory is no end
+  const bool made = endsWith(name, ".bt") ? tree.writeBinary(bytes) : tree.write(bytes);
+  if (!made || !bytes) throw Error(ExitCode::kInternal, name + ": OctoMap does not write the tree");
+  return bytes.str();
 }
 
-void saveGround(const SafetyGrid& grid, const std::string& file) {
+std::string groundFile(const SafetyGrid& grid, const std::string& name) {
   const auto cells = grid.knownCells();
   const double resolution = grid.params().resolution;
   Vector2 low(-1, -1), high(1, 1);  // [m] a small empty map when no cell is known
@@ -136,10 +125,22 @@ void saveGround(const SafetyGrid& grid, const std::string& file) {
                                       static_cast<float>(resolution));
   for (const auto& [place, log_odds] : groundOf(cells, resolution, corner))
     map.setCell(place.first, place.second, static_cast<float>(1 / (1 + std::exp(log_odds))));
-  if (endsWith(file, ".png")) return writeWhole(file, pngOf(map));
+  if (endsWith(name, ".png")) return pngOf(map);
   mrpt::io::CMemoryStream bytes;
   mrpt::serialization::archiveFrom(bytes) << map;
-  writeWhole(file, gzipped(bytes));
+  return gzipped(bytes);
+}
+
+}  // namespace
+
+std::string gridFileOf(const SafetyGrid& grid, const std::string& name) {
+  if (endsWith(name, ".ot") || endsWith(name, ".bt")) return octreeFile(grid, name);
+  if (endsWith(name, ".gridmap.gz") || endsWith(name, ".png")) return groundFile(grid, name);
+  throw Error(ExitCode::kUsage, name + ": expected a grid as .ot, .bt, .gridmap.gz or .png");
+}
+
+void saveGrid(const SafetyGrid& grid, const std::string& file) {
+  writeWhole(file, gridFileOf(grid, file));
 }
 
 }  // namespace perception

@@ -5,14 +5,12 @@
 
 namespace perception {
 
-/// Exports a grid for other programs; throws OutputError when a file cannot be written. OctoMap's
-/// octree: FILE.ot with log-odds, FILE.bt with occupied and free only (octovis).
-void saveOctree(const SafetyGrid& grid, const std::string& file);
-/// MRPT's COccupancyGridMap2D (FILE.gridmap.gz, gridmap tools) or an image of it (FILE.png): a
-/// ground cell is occupied when one of its cells is, else free when one is known.
-void saveGround(const SafetyGrid& grid, const std::string& file);
-/// Selects the format by the extension: .ot, .bt, .gridmap.gz, .png; throws a usage error for
-/// others.
+/// A grid as a file for other programs, by the extension of its name. OctoMap's octree: .ot with
+/// log-odds, .bt with occupied and free only (octovis). MRPT's COccupancyGridMap2D (.gridmap.gz,
+/// gridmap tools) or an image of it (.png): a ground cell is occupied when one of its cells is,
+/// else free when one is known. Throws a usage error for other names.
+std::string gridFileOf(const SafetyGrid& grid, const std::string& name);
+/// Writes it. Throws OutputError.
 void saveGrid(const SafetyGrid& grid, const std::string& file);
 
 }  // namespace perception

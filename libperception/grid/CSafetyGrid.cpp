@@ -118,10 +118,8 @@ bool CSafetyGrid::internal_insertObservation(
 }
 
 void CSafetyGrid::saveMetricMapRepresentationToFile(const std::string& prefix) const {
-  saveOctree(*grid_, prefix + ".ot");
-  saveOctree(*grid_, prefix + ".bt");
-  saveGround(*grid_, prefix + ".gridmap.gz");
-  saveGround(*grid_, prefix + ".png");
+  for (const char* ending : {".ot", ".bt", ".gridmap.gz", ".png"})
+    saveGrid(*grid_, prefix + ending);
 }
 
 void CSafetyGrid::getVisualizationInto(mrpt::opengl::CSetOfObjects& scene) const {

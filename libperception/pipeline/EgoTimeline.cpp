@@ -14,6 +14,7 @@ namespace {
 
 /// [m/s] growth of the position's standard deviation without poses; assumed.
 constexpr double kGapDrift = 1.0;
+constexpr double kLongestStart = 1.0;  ///< [s] that odometry is waited for; assumed
 
 }  // namespace
 
@@ -86,6 +87,13 @@ bool EgoTimeline::isBlindGap(Stamp stamp) {
   return true;
 }
 
+bool EgoTimeline::isStarting(Stamp stamp) {
+  if (!params_.isOdometry()) return false;
+  if (!start_) start_ = stamp;
+  const bool is_known = !pose_.empty() && pose_.earliest() < pose_.latest();
+  return !is_known && stamp - *start_ < kLongestStart;
+}
+
 EgoState EgoTimeline::at(Stamp stamp) {
   if (pose_.empty()) {
     if (!none_reported_)
@@ -117,6 +125,7 @@ void EgoTimeline::clear() {
   odometry_.clear();
   radar_odometry_.clear();
   last_seen_.reset();
+  start_.reset();
   none_reported_ = false;
   in_gap_ = in_jump_ = in_invalid_ = in_lost_ = false;
 }

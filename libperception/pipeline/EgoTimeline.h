@@ -32,6 +32,9 @@ class EgoTimeline {
   bool isBlindGap(Stamp stamp);
   /// The same with [ego] source = radar, from all radar frames of an instant (method.md 1.8).
   void addRadars(const std::vector<const SensorFrame*>& frames);
+  /// True while odometry has no motion yet, for a second at most: the vehicle may be fast, so no
+  /// frame is used before.
+  bool isStarting(Stamp stamp);
   EgoState at(Stamp stamp);
   /// A frame of this stamp was used.
   void setSeen(Stamp stamp) { last_seen_ = stamp; }
@@ -45,6 +48,7 @@ class EgoTimeline {
   LidarOdometry odometry_;
   RadarOdometry radar_odometry_;
   std::optional<Stamp> last_seen_;
+  std::optional<Stamp> start_;     ///< of the odometry
   std::uint64_t frame_epoch_ = 0;  ///< EgoPose::frameEpoch() of the tracks
   bool none_reported_ = false;     ///< the event "no pose yet"
   bool in_gap_ = false, in_jump_ = false, in_invalid_ = false, in_lost_ = false;

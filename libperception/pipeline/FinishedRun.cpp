@@ -77,6 +77,7 @@ class Sha256 {
 std::vector<std::string> filesNamedIn(const std::string& ini) {
   std::vector<std::string> out;
   std::istringstream lines(ini);
+  lines.exceptions(std::ios::badbit);  // a lack of memory is no end
   for (std::string line; std::getline(lines, line);) {
     const auto equals = line.find(" = ");
     if (line.empty() || line[0] == ';' || equals == std::string::npos) continue;

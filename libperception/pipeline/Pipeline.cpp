@@ -155,11 +155,21 @@ std::optional<Scene> Pipeline::next(bool flush) {
 /// if there are none.
 bool Pipeline::processNext(bool flush) {
   auto popped = queue_.pop(flush);
-  if (popped.empty()) return false;
-  auto frames = mergeScanners(setup_.sensors, std::move(popped), queue_);
-  if (frames.empty()) return true;
+  if (popped.empty() && !(flush && !waiting_.empty())) return false;
+  if (!popped.empty()) {
+    auto frames = mergeScanners(setup_.sensors, std::move(popped), queue_);
+    if (frames.empty()) return true;
+    addToOdometry(frames);
+    const Stamp stamp = frames.front().stamp;
+    waiting_.push_back(std::move(frames));
+    if (ego_.isStarting(stamp)) return true;
+  }
+  for (; !waiting_.empty(); waiting_.pop_front()) processFrames(std::move(waiting_.front()));
+  return true;
+}
+
+void Pipeline::processFrames(std::vector<SensorFrame> frames) {
   const Stamp stamp = frames.front().stamp;
-  addToOdometry(frames);
   while (const auto earlier = outputs_.takeBefore(stamp))
     addOutput(egoAt(*earlier), frame_numbers_.at(*earlier));
   if (ego_.isBlindGap(stamp)) restartTracks();
@@ -176,7 +186,6 @@ bool Pipeline::processNext(bool flush) {
   ego_.setSeen(stamp);
   if (setup_.run.output_lag > 0) makeScenes(stamp);
   if (isOutput(stamp)) addOutput(ego, number);
-  return true;
 }
 
 /// Scans of the first lidar in use, or of one that gives the ground; all radars in use.

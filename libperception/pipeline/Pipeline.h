@@ -80,6 +80,7 @@ class Pipeline {
   void addFrame(const mrpt::obs::CObservation& observation);
   bool processNext(bool flush);
   void addToOdometry(const std::vector<SensorFrame>& frames);
+  void processFrames(std::vector<SensorFrame> frames);
   bool isOutput(Stamp stamp);
   void processFrame(std::size_t sensor, SensorFrame& frame);
   EgoState egoAt(Stamp stamp);
@@ -95,6 +96,7 @@ class Pipeline {
   SceneFromPosterior scenes_;
   EgoTimeline ego_;
   FrameQueue queue_;
+  std::deque<std::vector<SensorFrame>> waiting_;  ///< for the first motion; instant by instant
   FrameNumbers frame_numbers_;
   SensorWatch watch_;
   SensorHealth health_;

@@ -103,6 +103,7 @@ PositionTrack readNmea(const std::string& path) {
     fix->t += midnight;
     add(*fix, track);
   }
+  if (file.bad()) throw DataError(path + ": reading failed", ExitCode::kIoError);
   if (sentences == 0) throw DataError(path + ": no NMEA sentence ($...): expected $--GGA lines");
   return track;
 }

@@ -65,6 +65,27 @@ TEST(SiteIni, NamesWhatIsFound) {
   EXPECT_FALSE(lidar.params.pose);
 }
 
+TEST(SiteIni, FieldOfViewIsThatOfTheReturns) {
+  for (const double half : {60., 170.}) {
+    SensorFrame frame;
+    frame.sensor = "LIDAR_FRONT";
+    frame.stamp = Stamp::fromSeconds(1e9);
+    LidarCloud cloud;
+    for (double bearing = -half; bearing <= half; bearing += 0.1) {
+      const double angle = radians(bearing);
+      cloud.x.push_back(static_cast<float>(20 * std::cos(angle)));
+      cloud.y.push_back(static_cast<float>(20 * std::sin(angle)));
+      cloud.z.push_back(0);
+    }
+    frame.data = cloud;
+    LogSurvey survey;
+    survey.look(*observationFromFrame(frame));
+    const PipelineSetup setup = setupOf(survey);
+    EXPECT_NEAR(degrees(setup.sensors[*setup.sensorOf("LIDAR_FRONT")].params.fov),
+                half == 60 ? 120 : 360, 1);
+  }
+}
+
 TEST(SiteIni, PositionsOfNamelessObjectsAreReadWithoutFault) {
   LogSurvey survey;
   for (int k = 0; k < 10; ++k) {

@@ -50,6 +50,26 @@ TEST(TruthAlignment, InterpolatesBetweenNeighbors) {
   EXPECT_EQ(a.truth_without_scene, 0u);
 }
 
+TEST(TruthAlignment, GoesWithTheVehicleIntoAnotherWorld) {
+  TruthObject object = truthAt(1.0, 1, 12);
+  object.vx = 3;
+  object.vy = 0;
+  TrackedRun logged = sceneAt(1.0), odometry = sceneAt(1.0);
+  logged.scenes[0].ego.T_world_ego = makePose(2, 0, 0, 0);  // 10 m behind the object
+  odometry.scenes[0].ego.T_world_ego = makePose(100, 50, 0, kPi / 2);
+  AlignmentOptions options;
+  options.truth_poses = std::make_shared<TrackedRun>(logged);
+  const auto a = alignTruth(odometry, makeGroundTruth({object}), options);
+  ASSERT_EQ(a.instants.size(), 1u);
+  const TruthObject& moved = a.instants[0].objects.at(0);
+  EXPECT_NEAR(moved.position.x(), 100, 1e-9);
+  EXPECT_NEAR(moved.position.y(), 60, 1e-9);
+  EXPECT_NEAR(moved.yaw, kPi / 2, 1e-9);
+  EXPECT_NEAR(moved.vy, 3, 1e-9);
+  options.truth_poses = std::make_shared<TrackedRun>(sceneAt(5.0));
+  EXPECT_EQ(alignTruth(odometry, makeGroundTruth({object}), options).scenes_without_truth, 1u);
+}
+
 TEST(TruthAlignment, HoldsItsLimitOfTime) {
   const auto truth = makeGroundTruth({truthAt(1.0, 1, 10)});
   EXPECT_EQ(alignTruth(sceneAt(1.059), truth, {}).by_time, 1u);

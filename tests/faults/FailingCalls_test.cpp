@@ -34,7 +34,7 @@ std::vector<long> numbersOf(const Job& job, const std::string& kind, long calls)
 
 /// What a program may end with when a call of that kind fails.
 std::set<int> codesOf(const std::string& kind) {
-  if (kind == "memory") return {0, 3, 65, 69, 70, 73, 74, 78};
+  if (kind == "memory") return {0, 3, 65, 66, 69, 70, 73, 74, 78};
   return {0, 73, 74};
 }
 
@@ -51,6 +51,13 @@ std::string faultOf(const Job& job, const FailingCall& failing) {
       failing.kind != "memory")
     return fmt::format("ends with {} without a word: {}", ending.code, ending.said);
   const bool done = ending.code == 0 || ending.code == 3;
+  if (ending.code == 3 && job.code == 0) {  // a result that says what it lacks
+    if (ending.said.find(": warning: ") == std::string::npos) return "warns without a word";
+    const Contents there = contentsOf(out.path());
+    for (const auto& [name, text] : whole)
+      if (there.count(name) == 0) return "ends with 3, " + name + " is missing";
+    return "";
+  }
   std::string fault = faultIn(out.path(), job, whole, done, false);
   if (!fault.empty()) return fmt::format("ends with {}, {}", ending.code, fault);
   if (done || contentsOf(out.path()).empty()) return "";  // as it was before

@@ -113,16 +113,19 @@ TEST_P(CSafetyGridOf, IsDrawn) {
 
 TEST(GridExport, AFullDiskIsAnErrorAndAFileIsWholeOrAbsent) {
   const auto grid = makeSafetyGrid(GridParams());
-  for (void (*save)(const SafetyGrid&, const std::string&) : {&saveOctree, &saveGround}) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"full.bt", "full.gridmap.gz"}) {
+    const std::string full = folder / name;
+    std::filesystem::create_symlink("/dev/full", full);
     try {
-      save(*grid, "/dev/full");
+      saveGrid(*grid, full);
       FAIL() << "a full disk was not noticed";
     } catch (const OutputError& error) {
       EXPECT_EQ(error.code(), ExitCode::kIoError);
     }
-    EXPECT_THROW(save(*grid, "/no/such/folder/grid.bt"), OutputError);
+    std::filesystem::remove(full);
+    EXPECT_THROW(saveGrid(*grid, std::string("/no/such/folder/") + name), OutputError);
   }
-  const test::TemporaryFolder folder;
   saveGrid(*grid, folder / "grid.png");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }

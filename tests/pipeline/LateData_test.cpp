@@ -155,6 +155,29 @@ TEST(LateData, WithinTheWindowTheResultIsThatOfTheSortedLogToTheBit) {
   }
 }
 
+TEST(LateData, FramesBeforeOdometryHasAMotionWaitForIt) {
+  const Log start(demoLog().begin(), demoLog().begin() + 60);
+  const Tracked given = track(start), odometry = track(start, "ego.source=lidar");
+  ASSERT_GT(odometry.scenes.size(), 2u);
+  EXPECT_EQ(odometry.scenes.size(), given.scenes.size());
+  EXPECT_EQ(odometry.events.count("ego_gap"), 0u) << odometry.text;
+  const Vector2 first = odometry.scenes[0].ego.velocity;
+  EXPECT_GT(first.norm(), 1);
+  EXPECT_EQ(first, odometry.scenes[1].ego.velocity);  // of the way between them
+}
+
+TEST(LateData, OneScanAloneIsUsedAtTheEndOfTheLog) {
+  Log start;
+  for (const auto& o : demoLog()) {
+    if (o->sensorLabel == "LIDAR_TOP" && !start.empty() &&
+        std::any_of(start.begin(), start.end(),
+                    [](const auto& b) { return b->sensorLabel == "LIDAR_TOP"; }))
+      break;
+    start.push_back(o);
+  }
+  EXPECT_EQ(track(start, "ego.source=lidar").scenes.size(), track(start).scenes.size());
+}
+
 TEST(LateData, BeyondTheWindowIsDroppedAndCountedAtItsSensor) {
   Log late, without;
   std::shared_ptr<mrpt::obs::CObservation> held;
