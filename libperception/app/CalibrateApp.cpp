@@ -15,6 +15,7 @@
 #include "libperception/calibration/ConfidenceStudy.h"
 #include "libperception/calibration/DetectorStudy.h"
 #include "libperception/calibration/TemperingStudy.h"
+#include "libperception/calibration/TracksAsTruth.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/pipeline/LogRecorder.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
@@ -48,12 +49,16 @@ const CalibrateApp::Task CalibrateApp::kTasks[] = {
      &CalibrateApp::confidence},
     {"detector", "detection, labels, clutter and noise of detectors, counted",
      &CalibrateApp::detector},
+    {"gains", "detection, labels, clutter and births of all sensors, with or without truth: an INI",
+     &CalibrateApp::gains},
     {"lidar-classes", "what clusters of lidar returns look like, learned",
      &CalibrateApp::lidarClasses, false, true},
 };
 
 std::string CalibrateApp::description() const {
-  return "Lines for a vehicle's INI from rawlogs with truth (LOG.truth.csv beside LOG.rawlog).";
+  return "Lines for a vehicle's INI from rawlogs with truth (LOG.truth.csv beside LOG.rawlog); "
+         "gains "
+         "also without.";
 }
 
 void CalibrateApp::declare(CLI::App& cli) {
@@ -78,6 +83,8 @@ void CalibrateApp::declare(CLI::App& cli) {
           ->capture_default_str()
           ->check(CLI::Range(0.1, 360.0));
     }
+    if (t.run == &CalibrateApp::gains)
+      sub->add_flag("--no-truth", no_truth, "Do not use a truth that is there");
     if (t.learns) {
       sub->add_option(
              "--complete-fov-deg", complete_fov,
@@ -172,17 +179,32 @@ StudyReport CalibrateApp::confidence() {
   return confidenceStudy(input, std::filesystem::absolute(config_file).string());
 }
 
-StudyReport CalibrateApp::detector() {
+StudyReport CalibrateApp::detector() { return countedDetections(""); }
+
+StudyReport CalibrateApp::gains() {
+  StudyReport report =
+      countedDetections(std::filesystem::absolute(config_file).lexically_normal().string());
+  report.title = "What the sensors see, against the INI";
+  report.remarks.push_back(
+      "Objects without a label are those that the log's own tracks show (method.md 8.15): things, "
+      "and without a truth all. What is never detected is in no track: P_D is too high by that.");
+  return report;
+}
+
+/// `include`: the INI that gains.ini includes; then the log's own tracks take part.
+StudyReport CalibrateApp::countedDetections(const std::string& include) {
   registerPerceptionClasses();
   Config config = loadConfig();
   const PipelineSetup setup = PipelineSetup::read(config);
   DetectorStudyInput input;
   input.classes = setup.model.classes;
+  input.include = include;
   std::map<std::string, std::size_t> labels;
   for (const PipelineSetup::Sensor& sensor : setup.sensors) {
     if (!sensor.active) continue;
     input.labels[sensor.label] = sensor.front_end->labelNames();
     labels[sensor.label] = input.labels[sensor.label].size();
+    input.stated[sensor.label] = sensor.params;
   }
   std::map<std::string, DetectorCounts> counts;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -190,9 +212,23 @@ StudyReport CalibrateApp::detector() {
     const RecordedLog recorded = recordLog(inputs[i], own, seconds);
     input.simulated = input.simulated || recorded.simulated;
     input.logs += (i ? ", " : "") + recorded.name;
-    countDetections(recorded, truthBeside(inputs[i]), i, labels, counts);
+    countDetections(recorded,
+                    include.empty() ? truthBeside(inputs[i]) : labelsOf(recorded, inputs[i]), i,
+                    labels, counts);
   }
   return detectorStudy(input, counts);
+}
+
+/// The truth beside the log, if there is one and it is wanted, with its own tracks.
+GroundTruth CalibrateApp::labelsOf(const RecordedLog& log, const std::string& file) const {
+  const TrackedRun run = replay(log, {log.model.proposal, log.particles.sample_size, seed});
+  const bool hiding = std::any_of(log.entries.begin(), log.entries.end(),
+                                  [](const auto& e) { return e.scan && e.scan->occlusion; });
+  const int occluded = hiding ? 3 : 0;  // 3: not known
+  const std::string truth = truthFileOf(file);
+  return no_truth || !std::filesystem::exists(truth)
+             ? tracksAsTruth(run, occluded)
+             : withTracks(readGroundTruth(truth), run, occluded);
 }
 
 StudyReport CalibrateApp::lidarClasses() {

@@ -6,6 +6,7 @@
 
 #include "libperception/app/App.h"
 #include "libperception/calibration/BoxEvidenceStudy.h"
+#include "libperception/core/GroundTruth.h"
 #include "libperception/evaluation/StudyReport.h"
 #include "libperception/pipeline/RecordedLog.h"
 
@@ -23,6 +24,8 @@ class CalibrateApp : public App {
 
   std::vector<double> complete_fov{360};  ///< lidar-classes: of all logs or one a log [deg]
   std::string license = "that of the logs", date = "not given";  ///< lidar-classes: of the model
+
+  bool no_truth = false;  ///< gains: --no-truth
 
   StudyReport out_report;
 
@@ -46,6 +49,9 @@ class CalibrateApp : public App {
   StudyReport boxes();
   StudyReport confidence();
   StudyReport detector();
+  StudyReport gains();
+  StudyReport countedDetections(const std::string& include);
+  GroundTruth labelsOf(const RecordedLog& log, const std::string& file) const;
   StudyReport lidarClasses();
 };
 

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "libperception/core/Angle.h"
+#include "libperception/evaluation/TruthAlignment.h"
 #include "libperception/evaluation/TruthSelection.h"
 #include "libperception/measurement/FootprintModel.h"
 
@@ -18,6 +19,7 @@ constexpr double kFarthest = 9.0;             // [-] normalized distance at thos
 constexpr double kAbout = 2;                  // [m] of a labeled object: no clutter
 constexpr double kLag = 1, kLagSlack = 0.06;  // [s] lag of the error correlation
 constexpr int kSeenAtMost = 2;                // KITTI's occlusion: 3 is unknown
+constexpr double kWhole = 0.7, kPart = 0.3;   // least shares seen of KITTI's "visible", "partly"
 
 /// A labeled object in a sensor's view.
 struct Candidate {
@@ -37,11 +39,12 @@ Kinematics kinematicsOf(const TruthObject& o) {
 }
 
 /// Labeled objects of the model's classes, with the predicted measurement of each.
-std::vector<Candidate> candidates(const MeasurementScan& scan, const GroundTruth::Instant& instant,
+std::vector<Candidate> candidates(const MeasurementScan& scan,
+                                  const std::vector<TruthObject>& labeled,
                                   const std::vector<std::string>& classes) {
   std::vector<Candidate> out;
   const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
-  for (const TruthObject& o : instant.objects) {
+  for (const TruthObject& o : labeled) {
     const ClassId c = classOfTruth(o.type, classes);
     if (isArea(o) || c < 0 || !std::isfinite(o.length) || !o.position.allFinite()) continue;
     Candidate k{&o, c, kinematicsOf(o), {o.length, o.width, 0, 0}, {}, 0};
@@ -121,68 +124,130 @@ void addErrors(const MeasurementScan& scan, const Measurement& m, const Candidat
   if (m.heading) add("axis", wrapAxis(m.heading->yaw - truth.yaw), m.heading->sigma);
 }
 
-bool nearLabeled(const Measurement& m, const GroundTruth::Instant& instant) {
-  return std::any_of(instant.objects.begin(), instant.objects.end(), [&](const TruthObject& o) {
+bool nearLabeled(const Measurement& m, const std::vector<TruthObject>& labeled) {
+  return std::any_of(labeled.begin(), labeled.end(), [&](const TruthObject& o) {
     return std::isfinite(o.length) && o.position.allFinite() &&
            (o.position.head<2>() - m.position).norm() < std::max(kAbout, 0.5 * o.length);
   });
 }
+
+/// KITTI's occlusion by the share of an object's directions that something nearer hides.
+int occlusionOf(const Candidate& object, const OcclusionMap& hiding, const Vector2& origin,
+                double tolerance) {
+  const double radius = 0.25 * (object.extent.length + object.extent.width);
+  if (object.range <= radius) return 0;
+  const Vector2 d = object.truth->position.head<2>() - origin;
+  const double bearing = std::atan2(d.y(), d.x()), half = std::asin(radius / object.range);
+  const double seen =
+      hiding.visibility(bearing - half, bearing + half, object.range - radius, tolerance);
+  return seen >= kWhole ? 0 : seen >= kPart ? 1 : 2;
+}
+
+/// Scans of one sensor with their instants, as alignTruth() takes them.
+struct SensorScans {
+  TrackedRun instants;
+  std::vector<std::shared_ptr<const MeasurementScan>> scans;
+  std::vector<std::shared_ptr<const OcclusionMap>> hiding;
+
+  void add(Stamp first, std::shared_ptr<const MeasurementScan> scan,
+           std::shared_ptr<const OcclusionMap> map) {
+    instants.first_stamp = first;
+    Scene& scene = instants.scenes.emplace_back();
+    scene.stamp = scan->state.stamp, scene.frame = scan->frame;
+    scans.push_back(std::move(scan));
+    hiding.push_back(std::move(map));
+  }
+};
+
+/// Adds up one sensor's scans of one log.
+class SensorCounter {
+ public:
+  SensorCounter(const RecordedLog& log, std::size_t log_index, const std::string& sensor,
+                std::size_t labels, DetectorCounts& sum)
+      : log_(log), log_index_(log_index), sum_(sum) {
+    for (const ObjectClass& c : log.model.classes.classes) classes_.push_back(c.name);
+    sum_.sensor = sensor;
+    sum_.clutter.resize(labels);
+  }
+
+  void add(const MeasurementScan& scan, const OcclusionMap* hiding,
+           const std::vector<TruthObject>& labeled) {
+    sum_.modality = scan.modality;
+    ++sum_.scans;
+    if (sum_.label.empty()) addTable(scan);
+    const double t = scan.state.stamp - log_.first_stamp;
+    const auto objects = candidates(scan, labeled, classes_);
+    const auto of = match(scan, objects);
+    std::vector<int> label_of(objects.size(), -1);
+    ClutterCount& here = sum_.clutter_scans.emplace_back();
+    here.log = log_index_, here.t = t;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const Measurement& m = scan.measurements[k];
+      if (of[k] < 0) {
+        if (nearLabeled(m, labeled)) continue;
+        ++sum_.clutter[static_cast<std::size_t>(m.label)], ++here.number;
+        continue;
+      }
+      const Candidate& o = objects[static_cast<std::size_t>(of[k])];
+      label_of[static_cast<std::size_t>(of[k])] = m.label;
+      if (o.truth->occluded > kSeenAtMost) continue;
+      addErrors(scan, m, o, {o.class_id, "", o.range, 0, 1, log_index_, o.truth->id, t},
+                sum_.errors);
+    }
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      addChance(scan, hiding, objects[i], label_of[i], t, here);
+  }
+
+ private:
+  void addTable(const MeasurementScan& scan) {
+    for (ClassId c = 0; c < log_.model.classes.size(); ++c) {
+      auto& row = sum_.label.emplace_back();
+      for (std::size_t l = 0; l < sum_.clutter.size(); ++l)
+        row.push_back(std::exp(scan.model->logLabelLikelihood(static_cast<int>(l), c)));
+    }
+  }
+
+  void addChance(const MeasurementScan& scan, const OcclusionMap* hiding, const Candidate& o,
+                 int label, double t, ClutterCount& here) {
+    const double stated =
+        scan.model->detectionProbability(o.class_id, o.kinematics, o.extent, scan.state, 1);
+    int occluded = o.truth->occluded;
+    if (occluded > kSeenAtMost && hiding != nullptr) {
+      const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
+      occluded = occlusionOf(o, *hiding, origin, log_.model.params.occlusion_tolerance);
+    }
+    if (stated <= 0 || occluded > kSeenAtMost || o.truth->ignore) return;
+    sum_.chances.push_back({o.class_id, occluded, o.range, label, stated, log_index_, t});
+    if (label >= 0 && met_.insert(o.truth->id).second) ++sum_.first_seen, ++here.entered;
+  }
+
+  const RecordedLog& log_;
+  std::size_t log_index_;
+  DetectorCounts& sum_;
+  std::vector<std::string> classes_;
+  std::set<std::int64_t> met_;  ///< objects that were detected
+};
 
 }  // namespace
 
 void countDetections(const RecordedLog& log, const GroundTruth& truth, std::size_t log_index,
                      const std::map<std::string, std::size_t>& labels,
                      std::map<std::string, DetectorCounts>& counts) {
-  std::vector<std::string> classes;
-  for (const ObjectClass& c : log.model.classes.classes) classes.push_back(c.name);
-  std::map<std::int64_t, const GroundTruth::Instant*> instants;
-  for (const auto& instant : truth.instants) instants[instant.frame] = &instant;
-  std::map<std::string, std::set<std::int64_t>> met;
+  std::map<std::string, SensorScans> sensors;
+  std::shared_ptr<const OcclusionMap> hiding;
   for (const RecordedLog::Entry& entry : log.entries) {
+    if (entry.kind == RecordedLog::Entry::kRestart) hiding.reset();
     if (entry.kind != RecordedLog::Entry::kScan) continue;
-    const MeasurementScan& scan = *entry.scan;
-    const auto columns = labels.find(scan.sensor);
-    const auto instant = instants.find(scan.frame);
-    if (columns == labels.end() || instant == instants.end()) continue;
-    DetectorCounts& sum = counts[scan.sensor];
-    sum.sensor = scan.sensor, sum.modality = scan.modality;
-    sum.clutter.resize(columns->second);
-    ++sum.scans;
-    if (sum.label.empty()) {
-      for (ClassId c = 0; c < log.model.classes.size(); ++c) {
-        sum.label.emplace_back();
-        for (std::size_t l = 0; l < columns->second; ++l)
-          sum.label.back().push_back(
-              std::exp(scan.model->logLabelLikelihood(static_cast<int>(l), c)));
-      }
-    }
-    const auto objects = candidates(scan, *instant->second, classes);
-    const auto of = match(scan, objects);
-    std::vector<int> label_of(objects.size(), -1);
-    sum.clutter_scans.push_back({log_index, instant->second->t, 0});
-    for (std::size_t k = 0; k < of.size(); ++k) {
-      const Measurement& m = scan.measurements[k];
-      if (of[k] < 0) {
-        if (nearLabeled(m, *instant->second)) continue;
-        ++sum.clutter[static_cast<std::size_t>(m.label)], ++sum.clutter_scans.back().number;
-        continue;
-      }
-      const Candidate& o = objects[static_cast<std::size_t>(of[k])];
-      label_of[static_cast<std::size_t>(of[k])] = m.label;
-      if (o.truth->occluded > kSeenAtMost) continue;
-      addErrors(scan, m, o,
-                {o.class_id, "", o.range, 0, 1, log_index, o.truth->id, instant->second->t},
-                sum.errors);
-    }
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      const Candidate& o = objects[i];
-      const double stated =
-          scan.model->detectionProbability(o.class_id, o.kinematics, o.extent, scan.state, 1);
-      if (stated <= 0 || o.truth->occluded > kSeenAtMost || o.truth->ignore) continue;
-      sum.chances.push_back({o.class_id, o.truth->occluded, o.range, label_of[i], stated, log_index,
-                             instant->second->t});
-      if (met[scan.sensor].insert(o.truth->id).second) ++sum.first_seen;
-    }
+    if (entry.scan->occlusion) hiding = entry.scan->occlusion;
+    if (labels.count(entry.scan->sensor) == 0) continue;
+    sensors[entry.scan->sensor].add(log.first_stamp, entry.scan, hiding);
+  }
+  for (const auto& [label, scans] : sensors) {
+    const auto known = alignTruth(scans.instants, truth, {}).instants;
+    if (known.empty()) continue;
+    SensorCounter counter(log, log_index, label, labels.at(label), counts[label]);
+    for (const TruthAtScene& instant : known)
+      counter.add(*scans.scans[instant.scene], scans.hiding[instant.scene].get(), instant.objects);
   }
 }
 

@@ -37,6 +37,7 @@ struct ClutterCount {
   std::size_t log = 0;
   double t = 0;  ///< [s]
   std::size_t number = 0;
+  std::size_t entered = 0;  ///< labeled objects that the sensor had not detected before
 };
 
 /// Statistics of one sensor's detections against labeled objects.
@@ -44,7 +45,7 @@ struct DetectorCounts {
   std::string sensor;
   Modality modality = Modality::kLidar;
   std::size_t scans = 0,
-              first_seen = 0;  ///< number of scans; number of labeled objects that entered the view
+              first_seen = 0;  ///< number of scans; number of labeled objects that were detected
   std::vector<DetectorChance> chances;
   std::vector<DetectorError> errors;
   std::vector<std::size_t> clutter;         ///< by label: detections on no labeled object
@@ -55,7 +56,9 @@ struct DetectorCounts {
 /// Adds the counts of all sensors of a log. Detections are matched one-to-one, nearest first by
 /// normalized distance with four times the stated standard deviations; those within 2 m or half an
 /// object's size of an unmatched label of any type are not counted as clutter. `labels`: how many
-/// labels each sensor has.
+/// labels each sensor has. Labels are those of the scan's frame, else of its time (alignTruth()).
+/// Where a label does not say how far an object is hidden, the latest scan that shows what hides
+/// objects does; without one the object is no chance.
 void countDetections(const RecordedLog& log, const GroundTruth& truth, std::size_t log_index,
                      const std::map<std::string, std::size_t>& labels,
                      std::map<std::string, DetectorCounts>& counts);

@@ -42,14 +42,28 @@ Interval detectionOf(const DetectorCounts& counts, ClassId c, Pick pick) {
   return shareInterval(valuesOf(blocks));
 }
 
-Interval clutterOf(const DetectorCounts& counts) {
+/// What a scan has, detections on nothing or objects that enter, with its interval.
+Interval rateOf(const DetectorCounts& counts, std::size_t ClutterCount::*what) {
   std::map<std::pair<std::size_t, long>, BlockCount> blocks;
   for (const ClutterCount& scan : counts.clutter_scans) {
     BlockCount& block = blocks[blockOf(scan.log, scan.t)];
-    ++block.chances, block.events += static_cast<double>(scan.number);
+    ++block.chances, block.events += static_cast<double>(scan.*what);
   }
   return rateInterval(valuesOf(blocks));
 }
+
+/// Share of a label among the detections of a class, with its interval.
+Interval labelOf(const DetectorCounts& counts, ClassId c, int label) {
+  std::map<std::pair<std::size_t, long>, BlockCount> blocks;
+  for (const DetectorChance& k : counts.chances) {
+    if (k.class_id != c || k.label < 0) continue;
+    BlockCount& block = blocks[blockOf(k.log, k.t)];
+    ++block.chances, block.events += k.label == label ? 1 : 0;
+  }
+  return shareInterval(valuesOf(blocks));
+}
+
+bool holds(const Interval& i, double value) { return value >= i.low && value <= i.high; }
 
 std::string percent(std::size_t part, std::size_t whole) {
   return whole < kFewest ? "n/a"
@@ -162,11 +176,11 @@ std::string iniOf(const DetectorCounts& counts, const ClassTable& classes,
   const double scans = static_cast<double>(std::max<std::size_t>(counts.scans, 1));
   const std::size_t clutter =
       std::accumulate(counts.clutter.begin(), counts.clutter.end(), std::size_t{0});
-  const Interval rate = clutterOf(counts);
+  const Interval rate = rateOf(counts, &ClutterCount::number);
   std::string text = fmt::format(
       "[sensor.{}]\nclutter_per_scan = {:.3g}   ; {:.3g} to {:.3g}; {} detections on nothing "
       "labeled in {} scans\n"
-      "births_per_scan = {:.3g}   ; {} objects came into view\n",
+      "births_per_scan = {:.3g}   ; {} objects were detected for the first time\n",
       counts.sensor, std::max(static_cast<double>(clutter), 0.5) / scans, rate.low, rate.high,
       clutter, counts.scans, static_cast<double>(counts.first_seen) / scans, counts.first_seen);
   for (std::size_t l = 0; l < labels.size(); ++l) {
@@ -193,6 +207,63 @@ std::string iniOf(const DetectorCounts& counts, const ClassTable& classes,
   return text;
 }
 
+/// A line, if the counts contradict the INI.
+std::string lineOf(const char* key, const Interval& counted, double stated, double value) {
+  if (holds(counted, stated)) return "";
+  return fmt::format("{} = {:.3g}   ; counted {:.3g}, {:.3g} to {:.3g}; the INI says {:.3g}\n", key,
+                     value, counted.value, counted.low, counted.high, stated);
+}
+
+std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& input,
+                    StudyTable& table) {
+  const auto& labels = input.labels.at(counts.sensor);
+  const DetectionParams& stated = input.stated.at(counts.sensor);
+  const auto add = [&](const std::string& section, const std::string& key, const Interval& counted,
+                       double ini) {
+    table.rows.push_back({section, key, fmt::format("{:.3g}", counted.value),
+                          fmt::format("{:.3g} to {:.3g}", counted.low, counted.high),
+                          fmt::format("{:.3g}", ini), holds(counted, ini) ? "kept" : "written"});
+  };
+  const std::string section = "sensor." + counts.sensor;
+  const Interval clutter = rateOf(counts, &ClutterCount::number),
+                 births = rateOf(counts, &ClutterCount::entered);
+  add(section, "clutter_per_scan", clutter, stated.clutter_per_scan);
+  add(section, "births_per_scan", births, stated.births_per_scan);
+  const double least = 0.5 / static_cast<double>(std::max<std::size_t>(counts.scans, 1));
+  std::string text =
+      lineOf("clutter_per_scan", clutter, stated.clutter_per_scan, std::max(clutter.value, least)) +
+      lineOf("births_per_scan", births, stated.births_per_scan, std::max(births.value, least));
+  if (!text.empty()) text = "[" + section + "]\n" + text;
+  for (ClassId c = 0; c < input.classes.size(); ++c) {
+    const auto visible = [](const DetectorChance& k) { return k.occluded <= 1; };
+    const Share share = shareOf(counts, c, visible);
+    if (share.all < kFewest) continue;
+    const Interval p = detectionOf(counts, c, visible);
+    const double mean = share.stated / static_cast<double>(share.all);  // over the ranges met
+    double near = 0;  // P_D by the INI where nothing lessens it
+    for (const DetectorChance& k : counts.chances)
+      if (k.class_id == c) near = std::max(near, k.stated);
+    const std::string of_class = section + ".class." + input.classes[c].name;
+    add(of_class, "detection", p, mean);
+    std::string lines = lineOf("detection", p, mean, std::clamp(near * p.value / mean, 0.01, 0.99));
+    const LabelCounts n = labelsOf(counts, c, labels.size());
+    const auto& table_row = counts.label[static_cast<std::size_t>(c)];
+    std::string shares;
+    bool contradicted = false;
+    for (std::size_t l = 0; l < labels.size() && n.all >= kFewest; ++l) {
+      const Interval q = labelOf(counts, c, static_cast<int>(l));
+      contradicted = contradicted || !holds(q, table_row[l]);
+      add(of_class, "label." + labels[l], q, table_row[l]);
+      shares +=
+          fmt::format("label.{} = {:.3f}   ; {} of {}, {:.3g} to {:.3g}; the INI says {:.3g}\n",
+                      labels[l], q.value, n.of[l], n.all, q.low, q.high, table_row[l]);
+    }
+    if (contradicted) lines += shares;
+    if (!lines.empty()) text += "[" + of_class + "]\n" + lines;
+  }
+  return text;
+}
+
 }  // namespace
 
 StudyReport detectorStudy(const DetectorStudyInput& input,
@@ -202,9 +273,9 @@ StudyReport detectorStudy(const DetectorStudyInput& input,
   report.title = "What detectors see of labeled objects";
   report.data = fmt::format("{}logs {}", input.simulated ? "simulated " : "", input.logs);
   StudyTable scans{"scans",
-                   "Scans, clutter and newly seen objects",
+                   "Scans, clutter and newly detected objects",
                    {"sensor", "scans", "on nothing labeled", "a scan", "90 % interval",
-                    "came into view", "a scan"},
+                    "objects detected", "a scan"},
                    {}};
   StudyTable detection{"detection",
                        "Labeled objects in view that have a detection (%)",
@@ -220,12 +291,19 @@ StudyReport detectorStudy(const DetectorStudyInput& input,
                    {"sensor", "class", "quantity", "range (m)", "detections", "mean", "rms",
                     "stated", "NIS", "repeated after 1 s"},
                    {}};
-  std::string ini = fmt::format("; Counted by perception-study detector on {}.\n", input.logs);
+  const bool gains = !input.include.empty();
+  StudyTable keys{"keys",
+                  "Counted against the INI",
+                  {"section", "key", "counted", "90 % interval", "the INI", ""},
+                  {}};
+  std::string ini = fmt::format("; Counted by perception-calibrate {} on {}.\n",
+                                gains ? "gains" : "detector", input.logs);
+  if (gains) ini += "include = " + input.include + "\n\n";
   for (const auto& [sensor, c] : counts) {
     const auto& names = input.labels.at(sensor);
     const std::size_t clutter = std::accumulate(c.clutter.begin(), c.clutter.end(), std::size_t{0});
     const double n = static_cast<double>(std::max<std::size_t>(c.scans, 1));
-    const Interval rate = clutterOf(c);
+    const Interval rate = rateOf(c, &ClutterCount::number);
     scans.rows.push_back({sensor, fmt::format("{}", c.scans), fmt::format("{}", clutter),
                           fmt::format("{:.3f}", static_cast<double>(clutter) / n),
                           fmt::format("{:.3f} to {:.3f}", rate.low, rate.high),
@@ -234,14 +312,17 @@ StudyReport detectorStudy(const DetectorStudyInput& input,
     addDetection(c, input.classes, detection);
     addLabels(c, input.classes, names, labels);
     addNoise(c, input.classes, noise);
-    ini += iniOf(c, input.classes, names);
+    ini += gains ? gainsOf(c, input, keys) : iniOf(c, input.classes, names);
   }
   report.tables = {std::move(scans), std::move(detection), std::move(labels), std::move(noise)};
-  report.files.emplace_back("detector.ini", ini);
+  if (gains) report.tables.insert(report.tables.begin(), std::move(keys));
+  report.files.emplace_back(gains ? "gains.ini" : "detector.ini", ini);
   report.remarks = {
       "Intervals hold the true value in 90 % of logs (method.md 8.14): what is seen within 4 s "
       "counts as dependent.",
-      "`detector.ini` holds the counted keys; scores are fitted by `perception-calibrate boxes`.",
+      gains ? "`gains.ini` holds the keys whose interval does not hold the INI's value."
+            : "`detector.ini` holds the counted keys; scores are fitted by `perception-calibrate "
+              "boxes`.",
       "NIS: mean of (error / stated deviation)^2, 1 when the noise is honest, less when cautious. "
       "Repeated: correlation of one object's errors a second apart; a filter takes them for "
       "independent, so stated deviations must be larger than the errors where it is high.",

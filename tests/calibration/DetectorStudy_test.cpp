@@ -121,6 +121,56 @@ TEST(DetectorStudy, WritesTheCountedKeysAsSections) {
   EXPECT_EQ(report.tables.size(), 4U);
 }
 
+TEST(DetectorStudy, GainsAreTheKeysThatTheCountsContradict) {
+  DetectorStudyInput input;
+  input.classes = test::linearClasses();
+  input.labels["boxes"] = {"person", "thing"};
+  input.include = "/somewhere/site.ini";
+  DetectionParams stated;
+  stated.clutter_per_scan = 0.5;  // as counted
+  stated.births_per_scan = 0.4;   // two objects in 400 scans
+  input.stated["boxes"] = stated;
+  const StudyReport report = detectorStudy(input, {{"boxes", counted(false)}});
+  ASSERT_EQ(report.files.at(0).first, "gains.ini");
+  const std::string& ini = report.files[0].second;
+  EXPECT_NE(ini.find("include = /somewhere/site.ini\n"), std::string::npos) << ini;
+  EXPECT_EQ(ini.find("clutter_per_scan"), std::string::npos) << ini;
+  EXPECT_NE(ini.find("births_per_scan = 0.005 "), std::string::npos) << ini;
+}
+
+/// What a scan at 1 m of a wall says of the object behind it.
+TEST(DetectorCounts, WhatHidesObjectsIsKnownFromTheScansWhereLabelsDoNotSay) {
+  RecordedLog log;
+  log.model = test::exactModel(test::linearClasses());
+  const auto sensor = std::make_shared<const PositionModel>(test::linearSensor());
+  GroundTruth truth;
+  for (int k = 0; k < 3; ++k) {  // without a map, with an open one, behind a wall
+    auto scan = std::make_shared<MeasurementScan>(test::positionScan(sensor, 0.1 * k, {}));
+    scan->sensor = "boxes";
+    scan->frame = k;
+    if (k > 0) {
+      auto map = std::make_shared<OcclusionMap>(Vector2::Zero(), 360);
+      for (int i = -60; k == 2 && i <= 60; ++i)
+        map->add({std::cos(radians(i)), std::sin(radians(i))});
+      scan->occlusion = map;
+    }
+    RecordedLog::Entry entry;
+    entry.scan = scan;
+    log.entries.push_back(entry);
+    GroundTruth::Instant instant;
+    instant.frame = k, instant.t = 0.1 * k;
+    instant.objects.push_back(walker(k, 1, 10, 0));
+    instant.objects[0].occluded = 3;
+    truth.instants.push_back(instant);
+  }
+  std::map<std::string, DetectorCounts> counts;
+  countDetections(log, truth, 0, {{"boxes", 2}}, counts);
+  const auto& chances = counts.at("boxes").chances;
+  ASSERT_EQ(chances.size(), 2U);
+  EXPECT_EQ(chances[0].occluded, 0);
+  EXPECT_EQ(chances[1].occluded, 2);
+}
+
 TEST(DetectorStudy, RefusesLogsWithoutDetections) {
   EXPECT_THROW(detectorStudy({}, {}), DataError);
 }

@@ -1,0 +1,17 @@
+#pragma once
+#include "libperception/core/GroundTruth.h"
+#include "libperception/scene/TrackedRun.h"
+
+namespace perception {
+
+/// What a run tracked, as labels of its log (method.md 8.15): objects that were there for a second,
+/// surely, and of one class; others have the type "unknown". An object counts between the first
+/// scene that shows it and its last measurement, without both: what ends a life is no chance to see
+/// it. `occluded`: as in TruthObject, of all objects.
+GroundTruth tracksAsTruth(const TrackedRun& run, int occluded);
+
+/// Labels of a log, and of the run's tracks those that no label is near: things (static-other) as
+/// such, road users as "unknown", for labels leave out much. Instants of the run that are labeled.
+GroundTruth withTracks(const GroundTruth& labeled, const TrackedRun& run, int occluded);
+
+}  // namespace perception
