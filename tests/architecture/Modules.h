@@ -84,7 +84,7 @@ inline const std::vector<Module>& modules() {
        {"dds", "packets", "simulation", "grid", "sensors", "measurement", "config", "core"}},
       {"calibration",
        "fits parameters by their likelihood, learns what clusters look like",
-       {"pipeline", "evaluation", "lidar", "boxes3d", "measurement", "core"}},
+       {"pipeline", "evaluation", "scene", "lidar", "boxes3d", "measurement", "core"}},
       {"batch",
        "many runs: plan, processes, queue, figures of all",
        {"pipeline", "evaluation", "gui-offscreen", "scene", "config", "core"}},
