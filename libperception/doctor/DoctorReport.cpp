@@ -152,6 +152,41 @@ void addMotion(Findings& out, const LogSurvey& survey, const std::string& label,
                                         : "; corrected in site.ini"));
 }
 
+/// Clock and antenna of every GNSS receiver against the poses' motion.
+void addGnss(Findings& out, const LogSurvey& survey) {
+  const auto* poses = survey.referencePoses();
+  if (poses == nullptr) return;
+  for (const auto& [label, facts] : survey.gnss()) {
+    const auto check = checkGnssMotion(facts.fixes, facts.antenna, *poses);
+    if (!check) {
+      out.add(Weight::kNote, label,
+              "clock and antenna against the poses not observable: too few fixes while driving");
+      continue;
+    }
+    const std::string seen = valuesText(*check, &MotionCheck::Value::observable),
+                      wrong = valuesText(*check, &MotionCheck::Value::isWrong);
+    std::string unseen;
+    for (const auto& [name, value] : {std::pair("antenna ahead", &check->ahead),
+                                      {"antenna left", &check->left},
+                                      {"clock", &check->clock}})
+      if (!value->observable())
+        unseen += fmt::format("{}{} (+- {:.2g} {})", unseen.empty() ? "" : ", ", name,
+                              value->sigma / (value == &check->clock ? 1e-3 : 1),
+                              value == &check->clock ? "ms" : "m");
+    if (!seen.empty())
+      out.add(
+          Weight::kFine, label,
+          fmt::format("error of clock and antenna against the poses ({} differences of fixes): {}",
+                      check->used, seen));
+    if (!unseen.empty())
+      out.add(Weight::kNote, label, "not observable against the poses on this drive: " + unseen);
+    if (!wrong.empty())
+      out.add(Weight::kFault, label,
+              "off against the poses: " + wrong +
+                  "; must be corrected when the log is written, or where the poses are made");
+  }
+}
+
 void addNames(Findings& out, const std::string& label, const SensorFacts& facts) {
   std::string known, unknown;
   for (const auto& [name, count] : facts.names) {
@@ -231,6 +266,7 @@ std::vector<Finding> findingsOf(const LogSurvey& survey) {
     if (facts.kind == "boxes" || facts.kind == "positions") addNames(out, about, facts);
   }
   addPoses(out, survey);
+  addGnss(out, survey);
   addMissing(out, survey);
   return out.all;
 }

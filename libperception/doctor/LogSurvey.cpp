@@ -19,6 +19,7 @@ constexpr std::size_t kRangeBins = 400, kBearingBins = 181;
 constexpr std::size_t kMostLabels = 200;
 /// Scans of a lidar that odometry follows: minutes show its mounting, and each costs 10 to 90 ms.
 constexpr std::size_t kMostFollowed = 2000;
+constexpr std::size_t kMostFixes = 20000;  ///< half an hour at 10 Hz
 /// [rad], [m] A mounting this far off costs the tracks more than the ground estimator corrects:
 /// its planes are bounded at 5 deg and .3 m about the vehicle's frame (method.md 8.1).
 constexpr double kWrongTilt = radians(1), kWrongHeight = 0.1;
@@ -208,6 +209,16 @@ std::optional<MotionCheck> LogSurvey::motionCheck(const SensorFacts& facts) cons
   return checkLidarMotion(facts.odometry, facts.T_ego_sensor, *poses);
 }
 
+void LogSurvey::lookAtGnss(const mrpt::obs::CObservationGPS& observation) {
+  const auto fix = gnssFix(observation, {});
+  const std::string& label = observation.sensorLabel;
+  if (!fix || (gnss_.size() >= kMostLabels && gnss_.count(label) == 0)) return;
+  GnssFacts& facts = gnss_[label];
+  if (facts.fixes.size() >= kMostFixes) return;
+  if (!facts.frame) facts.frame.emplace(fix->place), facts.antenna = fix->antenna.head<2>();
+  facts.fixes.push_back({fix->stamp, facts.frame->fromGeodetic(fix->place).head<2>()});
+}
+
 void LogSurvey::look(const mrpt::obs::CObservation& observation) {
   using namespace mrpt::obs;
   contents_.look(observation);
@@ -222,8 +233,9 @@ void LogSurvey::look(const mrpt::obs::CObservation& observation) {
     state.stamp = *stamp;
     if (poses_.empty()) first_pose_label_ = label;
     poses_[label].push_back(state);
-  } else if (dynamic_cast<const CObservationGPS*>(&observation) != nullptr) {
+  } else if (const auto* gnss = dynamic_cast<const CObservationGPS*>(&observation)) {
     ++motion_["GNSS"];
+    lookAtGnss(*gnss);
   } else if (dynamic_cast<const CObservationIMU*>(&observation) != nullptr) {
     ++motion_["inertial unit"];
   } else if (dynamic_cast<const CObservationOdometry*>(&observation) != nullptr) {

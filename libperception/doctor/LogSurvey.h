@@ -12,6 +12,7 @@
 #include "libperception/odometry/LidarOdometry.h"
 #include "libperception/pipeline/LogContents.h"
 #include "libperception/sensors/FromObservation.h"
+#include "libperception/sensors/GnssFix.h"
 
 namespace perception {
 
@@ -78,15 +79,24 @@ class LogSurvey {
   const std::vector<EgoState>* referencePoses() const;
   /// Mounting and clock of a lidar or radar against these poses.
   std::optional<MotionCheck> motionCheck(const SensorFacts& facts) const;
+  /// Positions of a GNSS receiver of the log.
+  struct GnssFacts {
+    std::optional<LocalFrame> frame;    ///< east and north of the first fix
+    Vector2 antenna = Vector2::Zero();  ///< [m] vehicle frame
+    std::vector<AntennaPlace> fixes;
+  };
+  const std::map<std::string, GnssFacts>& gnss() const { return gnss_; }
 
  private:
   void lookAt(SensorFacts& facts, const SensorFrame& frame);
+  void lookAtGnss(const mrpt::obs::CObservationGPS& observation);
   void follow(SensorFacts& facts, const SensorFrame& frame);
 
   LogContents contents_;
   std::map<std::string, SensorFacts> sensors_;
   std::map<std::string, std::vector<EgoState>> poses_;
   std::map<std::string, std::uint64_t> motion_;
+  std::map<std::string, GnssFacts> gnss_;
   std::map<std::string, LidarOdometry> odometry_;
   std::string first_pose_label_;
   std::optional<SensorFrame> sample_;

@@ -102,6 +102,41 @@ double bestClock(const std::vector<Seen>& seen, const Course& course) {
   return best;
 }
 
+/// How far an antenna went.
+struct GnssWay {
+  Stamp from, to;
+  Vector2 step = Vector2::Zero();  ///< [m] east, north
+};
+
+/// The same by the poses, in their world.
+std::optional<Vector2> wayOf(const GnssWay& way, const Vector2& antenna, const Course& course,
+                             double later) {
+  const auto a = course.at(way.from, later), b = course.at(way.to, later);
+  if (!a || !b) return std::nullopt;
+  const Vector3 place(antenna.x(), antenna.y(), 0);
+  return Vector2((*b * place - *a * place).head<2>());
+}
+
+/// Clock offset and turn from the poses' world to east and north with the least squares.
+std::pair<double, double> bestGnssClock(const std::vector<GnssWay>& ways, const Vector2& antenna,
+                                        const Course& course) {
+  std::pair<double, double> best{0, 0};
+  double least = 1e300;
+  for (double clock = -kClockRange; clock <= kClockRange; clock += kClockStep) {
+    double n = 0, along = 0, across = 0, squares = 0;
+    for (const GnssWay& w : ways) {
+      const auto d = wayOf(w, antenna, course, -clock);
+      if (!d) continue;
+      along += d->dot(w.step), across += d->x() * w.step.y() - d->y() * w.step.x();
+      squares += d->squaredNorm() + w.step.squaredNorm(), ++n;
+    }
+    if (n < 0.8 * static_cast<double>(ways.size()) || n < 1) continue;
+    const double cost = (squares - 2 * std::hypot(along, across)) / n;
+    if (cost < least) least = cost, best = {clock, std::atan2(across, along)};
+  }
+  return best;
+}
+
 FitProblem problemOf(std::size_t items, Eigen::Index rows, double clock) {
   FitProblem p;
   p.items = items, p.rows = rows;
@@ -243,6 +278,40 @@ std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& s
   const auto fit = fitRobustly(p);
   if (!fit) return std::nullopt;
   return checkOf(*fit);
+}
+
+std::optional<MotionCheck> checkGnssMotion(const std::vector<AntennaPlace>& fixes,
+                                           const Vector2& antenna,
+                                           const std::vector<EgoState>& poses) {
+  constexpr double kWay = 2, kWayLongest = 5;  // [s] of a difference of two fixes
+  const Course course(poses);
+  std::vector<GnssWay> ways;
+  std::size_t steps = 0, j = 0;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    while (j < fixes.size() && fixes[j].stamp - fixes[i].stamp < kWay) ++j;
+    if (j == fixes.size()) break;
+    const double dt = fixes[j].stamp - fixes[i].stamp;
+    const GnssWay way{fixes[i].stamp, fixes[j].stamp, fixes[j].place - fixes[i].place};
+    if (dt > kWayLongest || way.step.norm() < kMoves * dt) continue;
+    ways.push_back(way), steps += j - i;
+  }
+  if (ways.empty()) return std::nullopt;
+  const auto [clock, turn] = bestGnssClock(ways, antenna, course);
+  FitProblem p = problemOf(ways.size(), 2, clock);
+  p.start[kYaw] = p.mean[kYaw] = turn;
+  p.sigma[kYaw] = kPi;
+  p.shared = static_cast<double>(steps) / static_cast<double>(ways.size());
+  p.residuals = [&](std::size_t k, const VectorXd& x, VectorXd& r) {
+    const auto d = wayOf(ways[k], antenna - Vector2(x[kAhead], x[kLeft]), course, -x[kClock]);
+    if (!d) return false;
+    r = ways[k].step - (1 + x[kScale]) * rotate2(x[kYaw], *d);
+    return true;
+  };
+  const auto fit = fitRobustly(p);
+  if (!fit) return std::nullopt;
+  MotionCheck check = checkOf(*fit);
+  check.yaw = check.pitch = check.roll = MotionCheck::Value{0, 1, 0, 0};
+  return check;
 }
 
 Pose3 correctedMounting(const MotionCheck& check, const Pose3& T_ego_sensor) {

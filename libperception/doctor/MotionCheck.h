@@ -42,6 +42,18 @@ std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& s
                                             const Pose3& T_ego_sensor,
                                             const std::vector<EgoState>& poses);
 
+/// A position of a GNSS antenna.
+struct AntennaPlace {
+  Stamp stamp;
+  Vector2 place = Vector2::Zero();  ///< [m] east, north
+};
+/// Clock and antenna (`ahead`, `left`; `antenna` is the log's, vehicle frame) of a receiver against
+/// the poses, whose world may be turned to east and north by any angle. The other values are not
+/// observable.
+std::optional<MotionCheck> checkGnssMotion(const std::vector<AntennaPlace>& fixes,
+                                           const Vector2& antenna,
+                                           const std::vector<EgoState>& poses);
+
 /// The log's mounting without the errors that were observed and are wrong.
 Pose3 correctedMounting(const MotionCheck& check, const Pose3& T_ego_sensor);
 

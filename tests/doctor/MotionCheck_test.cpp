@@ -169,6 +169,40 @@ TEST(MotionCheck, RadarTurnedAndLateIsFound) {
   EXPECT_NEAR(degrees(yawOf(correctedMounting(*check, logged))), 20, 1);
 }
 
+/// Fixes at 10 Hz, .03 m, in a world turned by 2 rad, of an antenna .5 m ahead and .2 m to the
+/// right.
+std::vector<AntennaPlace> fixesOf(const std::vector<EgoState>& poses, double late) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 0.03);
+  std::vector<AntennaPlace> fixes;
+  for (double t = 0; t < kDuration - 0.5; t += 0.1) {
+    const Vector3 place = poseAt(poses, t) * Vector3(0.5, -0.2, 0);
+    fixes.push_back({stampAt(t + late),
+                     rotate2(2, Vector2(place.head<2>())) + Vector2(noise(random), noise(random))});
+  }
+  return fixes;
+}
+
+TEST(MotionCheck, GnssThatIsLateAndItsAntennaAreFound) {
+  const auto poses = posesOf({});
+  for (const double late : {0.0, 0.08, -0.25}) {
+    const auto check = checkGnssMotion(fixesOf(poses, late), Vector2(0.5, 0.3), poses);
+    ASSERT_TRUE(check);
+    EXPECT_TRUE(check->clock.observable()) << check->clock.sigma;
+    EXPECT_NEAR(check->clock.error, late, 0.02);
+    EXPECT_EQ(check->clock.isWrong(), late != 0);
+    EXPECT_NEAR(check->left.error, 0.5, 0.1);
+    EXPECT_FALSE(check->yaw.observable());
+  }
+}
+
+TEST(MotionCheck, GnssOnASteadyStraightDriveShowsNoClock) {
+  const auto poses = posesOf({0, 0});
+  const auto check = checkGnssMotion(fixesOf(poses, 0.08), Vector2(0.5, -0.2), poses);
+  ASSERT_TRUE(check);
+  EXPECT_FALSE(check->clock.observable());
+}
+
 TEST(RadarVelocity, ReturnsThatDisagreeGiveNone) {
   RadarReturns radar;
   for (int i = 0; i < 12; ++i) {
