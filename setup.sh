@@ -52,6 +52,7 @@ packages=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG
   libopencv-dnn-dev libopencv-objdetect-dev libopencv-contrib-dev   # detectors: networks, people, part models
   libopencv-ml-dev       # random forests of a study
+  libopencv-video-dev libopencv-calib3d-dev  # motion of cameras from their images
   libmatio-dev           # part models as MATLAB files
   cyclonedds-dev cyclonedds-tools  # observations and scenes between computers
   # to run
@@ -77,7 +78,6 @@ fuzz_packages=(
 )
 
 bench_packages=(
-  libopencv-video-dev    # cv::KalmanFilter, a peer
   python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti_*
   libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar front end
   libnanoflann-dev       # the same by region growing; kd-tree of snow filters, peers of the trust in returns

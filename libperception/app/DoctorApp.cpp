@@ -10,6 +10,7 @@
 #include "libperception/core/Supervision.h"
 #include "libperception/doctor/SiteIni.h"
 #include "libperception/pipeline/Progress.h"
+#include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -47,7 +48,7 @@ void DoctorApp::run() {
   if (inputs.size() != 1) throw Error(ExitCode::kUsage, "-i/--input: one rawlog");
   const SiteFiles files = siteFiles(iniFolder(ini_folder));
   RawlogReader reader(inputs[0]);
-  LogSurvey survey;
+  LogSurvey survey(imagesBeside(inputs[0]));
   while (const auto observation = reader.next()) {
     stopIfAsked();
     survey.look(*observation);

@@ -124,6 +124,13 @@ std::string unseenText(const MotionCheck& check) {
   return text;
 }
 
+void addImages(Findings& out, const std::string& label, const SensorFacts& facts) {
+  if (facts.unread_images > 0)
+    out.add(Weight::kFault, label,
+            fmt::format("{} of {} images have no file that can be read", facts.unread_images,
+                        facts.frames));
+}
+
 /// Mounting and clock against the poses' motion.
 void addMotion(Findings& out, const LogSurvey& survey, const std::string& label,
                const SensorFacts& facts) {
@@ -262,7 +269,9 @@ std::vector<Finding> findingsOf(const LogSurvey& survey) {
     addValues(out, about, facts);
     if (facts.frames == 0) continue;
     if (facts.kind == "lidar") addLidar(out, about, facts);
-    if (facts.kind == "lidar" || facts.kind == "radar") addMotion(out, survey, about, facts);
+    if (facts.kind == "image") addImages(out, about, facts);
+    if (facts.kind == "lidar" || facts.kind == "radar" || facts.kind == "image")
+      addMotion(out, survey, about, facts);
     if (facts.kind == "boxes" || facts.kind == "positions") addNames(out, about, facts);
   }
   addPoses(out, survey);

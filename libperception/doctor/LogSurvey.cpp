@@ -182,6 +182,7 @@ void LogSurvey::lookAt(SensorFacts& facts, const SensorFrame& frame) {
     if (const auto v = radarVelocity(*radar, frame.stamp)) facts.velocities.push_back(*v);
   } else {
     facts.kind = "image";
+    lookAtImage(facts, frame);
   }
 }
 
@@ -195,6 +196,18 @@ void LogSurvey::follow(SensorFacts& facts, const SensorFrame& frame) {
   }
 }
 
+void LogSurvey::lookAtImage(SensorFacts& facts, const SensorFrame& frame) {
+  if (facts.pose_varies || facts.camera_motions.size() >= kMostFollowed) return;
+  const auto& image = std::get<CameraImage>(frame.data);
+  const auto raster = image.load();
+  if (!raster) ++facts.unread_images;
+  const bool pinhole = image.camera.fx > 0 &&
+                       (image.camera.width == 0 || (raster && image.camera.width == raster->width));
+  if (!raster || !pinhole) return;
+  if (const auto motion = image_motion_[frame.sensor].update(image.camera, *raster, frame.stamp))
+    facts.camera_motions.push_back(*motion);
+}
+
 const std::vector<EgoState>* LogSurvey::referencePoses() const {
   const auto named = poses_.find("EGO_POSE");
   if (named != poses_.end()) return &named->second;
@@ -206,7 +219,13 @@ std::optional<MotionCheck> LogSurvey::motionCheck(const SensorFacts& facts) cons
   const auto* poses = referencePoses();
   if (poses == nullptr || facts.pose_varies) return std::nullopt;
   if (facts.kind == "radar") return checkRadarMotion(facts.velocities, facts.T_ego_sensor, *poses);
-  return checkLidarMotion(facts.odometry, facts.T_ego_sensor, *poses);
+  if (facts.kind == "image")
+    return checkImageMotion(facts.camera_motions, facts.T_ego_sensor, *poses);
+  auto check = checkLidarMotion(facts.odometry, facts.T_ego_sensor, *poses);
+  const auto ground = groundMounting(facts);
+  if (check && ground && ground->steady())  // where both disagree, odometry climbs or sinks
+    check->pitch.sigma = std::hypot(check->pitch.sigma, check->pitch.error - ground->pitch_error);
+  return check;
 }
 
 void LogSurvey::lookAtGnss(const mrpt::obs::CObservationGPS& observation) {
@@ -244,7 +263,7 @@ void LogSurvey::look(const mrpt::obs::CObservation& observation) {
     if (sensors_.size() >= kMostLabels && sensors_.count(label) == 0) return;
     SensorFacts& facts = sensors_[label];
     facts.planar = dynamic_cast<const CObservation2DRangeScan*>(&observation) != nullptr;
-    if (const auto frame = frameFromObservation(observation, &facts.counts)) {
+    if (const auto frame = frameFromObservation(observation, &facts.counts, images_)) {
       lookAt(facts, *frame);
     } else {
       ++facts.unusable;

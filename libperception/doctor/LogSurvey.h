@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/doctor/MotionCheck.h"
@@ -36,6 +37,8 @@ struct SensorFacts {
   std::vector<GroundPlane> planes;             ///< of single scans, ego frame
   std::vector<EgoState> odometry;              ///< of a lidar: the vehicle's poses by its scans
   std::vector<SensorVelocity> velocities;      ///< of a radar
+  std::vector<CameraMotion> camera_motions;    ///< of images
+  std::uint64_t unread_images = 0;             ///< without a file, or damaged
 
   /// [m] below which a share of the returns lies, rounded up to 1 m; 0 without returns.
   double rangeBelow(double share) const;
@@ -64,6 +67,8 @@ std::optional<GroundMounting> groundMounting(const SensorFacts& facts);
 /// A log as perception-doctor sees it: call look() with every observation.
 class LogSurvey {
  public:
+  /// `images`: folder of external images.
+  explicit LogSurvey(std::string images = "") : images_(std::move(images)) {}
   void look(const mrpt::obs::CObservation& observation);
 
   const LogContents& contents() const { return contents_; }
@@ -77,7 +82,7 @@ class LogSurvey {
   /// Poses that mountings and clocks are compared with, as [ego] takes them: EGO_POSE, or the
   /// first label; null in a log without.
   const std::vector<EgoState>* referencePoses() const;
-  /// Mounting and clock of a lidar or radar against these poses.
+  /// Mounting and clock of a lidar, radar or camera against these poses.
   std::optional<MotionCheck> motionCheck(const SensorFacts& facts) const;
   /// Positions of a GNSS receiver of the log.
   struct GnssFacts {
@@ -91,6 +96,7 @@ class LogSurvey {
   void lookAt(SensorFacts& facts, const SensorFrame& frame);
   void lookAtGnss(const mrpt::obs::CObservationGPS& observation);
   void follow(SensorFacts& facts, const SensorFrame& frame);
+  void lookAtImage(SensorFacts& facts, const SensorFrame& frame);
 
   LogContents contents_;
   std::map<std::string, SensorFacts> sensors_;
@@ -98,6 +104,8 @@ class LogSurvey {
   std::map<std::string, std::uint64_t> motion_;
   std::map<std::string, GnssFacts> gnss_;
   std::map<std::string, LidarOdometry> odometry_;
+  std::map<std::string, ImageMotion> image_motion_;
+  std::string images_;
   std::string first_pose_label_;
   std::optional<SensorFrame> sample_;
   std::uint64_t pose_faults_ = 0;

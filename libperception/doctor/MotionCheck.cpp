@@ -77,9 +77,9 @@ struct Seen {
   Pose3 motion = Pose3::Identity();
 };
 
-/// Clock offset at which the yaw and the length of the motions agree best with the poses': the
-/// largest profile likelihood of both, noise and mean difference unknown.
-double bestClock(const std::vector<Seen>& seen, const Course& course) {
+/// Clock offset at which the yaw and (if known) the length of the motions agree best with the
+/// poses': the largest profile likelihood of both, noise and mean difference unknown.
+double bestClock(const std::vector<Seen>& seen, const Course& course, bool lengths) {
   double best = 0, least = 1e300;
   for (double clock = -kClockRange; clock <= kClockRange; clock += kClockStep) {
     double n = 0, sum[2] = {0, 0}, squares[2] = {0, 0};
@@ -87,7 +87,7 @@ double bestClock(const std::vector<Seen>& seen, const Course& course) {
       const auto B = course.motion(s.from, s.to, -clock);
       if (!B) continue;
       const double r[2] = {turnOf(s.motion).z() - turnOf(*B).z(),
-                           s.motion.translation().norm() - B->translation().norm()};
+                           lengths ? s.motion.translation().norm() - B->translation().norm() : 0};
       for (int i = 0; i < 2; ++i) sum[i] += r[i], squares[i] += r[i] * r[i];
       ++n;
     }
@@ -147,6 +147,19 @@ FitProblem problemOf(std::size_t items, Eigen::Index rows, double clock) {
   p.step[kClock] = 0.01;
   p.least = VectorXd::Constant(rows, 1e-4);
   return p;
+}
+
+/// [rad] Median angle between the poses' way and their own ground plane: a vehicle does not fly,
+/// but poses with a pitch of 0 on a hill do.
+double climbOf(const std::vector<Seen>& seen, const Course& course) {
+  std::vector<double> climbs;
+  for (const Seen& s : seen)
+    if (const auto B = course.motion(s.from, s.to, 0))
+      climbs.push_back(std::atan2(B->translation().z(), B->translation().head<2>().norm()));
+  if (climbs.empty()) return 0;
+  const auto middle = climbs.begin() + static_cast<std::ptrdiff_t>(climbs.size() / 2);
+  std::nth_element(climbs.begin(), middle, climbs.end());
+  return *middle;
 }
 
 MotionCheck checkOf(const FitResult& fit) {
@@ -229,7 +242,7 @@ std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
     seen.push_back(s), steps += j - i;
   }
   if (seen.empty()) return std::nullopt;
-  FitProblem p = problemOf(seen.size(), 6, bestClock(seen, course));
+  FitProblem p = problemOf(seen.size(), 6, bestClock(seen, course, true));
   p.shared = static_cast<double>(steps) / static_cast<double>(seen.size());
   const Vector3 place = T_ego_sensor.translation();
   p.residuals = [&](std::size_t k, const VectorXd& x, VectorXd& r) {
@@ -245,7 +258,9 @@ std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
   };
   const auto fit = fitRobustly(p);
   if (!fit) return std::nullopt;
-  return checkOf(*fit);
+  MotionCheck check = checkOf(*fit);
+  check.pitch.sigma = std::hypot(check.pitch.sigma, climbOf(seen, course));
+  return check;
 }
 
 std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& scans,
@@ -278,6 +293,40 @@ std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& s
   const auto fit = fitRobustly(p);
   if (!fit) return std::nullopt;
   return checkOf(*fit);
+}
+
+std::optional<MotionCheck> checkImageMotion(const std::vector<CameraMotion>& motions,
+                                            const Pose3& T_ego_sensor,
+                                            const std::vector<EgoState>& poses) {
+  const Course course(poses);
+  const Eigen::Matrix3d R_ego_sensor = T_ego_sensor.linear();
+  std::vector<Seen> seen;  // length 1
+  for (const CameraMotion& m : motions) {
+    const auto way = course.motion(m.from, m.to, 0);
+    if (!way || way->translation().norm() < kMoves * (m.to - m.from)) continue;
+    Seen s{m.from, m.to};
+    s.motion.linear() = R_ego_sensor * m.turn * R_ego_sensor.transpose();
+    s.motion.translation() = R_ego_sensor * m.travel;
+    seen.push_back(s);
+  }
+  if (seen.empty()) return std::nullopt;
+  FitProblem p = problemOf(seen.size(), 5, bestClock(seen, course, false));
+  const Vector3 place = T_ego_sensor.translation();
+  p.residuals = [&](std::size_t k, const VectorXd& x, VectorXd& r) {
+    const auto B = course.motion(seen[k].from, seen[k].to, -x[kClock]);
+    if (!B) return false;
+    const Eigen::Matrix3d R = rotationOf(x);
+    const Vector3 way = R * (B->translation() + B->linear() * place - place);
+    r.head<3>() = turnOf(seen[k].motion) - R * turnOf(*B);
+    r.tail<2>() = (seen[k].motion.translation() - way.normalized()).tail<2>();
+    return true;
+  };
+  const auto fit = fitRobustly(p);
+  if (!fit) return std::nullopt;
+  MotionCheck check = checkOf(*fit);
+  check.ahead = check.left = MotionCheck::Value{0, 1, 0, 0};
+  check.pitch.sigma = std::hypot(check.pitch.sigma, climbOf(seen, course));
+  return check;
 }
 
 std::optional<MotionCheck> checkGnssMotion(const std::vector<AntennaPlace>& fixes,

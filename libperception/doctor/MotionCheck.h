@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "libperception/doctor/ImageMotion.h"
 #include "libperception/measurement/SensorFrame.h"
 
 namespace perception {
@@ -39,6 +40,11 @@ std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
                                             const Pose3& T_ego_sensor,
                                             const std::vector<EgoState>& poses);
 std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& scans,
+                                            const Pose3& T_ego_sensor,
+                                            const std::vector<EgoState>& poses);
+
+/// Of a camera: it shows its turn and the clock; its place is left as not observable.
+std::optional<MotionCheck> checkImageMotion(const std::vector<CameraMotion>& motions,
                                             const Pose3& T_ego_sensor,
                                             const std::vector<EgoState>& poses);
 

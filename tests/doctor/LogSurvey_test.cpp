@@ -101,6 +101,14 @@ TEST(LogSurvey, LidarTurnedShiftedAndLateIsFoundOrSaidNotToBeObservable) {
   expectFound(check->clock, 0.08, 0.02);
 }
 
+TEST(LogSurvey, PitchByMotionThatTheGroundContradictsIsNotObservable) {
+  const auto survey = surveyWith(0, 0, 0);
+  SensorFacts facts = survey.sensors().at("LIDAR_TOP");
+  ASSERT_TRUE(survey.motionCheck(facts)->pitch.observable());
+  for (GroundPlane& plane : facts.planes) plane.a += std::tan(radians(2));
+  EXPECT_FALSE(survey.motionCheck(facts)->pitch.observable());
+}
+
 TEST(LogSurvey, PlanesThatDifferAreNoGround) {
   SensorFacts facts;
   for (int i = 0; i < 9; ++i) facts.planes.push_back({0.02 * (i % 3), 0, 0.4, 0.1, true});
