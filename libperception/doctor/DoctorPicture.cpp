@@ -126,8 +126,8 @@ StudyPlot doctorPicture(const LogSurvey& survey) {
   GroundPlane plane;
   std::string scan;
   if (const auto& sample = survey.sample()) {
-    const auto& planes = survey.sensors().at(sample->sensor).planes;
-    if (!planes.empty()) plane = planes.back();
+    if (const auto ground = groundMounting(survey.sensors().at(sample->sensor)))
+      plane = ground->plane;
     scan = scanText(*sample, plane);
   }
   // Never empty: gnuplot would stop at a file without points.

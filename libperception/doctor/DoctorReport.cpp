@@ -93,7 +93,9 @@ void addLidar(Findings& out, const std::string& label, const SensorFacts& facts)
       m->height, degrees(m->pitch), degrees(m->roll), m->scans, degrees(m->spread));
   if (!m->wrong()) return out.add(Weight::kFine, label, found + ", as the log says");
   out.add(Weight::kFault, label,
-          fmt::format("{}; the log's mounting is off by {:+.2f} m, {:+.2f} deg, {:+.2f} deg: "
+          fmt::format("{}; the log's mounting is off by {:+.2f} m, pitch {:+.2f} deg, roll {:+.2f} "
+                      "deg about the "
+                      "vehicle's axes: "
                       "corrected in site.ini",
                       found, m->height_error, degrees(m->pitch_error), degrees(m->roll_error)));
 }

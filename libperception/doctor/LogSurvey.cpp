@@ -144,6 +144,7 @@ std::optional<GroundMounting> groundMounting(const SensorFacts& facts) {
   for (const auto& plane : facts.planes) deviations.push_back(std::abs(plane.a - a));
   GroundMounting m;
   m.scans = facts.planes.size();
+  m.plane = {a, b, c, facts.planes.back().sigma, true};
   m.spread = medianOf(std::move(deviations));
   // Turns the plane's normal upright and lifts the plane to z = 0 at the ego origin.
   const Vector3 normal = Vector3(-a, -b, 1).normalized();
@@ -156,8 +157,8 @@ std::optional<GroundMounting> groundMounting(const SensorFacts& facts) {
   m.height = m.T_ego_sensor.translation().z();
   m.pitch = pitchOf(m.T_ego_sensor), m.roll = rollOf(m.T_ego_sensor);
   m.height_error = facts.T_ego_sensor.translation().z() - m.height;
-  m.pitch_error = pitchOf(facts.T_ego_sensor) - m.pitch;
-  m.roll_error = rollOf(facts.T_ego_sensor) - m.roll;
+  const Pose3 error = T_level_ego.inverse();  // log's mounting = error * true mounting
+  m.pitch_error = pitchOf(error), m.roll_error = rollOf(error);
   return m;
 }
 

@@ -51,10 +51,11 @@ struct SensorFacts {
 /// Mounting of a lidar as the ground shows it: medians over the scans (method.md 8.11).
 struct GroundMounting {
   double height = 0, pitch = 0, roll = 0;  ///< [m, rad, rad] of the sensor above the ground plane
-  /// [m, rad, rad] by which the log's mounting differs from it.
+  /// [m, rad, rad] by which the log's mounting differs from it; angles about the vehicle's axes.
   double height_error = 0, pitch_error = 0, roll_error = 0;
   double spread = 0;  ///< [rad] median deviation of the scans' pitch from the median
   std::size_t scans = 0;
+  GroundPlane plane;  ///< median, ego frame of the log
   Pose3 T_ego_sensor =
       Pose3::Identity();  ///< the log's, turned and lifted so that the ground is z = 0
   bool steady() const;    ///< the scans agree: what they show is the ground
