@@ -8,6 +8,7 @@
 #include "libperception/app/EvaluateApp.h"
 #include "libperception/app/StudyFolder.h"
 #include "libperception/evaluation/Quality.h"
+#include "libperception/evaluation/QualityPicture.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/scene/RunRecord.h"
 
@@ -64,7 +65,7 @@ StudyTable momentsTable(const JudgedRun& run) {
   StudyTable table{"moments", run.name + ": moments to look at", {"t [s]", "object", "it"}, {}};
   for (const QualityMoment& m : run.quality.moments) {
     if (table.rows.size() == kMoments) break;
-    table.rows.push_back({fmt::format("{:.1f}", m.t), std::to_string(m.id), m.what});
+    table.rows.push_back({fmt::format("{:.1f}", m.t), std::to_string(m.id), m.text()});
   }
   if (run.quality.moments.size() > kMoments)
     table.title += fmt::format(" (the first {} of {})", kMoments, run.quality.moments.size());
@@ -161,10 +162,18 @@ void EvaluateApp::judgeQuality() {
                             params.selection.range, fov_deg);
   report.tables.push_back(figuresTable(judged, has_truth));
   if (!has_truth) report.tables.push_back(meaningTable());
-  if (judged.size() == 1) report.tables.push_back(momentsTable(judged.front()));
+  if (judged.size() == 1) {
+    report.tables.push_back(momentsTable(judged.front()));
+    report.plots.push_back(
+        momentsPicture(judged.front().run, judged.front().quality, options.unnamed));
+  }
   if (has_truth) {
     report.tables.push_back(errorsTable(judged));
     report.tables.push_back(correlationTable(judged));
+    std::vector<FiguresAndErrors> pairs;
+    for (const JudgedRun& r : judged)
+      if (r.errors) pairs.push_back({r.quality.values, *r.errors});
+    report.plots.push_back(followingPicture(pairs));
   }
   report.remarks.push_back(
       "No figure is an error. They compare settings on one log, or logs under one setting: the "

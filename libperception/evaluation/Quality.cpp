@@ -1,5 +1,7 @@
 #include "libperception/evaluation/Quality.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -76,6 +78,20 @@ const std::vector<QualityKind>& qualityKinds() {
       {"seeds_apart", "m", "positions apart from those of a run with another seed, rms",
        TrueError::kPosition, 0.74, 0.28}};
   return kinds;
+}
+
+std::string QualityMoment::text() const {
+  switch (kind) {
+    case Kind::kClassChange:
+      return "its class changes";
+    case Kind::kShortLife:
+      return "is there for less than a second";
+    case Kind::kLostInView:
+      return "vanishes in view";
+    case Kind::kHandover:
+      return fmt::format("continues {}", former);
+  }
+  return "";
 }
 
 Quality qualityOf(const TrackedRun& run, const std::vector<const TrackedRun*>& siblings,

@@ -32,10 +32,15 @@ const std::vector<QualityKind>& qualityKinds();
 
 /// A moment that a person should look at.
 struct QualityMoment {
+  enum class Kind { kClassChange, kShortLife, kLostInView, kHandover };
+  Kind kind = Kind::kClassChange;
   double t = 0;  ///< [s] since the log's first stamp
   std::uint64_t id = 0;
-  std::string what;
+  Vector2 place = Vector2::Zero();  ///< [m] of the object then, world
+  std::uint64_t former = 0;         ///< handover: the track that it continues
+  std::string text() const;
 };
+inline constexpr int kMomentKinds = 4;
 
 /// The figures of a run, in the order of qualityKinds(); empty where the run cannot tell.
 struct Quality {

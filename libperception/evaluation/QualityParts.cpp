@@ -25,6 +25,12 @@ constexpr double kHandoverTime = 1, kHandoverReach = 2;  ///< [s], [m]
 constexpr double kSameInstant = 1e-6;                    ///< [s]
 constexpr double kLately = 0.5;                          ///< [s] since a modality hit an object
 
+using Kind = QualityMoment::Kind;
+
+QualityMoment momentOf(Kind kind, std::uint64_t id, const QualitySample& sample) {
+  return {kind, sample.t, id, sample.object->position.head<2>(), 0};
+}
+
 /// [m^2] squared distance of sample k from the parabola through its neighbors.
 Figure offCurve(const std::vector<QualitySample>& track, std::size_t k) {
   std::size_t from = k, to = k;
@@ -106,7 +112,7 @@ SampleFigures sampleFigures(const QualitySamples& tracks, bool several_modalitie
       if (f.alone) *f.alone += track[k].modalities <= 1 ? 1 : 0;
       if (k > 0 && o.class_id != track[k - 1].object->class_id) {
         ++f.flips;
-        moments.push_back({track[k].t, id, "its class changes"});
+        moments.push_back(momentOf(Kind::kClassChange, id, track[k]));
       }
     }
   }
@@ -121,7 +127,7 @@ TrackFigures trackFigures(const QualitySamples& tracks, double first, double las
     const bool begins_late = begin.t > first + kShort, ends_early = end.t < last - kShort;
     if (end.t - begin.t < kShort && begin.t > first && ends_early) {
       ++f.short_lives;
-      moments.push_back({begin.t, id, "is there for less than a second"});
+      moments.push_back(momentOf(Kind::kShortLife, id, begin));
     }
     if (begins_late) {
       ++f.ends;
@@ -130,7 +136,7 @@ TrackFigures trackFigures(const QualitySamples& tracks, double first, double las
     if (ends_early) {
       ++f.ends;
       f.sudden += end.inside;
-      if (end.inside) moments.push_back({end.t, id, "vanishes in view"});
+      if (end.inside) moments.push_back(momentOf(Kind::kLostInView, id, end));
     }
     if (!ends_early) continue;
     for (const auto& [other_id, other] : tracks) {
@@ -139,7 +145,8 @@ TrackFigures trackFigures(const QualitySamples& tracks, double first, double las
       const Vector2 there = end.object->position.head<2>() + dt * end.object->velocity;
       if ((there - other.front().object->position.head<2>()).norm() > kHandoverReach) continue;
       ++f.handovers;
-      moments.push_back({other.front().t, other_id, fmt::format("continues {}", id)});
+      moments.push_back(momentOf(Kind::kHandover, other_id, other.front()));
+      moments.back().former = id;
       break;
     }
   }

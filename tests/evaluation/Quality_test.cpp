@@ -49,13 +49,17 @@ TEST(Quality, ATrackOfThreeScenesIsShortAndOneThatEndsWithTheLogIsNot) {
   EXPECT_EQ(quality.objects, 3U);
   ASSERT_FALSE(quality.moments.empty());
   EXPECT_EQ(quality.moments[0].id, 2U);
+  EXPECT_EQ(quality.moments[0].kind, QualityMoment::Kind::kShortLife);
+  EXPECT_TRUE(quality.moments[0].place.isApprox(Vector2(5, 4)));
   EXPECT_NEAR(quality.moments[0].t, 1, 1e-9);
 }
 
 TEST(Quality, ATrackThatAnotherContinuesIsAHandover) {
   TrackedRun run = carThatSays(2);
   for (std::size_t k = 15; k < run.scenes.size(); ++k) run.scenes[k].objects[0].id = 7;
-  EXPECT_GT(*figureOf(qualityOf(run, {}, {}), "handovers"), 0);
+  const Quality quality = qualityOf(run, {}, {});
+  EXPECT_GT(*figureOf(quality, "handovers"), 0);
+  EXPECT_EQ(quality.moments.back().text(), "continues 1");
   EXPECT_EQ(*figureOf(qualityOf(carThatSays(2), {}, {}), "handovers"), 0);
 }
 
