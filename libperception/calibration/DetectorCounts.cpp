@@ -190,7 +190,7 @@ class SensorCounter {
       }
       const Candidate& o = objects[static_cast<std::size_t>(of[k])];
       label_of[static_cast<std::size_t>(of[k])] = m.label;
-      if (o.truth->occluded > kSeenAtMost) continue;
+      if (hiddenBy(scan, hiding, o) > kSeenAtMost) continue;
       addErrors(scan, m, o, {o.class_id, "", o.range, 0, 1, log_index_, o.truth->id, t},
                 sum_.errors);
     }
@@ -207,15 +207,18 @@ class SensorCounter {
     }
   }
 
+  /// KITTI's occlusion, by the label or by what hides objects.
+  int hiddenBy(const MeasurementScan& scan, const OcclusionMap* hiding, const Candidate& o) const {
+    if (o.truth->occluded <= kSeenAtMost || hiding == nullptr) return o.truth->occluded;
+    const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
+    return occlusionOf(o, *hiding, origin, log_.model.params.occlusion_tolerance);
+  }
+
   void addChance(const MeasurementScan& scan, const OcclusionMap* hiding, const Candidate& o,
                  int label, double t, ClutterCount& here) {
     const double stated =
         scan.model->detectionProbability(o.class_id, o.kinematics, o.extent, scan.state, 1);
-    int occluded = o.truth->occluded;
-    if (occluded > kSeenAtMost && hiding != nullptr) {
-      const Vector2 origin = scan.state.T_world_sensor.translation().head<2>();
-      occluded = occlusionOf(o, *hiding, origin, log_.model.params.occlusion_tolerance);
-    }
+    const int occluded = hiddenBy(scan, hiding, o);
     if (stated <= 0 || occluded > kSeenAtMost || o.truth->ignore) return;
     sum_.chances.push_back({o.class_id, occluded, o.range, label, stated, log_index_, t});
     if (label >= 0 && met_.insert(o.truth->id).second) ++sum_.first_seen, ++here.entered;

@@ -63,6 +63,23 @@ Interval labelOf(const DetectorCounts& counts, ClassId c, int label) {
   return shareInterval(valuesOf(blocks));
 }
 
+/// The errors of places and edges on road users over what is stated, [-] root mean square, with its
+/// interval; without errors low is 0.
+Interval noiseOf(const DetectorCounts& counts, const ClassTable& classes) {
+  static const std::set<std::string> kPlaces = {"left", "right", "range", "across"};
+  std::map<std::pair<std::size_t, long>, BlockCount> blocks;
+  std::size_t all = 0;
+  for (const DetectorError& e : counts.errors) {
+    if (!classes[e.class_id].reported || kPlaces.count(e.quantity) == 0) continue;
+    BlockCount& block = blocks[blockOf(e.log, e.t)];
+    const double normalized = e.error / e.sigma;
+    ++block.chances, block.events += normalized * normalized, ++all;
+  }
+  if (all < kFewest) return {1, 0, 1e3};
+  const Interval square = rateInterval(valuesOf(blocks));
+  return {std::sqrt(square.value), std::sqrt(square.low), std::sqrt(square.high)};
+}
+
 bool holds(const Interval& i, double value) { return value >= i.low && value <= i.high; }
 
 std::string percent(std::size_t part, std::size_t whole) {
@@ -226,13 +243,24 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
   };
   const std::string section = "sensor." + counts.sensor;
   const Interval clutter = rateOf(counts, &ClutterCount::number),
-                 births = rateOf(counts, &ClutterCount::entered);
+                 births = rateOf(counts, &ClutterCount::entered),
+                 noise = noiseOf(counts, input.classes);
   add(section, "clutter_per_scan", clutter, stated.clutter_per_scan);
   add(section, "births_per_scan", births, stated.births_per_scan);
   const double least = 0.5 / static_cast<double>(std::max<std::size_t>(counts.scans, 1));
   std::string text =
       lineOf("clutter_per_scan", clutter, stated.clutter_per_scan, std::max(clutter.value, least)) +
       lineOf("births_per_scan", births, stated.births_per_scan, std::max(births.value, least));
+  // Smaller errors than stated may repeat, which the filter takes for information: they stay.
+  table.rows.push_back(
+      {section, "noise_scale", fmt::format("{:.3g}", stated.noise_scale * noise.value),
+       fmt::format("{:.3g} to {:.3g}", stated.noise_scale * noise.low,
+                   stated.noise_scale * noise.high),
+       fmt::format("{:.3g}", stated.noise_scale), noise.low > 1 ? "written" : "kept"});
+  if (noise.low > 1)
+    text += fmt::format(
+        "noise_scale = {:.3g}   ; errors of {:.3g} to {:.3g} times the stated deviations\n",
+        std::min(20.0, stated.noise_scale * noise.value), noise.low, noise.high);
   if (!text.empty()) text = "[" + section + "]\n" + text;
   for (ClassId c = 0; c < input.classes.size(); ++c) {
     const auto visible = [](const DetectorChance& k) { return k.occluded <= 1; };

@@ -102,6 +102,8 @@ void DetectionParams::visit(ParamVisitor& v) {
          "tempers labels in the class update: 1 = independent labels");
   v.real("detection_exponent", detection_exponent, {1e-3, 1}, "",
          "tempers detections and missed detections in the class update");
+  v.real("noise_scale", noise_scale, {0.1, 20}, "",
+         "of the standard deviations of all that its measurements say");
   std::vector<std::string> resolutions = cameraResolutionNames();
   resolutions.insert(resolutions.begin(), "none");
   v.choice("resolution", resolution, resolutions,

@@ -23,6 +23,9 @@ struct DetectionParams {
   double label_exponent = 0.3;  ///< (0, 1] tempers labels in the class update (method.md 5.6)
   double detection_exponent =
       0.1;  ///< (0, 1] tempers detections and missed detections there (method.md 5.6)
+  /// [-] of the standard deviations of all that its measurements say, where the sensor is worse
+  /// than its front end knows (perception-calibrate gains counts it).
+  double noise_scale = 1;
   std::optional<Pose3> pose;  ///< in the ego frame; overrides the pose of the log
   std::vector<std::pair<std::string, double>>
       clutter_labels;  ///< P(label | clutter); labels not listed share the rest evenly

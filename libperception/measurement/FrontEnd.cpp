@@ -10,6 +10,8 @@ MeasurementScan FrontEnd::extract(const SensorFrame& frame) const {
   scan.state = {frame.stamp, measuringPose(frame), frame.ego};
   scan.model = model();
   fill(frame, scan);
+  if (noise_scale_ != 1)
+    for (Measurement& m : scan.measurements) scaleNoise(m, noise_scale_);
   return scan;
 }
 

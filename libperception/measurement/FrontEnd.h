@@ -15,6 +15,8 @@ class FrontEnd {
   virtual ~FrontEnd() = default;
   /// The scan of a frame: sensor, stamp, pose, measurement model, and what fill() adds.
   MeasurementScan extract(const SensorFrame& frame) const;
+  /// Multiplies the standard deviations of all measurements, [sensor.LABEL] noise_scale.
+  void scaleNoiseBy(double factor) { noise_scale_ = factor; }
   /// Names of what Measurement::label indexes; empty: no labels.
   virtual std::vector<std::string> labelNames() const { return {}; }
   /// What its frames have to go through first, for one sensor of one run; null: nothing.
@@ -28,6 +30,9 @@ class FrontEnd {
   /// Adds measurements and occlusion. Adds nothing when `frame.data` is of another kind than this
   /// front end reads; invalid points and boxes are dropped and counted.
   virtual void fill(const SensorFrame& frame, MeasurementScan& scan) const = 0;
+
+ private:
+  double noise_scale_ = 1;
 };
 
 }  // namespace perception

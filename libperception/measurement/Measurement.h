@@ -72,6 +72,9 @@ struct Measurement {
   int detection = -1;                      ///< index of the detection in its frame
 };
 
+/// Multiplies the standard deviations of all that it says by a factor, above 0.
+void scaleNoise(Measurement& measurement, double factor);
+
 /// Sensor and vehicle at the time of a scan.
 struct SensorState {
   Stamp stamp;

@@ -48,14 +48,19 @@ std::optional<SensorSet> readSensorSet(const std::string& text) {
 }
 
 std::shared_ptr<const FrontEnd> makeFrontEnd(Config& config, const std::string& section,
-                                             const std::string& label, const std::string& kind,
+                                             const std::string& label,
+                                             const DetectionParams& params,
                                              const ClassTable& classes) {
   std::string known;
   for (const FrontEndRow& row : frontEnds()) {
-    if (kind == row.kind) return row.make(config, label, classes);
+    if (params.kind == row.kind) {
+      std::unique_ptr<FrontEnd> front_end = row.make(config, label, classes);
+      if (front_end) front_end->scaleNoiseBy(params.noise_scale);
+      return front_end;
+    }
     known += (known.empty() ? "" : ", ") + row.kind;
   }
-  config.fault(section, "kind", "unknown front end '" + kind + "', known are: " + known);
+  config.fault(section, "kind", "unknown front end '" + params.kind + "', known are: " + known);
   return nullptr;
 }
 
@@ -82,7 +87,7 @@ PipelineSetup::Sensor readSensor(Config& config, const std::string& section,
     config.fault(section, "merge_window", "must not be above [run] reorder_window");
   if (!sensor.scan.merge.empty() && sensor.params.pose)
     config.fault(section, "pose", "several scanners are merged: their poses come with the log");
-  sensor.front_end = makeFrontEnd(config, section, label, sensor.params.kind, s.model.classes);
+  sensor.front_end = makeFrontEnd(config, section, label, sensor.params, s.model.classes);
   const auto& without = s.run.without;
   const bool only_ground = sensor.scan.ground == ScanParams::Ground::kOnly;
   sensor.active = !only_ground && set.modalities.count(sensor.params.modality) > 0 &&

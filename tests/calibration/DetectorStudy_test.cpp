@@ -26,7 +26,7 @@ TruthObject walker(std::int64_t frame, std::int64_t id, double x, double y) {
 
 /// Two walkers seen in three scans of four, one in ten of them under the other label, and clutter
 /// far off in every second scan. `repeated`: errors stay with the object.
-DetectorCounts counted(bool repeated) {
+DetectorCounts counted(bool repeated, double stated = kStated) {
   RecordedLog log;
   log.model = test::exactModel(test::linearClasses());
   const auto sensor = std::make_shared<const PositionModel>(test::linearSensor());
@@ -44,7 +44,7 @@ DetectorCounts counted(bool repeated) {
       if (!repeated || k % 100 == 0) kept[i] = {rng.normal(0, kNoise), rng.normal(0, kNoise)};
       Measurement m;
       m.z = place + kept[i];
-      m.R = kStated * kStated * Matrix2::Identity();
+      m.R = stated * stated * Matrix2::Identity();
       m.seen = 3;
       m.label = k % 10 == 0 ? 1 : 0;
       m.position = m.z;
@@ -53,7 +53,7 @@ DetectorCounts counted(bool repeated) {
     if (k % 2 == 0) {
       Measurement m = boxes.empty() ? Measurement{} : boxes.front();
       m.z = Vector2(12, 0);
-      m.R = kStated * kStated * Matrix2::Identity();
+      m.R = stated * stated * Matrix2::Identity();
       m.seen = 3;
       m.label = 1;
       m.position = m.z;
@@ -136,6 +136,22 @@ TEST(DetectorStudy, GainsAreTheKeysThatTheCountsContradict) {
   EXPECT_NE(ini.find("include = /somewhere/site.ini\n"), std::string::npos) << ini;
   EXPECT_EQ(ini.find("clutter_per_scan"), std::string::npos) << ini;
   EXPECT_NE(ini.find("births_per_scan = 0.005 "), std::string::npos) << ini;
+}
+
+TEST(DetectorStudy, NoiseAboveWhatIsStatedIsWrittenAndSmallerNoiseIsNot) {
+  DetectorStudyInput input;
+  input.classes = test::linearClasses();
+  input.labels["boxes"] = {"person", "thing"};
+  input.include = "/somewhere/site.ini";
+  input.stated["boxes"] = {};
+  const auto iniOf = [&](double stated) {
+    return detectorStudy(input, {{"boxes", counted(false, stated)}}).files.at(0).second;
+  };
+  EXPECT_EQ(iniOf(2 * kNoise).find("noise_scale"), std::string::npos);
+  const std::string ini = iniOf(kNoise / 2);
+  const auto at = ini.find("noise_scale = ");
+  ASSERT_NE(at, std::string::npos) << ini;
+  EXPECT_NEAR(std::stod(ini.substr(at + 14)), 2, 0.15);
 }
 
 /// What a scan at 1 m of a wall says of the object behind it.
