@@ -71,7 +71,10 @@ void addLidar(Findings& out, const std::string& label, const SensorFacts& facts)
             fmt::format("intensity {:.3f} to {:.3f}", *facts.low, *facts.high));
   }
   if (facts.planar) {
-    out.add(Weight::kNote, label, "mounting not observable: one layer shows no ground plane");
+    out.add(Weight::kNote, label,
+            fmt::format("mounting not observable: one layer shows no ground plane; the log has it "
+                        "{:.2f} m high",
+                        facts.T_ego_sensor.translation().z()));
     return;
   }
   const auto m = groundMounting(facts);

@@ -101,6 +101,21 @@ label.car = 0.6
 labels = car, person, cyclist
 )";
 
+constexpr double kLeastHeight = 0.05, kAssumedHeight = 0.5;  ///< [m] of a scanner with one layer
+constexpr const char* kPlanar = R"([sensor.{label}.points]
+vehicle_front = {front:.2f}
+vehicle_rear = 0.1
+[sensor.{label}.obstacles]
+height_min = {least:.2f}
+occluder_min = {top:.2f}
+[sensor.{label}.clusters]
+min_top = {top:.2f}
+min_points = 5
+[sensor.{label}.persons]
+min_span = 0
+min_points = 4
+)";
+
 double tens(double value) { return 10 * std::ceil(value / 10); }
 
 /// Full angle in whole degrees; nearly all around is all around.
@@ -128,12 +143,11 @@ std::string namesLine(const SensorFacts& facts, bool cyclists) {
   return pairs.empty() ? "" : "names = " + pairs + "\n";
 }
 
-std::string poseLine(const Pose3& pose) {
+std::string poseLine(const Pose3& pose, const char* why) {
   const Vector3 t = pose.translation();
-  return fmt::format(
-      "pose = {:.3f}, {:.3f}, {:.3f}, {:.2f}, {:.2f}, {:.2f}   ; the log's, corrected by "
-      "ground and motion\n",
-      t.x(), t.y(), t.z(), degrees(yawOf(pose)), degrees(pitchOf(pose)), degrees(rollOf(pose)));
+  return fmt::format("pose = {:.3f}, {:.3f}, {:.3f}, {:.2f}, {:.2f}, {:.2f}   ; {}\n", t.x(), t.y(),
+                     t.z(), degrees(yawOf(pose)), degrees(pitchOf(pose)), degrees(rollOf(pose)),
+                     why);
 }
 
 /// The log's mounting, corrected where it is wrong: by the motion against the poses, height, pitch
@@ -145,7 +159,9 @@ std::string mountingLine(const LogSurvey& survey, const SensorFacts& facts) {
   if (ground && ground->steady() && motion) motion->pitch = motion->roll = MotionCheck::Value{};
   if (ground && ground->wrong()) pose = ground->T_ego_sensor;
   if (motion) pose = correctedMounting(*motion, pose);
-  return pose.isApprox(facts.T_ego_sensor, 1e-6) ? "" : poseLine(pose);
+  return pose.isApprox(facts.T_ego_sensor, 1e-6)
+             ? ""
+             : poseLine(pose, "the log's, corrected by ground and motion");
 }
 
 /// Where the own vehicle ends: beyond its outermost sensors.
@@ -173,6 +189,26 @@ std::string lidarSection(const LogSurvey& survey, const std::string& label,
   if (!files.model.empty())
     out += fmt::format("[sensor.{}.classifier]\nfile = {}\n", label, files.model);
   return out;
+}
+
+/// One-layer scanners: what they see of an object is one line at their height, and nothing of the
+/// own vehicle. `label`: of the section; `merge`: empty, or the scanners that it holds.
+std::string planarSection(const std::string& label, const std::string& merge,
+                          const SensorFacts& facts) {
+  Pose3 pose = facts.T_ego_sensor;
+  const bool unknown = pose.translation().z() < kLeastHeight;
+  if (unknown) pose.translation().z() = kAssumedHeight;
+  const double height = pose.translation().z();
+  std::string out = section(label, "lidar", 'L', 2, 0.5, kClusterRange,
+                            merge.empty() ? fieldOf(facts.angleOf(kNearlyAll)) : 360);
+  if (!merge.empty())
+    out += "merge = " + merge + "\n";
+  else if (unknown)
+    out += poseLine(pose, "the log has it on the ground: height assumed");
+  return out + fmt::format(kPlanar, fmt::arg("label", label),
+                           fmt::arg("front", std::max(0.1, pose.translation().x())),
+                           fmt::arg("least", std::clamp(height - 0.3, 0.05, 0.2)),
+                           fmt::arg("top", std::clamp(height - 0.2, 0.05, 0.3)));
 }
 
 std::string radarSection(const LogSurvey& survey, const std::string& label,
@@ -240,8 +276,8 @@ std::string siteIni(const LogSurvey& survey, const SiteFiles& files, const std::
     }
   }
   if (planar != nullptr) {
-    sections +=
-        section("SCANNERS", "lidar", 'L', 2, 0.5, kClusterRange, 360) + "merge = " + layers + "\n";
+    const bool one = layers.find(',') == std::string::npos;
+    sections += planarSection(one ? layers : "SCANNERS", one ? "" : layers, *planar);
   }
   if (clouds || planar != nullptr) use('L');
   if (letters.empty()) return "";

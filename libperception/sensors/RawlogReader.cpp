@@ -16,6 +16,7 @@
 #include "libperception/sensors/CRawlogInput.h"
 #include "libperception/sensors/CheckedAllocation.h"
 #include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/JpegErrors.h"
 #include "libperception/sensors/registerClasses.h"
 
@@ -232,10 +233,10 @@ void RawlogReader::take(const mrpt::serialization::CSerializable::Ptr& object) {
   if (!object) {
     ++skipped_["nullptr"];
   } else if (auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)) {
-    ready_.push_back(std::move(observation));
+    give(std::move(observation));
   } else if (const auto* frame = dynamic_cast<const mrpt::obs::CSensoryFrame*>(object.get())) {
     for (const auto& inside : *frame) {
-      if (inside) ready_.push_back(inside);
+      if (inside) give(inside);
     }
   } else if (const auto* actions =
                  dynamic_cast<const mrpt::obs::CActionCollection*>(object.get())) {
@@ -243,6 +244,15 @@ void RawlogReader::take(const mrpt::serialization::CSerializable::Ptr& object) {
   } else {
     ++skipped_[object->GetRuntimeClass()->className];
   }
+}
+
+/// A sensor without a label gets the name of its class, so that an INI can name it.
+void RawlogReader::give(mrpt::obs::CObservation::Ptr observation) {
+  if (observation->sensorLabel.empty() && isSensorData(*observation)) {
+    const std::string name = observation->GetRuntimeClass()->className;
+    observation->sensorLabel = name.substr(name.rfind(':') + 1);
+  }
+  ready_.push_back(std::move(observation));
 }
 
 void RawlogReader::addActions(const mrpt::obs::CActionCollection& actions) {

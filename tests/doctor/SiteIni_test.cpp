@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "libperception/pipeline/PipelineSetup.h"
 #include "libperception/scene/OutputFile.h"
 #include "libperception/sensors/CObservationLidarScan.h"
+#include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/ToObservation.h"
 #include "libperception/sensors/registerClasses.h"
@@ -54,6 +56,46 @@ TEST(SiteIni, OfEveryShippedLogIsReadWithoutFault) {
     for (const auto& [label, facts] : survey.sensors())
       EXPECT_EQ(setup.sensorOf(label).has_value(), facts.kind != "image") << label;
   }
+}
+
+/// A one-layer scanner of 180 deg in a room of 5 m.
+mrpt::obs::CObservation2DRangeScan planarScan(const std::string& label, double height) {
+  mrpt::obs::CObservation2DRangeScan scan;
+  scan.sensorLabel = label;
+  scan.timestamp = fromStamp(Stamp{1'000'000'000'000});
+  scan.aperture = static_cast<float>(kPi);
+  scan.maxRange = 30;
+  scan.sensorPose = mrpt::poses::CPose3D(0.2, 0, height, 0, 0, 0);
+  scan.resizeScan(181);
+  for (std::size_t i = 0; i < 181; ++i) scan.setScanRange(i, 5), scan.setScanRangeValidity(i, true);
+  return scan;
+}
+
+TEST(SiteIni, OneScannerOfOneLayerHasItsFieldOfViewAndAHeight) {
+  LogSurvey survey;
+  survey.look(planarScan("LASER", 0));
+  const PipelineSetup setup = setupOf(survey);
+  const auto sensor = setup.sensorOf("LASER");
+  ASSERT_TRUE(sensor);
+  const auto& params = setup.sensors.at(*sensor).params;
+  ASSERT_TRUE(params.pose);
+  EXPECT_NEAR(params.pose->translation().z(), 0.5, 1e-9);  // a floor sees no objects
+  EXPECT_NEAR(degrees(params.fov), 182, 2);
+
+  LogSurvey high;
+  high.look(planarScan("LASER", 0.8));
+  const PipelineSetup known = setupOf(high);
+  EXPECT_FALSE(known.sensors.at(*known.sensorOf("LASER")).params.pose);
+}
+
+TEST(SiteIni, SeveralScannersOfOneLayerAreMerged) {
+  LogSurvey survey;
+  survey.look(planarScan("LEFT", 0.6));
+  survey.look(planarScan("RIGHT", 0.6));
+  const PipelineSetup setup = setupOf(survey);
+  ASSERT_TRUE(setup.sensorOf("LEFT"));
+  EXPECT_EQ(setup.sensorOf("LEFT"), setup.sensorOf("RIGHT"));
+  EXPECT_EQ(setup.sensors.at(*setup.sensorOf("LEFT")).label, "SCANNERS");
 }
 
 TEST(SiteIni, NamesWhatIsFound) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <sys/stat.h>
@@ -111,6 +113,26 @@ TEST_F(RawlogReaderTest, FlattensSensoryFramesAndOdometryOfActions) {
   EXPECT_EQ(odometry, (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(reader.entries(), 6U);
   EXPECT_EQ(reader.end(), End::kClean);
+}
+
+TEST_F(RawlogReaderTest, ASensorWithoutALabelHasTheNameOfItsClass) {
+  {
+    RawlogWriter log(log_);
+    mrpt::obs::CObservation2DRangeScan scan;
+    scan.timestamp = fromStamp(kStart);
+    log.write(scan);
+    mrpt::obs::CObservationComment comment;
+    comment.timestamp = fromStamp(kStart);
+    log.write(comment);
+    mrpt::obs::CSensoryFrame frame;
+    frame.insert(std::make_shared<mrpt::obs::CObservation2DRangeScan>(scan));
+    log.write(frame);
+    log.close();
+  }
+  RawlogReader reader(log_);
+  EXPECT_EQ(reader.next()->sensorLabel, "CObservation2DRangeScan");
+  EXPECT_EQ(reader.next()->sensorLabel, "");  // no sensor
+  EXPECT_EQ(reader.next()->sensorLabel, "CObservation2DRangeScan");
 }
 
 TEST_F(RawlogReaderTest, EveryCutOfAGzipLogIsTorn) {
