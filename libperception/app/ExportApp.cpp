@@ -83,7 +83,7 @@ void ExportApp::run() {
   }
   if (out_frames == 0) {
     throw DataError(
-        fmt::format("{}: no lidar scan or image{}", inputs.front(),
+        fmt::format("{}: no scan or image{}", inputs.front(),
                     run_dir.empty() ? "" : " at the times of " + run_dir + ": is it another log?"));
   }
   if (reader.end() != RawlogReader::End::kClean) warn(reader.endMessage());

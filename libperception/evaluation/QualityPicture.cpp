@@ -124,8 +124,10 @@ StudyPlot followingPicture(const std::vector<FiguresAndErrors>& runs) {
     ++shown;
     const std::string title = gnuplotString(fmt::format("{} [{}]", kind.name, kind.unit));
     if (points.empty()) {
-      panels += fmt::format("set title {}\nset xrange [0:1]\nplot NaN notitle\nset xrange [*:*]\n",
-                            gnuplotString(std::string(kind.name) + ": in no run"));
+      panels += fmt::format(
+          "set title {}\nset xrange [0:1]\nset yrange [0:1]\nplot NaN notitle\n"
+          "set xrange [*:*]\nset yrange [0:*]\n",
+          gnuplotString(std::string(kind.name) + ": in no run"));
       continue;
     }
     const std::string file = fmt::format("{}.txt", kind.name);

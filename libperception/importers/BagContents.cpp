@@ -64,6 +64,11 @@ void BagTopicParams::visit(ParamVisitor& v) {
   v.require(pose.empty() || pose.size() == 6, "pose: expected six numbers");
   v.real("intensity_max", intensity_max, {0, 1e9}, "",
          "intensities are divided by it; 0: bytes by 255, others not");
+  v.choiceOf("kind", kind, {"auto", "lidar", "radar"},
+             "of what clouds are; auto: of a radar, if they have range rates and no beam numbers");
+  v.real("rate_scale", rate_scale, {-1, 1}, "",
+         "range rates of a radar are multiplied by it: -1 if they are positive where objects come "
+         "nearer, 0 if they are none");
   v.boolean("use", use, "no: left out");
 }
 
@@ -105,7 +110,9 @@ BagContents readContents(const std::vector<std::string>& files,
 
 std::string useOfType(const std::string& type) {
   static const std::map<std::string, std::string> uses = {
-      {"sensor_msgs/PointCloud2", "lidar scans"},
+      {"sensor_msgs/PointCloud2", "lidar or radar scans"},
+      {"radar_msgs/RadarScan", "radar scans"},
+      {"vision_msgs/Detection3DArray", "boxes, if the INI has [topic.TOPIC]"},
       {"sensor_msgs/Image", "images"},
       {"sensor_msgs/CompressedImage", "images"},
       {"sensor_msgs/CameraInfo", "camera"},

@@ -26,7 +26,10 @@ struct BagTopicParams {
   std::string label;         ///< sensor label in the log
   std::vector<double> pose;  ///< of the sensor on the vehicle; wins over the recording's
   double intensity_max = 0;  ///< intensities are divided by it
-  bool use = true;           ///< chosen: what can be read is read
+  /// What clouds are of; auto: of a radar if they have range rates and no beam numbers.
+  enum class Kind { kAuto, kLidar, kRadar } kind = Kind::kAuto;
+  double rate_scale = 1;  ///< chosen: of a radar's range rates; -1 where approaching is positive
+  bool use = true;        ///< chosen: what can be read is read
 
   void visit(ParamVisitor& v);
 };

@@ -24,6 +24,8 @@ constexpr double kSorted = 1;
 constexpr double kPoseMargin = 0.5;
 
 bool isCloud(const std::string& type) { return type == "sensor_msgs/PointCloud2"; }
+bool isRadar(const std::string& type) { return type == "radar_msgs/RadarScan"; }
+bool isBoxes(const std::string& type) { return type == "vision_msgs/Detection3DArray"; }
 bool isImage(const std::string& type) {
   return type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage";
 }
@@ -149,12 +151,14 @@ void BagImport::choosePoses() {
                   source == "tf" ? "tf, in \"" + contents_.tree.movesIn(base_) + "\"" : source));
 }
 
-/// The frames are the scans of the first cloud topic, else the images of the first camera.
+/// The frames are the scans of the first cloud topic, else of the first radar, else the images of
+/// the first camera, else the boxes of the first detector.
 void BagImport::chooseFrames() {
-  for (const auto& wanted : {&isCloud, &isImage}) {
+  for (const auto& wanted : {&isCloud, &isRadar, &isImage, &isBoxes}) {
     for (const auto& [name, row] : contents_.topics) {
       const auto params = topic_params_.find(name);
-      const bool used = params == topic_params_.end() || params->second.use;
+      const bool used =
+          params == topic_params_.end() ? !isBoxes(row.topic.type) : params->second.use;
       if (frames_topic_.empty() && used && row.topic.unknown_encoding.empty() &&
           wanted(row.topic.type))
         frames_topic_ = name;
@@ -232,8 +236,20 @@ void BagImport::takeSensor(const BagMessage& message, const BagTopicParams& para
   frame.sensor = params.label;
   if (isCloud(message.topic->type)) {
     const auto cloud = ros::decoded<ros::PointCloud2>(message.bytes, encoding);
+    using Kind = BagTopicParams::Kind;
     header = cloud.header;
-    frame.data = ros::cloudOf(cloud, params.intensity_max);
+    if (params.kind == Kind::kRadar || (params.kind == Kind::kAuto && ros::isOfRadar(cloud)))
+      frame.data = ros::returnsOf(cloud, params.rate_scale);
+    else
+      frame.data = ros::cloudOf(cloud, params.intensity_max);
+  } else if (isBoxes(message.topic->type)) {
+    const auto boxes = ros::decoded<ros::Detection3DArray>(message.bytes, encoding);
+    header = boxes.header;
+    frame.data = ros::objectsOf(boxes);
+  } else if (isRadar(message.topic->type)) {
+    const auto scan = ros::decoded<ros::RadarScan>(message.bytes, encoding);
+    header = scan.header;
+    frame.data = ros::returnsOf(scan, params.rate_scale);
   } else {
     Raster raster;
     if (message.topic->type == "sensor_msgs/Image") {
@@ -270,7 +286,9 @@ void BagImport::take(const BagMessage& message) {
   BagTopicParams params = given == topic_params_.end() ? BagTopicParams() : given->second;
   if (!params.use || !message.topic->unknown_encoding.empty()) return;
   if (params.label.empty()) params.label = labelOf(message.topic->name);
-  if (isCloud(type) || isImage(type)) return takeSensor(message, params);
+  // Boxes may be another tracker's output: they are read when they are asked for.
+  const bool boxes = isBoxes(type) && given != topic_params_.end();
+  if (isCloud(type) || isRadar(type) || isImage(type) || boxes) return takeSensor(message, params);
   if (!log_.options().wants(std::max<std::int64_t>(frame_, 0))) return;
   if (type == "sensor_msgs/NavSatFix") {
     const auto fix = ros::decoded<ros::NavSatFix>(message.bytes, message.topic->encoding);
@@ -318,11 +336,11 @@ void BagImport::run() {
   choosePoses();
   chooseFrames();
   if (frames_topic_.empty()) {
-    throw DataError(
-        fmt::format("{}: no topic of sensor_msgs/PointCloud2, Image or CompressedImage is used: "
-                    "see --list",
-                    files_.front()),
-        ExitCode::kNoInput);
+    throw DataError(fmt::format("{}: no topic of sensor_msgs/PointCloud2, Image, CompressedImage "
+                                "or radar_msgs/RadarScan is used: "
+                                "see --list",
+                                files_.front()),
+                    ExitCode::kNoInput);
   }
   readSensors();
   for (const std::string& fault : contents_.faults) log_.warn(fault);

@@ -30,7 +30,9 @@ class FoxgloveFile final : public ExportFile {
     std::string message;
     const auto* cloud = std::get_if<LidarCloud>(&frame.data);
     const auto* image = std::get_if<CameraImage>(&frame.data);
+    const auto* radar = std::get_if<RadarReturns>(&frame.data);
     if (cloud) message = pointCloud(*cloud, frame.stamp, frame.sensor);
+    if (radar) message = pointCloud(*radar, frame.stamp, frame.sensor);
     if (image) {
       const auto raster = image->load ? image->load() : std::nullopt;
       if (raster) message = compressedImage(*raster, frame.stamp, frame.sensor);
@@ -40,7 +42,7 @@ class FoxgloveFile final : public ExportFile {
     transform(frame.T_ego_sensor, frame.stamp, "ego", frame.sensor);
     auto known = sensors_.find(frame.sensor);
     if (known == sensors_.end()) {
-      const auto schema = cloud ? pointCloudSchema() : compressedImageSchema();
+      const auto schema = image ? compressedImageSchema() : pointCloudSchema();
       const auto id = mcap_.addChannel("/sensors/" + frame.sensor, "json", schema);
       known = sensors_.emplace(frame.sensor, id).first;
     }

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstring>
+#include <initializer_list>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -105,23 +108,50 @@ std::string sceneUpdate(const Scene& scene, const std::vector<std::string>& clas
   return json{{"deletions", deletions}, {"entities", entities}}.dump();
 }
 
-std::string pointCloud(const LidarCloud& cloud, Stamp stamp, const std::string& frame_id) {
-  const std::size_t stride = 4 * sizeof(float);
-  std::string data(cloud.size() * stride, '\0');
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float intensity = cloud.intensity.empty() ? 0.0F : cloud.intensity[i];
-    const float values[] = {cloud.x[i], cloud.y[i], cloud.z[i], intensity};
-    std::memcpy(data.data() + i * stride, values, stride);
-  }
+namespace {
+
+/// foxglove.PointCloud of the values of all points, one after the other.
+std::string pointsMessage(std::initializer_list<const char*> names,
+                          const std::vector<float>& values, Stamp stamp,
+                          const std::string& frame_id) {
+  std::string data(values.size() * sizeof(float), '\0');
+  if (!values.empty()) std::memcpy(data.data(), values.data(), data.size());
   json fields = json::array();
-  for (const char* name : {"x", "y", "z", "intensity"}) {
+  for (const char* name : names) {
     fields.push_back(
         {{"name", name}, {"offset", fields.size() * sizeof(float)}, {"type", kFloat32}});
   }
-  return json{
-      {"timestamp", time(stamp)}, {"frame_id", frame_id}, {"pose", pose(Vector3::Zero(), 0)},
-      {"point_stride", stride},   {"fields", fields},     {"data", base64(data)}}
+  return json{{"timestamp", time(stamp)},
+              {"frame_id", frame_id},
+              {"pose", pose(Vector3::Zero(), 0)},
+              {"point_stride", names.size() * sizeof(float)},
+              {"fields", fields},
+              {"data", base64(data)}}
       .dump();
+}
+
+}  // namespace
+
+std::string pointCloud(const LidarCloud& cloud, Stamp stamp, const std::string& frame_id) {
+  std::vector<float> values;
+  values.reserve(4 * cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float intensity = cloud.intensity.empty() ? 0.0F : cloud.intensity[i];
+    values.insert(values.end(), {cloud.x[i], cloud.y[i], cloud.z[i], intensity});
+  }
+  return pointsMessage({"x", "y", "z", "intensity"}, values, stamp, frame_id);
+}
+
+std::string pointCloud(const RadarReturns& radar, Stamp stamp, const std::string& frame_id) {
+  std::vector<float> values;
+  for (const RadarReturn& r : radar.returns) {
+    const double up = r.elevation.value_or(0), level = r.range * std::cos(up);
+    const double rate = r.has_rate ? r.range_rate : std::numeric_limits<double>::quiet_NaN();
+    for (const double v : {level * std::cos(r.bearing), level * std::sin(r.bearing),
+                           r.range * std::sin(up), rate, r.amplitude})
+      values.push_back(static_cast<float>(v));
+  }
+  return pointsMessage({"x", "y", "z", "range_rate", "amplitude"}, values, stamp, frame_id);
 }
 
 std::string frameTransform(const Pose3& T, Stamp stamp, const std::string& parent,

@@ -19,6 +19,8 @@ std::string sceneUpdate(const Scene& scene, const std::vector<std::string>& clas
 /// foxglove.PointCloud: x, y, z and intensity as 32-bit floats, sensor frame; intensity is 0 where
 /// the log has none.
 std::string pointCloud(const LidarCloud& cloud, Stamp stamp, const std::string& frame_id);
+/// foxglove.PointCloud of a radar: x, y, z, range_rate (NaN where unknown) and amplitude.
+std::string pointCloud(const RadarReturns& radar, Stamp stamp, const std::string& frame_id);
 /// foxglove.FrameTransform: p_parent = T p_child.
 std::string frameTransform(const Pose3& T, Stamp stamp, const std::string& parent,
                            const std::string& child);

@@ -49,6 +49,12 @@ class RosFile final : public ExportFile {
             ros::messageOf(*cloud, header, data));
       return true;
     }
+    if (const auto* radar = std::get_if<RadarReturns>(&frame.data)) {
+      place(frame);
+      write("/" + frame.sensor, "radar_msgs/RadarScan", frame.stamp,
+            ros::messageOf(*radar, header));
+      return true;
+    }
     const auto* image = std::get_if<CameraImage>(&frame.data);
     const auto raster = image && image->load ? image->load() : std::nullopt;
     if (!raster) return false;

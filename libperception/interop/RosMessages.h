@@ -146,6 +146,25 @@ void fields(Wire& w, PointCloud2& m) {
   w(m.row_step), w(m.data), w(m.is_dense);
 }
 
+/// radar_msgs/RadarReturn: m, rad counter-clockwise, rad up, m/s, dB.
+struct RadarReturn {
+  float range = 0, azimuth = 0, elevation = 0, doppler_velocity = 0, amplitude = 0;
+};
+template <class Wire>
+void fields(Wire& w, RadarReturn& m) {
+  w(m.range), w(m.azimuth), w(m.elevation), w(m.doppler_velocity), w(m.amplitude);
+}
+
+/// radar_msgs/RadarScan.
+struct RadarScan {
+  Header header;
+  std::vector<RadarReturn> returns;
+};
+template <class Wire>
+void fields(Wire& w, RadarScan& m) {
+  w(m.header), w(m.returns);
+}
+
 struct Image {
   Header header;
   std::uint32_t height = 0, width = 0;

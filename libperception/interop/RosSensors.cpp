@@ -181,6 +181,98 @@ PointCloud2 messageOf(const LidarCloud& cloud, const Header& header, std::string
 
 namespace {
 
+constexpr std::initializer_list<const char*> kRates = {
+    "doppler_velocity", "Doppler", "doppler", "range_rate", "radial_velocity",
+    "radial_speed",     "v_r",     "vr",      "velocity"};
+
+/// Its rate, if that is finite.
+perception::RadarReturn withRate(perception::RadarReturn r, double rate, double scale) {
+  r.has_rate = scale != 0 && std::isfinite(rate);
+  r.range_rate = r.has_rate ? scale * rate : 0;
+  return r;
+}
+
+}  // namespace
+
+RadarReturns returnsOf(const RadarScan& message, double rate_scale) {
+  RadarReturns radar;
+  for (const RadarReturn& given : message.returns) {
+    perception::RadarReturn r;
+    r.range = static_cast<double>(given.range), r.bearing = static_cast<double>(given.azimuth);
+    r.elevation = static_cast<double>(given.elevation);
+    r.amplitude = static_cast<double>(given.amplitude);
+    radar.returns.push_back(withRate(r, static_cast<double>(given.doppler_velocity), rate_scale));
+  }
+  return radar;
+}
+
+bool isOfRadar(const PointCloud2& message) {
+  return Column(message, kRates) && !Column(message, {"ring", "channel", "line"});
+}
+
+RadarReturns returnsOf(const PointCloud2& message, double rate_scale) {
+  const LidarCloud places = cloudOf(message);
+  RadarReturns radar;
+  radar.returns.reserve(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto x = static_cast<double>(places.x[i]), y = static_cast<double>(places.y[i]),
+               z = static_cast<double>(places.z[i]);
+    perception::RadarReturn r;
+    r.range = std::sqrt(x * x + y * y + z * z), r.bearing = std::atan2(y, x);
+    r.elevation = std::atan2(z, std::hypot(x, y));
+    r.has_rate = false;
+    radar.returns.push_back(r);
+  }
+  std::size_t i = 0;
+  Column(message, kRates).forEach([&](double rate) {
+    radar.returns[i] = withRate(radar.returns[i], rate, rate_scale), ++i;
+  });
+  i = 0;
+  Column(message, {"amplitude", "rcs", "RCS", "power", "snr", "intensity"})
+      .forEach([&](double amplitude) { radar.returns[i++].amplitude = amplitude; });
+  return radar;
+}
+
+ObjectDetections objectsOf(const Detection3DArray& message) {
+  ObjectDetections out;
+  for (const Detection3D& given : message.detections) {
+    const std::string& frame = given.header.frame_id;
+    if (!frame.empty() && frame != message.header.frame_id)
+      throw std::runtime_error(fmt::format("a box in frame \"{}\" of an array in \"{}\"", frame,
+                                           message.header.frame_id));
+    ObjectDetection object;
+    object.label = "object";
+    const auto best =
+        std::max_element(given.results.begin(), given.results.end(),
+                         [](const auto& a, const auto& b) { return a.score < b.score; });
+    if (best != given.results.end()) object.label = best->class_id, object.score = best->score;
+    for (const ObjectHypothesis& h : given.results)
+      object.class_scores.emplace_back(h.class_id, h.score);
+    const Pose3 center = poseOf(given.center);
+    ObjectDetection::SpaceBox box;
+    box.bottom_center = center * Vector3(0, 0, -given.size[2] / 2);
+    box.yaw = yawOf(center);
+    box.length = given.size[0], box.width = given.size[1], box.height = given.size[2];
+    object.space_box = box;
+    out.objects.push_back(std::move(object));
+  }
+  return out;
+}
+
+RadarScan messageOf(const RadarReturns& radar, const Header& header) {
+  RadarScan message{header, {}};
+  for (const perception::RadarReturn& r : radar.returns) {
+    message.returns.push_back(
+        {static_cast<float>(r.range), static_cast<float>(r.bearing),
+         static_cast<float>(r.elevation.value_or(0)),
+         r.has_rate ? static_cast<float>(r.range_rate) : std::numeric_limits<float>::quiet_NaN(),
+         static_cast<float>(r.amplitude)});
+  }
+  return message;
+}
+
+namespace {
+
 /// What pixels of an encoding are: bytes each, and of these blue, green and red (or the brightest
 /// byte of a gray value).
 struct PixelLayout {

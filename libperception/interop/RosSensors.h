@@ -18,6 +18,22 @@ LidarCloud cloudOf(const PointCloud2& message, double intensity_max = 0);
 /// holds the bytes of the message.
 PointCloud2 messageOf(const LidarCloud& cloud, const Header& header, std::string& data);
 
+/// Returns of a radar; range rates are multiplied by `rate_scale` (-1 where approaching is
+/// positive, 0: there are none). Those that are not finite have no rate.
+RadarReturns returnsOf(const RadarScan& message, double rate_scale = 1);
+/// True for points with a range rate and no beam number: a radar's, not a Doppler lidar's.
+bool isOfRadar(const PointCloud2& message);
+/// The same of points: x, y, z, a range rate (doppler_velocity, doppler, range_rate,
+/// radial_velocity, radial_speed, v_r, velocity) and, if there, amplitude (or rcs, power, snr,
+/// intensity). Throws std::runtime_error.
+RadarReturns returnsOf(const PointCloud2& message, double rate_scale = 1);
+RadarScan messageOf(const RadarReturns& radar, const Header& header);
+
+/// The boxes of a 3D detector: class and score of each are those of its best hypothesis. Boxes
+/// without a hypothesis have the class "object" and the score 0. Throws std::runtime_error for a
+/// box of another frame than the message's or a pose that cannot be.
+ObjectDetections objectsOf(const Detection3DArray& message);
+
 /// Throws std::runtime_error: another encoding than mono8, mono16, rgb8, bgr8, rgba8, bgra8 (8UC1,
 /// 8UC3, 16UC1), or fewer bytes than rows need.
 Raster rasterOf(const Image& message);

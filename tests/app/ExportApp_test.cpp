@@ -14,6 +14,9 @@
 #include "libperception/scene/RunMark.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/scene/TrackedRun.h"
+#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/FromObservation.h"
+#include "libperception/sensors/RawlogReader.h"
 
 namespace perception {
 namespace {
@@ -143,6 +146,60 @@ TEST_F(ExportAppTest, RosMessagesComeBackAsTheSameTracks) {
     }
   }
   EXPECT_GT(objects, 1000u);
+}
+
+/// The radar scans of a log, in order.
+std::vector<SensorFrame> radarFrames(const std::string& log) {
+  std::vector<SensorFrame> frames;
+  RawlogReader reader(log);
+  while (const auto observation = reader.next()) {
+    auto frame = frameFromObservation(*observation);
+    if (frame && std::holds_alternative<RadarReturns>(frame->data))
+      frames.push_back(std::move(*frame));
+  }
+  return frames;
+}
+
+TEST_F(ExportAppTest, RadarScansComeBackFromRosMessages) {
+  const std::string log = PERCEPTION_SOURCE_DIR "/rawlogs/radar.rawlog";
+  const std::string mcap = dir_ + "/radar.mcap", back = dir_ + "/back.rawlog";
+  const char* argv[] = {"perception-export", "-i", log.c_str(), "--format", "ros2", "-o",
+                        mcap.c_str()};
+  ASSERT_EQ(runApp(app_, 7, argv), 0);
+  EXPECT_EQ(app_.out_frames, 8 * 230U);
+  ImportApp import;
+  const char* words[] = {"perception-import", "bag", "--bag", mcap.c_str(), "-o", back.c_str()};
+  ASSERT_EQ(runApp(import, 6, words), 0);
+  const auto before = radarFrames(log), after = radarFrames(back);
+  ASSERT_EQ(before.size(), after.size());
+  std::size_t returns = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    ASSERT_EQ(before[k].sensor, after[k].sensor);
+    EXPECT_EQ(before[k].stamp, after[k].stamp);
+    EXPECT_TRUE(before[k].T_ego_sensor.isApprox(after[k].T_ego_sensor, 1e-9));
+    const auto& a = std::get<RadarReturns>(before[k].data).returns;
+    const auto& b = std::get<RadarReturns>(after[k].data).returns;
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i, ++returns) {
+      EXPECT_NEAR(a[i].range, b[i].range, 1e-4);
+      EXPECT_NEAR(a[i].bearing, b[i].bearing, 1e-6);
+      EXPECT_NEAR(a[i].range_rate, b[i].range_rate, 1e-5);
+    }
+  }
+  EXPECT_GT(returns, 500U);
+}
+
+TEST_F(ExportAppTest, ALogOfRadarsAloneIsWrittenForFoxglove) {
+  const std::string log = PERCEPTION_SOURCE_DIR "/rawlogs/radar.rawlog", out = dir_ + "/r.mcap";
+  RawlogReader reader(log);
+  writeRun(*toStamp(reader.next()->timestamp));
+  const char* argv[] = {"perception-export", "-i", log.c_str(), "-r",
+                        dir_.c_str(),        "-o", out.c_str()};
+  ASSERT_EQ(runApp(app_, 7, argv), 0);
+  EXPECT_GT(app_.out_frames, 50U);  // eight radars for a second
+  std::ifstream file(out, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(bytes.find("range_rate"), std::string::npos);
 }
 
 TEST_F(ExportAppTest, RosMessagesHoldTheTracksOfARun) {

@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "libperception/core/MemoryLimit.h"
 #include "libperception/sensors/registerClasses.h"
 #include "tests/fuzz/Parsers.h"
 
@@ -143,8 +144,10 @@ int mutate(int argc, char** argv) {
   registerPerceptionClasses();
   for (const int number : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGVTALRM})
     std::signal(number, &onSignal);
-  const rlimit limit{kMemory, kMemory};
-  ::setrlimit(RLIMIT_AS, &limit);
+  if (MemoryLimit::supported()) {  // sanitizers have max_allocation_size_mb
+    const rlimit limit{kMemory, kMemory};
+    ::setrlimit(RLIMIT_AS, &limit);
+  }
   const std::vector<std::string> names(argv + 3, argv + argc);
   for (const std::string& name : names) {
     if (std::any_of(parsers().begin(), parsers().end(),

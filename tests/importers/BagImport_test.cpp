@@ -47,11 +47,12 @@ class Message {
   std::string bytes_;
 };
 
-std::string cloudMessage(bool cdr, std::uint32_t second) {
+/// Two points with three coordinates and one more field.
+std::string cloudMessage(bool cdr, std::uint32_t second, const char* fourth = "intensity") {
   Message m(cdr);
   m.header(second, "velodyne").put(std::uint32_t{1}).put(std::uint32_t{2}).put(std::uint32_t{4});
   std::uint32_t offset = 0;
-  for (const char* name : {"x", "y", "z", "intensity"}) {
+  for (const char* name : {"x", "y", "z", fourth}) {
     m.text(name).put(offset).put(std::uint8_t{7}).put(std::uint32_t{1});
     offset += 4;
   }
@@ -63,6 +64,15 @@ std::string cloudMessage(bool cdr, std::uint32_t second) {
     for (int shift = 0; shift < 32; shift += 8) m.put(static_cast<std::uint8_t>(bits >> shift));
   }
   m.put(std::uint8_t{1});
+  return m.bytes();
+}
+
+/// radar_msgs/RadarScan with two returns, the second without a range rate.
+std::string radarMessage(bool cdr, std::uint32_t second) {
+  Message m(cdr);
+  m.header(second, "radar").put(std::uint32_t{2});
+  for (const float v : {30.0F, 0.1F, 0.02F, -4.0F, 12.0F}) m.put(v);
+  for (const float v : {50.0F, -0.2F, 0.0F, std::nanf(""), 3.0F}) m.put(v);
   return m.bytes();
 }
 
@@ -111,6 +121,16 @@ std::string record(const Fields& fields, const std::string& data) {
   return sized(header) + sized(data);
 }
 
+/// The messages of one sensor on a vehicle that stands.
+std::vector<Topic> standing(bool cdr, const std::string& frame, const Topic& sensor) {
+  const std::string types = cdr ? "/msg/" : "/";
+  Topic moving{"/tf", "tf2_msgs" + types + "TFMessage", {}};
+  Topic fixed{"/tf_static", "tf2_msgs" + types + "TFMessage", {}};
+  moving.messages.emplace_back(100, transformMessage(cdr, 100, "map", "base_link", {0, 0, 0}));
+  fixed.messages.emplace_back(100, transformMessage(cdr, 100, "base_link", frame, {3.5, 0, 0.5}));
+  return {fixed, moving, sensor};
+}
+
 /// A ROS 1 bag 2.0 of one chunk.
 std::string rosBag(const std::vector<Topic>& topics) {
   std::string chunk;
@@ -142,14 +162,29 @@ std::string rosBag(const std::vector<Topic>& topics) {
 
 class BagImport : public test::ImportRun {
  protected:
-  void writeMcap(const std::string& name) {
+  void writeMcap(const std::string& name) { writeMcap(name, drive(true)); }
+  void writeMcap(const std::string& name, const std::vector<Topic>& topics) {
     McapWriter writer(file(name), "ros2");
-    for (const Topic& topic : drive(true)) {
+    for (const Topic& topic : topics) {
       const auto channel = writer.addChannel(topic.name, "cdr", {topic.type, "ros2msg", ""});
       for (const auto& [second, bytes] : topic.messages)
         writer.write(channel, Stamp{second * std::int64_t{1'000'000'000}}, bytes);
     }
     writer.close();
+  }
+  /// The returns of the one scan of a radar with that label.
+  RadarReturns returnsOf(const std::string& label) {
+    RadarReturns out;
+    int scans = 0;
+    for (const auto& o : readLog()) {
+      if (o->sensorLabel != label) continue;
+      const auto frame = frameFromObservation(*o);
+      if (!frame || !std::holds_alternative<RadarReturns>(frame->data)) continue;
+      EXPECT_NEAR(frame->T_ego_sensor.translation().x(), 3.5, 1e-9);
+      out = std::get<RadarReturns>(frame->data), ++scans;
+    }
+    EXPECT_EQ(scans, 1);
+    return out;
   }
   /// Three scans of two returns, where the vehicle was.
   void expectTheDrive() {
@@ -182,6 +217,99 @@ TEST_F(BagImport, AnMcapFileOfRos2GivesTheSame) {
   writeMcap("drive.mcap");
   ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 0) << error_;
   expectTheDrive();
+}
+
+TEST_F(BagImport, ARadarScanGivesItsReturnsInBothEncodings) {
+  for (const bool cdr : {false, true}) {
+    SCOPED_TRACE(cdr ? "ROS 2" : "ROS 1");
+    const auto topics = standing(cdr, "radar",
+                                 {"/radar/scan",
+                                  cdr ? "radar_msgs/msg/RadarScan" : "radar_msgs/RadarScan",
+                                  {{100, radarMessage(cdr, 100)}}});
+    if (cdr)
+      writeMcap("radar.mcap", topics);
+    else
+      write("radar.mcap", rosBag(topics));
+    ASSERT_EQ(import("bag", {"--bag", file("radar.mcap")}), 0) << error_;
+    const auto returns = returnsOf("radar_scan").returns;
+    ASSERT_EQ(returns.size(), 2U);
+    EXPECT_NEAR(returns[0].range, 30, 1e-5);
+    EXPECT_NEAR(returns[0].bearing, 0.1, 1e-6);
+    EXPECT_NEAR(*returns[0].elevation, 0.02, 1e-6);
+    EXPECT_NEAR(returns[0].range_rate, -4, 1e-6);
+    EXPECT_NEAR(returns[0].amplitude, 12, 1e-6);
+    EXPECT_TRUE(returns[0].has_rate);
+    EXPECT_FALSE(returns[1].has_rate);
+  }
+}
+
+TEST_F(BagImport, PointsWithRangeRatesAreOfARadarUnlessToldOtherwise) {
+  const std::string cloud = cloudMessage(true, 100, "doppler_velocity");
+  writeMcap("radar.mcap",
+            standing(true, "velodyne", {"/radar", "sensor_msgs/msg/PointCloud2", {{100, cloud}}}));
+  ASSERT_EQ(import("bag", {"--bag", file("radar.mcap")}), 0) << error_;
+  const auto returns = returnsOf("radar").returns;
+  ASSERT_EQ(returns.size(), 2U);
+  EXPECT_NEAR(returns[0].range, std::sqrt(102.0), 1e-5);
+  EXPECT_NEAR(returns[0].bearing, std::atan2(1, 10), 1e-6);
+  EXPECT_NEAR(returns[0].range_rate, 0.25, 1e-6);
+
+  write("turned.ini", "[topic./radar]\nrate_scale = -1\n");
+  ASSERT_EQ(import("bag", {"--bag", file("radar.mcap"), "-c", file("turned.ini")}), 0) << error_;
+  EXPECT_NEAR(returnsOf("radar").returns.at(0).range_rate, -0.25, 1e-6);
+
+  write("lidar.ini", "[topic./radar]\nkind = lidar\n");
+  ASSERT_EQ(import("bag", {"--bag", file("radar.mcap"), "-c", file("lidar.ini")}), 0) << error_;
+  bool lidar = false;
+  for (const auto& o : readLog()) {
+    const auto frame = frameFromObservation(*o);
+    lidar = lidar || (frame && std::holds_alternative<LidarCloud>(frame->data));
+  }
+  EXPECT_TRUE(lidar);
+}
+
+/// vision_msgs/Detection3DArray of ROS 2 in frame velodyne: a car 10 m ahead, turned by 90 deg.
+std::string boxesMessage(std::uint32_t second) {
+  Message m(true);
+  m.header(second, "velodyne").put(std::uint32_t{1}).header(second, "velodyne");
+  m.put(std::uint32_t{2});
+  const std::pair<const char*, double> results[] = {{"truck", 0.2}, {"car", 0.7}};
+  for (const auto& [name, score] : results) {
+    m.text(name).put(score);
+    for (const double v : {10.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0}) m.put(v);
+    for (int i = 0; i < 36; ++i) m.put(0.0);
+  }
+  for (const double v : {10.0, 0.0, -1.0, 0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}) m.put(v);
+  for (const double v : {4.0, 2.0, 1.6}) m.put(v);
+  m.text("7");
+  return m.bytes();
+}
+
+TEST_F(BagImport, BoxesOfADetectorAreReadWhenTheyAreAskedFor) {
+  auto topics = drive(true);
+  topics.push_back({"/boxes", "vision_msgs/msg/Detection3DArray", {{101, boxesMessage(101)}}});
+  writeMcap("boxes.mcap", topics);
+  ASSERT_EQ(import("bag", {"--bag", file("boxes.mcap")}), 0) << error_;
+  for (const auto& o : readLog()) EXPECT_NE(o->sensorLabel, "boxes");
+
+  write("boxes.ini", "[topic./boxes]\nlabel = boxes3d\n");
+  ASSERT_EQ(import("bag", {"--bag", file("boxes.mcap"), "-c", file("boxes.ini")}), 0) << error_;
+  int found = 0;
+  for (const auto& o : readLog()) {
+    if (o->sensorLabel != "boxes3d") continue;
+    const auto frame = frameFromObservation(*o);
+    ASSERT_TRUE(frame);
+    const auto& objects = std::get<ObjectDetections>(frame->data).objects;
+    ASSERT_EQ(objects.size(), 1U);
+    EXPECT_EQ(objects[0].label, "car");
+    EXPECT_NEAR(objects[0].score, 0.7, 1e-9);
+    ASSERT_TRUE(objects[0].space_box);
+    EXPECT_TRUE(objects[0].space_box->bottom_center.isApprox(Vector3(10, 0, -1.8), 1e-6));
+    EXPECT_NEAR(objects[0].space_box->yaw, kPi / 2, 1e-6);
+    EXPECT_NEAR(frame->T_ego_sensor.translation().z(), 1.8, 1e-9);
+    ++found;
+  }
+  EXPECT_EQ(found, 1);
 }
 
 TEST_F(BagImport, ATornBagKeepsWhatIsWholeAndSaysWhere) {
