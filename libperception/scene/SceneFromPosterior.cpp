@@ -60,6 +60,8 @@ void SceneParams::visit(ParamVisitor& v) {
   v.real("place_within", place_within, {0, 100}, "",
          "of sqrt(length width): largest position deviation of an output object, with a lidar; 0: "
          "any");
+  v.real("place_sigma", place_sigma, {0, 1000}, "m",
+         "largest position deviation of an output object; 0: any");
 }
 
 std::uint64_t SceneFromPosterior::numberOf(std::uint64_t track_id) {
@@ -133,8 +135,10 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
 }
 
 bool SceneFromPosterior::knowsPlace(const SceneObject& o) const {
-  const double size2 = o.length * o.width, share2 = params_.place_within * params_.place_within;
-  return share2 <= 0 || o.sd_x * o.sd_x + o.sd_y * o.sd_y <= share2 * size2;
+  const double sigma2 = o.sd_x * o.sd_x + o.sd_y * o.sd_y, size2 = o.length * o.width;
+  const double share2 = params_.place_within * params_.place_within,
+               most2 = params_.place_sigma * params_.place_sigma;
+  return (share2 <= 0 || sigma2 <= share2 * size2) && (most2 <= 0 || sigma2 <= most2);
 }
 
 TrackHandle SceneFromPosterior::trackAt(const TrackHandle& track, Stamp stamp) const {

@@ -24,8 +24,8 @@ class CRawlogInput;
 /// Streams the observations of a rawlog and reports why it ended: MRPT's own readers do not
 /// distinguish a truncated, damaged or partly unknown log from a complete one. Both layouts are
 /// read: observations alone, and sensory frames with actions (wheel odometry inside an action
-/// becomes a CObservationOdometry with the label ODOMETRY). A sensor without a label has the name of
-/// its class as label.
+/// becomes a CObservationOdometry with the label ODOMETRY). A sensor without a label has the name
+/// of its class as label.
 ///
 /// A bit error in gzip data is detected where decoding fails, at the latest by the checksum at the
 /// end of the file: observations returned before that may be wrong, see end().

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <memory>
 #include <set>
 
@@ -26,11 +28,12 @@ Hypothesis oneCar(double sigma) {
   return Hypothesis(TrackTable{std::make_shared<const Track>(track)});
 }
 
-std::size_t putOut(double sigma, double place_within) {
+std::size_t putOut(double sigma, double place_within, double place_sigma = 0) {
   FilterModel model;
   model.classes = test::pedestrianAndCar();
   SceneParams params;
   params.place_within = place_within;
+  params.place_sigma = place_sigma;
   EgoState ego;
   ego.stamp = test::kFirstStamp;
   return SceneFromPosterior(model, params).make(oneCar(sigma), ego, 0).objects.size();
@@ -42,7 +45,14 @@ TEST(Scene, LeavesOutObjectsWhosePlaceIsTooUncertainForTheirSize) {
   EXPECT_EQ(putOut(1.01, 0.5), 0U);
 }
 
-TEST(Scene, PutsOutEveryPlaceUnlessAsked) { EXPECT_EQ(putOut(20, 0), 1U); }
+TEST(Scene, LeavesOutObjectsThatAreNowhere) {
+  const double sigma = 5 / std::sqrt(2.0);
+  EXPECT_EQ(putOut(0.99 * sigma, 0, 5), 1U);
+  EXPECT_EQ(putOut(1.01 * sigma, 0, 5), 0U);
+  EXPECT_EQ(SceneParams{}.place_sigma, 5);
+}
+
+TEST(Scene, PutsOutEveryPlaceIfTold) { EXPECT_EQ(putOut(20, 0), 1U); }
 
 TEST(Scene, AForgottenIdIsNotGivenAgain) {
   FilterModel model;
