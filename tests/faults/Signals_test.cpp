@@ -20,12 +20,17 @@ Workshop& workshop() {
   return made;
 }
 
-/// [s] that the job takes.
+/// [s] that the job takes: the shorter of two runs, for the first one may have to read its program
+/// and libraries from the disk, and blows after its length would come too late.
 double lengthOf(const Job& job) {
   static std::map<std::string, double> known;
   if (known.count(job.name) == 0) {
-    const TemporaryFolder out;
-    known[job.name] = workshop().run(job, out.path()).seconds;
+    double shorter = 1e9;
+    for (int i = 0; i < 2; ++i) {
+      const TemporaryFolder out;
+      shorter = std::min(shorter, workshop().run(job, out.path()).seconds);
+    }
+    known[job.name] = shorter;
   }
   return known.at(job.name);
 }
