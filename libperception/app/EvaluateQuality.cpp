@@ -164,8 +164,7 @@ void EvaluateApp::judgeQuality() {
   if (!has_truth) report.tables.push_back(meaningTable());
   if (judged.size() == 1) {
     report.tables.push_back(momentsTable(judged.front()));
-    report.plots.push_back(
-        momentsPicture(judged.front().run, judged.front().quality, options.unnamed));
+    report.plots.push_back(momentsPicture(judged.front().run, judged.front().quality, options));
   }
   if (has_truth) {
     report.tables.push_back(errorsTable(judged));

@@ -236,27 +236,27 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
   const auto& labels = input.labels.at(counts.sensor);
   const DetectionParams& stated = input.stated.at(counts.sensor);
   const auto add = [&](const std::string& section, const std::string& key, const Interval& counted,
-                       double ini) {
+                       double ini, bool written) {
     table.rows.push_back({section, key, fmt::format("{:.3g}", counted.value),
                           fmt::format("{:.3g} to {:.3g}", counted.low, counted.high),
-                          fmt::format("{:.3g}", ini), holds(counted, ini) ? "kept" : "written"});
+                          fmt::format("{:.3g}", ini), written ? "written" : "kept"});
   };
   const std::string section = "sensor." + counts.sensor;
   const Interval clutter = rateOf(counts, &ClutterCount::number),
                  births = rateOf(counts, &ClutterCount::entered),
                  noise = noiseOf(counts, input.classes);
-  add(section, "clutter_per_scan", clutter, stated.clutter_per_scan);
-  add(section, "births_per_scan", births, stated.births_per_scan);
+  add(section, "clutter_per_scan", clutter, stated.clutter_per_scan,
+      !holds(clutter, stated.clutter_per_scan));
+  add(section, "births_per_scan", births, stated.births_per_scan,
+      !holds(births, stated.births_per_scan));
   const double least = 0.5 / static_cast<double>(std::max<std::size_t>(counts.scans, 1));
   std::string text =
       lineOf("clutter_per_scan", clutter, stated.clutter_per_scan, std::max(clutter.value, least)) +
       lineOf("births_per_scan", births, stated.births_per_scan, std::max(births.value, least));
   // Smaller errors than stated may repeat, which the filter takes for information: they stay.
-  table.rows.push_back(
-      {section, "noise_scale", fmt::format("{:.3g}", stated.noise_scale * noise.value),
-       fmt::format("{:.3g} to {:.3g}", stated.noise_scale * noise.low,
-                   stated.noise_scale * noise.high),
-       fmt::format("{:.3g}", stated.noise_scale), noise.low > 1 ? "written" : "kept"});
+  const double scale = stated.noise_scale;
+  add(section, "noise_scale", {scale * noise.value, scale * noise.low, scale * noise.high}, scale,
+      noise.low > 1);
   if (noise.low > 1)
     text += fmt::format(
         "noise_scale = {:.3g}   ; errors of {:.3g} to {:.3g} times the stated deviations\n",
@@ -272,7 +272,7 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
     for (const DetectorChance& k : counts.chances)
       if (k.class_id == c) near = std::max(near, k.stated);
     const std::string of_class = section + ".class." + input.classes[c].name;
-    add(of_class, "detection", p, mean);
+    add(of_class, "detection", p, mean, !holds(p, mean));
     std::string lines = lineOf("detection", p, mean, std::clamp(near * p.value / mean, 0.01, 0.99));
     const LabelCounts n = labelsOf(counts, c, labels.size());
     const auto& table_row = counts.label[static_cast<std::size_t>(c)];
@@ -281,7 +281,7 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
     for (std::size_t l = 0; l < labels.size() && n.all >= kFewest; ++l) {
       const Interval q = labelOf(counts, c, static_cast<int>(l));
       contradicted = contradicted || !holds(q, table_row[l]);
-      add(of_class, "label." + labels[l], q, table_row[l]);
+      add(of_class, "label." + labels[l], q, table_row[l], !holds(q, table_row[l]));
       shares +=
           fmt::format("label.{} = {:.3f}   ; {} of {}, {:.3g} to {:.3g}; the INI says {:.3g}\n",
                       labels[l], q.value, n.of[l], n.all, q.low, q.high, table_row[l]);

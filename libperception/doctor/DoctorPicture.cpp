@@ -30,11 +30,11 @@ set xlabel 'x ahead (m)'
 set ylabel 'y left (m)'
 plot 'scan.txt' using 1:2:($3<0.3?0xBBBBBB:0x0072B2) with dots lc rgb variable
 set size noratio
-set title 'from the side: gray line z = 0 of the log, red the ground found'
+set title 'from the side: gray line z = 0 of the log{found}'
 set xrange [-50:50]
 set yrange [-3:5]
 set ylabel 'z (m), vehicle frame of the log'
-plot 'scan.txt' using 1:4 with dots lc rgb '#0072B2', 0 lc rgb '#888888' lw 2, {a}*x+{c} lc rgb '#D55E00' lw 2
+plot 'scan.txt' using 1:4 with dots lc rgb '#0072B2', 0 lc rgb '#888888' lw 2{ground}
 set title 'ego motion by poses and by odometry from lidars'
 set xrange [*:*]
 set yrange [*:*]
@@ -124,10 +124,14 @@ StudyPlot doctorPicture(const LogSurvey& survey) {
   for (const auto& [label, facts] : survey.sensors())
     if (facts.odometry.size() > 1) addMotion("odometry from " + label, facts.odometry, plot);
   GroundPlane plane;
-  std::string scan;
+  std::string scan, found = ", no ground found", ground;
   if (const auto& sample = survey.sample()) {
-    if (const auto ground = groundMounting(survey.sensors().at(sample->sensor)))
-      plane = ground->plane;
+    const SensorFacts& facts = survey.sensors().at(sample->sensor);
+    if (const auto mounting = groundMounting(facts); mounting && !facts.planar) {
+      plane = mounting->plane;
+      found = ", red the ground found";
+      ground = fmt::format(", {}*x+{} lc rgb '#D55E00' lw 2", plane.a, plane.c);
+    }
     scan = scanText(*sample, plane);
   }
   // Never empty: gnuplot would stop at a file without points.
@@ -139,7 +143,7 @@ StudyPlot doctorPicture(const LogSurvey& survey) {
       fmt::arg("labels", std::max(row, 1)),
       fmt::arg("scan", gnuplotString(sample ? "last scan of " + sample->sensor + ", ground gray"
                                             : "no lidar")),
-      fmt::arg("a", plane.a), fmt::arg("c", plane.c), fmt::arg("motion", motion));
+      fmt::arg("found", found), fmt::arg("ground", ground), fmt::arg("motion", motion));
   return plot;
 }
 

@@ -1,12 +1,13 @@
 #include "libperception/doctor/ImageMotion.h"
 
-#include <algorithm>
-#include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
+#include <utility>
 #include <vector>
+
+#include "libperception/doctor/MotionFit.h"
 
 namespace perception {
 namespace {
@@ -67,9 +68,7 @@ double medianMotion(const Corners& corners) {
   std::vector<double> ways;
   for (std::size_t i = 0; i < corners.before.size(); ++i)
     ways.push_back(cv::norm(corners.after[i] - corners.before[i]));
-  const auto middle = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2);
-  std::nth_element(ways.begin(), middle, ways.end());
-  return *middle;
+  return medianOf(std::move(ways));
 }
 
 std::optional<CameraMotion> motionOf(const Corners& corners, const CameraModel& camera,

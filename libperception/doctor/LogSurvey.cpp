@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/doctor/MotionFit.h"
 #include "libperception/sensors/Conversions.h"
 
 namespace perception {
@@ -35,12 +36,6 @@ GroundParams searchEverywhere() {
   params.max_tilt = radians(20);
   params.wet_share = 1;  // without a former plane nothing is mirrored
   return params;
-}
-
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 void extend(SensorFacts& facts, double value) {

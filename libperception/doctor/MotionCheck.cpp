@@ -156,10 +156,7 @@ double climbOf(const std::vector<Seen>& seen, const Course& course) {
   for (const Seen& s : seen)
     if (const auto B = course.motion(s.from, s.to, 0))
       climbs.push_back(std::atan2(B->translation().z(), B->translation().head<2>().norm()));
-  if (climbs.empty()) return 0;
-  const auto middle = climbs.begin() + static_cast<std::ptrdiff_t>(climbs.size() / 2);
-  std::nth_element(climbs.begin(), middle, climbs.end());
-  return *middle;
+  return climbs.empty() ? 0 : medianOf(std::move(climbs));
 }
 
 MotionCheck checkOf(const FitResult& fit) {

@@ -23,12 +23,6 @@ struct Block {
   VectorXd g;
 };
 
-double medianOf(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Residuals of the items that have any at these parameters.
 std::vector<std::pair<std::size_t, VectorXd>> residualsAt(const FitProblem& p, const VectorXd& x) {
   std::vector<std::pair<std::size_t, VectorXd>> out;
@@ -89,6 +83,12 @@ VectorXd jackknife(const std::vector<Block>& blocks, const MatrixXd& H, const Ve
 }
 
 }  // namespace
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 std::optional<FitResult> fitRobustly(const FitProblem& p) {
   FitResult result;

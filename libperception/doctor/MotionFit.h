@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace perception {
 
@@ -27,6 +28,9 @@ struct FitResult {
   Eigen::VectorXd sigma;
   std::size_t used = 0;  ///< items
 };
+
+/// The upper one of an even number; of one value or more.
+double medianOf(std::vector<double> values);
 
 /// Gauss-Newton with Cauchy weights; noise of each row by its median residual. Empty with too few
 /// items.

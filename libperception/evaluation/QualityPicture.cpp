@@ -8,6 +8,7 @@
 #include <string>
 
 #include "libperception/evaluation/Gnuplot.h"
+#include "libperception/evaluation/QualityParts.h"
 
 namespace perception {
 namespace {
@@ -46,11 +47,9 @@ unset multiplot
 }  // namespace
 
 StudyPlot momentsPicture(const TrackedRun& run, const Quality& quality,
-                         const std::vector<std::string>& unnamed) {
-  const auto isNamed = [&](const SceneObject& o) {
-    const std::string& name = run.class_names[static_cast<std::size_t>(o.class_id)];
-    return std::find(unnamed.begin(), unnamed.end(), name) == unnamed.end();
-  };
+                         const QualityOptions& options) {
+  const QualitySector sector(run, options);
+  const auto isNamed = [&](const SceneObject& o) { return sector.named(o); };
   StudyPlot plot;
   plot.name = "moments", plot.caption = "Moments to look at, from above and over time";
   plot.width = 1600, plot.height = 800;

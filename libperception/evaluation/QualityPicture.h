@@ -10,7 +10,7 @@ namespace perception {
 /// Where and when a person should look: the ways of all objects from above with the moments of
 /// `quality`, and the number of those of named classes over time with the same.
 StudyPlot momentsPicture(const TrackedRun& run, const Quality& quality,
-                         const std::vector<std::string>& unnamed);
+                         const QualityOptions& options);
 
 /// Figures and true errors of one run.
 struct FiguresAndErrors {

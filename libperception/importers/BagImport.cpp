@@ -12,6 +12,7 @@
 #include "libperception/importers/BagContents.h"
 #include "libperception/importers/ImportGps.h"
 #include "libperception/importers/Importer.h"
+#include "libperception/interop/RosScene.h"
 #include "libperception/interop/RosSensors.h"
 #include "libperception/sensors/Conversions.h"
 

@@ -1,6 +1,12 @@
 #include "libperception/interop/RosScene.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
+
+#include "libperception/interop/RosSensors.h"
 
 namespace perception::ros {
 namespace {
@@ -37,6 +43,32 @@ Detection3DArray messageOf(const Scene& scene, const std::vector<std::string>& c
   for (const SceneObject& object : scene.objects)
     array.detections.push_back(detectionOf(object, array.header, class_names));
   return array;
+}
+
+ObjectDetections objectsOf(const Detection3DArray& message) {
+  ObjectDetections out;
+  for (const Detection3D& given : message.detections) {
+    const std::string& frame = given.header.frame_id;
+    if (!frame.empty() && frame != message.header.frame_id)
+      throw std::runtime_error(fmt::format("a box in frame \"{}\" of an array in \"{}\"", frame,
+                                           message.header.frame_id));
+    ObjectDetection object;
+    object.label = "object";
+    const auto best =
+        std::max_element(given.results.begin(), given.results.end(),
+                         [](const auto& a, const auto& b) { return a.score < b.score; });
+    if (best != given.results.end()) object.label = best->class_id, object.score = best->score;
+    for (const ObjectHypothesis& h : given.results)
+      object.class_scores.emplace_back(h.class_id, h.score);
+    const Pose3 center = poseOf(given.center);
+    ObjectDetection::SpaceBox box;
+    box.bottom_center = center * Vector3(0, 0, -given.size[2] / 2);
+    box.yaw = yawOf(center);
+    box.length = given.size[0], box.width = given.size[1], box.height = given.size[2];
+    object.space_box = box;
+    out.objects.push_back(std::move(object));
+  }
+  return out;
 }
 
 }  // namespace perception::ros

@@ -29,11 +29,6 @@ bool isOfRadar(const PointCloud2& message);
 RadarReturns returnsOf(const PointCloud2& message, double rate_scale = 1);
 RadarScan messageOf(const RadarReturns& radar, const Header& header);
 
-/// The boxes of a 3D detector: class and score of each are those of its best hypothesis. Boxes
-/// without a hypothesis have the class "object" and the score 0. Throws std::runtime_error for a
-/// box of another frame than the message's or a pose that cannot be.
-ObjectDetections objectsOf(const Detection3DArray& message);
-
 /// Throws std::runtime_error: another encoding than mono8, mono16, rgb8, bgr8, rgba8, bgra8 (8UC1,
 /// 8UC3, 16UC1), or fewer bytes than rows need.
 Raster rasterOf(const Image& message);

@@ -26,8 +26,8 @@ struct SceneParams {
   /// 0: all are. Used only with a sensor whose modality covers the sector (ModalityRow); others
   /// rarely localize objects this well.
   double place_within = 0;
-  /// [m] Objects are output only if sqrt(sd_x^2 + sd_y^2) is below this (chosen, method.md 5.11): a
-  /// hidden one coasts until nobody knows where it is. 0: all are.
+  /// [m] Objects are output only if sqrt(sd_x^2 + sd_y^2) is below this (chosen, method.md 5.11):
+  /// the deviation of a hidden one grows without bound. 0: all are.
   double place_sigma = 5;
 
   void visit(ParamVisitor& v);

@@ -32,8 +32,10 @@ TEST(QualityPicture, ObjectsWithoutANameAreNotCounted) {
   run.scenes.push_back(makeScene(0, {makeObject(1, 10, 0)}));
   const std::string name =
       run.class_names.at(static_cast<std::size_t>(run.scenes[0].objects[0].class_id));
+  QualityOptions named;
+  named.unnamed = {name};
   EXPECT_EQ(dataOf(momentsPicture(run, {}, {})).at("counts.txt"), "0.000 1\n");
-  EXPECT_EQ(dataOf(momentsPicture(run, {}, {name})).at("counts.txt"), "0.000 0\n");
+  EXPECT_EQ(dataOf(momentsPicture(run, {}, named)).at("counts.txt"), "0.000 0\n");
 }
 
 TEST(QualityPicture, RunsWithoutAFigureOrAnErrorGiveNoPoint) {
