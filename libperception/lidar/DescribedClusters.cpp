@@ -23,7 +23,9 @@ std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
     if (whole >= 0) whole = number[static_cast<std::size_t>(whole)];
     return !visit || visit(clusters.back());
   };
-  findSegments(found.x, found.y, found.above, kLeastReturns, kLongest, found.trust, add);
+  Vector3 sensor = found.points.sensor;
+  sensor.z() -= found.surface.heightAt(sensor.x(), sensor.y());
+  findSegments(found.x, found.y, found.above, kLeastReturns, kLongest, found.trust, add, sensor);
   return clusters;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
+
+#include "libperception/core/Frames.h"
 
 namespace perception {
 
@@ -30,16 +33,19 @@ inline constexpr LinkLevel kLinkLevels[] = {{1, 0.35}, {1, 0.7}, {0.6, 0.7}};
 /// Called with every segment when it is found, before its parts; false: its parts are not wanted.
 using SegmentVisitor = std::function<bool(const Segment&)>;
 
-/// Segments among obstacle returns (x, y: ego frame about the sensor, height above ground; [m]):
-/// single linkage in space at the smaller of the link lengths of two returns, and the parts
-/// into which a segment falls at the next levels. A whole comes before its parts; those of one
-/// whole are in the order of their first returns. Segments of fewer than `min_points` returns (sums
-/// of `weight`: trust, [0, 1]; empty: all 1) are left out, and a whole of which fewer than two
-/// parts would be left has none at that level. Of wholes longer than `max_size` [m] the parts stand
-/// alone.
+/// Segments among obstacle returns (x, y: ego frame, height above ground; [m]): single linkage in
+/// space at the smaller of the link lengths of two returns, and the parts into which a segment
+/// falls at the next levels. With the position of the scanner (ego frame, z above ground; [m])
+/// those that are neighboring columns of one surface (grazedSurfaces()) are the parts of a whole of
+/// their own. A whole comes before its parts; those of one whole are in the order of their first
+/// returns. Segments of fewer than `min_points` returns (sums of `weight`: trust, [0, 1]; empty:
+/// all 1) are left out, and a whole of which fewer than two parts would be left has none at that
+/// level. Of wholes longer than `max_size` [m] the parts stand alone.
 std::vector<Segment> findSegments(const std::vector<float>& x, const std::vector<float>& y,
                                   const std::vector<float>& height, double min_points,
                                   double max_size, const std::vector<float>& weight = {},
-                                  const SegmentVisitor& visit = {}, const LinkLength& link = {});
+                                  const SegmentVisitor& visit = {},
+                                  const std::optional<Vector3>& sensor = {},
+                                  const LinkLength& link = {});
 
 }  // namespace perception

@@ -22,6 +22,7 @@ struct Footprint {
   double area = 0;       // [m^2] of a track whose class probability is >= .95, else 0
   Stamp last_hit;
   bool fresh = true;  // of this scan
+  bool oriented = false;
 };
 
 /// For tracks with deferred prediction, the predicted position.
@@ -38,6 +39,7 @@ Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
                         : Vector2::Constant(0.25 * (f.extent.length + f.extent.width));
   out.corner2 = out.half.squaredNorm() + 1e-6;
   out.yaw = f.oriented ? f.x[3] : 0;
+  out.oriented = f.oriented;
   const bool sure = t.log_class[static_cast<std::size_t>(best)] >= kLogSureClass;
   out.area = sure ? 4 * out.half.x() * out.half.y() : 0;
   out.last_hit = *std::max_element(t.last_hit.begin(), t.last_hit.end());
@@ -49,12 +51,13 @@ bool holds(const Footprint& f, const Vector2& p) {
   return std::abs(own.x()) <= f.half.x() && std::abs(own.y()) <= f.half.y();
 }
 
-/// The younger track's state with the older track's id.
-TrackHandle takeOver(const Track& older, const Track& younger) {
+/// The younger track's state with the older track's id; its class, too, if the older one was a
+/// fragment of it.
+TrackHandle takeOver(const Track& older, const Track& younger, bool fragment) {
   Track t = younger;
   t.id = older.id;
   t.birth = older.birth;
-  t.log_class = older.log_class;
+  if (!fragment) t.log_class = older.log_class;
   t.phantom = std::min(older.phantom, younger.phantom);
   t.previous = older.previous;
   for (std::size_t i = 0; i < t.hits.size(); ++i) t.hits[i] += older.hits[i];
@@ -85,9 +88,10 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
       const bool first = feet[i].id < feet[j].id;
       const std::size_t older = first ? i : j, younger = first ? j : i;
       Conflict conflict{older, younger, nullptr};
-      if (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now &&
+      const bool fragment = feet[older].area < least && feet[younger].oriented;
+      if ((fragment || (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now)) &&
           tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
-        conflict.replacement = takeOver(*tracks[older], *tracks[younger]);
+        conflict.replacement = takeOver(*tracks[older], *tracks[younger], fragment);
       conflicts_.push_back(std::move(conflict));
     }
   }

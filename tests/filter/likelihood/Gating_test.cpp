@@ -206,5 +206,42 @@ TEST(Duplicates, ATrackLeftBehindStandsWhereItHasGone) {
   EXPECT_EQ(kept(0), 2u);
 }
 
+TEST(Duplicates, ALargeTrackReplacesItsOlderFragmentUnderTheOlderId) {
+  FilterModel model = threeClassModel();
+  model.params.merge_area = 2;
+  const Stamp now = Stamp::fromSeconds(1000);
+  const auto track = [&](std::uint64_t id, ClassId likeliest, double x, Extent extent,
+                         bool oriented) {
+    Track t;
+    t.id = id;
+    t.stamp = now;
+    t.last_hit.fill(now);
+    t.bank.resize(3);
+    ClassFilter& filter = t.bank[static_cast<std::size_t>(likeliest)];
+    filter.x << x, 0, 0, 0;
+    filter.oriented = oriented;
+    filter.extent = extent;
+    t.log_class.assign(3, -20);
+    t.log_class[static_cast<std::size_t>(likeliest)] = std::log1p(-2 * std::exp(-20.0));
+    return std::make_shared<const Track>(t);
+  };
+  const auto merged = [&](bool oriented) {
+    TrackTable tracks{track(1, 0, 1, {0.5, 0.5, 0.1, 0.1}, false),
+                      track(2, 2, 0, {4, 2, 0.1, 0.1}, oriented)};
+    const DuplicateTable table(model, now, tracks);
+    const auto cells = table.merged({0, 1});
+    table.appendReplacements(tracks);
+    return cells.size() == 1 ? tracks[cells[0]] : nullptr;
+  };
+  const TrackHandle car = merged(true);
+  ASSERT_TRUE(car);
+  EXPECT_EQ(car->id, 1u);
+  EXPECT_EQ(car->likeliestClass(), 2);
+  EXPECT_EQ(car->bank[2].x[0], 0);
+  const TrackHandle doubtful = merged(false);
+  ASSERT_TRUE(doubtful);
+  EXPECT_EQ(doubtful->likeliestClass(), 0) << "a footprint without a heading may be a hedge";
+}
+
 }  // namespace
 }  // namespace perception

@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "libperception/core/Frames.h"
+
+namespace perception {
+
+/// Obstacle returns: positions along the ego axes and heights above the ground [m].
+struct ReturnPlaces {
+  const std::vector<float>&x, &y, &height;
+};
+
+using ReturnGroup = std::vector<std::uint32_t>;  ///< indices of returns, ascending
+
+/// Step in azimuth between neighboring returns of one beam of a scanner [rad]: the median over
+/// returns of large groups, as seen from `sensor` (z: above the ground). 0: too few to tell.
+double azimuthStep(const ReturnPlaces& places, const std::vector<ReturnGroup>& groups,
+                   const Vector3& sensor);
+
+/// Groups that are neighboring columns of returns on one surface. Along a surface seen at a grazing
+/// angle neighboring columns are farther apart than returns are linked (method.md 8.10): the side
+/// of a parked car ahead is a row of upright lines. Two groups are joined when no column fits
+/// between them, they overlap in height, and with a third column they lie on a line. Numbers of the
+/// groups of each set of two or more, ascending; sets in the order of their first groups.
+std::vector<std::vector<std::uint32_t>> grazedSurfaces(const ReturnPlaces& places,
+                                                       const std::vector<ReturnGroup>& groups,
+                                                       const Vector3& sensor);
+
+}  // namespace perception
