@@ -42,6 +42,7 @@ struct End {
 struct Columns {
   double low = 0, high = 0;   ///< [rad] azimuth; low in [0, 2 pi)
   float bottom = 0, top = 0;  ///< [m] above the ground
+  double nearest = 0;         ///< [m] horizontal distance of the nearest return from the sensor
   End at_low, at_high;
 };
 
@@ -93,11 +94,14 @@ class SurfaceFinder {
     const double first = azimuthOf(group.front());
     Columns columns;
     columns.bottom = columns.top = places_.height[group.front()];
+    double nearest2 = std::numeric_limits<double>::infinity();
     for (const std::uint32_t i : group) {
       azimuth.push_back(first + wrapAngle(azimuthOf(i) - first));  // without a jump at +-pi
       columns.bottom = std::min(columns.bottom, places_.height[i]);
       columns.top = std::max(columns.top, places_.height[i]);
+      nearest2 = std::min(nearest2, (placeOf(i) - sensor_.head<2>()).squaredNorm());
     }
+    columns.nearest = std::sqrt(nearest2);
     const auto [low, high] = std::minmax_element(azimuth.begin(), azimuth.end());
     Mean at_low, beside_low, at_high, beside_high;
     for (std::size_t k = 0; k < group.size(); ++k) {
@@ -180,24 +184,21 @@ class SurfaceFinder {
     const Columns& u = columns_[upper];
     const float thickness = u.top - u.bottom;
     if (u.bottom < kStep.lowest || thickness > kStep.thickness) return std::nullopt;
-    const double range = nearestRange(upper);
-    if (thickness > kStep.flat && widthOf(u, range) < kStep.width) return std::nullopt;
+    if (thickness > kStep.flat && widthOf(u) < kStep.width) return std::nullopt;
     std::optional<std::uint32_t> body;
     double least = kStep.behind;
     for (std::uint32_t b = 0; b < groups_.size(); ++b) {
       const Columns& c = columns_[b];
       if (b == upper || u.bottom < c.top - kStep.below || u.bottom > c.top + kStep.above ||
-          !covers(c, u))
+          c.nearest > u.nearest || widthOf(c) < kStep.body_width || !covers(c, u))
         continue;
-      const double nearest = nearestRange(b);
-      if (nearest > range || widthOf(c, nearest) < kStep.body_width) continue;
       const double distance = distanceOf(b, upper, least);
       if (distance < least) least = distance, body = b;
     }
     return body;
   }
 
-  static double widthOf(const Columns& c, double range) { return (c.high - c.low) * range; }
+  static double widthOf(const Columns& c) { return (c.high - c.low) * c.nearest; }
 
   /// Whether the azimuths of `body` cover most of those of `roof`.
   static bool covers(const Columns& body, const Columns& roof) {
@@ -205,13 +206,6 @@ class SurfaceFinder {
     const double covered =
         std::min(roof.high, body.high - shift) - std::max(roof.low, body.low - shift);
     return covered >= kStep.covered * (roof.high - roof.low);
-  }
-
-  double nearestRange(std::uint32_t g) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t i : groups_[g])
-      least = std::min(least, (placeOf(i) - sensor_.head<2>()).squaredNorm());
-    return std::sqrt(least);
   }
 
   /// Horizontal distance of the nearest returns of two groups [m]; at most `within`.

@@ -11,15 +11,18 @@ namespace {
 
 constexpr double kUnseen = 0.25;  // [s] a track not hit for so long gives way to a fresh one
 constexpr std::uint32_t kAbsent = static_cast<std::uint32_t>(-1);
-/// A track whose class probability is below .95 has no footprint that others are merged into.
-const double kLogSureClass = std::log(0.95);
+/// A track whose class probability is below .95 has no footprint that others are merged into; two
+/// that are likelier vehicles than not are merged all the same.
+const double kLogSureClass = std::log(0.95), kLogLikelyClass = std::log(0.5);
 
 struct Footprint {
   std::uint64_t id = 0;
   Vector2 center, half;  // [m]
   double corner2 = 0;    // [m^2] square of the distance from the center to a corner
   double yaw = 0;        // [rad]
-  double area = 0;       // [m^2] of a track whose class probability is >= .95, else 0
+  double area = 0;       // [m^2]
+  bool sure = false;     // of its class
+  bool vehicle = false;  // more likely than not
   Stamp last_hit;
   bool fresh = true;  // of this scan
   bool oriented = false;
@@ -40,8 +43,10 @@ Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
   out.corner2 = out.half.squaredNorm() + 1e-6;
   out.yaw = f.oriented ? f.x[3] : 0;
   out.oriented = f.oriented;
-  const bool sure = t.log_class[static_cast<std::size_t>(best)] >= kLogSureClass;
-  out.area = sure ? 4 * out.half.x() * out.half.y() : 0;
+  const double log_class = t.log_class[static_cast<std::size_t>(best)];
+  out.sure = log_class >= kLogSureClass;
+  out.vehicle = log_class >= kLogLikelyClass && model.classes[best].motion->has_heading;
+  out.area = 4 * out.half.x() * out.half.y();
   out.last_hit = *std::max_element(t.last_hit.begin(), t.last_hit.end());
   return out;
 }
@@ -76,19 +81,24 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
     if (!tracks[i]) continue;
     feet[i] = footprintOf(*tracks[i], model, now);
     there.push_back(i);
-    if (feet[i].area >= least) large.push_back(i);
+    if (feet[i].area >= least && (feet[i].sure || feet[i].vehicle)) large.push_back(i);
   }
   for (const std::size_t i : large) {
     for (const std::size_t j : there) {
       if ((feet[j].center - feet[i].center).squaredNorm() > feet[i].corner2) continue;  // most
       if (!feet[i].fresh && !feet[j].fresh) continue;  // compared when one of them was
       if (feet[i].id == feet[j].id || !holds(feet[i], feet[j].center)) continue;
+      const bool both = feet[j].area >= least && feet[i].vehicle && feet[j].vehicle;
+      if (!feet[i].sure && !both) continue;
       // One entry suffices for two large footprints that contain each other's centers.
-      if (feet[j].area >= least && j < i && holds(feet[j], feet[i].center)) continue;
+      if (feet[j].area >= least && (feet[j].sure || both) && j < i &&
+          holds(feet[j], feet[i].center))
+        continue;
       const bool first = feet[i].id < feet[j].id;
       const std::size_t older = first ? i : j, younger = first ? j : i;
       Conflict conflict{older, younger, nullptr};
-      const bool fragment = feet[older].area < least && feet[younger].oriented;
+      const bool fragment =
+          (feet[older].area < least || !feet[older].sure) && !both && feet[younger].oriented;
       if ((fragment || (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now)) &&
           tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
         conflict.replacement = takeOver(*tracks[older], *tracks[younger], fragment);

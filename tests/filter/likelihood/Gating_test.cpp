@@ -206,12 +206,12 @@ TEST(Duplicates, ATrackLeftBehindStandsWhereItHasGone) {
   EXPECT_EQ(kept(0), 2u);
 }
 
-TEST(Duplicates, ALargeTrackReplacesItsOlderFragmentUnderTheOlderId) {
+TEST(Duplicates, ALargeTrackReplacesItsOlderFragmentAndTwoVehiclesAreOne) {
   FilterModel model = threeClassModel();
   model.params.merge_area = 2;
   const Stamp now = Stamp::fromSeconds(1000);
   const auto track = [&](std::uint64_t id, ClassId likeliest, double x, Extent extent,
-                         bool oriented) {
+                         bool oriented, double probability = 0.99) {
     Track t;
     t.id = id;
     t.stamp = now;
@@ -221,10 +221,17 @@ TEST(Duplicates, ALargeTrackReplacesItsOlderFragmentUnderTheOlderId) {
     filter.x << x, 0, 0, 0;
     filter.oriented = oriented;
     filter.extent = extent;
-    t.log_class.assign(3, -20);
-    t.log_class[static_cast<std::size_t>(likeliest)] = std::log1p(-2 * std::exp(-20.0));
+    t.log_class.assign(3, std::log((1 - probability) / 2));
+    t.log_class[static_cast<std::size_t>(likeliest)] = std::log(probability);
     return std::make_shared<const Track>(t);
   };
+  const auto left = [&](double first, double second) {
+    const TrackTable tracks{track(1, 2, 0, {4, 2, 0.1, 0.1}, true, first),
+                            track(2, 2, 1, {4, 2, 0.1, 0.1}, true, second)};
+    return DuplicateTable(model, now, tracks).merged({0, 1}).size();
+  };
+  EXPECT_EQ(left(0.6, 0.6), 1u) << "two vehicles cannot share a place";
+  EXPECT_EQ(left(0.6, 0.4), 2u) << "one of them may be a hedge";
   const auto merged = [&](bool oriented) {
     TrackTable tracks{track(1, 0, 1, {0.5, 0.5, 0.1, 0.1}, false),
                       track(2, 2, 0, {4, 2, 0.1, 0.1}, oriented)};
