@@ -40,6 +40,22 @@ constexpr double kSurePhantom = 0.7, kHardlyRoadUser = 0.05;
 constexpr double kSuspicious = 0.5;
 constexpr float kDoubted = 0.5f;  // trust of a return below which it is doubted
 
+/// Largest road users [m], longer and shorter side, with what returns beside them add: people with
+/// a pram, cyclists with a trailer, articulated buses of 2.6 m with their mirrors (assumed).
+constexpr float kLargest[kRoadUsers][2] = {{2.5f, 2}, {3.5f, 2}, {20, 3.6f}};
+
+/// Without the road users that are smaller than the cluster: at best its parts are some.
+Probabilities withinSize(Probabilities p, const Descriptor& d) {
+  const float sides[2] = {d[static_cast<std::size_t>(Feature::kLength)],
+                          d[static_cast<std::size_t>(Feature::kWidth)]};
+  for (std::size_t k = 0; k < kRoadUsers; ++k) {
+    if (sides[0] <= kLargest[k][0] && sides[1] <= kLargest[k][1]) continue;
+    p[static_cast<std::size_t>(ClusterKind::kThing)] += p[k];
+    p[k] = 0;
+  }
+  return p;
+}
+
 /// Drops what lies in the footprint of a likely vehicle: its seats, its roof, what is seen through
 /// its windows.
 void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& judged) {
@@ -127,7 +143,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   std::vector<Probabilities> probabilities;
   std::vector<double> own;  // of the likeliest road user
   auto clusters = describedClusters(found, cloud, [&](const DescribedCluster& cluster) {
-    const auto p = classifier.probabilities(cluster.descriptor);
+    const auto p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor);
     probabilities.push_back(p), own.push_back(roadUser(p));
     return own.back() < kSureWhole &&
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
