@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 
 #include "libperception/calibration/ReliabilityCounts.h"
 #include "libperception/core/Error.h"
@@ -12,8 +13,10 @@
 namespace perception {
 namespace {
 
-constexpr std::int64_t kSettled = 200;             // [frames]
-constexpr std::int64_t kWindow = 50, kLast = 400;  // [frames] of the convergence; all later ones
+constexpr std::int64_t kSettled = 200;  // [frames]
+// Windows of the convergence, doubling: more boxes where less changes.
+constexpr std::int64_t kEdges[] = {0, 25, 50, 100, 200, 400, INT64_MAX};
+constexpr std::size_t kWindows = std::size(kEdges) - 1;
 
 /// Of the boxes of frames from `first` until before `end`.
 ReliabilityCounts calibrationOf(const LearntGroup& group, std::int64_t first, std::int64_t end) {
@@ -64,25 +67,26 @@ StudyPlot reliabilityPlot(const std::vector<LearntGroup>& groups) {
 StudyPlot convergencePlot(const std::vector<LearntGroup>& groups) {
   StudyPlot plot;
   plot.name = "convergence";
-  plot.caption = fmt::format(
-      "Calibration error of {} frames each since a log's begin, all logs; the last point: all "
-      "later "
-      "frames",
-      kWindow);
+  plot.caption = "Calibration error of the frames from each number on, until the next one";
   std::string data;
   for (const LearntGroup& group : groups) {
-    for (std::int64_t first = 0; first <= kLast; first += kWindow) {
-      const ReliabilityCounts c =
-          calibrationOf(group, first, first < kLast ? first + kWindow : kEnd);
-      if (c.count() > 0) data += fmt::format("{} {}\n", first + kWindow / 2, c.error());
+    for (std::size_t w = 0; w < kWindows; ++w) {
+      const ReliabilityCounts c = calibrationOf(group, kEdges[w], kEdges[w + 1]);
+      if (c.count() > 0) data += fmt::format("{} {}\n", w, c.error());
     }
     data += "\n\n";
   }
   plot.data.emplace_back("convergence.dat", data);
+  std::string ticks;
+  for (std::size_t w = 0; w < kWindows; ++w)
+    ticks += fmt::format("{}'{}' {}", w ? ", " : "", kEdges[w], w);
   plot.script =
-      "set xlabel 'frame since the begin'; set ylabel 'expected calibration error'\n"
-      "set yrange [0:*]; set grid; set key noenhanced outside\n"
-      "plot NaN notitle" +
+      "set xlabel 'from this frame since the begin on, until the next number'\n"
+      "set ylabel 'expected calibration error'\n"
+      "set xrange [-.5:5.5]; set xtics (" +
+      ticks +
+      "); set yrange [0:*]; set grid\n"
+      "set key noenhanced outside\nplot NaN notitle" +
       curves(groups, "convergence");
   return plot;
 }
@@ -125,11 +129,10 @@ StudyReport learntStudy(const std::vector<LearntGroup>& groups) {
     for (const auto& row : late.curve())
       reliability.rows.push_back(
           {group.name, fmt::format("{:.0f}", row[0]), number(row[1]), number(row[2])});
-    for (std::int64_t first = 0; first <= kLast; first += kWindow) {
-      const ReliabilityCounts c =
-          calibrationOf(group, first, first < kLast ? first + kWindow : kEnd);
+    for (std::size_t w = 0; w < kWindows; ++w) {
+      const ReliabilityCounts c = calibrationOf(group, kEdges[w], kEdges[w + 1]);
       if (c.count() > 0)
-        convergence.rows.push_back({group.name, fmt::format("{}", first),
+        convergence.rows.push_back({group.name, fmt::format("{}", kEdges[w]),
                                     fmt::format("{:.0f}", c.count()), number(c.error()),
                                     number(c.chance())});
     }

@@ -11,10 +11,11 @@ namespace perception {
 /// footprint of the other, which is impossible for two solid objects ([cornell2007] requires an
 /// overlap of half of both footprints; fragments of a vehicle are smaller). A hypothesis that holds
 /// both tracks of a pair keeps one. Only footprints of at least `merge_area` of tracks whose class
-/// is sure count, so that people in a crowd are not merged. The id of the older track is kept. Its
-/// state is kept, too, unless it has not been detected recently and the younger track is detected
-/// in this scan: then the state is that of the younger track (method.md 5.9). `merge_area` = 0: no
-/// merging. Computed once for all hypotheses.
+/// is sure count, so that people in a crowd are not merged. The older track goes if it was
+/// detected once, is likely not there and the younger one is; else its id is kept. Its state is
+/// kept, too, unless it has not been detected recently and the younger track is detected in this
+/// scan: then the state is that of the younger track (method.md 5.9). `merge_area` = 0: no merging.
+/// Computed once for all hypotheses.
 class DuplicateTable {
  public:
   DuplicateTable() = default;
@@ -29,8 +30,8 @@ class DuplicateTable {
 
  private:
   struct Conflict {
-    std::size_t older, younger;  // cells
-    TrackHandle replacement;     // of the older one; null: it stays
+    std::size_t kept, dropped;  // cells
+    TrackHandle replacement;    // of the kept one; null: it stays
   };
   std::size_t cells_ = 0;
   std::vector<Conflict> conflicts_;
