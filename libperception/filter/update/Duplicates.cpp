@@ -106,11 +106,11 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
       Conflict conflict{older, younger, nullptr};
       const bool fragment =
           (feet[older].area < least || !feet[older].sure) && !both && feet[younger].oriented;
-      if (isGhost(*tracks[older]) && tracks[younger]->existence >= kThere) {
+      const bool stale = now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now;
+      if (stale && isGhost(*tracks[older]) && tracks[younger]->existence >= kThere)
         conflict = {younger, older, nullptr};
-      } else if ((fragment ||
-                  (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now)) &&
-                 tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
+      else if ((fragment || stale) &&
+               tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
         conflict.replacement = takeOver(*tracks[older], *tracks[younger], fragment);
       conflicts_.push_back(std::move(conflict));
     }

@@ -11,10 +11,10 @@ namespace perception {
 /// footprint of the other, which is impossible for two solid objects ([cornell2007] requires an
 /// overlap of half of both footprints; fragments of a vehicle are smaller). A hypothesis that holds
 /// both tracks of a pair keeps one. Only footprints of at least `merge_area` of tracks whose class
-/// is sure count, so that people in a crowd are not merged. The older track goes if it was
-/// detected once, is likely not there and the younger one is; else its id is kept. Its state is
-/// kept, too, unless it has not been detected recently and the younger track is detected in this
-/// scan: then the state is that of the younger track (method.md 5.9). `merge_area` = 0: no merging.
+/// is sure count, so that people in a crowd are not merged. The id of the older track is kept. Its
+/// state is kept, too, unless it has not been detected recently and the younger track is detected
+/// in this scan: then the state is that of the younger track (method.md 5.9), and its id, too, if
+/// the older one was detected only once and is likely not there. `merge_area` = 0: no merging.
 /// Computed once for all hypotheses.
 class DuplicateTable {
  public:
