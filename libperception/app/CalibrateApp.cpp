@@ -14,6 +14,7 @@
 #include "libperception/calibration/ClusterStudy.h"
 #include "libperception/calibration/ConfidenceStudy.h"
 #include "libperception/calibration/DetectorStudy.h"
+#include "libperception/calibration/LearntStudy.h"
 #include "libperception/calibration/TemperingStudy.h"
 #include "libperception/calibration/TracksAsTruth.h"
 #include "libperception/core/GroundTruth.h"
@@ -28,6 +29,23 @@ namespace {
 bool hasSpaceBoxes(const ObjectDetections& detections) {
   return std::any_of(detections.objects.begin(), detections.objects.end(),
                      [](const auto& o) { return o.space_box.has_value(); });
+}
+
+/// Of confidence = learnt for this configuration.
+ConfidenceLearner learnerOf(const std::string& sensor, Config config) {
+  const auto positions = config.read<PositionParams>("sensor." + sensor + ".positions");
+  const auto view = config.read<DetectionParams>("sensor." + sensor);
+  ConfidenceLearner::Params params;
+  params.labels = positions.labels;
+  for (const std::string& name : positions.names) {
+    const auto equals = name.find('=');
+    params.label_of[name.substr(0, equals)] = static_cast<int>(
+        std::find(params.labels.begin(), params.labels.end(), name.substr(equals + 1)) -
+        params.labels.begin());
+  }
+  params.fov = view.fov;
+  params.clutter_per_scan = view.clutter_per_scan;
+  return ConfidenceLearner(std::move(params));
 }
 
 }  // namespace
@@ -47,6 +65,7 @@ const CalibrateApp::Task CalibrateApp::kTasks[] = {
      &CalibrateApp::boxes},
     {"confidence", "what those scores are worth and the output threshold: an INI",
      &CalibrateApp::confidence},
+    {"learnt", "how true the odds of confidence = learnt are, and how soon", &CalibrateApp::learnt},
     {"detector", "detection, labels, clutter and noise of detectors, counted",
      &CalibrateApp::detector},
     {"gains",
@@ -126,7 +145,7 @@ StudyReport CalibrateApp::tempering() {
   return temperingStudy(params, logs);
 }
 
-CalibrateApp::JudgedLogs CalibrateApp::judgedBoxes() {
+CalibrateApp::JudgedLogs CalibrateApp::judgedBoxes(bool learning) {
   registerPerceptionClasses();
   JudgedLogs judged;
   for (const std::string& file : inputs) {
@@ -140,7 +159,10 @@ CalibrateApp::JudgedLogs CalibrateApp::judgedBoxes() {
           judged.sensor = observation.sensorLabel;
           seen[*stamp] = boxes->detections;
         });
-    judged.logs.push_back(boxLog(log, judged.sensor, seen, truthBeside(file)));
+    std::optional<ConfidenceLearner> learner;
+    if (learning) learner = learnerOf(judged.sensor, loadConfig());
+    judged.logs.push_back(
+        boxLog(log, judged.sensor, seen, truthBeside(file), learner ? &*learner : nullptr));
   }
   for (const std::string& name :
        loadConfig().read<PositionParams>("sensor." + judged.sensor + ".positions").names) {
@@ -178,6 +200,21 @@ StudyReport CalibrateApp::confidence() {
     return replay(recorded, {recorded.model.proposal, recorded.particles.sample_size, seed});
   };
   return confidenceStudy(input, std::filesystem::absolute(config_file).string());
+}
+
+/// Logs of one folder are of one detector.
+StudyReport CalibrateApp::learnt() {
+  JudgedLogs judged = judgedBoxes(true);
+  std::vector<LearntGroup> groups;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string folder =
+        std::filesystem::absolute(inputs[i]).parent_path().filename().string();
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const LearntGroup& g) { return g.name == folder; });
+    if (group == groups.end()) group = groups.insert(group, {folder, {}});
+    group->logs.push_back(std::move(judged.logs[i]));
+  }
+  return learntStudy(groups);
 }
 
 StudyReport CalibrateApp::detector() { return countedDetections(""); }

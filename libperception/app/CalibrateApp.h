@@ -37,17 +37,19 @@ class CalibrateApp : public App {
  private:
   struct Task;
   static const Task kTasks[];
-  /// Boxes in space of the inputs, judged by their truth.
+  /// Boxes in space of the inputs, judged by their truth; `learning`: rated on the way by
+  /// confidence = learnt, each log from nothing.
   struct JudgedLogs {
     std::string sensor;
     std::map<std::string, std::string> names;  ///< the detector's class = label of the INI
     std::vector<BoxLog> logs;
   };
-  JudgedLogs judgedBoxes();
+  JudgedLogs judgedBoxes(bool learning = false);
 
   StudyReport tempering();
   StudyReport boxes();
   StudyReport confidence();
+  StudyReport learnt();
   StudyReport detector();
   StudyReport gains();
   StudyReport countedDetections(const std::string& include);

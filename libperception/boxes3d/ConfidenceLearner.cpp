@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libperception/core/Frames.h"
 
@@ -21,7 +22,7 @@ constexpr double kMostSpread = 4;  // standard deviations of scores: farther one
 constexpr double kPersisting = 0.945;
 // Log-odds of an object by those of persistence: kSlope z + kOffset + kByRange (range - 25 m) / 25
 // m (method.md 8.12).
-constexpr double kSlope = 0.79, kOffset = -1.77, kByRange = 0.58;
+constexpr double kSlope = 0.93, kOffset = -0.25, kByRange = 0.26;
 constexpr double kMiddle = 25;  // [m]
 
 // Prior of the weights of 1, score and range, in standard deviations of the scores and 25 m.
@@ -30,10 +31,13 @@ const Vector3 kPriorMean(0, 1, 0), kPriorPrecision(1 / 9.0, 1 / 4.0, 1);
 constexpr std::size_t kFrames = 3;          // that have to have a box again
 constexpr double kLongestGap = 0.3;         // [s] between frames that are compared
 constexpr double kGate = 0.5, kSpeed = 25;  // [m], [m/s] of what is the same (assumed)
-constexpr double kNearest = 6;              // [m] nearer ones leave the view
-constexpr double kInnerView = 0.85;         // [-] of the field of view: the same
-constexpr double kObjectsMemory = 50;       // [frames] (assumed)
-constexpr std::size_t kFewScores = 5;       // fewer give no unit
+// [m], [m/s^2] ways of successive frames that differ by more are not of one object: three standard
+// deviations of three centers with 0.1 m in each axis, and what road users do (assumed).
+constexpr double kUneven = 0.6, kAccel = 10;
+constexpr double kNearest = 6;         // [m] nearer ones leave the view
+constexpr double kInnerView = 0.85;    // [-] of the field of view: the same
+constexpr double kObjectsMemory = 50;  // [frames] (assumed)
+constexpr std::size_t kFewScores = 5;  // fewer give no unit
 constexpr double kLeastObjects = 0.05;
 
 double standardDeviation(const std::vector<double>& values, double mean) {
@@ -163,15 +167,35 @@ void ConfidenceLearner::link(Frame& now) const {
   }
 }
 
+/// What a box of `now` was in the oldest frame, -1: not there all the time, or on a way that no
+/// vehicle takes, as false boxes that lie near each other by chance.
+int ConfidenceLearner::tracedBack(const Frame& now, const Box& box) const {
+  const Frame* frame = &now;
+  const Box* at = &box;
+  std::optional<Vector2> velocity;
+  int i = -1;
+  for (std::size_t k = kFrames; k-- > 0;) {
+    i = at->before;
+    if (i < 0) return -1;
+    const Frame& earlier = last_[k];
+    const Box& there = earlier.boxes[static_cast<std::size_t>(i)];
+    const double dt = frame->stamp - earlier.stamp;
+    const Vector2 way = at->place - there.place;
+    if (velocity && (way - dt * *velocity).norm() > kUneven + kAccel * dt * dt) return -1;
+    velocity = way / dt;
+    frame = &earlier;
+    at = &there;
+  }
+  return i;
+}
+
 /// From the boxes of kFrames frames ago.
-void ConfidenceLearner::learn(const Frame& now) {
+void ConfidenceLearner::addSamples(const Frame& now) {
   if (last_.size() < kFrames) return;
   const Frame& first = last_.front();
   std::vector<char> persists(first.boxes.size(), 0);
   for (const Box& box : now.boxes) {
-    int i = box.before;
-    for (std::size_t k = kFrames; k-- > 1 && i >= 0;)
-      i = last_[k].boxes[static_cast<std::size_t>(i)].before;
+    const int i = tracedBack(now, box);
     if (i >= 0) persists[static_cast<std::size_t>(i)] = 1;
   }
   for (std::size_t i = 0; i < first.boxes.size(); ++i) {
@@ -181,14 +205,12 @@ void ConfidenceLearner::learn(const Frame& now) {
   }
 }
 
-void ConfidenceLearner::apply(SensorFrame& frame) {
-  auto* detections = std::get_if<ObjectDetections>(&frame.data);
-  if (detections == nullptr) return;
+std::vector<double> ConfidenceLearner::learn(const SensorFrame& frame) {
   Frame now = boxesOf(frame);
   const double passed = last_.empty() ? 0 : now.stamp - last_.back().stamp;
   if (passed <= 0 || passed > kLongestGap) last_.clear();
   link(now);
-  learn(now);
+  addSamples(now);
   for (std::size_t l = 0; l < labels_.size(); ++l) {
     Label& label = labels_[l];
     std::vector<double> scores;
@@ -205,15 +227,28 @@ void ConfidenceLearner::apply(SensorFrame& frame) {
                                                std::min<double>(label.frames, kObjectsMemory)
                         : objects;
   }
-  for (std::size_t i = 0; i < now.boxes.size(); ++i) {
-    const Box& box = now.boxes[i];
-    if (box.label < 0) continue;
-    const Label& label = labels_[static_cast<std::size_t>(box.label)];
-    const double expected = std::max(*label.objects, kLeastObjects) / params_.clutter_per_scan;
-    detections->objects[i].score = label.fit.logOdds(box.score, box.range) - std::log(expected);
+  std::vector<double> log_odds;
+  for (const Box& b : now.boxes) {
+    log_odds.push_back(
+        b.label < 0 ? std::numeric_limits<double>::quiet_NaN()
+                    : labels_[static_cast<std::size_t>(b.label)].fit.logOdds(b.score, b.range));
   }
   last_.push_back(std::move(now));
   if (last_.size() > kFrames) last_.pop_front();
+  return log_odds;
+}
+
+void ConfidenceLearner::apply(SensorFrame& frame) {
+  auto* detections = std::get_if<ObjectDetections>(&frame.data);
+  if (detections == nullptr) return;
+  const std::vector<double> log_odds = learn(frame);
+  for (std::size_t i = 0; i < log_odds.size(); ++i) {
+    const int of = last_.back().boxes[i].label;
+    if (of < 0) continue;
+    const Label& label = labels_[static_cast<std::size_t>(of)];
+    const double expected = std::max(*label.objects, kLeastObjects) / params_.clutter_per_scan;
+    detections->objects[i].score = log_odds[i] - std::log(expected);
+  }
 }
 
 std::vector<std::string> ConfidenceLearner::learned() const {

@@ -57,6 +57,9 @@ class ConfidenceLearner final : public FramePreparation {
   };
   explicit ConfidenceLearner(Params params);
 
+  /// Learns from the frame; by box the log-odds that it is an object of its label, NaN where no
+  /// label has its name.
+  std::vector<double> learn(const SensorFrame& frame);
   void apply(SensorFrame& frame) override;
   void restart() override { last_.clear(); }
   std::vector<std::string> learned() const override;
@@ -80,7 +83,8 @@ class ConfidenceLearner final : public FramePreparation {
   };
   Frame boxesOf(const SensorFrame& frame) const;
   void link(Frame& now) const;
-  void learn(const Frame& now);
+  int tracedBack(const Frame& now, const Box& box) const;
+  void addSamples(const Frame& now);
 
   Params params_;
   std::vector<Label> labels_;

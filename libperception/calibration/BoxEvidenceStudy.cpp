@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "libperception/core/Error.h"
@@ -15,12 +16,25 @@ namespace {
 constexpr double kLengthShare = 0.25, kPlace = 0.3;  // [-], [m] a box on its object
 constexpr double kElsewhere =
     2;  // [m] boxes within this distance of an object of another class are excluded
+constexpr double kInArea = 0.5;  // [-] of an image box: it counts as in the area, as in KITTI's kit
 
 enum class Verdict { kObject, kClutter, kNeither };
 
-Verdict judge(const std::string& label, const Vector2& place, const GroundTruth::Instant& instant,
+/// Whether most of the box lies in an area of the image that the truth does not label.
+bool inArea(const ObjectDetection& box, const GroundTruth::Instant& instant) {
+  if (!box.image_box) return false;
+  const ObjectDetection::ImageBox& b = *box.image_box;
+  return std::any_of(instant.objects.begin(), instant.objects.end(), [&](const TruthObject& o) {
+    if (!o.area) return false;
+    const double width = std::min(b.x2, o.area->right) - std::max(b.x1, o.area->left);
+    const double height = std::min(b.y2, o.area->bottom) - std::max(b.y1, o.area->top);
+    return width > 0 && height > 0 && width * height >= kInArea * (b.x2 - b.x1) * (b.y2 - b.y1);
+  });
+}
+
+Verdict judge(const ObjectDetection& box, const Vector2& place, const GroundTruth::Instant& instant,
               const std::vector<std::string>& classes) {
-  const ClassId wanted = classOfTruth(label, classes);
+  const ClassId wanted = classOfTruth(box.label, classes);
   Verdict verdict = Verdict::kClutter;
   for (const TruthObject& o : instant.objects) {
     if (!std::isfinite(o.length) || !o.position.allFinite()) continue;  // an area of the image
@@ -32,7 +46,17 @@ Verdict judge(const std::string& label, const Vector2& place, const GroundTruth:
       verdict = Verdict::kNeither;
     }
   }
+  if (verdict == Verdict::kClutter && inArea(box, instant)) verdict = Verdict::kNeither;
   return verdict;
+}
+
+SensorFrame frameOf(const MeasurementScan& scan, const ObjectDetections& detections) {
+  SensorFrame frame;
+  frame.sensor = scan.sensor;
+  frame.stamp = scan.state.stamp;
+  frame.ego.T_world_ego = scan.state.T_world_sensor;  // only the sensor's pose counts
+  frame.data = detections;
+  return frame;
 }
 
 /// Boxes of one label by log.
@@ -74,8 +98,11 @@ ScoreKeys scoreKeys(const std::string& label, const ScoreOdds& odds, double bala
 }
 
 BoxLog boxLog(const RecordedLog& log, const std::string& sensor,
-              const std::map<Stamp, ObjectDetections>& detections, const GroundTruth& truth) {
+              const std::map<Stamp, ObjectDetections>& detections, const GroundTruth& truth,
+              ConfidenceLearner* learner) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   BoxLog out;
+  std::int64_t scan = -1;
   out.name = log.name;
   out.simulated = log.simulated;
   std::vector<std::string> classes;
@@ -86,17 +113,24 @@ BoxLog boxLog(const RecordedLog& log, const std::string& sensor,
     if (entry.kind != RecordedLog::Entry::kScan || entry.scan->sensor != sensor) continue;
     const auto boxes = detections.find(entry.scan->state.stamp);
     const auto instant = instants.find(entry.scan->frame);
-    if (boxes == detections.end() || instant == instants.end()) continue;
+    if (boxes == detections.end()) continue;
+    ++scan;
+    const auto stated = learner ? learner->learn(frameOf(*entry.scan, boxes->second))
+                                : std::vector<double>(boxes->second.objects.size(), kNone);
+    if (instant == instants.end()) continue;
     const SensorState& state = entry.scan->state;
     ++out.scans;
-    for (const ObjectDetection& o : boxes->second.objects) {
+    for (std::size_t i = 0; i < boxes->second.objects.size(); ++i) {
+      const ObjectDetection& o = boxes->second.objects[i];
       if (!o.space_box) continue;
       const Vector2 place = (state.T_world_sensor * o.space_box->bottom_center).head<2>();
-      const Verdict verdict = judge(o.label, place, *instant->second, classes);
+      const Verdict verdict = judge(o, place, *instant->second, classes);
       if (verdict == Verdict::kNeither) continue;
       out.boxes.push_back(
           {o.label,
-           {o.score, o.space_box->bottom_center.head<2>().norm(), verdict == Verdict::kObject}});
+           {o.score, o.space_box->bottom_center.head<2>().norm(), verdict == Verdict::kObject},
+           scan,
+           stated[i]});
     }
   }
   return out;
@@ -145,7 +179,8 @@ StudyReport boxEvidenceStudy(const std::string& sensor, const std::vector<BoxLog
   report.remarks.push_back("`evidence.ini` holds the section for the vehicle's INI.");
   report.remarks.push_back(
       "Boxes on objects of another class, and within 2 m of an object that they miss, are left "
-      "out; areas that the truth does not label (DontCare) cannot be told from clutter here.");
+      "out, and boxes of which half or more lies in an area that the truth does not label "
+      "(DontCare), where both are known in the image.");
   return report;
 }
 

@@ -1,9 +1,12 @@
 #pragma once
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "libperception/boxes3d/ConfidenceLearner.h"
 #include "libperception/boxes3d/ScoreOdds.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/evaluation/StudyReport.h"
@@ -17,9 +20,12 @@ struct JudgedBox {
   std::string label;  ///< the detector's class name
   BoxSample
       sample;  ///< `object`: true: on an object of the label's class; false: on no labeled object
+  std::int64_t scan = 0;  ///< number since the log's begin
+  double stated =
+      std::numeric_limits<double>::quiet_NaN();  ///< log-odds of an object, as learned by then
 };
 
-/// All boxes of a log except those on objects of another class.
+/// All boxes of a log except those on objects of another class and in areas without labels.
 struct BoxLog {
   std::string name;
   bool simulated = false;
@@ -33,9 +39,12 @@ using ScoreKeys = std::vector<std::pair<std::string, std::string>>;
 ScoreKeys scoreKeys(const std::string& label, const ScoreOdds& odds, double balance);
 
 /// Compares the boxes of `sensor` in `detections` with the truth of the same frame. A box is on an
-/// object if the distance of their centers is less than a quarter of the object's length and 0.3 m.
+/// object if the distance of their centers is less than a quarter of the object's length and 0.3 m;
+/// in an area without labels if half of its image box or more is. `learner`, if any, sees all
+/// frames and states what it holds of each box by then.
 BoxLog boxLog(const RecordedLog& log, const std::string& sensor,
-              const std::map<Stamp, ObjectDetections>& detections, const GroundTruth& truth);
+              const std::map<Stamp, ObjectDetections>& detections, const GroundTruth& truth,
+              ConfidenceLearner* learner = nullptr);
 
 /// Fits P(object | score, range) of every label; with leave-one-log-out cross-validation. Writes
 /// the section for the vehicle's INI. `names`: maps the detector's class names to labels of the

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "libperception/calibration/ReliabilityCounts.h"
 #include "libperception/core/Error.h"
 #include "libperception/evaluation/Metrics.h"
 
@@ -14,7 +15,7 @@ namespace perception {
 namespace {
 
 constexpr double kLeast = 0.05, kStep = 0.05;
-constexpr std::size_t kThresholds = 19, kBins = 10;
+constexpr std::size_t kThresholds = 19;
 constexpr double kFewest = 0.5;  // objects of a label in all frames, for its logarithm
 
 using Curve = std::array<ClearFigures, kThresholds>;
@@ -120,27 +121,17 @@ std::vector<std::string> rowOf(const std::string& log, std::size_t threshold,
 /// Stated probability against the share of objects, each log's boxes by what the others taught.
 void addReliability(const std::string& label, const std::vector<std::vector<BoxSample>>& by_log,
                     const std::vector<Fit>& left_out, StudyTable& table) {
-  struct Bin {
-    double stated = 0, objects = 0, count = 0;
-  };
-  std::array<Bin, kBins> bins;
-  double error = 0, all = 0;
+  ReliabilityCounts counts;
   for (std::size_t l = 0; l < by_log.size(); ++l) {
-    for (const BoxSample& s : by_log[l]) {
-      const double p = 1 / (1 + std::exp(-left_out[l].odds.at(label).logOdds(s.score, s.range)));
-      Bin& bin = bins[std::min<std::size_t>(kBins - 1, static_cast<std::size_t>(p * kBins))];
-      bin.stated += p, bin.objects += s.object ? 1 : 0, ++bin.count;
-    }
+    for (const BoxSample& s : by_log[l])
+      counts.add(1 / (1 + std::exp(-left_out[l].odds.at(label).logOdds(s.score, s.range))),
+                 s.object);
   }
-  for (const Bin& bin : bins) error += std::abs(bin.stated - bin.objects), all += bin.count;
-  for (const Bin& bin : bins) {
-    if (bin.count == 0) continue;
-    table.rows.push_back({label, fmt::format("{:.0f}", bin.count),
-                          fmt::format("{:.3f}", bin.stated / bin.count),
-                          fmt::format("{:.3f}", bin.objects / bin.count)});
-  }
-  table.rows.push_back({label + ": calibration error", fmt::format("{:.0f}", all),
-                        fmt::format("{:.3f}", error / all), ""});
+  for (const auto& [boxes, stated, objects] : counts.curve())
+    table.rows.push_back({label, fmt::format("{:.0f}", boxes), fmt::format("{:.3f}", stated),
+                          fmt::format("{:.3f}", objects)});
+  table.rows.push_back({label + ": calibration error", fmt::format("{:.0f}", counts.count()),
+                        fmt::format("{:.3f}", counts.error()), ""});
 }
 
 std::string iniOf(const ConfidenceInput& input, const std::string& include, const Fit& fit,

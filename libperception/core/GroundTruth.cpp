@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -24,6 +25,10 @@ namespace {
 
 constexpr std::string_view kHeader =
     "frame,t,id,class,x,y,z,yaw,length,width,height,vx,vy,truncated,occluded,lidar_points,ignore\n";
+
+// Columns of an area of the image, after those; in files that have such areas.
+constexpr std::array<std::string_view, 4> kAreaColumns = {"image_left", "image_top", "image_right",
+                                                          "image_bottom"};
 
 // A row without a position is accepted only with the ignore flag (KITTI's DontCare is an area of
 // the image).
@@ -68,6 +73,12 @@ TruthObject readRow(const CsvTable& csv, std::size_t row) {
   o.truncated = std::isnan(truncated) ? 0 : truncated;
   o.occluded = small(csv, row, "occluded", 0);
   o.lidar_points = small(csv, row, "lidar_points", -1);
+  if (csv.has(kAreaColumns[0])) {
+    std::array<double, 4> edges;
+    for (std::size_t k = 0; k < 4; ++k) edges[k] = csv.realOrNan(row, csv.column(kAreaColumns[k]));
+    if (!std::isnan(edges[0] + edges[1] + edges[2] + edges[3]))
+      o.area = ImageArea{edges[0], edges[1], edges[2], edges[3]};
+  }
   return o;
 }
 
@@ -99,11 +110,17 @@ std::string decimal(double value) {
   return text == "-0.0000" ? text.substr(1) : text;
 }
 
+std::string areaFields(const std::optional<ImageArea>& area) {
+  return area ? fmt::format(",{:.2f},{:.2f},{:.2f},{:.2f}", area->left, area->top, area->right,
+                            area->bottom)
+              : ",,,,";
+}
+
 std::string line(const TruthObject& o) {
   const auto count = [](std::int64_t n) { return n < 0 ? std::string() : fmt::format("{}", n); };
   // Times to the nanosecond, so that they match those of the run; yaw to a microradian.
-  return fmt::format("{},{:.9f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", count(o.frame),
-                     o.t, count(o.id), o.type, decimal(o.position.x()), decimal(o.position.y()),
+  return fmt::format("{},{:.9f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", count(o.frame), o.t,
+                     count(o.id), o.type, decimal(o.position.x()), decimal(o.position.y()),
                      decimal(o.position.z()),
                      std::isfinite(o.yaw) ? fmt::format("{:.6f}", o.yaw) : "", decimal(o.length),
                      decimal(o.width), decimal(o.height), decimal(o.vx), decimal(o.vy),
@@ -152,8 +169,15 @@ void writeGroundTruth(const std::string& path, const std::vector<TruthObject>& r
   if (!file) {
     throw OutputError(fmt::format("{}: cannot be created: {}", path, std::strerror(errno)));
   }
+  const bool areas = std::any_of(rows.begin(), rows.end(), [](auto& o) { return o.area; });
   std::string text(kHeader);
-  for (const TruthObject& row : rows) text += line(row);
+  if (areas) {
+    text.pop_back();
+    for (const std::string_view column : kAreaColumns) text.append(",").append(column);
+    text += '\n';
+  }
+  for (const TruthObject& row : rows)
+    text.append(line(row)).append(areas ? areaFields(row.area) : "").append("\n");
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
   if (!written || std::fflush(file.get()) != 0 || ::fsync(::fileno(file.get())) != 0 ||

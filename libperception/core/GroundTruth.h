@@ -2,12 +2,18 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "libperception/core/Frames.h"
 
 namespace perception {
+
+/// [px] a region of the camera's image: left, top, right, bottom edge.
+struct ImageArea {
+  double left = 0, top = 0, right = 0, bottom = 0;
+};
 
 /// One object of the truth at one instant: a line of FILE.truth.csv. World frame, SI units; NaN
 /// where unknown.
@@ -21,10 +27,11 @@ struct TruthObject {
   double yaw = 0;                            ///< [rad]
   double length = 0, width = 0, height = 0;  ///< [m]
   double vx = std::numeric_limits<double>::quiet_NaN(), vy = vx;  ///< [m/s]
-  double truncated = 0;   ///< [0, 1] share outside the image
-  int occluded = 0;       ///< KITTI: 0 visible, 1 partly, 2 largely occluded, 3 unknown
-  int lidar_points = -1;  ///< returns inside the box; -1: the log has no lidar
-  bool ignore = false;    ///< DontCare and types that no class covers
+  double truncated = 0;           ///< [0, 1] share outside the image
+  int occluded = 0;               ///< KITTI: 0 visible, 1 partly, 2 largely occluded, 3 unknown
+  int lidar_points = -1;          ///< returns inside the box; -1: the log has no lidar
+  bool ignore = false;            ///< DontCare and types that no class covers
+  std::optional<ImageArea> area;  ///< where an area without labels (DontCare) lies, if known
 };
 
 /// The truth of a log by instant.

@@ -286,6 +286,8 @@ TruthObject truthOf(const KittiLabel& label, const KittiCalibration& calibration
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     o.position.setConstant(kUnknown);
     o.yaw = o.length = o.width = o.height = kUnknown;
+    const ObjectDetection::ImageBox& b = label.image_box;
+    o.area = ImageArea{b.x1, b.y1, b.x2, b.y2};
     return o;
   }
   placeTruth(boxInVelodyne(*label.box, calibration), T_world_velo, o);

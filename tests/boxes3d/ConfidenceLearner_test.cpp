@@ -81,6 +81,27 @@ TEST(ConfidenceLearner, WithoutEvidenceLittleIsClaimed) {
   EXPECT_TRUE(learner.learned().empty());
 }
 
+/// Two frames of four have false boxes that are near each other by chance, on no vehicle's way.
+TEST(ConfidenceLearner, WhatJumpsAboutDoesNotStay) {
+  const auto meanOf = [](double jump) {
+    ConfidenceLearner learner(params());
+    double sum = 0;
+    for (int f = 0; f < 60; ++f) {
+      SensorFrame frame;
+      frame.stamp = Stamp{1'000'000'000'000 + f * std::int64_t{100'000'000}};
+      ObjectDetections detections;
+      for (int i = 0; i < 8; ++i)
+        detections.objects.push_back(boxAt(10 + 6 * i, (f + i) % 2 ? jump : 0, i));
+      frame.data = std::move(detections);
+      sum = 0;
+      for (const double odds : learner.learn(frame)) sum += odds;
+    }
+    return sum / 8;
+  };
+  EXPECT_GT(meanOf(0.1), 1.5);
+  EXPECT_LT(meanOf(1), -1.5);
+}
+
 TEST(ConfidenceLearner, BoxesOfOtherNamesKeepTheirScores) {
   ConfidenceLearner learner(params());
   SensorFrame frame;

@@ -72,6 +72,19 @@ TEST_F(GroundTruthFile, FaultsNameLineAndColumn) {
             std::string::npos);
 }
 
+TEST_F(GroundTruthFile, AreasOfTheImageHaveColumnsOfTheirOwn) {
+  TruthObject area, car;
+  area.type = "DontCare";
+  area.ignore = true;
+  area.area = ImageArea{10, 20, 30.5, 40};
+  car.type = "Car";
+  writeGroundTruth(path_, {area, car});
+  const auto objects = readGroundTruth(path_).instants.at(0).objects;
+  ASSERT_TRUE(objects[0].area);
+  EXPECT_EQ(objects[0].area->right, 30.5);
+  EXPECT_FALSE(objects[1].area);
+}
+
 TEST_F(GroundTruthFile, WhatIsWrittenIsReadBack) {
   TruthObject car;
   car.frame = 12;

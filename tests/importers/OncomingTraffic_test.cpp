@@ -68,7 +68,7 @@ TEST_F(OncomingTraffic, KeepsItsIdentityFrom10To40MetersASecond) {
     }
   }
   EXPECT_EQ(encounter, 199);
-  EXPECT_LE(switches, 1) << "of 200 encounters: one at 68 m";
+  EXPECT_EQ(switches, 0) << "of 200 encounters";
   EXPECT_GE(tracked, (94 * seen) / 100);
 }
 

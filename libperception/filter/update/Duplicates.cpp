@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "libperception/core/Frames.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kUnseen = 0.25;  // [s] a track not hit for so long gives way to a fresh one
 constexpr std::uint32_t kAbsent = static_cast<std::uint32_t>(-1);
+constexpr double kThere = 0.5;  // existence of what is likelier there than not
 /// A track whose class probability is below .95 has no footprint that others are merged into; two
 /// that are likelier vehicles than not are merged all the same.
 const double kLogSureClass = std::log(0.95), kLogLikelyClass = std::log(0.5);
@@ -69,6 +71,11 @@ TrackHandle takeOver(const Track& older, const Track& younger, bool fragment) {
   return std::make_shared<const Track>(std::move(t));
 }
 
+/// Detected once and likely not there: where a real object comes by, it is not that object.
+bool isGhost(const Track& t) {
+  return t.existence < kThere && std::accumulate(t.hits.begin(), t.hits.end(), 0) <= 1;
+}
+
 }  // namespace
 
 DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackTable& tracks)
@@ -99,23 +106,26 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
       Conflict conflict{older, younger, nullptr};
       const bool fragment =
           (feet[older].area < least || !feet[older].sure) && !both && feet[younger].oriented;
-      if ((fragment || (now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now)) &&
-          tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
+      const bool stale = now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now;
+      if (stale && isGhost(*tracks[older]) && tracks[younger]->existence >= kThere)
+        conflict = {younger, older, nullptr};
+      else if ((fragment || stale) &&
+               tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
         conflict.replacement = takeOver(*tracks[older], *tracks[younger], fragment);
       conflicts_.push_back(std::move(conflict));
     }
   }
   std::sort(conflicts_.begin(), conflicts_.end(), [&](const Conflict& a, const Conflict& b) {
-    const auto ia = tracks[a.older]->id, ib = tracks[b.older]->id;
+    const auto ia = tracks[a.kept]->id, ib = tracks[b.kept]->id;
     if (ia != ib) return ia < ib;
-    const auto ja = tracks[a.younger]->id, jb = tracks[b.younger]->id;
+    const auto ja = tracks[a.dropped]->id, jb = tracks[b.dropped]->id;
     if (ja != jb) return ja < jb;
-    return a.older != b.older ? a.older < b.older : a.younger < b.younger;
+    return a.kept != b.kept ? a.kept < b.kept : a.dropped < b.dropped;
   });
   if (conflicts_.empty()) return;
   involved_.assign(cells_, kAbsent);
   for (const Conflict& c : conflicts_) {
-    for (const std::size_t cell : {c.older, c.younger}) {
+    for (const std::size_t cell : {c.kept, c.dropped}) {
       std::uint32_t& number = involved_[cell];
       if (number == kAbsent) number = static_cast<std::uint32_t>(involved_count_++);
     }
@@ -131,12 +141,12 @@ std::vector<std::uint32_t> DuplicateTable::merged(std::vector<std::uint32_t> cel
   }
   for (std::size_t c = 0; c < conflicts_.size(); ++c) {
     const Conflict& conflict = conflicts_[c];
-    std::uint32_t& younger = place[involved_[conflict.younger]];
-    const std::uint32_t older = place[involved_[conflict.older]];
-    if (older == kAbsent || younger == kAbsent) continue;
-    cells[younger] = kAbsent;
-    younger = kAbsent;
-    if (conflict.replacement) cells[older] = static_cast<std::uint32_t>(cells_ + c);
+    std::uint32_t& dropped = place[involved_[conflict.dropped]];
+    const std::uint32_t kept = place[involved_[conflict.kept]];
+    if (kept == kAbsent || dropped == kAbsent) continue;
+    cells[dropped] = kAbsent;
+    dropped = kAbsent;
+    if (conflict.replacement) cells[kept] = static_cast<std::uint32_t>(cells_ + c);
   }
   cells.erase(std::remove(cells.begin(), cells.end(), kAbsent), cells.end());
   return cells;

@@ -13,8 +13,9 @@ namespace perception {
 /// both tracks of a pair keeps one. Only footprints of at least `merge_area` of tracks whose class
 /// is sure count, so that people in a crowd are not merged. The id of the older track is kept. Its
 /// state is kept, too, unless it has not been detected recently and the younger track is detected
-/// in this scan: then the state is that of the younger track (method.md 5.9). `merge_area` = 0: no
-/// merging. Computed once for all hypotheses.
+/// in this scan: then the state is that of the younger track (method.md 5.9), and its id, too, if
+/// the older one was detected only once and is likely not there. `merge_area` = 0: no merging.
+/// Computed once for all hypotheses.
 class DuplicateTable {
  public:
   DuplicateTable() = default;
@@ -29,8 +30,8 @@ class DuplicateTable {
 
  private:
   struct Conflict {
-    std::size_t older, younger;  // cells
-    TrackHandle replacement;     // of the older one; null: it stays
+    std::size_t kept, dropped;  // cells
+    TrackHandle replacement;    // of the kept one; null: it stays
   };
   std::size_t cells_ = 0;
   std::vector<Conflict> conflicts_;
