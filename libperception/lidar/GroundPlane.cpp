@@ -13,8 +13,6 @@ void GroundParams::visit(ParamVisitor& v) {
   v.expert();
   v.real("max_offset", max_offset, {0.01, 3}, "m",
          "largest height of the ground at the ego origin");
-  v.real("wet_depth", wet_depth, {0.05, 100}, "m",
-         "below the last plane from here on returns are mirror images; 100: no guard");
 }
 
 namespace {
