@@ -10,6 +10,7 @@
 #include "libperception/app/SimulateApp.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/pipeline/Progress.h"
+#include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/EgoPose.h"
 #include "libperception/sensors/FromObservation.h"
@@ -70,6 +71,7 @@ void printCounts(const WeatheredLog::Counts& n) {
   fmt::print("  lidar: {} scans, {} returns: {} lost, {} phantoms\n", n.scans, n.returns, n.lost,
              n.phantoms);
   if (n.targets > 0) fmt::print("  radar: {} targets, {} lost\n", n.targets, n.targets_lost);
+  if (n.images > 0) fmt::print("  images: {}, {} left out\n", n.images, n.images_left_out);
   if (n.boxes > 0) fmt::print("  boxes: {}, {} lost\n", n.boxes, n.boxes_lost);
 }
 
@@ -78,7 +80,7 @@ void printCounts(const WeatheredLog::Counts& n) {
 void SimulateApp::declareRecording(CLI::App& cli) {
   recording_ = cli.add_subcommand("weather",
                                   "Simulated weather on a recording: lidar returns, "
-                                  "radar targets, boxes of image detectors");
+                                  "radar targets, images, boxes of image detectors");
   recording_->add_option("-i,--input", inputs, "Rawlog; its truth (LOG.truth.csv), if any, beside")
       ->required()
       ->expected(1);
@@ -111,7 +113,7 @@ void SimulateApp::alterRecording() {
   const double duration = *recording.last - *recording.first;
   Scenario scene = recordedScene(truth, recording.poses, duration);
   scene.weather = conditions;
-  WeatheredLog weathered(std::move(scene), *recording.first, seed, threads);
+  WeatheredLog weathered(std::move(scene), *recording.first, seed, threads, imagesBeside(input));
 
   RawlogReader log(input);
   RawlogWriter out(output, gzip_level);
@@ -149,8 +151,8 @@ void SimulateApp::alterRecording() {
   printCounts(n);
   if (out_labels > 0)
     fmt::print("  {}: what each return is, {} scans\n", labelFolderOf(output), out_labels);
-  if (n.images > 0)
-    warn(fmt::format("{} images left out: their weather is not simulated", n.images));
+  if (n.images_left_out > 0)
+    warn(fmt::format("{} images left out: not found, or without a calibration", n.images_left_out));
   if (!has_truth && (conditions.water_film_mm > 0 || conditions.snow_cover > 0))
     warn(truth_file + ": not there, so that no object whirls up spray");
   if (recording.poses.empty()) warn(input + ": no poses: the vehicle is taken to stand");

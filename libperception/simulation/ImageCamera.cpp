@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/simulation/Appearance.h"
+#include "libperception/simulation/CameraView.h"
 #include "libperception/simulation/GroundAppearance.h"
 #include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/World.h"
@@ -22,6 +23,7 @@ constexpr double kSeenThrough = 0.3;  // transmittance of leaves
 /// Result of one ray.
 struct Sample {
   Rgb value = Rgb::Zero();  ///< linear display value
+  float range = CameraView::kSky;
   int object = BeamHit::kNothing;
 };
 
@@ -44,7 +46,7 @@ class Renderer {
   }
 
   Sample at(double u, double v) const {
-    const Vector3 direction = axes_ * opticalRay(u, v);
+    const Vector3 direction = axes_ * opticalRay(camera_, u, v);
     SurfaceHit hit = caster_.surface(eye_, direction, kFar);
     // The road's mesh ends somewhere; the ground does not.
     const bool below = hit.object == BeamHit::kNothing && direction.z() * kFar < -eye_.z();
@@ -55,6 +57,7 @@ class Renderer {
       sample.value = light_.exposed(light_.hazySky(direction));
       return sample;
     }
+    sample.range = hit.range;
     const Vector3 place = eye_ + static_cast<double>(hit.range) * direction;
     const Rgb radiance = hit.object >= 0 ? onObject(hit, place, direction)
                                          : onGround(place, static_cast<double>(hit.range));
@@ -63,14 +66,6 @@ class Renderer {
   }
 
  private:
-  Vector3 opticalRay(double u, double v) const {
-    const double x = (u - camera_.cx) / camera_.fx, y = (v - camera_.cy) / camera_.fy;
-    if (camera_.projection == CameraModel::Projection::kEquirectangular) {
-      return {std::cos(y) * std::sin(x), std::sin(y), std::cos(y) * std::cos(x)};
-    }
-    return Vector3(x, y, 1).normalized();
-  }
-
   // Light of the sun on a surface, over pi; none in a shadow.
   Rgb sunOn(const Vector3& place, const Vector3& normal, double floor) const {
     const double cosine = std::max(normal.dot(sun_), floor);
@@ -79,11 +74,20 @@ class Renderer {
     return cosine * light_.sunlight();
   }
 
+  // Of the own headlights, which are taken to be where the camera is: no shadows are seen.
+  Rgb lampsOn(const Vector3& place, const Vector3& normal, double range) const {
+    if (light_.headlights <= 0) return Rgb::Zero();
+    const Vector3 direction = (place - eye_).normalized();
+    const double cosine = std::max(0.0, -normal.dot(direction));
+    return Rgb::Constant(cosine * light_.headlightsOn(direction, range));
+  }
+
   Rgb onGround(const Vector3& place, double range) const {
     const double pixel = range / camera_.fx;
     const Vector3 up = Vector3::UnitZ();  // bumps of a centimeter are not rendered
     const bool covered = caster_.blocked(place + kLift * up, up, kCover);
-    const Rgb arriving = sunOn(place, up, 0) + (covered ? kCovered : 1) * light_.ambientOn(up);
+    const Rgb arriving = sunOn(place, up, 0) + (covered ? kCovered : 1) * light_.ambientOn(up) +
+                         lampsOn(place, up, range);
     return ground_.reflectance(place.head<2>(), pixel).cwiseProduct(arriving);
   }
 
@@ -94,7 +98,8 @@ class Renderer {
                                    T.linear() * hit.normal, hit.range / camera_.fx);
     // Leaves transmit light, independent of their orientation.
     const double floor = hit.material == Material::kLeaf ? kSeenThrough : 0;
-    const Rgb arriving = sunOn(place, hit.normal, floor) + light_.ambientOn(hit.normal);
+    const Rgb arriving = sunOn(place, hit.normal, floor) + light_.ambientOn(hit.normal) +
+                         lampsOn(place, hit.normal, hit.range);
     const Rgb dull = finish.reflectance.cwiseProduct(arriving);
     if (finish.mirror <= 0) return dull;
     // Schlick's approximation of Fresnel's share.
@@ -144,7 +149,7 @@ CameraModel ImageCameraParams::model() const {
 }
 
 RenderedImage renderImage(const LidarCaster& caster, double t, const CameraModel& camera,
-                          const Lighting& light, const Pose3& T_world_camera) {
+                          const Lighting& light, const Pose3& T_world_camera, CameraView* view) {
   const Renderer renderer(caster, t, camera, light, T_world_camera);
   const auto width = static_cast<std::size_t>(camera.width),
              height = static_cast<std::size_t>(camera.height);
@@ -157,6 +162,10 @@ RenderedImage renderImage(const LidarCaster& caster, double t, const CameraModel
   RenderedImage image;
   image.raster = {camera.width, camera.height, 3, std::vector<std::uint8_t>(3 * width * height)};
   image.objects.resize(width * height);
+  if (view) {
+    view->camera = camera, view->T_world_camera = T_world_camera, view->light = light;
+    view->linear.resize(width * height), view->range.resize(width * height);
+  }
   const auto finish = [&](std::size_t i) {
     const std::size_t x = i % width, y = i / width;
     const bool edge = (x > 0 && differs(samples[i], samples[i - 1])) ||
@@ -177,6 +186,7 @@ RenderedImage renderImage(const LidarCaster& caster, double t, const CameraModel
       image.raster.pixels[3 * i + static_cast<std::size_t>(c)] = displayByte(value(2 - c));
     }
     image.objects[i] = samples[i].object;
+    if (view) view->linear[i] = value.cast<float>(), view->range[i] = samples[i].range;
   };
   caster.parallel(height, 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first * width; i < last * width; ++i) finish(i);

@@ -8,6 +8,7 @@
 namespace perception {
 
 class LidarCaster;
+struct CameraView;
 
 /// A camera with rendered images: [sensor.LABEL] kind = camera_images: a pinhole, or at 360 degrees
 /// a panorama of the whole sphere (equirectangular), twice as wide as high. Defaults: the smallest
@@ -33,8 +34,10 @@ struct RenderedImage {
 /// Renders the image at t [s], to which the caster must be set: one ray per pixel, four where
 /// neighbors differ, each with secondary rays towards the sun and, from the ground, straight up
 /// (method.md 9.11). `T_world_camera`: optical frame. The ego vehicle is not rendered.
-/// Byte-identical for any number of threads.
+/// Byte-identical for any number of threads. `view`, unless null, gets the same before its bytes,
+/// for weather that acts on images; its velocity is left to the caller.
 RenderedImage renderImage(const LidarCaster& caster, double t, const CameraModel& camera,
-                          const Lighting& light, const Pose3& T_world_camera);
+                          const Lighting& light, const Pose3& T_world_camera,
+                          CameraView* view = nullptr);
 
 }  // namespace perception

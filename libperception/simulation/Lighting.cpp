@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/core/Angle.h"
+
 namespace perception {
 namespace {
 
@@ -13,6 +15,10 @@ const Rgb kGround(0.16, 0.16, 0.14);    // mean reflectance of what lies below
 constexpr double kGlow = 0.5;           // of the sky near the sun
 constexpr double kLayer = 100;          // [m] height of the hazy air
 constexpr double kLeastSlope = 0.01;    // of lines of sight that leave it
+// Low beams (assumed): Gaussian in azimuth, a share above the cut-off; nearer all is as at 2 m.
+constexpr double kLampWidth = radians(20), kAboveCutOff = 0.03, kCutOff = radians(-0.57);
+constexpr double kNearestLit = 2;     // [m]
+constexpr double kBrightest = 0.998;  // linear display value: 255 of a byte and all above
 
 }  // namespace
 
@@ -43,8 +49,20 @@ Rgb Lighting::sky(const Vector3& direction) const {
 }
 
 Rgb Lighting::hazySky(const Vector3& direction) const {
-  const double up = std::max(kLeastSlope, direction.z());
-  return through(sky(direction), kLayer / up, direction);
+  return through(sky(direction), airPath(direction), direction);
+}
+
+double Lighting::airPath(const Vector3& direction) {
+  return kLayer / std::max(kLeastSlope, direction.z());
+}
+
+double Lighting::headlightsOn(const Vector3& direction, double range) const {
+  if (headlights <= 0) return 0;
+  const double off = wrapAngle(std::atan2(direction.y(), direction.x()) - headlights_azimuth);
+  const double shape = std::exp(-.5 * off * off / (kLampWidth * kLampWidth)) *
+                       (direction.z() < std::sin(kCutOff) ? 1 : kAboveCutOff);
+  const double r = std::max(range, kNearestLit);
+  return headlights * shape / (r * r) * std::exp(-haze * range);
 }
 
 Rgb Lighting::ambientOn(const Vector3& normal) const {
@@ -66,10 +84,21 @@ Rgb Lighting::exposed(const Rgb& radiance) const {
           1 - std::exp(-exposure * radiance.z())};
 }
 
+Rgb Lighting::radianceOf(const Rgb& linear) const {
+  const Rgb v = linear.cwiseMin(kBrightest);
+  return {-std::log1p(-v.x()) / exposure, -std::log1p(-v.y()) / exposure,
+          -std::log1p(-v.z()) / exposure};
+}
+
 std::uint8_t displayByte(double linear) {
   const double x = std::clamp(linear, 0.0, 1.0);
   const double curve = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(255 * curve));
+}
+
+double linearOf(std::uint8_t byte) {
+  const double s = byte / 255.0;
+  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
 }  // namespace perception

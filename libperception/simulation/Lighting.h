@@ -17,6 +17,11 @@ struct Lighting {
   double ambient = 0.3;   ///< light of the sky, as a share of the sun's at right angles
   double exposure = 2.0;  ///< of the camera, times the radiance
   double haze = 2e-4;     ///< [1/m] extinction: visible to 15 km (method.md 9.3)
+  // Set by the weather alone (method.md 9.14):
+  double exposure_time = 0.002;   ///< [s] of the shutter; KITTI's cameras at most [geiger2013]
+  double gain = 1;                ///< of the sensor; above 1 its noise is seen
+  double headlights = 0;          ///< [m^2] of the vehicle itself: over r^2 the light that arrives
+  double headlights_azimuth = 0;  ///< [rad] world, whereto they shine
 
   void visit(ParamVisitor& v);
   Vector3 sunDirection() const;  ///< unit, towards the sun, world
@@ -32,11 +37,20 @@ struct Lighting {
   Rgb hazySky(const Vector3& direction) const;
   /// A radiance attenuated over `range` [m], with the light scattered in by the air.
   Rgb through(const Rgb& radiance, double range, const Vector3& direction) const;
+  /// [m] the way of a line of sight through the layer of hazy air over the ground.
+  static double airPath(const Vector3& direction);
+  /// Light of the own headlights that arrives at `range` [m] in a direction from the camera (unit,
+  /// world) on a surface that faces them, over pi: falls with 1/r^2 and the haze on the way there.
+  double headlightsOn(const Vector3& direction, double range) const;
   /// The linear display value in [0, 1] of a radiance.
   Rgb exposed(const Rgb& radiance) const;
+  /// The radiance of a linear display value; the largest below 1 stands for all above.
+  Rgb radianceOf(const Rgb& linear) const;
 };
 
 /// The byte of a linear display value: the curve of sRGB (IEC 61966-2-1).
 std::uint8_t displayByte(double linear);
+/// The linear display value of a byte.
+double linearOf(std::uint8_t byte);
 
 }  // namespace perception

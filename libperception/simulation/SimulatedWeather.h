@@ -12,6 +12,7 @@ namespace perception {
 
 class World;
 struct SensorParams;
+struct CameraView;
 
 /// What a lidar return comes from where it is no surface.
 enum class Phantom : std::uint8_t {
@@ -76,8 +77,8 @@ struct CameraLook {
   double optical_depth = 0;
 };
 
-/// Weather between sensors and objects: may modify every pulse, reflection, look and the light
-/// of every image before detection. This base class is clear air and changes nothing; derived
+/// Weather between sensors and objects: may modify every pulse, reflection, look, image and the
+/// light of images before detection. This base class is clear air and changes nothing; derived
 /// classes override what they affect. alter() is const, so that a frame may be simulated in
 /// parallel; randomness comes only from `rng`, a separate stream.
 class SimulatedWeather {
@@ -92,6 +93,9 @@ class SimulatedWeather {
   virtual void alter(const SensorParams&, CameraLook&, Rng&) const {}
   /// Light and air of one rendered image: fog, night, a low sun.
   virtual void alter(const SensorParams&, Lighting&, Rng&) const {}
+  /// An image, rendered or recorded, in the light and air that alter(Lighting) set: what falls
+  /// through it, drops on the lens, the sensor's noise.
+  virtual void alter(const SensorParams&, CameraView&, Rng&) const {}
   /// The whole frame: false boxes of mirror images, noise returns, fouling.
   virtual void alter(const SensorParams&, SensorFrame&, Rng&) const {}
   /// False: alter() does not change pulses and is not called for them.

@@ -11,6 +11,7 @@
 
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/ToObservation.h"
+#include "libperception/simulation/CameraView.h"
 #include "libperception/simulation/PointTruth.h"
 #include "libperception/simulation/weather/WeatherChain.h"
 
@@ -248,8 +249,18 @@ CameraImage Simulator::takeImage(const Event& event, const Pose3& T_world_camera
   CameraImage image;
   image.camera = sensor.cameraModel();
   image.source = "simulated";
-  RenderedImage rendered = renderImage(caster_, event.t, image.camera, light, T_world_camera);
-  image.load = [raster = std::make_shared<const Raster>(std::move(rendered.raster))] {
+  CameraView view;
+  Raster pixels = std::move(
+      renderImage(caster_, event.t, image.camera, light, T_world_camera, weather_ ? &view : nullptr)
+          .raster);
+  if (weather_) {
+    const EgoState ego = world_.ego(event.t);
+    view.velocity << ego.velocity, 0;
+    Rng rng(key.withSlot(1));
+    weather_->alter(sensor, view, rng);
+    pixels = rasterOf(view);
+  }
+  image.load = [raster = std::make_shared<const Raster>(std::move(pixels))] {
     return std::optional<Raster>(*raster);
   };
   return image;

@@ -9,6 +9,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/simulation/Appearance.h"
+#include "libperception/simulation/CameraView.h"
 #include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/World.h"
 #include "tests/simulation/SceneText.h"
@@ -202,6 +203,21 @@ TEST(ImageCamera, SameBytesForAnyNumberOfThreads) {
   const Shot one(scene, pinhole(), clearDay(), 1), four(scene, pinhole(), clearDay(), 4);
   EXPECT_EQ(one.image.raster.pixels, four.image.raster.pixels);
   EXPECT_EQ(one.image.objects, four.image.objects);
+}
+
+TEST(ImageCamera, TheViewIsTheImageBeforeItsBytes) {
+  const Shot shot(parked("wall", "box", 10, 0, "length = .5\nwidth = 8\nheight = 3"), pinhole());
+  CameraView view;
+  const RenderedImage image = renderImage(shot.caster, 0, shot.camera, clearDay(), kLens, &view);
+  EXPECT_EQ(image.raster.pixels, shot.image.raster.pixels);
+  const Raster again = rasterOf(view);
+  int off = 0;
+  for (std::size_t i = 0; i < again.pixels.size(); ++i)
+    off = std::max(off, std::abs(again.pixels[i] - image.raster.pixels[i]));
+  EXPECT_LE(off, 1);  // rounded to floats
+  const auto middle = static_cast<std::size_t>(shot.camera.width) * 180 + 320;
+  EXPECT_NEAR(view.range.at(middle), 9.75, 0.05);
+  EXPECT_EQ(view.range.front(), CameraView::kSky);
 }
 
 TEST(ImageCamera, FieldOfViewTellsPanoramaFromPinhole) {

@@ -113,6 +113,39 @@ TEST(SimulatedWeather, ChangesTheLightOfImages) {
   EXPECT_LT(meanBrightness(std::make_unique<Night>()), 40);
 }
 
+/// All images of a street in the weather, one after the other.
+std::vector<std::uint8_t> imagesIn(const std::string& weather, std::uint64_t seed, int threads) {
+  Simulator simulator(scenarioOf(kStanding + weather +
+                                 "[sensor.CAMERA]\nkind = camera_images\n"
+                                 "width = 128\nheight = 64\nfov_deg = 80\nz = 1.5\nrate = 1\n" +
+                                 parked("car", "car", 12, 0)),
+                      "street", seed, threads);
+  std::vector<std::uint8_t> bytes;
+  while (const auto o = simulator.next()) {
+    if (!isImage(*o)) continue;
+    const auto raster = std::get<CameraImage>(frameFromObservation(*o)->data).load();
+    bytes.insert(bytes.end(), raster->pixels.begin(), raster->pixels.end());
+  }
+  return bytes;
+}
+
+TEST(SimulatedWeather, FlakesInImagesAreAFunctionOfTheSeed) {
+  const std::string snow = "[weather]\nsnow_mm_h = 10\n";
+  EXPECT_EQ(imagesIn(snow, 3, 1), imagesIn(snow, 3, 4));
+  EXPECT_NE(imagesIn(snow, 3, 1), imagesIn(snow, 4, 1));
+  EXPECT_EQ(imagesIn("", 3, 1), imagesIn("", 4, 1));
+}
+
+TEST(SimulatedWeather, AtNightTheOwnHeadlightsLightTheRoadAhead) {
+  const auto night = imagesIn("[weather]\nsky = night\n", 3, 1);
+  const auto rows = [&](std::size_t from, std::size_t to) {  // mean of the first image
+    double sum = 0;
+    for (std::size_t i = 3 * 128 * from; i < 3 * 128 * to; ++i) sum += night.at(i);
+    return sum / static_cast<double>(3 * 128 * (to - from));
+  };
+  EXPECT_GT(rows(60, 64), rows(36, 40) + 10);  // road 4 m ahead, and 20 m
+}
+
 TEST(BeamWidth, EdgesReturnPartsAndMixedPixels) {
   // A board 0.3 m before a wall: rays see one or the other, wide beams also something between.
   const World world(scenarioOf(

@@ -7,11 +7,13 @@
 #include <utility>
 #include <variant>
 
+#include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/ToObservation.h"
 #include "libperception/simulation/CameraBoxes.h"
 #include "libperception/simulation/PointTruth.h"
+#include "libperception/simulation/recorded/RecordedImage.h"
 #include "libperception/simulation/recorded/RecordedScan.h"
 #include "libperception/simulation/weather/Beam.h"
 #include "libperception/simulation/weather/WeatherChain.h"
@@ -33,7 +35,8 @@ SensorParams sensorOf(const SensorFrame& frame) {
   } else if (std::holds_alternative<RadarReturns>(frame.data)) {
     sensor.kind = SensorKind::kRadar;
   } else {
-    sensor.kind = SensorKind::kCameraBoxes;
+    const bool image = std::holds_alternative<CameraImage>(frame.data);
+    sensor.kind = image ? SensorKind::kCameraImages : SensorKind::kCameraBoxes;
     if (const auto* boxes = std::get_if<ObjectDetections>(&frame.data))
       mount = boxes->T_ego_camera.value_or(mount);
     mount = mount * opticalAxes().inverse();
@@ -51,8 +54,13 @@ double detectionOf(double snr, double false_alarm) { return std::pow(false_alarm
 
 }  // namespace
 
-WeatheredLog::WeatheredLog(Scenario scene, Stamp first, std::uint64_t seed, int threads)
-    : world_(std::move(scene)), caster_(world_, threads), first_(first), seed_(seed) {
+WeatheredLog::WeatheredLog(Scenario scene, Stamp first, std::uint64_t seed, int threads,
+                           std::string images)
+    : world_(std::move(scene)),
+      caster_(world_, threads),
+      first_(first),
+      seed_(seed),
+      images_(std::move(images)) {
   const Scenario& scenario = world_.scenario();
   weather_ = makeWeather(scenario.weather, scenario, seed);
   if (!weather_) weather_ = std::make_unique<SimulatedWeather>();
@@ -71,11 +79,7 @@ std::shared_ptr<mrpt::obs::CObservation> WeatheredLog::apply(
   labels_.reset();
   if (const auto number = frameNumber(*observation)) frame_ = *number;
   if (!isSensorData(*observation)) return observation;
-  if (isImage(*observation)) {
-    ++counts_.images;
-    return nullptr;
-  }
-  auto frame = frameFromObservation(*observation);
+  auto frame = frameFromObservation(*observation, nullptr, images_);
   if (!frame) return observation;  // a fault of the recording, which its readers report
   const SensorParams sensor = sensorOf(*frame);
   const double t = frame->stamp - first_;
@@ -87,6 +91,12 @@ std::shared_ptr<mrpt::obs::CObservation> WeatheredLog::apply(
     alterScan(sensor, t, key, *frame);
   } else if (auto* radar = std::get_if<RadarReturns>(&frame->data)) {
     alterReturns(sensor, key, *radar, T_world_sensor);
+  } else if (std::holds_alternative<CameraImage>(frame->data)) {
+    ++counts_.images;
+    if (!alterImage(sensor, t, key, *frame)) {
+      ++counts_.images_left_out;
+      return nullptr;
+    }
   } else if (auto* boxes = std::get_if<ObjectDetections>(&frame->data)) {
     const Pose3 mount = boxes->T_ego_camera.value_or(frame->T_ego_sensor);
     alterBoxes(sensor, key, *boxes, world_.ego(t).T_world_ego * mount);
@@ -96,13 +106,45 @@ std::shared_ptr<mrpt::obs::CObservation> WeatheredLog::apply(
   return observationFromFrame(*frame);
 }
 
+bool WeatheredLog::alterImage(const SensorParams& sensor, double t, const RngKey& key,
+                              SensorFrame& frame) {
+  auto& image = std::get<CameraImage>(frame.data);
+  const auto pixels = image.load ? image.load() : std::nullopt;
+  if (!pixels) return false;
+  CameraView view;
+  view.camera = image.camera;
+  view.camera.width = pixels->width, view.camera.height = pixels->height;
+  if (view.camera.fx <= 0 || view.camera.fy <= 0) {
+    const auto panorama = panoramaModel(pixels->width, pixels->height);
+    if (!panorama) return false;
+    view.camera = *panorama;
+  }
+  const EgoState ego = world_.ego(t);
+  view.T_world_camera = ego.T_world_ego * frame.T_ego_sensor;
+  view.velocity << ego.velocity, 0;
+  std::vector<Vector3> returns;
+  for (const auto& [lidar, last] : returns_)
+    returns.insert(returns.end(), last.begin(), last.end());
+  image.camera = view.camera;
+  image.load = [raster = std::make_shared<const Raster>(throughWeather(
+                    *pixels, std::move(view), returns, *weather_, sensor, caster_, key))] {
+    return std::optional<Raster>(*raster);
+  };
+  return true;
+}
+
 void WeatheredLog::alterScan(const SensorParams& sensor, double t, const RngKey& key,
                              SensorFrame& frame) {
   auto& cloud = std::get<LidarCloud>(frame.data);
   caster_.setTime(t);
+  const Pose3 T_world_sensor = world_.ego(t).T_world_ego * frame.T_ego_sensor;
+  std::vector<Vector3>& last = returns_[frame.sensor];
+  last.clear();
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    last.push_back(T_world_sensor * Vector3(cloud.x[i], cloud.y[i], cloud.z[i]));
   const auto missing = patterns_[frame.sensor].missing(cloud);
-  WeatheredScan scan = throughWeather(cloud, missing, *weather_, sensor,
-                                      world_.ego(t).T_world_ego * frame.T_ego_sensor, caster_, key);
+  WeatheredScan scan =
+      throughWeather(cloud, missing, *weather_, sensor, T_world_sensor, caster_, key);
   ++counts_.scans;
   counts_.returns += cloud.size(), counts_.lost += scan.lost;
   counts_.phantoms += static_cast<std::uint64_t>(std::count_if(

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "libperception/core/Angle.h"
+#include "libperception/simulation/CameraView.h"
 #include "libperception/simulation/World.h"
 #include "libperception/simulation/weather/Beam.h"
 
@@ -17,7 +18,10 @@ constexpr double kNightRecall = 0.5, kLit = 15;                  // [m] of the o
 constexpr double kGlareRecall = 0.7, kGlareWidth = radians(20);  // to each side
 constexpr double kLowSun = radians(20);                          // elevation
 constexpr double kBeamWidth = radians(30), kHeadlightsTo = 60;   // to each side; [m]
-constexpr double kNightAmbient = 0.01, kCloudyAmbient = 0.4;     // least share under clouds
+constexpr double kCloudyAmbient = 0.4;                           // least share under clouds
+// Images at night, in units of 100 klx of the sun: lit streets of 10 lx (EN 13201-2, P2); low beams
+// of 20,000 cd; 30 ms and gain 20 where day has 2 ms (assumed).
+constexpr double kNightAmbient = 1e-4, kHeadlights = 0.2, kNightTime = 0.030, kNightGain = 20;
 constexpr std::size_t kSun = std::numeric_limits<std::size_t>::max();
 
 bool hasHeadlights(const ObjectParams& object) {
@@ -37,6 +41,7 @@ Daylight::Daylight(Sky sky, const Lighting& light)
 void Daylight::advance(const World& world, const SensorParams& sensor, double t) {
   glare_.clear();
   if (!sensor.isCamera()) return;
+  heading_ = yawOf(world.ego(t).T_world_ego);
   if (sky_ == Sky::kSunny && low_sun_) glare_.push_back({sun_azimuth_, kSun});
   if (sky_ != Sky::kNight) return;
   const Vector2 eye = (world.ego(t).T_world_ego * sensor.T_ego_sensor()).translation().head<2>();
@@ -75,6 +80,14 @@ void Daylight::alter(const SensorParams&, Lighting& light, Rng&) const {
   if (sky_ == Sky::kSunny) return;
   light.sun_elevation = std::min(light.sun_elevation, radians(-1));
   light.ambient = sky_ == Sky::kNight ? kNightAmbient : std::max(light.ambient, kCloudyAmbient);
+  if (sky_ != Sky::kNight) return;
+  light.exposure *= kNightGain * kNightTime / light.exposure_time;
+  light.exposure_time = kNightTime, light.gain = kNightGain;
+  light.headlights = kHeadlights, light.headlights_azimuth = heading_;
+}
+
+void Daylight::alter(const SensorParams&, CameraView& view, Rng& rng) const {
+  addSensorNoise(view, rng);
 }
 
 }  // namespace perception

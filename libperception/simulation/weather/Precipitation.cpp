@@ -21,6 +21,14 @@ SizeDistribution gunnMarshall(double snow_mm_h) {
   return {7600 * std::pow(snow_mm_h, -0.87), 2.55 * std::pow(snow_mm_h, -0.48)};
 }
 
+SizeDistribution flakeSizes(double snow_mm_h) {
+  const SizeDistribution melted = gunnMarshall(snow_mm_h);
+  const double growth = std::cbrt(1 / kFlakeDensity);
+  return {melted.number / growth, melted.slope / growth};
+}
+
+double dropSpeed(double diameter) { return std::max(0.0, 9.65 - 10.3 * std::exp(-.6 * diameter)); }
+
 // The integral of D^2 exp(-slope D) is 2 / slope^3 [mm^3]; 1e-6: mm^2 as m^2.
 double extinction(const SizeDistribution& sizes, double efficiency) {
   return kPi / 4 * 1e-6 * efficiency * sizes.number * 2 / std::pow(sizes.slope, 3);

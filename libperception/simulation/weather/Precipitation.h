@@ -11,6 +11,14 @@ struct SizeDistribution {
 SizeDistribution marshallPalmer(double rain_mm_h);  ///< rain [marshall1948], method.md 9.1
 SizeDistribution gunnMarshall(double snow_mm_h);    ///< snow [gunn1958], method.md 9.2
 
+/// Snow by the diameters of the flakes themselves: [gunn1958] is of the drops that they melt to; of
+/// a tenth of water's density a flake is 2.15 times as large (method.md 9.2, 9.14).
+SizeDistribution flakeSizes(double snow_mm_h);
+/// [m/s] at which a drop of a diameter [mm] falls [atlas1973].
+double dropSpeed(double diameter);
+inline constexpr double kFlakeDensity = 0.1;  ///< [g/cm^3] method.md 9.2
+inline constexpr double kFlakeSpeed = 1;      ///< [m/s] at which flakes fall, method.md 9.2
+
 /// [1/m] of light: pi/4 Q integral of D^2 N(D), Q the extinction efficiency of a sphere.
 double extinction(const SizeDistribution& sizes, double efficiency);
 double rainExtinction(double rain_mm_h);  ///< [1/m] method.md (58)

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/core/Angle.h"
+#include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/weather/Beam.h"
+#include "libperception/simulation/weather/FallingParticles.h"
 #include "libperception/simulation/weather/FalseBoxes.h"
+#include "libperception/simulation/weather/LensDrops.h"
 #include "libperception/simulation/weather/Precipitation.h"
 
 namespace perception {
@@ -19,16 +23,26 @@ constexpr double kWetRate = 10;
 // what is found behind them (method.md 9.9, assumed).
 constexpr double kLeastDrops = 0.05, kMostDrops = 0.15, kMostDropsRate = 50, kBlurredRecall = 0.5;
 
+constexpr double kWiped = 1;                         // [s] drops on the lens stay (assumed)
+constexpr std::uint32_t kDropsPurpose = 0x57EA3000;  // of random numbers
+constexpr double kDropRadiance = 0.94;               // of the mean of what is around [garg2007]
+
 }  // namespace
 
-Rain::Rain(double mm_h)
-    : extinction_(rainExtinction(mm_h)),
+Rain::Rain(double mm_h, std::uint64_t seed)
+    : mm_h_(mm_h),
+      seed_(seed),
+      extinction_(rainExtinction(mm_h)),
       chance_(kRainReturns.chance(mm_h)),
       attenuation_(radarAttenuation(mm_h)),
       backscatter_(radarBackscatter(mm_h)),
       drops_(kLeastDrops + (kMostDrops - kLeastDrops) * std::min(1.0, mm_h / kMostDropsRate)),
       wetness_(std::min(1.0, mm_h / kWetRate)),
       edge_noise_(1 + (kEdgeNoise - 1) * std::min(1.0, mm_h / kEdgeRate)) {}
+
+void Rain::advance(const World&, const SensorParams&, double t) {
+  wiped_ = static_cast<std::uint64_t>(std::max(0.0, t) / kWiped);
+}
 
 void Rain::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
   attenuate(pulse, extinction_);
@@ -59,5 +73,16 @@ void Rain::alter(const SensorParams&, SensorFrame& frame, Rng& rng) const {
 }
 
 void Rain::alter(const SensorParams&, Lighting& light, Rng&) const { light.haze += extinction_; }
+
+// A drop shows all that is before the camera, upside down: half sky, half ground.
+void Rain::alter(const SensorParams& sensor, CameraView& view, Rng& rng) const {
+  const Lighting& light = view.light;
+  const Rgb around =
+      .5 * kDropRadiance * (light.sky(Vector3::UnitX()) + light.ambientOn(-Vector3::UnitZ()));
+  drawParticles({marshallPalmer(mm_h_), dropSpeed, [&](const Vector3&, double) { return around; }},
+                view, rng);
+  Rng drops({seed_, wiped_, 0, streamOf(sensor.label, kDropsPurpose)});
+  addLensDrops(drops_, view, drops);
+}
 
 }  // namespace perception

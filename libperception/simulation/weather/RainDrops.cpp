@@ -35,8 +35,8 @@ double reachOfDrops() {
 
 }  // namespace
 
-RainDrops::RainDrops(double mm_h)
-    : Rain(mm_h),
+RainDrops::RainDrops(double mm_h, std::uint64_t seed)
+    : Rain(mm_h, seed),
       sizes_(marshallPalmer(mm_h)),
       per_m3_(sizes_.number * std::exp(-sizes_.slope * kSmallest) / sizes_.slope),
       reach_(reachOfDrops()),

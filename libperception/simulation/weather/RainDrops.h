@@ -9,7 +9,7 @@ namespace perception {
 /// own detection threshold for drops (ParticleReceiver).
 class RainDrops final : public Rain {
  public:
-  explicit RainDrops(double mm_h);
+  explicit RainDrops(double mm_h, std::uint64_t seed = 0);
 
   using Rain::alter;
   void alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const override;

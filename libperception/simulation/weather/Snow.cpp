@@ -5,7 +5,7 @@
 
 #include "libperception/core/Angle.h"
 #include "libperception/simulation/Scenario.h"
-#include "libperception/simulation/weather/Precipitation.h"
+#include "libperception/simulation/weather/FallingParticles.h"
 
 namespace perception {
 namespace {
@@ -40,7 +40,8 @@ void addFlake(double range, double intensity, LidarPulse& pulse) {
 }  // namespace
 
 Snow::Snow(double mm_h, std::uint64_t seed)
-    : seed_(seed),
+    : mm_h_(mm_h),
+      seed_(seed),
       extinction_(snowExtinction(mm_h)),
       chance_(kSnowReturns.chance(mm_h)),
       large_per_cell_(chance_ * kLargeShare * kSnowReturns.shareWithin(kLargeWithin) / meanArea()),
@@ -103,5 +104,15 @@ void Snow::alter(const SensorParams&, CameraLook& look, Rng&) const {
 }
 
 void Snow::alter(const SensorParams&, Lighting& light, Rng&) const { light.haze += extinction_; }
+
+// A flake is white and dull; by day it has the light of the sky, at night that of the headlights.
+void Snow::alter(const SensorParams&, CameraView& view, Rng& rng) const {
+  const Lighting light = view.light;
+  const auto radiance = [&](const Vector3& direction, double range) {
+    const double lamps = light.headlightsOn(direction, range);
+    return Rgb(kReflectivity * (light.ambientOn(-direction) + Rgb(lamps, lamps, lamps)));
+  };
+  drawParticles({flakeSizes(mm_h_), [](double) { return kFlakeSpeed; }, radiance}, view, rng);
+}
 
 }  // namespace perception

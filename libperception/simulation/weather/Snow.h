@@ -10,7 +10,7 @@ struct LidarParams;
 
 /// Falling snow (method.md 9.2, 9.9). Lidar: extinction by the flakes' sizes, false returns by the
 /// measured law [linnhoff2022]; some of those within 5 m are large flakes that neighboring beams
-/// see together, as bright as objects. Camera: contrast, lost edges, haze. Radar: dry snow
+/// see together, as bright as objects. Camera: contrast, lost edges, haze, flakes. Radar: dry snow
 /// attenuates too little to matter at these ranges.
 class Snow : public SimulatedWeather {
  public:
@@ -21,6 +21,7 @@ class Snow : public SimulatedWeather {
   void alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const override;
   void alter(const SensorParams&, CameraLook& look, Rng&) const override;
   void alter(const SensorParams&, Lighting& light, Rng&) const override;
+  void alter(const SensorParams&, CameraView& view, Rng& rng) const override;
   bool actsOnPulses() const override { return true; }
 
  private:
@@ -33,6 +34,7 @@ class Snow : public SimulatedWeather {
     double range, intensity;    // [m], [0, 1]
   };
 
+  double mm_h_;
   std::uint64_t seed_;
   double extinction_;      // [1/m]
   double chance_;          // of a false return, a beam

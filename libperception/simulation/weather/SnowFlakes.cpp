@@ -13,9 +13,8 @@ namespace {
 
 using Receiver = ParticleReceiver;
 
-constexpr double kReflectivity = 0.9;             // of a flake [hahner2022]
-constexpr double kPulse = 0.299792458 * 10;       // [m] c times 10 ns [hahner2022]
-constexpr double kDensity = 0.1, kFallSpeed = 1;  // [g/cm^3], [m/s] of flakes, method.md 9.2
+constexpr double kReflectivity = 0.9;        // of a flake [hahner2022]
+constexpr double kPulse = 0.299792458 * 10;  // [m] c times 10 ns [hahner2022]
 constexpr double kLargestOfMean = 7;  // diameter up to which flakes set the reach: 999 of 1000
 
 /// A flake in the beam: what it takes of the beam's width, from its right edge.
@@ -26,7 +25,7 @@ struct Flake {
 };
 
 // Share of the volume of air (and of any plane in it) that flakes fill [hahner2022].
-double occupancy(double mm_h) { return mm_h / (3.6e6 * kDensity * kFallSpeed); }
+double occupancy(double mm_h) { return mm_h / (3.6e6 * kFlakeDensity * kFlakeSpeed); }
 
 double reachOf(double mean_diameter) {
   const double widest = kLargestOfMean * mean_diameter;

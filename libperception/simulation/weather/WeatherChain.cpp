@@ -28,9 +28,9 @@ void addPrecipitation(const SimulatedWeatherParams& p, std::uint64_t seed,
                       std::vector<std::unique_ptr<SimulatedWeather>>& phenomena) {
   const bool particles = p.precipitation == SimulatedWeatherParams::Precipitation::kParticles;
   if (p.rain_mm_h > 0 && particles)
-    phenomena.push_back(std::make_unique<RainDrops>(p.rain_mm_h));
+    phenomena.push_back(std::make_unique<RainDrops>(p.rain_mm_h, seed));
   else if (p.rain_mm_h > 0)
-    phenomena.push_back(std::make_unique<Rain>(p.rain_mm_h));
+    phenomena.push_back(std::make_unique<Rain>(p.rain_mm_h, seed));
   if (p.snow_mm_h > 0 && particles)
     phenomena.push_back(std::make_unique<SnowFlakes>(p.snow_mm_h, seed));
   else if (p.snow_mm_h > 0)
@@ -68,6 +68,10 @@ void WeatherChain::alter(const SensorParams& sensor, CameraLook& look, Rng& rng)
 
 void WeatherChain::alter(const SensorParams& sensor, Lighting& light, Rng& rng) const {
   pass(phenomena_, sensor, light, rng);
+}
+
+void WeatherChain::alter(const SensorParams& sensor, CameraView& view, Rng& rng) const {
+  pass(phenomena_, sensor, view, rng);
 }
 
 void WeatherChain::alter(const SensorParams& sensor, SensorFrame& frame, Rng& rng) const {

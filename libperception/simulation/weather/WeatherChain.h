@@ -20,6 +20,7 @@ class WeatherChain final : public SimulatedWeather {
   void alter(const SensorParams& sensor, RadarAir& air, Rng& rng) const override;
   void alter(const SensorParams& sensor, CameraLook& look, Rng& rng) const override;
   void alter(const SensorParams& sensor, Lighting& light, Rng& rng) const override;
+  void alter(const SensorParams& sensor, CameraView& view, Rng& rng) const override;
   void alter(const SensorParams& sensor, SensorFrame& frame, Rng& rng) const override;
   bool actsOnPulses() const override { return !on_pulses_.empty(); }
 

@@ -4,6 +4,8 @@
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationImage.h>
 
+#include <algorithm>
+
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/ToObservation.h"
@@ -46,7 +48,7 @@ SensorFrame boxes() {
   return frame;
 }
 
-TEST(WeatheredLog, ObservationsOfOtherSensorsAreKeptAndImagesLeftOut) {
+TEST(WeatheredLog, ObservationsOfOtherSensorsAreKeptAndImagesWithoutPixelsLeftOut) {
   WeatheredLog log = weathered({});
   const auto imu = std::make_shared<mrpt::obs::CObservationIMU>();
   EXPECT_EQ(log.apply(imu), imu);
@@ -54,6 +56,28 @@ TEST(WeatheredLog, ObservationsOfOtherSensorsAreKeptAndImagesLeftOut) {
   image->timestamp = fromStamp(kFirst);
   EXPECT_EQ(log.apply(image), nullptr);
   EXPECT_EQ(log.counts().images, 1u);
+  EXPECT_EQ(log.counts().images_left_out, 1u);
+}
+
+TEST(WeatheredLog, FogIsInImages) {
+  SensorFrame frame = frameOf("CAMERA");
+  frame.T_ego_sensor = makePose(0, 0, 1.5, 0) * opticalAxes();
+  CameraImage image;
+  image.camera.width = 64, image.camera.height = 32;
+  image.camera.fx = image.camera.fy = 40, image.camera.cx = 31.5, image.camera.cy = 15.5;
+  Raster black{64, 32, 3, std::vector<std::uint8_t>(3 * 64 * 32, 30)};
+  std::fill(black.pixels.begin(), black.pixels.begin() + 3 * 64 * 12, 220);  // sky
+  image.load = [black] { return std::optional<Raster>(black); };
+  frame.data = image;
+  SimulatedWeatherParams fog;
+  fog.fog_mor = 30;
+  WeatheredLog log = weathered(fog);
+  const auto after = frameFromObservation(*log.apply(observationFromFrame(frame)));
+  const auto seen = std::get<CameraImage>(after->data).load();
+  ASSERT_TRUE(seen);
+  const auto row = [&](int v) { return static_cast<int>(seen->pixels.at(3 * (64 * v + 32))); };
+  EXPECT_GT(row(17), row(31) + 15);  // the far road
+  EXPECT_EQ(log.counts().images_left_out, 0u);
 }
 
 TEST(WeatheredLog, FogTakesDistantBoxes) {
