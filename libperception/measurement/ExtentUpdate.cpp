@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFloor = 0.1 * 0.1;    // [m^2]
 constexpr double kFloorShare = 1. / 9;  // as for nine independent errors
-constexpr double kMostSigmas = 3;       // of a class's size; assumed
+constexpr double kMostSigmas = 3;       // of a class's width; assumed
 
 void updateSide(double seen, bool complete, double own_sigma, double sigma, double& mean,
                 double& var) {
@@ -41,7 +41,6 @@ Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, d
 }
 
 Extent boundedExtent(Extent extent, const ObjectClass& c) {
-  extent.length = std::min(extent.length, c.length + kMostSigmas * c.length_sigma);
   extent.width = std::min(extent.width, c.width + kMostSigmas * c.width_sigma);
   return extent;
 }

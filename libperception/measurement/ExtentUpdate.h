@@ -13,8 +13,8 @@ namespace perception {
 /// object are not independent.
 Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, double sigma);
 
-/// The extent of an object of a class, at most three standard deviations of the class above its
-/// mean in each direction: what a cluster has beyond is spray or a neighbor (method.md 5.13).
+/// The extent of an object of a class, at most three standard deviations of the class wider than
+/// its mean: what a cluster has beside that is spray or a neighbor (method.md 5.13).
 Extent boundedExtent(Extent extent, const ObjectClass& c);
 
 }  // namespace perception

@@ -26,8 +26,8 @@ constexpr double kExists = 0.8;
 // Before any look, in bad weather: share of P_D, the detections that it is worth; least share.
 constexpr double kBadShare = 0.6, kBadLooks = 4, kLeastSeen = 0.1;
 constexpr double kMemory = 10;  // [s] of looks
-// An object that this sensor saw so often is a witness whatever it is; its P_D is the share of the
-// looks at it, with so many more in vain.
+// An object that this sensor saw so often is a witness whatever it is; its P_D is that of the
+// tables times hits per expected hit, with so many more looks in vain.
 constexpr double kFamiliarHits = 3, kVainLooks = 2;
 constexpr double kBearingWindow = 2, kErrorTime = 0.5;    // [s]; of errors that are alike
 constexpr double kLeastOffset = radians(2), kSigmas = 5;  // of a misaligned sensor
@@ -106,11 +106,13 @@ void SensorDoubt::add(const MeasurementScan& scan, const Hypothesis& tracks,
     if (table <= 0) continue;  // out of view
     Looks& looks = looks_[track->id];
     const bool of_tables = table >= kWorthALook && isOfTables(*track, object, scan, model, c);
-    const double familiar =
-        looks.hits >= kFamiliarHits ? looks.hits / (looks.looks + kVainLooks) : 0;
+    const double familiar = looks.hits >= kFamiliarHits
+                                ? table * looks.hits / (looks.expected + kVainLooks * table)
+                                : 0;
     const bool seen = track->last_hit[own] == scan.state.stamp;
-    ++looks.looks, looks.hits += seen, looks.last = scan.state.stamp;
-    if (!seen && silent_ > 0) addMiss(std::min(std::max(of_tables ? table : 0, familiar), kMostDetection));
+    looks.expected += table, looks.hits += seen, looks.last = scan.state.stamp;
+    if (!seen && silent_ > 0)
+      addMiss(std::min(std::max(of_tables ? table : 0, familiar), kMostDetection));
     if (!of_tables) continue;
     addLook(std::min(table, kMostDetection), seen);
     expected_ += std::min(table, kMostDetection), seen_ += seen;
@@ -125,7 +127,7 @@ void SensorDoubt::forget(Stamp now) {
   if (last_) {
     const double keep = std::exp(-std::max(0.0, now - *last_) / kMemory);
     expected_ *= keep, seen_ *= keep;
-    for (auto& [track, looks] : looks_) looks.looks *= keep, looks.hits *= keep;
+    for (auto& [track, looks] : looks_) looks.expected *= keep, looks.hits *= keep;
   }
   last_ = now;
   for (auto it = looks_.begin(); it != looks_.end();)

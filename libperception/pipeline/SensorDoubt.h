@@ -58,7 +58,7 @@ class SensorDoubt {
   };
   /// What became of one object in this sensor's scans.
   struct Looks {
-    double looks = 0, hits = 0;  ///< remembered
+    double expected = 0, hits = 0;  ///< remembered; expected by the tables
     Stamp last;
   };
   /// Looks of before are remembered as of now; objects out of memory are dropped.
