@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kFloor = 0.1 * 0.1;    // [m^2]
 constexpr double kFloorShare = 1. / 9;  // as for nine independent errors
+constexpr double kMostSigmas = 3;       // of a class's width; assumed
 
 void updateSide(double seen, bool complete, double own_sigma, double sigma, double& mean,
                 double& var) {
@@ -37,6 +38,11 @@ Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, d
   updateSide(sides.width, sides.width_complete, sides.width_sigma, sigma,
              a_is_length ? out.width : out.length, a_is_length ? out.var_width : out.var_length);
   return out;
+}
+
+Extent boundedExtent(Extent extent, const ObjectClass& c) {
+  extent.width = std::min(extent.width, c.width + kMostSigmas * c.width_sigma);
+  return extent;
 }
 
 }  // namespace perception

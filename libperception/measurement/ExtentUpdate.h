@@ -1,6 +1,7 @@
 #pragma once
 #include "libperception/core/Kinematics.h"
 #include "libperception/measurement/Measurement.h"
+#include "libperception/measurement/ObjectClass.h"
 
 namespace perception {
 
@@ -11,5 +12,9 @@ namespace perception {
 /// above (0.1 m)^2, or a ninth of the side's own variance, because the errors of the boxes of one
 /// object are not independent.
 Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, double sigma);
+
+/// The extent of an object of a class, at most three standard deviations of the class wider than
+/// its mean: what a cluster has beside that is spray or a neighbor (method.md 5.13).
+Extent boundedExtent(Extent extent, const ObjectClass& c);
 
 }  // namespace perception

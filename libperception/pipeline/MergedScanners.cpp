@@ -6,11 +6,13 @@
 
 namespace perception {
 
-std::vector<SensorFrame> mergeScanners(const std::vector<PipelineSetup::Sensor>& sensors,
-                                       std::vector<SensorFrame> frames, FrameQueue& queue) {
+std::vector<SensorFrame> mergeScanners(
+    const std::vector<PipelineSetup::Sensor>& sensors, std::vector<SensorFrame> frames,
+    FrameQueue& queue, const std::function<void(std::size_t, const SensorFrame&)>& on_part) {
   if (frames.empty()) return frames;
   const Stamp stamp = frames.front().stamp;
-  for (const auto& sensor : sensors) {
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    const auto& sensor = sensors[k];
     const auto others =
         std::stable_partition(frames.begin(), frames.end(), [&](const SensorFrame& f) {
           return f.sensor == sensor.label || !sensor.scan.merges(f.sensor);
@@ -29,6 +31,7 @@ std::vector<SensorFrame> mergeScanners(const std::vector<PipelineSetup::Sensor>&
     }
     std::sort(scans.begin(), scans.end(),
               [](const SensorFrame& a, const SensorFrame& b) { return a.sensor < b.sensor; });
+    for (const SensorFrame& scan : scans) on_part(k, scan);
     SensorFrame merged = mergedScan(scans, sensor.label);
     if (merged.stamp == stamp) {
       frames.push_back(std::move(merged));

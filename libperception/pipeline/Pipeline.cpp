@@ -157,7 +157,9 @@ bool Pipeline::processNext(bool flush) {
   auto popped = queue_.pop(flush);
   if (popped.empty() && !(flush && !waiting_.empty())) return false;
   if (!popped.empty()) {
-    auto frames = mergeScanners(setup_.sensors, std::move(popped), queue_);
+    auto frames = mergeScanners(
+        setup_.sensors, std::move(popped), queue_,
+        [this](std::size_t sensor, const SensorFrame& part) { health_.addPart(sensor, part); });
     if (frames.empty()) return true;
     addToOdometry(frames);
     const Stamp stamp = frames.front().stamp;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <iterator>
 #include <utility>
 
 #include "libperception/filter/likelihood/LikelihoodRow.h"
@@ -25,21 +25,31 @@ constexpr double kRadarSpeed = 2;    // [m/s] that a radar tells from the ground
 constexpr double kExists = 0.8;
 // Before any look, in bad weather: share of P_D, the detections that it is worth; least share.
 constexpr double kBadShare = 0.6, kBadLooks = 4, kLeastSeen = 0.1;
-constexpr double kShareMemory = 10;                       // [s]
+constexpr double kMemory = 10;  // [s] of looks
+// An object that this sensor saw so often is a witness whatever it is; its P_D is that of the
+// tables times hits per expected hit, with so many more looks in vain.
+constexpr double kFamiliarHits = 3, kVainLooks = 2;
 constexpr double kBearingWindow = 2, kErrorTime = 0.5;    // [s]; of errors that are alike
 constexpr double kLeastOffset = radians(2), kSigmas = 5;  // of a misaligned sensor
 constexpr std::size_t kLeastBearings = 8;
 
-/// Whether an object is one that other sensors have just seen, so that this one should, too.
-bool isWitness(const Track& track, const MeasurementScan& scan, const FilterModel& model,
-               ClassId c) {
+/// Whether an object is there beyond doubt, by what other sensors have just seen.
+bool isWitness(const Track& track, const MeasurementScan& scan) {
   if (track.real() < kExists || scan.state.stamp - track.birth < kSteady) return false;
-  if (!model.classes[c].reported) return false;
-  if (std::exp(track.log_class[static_cast<std::size_t>(c)]) < kExists) return false;
   const std::size_t own = modalityIndex(scan.modality);
   for (std::size_t k = 0; k < track.last_hit.size(); ++k)
     if (k != own && scan.state.stamp - track.last_hit[k] <= kOthersHit) return true;
   return false;
+}
+
+/// Whether the sensor's tables say how often it detects the object: a road user whose class is
+/// known; of radars, one that they tell from the ground.
+bool isOfTables(const Track& track, const Kinematics& object, const MeasurementScan& scan,
+                const FilterModel& model, ClassId c) {
+  if (scan.modality == Modality::kRadar && object.q.segment<2>(2).norm() < kRadarSpeed)
+    return false;
+  return model.classes[c].reported &&
+         std::exp(track.log_class[static_cast<std::size_t>(c)]) >= kExists;
 }
 
 /// Index of the measurement nearest to a place; empty: none within kSameObject.
@@ -82,25 +92,30 @@ std::optional<double> bearingError(const Measurement& m, const Kinematics& objec
 
 void SensorDoubt::add(const MeasurementScan& scan, const Hypothesis& tracks,
                       const FilterModel& model, double seen_share) {
-  if (last_) {
-    const double keep = std::exp(-std::max(0.0, scan.state.stamp - *last_) / kShareMemory);
-    expected_ *= keep, seen_ *= keep;
-  }
-  last_ = scan.state.stamp;
+  forget(scan.state.stamp);
   const std::size_t own = modalityIndex(scan.modality);
   for (const TrackHandle& track : tracks.tracks) {
+    if (!isWitness(*track, scan)) continue;
     const ClassId c = track->likeliestClass();
-    if (!isWitness(*track, scan, model, c)) continue;
     const ClassFilter& filter = track->bank[track->filterOf(static_cast<std::size_t>(c))];
     const Kinematics object = kinematicsOf(model.classes[c], filter);
-    if (scan.modality == Modality::kRadar && object.q.segment<2>(2).norm() < kRadarSpeed) continue;
     const double open = visibilityOf(*track, scan, model);
     if (open < kLeastShare) continue;
-    const double detection =
+    const double table =
         scan.model->detectionProbability(c, object, filter.extent, scan.state, open) / seen_share;
-    if (detection < kWorthALook) continue;
+    if (table <= 0) continue;  // out of view
+    Looks& looks = looks_[track->id];
+    const bool of_tables = table >= kWorthALook && isOfTables(*track, object, scan, model, c);
+    const double familiar = looks.hits >= kFamiliarHits
+                                ? table * looks.hits / (looks.expected + kVainLooks * table)
+                                : 0;
     const bool seen = track->last_hit[own] == scan.state.stamp;
-    addLook(std::min(detection, kMostDetection), seen);
+    looks.expected += table, looks.hits += seen, looks.last = scan.state.stamp;
+    if (!seen && silent_ > 0)
+      addMiss(std::min(std::max(of_tables ? table : 0, familiar), kMostDetection));
+    if (!of_tables) continue;
+    addLook(std::min(table, kMostDetection), seen);
+    expected_ += std::min(table, kMostDetection), seen_ += seen;
     const auto place = seen ? nearestTo(object.q.head<2>(), scan) : std::nullopt;
     if (!place) continue;
     if (const auto error = bearingError(scan.measurements[*place], object, filter.extent, scan))
@@ -108,12 +123,25 @@ void SensorDoubt::add(const MeasurementScan& scan, const Hypothesis& tracks,
   }
 }
 
+void SensorDoubt::forget(Stamp now) {
+  if (last_) {
+    const double keep = std::exp(-std::max(0.0, now - *last_) / kMemory);
+    expected_ *= keep, seen_ *= keep;
+    for (auto& [track, looks] : looks_) looks.expected *= keep, looks.hits *= keep;
+  }
+  last_ = now;
+  for (auto it = looks_.begin(); it != looks_.end();)
+    it = now - it->second.last > kMemory ? looks_.erase(it) : std::next(it);
+}
+
 void SensorDoubt::addLook(double detection, bool seen) {
-  expected_ += detection, seen_ += seen;
   const double fouled = kFouledShare * detection;
   const double ratio = seen ? std::log(kFouledShare) : std::log((1 - fouled) / (1 - detection));
   fouled_ = std::max(0.0, fouled_ + kMissExponent * ratio);  // Page's test
-  if (!seen) log_missed_ += kMissExponent * std::log1p(-detection);
+}
+
+void SensorDoubt::addMiss(double detection) {
+  log_missed_ += kMissExponent * std::log1p(-detection);
 }
 
 double SensorDoubt::seenShare() const {

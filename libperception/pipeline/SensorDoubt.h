@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,15 +13,19 @@
 
 namespace perception {
 
-/// What speaks against a sensor that is no lidar: objects that other sensors see in its view, its
-/// usual false measurements, and bearings that are all off to the same side (method.md 9.10).
+/// What speaks against a sensor that is no lidar: objects that other sensors see in its view, which
+/// it should see by its tables or saw until now, its usual false measurements, and bearings that
+/// are all off to the same side (method.md 9.10).
 class SensorDoubt {
  public:
   /// A scan and the tracks after it; `seen_share`: what weather has left of P_D in its model.
   void add(const MeasurementScan& scan, const Hypothesis& tracks, const FilterModel& model,
            double seen_share);
-  /// An object that the sensor should have seen in a scan, with probability `detection`.
+  /// An object that the sensor should have seen in a scan by its tables, with probability
+  /// `detection`.
   void addLook(double detection, bool seen);
+  /// An object that it did not see in a scan, and would have seen with that probability.
+  void addMiss(double detection);
   /// Bearing of a detection minus that of its object as others see it, [rad].
   void addBearing(Stamp stamp, std::uint64_t object, double error);
   /// A scan with something in it, and what was known of the sensor's clutter then.
@@ -33,7 +38,8 @@ class SensorDoubt {
     if (!usual_) usual_ = clutter;
   }
 
-  /// Log probability that a healthy sensor has been silent for so long.
+  /// Log probability that a healthy sensor has been silent for so long: the log-likelihood ratio
+  /// against a blind one, from which silence is certain, since its last measurement.
   double logSilence() const;
   /// (0, 1] share of the expected detections that came in the last ten seconds, from that of a
   /// sensor in bad weather (method.md 4.8).
@@ -50,6 +56,15 @@ class SensorDoubt {
     std::uint64_t object;
     double error;
   };
+  /// What became of one object in this sensor's scans.
+  struct Looks {
+    double expected = 0, hits = 0;  ///< remembered; expected by the tables
+    Stamp last;
+  };
+  /// Looks of before are remembered as of now; objects out of memory are dropped.
+  void forget(Stamp now);
+
+  std::map<std::uint64_t, Looks> looks_;  ///< by track
   double log_missed_ = 0, fouled_ = 0;
   double expected_ = 0, seen_ = 0;           ///< detections that are remembered
   std::optional<Stamp> last_;                ///< scan

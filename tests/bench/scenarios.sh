@@ -4,23 +4,39 @@
 # OUT/pooled/report.md and plots, with the published rows beside. C/H: the camera's headings as one wide Gaussian.
 # About 7 minutes and 2 GB on four cores; SEEDS="51 52 53 54" draws the five trials four times over.
 #   tests/bench/scenarios.sh [OUT, default out/scenarios]
+# The same in other weather, one pool for each, logs deleted as they are done, runs that are there kept:
+#   WEATHERS="sunny night wet_cloudy snow_rain" CONFIG=ini/skynet_shapes.ini SETS="C+L+R L+R C+R" tests/bench/scenarios.sh OUT
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
-readonly out=${1:-out/scenarios} bin=${PERCEPTION_BIN:-build/bin}
-readonly seeds=${SEEDS:-1} trials="1 2 3 4 5" sets="L+R C+R C/H+R C+L+R"
-export out bin
+readonly seeds=${SEEDS:-1} weathers=${WEATHERS:-.} trials=${TRIALS:-1 2 3 4 5}
+out=${1:-out/scenarios} bin=${PERCEPTION_BIN:-build/bin} config=${CONFIG:-ini/skynet.ini} sets=${SETS:-L+R C+R C/H+R C+L+R}
+export out bin config sets
 mkdir -p "$out"
 
-for scene in A B C; do for seed in $seeds; do for trial in $trials; do echo "$scene $seed $trial"; done; done; done |
-  xargs -P "$(nproc)" -n 3 bash -c 'log=$out/$0$2s$1; [[ -f $log.rawlog ]] ||
-    "$bin/perception-simulate" -c "ini/scenarios/$0.ini" --seed "$1" --trial "$2" --threads 1 -o "$log.rawlog" >"$log.log"'
+encounter() { # SCENE SEED TRIAL WEATHER
+  local log=$out/$1$3s$2 set run weather=() measurements=(--measurements)
+  if [[ $4 != . ]]; then log=${log}_$4 weather=(--weather "ini/weather/$4.ini") measurements=(); fi
+  for set in $sets; do
+    run=${log}_${set//\//}
+    [[ $4 != . && -f $run/done.json ]] && continue
+    [[ -f $log.rawlog ]] || "$bin/perception-simulate" -c "ini/scenarios/$1.ini" --seed "$2" --trial "$3" "${weather[@]}" \
+      --threads 1 -o "$log.rawlog" >"$log.log"
+    "$bin/perception-track" -c "$config" -i "$log.rawlog" -o "$run" --overwrite --sensors "$set" "${measurements[@]}" \
+      --threads 1 >"$run.log" 2>&1
+  done
+  [[ $4 == . ]] || rm -f "$log.rawlog"
+}
+export -f encounter
+for trial in $trials; do for weather in $weathers; do for scene in A B C; do for seed in $seeds; do
+  echo "$scene $seed $trial $weather"
+done; done; done; done | xargs -P "${JOBS:-$(nproc)}" -n 4 bash -euo pipefail -c 'encounter "$@"' encounter
 
-for log in "$out"/*.rawlog; do for set in $sets; do echo "$(basename "$log" .rawlog) $set"; done; done |
-  xargs -P "$(nproc)" -n 2 bash -c 'run=$out/$0_${1//\//}; "$bin/perception-track" -c ini/skynet.ini -i "$out/$0.rawlog" -o "$run" --overwrite \
-    --sensors "$1" --measurements --threads 1 >"$run.log" 2>&1'
-
-runs=()
-for set in $sets; do runs+=(-r "$set=$out/*s*_${set//\//}"); done
-"$bin/perception-evaluate" "${runs[@]}" -t "$out/{log}.truth.csv" --paper sunny --paper pedestrian --paper vehicle -o "$out/pooled"
-"$bin/perception-evaluate" -r "A, B, C=$out/*s*_C+L+R" -t "$out/{log}.truth.csv" --no-plots -o "$out/front_ends" \
+for weather in $weathers; do
+  suffix=${weather#.}
+  suffix=${suffix:+_$suffix}
+  runs=()
+  for set in $sets; do runs+=(-r "$set=$out/*s*${suffix}_${set//\//}"); done
+  "$bin/perception-evaluate" "${runs[@]}" -t "$out/{log}.truth.csv" --paper sunny --paper pedestrian --paper vehicle -o "$out/pooled$suffix"
+done
+[[ $weathers != . ]] || "$bin/perception-evaluate" -r "A, B, C=$out/*s*_C+L+R" -t "$out/{log}.truth.csv" --no-plots -o "$out/front_ends" \
   --front-end LIDAR_TOP --front-end CAMERA_PANO --front-end 'RADAR_*' >"$out/front_ends.txt"

@@ -3,6 +3,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/FrameQueue.h"
+#include "libperception/pipeline/MergedScanners.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/sensors/ToObservation.h"
 
@@ -93,6 +94,19 @@ TEST(MergedScanners, TwoHalvesOfACarAreOneObject) {
   EXPECT_EQ(records[0].frames, 30U);
   EXPECT_EQ(scenes, 30U);
   EXPECT_EQ(objects, 1U);
+}
+
+TEST(MergedScanners, EveryScanIsShownBeforeItIsMerged) {
+  const PipelineSetup setup = setupOf("");
+  FrameQueue queue({0.2, 70});
+  queue.push(scanOf("IBEO_RIGHT", 0.02, -0.8, -0.9, 0.05));
+  std::vector<std::string> parts;
+  mergeScanners(setup.sensors, {scanOf("IBEO_LEFT", 0, 0.8, 0.0, 0.9)}, queue,
+                [&](std::size_t sensor, const SensorFrame& part) {
+                  EXPECT_EQ(setup.sensors[sensor].label, "IBEO");
+                  parts.push_back(part.sensor);
+                });
+  EXPECT_EQ(parts, (std::vector<std::string>{"IBEO_LEFT", "IBEO_RIGHT"}));
 }
 
 TEST(MergedScanners, UnknownLabelsAndTooLongWindowsAreFaults) {

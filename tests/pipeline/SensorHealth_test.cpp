@@ -41,6 +41,13 @@ LidarCloud road(double dirty) {
   return cloud;
 }
 
+LidarCloud everyOf(const LidarCloud& cloud, std::size_t step) {
+  LidarCloud some;
+  for (std::size_t k = 0; k < cloud.size(); k += step)
+    some.x.push_back(cloud.x[k]), some.y.push_back(cloud.y[k]), some.z.push_back(cloud.z[k]);
+  return some;
+}
+
 /// A lidar, a camera and a radar, all forward, watched at 10 Hz.
 struct Watched {
   std::vector<PipelineSetup::Sensor> sensors = {sensor("LIDAR", Modality::kLidar),
@@ -206,19 +213,43 @@ TEST(SensorHealth, ACleanWindowAndDirtInFogAreNotNamed) {
   EXPECT_TRUE(fog.events.counts().empty());
 }
 
-TEST(WindowDirt, TheShareIsThatOfThePatches) {
-  for (const double dirty : {0.0, 0.1, 0.3}) {
-    WindowDirt window;
-    for (int k = 0; k <= 12; ++k) window.add(road(dirty), kStart + 0.1 * k);
-    ASSERT_TRUE(window.share().has_value());
-    EXPECT_NEAR(*window.share(), dirty, 0.06);
+TEST(SensorHealth, ALidarOfWhichATenthIsLeftOfTheRoadIsFouledWithinTwoSeconds) {
+  Watched w;
+  for (int k = 0; k < 30; ++k) w.see(kLidar, 0.1 * k, road(0));
+  EXPECT_TRUE(w.events.counts().empty());
+  for (int k = 30; k < 50; ++k) w.see(kLidar, 0.1 * k, everyOf(road(0), 10));
+  EXPECT_EQ(w.count(event_kind::kSensorFouled), 1U);
+}
+
+TEST(SensorHealth, ARadarThatNoLongerSeesAStandingObjectThatItSawIsBlind) {
+  for (const bool seen : {false, true}) {
+    Watched w;
+    for (int k = 0; k < 30; ++k) {
+      RadarReturns some;
+      some.returns.resize(1);
+      w.see(kRadar, 0.1 * k, some);
+      w.scan(kRadar, 0.1 * k, 15, 0, seen ? std::vector<Vector2>{{15, 0}} : std::vector<Vector2>{});
+    }
+    for (int k = 30; k < 50; ++k) {
+      w.see(kRadar, 0.1 * k, RadarReturns());
+      w.scan(kRadar, 0.1 * k, 15, 0, {});
+    }
+    EXPECT_EQ(w.count(event_kind::kSensorBlind), seen ? 1U : 0U);
   }
 }
 
-TEST(WindowDirt, LessThanASecondSaysNothing) {
-  WindowDirt window;
-  for (int k = 0; k <= 8; ++k) window.add(road(0), kStart + 0.1 * k);
-  EXPECT_FALSE(window.share().has_value());
+TEST(SensorHealth, AScannerOfAMergedLidarIsNamedByItself) {
+  Watched w;
+  for (int k = 0; k < 30; ++k) {
+    SensorFrame part;
+    part.stamp = kStart + 0.1 * k;
+    part.sensor = "LIDAR_LEFT";
+    part.data = k < 10 ? road(0) : LidarCloud();
+    w.health.addPart(kLidar, part);
+    w.see(kLidar, 0.1 * k, road(0));
+  }
+  EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
+  EXPECT_NE(w.text().find("\"sensor\":\"LIDAR_LEFT\""), std::string::npos);
 }
 
 }  // namespace
