@@ -15,8 +15,10 @@ const Rgb kGround(0.16, 0.16, 0.14);    // mean reflectance of what lies below
 constexpr double kGlow = 0.5;           // of the sky near the sun
 constexpr double kLayer = 100;          // [m] height of the hazy air
 constexpr double kLeastSlope = 0.01;    // of lines of sight that leave it
-// Low beams (assumed): Gaussian in azimuth, a share above the cut-off; nearer all is as at 2 m.
-constexpr double kLampWidth = radians(20), kAboveCutOff = 0.03, kCutOff = radians(-0.57);
+// Low beams (assumed): Gaussian in azimuth and, below the cut-off, in elevation; a share above it;
+// nearer all is as at 2 m.
+constexpr double kLampWidth = radians(20), kLampDepth = radians(15);
+constexpr double kAboveCutOff = 0.03, kCutOff = radians(-0.57);
 constexpr double kNearestLit = 2;     // [m]
 constexpr double kBrightest = 0.998;  // linear display value: 255 of a byte and all above
 
@@ -59,8 +61,10 @@ double Lighting::airPath(const Vector3& direction) {
 double Lighting::headlightsOn(const Vector3& direction, double range) const {
   if (headlights <= 0) return 0;
   const double off = wrapAngle(std::atan2(direction.y(), direction.x()) - headlights_azimuth);
-  const double shape = std::exp(-.5 * off * off / (kLampWidth * kLampWidth)) *
-                       (direction.z() < std::sin(kCutOff) ? 1 : kAboveCutOff);
+  const double down = std::asin(std::clamp(direction.z(), -1.0, 1.0)) / kLampDepth;
+  const double shape =
+      std::exp(-.5 * off * off / (kLampWidth * kLampWidth)) *
+      (direction.z() < std::sin(kCutOff) ? std::exp(-.5 * down * down) : kAboveCutOff);
   const double r = std::max(range, kNearestLit);
   return headlights * shape / (r * r) * std::exp(-haze * range);
 }

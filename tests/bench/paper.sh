@@ -2,7 +2,8 @@
 # Every table of [radecki2016] beside simulated encounters, the long form: perception-study paper with more trials of each
 # scenario in each weather; an urban drive of seven minutes in the four weathers; pairs of pictures of what weather is known
 # for, before and after. Everything is simulated. Leaves OUT/report.md with its tables as CSV, OUT/drive/report.md and
-# OUT/pictures/*.png; logs of the drive (some GB) are removed.
+# OUT/pictures/*.png; logs of the drive (some GB) are removed. The drive takes about two hours of processor time, the
+# pictures one minute.
 #   tests/bench/paper.sh [OUT, default out/paper] [options of perception-study paper, e.g. --seed 2]
 #   PARTS="tables drive pictures"  TRIALS=20  DRIVE_SECONDS=420  PERCEPTION_BIN=build/bin
 set -euo pipefail

@@ -32,13 +32,15 @@ TEST(Lighting, HeadlightsFallWithTheSquareOfTheRangeAndLightTheRoadAhead) {
   Lighting light;
   light.haze = 0, light.headlights = 0.2, light.headlights_azimuth = radians(90);
   const Vector3 road = Vector3(0, 1, -0.1).normalized();
-  EXPECT_NEAR(light.headlightsOn(road, 10), 0.2 / 100, 1e-12);
+  const double down = std::atan(.1) / radians(15), shape = std::exp(-.5 * down * down);
+  EXPECT_NEAR(light.headlightsOn(road, 10), shape * 0.2 / 100, 1e-12);
   EXPECT_NEAR(light.headlightsOn(road, 20) / light.headlightsOn(road, 10), 0.25, 1e-12);
   EXPECT_LT(light.headlightsOn(Vector3::UnitX(), 10), 1e-6);
-  const Vector3 sign = Vector3(0, 1, 0.1).normalized();  // above the cut-off
-  EXPECT_NEAR(light.headlightsOn(sign, 10) / light.headlightsOn(road, 10), 0.03, 1e-12);
+  EXPECT_LT(light.headlightsOn(-Vector3::UnitZ(), 2), 1e-6);  // below the camera
+  const Vector3 sign = Vector3(0, 1, 0.1).normalized();       // above the cut-off
+  EXPECT_NEAR(light.headlightsOn(sign, 10), 0.03 * 0.2 / 100, 1e-12);
   light.haze = 0.01;
-  EXPECT_NEAR(light.headlightsOn(road, 10), 0.2 / 100 * std::exp(-.1), 1e-12);
+  EXPECT_NEAR(light.headlightsOn(road, 10), shape * 0.2 / 100 * std::exp(-.1), 1e-12);
   EXPECT_EQ(Lighting().headlightsOn(road, 10), 0);
 }
 

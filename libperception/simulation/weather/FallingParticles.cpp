@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kNearest = 0.3;     // [m] from the lens (assumed)
 constexpr double kAperture = 0.002;  // [m] of the lens, focused on far things (assumed)
+constexpr double kSharpest = 1e-3;   // [rad] what a lens resolves at best (assumed)
 constexpr double kLargest = 8;       // [mm] drops break up above, method.md 9.1
 
 /// A particle in the image: its way while the shutter is open, and its width.
@@ -113,15 +114,16 @@ void draw(const Streak& s, double depth, const Rgb& radiance, const CameraView& 
 }  // namespace
 
 // A particle of diameter D at depth z gives pi/4 (f D / z)^2 of the light of what it covers, a disk
-// of one pixel at least, so that the smallest one that counts grows with z. With exponential
-// diameters the number of those in the section at z is a Gamma(3) distribution of z: no shells, no
-// reach.
+// of one pixel (and kSharpest) at least, so that the smallest one that counts grows with z. With
+// exponential diameters the number of those in the section at z is a Gamma(3) distribution of z: no
+// shells, no reach.
 std::size_t drawParticles(const FallingParticles& particles, CameraView& view, Rng& rng) {
   const Space space(view.camera);
   const double f = view.camera.fx, slope = 1000 * particles.sizes.slope;  // [1/m]
   const double per_m3 = particles.sizes.number / particles.sizes.slope;
-  const double smallest = std::sqrt(kFaintest) / f;  // [m] at a depth of 1 m
-  const double scale = 1 / (smallest * slope);       // [m]
+  const double least = std::max(1.0, kSharpest * f);         // [px] width
+  const double smallest = std::sqrt(kFaintest) * least / f;  // [m] at a depth of 1 m
+  const double scale = 1 / (smallest * slope);               // [m]
   const int count = rng.poisson(per_m3 * space.section() * 2 * scale * scale * scale);
   const double time = view.light.exposure_time;
   const Eigen::Matrix3d to_camera = view.T_world_camera.linear().transpose();
@@ -133,7 +135,7 @@ std::size_t drawParticles(const FallingParticles& particles, CameraView& view, R
     const double diameter = smallest * depth + rng.exponential(1 / slope);
     if (depth < kNearest || 1000 * diameter > kLargest) continue;
     const double side = f * diameter / depth;
-    const double width = std::max(1.0, f * (diameter + kAperture) / depth);
+    const double width = std::max(least, f * (diameter + kAperture) / depth);
     if (side * side < kFaintest * width * width) continue;
     const Vector3 place = space.place(depth, rng);
     const Vector3 falling(0, 0, -particles.fall_speed(1000 * diameter));
