@@ -78,7 +78,7 @@ void ClutterMap::setFactors() {
 }
 
 double ClutterMap::logSilence(double scans) const {
-  return shape_ * std::log(scans_ / (scans_ + scans));
+  return std::min(shape_, prior_rate_ * scans_) * std::log(scans_ / (scans_ + scans));
 }
 
 }  // namespace perception

@@ -41,7 +41,7 @@ class ClutterMap {
   double rate() const { return shape_ / scans_; }
   /// Log of the density at a cell over that of the configured rate, which is uniform.
   double logFactor(std::size_t cell) const { return log_factor_[cell]; }
-  /// Log probability that `scans` scans in a row hold no false measurement.
+  /// Log probability that `scans` scans hold no false measurement, at most the configured rate.
   double logSilence(double scans) const;
 
  private:

@@ -161,7 +161,7 @@ TEST(SensorHealth, ARadarWithoutItsUsualClutterIsBlind) {
       counts[0] = usual;
       clutter->add(counts, 0.1);
     }
-    for (int k = 0; k <= 20; ++k) {
+    for (int k = 0; k <= 25; ++k) {
       w.see(kRadar, 0.1 * k, RadarReturns());
       w.scan(kRadar, 0.1 * k, 60, 0, {}, clutter);
     }
