@@ -22,7 +22,7 @@ encounter() { # SCENE SEED TRIAL WEATHER
     [[ -f $log.rawlog ]] || "$bin/perception-simulate" -c "ini/scenarios/$1.ini" --seed "$2" --trial "$3" "${weather[@]}" \
       --threads 1 -o "$log.rawlog" >"$log.log"
     "$bin/perception-track" -c "$config" -i "$log.rawlog" -o "$run" --overwrite --sensors "$set" "${measurements[@]}" \
-      --threads 1 >"$run.log" 2>&1
+      --threads 1 >"$run.log" 2>&1 || [[ $? == 3 ]] # 3: warnings
   done
   [[ $4 == . ]] || rm -f "$log.rawlog"
 }
