@@ -36,7 +36,13 @@ for weather in $weathers; do
   suffix=${suffix:+_$suffix}
   runs=()
   for set in $sets; do runs+=(-r "$set=$out/*s*${suffix}_${set//\//}"); done
-  "$bin/perception-evaluate" "${runs[@]}" -t "$out/{log}.truth.csv" --paper sunny --paper pedestrian --paper vehicle -o "$out/pooled$suffix"
+  case $weather in # its rows of [radecki2016]
+    .) rows=(--paper sunny --paper pedestrian --paper vehicle) ;;
+    wet_cloudy) rows=(--paper wet) ;;
+    snow_rain) rows=(--paper snow) ;;
+    *) rows=(--paper "$weather") ;;
+  esac
+  "$bin/perception-evaluate" "${runs[@]}" -t "$out/{log}.truth.csv" "${rows[@]}" -o "$out/pooled$suffix"
 done
 [[ $weathers != . ]] || "$bin/perception-evaluate" -r "A, B, C=$out/*s*_C+L+R" -t "$out/{log}.truth.csv" --no-plots -o "$out/front_ends" \
   --front-end LIDAR_TOP --front-end CAMERA_PANO --front-end 'RADAR_*' >"$out/front_ends.txt"
