@@ -33,19 +33,9 @@ bool hasSpaceBoxes(const ObjectDetections& detections) {
 
 /// Of confidence = learnt for this configuration.
 ConfidenceLearner learnerOf(const std::string& sensor, Config config) {
-  const auto positions = config.read<PositionParams>("sensor." + sensor + ".positions");
-  const auto view = config.read<DetectionParams>("sensor." + sensor);
-  ConfidenceLearner::Params params;
-  params.labels = positions.labels;
-  for (const std::string& name : positions.names) {
-    const auto equals = name.find('=');
-    params.label_of[name.substr(0, equals)] = static_cast<int>(
-        std::find(params.labels.begin(), params.labels.end(), name.substr(equals + 1)) -
-        params.labels.begin());
-  }
-  params.fov = view.fov;
-  params.clutter_per_scan = view.clutter_per_scan;
-  return ConfidenceLearner(std::move(params));
+  const std::string section = "sensor." + sensor;
+  return ConfidenceLearner(learnerParams(config.read<PositionParams>(section + ".positions"),
+                                         config.read<DetectionParams>(section)));
 }
 
 }  // namespace

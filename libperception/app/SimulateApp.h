@@ -9,6 +9,8 @@
 
 namespace perception {
 
+class WeatheredLog;
+
 /// perception-simulate: a scenario INI becomes a rawlog with ground truth; a recording, one in
 /// simulated weather.
 class SimulateApp : public App {
@@ -41,6 +43,7 @@ class SimulateApp : public App {
   /// The subcommand: weather on a recording.
   void declareRecording(CLI::App& cli);
   void alterRecording();
+  void sayWhatChanged(const WeatheredLog& weathered);
   /// Those of an earlier log of this name.
   void removeOldLabels() const;
   void writeLabels(std::int64_t frame, const std::vector<std::uint32_t>& labels);

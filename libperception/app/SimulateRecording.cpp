@@ -96,6 +96,18 @@ void SimulateApp::declareRecording(CLI::App& cli) {
       ->capture_default_str();
 }
 
+void SimulateApp::sayWhatChanged(const WeatheredLog& weathered) {
+  const WeatheredLog::Counts& n = weathered.counts();
+  out_points = n.returns, out_lost = n.lost, out_phantoms = n.phantoms;
+  fmt::print("{}: {}, {} entries, {:.2f} MB\n", output, weathered.text(), out_entries,
+             static_cast<double>(out_bytes) * 1e-6);
+  printCounts(n);
+  if (out_labels > 0)
+    fmt::print("  {}: what each return is, {} scans\n", labelFolderOf(output), out_labels);
+  if (n.images_left_out > 0)
+    warn(fmt::format("{} images left out: not found, or without a calibration", n.images_left_out));
+}
+
 void SimulateApp::alterRecording() {
   Config config = loadConfig();
   const auto conditions = config.read<SimulatedWeatherParams>("weather", {}, true);
@@ -143,16 +155,8 @@ void SimulateApp::alterRecording() {
   }
   out.close();
 
-  const WeatheredLog::Counts& n = weathered.counts();
   out_entries = out.entries(), out_bytes = out.bytes();
-  out_points = n.returns, out_lost = n.lost, out_phantoms = n.phantoms;
-  fmt::print("{}: {}, {} entries, {:.2f} MB\n", output, weathered.text(), out_entries,
-             static_cast<double>(out_bytes) * 1e-6);
-  printCounts(n);
-  if (out_labels > 0)
-    fmt::print("  {}: what each return is, {} scans\n", labelFolderOf(output), out_labels);
-  if (n.images_left_out > 0)
-    warn(fmt::format("{} images left out: not found, or without a calibration", n.images_left_out));
+  sayWhatChanged(weathered);
   if (!has_truth && (conditions.water_film_mm > 0 || conditions.snow_cover > 0))
     warn(truth_file + ": not there, so that no object whirls up spray");
   if (recording.poses.empty()) warn(input + ": no poses: the vehicle is taken to stand");

@@ -36,11 +36,11 @@ using SegmentVisitor = std::function<bool(const Segment&)>;
 /// Segments among obstacle returns (x, y: ego frame, height above ground; [m]): single linkage in
 /// space at the smaller of the link lengths of two returns, and the parts into which a segment
 /// falls at the next levels. With the position of the scanner (ego frame, z above ground; [m])
-/// those that are neighboring columns of one surface (grazedSurfaces()) are the parts of a whole of
-/// their own. A whole comes before its parts; those of one whole are in the order of their first
-/// returns. Segments of fewer than `min_points` returns (sums of `weight`: trust, [0, 1]; empty:
-/// all 1) are left out, and a whole of which fewer than two parts would be left has none at that
-/// level. Of wholes longer than `max_size` [m] the parts stand alone.
+/// those that belong together by grazedSurfaces() are the parts of a whole of their own. A whole
+/// comes before its parts; those of one whole are in the order of their first returns. Segments of
+/// fewer than `min_points` returns (sums of `weight`: trust, [0, 1]; empty: all 1) are left out,
+/// and a whole of which fewer than two parts would be left has none at that level. Of wholes longer
+/// than `max_size` [m] the parts stand alone.
 std::vector<Segment> findSegments(const std::vector<float>& x, const std::vector<float>& y,
                                   const std::vector<float>& height, double min_points,
                                   double max_size, const std::vector<float>& weight = {},

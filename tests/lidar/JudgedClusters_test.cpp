@@ -89,8 +89,8 @@ TEST(JudgedClusters, ThingsAreLeftOut) {
   EXPECT_LT((judged.middleOf(car) - Vector2(12, 0)).norm(), 0.5);
   EXPECT_NEAR(of(person, ClusterKind::kPedestrian), 4, 1e-6);
   EXPECT_NEAR(of(person, ClusterKind::kVehicle), -4, 1e-6);
-  EXPECT_NEAR(of(car, ClusterKind::kVehicle), 2, 0.05)
-      << "4.4 m long: what speaks for people is a thing's";
+  // 4.4 m long: the scores of people, -4 each, are a thing's.
+  EXPECT_NEAR(of(car, ClusterKind::kVehicle), 2 - std::log(1 + 2 * std::exp(-4.0)), 1e-6);
   EXPECT_EQ(of(car, ClusterKind::kThing), 0);
   EXPECT_TRUE(person.alone);
   EXPECT_TRUE(std::is_sorted(car.points.begin(), car.points.end()));

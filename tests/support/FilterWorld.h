@@ -46,6 +46,17 @@ inline FilterModel exactModel(ClassTable classes) {
   return model;
 }
 
+/// These two and a wheeled class, "car".
+inline FilterModel threeClassModel() {
+  FilterModel model = exactModel(linearClasses());
+  ObjectClass car = model.classes[0];
+  car.name = "car";
+  car.motion = findMotionModel("wheeled");
+  car.yaw_rate_psd = 0.0685;
+  model.classes.classes.push_back(car);
+  return model;
+}
+
 inline PositionModel::Params linearSensor() {
   PositionModel::Params p;
   p.classes.resize(2);

@@ -90,22 +90,20 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
     there.push_back(i);
     if (feet[i].area >= least && (feet[i].sure || feet[i].vehicle)) large.push_back(i);
   }
+  const auto swallows = [&](std::size_t i) { return feet[i].area >= least && feet[i].sure; };
   for (const std::size_t i : large) {
     for (const std::size_t j : there) {
       if ((feet[j].center - feet[i].center).squaredNorm() > feet[i].corner2) continue;  // most
       if (!feet[i].fresh && !feet[j].fresh) continue;  // compared when one of them was
       if (feet[i].id == feet[j].id || !holds(feet[i], feet[j].center)) continue;
       const bool both = feet[j].area >= least && feet[i].vehicle && feet[j].vehicle;
-      if (!feet[i].sure && !both) continue;
+      if (!swallows(i) && !both) continue;
       // One entry suffices for two large footprints that contain each other's centers.
-      if (feet[j].area >= least && (feet[j].sure || both) && j < i &&
-          holds(feet[j], feet[i].center))
-        continue;
+      if ((swallows(j) || both) && j < i && holds(feet[j], feet[i].center)) continue;
       const bool first = feet[i].id < feet[j].id;
       const std::size_t older = first ? i : j, younger = first ? j : i;
       Conflict conflict{older, younger, nullptr};
-      const bool fragment =
-          (feet[older].area < least || !feet[older].sure) && !both && feet[younger].oriented;
+      const bool fragment = !swallows(older) && !both && feet[younger].oriented;
       const bool stale = now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now;
       if (stale && isGhost(*tracks[older]) && tracks[younger]->existence >= kThere)
         conflict = {younger, older, nullptr};

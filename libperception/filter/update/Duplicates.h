@@ -11,7 +11,8 @@ namespace perception {
 /// footprint of the other, which is impossible for two solid objects ([cornell2007] requires an
 /// overlap of half of both footprints; fragments of a vehicle are smaller). A hypothesis that holds
 /// both tracks of a pair keeps one. Only footprints of at least `merge_area` of tracks whose class
-/// is sure count, so that people in a crowd are not merged. The id of the older track is kept. Its
+/// is sure count, or two that are likelier vehicles than not, so that people in a crowd are not
+/// merged. The id of the older track is kept. Its
 /// state is kept, too, unless it has not been detected recently and the younger track is detected
 /// in this scan: then the state is that of the younger track (method.md 5.9), and its id, too, if
 /// the older one was detected only once and is likely not there. `merge_area` = 0: no merging.

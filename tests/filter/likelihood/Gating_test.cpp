@@ -7,7 +7,6 @@
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/filter/update/Duplicates.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {
@@ -77,18 +76,8 @@ Track threeClasses(Rng& rng) {
   return t;
 }
 
-FilterModel threeClassModel() {
-  FilterModel model = test::exactModel(test::linearClasses());
-  ObjectClass car = model.classes[0];
-  car.name = "car";
-  car.motion = findMotionModel("wheeled");
-  car.yaw_rate_psd = 0.0685;
-  model.classes.classes.push_back(car);
-  return model;
-}
-
 TEST(MayBeInView, EveryScanThatCouldSeeThePredictedTrack) {
-  const FilterModel model = threeClassModel();
+  const FilterModel model = test::threeClassModel();
   PositionModel::Params params = test::linearSensor();
   params.classes.push_back(params.classes[0]);
   params.fov = radians(90);
@@ -119,7 +108,7 @@ TEST(MayBeInView, EveryScanThatCouldSeeThePredictedTrack) {
 }
 
 TEST(MayBeInView, WhateverIsNotPlacedYetOrLeftBehindForLong) {
-  const FilterModel model = threeClassModel();
+  const FilterModel model = test::threeClassModel();
   PositionModel::Params params = test::linearSensor();
   params.range = 1;
   const auto sensor = std::make_shared<const PositionModel>(params);
@@ -133,7 +122,7 @@ TEST(MayBeInView, WhateverIsNotPlacedYetOrLeftBehindForLong) {
 }
 
 TEST(MayBeInView, WhateverHasMotionModesAfterHalfASecond) {
-  const FilterModel model = threeClassModel();
+  const FilterModel model = test::threeClassModel();
   PositionModel::Params params = test::linearSensor();
   params.range = 1;
   const auto sensor = std::make_shared<const PositionModel>(params);
@@ -147,7 +136,7 @@ TEST(MayBeInView, WhateverHasMotionModesAfterHalfASecond) {
 }
 
 TEST(ReachableDisc, ExpireWhenThePredictedExistenceIsTooSmall) {
-  FilterModel model = threeClassModel();
+  FilterModel model = test::threeClassModel();
   model.params.existence_min = 0.01;
   Rng rng({14, 0, 0, 0});
   for (int trial = 0; trial < 300; ++trial) {
@@ -180,74 +169,6 @@ TEST(TouchesSector, LikeTheAnglesSay) {
     touching += touches;
   }
   EXPECT_GT(touching, 1000);
-}
-
-TEST(Duplicates, ATrackLeftBehindStandsWhereItHasGone) {
-  const FilterModel base = threeClassModel();
-  FilterModel model = base;
-  model.params.merge_area = 2;
-  const Stamp now = Stamp::fromSeconds(1000.4);
-  const auto car = [&](std::uint64_t id, double x, double v, double t) {
-    Track track;
-    track.id = id;
-    track.stamp = Stamp::fromSeconds(1000 + t);
-    track.bank.resize(3);
-    track.bank[2].x << x, 0, v, 0;
-    track.bank[2].oriented = true;
-    track.bank[2].extent = {4, 2, 0.1, 0.1};
-    track.log_class = {-20, -20, std::log1p(-2 * std::exp(-20.0))};
-    return std::make_shared<const Track>(track);
-  };
-  const auto kept = [&](double v) {
-    const TrackTable tracks{car(1, 0, 0, 0.4), car(2, -4, v, 0)};
-    return DuplicateTable(model, now, tracks).merged({0, 1}).size();
-  };
-  EXPECT_EQ(kept(10), 1u);  // by now both are at 0
-  EXPECT_EQ(kept(0), 2u);
-}
-
-TEST(Duplicates, ALargeTrackReplacesItsOlderFragmentAndTwoVehiclesAreOne) {
-  FilterModel model = threeClassModel();
-  model.params.merge_area = 2;
-  const Stamp now = Stamp::fromSeconds(1000);
-  const auto track = [&](std::uint64_t id, ClassId likeliest, double x, Extent extent,
-                         bool oriented, double probability = 0.99) {
-    Track t;
-    t.id = id;
-    t.stamp = now;
-    t.last_hit.fill(now);
-    t.bank.resize(3);
-    ClassFilter& filter = t.bank[static_cast<std::size_t>(likeliest)];
-    filter.x << x, 0, 0, 0;
-    filter.oriented = oriented;
-    filter.extent = extent;
-    t.log_class.assign(3, std::log((1 - probability) / 2));
-    t.log_class[static_cast<std::size_t>(likeliest)] = std::log(probability);
-    return std::make_shared<const Track>(t);
-  };
-  const auto left = [&](double first, double second) {
-    const TrackTable tracks{track(1, 2, 0, {4, 2, 0.1, 0.1}, true, first),
-                            track(2, 2, 1, {4, 2, 0.1, 0.1}, true, second)};
-    return DuplicateTable(model, now, tracks).merged({0, 1}).size();
-  };
-  EXPECT_EQ(left(0.6, 0.6), 1u) << "two vehicles cannot share a place";
-  EXPECT_EQ(left(0.6, 0.4), 2u) << "one of them may be a hedge";
-  const auto merged = [&](bool oriented) {
-    TrackTable tracks{track(1, 0, 1, {0.5, 0.5, 0.1, 0.1}, false),
-                      track(2, 2, 0, {4, 2, 0.1, 0.1}, oriented)};
-    const DuplicateTable table(model, now, tracks);
-    const auto cells = table.merged({0, 1});
-    table.appendReplacements(tracks);
-    return cells.size() == 1 ? tracks[cells[0]] : nullptr;
-  };
-  const TrackHandle car = merged(true);
-  ASSERT_TRUE(car);
-  EXPECT_EQ(car->id, 1u);
-  EXPECT_EQ(car->likeliestClass(), 2);
-  EXPECT_EQ(car->bank[2].x[0], 0);
-  const TrackHandle doubtful = merged(false);
-  ASSERT_TRUE(doubtful);
-  EXPECT_EQ(doubtful->likeliestClass(), 0) << "a footprint without a heading may be a hedge";
 }
 
 }  // namespace
