@@ -107,7 +107,7 @@ const std::array<const char*, kFeatures>& featureNames() {
 }
 
 ClusterDescriber::ClusterDescriber(const LidarDetections& found, const LidarCloud& cloud)
-    : found_(found), cells_(found.points), mark_(found.obstacles.size(), 0) {
+    : found_(found), cells_(found.points) {
   const EgoPoints& points = found.points;
   const std::size_t n = found.obstacles.size();
   const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
@@ -129,7 +129,7 @@ Descriptor ClusterDescriber::describe(const std::vector<std::uint32_t>& members)
   for (const std::uint32_t k : members) {
     x_.push_back(dx_[k]), y_.push_back(dy_[k]), z_.push_back(dz_[k]);
     h_.push_back(found_.above[k]);
-    mark_[k] = cluster_;
+    sorted_mark_[rank_[k]] = cluster_;
   }
   const auto n = static_cast<float>(members.size());
   const float mx = std::accumulate(x_.begin(), x_.end(), 0.0f) / n,

@@ -97,12 +97,13 @@ class ClusterDescriber {
   std::vector<float> dx_, dy_, dz_;           ///< [m] of the obstacles from the sensor
   std::vector<float> intensity_;              ///< rank among the scan's obstacles, [0, 1]
   std::vector<DirectionCells::Place> place_;  ///< of the obstacles
-  std::vector<std::uint32_t> order_,
-      start_;  ///< obstacles by cell of the plane; first of each cell
+  /// Obstacles by cell of the plane.
+  std::vector<float> sorted_x_, sorted_y_;   ///< [m] from the sensor
+  std::vector<std::int32_t> sorted_mark_;    ///< last cluster that it was a member of
+  std::vector<std::uint32_t> rank_, start_;  ///< of each obstacle; first of each cell
   int columns_ = 0, rows_ = 0;
-  float x0_ = 0, y0_ = 0;            ///< [m] corner of the plane's cells
-  std::vector<std::uint32_t> mark_;  ///< of every obstacle: last cluster it was member of
-  std::uint32_t cluster_ = 0;
+  float x0_ = 0, y0_ = 0;  ///< [m] corner of the plane's cells
+  std::int32_t cluster_ = 0;
   /// The members: offset from the sensor and height above ground [m].
   std::vector<float> x_, y_, z_, h_;
   float along_x_ = 1, along_y_ = 0;  ///< direction of the longer side

@@ -1,11 +1,13 @@
 // What ClusterDescriber says of a cluster among the other returns of its scan.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <utility>
 
 #include "libperception/lidar/ClusterDescriptor.h"
 #include "libperception/lidar/DescriptorParts.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {
@@ -87,8 +89,12 @@ void ClusterDescriber::sortByPlace() {
   for (std::size_t k = 0; k < n; ++k) ++start_[cell(k) + 1];
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-  order_.resize(n);
-  for (std::size_t k = 0; k < n; ++k) order_[next[cell(k)]++] = static_cast<std::uint32_t>(k);
+  sorted_x_.resize(n), sorted_y_.resize(n), rank_.resize(n);
+  sorted_mark_.assign(n, 0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t at = rank_[k] = next[cell(k)]++;
+    sorted_x_[at] = dx_[k], sorted_y_[at] = dy_[k];
+  }
 }
 
 void ClusterDescriber::describeDirections(const std::vector<std::uint32_t>& members,
@@ -170,32 +176,52 @@ void ClusterDescriber::describeNeighbors(const std::vector<std::uint32_t>& membe
   at(d, Feature::kTouching) = static_cast<float>(touching) / static_cast<float>(count);
 }
 
+namespace {
+
+/// The least of `best` and the squared distances [m^2] of points without that mark from a place.
+float nearestOf(const float* x, const float* y, const std::int32_t* mark, std::size_t count,
+                float px, float py, std::int32_t own, float best) {
+  constexpr float kFar = 1e30f;
+  constexpr std::size_t kFour = 4;
+  Float4 nearest = all<Float4>(best);
+  std::size_t k = 0;
+  for (; k + kFour <= count; k += kFour) {
+    Int4 marks;
+    std::memcpy(&marks, mark + k, sizeof marks);
+    const Float4 dx = load<Float4>(x + k) - px, dy = load<Float4>(y + k) - py;
+    nearest = smaller(nearest, marks == own ? all<Float4>(kFar) : dx * dx + dy * dy);
+  }
+  for (; k < count; ++k)
+    if (mark[k] != own)
+      best = std::min(best, (x[k] - px) * (x[k] - px) + (y[k] - py) * (y[k] - py));
+  return std::min({best, nearest[0], nearest[1], nearest[2], nearest[3]});
+}
+
+}  // namespace
+
 /// Horizontal distance [m] to the nearest obstacle that is no member; at most `within`.
 float ClusterDescriber::nearestOther(std::uint32_t i, float within) const {
   const float x = dx_[i], y = dy_[i];
   const int c = std::min(static_cast<int>((x - x0_) / kPlaneCell), columns_ - 1),
             r = std::min(static_cast<int>((y - y0_) / kPlaneCell), rows_ - 1);
   float best = within * within;
-  const auto look = [&](int column, int row) {
-    if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
-    const std::size_t cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                             static_cast<std::size_t>(column);
-    for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) {
-      const std::uint32_t other = order_[k];
-      if (mark_[other] == cluster_) continue;
-      const float dx = dx_[other] - x, dy = dy_[other] - y;
-      best = std::min(best, dx * dx + dy * dy);
-    }
+  const auto look = [&](int row, int first_column, int last_column) {
+    first_column = std::max(first_column, 0), last_column = std::min(last_column, columns_ - 1);
+    if (row < 0 || row >= rows_ || first_column > last_column) return;
+    const std::size_t cells = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+    const std::uint32_t first = start_[cells + static_cast<std::size_t>(first_column)],
+                        end = start_[cells + static_cast<std::size_t>(last_column) + 1];
+    best = nearestOf(sorted_x_.data() + first, sorted_y_.data() + first,
+                     sorted_mark_.data() + first, end - first, x, y, cluster_, best);
   };
   constexpr int kRings = static_cast<int>(kIsolated / kPlaneCell);
-  for (int ring = 0; ring <= kRings; ++ring) {
+  look(r, c, c);
+  for (int ring = 1; ring <= kRings; ++ring) {
     const float inside = static_cast<float>(ring - 1) * kPlaneCell;
-    if (ring > 0 && inside * inside > best) break;
-    for (int row = r - ring; row <= r + ring; ++row) {
-      const bool edge = row == r - ring || row == r + ring;
-      for (int column = c - ring; column <= c + ring; column += edge || ring == 0 ? 1 : 2 * ring)
-        look(column, row);
-    }
+    if (inside * inside > best) break;
+    look(r - ring, c - ring, c + ring), look(r + ring, c - ring, c + ring);
+    for (int row = r - ring + 1; row < r + ring; ++row)
+      look(row, c - ring, c - ring), look(row, c + ring, c + ring);
   }
   return std::sqrt(best);
 }

@@ -8,6 +8,8 @@
 #include "libperception/core/Angle.h"
 #include "libperception/lidar/Forest.h"
 #include "libperception/measurement/FootprintInView.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/FastAtan2.h"
 
 namespace perception {
 namespace {
@@ -46,6 +48,33 @@ struct Columns {
   End at_low, at_high;
 };
 
+/// Directions of all returns from the sensor [rad].
+struct Directions {
+  std::vector<float> azimuth, elevation;
+};
+
+/// Without branches, so that the compiler vectorizes it.
+PERCEPTION_WIDEST void directAll(const float* __restrict x, const float* __restrict y,
+                                 const float* __restrict height, std::size_t count, float sx,
+                                 float sy, float sz, float* __restrict azimuth,
+                                 float* __restrict elevation) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = x[i] - sx, dy = y[i] - sy, dz = height[i] - sz;
+    azimuth[i] = closeAtan2(dx, dy);
+    elevation[i] = closeAtan2(std::sqrt(dx * dx + dy * dy), dz);
+  }
+}
+
+Directions directionsOf(const ReturnPlaces& places, const Vector3& sensor) {
+  const std::size_t count = places.x.size();
+  Directions directions;
+  directions.azimuth.resize(count), directions.elevation.resize(count);
+  directAll(places.x.data(), places.y.data(), places.height.data(), count,
+            static_cast<float>(sensor.x()), static_cast<float>(sensor.y()),
+            static_cast<float>(sensor.z()), directions.azimuth.data(), directions.elevation.data());
+  return directions;
+}
+
 /// Mean position of returns.
 struct Mean {
   Vector2 sum = Vector2::Zero();
@@ -59,8 +88,12 @@ struct Mean {
 class SurfaceFinder {
  public:
   SurfaceFinder(const ReturnPlaces& places, const std::vector<ReturnGroup>& groups,
-                const Vector3& sensor, double step)
-      : places_(places), groups_(groups), sensor_(sensor), step_(step) {}
+                const Vector3& sensor, const Directions& directions, double step)
+      : places_(places),
+        groups_(groups),
+        sensor_(sensor),
+        azimuth_(directions.azimuth),
+        step_(step) {}
 
   std::vector<std::vector<std::uint32_t>> find() {
     columns_.reserve(groups_.size());
@@ -83,20 +116,16 @@ class SurfaceFinder {
  private:
   Vector2 placeOf(std::uint32_t i) const { return {places_.x[i], places_.y[i]}; }
 
-  double azimuthOf(std::uint32_t i) const {
-    return std::atan2(static_cast<double>(places_.y[i]) - sensor_.y(),
-                      static_cast<double>(places_.x[i]) - sensor_.x());
-  }
-
   Columns columnsOf(const ReturnGroup& group) const {
     std::vector<double> azimuth;
     azimuth.reserve(group.size());
-    const double first = azimuthOf(group.front());
+    const auto first = static_cast<double>(azimuth_[group.front()]);
     Columns columns;
     columns.bottom = columns.top = places_.height[group.front()];
     double nearest2 = std::numeric_limits<double>::infinity();
     for (const std::uint32_t i : group) {
-      azimuth.push_back(first + wrapAngle(azimuthOf(i) - first));  // without a jump at +-pi
+      const double off = static_cast<double>(azimuth_[i]) - first;  // without a jump at +-pi:
+      azimuth.push_back(first + (std::abs(off) < kPi ? off : off - std::copysign(kTwoPi, off)));
       columns.bottom = std::min(columns.bottom, places_.height[i]);
       columns.top = std::max(columns.top, places_.height[i]);
       nearest2 = std::min(nearest2, (placeOf(i) - sensor_.head<2>()).squaredNorm());
@@ -220,6 +249,7 @@ class SurfaceFinder {
   const ReturnPlaces& places_;
   const std::vector<ReturnGroup>& groups_;
   const Vector3& sensor_;
+  const std::vector<float>& azimuth_;
   const double step_;  ///< [rad] 0: not known
   std::vector<Columns> columns_;
   std::vector<std::vector<std::uint32_t>> after_, before_;  ///< neighbors by azimuth
@@ -227,48 +257,60 @@ class SurfaceFinder {
 
 }  // namespace
 
-double azimuthStep(const ReturnPlaces& places, const std::vector<ReturnGroup>& groups,
-                   const Vector3& sensor) {
+namespace {
+
+/// The smallest step in azimuth from a return to another of its beam and group; `none` if there is
+/// no such return nearer than that.
+float stepFrom(std::uint32_t from, const ReturnGroup& group, const Directions& directions,
+               float none) {
+  constexpr auto kSameBeam = static_cast<float>(radians(0.04)),
+                 kSameColumn = static_cast<float>(radians(0.05)),
+                 kTurn = static_cast<float>(kTwoPi);
+  float least = none;
+  for (const std::uint32_t to : group) {
+    if (std::abs(directions.elevation[to] - directions.elevation[from]) > kSameBeam) continue;
+    const float off = std::abs(directions.azimuth[to] - directions.azimuth[from]);
+    const float step = std::min(off, kTurn - off);
+    if (step > kSameColumn) least = std::min(least, step);
+  }
+  return least;
+}
+
+double stepOf(const std::vector<ReturnGroup>& groups, const Directions& directions) {
   constexpr std::size_t kLargeGroup = 40, kSamples = 64, kLeastSamples = 12;
-  constexpr double kSameBeam = radians(0.04), kSameColumn = radians(0.05), kMost = radians(1.5);
+  constexpr auto kMost = static_cast<float>(radians(1.5));
   std::size_t large = 0;
   for (const ReturnGroup& group : groups) large += group.size() >= kLargeGroup;
   if (large == 0) return 0;
   const std::size_t of_each = 1 + kSamples / large;
-  const auto direction = [&](std::uint32_t i) {
-    const double dx = static_cast<double>(places.x[i]) - sensor.x(),
-                 dy = static_cast<double>(places.y[i]) - sensor.y(),
-                 dz = static_cast<double>(places.height[i]) - sensor.z();
-    return Vector2(std::atan2(dy, dx), std::atan2(dz, std::hypot(dx, dy)));
-  };
-  std::vector<double> steps;
-  std::vector<Vector2> directions;
+  std::vector<float> steps;
   for (const ReturnGroup& group : groups) {
     if (group.size() < kLargeGroup) continue;
-    directions.clear();
-    for (const std::uint32_t i : group) directions.push_back(direction(i));
     for (std::size_t k = 0; k < of_each; ++k) {
-      const Vector2& from = directions[(2 * k + 1) * group.size() / (2 * of_each)];
-      double least = kMost;
-      for (const Vector2& to : directions) {
-        if (std::abs(to.y() - from.y()) > kSameBeam) continue;
-        const double azimuth = std::abs(wrapAngle(to.x() - from.x()));
-        if (azimuth > kSameColumn) least = std::min(least, azimuth);
-      }
-      if (least < kMost) steps.push_back(least);
+      const std::uint32_t from = group[(2 * k + 1) * group.size() / (2 * of_each)];
+      const float step = stepFrom(from, group, directions, kMost);
+      if (step < kMost) steps.push_back(step);
     }
     if (steps.size() >= kSamples) break;
   }
   if (steps.size() < kLeastSamples) return 0;
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return static_cast<double>(*middle);
+}
+
+}  // namespace
+
+double azimuthStep(const ReturnPlaces& places, const std::vector<ReturnGroup>& groups,
+                   const Vector3& sensor) {
+  return stepOf(groups, directionsOf(places, sensor));
 }
 
 std::vector<std::vector<std::uint32_t>> grazedSurfaces(const ReturnPlaces& places,
                                                        const std::vector<ReturnGroup>& groups,
                                                        const Vector3& sensor) {
-  return SurfaceFinder(places, groups, sensor, azimuthStep(places, groups, sensor)).find();
+  const Directions directions = directionsOf(places, sensor);
+  return SurfaceFinder(places, groups, sensor, directions, stepOf(groups, directions)).find();
 }
 
 }  // namespace perception

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "libperception/lidar/Forest.h"
+#include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {
@@ -23,7 +24,6 @@ class KeyNumbers {
     return slot.number;
   }
   std::uint32_t find(std::uint64_t key) const { return slots_[slotOf(key)].number; }
-  std::uint32_t count() const { return count_; }
 
  private:
   struct Slot {
@@ -47,59 +47,87 @@ class KeyNumbers {
   std::uint32_t count_ = 0;
 };
 
-/// 21 bits for each of three integers.
-std::uint64_t keyOf(std::int32_t a, std::int32_t b, std::int32_t c) {
-  constexpr std::int64_t kMiddle = 1 << 20;
-  return static_cast<std::uint64_t>(a + kMiddle) << 42 |
-         static_cast<std::uint64_t>(b + kMiddle) << 21 | static_cast<std::uint64_t>(c + kMiddle);
-}
-
-std::int32_t cellOf(float v, float per_meter) {
-  const float place = v * per_meter;
-  const auto cell = static_cast<std::int32_t>(place);  // towards zero
-  return cell - (place < static_cast<float>(cell));
-}
-
-/// Members of groups, group by group, in their order.
-struct Buckets {
-  Buckets(const std::vector<std::uint32_t>& group_of, std::size_t groups)
-      : start(groups + 1, 0), member(group_of.size()) {
-    for (const std::uint32_t g : group_of) ++start[g + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-    for (std::size_t i = 0; i < group_of.size(); ++i)
-      member[next[group_of[i]]++] = static_cast<std::uint32_t>(i);
-  }
-  std::vector<std::uint32_t> start, member;
+struct BlockPlace {
+  std::int32_t x, y, z;
 };
 
-/// Cubes so small that all their returns are linked, in blocks wider than the longest link.
+/// 21 bits for each of three integers.
+std::uint64_t keyOf(const BlockPlace& p) {
+  constexpr std::int64_t kMiddle = 1 << 20;
+  return static_cast<std::uint64_t>(p.x + kMiddle) << 42 |
+         static_cast<std::uint64_t>(p.y + kMiddle) << 21 |
+         static_cast<std::uint64_t>(p.z + kMiddle);
+}
+
+/// Largest integer that is not above v.
+inline __attribute__((always_inline)) std::int32_t floorOf(float v) {
+  const auto whole = static_cast<std::int32_t>(v);  // towards zero
+  return whole - (v < static_cast<float>(whole));
+}
+
+/// Where returns lie among cubes and blocks of n by n by n cubes.
+struct CubeGrid {
+  float per_cube;   ///< [1/m]
+  std::int32_t n;   ///< cubes along a block
+  float per_block;  ///< [blocks a cube] 1 / n
+
+  std::uint32_t cubes() const { return static_cast<std::uint32_t>(n * n * n); }  ///< of a block
+
+  /// Block and place in it of each return; without branches, so that the compiler vectorizes it.
+  PERCEPTION_WIDER void placeAll(const LinkedReturn* returns, std::size_t count, BlockPlace* block,
+                                 std::uint32_t* within) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t x = floorOf(returns[i].x * per_cube), y = floorOf(returns[i].y * per_cube),
+                         z = floorOf(returns[i].z * per_cube);
+      const BlockPlace b = {blockOf(x), blockOf(y), blockOf(z)};
+      block[i] = b;
+      within[i] =
+          static_cast<std::uint32_t>(((x - b.x * n) * n + (y - b.y * n)) * n + (z - b.z * n));
+    }
+  }
+
+ private:
+  /// The middle of a cube is far from a block's border against rounding.
+  std::int32_t blockOf(std::int32_t cube) const {
+    return floorOf((static_cast<float>(cube) + 0.5f) * per_block);
+  }
+};
+
+/// Cubes so small that all their returns are linked, in blocks wider than the longest link. Cubes
+/// are numbered block by block; returns are sorted by cube.
 class CubeLinkage {
  public:
   CubeLinkage(const std::vector<LinkedReturn>& returns, float least, float most)
-      : returns_(returns),
-        per_cube_(std::sqrt(3.0f) / least * 1.0001f),
-        cubes_per_block_(static_cast<std::int32_t>(std::ceil(most * per_cube_)) + 1),
-        cube_of_(cubes()),
-        in_cube_(cube_of_, cube_count_),
-        block_of_(blocks()),
-        in_block_(block_of_, block_key_.size()),
-        groups_(cube_count_) {}
+      : returns_(returns) {
+    grid_.per_cube = std::sqrt(3.0f) / least * 1.0001f;
+    // Blocks are wider than a link and a cube: linked returns lie in neighboring blocks at most.
+    grid_.n = static_cast<std::int32_t>(std::ceil(most * grid_.per_cube)) + 1;
+    grid_.per_block = 1 / static_cast<float>(grid_.n);
+    place();
+    numberCubes();
+    sortReturns();
+    bound();
+  }
 
   Partition link() {
-    for (std::uint32_t c = 0; c + 1 < in_block_.start.size(); ++c) linkWithin(c);
+    Forest groups(first_return_.size() - 1);
+    groups_ = &groups;
+    const auto blocks = static_cast<std::uint32_t>(block_.size());
+    uniform_.assign(blocks, 0);
+    for (std::uint32_t c = 0; c < blocks; ++c) linkWithin(c);
     // Half of the 26 neighbors: every pair once.
-    constexpr std::int32_t kStep[13][3] = {
-        {1, 0, 0},  {-1, 1, 0}, {0, 1, 0}, {1, 1, 0},  {-1, -1, 1}, {0, -1, 1}, {1, -1, 1},
-        {-1, 0, 1}, {0, 0, 1},  {1, 0, 1}, {-1, 1, 1}, {0, 1, 1},   {1, 1, 1}};
-    for (std::uint32_t c = 0; c + 1 < in_block_.start.size(); ++c) {
-      for (const auto& step : kStep) {
-        const auto& [x, y, z] = block_key_[c];
-        const std::uint32_t d = block_table_.find(keyOf(x + step[0], y + step[1], z + step[2]));
+    constexpr BlockPlace kStep[13] = {{1, 0, 0},  {-1, 1, 0}, {0, 1, 0},  {1, 1, 0}, {-1, -1, 1},
+                                      {0, -1, 1}, {1, -1, 1}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1},
+                                      {-1, 1, 1}, {0, 1, 1},  {1, 1, 1}};
+    for (std::uint32_t c = 0; c < blocks; ++c) {
+      const BlockPlace at = block_[c];
+      for (const BlockPlace& step : kStep) {
+        const std::uint32_t d =
+            block_numbers_.find(keyOf({at.x + step.x, at.y + step.y, at.z + step.z}));
         if (d != kNone) linkBlocks(c, d);
       }
     }
-    return partitionOf(cube_of_, groups_);
+    return partitionOf(cube_of_, groups);
   }
 
  private:
@@ -107,6 +135,8 @@ class CubeLinkage {
   struct Bounds {
     float x0, x1, y0, y1, z0, z1, length;
 
+    explicit Bounds(const LinkedReturn& r)
+        : x0(r.x), x1(r.x), y0(r.y), y1(r.y), z0(r.z), z1(r.z), length(r.length) {}
     void add(const Bounds& b) {
       x0 = std::min(x0, b.x0), x1 = std::max(x1, b.x1);
       y0 = std::min(y0, b.y0), y1 = std::max(y1, b.y1);
@@ -123,51 +153,81 @@ class CubeLinkage {
     }
   };
 
-  /// The cube of every return; sets the bounds of the cubes.
-  std::vector<std::uint32_t> cubes() {
-    KeyNumbers table;
-    std::vector<std::uint32_t> cube_of;
-    cube_of.reserve(returns_.size());
-    std::uint64_t last = 0;  // neighbors in the scan are often in one cube
-    for (const LinkedReturn& r : returns_) {
-      const std::uint64_t key =
-          keyOf(cellOf(r.x, per_cube_), cellOf(r.y, per_cube_), cellOf(r.z, per_cube_));
-      const std::uint32_t cube = !cube_of.empty() && key == last ? cube_of.back() : table.add(key);
-      if (cube == bounds_.size()) bounds_.push_back({r.x, r.x, r.y, r.y, r.z, r.z, r.length});
-      bounds_[cube].add({r.x, r.x, r.y, r.y, r.z, r.z, r.length});
-      cube_of.push_back(cube), last = key;
+  /// The blocks, which of their cubes have returns, and the place of each return among all cubes.
+  void place() {
+    constexpr std::size_t kPiece = 512;  // returns that fit in the L1 cache
+    std::array<BlockPlace, kPiece> block;
+    std::array<std::uint32_t, kPiece> within;
+    const std::uint32_t cubes = grid_.cubes();
+    cube_of_.resize(returns_.size());
+    std::uint64_t last_key = 0;
+    std::uint32_t last = kNone;
+    for (std::size_t first = 0; first < returns_.size(); first += kPiece) {
+      const std::size_t count = std::min(kPiece, returns_.size() - first);
+      grid_.placeAll(&returns_[first], count, block.data(), within.data());
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::uint64_t key = keyOf(block[k]);
+        if (last == kNone || key != last_key) {  // neighbors in the scan are often in one block
+          last = block_numbers_.add(key), last_key = key;
+          if (last == block_.size()) {
+            block_.push_back(block[k]);
+            cube_number_.resize(cube_number_.size() + cubes, 0);
+          }
+        }
+        cube_of_[first + k] = last * cubes + within[k];
+        cube_number_[cube_of_[first + k]] = 1;
+      }
     }
-    cube_count_ = table.count();
-    return cube_of;
   }
 
-  std::vector<std::uint32_t> blocks() {
-    std::vector<std::uint32_t> block_of;
-    block_of.reserve(cube_count_);
-    for (std::uint32_t c = 0; c < cube_count_; ++c) {
-      const LinkedReturn& r = returns_[in_cube_.member[in_cube_.start[c]]];
-      const std::array<std::int32_t, 3> key = {blockOf(r.x), blockOf(r.y), blockOf(r.z)};
-      block_of.push_back(block_table_.add(keyOf(key[0], key[1], key[2])));
-      if (block_of.back() == block_key_.size())
-        block_key_.push_back(key), block_bounds_.push_back(bounds_[c]);
-      block_bounds_[block_of.back()].add(bounds_[c]);
+  /// Numbers the cubes with returns, block by block.
+  void numberCubes() {
+    std::uint32_t count = 0;
+    first_cube_.reserve(block_.size() + 1);
+    auto number = cube_number_.begin();
+    for (std::size_t c = 0; c < block_.size(); ++c) {
+      first_cube_.push_back(count);
+      for (std::uint32_t k = 0; k < grid_.cubes(); ++k, ++number) {
+        const std::uint32_t used = *number;
+        *number = count, count += used;
+      }
     }
-    return block_of;
+    first_cube_.push_back(count);
+    first_return_.assign(count + 1, 0);
+    for (std::uint32_t& cube : cube_of_) cube = cube_number_[cube];
   }
 
-  /// Blocks are of whole cubes and wider than a link and a cube: linked returns lie in neighboring
-  /// blocks at most.
-  std::int32_t blockOf(float v) const {
-    const std::int32_t cube = cellOf(v, per_cube_);
-    return (cube >= 0 ? cube : cube - cubes_per_block_ + 1) / cubes_per_block_;
+  void sortReturns() {
+    for (const std::uint32_t cube : cube_of_) ++first_return_[cube + 1];
+    std::partial_sum(first_return_.begin(), first_return_.end(), first_return_.begin());
+    std::vector<std::uint32_t> next(first_return_.begin(), first_return_.end() - 1);
+    sorted_.resize(returns_.size());
+    for (std::size_t i = 0; i < returns_.size(); ++i) sorted_[next[cube_of_[i]]++] = returns_[i];
+  }
+
+  void bound() {
+    bounds_.reserve(first_return_.size());
+    for (std::size_t cube = 0; cube + 1 < first_return_.size(); ++cube) {
+      Bounds bounds(sorted_[first_return_[cube]]);
+      for (std::uint32_t i = first_return_[cube] + 1; i < first_return_[cube + 1]; ++i)
+        bounds.add(Bounds(sorted_[i]));
+      bounds_.push_back(bounds);
+    }
+    block_bounds_.reserve(block_.size());
+    for (std::size_t c = 0; c < block_.size(); ++c) {
+      Bounds bounds = bounds_[first_cube_[c]];
+      for (std::uint32_t cube = first_cube_[c] + 1; cube < first_cube_[c + 1]; ++cube)
+        bounds.add(bounds_[cube]);
+      block_bounds_.push_back(bounds);
+    }
   }
 
   bool near(std::uint32_t a, std::uint32_t b) const {
     if (!bounds_[a].mayLink(bounds_[b])) return false;
-    for (std::uint32_t i = in_cube_.start[a]; i < in_cube_.start[a + 1]; ++i) {
-      const LinkedReturn& r = returns_[in_cube_.member[i]];
-      for (std::uint32_t j = in_cube_.start[b]; j < in_cube_.start[b + 1]; ++j) {
-        const LinkedReturn& s = returns_[in_cube_.member[j]];
+    for (std::uint32_t i = first_return_[a]; i < first_return_[a + 1]; ++i) {
+      const LinkedReturn& r = sorted_[i];
+      for (std::uint32_t j = first_return_[b]; j < first_return_[b + 1]; ++j) {
+        const LinkedReturn& s = sorted_[j];
         const float x = r.x - s.x, y = r.y - s.y, z = r.z - s.z, l = std::min(r.length, s.length);
         if (x * x + y * y + z * z <= l * l) return true;
       }
@@ -176,37 +236,36 @@ class CubeLinkage {
   }
 
   void join(std::uint32_t a, std::uint32_t b) {
-    if (groups_.find(a) != groups_.find(b) && near(a, b)) groups_.unite(a, b);
+    if (groups_->find(a) != groups_->find(b) && near(a, b)) groups_->unite(a, b);
   }
 
   void linkWithin(std::uint32_t c) {
-    for (std::uint32_t i = in_block_.start[c]; i < in_block_.start[c + 1]; ++i)
-      for (std::uint32_t j = i + 1; j < in_block_.start[c + 1]; ++j)
-        join(in_block_.member[i], in_block_.member[j]);
+    for (std::uint32_t i = first_cube_[c]; i < first_cube_[c + 1]; ++i)
+      for (std::uint32_t j = i + 1; j < first_cube_[c + 1]; ++j) join(i, j);
   }
 
+  /// Whether all cubes of a block are in one group; once they are, they stay so.
   bool uniform(std::uint32_t c) {
-    const std::uint32_t first = groups_.find(in_block_.member[in_block_.start[c]]);
-    for (std::uint32_t i = in_block_.start[c] + 1; i < in_block_.start[c + 1]; ++i)
-      if (groups_.find(in_block_.member[i]) != first) return false;
+    if (uniform_[c]) return true;
+    const std::uint32_t first = groups_->find(first_cube_[c]);
+    for (std::uint32_t i = first_cube_[c] + 1; i < first_cube_[c + 1]; ++i)
+      if (groups_->find(i) != first) return false;
+    uniform_[c] = 1;
     return true;
   }
 
   /// The cubes of block c that may be linked to some of block d.
   void facing(std::uint32_t c, std::uint32_t d, std::vector<std::uint32_t>& cubes) const {
     cubes.clear();
-    for (std::uint32_t i = in_block_.start[c]; i < in_block_.start[c + 1]; ++i) {
-      const std::uint32_t cube = in_block_.member[i];
-      if (bounds_[cube].mayLink(block_bounds_[d])) cubes.push_back(cube);
-    }
+    for (std::uint32_t i = first_cube_[c]; i < first_cube_[c + 1]; ++i)
+      if (bounds_[i].mayLink(block_bounds_[d])) cubes.push_back(i);
   }
 
   void linkBlocks(std::uint32_t c, std::uint32_t d) {
     if (!block_bounds_[c].mayLink(block_bounds_[d])) return;
     const bool whole = uniform(c) && uniform(d);
     const auto same = [&] {
-      return groups_.find(in_block_.member[in_block_.start[c]]) ==
-             groups_.find(in_block_.member[in_block_.start[d]]);
+      return groups_->find(first_cube_[c]) == groups_->find(first_cube_[d]);
     };
     if (whole && same()) return;
     facing(c, d, of_one_), facing(d, c, of_other_);
@@ -219,24 +278,41 @@ class CubeLinkage {
   }
 
   const std::vector<LinkedReturn>& returns_;
-  const float per_cube_;  ///< [1/m]
-  const std::int32_t cubes_per_block_;
-  std::uint32_t cube_count_ = 0;
-  std::vector<Bounds> bounds_;
-  std::vector<std::uint32_t> cube_of_;
-  Buckets in_cube_;
-  std::vector<std::array<std::int32_t, 3>> block_key_;
-  std::vector<Bounds> block_bounds_;
-  KeyNumbers block_table_;
-  std::vector<std::uint32_t> block_of_;
-  Buckets in_block_;
-  Forest groups_;
+  CubeGrid grid_{};
+  KeyNumbers block_numbers_;
+  std::vector<BlockPlace> block_;
+  std::vector<std::uint32_t> cube_number_;   ///< [block][cube in it]
+  std::vector<std::uint32_t> cube_of_;       ///< of each return
+  std::vector<std::uint32_t> first_cube_;    ///< of each block, and the end
+  std::vector<std::uint32_t> first_return_;  ///< of each cube, and the end
+  std::vector<LinkedReturn> sorted_;         ///< cube by cube
+  std::vector<Bounds> bounds_, block_bounds_;
+  std::vector<char> uniform_;  ///< known to be, of each block
+  Forest* groups_ = nullptr;
   std::vector<std::uint32_t> of_one_, of_other_;  ///< cubes of two blocks that face each other
 };
+
+/// By looking at every pair.
+Partition linkFew(const std::vector<LinkedReturn>& returns) {
+  Forest groups(returns.size());
+  for (std::uint32_t i = 1; i < returns.size(); ++i) {
+    const LinkedReturn& r = returns[i];
+    for (std::uint32_t j = 0; j < i; ++j) {
+      const LinkedReturn& s = returns[j];
+      const float x = r.x - s.x, y = r.y - s.y, z = r.z - s.z, l = std::min(r.length, s.length);
+      if (x * x + y * y + z * z <= l * l) groups.unite(i, j);
+    }
+  }
+  std::vector<std::uint32_t> own(returns.size());
+  std::iota(own.begin(), own.end(), 0u);
+  return partitionOf(own, groups);
+}
 
 }  // namespace
 
 Partition linkInSpace(const std::vector<LinkedReturn>& returns, float least, float most) {
+  constexpr std::size_t kFew = 40;  // where all pairs are faster; by measurement
+  if (returns.size() <= kFew) return linkFew(returns);
   return CubeLinkage(returns, least, most).link();
 }
 
