@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace perception {
@@ -106,13 +107,24 @@ void WindowMarks<Mask>::castBeams() {
   beams_.count = 0;
 }
 
+namespace {
+
+/// By column and layer, the largest weight first. As integers, weights from 0 to 1 are in their
+/// order.
+template <class SoftHit>
+std::uint64_t orderOf(const SoftHit& hit) {
+  std::uint32_t weight;
+  std::memcpy(&weight, &hit.weight, sizeof weight);
+  return std::uint64_t{hit.column} << 38 | std::uint64_t{hit.layer} << 32 | ~weight;
+}
+
+}  // namespace
+
 // One entry per cell, without cells that have a hit of full weight.
 template <class Mask>
 void WindowMarks<Mask>::settleSoftHits() {
-  std::sort(soft_hits_.begin(), soft_hits_.end(), [](const SoftHit& a, const SoftHit& b) {
-    if (a.column != b.column) return a.column < b.column;
-    return a.layer != b.layer ? a.layer < b.layer : a.weight > b.weight;
-  });
+  std::sort(soft_hits_.begin(), soft_hits_.end(),
+            [](const SoftHit& a, const SoftHit& b) { return orderOf(a) < orderOf(b); });
   std::size_t kept = 0;
   for (const SoftHit& doubt : soft_hits_) {
     if (hit_[doubt.column] >> doubt.layer & 1) continue;

@@ -98,6 +98,7 @@ class SurfaceFinder {
   std::vector<std::vector<std::uint32_t>> find() {
     columns_.reserve(groups_.size());
     for (const ReturnGroup& group : groups_) columns_.push_back(columnsOf(group));
+    findBodies();
     after_.resize(groups_.size()), before_.resize(groups_.size());
     if (step_ > 0) findNeighbors();
     Forest surfaces(groups_.size());
@@ -208,19 +209,33 @@ class SurfaceFinder {
     return reach >= kLeastReach && reach <= kMostReach && off <= kOffLine + kOffLineSlope * reach;
   }
 
+  /// Groups wide enough for what is before a cabin, by their highest return.
+  void findBodies() {
+    for (std::uint32_t g = 0; g < columns_.size(); ++g)
+      if (widthOf(columns_[g]) >= kStep.body_width) bodies_.emplace_back(columns_[g].top, g);
+    std::sort(bodies_.begin(), bodies_.end());
+  }
+
   /// The nearest group before and below a cabin or a roof.
   std::optional<std::uint32_t> bodyBelow(std::uint32_t upper) const {
     const Columns& u = columns_[upper];
     const float thickness = u.top - u.bottom;
     if (u.bottom < kStep.lowest || thickness > kStep.thickness) return std::nullopt;
     if (thickness > kStep.flat && widthOf(u) < kStep.width) return std::nullopt;
+    std::vector<std::uint32_t> below;
+    constexpr float kRounding = 1e-3f;  // [m]
+    for (auto body = std::lower_bound(bodies_.begin(), bodies_.end(),
+                                      std::make_pair(u.bottom - kStep.above - kRounding, 0u));
+         body != bodies_.end() && body->first <= u.bottom + kStep.below + kRounding; ++body) {
+      const auto [top, b] = *body;
+      if (b != upper && u.bottom >= top - kStep.below && u.bottom <= top + kStep.above &&
+          columns_[b].nearest <= u.nearest && covers(columns_[b], u))
+        below.push_back(b);
+    }
+    std::sort(below.begin(), below.end());  // of equally near ones, the first
     std::optional<std::uint32_t> body;
     double least = kStep.behind;
-    for (std::uint32_t b = 0; b < groups_.size(); ++b) {
-      const Columns& c = columns_[b];
-      if (b == upper || u.bottom < c.top - kStep.below || u.bottom > c.top + kStep.above ||
-          c.nearest > u.nearest || widthOf(c) < kStep.body_width || !covers(c, u))
-        continue;
+    for (const std::uint32_t b : below) {
       const double distance = distanceOf(b, upper, least);
       if (distance < least) least = distance, body = b;
     }
@@ -252,6 +267,7 @@ class SurfaceFinder {
   const std::vector<float>& azimuth_;
   const double step_;  ///< [rad] 0: not known
   std::vector<Columns> columns_;
+  std::vector<std::pair<float, std::uint32_t>> bodies_;     ///< [m] top; group
   std::vector<std::vector<std::uint32_t>> after_, before_;  ///< neighbors by azimuth
 };
 

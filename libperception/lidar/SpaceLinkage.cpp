@@ -115,13 +115,14 @@ class CubeLinkage {
     const auto blocks = static_cast<std::uint32_t>(block_.size());
     uniform_.assign(blocks, 0);
     for (std::uint32_t c = 0; c < blocks; ++c) linkWithin(c);
-    // Half of the 26 neighbors: every pair once.
-    constexpr BlockPlace kStep[13] = {{1, 0, 0},  {-1, 1, 0}, {0, 1, 0},  {1, 1, 0}, {-1, -1, 1},
-                                      {0, -1, 1}, {1, -1, 1}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1},
-                                      {-1, 1, 1}, {0, 1, 1},  {1, 1, 1}};
-    for (std::uint32_t c = 0; c < blocks; ++c) {
-      const BlockPlace at = block_[c];
-      for (const BlockPlace& step : kStep) {
+    // Half of the 26 neighbors: every pair once. Those that share a face first: most others are in
+    // one group by then.
+    constexpr BlockPlace kStep[13] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {-1, 1, 0},
+                                      {0, 1, 1},  {0, -1, 1}, {1, 0, 1},  {-1, 0, 1}, {1, 1, 1},
+                                      {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
+    for (const BlockPlace& step : kStep) {
+      for (std::uint32_t c = 0; c < blocks; ++c) {
+        const BlockPlace at = block_[c];
         const std::uint32_t d =
             block_numbers_.find(keyOf({at.x + step.x, at.y + step.y, at.z + step.z}));
         if (d != kNone) linkBlocks(c, d);
