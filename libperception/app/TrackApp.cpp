@@ -18,6 +18,7 @@
 #include "libperception/pipeline/StageWatchdog.h"
 #include "libperception/scene/RunRecord.h"
 #include "libperception/sensors/RawlogReader.h"
+#include "libperception/sensors/ReadAhead.h"
 #include "libperception/sensors/registerClasses.h"
 
 namespace perception {
@@ -158,10 +159,16 @@ void TrackApp::checkInputs() const {
                 output + ": holds a run; give another folder, or --overwrite to remove it");
 }
 
+int TrackApp::threadCount() const {
+  return threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
+}
+
 std::unique_ptr<ObservationInput> TrackApp::openInput(const std::string& log) const {
   if (const auto ini = liveIniOf(log))
     return std::make_unique<LiveInput>(LiveInput::Params{*ini, duration, record});
-  return std::make_unique<RawlogReader>(log);
+  auto reader = std::make_unique<RawlogReader>(log);
+  if (threadCount() == 1) return reader;
+  return std::make_unique<ReadAhead>(std::move(reader));
 }
 
 std::vector<TrackApp::Shard> TrackApp::shards() {
@@ -211,8 +218,7 @@ void TrackApp::trackLog(const Shard& shard) {
   run.record.hash = shard.hash;
   run.record.config = config_file;
   out_real_time_factor = run.realTimeFactor();
-  run.commit(shard.effective_ini,
-             threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency()));
+  run.commit(shard.effective_ini, threadCount());
   out_record = run.record;
   const double length = out_record.last_stamp - out_record.first_stamp;
   const std::string factor =

@@ -47,6 +47,7 @@ class TrackApp : public App {
   std::vector<Shard> shards();
   void trackLog(const Shard& shard);
   void checkInputs() const;
+  int threadCount() const;
   std::unique_ptr<ObservationInput> openInput(const std::string& log) const;
   void printContents(const std::string& log);
   Config configWithOptions() const;

@@ -1,6 +1,8 @@
 #include "libperception/pipeline/Pipeline.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <unordered_set>
@@ -228,29 +230,34 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     wakes_.apply(sensor, scan);
     watch_.addFrame(sensor, frame.stamp, &scan);
     if (observer_) observer_->onFrame(frame), observer_->onScan(scan);
-    addToGrid(frame, scan);
-    const auto scope = timing_.stage("filter");
-    const std::uint64_t index = tracker_.scans();
-    innovations_.before(tracker_);
-    if (tracker_.process(scan)) {
-      innovations_.after(tracker_, scan, index);
-      conditions_.add(sensor, scan, tracker_, index);
-      wakes_.add(sensor, scan, tracker_.mapHypothesis());
-      health_.addScan(sensor, scan, tracker_.mapHypothesis(), setup_.model,
-                      conditions_.clutter(sensor), share);
-    }
+    const auto returns = std::exchange(scan.returns, nullptr);
+    // Neither knows of the other. Isolated, since a waiting thread must not start another run.
+    tbb::this_task_arena::isolate([&] {
+      tbb::parallel_invoke([&] { filter(sensor, scan, share); },
+                           [&] { addToGrid(frame, returns.get()); });
+    });
   } else {
     watch_.addFrame(sensor, frame.stamp, nullptr);
   }
   watch_.setSeen(sensor, frame.stamp);
 }
 
-void Pipeline::addToGrid(const SensorFrame& frame, MeasurementScan& scan) {
-  if (safety_ && scan.returns) {
-    const auto scope = timing_.stage("grid");
-    safety_->add(frame, *scan.returns);
-  }
-  scan.returns.reset();
+void Pipeline::filter(std::size_t sensor, MeasurementScan& scan, double share) {
+  const auto scope = timing_.stage("filter");
+  const std::uint64_t index = tracker_.scans();
+  innovations_.before(tracker_);
+  if (!tracker_.process(scan)) return;
+  innovations_.after(tracker_, scan, index);
+  conditions_.add(sensor, scan, tracker_, index);
+  wakes_.add(sensor, scan, tracker_.mapHypothesis());
+  health_.addScan(sensor, scan, tracker_.mapHypothesis(), setup_.model, conditions_.clutter(sensor),
+                  share);
+}
+
+void Pipeline::addToGrid(const SensorFrame& frame, const PlacedReturns* returns) {
+  if (!safety_ || returns == nullptr) return;
+  const auto scope = timing_.stage("grid");
+  safety_->add(frame, *returns);
 }
 
 EgoState Pipeline::egoAt(Stamp stamp) {

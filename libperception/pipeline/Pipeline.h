@@ -84,7 +84,9 @@ class Pipeline {
   bool isOutput(Stamp stamp);
   void processFrame(std::size_t sensor, SensorFrame& frame);
   EgoState egoAt(Stamp stamp);
-  void addToGrid(const SensorFrame& frame, MeasurementScan& scan);
+  /// `share`: of what the sensor sees as a rule.
+  void filter(std::size_t sensor, MeasurementScan& scan, double share);
+  void addToGrid(const SensorFrame& frame, const PlacedReturns* returns);
   void addOutput(const EgoState& ego, std::int64_t frame);
   void makeScenes(std::optional<Stamp> now);
   void restartTracks();
