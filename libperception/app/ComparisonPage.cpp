@@ -18,6 +18,7 @@ constexpr char kStyle[] = R"css(
 svg { cursor: default; }
 td { vertical-align: top; }
 .sides td { max-width: 460px; overflow-wrap: anywhere; }
+.sides td:first-child { overflow-wrap: normal; }
 .time { white-space: nowrap; }
 td.n, th.n { text-align: right; }
 td small { color: #555; }

@@ -34,9 +34,11 @@ inline constexpr const char* kBatchScript = R"js(
   var data = JSON.parse(document.getElementById('data').textContent);
   var at = function (id) { return document.getElementById(id); };
   var column = function (name) { return data.columns.indexOf(name); };
-  var shown = ['closest.all.object_tracked_a', 'closest.all.correct', 'closest.all.mis',
-    'closest.all.position_rms_m', 'one_to_one.all.id_switches', 'false_objects.all.per_instant',
-    'set_distance.gospa_mean_m'].filter(function (f) { return data.figures.indexOf(f) >= 0; });
+  var titles = {'closest.all.object_tracked_a': 'tracked', 'closest.all.correct': 'right class',
+    'closest.all.mis': 'wrong class', 'closest.all.position_rms_m': 'position rms [m]',
+    'one_to_one.all.id_switches': 'id switches',
+    'false_objects.all.per_instant': 'false an instant', 'set_distance.gospa_mean_m': 'GOSPA [m]'};
+  var shown = Object.keys(titles).filter(function (f) { return data.figures.indexOf(f) >= 0; });
   var columns = ['id', 'log', 'config', 'sensors', 'particles', 'seed', 'state'].concat(shown,
     ['tracks', 'warnings', 'reason']);
   var chosen = 0, sorted = 'log', down = false;
@@ -136,8 +138,7 @@ inline constexpr const char* kBatchScript = R"js(
     head = add(table, 'tr');
     columns.forEach(function (name) {
       var figure = column(name) < 0, mark = name === sorted ? (down ? ' \u25bc' : ' \u25b2') : '';
-      add(head, 'th', name.replace('closest.all.', '').replace('.all.', ' ')
-        .replace(/[._]/g, ' ') + mark, figure ? {'class': 'number'} : {})
+      add(head, 'th', (titles[name] || name) + mark, figure ? {'class': 'number'} : {})
         .addEventListener('click', function () {
           down = name === sorted ? !down : figure;
           sorted = name;
@@ -161,7 +162,9 @@ inline constexpr const char* kBatchScript = R"js(
   function figure() { histogram(); ends(); conditions(); }
   at('figure').hidden = !data.figures.length;
   if (!data.figures.length) at('histogram').style.display = 'none';
-  data.figures.forEach(function (name, i) { add(at('figure'), 'option', name, {value: i}); });
+  data.figures.forEach(function (name, i) {
+    add(at('figure'), 'option', titles[name] ? titles[name] + ' (' + name + ')' : name, {value: i});
+  });
   chosen = Math.max(0, data.figures.indexOf(shown[0]));
   at('figure').value = chosen;
   at('figure').addEventListener('change', function () { chosen = +this.value; figure(); });

@@ -147,6 +147,14 @@ void BagImport::choosePoses() {
     return;
   }
   poses_ = source == "tf" ? posesOfTree() : posesOfTopic(source);
+  if (source == "tf" && poses_.empty()) {
+    std::string others;
+    for (const auto& row : contents_.poses) others += " " + row.first;
+    throw ConfigError(
+        fmt::format("[bag] poses: tf: no transform of the recording moves \"{}\", "
+                    "expected none{}{}",
+                    base_, others.empty() ? "" : " or a topic with poses:", others));
+  }
   log_.note(
       fmt::format("poses: {} of frame \"{}\" from {}", poses_.size(), base_,
                   source == "tf" ? "tf, in \"" + contents_.tree.movesIn(base_) + "\"" : source));

@@ -344,6 +344,17 @@ TEST_F(BagImport, DamagedBytesAreSaidAndNeverFollowed) {
   EXPECT_GT(codes[3] + codes[65], 20);
 }
 
+TEST_F(BagImport, PosesOfTransformsThatMoveNothingAreRefused) {
+  std::vector<Topic> topics = drive(false);
+  topics.erase(topics.begin() + 1);  // /tf
+  write("drive.bag", rosBag(topics));
+  write("bag.ini", "[bag]\nposes = tf\n");
+  EXPECT_EQ(import("bag", {"--bag", file("drive.bag"), "-c", file("bag.ini")}), 78);
+  EXPECT_NE(error_.find("no transform of the recording moves \"base_link\", expected none"),
+            std::string::npos)
+      << error_;
+}
+
 TEST_F(BagImport, WhatIsNoRecordingIsRefused) {
   write("text.bag", "hello, this is not a bag");
   EXPECT_EQ(import("bag", {"--bag", file("text.bag")}), 65);
