@@ -48,40 +48,6 @@ void BoostedTrees::scores(const Descriptor& descriptor, double (&out)[kClusterKi
   }
 }
 
-TreeWalk::TreeWalk(const BoostedTrees& trees) : base_(trees.base), nodes_(trees.nodes) {
-  std::vector<int> depth(nodes_.size(), 0);  // below each node; children come after it
-  for (std::size_t i = nodes_.size(); i-- > 0;) {
-    BoostedTrees::Node& node = nodes_[i];
-    if (node.feature < 0) {
-      node.feature = 0;
-      node.left = node.right = static_cast<std::int32_t>(i);
-    } else {
-      depth[i] = 1 + std::max(depth[static_cast<std::size_t>(node.left)],
-                              depth[static_cast<std::size_t>(node.right)]);
-    }
-  }
-  const std::size_t whole = trees.roots.size() / kClusterKinds * kClusterKinds;
-  for (std::size_t t = 0; t < whole; ++t) {
-    const auto root = static_cast<std::size_t>(trees.roots[t]);
-    if (t % kGroup == 0) steps_.push_back(0);
-    steps_.back() = std::max(steps_.back(), depth[root]);
-    roots_.push_back(static_cast<std::uint32_t>(root));
-  }
-}
-
-void TreeWalk::scores(const Descriptor& descriptor, double (&out)[kClusterKinds]) const {
-  for (std::size_t k = 0; k < kClusterKinds; ++k) out[k] = base_[k];
-  for (std::size_t first = 0; first < roots_.size(); first += kGroup) {
-    const std::size_t count = std::min(kGroup, roots_.size() - first);
-    std::array<std::size_t, kGroup> at{};
-    std::copy_n(&roots_[first], count, at.begin());
-    for (int step = steps_[first / kGroup]; step > 0; --step)
-      for (std::size_t& node : at) node = childOf(nodes_[node], descriptor);
-    for (std::size_t k = 0; k < count; ++k)
-      out[k % kClusterKinds] += static_cast<double>(nodes_[at[k]].threshold);
-  }
-}
-
 double Calibration::operator()(double raw) const {
   if (knots.empty()) return raw;
   const auto next = std::upper_bound(knots.begin(), knots.end(), raw,
@@ -97,7 +63,6 @@ ClusterClassifier::ClusterClassifier(BoostedTrees trees,
                                      const std::array<double, kClusterKinds>& prior,
                                      const EvidenceMemory& memory, Provenance provenance)
     : trees_(std::move(trees)),
-      walk_(trees_),
       calibrations_(std::move(calibrations)),
       prior_(prior),
       memory_(memory),
@@ -106,7 +71,7 @@ ClusterClassifier::ClusterClassifier(BoostedTrees trees,
 std::array<double, kClusterKinds> ClusterClassifier::probabilities(
     const Descriptor& descriptor) const {
   double score[kClusterKinds];
-  walk_.scores(descriptor, score);
+  trees_.scores(descriptor, score);
   const double highest = *std::max_element(score, score + kClusterKinds);
   std::array<double, kClusterKinds> p{};
   double sum = 0;

@@ -28,23 +28,6 @@ struct BoostedTrees {
   float leafValue(std::int32_t root, const Descriptor& descriptor) const;
 };
 
-/// Scores of trees, faster than by BoostedTrees and the same to the bit.
-class TreeWalk {
- public:
-  explicit TreeWalk(const BoostedTrees& trees);
-  void scores(const Descriptor& descriptor, double (&out)[kClusterKinds]) const;
-
- private:
-  static constexpr std::size_t kGroup = 4 * kClusterKinds;  ///< trees walked at the same time
-
-  std::array<double, kClusterKinds> base_{};
-  /// As in BoostedTrees, but leaves lead to themselves, so that all trees of a group take the same
-  /// number of steps.
-  std::vector<BoostedTrees::Node> nodes_;
-  std::vector<std::uint32_t> roots_;
-  std::vector<int> steps_;  ///< of the deepest tree of each group
-};
-
 /// The probability to which a raw one is mapped.
 struct Knot {
   double raw = 0, calibrated = 0;  ///< both in [0, 1]
@@ -102,7 +85,6 @@ class ClusterClassifier {
 
  private:
   BoostedTrees trees_;
-  TreeWalk walk_;
   std::array<Calibration, kClusterKinds> calibrations_;
   std::array<double, kClusterKinds> prior_;
   EvidenceMemory memory_;
