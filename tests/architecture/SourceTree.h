@@ -31,8 +31,8 @@ inline std::string readWhole(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// All files below `folder` (from the root) without build folders, results and what begins with a
-/// dot.
+/// All files below `folder` (from the root) without build folders, results and git's own: a folder,
+/// or a file where several checkouts share one.
 inline std::vector<SourceFile> filesBelow(const std::string& folder) {
   const std::filesystem::path root(PERCEPTION_SOURCE_DIR);
   std::vector<SourceFile> files;
@@ -45,7 +45,7 @@ inline std::vector<SourceFile> filesBelow(const std::string& folder) {
     if (i->is_directory() &&
         (name == ".git" || (top && (name.rfind("build", 0) == 0 || name == "out")))) {
       i.disable_recursion_pending();
-    } else if (i->is_regular_file()) {
+    } else if (i->is_regular_file() && name != ".git") {
       files.push_back({path, readWhole(i->path())});
     }
   }
