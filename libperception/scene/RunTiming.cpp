@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "libperception/scene/OutputFile.h"
@@ -31,12 +32,35 @@ RunTiming::RunTiming()
 
 void RunTiming::add(const std::string& name, double seconds) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  addLocked(name, seconds);
+}
+
+void RunTiming::addLocked(const std::string& name, double seconds) {
   auto stage =
       std::find_if(stages_.begin(), stages_.end(), [&](const Stage& s) { return s.name == name; });
   if (stage == stages_.end()) stage = stages_.insert(stages_.end(), Stage{name});
   ++stage->calls;
   stage->seconds += seconds;
   stage->longest = std::max(stage->longest, seconds);
+}
+
+void RunTiming::begin(const char* name) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  active_.emplace_back(name);
+  ++changes_;
+}
+
+void RunTiming::end(const char* name, double seconds) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto last = std::find(active_.rbegin(), active_.rend(), name);
+  if (last != active_.rend()) active_.erase(std::next(last).base());
+  ++changes_;
+  addLocked(name, seconds);
+}
+
+std::string RunTiming::current() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return active_.empty() ? "" : active_.back();
 }
 
 void RunTiming::addLatency(double seconds) {

@@ -23,22 +23,16 @@ class RunTiming {
   /// Measures its own lifetime.
   class Scope {
    public:
-    Scope(RunTiming& timing, const char* name)
-        : timing_(timing), name_(name), outer_(timing.current_.exchange(name)) {
-      ++timing_.changes_;
+    Scope(RunTiming& timing, const char* name) : timing_(timing), name_(name) {
+      timing_.begin(name);
     }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
-    ~Scope() {
-      timing_.current_ = outer_;
-      ++timing_.changes_;
-      timing_.add(name_, secondsSince(start_));
-    }
+    ~Scope() { timing_.end(name_, secondsSince(start_)); }
 
    private:
     RunTiming& timing_;
     const char* name_;
-    const char* outer_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   };
 
@@ -51,7 +45,7 @@ class RunTiming {
   /// From the arrival of a scene's observation to the scene, of sensors at work [s].
   void addLatency(double seconds);
   /// The stage that began last of those that have not ended; "" between stages. Any thread.
-  const char* current() const { return current_; }
+  std::string current() const;
   std::uint64_t changes() const { return changes_; }  ///< stages begun and ended so far. Any thread
 
   double wallSeconds() const { return secondsSince(start_); }
@@ -65,6 +59,9 @@ class RunTiming {
   void write(const std::string& path, double log_seconds, int threads) const;
 
  private:
+  void begin(const char* name);
+  void end(const char* name, double seconds);
+  void addLocked(const std::string& name, double seconds);  ///< mutex_ is held
   double latencyQuantile(double share) const;
   static double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -73,7 +70,7 @@ class RunTiming {
   double cpu_start_;
   mutable std::mutex mutex_;
   std::vector<Stage> stages_;
-  std::atomic<const char*> current_{""};
+  std::vector<std::string> active_;  ///< stages that have begun and not ended, in that order
   std::atomic<std::uint64_t> changes_{0};
   std::array<std::uint64_t, 400> latencies_{};  ///< number by latency, 2 % a step from 0.1 ms
   std::uint64_t latency_count_ = 0;

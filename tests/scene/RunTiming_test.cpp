@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 namespace perception {
@@ -34,6 +35,20 @@ TEST(RunTiming, AScopeMeasuresItsLifeAndThreadsMayShareAStage) {
   EXPECT_EQ(timing.stages()[0].calls, 2u);
   EXPECT_GE(timing.stages()[0].seconds, 0.04);
   EXPECT_GE(timing.wallSeconds(), timing.stages()[0].longest);
+}
+
+TEST(RunTiming, TheCurrentStageIsTheLastBegunOfThoseThatHaveNotEnded) {
+  RunTiming timing;
+  std::optional<RunTiming::Scope> filter, grid;
+  EXPECT_EQ(timing.current(), "");
+  filter.emplace(timing, "filter");
+  grid.emplace(timing, "grid");
+  EXPECT_EQ(timing.current(), "grid");
+  filter.reset();  // of two threads the first to begin may be the first to end
+  EXPECT_EQ(timing.current(), "grid");
+  grid.reset();
+  EXPECT_EQ(timing.current(), "");
+  EXPECT_EQ(timing.changes(), 4u);
 }
 
 TEST(RunTiming, CountsWorkAsCpuTimeAndNotSleep) {
