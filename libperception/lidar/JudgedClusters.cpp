@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "libperception/lidar/BoxFit.h"
+#include "libperception/lidar/LooseReturns.h"
 #include "libperception/lidar/PhantomMix.h"
 #include "libperception/measurement/FootprintInView.h"
 
@@ -56,12 +58,16 @@ Probabilities withinSize(Probabilities p, const Descriptor& d) {
   return p;
 }
 
+bool isVehicle(const JudgedCluster& c, double least_evidence) {
+  const double vehicle = c.evidence[static_cast<std::size_t>(ClusterKind::kVehicle)];
+  return vehicle > least_evidence && vehicle >= roadUserEvidence(c);
+}
+
 /// Drops what lies in the footprint of a likely vehicle: its seats, its roof, what is seen through
 /// its windows.
 void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& judged) {
   constexpr double kMargin = 0.3;  // [m] about the box of its returns (assumed)
   constexpr double kPerson = 1;    // evidence by which a person beside it stands (assumed)
-  constexpr auto kVehicle = static_cast<std::size_t>(ClusterKind::kVehicle);
   const auto placesOf = [&](const JudgedCluster& j) {
     std::vector<Vector2> places;
     places.reserve(j.points.size());
@@ -78,8 +84,7 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
   const Vector2 sensor = found.points.sensor.head<2>();
   std::vector<char> fragment(judged.size(), 0);
   for (std::size_t v = 0; v < judged.size(); ++v) {
-    const auto& e = judged[v].evidence;
-    if (e[kVehicle] <= 0 || e[kVehicle] < *std::max_element(e.begin(), e.end())) continue;
+    if (!isVehicle(judged[v], 0)) continue;
     const auto box = fitBox(placesOf(judged[v]), sensor, true, true, BoxParams{});
     if (!box) continue;
     const Vector2 along(std::cos(box->yaw), std::sin(box->yaw));
@@ -100,6 +105,23 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
     ++kept;
   }
   judged.resize(kept);
+}
+
+/// Drops the loose returns of likely vehicles: their plume, their spray.
+void dropLoose(const LidarDetections& found, std::vector<JudgedCluster>& judged) {
+  constexpr double kSureVehicle =
+      2;  // evidence: with one in ten clusters, as likely as not (assumed)
+  std::optional<DirectionCells> cells;
+  for (JudgedCluster& j : judged) {
+    if (!isVehicle(j, kSureVehicle)) continue;
+    if (!cells) cells.emplace(found.points);
+    std::vector<std::uint32_t> points, kept;
+    points.reserve(j.points.size());
+    for (const std::uint32_t i : j.points) points.push_back(found.obstacles[i]);
+    for (const std::uint32_t k : surfaceReturns(found.points, *cells, points))
+      kept.push_back(j.points[k]);
+    j.points = std::move(kept);
+  }
 }
 
 PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles,
@@ -178,6 +200,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     judged.push_back(std::move(cluster));
   }
   dropFragments(found, judged);
+  dropLoose(found, judged);
   judgement.verdicts.suspicious = static_cast<std::size_t>(
       std::count_if(judged.begin(), judged.end(),
                     [](const JudgedCluster& c) { return c.phantom > kSuspicious; }));
