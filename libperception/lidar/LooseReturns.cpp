@@ -11,13 +11,14 @@ constexpr int kLeastCells = 4;       // about a return that tell
 constexpr double kLeastSolid = 0.3;  // of these: the corner of a surface fills four in nine
 constexpr double kMostLoose = 0.5;   // of a cluster
 
-/// Whether beams return from behind in most cells about a return at `range` [m].
+/// Whether beams return from behind in most cells about a return at `range` [m]. What ends nearer
+/// is solid: beside a return on a surface seen at a grazing angle one side is nearer, one farther.
 bool isLoose(const DirectionCells& cells, const DirectionCells::Place& place, float range) {
   int solid = 0, passed = 0;
   for (int row = place.row - 1; row <= place.row + 1; ++row) {
     for (int column = place.column - 1; column <= place.column + 1; ++column) {
       const DirectionCells::Cell& cell = cells.at(column, row);
-      if (cell.empty() || cell.farthest < range - kBend) continue;
+      if (cell.empty()) continue;
       ++(cell.farthest > range + kBend ? passed : solid);
     }
   }

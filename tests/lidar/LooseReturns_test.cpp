@@ -48,6 +48,35 @@ TEST(LooseReturns, ThosePassedByMostBeamsAre) {
   for (const std::uint32_t i : kept) EXPECT_NE(i % 11, 0u);
 }
 
+/// Adds one row of beams, 0.4 deg apart, on a side at y = 2.5 m from 16 to 24 m: from column to
+/// column the range grows by up to 1.6 m. The row above passes over it, that below ends on the road
+/// before it. Returns how many are on the side; they come first.
+std::size_t addSide(EgoPoints& all) {
+  constexpr double kSide = 2.5, kStep = radians(0.4);
+  std::vector<double> azimuths;
+  for (double a = std::atan2(kSide, 24); a < std::atan2(kSide, 16); a += kStep)
+    azimuths.push_back(a);
+  for (const int row : {-2, -1, -3}) {
+    for (const double azimuth : azimuths) {
+      const double range = row == -2 ? kSide / std::sin(azimuth) : row == -1 ? 60 : 12;
+      all.x.push_back(static_cast<float>(range * std::cos(azimuth)));
+      all.y.push_back(static_cast<float>(range * std::sin(azimuth)));
+      all.z.push_back(static_cast<float>(1.7 + range * std::tan((row + 0.5) * kStep)));
+    }
+  }
+  return azimuths.size();
+}
+
+TEST(LooseReturns, OfASideSeenAtAGrazingAngleNoneIs) {
+  EgoPoints all = rearSeen(0);
+  auto points = indicesOf(all);
+  const std::size_t side = addSide(all);
+  ASSERT_GT(side, 5u);
+  for (std::size_t k = 0; k < side; ++k)
+    points.push_back(static_cast<std::uint32_t>(points.size()));
+  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), points), points);
+}
+
 TEST(LooseReturns, AClusterOfMoreThanHalfLooseOnesStaysWhole) {
   const EgoPoints all = rearSeen(11);
   std::vector<std::uint32_t> plume;
