@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libperception/filter/predict/Prediction.h"
+#include "libperception/filter/state/Parallel.h"
 #include "libperception/pipeline/MergedScanners.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
@@ -233,8 +234,18 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     const auto returns = std::exchange(scan.returns, nullptr);
     // Neither knows of the other. Isolated, since a waiting thread must not start another run.
     tbb::this_task_arena::isolate([&] {
-      tbb::parallel_invoke([&] { filter(sensor, scan, share); },
-                           [&] { addToGrid(frame, returns.get()); });
+      const LoopOrder order;
+      tbb::parallel_invoke(
+          [&] {
+            order.enter();
+            filter(sensor, scan, share);
+            order.leave();
+          },
+          [&] {
+            order.enter();
+            addToGrid(frame, returns.get());
+            order.leave();
+          });
     });
   } else {
     watch_.addFrame(sensor, frame.stamp, nullptr);
