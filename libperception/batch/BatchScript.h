@@ -12,7 +12,7 @@ td.reason { max-width: 420px; overflow: hidden; text-overflow: ellipsis; white-s
 #histogram { height: 190px; cursor: default; }
 #histogram rect { fill: #0072b2; }
 #histogram rect:hover { fill: #d55e00; }
-select, input { font: inherit; margin: 0 12px 8px 0; }
+select, input { font: inherit; margin: 0 0 8px 0; max-width: 100%; box-sizing: border-box; }
 )css";
 
 inline constexpr const char* kBatchBody = R"html(
