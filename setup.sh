@@ -65,6 +65,7 @@ test_packages=(
   mrpt-apps              # rawlog-edit, rawlog-grabber: stock MRPT must read and record our logs
   clang-format-14 clang-tidy-14  # .clang-format, .clang-tidy
   python3-numpy          # the reader of runs in apps/perception-export
+  chromium               # pages of a run and of a batch are opened, clicked and read
   locales                # definition of a locale with decimal comma: it must not change a byte
 )
 

@@ -22,6 +22,7 @@ std::vector<ObjectLife> objectLives(const TrackedRun& run) {
                            t - life.stretches.back().to < 2.5 * period;
       if (!goes_on) life.stretches.push_back({t, t, o.class_id, o.classified});
       life.stretches.back().to = t + period;
+      life.last_seen = t;
       life.last_class = o.class_id;
       const auto c = static_cast<std::size_t>(o.class_id);
       life.probability = c < o.class_probability.size() ? o.class_probability[c] : 0;

@@ -11,13 +11,14 @@ struct ObjectLife {
   std::uint64_t id = 0;
   /// A time interval with one class.
   struct Stretch {
-    double from = 0, to = 0;  ///< [s] of the log
+    double from = 0, to = 0;  ///< [s] of the log, `to` one scene after the last
     ClassId class_id = 0;
     bool sure = false;
   };
   std::vector<Stretch> stretches;
   ClassId last_class = 0;
   double probability = 0;               ///< of that class, at the end
+  double last_seen = 0;                 ///< [s] of the log: its last scene
   double top_speed = 0, nearest = 1e9;  ///< [m/s], [m] from the ego origin
   double from() const { return stretches.front().from; }
   double to() const { return stretches.back().to; }

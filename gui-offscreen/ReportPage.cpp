@@ -243,7 +243,7 @@ void Page::objects() {
         "<tr data-id=\"{}\"><td>{}</td><td style=\"color:{}\">{}</td><td>{:.2f}</td>"
         "<td>{:.1f} s</td><td>{:.1f} s</td><td>{:.0f} km/h</td><td>{:.1f} m</td></tr>\n",
         life.id, life.id, hexOf(colorOfClass(nameOfClass(run_, life.last_class), life.last_class)),
-        spaced(nameOfClass(run_, life.last_class)), life.probability, life.from(), life.to(),
+        spaced(nameOfClass(run_, life.last_class)), life.probability, life.from(), life.last_seen,
         life.top_speed * 3.6, life.nearest);
   }
   out_ += "</table>\n";

@@ -20,6 +20,7 @@ figcaption { color: #555; font-size: 14px; }
 table { border-collapse: collapse; display: block; overflow-x: auto; }
 td, th { border-bottom: 1px solid #ddd; padding: 3px 12px 3px 0; text-align: left; }
 th { font-weight: 600; }
+tr[data-id] td { white-space: nowrap; }
 svg { width: 100%; cursor: pointer; }
 svg text { font-size: 11px; fill: #333; }
 svg .grid { stroke: #ddd; }

@@ -105,7 +105,8 @@ void ClusterSampler::onFrame(const SensorFrame& frame) {
   const LidarDetections found = front_end_.detect(frame);
   const std::size_t first = samples_.clusters.size();
   points_.clear();
-  for (auto& [segment, descriptor] : describedClusters(found, *cloud)) {
+  for (auto& [segment, descriptor] :
+       describedClusters(found, *cloud, DirectionCells(found.points))) {
     ClusterSample sample;
     sample.log = log_, sample.frame = frame.frame, sample.t = frame.stamp - *first_;
     sample.descriptor = descriptor;

@@ -106,8 +106,9 @@ const std::array<const char*, kFeatures>& featureNames() {
   return names;
 }
 
-ClusterDescriber::ClusterDescriber(const LidarDetections& found, const LidarCloud& cloud)
-    : found_(found), cells_(found.points) {
+ClusterDescriber::ClusterDescriber(const LidarDetections& found, const LidarCloud& cloud,
+                                   const DirectionCells& cells)
+    : found_(found), cells_(cells) {
   const EgoPoints& points = found.points;
   const std::size_t n = found.obstacles.size();
   const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),

@@ -74,8 +74,9 @@ const std::array<const char*, kFeatures>& featureNames();
 /// Describes clusters of one scan. For one thread.
 class ClusterDescriber {
  public:
-  /// Borrows `found`.
-  ClusterDescriber(const LidarDetections& found, const LidarCloud& cloud);
+  /// Borrows `found` and `cells`, the directions of its points.
+  ClusterDescriber(const LidarDetections& found, const LidarCloud& cloud,
+                   const DirectionCells& cells);
 
   /// `members`: indices into the obstacles, ascending; at least one.
   Descriptor describe(const std::vector<std::uint32_t>& members);
@@ -93,7 +94,7 @@ class ClusterDescriber {
   float nearestOther(std::uint32_t i, float within) const;
 
   const LidarDetections& found_;
-  DirectionCells cells_;
+  const DirectionCells& cells_;
   std::vector<float> dx_, dy_, dz_;           ///< [m] of the obstacles from the sensor
   std::vector<float> intensity_;              ///< rank among the scan's obstacles, [0, 1]
   std::vector<DirectionCells::Place> place_;  ///< of the obstacles

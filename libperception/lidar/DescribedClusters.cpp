@@ -7,12 +7,13 @@ namespace perception {
 
 std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
                                                 const LidarCloud& cloud,
+                                                const DirectionCells& cells,
                                                 const ClusterVisitor& visit) {
   constexpr double kLeastReturns = 8, kLongest = 20;  // [m]
   constexpr float kLeastTop = 0.5f;                   // [m]
   std::vector<DescribedCluster> clusters;
   std::vector<int> number;  // of every segment; -1: too low
-  ClusterDescriber describer(found, cloud);
+  ClusterDescriber describer(found, cloud, cells);
   const auto add = [&](const Segment& segment) {
     const bool low = std::all_of(segment.points.begin(), segment.points.end(),
                                  [&](std::uint32_t i) { return found.above[i] < kLeastTop; });

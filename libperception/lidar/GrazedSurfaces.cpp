@@ -8,8 +8,6 @@
 #include "libperception/core/Angle.h"
 #include "libperception/lidar/Forest.h"
 #include "libperception/measurement/FootprintInView.h"
-#include "libperception/simd/Dispatch.h"
-#include "libperception/simd/FastAtan2.h"
 
 namespace perception {
 namespace {
@@ -48,33 +46,6 @@ struct Columns {
   End at_low, at_high;
 };
 
-/// Directions of all returns from the sensor [rad].
-struct Directions {
-  std::vector<float> azimuth, elevation;
-};
-
-/// Without branches, so that the compiler vectorizes it.
-PERCEPTION_WIDEST void directAll(const float* __restrict x, const float* __restrict y,
-                                 const float* __restrict height, std::size_t count, float sx,
-                                 float sy, float sz, float* __restrict azimuth,
-                                 float* __restrict elevation) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float dx = x[i] - sx, dy = y[i] - sy, dz = height[i] - sz;
-    azimuth[i] = closeAtan2(dx, dy);
-    elevation[i] = closeAtan2(std::sqrt(dx * dx + dy * dy), dz);
-  }
-}
-
-Directions directionsOf(const ReturnPlaces& places, const Vector3& sensor) {
-  const std::size_t count = places.x.size();
-  Directions directions;
-  directions.azimuth.resize(count), directions.elevation.resize(count);
-  directAll(places.x.data(), places.y.data(), places.height.data(), count,
-            static_cast<float>(sensor.x()), static_cast<float>(sensor.y()),
-            static_cast<float>(sensor.z()), directions.azimuth.data(), directions.elevation.data());
-  return directions;
-}
-
 /// Mean position of returns.
 struct Mean {
   Vector2 sum = Vector2::Zero();
@@ -88,7 +59,7 @@ struct Mean {
 class SurfaceFinder {
  public:
   SurfaceFinder(const ReturnPlaces& places, const std::vector<ReturnGroup>& groups,
-                const Vector3& sensor, const Directions& directions, double step)
+                const Vector3& sensor, const ReturnDirections& directions, double step)
       : places_(places),
         groups_(groups),
         sensor_(sensor),
@@ -273,60 +244,11 @@ class SurfaceFinder {
 
 }  // namespace
 
-namespace {
-
-/// The smallest step in azimuth from a return to another of its beam and group; `none` if there is
-/// no such return nearer than that.
-float stepFrom(std::uint32_t from, const ReturnGroup& group, const Directions& directions,
-               float none) {
-  constexpr auto kSameBeam = static_cast<float>(radians(0.04)),
-                 kSameColumn = static_cast<float>(radians(0.05)),
-                 kTurn = static_cast<float>(kTwoPi);
-  float least = none;
-  for (const std::uint32_t to : group) {
-    if (std::abs(directions.elevation[to] - directions.elevation[from]) > kSameBeam) continue;
-    const float off = std::abs(directions.azimuth[to] - directions.azimuth[from]);
-    const float step = std::min(off, kTurn - off);
-    if (step > kSameColumn) least = std::min(least, step);
-  }
-  return least;
-}
-
-double stepOf(const std::vector<ReturnGroup>& groups, const Directions& directions) {
-  constexpr std::size_t kLargeGroup = 40, kSamples = 64, kLeastSamples = 12;
-  constexpr auto kMost = static_cast<float>(radians(1.5));
-  std::size_t large = 0;
-  for (const ReturnGroup& group : groups) large += group.size() >= kLargeGroup;
-  if (large == 0) return 0;
-  const std::size_t of_each = 1 + kSamples / large;
-  std::vector<float> steps;
-  for (const ReturnGroup& group : groups) {
-    if (group.size() < kLargeGroup) continue;
-    for (std::size_t k = 0; k < of_each; ++k) {
-      const std::uint32_t from = group[(2 * k + 1) * group.size() / (2 * of_each)];
-      const float step = stepFrom(from, group, directions, kMost);
-      if (step < kMost) steps.push_back(step);
-    }
-    if (steps.size() >= kSamples) break;
-  }
-  if (steps.size() < kLeastSamples) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return static_cast<double>(*middle);
-}
-
-}  // namespace
-
-double azimuthStep(const ReturnPlaces& places, const std::vector<ReturnGroup>& groups,
-                   const Vector3& sensor) {
-  return stepOf(groups, directionsOf(places, sensor));
-}
-
 std::vector<std::vector<std::uint32_t>> grazedSurfaces(const ReturnPlaces& places,
                                                        const std::vector<ReturnGroup>& groups,
                                                        const Vector3& sensor) {
-  const Directions directions = directionsOf(places, sensor);
-  return SurfaceFinder(places, groups, sensor, directions, stepOf(groups, directions)).find();
+  const ReturnDirections directions(places, sensor);
+  return SurfaceFinder(places, groups, sensor, directions, azimuthStep(directions, groups)).find();
 }
 
 }  // namespace perception

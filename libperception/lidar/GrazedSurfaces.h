@@ -2,21 +2,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "libperception/core/Frames.h"
+#include "libperception/lidar/ReturnDirections.h"
 
 namespace perception {
-
-/// Obstacle returns: positions along the ego axes and heights above the ground [m].
-struct ReturnPlaces {
-  const std::vector<float>&x, &y, &height;
-};
-
-using ReturnGroup = std::vector<std::uint32_t>;  ///< indices of returns, ascending
-
-/// Step in azimuth between neighboring returns of one beam of a scanner [rad]: the median over
-/// returns of large groups, as seen from `sensor` (z: above the ground). 0: too few to tell.
-double azimuthStep(const ReturnPlaces& places, const std::vector<ReturnGroup>& groups,
-                   const Vector3& sensor);
 
 /// Groups that belong to one object whose surface is seen at a grazing angle, where neighboring
 /// returns are farther apart than they are linked (method.md 8.10). Side by side: the side of a

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "libperception/lidar/BoxFit.h"
@@ -108,17 +107,16 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
 }
 
 /// Drops the loose returns of likely vehicles: their plume, their spray.
-void dropLoose(const LidarDetections& found, std::vector<JudgedCluster>& judged) {
+void dropLoose(const LidarDetections& found, const DirectionCells& cells,
+               std::vector<JudgedCluster>& judged) {
   constexpr double kSureVehicle =
       2;  // evidence: with one in ten clusters, as likely as not (assumed)
-  std::optional<DirectionCells> cells;
   for (JudgedCluster& j : judged) {
     if (!isVehicle(j, kSureVehicle)) continue;
-    if (!cells) cells.emplace(found.points);
     std::vector<std::uint32_t> points, kept;
     points.reserve(j.points.size());
     for (const std::uint32_t i : j.points) points.push_back(found.obstacles[i]);
-    for (const std::uint32_t k : surfaceReturns(found.points, *cells, points))
+    for (const std::uint32_t k : surfaceReturns(found.points, cells, points))
       kept.push_back(j.points[k]);
     j.points = std::move(kept);
   }
@@ -164,7 +162,8 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
                          const ClusterClassifier& classifier) {
   std::vector<Probabilities> probabilities;
   std::vector<double> own;  // of the likeliest road user
-  auto clusters = describedClusters(found, cloud, [&](const DescribedCluster& cluster) {
+  const DirectionCells cells(found.points);
+  auto clusters = describedClusters(found, cloud, cells, [&](const DescribedCluster& cluster) {
     const auto p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor);
     probabilities.push_back(p), own.push_back(roadUser(p));
     return own.back() < kSureWhole &&
@@ -200,7 +199,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     judged.push_back(std::move(cluster));
   }
   dropFragments(found, judged);
-  dropLoose(found, judged);
+  dropLoose(found, cells, judged);
   judgement.verdicts.suspicious = static_cast<std::size_t>(
       std::count_if(judged.begin(), judged.end(),
                     [](const JudgedCluster& c) { return c.phantom > kSuspicious; }));

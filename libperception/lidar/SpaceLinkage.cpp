@@ -6,46 +6,16 @@
 #include <numeric>
 
 #include "libperception/lidar/Forest.h"
+#include "libperception/lidar/KeyNumbers.h"
 #include "libperception/simd/Dispatch.h"
 
 namespace perception {
 namespace {
 
-constexpr std::uint32_t kNone = ~0u;
-
-/// Numbers of keys in the order of their first appearance: open addressing, at most half full.
-class KeyNumbers {
- public:
-  KeyNumbers() : slots_(1024) {}
-  std::uint32_t add(std::uint64_t key) {
-    if (2 * count_ >= slots_.size()) grow();
-    Slot& slot = slots_[slotOf(key)];
-    if (slot.number == kNone) slot = {key, count_++};
-    return slot.number;
-  }
-  std::uint32_t find(std::uint64_t key) const { return slots_[slotOf(key)].number; }
-
- private:
-  struct Slot {
-    std::uint64_t key = 0;
-    std::uint32_t number = kNone;
-  };
-  /// Where the key is or belongs.
-  std::size_t slotOf(std::uint64_t key) const {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> 32) & mask;
-    while (slots_[slot].number != kNone && slots_[slot].key != key) slot = (slot + 1) & mask;
-    return slot;
-  }
-  void grow() {
-    std::vector<Slot> old(4 * slots_.size());
-    old.swap(slots_);
-    for (const Slot& s : old)
-      if (s.number != kNone) slots_[slotOf(s.key)] = s;
-  }
-  std::vector<Slot> slots_;  ///< a power of two
-  std::uint32_t count_ = 0;
-};
+bool linked(const LinkedReturn& r, const LinkedReturn& s) {
+  const float x = r.x - s.x, y = r.y - s.y, z = r.z - s.z, l = std::min(r.length, s.length);
+  return x * x + y * y + z * z <= l * l;
+}
 
 struct BlockPlace {
   std::int32_t x, y, z;
@@ -125,7 +95,7 @@ class CubeLinkage {
         const BlockPlace at = block_[c];
         const std::uint32_t d =
             block_numbers_.find(keyOf({at.x + step.x, at.y + step.y, at.z + step.z}));
-        if (d != kNone) linkBlocks(c, d);
+        if (d != KeyNumbers::kNone) linkBlocks(c, d);
       }
     }
     return partitionOf(cube_of_, groups);
@@ -162,13 +132,14 @@ class CubeLinkage {
     const std::uint32_t cubes = grid_.cubes();
     cube_of_.resize(returns_.size());
     std::uint64_t last_key = 0;
-    std::uint32_t last = kNone;
+    std::uint32_t last = KeyNumbers::kNone;
     for (std::size_t first = 0; first < returns_.size(); first += kPiece) {
       const std::size_t count = std::min(kPiece, returns_.size() - first);
       grid_.placeAll(&returns_[first], count, block.data(), within.data());
       for (std::size_t k = 0; k < count; ++k) {
         const std::uint64_t key = keyOf(block[k]);
-        if (last == kNone || key != last_key) {  // neighbors in the scan are often in one block
+        if (last == KeyNumbers::kNone ||
+            key != last_key) {  // neighbors in the scan are often in one block
           last = block_numbers_.add(key), last_key = key;
           if (last == block_.size()) {
             block_.push_back(block[k]);
@@ -228,9 +199,7 @@ class CubeLinkage {
     for (std::uint32_t i = first_return_[a]; i < first_return_[a + 1]; ++i) {
       const LinkedReturn& r = sorted_[i];
       for (std::uint32_t j = first_return_[b]; j < first_return_[b + 1]; ++j) {
-        const LinkedReturn& s = sorted_[j];
-        const float x = r.x - s.x, y = r.y - s.y, z = r.z - s.z, l = std::min(r.length, s.length);
-        if (x * x + y * y + z * z <= l * l) return true;
+        if (linked(r, sorted_[j])) return true;
       }
     }
     return false;
@@ -296,14 +265,9 @@ class CubeLinkage {
 /// By looking at every pair.
 Partition linkFew(const std::vector<LinkedReturn>& returns) {
   Forest groups(returns.size());
-  for (std::uint32_t i = 1; i < returns.size(); ++i) {
-    const LinkedReturn& r = returns[i];
-    for (std::uint32_t j = 0; j < i; ++j) {
-      const LinkedReturn& s = returns[j];
-      const float x = r.x - s.x, y = r.y - s.y, z = r.z - s.z, l = std::min(r.length, s.length);
-      if (x * x + y * y + z * z <= l * l) groups.unite(i, j);
-    }
-  }
+  for (std::uint32_t i = 1; i < returns.size(); ++i)
+    for (std::uint32_t j = 0; j < i; ++j)
+      if (linked(returns[i], returns[j])) groups.unite(i, j);
   std::vector<std::uint32_t> own(returns.size());
   std::iota(own.begin(), own.end(), 0u);
   return partitionOf(own, groups);
@@ -312,7 +276,7 @@ Partition linkFew(const std::vector<LinkedReturn>& returns) {
 }  // namespace
 
 Partition linkInSpace(const std::vector<LinkedReturn>& returns, float least, float most) {
-  constexpr std::size_t kFew = 40;  // where all pairs are faster; by measurement
+  constexpr std::size_t kFew = 40;  // looking at all pairs is cheap (assumed)
   if (returns.size() <= kFew) return linkFew(returns);
   return CubeLinkage(returns, least, most).link();
 }

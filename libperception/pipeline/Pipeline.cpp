@@ -1,8 +1,6 @@
 #include "libperception/pipeline/Pipeline.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_invoke.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <unordered_set>
@@ -232,21 +230,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     watch_.addFrame(sensor, frame.stamp, &scan);
     if (observer_) observer_->onFrame(frame), observer_->onScan(scan);
     const auto returns = std::exchange(scan.returns, nullptr);
-    // Neither knows of the other. Isolated, since a waiting thread must not start another run.
-    tbb::this_task_arena::isolate([&] {
-      const LoopOrder order;
-      tbb::parallel_invoke(
-          [&] {
-            order.enter();
-            filter(sensor, scan, share);
-            order.leave();
-          },
-          [&] {
-            order.enter();
-            addToGrid(frame, returns.get());
-            order.leave();
-          });
-    });
+    runBoth([&] { filter(sensor, scan, share); }, [&] { addToGrid(frame, returns.get()); });
   } else {
     watch_.addFrame(sensor, frame.stamp, nullptr);
   }

@@ -84,7 +84,7 @@ class Pipeline {
   bool isOutput(Stamp stamp);
   void processFrame(std::size_t sensor, SensorFrame& frame);
   EgoState egoAt(Stamp stamp);
-  /// `share`: of what the sensor sees as a rule.
+  /// `share`: what weather has left of the sensor's P_D.
   void filter(std::size_t sensor, MeasurementScan& scan, double share);
   void addToGrid(const SensorFrame& frame, const PlacedReturns* returns);
   void addOutput(const EgoState& ego, std::int64_t frame);

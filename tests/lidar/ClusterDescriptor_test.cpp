@@ -35,7 +35,7 @@ struct Scan {
   }
   Descriptor describe(const std::vector<std::uint32_t>& members) {
     EXPECT_FALSE(members.empty());
-    return ClusterDescriber(found, cloud()).describe(members);
+    return ClusterDescriber(found, cloud(), DirectionCells(found.points)).describe(members);
   }
   Descriptor describe(double x0, double x1, double y0, double y1) {
     return describe(within(x0, x1, y0, y1));
@@ -157,7 +157,8 @@ TEST(ClusterDescriptor, MembersOfAnotherClusterOfTheScanAreNeighbors) {
   SolidScene scene;
   scene.cylinders = {{{10, -0.5}, 0.1, 0, 2}, {{10, 0.5}, 0.1, 0, 2}};
   Scan scan(scene);
-  ClusterDescriber describer(scan.found, scan.cloud());
+  const DirectionCells cells(scan.found.points);
+  ClusterDescriber describer(scan.found, scan.cloud(), cells);
   const auto isolation = [&](double y0, double y1) {
     return value(describer.describe(scan.within(9, 11, y0, y1)), Feature::kIsolation);
   };
@@ -253,7 +254,8 @@ TEST(DescribedClusters, LeavesOutWhatIsTooLowOrTooSmall) {
   scene.cylinders = {{{10, -3}, 0.25, 0, 1.75}, {{60, 0}, 0.1, 0, 1.75}};  // the last: few returns
   Scan scan(scene);
   EXPECT_GE(scan.within(9, 11, 2, 4).size(), 8u);
-  const auto clusters = describedClusters(scan.found, scan.cloud());
+  const auto clusters =
+      describedClusters(scan.found, scan.cloud(), DirectionCells(scan.found.points));
   ASSERT_EQ(clusters.size(), 1u);
   EXPECT_EQ(clusters[0].segment.points, scan.within(9, 11, -4, -2));
   EXPECT_EQ(clusters[0].descriptor, scan.describe(9, 11, -4, -2));
@@ -264,7 +266,8 @@ TEST(DescribedClusters, PartsReferToTheirWhole) {
   scene.boxes = {{{10, 4}, 0, 1, 1, 0, 0.45}};  // left out: the numbers of the others change
   scene.cylinders = {{{15, -2.36}, 0.25, 0, 1.75}, {{15, -1.64}, 0.25, 0, 1.75}};
   Scan scan(scene);
-  const auto clusters = describedClusters(scan.found, scan.cloud());
+  const auto clusters =
+      describedClusters(scan.found, scan.cloud(), DirectionCells(scan.found.points));
   ASSERT_EQ(clusters.size(), 3u);
   EXPECT_EQ(clusters[0].segment.whole, -1);
   EXPECT_EQ(clusters[1].segment.whole, 0);

@@ -57,9 +57,9 @@ const double kSide = 17 * std::tan(-22 * Scene::kStep);  ///< [m] y of the rear'
 TEST(GrazedSurfaces, TheStepInAzimuthIsThatOfOneBeam) {
   Scene scene;
   scene.addFront(12, -10, 10);
-  EXPECT_NEAR(azimuthStep(scene.places(), scene.groups, scene.sensor), Scene::kStep, 1e-5);
+  EXPECT_NEAR(azimuthStep({scene.places(), scene.sensor}, scene.groups), Scene::kStep, 1e-5);
   scene.groups[0].resize(30);
-  EXPECT_EQ(azimuthStep(scene.places(), scene.groups, scene.sensor), 0) << "too few returns";
+  EXPECT_EQ(azimuthStep({scene.places(), scene.sensor}, scene.groups), 0) << "too few returns";
 }
 
 TEST(GrazedSurfaces, TheRearAndTheColumnsOfTheSideOfACarAreOneSurface) {

@@ -187,5 +187,15 @@ TEST(RoughBearing, IsGoodForSectors) {
   }
 }
 
+TEST(CloseBearing, IsGoodForMeasuring) {
+  for (int k = 0; k < 360000; ++k) {
+    const double angle = radians(k * 0.001 - 180);
+    const float x = static_cast<float>(7 * std::cos(angle)),
+                y = static_cast<float>(7 * std::sin(angle));
+    const double exact = std::atan2(static_cast<double>(y), static_cast<double>(x));
+    ASSERT_NEAR(wrapAngle(static_cast<double>(closeAtan2(x, y)) - exact), 0, 1e-6) << angle;
+  }
+}
+
 }  // namespace
 }  // namespace perception

@@ -1,6 +1,8 @@
 #pragma once
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
 
 #include <cstddef>
 
@@ -45,6 +47,23 @@ void parallelFor(std::size_t n, const Function& f) {
       order.leave();
     });
   }
+}
+
+/// f() and g(), which must be independent, at the same time where there are two threads. A thread
+/// that waits for the other starts nothing else in between.
+template <class First, class Second>
+void runBoth(const First& f, const Second& g) {
+  tbb::this_task_arena::isolate([&] {
+    const LoopOrder order;
+    tbb::parallel_for(
+        0, 2,
+        [&](int i) {
+          order.enter();
+          i == 0 ? f() : g();
+          order.leave();
+        },
+        tbb::simple_partitioner());
+  });
 }
 
 }  // namespace perception
