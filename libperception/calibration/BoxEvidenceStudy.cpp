@@ -18,7 +18,7 @@ constexpr double kElsewhere =
     2;  // [m] boxes within this distance of an object of another class are excluded
 constexpr double kInArea = 0.5;  // [-] of an image box: it counts as in the area, as in KITTI's kit
 
-enum class Verdict { kObject, kClutter, kNeither };
+enum class Verdict { kObject, kClutter, kUnlabeled, kNeither };
 
 /// Whether most of the box lies in an area of the image that the truth does not label.
 bool inArea(const ObjectDetection& box, const GroundTruth::Instant& instant) {
@@ -46,8 +46,23 @@ Verdict judge(const ObjectDetection& box, const Vector2& place, const GroundTrut
       verdict = Verdict::kNeither;
     }
   }
-  if (verdict == Verdict::kClutter && inArea(box, instant)) verdict = Verdict::kNeither;
+  if (verdict == Verdict::kClutter && inArea(box, instant)) verdict = Verdict::kUnlabeled;
   return verdict;
+}
+
+/// A place that the truth does not label, at the box.
+TruthObject unlabeledAt(const ObjectDetection::SpaceBox& box, const Pose3& T_world_sensor,
+                        const GroundTruth::Instant& instant) {
+  TruthObject o;
+  o.frame = instant.frame;
+  o.t = instant.t;
+  o.type = kAreaType;
+  o.position = T_world_sensor * box.bottom_center;
+  o.length = box.length;
+  o.width = box.width;
+  o.height = box.height;
+  o.ignore = true;
+  return o;
 }
 
 SensorFrame frameOf(const MeasurementScan& scan, const ObjectDetections& detections) {
@@ -125,7 +140,9 @@ BoxLog boxLog(const RecordedLog& log, const std::string& sensor,
       if (!o.space_box) continue;
       const Vector2 place = (state.T_world_sensor * o.space_box->bottom_center).head<2>();
       const Verdict verdict = judge(o, place, *instant->second, classes);
-      if (verdict == Verdict::kNeither) continue;
+      if (verdict == Verdict::kUnlabeled)
+        out.unlabeled.push_back(unlabeledAt(*o.space_box, state.T_world_sensor, *instant->second));
+      if (verdict == Verdict::kUnlabeled || verdict == Verdict::kNeither) continue;
       out.boxes.push_back(
           {o.label,
            {o.score, o.space_box->bottom_center.head<2>().norm(), verdict == Verdict::kObject},

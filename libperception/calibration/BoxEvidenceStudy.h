@@ -31,6 +31,7 @@ struct BoxLog {
   bool simulated = false;
   std::size_t scans = 0;  ///< that were compared with the truth
   std::vector<JudgedBox> boxes;
+  std::vector<TruthObject> unlabeled;  ///< places in such areas: of the boxes there
 };
 
 /// Keys of [sensor.LABEL.positions] and their values.

@@ -69,8 +69,21 @@ Fit fitOf(const Samples& samples, std::size_t without, double clutter_per_scan) 
   return fit;
 }
 
+/// The truth of a log with the places that it does not label.
+GroundTruth truthOf(const ConfidenceInput& input, std::size_t log) {
+  GroundTruth truth = input.truths[log];
+  std::map<std::int64_t, GroundTruth::Instant*> instants;
+  for (auto& instant : truth.instants) instants[instant.frame] = &instant;
+  for (const TruthObject& place : input.logs[log].unlabeled) {
+    const auto instant = instants.find(place.frame);
+    if (instant != instants.end()) instant->second->objects.push_back(place);
+  }
+  return truth;
+}
+
 Curve curveOf(const ConfidenceInput& input, std::size_t log, const ScoreKeys& keys) {
   TrackedRun run = input.track(log, keys);
+  const GroundTruth truth = truthOf(input, log);
   Curve curve;
   for (std::size_t k = 0; k < kThresholds; ++k) {
     for (Scene& scene : run.scenes) {
@@ -79,7 +92,7 @@ Curve curveOf(const ConfidenceInput& input, std::size_t log, const ScoreKeys& ke
                          [&](const SceneObject& o) { return o.existence < thresholdOf(k); }),
           scene.objects.end());
     }
-    curve[k] = clearFigures(evaluate(run, input.truths[log], input.evaluation));
+    curve[k] = clearFigures(evaluate(run, truth, input.evaluation));
   }
   return curve;
 }
@@ -199,7 +212,9 @@ StudyReport confidenceStudy(const ConfidenceInput& input, const std::string& inc
                   thresholdOf(best)),
       fmt::format("MOTA: one-to-one within {:g} m, all classes, {:g} m and {:.0f} deg ahead.",
                   input.evaluation.tolerance, input.evaluation.selection.range,
-                  degrees(input.evaluation.selection.fov))};
+                  degrees(input.evaluation.selection.fov)),
+      "An output on a box in an area that the truth does not label (DontCare) is not counted as "
+      "false."};
   if (n == 1)
     report.remarks.push_back("One log: nothing was left out, so its figures are too good.");
   return report;

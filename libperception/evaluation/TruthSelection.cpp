@@ -52,7 +52,7 @@ ClassId classOfTruth(const std::string& type, const std::vector<std::string>& cl
   return found == class_names.end() ? -1 : static_cast<ClassId>(found - class_names.begin());
 }
 
-bool isArea(const TruthObject& object) { return lowerCase(object.type) == "dontcare"; }
+bool isArea(const TruthObject& object) { return lowerCase(object.type) == lowerCase(kAreaType); }
 
 TruthUse useOf(const TruthObject& object, const GroundView& view, ClassId class_id,
                const SelectionOptions& options) {

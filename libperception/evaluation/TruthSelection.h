@@ -28,7 +28,9 @@ const char* describe(TruthUse use);
 /// Case-insensitive.
 ClassId classOfTruth(const std::string& type, const std::vector<std::string>& class_names);
 
-/// DontCare: an unlabeled area.
+/// Type of an area or a place that the truth does not label: what stands there is neither right nor
+/// false.
+inline constexpr const char* kAreaType = "DontCare";
 bool isArea(const TruthObject& object);
 
 TruthUse useOf(const TruthObject& object, const GroundView& view, ClassId class_id,

@@ -22,7 +22,9 @@ constexpr double kEdge = 0.35, kSecond = 1.35;  ///< in steps: ends of the first
 
 /// What is behind and above a hood or a boot: a cabin or a roof.
 struct StepLimits {
-  float lowest = 0.6f;      ///< [m] above the ground, of its lowest return
+  /// Share of its returns that may lie lower: a little of a car's side is seen past its hood.
+  double side_share = 0.2;
+  float lowest = 0.6f;      ///< [m] above the ground, of its lowest return but those
   float thickness = 1.2f;   ///< [m] at most
   float flat = 0.3f;        ///< [m] thickness of a roof, which may be narrow
   double width = 1;         ///< [m] least one of a cabin: a person behind a hood is narrower
@@ -42,6 +44,7 @@ struct End {
 struct Columns {
   double low = 0, high = 0;   ///< [rad] azimuth; low in [0, 2 pi)
   float bottom = 0, top = 0;  ///< [m] above the ground
+  float mostly_above = 0;     ///< [m] most of its returns are higher
   double nearest = 0;         ///< [m] horizontal distance of the nearest return from the sensor
   End at_low, at_high;
 };
@@ -90,7 +93,8 @@ class SurfaceFinder {
 
   Columns columnsOf(const ReturnGroup& group) const {
     std::vector<double> azimuth;
-    azimuth.reserve(group.size());
+    std::vector<float> heights;
+    azimuth.reserve(group.size()), heights.reserve(group.size());
     const auto first = static_cast<double>(azimuth_[group.front()]);
     Columns columns;
     columns.bottom = columns.top = places_.height[group.front()];
@@ -98,11 +102,16 @@ class SurfaceFinder {
     for (const std::uint32_t i : group) {
       const double off = static_cast<double>(azimuth_[i]) - first;  // without a jump at +-pi:
       azimuth.push_back(first + (std::abs(off) < kPi ? off : off - std::copysign(kTwoPi, off)));
+      heights.push_back(places_.height[i]);
       columns.bottom = std::min(columns.bottom, places_.height[i]);
       columns.top = std::max(columns.top, places_.height[i]);
       nearest2 = std::min(nearest2, (placeOf(i) - sensor_.head<2>()).squaredNorm());
     }
     columns.nearest = std::sqrt(nearest2);
+    const auto side =
+        static_cast<std::ptrdiff_t>(kStep.side_share * static_cast<double>(heights.size()));
+    std::nth_element(heights.begin(), heights.begin() + side, heights.end());
+    columns.mostly_above = heights[static_cast<std::size_t>(side)];
     const auto [low, high] = std::minmax_element(azimuth.begin(), azimuth.end());
     Mean at_low, beside_low, at_high, beside_high;
     for (std::size_t k = 0; k < group.size(); ++k) {
@@ -190,16 +199,16 @@ class SurfaceFinder {
   /// The nearest group before and below a cabin or a roof.
   std::optional<std::uint32_t> bodyBelow(std::uint32_t upper) const {
     const Columns& u = columns_[upper];
-    const float thickness = u.top - u.bottom;
-    if (u.bottom < kStep.lowest || thickness > kStep.thickness) return std::nullopt;
+    const float bottom = u.mostly_above, thickness = u.top - bottom;
+    if (bottom < kStep.lowest || thickness > kStep.thickness) return std::nullopt;
     if (thickness > kStep.flat && widthOf(u) < kStep.width) return std::nullopt;
     std::vector<std::uint32_t> below;
     constexpr float kRounding = 1e-3f;  // [m]
     for (auto body = std::lower_bound(bodies_.begin(), bodies_.end(),
-                                      std::make_pair(u.bottom - kStep.above - kRounding, 0u));
-         body != bodies_.end() && body->first <= u.bottom + kStep.below + kRounding; ++body) {
+                                      std::make_pair(bottom - kStep.above - kRounding, 0u));
+         body != bodies_.end() && body->first <= bottom + kStep.below + kRounding; ++body) {
       const auto [top, b] = *body;
-      if (b != upper && u.bottom >= top - kStep.below && u.bottom <= top + kStep.above &&
+      if (b != upper && bottom >= top - kStep.below && bottom <= top + kStep.above &&
           columns_[b].nearest <= u.nearest && covers(columns_[b], u))
         below.push_back(b);
     }

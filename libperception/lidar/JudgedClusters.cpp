@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libperception/lidar/BoxFit.h"
+#include "libperception/lidar/LidarMeasurements.h"
 #include "libperception/lidar/LooseReturns.h"
 #include "libperception/lidar/PhantomMix.h"
 #include "libperception/measurement/FootprintInView.h"
@@ -45,12 +46,20 @@ constexpr float kDoubted = 0.5f;  // trust of a return below which it is doubted
 /// a pram, cyclists with a trailer, articulated buses of 2.6 m with their mirrors (assumed).
 constexpr float kLargest[kRoadUsers][2] = {{2.5f, 2}, {3.5f, 2}, {20, 3.6f}};
 
-/// Without the road users that are smaller than the cluster: at best its parts are some.
-Probabilities withinSize(Probabilities p, const Descriptor& d) {
+/// Longer than this [m] vehicles are at least as high as that (buses, trucks), where the view
+/// reaches so far (assumed). Lower: a hedge, a wall, cars in a row.
+constexpr float kLong = 7, kLongHigh = 2;
+
+/// Without the road users that are smaller than the cluster, and without vehicles that are too low
+/// for their length: at best its parts are some. `top_of_view` [m] above the ground at the cluster.
+Probabilities withinSize(Probabilities p, const Descriptor& d, double top_of_view) {
   const float sides[2] = {d[static_cast<std::size_t>(Feature::kLength)],
                           d[static_cast<std::size_t>(Feature::kWidth)]};
+  const bool low = sides[0] > kLong && d[static_cast<std::size_t>(Feature::kTop)] < kLongHigh &&
+                   top_of_view > kLongHigh;
   for (std::size_t k = 0; k < kRoadUsers; ++k) {
-    if (sides[0] <= kLargest[k][0] && sides[1] <= kLargest[k][1]) continue;
+    const bool too_low = low && k == static_cast<std::size_t>(ClusterKind::kVehicle);
+    if (sides[0] <= kLargest[k][0] && sides[1] <= kLargest[k][1] && !too_low) continue;
     p[static_cast<std::size_t>(ClusterKind::kThing)] += p[k];
     p[k] = 0;
   }
@@ -135,22 +144,42 @@ PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::ui
   return phantom;
 }
 
-/// Marks the clusters that stand for themselves; `own`: probability of the likeliest road user.
+/// Of a vehicle that no second one fits into: its parts are no vehicles [m] (assumed).
+constexpr float kOneVehicle[2] = {6, 2.5f};
+/// Probability from which it is one, if none of its parts is somebody and two may be vehicles.
+constexpr double kLikelyWhole = 0.5, kPerhaps = 0.2;
+
+bool holdsOneVehicle(const Descriptor& d) {
+  return d[static_cast<std::size_t>(Feature::kLength)] <= kOneVehicle[0] &&
+         d[static_cast<std::size_t>(Feature::kWidth)] <= kOneVehicle[1];
+}
+
+/// Marks the clusters that stand for themselves.
 std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
-                           const std::vector<double>& own) {
+                           const std::vector<Probabilities>& probabilities) {
   const std::size_t n = clusters.size();
-  std::vector<double> best_part(n, 0);  // over all parts of parts
-  for (std::size_t i = n; i-- > 0;) {   // parts come after their whole
-    if (const int whole = clusters[i].segment.whole; whole >= 0) {
-      double& best = best_part[static_cast<std::size_t>(whole)];
-      best = std::max({best, own[i], best_part[i]});
-    }
+  std::vector<double> somebody(n, 0), vehicle(n, 0);  // the likeliest over all parts of parts
+  std::vector<int> vehicles(n, 0);                    // parts that may be some
+  for (std::size_t i = n; i-- > 0;) {                 // parts come after their whole
+    const int whole = clusters[i].segment.whole;
+    if (whole < 0) continue;
+    const auto w = static_cast<std::size_t>(whole);
+    const Probabilities& p = probabilities[i];
+    somebody[w] = std::max(
+        {somebody[w], somebody[i], at(p, ClusterKind::kPedestrian), at(p, ClusterKind::kCyclist)});
+    vehicle[w] = std::max({vehicle[w], vehicle[i], at(p, ClusterKind::kVehicle)});
+    vehicles[w] += at(p, ClusterKind::kVehicle) >= kPerhaps;
   }
   std::vector<char> stands(n, 0), in_parts(n, 0);  // reached from above; is given as its parts
   for (std::size_t i = 0; i < n; ++i) {
     const int whole = clusters[i].segment.whole;
     const bool reached = whole < 0 || in_parts[static_cast<std::size_t>(whole)];
-    in_parts[i] = reached && own[i] < kSureWhole && best_part[i] > std::max(kLeastPart, own[i]);
+    const double own = roadUser(probabilities[i]);
+    const bool one_vehicle = at(probabilities[i], ClusterKind::kVehicle) >= kLikelyWhole &&
+                             somebody[i] < kLeastPart && vehicles[i] > 1 &&
+                             holdsOneVehicle(clusters[i].descriptor);
+    in_parts[i] = reached && own < kSureWhole && !one_vehicle &&
+                  std::max(somebody[i], vehicle[i]) > std::max(kLeastPart, own);
     stands[i] = reached && !in_parts[i];
   }
   return stands;
@@ -163,8 +192,12 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   std::vector<Probabilities> probabilities;
   std::vector<double> own;  // of the likeliest road user
   const DirectionCells cells(found.points);
+  const double slope = topSlope(found);
   auto clusters = describedClusters(found, cloud, cells, [&](const DescribedCluster& cluster) {
-    const auto p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor);
+    const auto range =
+        static_cast<double>(cluster.descriptor[static_cast<std::size_t>(Feature::kRange)]);
+    const auto p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor,
+                              found.points.sensor.z() + slope * range);
     probabilities.push_back(p), own.push_back(roadUser(p));
     return own.back() < kSureWhole &&
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
@@ -174,7 +207,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   for (std::size_t i = 0; i < n; ++i)
     if (clusters[i].segment.whole < 0) wholes.push_back(probabilities[i]);
   const PhantomMix mix(wholes, classifier.prior());
-  const std::vector<char> stands = standing(clusters, own);
+  const std::vector<char> stands = standing(clusters, probabilities);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);

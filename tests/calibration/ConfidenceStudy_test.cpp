@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "libperception/core/Error.h"
+#include "libperception/evaluation/TruthSelection.h"
 
 namespace perception {
 namespace {
@@ -83,6 +84,24 @@ TEST(ConfidenceStudy, TheThresholdExcludesPhantomsAndKeepsObjects) {
   EXPECT_NE(ini.find("include = mine.ini\n"), std::string::npos) << ini;
   EXPECT_NE(ini.find("min_existence = 0.65\n"), std::string::npos) << ini;
   EXPECT_NE(ini.find("confidence = fitted\nscore_slope.car = "), std::string::npos) << ini;
+}
+
+TEST(ConfidenceStudy, WhatStandsWhereTheTruthLabelsNothingIsNotFalse) {
+  ConfidenceInput input = inputOf({0.62});
+  for (int i = 0; i < kInstants; ++i) {
+    TruthObject place;
+    place.frame = i;
+    place.t = i * kStep;
+    place.type = kAreaType;
+    place.position = Vector3(10, 8, 0);
+    place.length = 4, place.width = 2, place.height = 1.5;
+    place.ignore = true;
+    input.logs[0].unlabeled.push_back(place);
+  }
+  const StudyReport report = confidenceStudy(input, "mine.ini");
+  for (const auto& row : report.tables.at(1).rows) EXPECT_EQ(row.at(5), "0") << row.at(1);
+  const auto before = confidenceStudy(inputOf({0.62}), "mine.ini").tables.at(1).rows;
+  EXPECT_EQ(before.front().at(5), std::to_string(kInstants));
 }
 
 TEST(ConfidenceStudy, ALogsOwnFiguresAreAtTheThresholdOfTheOthers) {

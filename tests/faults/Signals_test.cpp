@@ -78,8 +78,10 @@ TEST(Signals, AProgramHearsThemFromItsFirstInstructionOn) {
 }
 
 TEST(Signals, AStoppedProgramEndsWith75AndLeavesNothing) {
-  int stopped = 0, loading = 0;
-  for (const auto& [job, blow] : blowsOf(SIGTERM, isWhole() ? 200 : 4)) {
+  int blows = 0, stopped = 0, loading = 0;
+  for (const auto& [job, blow] : blowsOf(SIGTERM, isWhole() ? 200 : 20)) {
+    if (!isWhole() && blows >= 4 && stopped + loading > 0) break;  // the first ones may be too late
+    ++blows;
     SCOPED_TRACE(fmt::format("{} stopped after {:.3f} s", job->name, blow.after));
     const TemporaryFolder out;
     const Contents& whole = workshop().results(*job);

@@ -123,6 +123,23 @@ TEST(GrazedSurfaces, ACabinBelongsToTheHoodButAPersonBehindItDoesNot) {
   EXPECT_TRUE(person.joined().empty());
 }
 
+TEST(GrazedSurfaces, ALittleOfTheSideBelowACabinDoesNotPartItFromTheHood) {
+  const auto joined = [](double side_bottom) {
+    Scene car;
+    car.addFront(12, -6, 6, 0.2, 0.9);
+    ReturnGroup cabin;
+    for (int k = -6; k <= 6; ++k)  // the last column: its side
+      car.addColumn(cabin, k, 13.4 / std::cos(k * Scene::kStep), k < 6 ? 0.95 : side_bottom, 1.5);
+    car.addGroup(std::move(cabin));
+    return car.joined();
+  };
+  EXPECT_EQ(joined(0.3), (Sets{{0, 1}}));
+  Scene wall;  // all of it stands on the ground
+  wall.addFront(12, -6, 6, 0.2, 0.9);
+  wall.addFront(13.4, -6, 6, 0.3, 1.5);
+  EXPECT_TRUE(wall.joined().empty());
+}
+
 TEST(GrazedSurfaces, WhatIsFarBehindOrStandsOnTheGroundIsNoRoof) {
   Scene far;
   far.addFront(12, -4, 4, 0.3, 1.2);

@@ -41,6 +41,27 @@ std::shared_ptr<const ClusterClassifier> byLength(float pair = -4, float person 
       std::array<double, kClusterKinds>{0.2, 0.2, 0.2, 0.15, 0.05, 0.2}, memory, Provenance{});
 }
 
+/// Scores vehicles alone: up to 3 m of length `shorter`, above `longer`; things 0, others -6.
+std::shared_ptr<const ClusterClassifier> vehiclesByLength(float shorter, float longer) {
+  BoostedTrees trees;
+  const auto add = [&](float low, float high) {
+    const auto root = static_cast<std::int32_t>(trees.nodes.size());
+    trees.roots.push_back(root);
+    trees.nodes.push_back({static_cast<std::int16_t>(Feature::kLength), 3.0f, root + 1, root + 2});
+    trees.nodes.push_back({-1, low, 0, 0});
+    trees.nodes.push_back({-1, high, 0, 0});
+  };
+  for (std::size_t k = 0; k < kClusterKinds; ++k) {
+    const bool thing = k == static_cast<std::size_t>(ClusterKind::kThing);
+    const bool vehicle = k == static_cast<std::size_t>(ClusterKind::kVehicle);
+    add(vehicle ? shorter : thing ? 0 : -6, vehicle ? longer : thing ? 0 : -6);
+  }
+  return std::make_shared<const ClusterClassifier>(
+      trees, std::array<Calibration, kClusterKinds>{},
+      std::array<double, kClusterKinds>{0.2, 0.2, 0.2, 0.15, 0.05, 0.2}, EvidenceMemory{},
+      Provenance{});
+}
+
 /// A van seen from the side, a person, and a wall of 8 m.
 SolidScene street() {
   SolidScene scene;
@@ -104,6 +125,33 @@ TEST(JudgedClusters, WhatIsWiderThanAnyRoadUserIsNone) {
   };
   EXPECT_EQ(vehicles(2.5), 1u);
   EXPECT_EQ(vehicles(4.5), 0u) << "a house";
+}
+
+TEST(JudgedClusters, WhatIsLongAndLowIsNoVehicle) {
+  const auto vehicles = [](double length, double height) {
+    SolidScene scene;
+    scene.boxes = {{{13, 0}, kPi / 2, length, 2, 0.25, height}};
+    scene.cylinders = {{{30, -14}, 0.3, 0, 6}};  // shows how high the view reaches
+    const Judged judged(scene, vehiclesByLength(4, 4));
+    return std::count_if(judged.clusters.begin(), judged.clusters.end(), [&](const auto& c) {
+      return std::abs(judged.middleOf(c).y()) < 5;
+    });
+  };
+  EXPECT_EQ(vehicles(9, 2.4), 1) << "a bus, as high as the view";
+  EXPECT_EQ(vehicles(9, 1.6), 0) << "a hedge";
+  EXPECT_EQ(vehicles(4.5, 1.6), 1) << "a car";
+}
+
+TEST(JudgedClusters, PartsOfWhatHasRoomForOneVehicleAreNoVehicles) {
+  const auto vehicles = [](double half, float whole) {  // [m]: of the two parts of a side
+    SolidScene scene;
+    for (const double sign : {-1, 1})
+      scene.boxes.push_back({{12, sign * (half / 2 + 0.11)}, kPi / 2, half, 0.3, 0.25, 1.4});
+    return Judged(scene, vehiclesByLength(1.5f, whole)).clusters.size();
+  };
+  EXPECT_EQ(vehicles(2.1, 0.5f), 1u) << "a car by .62, each half by .82";
+  EXPECT_EQ(vehicles(2.1, -0.3f), 2u) << "by .43";
+  EXPECT_EQ(vehicles(2.95, 0.5f), 2u) << "there is room for two";
 }
 
 TEST(JudgedClusters, WhatIsSurelyAPhantomIsLeftOutAndSaidOfItsReturns) {
