@@ -22,11 +22,11 @@ TEST(LiveTrack, ItsResultsAreThoseOfItsRecord) {
   const std::string record = live.folder / "record";
   const Ended ended =
       live.track(playedDemo(live.folder, "speed = 4\n"),
-                 {"--duration", "2.5", "--record", record, "--set", "run.reorder_window=0.02"});
+                 {"--duration", "2.5", "--record", record, "--set", "run.reorder_window=0.2"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   EXPECT_GT(live.scenes(), 30U);
   ASSERT_EQ(
-      recorded.track(record + "/capture_0001.rawlog", {"--set", "run.reorder_window=0.02"}).code,
+      recorded.track(record + "/capture_0001.rawlog", {"--set", "run.reorder_window=0.2"}).code,
       0);
   for (const char* table : {"/tracks.csv", "/scenes.csv"})
     EXPECT_EQ(contentOf(live.dir + table), contentOf(recorded.dir + table)) << table;
