@@ -208,7 +208,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
       if (const auto yaw = lengthAxis(c, f, track, *m.sides))
         f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
     }
-    if (c.reported) f.extent = boundedExtent(f.extent, c);
+    if (c.reported && c.motion->has_heading) f.extent = boundedExtent(f.extent, c);
     track.log_class[i] +=
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
