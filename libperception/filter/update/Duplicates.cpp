@@ -25,6 +25,7 @@ struct Footprint {
   double area = 0;       // [m^2]
   bool sure = false;     // of its class
   bool vehicle = false;  // more likely than not
+  bool person = false;   // or a cyclist, more likely than not
   Stamp last_hit;
   bool fresh = true;  // of this scan
   bool oriented = false;
@@ -48,6 +49,9 @@ Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
   const double log_class = t.log_class[static_cast<std::size_t>(best)];
   out.sure = log_class >= kLogSureClass;
   out.vehicle = log_class >= kLogLikelyClass && model.classes[best].motion->has_heading;
+  const ObjectShape shape = model.classes[best].shape;
+  out.person = log_class >= kLogLikelyClass &&
+               (shape == ObjectShape::kPedestrian || shape == ObjectShape::kCyclist);
   out.area = 4 * out.half.x() * out.half.y();
   out.last_hit = *std::max_element(t.last_hit.begin(), t.last_hit.end());
   return out;
@@ -103,7 +107,8 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
       const bool first = feet[i].id < feet[j].id;
       const std::size_t older = first ? i : j, younger = first ? j : i;
       Conflict conflict{older, younger, nullptr};
-      const bool fragment = !swallows(older) && !both && feet[younger].oriented;
+      const bool fragment =
+          !swallows(older) && !both && feet[younger].oriented && !feet[older].person;
       const bool stale = now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now;
       if (stale && isGhost(*tracks[older]) && tracks[younger]->existence >= kThere)
         conflict = {younger, older, nullptr};

@@ -128,5 +128,30 @@ TEST(Duplicates, ALargeTrackReplacesItsOlderFragmentAndTwoVehiclesAreOne) {
   EXPECT_EQ(doubtful->likeliestClass(), 0) << "a footprint without a heading may be a hedge";
 }
 
+TEST(Duplicates, APersonWhomACarIsPutOverDoesNotBecomeTheCar) {
+  FilterModel model = test::threeClassModel();
+  model.params.merge_area = 2;
+  const auto older = [&](ObjectShape shape) {
+    model.classes.classes[0].shape = shape;
+    Track small = carWith(1, 0.999, 20, 0), car = carWith(2, 0.999, 3, 0);
+    for (Track* t : {&small, &car}) {
+      const Extent extent = t == &car ? Extent{4, 2, 0.1, 0.1} : Extent{0.5, 0.5, 0.1, 0.1};
+      const std::size_t likeliest = t == &car ? 2 : 0;
+      t->bank.assign(3, t->bank[0]);
+      t->bank[likeliest].extent = extent;
+      t->bank[2].oriented = t == &car;
+      t->log_class.assign(3, std::log(0.005));
+      t->log_class[likeliest] = std::log(0.99);
+    }
+    TrackTable tracks = {std::make_shared<const Track>(small), std::make_shared<const Track>(car)};
+    const DuplicateTable duplicates(model, kNow, tracks);
+    duplicates.appendReplacements(tracks);
+    return tracks[duplicates.merged({0, 1}).front()];
+  };
+  EXPECT_EQ(older(ObjectShape::kPedestrian)->id, 1U);
+  EXPECT_EQ(older(ObjectShape::kPedestrian)->likeliestClass(), 0);
+  EXPECT_EQ(older(ObjectShape::kThing)->likeliestClass(), 2) << "a fragment of it";
+}
+
 }  // namespace
 }  // namespace perception
