@@ -31,6 +31,7 @@ ClassId classOfTruth(const std::string& type, const std::vector<std::string>& cl
 /// Type of an area or a place that the truth does not label: what stands there is neither right nor
 /// false.
 inline constexpr const char* kAreaType = "DontCare";
+/// Case-insensitive.
 bool isArea(const TruthObject& object);
 
 TruthUse useOf(const TruthObject& object, const GroundView& view, ClassId class_id,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace perception {
 
@@ -186,6 +188,20 @@ EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params) {
   }
   resize(points, kept);
   return points;
+}
+
+/// A subsample suffices: the highest beam has its share of the returns.
+double topSlope(const EgoPoints& points) {
+  constexpr std::size_t kSample = 16000;
+  const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
+             sz = static_cast<float>(points.sensor.z());
+  const std::size_t stride = 1 + points.size() / kSample;
+  float top = -std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    const float dx = points.x[i] - sx, dy = points.y[i] - sy;
+    top = std::max(top, (points.z[i] - sz) / std::sqrt(dx * dx + dy * dy));
+  }
+  return static_cast<double>(top);
 }
 
 }  // namespace perception

@@ -38,4 +38,8 @@ struct EgoPoints {
 /// dirt, evenly subsampled to max_points. Empty for a frame without a point cloud.
 EgoPoints usablePoints(const SensorFrame& frame, const PointParams& params);
 
+/// Tangent of the highest beam's elevation [-], from a subsample of the returns; minus infinity for
+/// none.
+double topSlope(const EgoPoints& points);
+
 }  // namespace perception

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "libperception/lidar/BoxFit.h"
-#include "libperception/lidar/LidarMeasurements.h"
 #include "libperception/lidar/LooseReturns.h"
 #include "libperception/lidar/PhantomMix.h"
 #include "libperception/measurement/FootprintInView.h"
@@ -146,7 +145,8 @@ PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::ui
 
 /// Of a vehicle that no second one fits into: its parts are no vehicles [m] (assumed).
 constexpr float kOneVehicle[2] = {6, 2.5f};
-/// Probability from which it is one, if none of its parts is somebody and two may be vehicles.
+/// Probability from which it is one, if none of its parts is a person or a cyclist and two may be
+/// vehicles.
 constexpr double kLikelyWhole = 0.5, kPerhaps = 0.2;
 
 bool holdsOneVehicle(const Descriptor& d) {
@@ -158,15 +158,16 @@ bool holdsOneVehicle(const Descriptor& d) {
 std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
                            const std::vector<Probabilities>& probabilities) {
   const std::size_t n = clusters.size();
-  std::vector<double> somebody(n, 0), vehicle(n, 0);  // the likeliest over all parts of parts
-  std::vector<int> vehicles(n, 0);                    // parts that may be some
-  for (std::size_t i = n; i-- > 0;) {                 // parts come after their whole
+  // The likeliest over all parts of parts; `person`: or a cyclist.
+  std::vector<double> person(n, 0), vehicle(n, 0);
+  std::vector<int> vehicles(n, 0);     // parts that may be some
+  for (std::size_t i = n; i-- > 0;) {  // parts come after their whole
     const int whole = clusters[i].segment.whole;
     if (whole < 0) continue;
     const auto w = static_cast<std::size_t>(whole);
     const Probabilities& p = probabilities[i];
-    somebody[w] = std::max(
-        {somebody[w], somebody[i], at(p, ClusterKind::kPedestrian), at(p, ClusterKind::kCyclist)});
+    person[w] = std::max(
+        {person[w], person[i], at(p, ClusterKind::kPedestrian), at(p, ClusterKind::kCyclist)});
     vehicle[w] = std::max({vehicle[w], vehicle[i], at(p, ClusterKind::kVehicle)});
     vehicles[w] += at(p, ClusterKind::kVehicle) >= kPerhaps;
   }
@@ -176,10 +177,10 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
     const bool reached = whole < 0 || in_parts[static_cast<std::size_t>(whole)];
     const double own = roadUser(probabilities[i]);
     const bool one_vehicle = at(probabilities[i], ClusterKind::kVehicle) >= kLikelyWhole &&
-                             somebody[i] < kLeastPart && vehicles[i] > 1 &&
+                             person[i] < kLeastPart && vehicles[i] > 1 &&
                              holdsOneVehicle(clusters[i].descriptor);
     in_parts[i] = reached && own < kSureWhole && !one_vehicle &&
-                  std::max(somebody[i], vehicle[i]) > std::max(kLeastPart, own);
+                  std::max(person[i], vehicle[i]) > std::max(kLeastPart, own);
     stands[i] = reached && !in_parts[i];
   }
   return stands;
@@ -190,16 +191,14 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
                          const ClusterClassifier& classifier) {
   std::vector<Probabilities> probabilities;
-  std::vector<double> own;  // of the likeliest road user
   const DirectionCells cells(found.points);
-  const double slope = topSlope(found);
   auto clusters = describedClusters(found, cloud, cells, [&](const DescribedCluster& cluster) {
     const auto range =
         static_cast<double>(cluster.descriptor[static_cast<std::size_t>(Feature::kRange)]);
     const auto p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor,
-                              found.points.sensor.z() + slope * range);
-    probabilities.push_back(p), own.push_back(roadUser(p));
-    return own.back() < kSureWhole &&
+                              found.points.sensor.z() + found.top_slope * range);
+    probabilities.push_back(p);
+    return roadUser(p) < kSureWhole &&
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
   });
   const std::size_t n = clusters.size();
@@ -218,7 +217,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     for (const std::uint32_t point : clusters[i].segment.points)
       judgement.phantom[point] = static_cast<float>(phantom);
     ++judgement.verdicts.clusters;
-    if (phantom > kSurePhantom && own[i] < kHardlyRoadUser) {
+    if (phantom > kSurePhantom && roadUser(probabilities[i]) < kHardlyRoadUser) {
       judgement.verdicts.phantoms.push_back(phantomOf(found, clusters[i].segment.points, phantom));
       continue;
     }

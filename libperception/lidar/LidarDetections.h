@@ -25,9 +25,13 @@ struct JudgedCluster {
 /// Detections of one scan, in the ego frame: for the tracker, for pictures and for the safety grid.
 struct LidarDetections {
   LidarDetections(EgoPoints points_, std::vector<float> height_, GroundSurface surface_)
-      : points(std::move(points_)), height(std::move(height_)), surface(std::move(surface_)) {}
+      : points(std::move(points_)),
+        top_slope(topSlope(points)),
+        height(std::move(height_)),
+        surface(std::move(surface_)) {}
 
   EgoPoints points;                      ///< usable returns
+  double top_slope;                      ///< [-] tangent of the highest beam's elevation
   std::vector<float> height;             ///< [m] of each point above the local ground
   std::vector<std::uint32_t> obstacles;  ///< indices into points, in the scan's order
   std::vector<float> x, y, above;        ///< [m] position of the obstacles and height above ground

@@ -149,8 +149,8 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
       occlusionMapOf(found, frame.ego.T_world_ego, scan.state.T_world_sensor, obstacles);
   scan.occlusion = occlusion;
 
-  const ScanContext context{frame,      found, params_,         scan.state.T_world_sensor,
-                            *occlusion, fov_,  topSlope(found), classifier_ != nullptr};
+  const ScanContext context{
+      frame, found, params_, scan.state.T_world_sensor, *occlusion, fov_, classifier_ != nullptr};
   const Vector2 sensor = found.points.sensor.head<2>();
   const auto add = [&scan](Measurement m) {
     m.detection = static_cast<int>(scan.measurements.size());

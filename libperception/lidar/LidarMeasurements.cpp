@@ -38,8 +38,9 @@ void fillVertical(const ScanContext& scan, const Vector2& place, double lowest, 
   const Vector3 sensor = scan.found.points.sensor;
   const double range = (place - sensor.head<2>()).norm();
   const double ground = scan.found.surface.heightAt(place.x(), place.y());
-  const bool cut = highest > scan.params.obstacles.height_max - 0.15 ||
-                   (ground + highest - sensor.z()) / range > scan.top_slope - 2 * kBeamSpacing;
+  const bool cut =
+      highest > scan.params.obstacles.height_max - 0.15 ||
+      (ground + highest - sensor.z()) / range > scan.found.top_slope - 2 * kBeamSpacing;
   const double top_sigma =
       cut ? kCutSigma : std::hypot(partly_hidden ? 0.3 : kTopSigma, 0.5 * kBeamSpacing * range);
   m.height = ScalarEstimate{highest - base, top_sigma * top_sigma + base_sigma * base_sigma};
@@ -108,21 +109,6 @@ std::shared_ptr<const OcclusionMap> occlusionMapOf(const LidarDetections& found,
     occlusion->add(origin + range * Vector2(std::cos(bearing), std::sin(bearing)));
   }
   return occlusion;
-}
-
-/// A subsample suffices: the highest beam has its share of the returns.
-double topSlope(const LidarDetections& found) {
-  constexpr std::size_t kSample = 16000;
-  const EgoPoints& points = found.points;
-  const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
-             sz = static_cast<float>(points.sensor.z());
-  const std::size_t stride = 1 + points.size() / kSample;
-  float top = -std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < points.size(); i += stride) {
-    const float dx = points.x[i] - sx, dy = points.y[i] - sy;
-    top = std::max(top, (points.z[i] - sz) / std::sqrt(dx * dx + dy * dy));
-  }
-  return static_cast<double>(top);
 }
 
 Measurement measurementOf(const ScanContext& scan, const Cluster& cluster) {

@@ -12,9 +12,8 @@ struct ScanContext {
   const LidarParams& params;
   Pose3 T_world_sensor;
   const OcclusionMap& occlusion;
-  double fov;        ///< [rad]
-  double top_slope;  ///< [-] tangent of the highest beam's elevation
-  bool classified;   ///< clusters are told by their shape
+  double fov;       ///< [rad]
+  bool classified;  ///< clusters are told by their shape
 };
 
 /// Occlusion map from the second nearest occluding return of every direction: a single one may be a
@@ -23,9 +22,6 @@ std::shared_ptr<const OcclusionMap> occlusionMapOf(const LidarDetections& found,
                                                    const Pose3& T_world_ego,
                                                    const Pose3& T_world_sensor,
                                                    const ObstacleParams& params);
-
-/// Tangent of the highest beam's elevation, from a subsample of the returns.
-double topSlope(const LidarDetections& found);
 
 /// Converts a detection into a measurement (z, R), world frame.
 Measurement measurementOf(const ScanContext& scan, const Cluster& cluster);
