@@ -186,6 +186,14 @@ checkFormat() {
   sources libperception gui-offscreen studies apps tests | xargs -n 40 -P "$(jobs)" clang-format-14 --dry-run -Werror
 }
 
+# checked NAME CHECK: the closing lines say how it went
+checked() {
+  local code=0
+  "$2" || code=$?
+  closing+="$1: $( ((code == 0)) && echo passed || echo FAILED )"$'\n'
+  return "$code"
+}
+
 # Modules that are clean and cheap: 1 to 6 s a source, a CPU-minute in all. Tests stay out, and so
 # do loops that shuffle g++'s vectors. Clang cannot read g++'s precompiled headers: it gets compile
 # commands of its own, without.
@@ -202,9 +210,9 @@ tests() {
   makeCommaLocale
   closing="" skipped=""
   local failed=0
-  checkFormat || failed=1
+  checked format checkFormat || failed=1
   build release ON
-  checkHabits || failed=1
+  checked clang-tidy checkHabits || failed=1
   runTests release build || failed=1
   sanitized asan core config sensors || failed=1
   closingLines

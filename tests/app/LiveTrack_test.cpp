@@ -26,8 +26,7 @@ TEST(LiveTrack, ItsResultsAreThoseOfItsRecord) {
   ASSERT_EQ(ended.code, 0) << ended.err;
   EXPECT_GT(live.scenes(), 30U);
   ASSERT_EQ(
-      recorded.track(record + "/capture_0001.rawlog", {"--set", "run.reorder_window=0.2"}).code,
-      0);
+      recorded.track(record + "/capture_0001.rawlog", {"--set", "run.reorder_window=0.2"}).code, 0);
   for (const char* table : {"/tracks.csv", "/scenes.csv"})
     EXPECT_EQ(contentOf(live.dir + table), contentOf(recorded.dir + table)) << table;
   const auto timing = nlohmann::json::parse(contentOf(live.dir + "/timing.json"));

@@ -133,9 +133,8 @@ TEST(JudgedClusters, WhatIsLongAndLowIsNoVehicle) {
     scene.boxes = {{{13, 0}, kPi / 2, length, 2, 0.25, height}};
     scene.cylinders = {{{30, -14}, 0.3, 0, 6}};  // shows how high the view reaches
     const Judged judged(scene, vehiclesByLength(4, 4));
-    return std::count_if(judged.clusters.begin(), judged.clusters.end(), [&](const auto& c) {
-      return std::abs(judged.middleOf(c).y()) < 5;
-    });
+    return std::count_if(judged.clusters.begin(), judged.clusters.end(),
+                         [&](const auto& c) { return std::abs(judged.middleOf(c).y()) < 5; });
   };
   EXPECT_EQ(vehicles(9, 2.4), 1) << "a bus, as high as the view";
   EXPECT_EQ(vehicles(9, 1.6), 0) << "a hedge";

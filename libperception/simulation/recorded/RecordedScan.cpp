@@ -54,8 +54,14 @@ struct Shot {
   LidarEcho echo;
 };
 
-// As instruments report it, in 8 bits: the faintest have 0.
-double inSteps(double intensity) { return std::round(255 * intensity) / 255; }
+/// Step in which this recording reports intensities: its least one above 0, within 1/255 and 0.02.
+double intensityStep(const LidarCloud& cloud) {
+  constexpr float kLeast = 1.0F / 255, kMost = 0.02F;
+  float step = kMost;
+  for (const float intensity : cloud.intensity)
+    if (intensity > 0) step = std::min(step, intensity);
+  return static_cast<double>(std::max(step, kLeast));
+}
 
 template <class T>
 void addIf(std::vector<T>& to, const std::vector<T>& from, std::size_t i) {
@@ -72,6 +78,7 @@ class RecordedPulses {
         T_world_sensor_(T_world_sensor),
         key_(key),
         least_(0.9 / (lidar.reference_range * lidar.reference_range)),
+        step_(intensityStep(cloud)),
         places_(placesOf(cloud, T_world_sensor)),
         road_(places_, T_world_sensor.translation()) {}
 
@@ -109,6 +116,8 @@ class RecordedPulses {
   }
 
  private:
+  // As the instrument reports it: the faintest have 0.
+  double inSteps(double intensity) const { return step_ * std::round(intensity / step_); }
   static std::vector<Vector3> placesOf(const LidarCloud& cloud, const Pose3& T_world_sensor) {
     std::vector<Vector3> places(cloud.size());
     for (std::size_t i = 0; i < places.size(); ++i)
@@ -156,6 +165,7 @@ class RecordedPulses {
   Pose3 T_world_sensor_;
   RngKey key_;
   double least_;                 // P_min [1/m^2]
+  double step_;                  // of intensities
   std::vector<Vector3> places_;  // [m] world
   RoadReturns road_;
 };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/World.h"
@@ -79,6 +80,24 @@ TEST(RecordedScan, FlakesAreOnTheBeamsThatReturnedAndOnThoseThatDidNot) {
   }
   EXPECT_GT(left, 20);
   EXPECT_GT(right, 20);
+}
+
+TEST(RecordedScan, FlakesHaveIntensitiesInTheStepsOfTheRecording) {
+  for (const float step : {0.004f, 0.01f}) {
+    Snow snow(20, 1);
+    LidarCloud cloud = wallCloud(30, 0.5f);
+    cloud.intensity[0] = step;
+    const Played p = play(snow, cloud);
+    int flakes = 0, bright = 0;
+    for (std::size_t i = 0; i < p.scan.cloud.size(); ++i) {
+      if (p.scan.phantoms[i] != Phantom::kSnow) continue;
+      const float steps = p.scan.cloud.intensity[i] / step;
+      EXPECT_NEAR(steps, std::round(steps), 1e-3) << p.scan.cloud.intensity[i];
+      ++flakes, bright += p.scan.cloud.intensity[i] > 0;
+    }
+    EXPECT_GT(flakes, 20);
+    EXPECT_GT(bright, 0);
+  }
 }
 
 TEST(RecordedScan, ThreadsDoNotMatter) {
