@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/KeptHeap.h"
 #include "libperception/core/MemoryLimit.h"
 #include "libperception/pipeline/Progress.h"
 
@@ -149,6 +150,7 @@ void App::warn(const std::string& message) {
 
 int runApp(App& app, int argc, const char* const* argv) {
   app.warnings_ = 0;
+  keepFreedMemory();
   CLI::App cli(app.description(), app.name());
   cli.formatter(std::make_shared<Formatter>());
   cli.set_version_flag("--version", fmt::format("{} {}", app.name(), PERCEPTION_VERSION));
