@@ -94,6 +94,7 @@ LidarFrontEnd::LidarFrontEnd(const LidarParams& params, const ClassTable& classe
                              std::shared_ptr<const ClusterClassifier> classifier)
     : params_(params),
       fov_(detection_model.params().fov),
+      reach_(detection_model.params().range_max),
       classes_(classes),
       classifier_(std::move(classifier)) {
   if (classifier_) {
@@ -152,6 +153,12 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
   const ScanContext context{
       frame, found, params_, scan.state.T_world_sensor, *occlusion, fov_, classifier_ != nullptr};
   const Vector2 sensor = found.points.sensor.head<2>();
+  // What lies beyond the sensor's range_max has no chance of detection: it would be a new track in
+  // every scan. The sensor's own place is no object.
+  const auto reached = [&](const std::vector<Vector2>& hull) {
+    const double range = distanceToHull(hull, sensor);
+    return range > 0 && range <= reach_;
+  };
   const auto add = [&scan](Measurement m) {
     m.detection = static_cast<int>(scan.measurements.size());
     scan.measurements.push_back(std::move(m));
@@ -160,7 +167,7 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     Cluster outline;
     outline.points = cluster.points;
     describeCluster(found.x, found.y, found.above, outline);
-    if (distanceToHull(outline.hull, sensor) <= 0) continue;
+    if (!reached(outline.hull)) continue;
     Measurement m = measurementOf(context, cluster, std::move(outline));
     m.log_class.reserve(classes_.classes.size());
     for (const ObjectClass& c : classes_.classes)
@@ -168,8 +175,9 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     add(std::move(m));
   }
   for (const Cluster& cluster : found.clusters)
-    if (distanceToHull(cluster.hull, sensor) > 0) add(measurementOf(context, cluster));
-  for (const PersonPeak& peak : found.persons) add(measurementOf(context, peak));
+    if (reached(cluster.hull)) add(measurementOf(context, cluster));
+  for (const PersonPeak& peak : found.persons)
+    if ((peak.center - sensor).norm() <= reach_) add(measurementOf(context, peak));
   scan.verdicts = std::move(found.verdicts);
   PlacedReturns returns =
       placedReturns(std::move(found.points), std::move(found.height), params_.points, obstacles);

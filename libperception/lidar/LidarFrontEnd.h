@@ -94,7 +94,8 @@ class LidarFrontEnd final : public FrontEnd {
 
  private:
   LidarParams params_;
-  double fov_;  ///< [rad]
+  double fov_;    ///< [rad]
+  double reach_;  // [m] of the nearest point of an object
   ClassTable classes_;
   std::shared_ptr<const ClusterClassifier> classifier_;  ///< null: told by size
   std::shared_ptr<const FootprintModel> model_;

@@ -17,12 +17,14 @@ using test::castScan;
 using test::SolidScene;
 using test::SpinningLidar;
 
-LidarFrontEnd frontEnd(const LidarParams& params = {}) {
+LidarFrontEnd frontEnd(const LidarParams& params = {}, const DetectionParams& detection = {},
+                       std::shared_ptr<const ClusterClassifier> classifier = nullptr) {
   ClassTable classes;
   classes.classes.resize(1);
-  return LidarFrontEnd(params, classes,
-                       DetectionModel(DetectionParams{}, {ClassDetection{}},
-                                      LidarFrontEnd::labels(params.clusters)));
+  return LidarFrontEnd(
+      params, classes,
+      DetectionModel(detection, {ClassDetection{}}, LidarFrontEnd::labels(params.clusters)),
+      std::move(classifier));
 }
 
 /// A car ahead to the left, a person ahead to the right, both alone.
@@ -66,6 +68,18 @@ TEST(LidarFrontEnd, SeesACarAndAPersonAndNothingElse) {
   EXPECT_LT((person->position - Vector2(10, -3)).norm(), 0.4);
   EXPECT_EQ(scan.modality, Modality::kLidar);
   EXPECT_TRUE(scan.model && scan.occlusion);
+}
+
+// There, no track has a chance of detection: each scan would bear a new one.
+TEST(LidarFrontEnd, WhatBeginsBeyondTheRangeOfTheSensorIsNotMeasured) {
+  DetectionParams detection;
+  detection.range_max = 11;  // the person stands at 10.4 m, the car begins at 12 m
+  const SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
+  for (const auto& classifier : {std::shared_ptr<const ClusterClassifier>(), alwaysVehicle()}) {
+    const MeasurementScan scan = frontEnd({}, detection, classifier).extract(frame);
+    ASSERT_EQ(scan.measurements.size(), 1u);
+    EXPECT_LT((scan.measurements[0].position - Vector2(10, -3)).norm(), 0.4);
+  }
 }
 
 TEST(LidarFrontEnd, MeasuresTheOutlineWithinItsNoise) {
