@@ -63,6 +63,8 @@ ScalarEstimate groundSpeed(const Measurement& m, const SensorState& sensor) {
 void RadarModelParams::visit(ParamVisitor& v) {
   v.real("occluded_detection", occluded_detection, {0, 1}, "",
          "factor of P_D for objects that a lidar reports as occluded");
+  v.real("innovation_share", innovation_share, {1e-3, 1}, "",
+         "of [filter] kinematic_exponent: range, bearing and rate as evidence of the class");
   v.expert();
   v.real(
       "min_birth_speed", min_birth_speed, {0, 50}, "m/s",

@@ -27,6 +27,9 @@ struct RadarModelParams {
   /// Share of the object's depth along the line of sight that is added to the deviation of the
   /// range: returns also come from wheels and the inside; method.md (17).
   double depth_share = 0.15;
+  /// Share of the filter's exponent with which range, bearing and rate tell the class: the errors
+  /// of one object's returns repeat, and of an object that stands each one says so again.
+  double innovation_share = 1;
 
   void visit(ParamVisitor& v);
 };
@@ -59,6 +62,7 @@ class RadarModel final : public MeasurementModel {
   double detectionExponent() const override {
     return detection_model().params().detection_exponent;
   }
+  double innovationShare() const override { return params_.innovation_share; }
   double logLabelLikelihood(int, ClassId) const override { return 0; }  ///< radars give no labels
   double logLabelClutter(int) const override { return 0; }
   double logClutterDensity(const Measurement& m, const SensorState& sensor) const override;

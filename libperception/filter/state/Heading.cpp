@@ -14,9 +14,6 @@ constexpr double kMemory = 0.98, kLogOddsLimit = 6, kForward = 0.97, kReverseAt 
 /// twice as large.
 constexpr double kLimitWithRepeats = 12;
 constexpr double kLeastFlip = 1e-3;  // lower bound of the flip probability
-/// Share of stray axes, uniform instead of within their sigma of the object's: 1 % of Geiger's on
-/// KITTI lie beyond 22.5 deg (method.md 7).
-constexpr double kStray = 0.01;
 
 double flipProbability(const MeasuredHeading& seen) {
   return std::clamp(seen.flip_probability, kLeastFlip, 0.5);
@@ -74,7 +71,7 @@ double logHeadingRatio(const MeasuredHeading& seen, double theta, double theta_v
 
 FrontBackAmbiguity firstFrontBack(const MeasuredHeading& seen) {
   FrontBackAmbiguity bit = nextFrontBack({}, true, seen);
-  bit.axis_log_odds = std::min(std::log((1 - kStray) / kStray), kLogOddsLimit);
+  bit.axis_log_odds = std::min(std::log((1 - kStrayAxes) / kStrayAxes), kLogOddsLimit);
   return bit;
 }
 
@@ -90,12 +87,12 @@ FrontBackAmbiguity nextFrontBack(const FrontBackAmbiguity& bit, bool same,
 }
 
 double nextAxisLogOdds(const FrontBackAmbiguity& bit, const MeasuredHeading& seen, double theta,
-                       double theta_variance) {
+                       double theta_variance, double stray) {
   const HeadingResidual r = headingResidual(seen, theta, HeadingMode::kSplit);
   const double variance = r.variance + theta_variance;
   const double near = std::exp(-0.5 * r.y * r.y / variance) / std::sqrt(kTwoPi * variance);
   const double evidence =
-      std::log((1 - kStray) * kPi * near + kStray);  // over the axes' uniform density of 1 / pi
+      std::log((1 - stray) * kPi * near + stray);  // over the axes' uniform density of 1 / pi
   return std::clamp(kMemory * bit.axis_log_odds + evidence, -kLogOddsLimit, kLogOddsLimit);
 }
 

@@ -62,13 +62,17 @@ bool holds(const Footprint& f, const Vector2& p) {
   return std::abs(own.x()) <= f.half.x() && std::abs(own.y()) <= f.half.y();
 }
 
-/// The younger track's state with the older track's id; its class, too, if the older one was a
-/// fragment of it.
+/// The younger track's state with the older track's id and class, with all that has been counted in
+/// that; with its own class if the older one was a fragment of it.
 TrackHandle takeOver(const Track& older, const Track& younger, bool fragment) {
   Track t = younger;
   t.id = older.id;
   t.birth = older.birth;
-  if (!fragment) t.log_class = older.log_class;
+  if (!fragment) {
+    t.log_class = older.log_class;
+    t.evidence = older.evidence;
+    t.length = older.length, t.width = older.width, t.height = older.height;
+  }
   t.phantom = std::min(older.phantom, younger.phantom);
   t.previous = older.previous;
   for (std::size_t i = 0; i < t.hits.size(); ++i) t.hits[i] += older.hits[i];
@@ -112,6 +116,8 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
       const bool stale = now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now;
       if (stale && isGhost(*tracks[older]) && tracks[younger]->existence >= kThere)
         conflict = {younger, older, nullptr};
+      else if (stale && feet[older].person && feet[younger].vehicle)
+        continue;  // hidden behind it, not what it is
       else if ((fragment || stale) &&
                tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
         conflict.replacement = takeOver(*tracks[older], *tracks[younger], fragment);

@@ -14,6 +14,10 @@ namespace {
 /// object moves.
 constexpr double kSureSpeed = 3;
 
+/// Clusters show the wrong one of their sides more often than image boxes a wrong heading, and do
+/// so again in the next scan (assumed).
+constexpr double kStrayClusterAxes = 0.2, kDenied = -3;
+
 bool movesAlongItsAxis(const ClassFilter& f, const FilterParams& p) {
   return std::abs(f.x[2]) > std::max(p.orient_min_speed, kSureSpeed * std::sqrt(f.P(2, 2)));
 }
@@ -66,6 +70,18 @@ void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
   const bool back = f.heading.measured() ? asksForReversal(f.heading, f.x[2], f.P(2, 2), p.heading)
                                          : clearly_back;
   if (back) reverse(f);
+}
+
+bool boxDeniesAxis(const Measurement& m, const std::optional<BirthState>& birth,
+                   const FilterParams& p, ClassFilter& f) {
+  if (!f.oriented || m.heading || !m.sides || !birth || !birth->yaw) return false;
+  f.heading.driven = f.heading.driven || movesAlongItsAxis(f, p);
+  if (f.heading.driven) return false;
+  MeasuredHeading seen;
+  seen.yaw = birth->yaw->mean;
+  seen.sigma = std::hypot(std::sqrt(birth->yaw->variance), p.shape_yaw_sigma);
+  f.heading.axis_log_odds = nextAxisLogOdds(f.heading, seen, f.x[3], f.P(3, 3), kStrayClusterAxes);
+  return f.heading.axis_log_odds < kDenied;
 }
 
 void updateBodyHeading(const MeasuredHeading& seen, const FilterParams& params, Track& track) {

@@ -20,6 +20,13 @@ void useHeading(const MeasuredHeading& seen, const FilterParams& params, ClassFi
 void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
                  const FilterParams& params, ClassFilter& f);
 
+/// Whether the box of a lidar cluster, `birth`, repeatedly denies the axis of an oriented filter: a
+/// start along a chance motion of what was seen of it, at right angles to the object. Its extent
+/// and its center are then wrong, too: start anew from the box. Never when it surely moves along
+/// its axis, or once has. Call once a measurement.
+bool boxDeniesAxis(const Measurement& m, const std::optional<BirthState>& birth,
+                   const FilterParams& params, ClassFilter& f);
+
 /// The same as useHeading() for the body heading of an object whose state has no heading.
 void updateBodyHeading(const MeasuredHeading& seen, const FilterParams& params, Track& track);
 

@@ -203,6 +203,8 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
     }
+    if (boxDeniesAxis(m, birth, model.params, f))
+      f = restartFilter(c, *birth, kinematicsOf(c, f), model);
     if (c.motion->has_heading) findHeading(m, birth, model.params, f);
     if (m.sides) {
       if (const auto yaw = lengthAxis(c, f, track, *m.sides))

@@ -131,9 +131,9 @@ TEST(Duplicates, ALargeTrackReplacesItsOlderFragmentAndTwoVehiclesAreOne) {
 TEST(Duplicates, APersonWhomACarIsPutOverDoesNotBecomeTheCar) {
   FilterModel model = test::threeClassModel();
   model.params.merge_area = 2;
-  const auto older = [&](ObjectShape shape) {
+  const auto stay = [&](ObjectShape shape, double unseen) {
     model.classes.classes[0].shape = shape;
-    Track small = carWith(1, 0.999, 20, 0), car = carWith(2, 0.999, 3, 0);
+    Track small = carWith(1, 0.999, 20, unseen), car = carWith(2, 0.999, 3, 0);
     for (Track* t : {&small, &car}) {
       const Extent extent = t == &car ? Extent{4, 2, 0.1, 0.1} : Extent{0.5, 0.5, 0.1, 0.1};
       const std::size_t likeliest = t == &car ? 2 : 0;
@@ -146,11 +146,33 @@ TEST(Duplicates, APersonWhomACarIsPutOverDoesNotBecomeTheCar) {
     TrackTable tracks = {std::make_shared<const Track>(small), std::make_shared<const Track>(car)};
     const DuplicateTable duplicates(model, kNow, tracks);
     duplicates.appendReplacements(tracks);
-    return tracks[duplicates.merged({0, 1}).front()];
+    TrackTable kept;
+    for (const auto cell : duplicates.merged({0, 1})) kept.push_back(tracks[cell]);
+    return kept;
   };
-  EXPECT_EQ(older(ObjectShape::kPedestrian)->id, 1U);
-  EXPECT_EQ(older(ObjectShape::kPedestrian)->likeliestClass(), 0);
-  EXPECT_EQ(older(ObjectShape::kThing)->likeliestClass(), 2) << "a fragment of it";
+  const auto seen = stay(ObjectShape::kPedestrian, 0);
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0]->id, 1U);
+  EXPECT_EQ(seen[0]->likeliestClass(), 0);
+  EXPECT_EQ(stay(ObjectShape::kThing, 0)[0]->likeliestClass(), 2) << "a fragment of it";
+  EXPECT_EQ(stay(ObjectShape::kCyclist, 0.5).size(), 2U) << "hidden behind it";
+}
+
+TEST(Duplicates, AClassGoesWithWhatHasBeenCountedInIt) {
+  Track older = carWith(1, 0.999, 20, 0.5), younger = carWith(2, 0.999, 3, 0);
+  older.length = {4.5, 0.1}, younger.length = {2, 1};
+  older.evidence.push_back({7, kNow, {}, 3, {}});
+  TrackTable tracks = {std::make_shared<const Track>(older),
+                       std::make_shared<const Track>(younger)};
+  const DuplicateTable duplicates(model(), kNow, tracks);
+  duplicates.appendReplacements(tracks);
+  const auto cells = duplicates.merged({0, 1});
+  ASSERT_EQ(cells.size(), 1U);
+  const Track& kept = *tracks[cells.front()];
+  EXPECT_EQ(kept.last_hit[0], kNow) << "the state of the younger one";
+  EXPECT_EQ(kept.length.mean, 4.5);
+  ASSERT_EQ(kept.evidence.size(), 1U);
+  EXPECT_EQ(kept.evidence[0].views, 3);
 }
 
 }  // namespace

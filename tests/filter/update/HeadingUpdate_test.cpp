@@ -52,6 +52,31 @@ TEST(HeadingUpdate, AClearMotionHoldsItsAxis) {
   EXPECT_NEAR(f.x[2], 8, 1e-9);
 }
 
+/// Whether one of `n` boxes of a lidar with their long side along `yaw` denies the car's axis.
+bool deniedBy(int n, double yaw, ClassFilter& f) {
+  Measurement m;
+  m.sides.emplace();
+  BirthState box;
+  box.yaw = ScalarEstimate{yaw, 0.01};
+  for (int i = 0; i < n; ++i)
+    if (boxDeniesAxis(m, box, {}, f)) return true;
+  return false;
+}
+
+TEST(HeadingUpdate, BoxesAcrossItsAxisDenyIt) {
+  ClassFilter f = car(0);
+  ASSERT_FALSE(deniedBy(10, 0.1, f));
+  EXPECT_FALSE(deniedBy(4, kPi / 2, f)) << "a view may show the wrong side";
+  EXPECT_TRUE(deniedBy(4, kPi / 2, f));
+}
+
+TEST(HeadingUpdate, BoxesDoNotDenyTheAxisAlongWhichItHasDriven) {
+  ClassFilter f = car(0, 8);
+  ASSERT_FALSE(deniedBy(1, 0, f));
+  f.x[2] = 0;  // it stands at a light, a van seen from behind
+  EXPECT_FALSE(deniedBy(20, kPi / 2, f));
+}
+
 TEST(HeadingUpdate, ReversedHeadingsAreNoOtherAxis) {
   ClassFilter f = car(0.3);
   for (int i = 0; i < 20; ++i) after(1, i % 3 == 0 ? 0.3 + kPi : 0.3, f);
