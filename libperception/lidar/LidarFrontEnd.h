@@ -95,7 +95,7 @@ class LidarFrontEnd final : public FrontEnd {
  private:
   LidarParams params_;
   double fov_;    ///< [rad]
-  double reach_;  // [m] of the nearest point of an object
+  double reach_;  ///< [m] of the nearest point of an object
   ClassTable classes_;
   std::shared_ptr<const ClusterClassifier> classifier_;  ///< null: told by size
   std::shared_ptr<const FootprintModel> model_;

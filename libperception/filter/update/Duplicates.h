@@ -15,8 +15,9 @@ namespace perception {
 /// merged. The id of the older track is kept. Its
 /// state is kept, too, unless it has not been detected recently and the younger track is detected
 /// in this scan: then the state is that of the younger track (method.md 5.9), and its id, too, if
-/// the older one was detected only once and is likely not there. `merge_area` = 0: no merging.
-/// Computed once for all hypotheses.
+/// the older one was detected only once and is likely not there. A person or cyclist who has not
+/// been detected recently and a vehicle over them both stay: they are hidden behind it.
+/// `merge_area` = 0: no merging. Computed once for all hypotheses.
 class DuplicateTable {
  public:
   DuplicateTable() = default;

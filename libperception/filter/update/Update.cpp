@@ -135,6 +135,19 @@ ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const K
   return f;
 }
 
+/// Heading and extent of a class's filter by the heading and the box of the measurement; the whole
+/// filter anew where a box denies its axis.
+void updateShape(const ObjectClass& c, const Measurement& m, const std::optional<BirthState>& birth,
+                 const Track& track, const FilterModel& model, ClassFilter& f) {
+  if (boxDeniesAxis(m, birth, model.params, f)) f = startFilter(c, *birth, model);
+  if (c.motion->has_heading) findHeading(m, birth, model.params, f);
+  if (m.sides) {
+    if (const auto yaw = lengthAxis(c, f, track, *m.sides))
+      f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
+  }
+  if (c.reported && c.motion->has_heading) f.extent = boundedExtent(f.extent, c);
+}
+
 /// Log likelihood of the speed: constant up to the class's max_speed, then a Gaussian tail.
 double logSpeed(const ObjectClass& c, const ClassFilter& f, const FilterModel& model) {
   if (!c.motion->moves || model.params.speed_slack <= 0) return 0;
@@ -203,14 +216,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
     }
-    if (boxDeniesAxis(m, birth, model.params, f))
-      f = restartFilter(c, *birth, kinematicsOf(c, f), model);
-    if (c.motion->has_heading) findHeading(m, birth, model.params, f);
-    if (m.sides) {
-      if (const auto yaw = lengthAxis(c, f, track, *m.sides))
-        f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
-    }
-    if (c.reported && c.motion->has_heading) f.extent = boundedExtent(f.extent, c);
+    updateShape(c, m, birth, track, model, f);
     track.log_class[i] +=
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
