@@ -5,7 +5,7 @@
 # OUT/pictures/*.png; logs of the drive (some GB) are removed. The drive takes about two hours of processor time, the
 # pictures one minute.
 #   tests/bench/paper.sh [OUT, default out/paper] [options of perception-study paper, e.g. --seed 2]
-#   PARTS="tables drive pictures"  TRIALS=20  DRIVE_SECONDS=420  PERCEPTION_BIN=build/bin
+#   PARTS="tables drive pictures"  TRIALS=20  DRIVE_SECONDS=420  DRIVE_WEATHERS="sunny night"  PERCEPTION_BIN=build/bin
 set -euo pipefail
 if [[ ${1:-} == -h || ${1:-} == --help ]]; then
   sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0"
@@ -36,7 +36,7 @@ drive() {
   local weather sensors runs=$out/drive
   mkdir -p "$runs"
   echo condition,run,truth >"$runs/runs.csv"
-  for weather in sunny night wet_cloudy snow_rain; do
+  for weather in ${DRIVE_WEATHERS:-sunny night wet_cloudy snow_rain}; do
     quietly "$bin/perception-simulate" -c ini/scenarios/urban_drive.ini --weather "ini/weather/$weather.ini" \
       --set "scenario.duration=${DRIVE_SECONDS:-420}" -o "$runs/$weather.rawlog"
     for sensors in C+L+R L+R C+R; do

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "libperception/measurement/SensorFrame.h"
@@ -9,7 +8,8 @@ namespace perception {
 
 /// The beams of a recorded lidar, as far as its scans show them: a log holds returns, and none of
 /// the pulses that met nothing. A direction in which a scan had returns and another one has none is
-/// one of them. What never returned (the sky above all else) stays unknown.
+/// one of them, unless a pulse beside it shows that the beams have merely moved a little. What
+/// never returned (the sky above all else) stays unknown.
 class BeamPattern {
  public:
   /// A pulse without a return.
@@ -25,12 +25,15 @@ class BeamPattern {
   /// Directions within 0.2 deg of azimuth and 0.4 deg of elevation: the spacing of an HDL-64E.
   struct Cell {
     Vector3 direction = Vector3::UnitX();  // of its last return
+    double azimuth = 0, elevation = 0;     // [rad] of it
     double returns = 0;                    // of all scans
-    std::uint32_t scans = 0;               // with a return
+    std::uint32_t scans = 0;               // in which a pulse was seen here
     std::uint32_t last = 0;                // number of the last one
   };
-  std::unordered_map<std::uint32_t, std::size_t> number_;
-  std::vector<Cell> cells_;  // in the order of their first returns
+  void see(Cell& cell);
+
+  std::vector<std::uint32_t> number_;  // by direction: of its cell
+  std::vector<Cell> cells_;            // in the order of their first returns
   std::uint32_t scan_ = 0;
 };
 

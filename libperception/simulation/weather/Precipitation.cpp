@@ -48,6 +48,22 @@ double radarBackscatter(double rain_mm_h) {
   return rain_mm_h > 0 ? 1.156e-4 * std::pow(rain_mm_h, 0.714) : 0;
 }
 
+// At range r the least diameter is divergence r^2 / reference_range, and the beam's section is
+// pi/4 (divergence r)^2: the density of range is proportional to r^2 exp(-a r^2).
+DetectableParticles::DetectableParticles(const SizeDistribution& sizes, double divergence,
+                                         double reference_range) {
+  const double slope = 1000 * sizes.slope;  // [1/m]
+  const double a = slope * divergence / reference_range;
+  const double per_m3 = sizes.number / sizes.slope;
+  mean = per_m3 * kPi / 4 * divergence * divergence * std::sqrt(kPi) / 4 * std::pow(a, -1.5);
+  scale = std::sqrt(.5 / a);
+}
+
+double DetectableParticles::range(Rng& rng) const {
+  return scale * std::sqrt(std::pow(rng.normal(), 2) + std::pow(rng.normal(), 2) +
+                           std::pow(rng.normal(), 2));
+}
+
 double FalseReturnLaw::chance(double mm_h) const { return std::min(1.0, per_mm_h * mm_h); }
 
 double FalseReturnLaw::range(Rng& rng) const { return std::exp(rng.normal(log_mean, log_sigma)); }

@@ -30,6 +30,18 @@ double radarAttenuation(double rain_mm_h);
 /// [1/m] backscatter cross section of a volume of rain at 77 GHz, method.md (62).
 double radarBackscatter(double rain_mm_h);
 
+/// Drops or flakes of one beam whose echo a lidar detects before the open sky, by their sizes and
+/// the lidar equation (method.md 9.2): diameter D at range r sends back the share
+/// (D / (divergence r))^2 of a target of 90 %, which (57) detects up to reference_range.
+struct DetectableParticles {
+  double mean = 0;   ///< number in a beam, Poisson
+  double scale = 0;  ///< [m] their ranges have a Maxwell distribution of this scale
+
+  DetectableParticles() = default;
+  DetectableParticles(const SizeDistribution& sizes, double divergence, double reference_range);
+  double range(Rng& rng) const;  ///< [m] draws one
+};
+
 /// Returns of a lidar's beam from drops or flakes, as measured with a VLP-16 [linnhoff2022]
 /// (method.md 9.1, 9.2).
 struct FalseReturnLaw {

@@ -9,14 +9,14 @@ namespace perception {
 namespace {
 
 const std::vector<std::string> kSkies = {"as_scenario", "night", "cloudy", "sunny"};
-const std::vector<std::string> kPrecipitations = {"measured", "particles"};
+const std::vector<std::string> kPrecipitations = {"measured", "sizes", "particles"};
 
 }  // namespace
 
 void SimulatedWeatherParams::visit(ParamVisitor& v) {
-  v.choiceOf(
-      "precipitation", precipitation, kPrecipitations,
-      "lidar returns of rain and snow: by a measured law, or drop by drop and flake by flake");
+  v.choiceOf("precipitation", precipitation, kPrecipitations,
+             "lidar returns of rain and snow: by a measured law, of flakes by their sizes, or drop "
+             "by drop");
   v.real("rain_mm_h", rain_mm_h, {0, 200}, "mm/h", "rain; 50 is a downpour");
   v.real("snow_mm_h", snow_mm_h, {0, 20}, "mm/h", "snowfall, as water; from 2.5 on it is heavy");
   v.real("fog_mor", fog_mor, {0, 20000}, "m", "range of sight in fog; 0: none");
@@ -45,6 +45,8 @@ std::string SimulatedWeatherParams::text() const {
   add("snow {:g} mm/h", snow_mm_h);
   if (precipitation == Precipitation::kParticles && (rain_mm_h > 0 || snow_mm_h > 0))
     parts.emplace_back("particle by particle");
+  if (precipitation == Precipitation::kSizes && snow_mm_h > 0)
+    parts.emplace_back("flakes by their sizes");
   add("fog {:g} m", fog_mor);
   add("water film {:g} mm", water_film_mm);
   add("snow cover {:g}", snow_cover);

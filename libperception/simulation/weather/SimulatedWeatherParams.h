@@ -10,9 +10,10 @@ namespace perception {
 /// scenario, or in an INI of its own (--weather). Default: clear air.
 struct SimulatedWeatherParams {
   enum class Sky { kOfScenario, kNight, kCloudy, kSunny };
-  /// Where lidar returns of rain and snow come from: the law measured with a VLP-16, or single
-  /// drops and flakes, the second generator for validation (method.md 9.1, 9.2).
-  enum class Precipitation { kMeasured, kParticles };
+  /// Where lidar returns of rain and snow come from (method.md 9.1, 9.2): the law measured with a
+  /// VLP-16; flakes by their sizes and the lidar's own detection limit (rain as measured); or
+  /// single drops and flakes, the second generator for validation.
+  enum class Precipitation { kMeasured, kSizes, kParticles };
   Precipitation precipitation = Precipitation::kMeasured;
   double rain_mm_h = 0;         ///< [mm/h] method.md 9.1
   double snow_mm_h = 0;         ///< [mm/h] of water, method.md 9.2

@@ -39,13 +39,14 @@ void addFlake(double range, double intensity, LidarPulse& pulse) {
 
 }  // namespace
 
-Snow::Snow(double mm_h, std::uint64_t seed)
+Snow::Snow(double mm_h, std::uint64_t seed, bool by_sizes)
     : mm_h_(mm_h),
       seed_(seed),
+      by_sizes_(by_sizes),
       extinction_(snowExtinction(mm_h)),
       chance_(kSnowReturns.chance(mm_h)),
       large_per_cell_(chance_ * kLargeShare * kSnowReturns.shareWithin(kLargeWithin) / meanArea()),
-      diameter_(1e-3 / gunnMarshall(mm_h).slope),
+      diameter_(1e-3 / (by_sizes ? flakeSizes(mm_h) : gunnMarshall(mm_h)).slope),
       recall_(1 - (1 - kHeavyRecall) * std::min(1.0, mm_h / kHeavy)),
       grid_(kCell),
       large_(grid_.cells()) {}
@@ -53,6 +54,10 @@ Snow::Snow(double mm_h, std::uint64_t seed)
 // A cell holds one large flake or none, a disk that lies within it.
 void Snow::advance(const World&, const SensorParams& sensor, double t) {
   if (!sensor.isLidar()) return;
+  if (by_sizes_) {
+    detectable_ = DetectableParticles(flakeSizes(mm_h_), kDivergence, sensor.lidar.reference_range);
+    return;
+  }
   const auto tick = static_cast<std::uint64_t>(std::llround(std::max(0.0, t) * 1e6));
   Rng rng({seed_, tick, 0, streamOf(sensor.label, kFlakes)});
   const double across = rng.uniform(), up = rng.uniform();
@@ -72,8 +77,16 @@ void Snow::advance(const World&, const SensorParams& sensor, double t) {
 
 void Snow::alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const {
   attenuate(pulse, extinction_);
+  if (by_sizes_) return addFlakesBySize(sensor.lidar, pulse, rng);
   addSmallFlake(sensor.lidar, pulse, rng);
   addLargeFlake(pulse);
+}
+
+void Snow::addFlakesBySize(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) const {
+  for (int k = rng.poisson(detectable_.mean); k > 0; --k) {
+    const double range = detectable_.range(rng);
+    addFlake(range, intensityAt(range, lidar, rng), pulse);
+  }
 }
 
 // Those that belong to large flakes are left out here. The law is of flakes that are detected: the
@@ -83,9 +96,13 @@ void Snow::addSmallFlake(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) 
   if (rng.uniform() >= chance_) return;
   const double range = kSnowReturns.range(rng);
   if (range < kLargeWithin && rng.uniform() < kLargeShare) return;
+  addFlake(range, intensityAt(range, lidar, rng), pulse);
+}
+
+double Snow::intensityAt(double range, const LidarParams& lidar, Rng& rng) const {
   const double filled = kDetected * range / lidar.reference_range +
                         rng.exponential(diameter_) / (range * kDivergence);
-  addFlake(range, kReflectivity * std::min(1.0, filled * filled), pulse);
+  return kReflectivity * std::min(1.0, filled * filled);
 }
 
 void Snow::addLargeFlake(LidarPulse& pulse) const {

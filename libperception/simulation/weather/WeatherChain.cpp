@@ -26,7 +26,9 @@ void pass(const std::vector<std::unique_ptr<SimulatedWeather>>& phenomena,
 
 void addPrecipitation(const SimulatedWeatherParams& p, std::uint64_t seed,
                       std::vector<std::unique_ptr<SimulatedWeather>>& phenomena) {
-  const bool particles = p.precipitation == SimulatedWeatherParams::Precipitation::kParticles;
+  using Precipitation = SimulatedWeatherParams::Precipitation;
+  const bool particles = p.precipitation == Precipitation::kParticles,
+             by_sizes = p.precipitation == Precipitation::kSizes;
   if (p.rain_mm_h > 0 && particles)
     phenomena.push_back(std::make_unique<RainDrops>(p.rain_mm_h, seed));
   else if (p.rain_mm_h > 0)
@@ -34,7 +36,7 @@ void addPrecipitation(const SimulatedWeatherParams& p, std::uint64_t seed,
   if (p.snow_mm_h > 0 && particles)
     phenomena.push_back(std::make_unique<SnowFlakes>(p.snow_mm_h, seed));
   else if (p.snow_mm_h > 0)
-    phenomena.push_back(std::make_unique<Snow>(p.snow_mm_h, seed));
+    phenomena.push_back(std::make_unique<Snow>(p.snow_mm_h, seed, by_sizes));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "libperception/core/Angle.h"
+
 #include "tests/simulation/recorded/RecordedClouds.h"
 
 namespace perception {
@@ -34,6 +36,26 @@ TEST(BeamPattern, TheRangeOfAReturnDoesNotMatter) {
   BeamPattern pattern;
   pattern.missing(wallCloud(10));
   EXPECT_TRUE(pattern.missing(wallCloud(35)).empty());
+}
+
+LidarCloud turned(LidarCloud cloud, double by) {
+  const Eigen::Rotation2D<double> turn(by);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vector2 p =
+        turn * Vector2(static_cast<double>(cloud.x[i]), static_cast<double>(cloud.y[i]));
+    cloud.x[i] = static_cast<float>(p.x()), cloud.y[i] = static_cast<float>(p.y());
+  }
+  return cloud;
+}
+
+TEST(BeamPattern, BeamsThatHaveMovedALittleAreNotMissing) {
+  BeamPattern pattern;
+  for (int turn = 0; turn < 5; ++turn) {  // from a cell of directions to the next one and back
+    EXPECT_TRUE(pattern.missing(turned(wallCloud(10), radians(.06))).empty());
+    EXPECT_TRUE(pattern.missing(turned(wallCloud(10), radians(.14))).empty());
+  }
+  // One beam in two cells is one beam, when it is missing.
+  EXPECT_NEAR(static_cast<double>(pattern.missing(LidarCloud{}).size()) / (8 * 91), 1, .1);
 }
 
 TEST(BeamPattern, FineBeamsThatShareADirectionAreMissedAsMany) {

@@ -94,6 +94,49 @@ TEST(Snow, EveryFlakeInFrontOfTheSkyIsReceived) {
   EXPECT_GT(dark, flakes / 4);  // instruments of 8 bits report no intensity
 }
 
+// By a sum over ranges and diameters, of the flakes whose echo (57) detects.
+double detectableFlakes(double mm_h, const LidarParams& lidar, double nearer_than) {
+  constexpr double kStep = .01, kThin = .01;  // [m], [mm]
+  const SizeDistribution sizes = flakeSizes(mm_h);
+  double sum = 0;
+  for (double r = kStep / 2; r < nearer_than; r += kStep) {
+    const double width = .003 * r;
+    for (double d = kThin / 2; d < 40; d += kThin) {
+      const double intensity = .9 * std::pow(1e-3 * d / width, 2);
+      if (intensity / (r * r) < .9 / (lidar.reference_range * lidar.reference_range)) continue;
+      sum += sizes.number * std::exp(-sizes.slope * d) * kThin * kPi / 4 * width * width * kStep;
+    }
+  }
+  return sum;
+}
+
+TEST(Snow, BySizesHasTheFlakesThatTheLidarDetects) {
+  LidarParams lidar;
+  lidar.reference_range = 120;
+  Snow snow(2.5, 7, true);
+  std::vector<double> ranges;
+  double beams = 0;
+  test::scanSky(
+      snow, 4,
+      [&](int, int, const LidarPulse& pulse) {
+        ++beams;
+        for (const auto& flake : pulse.scatterers) {
+          ranges.push_back(flake.range);
+          LidarPulse alone = pulse;
+          alone.scatterers = {flake};
+          EXPECT_TRUE(flake.range < lidar.range_min || echoOf(alone, 0, lidar).received);
+        }
+      },
+      lidar.reference_range);
+  const auto nearer = [&](double m) {
+    return static_cast<double>(
+               std::count_if(ranges.begin(), ranges.end(), [&](double r) { return r < m; })) /
+           beams;
+  };
+  for (const double m : {3., 6., 12., 40.})
+    EXPECT_NEAR(nearer(m) / detectableFlakes(2.5, lidar, m), 1, .05) << m;
+}
+
 // Share of flakes that hide a wall of 30 % at `range`.
 double shareBefore(double range) {
   Snow snow(10, 7);

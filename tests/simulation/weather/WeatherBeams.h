@@ -30,11 +30,14 @@ inline LidarPulse wallPulse(double range) {
   return pulse;
 }
 
-/// Pulses to the sky of scans of 16 rings with 720 beams; calls see(ring, column, pulse).
+/// Pulses to the sky of scans of 16 rings with 720 beams, by a lidar of a reference range [m];
+/// calls see(ring, column, pulse).
 inline void scanSky(SimulatedWeather& weather, int scans,
-                    const std::function<void(int, int, const LidarPulse&)>& see) {
+                    const std::function<void(int, int, const LidarPulse&)>& see,
+                    double reference_range = LidarParams().reference_range) {
   const World world(scenarioOf(kStanding + kRoofLidar));
-  const SensorParams& sensor = world.scenario().sensors.front();
+  SensorParams sensor = world.scenario().sensors.front();
+  sensor.lidar.reference_range = reference_range;
   for (int s = 0; s < scans; ++s) {
     weather.advance(world, sensor, 0.1 * s);
     for (int ring = 0; ring < 16; ++ring) {
