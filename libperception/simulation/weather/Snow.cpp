@@ -46,7 +46,7 @@ Snow::Snow(double mm_h, std::uint64_t seed, bool by_sizes)
       extinction_(snowExtinction(mm_h)),
       chance_(kSnowReturns.chance(mm_h)),
       large_per_cell_(chance_ * kLargeShare * kSnowReturns.shareWithin(kLargeWithin) / meanArea()),
-      diameter_(1e-3 / (by_sizes ? flakeSizes(mm_h) : gunnMarshall(mm_h)).slope),
+      diameter_(1e-3 / gunnMarshall(mm_h).slope),
       recall_(1 - (1 - kHeavyRecall) * std::min(1.0, mm_h / kHeavy)),
       grid_(kCell),
       large_(grid_.cells()) {}
@@ -55,7 +55,8 @@ Snow::Snow(double mm_h, std::uint64_t seed, bool by_sizes)
 void Snow::advance(const World&, const SensorParams& sensor, double t) {
   if (!sensor.isLidar()) return;
   if (by_sizes_) {
-    detectable_ = DetectableParticles(flakeSizes(mm_h_), kDivergence, sensor.lidar.reference_range);
+    detectable_ =
+        DetectableParticles(gunnMarshall(mm_h_), kDivergence, sensor.lidar.reference_range);
     return;
   }
   const auto tick = static_cast<std::uint64_t>(std::llround(std::max(0.0, t) * 1e6));

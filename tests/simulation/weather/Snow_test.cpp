@@ -97,7 +97,7 @@ TEST(Snow, EveryFlakeInFrontOfTheSkyIsReceived) {
 // By a sum over ranges and diameters, of the flakes whose echo (57) detects.
 double detectableFlakes(double mm_h, const LidarParams& lidar, double nearer_than) {
   constexpr double kStep = .01, kThin = .01;  // [m], [mm]
-  const SizeDistribution sizes = flakeSizes(mm_h);
+  const SizeDistribution sizes = gunnMarshall(mm_h);
   double sum = 0;
   for (double r = kStep / 2; r < nearer_than; r += kStep) {
     const double width = .003 * r;
