@@ -11,11 +11,28 @@ constexpr double kLeaves = 0.5;     // [s] for which a cell belongs to what has 
 /// [-] x / |y| in the ego frame below which a return lies behind the vehicle (bearings beyond 117
 /// deg): it is ahead only after a turn, during which it is seen anew; assumed.
 constexpr float kBehind = -0.5f;
-constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
+constexpr float kDoubted = 0.5F;  // of a return: more likely a phantom than not
+constexpr double kFresh = 0.5;    // [s] after which a scan says nothing of the way ahead; assumed
 
 // The vehicle on the ground plane: z = 0 is the ground.
 Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
   return T_world_ego * makePose(0, 0, plane.c, 0, -std::atan(plane.a), std::atan(plane.b));
+}
+
+/// Whether of the obstacle returns in the corridor, up to the obstacle and half a meter into it,
+/// more are doubted than not.
+bool inCloud(const Corridor& corridor, const GridScan& scan, double obstacle) {
+  constexpr double kInto = 0.5;  // [m]
+  const Pose3 T_ego_world = corridor.T_world_ego.inverse();
+  std::size_t doubted = 0, trusted = 0;
+  for (std::size_t i = 0; i < scan.weights.size(); ++i) {
+    const Vector3 p = T_ego_world * scan.hits[i];
+    const ArcPlace place = arcPlace(corridor, p.x(), p.y());
+    if (std::abs(place.d) > corridor.width / 2) continue;
+    if (place.s < corridor.from || place.s > obstacle + kInto) continue;
+    ++(scan.weights[i] < kDoubted ? doubted : trusted);
+  }
+  return doubted > trusted;
 }
 
 // Within the outline, or where it was up to half a second ago: cells that it left are cleared only
@@ -62,7 +79,8 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
     const float phantom = returns.phantom.empty() ? 0 : returns.phantom[i];
     const bool alone = phantom == PlacedReturns::kNoCluster;
     if (weighted) scan.weights.push_back(alone ? trust : trust * (1 - phantom));
-    obstacles.clustered.push_back(alone ? 0 : trust * (1 - phantom));
+    const float weight = trust * (1 - phantom);
+    obstacles.clustered.push_back(alone || weight < kDoubted ? 0 : weight);
   }
   return obstacles;
 }
@@ -87,32 +105,39 @@ PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   const FreeDistance dense =
       denseReturns(path.corridor, last_.scan.hits, last_.clustered, stop_.returns);
   path.corridor.max = stop_.look_ahead;
-  if (!dense.blocked) return path;
-  path.free.distance = dense.distance;
-  path.free.blocked = true;
-  path.free.place = dense.place;
-  path.free.seen = std::min(path.free.seen, dense.distance);
+  if (dense.blocked) {
+    path.free.distance = dense.distance;
+    path.free.blocked = true;
+    path.free.place = dense.place;
+    path.free.seen = std::min(path.free.seen, dense.distance);
+  }
+  path.in_cloud = path.free.blocked && inCloud(path.corridor, last_.scan, path.free.distance);
   return path;
 }
 
-FreePath SafetyMonitor::advise(const PathAhead& path, const Scene& scene) const {
+FreePath SafetyMonitor::advise(const PathAhead& path, const Scene& scene) {
   FreePath advice;
   advice.distance = path.free.distance;
   advice.seen = path.free.seen;
   advice.blocked = path.free.blocked;
+  const bool before = near_ && scene.stamp - *near_ <= kFresh;
+  near_.reset();
   if (!advice.blocked) return advice;
   const SceneObject* owner = ownerOf(scene, path.free.place, stop_.obstacle_grow);
   const double speed = scene.ego.velocity.norm();
   const Vector2 ahead = scene.ego.T_world_ego.linear().col(0).head<2>();
   const double along = owner == nullptr ? 0 : owner->velocity.dot(ahead);
   advice.owner = owner == nullptr ? 0 : owner->id;
-  advice.stop = path.free.distance - path.corridor.from < stoppingDistance(speed, along, stop_);
+  const bool near = path.free.distance - path.corridor.from < stoppingDistance(speed, along, stop_);
+  if (near) near_ = scene.stamp;
+  advice.stop = near && (before || !path.in_cloud);
   return advice;
 }
 
 void SafetyMonitor::restart() {
   grid_ = makeSafetyGrid(params_);
   any_ = false;
+  near_.reset();
 }
 
 }  // namespace perception

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "libperception/grid/SafetyGrid.h"
@@ -25,6 +26,7 @@ struct PathAhead {
   bool known = false;  ///< false: no lidar scan within half a second
   Corridor corridor;
   FreeDistance free;
+  bool in_cloud = false;  ///< most returns up to the obstacle are doubted
 };
 
 /// Keeps the safety grid of a run and tells how far the driven path is free (method.md 8.4).
@@ -36,8 +38,9 @@ class SafetyMonitor {
   void add(const SensorFrame& frame, const PlacedReturns& returns);
   /// The path ahead as of the last scan.
   PathAhead pathAhead(const EgoState& ego) const;
-  /// For a known path: free distance, advice and cause for a scene with its objects.
-  FreePath advise(const PathAhead& path, const Scene& scene) const;
+  /// For a known path: free distance, advice and cause for a scene with its objects. Scenes in
+  /// order of time: for an obstacle in a cloud a stop takes two in a row.
+  FreePath advise(const PathAhead& path, const Scene& scene);
   /// Forgets the grid, as when the world frame changes.
   void restart();
 
@@ -49,7 +52,8 @@ class SafetyMonitor {
   std::unique_ptr<SafetyGrid> grid_;
   ObstacleScan last_;  ///< the newest scan's returns
   bool any_ = false;
-  double front_ = 0;  ///< [m] x of the own vehicle's front, ego frame
+  std::optional<Stamp> near_;  ///< of the last scene, if an obstacle was too near
+  double front_ = 0;           ///< [m] x of the own vehicle's front, ego frame
 };
 
 }  // namespace perception

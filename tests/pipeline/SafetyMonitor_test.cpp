@@ -19,20 +19,28 @@ struct Scan {
     frame.ego.stamp = frame.stamp;
     frame.T_ego_sensor = makePose(0, 0, 1.7, 0);
     LidarCloud cloud;
-    const auto add = [&](double px, double py, double pz, float trusted) {
-      returns.source.push_back(static_cast<std::uint32_t>(cloud.x.size()));
-      for (auto* v : {&returns.x, &cloud.x}) v->push_back(static_cast<float>(px));
-      for (auto* v : {&returns.y, &cloud.y}) v->push_back(static_cast<float>(py));
-      for (auto* v : {&returns.z, &cloud.z}) v->push_back(static_cast<float>(pz));
-      returns.height.push_back(static_cast<float>(pz));
-      cloud.trust.push_back(trusted);
-    };
+    frame.data = LidarCloud{};
     for (double y = -0.5; y <= 0.5; y += 0.1)
       for (double z = 0.4; z <= 1; z += 0.1) add(x, y, z, trust);
     for (double road = 4; road < x; road += 0.2) add(road, 0, 0, 1);
-    frame.data = cloud;
     returns.height_min = 0.3, returns.height_max = 3;
     returns.vehicle_front = 2;
+  }
+  /// A cloud of drops over the road before the box, one return each 0.1 m.
+  void addCloud(float trust) {
+    for (double x = 10; x < 19; x += 0.1)
+      for (const double y : {-.4, 0., .4}) add(x, y, 1, trust);
+  }
+
+ private:
+  void add(double px, double py, double pz, float trusted) {
+    auto& cloud = std::get<LidarCloud>(frame.data);
+    returns.source.push_back(static_cast<std::uint32_t>(cloud.x.size()));
+    for (auto* v : {&returns.x, &cloud.x}) v->push_back(static_cast<float>(px));
+    for (auto* v : {&returns.y, &cloud.y}) v->push_back(static_cast<float>(py));
+    for (auto* v : {&returns.z, &cloud.z}) v->push_back(static_cast<float>(pz));
+    returns.height.push_back(static_cast<float>(pz));
+    cloud.trust.push_back(trusted);
   }
 };
 
@@ -109,6 +117,46 @@ TEST(SafetyMonitor, OneScanBlocksOnlyByItsClusters) {
   SafetyMonitor told(smallGrid(), {});
   told.add(scan.frame, scan.returns);
   EXPECT_TRUE(told.pathAhead(egoAt(0, 10)).free.blocked);
+}
+
+TEST(SafetyMonitor, ManyDoubtedReturnsOfOneScanAreNoObstacle) {
+  for (const float trust : {0.4F, 0.6F}) {
+    Scan scan(0, 60);
+    scan.addCloud(trust);
+    SafetyMonitor monitor(smallGrid(), {});
+    monitor.add(scan.frame, scan.returns);
+    const FreeDistance free = monitor.pathAhead(egoAt(0, 10)).free;
+    EXPECT_EQ(free.blocked && free.distance<20, trust> 0.5F);
+  }
+}
+
+TEST(SafetyMonitor, InACloudAStopTakesTwoScenesInARow) {
+  for (const float trust : {0.1F, 1.F}) {
+    SafetyMonitor monitor(smallGrid(), {});
+    const auto stops = [&](double t, double x) {
+      Scan scan(t, x);
+      if (trust < 1) scan.addCloud(trust);
+      monitor.add(scan.frame, scan.returns);
+      const PathAhead path = monitor.pathAhead(egoAt(t, 12));
+      EXPECT_EQ(path.in_cloud, path.free.blocked && trust < 1);
+      return monitor.advise(path, sceneAt(t, 12)).stop;  // within 25 m
+    };
+    EXPECT_EQ(stops(0, 20), trust == 1);
+    EXPECT_TRUE(stops(0.1, 20));
+  }
+}
+
+TEST(SafetyMonitor, AnOlderSceneIsNotTheOneBefore) {
+  SafetyMonitor monitor(smallGrid(), {});
+  const auto stops = [&](double t) {
+    Scan scan(t, 20);
+    scan.addCloud(0.1F);
+    monitor.add(scan.frame, scan.returns);
+    return monitor.advise(monitor.pathAhead(egoAt(t, 12)), sceneAt(t, 12)).stop;
+  };
+  EXPECT_FALSE(stops(0));
+  EXPECT_FALSE(stops(0.6));
+  EXPECT_TRUE(stops(0.7));
 }
 
 TEST(SafetyMonitor, AVehicleThatMovesOnEveryScanIsSeenAllTheSame) {
