@@ -133,24 +133,27 @@ double observationAngle(const Pose3& T_camera_object) {
   return wrapAngle(std::atan2(-axis.z(), axis.x()) - std::atan2(p.x(), p.z()));
 }
 
-double contrastRecall(double optical_depth) {
-  return std::clamp((std::exp(-optical_depth) - 0.05) / 0.2, 0.0, 1.0);
-}
+double recallAtContrast(double contrast) { return std::clamp((contrast - 0.05) / 0.2, 0.0, 1.0); }
+
+double contrastRecall(double optical_depth) { return recallAtContrast(std::exp(-optical_depth)); }
 
 std::optional<ImageOutline> imageOutline(const World& world, std::size_t object, double t,
-                                         const CameraModel& camera, const Pose3& T_world_camera) {
+                                         const CameraModel& camera, const Pose3& T_world_camera,
+                                         const MirrorImage& mirror) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   ObjectDetection::ImageBox whole{kInfinity, kInfinity, -kInfinity, -kInfinity};
   const std::vector<Pose3> poses = world.parts(object, t);
   const bool panorama = camera.projection == CameraModel::Projection::kEquirectangular;
   // A panorama's columns are counted from the object's middle: it is whole on the seam, too.
-  const Vector3 center =
-      T_world_camera.inverse() * world.object(object, t).T_world_object.translation();
+  const Pose3 T_camera_world = T_world_camera.inverse();
+  const auto seen = [&](const Vector3& p) { return T_camera_world * (mirror ? mirror(p) : p); };
+  const Vector3 center = seen(world.object(object, t).T_world_object.translation());
   const double middle = std::atan2(center.x(), center.z());
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    const Pose3 T_camera_part = T_world_camera.inverse() * poses[k];
+    const Pose3 T_camera_part = T_camera_world * poses[k];
     for (const auto& vertex : world.shape(object).parts[k].mesh.vertices) {
-      const Vector3 p = T_camera_part * Vector3(vertex[0], vertex[1], vertex[2]);
+      const Vector3 on_part(vertex[0], vertex[1], vertex[2]);
+      const Vector3 p = mirror ? seen(poses[k] * on_part) : T_camera_part * on_part;
       if (panorama) {
         const double azimuth = middle + wrapAngle(std::atan2(p.x(), p.z()) - middle);
         const double u = camera.cx + camera.fx * azimuth,

@@ -44,17 +44,23 @@ Pose3 opticalAxes();
 /// KITTI's alpha: rotation about the optical y axis, seen along the line of sight.
 double observationAngle(const Pose3& T_camera_object);
 
-/// Share of its recall that a detector has left where the air's optical depth lowers the contrast
-/// C/C0 = exp(-depth): clip((C/C0 - 0.05) / 0.2, 0, 1) (method.md 9.9).
+/// Share of its recall that a detector has left at a contrast C/C0:
+/// clip((C/C0 - 0.05) / 0.2, 0, 1) (method.md 9.9).
+double recallAtContrast(double contrast);
+/// The same where the air's optical depth lowers the contrast to exp(-depth).
 double contrastRecall(double optical_depth);
 
 /// Effect of weather on detections; empty: clear air by day.
 using CameraHook = std::function<void(CameraLook&, Rng&)>;
 
+/// Where a mirror shows a point [m, world]; empty: no mirror.
+using MirrorImage = std::function<Vector3(const Vector3&)>;
+
 /// Empty if the object is outside of the image. `T_world_camera`: optical frame. In a panorama the
 /// box of an object on the seam extends beyond the right border and is not truncated.
 std::optional<ImageOutline> imageOutline(const World& world, std::size_t object, double t,
-                                         const CameraModel& camera, const Pose3& T_world_camera);
+                                         const CameraModel& camera, const Pose3& T_world_camera,
+                                         const MirrorImage& mirror = {});
 
 /// Detections at t [s]; the caster must be set to that time.
 ObjectDetections detectBoxes(const LidarCaster& caster, double t, const CameraParams& params,

@@ -17,7 +17,7 @@ constexpr double kLightest = 0.02, kHeaviest = 300;  // [mm/h] of the table
 constexpr std::size_t kRates = 97;
 // 90 % limits, as factors (assumed): threshold, divergence and what is behind the air differ by
 // instrument and scene.
-constexpr double kRainFactor = 2.5, kSnowFactor = 4;
+constexpr double kRainFactor = 2.5, kDropsFactor = 4, kSnowFactor = 4;
 // [mm/h] a law that says more was made for another instrument: then only limits are known
 // (assumed; heavy snowfall is 2.5, method.md 9.9).
 constexpr double kMostSnow = 6, kLeastSnow = 0.3;
@@ -61,10 +61,10 @@ Estimate PrecipitationRate::rain(double near, double open, bool few_far) const {
   const double share = near / std::max(open, 0.01);
   const auto above = std::lower_bound(drops_.begin(), drops_.end(), share);
   const auto k = static_cast<std::size_t>(above - drops_.begin());
-  if (k == 0) return within(kLightest * share / drops_.front(), kRainFactor);
-  if (k == kRates) return within(kHeaviest, kRainFactor);
+  if (k == 0) return within(kLightest * share / drops_.front(), kDropsFactor);
+  if (k == kRates) return within(kHeaviest, kDropsFactor);
   const double part = std::log(share / drops_[k - 1]) / std::log(drops_[k] / drops_[k - 1]);
-  return within(rateAt(k - 1) * std::pow(rateAt(k) / rateAt(k - 1), part), kRainFactor);
+  return within(rateAt(k - 1) * std::pow(rateAt(k) / rateAt(k - 1), part), kDropsFactor);
 }
 
 Estimate PrecipitationRate::snow(double near) const {

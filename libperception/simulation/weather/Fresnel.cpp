@@ -4,15 +4,27 @@
 #include <cmath>
 
 namespace perception {
+namespace {
 
-Fresnel waterReflectance(double cos_incidence) {
-  constexpr double kAir = 1.0003, kWater = 1.33;
+// From air onto a medium of a refractive index.
+Fresnel reflectance(double cos_incidence, double index) {
+  constexpr double kAir = 1.0003;
   const double c = std::clamp(cos_incidence, 0.0, 1.0);
-  const double sin_inside = kAir / kWater * std::sqrt(1 - c * c);
+  const double sin_inside = kAir / index * std::sqrt(1 - c * c);
   const double inside = std::sqrt(1 - sin_inside * sin_inside);
-  const double s = (kAir * c - kWater * inside) / (kAir * c + kWater * inside),
-               p = (kAir * inside - kWater * c) / (kAir * inside + kWater * c);
+  const double s = (kAir * c - index * inside) / (kAir * c + index * inside),
+               p = (kAir * inside - index * c) / (kAir * inside + index * c);
   return {s * s, p * p};
+}
+
+}  // namespace
+
+Fresnel waterReflectance(double cos_incidence) { return reflectance(cos_incidence, 1.33); }
+
+double glassReflectance(double cos_incidence) {
+  const auto pane = [](double surface) { return 2 * surface / (1 + surface); };
+  const Fresnel r = reflectance(cos_incidence, 1.52);
+  return .5 * (pane(r.across) + pane(r.along));
 }
 
 double filmFactor(double ground, double cos_incidence) {

@@ -23,6 +23,8 @@ void SimulatedWeatherParams::visit(ParamVisitor& v) {
   v.real("water_film_mm", water_film_mm, {0, 10}, "mm", "on the road; from 1.2 on it is a mirror");
   v.real("snow_cover", snow_cover, {0, 1}, "-", "share of objects and ground that snow covers");
   v.choiceOf("sky", sky, kSkies, "as_scenario: its own [light]");
+  v.real("shop_windows", shop_windows, {0, 1}, "-",
+         "share of glass in the ground floors of houses; mirrors in any weather");
   v.real("fouling", fouling, {0, 1}, "-", "share of the windows of lidars and cameras under dirt");
   v.real("radome_db", radome_db, {0, 60}, "dB", "one way: 1.5 to 3 wet, 30 under packed snow");
   v.real("air_temperature", air_temperature, {-60, 60}, "deg C", "below 8 one sees exhaust");
@@ -51,6 +53,7 @@ std::string SimulatedWeatherParams::text() const {
   add("water film {:g} mm", water_film_mm);
   add("snow cover {:g}", snow_cover);
   if (sky != Sky::kOfScenario) parts.push_back(kSkies[static_cast<std::size_t>(sky)]);
+  add("shop windows {:g}", shop_windows);
   add("fouling {:g}", fouling);
   add("radomes {:g} dB", radome_db);
   if (plumes()) parts.push_back(fmt::format("exhaust seen at {:g} deg C", air_temperature));

@@ -21,6 +21,7 @@ struct SimulatedWeatherParams {
   double water_film_mm = 0;     ///< [mm] mean depth on the road, method.md 9.7
   double snow_cover = 0;        ///< [0, 1] share of objects and ground under snow, method.md 9.9
   Sky sky = Sky::kOfScenario;   ///< method.md 9.9
+  double shop_windows = 0;      ///< [0, 1] share of glass in the ground floors of houses
   double fouling = 0;           ///< [0, 1] share of the windows of lidars and cameras under dirt
   double radome_db = 0;         ///< [dB] one way, of water or snow on radars, method.md 9.8
   double air_temperature = 20;  ///< [deg C] below 8 exhaust is seen, method.md 9.5; assumed
