@@ -55,7 +55,8 @@ std::vector<BeamPattern::Beam> BeamPattern::missing(const LidarCloud& cloud) {
           placeOf(aim.columnBeside(), aim.rowBeside())}) {
       if (number_[beside] == kNone) continue;
       Cell& other = cells_[number_[beside]];
-      if (std::abs(wrapAngle(other.azimuth - aim.azimuth)) < kAcross / 2 &&
+      const double apart = std::abs(other.azimuth - aim.azimuth);
+      if (std::min(apart, kTwoPi - apart) < kAcross / 2 &&
           std::abs(other.elevation - aim.elevation) < kUp / 2)
         see(other);
     }

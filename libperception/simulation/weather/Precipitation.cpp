@@ -59,9 +59,10 @@ DetectableParticles::DetectableParticles(const SizeDistribution& sizes, double d
   scale = std::sqrt(.5 / a);
 }
 
+// The square of the range has a chi-squared distribution of 3 degrees of freedom: of 2 and of 1.
 double DetectableParticles::range(Rng& rng) const {
-  return scale * std::sqrt(std::pow(rng.normal(), 2) + std::pow(rng.normal(), 2) +
-                           std::pow(rng.normal(), 2));
+  const double normal = rng.normal();
+  return scale * std::sqrt(rng.exponential(2) + normal * normal);
 }
 
 double FalseReturnLaw::chance(double mm_h) const { return std::min(1.0, per_mm_h * mm_h); }

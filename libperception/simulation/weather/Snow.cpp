@@ -84,9 +84,10 @@ void Snow::alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const 
 }
 
 void Snow::addFlakesBySize(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) const {
+  const double open = openRange(pulse);
   for (int k = rng.poisson(detectable_.mean); k > 0; --k) {
     const double range = detectable_.range(rng);
-    addFlake(range, intensityAt(range, lidar, rng), pulse);
+    if (range < open) addFlake(range, intensityAt(range, lidar, rng), pulse);
   }
 }
 
