@@ -131,10 +131,8 @@ StudyPlot reliabilityPlot(const StudyTable& reliability) {
   return plot;
 }
 
-}  // namespace
-
-StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
-                         const Provenance& provenance, std::uint64_t seed) {
+// Each log is judged by what the others teach.
+void requireThreeLogs(const ClusterSamples& samples, std::size_t logs) {
   std::set<std::size_t> known;
   for (const ClusterSample& s : samples.clusters)
     if (s.kind) known.insert(s.log);
@@ -143,7 +141,14 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
         fmt::format("{} of {} logs have clusters of lidar returns whose kind the truth tells; "
                     "expected three or "
                     "more, since each is judged by what the others teach",
-                    known.size(), logs.size()));
+                    known.size(), logs));
+}
+
+}  // namespace
+
+StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
+                         const Provenance& provenance, std::uint64_t seed) {
+  requireThreeLogs(samples, logs.size());
   ClusterTrainer trainer(samples, logs, seed);
   StudyReport report;
   report.title = "What clusters of lidar returns look like";

@@ -292,6 +292,19 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
   return text;
 }
 
+std::vector<std::string> scansRow(const std::string& sensor, const DetectorCounts& c) {
+  const std::size_t clutter = std::accumulate(c.clutter.begin(), c.clutter.end(), std::size_t{0});
+  const double n = static_cast<double>(std::max<std::size_t>(c.scans, 1));
+  const Interval rate = rateOf(c, &ClutterCount::number);
+  return {sensor,
+          fmt::format("{}", c.scans),
+          fmt::format("{}", clutter),
+          fmt::format("{:.3f}", static_cast<double>(clutter) / n),
+          fmt::format("{:.3f} to {:.3f}", rate.low, rate.high),
+          fmt::format("{}", c.first_seen),
+          fmt::format("{:.3f}", static_cast<double>(c.first_seen) / n)};
+}
+
 }  // namespace
 
 StudyReport detectorStudy(const DetectorStudyInput& input,
@@ -329,14 +342,7 @@ StudyReport detectorStudy(const DetectorStudyInput& input,
   if (gains) ini += "include = " + input.include + "\n\n";
   for (const auto& [sensor, c] : counts) {
     const auto& names = input.labels.at(sensor);
-    const std::size_t clutter = std::accumulate(c.clutter.begin(), c.clutter.end(), std::size_t{0});
-    const double n = static_cast<double>(std::max<std::size_t>(c.scans, 1));
-    const Interval rate = rateOf(c, &ClutterCount::number);
-    scans.rows.push_back({sensor, fmt::format("{}", c.scans), fmt::format("{}", clutter),
-                          fmt::format("{:.3f}", static_cast<double>(clutter) / n),
-                          fmt::format("{:.3f} to {:.3f}", rate.low, rate.high),
-                          fmt::format("{}", c.first_seen),
-                          fmt::format("{:.3f}", static_cast<double>(c.first_seen) / n)});
+    scans.rows.push_back(scansRow(sensor, c));
     addDetection(c, input.classes, detection);
     addLabels(c, input.classes, names, labels);
     addNoise(c, input.classes, noise);

@@ -78,8 +78,8 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
     const float trust = weighted ? cloud->trust[returns.source[i]] : 1;
     const float phantom = returns.phantom.empty() ? 0 : returns.phantom[i];
     const bool alone = phantom == PlacedReturns::kNoCluster;
-    if (weighted) scan.weights.push_back(alone ? trust : trust * (1 - phantom));
-    const float weight = trust * (1 - phantom);
+    const float weight = alone ? trust : trust * (1 - phantom);
+    if (weighted) scan.weights.push_back(weight);
     obstacles.clustered.push_back(alone || weight < kDoubted ? 0 : weight);
   }
   return obstacles;

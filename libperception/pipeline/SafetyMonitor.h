@@ -13,7 +13,8 @@ namespace perception {
 /// The obstacle returns of a scan.
 struct ObstacleScan {
   GridScan scan;  ///< hits weighted by trust and by P(no phantom) of their clusters
-  /// [0, 1] weight of each hit as part of an obstacle seen in one scan: 0 without a cluster.
+  /// [0, 1] weight of each hit as part of an obstacle seen in one scan: 0 without a cluster or
+  /// where doubted.
   std::vector<float> clustered;
 };
 

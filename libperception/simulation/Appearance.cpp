@@ -27,7 +27,7 @@ const std::array<Rgb, 4> kHair = {Rgb(.02, .015, .01), Rgb(.09, .05, .02), Rgb(.
 const std::array<Rgb, 6> kPlaster = {Rgb(.58, .52, .40), Rgb(.60, .58, .54), Rgb(.42, .20, .13),
                                      Rgb(.62, .48, .27), Rgb(.40, .44, .46), Rgb(.56, .38, .30)};
 
-constexpr double kHouse = 4;     // [m] a box as high has windows, a lower one is a wall of blocks
+constexpr double kHouse = 4;     // [m] least height
 constexpr double kGlossy = .05;  // mirrored by paint and glass at normal incidence
 
 template <std::size_t N>
@@ -117,10 +117,10 @@ Finish facade(const ObjectParams& o, double u, double z, double width) {
 }
 
 Finish wall(const ObjectParams& o, const Vector3& p, const Vector3& normal, double pixel) {
-  if (normal.z() > .7) return {o.height >= kHouse ? Rgb(.16, .09, .07) : bodyColor(o) * .8, 0};
+  if (normal.z() > .7) return {isHouse(o) ? Rgb(.16, .09, .07) : bodyColor(o) * .8, 0};
   const bool along_x = std::abs(normal.y()) > std::abs(normal.x());
   const double u = along_x ? p.x() : p.y(), width = along_x ? o.length : o.width;
-  if (o.height >= kHouse) return facade(o, u, p.z(), width);
+  if (isHouse(o)) return facade(o, u, p.z(), width);
   constexpr double kCourse = .22, kBlock = .5;  // [m]
   const double row = std::floor(p.z() / kCourse);
   const double column = std::floor(u / kBlock + .5 * (static_cast<std::int64_t>(row) & 1));
@@ -136,6 +136,10 @@ Finish leaf(const ObjectParams& o, const Vector3& p, double pixel) {
 }
 
 }  // namespace
+
+bool isHouse(const ObjectParams& object) {
+  return object.kind == ObjectKind::kBox && object.height >= kHouse;
+}
 
 Rgb bodyColor(const ObjectParams& o) {
   const std::uint32_t hash = hashOf(o.name);

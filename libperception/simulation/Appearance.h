@@ -16,6 +16,9 @@ struct Finish {
 /// colors of its kind (assumed). Cars of a reflectivity below 1 are darker.
 Rgb bodyColor(const ObjectParams& object);
 
+/// A box of 4 m or more: it has windows, a lower one is a wall of blocks (assumed).
+bool isHouse(const ObjectParams& object);
+
 /// Appearance of a point of an object: material, and details that the geometry lacks (lamps, rims,
 /// windows of houses, trousers and hair). `place` [m] and `normal` in the object's frame; detail
 /// finer than `pixel` [m] is omitted.

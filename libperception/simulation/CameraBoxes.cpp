@@ -58,8 +58,7 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
   look.range = sight.head<2>().norm();
   look.azimuth = std::atan2(sight.y(), sight.x());
   look.edge_noise = p.edge_noise;
-  look.chance = p.recall * ramp(height, p.min_pixels, p.full_pixels) *
-                ramp(visible, kHidden, kClear) * (1 - outline->truncated);
+  look.chance = boxRecall(p, height) * ramp(visible, kHidden, kClear) * (1 - outline->truncated);
   if (hook) {
     Rng weather_rng(key.withPurpose(key.purpose ^ kWeatherPurpose));
     hook(look, weather_rng);
@@ -131,6 +130,10 @@ Pose3 opticalAxes() {
 double observationAngle(const Pose3& T_camera_object) {
   const Vector3 p = T_camera_object.translation(), axis = T_camera_object.linear().col(0);
   return wrapAngle(std::atan2(-axis.z(), axis.x()) - std::atan2(p.x(), p.z()));
+}
+
+double boxRecall(const CameraParams& params, double height) {
+  return params.recall * ramp(height, params.min_pixels, params.full_pixels);
 }
 
 double recallAtContrast(double contrast) { return std::clamp((contrast - 0.05) / 0.2, 0.0, 1.0); }

@@ -44,6 +44,8 @@ Pose3 opticalAxes();
 /// KITTI's alpha: rotation about the optical y axis, seen along the line of sight.
 double observationAngle(const Pose3& T_camera_object);
 
+/// Recall of a wholly visible object by the height [px] of its box, in clear air by day.
+double boxRecall(const CameraParams& params, double height);
 /// Share of its recall that a detector has left at a contrast C/C0:
 /// clip((C/C0 - 0.05) / 0.2, 0, 1) (method.md 9.9).
 double recallAtContrast(double contrast);

@@ -33,15 +33,6 @@ double ramp(double value, double low, double high) {
   return std::clamp((value - low) / (high - low), 0.0, 1.0);
 }
 
-// Rows inside the image; the left edge in [0, width), the right edge beyond the seam if need be.
-ObjectDetection::ImageBox onPanorama(ObjectDetection::ImageBox b, const CameraModel& camera) {
-  const double shift = std::floor(b.x1 / camera.width) * camera.width;
-  b.x1 -= shift, b.x2 -= shift;
-  b.y1 = std::clamp(b.y1, 0.0, camera.height - 1.0);
-  b.y2 = std::clamp(b.y2, 0.0, camera.height - 1.0);
-  return b;
-}
-
 bool valid(const ObjectDetection::ImageBox& b) { return b.x2 > b.x1 && b.y2 > b.y1; }
 
 void shake(ObjectDetection::ImageBox& box, double noise, Rng& rng) {
@@ -68,9 +59,7 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
   look.range = sight.head<2>().norm();
   look.azimuth = std::atan2(sight.y(), sight.x());
   look.edge_noise = p.edge_noise;
-  const double range = p.*answer.range;
-  look.chance =
-      p.*answer.recall * (1 - ramp(look.range, (1 - kRangeEdge) * range, (1 + kRangeEdge) * range));
+  look.chance = panoramaRecall(p, world.scenario().objects[object].kind, look.range);
   if (hook) {
     Rng rng(key.withSlot(static_cast<std::uint32_t>(object))
                 .withPurpose(key.purpose ^ kWeatherPurpose));
@@ -147,6 +136,21 @@ std::optional<ObjectDetection> falseBox(const LidarCaster& caster, double t,
 }
 
 }  // namespace
+
+double panoramaRecall(const SphericalCameraParams& params, ObjectKind kind, double range) {
+  const Answer answer = answerTo(kind);
+  const double reach = params.*answer.range;
+  return params.*answer.recall *
+         (1 - ramp(range, (1 - kRangeEdge) * reach, (1 + kRangeEdge) * reach));
+}
+
+ObjectDetection::ImageBox onPanorama(ObjectDetection::ImageBox b, const CameraModel& camera) {
+  const double shift = std::floor(b.x1 / camera.width) * camera.width;
+  b.x1 -= shift, b.x2 -= shift;
+  b.y1 = std::clamp(b.y1, 0.0, camera.height - 1.0);
+  b.y2 = std::clamp(b.y2, 0.0, camera.height - 1.0);
+  return b;
+}
 
 void SphericalCameraParams::setResolution(Resolution r) {
   const CameraResolution& row = cameraResolutions()[static_cast<std::size_t>(r)];

@@ -7,6 +7,7 @@
 namespace perception {
 
 class LidarCaster;
+enum class ObjectKind;
 
 /// A panoramic camera with the detector of [radecki2016] for cars and persons, in a [sensor.LABEL]
 /// section: boxes in pixels of the equirectangular panorama. `resolution` sets size, ranges and
@@ -30,6 +31,13 @@ struct SphericalCameraParams {
   void visit(ParamVisitor& v);
   CameraModel model() const;
 };
+
+/// Recall of a wholly visible object at a range [m], in clear air by day.
+double panoramaRecall(const SphericalCameraParams& params, ObjectKind kind, double range);
+
+/// A box of an object anywhere around as the panorama has it: rows inside the image, the left edge
+/// in [0, width), the right edge beyond the seam if need be.
+ObjectDetection::ImageBox onPanorama(ObjectDetection::ImageBox box, const CameraModel& camera);
 
 /// Detections at t [s]; the caster must be set to that time. Labels Car and Pedestrian; a cyclist
 /// is mostly labeled Pedestrian, a bus Car. A box over the seam begins inside the image and ends

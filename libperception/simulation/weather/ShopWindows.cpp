@@ -1,9 +1,9 @@
 #include "libperception/simulation/weather/ShopWindows.h"
 
-#include <algorithm>
 #include <cmath>
 #include <variant>
 
+#include "libperception/simulation/Appearance.h"
 #include "libperception/simulation/LidarSurface.h"
 #include "libperception/simulation/World.h"
 #include "libperception/simulation/weather/Fresnel.h"
@@ -11,7 +11,6 @@
 namespace perception {
 namespace {
 
-constexpr double kHouse = 4;                           // [m] a box as high is a house
 constexpr double kPane = 2.5;                          // [m] width (assumed)
 constexpr double kSill = 0.5, kLintel = 3;             // [m] above the house's foot (assumed)
 constexpr double kOff = 0.01;                          // [m] mirrored rays start before the glass
@@ -27,19 +26,17 @@ bool outside(const Vector3& p, int axis, double offset) {
   return offset > 0 ? p[axis] > offset : p[axis] < offset;
 }
 
-bool isPerson(ObjectKind kind) {
-  return kind == ObjectKind::kPedestrian || kind == ObjectKind::kCyclist;
-}
-
 // Share of such objects that the camera's detector finds in clear air.
 double found(const SensorParams& sensor, ObjectKind kind, double range, double height) {
-  if (sensor.kind == SensorKind::kSphericalCamera) {
-    const SphericalCameraParams& p = sensor.panorama;
-    if (range > (isPerson(kind) ? p.person_range : p.car_range)) return 0;
-    return isPerson(kind) ? p.person_recall : p.car_recall;
-  }
-  const CameraParams& p = sensor.camera;
-  return p.recall * std::clamp((height - p.min_pixels) / (p.full_pixels - p.min_pixels), 0.0, 1.0);
+  return sensor.kind == SensorKind::kSphericalCamera ? panoramaRecall(sensor.panorama, kind, range)
+                                                     : boxRecall(sensor.camera, height);
+}
+
+// A panorama's detector knows two labels.
+const char* labelOf(const SensorParams& sensor, ObjectKind kind) {
+  if (kind == ObjectKind::kPedestrian) return "Pedestrian";
+  if (kind != ObjectKind::kCyclist) return "Car";
+  return sensor.kind == SensorKind::kSphericalCamera ? "Pedestrian" : "Cyclist";
 }
 
 }  // namespace
@@ -51,8 +48,7 @@ void ShopWindows::advance(const World& world, const SensorParams&, double t) {
   fronts_.clear();
   for (std::size_t i = 0; i < world.objects(); ++i) {
     const ObjectParams& o = world.scenario().objects[i];
-    if (o.kind != ObjectKind::kBox || o.height < kHouse || o.base > 0 || !world.present(i, t))
-      continue;
+    if (!isHouse(o) || o.base > 0 || !world.present(i, t)) continue;
     const Pose3 T = world.object(i, t).T_world_object;
     for (const double side : {1., -1.}) {
       fronts_.push_back({i, 0, side * o.length / 2, o.width / 2, T});
@@ -129,12 +125,11 @@ void ShopWindows::addBox(const SensorParams& sensor, const Front& front, std::si
                         recallAtContrast(image.reflectance) * (1 - outline->truncated);
   if (rng.uniform() >= chance) return;
   ObjectDetection d;
-  d.label = kind == ObjectKind::kPedestrian ? "Pedestrian"
-            : kind == ObjectKind::kCyclist  ? "Cyclist"
-                                            : "Car";
-  if (sensor.kind == SensorKind::kSphericalCamera && isPerson(kind)) d.label = "Pedestrian";
+  d.label = labelOf(sensor, kind);
   d.score = rng.uniform(kLeastScore, kMostScore);
-  d.image_box = outline->box;
+  d.image_box = sensor.kind == SensorKind::kSphericalCamera
+                    ? onPanorama(outline->box, detections.camera)
+                    : outline->box;
   detections.objects.push_back(d);
 }
 

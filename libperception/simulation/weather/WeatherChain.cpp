@@ -91,8 +91,8 @@ std::unique_ptr<SimulatedWeather> makeWeather(const SimulatedWeatherParams& p,
     add(std::make_unique<Fouling>(p.fouling, p.radome_db, seed));
   if (p.wet() || p.snow_cover > 0) add(std::make_unique<TargetSurfaces>(p.wet(), p.snow_cover));
   addPrecipitation(p, seed, phenomena);
-  if (p.shop_windows > 0) add(std::make_unique<ShopWindows>(p.shop_windows, seed));
   if (p.fog_mor > 0) add(std::make_unique<Fog>(p.fog_mor));
+  if (p.shop_windows > 0) add(std::make_unique<ShopWindows>(p.shop_windows, seed));
   if (p.water_film_mm > 0)
     add(std::make_unique<WetGround>(p.water_film_mm * (1 - p.snow_cover),
                                     objectFactor(p.wet(), p.snow_cover)));

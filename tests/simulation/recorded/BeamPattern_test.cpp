@@ -5,7 +5,6 @@
 #include <set>
 
 #include "libperception/core/Angle.h"
-
 #include "tests/simulation/recorded/RecordedClouds.h"
 
 namespace perception {

@@ -17,8 +17,9 @@ using test::kCamera, test::kRoofLidar, test::kStanding, test::parked, test::scen
 const std::string kHouse = parked("house", "box", 5, 10, "length = 10\nwidth = 8\nheight = 8");
 
 /// Boxes of `scans` images of a camera at the origin that looks along x.
-std::vector<ObjectDetection> mirrored(double share, const std::string& objects, int scans) {
-  const World world(scenarioOf(kStanding + kCamera + objects));
+std::vector<ObjectDetection> mirrored(double share, const std::string& objects, int scans,
+                                      const std::string& camera = kCamera) {
+  const World world(scenarioOf(kStanding + camera + objects));
   const SensorParams& sensor = world.scenario().sensors.front();
   ShopWindows windows(share, 3);
   std::vector<ObjectDetection> found;
@@ -52,6 +53,21 @@ TEST(ShopWindows, APersonBeforeAWindowIsSeenBehindIt) {
   const double reflected = glassReflectance(10 / std::hypot(15, 10, height));
   const double chance = .9 * (reflected - .05) / .2;
   EXPECT_NEAR(static_cast<double>(boxes.size()) / kImages, chance, .05);
+}
+
+TEST(ShopWindows, ABoxOverThePanoramasSeamBeginsInsideOfIt) {
+  const std::string panorama = "[sensor.CAMERA]\nkind = spherical_camera\n";
+  const CameraModel camera = scenarioOf(kStanding + panorama).sensors.front().cameraModel();
+  const std::string behind = parked("house", "box", -10, 0, "length = 8\nwidth = 20\nheight = 8"),
+                    cyclist = parked("cyclist", "cyclist", -3.5, 0);  // its image is at (-8.5, 0)
+  const auto boxes = mirrored(1, behind + cyclist, 500, panorama);
+  ASSERT_FALSE(boxes.empty());
+  for (const auto& box : boxes) {
+    EXPECT_EQ(box.label, "Pedestrian");  // the panorama's detector knows no cyclists
+    EXPECT_GE(box.image_box->x1, 0);
+    EXPECT_LT(box.image_box->x1, camera.width);
+    EXPECT_GT(box.image_box->x2, camera.width);
+  }
 }
 
 TEST(ShopWindows, WallsAndWhatNoWindowShowsHaveNoImage) {
