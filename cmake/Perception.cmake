@@ -34,17 +34,18 @@ if(PERCEPTION_SANITIZE)
   target_link_options(perception_options INTERFACE -fsanitize=${PERCEPTION_SANITIZE})
 endif()
 
-# perception_precompile(NAME OWNER): Eigen is most of what most sources read. OWNER reads it once for all targets with its
-# compile options. Not beside ccache, which could not remember what uses it.
-function(perception_precompile NAME OWNER)
-  if(NOT PERCEPTION_PRECOMPILE OR CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
-    return()
+# perception_batches(TARGET): several sources at once, so that the headers that they have in common are read once: whole builds
+# take half the time. Not beside ccache, which remembers sources one by one. Names of anonymous namespaces are unique in a module.
+function(perception_batches TARGET)
+  if(PERCEPTION_UNITY)
+    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   endif()
-  if("${NAME}" STREQUAL "${OWNER}")
-    target_precompile_headers(${NAME} PRIVATE <Eigen/Cholesky> <Eigen/Geometry> <Eigen/LU>)
-  else()
-    target_precompile_headers(${NAME} REUSE_FROM ${OWNER})
-  endif()
+endfunction()
+
+# perception_cheap(TARGET): of code that runs once or waits for files, -O1, which guesses more of uninitialized variables than -O3
+# knows.
+function(perception_cheap TARGET)
+  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1> -Wno-maybe-uninitialized)
 endfunction()
 
 # perception_module(NAME [FOLDER dir] LINK libs...): all sources below libperception/NAME as perception::NAME, but those
@@ -65,10 +66,10 @@ function(perception_module NAME)
     target_link_libraries(perception_${NAME} PUBLIC perception_options ${ARG_LINK})
     if(NAME IN_LIST PERCEPTION_LOOPS)
       target_compile_options(perception_${NAME} PRIVATE -fno-math-errno -fno-trapping-math -ffp-contract=off -Wno-psabi)
-      perception_precompile(perception_${NAME} perception_simd)
-    else()
-      perception_precompile(perception_${NAME} perception_core)
+    elseif(NAME IN_LIST PERCEPTION_CHEAP)
+      perception_cheap(perception_${NAME})
     endif()
+    perception_batches(perception_${NAME})
   else()
     add_library(perception_${NAME} INTERFACE)
     target_link_libraries(perception_${NAME} INTERFACE perception_options ${ARG_LINK})
@@ -87,15 +88,6 @@ function(perception_simd NAME STEM)
   set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}Avx2.cpp PROPERTIES COMPILE_OPTIONS "${MATH};-mavx2;-mfma")
   set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}Avx512.cpp PROPERTIES
     COMPILE_OPTIONS "${MATH};-mavx512f;-mavx512dq;-mavx512vl;-mfma;-mprefer-vector-width=512")
-  foreach(LEVEL Sse2 Avx2 Avx512)
-    set_source_files_properties(${CMAKE_SOURCE_DIR}/${STEM}${LEVEL}.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
-  endforeach()
-endfunction()
-
-# perception_cheap(SOURCES...): of what only declares options and hands over, -O1; a precompiled header would bring its -O3.
-function(perception_cheap)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON
-    COMPILE_OPTIONS "$<$<CONFIG:Release>:-O1>;-Wno-maybe-uninitialized")
 endfunction()
 
 # perception_program(NAME [SOURCES stems below libperception...] LINK libs...): the program build/bin/perception-NAME from
@@ -109,10 +101,9 @@ function(perception_program NAME)
     list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/libperception/)
     list(TRANSFORM ARG_SOURCES APPEND .cpp)
     add_library(perception_app_${NAME} STATIC ${ARG_SOURCES})
-    list(FILTER ARG_SOURCES INCLUDE REGEX "/libperception/app/")
-    perception_cheap(${ARG_SOURCES})
     target_link_libraries(perception_app_${NAME} PUBLIC perception::app ${ARG_LINK})
-    perception_precompile(perception_app_${NAME} perception_core)
+    perception_cheap(perception_app_${NAME})
+    perception_batches(perception_app_${NAME})
     add_library(perception::app_${NAME} ALIAS perception_app_${NAME})
     target_link_libraries(${PROGRAM} PRIVATE perception::app_${NAME})
   else()

@@ -13,7 +13,7 @@ constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kCapitals = 21;     // [px] height of that font's capitals at scale 1
 constexpr double kFarthest = 20000;  // [px] limit of OpenCV's fixed-point coordinates
 
-cv::Scalar colorOf(const Color& c) { return {double(c.r), double(c.g), double(c.b)}; }
+cv::Scalar cvColorOf(const Color& c) { return {double(c.r), double(c.g), double(c.b)}; }
 
 cv::Point fixedPoint(const Vector2& p) {
   const auto fixed = [](double v) {
@@ -61,7 +61,7 @@ struct Canvas::Impl {
 
 Canvas::Canvas(int width, int height, const Color& background) : impl_(new Impl) {
   impl_->whole.create(height * kScale, width * kScale, CV_8UC3);
-  impl_->whole = colorOf(background);
+  impl_->whole = cvColorOf(background);
   unclip();
 }
 
@@ -102,7 +102,7 @@ void Canvas::line(const Vector2& a, const Vector2& b, const Color& color, double
                cv::Point(std::max(p.x, q.x), std::max(p.y, q.y)) / (1 << kFraction) +
                    cv::Point(stroke + 3, stroke + 3));
   impl_->blend(color, box, [&](cv::Mat& on) {
-    cv::line(on, p, q, colorOf(color), stroke, cv::LINE_AA, kFraction);
+    cv::line(on, p, q, cvColorOf(color), stroke, cv::LINE_AA, kFraction);
   });
 }
 
@@ -125,7 +125,7 @@ void Canvas::polygon(const std::vector<Vector2>& corners, const Color& fill) {
     box = box.empty() ? one : box | one;
   }
   impl_->blend(fill, box, [&](cv::Mat& on) {
-    cv::fillConvexPoly(on, points, colorOf(fill), cv::LINE_AA, kFraction);
+    cv::fillConvexPoly(on, points, cvColorOf(fill), cv::LINE_AA, kFraction);
   });
 }
 
@@ -139,7 +139,7 @@ void Canvas::disc(const Vector2& center, double radius, const Color& fill) {
   const cv::Point corner((r >> kFraction) + 2, (r >> kFraction) + 2);
   impl_->blend(fill, cv::Rect(at / (1 << kFraction) - corner, at / (1 << kFraction) + corner),
                [&](cv::Mat& on) {
-                 cv::circle(on, at, r, colorOf(fill), cv::FILLED, cv::LINE_AA, kFraction);
+                 cv::circle(on, at, r, cvColorOf(fill), cv::FILLED, cv::LINE_AA, kFraction);
                });
 }
 
@@ -158,7 +158,7 @@ void Canvas::text(const Vector2& at, const std::string& text, double size, const
   const Vector2 p = impl_->local(at) * kScale;
   cv::putText(impl_->view, text,
               {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))}, kFont,
-              fontScale(size), colorOf(color), fontStroke(size, bold), cv::LINE_AA);
+              fontScale(size), cvColorOf(color), fontStroke(size, bold), cv::LINE_AA);
 }
 
 double Canvas::textWidth(const std::string& text, double size, bool bold) {

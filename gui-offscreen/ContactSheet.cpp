@@ -5,13 +5,12 @@
 
 #include "gui-offscreen/Canvas.h"
 #include "gui-offscreen/Legend.h"
+#include "gui-offscreen/PictureStyle.h"
 
 namespace perception {
 namespace {
 
-constexpr int kTitle = 30, kMargin = 10;                // [px]
 constexpr int kLegendWidth = 216, kLegendHeight = 620;  // [px] that a full legend takes
-constexpr double kTitleSize = 10;                       // [px] height of capitals
 
 }  // namespace
 

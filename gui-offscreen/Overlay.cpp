@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gui-offscreen/LabelLayout.h"
+#include "gui-offscreen/PictureStyle.h"
 #include "gui-offscreen/ViewPen.h"
 
 namespace perception {
@@ -13,9 +14,6 @@ namespace {
 
 constexpr double kReach = 90, kMutedReach = 4;  // [px] from an object to its label
 constexpr double kLabelSize = 8.5;              // [px] height of capitals
-constexpr double kSmallSize = 7.5;              // [px]
-constexpr double kArrowTime = 1;     // [s] length of the velocity arrow: distance in this time
-constexpr double kStanding = 0.5;    // [m/s] below it there is no arrow
 constexpr double kImageReach = 1.5;  // of the range: farther objects are not drawn on images
 
 /// Draws what is given in the ego frame.

@@ -11,7 +11,8 @@
 namespace perception {
 namespace {
 
-constexpr double kLabelWidth = 130, kChartWidth = 900, kRow = 16, kAxis = kTimelineTop;  // [px]
+constexpr double kLabelWidth = 130, kChartWidth = 900, kTrackRow = 16,
+                 kAxis = kTimelineTop;  // [px]
 
 /// The row of a note at `y` [px].
 std::string noteRow(const TimelineNote& note, double y, double end) {
@@ -22,7 +23,7 @@ std::string noteRow(const TimelineNote& note, double y, double end) {
     out += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" "
         "fill=\"#c040c0\"><title>{}, {:.1f} to {:.1f} s</title></rect>\n",
-        kLabelWidth + scale * s.from, y + 2, std::max(1.0, scale * (s.to - s.from)), kRow - 4,
+        kLabelWidth + scale * s.from, y + 2, std::max(1.0, scale * (s.to - s.from)), kTrackRow - 4,
         escaped(s.title), s.from, s.to);
   }
   return out;
@@ -72,8 +73,8 @@ std::string timeAxis(double end, const TimelineSpan& span, double bottom) {
 
 std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& lives, double end,
                           const TimelineNote& note) {
-  const double notes = note.stretches.empty() ? 0 : kRow;  // [px]
-  const double height = kAxis + notes + kRow * static_cast<double>(lives.size()) + 4;
+  const double notes = note.stretches.empty() ? 0 : kTrackRow;  // [px]
+  const double height = kAxis + notes + kTrackRow * static_cast<double>(lives.size()) + 4;
   const auto x = [&](double t) { return kLabelWidth + kChartWidth * t / end; };
   std::string out = fmt::format(
       "<svg id=\"timeline\" viewBox=\"0 0 {:.0f} {:.0f}\" data-left=\"{:.0f}\" "
@@ -93,11 +94,11 @@ std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& 
           "<rect data-id=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.0f}\" "
           "fill=\"{}\" "
           "fill-opacity=\"{}\"><title>{}: {}{}, {:.1f} to {:.1f} s</title></rect>\n",
-          life.id, x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kRow - 4,
+          life.id, x(s.from), y + 2, std::max(1.0, x(s.to) - x(s.from)), kTrackRow - 4,
           hexOf(colorOfClass(nameOfClass(run, s.class_id), s.class_id)), s.sure ? "1" : "0.4",
           life.id, s.sure ? "" : "probably ", spaced(nameOfClass(run, s.class_id)), s.from, s.to);
     }
-    y += kRow;
+    y += kTrackRow;
   }
   out += fmt::format("<line id=\"now\" y1=\"{:.0f}\" y2=\"{:.0f}\" x1=\"-9\" x2=\"-9\"/>\n</svg>\n",
                      kAxis - 6, height);

@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 constexpr std::size_t kPointBytes = 8;       // of a return or a cell in the block
 constexpr double kBase64 = 4.0 / 3 * 1.01;   // bytes of the page by byte, if gzip gains nothing
 constexpr double kCellShare = 0.2;           // of the budget of points
-constexpr double kFarthest = 320;            // [m] that 16 bits of centimeters reach
+constexpr double kFarthestPoint = 320;       // [m] that 16 bits of centimeters reach
 constexpr double kHeightStep = 0.02;         // [m] of a return's height
 constexpr float kGround = 0.15F;             // [m] height of returns of the ground
 constexpr int kImageWidth = 720;             // [px]
@@ -200,7 +200,7 @@ void RunData::add(std::size_t index, const SceneView& view) {
 
 void RunData::addPoints(const SceneView& view, const Vector3& center, Json& scene) {
   const auto near = [&](const Vector3& p) {
-    return (p - center).allFinite() && (p - center).cwiseAbs().maxCoeff() < kFarthest;
+    return (p - center).allFinite() && (p - center).cwiseAbs().maxCoeff() < kFarthestPoint;
   };
   std::vector<std::size_t> all, cells;
   for (std::size_t i = 0; i < view.points.size(); ++i) {

@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kTypes[] = {"clear", "rain", "snow", "fog"};
 
-double rounded(double value, double steps) { return std::round(value * steps) / steps; }
+double roundedTo(double value, double steps) { return std::round(value * steps) / steps; }
 
 /// Rows of each sensor, `most` of them.
 std::map<std::string, std::vector<std::size_t>> rowsBySensor(const CsvTable& table,
@@ -41,7 +41,7 @@ Json columnOf(const CsvTable& table, const std::vector<std::size_t>& rows, const
   const auto column = table.column(name);
   for (const std::size_t i : rows) {
     const double value = table.realOrNan(i, column);
-    values.push_back(std::isfinite(value) ? Json(rounded(value, steps)) : Json(nullptr));
+    values.push_back(std::isfinite(value) ? Json(roundedTo(value, steps)) : Json(nullptr));
   }
   return values;
 }
@@ -69,7 +69,7 @@ Json weatherOf(const std::string& dir, std::size_t most) {
     for (const std::size_t i : rows) {
       const double returns = table.real(i, table.column("returns"));
       const double doubted = table.real(i, table.column("doubted"));
-      entry["doubted"].push_back(rounded(doubted / std::max(returns, 1.0), 1e5));
+      entry["doubted"].push_back(roundedTo(doubted / std::max(returns, 1.0), 1e5));
     }
     sensors.push_back(std::move(entry));
   }

@@ -9,6 +9,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include "gui-offscreen/Palette.h"
+#include "gui-offscreen/PictureStyle.h"
 #include "libperception/scene/OutputFile.h"
 
 namespace perception {
@@ -16,12 +17,10 @@ namespace {
 
 constexpr float kLetter = 0.5F;     // [m] height of letters
 constexpr double kLetterGap = 0.3;  // [m] between an object's roof and its label
-constexpr double kArrowTime = 1;    // [s] length of the velocity arrow: distance in this time
-constexpr double kStanding = 0.5;   // [m/s] below it there is no arrow
 
-mrpt::img::TColor colorOf(const Color& c) { return {c.r, c.g, c.b, 255}; }
+mrpt::img::TColor opaqueColorOf(const Color& c) { return {c.r, c.g, c.b, 255}; }
 
-mrpt::math::TPoint3D pointOf(const Vector3& p) { return {p.x(), p.y(), p.z()}; }
+mrpt::math::TPoint3D doublePointOf(const Vector3& p) { return {p.x(), p.y(), p.z()}; }
 
 void addLabel(mrpt::opengl::COpenGLScene& scene, const SceneObject& object, const std::string& name,
               const Vector3& place, const Color& color) {
@@ -31,7 +30,7 @@ void addLabel(mrpt::opengl::COpenGLScene& scene, const SceneObject& object, cons
   if (!isMuted(name) && speed >= kStanding) text += fmt::format(" {:.0f} km/h", speed * 3.6);
   auto label = mrpt::opengl::CText3D::Create(text, "sans", kLetter);
   label->setName(fmt::format("label {}", object.id));
-  label->setColor_u8(colorOf(color));
+  label->setColor_u8(opaqueColorOf(color));
   // Upright, facing a viewer behind the vehicle.
   label->setPose(mrpt::poses::CPose3D(place.x(), place.y(), place.z() + object.height + kLetterGap,
                                       -kPi / 2, 0, kPi / 2));
@@ -50,17 +49,17 @@ void addMotion(mrpt::opengl::COpenGLScene& scene, const SceneView& view, const S
                                               static_cast<float>(b.y()), static_cast<float>(b.z()),
                                               0.25F, 0.06F, 0.18F);
     arrow->setName(fmt::format("velocity {}", object.id));
-    arrow->setColor_u8(colorOf(color));
+    arrow->setColor_u8(opaqueColorOf(color));
     scene.insert(arrow);
   }
   const auto trail = view.trails.find(object.id);
   if (trail == view.trails.end() || trail->second.size() < 2) return;
   auto path = mrpt::opengl::CSetOfLines::Create();
   path->setName(fmt::format("path {}", object.id));
-  path->setColor_u8(colorOf(color));
+  path->setColor_u8(opaqueColorOf(color));
   for (std::size_t i = 1; i < trail->second.size(); ++i) {
-    path->appendLine(pointOf(T_ego_world * trail->second[i - 1]),
-                     pointOf(T_ego_world * trail->second[i]));
+    path->appendLine(doublePointOf(T_ego_world * trail->second[i - 1]),
+                     doublePointOf(T_ego_world * trail->second[i]));
   }
   scene.insert(path);
 }
@@ -70,7 +69,8 @@ void addBoxLines(mrpt::opengl::CSetOfLines& lines, const std::array<Vector3, 8>&
   for (std::size_t i = 0; i < 4; ++i) {
     for (const auto& [a, b] : {std::make_pair(i, (i + 1) % 4),
                                std::make_pair(i + 4, (i + 1) % 4 + 4), std::make_pair(i, i + 4)}) {
-      lines.appendLine(pointOf(T_ego_world * corners[a]), pointOf(T_ego_world * corners[b]));
+      lines.appendLine(doublePointOf(T_ego_world * corners[a]),
+                       doublePointOf(T_ego_world * corners[b]));
     }
   }
 }
@@ -79,18 +79,18 @@ void addTruthAndMeasurements(mrpt::opengl::COpenGLScene& scene, const SceneView&
                              const Pose3& T_ego_world) {
   auto truth = mrpt::opengl::CSetOfLines::Create();
   truth->setName("truth");
-  truth->setColor_u8(colorOf(kInk));
+  truth->setColor_u8(opaqueColorOf(kInk));
   for (const TruthObject& o : view.truth) {
     addBoxLines(*truth, boxCorners(o.position, o.yaw, o.length, o.width, o.height), T_ego_world);
   }
   scene.insert(truth);
   auto outlines = mrpt::opengl::CSetOfLines::Create();
   outlines->setName("measurements");
-  outlines->setColor_u8(colorOf(kMeasurement));
+  outlines->setColor_u8(opaqueColorOf(kMeasurement));
   for (const ViewMeasurement& m : view.measurements) {
     for (std::size_t i = 0; i < m.outline.size(); ++i) {
-      outlines->appendLine(pointOf(T_ego_world * m.outline[i]),
-                           pointOf(T_ego_world * m.outline[(i + 1) % m.outline.size()]));
+      outlines->appendLine(doublePointOf(T_ego_world * m.outline[i]),
+                           doublePointOf(T_ego_world * m.outline[(i + 1) % m.outline.size()]));
     }
   }
   scene.insert(outlines);

@@ -7,16 +7,17 @@
 
 #include "gui-offscreen/Legend.h"
 #include "gui-offscreen/Overlay.h"
+#include "gui-offscreen/PictureStyle.h"
 
 namespace perception {
 namespace {
 
-constexpr int kTitle = 30, kLegend = 216, kMargin = 10;  // [px]
+constexpr int kLegend = 216;        // [px]
 constexpr int kSupersampling = 2;   // framebuffer pixels per pixel: MRPT does not smooth its edges
 constexpr double kTileShare = 0.6;  // of a view's edge
 constexpr int kCaption = 22;        // [px]
-constexpr double kTitleSize = 10, kCaptionSize = 9;  // [px] height of capitals
-constexpr double kTallestImage = 0.8;                // of a view's height: the strip of a camera
+constexpr double kCaptionSize = 9;  // [px] height of capitals
+constexpr double kTallestImage = 0.8;  // of a view's height: the strip of a camera
 constexpr Color kNoImage{246, 246, 246};
 
 std::string instantText(const SceneView& view) {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "gui-offscreen/PictureStyle.h"
 #include "gui-offscreen/ViewPen.h"
 
 namespace perception {
 namespace {
 
-constexpr double kAxisStep = 10;    // [m]
-constexpr double kSmallSize = 7.5;  // [px]
+constexpr double kAxisStep = 10;  // [m]
 
 class Surroundings {
  public:

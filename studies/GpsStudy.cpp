@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint32_t kPurpose = 0x5730;
 constexpr std::size_t kTrainingSections = 60;  // a class, for the process noises
 constexpr double kMaxBias = 12;                // log likelihood
-constexpr std::size_t kModes = 4;
+constexpr std::size_t kGpsModes = 4;
 
 std::string userOf(const std::string& stem) {
   const auto first = stem.find('_');
@@ -76,8 +76,8 @@ std::vector<std::vector<Vector2>> trainingSections(const std::vector<GpsTrack>& 
 
 std::vector<SpeedRegimes> learnRegimes(const std::vector<GpsTrack>& tracks,
                                        const std::set<std::string>& without) {
-  std::vector<SpeedRegimes> out(kModes);
-  for (std::size_t mode = 0; mode < kModes; ++mode) {
+  std::vector<SpeedRegimes> out(kGpsModes);
+  for (std::size_t mode = 0; mode < kGpsModes; ++mode) {
     std::map<std::string, std::vector<std::vector<int>>> by_user;
     for (const auto& t : tracks) {
       if (t.mode == static_cast<int>(mode) && without.count(t.user) == 0)
@@ -154,7 +154,7 @@ const std::vector<std::string>& gpsModes() {
 std::vector<GpsTrack> readGpsTracks(const GpsParams& params) {
   namespace fs = std::filesystem;
   std::vector<GpsTrack> out;
-  for (std::size_t mode = 0; mode < kModes; ++mode) {
+  for (std::size_t mode = 0; mode < kGpsModes; ++mode) {
     const fs::path folder = fs::path(params.folder) / gpsModes()[mode];
     if (!fs::is_directory(folder))
       throw DataError(folder.string() +
@@ -200,7 +200,7 @@ GpsExperiment prepareGps(const GpsParams& params) {
   e.models.resize(e.users.size());
   tbb::parallel_for(std::size_t{0}, e.users.size(), [&](std::size_t u) {
     GpsModel& model = e.models[u];
-    for (std::size_t mode = 0; mode < kModes; ++mode) {
+    for (std::size_t mode = 0; mode < kGpsModes; ++mode) {
       const auto sections = trainingSections(e.tracks, static_cast<int>(mode), e.users[u], params);
       model.filters.push_back(fitNoise(mode > 0, sections, e.R));
     }
@@ -213,9 +213,9 @@ GpsExperiment prepareGps(const GpsParams& params) {
 GpsResult runGps(const GpsExperiment& e, const GpsParams& params, GpsRule rule) {
   const auto draws = static_cast<std::size_t>(params.draws);
   std::vector<std::vector<std::vector<double>>> counts(
-      draws, std::vector<std::vector<double>>(kModes, std::vector<double>(kModes, 0)));
-  tbb::parallel_for(std::size_t{0}, draws * kModes, [&](std::size_t job) {
-    const std::size_t draw = job / kModes, mode = job % kModes;
+      draws, std::vector<std::vector<double>>(kGpsModes, std::vector<double>(kGpsModes, 0)));
+  tbb::parallel_for(std::size_t{0}, draws * kGpsModes, [&](std::size_t job) {
+    const std::size_t draw = job / kGpsModes, mode = job % kGpsModes;
     std::vector<std::pair<std::size_t, std::size_t>> sections;
     for (std::size_t k = 0; k < e.tracks.size(); ++k) {
       if (e.tracks[k].mode != static_cast<int>(mode)) continue;
@@ -232,12 +232,12 @@ GpsResult runGps(const GpsExperiment& e, const GpsParams& params, GpsRule rule) 
     }
   });
   GpsResult r;
-  r.confusion.assign(kModes, std::vector<double>(kModes, 0));
+  r.confusion.assign(kGpsModes, std::vector<double>(kGpsModes, 0));
   std::vector<double> balanced(draws, 0);
   for (std::size_t d = 0; d < draws; ++d) {
-    for (std::size_t m = 0; m < kModes; ++m) {
-      balanced[d] += counts[d][m][m] / static_cast<double>(kModes);
-      for (std::size_t c = 0; c < kModes; ++c)
+    for (std::size_t m = 0; m < kGpsModes; ++m) {
+      balanced[d] += counts[d][m][m] / static_cast<double>(kGpsModes);
+      for (std::size_t c = 0; c < kGpsModes; ++c)
         r.confusion[m][c] += counts[d][m][c] / static_cast<double>(draws);
     }
     r.balanced += balanced[d] / static_cast<double>(draws);
@@ -245,7 +245,7 @@ GpsResult runGps(const GpsExperiment& e, const GpsParams& params, GpsRule rule) 
   for (const double b : balanced)
     r.deviation += std::pow(b - r.balanced, 2) / std::max(1.0, static_cast<double>(draws) - 1);
   r.deviation = std::sqrt(r.deviation);
-  for (std::size_t m = 0; m < kModes; ++m) r.right.push_back(r.confusion[m][m]);
+  for (std::size_t m = 0; m < kGpsModes; ++m) r.right.push_back(r.confusion[m][m]);
   return r;
 }
 

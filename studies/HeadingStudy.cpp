@@ -20,7 +20,7 @@ using namespace heading_scene;
 
 constexpr double kLostAfter = 1.5;  // [s] without an accepted measurement
 constexpr double kGate = 11.34;     // chi-square .99, three degrees of freedom
-constexpr std::uint32_t kPurpose = 0x5720;
+constexpr std::uint32_t kHeadingPurpose = 0x5720;
 
 ObjectClass carClass() {
   ObjectClass c;
@@ -146,7 +146,7 @@ class HeadingTrack {
 
 HeadingFigures oneRun(const HeadingMethod& method, bool radar, double flip, std::uint64_t seed,
                       std::uint64_t run) {
-  Rng rng({seed, run, 0, kPurpose});
+  Rng rng({seed, run, 0, kHeadingPurpose});
   const auto path = drive(rng);
   const auto seen = sense(path, radar, flip, rng);
   HeadingTrack track(method, flip);

@@ -13,7 +13,7 @@ namespace perception {
 namespace {
 
 enum { kCyclist, kPedestrian };
-constexpr std::uint32_t kPurpose = 0x5710;
+constexpr std::uint32_t kMonteCarloPurpose = 0x5710;
 const int kCounts[] = {5, 10, 15, 20, 30, 40, 50};
 constexpr double kMedian = 1.986;  // [radecki2016]'s dashed line: median of chi-square(100) over 50
 
@@ -26,7 +26,7 @@ PaperClass classOf(int kind) {
   return c;
 }
 
-struct Track {
+struct PaperTrack {
   FilterTrace by_filter[2];
 
   double meanNis(int filter, std::size_t n) const {
@@ -46,14 +46,14 @@ struct Track {
   }
 };
 
-Track makeTrack(const MonteCarloParams& p, int kind, std::uint64_t number) {
-  Rng rng({p.seed, number, static_cast<std::uint32_t>(kind), kPurpose});
+PaperTrack makeTrack(const MonteCarloParams& p, int kind, std::uint64_t number) {
+  Rng rng({p.seed, number, static_cast<std::uint32_t>(kind), kMonteCarloPurpose});
   Matrix2 R;
   R << 1.2, 0.1, 0.1, 1.2;  // [radecki2016]'s GPS receiver [m^2]
   if (p.noise_per_track) R = std::pow(rng.uniform(0.5, 1.7), 2) * Matrix2::Identity();
   const double speed = std::abs(rng.normal(kind == kCyclist ? 4.0 : 2.0, 0.5));  // method.md 4.5
   const auto z = simulatePaperTrack(classOf(kind), speed, p.steps, 1.0, R, rng);
-  Track track;
+  PaperTrack track;
   for (const int filter : {kCyclist, kPedestrian})
     track.by_filter[filter] = runPaperFilter(classOf(filter), z, 1.0, R);
   return track;
@@ -68,7 +68,7 @@ std::vector<double*> membersOf(MonteCarloFigures& f) {
   return out;
 }
 
-std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
+std::string percentOf(double share) { return fmt::format("{:.1f}", 100 * share); }
 
 StudyTable comparison(const MonteCarloResult& r, const char* name, const char* title) {
   StudyTable t;
@@ -131,8 +131,8 @@ StudyTable countsTable(const MonteCarloResult& r) {
   t.columns = {"measurements", "chi-square: cyclists", "chi-square: pedestrians",
                "sequential: cyclists", "sequential: pedestrians"};
   for (const auto& c : r.by_count) {
-    t.rows.push_back({std::to_string(c.count), percent(c.chi2[0]), percent(c.chi2[1]),
-                      percent(c.sequential[0]), percent(c.sequential[1])});
+    t.rows.push_back({std::to_string(c.count), percentOf(c.chi2[0]), percentOf(c.chi2[1]),
+                      percentOf(c.sequential[0]), percentOf(c.sequential[1])});
   }
   return t;
 }
@@ -142,7 +142,7 @@ StudyTable countsTable(const MonteCarloResult& r) {
 MonteCarloResult runMonteCarlo(const MonteCarloParams& p) {
   const auto repeats = static_cast<std::size_t>(p.repeats);
   const auto iterations = static_cast<std::size_t>(p.iterations);
-  std::vector<Track> tracks[2];
+  std::vector<PaperTrack> tracks[2];
   for (const int kind : {kCyclist, kPedestrian}) {
     tracks[kind].resize(repeats * iterations);
     tbb::parallel_for(std::size_t{0}, tracks[kind].size(),
@@ -156,7 +156,7 @@ MonteCarloResult runMonteCarlo(const MonteCarloParams& p) {
     for (const int kind : {kCyclist, kPedestrian}) {
       const int other = 1 - kind;
       for (std::size_t i = e * iterations; i < (e + 1) * iterations; ++i) {
-        const Track& t = tracks[kind][i];
+        const PaperTrack& t = tracks[kind][i];
         for (const int filter : {kCyclist, kPedestrian})
           f.nis[kind][filter] += share * t.meanNis(filter, steps);
         f.chi2[kind] += t.logChi2(kind, steps) > t.logChi2(other, steps) ? share : 0;
@@ -186,7 +186,7 @@ MonteCarloResult runMonteCarlo(const MonteCarloParams& p) {
     c.count = count;
     const auto n = static_cast<std::size_t>(count);
     for (const int kind : {kCyclist, kPedestrian}) {
-      for (const Track& t : tracks[kind]) {
+      for (const PaperTrack& t : tracks[kind]) {
         const double one = 1.0 / static_cast<double>(tracks[kind].size());
         c.chi2[kind] += t.logChi2(kind, n) > t.logChi2(1 - kind, n) ? one : 0;
         c.sequential[kind] += t.sequential(kind, n) > t.sequential(1 - kind, n) ? one : 0;

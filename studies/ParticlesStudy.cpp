@@ -15,10 +15,10 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kWarmUp = 10;  // instants: 1 s
-constexpr int kCounts[] = {1, 4, 8, 12, 16, 20};
+constexpr std::size_t kWarmUpScans = 10;  // instants: 1 s
+constexpr int kParticleCounts[] = {1, 4, 8, 12, 16, 20};
 constexpr int kReference = 50;
-constexpr std::size_t kLargestError = 12;  // objects, of the plot
+constexpr std::size_t kLargestPlotError = 12;  // objects, of the plot
 
 /// Difficult conditions: clutter x 4, P_D x .85, noise x 2, close objects merge.
 const EncounterConditions kBusy{0.85, 4, 2, 0.7};
@@ -33,7 +33,7 @@ template <class Of>
 double rms(const std::vector<EncounterScore>& runs, Of errorOf) {
   double sum = 0, n = 0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    for (std::size_t k = kWarmUp; k < runs[r].count.size(); ++k, ++n) {
+    for (std::size_t k = kWarmUpScans; k < runs[r].count.size(); ++k, ++n) {
       const double e = errorOf(r, k);
       sum += e * e;
     }
@@ -120,12 +120,12 @@ ParticlesFigures compareParticles(const std::vector<EncounterScore>& runs,
   for (const auto& r : runs) f.gospa += r.gospa / static_cast<double>(runs.size());
   f.mean_count = meanOf(runs, &EncounterScore::count);
   f.mean_classified = meanOf(runs, &EncounterScore::classified);
-  f.error_cdf.assign(kLargestError + 1, 0);
+  f.error_cdf.assign(kLargestPlotError + 1, 0);
   double instants = 0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    for (std::size_t k = kWarmUp; k < runs[r].count.size(); ++k, ++instants) {
+    for (std::size_t k = kWarmUpScans; k < runs[r].count.size(); ++k, ++instants) {
       const auto e = static_cast<std::size_t>(std::abs(runs[r].count[k] - reference[r].count[k]));
-      for (std::size_t i = e; i <= kLargestError; ++i) ++f.error_cdf[i];
+      for (std::size_t i = e; i <= kLargestPlotError; ++i) ++f.error_cdf[i];
     }
   }
   for (double& share : f.error_cdf) share /= std::max(1.0, instants);
@@ -153,7 +153,7 @@ StudyReport particlesStudy(const ParticlesParams& params) {
     const auto reference =
         runParticles({"", Proposal::kSampled, duc, kReference, 1}, params.scenes);
     std::vector<std::pair<std::string, ParticlesFigures>> lines;
-    for (const int n : kCounts) {
+    for (const int n : kParticleCounts) {
       const auto f = compareParticles(
           runParticles({"", Proposal::kSampled, duc, n, 1}, params.scenes), reference);
       lines.push_back({fmt::format("{} particles", n), f});

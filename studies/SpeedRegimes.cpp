@@ -9,10 +9,10 @@ namespace {
 /// Lower edges [m/s]: finer at speeds of pedestrians and cyclists.
 constexpr std::array<double, SpeedRegimes::kBins> kEdges = {0,   0.3, 0.8, 1.3, 1.8,  2.5, 3.3, 4.2,
                                                             5.2, 6.5, 8,   10,  12.5, 16,  20,  26};
-constexpr double kKernel = 0.7;      // bins: standard deviation of the smoothing
-constexpr double kPrior = 0.3;       // transitions a bin, near the diagonal, before any data
-constexpr double kReference = 1000;  // number of transitions of a user with weight 1
-constexpr int kMixing = 300;         // steps to the stationary distribution
+constexpr double kKernel = 0.7;           // bins: standard deviation of the smoothing
+constexpr double kPrior = 0.3;            // transitions a bin, near the diagonal, before any data
+constexpr double kReferenceSpeed = 1000;  // number of transitions of a user with weight 1
+constexpr int kMixing = 300;              // steps to the stationary distribution
 
 using Matrix = std::array<std::array<double, SpeedRegimes::kBins>, SpeedRegimes::kBins>;
 
@@ -58,7 +58,7 @@ void SpeedRegimes::add(const std::vector<std::vector<int>>& tracks_of_user) {
       ++own[static_cast<std::size_t>(bins[i])][static_cast<std::size_t>(bins[i + 1])];
   }
   if (total == 0) return;
-  const double weight = std::sqrt(kReference / total);
+  const double weight = std::sqrt(kReferenceSpeed / total);
   for (std::size_t i = 0; i < own.size(); ++i)
     for (std::size_t j = 0; j < own.size(); ++j) counts_[i][j] += weight * own[i][j];
 }

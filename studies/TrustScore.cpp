@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kReliabilityBins = 10;
 
-std::optional<double> shareOf(std::size_t part, std::size_t whole) {
+std::optional<double> returnShareOf(std::size_t part, std::size_t whole) {
   if (whole == 0) return std::nullopt;
   return static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -100,9 +100,9 @@ TrustScore::Rates TrustScore::at(double threshold, std::uint16_t kind) const {
   r.found = right.below(threshold);
   r.false_alarms = wrong.below(threshold);
   r.missed = right.total() - r.found;
-  r.precision = shareOf(r.found, r.found + r.false_alarms);
-  r.recall = shareOf(r.found, right.total());
-  if (right.total() > 0) r.f1 = shareOf(2 * r.found, 2 * r.found + r.false_alarms + r.missed);
+  r.precision = returnShareOf(r.found, r.found + r.false_alarms);
+  r.recall = returnShareOf(r.found, right.total());
+  if (right.total() > 0) r.f1 = returnShareOf(2 * r.found, 2 * r.found + r.false_alarms + r.missed);
   return r;
 }
 

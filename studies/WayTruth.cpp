@@ -15,7 +15,7 @@ constexpr double kMemory = 0.55;           // [s] half a second of scans at 10 H
 constexpr double kBorder = 1;              // [m]
 constexpr int kSureScans = 3;              // a grid needs two scans, one is spare
 constexpr std::size_t kTogether = 3;       // returns
-constexpr double kWithin = 0.5;            // [m]
+constexpr double kWithinWay = 0.5;         // [m]
 constexpr float kLink = 0.7F;              // [m]
 constexpr std::size_t kClusterLeast = 10;  // returns
 constexpr double kOutline = 0.5;           // [m] by which a box is grown
@@ -67,7 +67,7 @@ Ahead nearestInCorridor(const std::vector<Vector3>& places, const Corridor& corr
   }
   std::sort(inside.begin(), inside.end(), [](const Ahead& a, const Ahead& b) { return a.s < b.s; });
   for (std::size_t i = 0; i + kTogether <= inside.size(); ++i)
-    if (inside[i + kTogether - 1].s - inside[i].s <= kWithin) return inside[i];
+    if (inside[i + kTogether - 1].s - inside[i].s <= kWithinWay) return inside[i];
   return {};
 }
 

@@ -70,7 +70,7 @@ struct RateErrors {
   double perScan(double total) const { return scans > 0 ? total / static_cast<double>(scans) : 0; }
 };
 
-std::string percent(std::size_t part, std::size_t whole) {
+std::string weatherPercent(std::size_t part, std::size_t whole) {
   if (whole == 0) return "n/a";
   return fmt::format("{:.1f}", 100 * static_cast<double>(part) / static_cast<double>(whole));
 }
@@ -79,8 +79,8 @@ std::vector<std::string> typeRow(const std::string& name, const char* truth,
                                  const TypeCount& count) {
   std::vector<std::string> row = {name, truth, fmt::format("{}", count.scans)};
   for (const std::size_t n : count.of) row.push_back(fmt::format("{}", n));
-  row.push_back(percent(count.right, count.scans));
-  row.push_back(percent(count.settled_right, count.settled));
+  row.push_back(weatherPercent(count.right, count.scans));
+  row.push_back(weatherPercent(count.settled_right, count.settled));
   row.push_back(count.since ? fmt::format("{:.1f}", *count.since) : "");
   return row;
 }

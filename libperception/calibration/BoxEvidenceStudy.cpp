@@ -159,7 +159,7 @@ StudyReport boxEvidenceStudy(const std::string& sensor, const std::vector<BoxLog
   bool simulated = false;
   std::string read;
   for (const BoxLog& log : logs) {
-    for (const JudgedBox& b : log.boxes) labels.insert(b.label);
+    for (const BoxWithTruth& b : log.boxes) labels.insert(b.label);
     simulated = simulated || log.simulated;
     read += (read.empty() ? "" : ", ") + log.name;
   }
@@ -177,7 +177,7 @@ StudyReport boxEvidenceStudy(const std::string& sensor, const std::vector<BoxLog
     ByLog by_log;
     for (const BoxLog& log : logs) {
       by_log.emplace_back();
-      for (const JudgedBox& b : log.boxes)
+      for (const BoxWithTruth& b : log.boxes)
         if (b.label == label) by_log.back().push_back(b.sample);
     }
     const auto all = joined(by_log, logs.size());

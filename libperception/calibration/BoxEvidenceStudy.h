@@ -16,7 +16,7 @@
 namespace perception {
 
 /// A detector's box with its true label.
-struct JudgedBox {
+struct BoxWithTruth {
   std::string label;  ///< the detector's class name
   BoxSample
       sample;  ///< `object`: true: on an object of the label's class; false: on no labeled object
@@ -30,7 +30,7 @@ struct BoxLog {
   std::string name;
   bool simulated = false;
   std::size_t scans = 0;  ///< that were compared with the truth
-  std::vector<JudgedBox> boxes;
+  std::vector<BoxWithTruth> boxes;
   std::vector<TruthObject> unlabeled;  ///< places in such areas: of the boxes there
 };
 

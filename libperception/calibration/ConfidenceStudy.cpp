@@ -32,7 +32,7 @@ Samples samplesOf(const ConfidenceInput& input) {
   Samples out;
   for (std::size_t l = 0; l < input.logs.size(); ++l) {
     out.scans.push_back(input.logs[l].scans);
-    for (const JudgedBox& b : input.logs[l].boxes) {
+    for (const BoxWithTruth& b : input.logs[l].boxes) {
       const auto name = input.names.find(b.label);
       auto& by_log = out.boxes[name != input.names.end() ? name->second : b.label];
       by_log.resize(input.logs.size());

@@ -15,7 +15,7 @@ namespace perception {
 namespace {
 
 constexpr std::array<double, 5> kRanges{0, 10, 20, 40, 80};  // [m] borders of the tables
-constexpr std::size_t kFewest = 20;  // fewest samples of a share: one in twenty is 5 %
+constexpr std::size_t kFewestSamples = 20;  // fewest samples of a share: one in twenty is 5 %
 
 /// [s] Within it detections of one scene depend on each other: an object stays hidden.
 constexpr double kBlock = 4;
@@ -32,7 +32,7 @@ std::pair<std::size_t, long> blockOf(std::size_t log, double t) {
 
 /// P_D of a class with its interval, of chances that `pick` takes.
 template <typename Pick>
-Interval detectionOf(const DetectorCounts& counts, ClassId c, Pick pick) {
+CredibleInterval detectionOf(const DetectorCounts& counts, ClassId c, Pick pick) {
   std::map<std::pair<std::size_t, long>, BlockCount> blocks;
   for (const DetectorChance& k : counts.chances) {
     if (k.class_id != c || !pick(k)) continue;
@@ -43,7 +43,7 @@ Interval detectionOf(const DetectorCounts& counts, ClassId c, Pick pick) {
 }
 
 /// What a scan has, detections on nothing or objects that enter, with its interval.
-Interval rateOf(const DetectorCounts& counts, std::size_t ClutterCount::*what) {
+CredibleInterval rateOf(const DetectorCounts& counts, std::size_t ClutterCount::*what) {
   std::map<std::pair<std::size_t, long>, BlockCount> blocks;
   for (const ClutterCount& scan : counts.clutter_scans) {
     BlockCount& block = blocks[blockOf(scan.log, scan.t)];
@@ -53,7 +53,7 @@ Interval rateOf(const DetectorCounts& counts, std::size_t ClutterCount::*what) {
 }
 
 /// Share of a label among the detections of a class, with its interval.
-Interval labelOf(const DetectorCounts& counts, ClassId c, int label) {
+CredibleInterval labelOf(const DetectorCounts& counts, ClassId c, int label) {
   std::map<std::pair<std::size_t, long>, BlockCount> blocks;
   for (const DetectorChance& k : counts.chances) {
     if (k.class_id != c || k.label < 0) continue;
@@ -65,7 +65,7 @@ Interval labelOf(const DetectorCounts& counts, ClassId c, int label) {
 
 /// The errors of places and edges on road users over what is stated, [-] root mean square, with its
 /// interval; without errors low is 0.
-Interval noiseOf(const DetectorCounts& counts, const ClassTable& classes) {
+CredibleInterval noiseOf(const DetectorCounts& counts, const ClassTable& classes) {
   static const std::set<std::string> kPlaces = {"left", "right", "range", "across"};
   std::map<std::pair<std::size_t, long>, BlockCount> blocks;
   std::size_t all = 0;
@@ -75,17 +75,17 @@ Interval noiseOf(const DetectorCounts& counts, const ClassTable& classes) {
     const double normalized = e.error / e.sigma;
     ++block.chances, block.events += normalized * normalized, ++all;
   }
-  if (all < kFewest) return {1, 0, 1e3};
-  const Interval square = rateInterval(valuesOf(blocks));
+  if (all < kFewestSamples) return {1, 0, 1e3};
+  const CredibleInterval square = rateInterval(valuesOf(blocks));
   return {std::sqrt(square.value), std::sqrt(square.low), std::sqrt(square.high)};
 }
 
-bool holds(const Interval& i, double value) { return value >= i.low && value <= i.high; }
+bool holds(const CredibleInterval& i, double value) { return value >= i.low && value <= i.high; }
 
 std::string percent(std::size_t part, std::size_t whole) {
-  return whole < kFewest ? "n/a"
-                         : fmt::format("{:.1f}", 100.0 * static_cast<double>(part) /
-                                                     static_cast<double>(whole));
+  return whole < kFewestSamples ? "n/a"
+                                : fmt::format("{:.1f}", 100.0 * static_cast<double>(part) /
+                                                            static_cast<double>(whole));
 }
 
 std::string span(std::size_t r) { return fmt::format("{:.0f}-{:.0f}", kRanges[r], kRanges[r + 1]); }
@@ -112,7 +112,7 @@ void addDetection(const DetectorCounts& counts, const ClassTable& classes, Study
         return k.range >= kRanges[r] && k.range < kRanges[r + 1];
       };
       const Share all = shareOf(counts, c, within);
-      if (all.all < kFewest) continue;
+      if (all.all < kFewestSamples) continue;
       std::vector<std::string> row = {counts.sensor, classes[c].name, span(r),
                                       fmt::format("{}", all.all)};
       for (int o = 0; o <= 2; ++o) {
@@ -121,7 +121,7 @@ void addDetection(const DetectorCounts& counts, const ClassTable& classes, Study
         row.push_back(percent(s.seen, s.all));
       }
       row.push_back(percent(all.seen, all.all));
-      const Interval p = detectionOf(counts, c, within);
+      const CredibleInterval p = detectionOf(counts, c, within);
       row.push_back(fmt::format("{:.1f} to {:.1f}", 100 * p.low, 100 * p.high));
       row.push_back(fmt::format("{:.1f}", 100 * all.stated / static_cast<double>(all.all)));
       table.rows.push_back(std::move(row));
@@ -144,7 +144,7 @@ void addNoise(const DetectorCounts& counts, const ClassTable& classes, StudyTabl
               e.range < kRanges[r + 1])
             some.push_back(&e);
         }
-        if (some.size() < kFewest) continue;
+        if (some.size() < kFewestSamples) continue;
         const ErrorFigures f = figuresOf(some);
         table.rows.push_back({counts.sensor, classes[c].name, q, span(r),
                               fmt::format("{}", f.count), fmt::format("{:.4f}", f.mean),
@@ -173,7 +173,7 @@ void addLabels(const DetectorCounts& counts, const ClassTable& classes,
                const std::vector<std::string>& labels, StudyTable& table) {
   for (ClassId c = 0; c < classes.size(); ++c) {
     const LabelCounts n = labelsOf(counts, c, labels.size());
-    if (n.all < kFewest) continue;
+    if (n.all < kFewestSamples) continue;
     for (std::size_t l = 0; l < labels.size(); ++l) {
       table.rows.push_back(
           {counts.sensor, classes[c].name, labels[l], fmt::format("{}", n.of[l]),
@@ -193,7 +193,7 @@ std::string iniOf(const DetectorCounts& counts, const ClassTable& classes,
   const double scans = static_cast<double>(std::max<std::size_t>(counts.scans, 1));
   const std::size_t clutter =
       std::accumulate(counts.clutter.begin(), counts.clutter.end(), std::size_t{0});
-  const Interval rate = rateOf(counts, &ClutterCount::number);
+  const CredibleInterval rate = rateOf(counts, &ClutterCount::number);
   std::string text = fmt::format(
       "[sensor.{}]\nclutter_per_scan = {:.3g}   ; {:.3g} to {:.3g}; {} detections on nothing "
       "labeled in {} scans\n"
@@ -206,9 +206,10 @@ std::string iniOf(const DetectorCounts& counts, const ClassTable& classes,
   }
   for (ClassId c = 0; c < classes.size(); ++c) {
     const Share visible = shareOf(counts, c, [](const auto& k) { return k.occluded <= 1; });
-    if (visible.all < kFewest) continue;
+    if (visible.all < kFewestSamples) continue;
     const Share hidden = shareOf(counts, c, [](const auto& k) { return k.occluded == 2; });
-    const Interval p = detectionOf(counts, c, [](const auto& k) { return k.occluded <= 1; });
+    const CredibleInterval p =
+        detectionOf(counts, c, [](const auto& k) { return k.occluded <= 1; });
     text += fmt::format(
         "[sensor.{}.class.{}]\ndetection = {:.2f}   ; {:.2f} to {:.2f}; {} of {} not or partly "
         "hidden; {} of {} "
@@ -216,7 +217,7 @@ std::string iniOf(const DetectorCounts& counts, const ClassTable& classes,
         counts.sensor, classes[c].name, smoothed(visible.seen, visible.all), p.low, p.high,
         visible.seen, visible.all, hidden.seen, hidden.all);
     const LabelCounts n = labelsOf(counts, c, labels.size());
-    for (std::size_t l = 0; l < labels.size() && n.all >= kFewest; ++l) {
+    for (std::size_t l = 0; l < labels.size() && n.all >= kFewestSamples; ++l) {
       text += fmt::format("label.{} = {:.3f}   ; {} of {}\n", labels[l], smoothed(n.of[l], n.all),
                           n.of[l], n.all);
     }
@@ -225,7 +226,7 @@ std::string iniOf(const DetectorCounts& counts, const ClassTable& classes,
 }
 
 /// A line, if the counts contradict the INI.
-std::string lineOf(const char* key, const Interval& counted, double stated, double value) {
+std::string lineOf(const char* key, const CredibleInterval& counted, double stated, double value) {
   if (holds(counted, stated)) return "";
   return fmt::format("{} = {:.3g}   ; counted {:.3g}, {:.3g} to {:.3g}; the INI says {:.3g}\n", key,
                      value, counted.value, counted.low, counted.high, stated);
@@ -235,16 +236,16 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
                     StudyTable& table) {
   const auto& labels = input.labels.at(counts.sensor);
   const DetectionParams& stated = input.stated.at(counts.sensor);
-  const auto add = [&](const std::string& section, const std::string& key, const Interval& counted,
-                       double ini, bool written) {
+  const auto add = [&](const std::string& section, const std::string& key,
+                       const CredibleInterval& counted, double ini, bool written) {
     table.rows.push_back({section, key, fmt::format("{:.3g}", counted.value),
                           fmt::format("{:.3g} to {:.3g}", counted.low, counted.high),
                           fmt::format("{:.3g}", ini), written ? "written" : "kept"});
   };
   const std::string section = "sensor." + counts.sensor;
-  const Interval clutter = rateOf(counts, &ClutterCount::number),
-                 births = rateOf(counts, &ClutterCount::entered),
-                 noise = noiseOf(counts, input.classes);
+  const CredibleInterval clutter = rateOf(counts, &ClutterCount::number),
+                         births = rateOf(counts, &ClutterCount::entered),
+                         noise = noiseOf(counts, input.classes);
   add(section, "clutter_per_scan", clutter, stated.clutter_per_scan,
       !holds(clutter, stated.clutter_per_scan));
   add(section, "births_per_scan", births, stated.births_per_scan,
@@ -265,8 +266,8 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
   for (ClassId c = 0; c < input.classes.size(); ++c) {
     const auto visible = [](const DetectorChance& k) { return k.occluded <= 1; };
     const Share share = shareOf(counts, c, visible);
-    if (share.all < kFewest) continue;
-    const Interval p = detectionOf(counts, c, visible);
+    if (share.all < kFewestSamples) continue;
+    const CredibleInterval p = detectionOf(counts, c, visible);
     const double mean = share.stated / static_cast<double>(share.all);  // over the ranges met
     double near = 0;  // P_D by the INI where nothing lessens it
     for (const DetectorChance& k : counts.chances)
@@ -278,8 +279,8 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
     const auto& table_row = counts.label[static_cast<std::size_t>(c)];
     std::string shares;
     bool contradicted = false;
-    for (std::size_t l = 0; l < labels.size() && n.all >= kFewest; ++l) {
-      const Interval q = labelOf(counts, c, static_cast<int>(l));
+    for (std::size_t l = 0; l < labels.size() && n.all >= kFewestSamples; ++l) {
+      const CredibleInterval q = labelOf(counts, c, static_cast<int>(l));
       contradicted = contradicted || !holds(q, table_row[l]);
       add(of_class, "label." + labels[l], q, table_row[l], !holds(q, table_row[l]));
       shares +=
@@ -295,7 +296,7 @@ std::string gainsOf(const DetectorCounts& counts, const DetectorStudyInput& inpu
 std::vector<std::string> scansRow(const std::string& sensor, const DetectorCounts& c) {
   const std::size_t clutter = std::accumulate(c.clutter.begin(), c.clutter.end(), std::size_t{0});
   const double n = static_cast<double>(std::max<std::size_t>(c.scans, 1));
-  const Interval rate = rateOf(c, &ClutterCount::number);
+  const CredibleInterval rate = rateOf(c, &ClutterCount::number);
   return {sensor,
           fmt::format("{}", c.scans),
           fmt::format("{}", clutter),

@@ -9,8 +9,8 @@
 namespace perception {
 namespace {
 
-constexpr double kTail = 0.05;      // outside of the interval on either side
-constexpr std::size_t kFewest = 3;  // blocks that show a variance
+constexpr double kTail = 0.05;            // outside of the interval on either side
+constexpr std::size_t kFewestBlocks = 3;  // blocks that show a variance
 
 BlockCount sumOf(const std::vector<BlockCount>& blocks) {
   BlockCount sum;
@@ -22,7 +22,7 @@ BlockCount sumOf(const std::vector<BlockCount>& blocks) {
 
 double designEffect(const std::vector<BlockCount>& blocks, double variance_of_one) {
   const BlockCount sum = sumOf(blocks);
-  if (blocks.size() < kFewest || sum.chances <= 0 || variance_of_one <= 0) return 1;
+  if (blocks.size() < kFewestBlocks || sum.chances <= 0 || variance_of_one <= 0) return 1;
   const double rate = sum.events / sum.chances;
   double squares = 0;
   for (const BlockCount& b : blocks) {
@@ -36,7 +36,7 @@ double designEffect(const std::vector<BlockCount>& blocks, double variance_of_on
   return std::max(1.0, wider * wider * squares * n / (n - 1) / (variance_of_one * sum.chances));
 }
 
-Interval shareInterval(const std::vector<BlockCount>& blocks) {
+CredibleInterval shareInterval(const std::vector<BlockCount>& blocks) {
   const BlockCount sum = sumOf(blocks);
   const double share = sum.chances > 0 ? sum.events / sum.chances : 0.5;
   const double fewer = designEffect(blocks, share * (1 - share));
@@ -46,7 +46,7 @@ Interval shareInterval(const std::vector<BlockCount>& blocks) {
           boost::math::quantile(beta, 1 - kTail)};
 }
 
-Interval rateInterval(const std::vector<BlockCount>& blocks) {
+CredibleInterval rateInterval(const std::vector<BlockCount>& blocks) {
   const BlockCount sum = sumOf(blocks);
   if (sum.chances <= 0) return {};
   const double fewer = designEffect(blocks, sum.events / sum.chances);

@@ -5,7 +5,7 @@
 namespace perception {
 
 /// An estimate and its 90 % credible interval.
-struct Interval {
+struct CredibleInterval {
   double value = 0, low = 0, high = 0;
 };
 
@@ -21,8 +21,8 @@ double designEffect(const std::vector<BlockCount>& blocks, double variance_of_on
 
 /// Share of the chances at which the event happens: Beta posterior under Jeffreys' prior, counts
 /// divided by the design effect (method.md 8.14).
-Interval shareInterval(const std::vector<BlockCount>& blocks);
+CredibleInterval shareInterval(const std::vector<BlockCount>& blocks);
 /// Events a chance, which may be more than one: Gamma posterior under Jeffreys' prior, the same.
-Interval rateInterval(const std::vector<BlockCount>& blocks);
+CredibleInterval rateInterval(const std::vector<BlockCount>& blocks);
 
 }  // namespace perception

@@ -9,7 +9,7 @@
 namespace perception {
 namespace {
 
-constexpr double kLeast = 0.002, kMost = 0.995;
+constexpr double kLeastMean = 0.002, kMostMean = 0.995;
 constexpr std::size_t kMostSteps = 32;
 
 /// A step of the map.
@@ -81,7 +81,7 @@ std::vector<Knot> isotonic(const std::vector<double>& values, const std::vector<
   if (values.size() != is_class.size() || values.size() != weights.size())
     throw Error(ExitCode::kInternal, "isotonic: sizes differ");
   std::vector<Step> steps = pooled(sorted(values, is_class, weights));
-  for (Step& step : steps) step.mean = std::clamp(step.mean, kLeast, kMost);
+  for (Step& step : steps) step.mean = std::clamp(step.mean, kLeastMean, kMostMean);
   steps = pooled(steps);  // what the limits made equal
   reduce(steps);
   std::vector<Knot> knots;

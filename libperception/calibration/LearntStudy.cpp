@@ -22,7 +22,7 @@ constexpr std::size_t kWindows = std::size(kEdges) - 1;
 ReliabilityCounts calibrationOf(const LearntGroup& group, std::int64_t first, std::int64_t end) {
   ReliabilityCounts c;
   for (const BoxLog& log : group.logs)
-    for (const JudgedBox& b : log.boxes)
+    for (const BoxWithTruth& b : log.boxes)
       if (b.scan >= first && b.scan < end && std::isfinite(b.stated))
         c.add(1 / (1 + std::exp(-b.stated)), b.sample.object);
   return c;

@@ -10,7 +10,7 @@ namespace perception {
 /// Logs of one detector; every log was learned from nothing.
 struct LearntGroup {
   std::string name;
-  std::vector<BoxLog> logs;  ///< with JudgedBox::stated
+  std::vector<BoxLog> logs;  ///< with BoxWithTruth::stated
 };
 
 /// `confidence = learnt` against the truth, per group: stated probability against the share of

@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastLife = 1;         // [s] with existence as below
 constexpr double kLeastExistence = 0.9;  // at a scene
 constexpr double kLeastClass = 0.8;      // mean probability of the likeliest class
-constexpr double kAbout = 2;             // [m] of a label: a track of the same object
+constexpr double kNearLabel = 2;         // [m] of a label: a track of the same object
 constexpr const char* kThing = "static-other";
 constexpr const char* kUnknown = "unknown";
 
@@ -96,7 +96,7 @@ GroundTruth withTracks(const GroundTruth& labeled, const TrackedRun& run, int oc
     const auto isLabeled = [&](const TruthObject& track) {
       return std::any_of(known.objects.begin(), known.objects.end(), [&](const TruthObject& o) {
         return !isArea(o) && (o.position.head<2>() - track.position.head<2>()).norm() <
-                                 std::max(kAbout, 0.5 * o.length);
+                                 std::max(kNearLabel, 0.5 * o.length);
       });
     };
     own.erase(std::remove_if(own.begin(), own.end(), isLabeled), own.end());

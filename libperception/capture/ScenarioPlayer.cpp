@@ -11,7 +11,7 @@
 namespace perception {
 namespace {
 
-constexpr double kAhead = 0.5;  ///< [s] simulated before it is due
+constexpr double kSimulatedAhead = 0.5;  ///< [s] simulated before it is due
 
 Scenario scenarioOf(const std::string& path) {
   Config config = Config::fromFile(path);
@@ -82,7 +82,7 @@ void ScenarioPlayer::simulate() {
         .push_back({t, std::move(observation)});
     simulated_ = t;
     changed_.notify_all();
-    changed_.wait(lock, [&] { return stop_ || simulated_ <= wanted_ + kAhead; });
+    changed_.wait(lock, [&] { return stop_ || simulated_ <= wanted_ + kSimulatedAhead; });
     if (stop_) return;
   }
 }

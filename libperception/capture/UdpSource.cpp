@@ -15,14 +15,14 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kDatagram = 65536, kAtOnce = 32;
+constexpr std::size_t kDatagram = 65536, kDatagramsAtOnce = 32;
 constexpr int kBuffer = 64 << 20;  ///< [bytes] asked of the kernel
 
 class UdpSource final : public PacketSource {
  public:
   UdpSource(const std::string& name, const std::string& address, std::uint16_t port,
             const std::string& multicast)
-      : bytes_(kAtOnce * kDatagram) {
+      : bytes_(kDatagramsAtOnce * kDatagram) {
     socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     sockaddr_in at{};
     at.sin_family = AF_INET;
@@ -43,11 +43,11 @@ class UdpSource final : public PacketSource {
   bool receive(int timeout_ms, const Take& take) override {
     pollfd wait{socket_, POLLIN, 0};
     if (::poll(&wait, 1, timeout_ms) <= 0) return false;
-    for (std::size_t i = 0; i < kAtOnce; ++i) {
+    for (std::size_t i = 0; i < kDatagramsAtOnce; ++i) {
       headers_[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
       headers_[i].msg_hdr.msg_controllen = sizeof controls_[i];
     }
-    const int count = ::recvmmsg(socket_, headers_.data(), kAtOnce, MSG_DONTWAIT, nullptr);
+    const int count = ::recvmmsg(socket_, headers_.data(), kDatagramsAtOnce, MSG_DONTWAIT, nullptr);
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       ReceivedPacket packet;
@@ -81,7 +81,7 @@ class UdpSource final : public PacketSource {
   }
 
   void prepare() {
-    for (std::size_t i = 0; i < kAtOnce; ++i) {
+    for (std::size_t i = 0; i < kDatagramsAtOnce; ++i) {
       parts_[i] = {bytes_.data() + i * kDatagram, kDatagram};
       msghdr& header = headers_[i].msg_hdr;
       header.msg_iov = &parts_[i];
@@ -93,10 +93,11 @@ class UdpSource final : public PacketSource {
 
   int socket_ = -1;
   std::vector<char> bytes_;
-  std::array<mmsghdr, kAtOnce> headers_{};
-  std::array<iovec, kAtOnce> parts_{};
-  std::array<sockaddr_in, kAtOnce> senders_{};
-  alignas(cmsghdr) std::array<std::array<char, ReceiveControl::kSize>, kAtOnce> controls_{};
+  std::array<mmsghdr, kDatagramsAtOnce> headers_{};
+  std::array<iovec, kDatagramsAtOnce> parts_{};
+  std::array<sockaddr_in, kDatagramsAtOnce> senders_{};
+  alignas(
+      cmsghdr) std::array<std::array<char, ReceiveControl::kSize>, kDatagramsAtOnce> controls_{};
   ReceiveControl control_;
 };
 

@@ -20,7 +20,7 @@ namespace perception {
 namespace {
 
 constexpr int kColumns = 10, kRows = 6, kCell = 8;  // of the box; plus a cell at each side
-constexpr std::size_t kValues = kColumns * kRows * (kFeatures - 1) + 1;  // plus the aspect ratio
+constexpr std::size_t kValues = kColumns * kRows * (kHogFeatures - 1) + 1;  // plus the aspect ratio
 constexpr double kBin = kTwoPi / HeadingHead::kBins;
 constexpr double kSpread = radians(20);  // [rad] of the target over the orientations
 constexpr double kRidge = 2;             // in units of a descriptor's mean square
@@ -107,7 +107,7 @@ std::vector<float> HeadingHead::describe(const Raster& image, const ObjectDetect
   for (int y = 1; y <= kRows; ++y) {
     for (int x = 1; x <= kColumns; ++x) {
       const float* cell = maps[0].cell(x, y);
-      out.insert(out.end(), cell, cell + kFeatures - 1);
+      out.insert(out.end(), cell, cell + kHogFeatures - 1);
     }
   }
   out.push_back(static_cast<float>(std::log((box.x2 - box.x1) / (box.y2 - box.y1))));

@@ -123,8 +123,8 @@ void addPixels(const float* magnitude, const int* bin, int y, Histograms& h,
 }
 
 void clearCells(float* begin, int count) {
-  std::memset(begin, 0, static_cast<std::size_t>(count) * kFeatures * sizeof(float));
-  for (int i = 0; i < count; ++i) begin[i * kFeatures + kFeatures - 1] = 1;
+  std::memset(begin, 0, static_cast<std::size_t>(count) * kHogFeatures * sizeof(float));
+  for (int i = 0; i < count; ++i) begin[i * kHogFeatures + kHogFeatures - 1] = 1;
 }
 
 FeatureMap featuresOf(Histograms& h, const VisionKernels& kernels) {
@@ -138,7 +138,7 @@ FeatureMap featuresOf(Histograms& h, const VisionKernels& kernels) {
   };
   for (int y = h.rows.begin; y < h.rows.end; ++y)
     kernels.energy(h.at(y), h.stride, h.cells_x + 2, energy(y));
-  AlignedFloats row(floats(h.cells_x + 1, kFeatures));
+  AlignedFloats row(floats(h.cells_x + 1, kHogFeatures));
   const Span seen = map.x.within({1, h.cells_x - 1});
   for (int y = map.y.begin; y < map.y.end; ++y) {
     if (y < h.features.begin || y >= h.features.end || seen.empty()) {
@@ -148,8 +148,8 @@ FeatureMap featuresOf(Histograms& h, const VisionKernels& kernels) {
     kernels.features(h.at(y) + 1, h.stride, h.cells_x, energy(y - 1) + 1, energy(y) + 1,
                      energy(y + 1) + 1, row.data());
     clearCells(map.cell(map.x.begin, y), seen.begin - map.x.begin);
-    std::memcpy(map.cell(seen.begin, y), row.data() + static_cast<long>(seen.begin) * kFeatures,
-                floats(seen.size(), kFeatures) * sizeof(float));
+    std::memcpy(map.cell(seen.begin, y), row.data() + static_cast<long>(seen.begin) * kHogFeatures,
+                floats(seen.size(), kHogFeatures) * sizeof(float));
     clearCells(map.cell(seen.end, y), map.x.end - seen.end);
   }
   return map;

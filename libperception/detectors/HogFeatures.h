@@ -44,16 +44,16 @@ PlanarImage resampled(const PlanarImage& image, int width, int height, Span rows
 /// (the outermost ones of the image and those beyond) are 0 except for the last value, 1.
 struct FeatureMap {
   Span x, y;             ///< [cells] that are stored, beyond the image too
-  AlignedFloats values;  ///< kFeatures per cell, row by row
+  AlignedFloats values;  ///< kHogFeatures per cell, row by row
 
-  long rowStride() const { return static_cast<long>(x.size()) * kFeatures; }
+  long rowStride() const { return static_cast<long>(x.size()) * kHogFeatures; }
   const float* cell(int column, int row) const {
     return values.data() + (row - y.begin) * rowStride() +
-           static_cast<long>(column - x.begin) * kFeatures;
+           static_cast<long>(column - x.begin) * kHogFeatures;
   }
   float* cell(int column, int row) {
     return values.data() + (row - y.begin) * rowStride() +
-           static_cast<long>(column - x.begin) * kFeatures;
+           static_cast<long>(column - x.begin) * kHogFeatures;
   }
 };
 

@@ -12,7 +12,7 @@
 namespace perception {
 namespace {
 
-constexpr int kMargin = 2;                // [px] margin of the strip for interpolation
+constexpr int kStripMargin = 2;           // [px] margin of the strip for interpolation
 constexpr double kBorder = 1.5;           // [px] a box this close to its tile's edge is truncated
 constexpr double kCentral = radians(25);  // tiles are 45 degrees apart; some overlap
 constexpr double kSameUnion = 0.4;        // method.md 8.8: one object from this overlap on ...
@@ -113,7 +113,7 @@ Panorama::Panorama(int width) {
   tile_camera_.cx = tile_camera_.cy = 0.5 * size - 0.5;
 
   // Column of the strip's first pixel for tile 0; those of other tiles are offset by whole pixels.
-  const double first = 0.5 * camera_.width - 0.5 * size - kMargin;
+  const double first = 0.5 * camera_.width - 0.5 * size - kStripMargin;
   cv::Mat from_x(size, size, CV_32FC1), from_y(size, size, CV_32FC1);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
@@ -146,8 +146,8 @@ Raster Panorama::tile(const Raster& panorama, int tile) const {
                       const_cast<std::uint8_t*>(panorama.pixels.data()));
   // The tile's strip, joined across the seam.
   const int shift = ((tile % kTiles) + kTiles) % kTiles * (width / kTiles);
-  const int begin = ((width - size) / 2 - kMargin + shift) % width;
-  const int columns = size + 2 * kMargin, before_seam = std::min(columns, width - begin);
+  const int begin = ((width - size) / 2 - kStripMargin + shift) % width;
+  const int columns = size + 2 * kStripMargin, before_seam = std::min(columns, width - begin);
   cv::Mat strip(camera_.height, columns, whole.type());
   whole.colRange(begin, begin + before_seam).copyTo(strip.colRange(0, before_seam));
   if (before_seam < columns)

@@ -15,11 +15,11 @@ using Eigen::VectorXd;
 /// Parameters of the fit; kScale: of the way by odometry, which slips.
 enum Parameter { kYaw, kPitch, kRoll, kAhead, kLeft, kClock, kScale, kParameters };
 
-constexpr double kWindow = 0.4;      ///< [s] of a motion that is compared: several scans
-constexpr double kLongest = 1.0;     ///< [s] between poses or scans of one motion
-constexpr double kClockRange = 0.5;  ///< [s] clock offsets searched, on both sides
-constexpr double kClockStep = 0.02;  ///< [s]
-constexpr double kMoves = 1;         ///< [m/s] slower, the direction of travel is noise
+constexpr double kMotionWindow = 0.4;  ///< [s] of a motion that is compared: several scans
+constexpr double kLongestStep = 1.0;   ///< [s] between poses or scans of one motion
+constexpr double kClockRange = 0.5;    ///< [s] clock offsets searched, on both sides
+constexpr double kClockStep = 0.02;    ///< [s]
+constexpr double kMovingSpeed = 1;     ///< [m/s] slower, the direction of travel is noise
 /// Largest standard deviations of what is observed: half of 1 deg, .1 m, 20 ms; and what a
 /// mounting measured with a tape, or a stamp at the wrong end of an exposure, is off by.
 constexpr double kAngleEnough = radians(0.5), kPlaceEnough = 0.05, kClockEnough = 0.01;
@@ -46,7 +46,7 @@ class Course {
     if (next->stamp == t) return next->T_world_ego;
     const EgoState &a = *(next - 1), &b = *next;
     const double dt = b.stamp - a.stamp, share = (t - a.stamp) / dt;
-    if (dt > kLongest) return std::nullopt;
+    if (dt > kLongestStep) return std::nullopt;
     Pose3 out = Pose3::Identity();
     out.translation() =
         (1 - share) * a.T_world_ego.translation() + share * b.T_world_ego.translation();
@@ -230,12 +230,12 @@ std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
   std::vector<Seen> seen;
   std::size_t steps = 0, j = 0;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    while (j < scans.size() && scans[j].stamp - scans[i].stamp < kWindow) ++j;
+    while (j < scans.size() && scans[j].stamp - scans[i].stamp < kMotionWindow) ++j;
     if (j == scans.size()) break;
     const double dt = scans[j].stamp - scans[i].stamp;
     const Seen s{scans[i].stamp, scans[j].stamp,
                  scans[i].T_world_ego.inverse() * scans[j].T_world_ego};
-    if (dt > kLongest || s.motion.translation().norm() < kMoves * dt) continue;
+    if (dt > kLongestStep || s.motion.translation().norm() < kMovingSpeed * dt) continue;
     seen.push_back(s), steps += j - i;
   }
   if (seen.empty()) return std::nullopt;
@@ -267,7 +267,7 @@ std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& s
   const Course course(poses);
   std::vector<SensorVelocity> moving;
   for (const SensorVelocity& s : scans)
-    if (s.velocity.norm() > kMoves) moving.push_back(s);
+    if (s.velocity.norm() > kMovingSpeed) moving.push_back(s);
   if (moving.empty()) return std::nullopt;
   const Vector2 place = T_ego_sensor.translation().head<2>();
   const Matrix2 R_ego_sensor = Eigen::Rotation2Dd(yawOf(T_ego_sensor)).toRotationMatrix();
@@ -300,7 +300,7 @@ std::optional<MotionCheck> checkImageMotion(const std::vector<CameraMotion>& mot
   std::vector<Seen> seen;  // length 1
   for (const CameraMotion& m : motions) {
     const auto way = course.motion(m.from, m.to, 0);
-    if (!way || way->translation().norm() < kMoves * (m.to - m.from)) continue;
+    if (!way || way->translation().norm() < kMovingSpeed * (m.to - m.from)) continue;
     Seen s{m.from, m.to};
     s.motion.linear() = R_ego_sensor * m.turn * R_ego_sensor.transpose();
     s.motion.translation() = R_ego_sensor * m.travel;
@@ -338,7 +338,7 @@ std::optional<MotionCheck> checkGnssMotion(const std::vector<AntennaPlace>& fixe
     if (j == fixes.size()) break;
     const double dt = fixes[j].stamp - fixes[i].stamp;
     const GnssWay way{fixes[i].stamp, fixes[j].stamp, fixes[j].place - fixes[i].place};
-    if (dt > kWayLongest || way.step.norm() < kMoves * dt) continue;
+    if (dt > kWayLongest || way.step.norm() < kMovingSpeed * dt) continue;
     ways.push_back(way), steps += j - i;
   }
   if (ways.empty()) return std::nullopt;

@@ -12,9 +12,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kSteps = 15;
-constexpr std::size_t kBlocks = 10;  ///< of the jackknife
-constexpr std::size_t kFewest = 20;  ///< items
-constexpr double kNormal = 1.4826;   ///< standard deviation of a Gaussian by its median deviation
+constexpr std::size_t kBlocks = 10;       ///< of the jackknife
+constexpr std::size_t kFewestItems = 20;  ///< items
+constexpr double kNormal = 1.4826;  ///< standard deviation of a Gaussian by its median deviation
 /// [standard deviations] scale of Cauchy's weight: 95 % efficient for Gaussian noise.
 constexpr double kCauchy = 2.385;
 
@@ -96,7 +96,7 @@ std::optional<FitResult> fitRobustly(const FitProblem& p) {
   const VectorXd information = p.sigma.cwiseAbs2().cwiseInverse();
   for (int i = 0; i <= kSteps; ++i) {
     const auto all = residualsAt(p, result.value);
-    if (all.size() < kFewest) return std::nullopt;
+    if (all.size() < kFewestItems) return std::nullopt;
     const std::vector<Block> blocks = normalBlocks(p, result.value, all);
     MatrixXd H = information.asDiagonal();
     VectorXd g = information.cwiseProduct(p.mean - result.value);

@@ -19,7 +19,7 @@ constexpr std::size_t kFewest = 5;      ///< positions for such a curve
 constexpr double kAhead = 1;            ///< [s] over which velocities are checked
 constexpr double kAheadSlack = 0.06;    ///< [s]
 constexpr double kShort = 1;            ///< [s] of a life
-constexpr double kBorder = 3;           ///< [m] and
+constexpr double kBorderMargin = 3;     ///< [m] and
 constexpr double kBorderAngle = 0.175;  ///< [rad] where objects may come into view and leave it
 constexpr double kHandoverTime = 1, kHandoverReach = 2;  ///< [s], [m]
 constexpr double kSameInstant = 1e-6;                    ///< [s]
@@ -74,7 +74,7 @@ QualitySector::QualitySector(const TrackedRun& run, const QualityOptions& option
 bool QualitySector::holds(const Scene& scene, const SceneObject& object,
                           bool away_from_border) const {
   const Vector3 p = scene.ego.T_world_ego.inverse() * object.position;
-  const double border = away_from_border ? kBorder : 0;
+  const double border = away_from_border ? kBorderMargin : 0;
   const double half = options_.selection.fov / 2;
   const bool all_around = half >= kPi - 1e-9;
   return p.head<2>().norm() <= options_.selection.range - border &&

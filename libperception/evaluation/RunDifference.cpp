@@ -78,9 +78,9 @@ void setOpposites(Side& a, Side& b, const DifferenceOptions& options, RunDiffere
 using Other = ComparedIdentity::Other;
 
 /// All identities of a run, as its scenes show them one after the other.
-class Census {
+class RunCensus {
  public:
-  Census(const Side& side, Stamp start, std::size_t classes)
+  RunCensus(const Side& side, Stamp start, std::size_t classes)
       : side_(side), start_(start), classes_(classes) {
     const auto& opposite = side.opposite;
     const auto common = [](const Opposite& o) { return o.scene != nullptr; };
@@ -158,7 +158,8 @@ bool sameState(const SceneObject& a, const SceneObject& b) {
 }
 
 /// Rows of pairs and of identities alone.
-std::vector<IdentityDifference> pairedRows(const Census& a, const Census& b, std::size_t& pairs) {
+std::vector<IdentityDifference> pairedRows(const RunCensus& a, const RunCensus& b,
+                                           std::size_t& pairs) {
   std::map<std::uint64_t, std::size_t> number_b;
   for (const auto& [id, identity] : b.identities) number_b.emplace(id, number_b.size());
   std::map<std::pair<std::size_t, std::size_t>, double> together;
@@ -243,8 +244,8 @@ RunDifference compareRuns(const TrackedRun& a, const TrackedRun& b,
   RunDifference result;
   Side side_a(a, result.classes), side_b(b, result.classes);
   setOpposites(side_a, side_b, options, result);
-  const Census census_a(side_a, a.first_stamp, result.classes.size());
-  const Census census_b(side_b, a.first_stamp, result.classes.size());
+  const RunCensus census_a(side_a, a.first_stamp, result.classes.size());
+  const RunCensus census_b(side_b, a.first_stamp, result.classes.size());
   result.a = figuresOf(a, census_a.identities.size());
   result.b = figuresOf(b, census_b.identities.size());
   for (const TrackedRun* run : {&a, &b}) {

@@ -17,7 +17,9 @@ struct FigureRow {
   Figure (*paper)(const PaperTrackingRow&);
 };
 
-TrackingFigures closest(const Evaluation& e) { return trackingFigures(e, Pairing::kClosest); }
+TrackingFigures closestFigures(const Evaluation& e) {
+  return trackingFigures(e, Pairing::kClosest);
+}
 TrackingFigures single(const Evaluation& e) { return trackingFigures(e, Pairing::kOneToOne); }
 Figure none(const PaperTrackingRow&) { return {}; }
 Figure figureOf(std::size_t n) { return static_cast<double>(n); }
@@ -26,24 +28,28 @@ using Options = EvaluationOptions;
 using Paper = PaperTrackingRow;
 
 const FigureRow kRows[] = {
-    {"Object Tracked", 3, [](const Evaluation& e, const Options&) { return closest(e).tracked_a; },
+    {"Object Tracked", 3,
+     [](const Evaluation& e, const Options&) { return closestFigures(e).tracked_a; },
      [](const Paper& p) { return Figure(p.tracked); }},
     {"Object Tracked in the sensors' range", 3,
-     [](const Evaluation& e, const Options&) { return closest(e).tracked_b; }, none},
-    {"Range Error (m)", 3, [](const Evaluation& e, const Options&) { return closest(e).range_rms; },
+     [](const Evaluation& e, const Options&) { return closestFigures(e).tracked_b; }, none},
+    {"Range Error (m)", 3,
+     [](const Evaluation& e, const Options&) { return closestFigures(e).range_rms; },
      [](const Paper& p) { return Figure(p.range); }},
     {"Bearing Error (rad)", 3,
-     [](const Evaluation& e, const Options&) { return closest(e).bearing_rms; },
+     [](const Evaluation& e, const Options&) { return closestFigures(e).bearing_rms; },
      [](const Paper& p) { return Figure(p.bearing); }},
     {"Correct Classification", 3,
-     [](const Evaluation& e, const Options&) { return closest(e).correct; },
+     [](const Evaluation& e, const Options&) { return closestFigures(e).correct; },
      [](const Paper& p) { return Figure(p.correct); }},
-    {"Mis-Classification", 3, [](const Evaluation& e, const Options&) { return closest(e).mis; },
+    {"Mis-Classification", 3,
+     [](const Evaluation& e, const Options&) { return closestFigures(e).mis; },
      [](const Paper& p) { return Figure(p.mis); }},
-    {"Unclassified", 3, [](const Evaluation& e, const Options&) { return closest(e).unclassified; },
+    {"Unclassified", 3,
+     [](const Evaluation& e, const Options&) { return closestFigures(e).unclassified; },
      [](const Paper& p) { return Figure(1 - p.correct - p.mis); }},
     {"Number of Returns", 0,
-     [](const Evaluation& e, const Options&) { return figureOf(closest(e).returns); },
+     [](const Evaluation& e, const Options&) { return figureOf(closestFigures(e).returns); },
      [](const Paper& p) { return figureOf(static_cast<std::size_t>(p.returns)); }},
     {"Object Tracked, one-to-one", 3,
      [](const Evaluation& e, const Options&) { return single(e).tracked_a; }, none},

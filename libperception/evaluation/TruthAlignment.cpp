@@ -7,12 +7,12 @@
 namespace perception {
 namespace {
 
-using Instant = GroundTruth::Instant;
+using TruthInstant = GroundTruth::Instant;
 
-constexpr double kSameInstant =
+constexpr double kSameTruthInstant =
     1e-6;  // [s] stamps are rounded to 0.2 us when they are read as seconds
 
-const TruthObject* find(const Instant& instant, std::int64_t id) {
+const TruthObject* find(const TruthInstant& instant, std::int64_t id) {
   if (id < 0) return nullptr;
   for (const TruthObject& object : instant.objects) {
     if (object.id == id) return &object;
@@ -45,10 +45,11 @@ TruthObject between(const TruthObject& a, const TruthObject& b, double share) {
   return object;
 }
 
-std::vector<TruthObject> interpolated(const Instant& before, const Instant& after, double t) {
+std::vector<TruthObject> interpolated(const TruthInstant& before, const TruthInstant& after,
+                                      double t) {
   const double share = (t - before.t) / (after.t - before.t);
-  const Instant& nearer = share <= 0.5 ? before : after;
-  const Instant& other = share <= 0.5 ? after : before;
+  const TruthInstant& nearer = share <= 0.5 ? before : after;
+  const TruthInstant& other = share <= 0.5 ? after : before;
   std::vector<TruthObject> objects;
   for (const TruthObject& object : nearer.objects) {
     const TruthObject* there = find(other, object.id);
@@ -69,15 +70,16 @@ class TruthByTime {
       : instants_(truth.instants), limit_(limit), used_(used) {}
 
   bool at(double t, std::vector<TruthObject>& objects) const {
-    const auto after = std::lower_bound(instants_.begin(), instants_.end(), t,
-                                        [](const Instant& i, double time) { return i.t < time; });
+    const auto after =
+        std::lower_bound(instants_.begin(), instants_.end(), t,
+                         [](const TruthInstant& i, double time) { return i.t < time; });
     const bool has_after = after != instants_.end(), has_before = after != instants_.begin();
     const double to_after = has_after ? after->t - t : limit_ + 1;
     const double to_before = has_before ? t - std::prev(after)->t : limit_ + 1;
     if (std::min(to_after, to_before) > limit_) return false;
     const auto nearest = to_before < to_after ? std::prev(after) : after;
     used_[static_cast<std::size_t>(nearest - instants_.begin())] = true;
-    if (std::min(to_after, to_before) <= kSameInstant) {
+    if (std::min(to_after, to_before) <= kSameTruthInstant) {
       objects = nearest->objects;
     } else if (has_after && has_before && to_after + to_before <= 2 * limit_) {
       used_[static_cast<std::size_t>(after - instants_.begin())] = true;
@@ -90,7 +92,7 @@ class TruthByTime {
   }
 
  private:
-  const std::vector<Instant>& instants_;
+  const std::vector<TruthInstant>& instants_;
   double limit_;
   std::vector<bool>& used_;
 };
@@ -98,7 +100,7 @@ class TruthByTime {
 /// The vehicle's pose in the truth's world at the stamp of a scene.
 std::optional<Pose3> truthPose(const TrackedRun& poses, Stamp stamp) {
   auto ego = egoAt(poses, stamp);
-  for (const double off : {-kSameInstant, kSameInstant})  // at the ends
+  for (const double off : {-kSameTruthInstant, kSameTruthInstant})  // at the ends
     if (!ego) ego = egoAt(poses, stamp + off);
   return ego ? std::optional(ego->T_world_ego) : std::nullopt;
 }

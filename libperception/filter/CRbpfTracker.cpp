@@ -11,7 +11,7 @@
 namespace perception {
 namespace {
 
-enum Purpose : std::uint32_t { kResampling = 0x5703 };
+enum ResamplingPurpose : std::uint32_t { kResampling = 0x5703 };
 
 }  // namespace
 

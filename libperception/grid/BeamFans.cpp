@@ -15,8 +15,8 @@ namespace {
 // cell along, this is below two, so that three rows contain it.
 constexpr float kWidest = 0.9F;
 constexpr int kRows = 3;
-constexpr float kFarthest = 7000;  // [cells] largest window: fan numbers have 16 bits
-constexpr float kLevel = 1e-20F;   // [-] replaces a slope of zero
+constexpr float kFarthest = 7000;      // [cells] largest window: fan numbers have 16 bits
+constexpr float kLevelSlope = 1e-20F;  // [-] replaces a slope of zero
 
 /// Common data of the beams of a fan, mirrored so that they increase along and across.
 struct Fan {
@@ -57,7 +57,7 @@ PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sen
   constexpr int kCount = LanesOf<Float>::kCount;
   const Float from = all<Float>(beam.from), to = all<Float>(beam.to);
   const Float height = all<Float>(sensor_height), up = all<Float>(beam.up);
-  const Float per_across = all<Float>(1 / (beam.across > kLevel ? beam.across : kLevel));
+  const Float per_across = all<Float>(1 / (beam.across > kLevelSlope ? beam.across : kLevelSlope));
   const auto first = static_cast<std::int32_t>(along + beam.from) / kCount * kCount;
   const auto last = static_cast<std::int32_t>(along + beam.to);
   for (std::int32_t i = first; i <= last; i += kCount) {

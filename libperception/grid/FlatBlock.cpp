@@ -11,7 +11,7 @@
 namespace perception {
 namespace {
 
-constexpr float kTrusted = 0.5F;  // a hit of lower weight does not stop its beam
+constexpr float kTrustedEnd = 0.5F;  // a hit of lower weight does not stop its beam
 
 // Points in the sensor's cell get the bin behind the last one.
 PERCEPTION_LANES std::int32_t bearingOf(float dx, float dy, float range2, const BearingBins& bins) {
@@ -76,7 +76,7 @@ PERCEPTION_WIDEST std::int32_t weigh(const float* __restrict weights, std::size_
     const float w = given < PlacedBlock::kFullWeight ? given : 1;  // NaN counts as 1
     const float share = w > 0 ? w : 0;
     out.mark[i] = static_cast<std::int32_t>(share * FlatBlock::kWhole + 0.5F);
-    const float stops = w >= kTrusted ? stop : FlatBlock::kNone;
+    const float stops = w >= kTrustedEnd ? stop : FlatBlock::kNone;
     out.stop[i] = stops;
     passes |= stops >= FlatBlock::kNone;
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnits = LogOddsColumn::kUnits;
 constexpr int kGroup = LogOddsColumn::kGroup;
-constexpr double kForgotten = 0.05;  // [log-odds] below it unknown: rounding stops decay
+constexpr double kForgottenSpace = 0.05;  // [log-odds] below it unknown: rounding stops decay
 
 int layersOf(const GridParams& params) {
   const double spread = 2 * params.grade * params.size * std::sqrt(0.5);
@@ -184,7 +184,7 @@ class GridRolling final : public SafetyGrid {
 
   double valueOf(std::int16_t value, std::size_t slot) const {
     const double v = value / kUnits * ages_.keep(slot);
-    return std::abs(v) < kForgotten ? 0 : v;
+    return std::abs(v) < kForgottenSpace ? 0 : v;
   }
 
   // Decays a column to the time of the scan and adds its evidence.

@@ -9,7 +9,7 @@
 namespace perception {
 namespace {
 
-constexpr double kForgotten = 0.05;  // [log-odds] below it a cell is unknown
+constexpr double kForgottenFlat = 0.05;  // [log-odds] below it a cell is unknown
 
 /// 2D grid in one flat array that rolls with the vehicle; one beam per bearing, up to its first
 /// trusted hit or, without one, its farthest end.
@@ -90,7 +90,7 @@ class GridRolling2d final : public SafetyGrid {
     return static_cast<std::int64_t>(std::floor(v / params().resolution));
   }
   double valueOf(float v) const {
-    return std::abs(v) < static_cast<float>(kForgotten) ? 0 : static_cast<double>(v);
+    return std::abs(v) < static_cast<float>(kForgottenFlat) ? 0 : static_cast<double>(v);
   }
   // Centered in the slab above the vehicle's ground plane.
   Vector3 centerOf(std::int64_t x, std::int64_t y) const {

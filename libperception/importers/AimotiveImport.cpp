@@ -10,6 +10,7 @@
 #include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
+#include "libperception/importers/SensorLabels.h"
 
 namespace perception {
 
@@ -17,11 +18,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLidarLabel = "LIDAR_TOP";
-constexpr const char* kImageLabel = "CAMERA_FRONT";
-constexpr double kMaxRange = 200;  ///< [m] Hesai Pandar64, data sheet
+constexpr double kPandarRange = 200;  ///< [m] Hesai Pandar64, data sheet
 /// [s] Poses so long before and behind the turns that are wanted tell the velocity at their ends.
-constexpr double kPoseMargin = 0.1;
+constexpr double kAimotivePoseMargin = 0.1;
 
 /// Times are those of a recording without a date.
 Stamp stampOf(double t) { return {kUndatedStart.ns + kTickNs * std::llround(t * (1e9 / kTickNs))}; }
@@ -66,7 +65,8 @@ void AimotiveImporter::queuePoses(const AimotiveEgo& ego, ImportLog& log) const 
   for (const AimotiveEgo::State& state : ego.states()) {
     const Stamp stamp = stampOf(state.t);
     const Pose3 pose = state.T_world_body;
-    if (inside(state.t, kPoseMargin)) log.at(stamp, [stamp, pose, &log] { log.ego(stamp, pose); });
+    if (inside(state.t, kAimotivePoseMargin))
+      log.at(stamp, [stamp, pose, &log] { log.ego(stamp, pose); });
   }
 }
 
@@ -89,7 +89,7 @@ void AimotiveImporter::queueImages(ImportLog& log) const {
   for (const AimotiveFrame& frame : readAimotiveFrames(path("frames.csv"))) {
     if (!inside(frame.t)) continue;
     ImportedImage image;
-    image.label = kImageLabel;
+    image.label = kCameraFront;
     image.path = fileOfStem(dir, fmt::format("{:06}", frame.frame), {".jpg", ".png"});
     image.stamp = stampOf(frame.t);
     image.camera = calibration_.camera;
@@ -113,7 +113,7 @@ std::optional<LidarCloud> AimotiveImporter::readTurn(const AimotiveTurn& turn,
     return {};
   }
   CloudFormat format;
-  format.max_range = kMaxRange;
+  format.max_range = kPandarRange;
   LidarCloud cloud = readCloudFile(file, format);
   if (cloud.size() != turn.points)
     throw DataError(fmt::format("{}: {} points, expected {} as in {}", file, cloud.size(),
@@ -164,7 +164,7 @@ void AimotiveImporter::writeTurn(const AimotiveTurn& turn, ImportLog& log) const
   const std::optional<LidarCloud> cloud = readTurn(turn, log);
   if (cloud) {
     SensorFrame out;
-    out.sensor = kLidarLabel;
+    out.sensor = kLidarTop;
     out.stamp = stamp;
     out.T_ego_sensor = calibration_.T_body_lidar;
     out.data = inFrame(*cloud, calibration_.T_body_lidar.inverse());

@@ -13,6 +13,7 @@
 #include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
+#include "libperception/importers/SensorLabels.h"
 #include "libperception/importers/TruthTypes.h"
 
 namespace perception {
@@ -21,13 +22,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLidarLabel = "LIDAR_TOP";
 constexpr const char* kLidarName = "up_lidar";  ///< whose place is the scan's
 /// [m] Of the data set's vehicle frame (rear axle) above the road: planes through the returns of
 /// the example's three scans within 12 m lie 0.336, 0.333 and 0.327 m below it.
 constexpr double kOriginHeight = 0.33;
 /// [m] Velodyne VLP-32C: 200 m by its data sheet; the example reaches 219 m.
-constexpr double kMaxRange = 220;
+constexpr double kVlp32Range = 220;
 
 /// A pose of columns qw qx qy qz and a place of three columns.
 Pose3 poseOf(const CsvTable& table, std::size_t row, const std::array<const char*, 3>& place) {
@@ -184,7 +184,7 @@ std::optional<LidarCloud> Av2Importer::readCloud(const Av2Scan& scan, ImportLog&
     return {};
   }
   CloudFormat format;
-  format.max_range = kMaxRange;
+  format.max_range = kVlp32Range;
   LidarCloud cloud = readCloudFile(file, format);
   if (cloud.size() != scan.points)
     throw DataError(fmt::format("{}: {} points, expected {} as in {}", file, cloud.size(),
@@ -198,7 +198,7 @@ void Av2Importer::writeScan(const Drive& drive, const Av2Scan& scan, Stamp stamp
   const Pose3 T_world_ego = egoOf(drive, scan);
   const std::optional<LidarCloud> cloud = readCloud(scan, log);
   SensorFrame out;
-  out.sensor = kLidarLabel;
+  out.sensor = kLidarTop;
   out.T_ego_sensor = T_ego_vehicle_ * T_vehicle_lidar_;
   if (cloud) out.data = inFrame(*cloud, T_vehicle_lidar_.inverse());
   for (int k = 1; k <= log.options().repeat; ++k) {

@@ -22,7 +22,7 @@ namespace {
 /// [s] Messages are sorted by their stamps over this time of recording.
 constexpr double kSorted = 1;
 /// [s] Poses are written from this long before the first to this long after the last sensor data.
-constexpr double kPoseMargin = 0.5;
+constexpr double kBagPoseMargin = 0.5;
 
 bool isCloud(const std::string& type) { return type == "sensor_msgs/PointCloud2"; }
 bool isRadar(const std::string& type) { return type == "radar_msgs/RadarScan"; }
@@ -183,7 +183,7 @@ void BagImport::sorted(Stamp stamp, std::function<void()> write) {
 void BagImport::writePoses(Stamp until) {
   for (; next_pose_ < poses_.size() && poses_[next_pose_].stamp <= until; ++next_pose_) {
     const StampedPose& pose = poses_[next_pose_];
-    if (last_ || until - pose.stamp < kPoseMargin) log_.ego(pose.stamp, pose.pose);
+    if (last_ || until - pose.stamp < kBagPoseMargin) log_.ego(pose.stamp, pose.pose);
   }
 }
 
@@ -335,7 +335,7 @@ void BagImport::readSensors() {
     }
   }
   flush({});
-  if (last_) writePoses(*last_ + kPoseMargin);
+  if (last_) writePoses(*last_ + kBagPoseMargin);
 }
 
 void BagImport::run() {

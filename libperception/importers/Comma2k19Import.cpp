@@ -12,6 +12,7 @@
 #include "libperception/importers/ImportGps.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
+#include "libperception/importers/SensorLabels.h"
 #include "libperception/sensors/Conversions.h"
 
 namespace perception {
@@ -20,7 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kRadarLabel = "RADAR_FRONT";
 /// [m] Height of the device behind the windshield above the road, openpilot's model_height.
 constexpr double kDeviceHeight = 1.22;
 /// [m] The radar ahead of the device, openpilot's RADAR_TO_CAMERA.
@@ -35,7 +35,7 @@ constexpr double kScanSpread = 0.025;
 /// [s] Latency of the unit's filter: minimizes the spread of the range rates of stationary objects
 /// (tests/radar/RealReturns_test).
 constexpr double kRadarDelay = 0.05;
-constexpr double kMaxRange = 200;  ///< [m] of the unit; the example reaches 184 m
+constexpr double kRadarRange = 200;  ///< [m] of the unit; the example reaches 184 m
 
 /// The columns of one of the recording's tables.
 struct Table {
@@ -159,7 +159,7 @@ void Comma2k19Importer::readRadar(ImportLog& log) {
   for (std::size_t i = 0; i < radar.csv.rows();) {
     SensorFrame scan;
     RadarReturns returns;
-    returns.max_range = kMaxRange;
+    returns.max_range = kRadarRange;
     const double begin = radar.time(i);
     std::size_t end = i;
     for (; end < radar.csv.rows() && std::abs(radar.time(end) - begin) < kScanSpread; ++end)
@@ -171,7 +171,7 @@ void Comma2k19Importer::readRadar(ImportLog& log) {
     if (!any) from_ = t;
     any = true;
     to_ = t;
-    scan.sensor = kRadarLabel;
+    scan.sensor = kRadarFront;
     scan.stamp = stampOf(t);
     scan.T_ego_sensor = T_ego_radar;
     scan.data = std::move(returns);

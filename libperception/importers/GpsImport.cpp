@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kObjectLabel = "GPS_OBJECT";
 /// [m] Size of a point as a box, since front ends require sizes above 0; `sizes = false` ignores
 /// them.
-constexpr double kPointSize = 0.1;
+constexpr double kGpsPointSize = 0.1;
 
 /// A receiver's track, NMEA or GPX: the way of the vehicle, or of an object beside a standing one.
 class TrackImporter final : public Importer {
@@ -77,8 +77,8 @@ void TrackImporter::run(ImportLog& log) {
       ObjectDetection& object = found.objects.emplace_back();
       object.label = "object";
       object.score = 1;
-      object.space_box = ObjectDetection::SpaceBox{poses[i].pose.translation(), 0, kPointSize,
-                                                   kPointSize, kPointSize};
+      object.space_box = ObjectDetection::SpaceBox{poses[i].pose.translation(), 0, kGpsPointSize,
+                                                   kGpsPointSize, kGpsPointSize};
       SensorFrame out;
       out.sensor = kObjectLabel;
       out.stamp = stamp;

@@ -18,7 +18,7 @@ constexpr double kLowest = 0.8, kHighest = 3;
 /// [m] Range limits: nearer returns are of the vehicle itself, farther ones too sparse.
 constexpr double kNearest = 3, kFarthest = 25;
 constexpr double kCoarse = 0.1, kFine = 0.02;  ///< [s] steps of the search
-constexpr std::size_t kFewest = 1000;          ///< fewest returns
+constexpr std::size_t kFewestReturns = 1000;   ///< fewest returns
 
 double medianPeriod(const std::vector<GpsFix>& fixes) {
   std::vector<double> steps;
@@ -103,7 +103,7 @@ std::optional<double> clockShift(const std::vector<StampedPose>& poses,
   const std::vector<StampedScan> parts = usefulParts(scans);
   std::size_t returns = 0;
   for (const auto& part : parts) returns += part.second.size();
-  if (poses.size() < 2 || parts.size() < 2 || returns < kFewest) return {};
+  if (poses.size() < 2 || parts.size() < 2 || returns < kFewestReturns) return {};
   const double least = std::max(start - reach, parts.back().first - poses.back().stamp);
   const double most = std::min(start + reach, parts.front().first - poses.front().stamp);
   const auto bestOf = [&](double from, double to, double step) {

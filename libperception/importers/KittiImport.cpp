@@ -15,6 +15,7 @@
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/KittiDetections.h"
 #include "libperception/importers/KittiFiles.h"
+#include "libperception/importers/SensorLabels.h"
 
 namespace perception {
 
@@ -22,10 +23,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLidarLabel = "LIDAR_TOP";
 const std::vector<std::string> kScanEndings = {".bin", ".bin.gz"};
 const std::vector<std::string> kImageEndings = {".png", ".jpg", ".jpeg"};
-constexpr const char* kImageLabel = "CAMERA_LEFT";
 /// The whole import of one sequence.
 class Import {
  public:
@@ -169,7 +168,7 @@ void Import::writeFrame(std::int64_t frame) {
   const std::optional<LidarCloud> cloud = readScan(frame);
   if (cloud) {
     SensorFrame scan;
-    scan.sensor = kLidarLabel;
+    scan.sensor = kLidarTop;
     scan.stamp = stamp;
     scan.T_ego_sensor = T_ego_velo_;
     scan.data = *cloud;
@@ -184,7 +183,7 @@ void Import::writeImage(std::int64_t frame) {
   const std::string path = fileOfFrame(params_.images_dir, frame, kImageEndings);
   if (path.empty()) return log_.missing("image", params_.images_dir, frame);
   ImportedImage image;
-  image.label = kImageLabel;
+  image.label = kCameraLeft;
   image.path = path;
   image.stamp = stampOf(frame);
   image.T_ego_camera = T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;

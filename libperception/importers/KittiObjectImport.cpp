@@ -8,6 +8,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/KittiImport.h"
+#include "libperception/importers/SensorLabels.h"
 
 namespace perception {
 
@@ -15,24 +16,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLidarLabel = "LIDAR_TOP";
-constexpr const char* kImageLabel = "CAMERA_LEFT";
 constexpr const char* kBoxesLabel = "LABELLED_BOXES";
 /// A folder of the benchmark and what its files end in.
-struct Part {
+struct KittiPart {
   const char* folder;
   std::vector<std::string> endings;
 };
-const Part kImages{"image_2", {".png", ".jpg", ".jpeg"}};
-const Part kScans{"velodyne", {".bin", ".bin.gz"}};
-const Part kLabels{"label_2", {".txt"}};
-const Part kCalibrations{"calib", {".txt"}};
+const KittiPart kKittiImages{"image_2", {".png", ".jpg", ".jpeg"}};
+const KittiPart kKittiScans{"velodyne", {".bin", ".bin.gz"}};
+const KittiPart kKittiLabels{"label_2", {".txt"}};
+const KittiPart kCalibrations{"calib", {".txt"}};
 
 /// Single frames in the layout of KITTI's object benchmark: image_2, calib, label_2, velodyne.
 class KittiObjectImporter final : public Importer {
  public:
   /// The files of `frames` are the frames; of `other` there may be none.
-  KittiObjectImporter(const Part& frames, const Part& other) : frames_(frames), other_(other) {}
+  KittiObjectImporter(const KittiPart& frames, const KittiPart& other)
+      : frames_(frames), other_(other) {}
   void declare(CLI::App& cli) override {
     cli.add_option("--dir", dir_,
                    fmt::format("folder with {}/ and calib/, and where there are label_2/ and {}/",
@@ -62,19 +62,19 @@ class KittiObjectImporter final : public Importer {
   };
   Frame read(const FrameFile& file, ImportLog& log) const;
   void write(const Frame& frame, Stamp stamp, bool last, ImportLog& log) const;
-  std::string path(const Part& part) const { return (fs::path(dir_) / part.folder).string(); }
-  std::string fileOf(const Part& part, const char* what, const FrameFile& frame,
+  std::string path(const KittiPart& part) const { return (fs::path(dir_) / part.folder).string(); }
+  std::string fileOf(const KittiPart& part, const char* what, const FrameFile& frame,
                      ImportLog& log) const;
 
-  const Part &frames_, &other_;
+  const KittiPart &frames_, &other_;
   std::string dir_;
   bool label_boxes_ = false;
   bool alone_ = true;  ///< frames of different places; else a sequence of a standing vehicle
 };
 
 /// The frame's file of `part`; empty: there is no such folder, or no such file in it (a warning).
-std::string KittiObjectImporter::fileOf(const Part& part, const char* what, const FrameFile& frame,
-                                        ImportLog& log) const {
+std::string KittiObjectImporter::fileOf(const KittiPart& part, const char* what,
+                                        const FrameFile& frame, ImportLog& log) const {
   if (!fs::exists(path(part))) return {};
   std::string file = fileOfStem(path(part), frame.stem, part.endings);
   if (file.empty()) log.missing(what, path(part), frame.number);
@@ -91,13 +91,13 @@ KittiObjectImporter::Frame KittiObjectImporter::read(const FrameFile& file, Impo
         ExitCode::kNoInput);
   }
   frame.calibration = readKittiCalibration(calibration);
-  if (const std::string labels = fileOf(kLabels, "labels", file, log); !labels.empty()) {
+  if (const std::string labels = fileOf(kKittiLabels, "labels", file, log); !labels.empty()) {
     frame.labels = readKittiObjectLabels(labels, file.number);
     for (KittiLabel& label : frame.labels) label.id += 1000 * file.number;  // unique over frames
   }
-  if (const std::string scan = fileOf(kScans, "scan", file, log); !scan.empty())
+  if (const std::string scan = fileOf(kKittiScans, "scan", file, log); !scan.empty())
     frame.cloud = readKittiScan(scan);
-  frame.image = fileOf(kImages, "image", file, log);
+  frame.image = fileOf(kKittiImages, "image", file, log);
   return frame;
 }
 
@@ -111,7 +111,7 @@ void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, Impo
   SensorFrame out;
   out.stamp = stamp;
   if (frame.cloud) {
-    out.sensor = kLidarLabel;
+    out.sensor = kLidarTop;
     out.T_ego_sensor = T_ego_velo;
     out.data = *frame.cloud;
     log.sensor(out);
@@ -135,7 +135,7 @@ void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, Impo
   if (!last) return;  // frame number, image and truth are at the last repetition
   if (!frame.image.empty()) {
     ImportedImage image;
-    image.label = kImageLabel;
+    image.label = kCameraLeft;
     image.path = frame.image;
     image.stamp = stamp;
     image.camera = calibration.camera;
@@ -148,7 +148,7 @@ void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, Impo
 
 void KittiObjectImporter::run(ImportLog& log) {
   const auto files = frameFiles(path(frames_), frames_.endings);
-  if (fs::exists(path(kLabels))) log.expectTruth();
+  if (fs::exists(path(kKittiLabels))) log.expectTruth();
   std::int64_t place = 0;  // frame numbers of single frames are not times
   for (const FrameFile& file : files) {
     if (!log.wants(file.number)) continue;
@@ -168,10 +168,10 @@ void KittiObjectImporter::run(ImportLog& log) {
 }  // namespace
 
 std::unique_ptr<Importer> makeImagesImporter() {
-  return std::make_unique<KittiObjectImporter>(kImages, kScans);
+  return std::make_unique<KittiObjectImporter>(kKittiImages, kKittiScans);
 }
 std::unique_ptr<Importer> makeKittiObjectImporter() {
-  return std::make_unique<KittiObjectImporter>(kScans, kImages);
+  return std::make_unique<KittiObjectImporter>(kKittiScans, kKittiImages);
 }
 
 }  // namespace perception

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kSampleDepth = 2, kBoxDepth = 3;  // of {"results": {SAMPLE: [{box}]}}
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+constexpr std::size_t kMostJsonBytes = std::size_t{1} << 30;
 constexpr std::size_t kMostDigits = 9;
 
 /// Characters of a text; counts the lines that were read, for messages.
@@ -50,7 +50,7 @@ class Reader {
   explicit Reader(const std::string& path) : path_(path) {}
 
   std::vector<WorldBox> read() {
-    const std::string text = readBytes(path_, kMostBytes);
+    const std::string text = readBytes(path_, kMostJsonBytes);
     const auto use = [&](int depth, json::parse_event_t event, json& parsed) {
       return take(depth, event, parsed);
     };
@@ -146,7 +146,7 @@ class Reader {
 }  // namespace
 
 bool isJsonFile(const std::string& path) {
-  const std::string text = readBytes(path, kMostBytes);
+  const std::string text = readBytes(path, kMostJsonBytes);
   const auto first = text.find_first_not_of(" \t\r\n");
   return first != std::string::npos && text[first] == '{';
 }

@@ -15,6 +15,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/RadiateFiles.h"
+#include "libperception/importers/SensorLabels.h"
 #include "libperception/sensors/ImageFile.h"
 
 namespace perception {
@@ -23,10 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLidarLabel = "LIDAR_TOP";
-constexpr const char* kRadarLabel = "RADAR_TOP";
-constexpr const char* kImageLabel = "CAMERA_LEFT";
-const std::vector<std::string> kScanEndings = {".csv", ".csv.gz"};
+const std::vector<std::string> kCsvEndings = {".csv", ".csv.gz"};
 /// [s] Radar frames up to this much older than the first fix are extrapolated with its velocity.
 constexpr double kBeforeFirstPose = 1;
 /// [s] of lidar scans for the estimation of the GPS clock offset.
@@ -116,7 +114,7 @@ void RadiateImporter::addRadar(ImportLog& log) {
     log.at(stamp, [this, stamp, file = file, &log] {
       log.frame(stamp, file.number);
       SensorFrame out;
-      out.sensor = kRadarLabel;
+      out.sensor = kRadarTop;
       out.stamp = stamp;
       out.T_ego_sensor = makePose(0, 0, radar_height_, 0);
       out.data = radarReturnsOf(file.path, params_.radar);
@@ -139,12 +137,11 @@ void RadiateImporter::addRadar(ImportLog& log) {
 
 void RadiateImporter::addLidar(ImportLog& log) {
   const FrameTimes times = readRadiateTimes(path("velo_lidar.txt"));
-  for (const auto& [file, stamp] :
-       timedFiles(path("velo_lidar"), kScanEndings, times, false, log)) {
+  for (const auto& [file, stamp] : timedFiles(path("velo_lidar"), kCsvEndings, times, false, log)) {
     if (!inside(stamp)) continue;
     log.at(stamp, [this, stamp = stamp, file = file, &log] {
       SensorFrame out;
-      out.sensor = kLidarLabel;
+      out.sensor = kLidarTop;
       out.stamp = stamp;
       out.T_ego_sensor = T_ego_lidar_;
       out.data = readRadiateScan(file.path);
@@ -165,7 +162,7 @@ void RadiateImporter::addImages(ImportLog& log) {
        timedFiles(path("zed_left"), {".png", ".jpg"}, times, false, log)) {
     if (!inside(stamp)) continue;
     ImportedImage image;
-    image.label = kImageLabel;
+    image.label = kCameraLeft;
     image.path = file.path;
     image.stamp = stamp;
     image.camera = calibration_.model;
@@ -181,7 +178,7 @@ double RadiateImporter::gpsShift(const std::vector<GpsFix>& fixes, ImportLog& lo
   const double at_once = times.begin()->second - fixes.front().stamp;
   const Stamp middle = *first_ + (last_ - *first_) / 2;
   std::vector<StampedScan> scans;
-  for (const FrameFile& file : frameFiles(path("velo_lidar").string(), kScanEndings)) {
+  for (const FrameFile& file : frameFiles(path("velo_lidar").string(), kCsvEndings)) {
     const auto time = times.find(file.number);
     if (time == times.end() || std::abs(time->second - middle) > kShiftScans / 2) continue;
     const LidarCloud cloud = readRadiateScan(file.path);

@@ -16,7 +16,7 @@ constexpr double kPsd = 2;          ///< [m^2/s^3] of acceleration: a car in a t
 constexpr double kFirstSpeed = 20;  ///< [m/s] deviation before the first fixes
 constexpr double kMoves = 1;        ///< [m/s] slower, the course is no heading
 constexpr double kShortest = 3;     ///< [standard deviations of a fix] rms extent of the own way
-constexpr std::size_t kFewest = 3;  ///< own fixes
+constexpr std::size_t kFewestFixes = 3;  ///< own fixes
 
 /// Position and velocity along one axis, or of both with one covariance.
 struct Motion {
@@ -112,11 +112,11 @@ WorldAlignment alignToWorld(const std::vector<PlaceFix>& fixes, const Vector2& a
     mean_fix += fix.place, mean_way += *way, variance += fix.sigma * fix.sigma;
   }
   const auto n = static_cast<double>(pairs.size());
-  if (pairs.size() < kFewest)
+  if (pairs.size() < kFewestFixes)
     throw DataError(
         fmt::format("{} GNSS fixes of the own vehicle beside its poses, expected {} "
                     "or more: the world frame has no place on Earth",
-                    pairs.size(), kFewest));
+                    pairs.size(), kFewestFixes));
   mean_fix /= n, mean_way /= n;
   double c = 0, s = 0, extent = 0;
   for (const auto& [fix, way] : pairs) {

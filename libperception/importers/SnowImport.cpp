@@ -11,6 +11,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/KittiImport.h"
+#include "libperception/importers/SensorLabels.h"
 
 namespace perception {
 
@@ -18,9 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLidarLabel = "LIDAR_TOP";
-const std::vector<std::string> kScans = {".bin", ".bin.gz"};
-const std::vector<std::string> kLabels = {".label", ".label.gz"};
+const std::vector<std::string> kSnowScanEndings = {".bin", ".bin.gz"};
+const std::vector<std::string> kSnowLabelEndings = {".label", ".label.gz"};
 
 /// A data set of scans with a class per point, in SemanticKITTI's layout: DIR/velodyne, DIR/labels,
 /// DIR/poses.txt.
@@ -79,7 +79,7 @@ class SnowImporter final : public Importer {
 void SnowImporter::keepLabels(const FrameFile& scan, std::size_t points, const std::string& folder,
                               ImportLog& log) {
   const std::string labels = (fs::path(dir_) / "labels").string();
-  const std::string path = fileOfStem(labels, scan.stem, kLabels);
+  const std::string path = fileOfStem(labels, scan.stem, kSnowLabelEndings);
   if (path.empty()) return log.missing("labels", labels, scan.number);
   const std::string bytes = readBytes(path);
   if (bytes.size() != 4 * points) {
@@ -99,7 +99,7 @@ void SnowImporter::keepLabels(const FrameFile& scan, std::size_t points, const s
 }
 
 void SnowImporter::run(ImportLog& log) {
-  const auto files = frameFiles((fs::path(dir_) / "velodyne").string(), kScans);
+  const auto files = frameFiles((fs::path(dir_) / "velodyne").string(), kSnowScanEndings);
   const std::string poses_file = (fs::path(dir_) / "poses.txt").string();
   std::vector<Pose3> poses;
   if (fs::exists(poses_file)) {
@@ -124,7 +124,7 @@ void SnowImporter::run(ImportLog& log) {
       log.ego(stamp, T_ego_lidar * poses.front().inverse() * poses[i] * T_ego_lidar.inverse());
     log.frame(stamp, file.number);
     SensorFrame scan;
-    scan.sensor = kLidarLabel;
+    scan.sensor = kLidarTop;
     scan.stamp = stamp;
     scan.T_ego_sensor = T_ego_lidar;
     LidarCloud cloud = readCloudFile(file.path, format);

@@ -12,10 +12,10 @@ namespace perception {
 namespace {
 
 constexpr const char* kLaserLabel = "LASER";
-constexpr const char* kRadarLabel = "RADAR";
+constexpr const char* kUdacityRadar = "RADAR";
 /// [m] Size of a point as a box, since front ends require sizes above 0; `sizes = false` ignores
 /// them.
-constexpr double kPointSize = 0.1;
+constexpr double kRadarPointSize = 0.1;
 /// [m/s] speed below which the velocity does not determine a heading.
 constexpr double kHeadingSpeed = 0.1;
 
@@ -74,7 +74,7 @@ void UdacityImporter::write(const TextRow& row, std::int64_t number, ImportLog& 
     object.label = "object";
     object.score = 1;
     object.space_box = ObjectDetection::SpaceBox{Vector3(row.real(1), row.real(2), 0), 0,
-                                                 kPointSize, kPointSize, kPointSize};
+                                                 kRadarPointSize, kRadarPointSize, kRadarPointSize};
     out.sensor = kLaserLabel;
     out.data = std::move(found);
   } else {
@@ -83,7 +83,7 @@ void UdacityImporter::write(const TextRow& row, std::int64_t number, ImportLog& 
     r.range = row.real(1);
     r.bearing = wrapAngle(row.real(2));
     r.range_rate = row.real(3);
-    out.sensor = kRadarLabel;
+    out.sensor = kUdacityRadar;
     out.data = std::move(returns);
   }
   log.sensor(out);

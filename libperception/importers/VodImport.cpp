@@ -10,6 +10,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/KittiFiles.h"
+#include "libperception/importers/SensorLabels.h"
 #include "libperception/importers/VodFiles.h"
 
 namespace perception {
@@ -18,9 +19,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLidarLabel = "LIDAR_TOP";
-constexpr const char* kRadarLabel = "RADAR_FRONT";
-constexpr const char* kImageLabel = "CAMERA_FRONT";
 /// [m] Height of the level lidar above the plane of the poses: z of odomToCamera * Tr_velo_to_cam
 /// (1.6501); road returns of the example frames lie 1.6 m below it.
 constexpr double kLidarHeight = 1.65;
@@ -190,20 +188,20 @@ void VodImporter::write(const Frame& frame, Stamp stamp, bool still, bool last,
   SensorFrame out;
   out.stamp = stamp;
   if (frame.cloud) {
-    out.sensor = kLidarLabel;
+    out.sensor = kLidarTop;
     out.T_ego_sensor = T_ego_lidar_;
     out.data = *frame.cloud;
     log.sensor(out);
   }
   if (frame.has_radar) {
-    out.sensor = kRadarLabel;
+    out.sensor = kRadarFront;
     out.T_ego_sensor = T_ego_radar;
     out.data = returnsOf(frame.radar, still);
     log.sensor(out);
   }
   if (last && !frame.image.empty()) {
     ImportedImage image;
-    image.label = kImageLabel;
+    image.label = kCameraFront;
     image.path = frame.image;
     image.stamp = stamp;
     image.camera = frame.calibration.camera;

@@ -16,8 +16,8 @@ namespace {
 constexpr std::int32_t kSteps = 64;
 constexpr float kStepsPerMeter = 33;   // fine at road level; the last step holds all higher returns
 constexpr float kLowestStep = -0.97f;  // [m] ego frame
-constexpr std::uint32_t kNoStep = ~0u;  // for a cell with too few returns
-constexpr std::size_t kBlock = 1024;    // points that fit in the L1 cache
+constexpr std::uint32_t kNoStep = ~0u;         // for a cell with too few returns
+constexpr std::size_t kCandidateBlock = 1024;  // points that fit in the L1 cache
 
 /// Polar cells in floats.
 struct PolarCells {
@@ -126,10 +126,10 @@ GroundCandidates groundCandidates(const EgoPoints& points, const CandidateRules&
   std::size_t most = 0;
   for (const Search& search : searches) most += counts[wanted[search.cell]];
   std::vector<std::uint64_t> few(most);
-  std::array<std::int32_t, kBlock> marks;
-  std::array<std::uint32_t, kBlock + kPackSlack> found;
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    const std::size_t size = std::min(kBlock, count - first);
+  std::array<std::int32_t, kCandidateBlock> marks;
+  std::array<std::uint32_t, kCandidateBlock + kPackSlack> found;
+  for (std::size_t first = 0; first < count; first += kCandidateBlock) {
+    const std::size_t size = std::min(kCandidateBlock, count - first);
     markWanted(&step_of[first], size, wanted.data(), marks.data());
     const std::size_t some =
         packPlaces(marks.data(), size, static_cast<std::uint32_t>(first), found.data());

@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // points that fit in the L1 cache
+constexpr std::size_t kSplitBlock = 1024;  // points that fit in the L1 cache
 
 PERCEPTION_WIDEST void markGround(const float* __restrict heights, std::size_t count, float low,
                                   std::uint8_t* __restrict marks) {
@@ -37,9 +37,9 @@ void unmark(const LidarCloud& cloud, const std::uint32_t* source, std::size_t co
 void labelGround(const EgoPoints& points, const std::vector<float>& heights, float low,
                  std::size_t returns, std::vector<std::uint8_t>& ground) {
   ground.assign(returns, 0);
-  std::array<std::uint8_t, kBlock> marks;
-  for (std::size_t first = 0; first < heights.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, heights.size() - first);
+  std::array<std::uint8_t, kSplitBlock> marks;
+  for (std::size_t first = 0; first < heights.size(); first += kSplitBlock) {
+    const std::size_t count = std::min(kSplitBlock, heights.size() - first);
     const std::uint32_t* source = &points.source[first];
     markGround(&heights[first], count, low, marks.data());
     if (source[count - 1] - source[0] == count - 1) {  // contiguous, the common case
@@ -60,10 +60,10 @@ void splitGround(const LidarCloud& cloud, const EgoPoints& points,
   if (!cloud.label.empty())
     for (const std::uint32_t i : points.source)
       ground[i] |= cloud.label[i] == static_cast<std::uint8_t>(PointLabel::kGround);
-  std::array<std::int32_t, kBlock> marks;
+  std::array<std::int32_t, kSplitBlock> marks;
   std::size_t found = 0;
-  for (std::size_t first = 0; first < heights.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, heights.size() - first);
+  for (std::size_t first = 0; first < heights.size(); first += kSplitBlock) {
+    const std::size_t count = std::min(kSplitBlock, heights.size() - first);
     markObstacles(&heights[first], count, low, high, marks.data());
     unmark(cloud, &points.source[first], count, least_trust, marks.data());
     obstacles.resize(found + count + kPackSlack);

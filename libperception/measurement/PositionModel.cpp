@@ -8,7 +8,8 @@
 
 namespace perception {
 namespace {
-constexpr double kSideSigma = 0.5;  // [m] of sides without a standard deviation of their own
+constexpr double kPositionSideSigma =
+    0.5;  // [m] of sides without a standard deviation of their own
 
 Vector2 forwardOf(const SensorState& sensor) {
   return sensor.T_world_sensor.linear().col(0).head<2>().normalized();
@@ -95,7 +96,8 @@ std::optional<BirthState> PositionModel::birth(const Measurement& m, ClassId c,
   birth.position = m.z;
   birth.covariance = m.R + params_.classes[static_cast<std::size_t>(c)].noise;
   birth.extent = params_.classes[static_cast<std::size_t>(c)].extent;
-  if (m.sides) birth.extent = updateExtent(birth.extent, *m.sides, m.sides->yaw, kSideSigma);
+  if (m.sides)
+    birth.extent = updateExtent(birth.extent, *m.sides, m.sides->yaw, kPositionSideSigma);
   return birth;
 }
 

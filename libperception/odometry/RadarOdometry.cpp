@@ -9,18 +9,21 @@ namespace perception {
 namespace {
 
 // All assumed: what vehicles do, and what radars of vehicles measure.
-constexpr double kSigma = 0.15;  ///< [m/s] of a standing target's rate, spread of the target in it
-constexpr double kGate = 0.5;    ///< [m/s] within which a motion explains a target
-constexpr double kSlowest = -10, kFastest = 70, kSpeedStep = 0.25;  ///< [m/s] of the search
-constexpr double kAcceleration = 8, kTurn = 1;  ///< [m/s^2], [rad/s^2] as standard deviations
-constexpr double kFirstTurn = 0.3;              ///< [rad/s] before anything is known
-constexpr double kSlip = 0.02;  ///< of the speed: sideways motion of the ego origin (rear axle)
+constexpr double kRateSigma =
+    0.15;                      ///< [m/s] of a standing target's rate, spread of the target in it
+constexpr double kGate = 0.5;  ///< [m/s] within which a motion explains a target
+constexpr double kSlowestRadar = -10, kFastestRadar = 70,
+                 kRadarSpeedStep = 0.25;  ///< [m/s] of the search
+constexpr double kRadarAcceleration = 8,
+                 kRadarTurn = 1;    ///< [m/s^2], [rad/s^2] as standard deviations
+constexpr double kFirstTurn = 0.3;  ///< [rad/s] before anything is known
+constexpr double kSlip = 0.02;      ///< of the speed: sideways motion of the ego origin (rear axle)
 constexpr double kLeastSlip = 0.02;  ///< [m/s] the same of a standing vehicle
 constexpr std::size_t kLeastTargets = 3;
 constexpr double kLeastShare = 0.2;  ///< of the targets, to be what stands
 constexpr double kOtherGroup = 1.5;  ///< a group so much larger than the predicted one counts ...
 constexpr int kLongestUnexplained = 5;  ///< ... when it is for so many instants
-constexpr int kSteps = 8;
+constexpr int kRadarSteps = 8;
 
 std::size_t explained(const std::vector<Vector3>& rows, const std::vector<double>& rates,
                       const Vector3& motion) {
@@ -55,7 +58,7 @@ std::optional<Vector3> RadarOdometry::searched(const std::vector<Row>& rows) {
   for (const Row& r : rows) directions.push_back(r.row), rates.push_back(r.rate);
   Vector3 best = Vector3::Zero();
   std::size_t most = explained(directions, rates, best);
-  for (double speed = kSlowest; speed <= kFastest; speed += kSpeedStep) {
+  for (double speed = kSlowestRadar; speed <= kFastestRadar; speed += kRadarSpeedStep) {
     const std::size_t n = explained(directions, rates, Vector3(speed, 0, 0));
     if (n > most || (n == most && std::abs(speed) < std::abs(best.x())))
       most = n, best = Vector3(speed, 0, 0);
@@ -67,8 +70,8 @@ std::optional<Vector3> RadarOdometry::searched(const std::vector<Row>& rows) {
 
 void RadarOdometry::predict(double dt) {
   Eigen::Matrix3d& P = motion_.covariance;
-  P(0, 0) += kAcceleration * dt * kAcceleration * dt;
-  P(2, 2) += kTurn * dt * kTurn * dt;
+  P(0, 0) += kRadarAcceleration * dt * kRadarAcceleration * dt;
+  P(2, 2) += kRadarTurn * dt * kRadarTurn * dt;
   // Sideways motion is what the wheels allow, whatever it was.
   const double slip = kSlip * std::abs(motion_.mean.x()) + kLeastSlip;
   P.row(1).setZero(), P.col(1).setZero();
@@ -82,18 +85,18 @@ bool RadarOdometry::correct(const std::vector<Row>& rows) {
   Vector3 x = motion_.mean;
   Eigen::Matrix3d information = prior;
   std::size_t n = 0;
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kRadarSteps; ++step) {
     information = prior;
     Vector3 sum = prior * motion_.mean;
     n = 0;
     for (const Row& r : rows) {
-      const double e = (r.rate - r.row.dot(x)) / kSigma;
+      const double e = (r.rate - r.row.dot(x)) / kRateSigma;
       const double spread = step == 0 ? std::sqrt(r.row.dot(motion_.covariance * r.row)) : 0;
-      const double kernel = 1 + e * e / (4 + spread * spread / (kSigma * kSigma));
-      const double weight = 1 / (kernel * kernel * kSigma * kSigma);
+      const double kernel = 1 + e * e / (4 + spread * spread / (kRateSigma * kRateSigma));
+      const double weight = 1 / (kernel * kernel * kRateSigma * kRateSigma);
       information += weight * r.row * r.row.transpose();
       sum += weight * r.rate * r.row;
-      n += std::abs(e) * kSigma < kGate;
+      n += std::abs(e) * kRateSigma < kGate;
     }
     x = information.ldlt().solve(sum);
   }

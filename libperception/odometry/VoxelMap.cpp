@@ -12,8 +12,8 @@ constexpr std::uint32_t kMostPoints = 100;  ///< a cell that has them is known w
 /// [m] A surface is thin where its points spread less than kThin, and wide where more than kWide:
 /// between them lies a single ring of beams, which moves with the sensor and says nothing.
 constexpr double kThin = 0.12, kWide = 0.15;
-constexpr double kUpright = 0.8;  ///< least |z| of the axis of a pole
-constexpr double kSigma = 0.1;    ///< [m] noise of a point about its surface (assumed)
+constexpr double kUprightAxis = 0.8;  ///< least |z| of the axis of a pole
+constexpr double kPointSigma = 0.1;   ///< [m] noise of a point about its surface (assumed)
 
 /// 21 bits an axis: 2000 km at 1 m.
 std::uint64_t packed(std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -44,12 +44,12 @@ void VoxelMap::measure(Cell& cell) {
   const auto axis = [&](int i) -> Vector3 { return solver.eigenvectors().col(i); };
   Eigen::Matrix3d directions = axis(0) * axis(0).transpose();
   const bool plane = sigma[0] < kThin && sigma[1] > kWide;
-  const bool pole = sigma[1] < kThin && sigma[2] > kWide && std::abs(axis(2).z()) > kUpright;
+  const bool pole = sigma[1] < kThin && sigma[2] > kWide && std::abs(axis(2).z()) > kUprightAxis;
   if (!plane && !pole) return;
   if (pole) directions += axis(1) * axis(1).transpose();
   cell.known = true;
   cell.surface.mean = cell.first + offset;
-  cell.surface.information = directions / (kSigma * kSigma);
+  cell.surface.information = directions / (kPointSigma * kPointSigma);
 }
 
 void VoxelMap::insert(const std::vector<Vector3>& points) {

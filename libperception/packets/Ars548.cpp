@@ -11,7 +11,9 @@ namespace {
 constexpr std::size_t kDetections = 35336, kDetection = 44, kMostDetections = 800;
 constexpr std::size_t kObject = 187, kFirstDetection = 101, kFirstObject = 51;
 
-[[noreturn]] void refuse(const std::string& what) { throw DataError("ARS548 message: " + what); }
+[[noreturn]] void refuseArs548(const std::string& what) {
+  throw DataError("ARS548 message: " + what);
+}
 
 PacketTarget detectionAt(std::string_view bytes, std::size_t at) {
   const auto f = [&](std::size_t offset) { return bigEndianFloat(bytes, at + offset); };
@@ -50,9 +52,9 @@ bool usable(std::string_view bytes, std::size_t at, const PacketTarget& target) 
 
 void addDetections(std::string_view payload, DecodedPacket& packet) {
   if (payload.size() != kDetections)
-    refuse(std::to_string(payload.size()) + " bytes of detections, expected 35336");
+    refuseArs548(std::to_string(payload.size()) + " bytes of detections, expected 35336");
   const auto count = bigEndian(payload, 35309, 4);
-  if (count > kMostDetections) refuse(std::to_string(count) + " detections, at most 800");
+  if (count > kMostDetections) refuseArs548(std::to_string(count) + " detections, at most 800");
   std::size_t left_out = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t at = kFirstDetection + kDetection * k;
@@ -76,8 +78,9 @@ void addObjects(std::string_view payload, DecodedPacket& packet) {
   const auto count = bigEndian(payload, 50, 1);
   const std::size_t most = payload.size() == 9401 ? 50 : payload.size() == 37452 ? 200 : 0;
   if (most == 0)
-    refuse(std::to_string(payload.size()) + " bytes of objects, expected 9401 or 37452");
-  if (count > most) refuse(std::to_string(count) + " objects, at most " + std::to_string(most));
+    refuseArs548(std::to_string(payload.size()) + " bytes of objects, expected 9401 or 37452");
+  if (count > most)
+    refuseArs548(std::to_string(count) + " objects, at most " + std::to_string(most));
   for (std::size_t k = 0; k < count; ++k) {
     packet.objects.push_back(objectAt(payload, kFirstObject + kObject * k));
   }
@@ -87,9 +90,9 @@ class Ars548Decoder final : public PacketDecoder {
  public:
   DecodedPacket decode(std::string_view payload) override {
     const std::string size = std::to_string(payload.size()) + " bytes";
-    if (payload.size() < kFirstObject) refuse(size + ", shorter than its header");
+    if (payload.size() < kFirstObject) refuseArs548(size + ", shorter than its header");
     if (bigEndian(payload, 4, 4) != payload.size() - 8)
-      refuse("byte 4: length is not that of " + size);
+      refuseArs548("byte 4: length is not that of " + size);
     DecodedPacket packet;
     packet.stamp_ns = static_cast<std::int64_t>(bigEndian(payload, 40, 4)) * 1000000000 +
                       static_cast<std::int64_t>(bigEndian(payload, 36, 4));
@@ -103,7 +106,7 @@ class Ars548Decoder final : public PacketDecoder {
     } else if (method == 329) {
       addObjects(payload, packet);
     } else {
-      refuse("method " + std::to_string(method) + ", expected 336 or 329");
+      refuseArs548("method " + std::to_string(method) + ", expected 336 or 329");
     }
     return packet;
   }

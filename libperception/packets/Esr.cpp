@@ -12,7 +12,7 @@ namespace perception {
 namespace {
 
 constexpr std::uint32_t kTracks = 0x500, kPower = 0x540, kStatus = 0x4E0;
-constexpr std::size_t kCount = 64, kGroups = 10, kInGroup = 7, kId = 4, kData = 8;
+constexpr std::size_t kCount = 64, kGroups = 10, kInGroup = 7, kCanId = 4, kData = 8;
 
 /// Track states with a measurement in this scan: new, new updated, updated, merged; not: none,
 /// coasted, invalid coasted, new coasted.
@@ -39,11 +39,12 @@ std::optional<PacketTarget> targetIn(std::string_view data, std::size_t track) {
 class EsrDecoder final : public PacketDecoder {
  public:
   DecodedPacket decode(std::string_view message) override {
-    if (message.size() < kId) refuse(0, std::to_string(message.size()) + " bytes, no identifier");
-    const auto id = static_cast<std::uint32_t>(bigEndian(message, 0, kId));
+    if (message.size() < kCanId)
+      refuse(0, std::to_string(message.size()) + " bytes, no identifier");
+    const auto id = static_cast<std::uint32_t>(bigEndian(message, 0, kCanId));
     const bool ours = (id >= kTracks && id <= kPower) || id == kStatus;
     if (!ours) return {};  // others of the bus
-    const std::string_view data = message.substr(kId);
+    const std::string_view data = message.substr(kCanId);
     if (data.size() != kData) refuse(id, std::to_string(data.size()) + " bytes, expected 8");
     if (id == kStatus) return begin(static_cast<std::uint16_t>(bigEndian(data, 3, 2)));
     if (id == kPower) return addPowers(data);

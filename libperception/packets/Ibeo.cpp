@@ -20,12 +20,12 @@ constexpr std::size_t kEcuBody = 24, kEcuPoint = 28, kInfo2204 = 40, kInfo2205 =
 constexpr std::size_t kOldBody = 16, kOldPoint = 12;
 constexpr std::uint64_t kLabeled = 7;  ///< flags of a scan: ground, dirt, rain are labeled
 
-[[noreturn]] void refuse(const std::string& what) { throw DataError("Ibeo message: " + what); }
+[[noreturn]] void refuseIbeo(const std::string& what) { throw DataError("Ibeo message: " + what); }
 
 void expectPoints(std::string_view body, std::size_t first, std::size_t count, std::size_t size) {
   if (first + count * size > body.size())
-    refuse(std::to_string(count) + " points do not fit in " + std::to_string(body.size()) +
-           " bytes");
+    refuseIbeo(std::to_string(count) + " points do not fit in " + std::to_string(body.size()) +
+               " bytes");
 }
 
 int signed16(std::uint64_t value) { return static_cast<std::int16_t>(value); }
@@ -50,12 +50,12 @@ DecodedPacket scanOf(std::uint64_t number, std::int64_t stamp_ns) {
 
 /// A scan of one LUX, little endian; stamped at its end, as it is sent.
 DecodedPacket luxScan(std::string_view body) {
-  if (body.size() < kLuxBody) refuse("2202: " + std::to_string(body.size()) + " bytes");
+  if (body.size() < kLuxBody) refuseIbeo("2202: " + std::to_string(body.size()) + " bytes");
   const auto u16 = [&](std::size_t at) { return littleEndian(body, at, 2); };
   const std::size_t count = u16(28);
   expectPoints(body, kLuxBody, count, kLuxPoint);
   const auto ticks = static_cast<double>(u16(22));
-  if (ticks == 0) refuse("2202: byte 22: 0 ticks a turn");
+  if (ticks == 0) refuseIbeo("2202: byte 22: 0 ticks a turn");
   const std::int64_t begin = stampOfNtp(littleEndian(body, 6, 8));
   DecodedPacket packet = scanOf(u16(0), stampOfNtp(littleEndian(body, 14, 8)));
   const std::uint64_t flags = u16(42);
@@ -69,7 +69,7 @@ DecodedPacket luxScan(std::string_view body) {
     const std::size_t at = kLuxBody + kLuxPoint * i;
     const auto layer = littleEndian(body, at, 1) & 15, point_flags = littleEndian(body, at + 1, 1);
     if (layer >= std::size(kIbeoLayers))
-      refuse("2202: point " + std::to_string(i) + ": layer " + std::to_string(layer));
+      refuseIbeo("2202: point " + std::to_string(i) + ": layer " + std::to_string(layer));
     const int angle = signed16(u16(at + 2));
     LidarReturn point =
         returnAt(.01 * static_cast<double>(u16(at + 4)), -360 * angle / ticks, kIbeoLayers[layer]);
@@ -86,7 +86,7 @@ DecodedPacket luxScan(std::string_view body) {
 
 /// A scan of an ECU, big endian: points in space, of one or more scanners.
 DecodedPacket ecuScan(std::string_view body, std::size_t info) {
-  if (body.size() < kEcuBody) refuse("ECU scan: " + std::to_string(body.size()) + " bytes");
+  if (body.size() < kEcuBody) refuseIbeo("ECU scan: " + std::to_string(body.size()) + " bytes");
   const auto u16 = [&](std::size_t at) { return bigEndian(body, at, 2); };
   const std::size_t count = u16(18), first = kEcuBody + info * bigEndian(body, 20, 1);
   expectPoints(body, first, count, kEcuPoint);
@@ -102,7 +102,7 @@ DecodedPacket ecuScan(std::string_view body, std::size_t info) {
     point.pulse_width = bigEndianFloat(body, at + 12);
     if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z) ||
         !std::isfinite(point.pulse_width))
-      refuse("ECU scan: point " + std::to_string(i) + " is not finite");
+      refuseIbeo("ECU scan: point " + std::to_string(i) + " is not finite");
     point.ring = static_cast<std::uint16_t>(bigEndian(body, at + 17, 1));
     point.echo = static_cast<std::uint8_t>(body[at + 18]);
     point.time_us =
@@ -126,11 +126,11 @@ float oldLength(int value) {
 DecodedPacket alascaScan(std::string_view message) {
   const auto size = bigEndian(message, 4, 4);
   if (size != message.size() - kOldHeader)
-    refuse("byte 4: " + std::to_string(size) + " bytes of body, " +
-           std::to_string(message.size() - kOldHeader) + " came");
+    refuseIbeo("byte 4: " + std::to_string(size) + " bytes of body, " +
+               std::to_string(message.size() - kOldHeader) + " came");
   if (bigEndian(message, 8, 4) != 15) return {};  // no scan
   const std::string_view body = message.substr(kOldHeader);
-  if (body.size() < kOldBody) refuse("ALASCA: " + std::to_string(body.size()) + " bytes");
+  if (body.size() < kOldBody) refuseIbeo("ALASCA: " + std::to_string(body.size()) + " bytes");
   const std::size_t count = bigEndian(body, 14, 2);
   expectPoints(body, kOldBody, count, kOldPoint);
   DecodedPacket packet =
@@ -165,14 +165,15 @@ bool isHeader(std::string_view bytes) {
 class IbeoDecoder final : public PacketDecoder {
  public:
   DecodedPacket decode(std::string_view message) override {
-    if (message.size() < kOldHeader) refuse(std::to_string(message.size()) + " bytes, no header");
+    if (message.size() < kOldHeader)
+      refuseIbeo(std::to_string(message.size()) + " bytes, no header");
     if (bigEndian(message, 0, 4) == kOldMagic) return alascaScan(message);
-    if (bigEndian(message, 0, 4) != kMagic) refuse("byte 0: AF FE C0 C2 expected");
-    if (message.size() < kHeader) refuse(std::to_string(message.size()) + " bytes, no header");
+    if (bigEndian(message, 0, 4) != kMagic) refuseIbeo("byte 0: AF FE C0 C2 expected");
+    if (message.size() < kHeader) refuseIbeo(std::to_string(message.size()) + " bytes, no header");
     const auto size = bigEndian(message, 8, 4);
     if (size != message.size() - kHeader)
-      refuse("byte 8: " + std::to_string(size) + " bytes of body, " +
-             std::to_string(message.size() - kHeader) + " came");
+      refuseIbeo("byte 8: " + std::to_string(size) + " bytes of body, " +
+                 std::to_string(message.size() - kHeader) + " came");
     const std::string_view body = message.substr(kHeader);
     switch (static_cast<IbeoType>(bigEndian(message, 14, 2))) {
       case IbeoType::kLuxScan:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kBody = 44, kPoint = 10, kMost = 65535;
 constexpr double kTicks = 11520;  ///< a turn
-constexpr std::uint64_t kSynchronized = 0x20 | 3, kLabeled = 7;
+constexpr std::uint64_t kSynchronized = 0x20 | 3, kLabeledFlag = 7;
 
 /// Scans 2202 of a LUX, one message each, with the labels, echoes and pulse widths of the cloud.
 class IbeoEncoder final : public PacketEncoder {
@@ -30,7 +30,7 @@ class IbeoEncoder final : public PacketEncoder {
     putLittle(body, 24, static_cast<std::uint64_t>(kTicks / 4), 2);  // from the left
     putLittle(body, 26, static_cast<std::uint64_t>(-kTicks / 4 + 65536), 2);
     putLittle(body, 28, count, 2);
-    putLittle(body, 42, cloud.label.empty() ? 0 : kLabeled, 2);
+    putLittle(body, 42, cloud.label.empty() ? 0 : kLabeledFlag, 2);
     for (std::size_t i = 0; i < count; ++i) putPoint(body, kBody + i * kPoint, cloud, i);
     const std::string message = ibeoMessage(IbeoType::kLuxScan, end, previous_, body);
     previous_ = static_cast<std::uint32_t>(message.size());

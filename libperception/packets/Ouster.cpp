@@ -23,7 +23,9 @@ constexpr std::array<Profile, 4> kProfiles{{{"LEGACY", 12, 0, 16, 4, 0},
                                             {"RNG19_RFL8_SIG16_NIR16_DUAL", 16, 32, 12, 0, 32},
                                             {"RNG15_RFL8_NIR8", 4, 32, 12, 0, 32}}};
 
-[[noreturn]] void refuse(const std::string& what) { throw DataError("Ouster packet: " + what); }
+[[noreturn]] void refuseOuster(const std::string& what) {
+  throw DataError("Ouster packet: " + what);
+}
 
 const Profile& profileOf(const std::string& name) {
   for (const Profile& profile : kProfiles) {
@@ -92,7 +94,7 @@ class OusterDecoder final : public PacketDecoder {
     DecodedPacket packet;
     const auto columns = ousterColumns(payload, metadata_, packet.warnings);
     const OusterColumn& first = columns.front();
-    if (first.stamp_ns > kLastStamp) refuse("its stamp lies centuries ahead");
+    if (first.stamp_ns > kLastStamp) refuseOuster("its stamp lies centuries ahead");
     packet.stamp_ns = static_cast<std::int64_t>(first.stamp_ns);
     const std::size_t in_frame = metadata_.columns_per_frame / metadata_.columns_per_packet;
     packet.number = first.frame * in_frame + first.measurement / metadata_.columns_per_packet;
@@ -151,10 +153,10 @@ std::vector<OusterColumn> ousterColumns(std::string_view payload, const OusterMe
   const std::size_t size =
       profile.packet_header + metadata.columns_per_packet * column_size + profile.footer;
   if (payload.size() != size)
-    refuse(std::to_string(payload.size()) + " bytes, expected " + std::to_string(size) + " (" +
-           profile.name + ", " + std::to_string(rows) + " rows)");
+    refuseOuster(std::to_string(payload.size()) + " bytes, expected " + std::to_string(size) +
+                 " (" + profile.name + ", " + std::to_string(rows) + " rows)");
   const bool legacy = profile.packet_header == 0;
-  if (!legacy && littleEndian(payload, 0, 2) != 1) refuse("byte 0: type 1 (lidar) expected");
+  if (!legacy && littleEndian(payload, 0, 2) != 1) refuseOuster("byte 0: type 1 (lidar) expected");
   if (!legacy) {
     const auto sent = littleEndian(payload, size - 8, 8);
     if (sent != 0 && sent != crc64(payload.substr(0, size - 8)))
@@ -168,8 +170,9 @@ std::vector<OusterColumn> ousterColumns(std::string_view payload, const OusterMe
     column.measurement = static_cast<std::uint16_t>(littleEndian(payload, at + 8, 2));
     column.frame = static_cast<std::uint16_t>(littleEndian(payload, legacy ? at + 10 : 2, 2));
     if (column.measurement >= metadata.columns_per_frame)
-      refuse("column " + std::to_string(c) + ": measurement " + std::to_string(column.measurement) +
-             ", expected below " + std::to_string(metadata.columns_per_frame));
+      refuseOuster("column " + std::to_string(c) + ": measurement " +
+                   std::to_string(column.measurement) + ", expected below " +
+                   std::to_string(metadata.columns_per_frame));
     column.valid = legacy ? littleEndian(payload, at + column_size - 4, 4) == 0xFFFFFFFF
                           : (littleEndian(payload, at + 10, 2) & 1) == 1;
     for (std::size_t i = 0; i < rows; ++i)

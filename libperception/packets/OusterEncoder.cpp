@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-constexpr std::size_t kHeader = 16, kPixel = 12, kStatus = 4;  ///< of profile LEGACY
+constexpr std::size_t kLegacyHeader = 16, kPixel = 12, kLegacyStatus = 4;  ///< of profile LEGACY
 
 /// Packets of profile LEGACY. The lidar's center and the beams' origin lie apart (kUp, n): returns
 /// are seen from the beams' origin.
@@ -27,7 +27,7 @@ class OusterEncoder final : public PacketEncoder {
   std::vector<TimedPacket> encode(const SensorFrame& frame, double period) override {
     const BeamView view(fromBeams(cloudOf(frame)), beams_);
     const std::size_t columns = metadata_.columns_per_frame, in = metadata_.columns_per_packet;
-    const std::size_t size = kHeader + beams_.size() * kPixel + kStatus;
+    const std::size_t size = kLegacyHeader + beams_.size() * kPixel + kLegacyStatus;
     std::vector<TimedPacket> packets;
     for (std::size_t first = 0; first < columns; first += in) {
       std::string bytes(in * size, '\0');
@@ -41,8 +41,8 @@ class OusterEncoder final : public PacketEncoder {
         putLittle(bytes, at + 8, first + c, 2);
         putLittle(bytes, at + 10, number_, 2);
         putLittle(bytes, at + 12, static_cast<std::uint64_t>(share * 90112), 4);
-        putPixels(bytes, at + kHeader, view, share);
-        putLittle(bytes, at + size - kStatus, 0xFFFFFFFF, 4);
+        putPixels(bytes, at + kLegacyHeader, view, share);
+        putLittle(bytes, at + size - kLegacyStatus, 0xFFFFFFFF, 4);
       }
       packets.push_back(
           {period * static_cast<double>(first + in) / static_cast<double>(columns), bytes});

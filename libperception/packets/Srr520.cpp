@@ -11,7 +11,9 @@
 namespace perception {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) { throw DataError("SRR520 message: " + what); }
+[[noreturn]] void refuseSrr520(const std::string& what) {
+  throw DataError("SRR520 message: " + what);
+}
 
 /// One of the three lists that the radar sends: a header, elements, and 800 that closes it.
 struct List {
@@ -21,7 +23,7 @@ struct List {
 };
 constexpr std::array<List, 3> kLists{
     {{"near", 900, 50, 10}, {"far", 1100, 20, 10}, {"objects", 1200, 20, 2}}};
-constexpr std::size_t kHeaderSize = 32, kElementSize = 64, kCloseSize = 4, kId = 4;
+constexpr std::size_t kHeaderSize = 32, kElementSize = 64, kCloseSize = 4, kCanIdSize = 4;
 
 /// Reads fields one after the other, the most significant bit first.
 class BitReader {
@@ -49,7 +51,7 @@ PacketTarget targetAt(std::string_view bytes, std::size_t bit) {
   return target;
 }
 
-RadarObject objectAt(std::string_view bytes, std::size_t bit) {
+RadarObject srr520ObjectAt(std::string_view bytes, std::size_t bit) {
   BitReader reader(bytes, bit);
   RadarObject object;
   object.id = static_cast<std::uint32_t>(reader.next(8));
@@ -67,9 +69,10 @@ RadarObject objectAt(std::string_view bytes, std::size_t bit) {
 class Srr520Decoder final : public PacketDecoder {
  public:
   DecodedPacket decode(std::string_view message) override {
-    if (message.size() < kId) refuse(std::to_string(message.size()) + " bytes, no CAN identifier");
-    const auto id = static_cast<std::uint32_t>(bigEndian(message, 0, kId));
-    const std::string_view data = message.substr(kId);
+    if (message.size() < kCanIdSize)
+      refuseSrr520(std::to_string(message.size()) + " bytes, no CAN identifier");
+    const auto id = static_cast<std::uint32_t>(bigEndian(message, 0, kCanIdSize));
+    const std::string_view data = message.substr(kCanIdSize);
     for (std::size_t i = 0; i < kLists.size(); ++i) {
       if (id == kLists[i].header) begin(i, data);
       if (id == kLists[i].header + 1) addElement(i, data);
@@ -80,8 +83,8 @@ class Srr520Decoder final : public PacketDecoder {
  private:
   static void expectSize(std::string_view data, std::size_t size, std::uint32_t id) {
     if (data.size() != size)
-      refuse(std::to_string(id) + ": " + std::to_string(data.size()) + " bytes, expected " +
-             std::to_string(size));
+      refuseSrr520(std::to_string(id) + ": " + std::to_string(data.size()) + " bytes, expected " +
+                   std::to_string(size));
   }
 
   void begin(std::size_t i, std::string_view data) {
@@ -93,23 +96,23 @@ class Srr520Decoder final : public PacketDecoder {
   void addElement(std::size_t i, std::string_view data) {
     expectSize(data, kElementSize, kLists[i].header + 1);
     const std::size_t have = group_[i].size();
-    if (have == 0) refuse(std::string(kLists[i].name) + ": element without header");
+    if (have == 0) refuseSrr520(std::string(kLists[i].name) + ": element without header");
     if (have >= kHeaderSize + kLists[i].elements * kElementSize)
-      refuse(std::string(kLists[i].name) + ": too many elements");
+      refuseSrr520(std::string(kLists[i].name) + ": too many elements");
     if (littleEndian(data, 63, 1) != littleEndian(group_[i], 14, 1))
-      refuse(std::string(kLists[i].name) + ": element of another list");
+      refuseSrr520(std::string(kLists[i].name) + ": element of another list");
     group_[i] += data;
   }
 
   DecodedPacket close(std::string_view data) {
     expectSize(data, kCloseSize, 800);
     const auto i = littleEndian(data, 0, 1);
-    if (i >= kLists.size()) refuse("800: list " + std::to_string(i) + ", expected 0 to 2");
+    if (i >= kLists.size()) refuseSrr520("800: list " + std::to_string(i) + ", expected 0 to 2");
     const std::string group = std::move(group_[i]);
     group_[i].clear();
-    if (group.empty()) refuse(std::string(kLists[i].name) + ": closed without header");
+    if (group.empty()) refuseSrr520(std::string(kLists[i].name) + ": closed without header");
     if (srr520Checksum(group) != bigEndian(data, 1, 2))
-      refuse(std::string(kLists[i].name) + ": checksum is wrong, the list is left out");
+      refuseSrr520(std::string(kLists[i].name) + ": checksum is wrong, the list is left out");
     return decodeList(kLists[i], group);
   }
 
@@ -118,8 +121,8 @@ class Srr520Decoder final : public PacketDecoder {
     const auto count = objects ? bigEndian(group, 24, 1) : bigEndian(group, 23, 2);
     const std::size_t room = (group.size() - kHeaderSize) / kElementSize * list.in_element;
     if (count > room)
-      refuse(std::string(list.name) + ": " + std::to_string(count) + " entries, room for " +
-             std::to_string(room));
+      refuseSrr520(std::string(list.name) + ": " + std::to_string(count) + " entries, room for " +
+                   std::to_string(room));
     DecodedPacket packet;
     packet.stamp_ns = static_cast<std::int64_t>(bigEndian(group, 4, 4)) * 1000000000 +
                       static_cast<std::int64_t>(bigEndian(group, 8, 4));
@@ -132,7 +135,7 @@ class Srr520Decoder final : public PacketDecoder {
       const std::size_t element = kHeaderSize + k / list.in_element * kElementSize;
       const std::size_t bits = (objects ? 248 : 48) * (k % list.in_element);
       if (objects) {
-        packet.objects.push_back(objectAt(group, element * 8 + bits));
+        packet.objects.push_back(srr520ObjectAt(group, element * 8 + bits));
       } else {
         packet.targets.push_back(targetAt(group, element * 8 + bits));
       }

@@ -10,12 +10,12 @@ namespace perception {
 namespace {
 
 // All assumed.
-constexpr double kLeastSpeed = 5;  // [m/s] of a vehicle with a wake
-constexpr double kExists = 0.9;    // of its track
-constexpr double kLeastAge = 0.5;  // [s] of its track
+constexpr double kLeastSpeed = 5;    // [m/s] of a vehicle with a wake
+constexpr double kWakeExists = 0.9;  // of its track
+constexpr double kLeastAge = 0.5;    // [s] of its track
 constexpr int kLeastHits = 4;
 constexpr double kLeastProbability = 0.5;  // of being a vehicle
-constexpr double kMemory = 10;             // [s] of phantoms seen, as of clutter
+constexpr double kWakeMemory = 10;         // [s] of phantoms seen, as of clutter
 constexpr double kWide = 1000;             // [m^2] of wakes without a phantom, to begin with
 constexpr double kMisjudged = 0.3;         // share of phantoms that are not told by their shape
 constexpr double kLongestStep = 0.3;       // [s] between two footprints of a track
@@ -24,7 +24,7 @@ constexpr double kNone = 0.05;             // phantoms remembered: fewer are non
 /// The vehicle of a track that has a wake; empty: it has none.
 std::optional<VehicleFootprint> vehicleOf(const Track& track, const ClassTable& classes,
                                           Stamp stamp) {
-  if (track.real() < kExists || stamp - track.birth < kLeastAge ||
+  if (track.real() < kWakeExists || stamp - track.birth < kLeastAge ||
       std::accumulate(track.hits.begin(), track.hits.end(), 0) < kLeastHits)
     return std::nullopt;
   const ClassId best = track.likeliestClass();
@@ -73,7 +73,7 @@ void WakeWatch::add(std::size_t sensor, const MeasurementScan& scan, const Hypot
 
 void WakeWatch::count(const MeasurementScan& scan, Seen& seen) const {
   const Stamp now = scan.state.stamp;
-  const double keep = seen.stamp.ns != 0 ? std::exp(-(now - seen.stamp) / kMemory) : 0;
+  const double keep = seen.stamp.ns != 0 ? std::exp(-(now - seen.stamp) / kWakeMemory) : 0;
   seen.phantoms *= keep, seen.area *= keep;
   seen.stamp = now;
   seen.area += wakes_.area(now);

@@ -11,21 +11,22 @@
 namespace perception {
 namespace {
 
-constexpr double kFresh = 1;      // [s] for which a lidar's last scan counts; assumed
-constexpr double kCertain = 0.8;  // probability from which a change of the weather is an event
+constexpr double kFreshWeather = 1;  // [s] for which a lidar's last scan counts; assumed
+constexpr double kCertain = 0.8;     // probability from which a change of the weather is an event
 
 std::string field(double value) { return fixedPlaces(value, 2); }
 
-double rounded(double value) { return std::round(100 * value) / 100; }
+double roundedValue(double value) { return std::round(100 * value) / 100; }
 
 std::string interval(const Estimate& e) {
   return field(e.value) + ',' + field(e.low) + ',' + field(e.high);
 }
 
 EventLog::Fields fieldsOf(const WeatherState& state, double probability) {
-  EventLog::Fields fields = {{"type", nameOf(state.type())}, {"probability", rounded(probability)}};
+  EventLog::Fields fields = {{"type", nameOf(state.type())},
+                             {"probability", roundedValue(probability)}};
   const auto add = [&](const char* name, const Estimate& e) {
-    fields[name] = {rounded(e.low), rounded(e.value), rounded(e.high)};
+    fields[name] = {roundedValue(e.low), roundedValue(e.value), roundedValue(e.high)};
   };
   if (state.type() == WeatherType::kRain) add("rain_mm_h", state.rain_mm_h);
   if (state.type() == WeatherType::kSnow) add("snow_mm_h", state.snow_mm_h);
@@ -56,7 +57,7 @@ std::array<double, kWeatherTypes> WeatherWatch::probabilities() const {
   std::array<double, kWeatherTypes> mean{};
   double count = 0;
   for (const auto& [label, lidar] : lidars_) {
-    if (now_ - lidar.stamp > kFresh) continue;
+    if (now_ - lidar.stamp > kFreshWeather) continue;
     const auto p = lidar.estimator.state().probability;
     for (std::size_t k = 0; k < kWeatherTypes; ++k) mean[k] += p[k];
     ++count;

@@ -9,12 +9,12 @@ namespace perception {
 namespace {
 
 // All assumed.
-constexpr double kWindow = 1;           // [s] in which a direction with dirt returns nothing
-constexpr std::size_t kLeastScans = 5;  // in it
-constexpr std::size_t kStep = 7;        // of the returns every seventh is looked at
-constexpr std::size_t kReach = 4;       // [deg] to the neighbors that return
-constexpr double kLowest = -20;         // [deg] elevation of the lowest row
-constexpr double kLeastRow = 0.1;       // share of a row's directions that return: it has beams
+constexpr double kDirtWindow = 1;           // [s] in which a direction with dirt returns nothing
+constexpr std::size_t kLeastDirtScans = 5;  // in it
+constexpr std::size_t kStep = 7;            // of the returns every seventh is looked at
+constexpr std::size_t kReach = 4;           // [deg] to the neighbors that return
+constexpr double kLowest = -20;             // [deg] elevation of the lowest row
+constexpr double kLeastRow = 0.1;           // share of a row's directions that return: it has beams
 
 }  // namespace
 
@@ -39,8 +39,8 @@ void WindowDirt::add(const LidarCloud& cloud, Stamp stamp) {
 }
 
 std::optional<double> WindowDirt::share() const {
-  if (!first_ || last_ - *first_ < kWindow || scans_ < kLeastScans) return std::nullopt;
-  const std::int64_t since = last_.ns - static_cast<std::int64_t>(1e9 * kWindow);
+  if (!first_ || last_ - *first_ < kDirtWindow || scans_ < kLeastDirtScans) return std::nullopt;
+  const std::int64_t since = last_.ns - static_cast<std::int64_t>(1e9 * kDirtWindow);
   std::size_t holes = 0, open = 0;
   for (std::size_t r = 0; r < kRows; ++r) {
     const auto sees = [&](std::size_t c) {

@@ -14,13 +14,13 @@ constexpr double kShareOfAnySpeed = 1e-3;  // share of a class's newborns with a
 
 Vector2 sensorPosition(const SensorState& s) { return s.T_world_sensor.translation().head<2>(); }
 
-Vector2 direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
-Vector2 perpendicular(const Vector2& v) { return {-v.y(), v.x()}; }
+Vector2 headingVector(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
+Vector2 leftOf(const Vector2& v) { return {-v.y(), v.x()}; }
 
 bool hasRate(const Measurement& m) { return m.seen >> RadarModel::kRate & 1; }
 
 Vector2 lineOfSight(const Measurement& m, const SensorState& s) {
-  return direction(yawOf(s.T_world_sensor) + m.z[RadarModel::kBearing]);
+  return headingVector(yawOf(s.T_world_sensor) + m.z[RadarModel::kBearing]);
 }
 
 /// Mean and variance [m, m^2] over all headings of the distance from nearest point to center of a
@@ -48,13 +48,13 @@ double speedDensity(double speed, double max, double noise) {
 
 Vector2 sensorVelocity(const SensorState& s) {
   const Vector2 lever = sensorPosition(s) - s.ego.T_world_ego.translation().head<2>();
-  return s.ego.velocity + s.ego.yaw_rate * perpendicular(lever);
+  return s.ego.velocity + s.ego.yaw_rate * leftOf(lever);
 }
 
 ScalarEstimate groundSpeed(const Measurement& m, const SensorState& sensor) {
   using Model = RadarModel;
   const Vector2 u = lineOfSight(m, sensor), own = sensorVelocity(sensor);
-  const double turn = perpendicular(u).dot(own);
+  const double turn = leftOf(u).dot(own);
   return {m.z[Model::kRate] + u.dot(own), m.R(Model::kRate, Model::kRate) +
                                               turn * turn * m.R(Model::kBearing, Model::kBearing) +
                                               2 * turn * m.R(Model::kBearing, Model::kRate)};
@@ -105,9 +105,9 @@ void RadarModel::predict(const Kinematics* objects, const Extent* extents, std::
     if (!part.left_cut) addHalf(outline, FootprintModel::kLeft, p);
     if (!part.right_cut) addHalf(outline, FootprintModel::kRight, p);
     // rho_dot = u . (V - v_s), where u turns with the bearing, method.md (16).
-    const Vector2 u = direction(forward + bearing);
+    const Vector2 u = headingVector(forward + bearing);
     const Vector2 relative = objects[i].q.segment<2>(Kinematics::kVx) - own_velocity;
-    const double turn = perpendicular(u).dot(relative);  // d(rate) / d(bearing)
+    const double turn = leftOf(u).dot(relative);  // d(rate) / d(bearing)
     p.h[kRate] = u.dot(relative);
     p.H_q.row(kRate) = turn * p.H_q.row(kBearing);
     p.H_q.row(kRate).segment<2>(Kinematics::kVx) += u.transpose();
@@ -210,7 +210,7 @@ std::optional<BirthState> RadarModel::birth(const Measurement& m, ClassId c,
   const ScalarEstimate half =
       object_class.motion->has_heading ? halfDepth(e.length, e.width) : ScalarEstimate{radius, 0};
   const double rho = m.z[kRange] + half.mean;
-  const Vector2 away = lineOfSight(m, sensor), across = perpendicular(away);
+  const Vector2 away = lineOfSight(m, sensor), across = leftOf(away);
   const double along_variance =
       m.R(kRange, kRange) + (e.var_length + e.var_width) / (kPi * kPi) + half.variance;
   const double across_variance = rho * rho * m.R(kBearing, kBearing) + radius * radius / 3;
@@ -219,7 +219,7 @@ std::optional<BirthState> RadarModel::birth(const Measurement& m, ClassId c,
       along_variance * away * away.transpose() + across_variance * across * across.transpose();
   if (hasRate(m) && object_class.motion->moves) {
     RadialSpeed speed;
-    speed.direction = away;
+    speed.headingVector = away;
     speed.along = groundSpeed(m, sensor);
     if (params_.birth_heading_sigma < radians(89)) {
       speed.across_sigma =

@@ -11,17 +11,17 @@ namespace {
 constexpr double kSameFix = 0.06;             // [s] largest time between fixes of two antennas
 constexpr double kLeastBaseline = 0.5;        // [m] least distance of two antennas
 constexpr double kHeadingSigma = radians(8);  // [rad] largest deviation of a first heading
-constexpr double kCourseSpeed = 2;            // [m/s] least speed of a valid course
+constexpr double kLeastCourseSpeed = 2;       // [m/s] least speed of a valid course
 constexpr double kStraight = radians(5);      // [rad] deviation of a path without wheels
 constexpr double kReference = 10;             // [s] longest path without wheels
 
-double square(double x) { return x * x; }
+double squared(double x) { return x * x; }
 
 // `turn` [rad]: rotation from the start frame to east, north, up.
 void setHeading(EgoMotionState& state, const GnssFix& fix, const Vector3& enu, double turn,
                 double sigma, const FusionParams& params) {
   EgoEstimate& e = state.estimate;
-  const double level = fix.has_height ? square(fix.height_sigma) : 1e4;
+  const double level = fix.has_height ? squared(fix.height_sigma) : 1e4;
   const Pose3 start = e.pose();
   const Pose3 T_enu_start = makePose(0, 0, 0, turn);
   // The antenna of the rotated vehicle is at the fix.
@@ -44,9 +44,9 @@ void setHeading(EgoMotionState& state, const GnssFix& fix, const Vector3& enu, d
     e.P.row(axis).setZero();
     e.P.col(axis).setZero();
   }
-  e.P(kEgoX, kEgoX) = e.P(kEgoY, kEgoY) = square(fix.sigma);
+  e.P(kEgoX, kEgoX) = e.P(kEgoY, kEgoY) = squared(fix.sigma);
   e.P(kEgoZ, kEgoZ) = level;
-  e.P(kEgoYaw, kEgoYaw) += square(sigma);
+  e.P(kEgoYaw, kEgoYaw) += squared(sigma);
   state.heading_known = true;
   ++state.fixes;
 }
@@ -73,7 +73,7 @@ void findHeading(EgoMotionState& state, const GnssFix& fix, const Vector3& enu,
     }
   }
   // The course over ground.
-  if (fix.has_velocity && fix.velocity.norm() >= kCourseSpeed) {
+  if (fix.has_velocity && fix.velocity.norm() >= kLeastCourseSpeed) {
     const double sigma = std::hypot(fix.velocity_sigma / fix.velocity.norm(), radians(2));
     const double back = state.had_wheels && x[kEgoSpeed] < 0 ? kPi : 0;
     if (sigma <= kHeadingSigma)

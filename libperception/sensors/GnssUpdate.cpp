@@ -8,10 +8,10 @@ namespace perception {
 
 namespace {
 
-constexpr double kGate = 0.9999;  // probability of the gate of a fix
-constexpr int kRelocation = 10;   // consecutive rejected fixes after which they are accepted
+constexpr double kGate = 0.9999;      // probability of the gate of a fix
+constexpr int kRelocationFixes = 10;  // consecutive rejected fixes after which they are accepted
 
-double square(double x) { return x * x; }
+double squareOf(double x) { return x * x; }
 
 /// Observation of the antenna's position [m, world], including its lever arm.
 EgoObservation antennaObservation(const EgoVector& x, const GnssFix& fix, const Vector3& world) {
@@ -44,13 +44,13 @@ bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
   place.rows = 2;
   place.H.row(2).setZero();
   place.z[2] = place.h[2] = 0;
-  place.variance << square(fix.sigma), square(fix.sigma), 1;
+  place.variance << squareOf(fix.sigma), squareOf(fix.sigma), 1;
   place.gate = gate2;
   EgoObservation height;
   height.rows = 1;
   height.z[0] = both.z[2], height.h[0] = both.h[2];
   height.H.row(0) = both.H.row(2);
-  height.variance[0] = square(fix.height_sigma);
+  height.variance[0] = squareOf(fix.height_sigma);
   height.gate = gate1;
   const Vector3 arm = both.h - x.segment<3>(kEgoX);
   // After consistent rejected fixes the state is reset to them.
@@ -58,7 +58,7 @@ bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
     state.estimate.x[axis] = value;
     state.estimate.P.row(axis).setZero();
     state.estimate.P.col(axis).setZero();
-    state.estimate.P(axis, axis) = square(sigma);
+    state.estimate.P(axis, axis) = squareOf(sigma);
   };
   const EgoVector before = x;
   const bool taken = filter.update(state.estimate, place);
@@ -67,7 +67,7 @@ bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
     ++state.fixes;
   } else {
     ++state.rejected_fixes;
-    if (++state.rejected_in_row < kRelocation) return false;
+    if (++state.rejected_in_row < kRelocationFixes) return false;
     state.rejected_in_row = 0;
     moveTo(kEgoX, world.x() - arm.x(), fix.sigma);
     moveTo(kEgoY, world.y() - arm.y(), fix.sigma);
@@ -76,7 +76,7 @@ bool updatePlace(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fix,
   height.h[0] += height.H.row(0).dot(x - before);
   if (filter.update(state.estimate, height)) {
     state.rejected_heights_in_row = 0;
-  } else if (++state.rejected_heights_in_row >= kRelocation) {
+  } else if (++state.rejected_heights_in_row >= kRelocationFixes) {
     state.rejected_heights_in_row = 0;
     moveTo(kEgoZ, world.z() - arm.z(), fix.height_sigma);
   }
@@ -95,7 +95,7 @@ void updateVelocity(CEgoFilter& filter, EgoMotionState& state, const GnssFix& fi
   o.h.head<2>() = x[kEgoSpeed] * Vector2(c, s) + swing;
   o.H(0, kEgoSpeed) = c, o.H(1, kEgoSpeed) = s;
   o.H(0, kEgoYaw) = -o.h[1], o.H(1, kEgoYaw) = o.h[0];
-  o.variance.head<2>().setConstant(square(fix.velocity_sigma));
+  o.variance.head<2>().setConstant(squareOf(fix.velocity_sigma));
   static const double gate = chi2Quantile(kGate, 2);
   o.gate = gate;
   filter.update(state.estimate, o);
@@ -108,7 +108,7 @@ void updateYaw(CEgoFilter& filter, EgoMotionState& state, double yaw, double sig
   o.z[0] = yaw;
   o.h[0] = state.estimate.x[kEgoYaw];
   o.H(0, kEgoYaw) = 1;
-  o.variance[0] = square(sigma);
+  o.variance[0] = squareOf(sigma);
   static const double gate = chi2Quantile(kGate, 1);
   o.gate = gate;
   filter.update(state.estimate, o);

@@ -118,9 +118,9 @@ PacketLayout layoutOf(const Packet& packet, const Firing& firing, bool banks) {
 }
 
 /// Appends the returns of packets to a cloud.
-class Decoder {
+class VelodyneDecoder {
  public:
-  Decoder(const Scan& scan, const Calibration& calibration, VelodyneCounts& counts)
+  VelodyneDecoder(const Scan& scan, const Calibration& calibration, VelodyneCounts& counts)
       : scan_(scan),
         lasers_(calibration.laser_corrections),
         rings_(ringsOf(calibration)),
@@ -231,7 +231,7 @@ std::optional<LidarCloud> velodyneCloud(const Scan& scan, VelodyneCounts* counts
   const std::size_t lasers = calibration->laser_corrections.size();
   if (lasers != 16 && lasers != 32 && lasers != 64) return {};
   VelodyneCounts local;
-  return Decoder(scan, *calibration, counts != nullptr ? *counts : local).decode();
+  return VelodyneDecoder(scan, *calibration, counts != nullptr ? *counts : local).decode();
 }
 
 }  // namespace perception

@@ -56,12 +56,14 @@ bool inDash(double along) {
 }
 
 // Weight of a pattern of that size [m]: 1 if resolved, 0 if a pixel covers it.
-double detail(double size, double pixel) { return std::clamp(2 - 2 * pixel / size, 0.0, 1.0); }
+double groundDetail(double size, double pixel) {
+  return std::clamp(2 - 2 * pixel / size, 0.0, 1.0);
+}
 
 Rgb asphalt(const Vector2& p, double pixel) {
   const double patches = smoothValue(p.x() / 6, p.y() / 6, 1) - .5;
   const double grain = smoothValue(p.x() / .05, p.y() / .05, 2) - .5;
-  return Rgb(.095, .095, .10) * (1 + .25 * patches + .15 * detail(.05, pixel) * grain);
+  return Rgb(.095, .095, .10) * (1 + .25 * patches + .15 * groundDetail(.05, pixel) * grain);
 }
 
 Rgb pavement(const Vector2& p, double pixel) {
@@ -69,14 +71,14 @@ Rgb pavement(const Vector2& p, double pixel) {
   const double tile = cellValue(static_cast<std::int64_t>(i), static_cast<std::int64_t>(j), 3) - .5;
   const double u = p.x() / kTile - i, v = p.y() / kTile - j;
   const bool seam = std::min(u, v) < .06;
-  const double seen = detail(kTile, pixel);
+  const double seen = groundDetail(kTile, pixel);
   return Rgb(.30, .29, .27) * (1 + seen * (.15 * tile - (seam ? .3 : 0)));
 }
 
 Rgb grass(const Vector2& p, double pixel) {
   const double patches = smoothValue(p.x() / 3, p.y() / 3, 4) - .5;
   const double blades = smoothValue(p.x() / .2, p.y() / .2, 5) - .5;
-  return Rgb(.10, .17, .05) * (1 + .5 * patches + .5 * detail(.2, pixel) * blades);
+  return Rgb(.10, .17, .05) * (1 + .5 * patches + .5 * groundDetail(.2, pixel) * blades);
 }
 
 }  // namespace

@@ -7,17 +7,18 @@ namespace perception {
 namespace {
 
 // Ratio of an echo's power to the threshold, method.md (57).
-double ratioOf(double intensity, double range, const LidarPulse& pulse, const LidarParams& p) {
+double ratioOf(double intensity, double range, const LidarPulse& pulse,
+               const LidarSensorParams& p) {
   const double far = p.reference_range / range;
   return intensity / (0.9 * pulse.threshold) * far * far;
 }
 
-bool inReach(const LidarPulse::Scatterer& s, const LidarParams& p) {
+bool inReach(const LidarPulse::Scatterer& s, const LidarSensorParams& p) {
   return s.range >= p.range_min && s.range <= p.range_max;
 }
 
 // The nearest scatterer of known intensity; null where there is none.
-const LidarPulse::Scatterer* knownReturn(const LidarPulse& pulse, const LidarParams& p) {
+const LidarPulse::Scatterer* knownReturn(const LidarPulse& pulse, const LidarSensorParams& p) {
   const LidarPulse::Scatterer* first = nullptr;
   for (const LidarPulse::Scatterer& s : pulse.scatterers) {
     if (s.intensity < 0 || !inReach(s, p)) continue;
@@ -28,7 +29,7 @@ const LidarPulse::Scatterer* knownReturn(const LidarPulse& pulse, const LidarPar
 
 }  // namespace
 
-LidarEcho echoOf(const LidarPulse& pulse, double reflectivity, const LidarParams& p) {
+LidarEcho echoOf(const LidarPulse& pulse, double reflectivity, const LidarSensorParams& p) {
   LidarEcho echo;
   if (pulse.blocked) return echo;
   if (const LidarPulse::Scatterer* known = knownReturn(pulse, p)) {
@@ -60,7 +61,7 @@ LidarEcho echoOf(const LidarPulse& pulse, double reflectivity, const LidarParams
 }
 
 std::optional<LidarEcho> secondEchoOf(const LidarPulse& pulse, const LidarEcho& first,
-                                      double reflectivity, const LidarParams& p) {
+                                      double reflectivity, const LidarSensorParams& p) {
   constexpr double kApart = 0.75;  // [m] 5 ns there and back
   if (!first.received || first.of_surface || pulse.hit.object == BeamHit::kNothing) return {};
   LidarPulse open = pulse;

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "libperception/simulation/LidarParams.h"
+#include "libperception/simulation/LidarSensorParams.h"
 #include "libperception/simulation/SimulatedWeather.h"
 
 namespace perception {
@@ -22,12 +22,12 @@ struct LidarEcho {
 /// The nearest scatterer of known intensity is received in any case; else the strongest echo, if it
 /// is above the threshold: P0 = rho exp(-2 depth) / R^2 against P_min = 0.9 / R_max^2, method.md
 /// (57).
-LidarEcho echoOf(const LidarPulse& pulse, double reflectivity, const LidarParams& params);
+LidarEcho echoOf(const LidarPulse& pulse, double reflectivity, const LidarSensorParams& params);
 
 /// The surface behind a received drop, flake or cloud, where a four-layer scanner resolves it: a
 /// pulse's length or more behind and above the threshold (method.md 9.9).
 std::optional<LidarEcho> secondEchoOf(const LidarPulse& pulse, const LidarEcho& first,
-                                      double reflectivity, const LidarParams& params);
+                                      double reflectivity, const LidarSensorParams& params);
 
 /// [m] for how long an echo is above the threshold (method.md 9.9); `slant` [m]: depth of the
 /// surface within the beam.

@@ -18,7 +18,7 @@ constexpr double kCoordinateUnit =
 constexpr double kIntensityUnit = 0.01;  // as in KITTI's files
 constexpr std::size_t kGrain = 2048;     // beams a task
 constexpr int kSlices = 36;              // of a sweep: 10 deg of a turn each
-constexpr std::uint32_t kWeatherPurpose = 0x57EA0000;  // its own stream of random numbers
+constexpr std::uint32_t kLidarWeatherPurpose = 0x57EA0000;  // its own stream of random numbers
 
 double quantized(double value, double unit) { return std::round(value / unit) * unit; }
 
@@ -55,7 +55,7 @@ double slantOf(const LidarPulse& pulse, const LidarEcho& echo) {
 // Of a scanner with own labels in weather: the surface behind is a second echo, and the first is
 // rain by the rule; what it keeps in the air is an object to it, but for images below the road.
 void addSecondEcho(const LidarPulse& pulse, LidarEcho found, double reflectivity,
-                   const LidarParams& p, Echoes& echoes) {
+                   const LidarSensorParams& p, Echoes& echoes) {
   found.width = echoes[0].width = pulseWidth(found.level, slantOf(pulse, found));
   if (found.of_surface) return;
   const bool below = found.phantom == Phantom::kMirror;
@@ -82,7 +82,7 @@ Echo dirtEcho() {
 
 // Speckle, losses and noise of one pulse's echoes; `several`: of a scanner that reports more than
 // one, with labels, in weather.
-Echoes received(const LidarPulse& pulse, const LidarParams& p, bool several, Rng& rng) {
+Echoes received(const LidarPulse& pulse, const LidarSensorParams& p, bool several, Rng& rng) {
   const bool surface = pulse.hit.object != BeamHit::kNothing && pulse.hit.range >= p.range_min;
   double reflectivity = 0;
   if (surface && rng.uniform() >= pulse.lost + p.loss)
@@ -96,7 +96,7 @@ Echoes received(const LidarPulse& pulse, const LidarParams& p, bool several, Rng
   // No instrument reports more, rounding to its unit included.
   echo.range = std::min(measured, p.range_max - kCoordinateUnit);
   echo.intensity = found.intensity, echo.phantom = found.phantom;
-  if (p.layout == LidarParams::Layout::kFourLayer) {
+  if (p.layout == LidarSensorParams::Layout::kFourLayer) {
     const bool object = echo.on_object != (rng.uniform() < p.label_error);
     echo.label = object ? PointLabel::kObject : PointLabel::kGround;
   }
@@ -158,7 +158,7 @@ bool onEdge(const BeamHit& a, const BeamHit& b) {
 
 }  // namespace
 
-LidarSensor::LidarSensor(const LidarParams& params, double rate)
+LidarSensor::LidarSensor(const LidarSensorParams& params, double rate)
     : params_(params), slices_(params.sweep ? kSlices : 1) {
   const std::vector<double> elevations = params.elevations();
   const double width = params.azimuth_to - params.azimuth_from;
@@ -197,7 +197,7 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
   LidarCloud& cloud = result.cloud;
   result.points_on.assign(objects.size(), 0);
   cloud.max_range = params_.range_max;
-  const bool labelled = params_.layout == LidarParams::Layout::kFourLayer,
+  const bool labelled = params_.layout == LidarSensorParams::Layout::kFourLayer,
              several = labelled && static_cast<bool>(hook);
   std::vector<Vector3> directions;
   for (std::size_t s = 0; s < slices_.size(); ++s) {
@@ -212,7 +212,7 @@ LidarSensor::Scan LidarSensor::scan(LidarCaster& caster, double t, const PoseAt&
       for (std::size_t i = from; i < to; ++i) {
         const std::uint32_t slot = slices_[s][i].slot;
         if (hook) {
-          Rng weather_rng(key.withSlot(slot).withPurpose(key.purpose ^ kWeatherPurpose));
+          Rng weather_rng(key.withSlot(slot).withPurpose(key.purpose ^ kLidarWeatherPurpose));
           pulses[i].azimuth = slices_[s][i].azimuth, pulses[i].elevation = slices_[s][i].elevation;
           pulses[i].scene = &caster;
           hook(pulses[i], weather_rng);

@@ -5,7 +5,7 @@
 #include "libperception/core/Frames.h"
 #include "libperception/core/Random.h"
 #include "libperception/measurement/SensorFrame.h"
-#include "libperception/simulation/LidarParams.h"
+#include "libperception/simulation/LidarSensorParams.h"
 #include "libperception/simulation/SimulatedWeather.h"
 
 namespace perception {
@@ -18,7 +18,7 @@ using PulseHook = std::function<void(LidarPulse&, Rng&)>;
 /// Converts ray hits to returns by the lidar equation, method.md (57), in clear air.
 class LidarSensor {
  public:
-  LidarSensor(const LidarParams& params, double rate);  ///< rate [1/s]
+  LidarSensor(const LidarSensorParams& params, double rate);  ///< rate [1/s]
 
   /// One scan and the number of returns on each object of the scenario.
   struct Scan {
@@ -44,7 +44,7 @@ class LidarSensor {
   std::vector<LidarPulse> pulsesOf(const LidarCaster& caster, std::size_t slice, const Pose3& pose,
                                    const std::vector<Vector3>& directions) const;
 
-  LidarParams params_;
+  LidarSensorParams params_;
   std::vector<std::vector<Beam>> slices_;  // by time; one when not sweeping
   double slice_time_ = 0;                  // [s]
 };

@@ -12,7 +12,7 @@
 namespace perception {
 namespace {
 
-std::uint32_t labelOf(ObjectKind kind) {
+std::uint32_t pointLabelOf(ObjectKind kind) {
   switch (kind) {
     case ObjectKind::kCar:
       return 10;
@@ -38,7 +38,7 @@ constexpr std::uint32_t kRoadLabel = 40;
 
 }  // namespace
 
-std::uint32_t labelOf(Phantom phantom) {
+std::uint32_t pointLabelOf(Phantom phantom) {
   switch (phantom) {
     case Phantom::kNone:
       return 0;
@@ -68,9 +68,9 @@ std::vector<std::uint32_t> pointLabels(const LidarSensor::Scan& scan, const Scen
     const int object = scan.surfaces[i];
     const Phantom phantom = scan.phantoms.empty() ? Phantom::kNone : scan.phantoms[i];
     if (phantom != Phantom::kNone) {
-      labels[i] = labelOf(phantom);
+      labels[i] = pointLabelOf(phantom);
     } else if (object >= 0) {
-      labels[i] = labelOf(scenario.objects[static_cast<std::size_t>(object)].kind);
+      labels[i] = pointLabelOf(scenario.objects[static_cast<std::size_t>(object)].kind);
     }
   }
   return labels;

@@ -12,8 +12,8 @@ namespace perception {
 namespace {
 
 // Slots of random numbers beside those of the objects.
-constexpr std::uint32_t kCellSlot = 1u << 20, kFalseSlot = 1u << 21, kClutterSlot = 1u << 22,
-                        kWeatherPurpose = 0x57EA0000;
+constexpr std::uint32_t kCellSlot = 1u << 20, kRadarFalseSlot = 1u << 21, kClutterSlot = 1u << 22,
+                        kRadarWeatherPurpose = 0x57EA0000;
 constexpr double kUnderVehicle = 0.02;  // share of the power that propagates under a car, both ways
 constexpr double kShadowed = 0.1;  // power beside a stronger target of the same range: not resolved
 
@@ -247,7 +247,7 @@ RadarReturns radarReturns(const LidarCaster& caster, double t, const RadarUnitPa
     resolved[i] = rng.uniform() < p.*(bodyOf(objects[i].kind).detection);
   }
   std::vector<RadarReflection> seen;
-  Rng weather_rng(key.withPurpose(key.purpose ^ kWeatherPurpose));
+  Rng weather_rng(key.withPurpose(key.purpose ^ kRadarWeatherPurpose));
   for (RadarReflection& r : radarReflections(caster, t, p, mount)) {
     if (hook) hook(r, weather_rng);
     if (resolved[static_cast<std::size_t>(r.object)] && r.snr > 0) seen.push_back(r);
@@ -276,7 +276,7 @@ RadarReturns radarReturns(const LidarCaster& caster, double t, const RadarUnitPa
       list.push_back(measured(ghost, p, rng));
     }
   }
-  Rng false_rng(key.withSlot(kFalseSlot));
+  Rng false_rng(key.withSlot(kRadarFalseSlot));
   addFalse(list, p, mount, false_rng, hook, weather_rng);
   Rng clutter_rng(key.withSlot(kClutterSlot));
   for (const RadarReflection& r : radarClutter(air, p, mount, clutter_rng))

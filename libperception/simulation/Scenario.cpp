@@ -112,7 +112,7 @@ void SensorParams::visit(ParamVisitor& v) {
              {"lidar64", "lidar4", "camera_boxes", "spherical_camera", "camera_images", "radar",
               "gnss", "imu", "wheels"},
              "kind of sensor");
-  if (kind != before && kind == SensorKind::kLidar4) lidar = LidarParams::fourLayer();
+  if (kind != before && kind == SensorKind::kLidar4) lidar = LidarSensorParams::fourLayer();
   v.real("x", x, {-20, 20}, "m", "place on the vehicle: forward of the rear axle");
   v.real("y", y, {-20, 20}, "m", "left");
   v.real("z", z, {0, 20}, "m", "above the road");

@@ -122,7 +122,7 @@ struct SensorParams {
   double yaw = 0, pitch = 0, roll = 0;  ///< [rad] of its forward axis; pitch > 0: down
   double rate = 10;                     ///< [1/s]
   double phase = 0;                     ///< [s] of its first scan
-  LidarParams lidar;
+  LidarSensorParams lidar;
   CameraParams camera;
   SphericalCameraParams panorama;
   ImageCameraParams images;

@@ -11,9 +11,11 @@
 namespace perception {
 namespace {
 
-constexpr std::uint32_t kFalseSlot = 1u << 20, kWeatherPurpose = 0x57EA0000;  // random streams
+constexpr std::uint32_t kPanoramaFalseSlot = 1u << 20,
+                        kPanoramaWeatherPurpose = 0x57EA0000;  // random streams
 constexpr double kRangeEdge = 0.1;  // recall falls from all to none within +-10 % of the range
-constexpr double kHidden = 0.15, kClear = 0.5;  // visible share: not found below, all above
+constexpr double kPanoramaHidden = 0.15,
+                 kPanoramaClear = 0.5;  // visible share: not found below, all above
 
 /// Recall and label probabilities of a kind (method.md 2.3, camera columns).
 struct Answer {
@@ -29,7 +31,7 @@ Answer answerTo(ObjectKind kind) {
   return {&P::car_recall, &P::car_range, 0.98};
 }
 
-double ramp(double value, double low, double high) {
+double panoramaRamp(double value, double low, double high) {
   return std::clamp((value - low) / (high - low), 0.0, 1.0);
 }
 
@@ -62,14 +64,15 @@ std::optional<ObjectDetection> detectOne(const LidarCaster& caster, std::size_t 
   look.chance = panoramaRecall(p, world.scenario().objects[object].kind, look.range);
   if (hook) {
     Rng rng(key.withSlot(static_cast<std::uint32_t>(object))
-                .withPurpose(key.purpose ^ kWeatherPurpose));
+                .withPurpose(key.purpose ^ kPanoramaWeatherPurpose));
     hook(look, rng);
     look.chance *= contrastRecall(look.optical_depth);
   }
   Rng rng(key.withSlot(static_cast<std::uint32_t>(object)));
   const double draw = rng.uniform();
   if (draw >= look.chance) return {};  // before the expensive occlusion test
-  look.chance *= ramp(caster.visibleShare(T_world_camera.translation(), object), kHidden, kClear);
+  look.chance *= panoramaRamp(caster.visibleShare(T_world_camera.translation(), object),
+                              kPanoramaHidden, kPanoramaClear);
   if (draw >= look.chance) return {};
   const CameraModel camera = p.model();
   const auto outline = imageOutline(world, object, t, camera, T_world_camera);
@@ -141,7 +144,7 @@ double panoramaRecall(const SphericalCameraParams& params, ObjectKind kind, doub
   const Answer answer = answerTo(kind);
   const double reach = params.*answer.range;
   return params.*answer.recall *
-         (1 - ramp(range, (1 - kRangeEdge) * reach, (1 + kRangeEdge) * reach));
+         (1 - panoramaRamp(range, (1 - kRangeEdge) * reach, (1 + kRangeEdge) * reach));
 }
 
 ObjectDetection::ImageBox onPanorama(ObjectDetection::ImageBox b, const CameraModel& camera) {
@@ -192,7 +195,7 @@ ObjectDetections detectPanorama(const LidarCaster& caster, double t,
       result.objects.push_back(*d);
     }
   }
-  Rng rng(key.withSlot(kFalseSlot));
+  Rng rng(key.withSlot(kPanoramaFalseSlot));
   for (int n = rng.poisson(params.false_per_image); n > 0; --n) {
     if (auto d = falseBox(caster, t, params, T_world_camera, rng)) result.objects.push_back(*d);
   }

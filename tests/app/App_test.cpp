@@ -37,12 +37,12 @@ class SmallApp : public App {
 };
 
 /// What a run said and how it ended.
-struct Ended {
+struct RunEnd {
   int code;
   std::string out, err;
 };
 
-Ended run(SmallApp& app, std::vector<const char*> arguments = {}) {
+RunEnd run(SmallApp& app, std::vector<const char*> arguments = {}) {
   arguments.insert(arguments.begin(), "small");
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
@@ -52,7 +52,7 @@ Ended run(SmallApp& app, std::vector<const char*> arguments = {}) {
   return {code, out, testing::internal::GetCapturedStderr()};
 }
 
-Ended run(std::function<void(SmallApp&)> body, std::vector<const char*> arguments = {}) {
+RunEnd run(std::function<void(SmallApp&)> body, std::vector<const char*> arguments = {}) {
   SmallApp app;
   app.body = std::move(body);
   return run(app, std::move(arguments));
@@ -80,7 +80,7 @@ TEST(App, ExceptionsBecomeExitCodesAndOneLine) {
       {[] { throw ConfigError("t.ini:1: wrong"); }, {78, "t.ini:1: wrong"}},
   };
   for (const auto& [body, expected] : cases) {
-    const Ended ended = run([&](SmallApp&) { body(); });
+    const RunEnd ended = run([&](SmallApp&) { body(); });
     EXPECT_EQ(ended.code, expected.first);
     EXPECT_EQ(ended.out, "");
     EXPECT_EQ(ended.err,
@@ -89,7 +89,7 @@ TEST(App, ExceptionsBecomeExitCodesAndOneLine) {
 }
 
 TEST(App, SeveralFaultsStandOneALine) {
-  const Ended ended = run([](SmallApp&) { throw ConfigError("t.ini:1: x\nt.ini:2: y"); });
+  const RunEnd ended = run([](SmallApp&) { throw ConfigError("t.ini:1: x\nt.ini:2: y"); });
   EXPECT_EQ(ended.err, "perception-small: error: several faults:\n  t.ini:1: x\n  t.ini:2: y\n");
 }
 
@@ -122,7 +122,7 @@ TEST(App, WrongCommandLinesAreUsageErrors) {
                                                        {"--set"}};
   for (const auto& arguments : wrong) {
     bool ran = false;
-    const Ended ended = run([&](SmallApp&) { ran = true; }, arguments);
+    const RunEnd ended = run([&](SmallApp&) { ran = true; }, arguments);
     EXPECT_EQ(ended.code, 64) << arguments[0];
     EXPECT_FALSE(ran);
     EXPECT_EQ(ended.out, "");
@@ -132,8 +132,8 @@ TEST(App, WrongCommandLinesAreUsageErrors) {
 
 TEST(App, OptionsFillTheMembers) {
   SmallApp app;
-  const Ended ended = run(app, {"-c", "x.ini", "-i", "a", "b", "-o", "out", "--set", "a.b=1",
-                                "--set", "a.c=2", "--threads", "3", "--strict", "-vv"});
+  const RunEnd ended = run(app, {"-c", "x.ini", "-i", "a", "b", "-o", "out", "--set", "a.b=1",
+                                 "--set", "a.c=2", "--threads", "3", "--strict", "-vv"});
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(app.config_file, "x.ini");
   EXPECT_EQ(app.inputs, (std::vector<std::string>{"a", "b"}));
@@ -145,11 +145,11 @@ TEST(App, OptionsFillTheMembers) {
 }
 
 TEST(App, HelpAndVersionGoToStandardOutputAndEndWell) {
-  const Ended help = run([](SmallApp&) { FAIL(); }, {"--help"});
+  const RunEnd help = run([](SmallApp&) { FAIL(); }, {"--help"});
   EXPECT_EQ(help.code, 0);
   EXPECT_NE(help.out.find("--print-config"), std::string::npos);
   EXPECT_EQ(help.err, "");
-  const Ended version = run([](SmallApp&) { FAIL(); }, {"--version"});
+  const RunEnd version = run([](SmallApp&) { FAIL(); }, {"--version"});
   EXPECT_EQ(version.code, 0);
   EXPECT_EQ(version.out.rfind("perception-small ", 0), 0u) << version.out;
 }
@@ -175,7 +175,7 @@ TEST(AppConfig, IsPrintedAndNothingElseHappens) {
   const TemporaryFolder folder;
   const std::string path = folder / "site.ini";
   writeText(path, "[a]\ngain = 1\n");
-  const Ended ended = run(readAll, {"-c", path.c_str(), "--set", "a.beams=7", "--print-config"});
+  const RunEnd ended = run(readAll, {"-c", path.c_str(), "--set", "a.beams=7", "--print-config"});
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_NE(ended.out.find("\ngain = 1 "), std::string::npos);
   EXPECT_NE(ended.out.find("\nbeams = 7 "), std::string::npos);
@@ -185,12 +185,12 @@ TEST(AppConfig, IsPrintedAndNothingElseHappens) {
 TEST(AppConfig, FaultsEndWithSeventyEight) {
   const TemporaryFolder folder;
   const std::string path = folder / "site.ini";
-  const Ended missing = run(readAll, {"-c", path.c_str()});
+  const RunEnd missing = run(readAll, {"-c", path.c_str()});
   EXPECT_EQ(missing.code, 78);
   EXPECT_EQ(missing.err,
             "perception-small: error: " + path + ": cannot be read: No such file or directory\n");
   writeText(path, "[a]\ngain = 1,5\n");
-  const Ended wrong = run(readAll, {"-c", path.c_str(), "--set", "a.b", "--print-config"});
+  const RunEnd wrong = run(readAll, {"-c", path.c_str(), "--set", "a.b", "--print-config"});
   EXPECT_EQ(wrong.code, 78);
   EXPECT_EQ(wrong.out, "");
   EXPECT_NE(wrong.err.find(path + ":2: [a] gain: found '1,5'"), std::string::npos);
@@ -202,7 +202,7 @@ class AppSignal : public ::testing::TestWithParam<std::pair<int, const char*>> {
 TEST_P(AppSignal, StopsTheRunAtTheNextFrame) {
   const auto [number, title] = GetParam();
   int frames = 0;
-  const Ended ended = run([&, signal = number](SmallApp&) {
+  const RunEnd ended = run([&, signal = number](SmallApp&) {
     for (;; ++frames) {
       stopIfAsked();
       if (frames == 3) std::raise(signal);

@@ -15,13 +15,13 @@
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/RawlogReader.h"
 #include "libperception/sensors/RawlogWriter.h"
+#include "tests/app/DemoLog.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {
 
 using Observation = std::shared_ptr<mrpt::obs::CObservation>;
 
-inline const std::string kDemoLog = PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog";
 inline const std::string kDemoIni = PERCEPTION_SOURCE_DIR "/ini/demo.ini";
 
 /// The first `seconds` of the simulated demo log.

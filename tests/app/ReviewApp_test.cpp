@@ -8,13 +8,13 @@
 
 #include "libperception/app/TrackApp.h"
 #include "libperception/scene/RunRecord.h"
+#include "tests/app/DemoLog.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
 namespace {
 
-const std::string kDemoLog = PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog";
-const std::string kDemoTruth = PERCEPTION_SOURCE_DIR "/rawlogs/demo.truth.csv";
+using namespace test;
 
 template <class AppClass>
 int runOf(AppClass& app, const std::vector<std::string>& words, std::string& error) {

@@ -7,15 +7,16 @@
 
 #include "libperception/app/ReportApp.h"
 #include "libperception/scene/RunRecord.h"
+#include "tests/app/DemoLog.h"
 #include "tests/support/Browser.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
 namespace {
 
-constexpr double kFirstStamp = 1577836800;  // [s] of rawlogs/demo.rawlog
+using namespace test;
+
 constexpr int kScenes = 30;
-const std::string kDemoLog = PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog";
 
 /// A run of three seconds of the demo log: a car ahead and a person beside it, and rain.
 void writeRun(const std::string& dir) {
@@ -25,10 +26,10 @@ void writeRun(const std::string& dir) {
     classes.classes.emplace_back();
     classes.classes.back().name = name;
   }
-  TrackedRunWriter writer(dir, classes, Stamp::fromSeconds(kFirstStamp));
+  TrackedRunWriter writer(dir, classes, Stamp::fromSeconds(kDemoFirstStamp));
   for (int k = 0; k < kScenes; ++k) {
     Scene scene;
-    scene.stamp = scene.ego.stamp = Stamp::fromSeconds(kFirstStamp) + 0.1 * k;
+    scene.stamp = scene.ego.stamp = Stamp::fromSeconds(kDemoFirstStamp) + 0.1 * k;
     scene.frame = k;
     SceneObject car;
     car.id = 1;
@@ -54,7 +55,7 @@ void writeRun(const std::string& dir) {
       << "t,stamp,sensor,type,p_clear,p_rain,p_snow,p_fog,rain,rain_low,rain_high,snow,snow_low,"
          "snow_high,visibility,visibility_low,visibility_high,returns,doubted,mirrored\n";
   for (int k = 0; k < kScenes; ++k)
-    weather << 0.1 * k << ',' << kFirstStamp + 0.1 * k
+    weather << 0.1 * k << ',' << kDemoFirstStamp + 0.1 * k
             << ",LIDAR_TOP,rain,0.1,0.8,0.05,0.05,9,7,11,1,0,2,900,700,1200,1000,50,0\n";
   RunRecord record;
   record.input = "demo.rawlog";

@@ -20,12 +20,11 @@
 namespace perception {
 namespace {
 
+using namespace test;
+
 namespace fs = std::filesystem;
 
-constexpr double kFirstStamp = 1577836800;  // [s] of rawlogs/demo.rawlog
-constexpr int kScenes = 30;
-const std::string kDemoLog = PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog";
-const std::string kDemoTruth = PERCEPTION_SOURCE_DIR "/rawlogs/demo.truth.csv";
+constexpr int kSnapshotScenes = 30;
 
 // A run of three seconds of the demo log with one car, that did finish.
 class SnapshotAppTest : public testing::Test {
@@ -40,8 +39,8 @@ class SnapshotAppTest : public testing::Test {
       classes.classes.emplace_back();
       classes.classes.back().name = c;
     }
-    TrackedRunWriter writer(dir_ + "/run", classes, Stamp::fromSeconds(kFirstStamp));
-    for (int k = 0; k < kScenes; ++k) writer.write(sceneAt(k));
+    TrackedRunWriter writer(dir_ + "/run", classes, Stamp::fromSeconds(kDemoFirstStamp));
+    for (int k = 0; k < kSnapshotScenes; ++k) writer.write(sceneAt(k));
     writer.close();
     RunRecord record;
     record.input = "demo.rawlog";
@@ -52,7 +51,7 @@ class SnapshotAppTest : public testing::Test {
 
   static Scene sceneAt(int k) {
     Scene scene;
-    scene.stamp = Stamp::fromSeconds(kFirstStamp) + 0.1 * k;
+    scene.stamp = Stamp::fromSeconds(kDemoFirstStamp) + 0.1 * k;
     scene.ego.stamp = scene.stamp;
     scene.frame = k;
     SceneObject car;
@@ -312,7 +311,7 @@ void writeImageLog(const std::string& path, bool embedded) {
   for (int k = 0; k < 3; ++k) {
     mrpt::obs::CObservationImage image;
     image.sensorLabel = "CAMERA_LEFT";
-    image.timestamp = fromStamp(Stamp::fromSeconds(kFirstStamp) + k);
+    image.timestamp = fromStamp(Stamp::fromSeconds(kDemoFirstStamp) + k);
     image.cameraParams.ncols = 200;
     image.cameraParams.nrows = 100;
     image.cameraParams.setIntrinsicParamsFromValues(150, 150, 100, 50);

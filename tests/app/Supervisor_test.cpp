@@ -22,7 +22,7 @@
 namespace perception::test {
 namespace {
 
-class SmallApp : public App {
+class SupervisedApp : public App {
  public:
   std::function<void()> body;
   std::string name() const override { return "perception-small"; }
@@ -31,14 +31,14 @@ class SmallApp : public App {
   void run() override { body(); }
 };
 
-struct Ended {
+struct SupervisedEnd {
   int code;
   std::string err;
 };
 
 /// In a process of its own: a program's child returns from runSupervised(), too.
-Ended run(std::function<void()> body, SupervisorLimits limits = {}) {
-  SmallApp app;
+SupervisedEnd run(std::function<void()> body, SupervisorLimits limits = {}) {
+  SupervisedApp app;
   app.body = std::move(body);
   testing::internal::CaptureStderr();
   const pid_t process = ::fork();
@@ -70,13 +70,13 @@ void hang() {
 
 TEST(Supervisor, PassesOnHowTheProgramEnds) {
   EXPECT_EQ(run([] {}).code, 0);
-  const Ended ended = run([] { throw DataError("a.rawlog: torn"); });
+  const SupervisedEnd ended = run([] { throw DataError("a.rawlog: torn"); });
   EXPECT_EQ(ended.code, 65);
   EXPECT_EQ(ended.err, "perception-small: error: a.rawlog: torn\n");
 }
 
 TEST(Supervisor, ACrashOnDataOfOthersIsBadInputWithItsPlace) {
-  const Ended ended = run(reading(crash));
+  const SupervisedEnd ended = run(reading(crash));
   EXPECT_EQ(ended.code, 65);
   EXPECT_NE(ended.err.find("x.rawlog: damaged: reading what begins at byte 77 ended the program"),
             std::string::npos)
@@ -84,13 +84,13 @@ TEST(Supervisor, ACrashOnDataOfOthersIsBadInputWithItsPlace) {
 }
 
 TEST(Supervisor, ALibraryThatEndsTheProcessOnDataOfOthersMakesItBadInput) {
-  const Ended ended = run(reading([] { std::_Exit(1); }));
+  const SupervisedEnd ended = run(reading([] { std::_Exit(1); }));
   EXPECT_EQ(ended.code, 65);
   EXPECT_NE(ended.err.find("with code 1"), std::string::npos) << ended.err;
 }
 
 TEST(Supervisor, ReadingThatDoesNotEndIsStopped) {
-  const Ended ended = run(reading(hang), {0.5, 4.5});
+  const SupervisedEnd ended = run(reading(hang), {0.5, 4.5});
   EXPECT_EQ(ended.code, 65);
   EXPECT_NE(ended.err.find("byte 77 does not end"), std::string::npos) << ended.err;
 }
@@ -134,7 +134,7 @@ TEST(Supervisor, NothingTemporaryIsLeftOfAProgramThatCrashed) {
 }
 
 TEST(Supervisor, AStopSignalIsPassedOn) {
-  const Ended ended = run([] {
+  const SupervisedEnd ended = run([] {
     ::kill(::getppid(), SIGTERM);
     for (;;) stopIfAsked();
   });
@@ -143,7 +143,7 @@ TEST(Supervisor, AStopSignalIsPassedOn) {
 }
 
 TEST(Supervisor, AProgramThatDoesNotHearTheSignalIsKilledInTime) {
-  const Ended ended = run(
+  const SupervisedEnd ended = run(
       [] {
         ::kill(::getppid(), SIGINT);
         hang();
@@ -159,9 +159,9 @@ TEST(Supervisor, AClosedStandardErrorChangesNothing) {
     std::ofstream(folder / "result") << "whole";
     throw DataError("not shown");
   };
-  const Ended ended = run([] {});
+  const SupervisedEnd ended = run([] {});
   ASSERT_EQ(ended.code, 0);
-  SmallApp app;
+  SupervisedApp app;
   app.body = body;
   const pid_t process = ::fork();
   if (process == 0) {

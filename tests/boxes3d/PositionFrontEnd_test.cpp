@@ -30,7 +30,7 @@ DetectionModel detection_model() {
   return DetectionModel(p, {walker, rider, thing}, {"person", "cyclist"});
 }
 
-PositionParams params() {
+PositionParams positionParams() {
   PositionParams p;
   p.labels = {"person", "cyclist"};
   p.names = {"Pedestrian=person", "Cyclist=cyclist"};
@@ -60,7 +60,7 @@ MeasurementScan extract(const PositionParams& p, std::vector<ObjectDetection> bo
 }
 
 TEST(PositionFrontEnd, ScoreSpeaksForTheLabelsOwnClassALittleForOthersAndNotForThings) {
-  const auto scan = extract(params(), {boxAt("Pedestrian", 2.0, 10, 0)});
+  const auto scan = extract(positionParams(), {boxAt("Pedestrian", 2.0, 10, 0)});
   ASSERT_EQ(scan.measurements.size(), 1U);
   const Measurement& m = scan.measurements[0];
   const double ratio = 2 * (2.0 - 1.0) + 0.5;
@@ -72,14 +72,14 @@ TEST(PositionFrontEnd, ScoreSpeaksForTheLabelsOwnClassALittleForOthersAndNotForT
 }
 
 TEST(PositionFrontEnd, ALabelThatIsNoClassesNameSpeaksForAllRoadUsersAlike) {
-  PositionParams p = params();
+  PositionParams p = positionParams();
   p.labels = {"person", "cyclist", "unknown"};
   p.names.push_back("unknown=unknown");
   p.score_slope.emplace_back("unknown", 2);
   p.score_offset.emplace_back("unknown", 1);
   p.score_balance.emplace_back("unknown", -0.5);
   const DetectionModel two = detection_model();
-  const DetectionModel three(two.params(), {two.row(0), two.row(1), two.row(2)}, p.labels);
+  const DetectionModel three(two.positionParams(), {two.row(0), two.row(1), two.row(2)}, p.labels);
   SensorFrame frame;
   ObjectDetections detections;
   detections.objects = {boxAt("unknown", 2.0, 10, 0)};
@@ -93,7 +93,7 @@ TEST(PositionFrontEnd, ALabelThatIsNoClassesNameSpeaksForAllRoadUsersAlike) {
 }
 
 TEST(PositionFrontEnd, OddsFallWithTheRangeAndStayWithinTheLimit) {
-  PositionParams p = params();
+  PositionParams p = positionParams();
   p.score_fade = {{"person", 0.05}};
   const auto scan =
       extract(p, {boxAt("Pedestrian", 2.0, 10, 0), boxAt("Pedestrian", 100.0, 30, 0)});
@@ -103,8 +103,9 @@ TEST(PositionFrontEnd, OddsFallWithTheRangeAndStayWithinTheLimit) {
 }
 
 TEST(PositionFrontEnd, TwoLabelsOnOneCyclistAreOneMeasurementOfTheSurerBox) {
-  const auto scan = extract(params(), {boxAt("Pedestrian", 1.2, 10, 0),
-                                       boxAt("Cyclist", 3, 10.3, 0), boxAt("Cyclist", 2, 14, 0)});
+  const auto scan = extract(
+      positionParams(),
+      {boxAt("Pedestrian", 1.2, 10, 0), boxAt("Cyclist", 3, 10.3, 0), boxAt("Cyclist", 2, 14, 0)});
   ASSERT_EQ(scan.measurements.size(), 2U);
   EXPECT_EQ(scan.measurements[0].label, 1);
   EXPECT_EQ(scan.measurements[0].detection, 1);
@@ -112,13 +113,13 @@ TEST(PositionFrontEnd, TwoLabelsOnOneCyclistAreOneMeasurementOfTheSurerBox) {
 }
 
 TEST(PositionFrontEnd, TwoBoxesOfOneLabelStayTwo) {
-  EXPECT_EQ(extract(params(), {boxAt("Cyclist", 2, 10, 0), boxAt("Cyclist", 3, 10.3, 0)})
+  EXPECT_EQ(extract(positionParams(), {boxAt("Cyclist", 2, 10, 0), boxAt("Cyclist", 3, 10.3, 0)})
                 .measurements.size(),
             2U);
 }
 
 TEST(PositionFrontEnd, AnUnsureBoxIsLessPrecise) {
-  PositionParams p = params();
+  PositionParams p = positionParams();
   p.clutter_sigma_growth = 3;
   const auto scan = extract(p, {boxAt("Pedestrian", 9, 10, 0), boxAt("Pedestrian", -9, 10, 5)});
   ASSERT_EQ(scan.measurements.size(), 2U);
@@ -128,7 +129,7 @@ TEST(PositionFrontEnd, AnUnsureBoxIsLessPrecise) {
 }
 
 TEST(PositionFrontEnd, BoxesTellSizesAxisAndHeights) {
-  PositionParams p = params();
+  PositionParams p = positionParams();
   p.length_excess = {{"person", 0.2}};
   const auto scan = extract(p, {boxAt("Pedestrian", 2, 10, 0)});
   const Measurement& m = scan.measurements.at(0);
@@ -143,14 +144,15 @@ TEST(PositionFrontEnd, BoxesTellSizesAxisAndHeights) {
 TEST(PositionFrontEnd, UnknownLabelsAndBrokenBoxesAreCounted) {
   ObjectDetection broken = boxAt("Cyclist", 2, 10, 0);
   broken.space_box->length = std::nan("");
-  const auto scan = extract(params(), {boxAt("Tram", 2, 10, 0), broken, boxAt("Cyclist", 2, -10, 0),
-                                       boxAt("Cyclist", 2, 60, 0)});
+  const auto scan = extract(
+      positionParams(),
+      {boxAt("Tram", 2, 10, 0), broken, boxAt("Cyclist", 2, -10, 0), boxAt("Cyclist", 2, 60, 0)});
   EXPECT_TRUE(scan.measurements.empty());
   EXPECT_EQ(scan.dropped, 4U);
 }
 
 TEST(PositionModel, DetectionFallsFromFullToLastRange) {
-  const auto scan = extract(params(), {boxAt("Pedestrian", 2, 10, 0)});
+  const auto scan = extract(positionParams(), {boxAt("Pedestrian", 2, 10, 0)});
   const auto at = [&](double x) {
     Kinematics k;
     k.q << x, 0, 0, 0, 0;

@@ -119,7 +119,7 @@ TEST(ConfidenceStudy, TheBalanceIsThatOfObjectsAScanToTheInisClutter) {
 
 TEST(ConfidenceStudy, EachLogIsTrackedWithWhatTheOthersTaught) {
   ConfidenceInput input = inputOf({0.62, 0.38});
-  for (JudgedBox& b : input.logs[1].boxes) b.sample.score *= 10;  // another scale
+  for (BoxWithTruth& b : input.logs[1].boxes) b.sample.score *= 10;  // another scale
   std::vector<double> slopes(2);
   input.track = [&](std::size_t log, const ScoreKeys& keys) {
     slopes[log] = std::stod(keys.at(0).second);

@@ -23,7 +23,7 @@ double sharesCovered(double p, double repeated) {
         block.events += seen, ++block.chances;
       }
     }
-    const Interval found = shareInterval(blocks);
+    const CredibleInterval found = shareInterval(blocks);
     covered += found.low <= p && p <= found.high;
   }
   return static_cast<double>(covered) / kLogs;
@@ -39,7 +39,7 @@ double ratesCovered(double rate, int clusters) {
       block.chances = kChances;
       block.events = clusters * rng.poisson(rate * kChances / clusters);
     }
-    const Interval found = rateInterval(blocks);
+    const CredibleInterval found = rateInterval(blocks);
     covered += found.low <= rate && rate <= found.high;
   }
   return static_cast<double>(covered) / kLogs;
@@ -61,7 +61,7 @@ TEST(Intervals, CoverTheRateOfClutter) {
 }
 
 TEST(Intervals, AreBetweenNoneAndAllAtTheEnds) {
-  const Interval none = shareInterval({{0, 20}}), all = shareInterval({{20, 20}});
+  const CredibleInterval none = shareInterval({{0, 20}}), all = shareInterval({{20, 20}});
   EXPECT_GT(none.high, 0.05);
   EXPECT_LT(none.high, 0.2);
   EXPECT_GE(none.low, 0);

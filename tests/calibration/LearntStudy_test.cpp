@@ -9,15 +9,17 @@
 namespace perception {
 namespace {
 
-constexpr double kStated = 0.75;
+constexpr double kStatedConfidence = 0.75;
 
-/// A box a frame that is an object with `share` in every ten frames, stated as kStated.
+/// A box a frame that is an object with `share` in every ten frames, stated as kStatedConfidence.
 BoxLog logWith(int frames, double share) {
   BoxLog log;
   log.name = "a";
   for (int f = 0; f < frames; ++f)
-    log.boxes.push_back(
-        {"Car", {0, 20, f % 10 < 10 * share - 1e-9}, f, std::log(kStated / (1 - kStated))});
+    log.boxes.push_back({"Car",
+                         {0, 20, f % 10 < 10 * share - 1e-9},
+                         f,
+                         std::log(kStatedConfidence / (1 - kStatedConfidence))});
   return log;
 }
 
@@ -41,7 +43,7 @@ TEST(LearntStudy, ByChanceTheErrorOfTrueProbabilitiesFallsWithTheRootOfTheBoxes)
 
 TEST(LearntStudy, ConvergenceIsByFrameSinceTheBeginOfEveryLog) {
   BoxLog log = logWith(100, 0.5);
-  for (JudgedBox& b : log.boxes)
+  for (BoxWithTruth& b : log.boxes)
     if (b.scan >= 50) b.stated = 0;  // learned: .5
   const auto rows = learntStudy({{"net", {log, log}}}).tables.at(2).rows;
   ASSERT_EQ(rows.size(), 3U);  // frames 0, 25 and 50 on

@@ -9,24 +9,24 @@
 namespace perception {
 namespace {
 
-constexpr double kTiny = 1e-12;
+constexpr double kRounding = 1e-12;
 
 TEST(Footprint, ClosestPointIsOnTheNearSideOfARectangle) {
   const Footprint car{{10, 0}, 0, 4, 2};
-  EXPECT_LT((closestPoint(car, {0, 0}) - Vector2(8, 0)).norm(), kTiny);
-  EXPECT_LT((closestPoint(car, {0, 5}) - Vector2(8, 1)).norm(), kTiny);    // a corner
-  EXPECT_LT((closestPoint(car, {10, 9}) - Vector2(10, 1)).norm(), kTiny);  // a side
+  EXPECT_LT((closestPoint(car, {0, 0}) - Vector2(8, 0)).norm(), kRounding);
+  EXPECT_LT((closestPoint(car, {0, 5}) - Vector2(8, 1)).norm(), kRounding);    // a corner
+  EXPECT_LT((closestPoint(car, {10, 9}) - Vector2(10, 1)).norm(), kRounding);  // a side
 }
 
 TEST(Footprint, ATurnedCarShowsItsSide) {
   const Footprint car{{10, 0}, kPi / 2, 4, 2};
-  EXPECT_LT((closestPoint(car, {0, 0}) - Vector2(9, 0)).norm(), kTiny);
-  EXPECT_LT((closestPoint(car, {0, 5}) - Vector2(9, 2)).norm(), kTiny);
+  EXPECT_LT((closestPoint(car, {0, 0}) - Vector2(9, 0)).norm(), kRounding);
+  EXPECT_LT((closestPoint(car, {0, 5}) - Vector2(9, 2)).norm(), kRounding);
 }
 
 TEST(Footprint, APointInsideIsItsOwnClosestPoint) {
   const Footprint car{{3, -2}, 0.7, 4, 2};
-  EXPECT_LT((closestPoint(car, {3.2, -1.9}) - Vector2(3.2, -1.9)).norm(), kTiny);
+  EXPECT_LT((closestPoint(car, {3.2, -1.9}) - Vector2(3.2, -1.9)).norm(), kRounding);
 }
 
 TEST(Footprint, AgreesWithADenselySampledBorder) {
@@ -47,16 +47,16 @@ TEST(Footprint, UnknownSizeAndYawMakeAPoint) {
   const double nan = std::nan("");
   const Footprint point = makeFootprint({1, 2, 0}, nan, nan, -1);
   EXPECT_EQ(point.yaw, 0);
-  EXPECT_LT((closestPoint(point, {0, 0}) - Vector2(1, 2)).norm(), kTiny);
+  EXPECT_LT((closestPoint(point, {0, 0}) - Vector2(1, 2)).norm(), kRounding);
 }
 
 TEST(GroundView, IsInTheFrameOfTheVehicle) {
   const Pose3 ego = makePose(5, 5, 0, kPi / 2);
   const GroundView view = viewFrom(ego, Footprint{{5, 15}, 0, 0, 4});
-  EXPECT_NEAR(view.range, 10, kTiny);
-  EXPECT_NEAR(view.closest_range, 8, kTiny);
-  EXPECT_NEAR(view.bearing, 0, kTiny);
-  EXPECT_NEAR(viewFrom(ego, Footprint{{0, 5}, 0, 0, 0}).bearing, kPi / 2, kTiny);
+  EXPECT_NEAR(view.range, 10, kRounding);
+  EXPECT_NEAR(view.closest_range, 8, kRounding);
+  EXPECT_NEAR(view.bearing, 0, kRounding);
+  EXPECT_NEAR(viewFrom(ego, Footprint{{0, 5}, 0, 0, 0}).bearing, kPi / 2, kRounding);
 }
 
 TEST(GroundView, TheSectorHoldsItsBordersAndNothingBehind) {

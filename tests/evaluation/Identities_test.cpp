@@ -72,7 +72,7 @@ TEST(Identities, FalseOutputsAndTruthWithoutIdentity) {
   EXPECT_NEAR(*identityFigures(instants).idf1, 2 * 10 / 30.0, 1e-12);
   for (auto& view : instants) view.truth = {-1};  // another object every time
   EXPECT_NEAR(*identityFigures(instants).association, 0.1, 1e-12);
-  EXPECT_FALSE(identityFigures({}).hota) << "no truth, no figure";
+  EXPECT_FALSE(identityFigures(std::vector<IdentityView>{}).hota) << "no truth, no figure";
 }
 
 }  // namespace

@@ -17,11 +17,6 @@
 namespace perception::test {
 namespace {
 
-Workshop& workshop() {
-  static Workshop made;
-  return made;
-}
-
 /// 1 ... calls. Of memory, of which a program asks some hundred thousand times, the first call from
 /// each place.
 std::vector<long> numbersOf(const Job& job, const std::string& kind, long calls) {

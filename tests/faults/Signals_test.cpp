@@ -15,11 +15,6 @@ namespace {
 
 constexpr unsigned kSeed = 20;
 
-Workshop& workshop() {
-  static Workshop made;
-  return made;
-}
-
 /// [s] that the job takes: the shorter of two runs, for the first one may have to read its program
 /// and libraries from the disk, and blows after its length would come too late.
 double lengthOf(const Job& job) {

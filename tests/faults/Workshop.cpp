@@ -267,4 +267,9 @@ std::vector<long> Workshop::firstCalls(const Job& job, const std::string& kind) 
   return {numbers.begin(), numbers.end()};
 }
 
+Workshop& workshop() {
+  static Workshop made;
+  return made;
+}
+
 }  // namespace perception::test

@@ -81,4 +81,7 @@ bool isWhole();
 std::string faultIn(const std::string& out, const Job& job, const Contents& whole, bool complete,
                     bool leftovers);
 
+/// The one workshop of the program: its jobs are prepared once.
+Workshop& workshop();
+
 }  // namespace perception::test

@@ -12,14 +12,14 @@ namespace {
 
 constexpr int kCells = 60, kLayers = 20;
 
-GridParams window() {
+GridParams smallWindow() {
   GridParams params;
   params.resolution = 0.2, params.size = 12;
   params.z_min = 0, params.z_max = 4, params.grade = 0;
   return params;
 }
 
-/// Cells that the beams of a scan cross in a window from the origin on.
+/// Cells that the beams of a scan cross in a smallWindow from the origin on.
 template <class Mask>
 std::set<int> crossedBy(WindowMarks<Mask>& marks, const GridScan& scan) {
   GridStats stats;
@@ -34,7 +34,7 @@ std::set<int> crossedBy(WindowMarks<Mask>& marks, const GridScan& scan) {
   return cells;
 }
 
-int cellOf(const Vector3& p) {
+int indexOf(const Vector3& p) {
   const auto at = [](double v) { return static_cast<int>(std::floor(v / 0.2)); };
   if (p.minCoeff() < 0 || at(p.x()) >= kCells || at(p.y()) >= kCells || at(p.z()) >= kLayers)
     return -1;
@@ -44,30 +44,30 @@ int cellOf(const Vector3& p) {
 /// Of the cells that a finely sampled beam is in, one that is not in `cells`; or -1.
 int missing(const std::set<int>& cells, const Vector3& from, const Vector3& to) {
   for (double s = 0; s < 1; s += 1e-4) {
-    const int cell = cellOf(from + s * (to - from));
-    const auto deep = [&](double step) { return cellOf(from + (s + step) * (to - from)) == cell; };
-    if (cell < 0 || cell == cellOf(to) || !deep(2e-4) || !deep(-2e-4)) continue;
+    const int cell = indexOf(from + s * (to - from));
+    const auto deep = [&](double step) { return indexOf(from + (s + step) * (to - from)) == cell; };
+    if (cell < 0 || cell == indexOf(to) || !deep(2e-4) || !deep(-2e-4)) continue;
     if (cells.count(cell) == 0) return cell;
   }
   return -1;
 }
 
-/// `out`: [m] by which the sensor may be beside the window of 12 m; negative: inside.
+/// `out`: [m] by which the sensor may be beside the smallWindow of 12 m; negative: inside.
 template <class Mask>
 void expectEveryCellOfLoneBeams(double out) {
-  WindowMarks<Mask> marks(window(), kLayers);
+  WindowMarks<Mask> marks(smallWindow(), kLayers);
   Rng random({7, 0, 0, 1});
   for (int i = 0; i < 300; ++i) {
     GridScan scan;
     scan.T_world_ground.translation() = Vector3(6, 6, 0);
     scan.origin = {random.uniform(-out, 12 + out), random.uniform(-out, 12 + out),
                    random.uniform(0.1, 3.9)};
-    // Ends within the window and outside, above and below it, too.
+    // Ends within the smallWindow and outside, above and below it, too.
     const Vector3 end(random.uniform(-10, 22), random.uniform(-10, 22), random.uniform(-3, 7));
     scan.hits.push_back(end);
     const std::set<int> cells = crossedBy(marks, scan);
     EXPECT_EQ(missing(cells, scan.origin, end), -1) << "beam " << i;
-    EXPECT_EQ(cells.count(cellOf(end)), 0U) << "the end itself is not crossed";
+    EXPECT_EQ(cells.count(indexOf(end)), 0U) << "the end itself is not crossed";
     const Vector3 d = (end - scan.origin).normalized();
     for (const int cell : cells) {
       const Vector3 center(cell / kLayers % kCells * 0.2 + 0.1, cell / kLayers / kCells * 0.2 + 0.1,
@@ -88,7 +88,7 @@ TEST(WindowMarks, ABeamOfASensorBesideTheWindowCrossesEveryCellOnItsWayAndNoOthe
 }
 
 TEST(WindowMarks, BeamsThatShareTheirWayLeaveOutCornersAlone) {
-  WindowMarks<std::uint32_t> together(window(), kLayers), alone(window(), kLayers);
+  WindowMarks<std::uint32_t> together(smallWindow(), kLayers), alone(smallWindow(), kLayers);
   GridScan scan;
   scan.T_world_ground.translation() = Vector3(6, 6, 0);
   scan.origin = {6.01, 6.02, 1.73};
@@ -104,15 +104,15 @@ TEST(WindowMarks, BeamsThatShareTheirWayLeaveOutCornersAlone) {
     one.hits.clear(), one.hits.push_back(scan.hits[i]);
     for (const int cell : crossedBy(alone, one)) all.insert(cell);
   }
-  for (std::size_t i = 0; i < scan.hits.size(); ++i) all.erase(cellOf(scan.hits[i]));
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) all.erase(indexOf(scan.hits[i]));
   std::set<int> cells = crossedBy(together, scan);
-  for (std::size_t i = 0; i < scan.hits.size(); ++i) cells.erase(cellOf(scan.hits[i]));
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) cells.erase(indexOf(scan.hits[i]));
   for (const int cell : cells) EXPECT_EQ(all.count(cell), 1U);
   EXPECT_GT(static_cast<double>(cells.size()), 0.97 * static_cast<double>(all.size()));
 }
 
 TEST(WindowMarks, ACellInDoubtTellsWhetherABeamWentThrough) {
-  WindowMarks<std::uint32_t> marks(window(), kLayers);
+  WindowMarks<std::uint32_t> marks(smallWindow(), kLayers);
   GridScan scan;
   scan.T_world_ground.translation() = Vector3(6, 6, 0);
   scan.origin = {6.1, 6.1, 1.7};

@@ -26,7 +26,7 @@ constexpr const char* kBoxes =
     "0,000000ff,REGULAR_VEHICLE,10,0,0.45,4,2,1.5,0,1\n"
     "1,000000ff,REGULAR_VEHICLE,10,0,0.45,4,2,1.5,0,1\n"
     "2,00000010,CONSTRUCTION_CONE,5,0,0,1,1,1,0,0\n";
-constexpr const char* kCalibration =
+constexpr const char* kAv2Calibration =
     "sensor_name,qw,qx,qy,qz,tx_m,ty_m,tz_m\n"
     "down_lidar,0,1,0,0,1,0,1.2\n"
     "up_lidar,1,0,0,0,1,0,1.5\n";
@@ -37,7 +37,7 @@ class Av2Import : public test::ImportRun {
   void SetUp() override {
     write("a/scans.csv", kScans);
     write("a/boxes.csv", kBoxes);
-    write("a/calib.csv", kCalibration);
+    write("a/calib.csv", kAv2Calibration);
     writeGz("a/lidar/000000.bin.gz", bytesOf<float>({10, 0, 0.5F, 0.25F, 30, 0, 0.5F, 1}));
     write("a/lidar/000001.bin", bytesOf<float>({10, 0, 0.5F, 0.25F}));
     write("a/lidar/000002.bin", bytesOf<float>({5, 3, 0, 1}));

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The camera stands in the lidar, looks along its x and has no rotation but that.
-constexpr const char* kCalibration =
+constexpr const char* kVodCalibration =
     "P2: 700 0 600 0 0 700 180 0 0 0 1 0\n"
     "R0_rect: 1 0 0 0 1 0 0 0 1\n"
     "Tr_velo_to_cam: 0 -1 0 0 0 0 -1 0 1 0 0 0\n";
@@ -141,7 +141,7 @@ class VodImport : public test::ImportRun {
     write("vod/radar_points/" + stem + ".bin",
           bytesOf<float>(
               {10, 0, 0, 7, -4, 1, 0, 0, 10, 0, 5, 0, 0, 0, 10, 10, 0, 5, -diagonal, 0, 0}));
-    write("vod/calib_lidar/" + stem + ".txt", kCalibration);
+    write("vod/calib_lidar/" + stem + ".txt", kVodCalibration);
     // The radar 2 m ahead of the lidar and 1 m below it.
     write("vod/calib_radar/" + stem + ".txt",
           "P2: 700 0 600 0 0 700 180 0 0 0 1 0\nR0_rect: 1 0 0 0 1 0 0 0 1\n"
@@ -518,7 +518,7 @@ class ImagesImport : public test::ImportRun {
     for (const char* stem : {"000003", "000009"}) {
       const std::string name = stem;
       cv::imwrite(file("o/image_2/" + name + ".png"), cv::Mat(40, 60, CV_8UC3, cv::Scalar(9)));
-      write("o/calib/" + name + ".txt", kCalibration);
+      write("o/calib/" + name + ".txt", kVodCalibration);
       write("o/label_2/" + name + ".txt",
             "Car 0.2 0 -1.57 10 5 50 30 1.5 2 4 0 1.73 10 -1.5707963\n"
             "DontCare -1 -1 -10 1 2 3 4 -1 -1 -1 -1000 -1000 -1000 -10\n");

@@ -63,7 +63,7 @@ std::shared_ptr<const ClusterClassifier> vehiclesByLength(float shorter, float l
 }
 
 /// A van seen from the side, a person, and a wall of 8 m.
-SolidScene street() {
+SolidScene parkedStreet() {
   SolidScene scene;
   scene.boxes = {{{12.9, 0}, kPi / 2, 4.4, 1.8, 0.25, 2}, {{25, 2}, kPi / 2, 8, 0.3, 0, 4}};
   scene.cylinders = {{{10, -4}, 0.25, 0, 1.75}};
@@ -101,7 +101,7 @@ double of(const JudgedCluster& c, ClusterKind kind) {
 }
 
 TEST(JudgedClusters, ThingsAreLeftOut) {
-  const Judged judged(street());
+  const Judged judged(parkedStreet());
   ASSERT_EQ(judged.clusters.size(), 2u) << "not the wall";
   const bool person_first = judged.clusters[0].points.size() < judged.clusters[1].points.size();
   const JudgedCluster &person = judged.clusters[person_first ? 0 : 1],
@@ -154,7 +154,7 @@ TEST(JudgedClusters, PartsOfWhatHasRoomForOneVehicleAreNoVehicles) {
 }
 
 TEST(JudgedClusters, WhatIsSurelyAPhantomIsLeftOutAndSaidOfItsReturns) {
-  const SolidScene scene = street();
+  const SolidScene scene = parkedStreet();
   const Judged doubted(scene, byLength(-4, 4, 3)), judged(scene, byLength(-4, 4, 9));
   EXPECT_EQ(doubted.clusters.size(), 2u) << "a phantom by .27, a person by .72";
   ASSERT_EQ(judged.clusters.size(), 1u) << "the car";
@@ -168,7 +168,7 @@ TEST(JudgedClusters, WhatIsSurelyAPhantomIsLeftOutAndSaidOfItsReturns) {
 }
 
 TEST(JudgedClusters, PhantomsAreAccountedForAndWhatIsKeptInDoubtIsSuspicious) {
-  const SolidScene scene = street();
+  const SolidScene scene = parkedStreet();
   const auto verdictsOf = [&](float phantom, float trust) {
     Judged judged(scene);
     judged.found.trust.assign(judged.found.obstacles.size(), trust);
@@ -265,7 +265,7 @@ TEST(JudgedClusters, MeasurementsTellClassesByTheirShape) {
       test::shapedFrontEnd({ObjectShape::kVehicle, ObjectShape::kThing, ObjectShape::kPedestrian,
                             ObjectShape::kCyclist, ObjectShape::kVehicle},
                            byLength());
-  SensorFrame frame = test::castScan(street(), test::narrowLidar());
+  SensorFrame frame = test::castScan(parkedStreet(), test::narrowLidar());
   frame.ego.T_world_ego = makePose(100, -50, 0, 2);
   const MeasurementScan scan = lidar.extract(frame);
   ASSERT_EQ(scan.measurements.size(), 2u);
@@ -285,14 +285,14 @@ TEST(JudgedClusters, MeasurementsTellClassesByTheirShape) {
 
 TEST(JudgedClusters, WithAClassifierNoneIsBySpacingsOrPeaks) {
   const LidarFrontEnd lidar = test::shapedFrontEnd({ObjectShape::kThing}, byLength());
-  const LidarDetections found = lidar.detect(test::castScan(street(), test::narrowLidar()));
+  const LidarDetections found = lidar.detect(test::castScan(parkedStreet(), test::narrowLidar()));
   EXPECT_EQ(found.judged.size(), 2u);
   EXPECT_TRUE(found.clusters.empty());
   EXPECT_TRUE(found.persons.empty());
 }
 
 TEST(JudgedClusters, WithoutAClassifierLabelsAreBySize) {
-  const SensorFrame frame = test::castScan(street(), test::narrowLidar());
+  const SensorFrame frame = test::castScan(parkedStreet(), test::narrowLidar());
   const LidarFrontEnd lidar = test::plainFrontEnd();
   EXPECT_TRUE(lidar.detect(frame).judged.empty());
   EXPECT_FALSE(lidar.extract(frame).verdicts);
@@ -308,7 +308,7 @@ TEST(JudgedClusters, WithoutAClassifierLabelsAreBySize) {
 }
 
 TEST(JudgedClusters, HaveOutlinesAsOtherClusters) {
-  const SensorFrame frame = test::castScan(street(), test::narrowLidar());
+  const SensorFrame frame = test::castScan(parkedStreet(), test::narrowLidar());
   const MeasurementScan judged =
       test::shapedFrontEnd({ObjectShape::kThing}, byLength()).extract(frame);
   const MeasurementScan plain = test::plainFrontEnd().extract(frame);

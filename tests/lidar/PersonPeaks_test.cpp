@@ -9,13 +9,13 @@
 namespace perception {
 namespace {
 
-struct Returns {
+struct PersonReturns {
   std::vector<float> x, y, height;
   void add(double px, double py, double h) {
     x.push_back(static_cast<float>(px)), y.push_back(static_cast<float>(py)),
         height.push_back(static_cast<float>(h));
   }
-  /// Returns on the near side of a person of 1.7 m.
+  /// PersonReturns on the near side of a person of 1.7 m.
   void person(double px, double py, int count, std::uint64_t seed) {
     Rng rng(RngKey{seed, 0, 0, 11});
     for (int i = 0; i < count; ++i) {
@@ -58,7 +58,7 @@ TEST(PersonKernel, IsNegativeToAUniformFieldInTheConsistentReadingAlone) {
 }
 
 TEST(PersonPeaks, ALonePersonIsFoundWhereItStands) {
-  Returns returns;
+  PersonReturns returns;
   returns.person(12.1, -3.2, 30, 1);
   const auto peaks = returns.find();
   ASSERT_EQ(peaks.size(), 1u);
@@ -69,7 +69,7 @@ TEST(PersonPeaks, ALonePersonIsFoundWhereItStands) {
 }
 
 TEST(PersonPeaks, ResponseIsTheSumOfTheKernelOverTheReturnsCells) {
-  Returns returns;
+  PersonReturns returns;
   returns.person(5.1, 5.2, 25, 3);
   Rng rng(RngKey{4, 0, 0, 11});
   for (int i = 0; i < 200; ++i) returns.add(rng.uniform(2, 9), rng.uniform(2, 9), 1);
@@ -98,12 +98,12 @@ TEST(PersonPeaks, ResponseIsTheSumOfTheKernelOverTheReturnsCells) {
 }
 
 TEST(PersonPeaks, WallsAndFieldsHaveNone) {
-  Returns wall;
+  PersonReturns wall;
   for (int i = 0; i < 100; ++i)
     for (int level = 0; level < 4; ++level) wall.add(10, -5 + 0.1 * i, 0.4 + 0.4 * level);
   for (const PersonPeak& peak : wall.find())
     EXPECT_GT(std::abs(peak.center.y()), 4.3);  // its ends at most
-  Returns field;
+  PersonReturns field;
   Rng rng(RngKey{9, 0, 0, 11});
   for (int i = 0; i < 20000; ++i)
     field.add(rng.uniform(0, 20), rng.uniform(0, 20), rng.uniform(0.3, 2));
@@ -111,14 +111,14 @@ TEST(PersonPeaks, WallsAndFieldsHaveNone) {
 }
 
 TEST(PersonPeaks, TwoWalkersSideBySideAreTwo) {
-  Returns returns;
+  PersonReturns returns;
   returns.person(10, 0, 30, 5);
   returns.person(10, 1.2, 30, 6);
   EXPECT_EQ(returns.find().size(), 2u);
 }
 
 TEST(PersonPeaks, NeedReturnsAndHeight) {
-  Returns few, low;
+  PersonReturns few, low;
   few.person(10, 0, 3, 7);
   EXPECT_TRUE(few.find().empty());
   for (int i = 0; i < 20; ++i) low.add(10, 0.02 * i, 0.35 + 0.03 * i);  // a bollard of 0.9 m
@@ -126,14 +126,14 @@ TEST(PersonPeaks, NeedReturnsAndHeight) {
 }
 
 TEST(PersonPeaks, PostsCrownsAndTwigsAreNone) {
-  Returns post, trunk, crown, twigs;
+  PersonReturns post, trunk, crown, twigs;
   for (int i = 0; i < 40; ++i) {  // 8 cm wide, as seen from the origin
     post.add(10 + 0.02 * (i % 3), 0.02 * (i % 5), 0.35 + 0.03 * i);
     trunk.add(10 + 0.02 * (i % 3), 0.08 * (i % 5), 0.35 + 0.05 * i);  // 2.3 m high
     crown.add(10 + 0.02 * (i % 3), 0.08 * (i % 5), 1.05 + 0.025 * i);
     twigs.add(10 + 0.02 * (i % 3), 0.08 * (i % 5), (i < 20 ? 0.35 : 1.25) + 0.01 * (i % 20));
   }
-  for (const Returns& returns : {post, trunk, crown, twigs}) {
+  for (const PersonReturns& returns : {post, trunk, crown, twigs}) {
     EXPECT_TRUE(returns.find().empty());
     PersonParams paper;
     paper.max_top = paper.max_bottom = paper.max_gap = 5, paper.min_width = 0;
@@ -142,7 +142,7 @@ TEST(PersonPeaks, PostsCrownsAndTwigsAreNone) {
 }
 
 TEST(PersonPeaks, WeightsCountAsReturns) {
-  Returns returns;
+  PersonReturns returns;
   returns.person(10, 0, 30, 5);
   const std::vector<float> half(30, 0.5f), none(30, 0.1f);
   const PersonParams params;
@@ -157,7 +157,7 @@ TEST(PersonPeaks, WeightsCountAsReturns) {
   EXPECT_TRUE(findPersons(returns.x, returns.y, returns.height, params, none).empty());
 }
 
-TEST(PersonPeaks, NoReturnsNoPersons) { EXPECT_TRUE(Returns().find().empty()); }
+TEST(PersonPeaks, NoReturnsNoPersons) { EXPECT_TRUE(PersonReturns().find().empty()); }
 
 }  // namespace
 }  // namespace perception

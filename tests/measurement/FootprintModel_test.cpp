@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-ClassTable classes() {
+ClassTable footprintClasses() {
   ObjectClass car;
   car.name = "car";
   car.motion = findMotionModel("wheeled");
@@ -33,7 +33,8 @@ FootprintModel model() {
   p.range_min = 1;
   p.range_max = 60;
   p.fov = radians(120);
-  return FootprintModel(classes(), DetectionModel(p, {{}, {}}, {"car_sized", "person_sized"}));
+  return FootprintModel(footprintClasses(),
+                        DetectionModel(p, {{}, {}}, {"car_sized", "person_sized"}));
 }
 
 SensorState sensorAt(double x, double y, double yaw) {
@@ -126,7 +127,7 @@ TEST(FootprintModel, JacobiansAreTheDerivatives) {
 TEST(FootprintModel, NoiseOfAClassWidensItsEdgesByItsDistance) {
   ClassDetection rider;
   rider.edge_noise = 0.8;
-  const FootprintModel noisy(classes(),
+  const FootprintModel noisy(footprintClasses(),
                              DetectionModel({}, {{}, rider}, {"car_sized", "person_sized"}));
   const SensorState sensor = sensorAt(0, 0, 0);
   AxisPrediction prediction;

@@ -15,7 +15,7 @@ namespace perception {
 namespace {
 
 constexpr double kPeriod = 0.1;
-constexpr std::int64_t kStart = 1700000000000000000;
+constexpr std::int64_t kEncodedStart = 1700000000000000000;
 
 /// A room's wall at 5 + azimuth / 20 deg m, seen every half degree by 16 beams from -15 to 15 deg.
 SensorFrame room(std::int64_t stamp) {
@@ -72,7 +72,7 @@ Sent passThrough(const std::string& kind_name, const std::function<SensorFrame(s
   FrameAssembler assembler(kind, file, "S", Pose3::Identity(),
                            [&](SensorFrame&& frame) { sent.frames.push_back(std::move(frame)); });
   for (int i = 0; i < 5; ++i) {
-    const std::int64_t stamp = kStart + i * 100000000;
+    const std::int64_t stamp = kEncodedStart + i * 100000000;
     for (const TimedPacket& packet : encoder->encode(make(stamp), kPeriod)) {
       EXPECT_LE(packet.after, kPeriod + 1e-9);
       if (sent.packets++ != without) assembler.add(packet.payload, Stamp{stamp} + packet.after);
@@ -151,7 +151,7 @@ TEST(Ibeo, ScansKeepLabelsEchoesAndPulseWidths) {
   EXPECT_TRUE(sent.warnings.empty()) << sent.warnings.front();
   EXPECT_EQ(sent.clock.state, ClockState::kSynchronized);
   const auto& cloud = std::get<LidarCloud>(sent.frames[2].data);
-  const SensorFrame made = room(kStart);
+  const SensorFrame made = room(kEncodedStart);
   const auto& truth = std::get<LidarCloud>(made.data);
   ASSERT_EQ(cloud.size(), truth.size());
   EXPECT_EQ(cloud.label, truth.label);
@@ -169,8 +169,8 @@ TEST(Ibeo, ScansKeepLabelsEchoesAndPulseWidths) {
 }
 
 TEST(Ibeo, AStreamIsCutIntoMessagesAndGoesOnAfterATornOne) {
-  const std::string a = ibeoMessage(IbeoType::kLuxScan, kStart, 0, std::string(50, 'a'));
-  const std::string b = ibeoMessage(IbeoType::kEcuScan, kStart, 0, std::string(70, 'b'));
+  const std::string a = ibeoMessage(IbeoType::kLuxScan, kEncodedStart, 0, std::string(50, 'a'));
+  const std::string b = ibeoMessage(IbeoType::kEcuScan, kEncodedStart, 0, std::string(70, 'b'));
   const std::string torn = b.substr(0, 40);
   const std::string all = "noise" + a + torn + b + a;
   for (const std::size_t step : {1UL, 7UL, 30UL, all.size()}) {
@@ -182,7 +182,7 @@ TEST(Ibeo, AStreamIsCutIntoMessagesAndGoesOnAfterATornOne) {
     EXPECT_EQ(messages, (std::vector<std::string>{a, torn, b, a})) << step;
     EXPECT_EQ(stream.skipped(), 5U);
   }
-  EXPECT_EQ(stampOfNtp(ntpOf(kStart + 123456789)), kStart + 123456789);
+  EXPECT_EQ(stampOfNtp(ntpOf(kEncodedStart + 123456789)), kEncodedStart + 123456789);
 }
 
 TEST(Ibeo, ReadsTheScansOfEcuAndAlasca) {
@@ -196,7 +196,8 @@ TEST(Ibeo, ReadsTheScansOfEcuAndAlasca) {
   put(12, "\0\0\0\7", 4);
   put(16, "\0\x11\0\1", 4);
   put(24, "\x3F\x80\0\0\x40\0\0\0\x40\x40\0\0\x3F\0\0\0\1\2\1\0\0\0\0\x64\0\4", 26);
-  const DecodedPacket ecu = decoder->decode(ibeoMessage(IbeoType::kEcuScan, kStart, 0, body));
+  const DecodedPacket ecu =
+      decoder->decode(ibeoMessage(IbeoType::kEcuScan, kEncodedStart, 0, body));
   ASSERT_EQ(ecu.returns.size(), 1U);
   EXPECT_EQ(*ecu.number, 17U);
   const LidarReturn& p = ecu.returns[0];
@@ -248,7 +249,7 @@ TEST(Radars, TargetsAreDecodedAsTheyWereSent) {
     const Sent sent = passThrough(d.kind, &radarScan);
     EXPECT_TRUE(sent.warnings.empty()) << sent.warnings.front();
     ASSERT_EQ(sent.frames.size(), 5U) << d.kind;
-    const SensorFrame made = radarScan(kStart);
+    const SensorFrame made = radarScan(kEncodedStart);
     const auto& truth = std::get<RadarReturns>(made.data).returns;
     const auto& got = std::get<RadarReturns>(sent.frames[3].data).returns;
     ASSERT_EQ(got.size(), truth.size()) << d.kind;
@@ -302,7 +303,7 @@ TEST(Radars, TracksOfAnEsrComeFromCandumpText) {
 TEST(Clock, OneThatIsSetIsToldAndCostsNoPacket) {
   const Sent sent = passThrough("xt32", [](std::int64_t stamp) {
     SensorFrame frame = room(stamp);
-    if (stamp >= kStart + 300000000) frame.stamp = frame.stamp + 7.0;
+    if (stamp >= kEncodedStart + 300000000) frame.stamp = frame.stamp + 7.0;
     return frame;
   });
   EXPECT_EQ(sent.clock.steps, 1U);

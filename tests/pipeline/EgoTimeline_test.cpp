@@ -8,11 +8,12 @@
 
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/ToObservation.h"
+#include "tests/support/StartStamp.h"
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
 /// A timeline and the events it wrote.
 struct Timeline {

@@ -152,7 +152,7 @@ label.robot = 0.1
 label.robot = 0.1
 )";
 
-PipelineSetup setupOf(const std::string& ini) {
+PipelineSetup extendedSetup(const std::string& ini) {
   Config config = Config::fromText(ini, "extended.ini");
   PipelineSetup setup = PipelineSetup::read(config);
   config.finish();
@@ -186,7 +186,7 @@ SensorFrame boxAt(double t) {
   return frame;
 }
 
-constexpr double kStart = 1000;  // [s]
+constexpr double kStartSeconds = 1000;  // [s]
 
 /// Scenes of five seconds at 10 Hz of a vehicle that stands.
 template <class FrameAt>
@@ -196,7 +196,7 @@ std::vector<Scene> scenesOf(const PipelineSetup& setup, FrameAt frameAt) {
   Pipeline pipeline(setup, events, timing);
   for (int i = 0; i <= 50; ++i) {
     SensorFrame frame = frameAt(0.1 * i);
-    frame.stamp = Stamp::fromSeconds(kStart + 0.1 * i);
+    frame.stamp = Stamp::fromSeconds(kStartSeconds + 0.1 * i);
     EgoState ego;
     ego.stamp = frame.stamp;
     pipeline.add(*poseObservation(ego));
@@ -208,7 +208,7 @@ std::vector<Scene> scenesOf(const PipelineSetup& setup, FrameAt frameAt) {
 }
 
 TEST(Extending, AClassIsASectionOfTheIni) {
-  const PipelineSetup setup = setupOf(kClasses + kBoxes);
+  const PipelineSetup setup = extendedSetup(kClasses + kBoxes);
   const auto scenes = scenesOf(setup, boxAt);
   ASSERT_EQ(scenes.size(), 51U);
   ASSERT_EQ(scenes.back().objects.size(), 1U);
@@ -220,7 +220,7 @@ TEST(Extending, AClassIsASectionOfTheIni) {
 
 TEST(Extending, AModalityIsARowWithAFrontEnd) {
   addUltrasonic();
-  const PipelineSetup setup = setupOf(kClasses + kRing);
+  const PipelineSetup setup = extendedSetup(kClasses + kRing);
   const auto scenes = scenesOf(setup, ringAt);
   ASSERT_EQ(scenes.size(), 51U);
   ASSERT_EQ(scenes.back().objects.size(), 1U);
@@ -228,12 +228,12 @@ TEST(Extending, AModalityIsARowWithAFrontEnd) {
   EXPECT_EQ(setup.model.classes[robot.class_id].name, "robot");
   EXPECT_NEAR((robot.position.head<2>() - robotAt(5)).norm(), 0, 1);
   ASSERT_EQ(robot.last_hit.size(), 1U);
-  EXPECT_EQ(robot.last_hit.at(kUltrasonic).ns, Stamp::fromSeconds(kStart + 5).ns);
+  EXPECT_EQ(robot.last_hit.at(kUltrasonic).ns, Stamp::fromSeconds(kStartSeconds + 5).ns);
 }
 
 TEST(Extending, AnAddedModalityHasItsColumnBehindTheOthers) {
   addUltrasonic();
-  const PipelineSetup setup = setupOf(kClasses + kRing);
+  const PipelineSetup setup = extendedSetup(kClasses + kRing);
   const auto scenes = scenesOf(setup, ringAt);
   const test::TemporaryFolder folder;
   TrackedRunWriter writer(folder.path(), setup.model.classes, scenes.front().stamp);
@@ -249,10 +249,10 @@ TEST(Extending, AnAddedModalityHasItsColumnBehindTheOthers) {
 
 TEST(Extending, ASensorSetNamesKnownLettersOnly) {
   addUltrasonic();
-  EXPECT_NO_THROW(setupOf(kClasses + kRing));
+  EXPECT_NO_THROW(extendedSetup(kClasses + kRing));
   std::string other = kRing;
   other.replace(other.find("sensors = U"), 11, "sensors = X");
-  EXPECT_THROW(setupOf(kClasses + other), ConfigError);
+  EXPECT_THROW(extendedSetup(kClasses + other), ConfigError);
 }
 
 }  // namespace

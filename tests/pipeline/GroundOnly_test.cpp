@@ -33,7 +33,7 @@ SensorFrame frameOf(const std::string& label, double t) {
 }
 
 /// A flat road kDrop below the ego origin, as a lidar 2 m above it sees it.
-SensorFrame roadAt(double t) {
+SensorFrame flatRoadAt(double t) {
   SensorFrame frame = frameOf("LIDAR", t);
   frame.T_ego_sensor = makePose(0, 0, 2, 0);
   LidarCloud cloud;
@@ -51,7 +51,7 @@ SensorFrame roadAt(double t) {
 }
 
 /// The box of a car whose foot lies 10 m ahead on a road at the ego origin's height.
-SensorFrame imageAt(double t) {
+SensorFrame emptyImageAt(double t) {
   SensorFrame frame = frameOf("CAMERA", t);
   frame.T_ego_sensor.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   frame.T_ego_sensor.translation() = Vector3(0, 0, kEye);
@@ -90,8 +90,8 @@ Recorded runOf(const std::string& ground, const std::string& sensors = "C") {
     EgoState ego;
     ego.stamp = Stamp::fromSeconds(1000 + 0.1 * i);
     pipeline.add(*poseObservation(ego));
-    pipeline.add(*observationFromFrame(roadAt(0.1 * i)));
-    pipeline.add(*observationFromFrame(imageAt(0.1 * i + 0.01)));
+    pipeline.add(*observationFromFrame(flatRoadAt(0.1 * i)));
+    pipeline.add(*observationFromFrame(emptyImageAt(0.1 * i + 0.01)));
   }
   while (pipeline.next(true)) continue;
   return {scans.seen, pipeline.sensorRecords()};

@@ -20,7 +20,7 @@ namespace {
 
 using Log = std::vector<std::shared_ptr<mrpt::obs::CObservation>>;
 
-SensorFrame frameOf(const std::string& label, double t) {
+SensorFrame lateFrame(const std::string& label, double t) {
   SensorFrame frame;
   frame.sensor = label;
   frame.stamp = Stamp::fromSeconds(1000) + t;
@@ -38,8 +38,8 @@ std::string order(FrameQueue& queue) {
 }
 
 TEST(FrameQueue, OrderOfArrivalDoesNotMatterWithinTheWindow) {
-  std::vector<SensorFrame> frames = {frameOf("A", 0), frameOf("B", 0.05), frameOf("C", 0.1),
-                                     frameOf("a", 0.1), frameOf("D", 0.19)};
+  std::vector<SensorFrame> frames = {lateFrame("A", 0), lateFrame("B", 0.05), lateFrame("C", 0.1),
+                                     lateFrame("a", 0.1), lateFrame("D", 0.19)};
   const auto before = [](const SensorFrame& a, const SensorFrame& b) {
     return a.sensor < b.sensor;
   };
@@ -59,25 +59,25 @@ TEST(FrameQueue, OrderOfArrivalDoesNotMatterWithinTheWindow) {
 
 TEST(FrameQueue, HoldsAFrameForTheWindowAndDropsWhatIsOlderThanTheLastOneGiven) {
   FrameQueue queue({0.2, 70});
-  queue.push(frameOf("A", 0));
+  queue.push(lateFrame("A", 0));
   queue.advance(Stamp::fromSeconds(1000) + 0.2);
   EXPECT_TRUE(queue.pop(false).empty());
   queue.advance(Stamp::fromSeconds(1000) + 0.2001);
   EXPECT_EQ(queue.pop(false).size(), 1u);
-  EXPECT_EQ(queue.push(frameOf("B", -0.01)), FrameQueue::Verdict::kTooLate);
-  EXPECT_EQ(queue.push(frameOf("B", 0)), FrameQueue::Verdict::kTooLate);
+  EXPECT_EQ(queue.push(lateFrame("B", -0.01)), FrameQueue::Verdict::kTooLate);
+  EXPECT_EQ(queue.push(lateFrame("B", 0)), FrameQueue::Verdict::kTooLate);
   // Older than the window, but nothing newer was given yet: still of use.
-  EXPECT_EQ(queue.push(frameOf("B", 0.001)), FrameQueue::Verdict::kTaken);
-  EXPECT_EQ(queue.push(frameOf("B", 0.001)), FrameQueue::Verdict::kDuplicate);
+  EXPECT_EQ(queue.push(lateFrame("B", 0.001)), FrameQueue::Verdict::kTaken);
+  EXPECT_EQ(queue.push(lateFrame("B", 0.001)), FrameQueue::Verdict::kDuplicate);
 }
 
 TEST(FrameQueue, HoldsSeventyFramesAtMost) {
   FrameQueue queue({0.2, 70});
   for (int i = 0; i < 70; ++i) {
-    queue.push(frameOf("A", 0.001 * i));
+    queue.push(lateFrame("A", 0.001 * i));
     ASSERT_TRUE(queue.pop(false).empty()) << i;
   }
-  queue.push(frameOf("A", 0.07));
+  queue.push(lateFrame("A", 0.07));
   const auto oldest = queue.pop(false);
   ASSERT_EQ(oldest.size(), 1u);
   EXPECT_EQ(oldest[0].stamp, Stamp::fromSeconds(1000));

@@ -40,7 +40,7 @@ TEST(LogFacts, TheCameraOf3dBoxesIsWhereTheLogSaysThatItIs) {
   EXPECT_TRUE(with.camera->T_ego_camera.isApprox(makePose(0.3, 0.1, 1.6, 0), 1e-9));
 }
 
-constexpr Stamp kStart{1700000000000000000};
+constexpr Stamp kLogStart{1700000000000000000};
 
 ClassTable cars() {
   ClassTable table;
@@ -52,7 +52,7 @@ ClassTable cars() {
 /// Each object is in three scenes; every second one is classified in its second one.
 Scene sceneOf(std::uint64_t number) {
   Scene scene;
-  scene.stamp = Stamp{kStart.ns + static_cast<std::int64_t>(number) * 100000000};
+  scene.stamp = Stamp{kLogStart.ns + static_cast<std::int64_t>(number) * 100000000};
   for (std::uint64_t id = number > 2 ? number - 2 : 1; id <= number; ++id) {
     SceneObject object;
     object.id = id;
@@ -82,7 +82,7 @@ TEST(ObjectEvents, ForgettingTheDeadChangesNoEventAndBoundsTheirNumber) {
   EXPECT_TRUE(all.isFull());
   EXPECT_EQ(few.objects(), 10 * ObjectEvents::kFewIds - 1);
   EXPECT_EQ(few.objects(), all.objects());
-  EXPECT_EQ(few_events.text(kStart), all_events.text(kStart));
+  EXPECT_EQ(few_events.text(kLogStart), all_events.text(kLogStart));
 }
 
 }  // namespace

@@ -6,13 +6,14 @@
 #include "libperception/pipeline/MergedScanners.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/sensors/ToObservation.h"
+#include "tests/support/StartStamp.h"
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
-SensorFrame frameOf(const std::string& label, double t) {
+SensorFrame scannerFrame(const std::string& label, double t) {
   SensorFrame frame;
   frame.sensor = label;
   frame.stamp = kStart + t;
@@ -21,11 +22,11 @@ SensorFrame frameOf(const std::string& label, double t) {
 
 TEST(FrameQueue, TakesWantedFramesBeforeTheirTurn) {
   FrameQueue queue({0.2, 70});
-  queue.push(frameOf("A", 0));
-  queue.push(frameOf("B", 0.02));
-  queue.push(frameOf("C", 0.03));
-  queue.push(frameOf("B", 0.1));
-  queue.push(frameOf("A", 0.3));
+  queue.push(scannerFrame("A", 0));
+  queue.push(scannerFrame("B", 0.02));
+  queue.push(scannerFrame("C", 0.03));
+  queue.push(scannerFrame("B", 0.1));
+  queue.push(scannerFrame("A", 0.3));
   EXPECT_EQ(queue.pop(false).size(), 1U);
   const auto taken = queue.take(kStart + 0.05, [](const std::string& l) { return l == "B"; });
   ASSERT_EQ(taken.size(), 1U);
@@ -37,7 +38,7 @@ TEST(FrameQueue, TakesWantedFramesBeforeTheirTurn) {
 
 /// A car's rear as one of two scanners sees it: four layers, 1.8 m wide, 12 m ahead.
 SensorFrame scanOf(const std::string& label, double t, double y, double from, double to) {
-  SensorFrame frame = frameOf(label, t);
+  SensorFrame frame = scannerFrame(label, t);
   frame.T_ego_sensor = makePose(3.8, y, 0.6, 0);
   LidarCloud cloud;
   for (double left = from; left < to; left += 0.06) {
@@ -61,7 +62,7 @@ SensorFrame scanOf(const std::string& label, double t, double y, double from, do
   return frame;
 }
 
-PipelineSetup setupOf(const std::string& more) {
+PipelineSetup scannerSetup(const std::string& more) {
   Config config = Config::fromFile(PERCEPTION_SOURCE_DIR "/ini/skynet.ini");
   config.set("run.sensors=L");
   config.set("run.output_rate=0");
@@ -75,7 +76,7 @@ PipelineSetup setupOf(const std::string& more) {
 TEST(MergedScanners, TwoHalvesOfACarAreOneObject) {
   EventLog events;
   RunTiming timing;
-  Pipeline pipeline(setupOf(""), events, timing);
+  Pipeline pipeline(scannerSetup(""), events, timing);
   std::size_t objects = 0, scenes = 0;
   for (int k = 0; k < 30; ++k) {
     const double t = 0.08 * k;
@@ -97,7 +98,7 @@ TEST(MergedScanners, TwoHalvesOfACarAreOneObject) {
 }
 
 TEST(MergedScanners, EveryScanIsShownBeforeItIsMerged) {
-  const PipelineSetup setup = setupOf("");
+  const PipelineSetup setup = scannerSetup("");
   FrameQueue queue({0.2, 70});
   queue.push(scanOf("IBEO_RIGHT", 0.02, -0.8, -0.9, 0.05));
   std::vector<std::string> parts;
@@ -110,9 +111,9 @@ TEST(MergedScanners, EveryScanIsShownBeforeItIsMerged) {
 }
 
 TEST(MergedScanners, UnknownLabelsAndTooLongWindowsAreFaults) {
-  EXPECT_THROW(setupOf("run.without=LIDAR_TOP, NOBODY"), ConfigError);
-  EXPECT_THROW(setupOf("sensor.IBEO.merge_window=0.5"), ConfigError);
-  EXPECT_NO_THROW(setupOf("sensor.IBEO.merge_window=0.1"));
+  EXPECT_THROW(scannerSetup("run.without=LIDAR_TOP, NOBODY"), ConfigError);
+  EXPECT_THROW(scannerSetup("sensor.IBEO.merge_window=0.5"), ConfigError);
+  EXPECT_NO_THROW(scannerSetup("sensor.IBEO.merge_window=0.1"));
 }
 
 }  // namespace

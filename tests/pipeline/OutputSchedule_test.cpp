@@ -1,11 +1,12 @@
 #include "libperception/pipeline/OutputSchedule.h"
+#include "tests/support/StartStamp.h"
 
 #include <gtest/gtest.h>
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
 PipelineSetup::Sensor sensor(const char* label, Modality modality, bool active = true) {
   PipelineSetup::Sensor s;

@@ -6,12 +6,13 @@
 #include <sstream>
 
 #include "libperception/core/Csv.h"
+#include "tests/support/StartStamp.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
 /// A scan with that many phantom clusters of 20 returns, all by shape.
 LedgerRow rowAt(double t, std::size_t phantoms, const std::string& sensor = "LIDAR") {

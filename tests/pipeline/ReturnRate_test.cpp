@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "libperception/core/Random.h"
+#include "tests/support/StartStamp.h"
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
 /// Scans at 10 Hz of a road that returns about 3000 times, with a tenth of noise; from 4 s on
 /// `share` of that. Returns [s] until the loss is beyond doubt; empty: never within `seconds`.

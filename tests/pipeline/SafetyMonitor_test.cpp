@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "libperception/core/Angle.h"
+#include "tests/support/StartStamp.h"
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
 /// A scan of a box one meter wide and high at `x` [m] ahead, and of the road before it.
 struct Scan {

@@ -7,12 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/StartStamp.h"
 #include "tests/support/SyntheticCloud.h"
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
 /// Finds one thing in every frame and, if told so, that something occludes; notes what it was
 /// given.

@@ -7,16 +7,17 @@
 #include "libperception/core/Random.h"
 #include "libperception/measurement/PositionModel.h"
 #include "tests/support/DirtyWindow.h"
+#include "tests/support/StartStamp.h"
 
 namespace perception {
 namespace {
 
 using test::road;
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
-enum Place : std::size_t { kLidar, kCamera, kRadar };
+using test::kStart;
+enum HealthPlace : std::size_t { kLidarHealth, kCameraHealth, kRadarHealth };
 
-PipelineSetup::Sensor sensor(const char* label, Modality modality) {
+PipelineSetup::Sensor healthSensor(const char* label, Modality modality) {
   PipelineSetup::Sensor s;
   s.label = label;
   s.params.modality = modality;
@@ -32,10 +33,10 @@ LidarCloud everyOf(const LidarCloud& cloud, std::size_t step) {
 }
 
 /// A lidar, a camera and a radar, all forward, watched at 10 Hz.
-struct Watched {
-  std::vector<PipelineSetup::Sensor> sensors = {sensor("LIDAR", Modality::kLidar),
-                                                sensor("CAMERA", Modality::kCamera),
-                                                sensor("RADAR", Modality::kRadar)};
+struct HealthWatched {
+  std::vector<PipelineSetup::Sensor> sensors = {healthSensor("LIDAR", Modality::kLidar),
+                                                healthSensor("CAMERA", Modality::kCamera),
+                                                healthSensor("RADAR", Modality::kRadar)};
   EventLog events;
   SensorHealth health{sensors, events};
 
@@ -45,7 +46,7 @@ struct Watched {
     frame.stamp = kStart + t;
     frame.sensor = sensors[place].label;
     // Cameras look along z of their frame, x to the right.
-    if (place == kCamera) frame.T_ego_sensor.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    if (place == kCameraHealth) frame.T_ego_sensor.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     frame.data = std::move(data);
     health.addFrame(place, frame, fog);
   }
@@ -92,44 +93,44 @@ struct Watched {
 };
 
 TEST(SensorHealth, ALidarThatHardlyReturnsAnythingIsBlindWithinTwoSeconds) {
-  Watched w;
-  for (int k = 0; k < 10; ++k) w.see(kLidar, 0.1 * k, road(0));
+  HealthWatched w;
+  for (int k = 0; k < 10; ++k) w.see(kLidarHealth, 0.1 * k, road(0));
   EXPECT_EQ(w.count(event_kind::kSensorBlind), 0U);
-  for (int k = 10; k <= 30; ++k) w.see(kLidar, 0.1 * k, LidarCloud());
+  for (int k = 10; k <= 30; ++k) w.see(kLidarHealth, 0.1 * k, LidarCloud());
   EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
   EXPECT_NE(w.text().find("\"remaining\":\"CR\""), std::string::npos);
   EXPECT_EQ(w.events.warnings(), 1U);
-  w.see(kLidar, 3.1, road(0));
+  w.see(kLidarHealth, 3.1, road(0));
   EXPECT_EQ(w.count(event_kind::kSensorBack), 1U);
 }
 
 TEST(SensorHealth, ACameraThatMissesWhatTheLidarSeesIsBlind) {
-  Watched w;
+  HealthWatched w;
   for (int k = 0; k <= 20; ++k) {
-    w.see(kCamera, 0.1 * k, ObjectDetections());
-    w.scan(kCamera, 0.1 * k, 15, 0, {});
+    w.see(kCameraHealth, 0.1 * k, ObjectDetections());
+    w.scan(kCameraHealth, 0.1 * k, 15, 0, {});
   }
   EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
   EXPECT_NE(w.text().find("\"covers_deg\""), std::string::npos);
 }
 
 TEST(SensorHealth, NoSensorIsBlindToWhatIsOutOfItsView) {
-  Watched w;
+  HealthWatched w;
   for (int k = 0; k <= 50; ++k) {
-    w.see(kCamera, 0.1 * k, ObjectDetections());
-    w.scan(kCamera, 0.1 * k, 60, 10, {});
-    w.see(kRadar, 0.1 * k, RadarReturns());
-    w.scan(kRadar, 0.1 * k, 60, 10, {});
+    w.see(kCameraHealth, 0.1 * k, ObjectDetections());
+    w.scan(kCameraHealth, 0.1 * k, 60, 10, {});
+    w.see(kRadarHealth, 0.1 * k, RadarReturns());
+    w.scan(kRadarHealth, 0.1 * k, 60, 10, {});
   }
   EXPECT_EQ(w.count(event_kind::kSensorBlind), 0U);
 }
 
 TEST(SensorHealth, ARadarIsJudgedByWhatMoves) {
   for (const double speed : {0.0, 10.0}) {
-    Watched w;
+    HealthWatched w;
     for (int k = 0; k <= 20; ++k) {
-      w.see(kRadar, 0.1 * k, RadarReturns());
-      w.scan(kRadar, 0.1 * k, 15, speed, {});
+      w.see(kRadarHealth, 0.1 * k, RadarReturns());
+      w.scan(kRadarHealth, 0.1 * k, 15, speed, {});
     }
     EXPECT_EQ(w.count(event_kind::kSensorBlind), speed > 0 ? 1U : 0U);
   }
@@ -137,17 +138,17 @@ TEST(SensorHealth, ARadarIsJudgedByWhatMoves) {
 
 TEST(SensorHealth, ARadarWithoutItsUsualClutterIsBlind) {
   const auto named = [](double configured, double usual) {
-    Watched w;
-    w.sensors[kRadar].params.clutter_per_scan = configured;
-    auto clutter = std::make_shared<ClutterMap>(w.sensors[kRadar].params);
+    HealthWatched w;
+    w.sensors[kRadarHealth].params.clutter_per_scan = configured;
+    auto clutter = std::make_shared<ClutterMap>(w.sensors[kRadarHealth].params);
     for (int k = 0; k < 100; ++k) {
       std::vector<double> counts(clutter->cells().size(), 0);
       counts[0] = usual;
       clutter->add(counts, 0.1);
     }
     for (int k = 0; k <= 20; ++k) {
-      w.see(kRadar, 0.1 * k, RadarReturns());
-      w.scan(kRadar, 0.1 * k, 60, 0, {}, clutter);
+      w.see(kRadarHealth, 0.1 * k, RadarReturns());
+      w.scan(kRadarHealth, 0.1 * k, 60, 0, {}, clutter);
     }
     return w.count(event_kind::kSensorBlind);
   };
@@ -158,14 +159,14 @@ TEST(SensorHealth, ARadarWithoutItsUsualClutterIsBlind) {
 
 TEST(SensorHealth, ACameraThatSeesAThirdOfWhatItShouldIsFouledAndAHealthyOneIsNot) {
   for (const double share : {0.3, 0.85}) {
-    Watched w;
+    HealthWatched w;
     Rng rng({5, 0, 0, 0});
     for (int k = 0; k <= 100; ++k) {
       ObjectDetections some;
       some.objects.resize(1);  // something else, so that it is not silent
-      w.see(kCamera, 0.1 * k, some);
+      w.see(kCameraHealth, 0.1 * k, some);
       const bool seen = rng.uniform() < share;
-      w.scan(kCamera, 0.1 * k, 15, 0,
+      w.scan(kCameraHealth, 0.1 * k, 15, 0,
              seen ? std::vector<Vector2>{{15, 0}} : std::vector<Vector2>{});
     }
     EXPECT_EQ(w.count(event_kind::kSensorFouled), share < 0.5 ? 1U : 0U);
@@ -174,66 +175,68 @@ TEST(SensorHealth, ACameraThatSeesAThirdOfWhatItShouldIsFouledAndAHealthyOneIsNo
 
 TEST(SensorHealth, ASensorWhoseBearingsAreAllOffIsMisaligned) {
   for (const double off : {0.0, radians(5)}) {
-    Watched w;
+    HealthWatched w;
     for (int k = 0; k <= 30; ++k) {
       ObjectDetections some;
       some.objects.resize(1);
-      w.see(kCamera, 0.1 * k, some);
+      w.see(kCameraHealth, 0.1 * k, some);
       const double noise = radians(k % 3 - 1.0);
-      w.scan(kCamera, 0.1 * k, 15, 0, {{15 * std::cos(off + noise), 15 * std::sin(off + noise)}});
+      w.scan(kCameraHealth, 0.1 * k, 15, 0,
+             {{15 * std::cos(off + noise), 15 * std::sin(off + noise)}});
     }
     EXPECT_EQ(w.count(event_kind::kSensorMisaligned), off > 0 ? 1U : 0U);
   }
 }
 
 TEST(SensorHealth, DirtOnAWindowIsNamedWithinTwoSeconds) {
-  Watched w;
-  for (int k = 0; k <= 20; ++k) w.see(kLidar, 0.1 * k, road(0.2));
+  HealthWatched w;
+  for (int k = 0; k <= 20; ++k) w.see(kLidarHealth, 0.1 * k, road(0.2));
   EXPECT_EQ(w.count(event_kind::kSensorFouled), 1U);
 }
 
 TEST(SensorHealth, ACleanWindowAndDirtInFogAreNotNamed) {
-  Watched clean, fog;
-  for (int k = 0; k <= 30; ++k) clean.see(kLidar, 0.1 * k, road(0));
-  for (int k = 0; k <= 30; ++k) fog.see(kLidar, 0.1 * k, road(0.2), 0.9);
+  HealthWatched clean, fog;
+  for (int k = 0; k <= 30; ++k) clean.see(kLidarHealth, 0.1 * k, road(0));
+  for (int k = 0; k <= 30; ++k) fog.see(kLidarHealth, 0.1 * k, road(0.2), 0.9);
   EXPECT_TRUE(clean.events.counts().empty());
   EXPECT_TRUE(fog.events.counts().empty());
 }
 
 TEST(SensorHealth, ALidarOfWhichATenthIsLeftOfTheRoadIsFouledWithinTwoSeconds) {
-  Watched w;
-  for (int k = 0; k < 30; ++k) w.see(kLidar, 0.1 * k, road(0));
+  HealthWatched w;
+  for (int k = 0; k < 30; ++k) w.see(kLidarHealth, 0.1 * k, road(0));
   EXPECT_TRUE(w.events.counts().empty());
-  for (int k = 30; k < 50; ++k) w.see(kLidar, 0.1 * k, everyOf(road(0), 10));
+  for (int k = 30; k < 50; ++k) w.see(kLidarHealth, 0.1 * k, everyOf(road(0), 10));
   EXPECT_EQ(w.count(event_kind::kSensorFouled), 1U);
 }
 
 TEST(SensorHealth, ARadarThatNoLongerSeesAStandingObjectThatItSawIsBlind) {
   for (const bool seen : {false, true}) {
-    Watched w;
+    HealthWatched w;
     for (int k = 0; k < 30; ++k) {
       RadarReturns some;
       some.returns.resize(1);
-      w.see(kRadar, 0.1 * k, some);
-      w.scan(kRadar, 0.1 * k, 15, 0, seen ? std::vector<Vector2>{{15, 0}} : std::vector<Vector2>{});
+      w.see(kRadarHealth, 0.1 * k, some);
+      w.scan(kRadarHealth, 0.1 * k, 15, 0,
+             seen ? std::vector<Vector2>{{15, 0}} : std::vector<Vector2>{});
     }
     for (int k = 30; k < 50; ++k) {
-      w.see(kRadar, 0.1 * k, RadarReturns());
-      w.scan(kRadar, 0.1 * k, 15, 0, {});
+      w.see(kRadarHealth, 0.1 * k, RadarReturns());
+      w.scan(kRadarHealth, 0.1 * k, 15, 0, {});
     }
     EXPECT_EQ(w.count(event_kind::kSensorBlind), seen ? 1U : 0U);
   }
 }
 
 TEST(SensorHealth, AScannerOfAMergedLidarIsNamedByItself) {
-  Watched w;
+  HealthWatched w;
   for (int k = 0; k < 30; ++k) {
     SensorFrame part;
     part.stamp = kStart + 0.1 * k;
     part.sensor = "LIDAR_LEFT";
     part.data = k < 10 ? road(0) : LidarCloud();
-    w.health.addPart(kLidar, part);
-    w.see(kLidar, 0.1 * k, road(0));
+    w.health.addPart(kLidarHealth, part);
+    w.see(kLidarHealth, 0.1 * k, road(0));
   }
   EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
   EXPECT_NE(w.text().find("\"sensor\":\"LIDAR_LEFT\""), std::string::npos);

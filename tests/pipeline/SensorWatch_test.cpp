@@ -1,13 +1,14 @@
 #include "libperception/pipeline/SensorWatch.h"
+#include "tests/support/StartStamp.h"
 
 #include <gtest/gtest.h>
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
-PipelineSetup::Sensor sensor(const char* label, Modality modality, bool active = true) {
+PipelineSetup::Sensor watchedSensor(const char* label, Modality modality, bool active = true) {
   PipelineSetup::Sensor s;
   s.label = label;
   s.params.modality = modality;
@@ -15,13 +16,13 @@ PipelineSetup::Sensor sensor(const char* label, Modality modality, bool active =
   return s;
 }
 
-enum Place : std::size_t { kLidar, kCamera, kUnused };
+enum WatchPlace : std::size_t { kLidarWatch, kCameraWatch, kUnusedWatch };
 
 /// A watch on a lidar, a camera and a radar that is not in use; timeout 1 s.
-struct Watched {
-  std::vector<PipelineSetup::Sensor> sensors = {sensor("LIDAR", Modality::kLidar),
-                                                sensor("CAMERA", Modality::kCamera),
-                                                sensor("RADAR", Modality::kRadar, false)};
+struct SensorsWatched {
+  std::vector<PipelineSetup::Sensor> sensors = {watchedSensor("LIDAR", Modality::kLidar),
+                                                watchedSensor("CAMERA", Modality::kCamera),
+                                                watchedSensor("RADAR", Modality::kRadar, false)};
   EventLog events;
   SensorWatch watch{sensors, 1.0, events};
 
@@ -35,7 +36,7 @@ struct Watched {
 };
 
 TEST(SensorWatch, RecordsAreOfTheSensorsInUseInTheirOrder) {
-  const auto records = Watched().watch.records();
+  const auto records = SensorsWatched().watch.records();
   ASSERT_EQ(records.size(), 2U);
   EXPECT_EQ(records[0].label, "LIDAR");
   EXPECT_EQ(records[0].modality, "L");
@@ -56,55 +57,55 @@ TEST(SensorWatch, WithoutSensorsNothingIsReported) {
 }
 
 TEST(SensorWatch, AddsUpWhatTheScansHeld) {
-  Watched w;
+  SensorsWatched w;
   MeasurementScan scan;
   scan.measurements.resize(3);
   scan.dropped = 2;
-  w.watch.addFrame(kCamera, kStart, &scan);
-  w.watch.addFrame(kCamera, kStart + 0.1, &scan);
-  const SensorRecord camera = w.watch.records()[kCamera];
+  w.watch.addFrame(kCameraWatch, kStart, &scan);
+  w.watch.addFrame(kCameraWatch, kStart + 0.1, &scan);
+  const SensorRecord camera = w.watch.records()[kCameraWatch];
   EXPECT_EQ(camera.frames, 2U);
   EXPECT_EQ(camera.measurements, 6U);
   EXPECT_EQ(camera.dropped_measurements, 4U);
-  EXPECT_EQ(w.watch.records()[kLidar].frames, 0U);
+  EXPECT_EQ(w.watch.records()[kLidarWatch].frames, 0U);
   EXPECT_TRUE(w.events.counts().empty());
 }
 
 TEST(SensorWatch, AFrameForTheGroundAloneCountsAsAFrame) {
-  Watched w;
-  w.watch.addFrame(kLidar, kStart, nullptr);
+  SensorsWatched w;
+  w.watch.addFrame(kLidarWatch, kStart, nullptr);
   w.watch.finish();
-  EXPECT_EQ(w.watch.records()[kLidar].frames, 1U);
-  EXPECT_EQ(w.watch.records()[kLidar].measurements, 0U);
+  EXPECT_EQ(w.watch.records()[kLidarWatch].frames, 1U);
+  EXPECT_EQ(w.watch.records()[kLidarWatch].measurements, 0U);
   EXPECT_EQ(w.text().find("LIDAR"), std::string::npos) << w.text();
 }
 
 TEST(SensorWatch, DroppedReturnsAreCountedAndReportedOnceASensor) {
-  Watched w;
+  SensorsWatched w;
   MeasurementScan scan;
   scan.dropped_points = 10;
-  for (int k = 0; k < 3; ++k) w.watch.addFrame(kLidar, kStart + 0.1 * k, &scan);
-  w.watch.countDroppedPoints(kLidar, 5);
-  EXPECT_EQ(w.watch.records()[kLidar].dropped_points, 35U);
+  for (int k = 0; k < 3; ++k) w.watch.addFrame(kLidarWatch, kStart + 0.1 * k, &scan);
+  w.watch.countDroppedPoints(kLidarWatch, 5);
+  EXPECT_EQ(w.watch.records()[kLidarWatch].dropped_points, 35U);
   EXPECT_EQ(w.count(event_kind::kDroppedPoints), 1U);
-  w.watch.addFrame(kCamera, kStart, &scan);
+  w.watch.addFrame(kCameraWatch, kStart, &scan);
   EXPECT_EQ(w.count(event_kind::kDroppedPoints), 2U);
 }
 
 TEST(SensorWatch, DroppedFramesAreCountedAndWarnedOfWhereAsked) {
-  Watched w;
-  w.watch.addDroppedFrame(kLidar, kStart, event_kind::kDroppedFrame, "twice", false);
+  SensorsWatched w;
+  w.watch.addDroppedFrame(kLidarWatch, kStart, event_kind::kDroppedFrame, "twice", false);
   EXPECT_EQ(w.events.warnings(), 0U);
-  w.watch.addDroppedFrame(kLidar, std::nullopt, event_kind::kDroppedFrame, "no stamp", true);
+  w.watch.addDroppedFrame(kLidarWatch, std::nullopt, event_kind::kDroppedFrame, "no stamp", true);
   EXPECT_EQ(w.events.warnings(), 1U);
   EXPECT_EQ(w.count(event_kind::kDroppedFrame), 2U);
-  EXPECT_EQ(w.watch.records()[kLidar].dropped_frames, 2U);
+  EXPECT_EQ(w.watch.records()[kLidarWatch].dropped_frames, 2U);
   EXPECT_NE(w.text().find("LIDAR: no stamp"), std::string::npos) << w.text();
 }
 
 TEST(SensorWatch, SilenceOfMoreThanTheTimeoutIsALoss) {
-  Watched w;
-  w.see(kLidar, 0);
+  SensorsWatched w;
+  w.see(kLidarWatch, 0);
   w.check(1.0);
   EXPECT_EQ(w.count(event_kind::kSensorLost), 0U);
   w.check(1.001);
@@ -114,22 +115,22 @@ TEST(SensorWatch, SilenceOfMoreThanTheTimeoutIsALoss) {
 }
 
 TEST(SensorWatch, ALossIsReportedOnceUntilTheSensorIsBack) {
-  Watched w;
-  w.see(kLidar, 0);
+  SensorsWatched w;
+  w.see(kLidarWatch, 0);
   for (const double t : {2.0, 3.0, 4.0}) w.check(t);
   EXPECT_EQ(w.count(event_kind::kSensorLost), 1U);
-  w.see(kLidar, 5);
-  w.see(kLidar, 5.1);
+  w.see(kLidarWatch, 5);
+  w.see(kLidarWatch, 5.1);
   EXPECT_EQ(w.count(event_kind::kSensorBack), 1U);
   w.check(7);
   EXPECT_EQ(w.count(event_kind::kSensorLost), 2U);
 }
 
 TEST(SensorWatch, EverySensorHasItsOwnSilence) {
-  Watched w;
-  w.see(kLidar, 0);
+  SensorsWatched w;
+  w.see(kLidarWatch, 0);
   for (int k = 0; k <= 30; ++k) {
-    w.see(kCamera, 0.1 * k);
+    w.see(kCameraWatch, 0.1 * k);
     w.check(0.1 * k);
   }
   EXPECT_EQ(w.count(event_kind::kSensorLost), 1U);
@@ -137,17 +138,17 @@ TEST(SensorWatch, EverySensorHasItsOwnSilence) {
 }
 
 TEST(SensorWatch, AnInstantBeforeTheLastIsNoSilence) {
-  Watched w;
-  w.see(kLidar, 3);
+  SensorsWatched w;
+  w.see(kLidarWatch, 3);
   w.check(1);
   EXPECT_TRUE(w.events.counts().empty());
 }
 
 TEST(SensorWatch, ASensorThatNeverComesIsMissingAndNotLost) {
-  Watched w;
-  w.watch.addFrame(kLidar, kStart, nullptr);
-  w.see(kLidar, 0);
-  w.see(kLidar, 100);
+  SensorsWatched w;
+  w.watch.addFrame(kLidarWatch, kStart, nullptr);
+  w.see(kLidarWatch, 0);
+  w.see(kLidarWatch, 100);
   w.check(100);
   EXPECT_EQ(w.count(event_kind::kSensorLost), 0U);
   w.watch.finish();
@@ -157,16 +158,16 @@ TEST(SensorWatch, ASensorThatNeverComesIsMissingAndNotLost) {
 }
 
 TEST(SensorWatch, ASensorWhoseFramesWereAllDroppedWasInTheLog) {
-  Watched w;
-  w.watch.addFrame(kLidar, kStart, nullptr);
-  w.watch.addDroppedFrame(kCamera, kStart, event_kind::kDroppedFrame, "damaged", true);
+  SensorsWatched w;
+  w.watch.addFrame(kLidarWatch, kStart, nullptr);
+  w.watch.addDroppedFrame(kCameraWatch, kStart, event_kind::kDroppedFrame, "damaged", true);
   w.watch.finish();
   EXPECT_EQ(w.count(event_kind::kSensorMissing), 1U);
   EXPECT_EQ(w.text().find("nothing of it in the log"), std::string::npos) << w.text();
 }
 
 TEST(SensorWatch, LabelsOfNoSensorAreCountedForTheEnd) {
-  Watched w;
+  SensorsWatched w;
   for (int k = 0; k < 7; ++k) w.watch.countIgnored("SONAR");
   w.watch.countIgnored("");
   EXPECT_EQ(w.count(event_kind::kSensorIgnored), 0U);
@@ -176,32 +177,32 @@ TEST(SensorWatch, LabelsOfNoSensorAreCountedForTheEnd) {
 }
 
 TEST(SensorWatch, AClockThatWentBackIsNoSilence) {
-  Watched w;
-  w.see(kLidar, 1000);
+  SensorsWatched w;
+  w.see(kLidarWatch, 1000);
   w.watch.restart(kStart);
   w.check(0.9);
   EXPECT_TRUE(w.events.counts().empty());
 }
 
 TEST(SensorWatch, WhoIsSilentAfterAJumpOfTheClockIsLost) {
-  Watched w;
-  w.see(kLidar, 1000);
-  w.see(kCamera, 1000);
+  SensorsWatched w;
+  w.see(kLidarWatch, 1000);
+  w.see(kCameraWatch, 1000);
   w.watch.restart(kStart);
-  w.see(kCamera, 1.5);
+  w.see(kCameraWatch, 1.5);
   w.check(1.5);
   EXPECT_EQ(w.count(event_kind::kSensorLost), 1U);
   EXPECT_NE(w.text().find("LIDAR: nothing for 1.500 s"), std::string::npos) << w.text();
 }
 
 TEST(SensorWatch, WhoWasLostBeforeAJumpOfTheClockComesBackAfterIt) {
-  Watched w;
-  w.see(kLidar, 0);
+  SensorsWatched w;
+  w.see(kLidarWatch, 0);
   w.check(10);
   w.watch.restart(kStart + 1.0);
   w.check(8);
   EXPECT_EQ(w.count(event_kind::kSensorLost), 1U);
-  w.see(kLidar, 8.1);
+  w.see(kLidarWatch, 8.1);
   EXPECT_EQ(w.count(event_kind::kSensorBack), 1U);
 }
 

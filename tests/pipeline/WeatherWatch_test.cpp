@@ -3,12 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "libperception/core/Csv.h"
+#include "tests/support/StartStamp.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
 AirCensus air(double drops) {
   AirCensus census;

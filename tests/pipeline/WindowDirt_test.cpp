@@ -3,13 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/DirtyWindow.h"
+#include "tests/support/StartStamp.h"
 
 namespace perception {
 namespace {
 
 using test::road;
 
-constexpr Stamp kStart{1'577'836'800'000'000'000};
+using test::kStart;
 
 TEST(WindowDirt, TheShareIsThatOfThePatches) {
   for (const double dirty : {0.0, 0.1, 0.3}) {

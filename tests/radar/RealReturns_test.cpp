@@ -17,7 +17,7 @@ std::string data(const std::string& path) {
   return std::string(PERCEPTION_SHARED_DATA) + "/data/" + path;
 }
 
-ClassTable classes() {
+ClassTable recordedClasses() {
   ObjectClass car;
   car.name = "car";
   car.motion = findMotionModel("wheeled");
@@ -28,7 +28,7 @@ RadarFrontEnd makeFrontEnd(const RadarParams& params = {}) {
   DetectionParams s;
   s.modality = Modality::kRadar;
   s.range_max = 200, s.fov = radians(120);
-  return RadarFrontEnd(params, classes(), DetectionModel(s, {{}}, {"target"}));
+  return RadarFrontEnd(params, recordedClasses(), DetectionModel(s, {{}}, {"target"}));
 }
 
 double medianOf(std::vector<double> values) {

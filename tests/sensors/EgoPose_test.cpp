@@ -12,11 +12,11 @@
 namespace perception {
 namespace {
 
-constexpr Stamp kStart{1'317'038'400'000'000'000};
+constexpr Stamp kDriveStart{1'317'038'400'000'000'000};
 
 EgoState pose(double t, double x, double y, double yaw) {
   EgoState state;
-  state.stamp = kStart + t;
+  state.stamp = kDriveStart + t;
   state.T_world_ego = makePose(x, y, 0, yaw);
   return state;
 }
@@ -31,10 +31,10 @@ TEST(EgoPose, ReturnsThePosesThemselvesAtTheirStamps) {
   EgoPose ego;
   for (int k = 0; k <= 50; ++k) ego.add(onCircle(0.1 * k));
   for (int k = 0; k <= 50; ++k) {
-    const auto state = ego.at(kStart + 0.1 * k);
+    const auto state = ego.at(kDriveStart + 0.1 * k);
     ASSERT_TRUE(state);
     EXPECT_EQ(state->T_world_ego.matrix(), onCircle(0.1 * k).T_world_ego.matrix());
-    EXPECT_EQ(state->stamp.ns, (kStart + 0.1 * k).ns);
+    EXPECT_EQ(state->stamp.ns, (kDriveStart + 0.1 * k).ns);
   }
 }
 
@@ -42,7 +42,7 @@ TEST(EgoPose, InterpolatesPositionAndAttitude) {
   EgoPose ego;
   for (int k = 0; k <= 50; ++k) ego.add(onCircle(0.1 * k));
   for (double t = 0.53; t < 4.5; t += 0.37) {
-    const auto state = ego.at(kStart + t);
+    const auto state = ego.at(kDriveStart + t);
     ASSERT_TRUE(state);
     const EgoState truth = onCircle(t);
     // The chord is at most s^2 / 8r from the arc: (1 m)^2 / (8 * 20 m) = 6.3 mm.
@@ -57,14 +57,14 @@ TEST(EgoPose, ContinuesForAMomentWithTheLastVelocity) {
   EgoPose ego;
   ego.add(pose(0, 0, 0, 0));
   ego.add(pose(0.1, 1, 0, 0.01));
-  const auto state = ego.at(kStart + 0.25);
+  const auto state = ego.at(kDriveStart + 0.25);
   ASSERT_TRUE(state);
   EXPECT_NEAR(state->T_world_ego.translation().x(), 2.5, 1e-9);
   EXPECT_NEAR(yawOf(state->T_world_ego), 0.025, 1e-9);
-  EXPECT_TRUE(ego.at(kStart + 0.3));
-  EXPECT_FALSE(ego.at(kStart + 0.31));
-  EXPECT_NEAR(ego.at(kStart + -0.1)->T_world_ego.translation().x(), -1, 1e-9);
-  EXPECT_FALSE(ego.at(kStart + -0.3));
+  EXPECT_TRUE(ego.at(kDriveStart + 0.3));
+  EXPECT_FALSE(ego.at(kDriveStart + 0.31));
+  EXPECT_NEAR(ego.at(kDriveStart + -0.1)->T_world_ego.translation().x(), -1, 1e-9);
+  EXPECT_FALSE(ego.at(kDriveStart + -0.3));
 }
 
 TEST(EgoPose, FastPosesDoNotTurnTheirNoiseIntoVelocity) {
@@ -73,7 +73,7 @@ TEST(EgoPose, FastPosesDoNotTurnTheirNoiseIntoVelocity) {
     ego.add(pose(0.005 * k, 0.05 * k + (k % 2 == 0 ? 0.01 : -0.01), 0, 0));
   // Steps of 5 ms with +-1 cm of noise would read 6 to 14 m/s; over 0.1 s the noise is at most 0.2
   // m/s.
-  EXPECT_NEAR(ego.at(kStart + 0.5025)->velocity.x(), 10, 0.21);
+  EXPECT_NEAR(ego.at(kDriveStart + 0.5025)->velocity.x(), 10, 0.21);
 }
 
 TEST(EgoPose, OrderOfArrivalDoesNotMatter) {
@@ -84,8 +84,8 @@ TEST(EgoPose, OrderOfArrivalDoesNotMatter) {
   }
   EXPECT_EQ(shuffled.accepted(), 21U);
   for (double t = 0; t < 2; t += 0.13) {
-    EXPECT_EQ(in_order.at(kStart + t)->T_world_ego.matrix(),
-              shuffled.at(kStart + t)->T_world_ego.matrix());
+    EXPECT_EQ(in_order.at(kDriveStart + t)->T_world_ego.matrix(),
+              shuffled.at(kDriveStart + t)->T_world_ego.matrix());
   }
 }
 
@@ -96,9 +96,9 @@ TEST(EgoPose, RejectsJumpsAndBelievesARelocation) {
   EXPECT_EQ(ego.rejectedJumps(), 1U);
   ego.add(pose(1.2, 12, 0, 0));
   EXPECT_EQ(ego.accepted(), 12U);
-  EXPECT_NEAR(ego.at(kStart + 1.1)->T_world_ego.translation().x(), 11, 1e-9);
+  EXPECT_NEAR(ego.at(kDriveStart + 1.1)->T_world_ego.translation().x(), 11, 1e-9);
   for (int k = 0; k < 10; ++k) ego.add(pose(1.3 + 0.1 * k, 800 + k, 0, 0));
-  EXPECT_NEAR(ego.at(kStart + 2.2)->T_world_ego.translation().x(), 809, 1e-9);
+  EXPECT_NEAR(ego.at(kDriveStart + 2.2)->T_world_ego.translation().x(), 809, 1e-9);
   EXPECT_EQ(ego.relocations(), 1U);
   EXPECT_EQ(ego.frameEpoch(), 1U) << "nothing says that the two places are of one world frame";
 }
@@ -108,8 +108,8 @@ TEST(EgoPose, MemoryIsBounded) {
   params.history = 2;
   EgoPose ego(params);
   for (int k = 0; k <= 1000; ++k) ego.add(pose(0.1 * k, 0, 0, 0));
-  EXPECT_TRUE(ego.at(kStart + 98.0));
-  EXPECT_FALSE(ego.at(kStart + 97.0));
+  EXPECT_TRUE(ego.at(kDriveStart + 98.0));
+  EXPECT_FALSE(ego.at(kDriveStart + 97.0));
   ego.add(pose(50, 0, 0, 0));
   EXPECT_EQ(ego.rejectedOther(), 1U);
 }
@@ -124,13 +124,13 @@ TEST(EgoPose, TakesTheWantedLabel) {
              other = poseObservation(pose(0, 2, 0, 0), "INS"),
              proper = poseObservation(pose(0.05, 3, 0, 0));
   for (const auto& o : {other, gps}) first_label.add(*o);
-  EXPECT_EQ(first_label.at(kStart)->T_world_ego.translation().x(), 2);
+  EXPECT_EQ(first_label.at(kDriveStart)->T_world_ego.translation().x(), 2);
   for (const auto& o : {other, gps, proper}) {
     preferred.add(*o);
     chosen.add(*o);
   }
-  EXPECT_EQ(preferred.at(kStart)->T_world_ego.translation().x(), 3);
-  EXPECT_EQ(chosen.at(kStart)->T_world_ego.translation().x(), 1);
+  EXPECT_EQ(preferred.at(kDriveStart)->T_world_ego.translation().x(), 3);
+  EXPECT_EQ(chosen.at(kDriveStart)->T_world_ego.translation().x(), 1);
 }
 
 TEST(EgoPose, UncertaintyIsThatOfTheLogButNotBelowTheMinimum) {
@@ -167,8 +167,8 @@ TEST(EgoPose, BadPosesAreCounted) {
 TEST(EgoPose, WithoutAnyPoseTheCallerParks) {
   const EgoPose ego;
   EXPECT_TRUE(ego.empty());
-  EXPECT_FALSE(ego.at(kStart));
-  EXPECT_TRUE(EgoPose::parked(kStart).T_world_ego.isApprox(Pose3::Identity()));
+  EXPECT_FALSE(ego.at(kDriveStart));
+  EXPECT_TRUE(EgoPose::parked(kDriveStart).T_world_ego.isApprox(Pose3::Identity()));
 }
 
 }  // namespace

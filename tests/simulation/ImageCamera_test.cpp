@@ -20,7 +20,7 @@ namespace {
 using test::kCamera, test::kStanding, test::parked, test::scenarioOf;
 
 constexpr double kEye = 1.7;  // [m]
-const Pose3 kLens = makePose(0, 0, kEye, 0) * opticalAxes();
+const Pose3 kImageLens = makePose(0, 0, kEye, 0) * opticalAxes();
 
 ImageCameraParams panorama() { return {}; }
 ImageCameraParams pinhole() {
@@ -47,7 +47,7 @@ struct Shot {
       : world(scenarioOf(kStanding + kCamera + scene)),
         caster(world, threads),
         camera(params.model()),
-        image(renderImage(caster, 0, camera, light, kLens)) {}
+        image(renderImage(caster, 0, camera, light, kImageLens)) {}
 
   /// Red, green, blue of the pixel where a point of the world [m] is seen.
   std::array<int, 3> colorAt(const Vector3& point) const {
@@ -63,7 +63,7 @@ struct Shot {
 
  private:
   std::size_t indexOf(const Vector3& point) const {
-    const Vector3 p = kLens.inverse() * point;
+    const Vector3 p = kImageLens.inverse() * point;
     double x = p.x() / p.z(), y = p.y() / p.z();
     if (camera.projection == CameraModel::Projection::kEquirectangular) {
       x = std::atan2(p.x(), p.z()), y = std::atan2(p.y(), std::hypot(p.x(), p.z()));
@@ -189,7 +189,7 @@ TEST(ImageCamera, BoxesOfTheDetectorLieOnWhatIsRendered) {
     const Shot shot(scene, params);
     for (int i = 0; i < 3; ++i) {
       const auto outline =
-          imageOutline(shot.world, static_cast<std::size_t>(i), 0, shot.camera, kLens);
+          imageOutline(shot.world, static_cast<std::size_t>(i), 0, shot.camera, kImageLens);
       ASSERT_TRUE(outline);
       EXPECT_GT(overlap(outline->box, maskBox(shot.image, i)), .8) << i;
     }
@@ -208,7 +208,8 @@ TEST(ImageCamera, SameBytesForAnyNumberOfThreads) {
 TEST(ImageCamera, TheViewIsTheImageBeforeItsBytes) {
   const Shot shot(parked("wall", "box", 10, 0, "length = .5\nwidth = 8\nheight = 3"), pinhole());
   CameraView view;
-  const RenderedImage image = renderImage(shot.caster, 0, shot.camera, clearDay(), kLens, &view);
+  const RenderedImage image =
+      renderImage(shot.caster, 0, shot.camera, clearDay(), kImageLens, &view);
   EXPECT_EQ(image.raster.pixels, shot.image.raster.pixels);
   const Raster again = rasterOf(view);
   int off = 0;

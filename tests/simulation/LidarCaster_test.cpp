@@ -10,7 +10,7 @@ namespace {
 
 using test::kRoofLidar, test::kStanding, test::parked, test::scenarioOf;
 
-const Vector3 kEye(0, 0, 1.73);
+const Vector3 kCasterEye(0, 0, 1.73);
 
 TEST(LidarCaster, RangeToAWallIsTheAnalyticOne) {
   // Faces at x = 9.5 and 10.5 m, 5 m high.
@@ -19,7 +19,7 @@ TEST(LidarCaster, RangeToAWallIsTheAnalyticOne) {
   const LidarCaster caster(world);
   for (const double azimuth : {-50.0, -20.0, 0.0, 33.0, 60.0}) {
     const Vector3 direction = makePose(0, 0, 0, radians(azimuth), radians(-4)).linear().col(0);
-    const BeamHit hit = caster.cast(kEye, {direction}, 100).front();
+    const BeamHit hit = caster.cast(kCasterEye, {direction}, 100).front();
     EXPECT_EQ(hit.object, 0);
     EXPECT_EQ(hit.material, Material::kWall);
     EXPECT_NEAR(hit.range, 9.5 / direction.x(), 1e-4);
@@ -31,12 +31,13 @@ TEST(LidarCaster, RangeToASmoothRoadIsTheAnalyticOne) {
   const World world(scenarioOf(kStanding + kRoofLidar));
   const LidarCaster caster(world);
   const Vector3 down = makePose(0, 0, 0, radians(30), radians(8)).linear().col(0);
-  const BeamHit hit = caster.cast(kEye, {down}, 100).front();
+  const BeamHit hit = caster.cast(kCasterEye, {down}, 100).front();
   EXPECT_EQ(hit.object, BeamHit::kRoad);
   EXPECT_NEAR(hit.range, 1.73 / std::sin(radians(8)), 1e-4);
   EXPECT_NEAR(hit.cos_incidence, std::sin(radians(8)), 1e-5);
-  EXPECT_EQ(caster.cast(kEye, {down}, 5).front().object, BeamHit::kNothing) << "beyond range_max";
-  EXPECT_EQ(caster.cast(kEye, {Vector3::UnitX()}, 100).front().object, BeamHit::kNothing);
+  EXPECT_EQ(caster.cast(kCasterEye, {down}, 5).front().object, BeamHit::kNothing)
+      << "beyond range_max";
+  EXPECT_EQ(caster.cast(kCasterEye, {Vector3::UnitX()}, 100).front().object, BeamHit::kNothing);
 }
 
 TEST(LidarCaster, TurnedObjectsShowTheirTurnedFaces) {
@@ -45,8 +46,8 @@ TEST(LidarCaster, TurnedObjectsShowTheirTurnedFaces) {
       kStanding + kRoofLidar +
       parked("block", "box", 20, 0, "length = 4\nwidth = 4\nheight = 5\nheading_deg = 45")));
   const LidarCaster caster(world);
-  const Vector3 aim = (Vector3(20, 0.001, 1.73) - kEye).normalized();
-  const BeamHit hit = caster.cast(kEye, {aim}, 100).front();
+  const Vector3 aim = (Vector3(20, 0.001, 1.73) - kCasterEye).normalized();
+  const BeamHit hit = caster.cast(kCasterEye, {aim}, 100).front();
   EXPECT_NEAR(hit.range, 20 - 2 * std::sqrt(2.0), 0.01);
   EXPECT_NEAR(hit.cos_incidence, std::sqrt(0.5), 0.01);
 }
@@ -57,7 +58,7 @@ TEST(LidarCaster, MovesThingsWithTime) {
                                "t = 0, 10\nx = 10, 30\ny = 0, 0\n"));
   LidarCaster caster(world);
   caster.setTime(5);
-  EXPECT_NEAR(caster.cast(kEye, {Vector3::UnitX()}, 100).front().range, 19.5, 1e-4);
+  EXPECT_NEAR(caster.cast(kCasterEye, {Vector3::UnitX()}, 100).front().range, 19.5, 1e-4);
 }
 
 TEST(LidarCaster, ResultsDoNotDependOnThreads) {
@@ -68,8 +69,8 @@ TEST(LidarCaster, ResultsDoNotDependOnThreads) {
     directions.push_back(
         makePose(0, 0, 0, radians(-60 + 0.006 * i), radians(0.1 * (i % 200))).linear().col(0));
   }
-  const auto one = LidarCaster(world, 1).cast(kEye, directions, 100);
-  const auto three = LidarCaster(world, 3).cast(kEye, directions, 100);
+  const auto one = LidarCaster(world, 1).cast(kCasterEye, directions, 100);
+  const auto three = LidarCaster(world, 3).cast(kCasterEye, directions, 100);
   int objects = 0;
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].range, three[i].range);
@@ -86,7 +87,7 @@ double shareBehindWall(double edge) {
       scenarioOf(kStanding + kRoofLidar +
                  parked("box", "box", 20, 0, "length = 0.1\nwidth = 2\nheight = 1.5") +
                  parked("wall", "box", 10, edge + 5, "length = 0.02\nwidth = 10\nheight = 5")));
-  return LidarCaster(world).visibleShare(kEye, 0);
+  return LidarCaster(world).visibleShare(kCasterEye, 0);
 }
 
 TEST(LidarCaster, VisibleShareIsWhatAWallLeaves) {
@@ -104,7 +105,7 @@ TEST(LidarCaster, AThingDoesNotHideItself) {
                                parked("man", "pedestrian", 12, -3) +
                                parked("rider", "cyclist", 15, 0)));
   const LidarCaster caster(world);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_GT(caster.visibleShare(kEye, i), 0.99) << i;
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_GT(caster.visibleShare(kCasterEye, i), 0.99) << i;
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ LidarPulse::Scatterer scatterer(double range, double power, double intensity = -
 }
 
 TEST(LidarEcho, SurfaceIsReceivedUpToTheRangeOfItsReflectivity) {
-  LidarParams p;  // a surface of 90 % is just seen at the reference range
+  LidarSensorParams p;  // a surface of 90 % is just seen at the reference range
   p.reference_range = 100;
   EXPECT_TRUE(echoOf(wallPulse(99), 0.9, p).received);
   EXPECT_FALSE(echoOf(wallPulse(101), 0.9, p).received);

@@ -17,7 +17,7 @@ namespace {
 using test::kRoofLidar, test::kStanding, test::parked, test::scenarioOf;
 
 /// One scan of the roof lidar (1.73 m up, at the origin) of a scene at t = 0.
-LidarSensor::Scan scanOf(const std::string& objects, const LidarParams& params = {},
+LidarSensor::Scan scanOf(const std::string& objects, const LidarSensorParams& params = {},
                          std::uint64_t seed = 1) {
   const World world(scenarioOf(kStanding + kRoofLidar + objects));
   LidarCaster caster(world);
@@ -35,13 +35,13 @@ std::vector<std::size_t> raised(const LidarCloud& c) {
 }
 
 TEST(LidarSensor, HasThePatternOfTheHdl64) {
-  const std::vector<double> up = LidarParams().elevations();
+  const std::vector<double> up = LidarSensorParams().elevations();
   ASSERT_EQ(up.size(), 64u);
   EXPECT_NEAR(degrees(up.front()), -24.33, 0.01);
   EXPECT_NEAR(degrees(up.back()), 2, 1e-9);
   EXPECT_TRUE(std::is_sorted(up.begin(), up.end()));
   EXPECT_EQ(LidarSensor({}, 10).beams(), 64u * 2000u);
-  EXPECT_EQ(LidarSensor(LidarParams::fourLayer(), 12.5).beams(), 4u * 441u);
+  EXPECT_EQ(LidarSensor(LidarSensorParams::fourLayer(), 12.5).beams(), 4u * 441u);
 }
 
 TEST(LidarSensor, ReturnsOfABoxLieOnItsFaces) {
@@ -61,7 +61,7 @@ TEST(LidarSensor, ReturnsOfABoxLieOnItsFaces) {
 }
 
 TEST(LidarSensor, RangeNoiseHasItsSpread) {
-  LidarParams params;
+  LidarSensorParams params;
   params.range_noise = 0.05;
   const auto scan =
       scanOf(parked("wall", "box", 15.5, 0, "length = 1\nwidth = 6\nheight = 4"), params);
@@ -81,7 +81,7 @@ TEST(LidarSensor, RangeNoiseHasItsSpread) {
 }
 
 TEST(LidarSensor, NothingIsReportedBeyondTheLargestRangeWhateverTheNoise) {
-  LidarParams params;
+  LidarSensorParams params;
   params.range_noise = 1, params.range_max = 20;
   const auto scan =
       scanOf(parked("wall", "box", 20, 0, "length = 1\nwidth = 6\nheight = 4"), params);
@@ -119,7 +119,7 @@ TEST(LidarSensor, FarRoadAndDarkThingsAreNotSeen) {
 TEST(LidarSensor, GlassLosesMostPulses) {
   // The cabin starts at .6 of 1.5 m; the body below it is paint.
   const auto scan = scanOf(parked("car", "car", 12, 0));
-  const std::vector<double> up = LidarParams().elevations();
+  const std::vector<double> up = LidarSensorParams().elevations();
   int body = 0, glass = 0;
   for (const std::size_t i : raised(scan.cloud)) {
     const double z = scan.cloud.z[i] + 1.73;
@@ -141,7 +141,7 @@ TEST(LidarSensor, SameKeySameScanOtherKeyOtherNoise) {
 TEST(LidarSensor, FourLayersLabelObjectsAndRoad) {
   const World world(scenarioOf(kStanding + kRoofLidar + parked("car", "car", 12, 0)));
   LidarCaster caster(world);
-  const LidarSensor lidar(LidarParams::fourLayer(), 12.5);
+  const LidarSensor lidar(LidarSensorParams::fourLayer(), 12.5);
   const auto scan =
       lidar.scan(caster, 0, [](double) { return makePose(0, 0, 0.6, 0); }, {1, 0, 0, 1});
   ASSERT_EQ(scan.cloud.label.size(), scan.cloud.size());
@@ -165,9 +165,9 @@ Removed removed(SimulatedWeather& weather, Phantom phantom) {
       kStanding + kRoofLidar + parked("car", "car", 12, 0) + parked("van", "van", 25, -4) +
       parked("wall", "box", 30, 12, "length = 40\nwidth = 1\nheight = 4")));
   LidarCaster caster(world);
-  const LidarSensor lidar(LidarParams::fourLayer(), 12.5);
+  const LidarSensor lidar(LidarSensorParams::fourLayer(), 12.5);
   SensorParams sensor;
-  sensor.lidar = LidarParams::fourLayer();
+  sensor.lidar = LidarSensorParams::fourLayer();
   double all = 0, rain = 0, second = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
     weather.advance(world, sensor, .08 * static_cast<double>(i));
@@ -205,7 +205,7 @@ TEST(LidarSensor, TheRainRuleTakesMoreDropsThanFlakesAndNoneWithoutASecondEcho) 
 TEST(LidarSensor, ADirtyWindowOfFourLayersIsLabelledSo) {
   const World world(scenarioOf(kStanding + kRoofLidar + parked("car", "car", 12, 0)));
   LidarCaster caster(world);
-  const LidarSensor lidar(LidarParams::fourLayer(), 12.5);
+  const LidarSensor lidar(LidarSensorParams::fourLayer(), 12.5);
   const auto scan = lidar.scan(
       caster, 0, [](double) { return makePose(0, 0, 0.6, 0); }, {1, 0, 0, 1},
       [](LidarPulse& pulse, Rng& rng) { pulse.blocked = rng.uniform() < 0.1; });
@@ -221,7 +221,7 @@ TEST(LidarSensor, SweepSeesThingsAtTheBeamsTime) {
                                "[object.wall]\nkind = box\nlength = 1\nwidth = 2\nheight = 4\n"
                                "t = 0, 1\nx = 20, 40\ny = 0, 0\n"));
   LidarCaster caster(world);
-  LidarParams params;
+  LidarSensorParams params;
   params.sweep = true;
   const auto scan =
       LidarSensor(params, 10)

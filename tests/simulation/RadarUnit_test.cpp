@@ -15,7 +15,7 @@ namespace {
 using test::kCamera, test::kStanding, test::parked, test::scenarioOf;
 
 /// A unit without faults of its own.
-RadarUnitParams perfect() {
+RadarUnitParams perfectRadar() {
   RadarUnitParams p;
   p.fov = radians(90);
   p.range_noise = p.bearing_noise = p.rate_noise = 0;
@@ -38,7 +38,7 @@ std::string driving(const std::string& kind, double x0, double x1, double y) {
 TEST(RadarUnit, CarAnswersFromTheSideThatFacesTheUnit) {
   const World world(scenarioOf(kStanding + kCamera + parked("car", "car", 30, 0)));
   const LidarCaster caster(world);
-  const auto reflections = radarReflections(caster, 0, perfect(), mountAt(0, 0, 0));
+  const auto reflections = radarReflections(caster, 0, perfectRadar(), mountAt(0, 0, 0));
   ASSERT_FALSE(reflections.empty());
   const auto strongest =
       std::max_element(reflections.begin(), reflections.end(),
@@ -52,7 +52,7 @@ TEST(RadarUnit, RangeRateIsRelativeToTheMovingUnit) {
   const LidarCaster caster(world);
   RadarMount mount = mountAt(0, 0, 0);
   mount.velocity = {5, 0};
-  const auto returns = radarReturns(caster, 0, perfect(), mount, {1, 0, 0, 1});
+  const auto returns = radarReturns(caster, 0, perfectRadar(), mount, {1, 0, 0, 1});
   ASSERT_EQ(returns.returns.size(), 1u);
   EXPECT_NEAR(returns.returns[0].range, 20, 1e-6);
   EXPECT_NEAR(returns.returns[0].range_rate, 3 - 5, 1e-6);
@@ -62,7 +62,7 @@ TEST(RadarUnit, RangeRateIsRelativeToTheMovingUnit) {
 TEST(RadarUnit, BearingsAreMirroredWhenItHangsOnItsHead) {
   const World world(scenarioOf(kStanding + kCamera + parked("man", "pedestrian", 10, 2)));
   const LidarCaster caster(world);
-  RadarUnitParams p = perfect();
+  RadarUnitParams p = perfectRadar();
   const RadarMount mount = mountAt(0, 0, 0);
   const double upright = radarReturns(caster, 0, p, mount, {1, 0, 0, 1}).returns.at(0).bearing;
   p.upside_down = true;
@@ -77,7 +77,7 @@ TEST(RadarUnit, ReflectionsOfOneCellAreOneTarget) {
                                parked("b", "pedestrian", 20, -0.3) +
                                parked("c", "pedestrian", 23, 1.8)));
   const LidarCaster caster(world);
-  const auto list = radarReturns(caster, 0, perfect(), mountAt(0, 0, 0), {1, 0, 0, 1}).returns;
+  const auto list = radarReturns(caster, 0, perfectRadar(), mountAt(0, 0, 0), {1, 0, 0, 1}).returns;
   ASSERT_EQ(list.size(), 2u);
   EXPECT_NEAR(list[0].range, 20, 0.05);
   EXPECT_NEAR(list[0].bearing, 0, radians(0.5));
@@ -90,7 +90,7 @@ TEST(RadarUnit, WallsHideAndCarsLetALittleThrough) {
     const World world(scenarioOf(kStanding + kCamera + scene));
     const LidarCaster caster(world);
     double power = 0;
-    for (const auto& r : radarReflections(caster, 0, perfect(), mountAt(0, 0, 0))) {
+    for (const auto& r : radarReflections(caster, 0, perfectRadar(), mountAt(0, 0, 0))) {
       if (r.object == 0) power = std::max(power, r.snr);
     }
     return power;
@@ -107,7 +107,7 @@ TEST(RadarUnit, SharesOfDetectionAreThoseOfTheClasses) {
   const World world(scenarioOf(kStanding + kCamera + parked("man", "pedestrian", 15, 0) +
                                parked("car", "car", 40, 0)));
   const LidarCaster caster(world);
-  RadarUnitParams p = perfect();
+  RadarUnitParams p = perfectRadar();
   p.person = RadarUnitParams().person, p.vehicle = RadarUnitParams().vehicle;
   constexpr int kScans = 2000;
   int men = 0, cars = 0;
@@ -129,7 +129,7 @@ TEST(RadarUnit, CarAtTheReferenceRangeIsFoundEverySecondTime) {
   // Only the power counts here: the detection rule on a single reflection of the car's size.
   const World world(scenarioOf(kStanding + kCamera + parked("car", "car", 100, 0)));
   const LidarCaster caster(world);
-  RadarUnitParams p = perfect();
+  RadarUnitParams p = perfectRadar();
   RadarReflection one;
   int calls = 0;
   const RadarHook only_one = [&](RadarReflection& r, Rng&) {
@@ -152,7 +152,7 @@ TEST(RadarUnit, CarAtTheReferenceRangeIsFoundEverySecondTime) {
 TEST(RadarUnit, NoiseIsThatOfTheParameters) {
   const World world(scenarioOf(kStanding + kCamera + parked("man", "pedestrian", 20, 0)));
   const LidarCaster caster(world);
-  RadarUnitParams p = perfect();
+  RadarUnitParams p = perfectRadar();
   p.range_noise = .5, p.bearing_noise = radians(2), p.rate_noise = .15;
   constexpr int kScans = 1000;
   int n = 0;
@@ -170,7 +170,7 @@ TEST(RadarUnit, NoiseIsThatOfTheParameters) {
 TEST(RadarUnit, FalseTargetsAndGroundHaveTheirRates) {
   const World world(scenarioOf(kStanding + kCamera));
   const LidarCaster caster(world);
-  RadarUnitParams p = perfect();
+  RadarUnitParams p = perfectRadar();
   p.ground_per_scan = .4, p.false_per_scan = .2;
   RadarMount mount = mountAt(0, 0, radians(90));
   mount.velocity = {0, 6};  // it drives where it looks
@@ -193,7 +193,7 @@ TEST(RadarUnit, ListHoldsNoMoreThanTheUnitTracks) {
   }
   const World world(scenarioOf(scene));
   const LidarCaster caster(world);
-  RadarUnitParams p = perfect();
+  RadarUnitParams p = perfectRadar();
   p.max_targets = 5;
   const auto list = radarReturns(caster, 0, p, mountAt(0, 0, 0), {1, 0, 0, 1}).returns;
   EXPECT_EQ(list.size(), 5u);

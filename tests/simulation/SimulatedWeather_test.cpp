@@ -153,7 +153,7 @@ TEST(BeamWidth, EdgesReturnPartsAndMixedPixels) {
       parked("board", "box", 19.2, 0, "length = .5\nwidth = 1\nheight = 6")));
   const auto between = [&](double divergence) {
     LidarCaster caster(world);
-    LidarParams p;
+    LidarSensorParams p;
     p.azimuth_from = radians(-10), p.azimuth_to = radians(10);
     p.range_noise = 0, p.loss = 0, p.divergence = divergence;
     const LidarSensor lidar(p, 10);

@@ -20,31 +20,32 @@ namespace {
 
 using test::kCamera, test::kRoofLidar, test::kStanding, test::parked, test::scenarioOf;
 
-const std::string kScene = kStanding + "pose_rate = 20\npose_sigma_xy = 0.1\n" + kRoofLidar +
-                           "azimuth_from_deg = -40\nazimuth_to_deg = 40\nazimuth_step_deg = 0.5\n" +
-                           kCamera + "rate = 6.5\n" + parked("car", "car", 12, 3) +
-                           "[object.man]\nkind = pedestrian\nt = 0, 1\nx = 10, 10\ny = -2, 0\n" +
-                           parked("wall", "box", 30, 0) + parked("pole", "pole", 9, 4);
+const std::string kDriveScene =
+    kStanding + "pose_rate = 20\npose_sigma_xy = 0.1\n" + kRoofLidar +
+    "azimuth_from_deg = -40\nazimuth_to_deg = 40\nazimuth_step_deg = 0.5\n" + kCamera +
+    "rate = 6.5\n" + parked("car", "car", 12, 3) +
+    "[object.man]\nkind = pedestrian\nt = 0, 1\nx = 10, 10\ny = -2, 0\n" +
+    parked("wall", "box", 30, 0) + parked("pole", "pole", 9, 4);
 
-std::vector<std::shared_ptr<mrpt::obs::CObservation>> play(Simulator& simulator) {
+std::vector<std::shared_ptr<mrpt::obs::CObservation>> playSimulator(Simulator& simulator) {
   std::vector<std::shared_ptr<mrpt::obs::CObservation>> log;
   while (auto observation = simulator.next()) log.push_back(observation);
   return log;
 }
 
 TEST(Simulator, LogStartsWithACommentThatCallsItSimulated) {
-  Simulator simulator(scenarioOf(kScene), "street", 7);
+  Simulator simulator(scenarioOf(kDriveScene), "street", 7);
   const auto first = std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(simulator.next());
   ASSERT_TRUE(first);
   EXPECT_EQ(first->text, "simulated log: scenario street, seed 7");
 }
 
 TEST(Simulator, ObservationsComeInOrderAtTheirRates) {
-  Simulator simulator(scenarioOf(kScene), "street", 7);
+  Simulator simulator(scenarioOf(kDriveScene), "street", 7);
   std::map<std::string, int> counts;
   std::int64_t frame = -1;
   Stamp last;
-  for (const auto& o : play(simulator)) {
+  for (const auto& o : playSimulator(simulator)) {
     const auto stamp = toStamp(o->timestamp);
     ASSERT_TRUE(stamp);
     EXPECT_LE(last, *stamp);
@@ -67,7 +68,7 @@ TEST(Simulator, TruthVelocitiesAreDifferencesOfPositions) {
                                  "[object.a]\nkind = car\nt = 0, 0.4, 1\nx = 10, 13, 20\n"
                                  "y = 0, 1, 9\n[scenario]\nrate = 100\n"),
                       "street", 7);
-  play(simulator);
+  playSimulator(simulator);
   const auto& truth = simulator.truth();
   ASSERT_EQ(truth.size(), 101u);
   for (std::size_t i = 1; i + 1 < truth.size(); ++i) {
@@ -80,8 +81,8 @@ TEST(Simulator, TruthVelocitiesAreDifferencesOfPositions) {
 }
 
 TEST(Simulator, TruthCountsTheReturnsInTheBox) {
-  Simulator simulator(scenarioOf(kScene), "street", 7);
-  const auto log = play(simulator);
+  Simulator simulator(scenarioOf(kDriveScene), "street", 7);
+  const auto log = playSimulator(simulator);
   std::vector<int> inside;
   for (const auto& o : log) {
     const auto frame = frameFromObservation(*o);
@@ -110,7 +111,7 @@ TEST(Simulator, HiddenThingsAreOfUnknownOcclusionAndWithoutReturns) {
   Simulator simulator(scenarioOf(kStanding + kRoofLidar + parked("car", "car", 20, 0) +
                                  parked("bus", "bus", 9, 0, "heading_deg = 90")),
                       "street", 7);
-  play(simulator);
+  playSimulator(simulator);
   ASSERT_EQ(simulator.truth().size(), 22u);
   EXPECT_EQ(simulator.truth()[0].occluded, 3);
   EXPECT_EQ(simulator.truth()[0].lidar_points, 0);
@@ -120,14 +121,14 @@ TEST(Simulator, HiddenThingsAreOfUnknownOcclusionAndWithoutReturns) {
 
 TEST(Simulator, WithoutLidarTheTruthCountsNoReturns) {
   Simulator simulator(scenarioOf(kStanding + kCamera + parked("car", "car", 20, 0)), "street", 7);
-  play(simulator);
+  playSimulator(simulator);
   EXPECT_EQ(simulator.truth().front().lidar_points, -1);
 }
 
 TEST(Simulator, ReportedPoseHasItsErrorAndSaysSo) {
-  Simulator simulator(scenarioOf(kScene), "street", 7);
+  Simulator simulator(scenarioOf(kDriveScene), "street", 7);
   int poses = 0;
-  for (const auto& o : play(simulator)) {
+  for (const auto& o : playSimulator(simulator)) {
     const auto pose = std::dynamic_pointer_cast<mrpt::obs::CObservationRobotPose>(o);
     if (!pose) continue;
     EXPECT_NE(pose->pose.mean.x(), 0);
@@ -142,7 +143,7 @@ std::string bytesOf(std::uint64_t seed, int threads) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("perception_simulator_" + std::to_string(seed) + "_" +
                      std::to_string(threads) + "_" + std::to_string(::getpid()) + ".rawlog");
-  Simulator simulator(scenarioOf(kScene), "street", seed, threads);
+  Simulator simulator(scenarioOf(kDriveScene), "street", seed, threads);
   {
     RawlogWriter writer(path.string());
     while (const auto o = simulator.next()) writer.write(*o);

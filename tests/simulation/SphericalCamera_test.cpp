@@ -13,11 +13,11 @@ namespace {
 
 using test::kCamera, test::kStanding, test::parked, test::scenarioOf;
 
-constexpr double kEye = 2.5;  // [m]
-const Pose3 kLens = makePose(0, 0, kEye, 0) * opticalAxes();
+constexpr double kPanoramaEye = 2.5;  // [m]
+const Pose3 kPanoramaLens = makePose(0, 0, kPanoramaEye, 0) * opticalAxes();
 
 /// A detector without faults of its own; 4k: cars to 32 m, persons to 20 m.
-SphericalCameraParams perfect() {
+SphericalCameraParams perfectPanorama() {
   SphericalCameraParams p;
   p.setResolution(SphericalCameraParams::Resolution::k4k);
   p.car_recall = p.person_recall = p.bus_recall = p.cyclist_recall = 1;
@@ -30,22 +30,22 @@ ObjectDetections detect(const std::string& scene, const SphericalCameraParams& p
                         std::uint64_t image = 0) {
   const World world(scenarioOf(kStanding + kCamera + scene));
   const LidarCaster caster(world);
-  return detectPanorama(caster, 0, p, kLens, {1, image, 0, 1});
+  return detectPanorama(caster, 0, p, kPanoramaLens, {1, image, 0, 1});
 }
 
 TEST(SphericalCamera, ColumnsAreAzimuthsAndRowsElevations) {
-  const auto d = detect(parked("man", "pedestrian", 0, 12), perfect());  // to the left
+  const auto d = detect(parked("man", "pedestrian", 0, 12), perfectPanorama());  // to the left
   ASSERT_EQ(d.objects.size(), 1u);
   const auto& box = *d.objects[0].image_box;
   const CameraModel& m = d.camera;
   EXPECT_EQ(m.projection, CameraModel::Projection::kEquirectangular);
   EXPECT_NEAR(.5 * (box.x1 + box.x2), .25 * m.width, 1);  // 90 deg to the left
-  EXPECT_NEAR((box.y2 - m.cy) / m.fy, std::atan2(kEye, 12), radians(0.3));
-  EXPECT_NEAR((box.y1 - m.cy) / m.fy, std::atan2(kEye - 1.7, 12), radians(0.1));
+  EXPECT_NEAR((box.y2 - m.cy) / m.fy, std::atan2(kPanoramaEye, 12), radians(0.3));
+  EXPECT_NEAR((box.y1 - m.cy) / m.fy, std::atan2(kPanoramaEye - 1.7, 12), radians(0.1));
 }
 
 TEST(SphericalCamera, ObjectOnTheSeamIsOneBoxBeyondTheWidth) {
-  const auto d = detect(parked("car", "car", -12, 0.2, "heading_deg = 90"), perfect());
+  const auto d = detect(parked("car", "car", -12, 0.2, "heading_deg = 90"), perfectPanorama());
   ASSERT_EQ(d.objects.size(), 1u);
   const auto& box = *d.objects[0].image_box;
   EXPECT_LT(box.x1, d.camera.width);
@@ -54,7 +54,7 @@ TEST(SphericalCamera, ObjectOnTheSeamIsOneBoxBeyondTheWidth) {
 }
 
 TEST(SphericalCamera, HeadingIsTheObservationAngle) {
-  const auto d = detect(parked("car", "car", -5, 12, "heading_deg = 30"), perfect());
+  const auto d = detect(parked("car", "car", -5, 12, "heading_deg = 30"), perfectPanorama());
   ASSERT_EQ(d.objects.size(), 1u);
   ASSERT_TRUE(d.objects[0].heading);
   // alpha = rotation_y - atan2(x, z) with rotation_y = -yaw - 90 deg; x = -12, z = -5.
@@ -76,7 +76,7 @@ TEST(SphericalCamera, HeadingErrorIsEightDegreesAndSomeAreReversed) {
     const LidarCaster caster(world);
     const double truth = -radians(yaw * 7.3) - kPi / 2 - std::atan2(-2, 10);
     for (std::uint64_t i = 0; i < kImages / 20; ++i) {
-      for (const auto& o : detectPanorama(caster, 0, p, kLens, {2, i, 0, 1}).objects) {
+      for (const auto& o : detectPanorama(caster, 0, p, kPanoramaLens, {2, i, 0, 1}).objects) {
         if (!o.heading) continue;
         double error = wrapAngle(*o.heading - truth);
         if (std::abs(error) > kPi / 2) ++flipped, error = wrapAngle(error + kPi);
@@ -106,7 +106,7 @@ TEST(SphericalCamera, RecallAndRangeAreThePapers) {
     const LidarCaster caster(world);
     int cars = 0, men = 0, others = 0;
     for (std::uint64_t i = 0; i < kImages; ++i) {
-      const auto d = detectPanorama(caster, 0, p, kLens, {3, i, 0, 1});
+      const auto d = detectPanorama(caster, 0, p, kPanoramaLens, {3, i, 0, 1});
       for (const auto& o : d.objects) {
         const double u = std::fmod(.5 * (o.image_box->x1 + o.image_box->x2), d.camera.width);
         if (std::abs(u - d.camera.cx) < .1 * d.camera.width) {
@@ -135,14 +135,14 @@ TEST(SphericalCamera, OneKeySetsTheResolution) {
 }
 
 TEST(SphericalCamera, FalseBoxesHaveTheirRate) {
-  SphericalCameraParams p = perfect();
+  SphericalCameraParams p = perfectPanorama();
   p.false_per_image = .5;
   const World world(scenarioOf(kStanding + kCamera + parked("pole", "pole", 8, 1)));
   const LidarCaster caster(world);
   constexpr int kImages = 1000;
   int n = 0;
   for (std::uint64_t i = 0; i < kImages; ++i) {
-    const auto d = detectPanorama(caster, 0, p, kLens, {4, i, 0, 1});
+    const auto d = detectPanorama(caster, 0, p, kPanoramaLens, {4, i, 0, 1});
     for (const auto& o : d.objects) {
       ++n;
       EXPECT_GT(o.image_box->x2, o.image_box->x1);

@@ -12,18 +12,18 @@
 namespace perception {
 namespace {
 
-const std::string kIni = PERCEPTION_SOURCE_DIR "/ini/";
+const std::string kTrustIni = PERCEPTION_SOURCE_DIR "/ini/";
 
 // Six tenths of a second of a simulated snowfall, seen by a vehicle with one lidar.
 std::string snowLog(const std::string& folder) {
   const std::string log = folder + "/snow.rawlog";
   const std::vector<std::string> args = {"perception-simulate",
                                          "-c",
-                                         kIni + "scenarios/C.ini",
+                                         kTrustIni + "scenarios/C.ini",
                                          "--vehicle",
-                                         kIni + "vehicles/kitti.ini",
+                                         kTrustIni + "vehicles/kitti.ini",
                                          "--weather",
-                                         kIni + "weather/snow_2.5.ini",
+                                         kTrustIni + "weather/snow_2.5.ini",
                                          "--set",
                                          "scenario.duration=0.6",
                                          "-o",
@@ -39,7 +39,7 @@ TEST(TrustStudy, FindsSimulatedSnowByItsLabels) {
   const test::TemporaryFolder folder;
   TrustOptions options;
   options.log = snowLog(folder.path());
-  options.config = kIni + "kitti.ini";
+  options.config = kTrustIni + "kitti.ini";
   const StudyReport report = trustStudy(options);
   EXPECT_EQ(report.data.rfind("simulated", 0), 0u);
   const StudyTable& kinds = report.tables.front();
@@ -54,7 +54,7 @@ TEST(TrustStudy, FindsSimulatedSnowByItsLabels) {
 TEST(TrustStudy, ALogWithoutLabelsIsRefused) {
   TrustOptions options;
   options.log = PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog";
-  options.config = kIni + "demo.ini";
+  options.config = kTrustIni + "demo.ini";
   EXPECT_THROW(trustStudy(options), DataError);
 }
 

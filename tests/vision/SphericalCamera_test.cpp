@@ -20,7 +20,7 @@ CameraModel panorama(int width) {
 }
 
 /// An optical frame above the roof, looking forward and `down` [rad].
-Pose3 cameraPose(double down = 0) {
+Pose3 sphericalCameraPose(double down = 0) {
   Pose3 pose = makePose(0.3, 0, 2.5, 0, down);
   Eigen::Matrix3d optical;
   optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -66,7 +66,7 @@ std::unique_ptr<FrontEnd> front_end(const std::string& keys = "") {
 SensorFrame frameOf(std::vector<ObjectDetection> objects, const CameraModel& camera) {
   SensorFrame frame;
   frame.sensor = "PANO";
-  frame.T_ego_sensor = cameraPose();
+  frame.T_ego_sensor = sphericalCameraPose();
   frame.data = ObjectDetections{camera, std::move(objects), std::nullopt};
   return frame;
 }
@@ -82,7 +82,7 @@ TEST(SphericalCamera, RecoversBearingsAndRangeAllAround) {
   // method.md 4.2 as bars: the chain itself costs less than 1 % of the range to 30 m.
   Rng rng({6, 0, 0, 0});
   const CameraModel camera = panorama(8192);
-  const Pose3 pose = cameraPose();
+  const Pose3 pose = sphericalCameraPose();
   for (int trial = 0; trial < 300; ++trial) {
     const double bearing = rng.uniform(-kPi, kPi), range = rng.uniform(3, 30);
     const double x = 0.3 + range * std::cos(bearing), y = range * std::sin(bearing);
@@ -98,7 +98,7 @@ TEST(SphericalCamera, RecoversBearingsAndRangeAllAround) {
 
 TEST(SphericalCamera, AnInclinedCameraGivesTheSame) {
   const CameraModel camera = panorama(8192);
-  const Pose3 pose = cameraPose(radians(8));
+  const Pose3 pose = sphericalCameraPose(radians(8));
   for (const double bearing : {-3.1, -2.0, -0.7, 0.0, 0.9, 1.6, 3.0}) {
     const double x = 0.3 + 12 * std::cos(bearing), y = 12 * std::sin(bearing);
     const auto out = boxOnGround(personBox(x, y, camera, pose), camera, pose, {}, {}, {});
@@ -116,7 +116,7 @@ TEST(SphericalCamera, PitchIsInTheRange) {
   PoseUncertainty sure;
   sure.sigma_pitch = 0;
   const CameraModel camera = panorama(2048);
-  const Pose3 pose = cameraPose();
+  const Pose3 pose = sphericalCameraPose();
   const auto sigma = [&](double range) {
     return boxOnGround(personBox(0.3, range + 0.3, camera, pose), camera, pose, {}, sure, p)
         ->range_sigma;
@@ -129,7 +129,7 @@ TEST(SphericalCamera, PitchIsInTheRange) {
 
 TEST(SphericalCamera, AnObjectOnTheSeamIsOneMeasurement) {
   const CameraModel camera = panorama(2048);
-  const auto whole = personBox(-8, -0.02, camera, cameraPose());  // behind the vehicle
+  const auto whole = personBox(-8, -0.02, camera, sphericalCameraPose());  // behind the vehicle
   ASSERT_GT(whole.x2, camera.width);
   const auto joined = front_end()->extract(frameOf({detection("person", whole)}, camera));
   ASSERT_EQ(joined.measurements.size(), 1u);
@@ -171,8 +171,8 @@ TEST(SphericalCamera, ObservationAngleBecomesTheHeadingInTheWorld) {
   for (int trial = 0; trial < 100; ++trial) {
     const double bearing = rng.uniform(-kPi, kPi), heading = rng.uniform(-kPi, kPi);
     const double ego_yaw = rng.uniform(-kPi, kPi);
-    auto d = detection(
-        "Car", personBox(0.3 + 9 * std::cos(bearing), 9 * std::sin(bearing), camera, cameraPose()));
+    auto d = detection("Car", personBox(0.3 + 9 * std::cos(bearing), 9 * std::sin(bearing), camera,
+                                        sphericalCameraPose()));
     // KITTI: rotation_y = -heading - 90 deg in the camera's frame, alpha = rotation_y - azimuth
     // (clockwise).
     d.heading = wrapAngle(-heading - kPi / 2 + bearing);

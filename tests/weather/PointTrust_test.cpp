@@ -13,7 +13,7 @@
 namespace perception {
 namespace {
 
-constexpr double kHeight = 1.8;  // [m] of the lidar
+constexpr double kLidarHeight = 1.8;  // [m] of the lidar
 
 /// A return of the scene below and what it is of.
 enum class Source { kGround, kWall, kFlake };
@@ -35,7 +35,7 @@ Scene sceneOf(double flakes, std::uint64_t seed, float flake_intensity = 0,
               float wall_intensity = 0.3F) {
   Scene scene;
   scene.frame.sensor = "LIDAR";
-  scene.frame.T_ego_sensor = makePose(0, 0, kHeight, 0);
+  scene.frame.T_ego_sensor = makePose(0, 0, kLidarHeight, 0);
   scene.frame.ground.measured = true;
   scene.frame.data = LidarCloud{};
   Rng random({seed, 0, 0, 0});
@@ -45,12 +45,13 @@ Scene sceneOf(double flakes, std::uint64_t seed, float flake_intensity = 0,
       const Vector3 d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
       if (random.uniform(0, 1) < flakes) {
         const double r = std::exp(1.87 + 0.3 * random.normal());  // as WADS has them
-        if (d.z() * r > -kHeight + 1) {  // lower, nothing tells them from what lies on the road
+        if (d.z() * r >
+            -kLidarHeight + 1) {  // lower, nothing tells them from what lies on the road
           scene.add(r * d, flake_intensity, Source::kFlake);
           continue;
         }
       }
-      const double ground = d.z() < 0 ? -kHeight / d.z() : 1e9;
+      const double ground = d.z() < 0 ? -kLidarHeight / d.z() : 1e9;
       const double wall = 25 / std::cos(e);
       const double r = std::min(ground, wall) + 0.01 * random.normal();
       scene.add(r * d, wall_intensity, ground < wall ? Source::kGround : Source::kWall);

@@ -51,14 +51,15 @@ DpmBank::Group DpmBank::makeGroup(const DpmTarget& target, const std::vector<Lan
   const int L = kernels.lanes, taps = 2 * options.window + 1;
   Group group;
   group.lanes = lanes;
-  group.weights = AlignedFloats(static_cast<std::size_t>(kFrequencies * kFeatures * kWeights * L));
+  group.weights =
+      AlignedFloats(static_cast<std::size_t>(kFrequencies * kHogFeatures * kWeights * L));
   group.costs_x = AlignedFloats(static_cast<std::size_t>(taps * 2 * L));
   group.costs_y = AlignedFloats(static_cast<std::size_t>(taps * 2 * L));
   std::fill_n(group.weights.data(), group.weights.size(), 0.F);
   std::fill_n(group.costs_x.data(), group.costs_x.size(), 0.F);
   std::fill_n(group.costs_y.data(), group.costs_y.size(), 0.F);
   constexpr std::size_t kCells = kPatch * kPatch;
-  std::vector<float> patch(kCells * kFeatures), spectrum(kSpectrum);
+  std::vector<float> patch(kCells * kHogFeatures), spectrum(kSpectrum);
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     const DpmPart& part = target.model.components[static_cast<std::size_t>(lanes[lane].component)]
                               .parts[static_cast<std::size_t>(lanes[lane].part)];
@@ -67,19 +68,20 @@ DpmBank::Group DpmBank::makeGroup(const DpmTarget& target, const std::vector<Lan
     group.lanes[lane].parity = static_cast<std::size_t>(known - group.parities.begin());
     if (known == group.parities.end()) group.parities.push_back(parity);
     std::fill(patch.begin(), patch.end(), 0.F);
-    const int row = part.filter.width * kFeatures;
+    const int row = part.filter.width * kHogFeatures;
     for (int y = 0; y < part.filter.height; ++y)
       std::copy_n(part.filter.weights.begin() + y * row, row,
-                  patch.begin() + y * kPatch * kFeatures);
-    kernels.forward(patch.data(), kPatch * kFeatures, spectrum.data());
+                  patch.begin() + y * kPatch * kHogFeatures);
+    kernels.forward(patch.data(), kPatch * kHogFeatures, spectrum.data());
     const int i = static_cast<int>(lane), half = i / L;
     for (int w = 0; w < kFrequencies; ++w) {
-      for (int f = 0; f < kFeatures; ++f) {
-        float* to = group.weights.data() + ((w * kFeatures + f) * kWeights + half * 3) * L + i % L;
-        const float* from = spectrum.data() + w * 3 * kFeatures + f;
+      for (int f = 0; f < kHogFeatures; ++f) {
+        float* to =
+            group.weights.data() + ((w * kHogFeatures + f) * kWeights + half * 3) * L + i % L;
+        const float* from = spectrum.data() + w * 3 * kHogFeatures + f;
         // Conjugate: a correlation; scaled for the inverse transform.
         const float re = from[0] / static_cast<float>(kCells);
-        const float im = -from[kFeatures] / static_cast<float>(kCells);
+        const float im = -from[kHogFeatures] / static_cast<float>(kCells);
         to[0] = re;
         to[L] = im - re;
         to[2 * L] = im + re;

@@ -24,9 +24,9 @@ namespace {
 constexpr std::uint64_t kLargestModel = 512ULL << 20;  // [bytes] that reading may take; assumed
 
 // Permutation of the features of a cell under mirroring (voc-release5, flipfeat.m).
-constexpr std::array<int, kFeatures> kMirrored = {9,  8,  7,  6,  5,  4,  3,  2,  1,  0,  17,
-                                                  16, 15, 14, 13, 12, 11, 10, 18, 26, 25, 24,
-                                                  23, 22, 21, 20, 19, 29, 30, 27, 28, 31};
+constexpr std::array<int, kHogFeatures> kMirrored = {9,  8,  7,  6,  5,  4,  3,  2,  1,  0,  17,
+                                                     16, 15, 14, 13, 12, 11, 10, 18, 26, 25, 24,
+                                                     23, 22, 21, 20, 19, 29, 30, 27, 28, 31};
 
 /// The variable `model` of a MATLAB file, read field by field.
 class MatModel {
@@ -169,17 +169,17 @@ class ModelReader {
     DpmFilter f{static_cast<int>(size[0]), static_cast<int>(size[1]), {}};
     const auto height = static_cast<std::size_t>(f.height);
     const auto width = static_cast<std::size_t>(f.width);
-    if (values.size() != height * width * kFeatures)
+    if (values.size() != height * width * kHogFeatures)
       in_.fail(fmt::format(".filters.w: {} weights for {} x {} cells of 32", values.size(), height,
                            width));
     f.weights.resize(values.size());
     const bool flip = mirrored(filters, index);
-    for (std::size_t k = 0; k < kFeatures; ++k) {
+    for (std::size_t k = 0; k < kHogFeatures; ++k) {
       const std::size_t plane = flip ? static_cast<std::size_t>(kMirrored[k]) : k;
       for (std::size_t x = 0; x < width; ++x) {
         const std::size_t column = flip ? width - 1 - x : x;
         for (std::size_t y = 0; y < height; ++y)  // MATLAB: rows fastest
-          f.weights[(y * width + x) * kFeatures + k] =
+          f.weights[(y * width + x) * kHogFeatures + k] =
               static_cast<float>(values[(plane * width + column) * height + y]);
       }
     }

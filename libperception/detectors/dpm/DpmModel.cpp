@@ -87,12 +87,12 @@ DpmFilter readFilter(Words& in) {
   filter.height = in.whole("height of the filter", 1, kLargest);
   filter.width = in.whole("width of the filter", 1, kLargest);
   in.key("dims");
-  in.whole("32 features a cell", kFeatures, kFeatures);
+  in.whole("32 features a cell", kHogFeatures, kHogFeatures);
   return filter;
 }
 
 void readWeights(Words& in, DpmFilter& filter) {
-  filter.weights.resize(static_cast<std::size_t>(filter.height * filter.width * kFeatures));
+  filter.weights.resize(static_cast<std::size_t>(filter.height * filter.width * kHogFeatures));
   for (float& w : filter.weights) w = static_cast<float>(in.real("a weight"));
 }
 
@@ -153,7 +153,7 @@ std::string fileText(const std::string& path) {
 }
 
 void writeWeights(const DpmFilter& filter, std::string& out) {
-  const auto row = static_cast<std::size_t>(filter.width * kFeatures);
+  const auto row = static_cast<std::size_t>(filter.width * kHogFeatures);
   for (std::size_t i = 0; i < filter.weights.size(); ++i)
     out += fmt::format("{}{}", filter.weights[i], (i + 1) % row == 0 ? '\n' : ' ');
 }

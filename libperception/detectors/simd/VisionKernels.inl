@@ -97,7 +97,7 @@ void features(const float* histogram, int stride, int cells, const float* above,
     const V n[4] = {
         inverseRoot(right + down + at(below + x + 1)), inverseRoot(right + up + at(above + x + 1)),
         inverseRoot(left + down + at(below + x - 1)), inverseRoot(left + up + at(above + x - 1))};
-    V out[kFeatures] = {};
+    V out[kHogFeatures] = {};
     for (int o = 0; o < kOrientations; ++o) {
       const V h = at(histogram + o * stride + x);
       for (int b = 0; b < 4; ++b) {
@@ -115,8 +115,8 @@ void features(const float* histogram, int stride, int cells, const float* above,
     for (int b = 0; b < 4; ++b) out[27 + b] *= 0.2357F;
     const int count = cells - 1 - x < L ? cells - 1 - x : L;
     for (int i = 0; i < count; ++i) {
-      float* cell = features + static_cast<long>(x + i) * kFeatures;
-      for (int f = 0; f < kFeatures; ++f) cell[f] = out[f][i];
+      float* cell = features + static_cast<long>(x + i) * kHogFeatures;
+      for (int f = 0; f < kHogFeatures; ++f) cell[f] = out[f][i];
     }
   }
 }
@@ -160,13 +160,13 @@ inline void fft16(V* re, V* im, int step) {
 
 void forward(const float* features, long row_stride, float* spectrum) {
   V re[kPatch * kPatch], im[kPatch * kPatch];
-  for (int pair = 0; pair < kFeatures / (2 * L); ++pair) {
+  for (int pair = 0; pair < kHogFeatures / (2 * L); ++pair) {
     // Two vectors of features are the real and the imaginary part of one signal.
     const float* from = features + 2 * L * pair;
     for (int y = 0; y < kPatch; ++y) {
       for (int x = 0; x < kPatch; ++x) {
-        re[y * kPatch + x] = at(from + y * row_stride + x * kFeatures);
-        im[y * kPatch + x] = at(from + y * row_stride + x * kFeatures + L);
+        re[y * kPatch + x] = at(from + y * row_stride + x * kHogFeatures);
+        im[y * kPatch + x] = at(from + y * row_stride + x * kHogFeatures + L);
       }
       fft16(re + y * kPatch, im + y * kPatch, 1);
     }
@@ -175,15 +175,15 @@ void forward(const float* features, long row_stride, float* spectrum) {
       for (int x = 0; x < kHalf; ++x) {
         const int here = y * kPatch + x;
         const int there = (kPatch - y) % kPatch * kPatch + (kPatch - x) % kPatch;
-        float* out = spectrum + (y * kHalf + x) * 3 * kFeatures + 2 * L * pair;
+        float* out = spectrum + (y * kHalf + x) * 3 * kHogFeatures + 2 * L * pair;
         const V ar = 0.5F * (re[here] + re[there]), ai = 0.5F * (im[here] - im[there]);
         const V br = 0.5F * (im[here] + im[there]), bi = 0.5F * (re[there] - re[here]);
         at(out) = ar;
         at(out + L) = br;
-        at(out + kFeatures) = ai;
-        at(out + kFeatures + L) = bi;
-        at(out + 2 * kFeatures) = ar + ai;
-        at(out + 2 * kFeatures + L) = br + bi;
+        at(out + kHogFeatures) = ai;
+        at(out + kHogFeatures + L) = bi;
+        at(out + 2 * kHogFeatures) = ar + ai;
+        at(out + 2 * kHogFeatures + L) = br + bi;
       }
     }
   }
@@ -197,10 +197,10 @@ template <int kCount, int kVectors>
 inline void frequency(const float* weights, const float* const* spectra, long offset,
                       float* const* products, long offset_out) {
   V k1[kVectors][kCount] = {}, k2[kVectors][kCount] = {}, k3[kVectors][kCount] = {};
-  for (int c = 0; c < kFeatures; ++c) {
+  for (int c = 0; c < kHogFeatures; ++c) {
     for (int p = 0; p < kCount; ++p) {
       const float* x = spectra[p] + offset + c;
-      const V re = all(x[0]), im = all(x[kFeatures]), sum = all(x[2 * kFeatures]);
+      const V re = all(x[0]), im = all(x[kHogFeatures]), sum = all(x[2 * kHogFeatures]);
       for (int v = 0; v < kVectors; ++v) {
         k1[v][p] += sum * at(weights + 3 * v * L);
         k2[v][p] += re * at(weights + (3 * v + 1) * L);
@@ -234,8 +234,8 @@ void products(const float* weights, const float* const* spectra, int patches,
     for (int x = 0; x < kHalf; ++x) {
       if (isCopy(x, y)) continue;
       const long w = y * kHalf + x;
-      const float* at_w = weights + w * kFeatures * kWeights * L;
-      const long in = w * 3 * kFeatures, out = w * 4 * L;
+      const float* at_w = weights + w * kHogFeatures * kWeights * L;
+      const long in = w * 3 * kHogFeatures, out = w * 4 * L;
       int p = 0;
       for (; p + 4 <= patches; p += 4) frequencyOf<4>(at_w, spectra + p, in, products + p, out);
       for (; p < patches; ++p) frequencyOf<1>(at_w, spectra + p, in, products + p, out);
@@ -309,11 +309,11 @@ inline void correlateSome(const float* features, long row_stride, const float* f
   V sum[kCount] = {};
   for (int y = 0; y < height; ++y) {
     const float* row = features + y * row_stride;
-    for (int i = 0; i < width * kFeatures; i += L) {
+    for (int i = 0; i < width * kHogFeatures; i += L) {
       const V w = at(filter + i);
-      for (int p = 0; p < kCount; ++p) sum[p] += w * at(row + i + p * kFeatures);
+      for (int p = 0; p < kCount; ++p) sum[p] += w * at(row + i + p * kHogFeatures);
     }
-    filter += width * kFeatures;
+    filter += width * kHogFeatures;
   }
   for (int p = 0; p < kCount; ++p) {
     float total = 0;
@@ -327,10 +327,10 @@ void correlate(const float* features, long row_stride, const float* filter, int 
   constexpr int kBlock = 8;
   int x = 0;
   for (; x + kBlock <= n; x += kBlock)
-    correlateSome<kBlock>(features + static_cast<long>(x) * kFeatures, row_stride, filter, height,
+    correlateSome<kBlock>(features + static_cast<long>(x) * kHogFeatures, row_stride, filter, height,
                           width, responses + x);
   for (; x < n; ++x)
-    correlateSome<1>(features + static_cast<long>(x) * kFeatures, row_stride, filter, height, width,
+    correlateSome<1>(features + static_cast<long>(x) * kHogFeatures, row_stride, filter, height, width,
                      responses + x);
 }
 

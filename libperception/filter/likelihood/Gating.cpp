@@ -14,9 +14,9 @@ namespace {
 
 /// Coarse gate [standard deviations], plus 2 m for the size.
 constexpr double kCoarseGate = 6;
-constexpr double kCoarseMargin = 2;     // [m]
-constexpr double kSlack = 1e-6;         // [m] rounding tolerance of distances
-constexpr double kRounding = 1 + 1e-6;  // rounding tolerance of a NIS, relative
+constexpr double kCoarseMargin = 2;        // [m]
+constexpr double kSlack = 1e-6;            // [m] rounding tolerance of distances
+constexpr double kNisRounding = 1 + 1e-6;  // rounding tolerance of a NIS, relative
 
 /// Reach of one class filter [m], the measurement's own deviation left out.
 double coarseReach(const ClassFilter& f) {
@@ -104,7 +104,7 @@ bool AxisBounds::exclude(const Measurement& m, const std::vector<AxisKind>& kind
     const auto a = static_cast<Eigen::Index>(i);
     double y = m.z[a] - prediction_.h[a];
     if (kinds[i] == AxisKind::kAngle && std::abs(y) > kPi) y = wrapAngle(y);
-    if (y * y > gate * kRounding * (variance_[i] + m.R(a, a))) return true;
+    if (y * y > gate * kNisRounding * (variance_[i] + m.R(a, a))) return true;
   }
   return false;
 }

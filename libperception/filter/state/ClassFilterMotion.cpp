@@ -12,7 +12,7 @@ namespace perception {
 namespace {
 
 /// x - reference, the heading wrapped.
-Vector4 difference(const Vector4& x, const Vector4& reference, bool oriented) {
+Vector4 modeDifference(const Vector4& x, const Vector4& reference, bool oriented) {
   Vector4 d = x - reference;
   if (oriented) d[3] = wrapAngle(d[3]);
   return d;
@@ -30,10 +30,10 @@ Moments momentsOf(const std::vector<ModeFilter>& modes, const std::vector<double
   const Vector4& reference = modes[heaviest].x;
   Vector4 mean = Vector4::Zero();
   for (std::size_t i = 0; i < modes.size(); ++i)
-    mean += weights[i] * difference(modes[i].x, reference, oriented);
+    mean += weights[i] * modeDifference(modes[i].x, reference, oriented);
   Moments out{reference + mean, Matrix4::Zero()};
   for (std::size_t i = 0; i < modes.size(); ++i) {
-    const Vector4 d = difference(modes[i].x, out.x, oriented);
+    const Vector4 d = modeDifference(modes[i].x, out.x, oriented);
     out.P += weights[i] * (modes[i].P + d * d.transpose());
   }
   if (oriented) out.x[3] = wrapAngle(out.x[3]);

@@ -19,18 +19,18 @@ constexpr double kLargest = 15;  // [m] of those
 /// A side measures length or width if it is this close to parallel or perpendicular to the axis.
 constexpr double kAlong = radians(30);
 
-double logNormal(double d, double variance) {
+double logScaledNormal(double d, double variance) {
   return -0.5 * (d * d / variance + std::log(variance));
 }
 
 double logHeight(const ObjectClass& c, const ScalarEstimate& height) {
-  return logNormal(height.mean - c.height,
-                   c.height_sigma * c.height_sigma + kHeightBias * kHeightBias + height.variance);
+  return logScaledNormal(height.mean - c.height, c.height_sigma * c.height_sigma +
+                                                     kHeightBias * kHeightBias + height.variance);
 }
 
 double logSide(const ScalarEstimate& side, double mean, double sigma) {
   const double variance = sigma * sigma + kSideBias * kSideBias + side.variance;
-  const double density = std::exp(logNormal(side.mean - mean, variance)) / std::sqrt(kTwoPi);
+  const double density = std::exp(logScaledNormal(side.mean - mean, variance)) / std::sqrt(kTwoPi);
   return std::log((1 - kShareOfAnySize) * density + kShareOfAnySize / kLargest);
 }
 

@@ -26,7 +26,7 @@ struct JointPrediction {
   Matrix4 cross;  // covariance of the state before with the state after
 };
 
-Vector4 difference(const Vector4& a, const Vector4& b, bool oriented) {
+Vector4 stateDifference(const Vector4& a, const Vector4& b, bool oriented) {
   Vector4 d = a - b;
   if (oriented) d[3] = wrapAngle(d[3]);
   return d;
@@ -47,8 +47,8 @@ JointPrediction predictJointly(const ObjectClass& c, double dt, const ClassFilte
   combineModes(f);
   JointPrediction out{f.x, f.P, Matrix4::Zero()};
   for (std::size_t i = 0; i < mixed.size(); ++i) {
-    const Vector4 from = difference(mixed[i].x, before.x, before.oriented);
-    const Vector4 to = difference(f.modes[i].x, f.x, f.oriented);
+    const Vector4 from = stateDifference(mixed[i].x, before.x, before.oriented);
+    const Vector4 to = stateDifference(f.modes[i].x, f.x, f.oriented);
     out.cross += std::exp(mixed[i].log_probability) *
                  (mixed[i].P * transitions[i].transpose() + from * to.transpose());
   }
@@ -70,7 +70,7 @@ void smoothFilter(const ObjectClass& c, double dt, const ClassFilter& newer, Cla
     x = k.q.head<4>();
     P = J * newer.P * J.transpose();
   }
-  const Vector4 d = difference(x, predicted.x, f.oriented);
+  const Vector4 d = stateDifference(x, predicted.x, f.oriented);
   const Eigen::LLT<Matrix4> llt(predicted.P + kRegular * Matrix4::Identity());
   if (llt.info() != Eigen::Success || d.dot(llt.solve(d)) > kBroken) return;
   const Matrix4 G = llt.solve(predicted.cross.transpose()).transpose();

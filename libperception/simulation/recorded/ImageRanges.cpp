@@ -9,15 +9,15 @@
 namespace perception {
 namespace {
 
-constexpr double kCell = radians(0.4);  // as far apart as the beams of a 64-beam lidar
-constexpr int kGap = 5, kHole = 25;     // [cells] filled between returns; on one surface
-constexpr double kUnknown = 50;         // [m] above the horizon, without returns (assumed)
-constexpr double kSameSurface = 1.3;    // ratio of ranges
-constexpr double kOnGround = 0.15;      // share of the range
-constexpr double kLevel = 1e-4;         // slope from which on a ray meets the road
-constexpr double kWindow = 3;           // [cells] radius of the guided filter
-constexpr double kSmooth = 1e-3;        // variance of gray values that counts as an edge
-constexpr float kNone = 0;
+constexpr double kCell = radians(0.4);    // as far apart as the beams of a 64-beam lidar
+constexpr int kRangeGap = 5, kHole = 25;  // [cells] filled between returns; on one surface
+constexpr double kUnknown = 50;           // [m] above the horizon, without returns (assumed)
+constexpr double kSameSurface = 1.3;      // ratio of ranges
+constexpr double kOnGround = 0.15;        // share of the range
+constexpr double kLevel = 1e-4;           // slope from which on a ray meets the road
+constexpr double kWindow = 3;             // [cells] radius of the guided filter
+constexpr double kSmooth = 1e-3;          // variance of gray values that counts as an edge
+constexpr float kNoRange = 0;
 
 /// Nearest return in each cell of an image.
 class Cells {
@@ -26,7 +26,7 @@ class Cells {
       : side_(std::max(1.0, kCell * camera.fx)),
         width(static_cast<int>(std::ceil(camera.width / side_))),
         height(static_cast<int>(std::ceil(camera.height / side_))),
-        range_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kNone) {}
+        range_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kNoRange) {}
 
   float& at(int x, int y) {
     return range_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -37,7 +37,7 @@ class Cells {
     const int x = of(pixel.x()), y = of(pixel.y());
     if (x < 0 || y < 0 || x >= width || y >= height) return;
     float& cell = at(x, y);
-    if (cell == kNone || range < static_cast<double>(cell)) cell = static_cast<float>(range);
+    if (cell == kNoRange || range < static_cast<double>(cell)) cell = static_cast<float>(range);
   }
 
  private:
@@ -55,11 +55,11 @@ template <class At>
 void fillGaps(int length, const At& at) {
   int last = -1;
   for (int i = 0; i < length; ++i) {
-    if (at(i) == kNone) continue;
+    if (at(i) == kNoRange) continue;
     const int gap = i - last - 1;
     const double a = last < 0 ? 0 : at(last), b = at(i);
     const bool same = std::max(a, b) < kSameSurface * std::min(a, b);
-    if (last >= 0 && gap > 0 && gap <= (same ? kHole : kGap)) {
+    if (last >= 0 && gap > 0 && gap <= (same ? kHole : kRangeGap)) {
       for (int k = last + 1; k < i; ++k) {
         const double w = static_cast<double>(k - last) / (i - last);
         at(k) = static_cast<float>(same ? 1 / ((1 - w) / a + w / b) : (w < .5 ? a : b));
@@ -74,7 +74,7 @@ std::vector<float> upperEdge(Cells& cells) {
   std::vector<float> edge(static_cast<std::size_t>(cells.width), static_cast<float>(kUnknown));
   for (int x = 0; x < cells.width; ++x) {
     int y = 0;
-    while (y < cells.height && cells.at(x, y) == kNone) ++y;
+    while (y < cells.height && cells.at(x, y) == kNoRange) ++y;
     if (y < cells.height) edge[static_cast<std::size_t>(x)] = cells.at(x, y);
   }
   return edge;
@@ -108,9 +108,9 @@ std::vector<float> imageRanges(const CameraModel& camera, const Pose3& T_world_c
       if (down > kLevel) {
         const double ground = eye / down;
         const bool road =
-            seen == kNone || std::abs(ground / static_cast<double>(seen) - 1) < kOnGround;
+            seen == kNoRange || std::abs(ground / static_cast<double>(seen) - 1) < kOnGround;
         ranges.push_back(road ? static_cast<float>(ground) : seen);
-      } else if (seen != kNone) {
+      } else if (seen != kNoRange) {
         ranges.push_back(seen);
       } else {
         ranges.push_back(sky[ranges.size()] ? CameraView::kSky

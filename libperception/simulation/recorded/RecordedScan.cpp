@@ -15,7 +15,7 @@ namespace {
 constexpr double kUnknownReflectivity = 0.2;  // a mean surface (assumed)
 constexpr double kIncidence = 0.7;            // cosine, of what is no road (assumed)
 constexpr std::uint32_t kMissingSlot = 1u << 28, kMarginPurpose = 0x400;
-constexpr std::size_t kGrain = 2048;  // pulses a task
+constexpr std::size_t kScanGrain = 2048;  // pulses a task
 
 /// Which returns are of the road: within 0.2 m above the lowest one of a cell of 10 deg by 4 m, if
 /// that is within 1 m of the plane on which the vehicle stands (assumed).
@@ -72,7 +72,7 @@ void addIf(std::vector<T>& to, const std::vector<T>& from, std::size_t i) {
 class RecordedPulses {
  public:
   RecordedPulses(const LidarCloud& cloud, const std::vector<BeamPattern::Beam>& missing,
-                 const LidarParams& lidar, const Pose3& T_world_sensor, const RngKey& key)
+                 const LidarSensorParams& lidar, const Pose3& T_world_sensor, const RngKey& key)
       : cloud_(cloud),
         missing_(missing),
         T_world_sensor_(T_world_sensor),
@@ -178,7 +178,7 @@ WeatheredScan throughWeather(const LidarCloud& cloud, const std::vector<BeamPatt
                              const RngKey& key) {
   const RecordedPulses pulses(cloud, missing, sensor.lidar, T_world_sensor, key);
   std::vector<Shot> shots(pulses.size());
-  scene.parallel(shots.size(), kGrain, [&](std::size_t from, std::size_t to) {
+  scene.parallel(shots.size(), kScanGrain, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       Shot& shot = shots[i] = pulses.at(i);
       shot.pulse.scene = &scene;

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "libperception/simulation/LidarParams.h"
+#include "libperception/simulation/LidarSensorParams.h"
 #include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/recorded/BeamPattern.h"
 

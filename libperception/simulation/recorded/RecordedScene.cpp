@@ -11,9 +11,9 @@
 namespace perception {
 namespace {
 
-constexpr double kStep = 0.5;    // [s] between waypoints: annotations tremble
-constexpr double kParked = 1;    // [m]
-constexpr double kFastest = 55;  // [m/s] faster steps are faults of the annotation
+constexpr double kSceneStep = 0.5;     // [s] between waypoints: annotations tremble
+constexpr double kParked = 1;          // [m]
+constexpr double kFastestObject = 55;  // [m/s] faster steps are faults of the annotation
 
 std::optional<ObjectKind> kindOf(const std::string& type) {
   static const std::map<std::string, ObjectKind> kKinds = {
@@ -34,7 +34,7 @@ void addWaypoint(WaypointParams& way, double t, const Vector2& place) {
   if (!way.t.empty()) {
     const double dt = t - way.t.back();
     const Vector2 last(way.x.back(), way.y.back());
-    if (dt <= 0 || (place - last).norm() > kFastest * dt) return;
+    if (dt <= 0 || (place - last).norm() > kFastestObject * dt) return;
   }
   way.t.push_back(t), way.x.push_back(place.x()), way.y.push_back(place.y());
 }
@@ -58,7 +58,7 @@ ObjectParams objectOf(const std::vector<const TruthObject*>& rows) {
   addWaypoint(way, first.t, first.position.head<2>());
   if (reach < kParked) return object;
   for (const TruthObject* o : rows)
-    if (o->t - way.t.back() >= kStep || o == rows.back())
+    if (o->t - way.t.back() >= kSceneStep || o == rows.back())
       addWaypoint(way, o->t, o->position.head<2>());
   return object;
 }
@@ -72,7 +72,7 @@ Scenario recordedScene(const GroundTruth& truth, const std::vector<RecordedPose>
   scene.params.ground_roughness = 0;
   WaypointParams& way = scene.ego.waypoints;
   for (const RecordedPose& p : poses) {
-    if (!way.t.empty() && p.t - way.t.back() < kStep && &p != &poses.back()) continue;
+    if (!way.t.empty() && p.t - way.t.back() < kSceneStep && &p != &poses.back()) continue;
     addWaypoint(way, p.t, p.T_world_ego.translation().head<2>());
   }
   if (way.t.empty()) addWaypoint(way, 0, Vector2::Zero());

@@ -22,7 +22,7 @@ constexpr double kCloudyAmbient = 0.4;                           // least share 
 // Images at night, in units of 100 klx of the sun: lit streets of 10 lx (EN 13201-2, P2); low beams
 // of 20,000 cd; 30 ms and gain 20 where day has 2 ms (assumed).
 constexpr double kNightAmbient = 1e-4, kHeadlights = 0.2, kNightTime = 0.030, kNightGain = 20;
-constexpr std::size_t kSun = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kTheSun = std::numeric_limits<std::size_t>::max();
 
 bool hasHeadlights(const ObjectParams& object) {
   const bool vehicle = object.kind == ObjectKind::kCar || object.kind == ObjectKind::kVan ||
@@ -42,7 +42,7 @@ void Daylight::advance(const World& world, const SensorParams& sensor, double t)
   glare_.clear();
   if (!sensor.isCamera()) return;
   heading_ = yawOf(world.ego(t).T_world_ego);
-  if (sky_ == Sky::kSunny && low_sun_) glare_.push_back({sun_azimuth_, kSun});
+  if (sky_ == Sky::kSunny && low_sun_) glare_.push_back({sun_azimuth_, kTheSun});
   if (sky_ != Sky::kNight) return;
   const Vector2 eye = (world.ego(t).T_world_ego * sensor.T_ego_sensor()).translation().head<2>();
   for (std::size_t i = 0; i < world.objects(); ++i) {

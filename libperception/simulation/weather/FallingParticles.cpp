@@ -6,10 +6,10 @@
 namespace perception {
 namespace {
 
-constexpr double kNearest = 0.3;     // [m] from the lens (assumed)
-constexpr double kAperture = 0.002;  // [m] of the lens, focused on far things (assumed)
-constexpr double kSharpest = 1e-3;   // [rad] what a lens resolves at best (assumed)
-constexpr double kLargest = 8;       // [mm] drops break up above, method.md 9.1
+constexpr double kNearestParticle = 0.3;  // [m] from the lens (assumed)
+constexpr double kAperture = 0.002;       // [m] of the lens, focused on far things (assumed)
+constexpr double kSharpest = 1e-3;        // [rad] what a lens resolves at best (assumed)
+constexpr double kLargest = 8;            // [mm] drops break up above, method.md 9.1
 
 /// A particle in the image: its way while the shutter is open, and its width.
 struct Streak {
@@ -133,7 +133,7 @@ std::size_t drawParticles(const FallingParticles& particles, CameraView& view, R
     const double depth =
         -scale * std::log((1 - rng.uniform()) * (1 - rng.uniform()) * (1 - rng.uniform()));
     const double diameter = smallest * depth + rng.exponential(1 / slope);
-    if (depth < kNearest || 1000 * diameter > kLargest) continue;
+    if (depth < kNearestParticle || 1000 * diameter > kLargest) continue;
     const double side = f * diameter / depth;
     const double width = std::max(least, f * (diameter + kAperture) / depth);
     if (side * side < kFaintest * width * width) continue;

@@ -11,7 +11,7 @@
 namespace perception {
 namespace {
 
-constexpr double kStep = 0.1;                   // [m] of ranges
+constexpr double kFogStep = 0.1;                // [m] of ranges
 constexpr double kFarthest = 60;                // [m] of the table; the peak lies below 10 m
 constexpr double kPulse = 0.299792458 * 20;     // [m] c times 20 ns
 constexpr double kBlind = 0.9, kOverlap = 1.0;  // [m] the receiver sees nothing; all
@@ -19,7 +19,7 @@ constexpr double kBlind = 0.9, kOverlap = 1.0;  // [m] the receiver sees nothing
 // sight by itself. [hahner2021] leaves the ratio of fog and surfaces to calibration.
 constexpr double kSeenMor = 100, kWeakest = 0.9 / (200.0 * 200);
 
-constexpr double kFaint = 0.2;  // of the surface's echo
+constexpr double kFaintFog = 0.2;  // of the surface's echo
 
 double backscatter(double mor) { return 0.046 / mor; }  // [1/(m sr)] [rasshofer2011]
 
@@ -47,8 +47,8 @@ double fogExtinction(double mor) { return std::log(20.0) / mor; }
 
 FogEcho::FogEcho(double extinction) {
   Peak best;
-  for (int i = 0; i * kStep <= kFarthest; ++i) {
-    const double range = i * kStep, value = echoAt(range, extinction);
+  for (int i = 0; i * kFogStep <= kFarthest; ++i) {
+    const double range = i * kFogStep, value = echoAt(range, extinction);
     if (value > best.value) best = {range, value};
     peaks_.push_back(best);
   }
@@ -56,7 +56,7 @@ FogEcho::FogEcho(double extinction) {
 
 FogEcho::Peak FogEcho::before(double surface_range) const {
   const double last = static_cast<double>(peaks_.size() - 1);
-  return peaks_[static_cast<std::size_t>(std::clamp(surface_range / kStep, 0.0, last))];
+  return peaks_[static_cast<std::size_t>(std::clamp(surface_range / kFogStep, 0.0, last))];
 }
 
 Fog::Fog(double mor) : extinction_(fogExtinction(mor)), echo_(extinction_) {
@@ -74,7 +74,7 @@ void Fog::alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const {
   const double power = gain_ * peak.value, far = sensor.lidar.reference_range;
   if (peak.value <= 0 || power < 0.9 / (far * far)) return;
   const double surface = std::isinf(open) ? 0 : pulse.reflectivity / (open * open);
-  if (pulse.lost <= 0 && power < kFaint * surface * std::exp(-2 * pulse.optical_depth)) return;
+  if (pulse.lost <= 0 && power < kFaintFog * surface * std::exp(-2 * pulse.optical_depth)) return;
   LidarPulse::Scatterer fog;
   fog.range = std::min(open, peak.range * std::exp2(rng.uniform(-1, 1)));
   fog.power = power;

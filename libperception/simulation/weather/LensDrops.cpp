@@ -11,9 +11,9 @@ namespace {
 
 // Assumed: drops of 3 to 10 mm at 0.3 m; what is seen through one is spread over its own size, at
 // the edge it is mixed with what is beside it.
-constexpr double kSmallest = radians(0.3), kLargest = radians(1);  // radius
-constexpr double kBlur = radians(1.5);                             // width of the blur
-constexpr double kEdge = 0.3;                                      // of the radius
+constexpr double kSmallest = radians(0.3), kLargestLensDrop = radians(1);  // radius
+constexpr double kBlur = radians(1.5);                                     // width of the blur
+constexpr double kDropEdge = 0.3;                                          // of the radius
 
 double smooth(double x) {
   const double c = std::clamp(x, 0.0, 1.0);
@@ -33,22 +33,22 @@ void addLensDrops(double share, CameraView& view, Rng& rng) {
   cv::blur(image, blurred, {side, side});
   cv::blur(blurred, blurred, {side, side});
   cv::Mat open(height, width, CV_32F, cv::Scalar(1));  // share of what passes beside the drops
-  const double a = kSmallest * view.camera.fx, b = kLargest * view.camera.fx;
+  const double a = kSmallest * view.camera.fx, b = kLargestLensDrop * view.camera.fx;
   const double area = kPi * (a * a + a * b + b * b) / 3;  // mean of disks
-  const double margin = (1 + kEdge) * b;
+  const double margin = (1 + kDropEdge) * b;
   const double field = (width + 2 * margin) * (height + 2 * margin);
   const int drops = rng.poisson(-std::log1p(-share) / area * field);
   for (int k = 0; k < drops; ++k) {
     const double x = rng.uniform(-margin, width + margin),
                  y = rng.uniform(-margin, height + margin);
-    const double radius = rng.uniform(a, b), outer = (1 + .5 * kEdge) * radius;
+    const double radius = rng.uniform(a, b), outer = (1 + .5 * kDropEdge) * radius;
     const int top = std::max(0, static_cast<int>(std::floor(y - outer))),
               bottom = std::min(height, static_cast<int>(std::ceil(y + outer)) + 1);
     const int left = std::max(0, static_cast<int>(std::floor(x - outer))),
               right = std::min(width, static_cast<int>(std::ceil(x + outer)) + 1);
     for (int v = top; v < bottom; ++v) {
       for (int u = left; u < right; ++u) {
-        const double inside = smooth((outer - std::hypot(u - x, v - y)) / (kEdge * radius));
+        const double inside = smooth((outer - std::hypot(u - x, v - y)) / (kDropEdge * radius));
         open.at<float>(v, u) *= static_cast<float>(1 - inside);
       }
     }

@@ -23,10 +23,10 @@ constexpr double kOldest = 4;  // [s] all of a plume is thinner than kLeast then
 constexpr double kJoined = 0.8;  // [s]
 constexpr std::int64_t kJoin = 4;
 constexpr double kReturn = 0.6;  // chance
-constexpr double kDimmest = 5.0 / 255, kBrightest = 15.0 / 255;
+constexpr double kDimmest = 5.0 / 255, kBrightestPlume = 15.0 / 255;
 constexpr double kPipeHeight = 0.3, kPipeAside = 0.3;  // [m]; share of the vehicle's width
 constexpr double kWide = 3;                            // sigmas
-constexpr double kStep = 0.1;                          // [m] along a beam
+constexpr double kPlumeStep = 0.1;                     // [m] along a beam
 constexpr std::size_t kMost = 512;                     // puffs on one beam
 constexpr std::uint32_t kBirth = 0x57EA4000;           // purpose of random numbers
 
@@ -132,14 +132,14 @@ void Plume::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
   pulse.optical_depth += depth;
   if (depth < drawn || rng.uniform() >= kReturn) return;
   double passed = 0;
-  for (double s = std::max(kStep, from); s < std::min(to, open); s += kStep) {
+  for (double s = std::max(kPlumeStep, from); s < std::min(to, open); s += kPlumeStep) {
     double here = 0;
     for (std::size_t i = 0; i < count; ++i) here += parts[i].at(s);
-    passed += kStep * here;
+    passed += kPlumeStep * here;
     if (passed < drawn || here < kLeast) continue;
     LidarPulse::Scatterer cloud;
-    cloud.range = s - rng.uniform(0, kStep);
-    cloud.intensity = rng.uniform(kDimmest, kBrightest);
+    cloud.range = s - rng.uniform(0, kPlumeStep);
+    cloud.intensity = rng.uniform(kDimmest, kBrightestPlume);
     cloud.phantom = Phantom::kPlume;
     pulse.scatterers.push_back(cloud);
     return;

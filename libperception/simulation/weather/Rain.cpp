@@ -21,7 +21,8 @@ constexpr double kEdgeNoise = 1.5, kEdgeRate = 10;
 constexpr double kWetRate = 10;
 // Drops on the lens: blurred share of the image in the lightest and from the heaviest rain on, and
 // what is found behind them (method.md 9.9, assumed).
-constexpr double kLeastDrops = 0.05, kMostDrops = 0.15, kMostDropsRate = 50, kBlurredRecall = 0.5;
+constexpr double kLeastDrops = 0.05, kMostDrops = 0.15, kMostDropsRate = 50,
+                 kRainBlurredRecall = 0.5;
 
 constexpr double kWiped = 1;                         // [s] drops on the lens stay (assumed)
 constexpr std::uint32_t kDropsPurpose = 0x57EA3000;  // of random numbers
@@ -65,7 +66,7 @@ void Rain::alter(const SensorParams&, RadarAir& air, Rng&) const {
 void Rain::alter(const SensorParams&, CameraLook& look, Rng& rng) const {
   look.optical_depth += extinction_ * look.range;
   look.edge_noise *= edge_noise_;
-  if (rng.uniform() < drops_) look.chance *= kBlurredRecall;
+  if (rng.uniform() < drops_) look.chance *= kRainBlurredRecall;
 }
 
 void Rain::alter(const SensorParams&, SensorFrame& frame, Rng& rng) const {

@@ -12,8 +12,9 @@ namespace {
 
 using Receiver = ParticleReceiver;
 
-constexpr double kSmallest = 0.05, kLargest = 8;  // [mm] drops: counted from; larger ones break up
-constexpr double kIndex = 1.328;                  // of water at 905 nm, method.md 9.1
+constexpr double kSmallestDrop = 0.05,
+                 kLargestDrop = 8;  // [mm] drops: counted from; larger ones break up
+constexpr double kIndex = 1.328;    // of water at 905 nm, method.md 9.1
 
 // At normal incidence [kilic2021].
 double reflectance() {
@@ -30,7 +31,7 @@ double echoOfDrop(double diameter, double range) {
 // Where the largest drop is at the threshold.
 double reachOfDrops() {
   const double strength = reflectance() / Receiver::kWeakest;
-  return std::sqrt(std::sqrt(strength) * 1e-3 * kLargest / Receiver::kDivergence);
+  return std::sqrt(std::sqrt(strength) * 1e-3 * kLargestDrop / Receiver::kDivergence);
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ double reachOfDrops() {
 RainDrops::RainDrops(double mm_h, std::uint64_t seed)
     : Rain(mm_h, seed),
       sizes_(marshallPalmer(mm_h)),
-      per_m3_(sizes_.number * std::exp(-sizes_.slope * kSmallest) / sizes_.slope),
+      per_m3_(sizes_.number * std::exp(-sizes_.slope * kSmallestDrop) / sizes_.slope),
       reach_(reachOfDrops()),
       opacity_(rainExtinction(mm_h)) {}
 
@@ -53,7 +54,7 @@ void RainDrops::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
   for (int k = 0; k < drops; ++k) {
     LidarPulse::Scatterer drop;
     drop.range = far * std::cbrt(rng.uniform());
-    const double diameter = 1e-3 * (kSmallest + rng.exponential(1 / sizes_.slope));
+    const double diameter = 1e-3 * (kSmallestDrop + rng.exponential(1 / sizes_.slope));
     if (drop.range < Receiver::kNearest) continue;
     drop.power = echoOfDrop(diameter, drop.range) * std::exp(-2 * opacity_ * drop.range);
     if (drop.power < Receiver::kWeakest) continue;

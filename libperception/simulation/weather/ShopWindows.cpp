@@ -11,11 +11,12 @@
 namespace perception {
 namespace {
 
-constexpr double kPane = 2.5;                          // [m] width (assumed)
-constexpr double kSill = 0.5, kLintel = 3;             // [m] above the house's foot (assumed)
-constexpr double kOff = 0.01;                          // [m] mirrored rays start before the glass
-constexpr std::uint32_t kPanes = 0x57EA4000;           // purpose of random numbers
-constexpr double kLeastScore = 0.3, kMostScore = 0.7;  // as of other false boxes, assumed
+constexpr double kPane = 2.5;                 // [m] width (assumed)
+constexpr double kSill = 0.5, kLintel = 3;    // [m] above the house's foot (assumed)
+constexpr double kOff = 0.01;                 // [m] mirrored rays start before the glass
+constexpr std::uint32_t kPanes = 0x57EA4000;  // purpose of random numbers
+constexpr double kLeastMirrorScore = 0.3,
+                 kMostMirrorScore = 0.7;  // as of other false boxes, assumed
 
 Vector3 mirrored(Vector3 p, int axis, double offset) {
   p[axis] = 2 * offset - p[axis];
@@ -126,7 +127,7 @@ void ShopWindows::addBox(const SensorParams& sensor, const Front& front, std::si
   if (rng.uniform() >= chance) return;
   ObjectDetection d;
   d.label = labelOf(sensor, kind);
-  d.score = rng.uniform(kLeastScore, kMostScore);
+  d.score = rng.uniform(kLeastMirrorScore, kMostMirrorScore);
   d.image_box = sensor.kind == SensorKind::kSphericalCamera
                     ? onPanorama(outline->box, detections.camera)
                     : outline->box;

@@ -16,7 +16,7 @@ constexpr double kDetected = 1.0001;   // of the threshold, so that rounding hid
 // Large flakes (method.md 9.2, assumed): share of the returns within 5 m, their angular diameter
 // (2 to 4 beams of a 64-beam lidar), brightness as the beam is filled.
 constexpr double kLargeShare = 0.1, kLargeWithin = 5;            // [m]
-constexpr double kSmallest = 0.4, kLargest = 0.6;                // [cells]
+constexpr double kSmallestFlake = 0.4, kLargestFlake = 0.6;      // [cells]
 constexpr double kLeastBrightness = 0.2, kMostBrightness = 0.6;  // of its reflectivity
 constexpr double kCell = radians(1);                             // of directions
 constexpr double kHeavy = 2.5, kHeavyRecall = 0.5;               // [mm/h] method.md 9.9
@@ -24,7 +24,8 @@ constexpr std::uint32_t kFlakes = 0x57EA1000;                    // purpose of r
 
 // Mean area of a disk whose diameter is uniform between the two.
 double meanArea() {
-  const double middle = .5 * (kSmallest + kLargest), width = kLargest - kSmallest;
+  const double middle = .5 * (kSmallestFlake + kLargestFlake),
+               width = kLargestFlake - kSmallestFlake;
   return kPi / 4 * (middle * middle + width * width / 12);
 }
 
@@ -66,7 +67,7 @@ void Snow::advance(const World&, const SensorParams& sensor, double t) {
   for (LargeFlake& flake : large_) {
     flake.radius = 0;
     if (rng.uniform() >= large_per_cell_) continue;
-    flake.radius = .5 * rng.uniform(kSmallest, kLargest);
+    flake.radius = .5 * rng.uniform(kSmallestFlake, kLargestFlake);
     flake.across = rng.uniform(flake.radius, 1 - flake.radius);
     flake.up = rng.uniform(flake.radius, 1 - flake.radius);
     do {
@@ -83,7 +84,7 @@ void Snow::alter(const SensorParams& sensor, LidarPulse& pulse, Rng& rng) const 
   addLargeFlake(pulse);
 }
 
-void Snow::addFlakesBySize(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) const {
+void Snow::addFlakesBySize(const LidarSensorParams& lidar, LidarPulse& pulse, Rng& rng) const {
   const double open = openRange(pulse);
   for (int k = rng.poisson(detectable_.mean); k > 0; --k) {
     const double range = detectable_.range(rng);
@@ -94,14 +95,14 @@ void Snow::addFlakesBySize(const LidarParams& lidar, LidarPulse& pulse, Rng& rng
 // Those that belong to large flakes are left out here. The law is of flakes that are detected: the
 // smallest one that is fills range / reference range of the beam's diameter, and how much larger a
 // flake is has the distribution of all (exponential).
-void Snow::addSmallFlake(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) const {
+void Snow::addSmallFlake(const LidarSensorParams& lidar, LidarPulse& pulse, Rng& rng) const {
   if (rng.uniform() >= chance_) return;
   const double range = kSnowReturns.range(rng);
   if (range < kLargeWithin && rng.uniform() < kLargeShare) return;
   addFlake(range, intensityAt(range, lidar, rng), pulse);
 }
 
-double Snow::intensityAt(double range, const LidarParams& lidar, Rng& rng) const {
+double Snow::intensityAt(double range, const LidarSensorParams& lidar, Rng& rng) const {
   const double filled = kDetected * range / lidar.reference_range +
                         rng.exponential(diameter_) / (range * kDivergence);
   return kReflectivity * std::min(1.0, filled * filled);

@@ -7,7 +7,7 @@
 
 namespace perception {
 
-struct LidarParams;
+struct LidarSensorParams;
 
 /// Falling snow (method.md 9.2, 9.9). Lidar: extinction by the flakes' sizes, false returns by the
 /// measured law [linnhoff2022]; some of those within 5 m are large flakes that neighboring beams
@@ -28,9 +28,9 @@ class Snow : public SimulatedWeather {
   bool actsOnPulses() const override { return true; }
 
  private:
-  void addSmallFlake(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) const;
-  double intensityAt(double range, const LidarParams& lidar, Rng& rng) const;
-  void addFlakesBySize(const LidarParams& lidar, LidarPulse& pulse, Rng& rng) const;
+  void addSmallFlake(const LidarSensorParams& lidar, LidarPulse& pulse, Rng& rng) const;
+  double intensityAt(double range, const LidarSensorParams& lidar, Rng& rng) const;
+  void addFlakesBySize(const LidarSensorParams& lidar, LidarPulse& pulse, Rng& rng) const;
   void addLargeFlake(LidarPulse& pulse) const;
 
   /// A flake that several beams see: a disk in a cell of directions.

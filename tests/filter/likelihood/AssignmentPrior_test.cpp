@@ -16,7 +16,7 @@ namespace {
 
 using test::positionScan;
 
-struct Fixture {
+struct PriorFixture {
   std::shared_ptr<const PositionModel> sensor =
       std::make_shared<const PositionModel>(test::linearSensor());
   FilterModel model = test::exactModel(test::linearClasses());
@@ -48,7 +48,7 @@ double integral(const LogDensity& log_density) {
 }
 
 TEST(ShapePrior, EveryCauseHasANormalisedDensity) {
-  const Fixture f;
+  const PriorFixture f;
   const Track track = f.high(1, 1.7);
   const SensorState sensor;
   const auto height = [](double v) {
@@ -76,7 +76,7 @@ TEST(ShapePrior, EveryCauseHasANormalisedDensity) {
 }
 
 TEST(ShapePrior, IsNothingWhereADetectionHasNoShape) {
-  Fixture f;
+  PriorFixture f;
   const Track t = predictTrack(f.high(1, 1.7), Stamp::fromSeconds(1000.1), f.model);
   const auto scan = positionScan(f.sensor, 0.1, {{1, 2, 0}});
   const auto plain = likelihoodTable({t}, scan, f.model);
@@ -87,7 +87,7 @@ TEST(ShapePrior, IsNothingWhereADetectionHasNoShape) {
 }
 
 TEST(ShapePrior, GivesTheHighClusterToTheHighObject) {
-  Fixture f;
+  PriorFixture f;
   const Stamp at = Stamp::fromSeconds(1000.1);
   const Track child = predictTrack(f.high(1, 1.1), at, f.model);
   const Track grown = predictTrack(f.high(1.2, 1.8), at, f.model);
@@ -102,7 +102,7 @@ TEST(ShapePrior, GivesTheHighClusterToTheHighObject) {
 }
 
 TEST(ShapePrior, LeavesTheClassesToTheUpdate) {
-  Fixture f;
+  PriorFixture f;
   const auto scan = f.seen(0, 1, 1.7);
   const auto plain = likelihoodTable({}, scan, f.model).births[0];
   f.model.params.shape_prior = true;
@@ -114,7 +114,7 @@ TEST(ShapePrior, LeavesTheClassesToTheUpdate) {
 
 /// A track that was last seen `error` meters off in x.
 struct Seen {
-  Fixture f;
+  PriorFixture f;
   Track track;
   explicit Seen(double error) {
     f.model.params.region_memory = 0.8;
@@ -178,7 +178,7 @@ TEST(RegionMemory, TellsApartTwoWhoseErrorsGoOn) {
   const auto swaps = [](double memory) {
     int count = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-      Fixture f;
+      PriorFixture f;
       f.model.proposal = Proposal::kNearest;
       f.model.params.region_memory = memory;
       Rng rng({seed, 0, 0, 0x4e61});

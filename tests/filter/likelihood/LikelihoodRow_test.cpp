@@ -43,11 +43,11 @@ class GeneralModel final : public MeasurementModel {
   PositionModel m_;
 };
 
-struct World {
+struct RowWorld {
   FilterModel model = test::exactModel(test::linearClasses());
   PositionModel::Params sensor = test::linearSensor();
 
-  World() {
+  RowWorld() {
     ObjectClass car = model.classes[0];
     car.name = "car";
     car.motion = findMotionModel("wheeled");
@@ -82,7 +82,8 @@ struct World {
 };
 
 /// The same scan, seen by either model.
-MeasurementScan scanOf(const World& w, const std::vector<Track>& tracks, Rng& rng, bool general) {
+MeasurementScan scanOf(const RowWorld& w, const std::vector<Track>& tracks, Rng& rng,
+                       bool general) {
   MeasurementScan scan;
   const PositionModel model(w.sensor);
   if (general) {
@@ -109,7 +110,7 @@ MeasurementScan scanOf(const World& w, const std::vector<Track>& tracks, Rng& rn
 bool alike(double a, double b) { return a == b || std::abs(a - b) < 1e-9; }  // -inf, too
 
 TEST(PlaceRow, IsThatOfTheGeneralWayAndSoIsTheUpdate) {
-  const World w;
+  const RowWorld w;
   Rng rng({21, 0, 0, 0});
   int pairs = 0;
   for (int trial = 0; trial < 40; ++trial) {

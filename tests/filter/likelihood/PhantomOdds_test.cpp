@@ -9,7 +9,7 @@ namespace perception {
 namespace {
 
 /// A place that a car left at t = 0, seen at 10 Hz: what is there is at `start`, of speed `speed`.
-struct World {
+struct WakeWorld {
   FilterModel model = test::exactModel(test::linearClasses());
   PositionModel::Params params = test::linearSensor();
   bool wake = true;
@@ -17,7 +17,7 @@ struct World {
   Vector2 start = {10, 5};
   double speed = 0;
 
-  World() {
+  WakeWorld() {
     model.proposal = Proposal::kRanked;
     model.params.existence_max = 0.999, model.params.existence_min = 0.002;
     model.classes.classes[0].max_speed = 20;
@@ -52,19 +52,19 @@ struct World {
 };
 
 TEST(PhantomOdds, SprayThatHangsInAWakeIsNoObjectAndWithoutTheWakeItIs) {
-  World world;
+  WakeWorld world;
   EXPECT_LT(world.realAfter(0.8), 0.3);
   world.wake = false;
   EXPECT_GT(world.realAfter(0.8), 0.95);
 }
 
 TEST(PhantomOdds, WhatIsStillThereWhenTheWakeIsOldIsAnObject) {
-  EXPECT_GT(World().realAfter(3.2), 0.95);
+  EXPECT_GT(WakeWorld().realAfter(3.2), 0.95);
 }
 
 TEST(PhantomOdds, WhatACameraOrARadarSeesIsAnObject) {
   for (const Modality modality : {Modality::kCamera, Modality::kRadar}) {
-    World world;
+    WakeWorld world;
     const double before = world.realAfter(0.4);
     world.modality = modality;
     EXPECT_GT(world.realAfter(0.5), 5 * before);
@@ -72,13 +72,13 @@ TEST(PhantomOdds, WhatACameraOrARadarSeesIsAnObject) {
 }
 
 TEST(PhantomOdds, WhatMovesIsAnObject) {
-  World world;
+  WakeWorld world;
   world.speed = 8;
   EXPECT_GT(world.realAfter(0.8), 0.95);
 }
 
 TEST(PhantomOdds, OutsideOfTheWakeNothingChanges) {
-  World beside, dry;
+  WakeWorld beside, dry;
   beside.start = dry.start = {10, 12};
   dry.wake = false;
   EXPECT_EQ(beside.realAfter(0.5), dry.realAfter(0.5));

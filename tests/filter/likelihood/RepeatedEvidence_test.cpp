@@ -33,12 +33,12 @@ class RememberingModel final : public PositionModel {
   Repeats repeats_;
 };
 
-struct Fixture {
+struct RepeatFixture {
   EvidenceMemory memory{0.2, 0.9, 0.2, 0.3, 1, 0.5};
   Repeats repeats = Repeats::kEvidence;
   FilterModel model = test::exactModel(test::linearClasses());
 
-  Fixture() { model.params.kinematic_exponent = 0; }
+  RepeatFixture() { model.params.kinematic_exponent = 0; }
 
   std::shared_ptr<const PositionModel> sensor() const {
     PositionModel::Params params = test::linearSensor();
@@ -75,7 +75,7 @@ double add(Track& track, const MeasurementScan& scan, std::size_t j = 0) {
 }
 
 TEST(RepeatedEvidence, TheFirstViewCountsFully) {
-  const Fixture f;
+  const RepeatFixture f;
   Track track;
   const auto scan = f.seen(0, kAhead);
   const RepeatedEvidence evidence(track, *lookOf(track, scan.measurements[0], scan, {}), scan);
@@ -90,7 +90,7 @@ TEST(RepeatedEvidence, TheFirstViewCountsFully) {
 }
 
 TEST(RepeatedEvidence, AViewAlikeIsWorthLittle) {
-  const Fixture f;
+  const RepeatFixture f;
   Track track;
   add(track, f.seen(0, kAhead));
   const double second = add(track, f.seen(0, kAhead));
@@ -98,7 +98,7 @@ TEST(RepeatedEvidence, AViewAlikeIsWorthLittle) {
 }
 
 TEST(RepeatedEvidence, ViewsAlikeAreWorthNoMoreThanWhatStaysAllows) {
-  Fixture f;
+  RepeatFixture f;
   f.memory.kept = 0;  // each view is independent but for what stays
   Track track;
   double sum = 0;
@@ -110,7 +110,7 @@ TEST(RepeatedEvidence, ViewsAlikeAreWorthNoMoreThanWhatStaysAllows) {
 }
 
 TEST(RepeatedEvidence, TheSumOfAllAddedIsThatOfTheMean) {
-  const Fixture f;
+  const RepeatFixture f;
   Rng rng(RngKey{4, 0, 0, 11});
   for (std::size_t j = 0; j < 2; ++j) {
     Track track;
@@ -127,7 +127,7 @@ TEST(RepeatedEvidence, TheSumOfAllAddedIsThatOfTheMean) {
 }
 
 TEST(RepeatedEvidence, AViewFromElsewhereLetsTheOldOnesGo) {
-  const Fixture f;
+  const RepeatFixture f;
   Track track;
   double sum = 0;
   for (int k = 0; k < 20; ++k) sum += add(track, f.seen(0.1 * k, kAhead, {4, 0}));
@@ -138,7 +138,7 @@ TEST(RepeatedEvidence, AViewFromElsewhereLetsTheOldOnesGo) {
 }
 
 TEST(RepeatedEvidence, AnObjectThatComesNearIsJudgedAnew) {
-  const Fixture f;
+  const RepeatFixture f;
   Track track;
   double sum = 0;
   for (int k = 0; k < 20; ++k)
@@ -148,7 +148,7 @@ TEST(RepeatedEvidence, AnObjectThatComesNearIsJudgedAnew) {
 }
 
 TEST(RepeatedEvidence, EachSensorHasAMemoryOfItsOwn) {
-  const Fixture f;
+  const RepeatFixture f;
   Track track;
   MeasurementScan left = f.seen(0, kAhead), right = f.seen(0, kAhead);
   right.sensor = "RIGHT";
@@ -160,7 +160,7 @@ TEST(RepeatedEvidence, EachSensorHasAMemoryOfItsOwn) {
 }
 
 TEST(RepeatedEvidence, WithoutAViewOrAMemoryNothingIsKept) {
-  Fixture f;
+  RepeatFixture f;
   Track track;
   const auto check = [&](const MeasurementScan& scan) {
     EXPECT_FALSE(lookOf(track, scan.measurements[0], scan, {}));
@@ -173,7 +173,7 @@ TEST(RepeatedEvidence, WithoutAViewOrAMemoryNothingIsKept) {
 // In the update ---------------------------------------------------------------------------------
 
 TEST(RepeatedEvidence, IdenticalEvidenceConverges) {
-  const Fixture f;
+  const RepeatFixture f;
   const double prior = std::log(0.6 / 0.4);
   Track track = f.born(f.seen(0, kAhead));
   EXPECT_NEAR(odds(track), prior + 2, 1e-9) << "a birth is the first view";
@@ -189,7 +189,7 @@ TEST(RepeatedEvidence, IdenticalEvidenceConverges) {
 }
 
 TEST(RepeatedEvidence, IndependentEvidenceGrowsAsBefore) {
-  Fixture f;
+  RepeatFixture f;
   const double prior = std::log(0.6 / 0.4);
   const auto after = [&](const std::optional<EvidenceView>& view) {
     Track track = f.born(f.seen(0, view));
@@ -202,7 +202,7 @@ TEST(RepeatedEvidence, IndependentEvidenceGrowsAsBefore) {
 }
 
 TEST(RepeatedEvidence, AHitMayTakeBackWhatWasSaidBefore) {
-  const Fixture f;
+  const RepeatFixture f;
   Track track = f.born(f.seen(0, kAhead, {3, 0}));
   const double before = odds(track);
   track = f.hit(track, f.seen(0.1, EvidenceView{kAhead.bearing + 3, 3}, {0, 0}));
@@ -213,7 +213,7 @@ TEST(RepeatedEvidence, AHitMayTakeBackWhatWasSaidBefore) {
 // -----------------------------------------------------------------------
 
 /// P_D .8 and .6, label 0 with .7 and .4, classes alike but for that.
-struct Looking : Fixture {
+struct Looking : RepeatFixture {
   Looking() { repeats = Repeats::kLooks; }
   MeasurementScan scan(double t, bool detected) const {
     PositionModel::Params params = test::linearSensor();

@@ -20,7 +20,7 @@ using test::linearClasses;
 using test::linearSensor;
 using test::positionScan;
 
-struct Fixture {
+struct UpdateFixture {
   std::shared_ptr<const PositionModel> sensor =
       std::make_shared<const PositionModel>(linearSensor());
   FilterModel model = exactModel(linearClasses());
@@ -32,7 +32,7 @@ struct Fixture {
 };
 
 TEST(NewTrack, IsABernoulliOfBirthAgainstClutter) {
-  const Fixture f;
+  const UpdateFixture f;
   const Track t = f.born();
   const auto& p = f.sensor->params();
   const double birth = p.births_per_scan * (0.6 * 0.7 + 0.4 * 0.4),
@@ -42,7 +42,7 @@ TEST(NewTrack, IsABernoulliOfBirthAgainstClutter) {
 }
 
 TEST(MissTrack, CostsExistenceAndTheClassesThatShouldHaveBeenSeen) {
-  const Fixture f;
+  const UpdateFixture f;
   const Track before = predictTrack(f.born(), Stamp::fromSeconds(1000.1), f.model);
   const auto scan = positionScan(f.sensor, 0.1, {});
   const auto table = likelihoodTable({before}, scan, f.model);
@@ -57,7 +57,7 @@ TEST(MissTrack, CostsExistenceAndTheClassesThatShouldHaveBeenSeen) {
 /// Log-odds of the first class against the second after a hit by a sensor that detects the first
 /// one with that probability.
 double oddsAfterHit(double detection) {
-  Fixture f;
+  UpdateFixture f;
   const Track before = predictTrack(f.born(), Stamp::fromSeconds(1000.1), f.model);
   PositionModel::Params params = linearSensor();
   params.classes[0].detection = detection;
@@ -79,7 +79,7 @@ TEST(HitTrack, ADetectionByASensorThatNeverSeesAClassDoesNotRuleItOut) {
 }
 
 TEST(HitTrack, MakesExistenceCertainAndClassesSumToOne) {
-  Fixture f;
+  UpdateFixture f;
   f.model.params.existence_max = 0.999;
   f.model.params.class_epsilon = 1e-3;
   const Track before = predictTrack(f.born(), Stamp::fromSeconds(1000.1), f.model);
@@ -95,7 +95,7 @@ TEST(HitTrack, MakesExistenceCertainAndClassesSumToOne) {
 }
 
 TEST(HitTrack, FindsAnOncomingCarAtItsSecondScan) {
-  Fixture f;
+  UpdateFixture f;
   ObjectClass& car = f.model.classes.classes[0];
   car.motion = findMotionModel("wheeled");
   car.max_speed = 50;
@@ -118,7 +118,7 @@ TEST(HitTrack, FindsAnOncomingCarAtItsSecondScan) {
 }
 
 TEST(NewTrack, APartOfSomethingLongerIsNotFast) {
-  Fixture f;
+  UpdateFixture f;
   f.model.classes.classes[0].motion = findMotionModel("wheeled");
   f.model.classes.classes[0].max_speed = 50;
   f.model.params.fast_births = 0.1;
@@ -139,7 +139,7 @@ TEST(NewTrack, APartOfSomethingLongerIsNotFast) {
 }
 
 TEST(HitTrack, NeverLetsAClassDie) {
-  Fixture f;
+  UpdateFixture f;
   f.model.params.class_epsilon = 1e-3;
   Track t = f.born();
   for (int i = 1; i <= 200; ++i) {  // a steady walk: nothing static about it
@@ -158,7 +158,7 @@ TEST(HitTrack, NeverLetsAClassDie) {
 }
 
 TEST(Gate, KeepsExactlyTheQuantile) {
-  const Fixture f;
+  const UpdateFixture f;
   FilterModel model = f.model;
   model.params.gate_probability = 0.999;
   const Track t = predictTrack(f.born(), Stamp::fromSeconds(1000), model);
@@ -173,7 +173,7 @@ TEST(Gate, KeepsExactlyTheQuantile) {
 }
 
 TEST(Prediction, FadesWhatNobodyCouldSee) {
-  Fixture f;
+  UpdateFixture f;
   f.model.params.survival_in_view = 60;
   f.model.params.survival_out_of_view = 6;
   Track t = f.born();
@@ -187,7 +187,7 @@ TEST(Prediction, FadesWhatNobodyCouldSee) {
 }
 
 /// A scan with one measurement at (1, 2) that says so much of its classes by itself.
-MeasurementScan scoredScan(const Fixture& f, double t, std::vector<double> log_class,
+MeasurementScan scoredScan(const UpdateFixture& f, double t, std::vector<double> log_class,
                            double log_clutter) {
   auto scan = positionScan(f.sensor, t, {{1, 2, 0}});
   scan.measurements[0].log_class = std::move(log_class);
@@ -196,7 +196,7 @@ MeasurementScan scoredScan(const Fixture& f, double t, std::vector<double> log_c
 }
 
 TEST(NewTrack, EvidenceByClassStandsInPlaceOfLabelAndScore) {
-  const Fixture f;
+  const UpdateFixture f;
   const auto scan = scoredScan(f, 0, {1.5, -0.5}, -0.2);
   const Track t = newTrack(likelihoodTable({}, scan, f.model).births[0], 0, scan, 0, f.model);
   const auto& p = f.sensor->params();
@@ -207,7 +207,7 @@ TEST(NewTrack, EvidenceByClassStandsInPlaceOfLabelAndScore) {
 }
 
 TEST(HitTrack, EvidenceByClassMovesTheClassesByItsRatio) {
-  const Fixture f;
+  const UpdateFixture f;
   const Track before = predictTrack(f.born(), Stamp::fromSeconds(1000.1), f.model);
   const auto after = [&](std::vector<double> log_class) {
     const auto scan = scoredScan(f, 0.1, std::move(log_class), 0);
@@ -220,7 +220,7 @@ TEST(HitTrack, EvidenceByClassMovesTheClassesByItsRatio) {
 }
 
 TEST(HitTrack, FacingFollowsTheAxisAndTheMajorityOfDirections) {
-  const Fixture f;
+  const UpdateFixture f;
   const auto body_heading = [&](double t, double yaw) {
     auto scan = positionScan(f.sensor, t, {{1, 2, 0}});
     scan.measurements[0].heading = MeasuredHeading{yaw, 0.1, 0.1};
@@ -243,7 +243,7 @@ TEST(HitTrack, FacingFollowsTheAxisAndTheMajorityOfDirections) {
 }
 
 /// A walker of 1 m/s, seen at 10 Hz with labels that speak for it, under a hard decision at .99.
-Track walkerAfter(const Fixture& f, int scans, double jump = 0) {
+Track walkerAfter(const UpdateFixture& f, int scans, double jump = 0) {
   Track track = f.born();
   for (int i = 1; i <= scans; ++i) {
     const double t = 0.1 * i;
@@ -259,7 +259,7 @@ Track walkerAfter(const Fixture& f, int scans, double jump = 0) {
 }
 
 TEST(DecidedClass, GoesOnAloneLikeInAFullBank) {
-  Fixture f;
+  UpdateFixture f;
   const Track full = walkerAfter(f, 30);
   f.model.params.decide_class = 0.99;
   const Track track = walkerAfter(f, 30);
@@ -271,7 +271,7 @@ TEST(DecidedClass, GoesOnAloneLikeInAFullBank) {
 }
 
 TEST(DecidedClass, ASurpriseWidensTheBankAtTheSamePlace) {
-  Fixture f;
+  UpdateFixture f;
   f.model.params.decide_class = 0.99;
   const Track track = walkerAfter(f, 30, 1.5);
   EXPECT_EQ(track.decided_class, -1);
@@ -280,7 +280,7 @@ TEST(DecidedClass, ASurpriseWidensTheBankAtTheSamePlace) {
 }
 
 TEST(DecidedClass, LabelsOfAnotherClassTakeTheDecisionBack) {
-  Fixture f;
+  UpdateFixture f;
   f.model.params.decide_class = 0.99;
   f.model.params.class_epsilon = 1e-3;
   Track track = walkerAfter(f, 30);
@@ -300,7 +300,7 @@ TEST(DecidedClass, LabelsOfAnotherClassTakeTheDecisionBack) {
 struct Widened {
   int steady = 0, restless = 0;
   explicit Widened(double jerk) {
-    Fixture f;
+    UpdateFixture f;
     f.model.params.decide_class = 0.99;
     f.model.params.class_epsilon = 1e-3;
     Rng rng({7, 0, 0, 0xdec1});
@@ -331,7 +331,7 @@ TEST(DecidedClass, NisSaysWhenToWidenOnceInAHundredScansElseOnlyWhenItIsDue) {
 }
 
 TEST(LikelihoodTable, HiddenObjectsKeepTheirShareOfDetection) {
-  Fixture f;
+  UpdateFixture f;
   f.model.params.occluded_detection = 0.25;
   const Track track = predictTrack(f.born(), Stamp::fromSeconds(1000.1), f.model);
   auto scan = positionScan(f.sensor, 0.1, {});

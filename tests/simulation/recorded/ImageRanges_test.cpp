@@ -11,8 +11,8 @@ namespace perception {
 namespace {
 
 constexpr int kWidth = 400, kHeight = 200;
-constexpr double kEye = 1.65;
-const Pose3 kPose = makePose(0, 0, kEye, 0) * opticalAxes();
+constexpr double kRangesEye = 1.65;
+const Pose3 kPose = makePose(0, 0, kRangesEye, 0) * opticalAxes();
 
 CameraModel camera() {
   CameraModel c;
@@ -40,7 +40,7 @@ TEST(ImageRanges, AreThoseOfReturnsRoadAndSky) {
   EXPECT_EQ(at(ranges, 10, 20), CameraView::kSky);
   EXPECT_EQ(at(ranges, 200, 20), CameraView::kSky);  // above the wall
   const double down = (180 - 99.5) / 400;            // of a row on the road before it
-  EXPECT_NEAR(at(ranges, 200, 180), kEye / std::sin(std::atan(down)), 0.1);
+  EXPECT_NEAR(at(ranges, 200, 180), kRangesEye / std::sin(std::atan(down)), 0.1);
 }
 
 TEST(ImageRanges, WhatIsDarkAboveTheHorizonIsAsFarAsWhatIsBelow) {

@@ -89,7 +89,7 @@ LidarSensor::Scan scanned(double share, const std::string& objects) {
   const std::string house = parked("house", "box", 25, 10, "length = 30\nwidth = 8\nheight = 8");
   const World world(scenarioOf(kStanding + kRoofLidar + house + objects));
   LidarCaster caster(world);
-  LidarParams p;
+  LidarSensorParams p;
   p.azimuth_from = radians(9), p.azimuth_to = radians(30);
   p.range_noise = 0, p.loss = 0;
   ShopWindows windows(share, 3);

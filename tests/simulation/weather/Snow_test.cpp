@@ -81,7 +81,7 @@ TEST(Snow, LargeFlakesFillNeighboringBeamsBrightly) {
 
 TEST(Snow, EveryFlakeInFrontOfTheSkyIsReceived) {
   Snow snow(2.5, 7);
-  const LidarParams lidar;
+  const LidarSensorParams lidar;
   int flakes = 0, dark = 0;
   test::scanSky(snow, 20, [&](int, int, const LidarPulse& pulse) {
     if (pulse.scatterers.empty() || pulse.scatterers.front().range < lidar.range_min) return;
@@ -95,7 +95,7 @@ TEST(Snow, EveryFlakeInFrontOfTheSkyIsReceived) {
 }
 
 // By a sum over ranges and diameters, of the flakes whose echo (57) detects.
-double detectableFlakes(double mm_h, const LidarParams& lidar, double nearer_than) {
+double detectableFlakes(double mm_h, const LidarSensorParams& lidar, double nearer_than) {
   constexpr double kStep = .01, kThin = .01;  // [m], [mm]
   const SizeDistribution sizes = gunnMarshall(mm_h);
   double sum = 0;
@@ -111,7 +111,7 @@ double detectableFlakes(double mm_h, const LidarParams& lidar, double nearer_tha
 }
 
 TEST(Snow, BySizesHasTheFlakesThatTheLidarDetects) {
-  LidarParams lidar;
+  LidarSensorParams lidar;
   lidar.reference_range = 120;
   Snow snow(2.5, 7, true);
   std::vector<double> ranges;
@@ -150,7 +150,7 @@ double shareBefore(double range) {
     pulse.azimuth = radians(.0036) * i;
     snow.alter(sensor, pulse, rng);
     if (pulse.scatterers.empty()) continue;
-    ++flakes, received += !echoOf(pulse, pulse.reflectivity, LidarParams()).of_surface;
+    ++flakes, received += !echoOf(pulse, pulse.reflectivity, LidarSensorParams()).of_surface;
   }
   return received / flakes;
 }

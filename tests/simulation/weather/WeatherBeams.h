@@ -34,7 +34,7 @@ inline LidarPulse wallPulse(double range) {
 /// calls see(ring, column, pulse).
 inline void scanSky(SimulatedWeather& weather, int scans,
                     const std::function<void(int, int, const LidarPulse&)>& see,
-                    double reference_range = LidarParams().reference_range) {
+                    double reference_range = LidarSensorParams().reference_range) {
   const World world(scenarioOf(kStanding + kRoofLidar));
   SensorParams sensor = world.scenario().sensors.front();
   sensor.lidar.reference_range = reference_range;

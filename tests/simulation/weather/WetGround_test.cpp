@@ -17,7 +17,7 @@ constexpr double kHeight = 1.73;  // [m] of the lidar
 LidarSensor::Scan scanned(double film_mm, const std::string& objects) {
   const World world(scenarioOf(kStanding + kRoofLidar + objects));
   LidarCaster caster(world);
-  LidarParams p;
+  LidarSensorParams p;
   p.azimuth_from = radians(-10), p.azimuth_to = radians(10);
   p.range_noise = 0, p.loss = 0;
   WetGround wet(film_mm);

@@ -1,9 +1,9 @@
-#include "libperception/simulation/LidarParams.h"
+#include "libperception/simulation/LidarSensorParams.h"
 
 namespace perception {
 
-LidarParams LidarParams::fourLayer() {
-  LidarParams p;
+LidarSensorParams LidarSensorParams::fourLayer() {
+  LidarSensorParams p;
   p.layout = Layout::kFourLayer;
   p.azimuth_from = radians(-55), p.azimuth_to = radians(55);
   p.azimuth_step = radians(0.25);
@@ -14,7 +14,7 @@ LidarParams LidarParams::fourLayer() {
   return p;
 }
 
-void LidarParams::visit(ParamVisitor& v) {
+void LidarSensorParams::visit(ParamVisitor& v) {
   v.angle("azimuth_from_deg", azimuth_from, {-180, 180}, "right end of the view");
   v.angle("azimuth_to_deg", azimuth_to, {-180, 180}, "left end of the view");
   v.angle("azimuth_step_deg", azimuth_step, {0.02, 10}, "between neighboring beams");
@@ -33,7 +33,7 @@ void LidarParams::visit(ParamVisitor& v) {
 }
 
 // HDL-64E: 32 upper lasers from +2 to -8.33 deg at 1/3 deg, 32 lower ones from -8.83 at 1/2 deg.
-std::vector<double> LidarParams::elevations() const {
+std::vector<double> LidarSensorParams::elevations() const {
   std::vector<double> result;
   if (layout == Layout::kFourLayer) return {radians(-1.2), radians(-.4), radians(.4), radians(1.2)};
   for (int i = 31; i >= 0; --i) result.push_back(radians(-8.83 - .5 * i));

@@ -8,7 +8,7 @@ namespace perception {
 
 /// A scanning lidar: [sensor.LABEL] kind = lidar64 or lidar4. Defaults: HDL-64E (data sheet,
 /// KITTI's pattern), loss and label errors assumed.
-struct LidarParams {
+struct LidarSensorParams {
   /// Elevations of its rings.
   enum class Layout { kHdl64, kFourLayer };
   Layout layout = Layout::kHdl64;  ///< elevations of the beams; from the sensor's kind
@@ -30,7 +30,7 @@ struct LidarParams {
   bool sweep = false;      ///< true: each beam has its own time within the turn
 
   /// Ibeo ALASCA XT: four layers 0.8 deg apart, 0.25 deg in azimuth, own labels.
-  static LidarParams fourLayer();
+  static LidarSensorParams fourLayer();
   void visit(ParamVisitor& v);
   /// Elevations [rad] of the rings, lowest first.
   std::vector<double> elevations() const;
