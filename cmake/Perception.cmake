@@ -39,6 +39,7 @@ endif()
 function(perception_batches TARGET)
   if(PERCEPTION_UNITY)
     set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
+    target_compile_options(${TARGET} PRIVATE -Wno-subobject-linkage)  # a source of a batch counts as a header
   endif()
 endfunction()
 

@@ -219,7 +219,7 @@ std::optional<BirthState> RadarModel::birth(const Measurement& m, ClassId c,
       along_variance * away * away.transpose() + across_variance * across * across.transpose();
   if (hasRate(m) && object_class.motion->moves) {
     RadialSpeed speed;
-    speed.headingVector = away;
+    speed.direction = away;
     speed.along = groundSpeed(m, sensor);
     if (params_.birth_heading_sigma < radians(89)) {
       speed.across_sigma =

@@ -79,7 +79,7 @@ TEST(PositionFrontEnd, ALabelThatIsNoClassesNameSpeaksForAllRoadUsersAlike) {
   p.score_offset.emplace_back("unknown", 1);
   p.score_balance.emplace_back("unknown", -0.5);
   const DetectionModel two = detection_model();
-  const DetectionModel three(two.positionParams(), {two.row(0), two.row(1), two.row(2)}, p.labels);
+  const DetectionModel three(two.params(), {two.row(0), two.row(1), two.row(2)}, p.labels);
   SensorFrame frame;
   ObjectDetections detections;
   detections.objects = {boxAt("unknown", 2.0, 10, 0)};

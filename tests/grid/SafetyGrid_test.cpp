@@ -13,7 +13,7 @@
 namespace perception {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPeriod = 0.1;  // [s] of a lidar
 
 /// A scan from a roof lidar at (x, y) that sees flat ground out to 35 m.
@@ -183,9 +183,9 @@ TEST_P(SafetyGridContract, PointsThatAreNoNumbersAreCountedAndIgnored) {
   for (int i = 0; i < 3; ++i) {
     GridScan scan = sceneWithWall(i * kPeriod, 20);
     clean->insert(scan);
-    scan.hits.emplace_back(kNan, 1, 1);
+    scan.hits.emplace_back(kNotANumber, 1, 1);
     scan.hits.emplace_back(1, std::numeric_limits<double>::infinity(), 1);
-    scan.clear.emplace_back(1, 2, kNan);
+    scan.clear.emplace_back(1, 2, kNotANumber);
     EXPECT_EQ(dirty->insert(scan).not_finite, 3U);
   }
   const auto a = clean->occupiedCells(), b = dirty->occupiedCells();

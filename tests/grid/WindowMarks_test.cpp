@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-constexpr int kCells = 60, kLayers = 20;
+constexpr int kSideCells = 60, kLayers = 20;
 
 GridParams smallWindow() {
   GridParams params;
@@ -25,7 +25,7 @@ std::set<int> crossedBy(WindowMarks<Mask>& marks, const GridScan& scan) {
   GridStats stats;
   marks.collect(scan, {0, 0, 0}, stats);
   std::set<int> cells;
-  for (int column = 0; column < kCells * kCells; ++column) {
+  for (int column = 0; column < kSideCells * kSideCells; ++column) {
     for (int z = 0; z < kLayers; ++z)
       if (marks.crossed(static_cast<std::size_t>(column)) >> z & 1)
         cells.insert(column * kLayers + z);
@@ -36,9 +36,10 @@ std::set<int> crossedBy(WindowMarks<Mask>& marks, const GridScan& scan) {
 
 int indexOf(const Vector3& p) {
   const auto at = [](double v) { return static_cast<int>(std::floor(v / 0.2)); };
-  if (p.minCoeff() < 0 || at(p.x()) >= kCells || at(p.y()) >= kCells || at(p.z()) >= kLayers)
+  if (p.minCoeff() < 0 || at(p.x()) >= kSideCells || at(p.y()) >= kSideCells ||
+      at(p.z()) >= kLayers)
     return -1;
-  return (at(p.y()) * kCells + at(p.x())) * kLayers + at(p.z());
+  return (at(p.y()) * kSideCells + at(p.x())) * kLayers + at(p.z());
 }
 
 /// Of the cells that a finely sampled beam is in, one that is not in `cells`; or -1.
@@ -70,8 +71,8 @@ void expectEveryCellOfLoneBeams(double out) {
     EXPECT_EQ(cells.count(indexOf(end)), 0U) << "the end itself is not crossed";
     const Vector3 d = (end - scan.origin).normalized();
     for (const int cell : cells) {
-      const Vector3 center(cell / kLayers % kCells * 0.2 + 0.1, cell / kLayers / kCells * 0.2 + 0.1,
-                           cell % kLayers * 0.2 + 0.1);
+      const Vector3 center(cell / kLayers % kSideCells * 0.2 + 0.1,
+                           cell / kLayers / kSideCells * 0.2 + 0.1, cell % kLayers * 0.2 + 0.1);
       EXPECT_LT((center - scan.origin).cross(d).norm(), 0.1 * std::sqrt(3.0) + 1e-3);
     }
   }

@@ -6,13 +6,13 @@ namespace perception {
 
 /// Sides of the patches that are convolved by Fourier transform, and of their half spectrum.
 enum {
-  kPatch = 16,                               ///< [cells]
-  kHalf = kPatch / 2 + 1,                    ///< columns of the spectrum of a real signal
-  kFrequencies = kPatch * kHalf,             ///< ky major, kx = 0 .. kHalf - 1
-  kFeatures = 32,                            ///< values of a HOG cell
-  kSpectrum = kFrequencies * 3 * kFeatures,  ///< floats of a patch's spectrum
-  kWeights = 6,                              ///< vectors of a group's weight: see products()
-  kOrientations = 18                         ///< contrast sensitive
+  kPatch = 16,                                  ///< [cells]
+  kHalf = kPatch / 2 + 1,                       ///< columns of the spectrum of a real signal
+  kFrequencies = kPatch * kHalf,                ///< ky major, kx = 0 .. kHalf - 1
+  kHogFeatures = 32,                            ///< values of a HOG cell
+  kSpectrum = kFrequencies * 3 * kHogFeatures,  ///< floats of a patch's spectrum
+  kWeights = 6,                                 ///< vectors of a group's weight: see products()
+  kOrientations = 18                            ///< contrast sensitive
 };
 
 /// A row of an image in three planes.

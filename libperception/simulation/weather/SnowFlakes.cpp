@@ -13,8 +13,8 @@ namespace {
 
 using Receiver = ParticleReceiver;
 
-constexpr double kReflectivity = 0.9;        // of a flake [hahner2022]
-constexpr double kPulse = 0.299792458 * 10;  // [m] c times 10 ns [hahner2022]
+constexpr double kFlakeReflectivity = 0.9;        // of a flake [hahner2022]
+constexpr double kFlakePulse = 0.299792458 * 10;  // [m] c times 10 ns [hahner2022]
 constexpr double kLargestOfMean = 7;  // diameter up to which flakes set the reach: 999 of 1000
 
 /// A flake in the beam: what it takes of the beam's width, from its right edge.
@@ -29,7 +29,7 @@ double occupancy(double mm_h) { return mm_h / (3.6e6 * kFlakeDensity * kFlakeSpe
 
 double reachOf(double mean_diameter) {
   const double widest = kLargestOfMean * mean_diameter;
-  return std::cbrt(kReflectivity * widest / (Receiver::kDivergence * Receiver::kWeakest));
+  return std::cbrt(kFlakeReflectivity * widest / (Receiver::kDivergence * Receiver::kWeakest));
 }
 
 /// The part of [0, 1] that nearer flakes shade, as disjoint intervals.
@@ -62,7 +62,7 @@ class Shade {
 double peakAt(const std::vector<Flake>& flakes, std::size_t k) {
   double sum = 0;
   for (const Flake& other : flakes) {
-    const double off = std::abs(other.range - flakes[k].range) / kPulse;
+    const double off = std::abs(other.range - flakes[k].range) / kFlakePulse;
     if (off >= .5) continue;
     const double shape = std::cos(kPi * off);
     sum += other.power * shape * shape;
@@ -95,8 +95,9 @@ void SnowFlakes::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
   Shade shade;
   for (Flake& flake : flakes) {
     const double seen = shade.cover(flake.from, flake.to);
-    flake.power =
-        flake.range < Receiver::kNearest ? 0 : kReflectivity * seen / (flake.range * flake.range);
+    flake.power = flake.range < Receiver::kNearest
+                      ? 0
+                      : kFlakeReflectivity * seen / (flake.range * flake.range);
   }
   // What is behind keeps the open part of the beam; beyond the reach flakes shade by their mean.
   pulse.reflectivity *= 1 - shade.covered();

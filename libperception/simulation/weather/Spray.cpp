@@ -18,7 +18,7 @@ constexpr double kLives = 4;                       // time constants until a clu
 constexpr double kShortestLife = 0.05;             // [s]
 constexpr std::int64_t kWarmUp = 30;               // cycles before t = 0
 constexpr double kLookHeight = 1;                  // [m] of the line of sight to an object
-constexpr std::uint32_t kBirth = 0x57EA3000;       // purpose of random numbers
+constexpr std::uint32_t kDropletBirth = 0x57EA3000;  // purpose of random numbers
 
 bool whirls(ObjectKind kind) {
   return kind == ObjectKind::kCar || kind == ObjectKind::kVan || kind == ObjectKind::kBus;
@@ -93,7 +93,7 @@ void Spray::emit(const World& world, std::size_t object, double t) {
   const double speed = state.velocity.norm(), mean = born(speed);
   if (mean <= 0) return;
   Rng rng({seed_, static_cast<std::uint64_t>(cycle_ + kWarmUp), static_cast<std::uint32_t>(object),
-           kBirth});
+           kDropletBirth});
   const double whole = std::floor(mean);
   const int count = static_cast<int>(whole) + (rng.uniform() < mean - whole ? 1 : 0);
   const double rear = -.5 * world.scenario().objects[object].length;

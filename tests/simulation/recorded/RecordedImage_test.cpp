@@ -16,14 +16,14 @@
 namespace perception {
 namespace {
 
-constexpr int kWidth = 300, kHeight = 100;
+constexpr int kImageWidth = 300, kImageHeight = 100;
 constexpr std::uint8_t kDark = 60, kLight = 180;
 
 /// Dark and light stripes, four pixels each.
 Raster stripes() {
-  Raster image{kWidth, kHeight, 3, {}};
-  for (int i = 0; i < kWidth * kHeight; ++i)
-    image.pixels.insert(image.pixels.end(), 3, i % kWidth / 4 % 2 ? kLight : kDark);
+  Raster image{kImageWidth, kImageHeight, 3, {}};
+  for (int i = 0; i < kImageWidth * kImageHeight; ++i)
+    image.pixels.insert(image.pixels.end(), 3, i % kImageWidth / 4 % 2 ? kLight : kDark);
   return image;
 }
 
@@ -43,7 +43,7 @@ struct Shot {
     if (!weather) weather = std::make_unique<SimulatedWeather>();
     weather->advance(world, sensor, 0);
     CameraView view;
-    view.camera.width = kWidth, view.camera.height = kHeight;
+    view.camera.width = kImageWidth, view.camera.height = kImageHeight;
     view.camera.fx = view.camera.fy = 1000, view.camera.cx = 149.5, view.camera.cy = 49.5;
     view.T_world_camera = makePose(0, 0, 8, 0) * opticalAxes();
     std::vector<Vector3> returns;
@@ -61,7 +61,8 @@ double difference(const Raster& image) {
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t v = 40; v < 60; ++v)
         sum +=
-            light.radianceOf(Rgb::Constant(linearOf(image.pixels[3 * (v * kWidth + u + k)]))).x();
+            light.radianceOf(Rgb::Constant(linearOf(image.pixels[3 * (v * kImageWidth + u + k)])))
+                .x();
     return sum / 80;
   };
   return radiance(148) - radiance(144);
@@ -88,10 +89,12 @@ TEST(RecordedImage, AtNightFarWallsAreDarkerByTheSquareOfTheRange) {
     double sum = 0;
     for (std::size_t u = 145; u < 155; ++u)
       for (std::size_t v = 70; v < 100; ++v)  // below the cut-off
-        sum += light.radianceOf(Rgb::Constant(linearOf(image.pixels[3 * (v * kWidth + u)]))).x();
+        sum +=
+            light.radianceOf(Rgb::Constant(linearOf(image.pixels[3 * (v * kImageWidth + u)]))).x();
     return sum;
   };
-  const Raster bright{kWidth, kHeight, 3, std::vector<std::uint8_t>(3 * kWidth * kHeight, 200)};
+  const Raster bright{kImageWidth, kImageHeight, 3,
+                      std::vector<std::uint8_t>(3 * kImageWidth * kImageHeight, 200)};
   const double near = mean(Shot().in(night, 8, 1, bright)),
                far = mean(Shot().in(night, 16, 1, bright));
   const double ambient = 1e-4, lamps = 0.2;
@@ -109,7 +112,8 @@ TEST(RecordedImage, TheSameSeedGivesTheSameBytes) {
 TEST(RecordedImage, GrayImagesStayGray) {
   SimulatedWeatherParams fog;
   fog.fog_mor = 60;
-  const Raster gray{kWidth, kHeight, 1, std::vector<std::uint8_t>(kWidth * kHeight, 90)};
+  const Raster gray{kImageWidth, kImageHeight, 1,
+                    std::vector<std::uint8_t>(kImageWidth * kImageHeight, 90)};
   const Raster after = Shot().in(fog, 30, 1, gray);
   EXPECT_EQ(after.channels, 1);
   EXPECT_EQ(after.pixels.size(), gray.pixels.size());

@@ -10,7 +10,7 @@ namespace perception {
 namespace {
 
 /// Black and white columns, which any blur makes gray.
-CameraView stripes() {
+CameraView stripedView() {
   CameraView view;
   view.camera.width = 600, view.camera.height = 200;
   view.camera.fx = view.camera.fy = 360, view.camera.cx = 300, view.camera.cy = 100;
@@ -24,7 +24,7 @@ TEST(LensDrops, BlurTheirShareOfTheImage) {
     double blurred = 0;
     constexpr int kImages = 20;
     for (std::uint64_t k = 0; k < kImages; ++k) {
-      CameraView view = stripes();
+      CameraView view = stripedView();
       Rng rng({1, k, 0, 0});
       addLensDrops(share, view, rng);
       for (std::size_t i = 0; i < view.linear.size(); ++i)
@@ -35,10 +35,10 @@ TEST(LensDrops, BlurTheirShareOfTheImage) {
 }
 
 TEST(LensDrops, ADryLensChangesNothing) {
-  CameraView view = stripes();
+  CameraView view = stripedView();
   Rng rng({1, 0, 0, 0});
   addLensDrops(0, view, rng);
-  EXPECT_EQ(view.linear, stripes().linear);
+  EXPECT_EQ(view.linear, stripedView().linear);
 }
 
 }  // namespace

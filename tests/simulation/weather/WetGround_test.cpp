@@ -14,7 +14,7 @@ using test::kRoofLidar, test::kStanding, test::parked, test::scenarioOf;
 constexpr double kHeight = 1.73;  // [m] of the lidar
 
 /// Scan of a street with a wall whose face is at x = 24.5 m.
-LidarSensor::Scan scanned(double film_mm, const std::string& objects) {
+LidarSensor::Scan wetScan(double film_mm, const std::string& objects) {
   const World world(scenarioOf(kStanding + kRoofLidar + objects));
   LidarCaster caster(world);
   LidarSensorParams p;
@@ -40,13 +40,13 @@ double farthestGround(const LidarSensor::Scan& scan) {
 }
 
 TEST(WetGround, IsLostFarAway) {
-  EXPECT_GT(farthestGround(scanned(0, "")), 40);
-  EXPECT_LT(farthestGround(scanned(1.2, "")), 30);
-  EXPECT_GT(farthestGround(scanned(1.2, "")), 12);
+  EXPECT_GT(farthestGround(wetScan(0, "")), 40);
+  EXPECT_LT(farthestGround(wetScan(1.2, "")), 30);
+  EXPECT_GT(farthestGround(wetScan(1.2, "")), 12);
 }
 
 TEST(WetGround, GhostsAreMirrorImagesBelowTheRoad) {
-  const auto scan = scanned(1.2, kWall);
+  const auto scan = wetScan(1.2, kWall);
   int ghosts = 0, under_the_wall = 0;
   for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
     if (scan.phantoms[i] != Phantom::kMirror) continue;
@@ -60,9 +60,9 @@ TEST(WetGround, GhostsAreMirrorImagesBelowTheRoad) {
 }
 
 TEST(WetGround, DryRoadMirrorsNothing) {
-  const auto scan = scanned(0, kWall);
+  const auto scan = wetScan(0, kWall);
   EXPECT_EQ(std::count(scan.phantoms.begin(), scan.phantoms.end(), Phantom::kMirror), 0);
-  const auto empty = scanned(1.2, "");
+  const auto empty = wetScan(1.2, "");
   EXPECT_EQ(std::count(empty.phantoms.begin(), empty.phantoms.end(), Phantom::kMirror), 0);
 }
 
