@@ -62,8 +62,7 @@ void addLidar(Findings& out, const std::string& label, const SensorFacts& facts)
                       static_cast<double>(facts.returns) / static_cast<double>(facts.frames),
                       facts.rangeBelow(0.999), degrees(facts.angleOf(0.999))));
   const std::string missing = facts.inputs ? facts.inputs->missing() : "";
-  if (!missing.empty())
-    out.add(Weight::kNote, label, missing + ": left out of the evidence");
+  if (!missing.empty()) out.add(Weight::kNote, label, missing + ": left out of the evidence");
   if (!facts.high) {
     out.add(Weight::kNote, label, "[weather] filter is left off without intensities");
   } else if (*facts.high > 1.001 || *facts.low < 0) {

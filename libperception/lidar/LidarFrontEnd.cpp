@@ -92,8 +92,8 @@ void describeSolid(const SensorFrame& frame, const LidarCloud& cloud, const Obst
   std::vector<std::uint32_t> slab;
   for (std::uint32_t i = 0; i < found.height.size(); ++i) {
     if (found.height[i] <= low || found.height[i] >= high) continue;
-    const bool trusted = cloud.trust.empty() ||
-                         cloud.trust[found.points.source[i]] >= 1 - kHardlyDoubted;
+    const bool trusted =
+        cloud.trust.empty() || cloud.trust[found.points.source[i]] >= 1 - kHardlyDoubted;
     if (doubted[i] || !trusted) slab.push_back(i);
   }
   const auto shares = solidShares(found.points, cells, slab);

@@ -12,16 +12,16 @@ namespace {
 constexpr float kBend = 0.3f;        // [m] in range, of a surface from cell to cell
 constexpr int kLeastCells = 4;       // about a return that tell
 constexpr float kLeastSolid = 0.3f;  // of these: the corner of a surface fills four in nine
-constexpr int kLeastInRow = 3;  // the same where beams are far apart: one row of cells
-constexpr float kGrazing = 0.05f;  // [-] of the range: a cell of 0.4 deg on a side at 8 deg
+constexpr int kLeastInRow = 3;       // the same where beams are far apart: one row of cells
+constexpr float kGrazing = 0.05f;    // [-] of the range: a cell of 0.4 deg on a side at 8 deg
 constexpr double kMostLoose = 0.5;   // of a cluster
 
 /// Cells of direction about a return.
 struct CellsAbout {
   int solid = 0, passed = 0;  ///< no beam, or one, returns from behind it
   bool loose() const {
-    return solid + passed >= kLeastCells && static_cast<float>(solid) <
-                                                kLeastSolid * static_cast<float>(solid + passed);
+    return solid + passed >= kLeastCells &&
+           static_cast<float>(solid) < kLeastSolid * static_cast<float>(solid + passed);
   }
 };
 

@@ -26,9 +26,9 @@ bool isOrdered(const LidarCloud& cloud) {
 }
 
 const char* wordsOf(IntensityKind kind) {
-  constexpr std::array<const char*, 4> kWords = {
-      "", "no intensity", "intensity is one value for all returns",
-      "intensity has only a handful of values"};
+  constexpr std::array<const char*, 4> kWords = {"", "no intensity",
+                                                 "intensity is one value for all returns",
+                                                 "intensity has only a handful of values"};
   return kWords[static_cast<std::size_t>(kind)];
 }
 

@@ -7,9 +7,7 @@ constexpr double kWake = 0.9;  // the least existence of a track that leaves a w
 
 }  // namespace
 
-bool PhantomCauses::any() const {
-  return weather > 0 || (wakes != nullptr && !wakes->empty());
-}
+bool PhantomCauses::any() const { return weather > 0 || (wakes != nullptr && !wakes->empty()); }
 
 CausesHere PhantomCauses::at(const Vector2& place, Stamp now) const {
   const bool left = wakes != nullptr && wakes->hasLeft(place, now);

@@ -7,7 +7,7 @@
 namespace perception {
 namespace {
 
-constexpr double kCube = 0.4;          // [m] two cells (assumed)
+constexpr double kCube = 0.4;           // [m] two cells (assumed)
 constexpr std::ptrdiff_t kSeveral = 2;  // returns in a cube (assumed)
 
 struct CubePlace {

@@ -19,7 +19,7 @@ constexpr double kHardly = 0.05;  // doubt that needs no cause, for it decides n
 /// Share of the directions about a return that end there from which it is of a solid surface, and
 /// that from which it may be of one: the corner of a surface fills four in nine (assumed).
 constexpr float kWall = 0.75F, kPerhapsSurface = 0.4F;
-constexpr double kFresh = 0.5;    // [s] after which a scan says nothing of the way ahead; assumed
+constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
 
 // The vehicle on the ground plane: z = 0 is the ground.
 Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {

@@ -35,7 +35,7 @@ struct PathAhead {
   bool known = false;  ///< false: no lidar scan within half a second
   Corridor corridor;
   FreeDistance free;
-  bool in_cloud = false;  ///< most returns up to the obstacle are doubted
+  bool in_cloud = false;                     ///< most returns up to the obstacle are doubted
   bool by_returns = false;                   ///< of one scan, and not by occupied cells
   std::uint32_t returns = 0, overruled = 0;  ///< as FreePath
 };
@@ -65,7 +65,7 @@ class SafetyMonitor {
   TrustParams trust_;
   std::unique_ptr<SafetyGrid> grid_;
   PersistentPlaces places_;  ///< of doubted surfaces, in the newest scan
-  ObstacleScan last_;  ///< the newest scan's returns
+  ObstacleScan last_;        ///< the newest scan's returns
   bool any_ = false;
   std::optional<Stamp> near_;  ///< of the last scene, if an obstacle was too near
   double front_ = 0;           ///< [m] x of the own vehicle's front, ego frame

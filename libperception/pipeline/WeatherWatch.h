@@ -34,7 +34,7 @@ class WeatherWatch {
   double clear() const { return clear_; }  ///< probability of clear air at the last scan
   /// P(the air is not clear) at this lidar's last scan; 0 for one whose returns are not weighed.
   double notClear(const std::string& sensor) const;
-  double fog() const { return fog_; }      ///< probability of fog at the last scan
+  double fog() const { return fog_; }  ///< probability of fog at the last scan
   /// Rows since the last call.
   std::vector<WeatherRow> take();
 

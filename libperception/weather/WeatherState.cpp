@@ -176,7 +176,8 @@ WeatherState WeatherEstimator::state() const {
   const double wet = std::exp(log_p_[1]), is_snow = 1 / (1 + std::exp(-snow));
   state.probability = {std::exp(log_p_[0]), wet * (1 - is_snow), wet * is_snow,
                        std::exp(log_p_[2])};
-  if (now.any) state.flurry = 1 / (1 + std::exp(-airOf(now)) * (1 - 2 * kPriorRest) / (2 * kPriorRest));
+  if (now.any)
+    state.flurry = 1 / (1 + std::exp(-airOf(now)) * (1 - 2 * kPriorRest) / (2 * kPriorRest));
   state.rain_mm_h = rates_.rain(near, signs.open, farther < kDropsEnd);
   state.snow_mm_h = rates_.snow(all);
   state.visibility = visibilityOfReach(now.reach);

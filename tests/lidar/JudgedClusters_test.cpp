@@ -164,8 +164,7 @@ TEST(JudgedClusters, WhatIsSurelyAPhantomIsLeftOutAndSaidOfItsReturns) {
   const Judged doubted(scene, byLength(-4, 4, 3)), judged(scene, byLength(-4, 4, 9));
   EXPECT_EQ(doubted.clusters.size(), 2u) << "a phantom by .27, a person by .72";
   ASSERT_EQ(judged.clusters.size(), 1u) << "the car";
-  const Judgement judgement =
-      judge(judged.frame, judged.found, *byLength(-4, 4, 9));
+  const Judgement judgement = judge(judged.frame, judged.found, *byLength(-4, 4, 9));
   ASSERT_EQ(judgement.phantom.size(), judged.found.obstacles.size());
   for (std::size_t i = 0; i < judgement.phantom.size(); ++i) {
     if (judgement.phantom[i] == PlacedReturns::kNoCluster) continue;
@@ -177,9 +176,8 @@ TEST(JudgedClusters, APhantomIsSurerWhereSomethingMakesPhantoms) {
   const Judged judged(parkedStreet(), byLength(-4, 4, 3));
   ASSERT_EQ(judged.clusters.size(), 2u) << "the person, a phantom by .27, stands";
   const auto in = [&](const CausesHere& causes) {
-    return judge(judged.frame, judged.found, *byLength(-4, 4, 3), [=](const Vector2& place) {
-      return place.y() < -3 ? causes : CausesHere{};
-    });
+    return judge(judged.frame, judged.found, *byLength(-4, 4, 3),
+                 [=](const Vector2& place) { return place.y() < -3 ? causes : CausesHere{}; });
   };
   const auto highest = [](const Judgement& j) {
     return *std::max_element(j.phantom.begin(), j.phantom.end());

@@ -27,7 +27,8 @@ IntensityKind kindIn(std::size_t values, float scale) {
 }
 
 TEST(LidarInputs, IntensitiesOfAnyScaleAreUsable) {
-  for (const float scale : {1 / 255.f, 1.f, 257.f}) EXPECT_EQ(kindIn(100, scale), IntensityKind::kUsable);
+  for (const float scale : {1 / 255.f, 1.f, 257.f})
+    EXPECT_EQ(kindIn(100, scale), IntensityKind::kUsable);
 }
 
 TEST(LidarInputs, OneValueForAllReturnsRanksNothing) {

@@ -23,7 +23,8 @@ auto count(const std::vector<char>& again) { return std::count(again.begin(), ag
 TEST(PersistentPlaces, WhatIsThereAgainPersists) {
   PersistentPlaces places;
   EXPECT_EQ(count(places.add(surfaceAt(20, 0))), 0);
-  EXPECT_GT(count(places.add(surfaceAt(20.05, -0.05))), 30) << "but for a pose that is a little off";
+  EXPECT_GT(count(places.add(surfaceAt(20.05, -0.05))), 30)
+      << "but for a pose that is a little off";
 }
 
 TEST(PersistentPlaces, WhatIsElsewhereDoesNot) {

@@ -218,8 +218,9 @@ TEST(SafetyMonitor, InWeatherOneScanBlocksOnlyByItsClusters) {
   };
   EXPECT_FALSE(after(1, 1, loose).free.blocked);
   EXPECT_TRUE(after(1, 0, loose).free.blocked);
-  EXPECT_TRUE(after(1, 1, [](Scan& scan) { scan.returns.phantom.assign(scan.returns.size(), 0); })
-                  .free.blocked);
+  EXPECT_TRUE(after(1, 1, [](Scan& scan) {
+                scan.returns.phantom.assign(scan.returns.size(), 0);
+              }).free.blocked);
 }
 
 TEST(SafetyMonitor, ManyDoubtedReturnsOfOneScanAreNoObstacle) {
