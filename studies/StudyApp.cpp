@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "libperception/app/Programs.h"
 #include "libperception/app/StudyFolder.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/pipeline/LogRecorder.h"
@@ -278,5 +279,7 @@ StudyReport StudyApp::snowOfLogs() {
         {std::filesystem::path(file).stem().string(), readSnowScans(file, params.sector)});
   return snowRealismStudy(params, logs.front(), {logs.begin() + 1, logs.end()});
 }
+
+std::unique_ptr<App> studyApp() { return std::make_unique<StudyApp>(); }
 
 }  // namespace perception

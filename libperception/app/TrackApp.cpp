@@ -10,6 +10,7 @@
 #include <map>
 #include <thread>
 
+#include "libperception/app/Programs.h"
 #include "libperception/dds/RosTopics.h"
 #include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/LiveInput.h"
@@ -235,5 +236,7 @@ void TrackApp::trackLog(const Shard& shard) {
   if (const auto learned = run.learned(); !learned.empty())
     fmt::print("learned, for the INI:\n{}\n", fmt::join(learned, "\n"));
 }
+
+std::unique_ptr<App> trackApp() { return std::make_unique<TrackApp>(); }
 
 }  // namespace perception

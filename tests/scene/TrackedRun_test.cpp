@@ -125,7 +125,7 @@ TEST(TrackedRun, WritesTheSameBytesInALocaleWithDecimalComma) {
   writeRun(plain.path(), threeScenes());
   const std::string before = std::setlocale(LC_ALL, nullptr);
   if (!std::setlocale(LC_ALL, "de_DE.UTF-8"))
-    GTEST_SKIP() << "no locale de_DE.UTF-8 on this machine";
+    GTEST_SKIP() << "missing tool: locale de_DE.UTF-8 (package locales)";
   writeRun(comma.path(), threeScenes());
   std::setlocale(LC_ALL, before.c_str());
   EXPECT_EQ(readText(plain / "tracks.csv"), readText(comma / "tracks.csv"));
