@@ -104,11 +104,11 @@ std::vector<double> steps(const std::vector<Stamp>& stamps) {
 
 /// The shortest rotation that takes a unit vector, not pointing down, to the z axis: Rodrigues'
 /// formula.
-Matrix3 uprightRotation(const Vector3& normal) {
+Eigen::Matrix3d uprightRotation(const Vector3& normal) {
   const Vector3 axis = normal.cross(Vector3::UnitZ());  // its length is the angle's sine
-  Matrix3 cross;
+  Eigen::Matrix3d cross;
   cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
-  return Matrix3::Identity() + cross + cross * cross / (1 + normal.z());
+  return Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + normal.z());
 }
 
 }  // namespace
