@@ -20,6 +20,7 @@ readonly exit_usage=64 exit_unavailable=69  # libperception/core/Error.h
 packages=(
   # to build
   g++ cmake make
+  mold                   # links 40 programs in a tenth of the time
   libmrpt-obs-dev        # observations, rawlogs
   libmrpt-maps-dev       # point clouds, occupancy grids
   libmrpt-bayes-dev      # the particle-filter framework

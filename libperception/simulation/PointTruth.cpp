@@ -38,7 +38,7 @@ constexpr std::uint32_t kRoadLabel = 40;
 
 }  // namespace
 
-std::uint32_t pointLabelOf(Phantom phantom) {
+std::uint32_t labelOf(Phantom phantom) {
   switch (phantom) {
     case Phantom::kNone:
       return 0;
