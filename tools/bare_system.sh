@@ -34,6 +34,7 @@ bareAptConfiguration() {
   rm -f "$root/etc/apt/sources.list"
   bareMirrors "$suite" | sed 's/^/deb /; s/$/ main/' >"$root/etc/apt/sources.list"
   apt-config dump 2>/dev/null | grep -E '^Acquire::(https?|Check-|ForceIPv4|Retries)' >"$root/etc/apt/apt.conf.d/90machine" || true
+  echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/unsafe-io"  # nothing here must survive a power cut
   cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
 }
 
