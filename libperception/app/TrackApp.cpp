@@ -122,11 +122,9 @@ void TrackApp::run() {
     return;
   }
   if (config_file.empty()) throw Error(ExitCode::kUsage, "-c/--config is needed");
-  {
-    Config config = configWithOptions();
-    PipelineSetup::read(config);
-    if (configDone(config)) return;
-  }
+  Config config = configWithOptions();
+  const PipelineSetup setup = PipelineSetup::read(config);
+  if (configDone(config)) return;
   if (inputs.empty()) throw Error(ExitCode::kUsage, "-i/--input: at least one rawlog is needed");
   if (output.empty()) throw Error(ExitCode::kUsage, "-o/--output is needed");
   checkInputs();
@@ -141,7 +139,7 @@ void TrackApp::run() {
                                                 log_of[name], log, output, name));
     }
   }
-  for (const Shard& shard : shards()) trackLog(shard);
+  for (const Shard& shard : shards(config.effectiveText())) trackLog(setup, shard);
 }
 
 void TrackApp::checkInputs() const {
@@ -171,10 +169,7 @@ std::unique_ptr<ObservationInput> TrackApp::openInput(const std::string& log) co
   return std::make_unique<ReadAhead>(std::move(reader));
 }
 
-std::vector<TrackApp::Shard> TrackApp::shards() {
-  Config config = configWithOptions();
-  PipelineSetup::read(config);
-  const std::string effective_ini = config.effectiveText();
+std::vector<TrackApp::Shard> TrackApp::shards(const std::string& effective_ini) {
   std::vector<Shard> out;
   for (const auto& log : inputs) {
     const std::string dir =
@@ -195,10 +190,7 @@ std::vector<TrackApp::Shard> TrackApp::shards() {
   return out;
 }
 
-void TrackApp::trackLog(const Shard& shard) {
-  Config config = configWithOptions();
-  const PipelineSetup setup = PipelineSetup::read(config);
-  config.finish();
+void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
   out_scenes.clear();
   out_record = {};
   LogRun run(setup, {shard.log, shard.dir, shard.export_file}, openInput(shard.log));

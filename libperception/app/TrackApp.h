@@ -44,8 +44,8 @@ class TrackApp : public App {
     std::string log, dir, export_file, effective_ini, hash;
   };
   /// Those that are left to do.
-  std::vector<Shard> shards();
-  void trackLog(const Shard& shard);
+  std::vector<Shard> shards(const std::string& effective_ini);
+  void trackLog(const PipelineSetup& setup, const Shard& shard);
   void checkInputs() const;
   int threadCount() const;
   std::unique_ptr<ObservationInput> openInput(const std::string& log) const;
