@@ -13,6 +13,7 @@ foreach(part core imgproc imgcodecs video calib3d dnn objdetect dpm ml)
   add_library(opencv_${part} UNKNOWN IMPORTED)
   set_target_properties(opencv_${part} PROPERTIES IMPORTED_LOCATION ${OPENCV_${part}_LIBRARY}
                         INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
+  list(APPEND OPENCV_LIBRARIES ${OPENCV_${part}_LIBRARY})
 endforeach()
 find_package(TBB REQUIRED)
 find_package(CycloneDDS REQUIRED)
@@ -106,11 +107,14 @@ if(PERCEPTION_LATE_IMAGE_CODECS)
     target_link_options(perception_image_codecs PRIVATE -Wl,-Bsymbolic-functions)
     set_target_properties(perception_image_codecs PROPERTIES PREFIX "" OUTPUT_NAME ${IMAGE_CODECS} SUFFIX ""
                           LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/perception)
+    add_custom_command(TARGET perception_image_codecs POST_BUILD VERBATIM
+      COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DOURS=$<TARGET_FILE:perception_image_codecs> -DTHEIRS=${FOLDER}/${IMAGE_CODECS}
+              "-DUSERS=$<TARGET_FILE:mrpt::img>;${OPENCV_LIBRARIES}" -P ${CMAKE_SOURCE_DIR}/cmake/ImageCodecsCheck.cmake)
   endif()
 endif()
 
-# perception_late_image_codecs(TARGET): for programs, also of tests. First on the command line: of libraries of one name the
-# linker takes the first. It also refuses to link where a library needs what this one lacks.
+# perception_late_image_codecs(TARGET): for programs, also of tests. First on the command line: of libraries of one name linkers
+# take the first.
 function(perception_late_image_codecs TARGET)
   if(TARGET perception_image_codecs)
     add_dependencies(${TARGET} perception_image_codecs)

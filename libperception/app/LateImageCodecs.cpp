@@ -42,8 +42,8 @@ Function* theirs(Function* ours) {
 }  // namespace
 }  // namespace perception
 
-// What version 4.6 exports: MRPT and OpenCV's other libraries need no more, or programs do not
-// link.
+// What version 4.6 exports: MRPT and OpenCV's other libraries need no more
+// (cmake/ImageCodecsCheck.cmake).
 namespace cv {
 
 using perception::theirs;
