@@ -133,6 +133,8 @@ function(perception_program NAME)
   add_executable(${PROGRAM} ${CMAKE_SOURCE_DIR}/apps/${PROGRAM}/${PROGRAM}_main.cpp)
   set_property(GLOBAL APPEND PROPERTY PERCEPTION_PROGRAMS ${PROGRAM})
   perception_late_image_codecs(${PROGRAM})
+  # The loader looks for a name in one library after the other, and finds most in these two.
+  target_link_options(${PROGRAM} PRIVATE LINKER:--push-state,--no-as-needed,$<TARGET_FILE:mrpt::expr>,-lstdc++,--pop-state)
   if(ARG_SOURCES)
     list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/libperception/)
     list(TRANSFORM ARG_SOURCES APPEND .cpp)
