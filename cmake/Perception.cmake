@@ -106,7 +106,7 @@ if(PERCEPTION_LATE_IMAGE_CODECS)
     target_link_libraries(perception_image_codecs PRIVATE perception_options ${CMAKE_DL_LIBS})
     target_link_options(perception_image_codecs PRIVATE -Wl,-Bsymbolic-functions)
     set_target_properties(perception_image_codecs PROPERTIES PREFIX "" OUTPUT_NAME ${IMAGE_CODECS} SUFFIX ""
-                          LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/perception)
+                          LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${PLUGIN_DIR})  # as installed
     add_custom_command(TARGET perception_image_codecs POST_BUILD VERBATIM
       COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DOURS=$<TARGET_FILE:perception_image_codecs> -DTHEIRS=${FOLDER}/${IMAGE_CODECS}
               "-DUSERS=$<TARGET_FILE:mrpt::img>;${OPENCV_LIBRARIES}" -P ${CMAKE_SOURCE_DIR}/cmake/ImageCodecsCheck.cmake)
@@ -120,8 +120,8 @@ function(perception_late_image_codecs TARGET)
     add_dependencies(${TARGET} perception_image_codecs)
     target_link_options(${TARGET} PRIVATE
                         LINKER:--push-state,--no-as-needed,$<TARGET_FILE:perception_image_codecs>,--pop-state)
-    file(RELATIVE_PATH INSTALLED /${CMAKE_INSTALL_BINDIR} /${PLUGIN_DIR})
-    set_target_properties(${TARGET} PROPERTIES BUILD_RPATH "\$ORIGIN/../lib/perception" INSTALL_RPATH "\$ORIGIN/${INSTALLED}")
+    file(RELATIVE_PATH BESIDE /${CMAKE_INSTALL_BINDIR} /${PLUGIN_DIR})
+    set_target_properties(${TARGET} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "\$ORIGIN/${BESIDE}")
   endif()
 endfunction()
 

@@ -24,7 +24,7 @@ const fs::path kBuild(PERCEPTION_BINARY_DIR);
 class LateImageCodecs : public testing::Test {
  protected:
   void SetUp() override {
-    if (!fs::exists(kBuild / "lib/perception"))
+    if (!fs::exists(kBuild / PERCEPTION_PLUGIN_DIR))
       GTEST_SKIP() << "built without (PERCEPTION_LATE_IMAGE_CODECS)";
   }
 
@@ -53,7 +53,7 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST_F(LateImageCodecs, AProgramStartsWithoutTheLibrariesOfPictureFiles) {
   const std::string libraries = librariesOf(kBuild / "bin/perception-track");
-  EXPECT_TRUE(has(libraries, "/lib/perception/libopencv_imgcodecs.so.")) << libraries;
+  EXPECT_TRUE(has(libraries, PERCEPTION_PLUGIN_DIR "/libopencv_imgcodecs.so.")) << libraries;
   EXPECT_FALSE(has(libraries, "libgdal")) << libraries;
 }
 
@@ -63,7 +63,7 @@ TEST_F(LateImageCodecs, AProgramThatIsCopiedElsewhereHasOpenCvsOwn) {
   fs::copy_file(kBuild / "bin/perception-track", copied);
   const std::string libraries = librariesOf(copied);
   EXPECT_TRUE(has(libraries, "libopencv_imgcodecs.so.")) << libraries;
-  EXPECT_FALSE(has(libraries, "/lib/perception/")) << libraries;
+  EXPECT_FALSE(has(libraries, PERCEPTION_PLUGIN_DIR "/")) << libraries;
   EXPECT_TRUE(has(outputOf({copied, "--version"}), "perception-track "));
 }
 
