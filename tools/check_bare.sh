@@ -32,14 +32,14 @@ trap 'exit 130' INT TERM
 TIMEFORMAT='%0R s'
 echo "== Making a bare Debian ($suite), a minute where none is kept"
 time bareMake "$suite"
-readonly folder="home/stranger/all weather/perception"
+readonly folder="srv/stranger/all weather/perception"
 bareClone "$source" "$folder"
 if [[ $user != root ]]; then
   bareRun apt-get -q update >/dev/null
   bareRun apt-get -q -y install --no-install-recommends sudo >/dev/null
-  bareRun useradd --shell /bin/bash "$user"
+  bareRun useradd --shell /bin/bash --home-dir "/srv/$user" "$user"
   echo "$user ALL=(ALL) NOPASSWD: ALL" >"$bare_root/etc/sudoers.d/$user"
-  bareRun chown -R "$user:" /home/stranger
+  bareRun chown -R "$user:" /srv/stranger
 fi
 
 summary="" code=0
