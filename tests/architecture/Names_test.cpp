@@ -35,7 +35,7 @@ std::set<std::string> hiddenNames(const std::string& text) {
 }
 
 /// libperception/filter/state/Track.cpp: libperception/filter.
-std::string moduleOf(const std::string& path) {
+std::string folderOfModule(const std::string& path) {
   const std::size_t first = path.find('/');
   const bool deep = path.rfind("libperception/", 0) == 0 || path.rfind("tests/", 0) == 0;
   return path.substr(0, deep ? path.find('/', first + 1) : first);
@@ -47,7 +47,7 @@ std::vector<std::string> namesThereTwice(const std::vector<SourceFile>& files) {
   for (const SourceFile& file : files) {
     if (!file.isSource()) continue;
     for (const std::string& name : hiddenNames(file.text)) {
-      const auto [home, is_new] = homes.emplace(moduleOf(file.path) + ' ' + name, file.path);
+      const auto [home, is_new] = homes.emplace(folderOfModule(file.path) + ' ' + name, file.path);
       if (!is_new) twice.push_back(name + ": " + home->second + ", " + file.path);
     }
   }

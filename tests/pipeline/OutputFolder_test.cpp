@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
+void putText(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
 std::string textOf(const std::string& path) {
   std::ostringstream text;
@@ -63,9 +63,9 @@ TEST(OutputFolder, FilesAppearTogetherAtCommit) {
   const TemporaryFolder base;
   OutputFolder folder(base / "a/b/out/");
   EXPECT_EQ(folder.path(), base / "a/b/out");
-  write(folder.pathFor("tracks.csv"), "t");
-  write(folder.pathFor("plots/range.png"), "p");
-  write(folder.pathFor("done.json"), "d");
+  putText(folder.pathFor("tracks.csv"), "t");
+  putText(folder.pathFor("plots/range.png"), "p");
+  putText(folder.pathFor("done.json"), "d");
   EXPECT_EQ(namesIn(folder.path()).size(), 1u);  // the hidden one
   folder.commit();
   EXPECT_EQ(namesIn(folder.path()), (Names{"done.json", "plots", "tracks.csv"}));
@@ -96,7 +96,7 @@ TEST(OutputFolder, WithoutCommitNothingIsLeft) {
   const TemporaryFolder base;
   {
     OutputFolder folder(base / "a/b");
-    write(folder.pathFor("tracks.csv"), "t");
+    putText(folder.pathFor("tracks.csv"), "t");
   }
   EXPECT_EQ(namesIn(base.path()), Names{});
 }
@@ -104,10 +104,10 @@ TEST(OutputFolder, WithoutCommitNothingIsLeft) {
 TEST(OutputFolder, WithoutCommitAnEarlierResultStays) {
   const TemporaryFolder base;
   fs::create_directories(base / "out");
-  write(base / "out/done.json", "old");
+  putText(base / "out/done.json", "old");
   {
     OutputFolder folder(base / "out");
-    write(folder.pathFor("done.json"), "new");
+    putText(folder.pathFor("done.json"), "new");
   }
   EXPECT_EQ(namesIn(base / "out"), Names{"done.json"});
   EXPECT_EQ(textOf(base / "out/done.json"), "old");
@@ -117,10 +117,10 @@ TEST(OutputFolder, AnEarlierResultIsReplacedFileByFile) {
   const TemporaryFolder base;
   fs::create_directories(base / "out");
   for (const char* name : {"done.json", "tracks.csv", "notes.txt"})
-    write(base / "out/" + name, "old");
+    putText(base / "out/" + name, "old");
   OutputFolder folder(base / "out");
-  write(folder.pathFor("tracks.csv"), "new");
-  write(folder.pathFor("done.json"), "new");
+  putText(folder.pathFor("tracks.csv"), "new");
+  putText(folder.pathFor("done.json"), "new");
   folder.commit();
   EXPECT_EQ(namesIn(folder.path()), (Names{"done.json", "notes.txt", "tracks.csv"}));
   EXPECT_EQ(textOf(base / "out/tracks.csv"), "new");
@@ -131,12 +131,12 @@ TEST(OutputFolder, AnEarlierResultIsReplacedFileByFile) {
 TEST(OutputFolder, AnInterruptedCommitLeavesNoDoneFile) {
   const TemporaryFolder base;
   fs::create_directories(base / "out/tracks.csv");  // a folder in the way of the file
-  write(base / "out/tracks.csv/x", "");
-  write(base / "out/done.json", "old");
+  putText(base / "out/tracks.csv/x", "");
+  putText(base / "out/done.json", "old");
   {
     OutputFolder folder(base / "out");
-    write(folder.pathFor("done.json"), "new");
-    write(folder.pathFor("tracks.csv"), "new");
+    putText(folder.pathFor("done.json"), "new");
+    putText(folder.pathFor("tracks.csv"), "new");
     try {
       folder.commit();
       FAIL() << "a file cannot replace a folder";
@@ -158,7 +158,7 @@ TEST(OutputFolder, APromisedFileThatWasNeverWrittenIsAnError) {
 
 TEST(OutputFolder, CannotBeCreatedSaysWhy) {
   const TemporaryFolder base;
-  write(base / "file", "");
+  putText(base / "file", "");
   EXPECT_EQ(
       failureOf(base / "file"),
       std::pair(73, (base / "file") +
@@ -185,7 +185,7 @@ TEST(OutputFolder, TakesBackTheParentsItMadeWhenTheRestFails) {
 TEST(OutputFolder, ASecondRunFindsItBusyAndHarmsNothing) {
   const TemporaryFolder base;
   OutputFolder folder(base / "out");
-  write(folder.pathFor("done.json"), "first");
+  putText(folder.pathFor("done.json"), "first");
   EXPECT_EQ(failureOf(base / "out"),
             std::pair(75, (base / "out") + ": busy: another run writes into it"));
   folder.commit();
@@ -201,7 +201,7 @@ TEST(OutputFolder, LeftoversOfKilledRunsOfThisHostGoAway) {
   const std::string of_other = base / "out/.unfinished.elsewhere.5";
   fs::create_directories(of_dead);
   fs::create_directories(of_other);
-  write(of_dead + "/tracks.csv", "half");
+  putText(of_dead + "/tracks.csv", "half");
   EXPECT_EQ(failureOf(base / "out").first, 0);
   EXPECT_EQ(namesIn(base / "out"), Names{".unfinished.elsewhere.5"});
 }
@@ -216,7 +216,7 @@ TEST(OutputFolder, NamesStayInside) {
 TEST(OutputFolder, PathsMayHoldSpacesAndUmlauts) {
   const TemporaryFolder base;
   OutputFolder folder(base / "m\xC3\xBC ll");
-  write(folder.pathFor("done.json"), "d");
+  putText(folder.pathFor("done.json"), "d");
   folder.commit();
   EXPECT_EQ(textOf(base / "m\xC3\xBC ll/done.json"), "d");
 }
