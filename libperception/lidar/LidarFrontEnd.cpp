@@ -4,6 +4,7 @@
 
 #include "libperception/lidar/JudgedClusters.h"
 #include "libperception/lidar/LidarMeasurements.h"
+#include "libperception/lidar/LooseReturns.h"
 #include "libperception/lidar/Overlaps.h"
 #include "libperception/lidar/SplitGround.h"
 
@@ -77,6 +78,26 @@ void gatherObstacles(const LidarCloud& cloud, LidarDetections& found) {
     found.trust[k] = cloud.trust[points.source[found.obstacles[k]]];
 }
 
+/// Shares of solid directions about all returns of the slab of obstacles, trusted or not.
+void describeSolid(const ObstacleParams& params, LidarDetections& found) {
+  const auto low = static_cast<float>(params.height_min), high = static_cast<float>(params.height_max);
+  std::vector<std::uint32_t> slab;
+  for (std::uint32_t i = 0; i < found.height.size(); ++i)
+    if (found.height[i] > low && found.height[i] < high) slab.push_back(i);
+  const auto shares = solidShares(found.points, DirectionCells(found.points), slab);
+  found.solid.assign(found.height.size(), PlacedReturns::kFewDirections);
+  for (std::size_t k = 0; k < slab.size(); ++k) found.solid[slab[k]] = shares[k];
+}
+
+/// What may make phantoms, by place in the ego frame.
+CausesAt causesOf(const SensorFrame& frame) {
+  if (!frame.causes.any()) return {};
+  return [&frame](const Vector2& place) {
+    const Vector3 world = frame.ego.T_world_ego * Vector3(place.x(), place.y(), 0);
+    return frame.causes.at(world.head<2>(), frame.stamp);
+  };
+}
+
 }  // namespace
 
 void ClassifierParams::visit(ParamVisitor& v) {
@@ -116,8 +137,9 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
               {obstacles.height_min, obstacles.height_max, obstacles.min_trust}, found.ground,
               found.obstacles);
   gatherObstacles(*cloud, found);
+  if (frame.causes.any()) describeSolid(obstacles, found);
   if (classifier_) {
-    Judgement judgement = judgedClusters(found, *cloud, *classifier_);
+    Judgement judgement = judgedClusters(found, *cloud, *classifier_, causesOf(frame));
     found.judged = std::move(judgement.clusters);
     found.phantom = std::move(judgement.phantom);
     found.verdicts = std::move(judgement.verdicts);
@@ -186,6 +208,7 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     for (std::size_t k = 0; k < found.obstacles.size(); ++k)
       returns.phantom[found.obstacles[k]] = found.phantom[k];
   }
+  returns.solid = std::move(found.solid);
   scan.returns = std::make_shared<const PlacedReturns>(std::move(returns));
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -6,21 +7,28 @@
 #include "libperception/grid/SafetyGrid.h"
 #include "libperception/grid/StopAdvice.h"
 #include "libperception/measurement/Measurement.h"
+#include "libperception/pipeline/PersistentPlaces.h"
 #include "libperception/scene/Scene.h"
+#include "libperception/weather/TrustParams.h"
 
 namespace perception {
 
-/// The obstacle returns of a scan.
+/// The obstacle returns of a scan; the vectors are as long as the hits, or empty.
 struct ObstacleScan {
-  GridScan scan;  ///< hits weighted by trust and by P(no phantom) of their clusters
-  /// [0, 1] weight of each hit as part of an obstacle seen in one scan: 0 without a cluster or
-  /// where doubted.
-  std::vector<float> clustered;
+  GridScan scan;  ///< hits weighted by 1 - their doubt
+  /// [0, 1] weight of each hit as part of an obstacle seen in one scan: 0 where doubted, and as far
+  /// as something may make phantoms there, without a cluster.
+  std::vector<float> dense;
+  std::vector<char> doubted;  ///< by trust or shape, whether there is a cause for it or not
+  std::vector<char> surface;  ///< may be a surface, though it has a cause to be doubted
 };
 
 /// Obstacle returns by their height, and those that only clear; mirror images below the road are
-/// left out (method.md 8.1).
-ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& returns);
+/// left out (method.md 8.1). The doubt about a return, by its trust and by the shape of its
+/// cluster, is at most the probability of a cause that the sensors show (PhantomCauses, labels and
+/// echoes by `trust`); none where the directions about it end there as at a wall (method.md 8.4).
+ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& returns,
+                            const TrustParams& trust = {});
 
 /// The way ahead at one instant.
 struct PathAhead {
@@ -28,12 +36,14 @@ struct PathAhead {
   Corridor corridor;
   FreeDistance free;
   bool in_cloud = false;  ///< most returns up to the obstacle are doubted
+  bool by_returns = false;                   ///< of one scan, and not by occupied cells
+  std::uint32_t returns = 0, overruled = 0;  ///< as FreePath
 };
 
 /// Keeps the safety grid of a run and tells how far the driven path is free (method.md 8.4).
 class SafetyMonitor {
  public:
-  SafetyMonitor(const GridParams& grid, const StopParams& stop);
+  SafetyMonitor(const GridParams& grid, const StopParams& stop, TrustParams trust = {});
 
   /// A lidar scan, in order of time; `frame` with trust.
   void add(const SensorFrame& frame, const PlacedReturns& returns);
@@ -48,9 +58,13 @@ class SafetyMonitor {
   const SafetyGrid& grid() const { return *grid_; }
 
  private:
+  void trustWhatPersists();
+
   GridParams params_;
   StopParams stop_;
+  TrustParams trust_;
   std::unique_ptr<SafetyGrid> grid_;
+  PersistentPlaces places_;  ///< of doubted surfaces, in the newest scan
   ObstacleScan last_;  ///< the newest scan's returns
   bool any_ = false;
   std::optional<Stamp> near_;  ///< of the last scene, if an obstacle was too near

@@ -60,6 +60,7 @@ void ScanMaker::addToLedger(std::size_t sensor, const SensorFrame& frame, const 
 
 MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
   const auto trust = weighReturns(sensor, frame);
+  frame.causes.weather = trust ? weather_.notClear(frame.sensor) : 0;
   MeasurementScan scan;
   {
     const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());

@@ -34,6 +34,12 @@ struct FreePath {
   bool blocked = false;     ///< an occupied cell was found
   bool stop = false;        ///< it is nearer than the vehicle can stop
   std::uint64_t owner = 0;  ///< id of the object that covers the cell; 0: none
+  /// What the obstacle is known by: occupied cells, the returns of one scan, or a track that covers
+  /// either. Meaningless where the path is free.
+  enum class Cause : std::uint8_t { kGrid, kReturns, kObject };
+  Cause cause = Cause::kGrid;
+  std::uint32_t returns = 0;    ///< of the last scan there that count: they spoke for it
+  std::uint32_t overruled = 0;  ///< of these: doubted, but for no cause that holds here
 };
 
 /// The objects around the vehicle at one instant: the output of a run.
