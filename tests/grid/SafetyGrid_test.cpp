@@ -286,7 +286,7 @@ std::vector<FreeDistance> driveThroughAStreet(GridParams::BackEnd back_end) {
   params.back_end = back_end;
   params.size = 64, params.resolution = 0.4;
   const auto grid = makeSafetyGrid(params);
-  SequentialRng random(7);
+  Rng random({7, 0, 0, 1});
   std::vector<FreeDistance> found;
   for (int i = 0; i < 40; ++i) {
     GridScan scan = sceneWithWall(i * kPeriod, 45 - i, i, 1);
