@@ -15,8 +15,9 @@ namespace {
 constexpr float kPlaneCell = 0.5f;  // [m] of the search for neighbors
 constexpr float kIsolated = 3;      // [m] farther neighbors are not looked for
 constexpr std::size_t kNeighborSample = 24, kIntensitySample = 400;
-/// Of a cluster in a scan without intensities: medians of the things of KITTI 0000 (counted).
-constexpr float kUsualMean = 0.5f, kUsualSpread = 0.25f, kUsualHigh = 0.8f;
+/// Of a cluster in a scan without intensities: medians over 491 clusters of ten scans of KITTI 0000
+/// (counted). No spread is what flakes have.
+constexpr float kUsualMean = 0.37f, kUsualSpread = 0.24f, kUsualHigh = 0.79f;
 
 /// DirectionCells about a cluster.
 struct CellCounts {

@@ -195,9 +195,9 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
 }  // namespace
 
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
-                         const ClusterClassifier& classifier, const CausesAt& causes_at) {
+                         const DirectionCells& cells, const ClusterClassifier& classifier,
+                         const CausesAt& causes_at) {
   std::vector<Probabilities> probabilities;
-  const DirectionCells cells(found.points);
   auto clusters = describedClusters(found, cloud, cells, [&](const DescribedCluster& cluster) {
     const auto range =
         static_cast<double>(cluster.descriptor[static_cast<std::size_t>(Feature::kRange)]);

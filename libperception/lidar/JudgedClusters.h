@@ -20,8 +20,9 @@ using CausesAt = std::function<CausesHere(const Vector2&)>;
 
 /// Clusters (method.md 8.10): a segment, or its parts where one of them is likelier a road user
 /// than the whole; without those that are surely a thing or a phantom and without those in the
-/// footprint of a likely vehicle.
+/// footprint of a likely vehicle. `cells`: of the scan's points.
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
-                         const ClusterClassifier& classifier, const CausesAt& causes_at = {});
+                         const DirectionCells& cells, const ClusterClassifier& classifier,
+                         const CausesAt& causes_at = {});
 
 }  // namespace perception

@@ -3,18 +3,17 @@
 namespace perception {
 namespace {
 
-constexpr double kWake = 0.9;        // the least existence of a track that leaves a wake
-constexpr double kNegligible = 0.02;  // a doubt of so little changes no decision (assumed)
+constexpr double kWake = 0.9;  // the least existence of a track that leaves a wake
 
 }  // namespace
 
 bool PhantomCauses::any() const {
-  return weather > kNegligible || (wakes != nullptr && !wakes->empty());
+  return weather > 0 || (wakes != nullptr && !wakes->empty());
 }
 
 CausesHere PhantomCauses::at(const Vector2& place, Stamp now) const {
   const bool left = wakes != nullptr && wakes->hasLeft(place, now);
-  return {weather > kNegligible ? weather : 0, left ? kWake : 0};
+  return {weather, left ? kWake : 0};
 }
 
 }  // namespace perception

@@ -62,20 +62,21 @@ class Doubter {
     const float shape = returns_.phantom.empty() ? 0 : returns_.phantom[i];
     const bool alone = shape == PlacedReturns::kNoCluster;
     const float doubt = 1 - (alone ? trust : trust * (1 - shape));
-    const bool asks = caused_ && (static_cast<double>(doubt) > kHardly || alone);
+    const bool asks = caused_ && static_cast<double>(doubt) > kHardly;
     const double cause = asks ? frame_.causes.at(place.head<2>(), frame_.stamp).likelier() : 0;
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
     float held = std::min(doubt, static_cast<float>(cause));
     if (weighted_) held = std::max(held, std::min(doubt, verdictOn(i)));
     if (solid >= kWall && trust > 0) held = 0;
     const float weight = 1 - held;
-    const float lone = alone && solid < kWall ? static_cast<float>(cause) : 0;
+    const float lone = alone && solid < kWall ? static_cast<float>(frame_.causes.weather) : 0;
     const float dense = weight * (1 - lone);
     if (weighted_) obstacles.scan.weights.push_back(weight);
     obstacles.dense.push_back(dense < kDoubted ? 0 : dense);
     obstacles.doubted.push_back(doubt >= kDoubted);
     const bool surface = solid == PlacedReturns::kFewDirections || solid >= kPerhapsSurface;
-    obstacles.surface.push_back(caused_ && dense < 1 && trust > 0 && surface);
+    const bool asked = caused_ && !returns_.solid.empty();
+    obstacles.surface.push_back(asked && dense < 1 && trust > 0 && surface);
   }
 
  private:

@@ -202,7 +202,7 @@ TEST(SafetyMonitor, BehindAVehicleItsSprayIsDoubtedAndNowhereElse) {
     auto wakes = std::make_shared<WakeMap>();
     VehicleFootprint car;  // was at the box a second ago
     car.center = {20, side}, car.speed = 10, car.half_length = 2, car.half_width = 1;
-    car.stamp = kStart - 0.9;
+    car.stamp = kStart + -0.9;
     wakes->add(car);
     const PathAhead path = after(1, 0, [&](Scan& scan) {
       scan.frame.causes.wakes = wakes;
