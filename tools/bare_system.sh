@@ -34,6 +34,7 @@ bareAptConfiguration() {
   rm -f "$root/etc/apt/sources.list"
   bareMirrors "$suite" | sed 's/^/deb /; s/$/ main/' >"$root/etc/apt/sources.list"
   apt-config dump 2>/dev/null | grep -E '^Acquire::(https?|Check-|ForceIPv4|Retries)' >"$root/etc/apt/apt.conf.d/90machine" || true
+  echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/unsafe-io"  # nothing here must survive a power cut
   cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
 }
 
@@ -42,11 +43,11 @@ bareTarball() {
   local suite=$1 tarball=$2 folder mirror
   folder=$(mktemp -d "${TMPDIR:-/var/tmp}/perception-debootstrap.XXXXXX")
   mirror=$(bareMirrors "$suite" | awk -v suite="$suite" '$2 == suite { print $1; exit }')
-  debootstrap --variant=minbase "$suite" "$folder/root" "${mirror:-http://deb.debian.org/debian}" >"$folder/log" 2>&1 ||
+  debootstrap --variant=minbase "$suite" "$folder/bare" "${mirror:-http://deb.debian.org/debian}" >"$folder/log" 2>&1 ||
     { tail -n 20 "$folder/log" >&2; rm -rf "$folder"; echo "debootstrap $suite failed" >&2; return 1; }
-  rm -rf "$folder"/root/var/cache/apt/archives/*.deb
+  rm -rf "$folder/bare"/var/cache/apt/archives/*.deb
   mkdir -p "$(dirname "$tarball")"
-  tar -C "$folder/root" --one-file-system -cf "$tarball.part" . && mv "$tarball.part" "$tarball"
+  tar -C "$folder/bare" --one-file-system -cf "$tarball.part" . && mv "$tarball.part" "$tarball"
   rm -rf "$folder"
 }
 
@@ -80,7 +81,7 @@ bareRun() {
 bareRunAs() {
   local user=$1
   shift
-  bareRun setpriv --reuid "$user" --regid "$user" --init-groups env HOME="/home/$user" USER="$user" "$@"
+  bareRun setpriv --reuid "$user" --regid "$user" --init-groups env HOME="/srv/$user" USER="$user" "$@"
 }
 
 bareClone() {

@@ -173,7 +173,8 @@ TEST_F(SnapshotAppTest, VideoPlaysAtTheLogsRate) {
   EXPECT_EQ(app_->out_files, std::vector<std::string>{dir_ + "/films/a.mp4"});
   EXPECT_GT(fs::file_size(dir_ + "/films/a.mp4"), 5000U);
   EXPECT_FALSE(fs::exists(dir_ + "/films/a.mp4.part"));
-  if (std::system("command -v ffprobe > /dev/null") != 0) GTEST_SKIP() << "missing tool: ffprobe (package ffmpeg)";
+  if (std::system("command -v ffprobe > /dev/null") != 0)
+    GTEST_SKIP() << "missing tool: ffprobe (package ffmpeg)";
   const std::string ask =
       "ffprobe -v error -show_entries stream=r_frame_rate,nb_frames -of csv=p=0 '" + dir_ +
       "/films/a.mp4' > '" + dir_ + "/said.txt'";

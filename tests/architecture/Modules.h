@@ -101,7 +101,7 @@ inline const std::vector<Module>& modules() {
        "experiments about the method",
        {"app", "pipeline", "calibration", "simulation", "detectors", "evaluation", "scene",
         "filter", "lidar", "grid", "sensors", "measurement", "config", "core"}},
-      {"apps", "a short main for every program", {"app", "studies"}},
+      {"apps", "a short main for every program", {"app"}},
   };
   return all;
 }

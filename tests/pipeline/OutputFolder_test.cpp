@@ -1,6 +1,7 @@
 #include "libperception/pipeline/OutputFolder.h"
 
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,7 +11,21 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
+#include "libperception/scene/OutputFile.h"
 #include "tests/support/TemporaryFolder.h"
+
+namespace {
+
+/// Files and folders handed to disk, in the order of the calls.
+std::vector<std::string> synced;
+
+}  // namespace
+
+// In place of the C library's.
+extern "C" int fsync(int file) {
+  synced.push_back(std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(file)));
+  return static_cast<int>(::syscall(SYS_fsync, file));
+}
 
 namespace perception::test {
 namespace {
@@ -55,6 +70,26 @@ TEST(OutputFolder, FilesAppearTogetherAtCommit) {
   folder.commit();
   EXPECT_EQ(namesIn(folder.path()), (Names{"done.json", "plots", "tracks.csv"}));
   EXPECT_EQ(textOf(folder.path() + "/plots/range.png"), "p");
+}
+
+TEST(OutputFolder, FilesAreOnDiskBeforeTheyHaveTheirNamesAndNamesBeforeDone) {
+  const TemporaryFolder base;
+  const std::string out = fs::canonical(base.path()) / "out";
+  for (const bool again : {false, true}) {
+    OutputFolder folder(out);
+    synced.clear();
+    for (const char* name : {"tracks.csv", "done.json"}) writeFile(folder.pathFor(name), "x");
+    EXPECT_EQ(synced, Names{}) << "commit() does it";
+    Names expected{folder.temporary() + "/tracks.csv", folder.temporary() + "/done.json", out, out};
+    if (again) expected.push_back(out);  // without the done.json of before
+    folder.commit();
+    EXPECT_EQ(synced, expected);
+  }
+  synced.clear();
+  writeFile(out + "/alone.txt", "x");
+  ASSERT_EQ(synced.size(), 2u);
+  EXPECT_NE(synced[0].find("alone.txt"), std::string::npos);
+  EXPECT_EQ(synced[1], out);
 }
 
 TEST(OutputFolder, WithoutCommitNothingIsLeft) {
