@@ -61,8 +61,11 @@ void addLidar(Findings& out, const std::string& label, const SensorFacts& facts)
           fmt::format("{:.0f} returns a scan, 99.9 % within {:.0f} m, {:.0f} deg wide",
                       static_cast<double>(facts.returns) / static_cast<double>(facts.frames),
                       facts.rangeBelow(0.999), degrees(facts.angleOf(0.999))));
+  const std::string missing = facts.inputs ? facts.inputs->missing() : "";
+  if (!missing.empty())
+    out.add(Weight::kNote, label, missing + ": left out of the evidence");
   if (!facts.high) {
-    out.add(Weight::kNote, label, "no intensity: [weather] filter is left off");
+    out.add(Weight::kNote, label, "[weather] filter is left off without intensities");
   } else if (*facts.high > 1.001 || *facts.low < 0) {
     out.add(Weight::kFault, label,
             fmt::format("intensity {:g} to {:g}: expected 0 to 1", *facts.low, *facts.high));

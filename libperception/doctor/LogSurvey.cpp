@@ -172,6 +172,7 @@ void LogSurvey::lookAt(SensorFacts& facts, const SensorFrame& frame) {
   facts.stamps.push_back(frame.stamp);
   if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
     facts.kind = "lidar";
+    if (!facts.inputs && cloud->size() > 0) facts.inputs = LidarInputs::of(*cloud);
     addCloud(facts, *cloud);
     const GroundPlane plane = GroundEstimator(searchEverywhere()).update(frame);
     if (plane.measured) facts.planes.push_back(plane);

@@ -10,6 +10,7 @@
 
 #include "libperception/doctor/MotionCheck.h"
 #include "libperception/lidar/GroundPlane.h"
+#include "libperception/measurement/LidarInputs.h"
 #include "libperception/odometry/LidarOdometry.h"
 #include "libperception/pipeline/LogContents.h"
 #include "libperception/sensors/FromObservation.h"
@@ -33,6 +34,7 @@ struct SensorFacts {
   std::vector<std::uint64_t> bearings;         ///< the same by |bearing|, bins of 1 deg
   double farthest_bearing = 0;                 ///< [rad] of radars and cameras
   std::optional<double> low, high;             ///< least and largest intensity or score
+  std::optional<LidarInputs> inputs;           ///< of a lidar's first scan
   std::map<std::string, std::uint64_t> names;  ///< the detector's class names
   std::vector<GroundPlane> planes;             ///< of single scans, ego frame
   std::vector<EgoState> odometry;              ///< of a lidar: the vehicle's poses by its scans

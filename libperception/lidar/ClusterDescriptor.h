@@ -96,7 +96,7 @@ class ClusterDescriber {
   const LidarDetections& found_;
   const DirectionCells& cells_;
   std::vector<float> dx_, dy_, dz_;           ///< [m] of the obstacles from the sensor
-  std::vector<float> intensity_;              ///< rank among the scan's obstacles, [0, 1]
+  std::vector<float> intensity_;              ///< rank among the scan's obstacles, [0, 1]; empty: none
   std::vector<DirectionCells::Place> place_;  ///< of the obstacles
   /// Obstacles by cell of the plane.
   std::vector<float> sorted_x_, sorted_y_;   ///< [m] from the sensor

@@ -15,6 +15,9 @@ namespace {
 constexpr float kPlaneCell = 0.5f;  // [m] of the search for neighbors
 constexpr float kIsolated = 3;      // [m] farther neighbors are not looked for
 constexpr std::size_t kNeighborSample = 24, kIntensitySample = 400;
+/// Of a cluster in a scan without intensities: medians over 491 clusters of ten scans of KITTI 0000
+/// (counted). No spread is what flakes have.
+constexpr float kUsualMean = 0.37f, kUsualSpread = 0.24f, kUsualHigh = 0.79f;
 
 /// DirectionCells about a cluster.
 struct CellCounts {
@@ -46,10 +49,9 @@ void addCells(const CellCounts& n, float range, Descriptor& d) {
 }  // namespace
 
 /// Mid-rank among the obstacles, in 1024 steps from the least to the greatest: what a unit calls
-/// its intensity differs from unit to unit by more than a scale. All 0.5 without intensities.
+/// its intensity differs from unit to unit by more than a scale. Empty without intensities.
 void ClusterDescriber::rankIntensities(const LidarCloud& cloud) {
   const std::size_t n = found_.obstacles.size();
-  intensity_.assign(n, 0.5f);
   if (cloud.intensity.size() != cloud.size() || n == 0) return;
   const auto raw = [&](std::size_t k) {
     return cloud.intensity[found_.points.source[found_.obstacles[k]]];
@@ -58,6 +60,7 @@ void ClusterDescriber::rankIntensities(const LidarCloud& cloud) {
   for (std::size_t k = 0; k < n; ++k)
     if (std::isfinite(raw(k))) range.add(raw(k));
   if (range.size() <= 0) return;
+  intensity_.resize(n);
   constexpr std::size_t kSteps = 1024;
   std::array<std::uint32_t, kSteps + 1> below{};
   const auto step = [&](std::size_t k) {
@@ -150,6 +153,12 @@ void ClusterDescriber::describeDirections(const std::vector<std::uint32_t>& memb
 
 void ClusterDescriber::describeIntensity(const std::vector<std::uint32_t>& members,
                                          Descriptor& d) const {
+  if (intensity_.empty()) {
+    at(d, Feature::kIntensityMean) = kUsualMean;
+    at(d, Feature::kIntensitySpread) = kUsualSpread;
+    at(d, Feature::kIntensityHigh) = kUsualHigh;
+    return;
+  }
   std::vector<float> values;
   const std::size_t stride = 1 + (members.size() - 1) / kIntensitySample;
   for (std::size_t i = 0; i < members.size(); i += stride) values.push_back(intensity_[members[i]]);

@@ -6,13 +6,13 @@
 
 #include "libperception/lidar/BoxFit.h"
 #include "libperception/lidar/LooseReturns.h"
-#include "libperception/lidar/PhantomMix.h"
+#include "libperception/lidar/PhantomPrior.h"
 #include "libperception/measurement/FootprintInView.h"
 
 namespace perception {
 namespace {
 
-using Probabilities = PhantomMix::Probabilities;
+using Probabilities = PhantomPrior::Probabilities;
 
 /// Probability of the likeliest road user.
 double roadUser(const Probabilities& p) {
@@ -130,12 +130,18 @@ void dropLoose(const LidarDetections& found, const DirectionCells& cells,
   }
 }
 
+Vector2 middleOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles) {
+  Vector2 middle = Vector2::Zero();
+  for (const std::uint32_t i : obstacles)
+    middle += Vector2(found.x[i], found.y[i]) / static_cast<double>(obstacles.size());
+  return middle;
+}
+
 PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles,
                          double probability) {
   PhantomCluster phantom;
   phantom.returns = obstacles.size(), phantom.probability = probability;
-  for (const std::uint32_t i : obstacles)
-    phantom.center += Vector2(found.x[i], found.y[i]) / static_cast<double>(obstacles.size());
+  phantom.center = middleOf(found, obstacles);
   if (found.trust.empty()) return phantom;
   for (const std::uint32_t i : obstacles)
     if (found.trust[i] < kDoubted)
@@ -189,9 +195,9 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
 }  // namespace
 
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
-                         const ClusterClassifier& classifier) {
+                         const DirectionCells& cells, const ClusterClassifier& classifier,
+                         const CausesAt& causes_at) {
   std::vector<Probabilities> probabilities;
-  const DirectionCells cells(found.points);
   auto clusters = describedClusters(found, cloud, cells, [&](const DescribedCluster& cluster) {
     const auto range =
         static_cast<double>(cluster.descriptor[static_cast<std::size_t>(Feature::kRange)]);
@@ -202,17 +208,16 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
   });
   const std::size_t n = clusters.size();
-  std::vector<Probabilities> wholes;
-  for (std::size_t i = 0; i < n; ++i)
-    if (clusters[i].segment.whole < 0) wholes.push_back(probabilities[i]);
-  const PhantomMix mix(wholes, classifier.prior());
+  const PhantomPrior prior(classifier.prior());
   const std::vector<char> stands = standing(clusters, probabilities);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
   for (std::size_t i = 0; i < n; ++i) {
     if (!stands[i]) continue;
-    const Probabilities p = mix(probabilities[i]);
+    const CausesHere causes =
+        causes_at ? causes_at(middleOf(found, clusters[i].segment.points)) : CausesHere{};
+    const Probabilities p = prior(probabilities[i], causes);
     const double phantom = at(p, ClusterKind::kPhantom);
     for (const std::uint32_t point : clusters[i].segment.points)
       judgement.phantom[point] = static_cast<float>(phantom);

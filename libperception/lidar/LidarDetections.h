@@ -38,6 +38,7 @@ struct LidarDetections {
   std::vector<float> trust;              ///< [0, 1] of each obstacle; empty: all 1
   /// With a classifier: of each obstacle, see PlacedReturns::phantom.
   std::vector<float> phantom;
+  std::vector<float> solid;  ///< of each of `points`, see PlacedReturns::solid
   std::vector<Cluster> clusters;     ///< car-sized; indices into the obstacles
   std::vector<PersonPeak> persons;   ///< outside of the clusters' hulls; indices into the obstacles
   std::vector<std::uint8_t> ground;  ///< per return of the frame's cloud: 1 = ground

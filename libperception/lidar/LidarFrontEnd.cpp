@@ -1,9 +1,11 @@
 #include "libperception/lidar/LidarFrontEnd.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "libperception/lidar/JudgedClusters.h"
 #include "libperception/lidar/LidarMeasurements.h"
+#include "libperception/lidar/LooseReturns.h"
 #include "libperception/lidar/Overlaps.h"
 #include "libperception/lidar/SplitGround.h"
 
@@ -77,6 +79,37 @@ void gatherObstacles(const LidarCloud& cloud, LidarDetections& found) {
     found.trust[k] = cloud.trust[points.source[found.obstacles[k]]];
 }
 
+/// Shares of solid directions about the returns of the slab of obstacles: in weather of all,
+/// elsewhere of those that are doubted, for these alone may stand in a wake.
+void describeSolid(const SensorFrame& frame, const LidarCloud& cloud, const ObstacleParams& params,
+                   const DirectionCells& cells, LidarDetections& found) {
+  constexpr float kHardlyDoubted = 0.05f;  // of a return (assumed)
+  std::vector<char> doubted(found.height.size(), frame.causes.weather > 0);
+  for (std::size_t k = 0; k < found.phantom.size(); ++k)
+    if (found.phantom[k] > kHardlyDoubted) doubted[found.obstacles[k]] = 1;
+  const auto low = static_cast<float>(params.height_min),
+             high = static_cast<float>(params.height_max);
+  std::vector<std::uint32_t> slab;
+  for (std::uint32_t i = 0; i < found.height.size(); ++i) {
+    if (found.height[i] <= low || found.height[i] >= high) continue;
+    const bool trusted = cloud.trust.empty() ||
+                         cloud.trust[found.points.source[i]] >= 1 - kHardlyDoubted;
+    if (doubted[i] || !trusted) slab.push_back(i);
+  }
+  const auto shares = solidShares(found.points, cells, slab);
+  found.solid.assign(found.height.size(), PlacedReturns::kFewDirections);
+  for (std::size_t k = 0; k < slab.size(); ++k) found.solid[slab[k]] = shares[k];
+}
+
+/// What may make phantoms, by place in the ego frame.
+CausesAt causesOf(const SensorFrame& frame) {
+  if (!frame.causes.any()) return {};
+  return [&frame](const Vector2& place) {
+    const Vector3 world = frame.ego.T_world_ego * Vector3(place.x(), place.y(), 0);
+    return frame.causes.at(world.head<2>(), frame.stamp);
+  };
+}
+
 }  // namespace
 
 void ClassifierParams::visit(ParamVisitor& v) {
@@ -116,13 +149,16 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
               {obstacles.height_min, obstacles.height_max, obstacles.min_trust}, found.ground,
               found.obstacles);
   gatherObstacles(*cloud, found);
+  std::optional<DirectionCells> cells;
+  if (classifier_ || frame.causes.any()) cells.emplace(found.points);
   if (classifier_) {
-    Judgement judgement = judgedClusters(found, *cloud, *classifier_);
+    Judgement judgement = judgedClusters(found, *cloud, *cells, *classifier_, causesOf(frame));
     found.judged = std::move(judgement.clusters);
     found.phantom = std::move(judgement.phantom);
     found.verdicts = std::move(judgement.verdicts);
-    return found;
   }
+  if (frame.causes.any()) describeSolid(frame, *cloud, obstacles, *cells, found);
+  if (classifier_) return found;
   found.clusters = findClusters(found.x, found.y, found.above, params_.clusters, found.trust);
   found.persons = findPersons(found.x, found.y, found.above, params_.persons, found.trust,
                               found.points.sensor.head<2>());
@@ -138,7 +174,7 @@ PlacedReturns placedReturns(EgoPoints points, std::vector<float> height, const P
   returns.source = std::move(points.source);
   returns.height_min = obstacle.height_min;
   returns.height_max = obstacle.height_max;
-  returns.vehicle_front = point.vehicle_front;
+  returns.vehicle_front = point.vehicle_front, returns.vehicle_rear = point.vehicle_rear;
   return returns;
 }
 
@@ -186,6 +222,7 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     for (std::size_t k = 0; k < found.obstacles.size(); ++k)
       returns.phantom[found.obstacles[k]] = found.phantom[k];
   }
+  returns.solid = std::move(found.solid);
   scan.returns = std::make_shared<const PlacedReturns>(std::move(returns));
 }
 

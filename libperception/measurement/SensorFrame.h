@@ -10,6 +10,7 @@
 #include "libperception/core/Frames.h"
 #include "libperception/core/Time.h"
 #include "libperception/measurement/Modality.h"
+#include "libperception/measurement/PhantomCauses.h"
 
 namespace perception {
 
@@ -57,7 +58,8 @@ struct LidarCloud {
   std::vector<std::uint8_t> echo;   ///< 0 = first return of its pulse
   std::vector<float> pulse_width;   ///< [m]
   std::vector<std::uint8_t> label;  ///< PointLabel
-  std::vector<float> trust;  ///< [0, 1] P(the return is of a surface), from weather/PointTrust
+  std::vector<float> trust;  ///< [0, 1] P(the return is of a surface), from weather/PointTrust;
+                             ///< 0: a mirror image in a wet road
   double max_range = 0;      ///< [m] of the instrument; 0 = unknown
 
   std::size_t size() const { return x.size(); }
@@ -140,6 +142,7 @@ struct SensorFrame {
   EgoState ego;
   Pose3 T_ego_sensor = Pose3::Identity();
   GroundPlane ground;
+  PhantomCauses causes;  ///< of phantoms at this instant; by default none
   std::variant<LidarCloud, ObjectDetections, RadarReturns, CameraImage> data;
 
   Pose3 T_world_sensor() const { return ego.T_world_ego * T_ego_sensor; }

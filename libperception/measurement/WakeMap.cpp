@@ -39,6 +39,11 @@ std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
   return std::nullopt;
 }
 
+bool WakeMap::hasLeft(const Vector2& place, Stamp now) const {
+  const auto since = age(place, now);
+  return since && *since > kPresent;
+}
+
 double WakeMap::area(Stamp now) const {
   double area = 0;
   for (const VehicleFootprint& v : vehicles_) area += 2 * v.advanced * halfWidth(v, now - v.stamp);

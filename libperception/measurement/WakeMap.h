@@ -31,6 +31,8 @@ class WakeMap {
 
   /// [s] since a vehicle left the place [m, world]; empty: it is in no wake.
   std::optional<double> age(const Vector2& place, Stamp now) const;
+  /// Whether a vehicle was at the place [m, world] and is there no more.
+  bool hasLeft(const Vector2& place, Stamp now) const;
   /// [m^2] of all wakes; where two overlap, of both.
   double area(Stamp now) const;
 

@@ -68,6 +68,7 @@ void SnapshotSensorParams::read(Config& config, bool site) {
     weather = WeatherParams::read(config);
     grid = config.read<GridParams>("grid");
     stop = config.read<StopParams>("grid.stop");
+    stop.vehicle = config.read<VehicleParams>("vehicle");
     return;
   }
   PipelineSetup setup = PipelineSetup::read(config);
@@ -179,10 +180,15 @@ void SnapshotSensors::takeLidar(SensorFrame& frame) {
   Lidar& lidar = lidars_
                      .try_emplace(frame.sensor, Lidar{GroundEstimator(params_.ground, seed),
                                                       makePointFilter(params_.weather),
+                                                      {},
                                                       {}})
                      .first->second;
   ground_ = frame.ground = lidar.ground.update(frame);
-  if (lidar.weather) lidar.weather->apply(frame);
+  if (lidar.weather) {
+    lidar.weather->apply(frame);
+    lidar.air.add(lidar.weather->census(frame), frame.stamp);
+    frame.causes.weather = lidar.air.state().notClear();
+  }
   const LidarSettings settings = settingsOf(frame.sensor);
   EgoPoints points = usablePoints(frame, settings.points);
   std::vector<float> heights;

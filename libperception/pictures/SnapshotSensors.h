@@ -12,6 +12,7 @@
 #include "libperception/scene/TrackedRun.h"
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/RawlogReader.h"
+#include "libperception/weather/WeatherState.h"
 
 namespace perception {
 
@@ -58,6 +59,7 @@ class SnapshotSensors {
   struct Lidar {
     GroundEstimator ground;
     std::unique_ptr<PointFilter> weather;
+    WeatherEstimator air;
     std::vector<ViewPoint> points;  ///< of the last scan
   };
   /// Parameters for the returns of one lidar.

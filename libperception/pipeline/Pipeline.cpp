@@ -31,6 +31,7 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
       ego_(setup_.ego, events),
       queue_({setup_.run.reorder_window, 70}),
       watch_(setup_.sensors, setup_.run.sensor_timeout, events),
+      inputs_(events),
       health_(setup_.sensors, events),
       weather_(events),
       conditions_(setup_.sensors, weather_),
@@ -38,7 +39,7 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
       ledger_(events),
       scan_maker_(setup_, timing, weather_, ledger_),
       outputs_(setup_.run, setup_.sensors) {
-  if (setup_.grid.enabled) safety_.emplace(setup_.grid, setup_.stop);
+  if (setup_.grid.enabled) safety_.emplace(setup_.grid, setup_.stop, setup_.weather.trust);
 }
 
 void Pipeline::add(const mrpt::obs::CObservation& observation) {
@@ -224,6 +225,9 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
   scan_maker_.addGround(sensor, frame);
   if (setup_.sensors[sensor].active) {
     health_.addFrame(sensor, frame, weather_.fog());
+    inputs_.apply(frame);
+    if (setup_.sensors[sensor].params.modality == Modality::kLidar)
+      frame.causes.wakes = wakes_.at(frame.stamp);
     MeasurementScan scan = scan_maker_.measure(sensor, frame);
     const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
     wakes_.apply(sensor, scan);

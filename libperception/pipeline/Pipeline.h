@@ -11,6 +11,7 @@
 #include "libperception/pipeline/FrameNumbers.h"
 #include "libperception/pipeline/FrameQueue.h"
 #include "libperception/pipeline/InnovationWatch.h"
+#include "libperception/pipeline/InputWatch.h"
 #include "libperception/pipeline/OutputSchedule.h"
 #include "libperception/pipeline/PhantomLedger.h"
 #include "libperception/pipeline/PipelineSetup.h"
@@ -101,6 +102,7 @@ class Pipeline {
   std::deque<std::vector<SensorFrame>> waiting_;  ///< for the first motion; instant by instant
   FrameNumbers frame_numbers_;
   SensorWatch watch_;
+  InputWatch inputs_;
   SensorHealth health_;
   WeatherWatch weather_;
   ConditionWatch conditions_;

@@ -2,17 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "libperception/weather/SensorVerdict.h"
 
 namespace perception {
 namespace {
 
 constexpr double kMirrored = -0.3;  // [m] lower returns are mirror images in a wet road
 constexpr double kLeaves = 0.5;     // [s] for which a cell belongs to what has left it; assumed
-/// [-] x / |y| in the ego frame below which a return lies behind the vehicle (bearings beyond 117
-/// deg): it is ahead only after a turn, during which it is seen anew; assumed.
+/// [-] distance along the direction of travel by that across it, below which a return lies behind
+/// the vehicle (bearings beyond 117 deg): it is ahead only after a turn, during which it is seen
+/// anew; assumed.
 constexpr float kBehind = -0.5f;
-constexpr float kDoubted = 0.5F;  // of a return: more likely a phantom than not
-constexpr double kFresh = 0.5;    // [s] after which a scan says nothing of the way ahead; assumed
+constexpr double kCarHeight = 1.7;  // [m] of a vehicle whose height nobody gave; assumed
+constexpr float kDoubted = 0.5F;    // of a return: more likely a phantom than not
+constexpr double kHardly = 0.05;    // doubt that needs no cause, for it decides nothing (assumed)
+/// Share of the directions about a return that end there from which it is of a solid surface, and
+/// that from which it may be of one: the corner of a surface fills four in nine (assumed).
+constexpr float kWall = 0.75F, kPerhapsSurface = 0.3F;
+constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
 
 // The vehicle on the ground plane: z = 0 is the ground.
 Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
@@ -33,6 +42,76 @@ bool inCloud(const Corridor& corridor, const GridScan& scan, double obstacle) {
     ++(scan.weights[i] < kDoubted ? doubted : trusted);
   }
   return doubted > trusted;
+}
+
+/// Weighs the obstacle returns of one scan.
+class Doubter {
+ public:
+  Doubter(const SensorFrame& frame, const LidarCloud* cloud, const PlacedReturns& returns,
+          const TrustParams& params)
+      : frame_(frame),
+        cloud_(cloud),
+        returns_(returns),
+        params_(params),
+        weighted_(cloud != nullptr && !cloud->trust.empty()),
+        caused_(frame.causes.any()) {}
+
+  /// Appends return `i`, a hit at that place in the world.
+  void weigh(std::size_t i, const Vector3& place, ObstacleScan& obstacles) const {
+    const float trust = weighted_ ? cloud_->trust[returns_.source[i]] : 1;
+    const float shape = returns_.phantom.empty() ? 0 : returns_.phantom[i];
+    const bool alone = shape == PlacedReturns::kNoCluster;
+    const float doubt = 1 - (alone ? trust : trust * (1 - shape));
+    const bool asks = caused_ && static_cast<double>(doubt) > kHardly;
+    const double cause = asks ? frame_.causes.at(place.head<2>(), frame_.stamp).likelier() : 0;
+    const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
+    float held = std::min(doubt, static_cast<float>(cause));
+    if (weighted_) held = std::max(held, std::min(doubt, verdictOn(i)));
+    if (solid >= kWall && trust > 0) held = 0;
+    const float weight = 1 - held;
+    const float lone = alone && solid < kWall ? static_cast<float>(frame_.causes.weather) : 0;
+    const float dense = weight * (1 - lone);
+    if (weighted_) obstacles.scan.weights.push_back(weight);
+    obstacles.dense.push_back(dense < kDoubted ? 0 : dense);
+    obstacles.doubted.push_back(doubt >= kDoubted);
+    const bool surface = solid == PlacedReturns::kFewDirections || solid >= kPerhapsSurface;
+    const bool asked = caused_ && !returns_.solid.empty();
+    obstacles.surface.push_back(asked && dense < 1 && trust > 0 && surface);
+  }
+
+ private:
+  /// What the sensor itself says: a mirror image, rain, dirt.
+  float verdictOn(std::size_t i) const {
+    const std::uint32_t source = returns_.source[i];
+    if (cloud_->trust[source] <= 0) return 1;
+    return static_cast<float>(instrumentDoubt(*cloud_, source, params_));
+  }
+
+  const SensorFrame& frame_;
+  const LidarCloud* cloud_;
+  const PlacedReturns& returns_;
+  const TrustParams& params_;
+  bool weighted_, caused_;
+};
+
+void trustHit(ObstacleScan& obstacles, std::size_t hit) {
+  obstacles.dense[hit] = 1;
+  if (!obstacles.scan.weights.empty()) obstacles.scan.weights[hit] = 1;
+}
+
+/// Counts the returns that speak for the obstacle of a path.
+void countReturns(const ObstacleScan& scan, PathAhead& path) {
+  constexpr double kBefore = 0.2;  // [m] a cell begins before its returns
+  constexpr double kInto = 0.5;    // [m]
+  const Pose3 T_ego_world = path.corridor.T_world_ego.inverse();
+  for (std::size_t k = 0; k < scan.scan.hits.size(); ++k) {
+    const Vector3 p = T_ego_world * scan.scan.hits[k];
+    const ArcPlace place = arcPlace(path.corridor, p.x(), p.y());
+    const double into = place.s - path.free.distance;
+    if (std::abs(place.d) > path.corridor.width / 2 || into < -kBefore || into > kInto) continue;
+    const bool counts = scan.scan.weights.empty() || scan.scan.weights[k] >= kDoubted;
+    path.returns += counts, path.overruled += counts && scan.doubted[k];
+  }
 }
 
 // Within the outline, or where it was up to half a second ago: cells that it left are cleared only
@@ -57,77 +136,112 @@ const SceneObject* ownerOf(const Scene& scene, const Vector3& place, double grow
 
 }  // namespace
 
-ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& returns) {
+ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& returns,
+                            const TrustParams& trust, const StopParams& stop, double clearance) {
   ObstacleScan obstacles;
   GridScan& scan = obstacles.scan;
   scan.stamp = frame.stamp;
   scan.origin = frame.T_world_sensor().translation();
   scan.T_world_ground = groundPose(frame.ego.T_world_ego, frame.ground);
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
-  const bool weighted = cloud != nullptr && !cloud->trust.empty();
+  const Doubter doubter(frame, cloud, returns, trust);
   scan.clear.reserve(returns.size());
+  const bool backward = isReversing(frame.ego.T_world_ego, frame.ego.velocity, stop);
+  const float travel = backward ? -1 : 1;
+  const double height_max = std::min(returns.height_max, clearance);
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const double height = static_cast<double>(returns.height[i]);
-    if (height <= kMirrored || returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
+    if (height <= kMirrored || travel * returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
     const Vector3 place = frame.ego.T_world_ego * Vector3(static_cast<double>(returns.x[i]),
                                                           static_cast<double>(returns.y[i]),
                                                           static_cast<double>(returns.z[i]));
-    const bool hit = height > returns.height_min && height < returns.height_max;
+    const bool hit = height > returns.height_min && height < height_max;
     (hit ? scan.hits : scan.clear).push_back(place);
-    if (!hit) continue;
-    const float trust = weighted ? cloud->trust[returns.source[i]] : 1;
-    const float phantom = returns.phantom.empty() ? 0 : returns.phantom[i];
-    const bool alone = phantom == PlacedReturns::kNoCluster;
-    const float weight = alone ? trust : trust * (1 - phantom);
-    if (weighted) scan.weights.push_back(weight);
-    obstacles.clustered.push_back(alone || weight < kDoubted ? 0 : weight);
+    if (hit) doubter.weigh(i, place, obstacles);
   }
   return obstacles;
 }
 
-SafetyMonitor::SafetyMonitor(const GridParams& grid, const StopParams& stop)
-    : params_(grid), stop_(stop), grid_(makeSafetyGrid(grid)) {}
+SafetyMonitor::SafetyMonitor(const GridParams& grid, const StopParams& stop, TrustParams trust)
+    : params_(grid), stop_(stop), trust_(std::move(trust)), grid_(makeSafetyGrid(grid)) {}
 
 void SafetyMonitor::add(const SensorFrame& frame, const PlacedReturns& returns) {
-  last_ = obstacleScanOf(frame, returns);
+  const Vector3 sensor = frame.T_ego_sensor.translation();
+  const double ground = frame.ground.a * sensor.x() + frame.ground.b * sensor.y() + frame.ground.c;
+  highest_ = std::max({highest_, sensor.z() - ground, kCarHeight});
+  last_ = obstacleScanOf(frame, returns, trust_, stop_, vehicleHeight() + stop_.clearance);
+  trustWhatPersists();
   grid_->insert(last_.scan);
-  front_ = returns.vehicle_front;
+  front_ = returns.vehicle_front, rear_ = returns.vehicle_rear;
   any_ = true;
+}
+
+// The doubt about a surface ends where it is seen in the second scan.
+void SafetyMonitor::trustWhatPersists() {
+  std::vector<Vector3> surfaces;
+  std::vector<std::size_t> hits;
+  for (std::size_t k = 0; k < last_.surface.size(); ++k)
+    if (last_.surface[k]) surfaces.push_back(last_.scan.hits[k]), hits.push_back(k);
+  const std::vector<char> again = places_.add(surfaces);
+  for (std::size_t j = 0; j < hits.size(); ++j)
+    if (again[j]) trustHit(last_, hits[j]);
+}
+
+double SafetyMonitor::vehicleHeight() const {
+  return stop_.vehicle.height > 0 ? stop_.vehicle.height : highest_;
 }
 
 PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   PathAhead path;
   path.known = any_ && std::abs(ego.stamp - last_.scan.stamp) <= kFresh;
   if (!path.known) return path;
-  path.corridor = drivenCorridor(ego.T_world_ego, ego.velocity.norm(), ego.yaw_rate, front_, stop_);
+  path.corridor = drivenCorridor(ego.T_world_ego, ego.velocity, ego.yaw_rate, front_, rear_, stop_);
+  const double look_ahead = path.corridor.max;
   path.free = grid_->freeDistance(path.corridor);
   path.corridor.max = path.free.distance;
   const FreeDistance dense =
-      denseReturns(path.corridor, last_.scan.hits, last_.clustered, stop_.returns);
-  path.corridor.max = stop_.look_ahead;
+      denseReturns(path.corridor, last_.scan.hits, last_.dense, stop_.returns);
   if (dense.blocked) {
     path.free.distance = dense.distance;
     path.free.blocked = true;
     path.free.place = dense.place;
     path.free.seen = std::min(path.free.seen, dense.distance);
+    path.by_returns = true;
   }
+  path.corridor.max = path.free.distance;
+  path.free.seen = seenByBeams(path.corridor, path.free.seen, last_.scan.origin,
+                               {&last_.scan.hits, &last_.scan.clear}, vehicleHeight());
+  path.corridor.max = look_ahead;
   path.in_cloud = path.free.blocked && inCloud(path.corridor, last_.scan, path.free.distance);
+  if (path.free.blocked) countReturns(last_, path);
   return path;
 }
 
 FreePath SafetyMonitor::advise(const PathAhead& path, const Scene& scene) {
   FreePath advice;
-  advice.distance = path.free.distance;
+  advice.distance = path.free.known();
   advice.seen = path.free.seen;
   advice.blocked = path.free.blocked;
   const bool before = near_ && scene.stamp - *near_ <= kFresh;
   near_.reset();
+  const double speed = scene.ego.velocity.norm();
+  const double way = path.free.known() - path.corridor.from;
+  advice.safe_speed = safeSpeed(way, 0, stop_);
+  advice.too_fast = speed > advice.safe_speed;
   if (!advice.blocked) return advice;
   const SceneObject* owner = ownerOf(scene, path.free.place, stop_.obstacle_grow);
-  const double speed = scene.ego.velocity.norm();
-  const Vector2 ahead = scene.ego.T_world_ego.linear().col(0).head<2>();
+  const Vector2 ahead =
+      (path.corridor.backward ? -1 : 1) * Vector2(scene.ego.T_world_ego.linear().col(0).head<2>());
   const double along = owner == nullptr ? 0 : owner->velocity.dot(ahead);
   advice.owner = owner == nullptr ? 0 : owner->id;
+  advice.returns = path.returns, advice.overruled = path.overruled;
+  advice.cause = owner != nullptr  ? FreePath::Cause::kObject
+                 : path.by_returns ? FreePath::Cause::kReturns
+                                   : FreePath::Cause::kGrid;
+  if (path.free.seen >= path.free.distance) {
+    advice.safe_speed = safeSpeed(way, along, stop_);
+    advice.too_fast = speed > advice.safe_speed;
+  }
   const bool near = path.free.distance - path.corridor.from < stoppingDistance(speed, along, stop_);
   if (near) near_ = scene.stamp;
   advice.stop = near && (before || !path.in_cloud);
@@ -136,8 +250,10 @@ FreePath SafetyMonitor::advise(const PathAhead& path, const Scene& scene) {
 
 void SafetyMonitor::restart() {
   grid_ = makeSafetyGrid(params_);
+  places_.clear();
   any_ = false;
   near_.reset();
+  highest_ = 0;
 }
 
 }  // namespace perception

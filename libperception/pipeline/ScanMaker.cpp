@@ -8,6 +8,8 @@ namespace {
 
 /// [s] for which an occlusion map is used for other sensors; assumed: two scans of a lidar.
 constexpr double kOcclusionMapAge = 0.2;
+/// P(the air is not clear) that changes no decision (assumed).
+constexpr double kNegligible = 0.02;
 
 }  // namespace
 
@@ -60,6 +62,8 @@ void ScanMaker::addToLedger(std::size_t sensor, const SensorFrame& frame, const 
 
 MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
   const auto trust = weighReturns(sensor, frame);
+  const double not_clear = trust ? weather_.notClear(frame.sensor) : 0;
+  frame.causes.weather = not_clear > kNegligible ? not_clear : 0;
   MeasurementScan scan;
   {
     const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());

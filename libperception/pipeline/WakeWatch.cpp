@@ -49,6 +49,13 @@ std::optional<VehicleFootprint> vehicleOf(const Track& track, const ClassTable& 
 WakeWatch::WakeWatch(const std::vector<PipelineSetup::Sensor>& sensors, const ClassTable& classes)
     : sensors_(sensors), classes_(classes), seen_(sensors.size()) {}
 
+std::shared_ptr<const WakeMap> WakeWatch::at(Stamp stamp) const {
+  if (wakes_.empty()) return nullptr;
+  auto wakes = std::make_shared<WakeMap>(wakes_);
+  wakes->advance(stamp);
+  return wakes;
+}
+
 void WakeWatch::apply(std::size_t sensor, MeasurementScan& scan) const {
   if (wakes_.empty() ||
       std::none_of(seen_.begin(), seen_.end(), [](const Seen& s) { return s.phantoms >= kNone; }))

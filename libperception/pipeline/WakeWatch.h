@@ -16,6 +16,8 @@ class WakeWatch {
  public:
   WakeWatch(const std::vector<PipelineSetup::Sensor>& sensors, const ClassTable& classes);
 
+  /// The wakes at an instant; null: none.
+  std::shared_ptr<const WakeMap> at(Stamp stamp) const;
   /// Gives a scan the wakes, if phantoms were seen in wakes lately.
   void apply(std::size_t sensor, MeasurementScan& scan) const;
   /// The scan after that; `hypothesis`: the most probable one after it.

@@ -42,6 +42,7 @@ void WeatherWatch::add(const std::string& sensor, Stamp stamp, const AirCensus& 
   lidar.estimator.add(census, stamp);
   lidar.stamp = now_ = stamp;
   WeatherState state = lidar.estimator.state();
+  lidar.not_clear = state.notClear();
   rows_.push_back({stamp, sensor, state, trust});
   state.probability = probabilities();
   clear_ = state.of(WeatherType::kClear);
@@ -64,6 +65,11 @@ std::array<double, kWeatherTypes> WeatherWatch::probabilities() const {
   }
   for (double& p : mean) p /= std::max(count, 1.0);
   return mean;
+}
+
+double WeatherWatch::notClear(const std::string& sensor) const {
+  const auto found = lidars_.find(sensor);
+  return found == lidars_.end() ? 0 : found->second.not_clear;
 }
 
 std::vector<WeatherRow> WeatherWatch::take() { return std::exchange(rows_, {}); }

@@ -32,6 +32,8 @@ class WeatherWatch {
   /// Mean of the lidars with a scan in the last second.
   std::array<double, kWeatherTypes> probabilities() const;
   double clear() const { return clear_; }  ///< probability of clear air at the last scan
+  /// P(the air is not clear) at this lidar's last scan; 0 for one whose returns are not weighed.
+  double notClear(const std::string& sensor) const;
   double fog() const { return fog_; }      ///< probability of fog at the last scan
   /// Rows since the last call.
   std::vector<WeatherRow> take();
@@ -40,6 +42,7 @@ class WeatherWatch {
   struct Lidar {
     WeatherEstimator estimator;
     Stamp stamp;
+    double not_clear = 0;
   };
   EventLog& events_;
   std::map<std::string, Lidar> lidars_;

@@ -29,6 +29,7 @@ inline constexpr char kSensorBack[] = "sensor_back";
 inline constexpr char kLearned[] = "learned";               ///< of detectors, as INI lines
 inline constexpr char kSensorMissing[] = "sensor_missing";  ///< configured, not in the log
 inline constexpr char kSensorIgnored[] = "sensor_ignored";  ///< in the log, not configured
+inline constexpr char kLidarInputs[] = "lidar_inputs";      ///< fields that a lidar does not give
 inline constexpr char kSensorBlind[] = "sensor_blind";      ///< frames with nothing in them
 inline constexpr char kSensorFouled[] = "sensor_fouled";    ///< dirt on its window, misses much
 inline constexpr char kSensorMisaligned[] = "sensor_misaligned";  ///< sees all off to one side

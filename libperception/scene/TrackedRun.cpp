@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <iterator>
@@ -91,12 +92,25 @@ std::string trackLine(const Scene& scene, const SceneObject& object, const Class
   return line.end();
 }
 
+/// As FreePath::Cause.
+constexpr std::array<const char*, 3> kPathCauses = {"grid", "returns", "object"};
+
+void addCause(Line& line, const FreePath& path) {
+  if (!path.blocked) return line.text(",,,");
+  line.text(path.owner == 0 ? "unknown" : fmt::format("{}", path.owner));
+  line.text(kPathCauses[static_cast<std::size_t>(path.cause)]);
+  line.integer(path.returns);
+  line.integer(path.overruled);
+}
+
 void addPath(Line& line, const std::optional<FreePath>& path) {
-  if (!path) return line.text(",,,");
+  if (!path) return line.text(",,,,,,,,");
   line.meters(path->distance);
   line.meters(path->seen);
   line.integer(path->stop ? 1 : 0);
-  line.text(!path->blocked ? "" : path->owner == 0 ? "unknown" : fmt::format("{}", path->owner));
+  addCause(line, *path);
+  line.meters(path->safe_speed);
+  line.integer(path->too_fast ? 1 : 0);
 }
 
 std::string sceneLine(const Scene& scene, std::size_t objects, Stamp first_stamp) {
@@ -131,6 +145,7 @@ class Table {
   const CsvTable& csv() const { return csv_; }
   void go(std::size_t row) { row_ = row; }
   double real(const char* name) const { return csv_.real(row_, csv_.column(name)); }
+  bool has(const char* name) const { return csv_.has(name); }
   bool flag(const char* name) const { return csv_.flag(row_, csv_.column(name)); }
   std::int64_t integer(const char* name) const { return csv_.integer(row_, csv_.column(name)); }
   std::uint64_t natural(const char* name) const { return csv_.natural(row_, csv_.column(name)); }
@@ -159,6 +174,16 @@ std::optional<FreePath> readPath(const Table& row) {
   path.stop = row.flag("stop");
   path.blocked = !row.text("obstacle").empty();
   if (path.blocked && row.text("obstacle") != "unknown") path.owner = row.natural("obstacle");
+  if (row.has("safe_speed")) {
+    path.safe_speed = row.real("safe_speed");
+    path.too_fast = row.flag("too_fast");
+  }
+  if (!path.blocked || !row.has("cause")) return path;  // older runs have none
+  const auto cause = std::find(kPathCauses.begin(), kPathCauses.end(), row.text("cause"));
+  if (cause == kPathCauses.end()) row.fault("cause", "grid, returns or object");
+  path.cause = static_cast<FreePath::Cause>(cause - kPathCauses.begin());
+  path.returns = static_cast<std::uint32_t>(row.natural("returns"));
+  path.overruled = static_cast<std::uint32_t>(row.natural("overruled"));
   return path;
 }
 
@@ -213,7 +238,7 @@ TrackedRunWriter::TrackedRunWriter(const std::string& dir, const ClassTable& cla
   tracks_.write(tracksHeader(classes_));
   scenes_.write(
       "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,stop,"
-      "obstacle\n");
+      "obstacle,cause,returns,overruled,safe_speed,too_fast\n");
 }
 
 void TrackedRunWriter::write(const Scene& scene) {

@@ -34,4 +34,10 @@ inline float echoOdds(const LidarCloud& cloud, std::size_t i, const TrustParams&
   return static_cast<float>(params.rain_rule);
 }
 
+/// [0, 1] P(phantom) by the sensor's own verdict and echoes alone; 0 where they say nothing.
+inline double instrumentDoubt(const LidarCloud& cloud, std::size_t i, const TrustParams& params) {
+  const auto odds = static_cast<double>(labelOdds(cloud, i, params) + echoOdds(cloud, i, params));
+  return odds > 0 ? 1 / (1 + std::exp(-odds)) : 0;
+}
+
 }  // namespace perception

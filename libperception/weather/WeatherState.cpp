@@ -39,6 +39,9 @@ double quantile(std::vector<double> values, double q) {
   return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
+// Share of the beams with a lone return near by.
+double nearOf(const std::array<double, kShells>& lone) { return lone[0] + lone[1] + lone[2] / 2; }
+
 // [m] range within which 99 % of the returns lie.
 double reachOf(const std::array<double, AirCensus::kReachBins>& bins) {
   double all = 0, sum = 0;
@@ -124,10 +127,13 @@ WeatherEstimator::Signs WeatherEstimator::signsOf(const Means& means) const {
   return signs;
 }
 
+double WeatherEstimator::airOf(const Signs& signs) {
+  return 1.5 * std::log((nearOf(signs.lone) + 1e-6) / kClearAir);
+}
+
 std::array<double, 3> WeatherEstimator::evidenceOf(const Signs& signs) {
   const auto& lone = signs.lone;
-  const double near = lone[0] + lone[1] + lone[2] / 2;
-  const double air = clampEvidence(1.5 * std::log((near + 1e-6) / kClearAir));
+  const double near = nearOf(lone), air = clampEvidence(airOf(signs));
   const double short_reach =
       clampEvidence(std::min({(kShortReach - signs.reach) / 4, (kLostLevel - signs.level) / 0.06,
                               (signs.level - kNoLevel) / 0.04}));
@@ -170,6 +176,7 @@ WeatherState WeatherEstimator::state() const {
   const double wet = std::exp(log_p_[1]), is_snow = 1 / (1 + std::exp(-snow));
   state.probability = {std::exp(log_p_[0]), wet * (1 - is_snow), wet * is_snow,
                        std::exp(log_p_[2])};
+  if (now.any) state.flurry = 1 / (1 + std::exp(-airOf(now)) * (1 - 2 * kPriorRest) / (2 * kPriorRest));
   state.rain_mm_h = rates_.rain(near, signs.open, farther < kDropsEnd);
   state.snow_mm_h = rates_.snow(all);
   state.visibility = visibilityOfReach(now.reach);

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -16,12 +17,17 @@ const char* nameOf(WeatherType type);  ///< clear, rain, snow, fog
 /// The weather as one lidar sees it (method.md 9.10).
 struct WeatherState {
   std::array<double, kWeatherTypes> probability{1, 0, 0, 0};  ///< in the order of WeatherType
+  /// [0, 1] P(the air is not clear) by the returns in free air of the last second alone: a flurry
+  /// is there at once, while the weather waits for more.
+  double flurry = 0;
   Estimate rain_mm_h, snow_mm_h;  ///< if it rains, if it snows [mm/h of water]
   Estimate visibility;            ///< [m] meteorological optical range; without fog: at least
 
   /// The most probable type.
   WeatherType type() const;
   double of(WeatherType t) const { return probability[static_cast<std::size_t>(t)]; }
+  /// [0, 1] P(returns may be of the air itself): the greater one of both.
+  double notClear() const { return std::max(1 - of(WeatherType::kClear), flurry); }
 };
 
 /// Estimates the weather from a lidar's scans: clear, precipitation or fog by a hidden Markov model
@@ -51,6 +57,8 @@ class WeatherEstimator {
   void restart();
   void blend(const AirCensus& census, bool first, double dt);
   Signs signsOf(const Means& means) const;
+  /// [log-likelihood ratio] of returns from the air to clear air, unbounded.
+  static double airOf(const Signs& signs);
   /// [log-likelihood] of clear air, precipitation and fog by one look.
   static std::array<double, 3> evidenceOf(const Signs& signs);
   void follow(const Signs& signs, double dt);

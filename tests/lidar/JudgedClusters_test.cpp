@@ -77,6 +77,12 @@ SolidScene couple() {
   return scene;
 }
 
+Judgement judge(const SensorFrame& frame, const LidarDetections& found,
+                const ClusterClassifier& classifier, const CausesAt& causes_at = {}) {
+  return judgedClusters(found, std::get<LidarCloud>(frame.data), DirectionCells(found.points),
+                        classifier, causes_at);
+}
+
 struct Judged {
   SensorFrame frame;
   LidarDetections found;
@@ -86,7 +92,7 @@ struct Judged {
                   const std::shared_ptr<const ClusterClassifier>& classifier = byLength())
       : frame(test::castScan(scene, test::narrowLidar())),
         found(test::plainFrontEnd().detect(frame)),
-        clusters(judgedClusters(found, std::get<LidarCloud>(frame.data), *classifier).clusters) {}
+        clusters(judge(frame, found, *classifier).clusters) {}
 
   Vector2 middleOf(const JudgedCluster& c) const {
     Vector2 sum = Vector2::Zero();
@@ -159,7 +165,7 @@ TEST(JudgedClusters, WhatIsSurelyAPhantomIsLeftOutAndSaidOfItsReturns) {
   EXPECT_EQ(doubted.clusters.size(), 2u) << "a phantom by .27, a person by .72";
   ASSERT_EQ(judged.clusters.size(), 1u) << "the car";
   const Judgement judgement =
-      judgedClusters(judged.found, std::get<LidarCloud>(judged.frame.data), *byLength(-4, 4, 9));
+      judge(judged.frame, judged.found, *byLength(-4, 4, 9));
   ASSERT_EQ(judgement.phantom.size(), judged.found.obstacles.size());
   for (std::size_t i = 0; i < judgement.phantom.size(); ++i) {
     if (judgement.phantom[i] == PlacedReturns::kNoCluster) continue;
@@ -167,14 +173,28 @@ TEST(JudgedClusters, WhatIsSurelyAPhantomIsLeftOutAndSaidOfItsReturns) {
   }
 }
 
+TEST(JudgedClusters, APhantomIsSurerWhereSomethingMakesPhantoms) {
+  const Judged judged(parkedStreet(), byLength(-4, 4, 3));
+  ASSERT_EQ(judged.clusters.size(), 2u) << "the person, a phantom by .27, stands";
+  const auto in = [&](const CausesHere& causes) {
+    return judge(judged.frame, judged.found, *byLength(-4, 4, 3), [=](const Vector2& place) {
+      return place.y() < -3 ? causes : CausesHere{};
+    });
+  };
+  const auto highest = [](const Judgement& j) {
+    return *std::max_element(j.phantom.begin(), j.phantom.end());
+  };
+  const float clear = highest(in({})), weather = highest(in({1, 0})), wake = highest(in({0, 0.9}));
+  EXPECT_LE(clear, weather);
+  EXPECT_LT(clear, wake);
+}
+
 TEST(JudgedClusters, PhantomsAreAccountedForAndWhatIsKeptInDoubtIsSuspicious) {
   const SolidScene scene = parkedStreet();
   const auto verdictsOf = [&](float phantom, float trust) {
     Judged judged(scene);
     judged.found.trust.assign(judged.found.obstacles.size(), trust);
-    return judgedClusters(judged.found, std::get<LidarCloud>(judged.frame.data),
-                          *byLength(-4, 4, phantom))
-        .verdicts;
+    return judge(judged.frame, judged.found, *byLength(-4, 4, phantom)).verdicts;
   };
   const ClusterVerdicts none = verdictsOf(-20, 1);
   EXPECT_EQ(none.clusters, 3u) << "van, person and wall";
@@ -246,7 +266,8 @@ TEST(JudgedClusters, APersonInTheFootprintOfAVehicleStands) {
 
 TEST(JudgedClusters, NoReturnsHaveNone) {
   LidarDetections nothing(EgoPoints{}, {}, GroundSurface(GroundPlane{}, EgoPoints{}, {}, nullptr));
-  EXPECT_TRUE(judgedClusters(nothing, LidarCloud{}, *byLength()).clusters.empty());
+  const DirectionCells cells(nothing.points);
+  EXPECT_TRUE(judgedClusters(nothing, LidarCloud{}, cells, *byLength()).clusters.empty());
 }
 
 // The front end ---------------------------------------------------------------------------------

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <utility>
+
 #include "libperception/core/Angle.h"
 #include "tests/support/StartStamp.h"
 
@@ -26,6 +31,14 @@ struct Scan {
     returns.height_min = 0.3, returns.height_max = 3;
     returns.vehicle_front = 2;
   }
+  /// Trust of the box's returns.
+  void trustBox(float trust) {
+    auto& cloud = std::get<LidarCloud>(frame.data);
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      if (cloud.z[i] > 0) cloud.trust[i] = trust;
+  }
+  /// Share of the directions about every return that end there.
+  void solid(float share) { returns.solid.assign(returns.size(), share); }
   /// A cloud of drops over the road before the box, one return each 0.1 m.
   void addCloud(float trust) {
     for (double x = 10; x < 19; x += 0.1)
@@ -88,41 +101,136 @@ TEST(SafetyMonitor, AnObstacleNearerThanTheStoppingDistanceCallsForAStop) {
   EXPECT_FALSE(monitor.advise(path, sceneAt(0.2, 9)).stop);  // 15.6 m
 }
 
-TEST(SafetyMonitor, WhatIsDoubtedBlocksNothing) {
+/// Scans 0.1 s apart as they are, in air that is not clear with that probability.
+PathAhead after(int scans, double weather, const std::function<void(Scan&)>& change,
+                double speed = 10) {
   SafetyMonitor monitor(smallGrid(), {});
-  for (const double t : {0.0, 0.1, 0.2})
-    monitor.add(Scan(t, 20, 0.01F).frame, Scan(t, 20, 0.01F).returns);
-  EXPECT_FALSE(monitor.pathAhead(egoAt(0.2, 10)).free.blocked);
+  PathAhead path;
+  for (int k = 0; k < scans; ++k) {
+    Scan scan(0.1 * k, 20);
+    scan.frame.causes.weather = weather;
+    change(scan);
+    monitor.add(scan.frame, scan.returns);
+    path = monitor.pathAhead(egoAt(0.1 * k, speed));
+  }
+  return path;
 }
 
-TEST(SafetyMonitor, AClusterThatIsAPhantomBlocksNothing) {
-  for (const float phantom : {0.99F, 0.01F}) {
-    SafetyMonitor monitor(smallGrid(), {});
-    for (const double t : {0.0, 0.1, 0.2}) {
-      Scan scan(t, 20);
-      scan.returns.phantom.assign(scan.returns.size(), phantom);
-      monitor.add(scan.frame, scan.returns);
+// Nothing learned from shapes, and no trust, takes an obstacle out of the grid by itself.
+
+TEST(SafetyMonitor, InClearAirEveryReturnCountsWhateverItsTrustAndShape) {
+  for (const float trust : {0.01F, 1.F}) {
+    for (const float phantom : {0.99F, 0.01F, PlacedReturns::kNoCluster}) {
+      const PathAhead path = after(1, 0, [&](Scan& scan) {
+        scan.trustBox(trust);
+        scan.returns.phantom.assign(scan.returns.size(), phantom);
+      });
+      EXPECT_TRUE(path.free.blocked) << "in the first scan; trust " << trust << ", " << phantom;
+      EXPECT_FALSE(path.in_cloud);
     }
-    EXPECT_EQ(monitor.pathAhead(egoAt(0.2, 10)).free.blocked, phantom < 0.5F);
   }
 }
 
-TEST(SafetyMonitor, OneScanBlocksOnlyByItsClusters) {
-  Scan scan(0, 20);
-  scan.returns.phantom.assign(scan.returns.size(), PlacedReturns::kNoCluster);
-  SafetyMonitor monitor(smallGrid(), {});
-  monitor.add(scan.frame, scan.returns);
-  EXPECT_FALSE(monitor.pathAhead(egoAt(0, 10)).free.blocked);
-  scan.returns.phantom.assign(scan.returns.size(), 0);
-  SafetyMonitor told(smallGrid(), {});
-  told.add(scan.frame, scan.returns);
-  EXPECT_TRUE(told.pathAhead(egoAt(0, 10)).free.blocked);
+TEST(SafetyMonitor, TheDoubtIsAsStrongAsItsCause) {
+  for (const double weather : {0.0, 0.1, 0.6, 1.0}) {
+    Scan scan(0, 20);
+    scan.frame.causes.weather = weather;
+    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+    const ObstacleScan obstacles = obstacleScanOf(scan.frame, scan.returns);
+    for (const float weight : obstacles.scan.weights)
+      EXPECT_NEAR(static_cast<double>(weight), 1 - std::min(weather, 0.99), 1e-6);
+    for (const char doubted : obstacles.doubted) EXPECT_TRUE(doubted);
+  }
+}
+
+TEST(SafetyMonitor, InWeatherADoubtedCloudBlocksNothing) {
+  const auto cloud = [](Scan& scan) {
+    scan.trustBox(0.01F);
+    scan.solid(0.1F);
+  };
+  EXPECT_FALSE(after(3, 1, cloud).free.blocked);
+  EXPECT_TRUE(after(3, 0, cloud).free.blocked);
+}
+
+TEST(SafetyMonitor, InWeatherASurfaceCountsInTheSecondScan) {
+  for (const float solid : {0.4F, PlacedReturns::kFewDirections}) {
+    const auto surface = [&](Scan& scan) {
+      scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+      scan.solid(solid);
+    };
+    EXPECT_FALSE(after(1, 1, surface).free.blocked);
+    const PathAhead path = after(2, 1, surface);
+    EXPECT_TRUE(path.free.blocked);
+    EXPECT_GT(path.overruled, 10u);
+  }
+}
+
+TEST(SafetyMonitor, InWeatherWhatIsSolidAsAWallCountsAtOnce) {
+  const auto wall = [](Scan& scan) {
+    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+    scan.solid(0.9F);
+  };
+  EXPECT_TRUE(after(1, 1, wall).free.blocked);
+}
+
+TEST(SafetyMonitor, WhatMovesOnFromScanToScanDoesNotPersist) {
+  int k = 0;
+  const auto flurry = [&](Scan& scan) {
+    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+    scan.solid(0.4F);
+    for (float& x : scan.returns.x) x += static_cast<float>(2 * k);
+    ++k;
+  };
+  EXPECT_FALSE(after(3, 1, flurry).free.blocked);
+}
+
+TEST(SafetyMonitor, AMirrorImageIsNoObstacleInAnyAir) {
+  EXPECT_FALSE(after(3, 0, [](Scan& scan) { scan.trustBox(0); }).free.blocked);
+}
+
+TEST(SafetyMonitor, WhatTheSensorCallsRainIsDoubtedInAnyAir) {
+  const auto rain = [](Scan& scan) {
+    scan.trustBox(0.01F);
+    auto& cloud = std::get<LidarCloud>(scan.frame.data);
+    cloud.label.assign(cloud.size(), static_cast<std::uint8_t>(PointLabel::kRain));
+  };
+  EXPECT_FALSE(after(3, 0, rain).free.blocked);
+}
+
+TEST(SafetyMonitor, BehindAVehicleItsSprayIsDoubtedAndNowhereElse) {
+  for (const double side : {0., 8.}) {
+    auto wakes = std::make_shared<WakeMap>();
+    VehicleFootprint car;  // was at the box a second ago
+    car.center = {20, side}, car.speed = 10, car.half_length = 2, car.half_width = 1;
+    car.stamp = kStart + -0.9;
+    wakes->add(car);
+    const PathAhead path = after(1, 0, [&](Scan& scan) {
+      scan.frame.causes.wakes = wakes;
+      scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+      scan.solid(0.1F);
+    });
+    EXPECT_EQ(path.free.blocked, side > 0);
+  }
+}
+
+TEST(SafetyMonitor, InWeatherOneScanBlocksOnlyByItsClusters) {
+  const auto loose = [](Scan& scan) {
+    scan.returns.phantom.assign(scan.returns.size(), PlacedReturns::kNoCluster);
+    scan.solid(0.1F);
+  };
+  EXPECT_FALSE(after(1, 1, loose).free.blocked);
+  EXPECT_TRUE(after(1, 0, loose).free.blocked);
+  EXPECT_TRUE(after(1, 1, [](Scan& scan) {
+                scan.returns.phantom.assign(scan.returns.size(), 0);
+              }).free.blocked);
 }
 
 TEST(SafetyMonitor, ManyDoubtedReturnsOfOneScanAreNoObstacle) {
   for (const float trust : {0.4F, 0.6F}) {
     Scan scan(0, 60);
+    scan.frame.causes.weather = 1;
     scan.addCloud(trust);
+    scan.solid(0.1F);
     SafetyMonitor monitor(smallGrid(), {});
     monitor.add(scan.frame, scan.returns);
     const FreeDistance free = monitor.pathAhead(egoAt(0, 10)).free;
@@ -136,7 +244,9 @@ TEST(SafetyMonitor, InACloudAStopTakesTwoScenesInARow) {
     SafetyMonitor monitor(smallGrid(), {});
     const auto stops = [&](double t, double x) {
       Scan scan(t, x);
+      scan.frame.causes.weather = 1;
       if (trust < 1) scan.addCloud(trust);
+      scan.solid(0.1F);
       monitor.add(scan.frame, scan.returns);
       const PathAhead path = monitor.pathAhead(egoAt(t, 12));
       EXPECT_EQ(path.in_cloud, path.free.blocked && trust < 1);
@@ -151,13 +261,32 @@ TEST(SafetyMonitor, AnOlderSceneIsNotTheOneBefore) {
   SafetyMonitor monitor(smallGrid(), {});
   const auto stops = [&](double t) {
     Scan scan(t, 20);
+    scan.frame.causes.weather = 1;
     scan.addCloud(0.1F);
+    scan.solid(0.1F);
     monitor.add(scan.frame, scan.returns);
     return monitor.advise(monitor.pathAhead(egoAt(t, 12)), sceneAt(t, 12)).stop;
   };
   EXPECT_FALSE(stops(0));
   EXPECT_FALSE(stops(0.6));
   EXPECT_TRUE(stops(0.7));
+}
+
+TEST(SafetyMonitor, AnAdviceSaysWhatItIsFor) {
+  SafetyMonitor monitor(smallGrid(), {});
+  const auto adviceAt = [&](double t, std::vector<SceneObject> objects) {
+    monitor.add(Scan(t, 20).frame, Scan(t, 20).returns);
+    Scene scene = sceneAt(t, 12);
+    scene.objects = std::move(objects);
+    return monitor.advise(monitor.pathAhead(scene.ego), scene);
+  };
+  const FreePath first = adviceAt(0, {});
+  EXPECT_TRUE(first.stop);
+  EXPECT_EQ(first.cause, FreePath::Cause::kReturns) << "no cell is occupied by one scan";
+  EXPECT_EQ(first.returns, 77u);
+  EXPECT_EQ(first.overruled, 0u);
+  EXPECT_EQ(adviceAt(0.1, {carAt(22.25, 0)}).cause, FreePath::Cause::kObject);
+  EXPECT_EQ(adviceAt(0.2, {}).cause, FreePath::Cause::kGrid);
 }
 
 TEST(SafetyMonitor, AVehicleThatMovesOnEveryScanIsSeenAllTheSame) {
@@ -190,6 +319,61 @@ TEST(SafetyMonitor, WithoutAScanForHalfASecondNothingIsKnown) {
   EXPECT_FALSE(monitor.pathAhead(egoAt(0.6, 10)).known);
   monitor.restart();
   EXPECT_FALSE(monitor.pathAhead(egoAt(0.1, 10)).known);
+}
+
+// The way that the vehicle drives.
+
+TEST(SafetyMonitor, AVehicleThatReversesStopsForWhatStandsBehind) {
+  SafetyMonitor monitor(smallGrid(), {});
+  EgoState ego = egoAt(0, -2);
+  Scan scan(0, -5);
+  scan.frame.ego = ego;
+  scan.returns.vehicle_rear = 2;
+  monitor.add(scan.frame, scan.returns);
+  const PathAhead path = monitor.pathAhead(ego);
+  EXPECT_TRUE(path.corridor.backward);
+  ASSERT_TRUE(path.free.blocked) << "in the first scan";
+  EXPECT_NEAR(path.free.distance, 5, 0.3);
+  EXPECT_FALSE(monitor.pathAhead(egoAt(0, 2)).free.blocked);
+}
+
+TEST(SafetyMonitor, WhatHangsHigherThanTheVehicleDoesNotBlock) {
+  for (const double lower : {2.2, 1.4}) {
+    SafetyMonitor monitor(smallGrid(), {});
+    Scan scan(0, 20);
+    for (std::size_t i = 0; i < scan.returns.size(); ++i) {
+      if (scan.returns.z[i] < 0.3F) continue;
+      scan.returns.z[i] += static_cast<float>(lower) - 0.4F;  // the box's lower edge
+      scan.returns.height[i] = scan.returns.z[i];
+    }
+    monitor.add(scan.frame, scan.returns);
+    EXPECT_EQ(monitor.pathAhead(egoAt(0, 10)).free.blocked, lower < 2) << lower;
+  }
+  StopParams bus;
+  bus.vehicle.height = 3;
+  SafetyMonitor monitor(smallGrid(), bus);
+  Scan scan(0, 20);
+  for (std::size_t i = 0; i < scan.returns.size(); ++i)
+    if (scan.returns.z[i] > 0.3F) scan.returns.height[i] = 2.5F;
+  monitor.add(scan.frame, scan.returns);
+  EXPECT_TRUE(monitor.pathAhead(egoAt(0, 10)).free.blocked) << "a bus is higher";
+}
+
+TEST(SafetyMonitor, TheFreeDistanceIsNoLongerThanWhatWasSeen) {
+  SafetyMonitor monitor(smallGrid(), {});
+  Scan scan(0, 12);  // nothing but a box beside the way, and the road before it
+  for (std::size_t i = 0; i < scan.returns.size(); ++i)
+    if (scan.returns.z[i] > 0.3F) scan.returns.y[i] += 5;
+  monitor.add(scan.frame, scan.returns);
+  const PathAhead path = monitor.pathAhead(egoAt(0, 10));
+  ASSERT_FALSE(path.free.blocked);
+  const FreePath advice = monitor.advise(path, sceneAt(0, 10));
+  EXPECT_LT(advice.distance, 13);
+  EXPECT_LE(advice.distance, advice.seen);
+  EXPECT_FALSE(advice.stop);
+  EXPECT_TRUE(advice.too_fast) << "10 m/s need 18.5 m";
+  EXPECT_LT(stoppingDistance(advice.safe_speed, 0, {}), 12);
+  EXPECT_FALSE(monitor.advise(path, sceneAt(0, advice.safe_speed - 0.1)).too_fast);
 }
 
 }  // namespace

@@ -107,5 +107,13 @@ TEST(WeatherState, RepeatedShowingsOfAScanCountOnce) {
   EXPECT_EQ(after(with({20e-4, 20e-4, 40e-4, 80e-4, 40e-4}), 0.1, 200).type(), WeatherType::kClear);
 }
 
+TEST(WeatherState, AFlurryIsThereInItsFirstScan) {
+  EXPECT_LT(after(street(), 0.1, 1).notClear(), 0.1);
+  const WeatherState snow = after(with({20e-4, 20e-4, 40e-4, 80e-4, 40e-4}), 0.1, 1);
+  EXPECT_EQ(snow.type(), WeatherType::kClear) << "one scan does not change the weather";
+  EXPECT_GT(snow.notClear(), 0.5);
+  EXPECT_LT(after(street(), 2).notClear(), 0.01);
+}
+
 }  // namespace
 }  // namespace perception
