@@ -1,6 +1,7 @@
 #include "libperception/lidar/LooseReturns.h"
 
 #include <cmath>
+#include <limits>
 
 #include "libperception/measurement/PlacedReturns.h"
 
@@ -11,47 +12,70 @@ namespace {
 constexpr float kBend = 0.3f;        // [m] in range, of a surface from cell to cell
 constexpr int kLeastCells = 4;       // about a return that tell
 constexpr float kLeastSolid = 0.3f;  // of these: the corner of a surface fills four in nine
+constexpr int kLeastInRow = 3;  // the same where beams are far apart: one row of cells
+constexpr float kGrazing = 0.05f;  // [-] of the range: a cell of 0.4 deg on a side at 8 deg
 constexpr double kMostLoose = 0.5;   // of a cluster
 
-/// Share of the cells about a return at `range` [m] in which no beam returns from behind it;
-/// PlacedReturns::kFewDirections: too few cells tell. What ends nearer is solid: beside a return on
-/// a surface seen at a grazing angle one side is nearer, one farther.
-float solidShare(const DirectionCells& cells, const DirectionCells::Place& place, float range) {
-  int solid = 0, passed = 0;
+/// Cells of direction about a return.
+struct CellsAbout {
+  int solid = 0, passed = 0;  ///< no beam, or one, returns from behind it
+  bool loose() const {
+    return solid + passed >= kLeastCells && static_cast<float>(solid) <
+                                                kLeastSolid * static_cast<float>(solid + passed);
+  }
+};
+
+/// About a return at `range` [m]. What ends nearer is solid: beside a return on a surface seen at a
+/// grazing angle one side is nearer, one farther; but by more than `nearer` [m] it hides what it
+/// would tell.
+CellsAbout cellsAbout(const DirectionCells& cells, const DirectionCells::Place& place, float range,
+                      float nearer) {
+  CellsAbout about;
   for (int row = place.row - 1; row <= place.row + 1; ++row) {
     for (int column = place.column - 1; column <= place.column + 1; ++column) {
       const DirectionCells::Cell& cell = cells.at(column, row);
-      if (cell.empty()) continue;
-      ++(cell.farthest > range + kBend ? passed : solid);
+      if (cell.empty() || cell.farthest < range - nearer) continue;
+      ++(cell.farthest > range + kBend ? about.passed : about.solid);
     }
   }
-  if (solid + passed < kLeastCells) return PlacedReturns::kFewDirections;
-  return static_cast<float>(solid) / static_cast<float>(solid + passed);
+  return about;
+}
+
+/// Calls `use` with each of the points and what is about it; `slope` [-]: of a surface, by which
+/// what is beside a return may be nearer.
+template <class Use>
+void forCellsAbout(const EgoPoints& all, const DirectionCells& cells,
+                   const std::vector<std::uint32_t>& points, float slope, const Use& use) {
+  const auto sx = static_cast<float>(all.sensor.x()), sy = static_cast<float>(all.sensor.y()),
+             sz = static_cast<float>(all.sensor.z());
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    const std::uint32_t i = points[k];
+    const float dx = all.x[i] - sx, dy = all.y[i] - sy, dz = all.z[i] - sz;
+    const float range = std::sqrt(dx * dx + dy * dy + dz * dz);
+    use(k, cellsAbout(cells, DirectionCells::placeOf(dx, dy, dz), range, kBend + slope * range));
+  }
 }
 
 }  // namespace
 
 std::vector<float> solidShares(const EgoPoints& all, const DirectionCells& cells,
                                const std::vector<std::uint32_t>& points) {
-  const auto sx = static_cast<float>(all.sensor.x()), sy = static_cast<float>(all.sensor.y()),
-             sz = static_cast<float>(all.sensor.z());
-  std::vector<float> shares;
-  shares.reserve(points.size());
-  for (const std::uint32_t i : points) {
-    const float dx = all.x[i] - sx, dy = all.y[i] - sy, dz = all.z[i] - sz;
-    shares.push_back(solidShare(cells, DirectionCells::placeOf(dx, dy, dz),
-                                std::sqrt(dx * dx + dy * dy + dz * dz)));
-  }
+  std::vector<float> shares(points.size(), PlacedReturns::kFewDirections);
+  forCellsAbout(all, cells, points, kGrazing, [&](std::uint32_t k, const CellsAbout& about) {
+    const int told = about.solid + about.passed;
+    if (told >= kLeastInRow) shares[k] = static_cast<float>(about.solid) / static_cast<float>(told);
+  });
   return shares;
 }
 
 std::vector<std::uint32_t> surfaceReturns(const EgoPoints& all, const DirectionCells& cells,
                                           const std::vector<std::uint32_t>& points) {
-  const std::vector<float> solid = solidShares(all, cells, points);
   std::vector<std::uint32_t> kept;
   kept.reserve(points.size());
-  for (std::uint32_t k = 0; k < points.size(); ++k)
-    if (solid[k] == PlacedReturns::kFewDirections || solid[k] >= kLeastSolid) kept.push_back(k);
+  forCellsAbout(all, cells, points, std::numeric_limits<float>::infinity(),
+                [&](std::uint32_t k, const CellsAbout& about) {
+                  if (!about.loose()) kept.push_back(k);
+                });
   const auto count = static_cast<double>(points.size());
   if (count - static_cast<double>(kept.size()) <= kMostLoose * count) return kept;
   kept.resize(points.size());

@@ -14,8 +14,8 @@ namespace perception {
 std::vector<std::uint32_t> surfaceReturns(const EgoPoints& all, const DirectionCells& cells,
                                           const std::vector<std::uint32_t>& points);
 
-/// Of each of `points` the share of the directions about it that end at its range or nearer, as
-/// PlacedReturns::solid.
+/// Of each of `points` the share of the directions about it that end at its range, as
+/// PlacedReturns::solid; those that end well before it tell nothing.
 std::vector<float> solidShares(const EgoPoints& all, const DirectionCells& cells,
                                const std::vector<std::uint32_t>& points);
 

@@ -20,8 +20,13 @@ constexpr float kDoubted = 0.5F;    // of a return: more likely a phantom than n
 constexpr double kHardly = 0.05;    // doubt that needs no cause, for it decides nothing (assumed)
 /// Share of the directions about a return that end there from which it is of a solid surface, and
 /// that from which it may be of one: the corner of a surface fills four in nine (assumed).
+<<<<<<< HEAD
 constexpr float kWall = 0.75F, kPerhapsSurface = 0.3F;
 constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
+=======
+constexpr float kWall = 0.75F, kPerhapsSurface = 0.4F;
+constexpr double kFresh = 0.5;    // [s] after which a scan says nothing of the way ahead; assumed
+>>>>>>> f2a686abd34fda3659b63cfb9b7e3ca30ceccab8
 
 // The vehicle on the ground plane: z = 0 is the ground.
 Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
@@ -62,21 +67,19 @@ class Doubter {
     const float shape = returns_.phantom.empty() ? 0 : returns_.phantom[i];
     const bool alone = shape == PlacedReturns::kNoCluster;
     const float doubt = 1 - (alone ? trust : trust * (1 - shape));
-    const bool asks = caused_ && static_cast<double>(doubt) > kHardly;
+    const bool asks = caused_ && (alone || static_cast<double>(doubt) > kHardly);
     const double cause = asks ? frame_.causes.at(place.head<2>(), frame_.stamp).likelier() : 0;
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
     float held = std::min(doubt, static_cast<float>(cause));
     if (weighted_) held = std::max(held, std::min(doubt, verdictOn(i)));
     if (solid >= kWall && trust > 0) held = 0;
     const float weight = 1 - held;
-    const float lone = alone && solid < kWall ? static_cast<float>(frame_.causes.weather) : 0;
+    const float lone = alone && solid < kWall ? static_cast<float>(cause) : 0;
     const float dense = weight * (1 - lone);
     if (weighted_) obstacles.scan.weights.push_back(weight);
     obstacles.dense.push_back(dense < kDoubted ? 0 : dense);
     obstacles.doubted.push_back(doubt >= kDoubted);
-    const bool surface = solid == PlacedReturns::kFewDirections || solid >= kPerhapsSurface;
-    const bool asked = caused_ && !returns_.solid.empty();
-    obstacles.surface.push_back(asked && dense < 1 && trust > 0 && surface);
+    obstacles.surface.push_back(caused_ && dense < 1 && trust > 0 && solid >= kPerhapsSurface);
   }
 
  private:
