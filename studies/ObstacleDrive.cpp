@@ -16,7 +16,7 @@ constexpr double kWallOffset = 9, kWallHeight = 3;         // [m] assumed
 constexpr double kBefore = 30, kBeyond = 60;               // [m] of walls: vehicle, shape
 constexpr double kNextLane = -3.6;                         // [m] assumed
 constexpr double kPassingSpeed = 25, kPassingEvery = 1.5;  // [m/s, s] assumed
-constexpr double kAcross = 3, kSharpestRadius = 25;        // [m/s^2, m] assumed
+constexpr double kDriveAcross = 3, kSharpestRadius = 25;   // [m/s^2, m] assumed
 constexpr double kAzimuthStep = 0.2;                       // [deg]
 constexpr double kOutlineStep = 0.05;                      // [m]
 constexpr std::uint32_t kScanPurpose = 0x57DD0000;         // of random numbers
@@ -89,7 +89,7 @@ LidarSensorParams lidarOfBeams(int beams) {
 
 double curvatureOf(DriveWay way, double speed) {
   if (way == DriveWay::kForward || way == DriveWay::kBackward) return 0;
-  const double radius = std::max(kSharpestRadius, speed * speed / kAcross);
+  const double radius = std::max(kSharpestRadius, speed * speed / kDriveAcross);
   return (way == DriveWay::kLeft ? 1 : -1) / radius;
 }
 

@@ -151,7 +151,7 @@ std::shared_ptr<mrpt::obs::CObservation> observationOf(ObstacleDrive& drive, std
 
 }  // namespace
 
-std::string lidarOf(const PipelineSetup& setup) {
+std::string lidarInUse(const PipelineSetup& setup) {
   if (!setup.grid.enabled) throw ConfigError("[grid] enabled must be true");
   for (const PipelineSetup::Sensor& sensor : setup.sensors)
     if (sensor.isLidarInUse()) return sensor.label;

@@ -12,6 +12,6 @@ ObstacleVerdict runDrive(ObstacleDrive& drive, const ObstacleDriveParams& params
                          const PipelineSetup& setup, bool intensity);
 
 /// Label of the first lidar in use. Throws ConfigError where there is none, or no grid.
-std::string lidarOf(const PipelineSetup& setup);
+std::string lidarInUse(const PipelineSetup& setup);
 
 }  // namespace perception

@@ -340,7 +340,7 @@ std::vector<ObstacleShape> hanging() {
           {"garage's ceiling at 2.3 m", kind, pass, {{0, 0, 2.3, 30, 8, 0.3, kStone}}}};
 }
 
-std::vector<ObstacleShape> others() {
+std::vector<ObstacleShape> lowAndBeside() {
   const auto low = ShapeDemand::kLow, pass = ShapeDemand::kPass;
   return {{"hose", "low", low, {{0, 0, 0, 0.05, 5, 0.05, kDark}}},
           {"cable bridge", "low", low, {{0, 0, 0, 0.6, 4, 0.07, kRubber}}},
@@ -361,8 +361,8 @@ std::vector<ObstacleShape> others() {
 const std::vector<ObstacleShape>& obstacleShapes() {
   static const std::vector<ObstacleShape> shapes = [] {
     std::vector<ObstacleShape> all;
-    for (const auto& some :
-         {people(), animals(), goods(), plants(), vehicles(), barriers(), hanging(), others()})
+    for (const auto& some : {people(), animals(), goods(), plants(), vehicles(), barriers(),
+                             hanging(), lowAndBeside()})
       all.insert(all.end(), some.begin(), some.end());
     return all;
   }();

@@ -6,11 +6,6 @@
 
 namespace perception {
 
-const char* nameOf(SilenceCause cause) {
-  constexpr const char* kNames[] = {"height", "ground", "doubt"};
-  return kNames[static_cast<std::size_t>(cause)];
-}
-
 double nearestTen(std::vector<double> distances) {
   constexpr std::size_t kTen = 10;
   constexpr double kTogetherWithin = 0.5;  // [m]

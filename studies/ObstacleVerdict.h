@@ -34,7 +34,6 @@ enum class SilenceCause {
   kDoubt    ///< doubted, or anything else
 };
 inline constexpr std::size_t kSilenceCauses = 3;
-const char* nameOf(SilenceCause cause);
 
 /// What a drive says of one shape, scene by scene.
 class ObstacleVerdict {

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -14,7 +15,7 @@
 #include "libperception/config/Config.h"
 #include "libperception/core/Error.h"
 #include "libperception/core/Random.h"
-#include "libperception/core/Supervision.h"
+#include "libperception/pipeline/Progress.h"
 #include "studies/ObstacleRun.h"
 
 namespace perception {
@@ -110,7 +111,7 @@ std::vector<DriveCase> allCases(const ObstaclesOptions& options, const PipelineS
     DriveCase one;
     one.weather = name;
     one.params.weather = weatherNamed(name, options.config);
-    one.params.lidar = lidarOf(setup);
+    one.params.lidar = lidarInUse(setup);
     one.params.sector = options.sector;
     for (const int beams : options.beams)
       for (const double speed : options.speeds)
@@ -127,7 +128,7 @@ std::vector<DriveCase> allCases(const ObstaclesOptions& options, const PipelineS
   return cases;
 }
 
-void run(DriveCase& one, const ObstaclesOptions& options, const PipelineSetup& setup) {
+void runCase(DriveCase& one, const ObstaclesOptions& options, const PipelineSetup& setup) {
   stopIfAsked();
   ObstacleDrive drive(one.params);
   for (const std::string& intensity : options.intensity)
@@ -143,7 +144,7 @@ void forAll(const std::vector<DriveCase>& cases, const ObstaclesOptions& options
       use(one, options.intensity[i], one.verdicts[i]);
 }
 
-std::string meters(double value) {
+std::string metersOrNone(double value) {
   return std::isfinite(value) ? fmt::format("{:.1f}", value) : "";
 }
 
@@ -151,7 +152,7 @@ std::string demandName(ShapeDemand demand) {
   return demand == ShapeDemand::kStop ? "stop" : demand == ShapeDemand::kLow ? "low" : "pass";
 }
 
-std::string share(const DriveSums& sums, std::size_t k) {
+std::string calledShare(const DriveSums& sums, std::size_t k) {
   if (sums.called[k] == 0) return "";
   return fmt::format("{:.2f}", sums.share[k] / static_cast<double>(sums.called[k]));
 }
@@ -170,7 +171,7 @@ std::vector<std::string> sumCells(const DriveSums& s) {
        {s.drives, s.shown, s.missed[0], s.late[0], s.silent, s.missed[1], s.late[1],
         s.false_stops[0], s.false_scenes[0], s.false_stops[1], s.false_scenes[1], s.scenes})
     cells.push_back(fmt::format("{}", count));
-  cells.push_back(share(s, 0)), cells.push_back(share(s, 1));
+  cells.push_back(calledShare(s, 0)), cells.push_back(calledShare(s, 1));
   return cells;
 }
 
@@ -209,8 +210,8 @@ std::vector<std::string> driveCells(const DriveCase& one, const std::string& int
 
 std::vector<std::string> verdictCells(const ObstacleVerdict& v) {
   std::vector<std::string> cells = {
-      meters(v.needed), meters(v.shown_at), meters(v.of(kAdvice).called_at),
-      meters(v.of(kClusters).called_at), fmt::format("{}", v.of(kAdvice).silent)};
+      metersOrNone(v.needed), metersOrNone(v.shown_at), metersOrNone(v.of(kAdvice).called_at),
+      metersOrNone(v.of(kClusters).called_at), fmt::format("{}", v.of(kAdvice).silent)};
   for (const std::size_t count : v.silent_by_cause) cells.push_back(fmt::format("{}", count));
   return cells;
 }
@@ -270,7 +271,7 @@ StudyPlot shapesPlot(const std::vector<DriveCase>& cases, const ObstaclesOptions
   std::string data;
   for (const auto& [name, s] : sums) {
     const auto cell = [&, sum = &s](std::size_t k) {
-      return sum->called[k] > 0 ? share(*sum, k) : std::string("NaN");
+      return sum->called[k] > 0 ? calledShare(*sum, k) : std::string("NaN");
     };
     data += fmt::format("\"{}\" {} {}\n", name, cell(0), cell(1));
   }
@@ -367,7 +368,7 @@ StudyReport obstaclesStudy(const ObstaclesOptions& options, unsigned long long s
   }();
   std::vector<DriveCase> cases = allCases(options, setup, seed);
   tbb::parallel_for(std::size_t{0}, cases.size(),
-                    [&](std::size_t i) { run(cases[i], options, setup); });
+                    [&](std::size_t i) { runCase(cases[i], options, setup); });
   StudyReport report;
   report.title = "Obstacles that nobody taught";
   report.data = fmt::format("simulated: {} shapes, {} drives, {}", chosenShapes(options).size(),
