@@ -20,13 +20,8 @@ constexpr float kDoubted = 0.5F;    // of a return: more likely a phantom than n
 constexpr double kHardly = 0.05;    // doubt that needs no cause, for it decides nothing (assumed)
 /// Share of the directions about a return that end there from which it is of a solid surface, and
 /// that from which it may be of one: the corner of a surface fills four in nine (assumed).
-<<<<<<< HEAD
-constexpr float kWall = 0.75F, kPerhapsSurface = 0.3F;
-constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
-=======
 constexpr float kWall = 0.75F, kPerhapsSurface = 0.4F;
-constexpr double kFresh = 0.5;    // [s] after which a scan says nothing of the way ahead; assumed
->>>>>>> f2a686abd34fda3659b63cfb9b7e3ca30ceccab8
+constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
 
 // The vehicle on the ground plane: z = 0 is the ground.
 Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
