@@ -13,6 +13,7 @@ foreach(part core imgproc imgcodecs video calib3d dnn objdetect dpm ml)
   add_library(opencv_${part} UNKNOWN IMPORTED)
   set_target_properties(opencv_${part} PROPERTIES IMPORTED_LOCATION ${OPENCV_${part}_LIBRARY}
                         INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
+  list(APPEND OPENCV_LIBRARIES ${OPENCV_${part}_LIBRARY})
 endforeach()
 find_package(TBB REQUIRED)
 find_package(CycloneDDS REQUIRED)
@@ -38,7 +39,7 @@ endif()
 # take half the time. Not beside ccache, which remembers sources one by one. Names of anonymous namespaces are unique in a module.
 function(perception_batches TARGET)
   if(PERCEPTION_UNITY)
-    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
+    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 24)
     target_compile_options(${TARGET} PRIVATE -Wno-subobject-linkage)  # a source of a batch counts as a header
   endif()
 endfunction()
@@ -69,6 +70,8 @@ function(perception_module NAME)
       target_compile_options(perception_${NAME} PRIVATE -fno-math-errno -fno-trapping-math -ffp-contract=off -Wno-psabi)
     elseif(NAME IN_LIST PERCEPTION_CHEAP)
       perception_cheap(perception_${NAME})
+    elseif(NAME IN_LIST PERCEPTION_MODERATE)
+      target_compile_options(perception_${NAME} PRIVATE $<$<CONFIG:Release>:-O2>)
     endif()
     perception_batches(perception_${NAME})
   else()
@@ -91,6 +94,39 @@ function(perception_simd NAME STEM)
     COMPILE_OPTIONS "${MATH};-mavx512f;-mavx512dq;-mavx512vl;-mfma;-mprefer-vector-width=512")
 endfunction()
 
+# Programs find OpenCV's library of picture files under its name as a library of ours that loads it when the first picture comes:
+# it takes three times as long as all others together (docs/decisions/build.md). A program that is copied elsewhere, and a build
+# where the name is not known, have OpenCV's own.
+if(PERCEPTION_LATE_IMAGE_CODECS)
+  execute_process(COMMAND ${CMAKE_READELF} -d ${OPENCV_imgcodecs_LIBRARY} OUTPUT_VARIABLE DYNAMIC ERROR_QUIET)
+  if(DYNAMIC MATCHES "soname: \\[([^]]+)\\]")
+    set(IMAGE_CODECS ${CMAKE_MATCH_1})
+    get_filename_component(FOLDER ${OPENCV_imgcodecs_LIBRARY} DIRECTORY)
+    add_library(perception_image_codecs SHARED ${CMAKE_SOURCE_DIR}/libperception/app/LateImageCodecs.cpp)
+    target_compile_definitions(perception_image_codecs PRIVATE PERCEPTION_IMAGE_CODECS="${FOLDER}/${IMAGE_CODECS}")
+    target_include_directories(perception_image_codecs SYSTEM PRIVATE ${OPENCV_INCLUDE_DIR})
+    target_link_libraries(perception_image_codecs PRIVATE perception_options ${CMAKE_DL_LIBS})
+    target_link_options(perception_image_codecs PRIVATE -Wl,-Bsymbolic-functions)
+    set_target_properties(perception_image_codecs PROPERTIES PREFIX "" OUTPUT_NAME ${IMAGE_CODECS} SUFFIX ""
+                          LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${PLUGIN_DIR})  # as installed
+    add_custom_command(TARGET perception_image_codecs POST_BUILD VERBATIM
+      COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DOURS=$<TARGET_FILE:perception_image_codecs> -DTHEIRS=${FOLDER}/${IMAGE_CODECS}
+              "-DUSERS=$<TARGET_FILE:mrpt::img>;${OPENCV_LIBRARIES}" -P ${CMAKE_SOURCE_DIR}/cmake/ImageCodecsCheck.cmake)
+  endif()
+endif()
+
+# perception_late_image_codecs(TARGET): for programs, also of tests. First on the command line: of libraries of one name linkers
+# take the first.
+function(perception_late_image_codecs TARGET)
+  if(TARGET perception_image_codecs)
+    add_dependencies(${TARGET} perception_image_codecs)
+    target_link_options(${TARGET} PRIVATE
+                        LINKER:--push-state,--no-as-needed,$<TARGET_FILE:perception_image_codecs>,--pop-state)
+    file(RELATIVE_PATH BESIDE /${CMAKE_INSTALL_BINDIR} /${PLUGIN_DIR})
+    set_target_properties(${TARGET} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "\$ORIGIN/${BESIDE}")
+  endif()
+endfunction()
+
 # perception_program(NAME [SOURCES stems below libperception...] LINK libs...): the program build/bin/perception-NAME from
 # apps/perception-NAME, and perception::app_NAME with its class, for tests. It builds what it runs and nothing else.
 function(perception_program NAME)
@@ -98,6 +134,9 @@ function(perception_program NAME)
   set(PROGRAM perception-${NAME})
   add_executable(${PROGRAM} ${CMAKE_SOURCE_DIR}/apps/${PROGRAM}/${PROGRAM}_main.cpp)
   set_property(GLOBAL APPEND PROPERTY PERCEPTION_PROGRAMS ${PROGRAM})
+  perception_late_image_codecs(${PROGRAM})
+  # The loader looks for a name in one library after the other, and finds most in these two.
+  target_link_options(${PROGRAM} PRIVATE LINKER:--push-state,--no-as-needed,$<TARGET_FILE:mrpt::expr>,-lstdc++,--pop-state)
   if(ARG_SOURCES)
     list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/libperception/)
     list(TRANSFORM ARG_SOURCES APPEND .cpp)

@@ -191,9 +191,12 @@ void RunData::add(std::size_t index, const SceneView& view) {
   }
   if (view.has_truth) json_["has_truth"] = true;
   if (view.corridor) {
-    scene["corridor"] = {rounded(view.corridor->curvature, 1e-5), rounded(view.corridor->width),
-                         rounded(view.corridor->from), rounded(view.free.distance),
-                         view.free.blocked};
+    // Along the vehicle's own x axis: behind it distances are negative and a left turn is a right
+    // one.
+    const double sign = view.corridor->backward ? -1 : 1;
+    scene["corridor"] = {rounded(sign * view.corridor->curvature, 1e-5),
+                         rounded(view.corridor->width), rounded(sign * view.corridor->from),
+                         rounded(sign * view.free.known()), view.free.blocked};
   }
   if (view.image && index % images_every_ == 0) addImage(*view.image, scene);
 }

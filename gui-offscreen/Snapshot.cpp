@@ -33,7 +33,7 @@ std::string countText(const SceneView& view) {
   text += fmt::format("   own speed {:.0f} km/h", speed * 3.6);
   if (view.corridor) {
     text += fmt::format("   lane {} {:.0f} m", view.free.blocked ? "free for" : "free beyond",
-                        view.free.distance);
+                        view.free.known());
   }
   return text;
 }

@@ -95,7 +95,7 @@ void Surroundings::drawFreeDistance() {
     const Vector2 p = onArc(lane, {s, d});
     return {p.x(), p.y(), 0};
   };
-  const double half = lane.width / 2, end = view_.free.distance;
+  const double half = lane.width / 2, end = view_.free.known();
   for (const double d : {half, -half}) {
     for (double s = lane.from; s < end; s += 2 * kPiece) {
       pen_.line(place(s, d), place(std::min(s + kPiece, end), d), kMutedInk, 1.2);

@@ -76,7 +76,7 @@ class SafetyObserver : public PipelineObserver {
     plain.phantom.clear();
     trusting_->add(*frame_, plain);
     obstacles_ = obstaclesOf(*scan.returns, frame_->ego.T_world_ego, *scan_labels_);
-    front_ = scan.returns->vehicle_front;
+    front_ = scan.returns->vehicle_front, rear_ = scan.returns->vehicle_rear;
     truth_.add(frame_->stamp, frame_->stamp - *first_, obstacles_, speeds_);
     judged_ = frame_->stamp;
   }
@@ -106,7 +106,8 @@ class SafetyObserver : public PipelineObserver {
   void judgeStops(const Scene& scene) {
     StopRule rule;
     const double speed = scene.ego.velocity.norm();
-    rule.corridor = drivenCorridor(scene.ego.T_world_ego, speed, scene.ego.yaw_rate, front_, stop_);
+    rule.corridor = drivenCorridor(scene.ego.T_world_ego, scene.ego.velocity, scene.ego.yaw_rate,
+                                   front_, rear_, stop_);
     rule.params = stop_;
     rule.t = scene.stamp - *first_;
     rule.speed = speed;
@@ -146,7 +147,7 @@ class SafetyObserver : public PipelineObserver {
   std::optional<SensorFrame> frame_;
   std::optional<std::vector<std::uint16_t>> scan_labels_;
   LabeledObstacles obstacles_;
-  double front_ = 0;
+  double front_ = 0, rear_ = 0;
   WayTruth truth_;
   std::optional<Stamp> judged_;
   Stamp last_;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "libperception/app/Programs.h"
 #include "libperception/app/StudyFolder.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/pipeline/LogRecorder.h"
@@ -114,6 +115,9 @@ const Study kStudies[] = {
     {"safety", "false and missed stops, phantom tracks, against labels of points (rawlogs)",
      [](StudyApp& app) { return safetyStudy(app.safety, app.seed); }, false, false, false, false,
      false, [](CLI::App& cli, StudyApp& app) { declareSafety(cli, app.safety); }},
+    {"obstacles", "stops for shapes that nobody taught, against the stopping distance (simulated)",
+     [](StudyApp& app) { return obstaclesStudy(app.obstacles, app.seed); }, false, false, false,
+     false, false, [](CLI::App& cli, StudyApp& app) { declareObstacles(cli, app.obstacles); }},
     {"weather", "type and rates of the weather by lidar scans (rawlogs, simulated weather)",
      [](StudyApp& app) { return weatherStudy(app.weather, app.seed); }, false, false, false, false,
      false, [](CLI::App& cli, StudyApp& app) { declareWeather(cli, app.weather); }},
@@ -278,5 +282,7 @@ StudyReport StudyApp::snowOfLogs() {
         {std::filesystem::path(file).stem().string(), readSnowScans(file, params.sector)});
   return snowRealismStudy(params, logs.front(), {logs.begin() + 1, logs.end()});
 }
+
+std::unique_ptr<App> studyApp() { return std::make_unique<StudyApp>(); }
 
 }  // namespace perception

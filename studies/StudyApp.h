@@ -5,6 +5,7 @@
 #include "libperception/app/App.h"
 #include "libperception/evaluation/StudyReport.h"
 #include "libperception/pipeline/RecordedLog.h"
+#include "studies/ObstaclesStudy.h"
 #include "studies/PaperStudy.h"
 #include "studies/ResolutionStudy.h"
 #include "studies/SafetyStudy.h"
@@ -33,6 +34,7 @@ class StudyApp : public App {
   TrustOptions trust;                ///< trust: all of its options
   WeatherOptions weather;            ///< weather: all of its options
   SafetyOptions safety;              ///< safety: all of its options
+  ObstaclesOptions obstacles;        ///< obstacles: all of its options
   double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
 
   double snow_mm_h = 2.5;  ///< snow-realism: of the control

@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# The package on a bare Debian 12, by hand, as root, with debootstrap installed: tools/check_package.sh PACKAGE.deb FOLDER
-# makes a Debian 12 in FOLDER (debootstrap), installs the package, runs the demo and removes the package again. Prints the
-# seconds of each, downloads apart, and what was left behind.
+# The package on a bare Debian 12, by hand, as root, with debootstrap installed: tools/check_package.sh PACKAGE.deb
+# installs the package, runs the demo and removes the package again. Prints the seconds of each, downloads apart, and what was
+# left behind.
 set -euo pipefail
-(( $# == 2 )) || { echo "usage: $0 PACKAGE.deb FOLDER" >&2; exit 64; }
-package=$(readlink -f "$1") root=$2
-[[ ! -e $root ]] || { echo "$0: $root exists, expected a new folder" >&2; exit 73; }
+source=$(dirname "$(dirname "$(readlink -f "$0")")")
+# shellcheck source=tools/bare_system.sh
+source "$source/tools/bare_system.sh"
+(( $# == 1 )) && [[ -r $1 ]] || { echo "usage: $0 PACKAGE.deb" >&2; exit 64; }
+bareWanting >/dev/null || { echo "$0: error: a bare system needs root and debootstrap; missing: $(bareWanting)" >&2; exit 69; }
+bareNamespace "$0" "$@"
 
-debootstrap --variant=minbase bookworm "$root" http://deb.debian.org/debian >/dev/null
-cp /etc/resolv.conf "$root/etc/"
-cp "$package" "$root/root/"
-mount -t proc proc "$root/proc"
-mount --bind /dev "$root/dev"
-trap 'umount "$root/dev" "$root/proc"' EXIT
-
-chroot "$root" /bin/bash -euo pipefail -s <<'INSIDE'
+bare_root=""
+trap bareRemove EXIT
+bareMake bookworm
+cp "$1" "$bare_root/root/"
+bareRun bash -euo pipefail -s <<'INSIDE'
 cd /root
 export DEBIAN_FRONTEND=noninteractive
 seconds() { local begin=$EPOCHREALTIME; "$@" >"$1.log" 2>&1 || { cat "$1.log" >&2; return 1; }; awk -v a="$begin" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.1f s\n", b - a }'; }

@@ -1,7 +1,6 @@
-#include "libperception/app/CalibrateApp.h"
+#include "libperception/app/Programs.h"
 #include "libperception/app/Supervisor.h"
 
 int main(int argc, char** argv) {
-  perception::CalibrateApp app;
-  return perception::runSupervised(app, argc, argv);
+  return perception::runSupervised(*perception::calibrateApp(), argc, argv);
 }

@@ -1,7 +1,6 @@
-#include "libperception/app/ReviewApp.h"
+#include "libperception/app/Programs.h"
 #include "libperception/app/Supervisor.h"
 
 int main(int argc, char** argv) {
-  perception::ReviewApp app;
-  return perception::runSupervised(app, argc, argv);
+  return perception::runSupervised(*perception::reviewApp(), argc, argv);
 }

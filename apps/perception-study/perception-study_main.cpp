@@ -1,7 +1,6 @@
+#include "libperception/app/Programs.h"
 #include "libperception/app/Supervisor.h"
-#include "studies/StudyApp.h"
 
 int main(int argc, char** argv) {
-  perception::StudyApp app;
-  return perception::runSupervised(app, argc, argv);
+  return perception::runSupervised(*perception::studyApp(), argc, argv);
 }

@@ -1,7 +1,6 @@
+#include "libperception/app/Programs.h"
 #include "libperception/app/Supervisor.h"
-#include "libperception/app/TrackApp.h"
 
 int main(int argc, char** argv) {
-  perception::TrackApp app;
-  return perception::runSupervised(app, argc, argv);
+  return perception::runSupervised(*perception::trackApp(), argc, argv);
 }

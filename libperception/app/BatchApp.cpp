@@ -9,6 +9,7 @@
 #include <numeric>
 #include <thread>
 
+#include "libperception/app/Programs.h"
 #include "libperception/batch/BatchDatabase.h"
 #include "libperception/batch/BatchPage.h"
 #include "libperception/batch/BatchPlan.h"
@@ -290,5 +291,7 @@ void BatchApp::reduce() {
   }
   fmt::print("results in {}/index.html\n", output);
 }
+
+std::unique_ptr<App> batchApp() { return std::make_unique<BatchApp>(); }
 
 }  // namespace perception

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "libperception/app/Programs.h"
 #include "libperception/app/StudyFolder.h"
 #include "libperception/boxes3d/PositionFrontEnd.h"
 #include "libperception/calibration/ClusterStudy.h"
@@ -286,5 +287,7 @@ StudyReport CalibrateApp::lidarClasses() {
   }
   return clusterStudy(samples, logs, provenance, seed);
 }
+
+std::unique_ptr<App> calibrateApp() { return std::make_unique<CalibrateApp>(); }
 
 }  // namespace perception

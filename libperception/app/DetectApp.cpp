@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "libperception/app/DetectResults.h"
+#include "libperception/app/Programs.h"
 #include "libperception/importers/KittiFiles.h"
 #include "libperception/pictures/DetectPicture.h"
 #include "libperception/pipeline/OutputFolder.h"
@@ -210,5 +211,7 @@ void DetectApp::report() const {
     fmt::print("\n");
   }
 }
+
+std::unique_ptr<App> detectApp() { return std::make_unique<DetectApp>(); }
 
 }  // namespace perception

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "libperception/app/Programs.h"
 #include "libperception/app/StudyFolder.h"
 #include "libperception/config/ShippedFiles.h"
 #include "libperception/core/Supervision.h"
@@ -69,5 +70,7 @@ void DoctorApp::run() {
                          : "report.md, doctor.png and site.ini",
              output);
 }
+
+std::unique_ptr<App> doctorApp() { return std::make_unique<DoctorApp>(); }
 
 }  // namespace perception

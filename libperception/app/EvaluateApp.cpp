@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "libperception/app/Programs.h"
 #include "libperception/core/Angle.h"
 #include "libperception/evaluation/Plots.h"
 #include "libperception/pipeline/FinishedRun.h"
@@ -319,5 +320,7 @@ void EvaluateApp::run() {
   std::fwrite(text.data(), 1, text.size(), stdout);
   for (const std::string& dir : out_folders) say(1, "written: " + dir);
 }
+
+std::unique_ptr<App> evaluateApp() { return std::make_unique<EvaluateApp>(); }
 
 }  // namespace perception

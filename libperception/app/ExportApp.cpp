@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "libperception/app/Programs.h"
 #include "libperception/interop/ExportFile.h"
 #include "libperception/pipeline/FinishedRun.h"
 #include "libperception/scene/TrackedRun.h"
@@ -92,5 +93,7 @@ void ExportApp::run() {
   say(1, fmt::format("{}: {} messages, {} scans and images; {} outside the run's scenes left out",
                      output, out_messages, out_frames, out_without_ego));
 }
+
+std::unique_ptr<App> exportApp() { return std::make_unique<ExportApp>(); }
 
 }  // namespace perception

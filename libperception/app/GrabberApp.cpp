@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "libperception/app/Programs.h"
 #include "libperception/capture/Grabber.h"
 #include "libperception/pipeline/Progress.h"
 
@@ -82,5 +83,7 @@ void GrabberApp::run() {
   for (const std::string& warning : grabber.warnings()) warn(warning);
   if (duration > 0) stopIfAsked();
 }
+
+std::unique_ptr<App> grabberApp() { return std::make_unique<GrabberApp>(); }
 
 }  // namespace perception

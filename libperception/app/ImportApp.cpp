@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
+#include "libperception/app/Programs.h"
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/Progress.h"
 
@@ -107,5 +108,7 @@ void ImportApp::report() const {
   fmt::print("{}: {} rows\n", r.truth_file, r.truth_rows);
   for (const auto& [type, count] : r.truth_types) fmt::print("  {}: {}\n", type, count);
 }
+
+std::unique_ptr<App> importApp() { return std::make_unique<ImportApp>(); }
 
 }  // namespace perception

@@ -13,6 +13,7 @@
 #include "gui-offscreen/RunWeather.h"
 #include "libperception/app/CompareRuns.h"
 #include "libperception/app/ComparisonPage.h"
+#include "libperception/app/Programs.h"
 #include "libperception/app/ResultFiles.h"
 #include "libperception/pictures/RunScenes.h"
 #include "libperception/pipeline/FinishedRun.h"
@@ -229,5 +230,7 @@ void ReportApp::addEvaluation(ReportContent& content) {
   content.evaluation["runs"] = nlohmann::json::array({figures});
   content.plots = figuresIn(dir, kPlots, content.id);
 }
+
+std::unique_ptr<App> reportApp() { return std::make_unique<ReportApp>(); }
 
 }  // namespace perception

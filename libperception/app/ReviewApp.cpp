@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "gui-offscreen/ReviewPage.h"
+#include "libperception/app/Programs.h"
 #include "libperception/core/Angle.h"
 #include "libperception/pictures/ReviewPictures.h"
 #include "libperception/pictures/RunScenes.h"
@@ -204,5 +205,7 @@ void ReviewApp::score() {
   fmt::print("of the same outputs by the truth\n{}answers as the truth's: {} of {}\n",
              tableOf(out_by_truth), same, both);
 }
+
+std::unique_ptr<App> reviewApp() { return std::make_unique<ReviewApp>(); }
 
 }  // namespace perception

@@ -8,6 +8,7 @@
 #include <future>
 
 #include "gui-offscreen/Picture.h"
+#include "libperception/app/Programs.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/pictures/ScenarioPictures.h"
 #include "libperception/pipeline/Progress.h"
@@ -190,5 +191,7 @@ void SimulateApp::run() {
              "{:.2f} s for {:.1f} s of log: {:.2f} times real time, {:.2f} million beams a second",
              wall, duration, duration / wall, static_cast<double>(out_beams) * 1e-6 / wall));
 }
+
+std::unique_ptr<App> simulateApp() { return std::make_unique<SimulateApp>(); }
 
 }  // namespace perception

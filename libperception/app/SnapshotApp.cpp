@@ -12,6 +12,7 @@
 #include "gui-offscreen/ContactSheet.h"
 #include "gui-offscreen/SceneFile.h"
 #include "gui-offscreen/VideoFile.h"
+#include "libperception/app/Programs.h"
 #include "libperception/grid/CGridExport.h"
 #include "libperception/pictures/RunScenes.h"
 #include "libperception/pipeline/FinishedRun.h"
@@ -284,5 +285,7 @@ void SnapshotApp::reportLog() {
     warn(fmt::format("{}: no sensor data at the run's times", inputs[0]));
   }
 }
+
+std::unique_ptr<App> snapshotApp() { return std::make_unique<SnapshotApp>(); }
 
 }  // namespace perception

@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <map>
 #include <thread>
+#include <utility>
 
+#include "libperception/app/Programs.h"
 #include "libperception/dds/RosTopics.h"
 #include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/LiveInput.h"
@@ -122,11 +124,9 @@ void TrackApp::run() {
     return;
   }
   if (config_file.empty()) throw Error(ExitCode::kUsage, "-c/--config is needed");
-  {
-    Config config = configWithOptions();
-    PipelineSetup::read(config);
-    if (configDone(config)) return;
-  }
+  Config config = configWithOptions();
+  const PipelineSetup setup = PipelineSetup::read(config);
+  if (configDone(config)) return;
   if (inputs.empty()) throw Error(ExitCode::kUsage, "-i/--input: at least one rawlog is needed");
   if (output.empty()) throw Error(ExitCode::kUsage, "-o/--output is needed");
   checkInputs();
@@ -141,7 +141,7 @@ void TrackApp::run() {
                                                 log_of[name], log, output, name));
     }
   }
-  for (const Shard& shard : shards()) trackLog(shard);
+  for (const Shard& shard : shards(config.effectiveText())) trackLog(setup, shard);
 }
 
 void TrackApp::checkInputs() const {
@@ -163,24 +163,24 @@ int TrackApp::threadCount() const {
   return threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
 }
 
-std::unique_ptr<ObservationInput> TrackApp::openInput(const std::string& log) const {
+std::unique_ptr<ObservationInput> TrackApp::openInput(const std::string& log, FileSink sink) const {
   if (const auto ini = liveIniOf(log))
     return std::make_unique<LiveInput>(LiveInput::Params{*ini, duration, record});
-  auto reader = std::make_unique<RawlogReader>(log);
+  auto reader = std::make_unique<RawlogReader>(log, std::move(sink));
   if (threadCount() == 1) return reader;
   return std::make_unique<ReadAhead>(std::move(reader));
 }
 
-std::vector<TrackApp::Shard> TrackApp::shards() {
-  Config config = configWithOptions();
-  PipelineSetup::read(config);
-  const std::string effective_ini = config.effectiveText();
+std::vector<TrackApp::Shard> TrackApp::shards(const std::string& effective_ini) {
+  const std::string configuration = configurationHash(effective_ini, PERCEPTION_VERSION);
   std::vector<Shard> out;
   for (const auto& log : inputs) {
     const std::string dir =
         inputs.size() == 1 ? output : output + "/" + fs::path(log).stem().string();
-    Shard shard{log, dir, exportFileFor(log), effective_ini,
-                runHash(log, effective_ini, PERCEPTION_VERSION)};
+    Shard shard{log, dir, exportFileFor(log), effective_ini, configuration, ""};
+    // Whoever reads what is no file says what it is.
+    if (!overwrite && fs::exists(dir + "/done.json") && fs::is_regular_file(log))
+      shard.hash = hashOfRun(sha256OfFile(log), configuration);
     const bool exported = shard.export_file.empty() || fs::exists(shard.export_file);
     // All folders are looked at before the first log is tracked.
     if (!isFinished(dir, shard.hash, overwrite) || !exported) {
@@ -195,13 +195,14 @@ std::vector<TrackApp::Shard> TrackApp::shards() {
   return out;
 }
 
-void TrackApp::trackLog(const Shard& shard) {
-  Config config = configWithOptions();
-  const PipelineSetup setup = PipelineSetup::read(config);
-  config.finish();
+void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
   out_scenes.clear();
   out_record = {};
-  LogRun run(setup, {shard.log, shard.dir, shard.export_file}, openInput(shard.log));
+  FileHash log_hash;
+  FileSink to_hash;
+  if (shard.hash.empty())
+    to_hash = [&](const unsigned char* bytes, std::size_t count) { log_hash.add(bytes, count); };
+  LogRun run(setup, {shard.log, shard.dir, shard.export_file}, openInput(shard.log, to_hash));
   std::optional<StageWatchdog> watchdog;
   if (liveIniOf(shard.log)) watchdog.emplace(run.timing(), kLongestStage, endHungRun);
   std::unique_ptr<RosTopics> topics;
@@ -216,6 +217,8 @@ void TrackApp::trackLog(const Shard& shard) {
   run.record.program = name();
   run.record.version = PERCEPTION_VERSION;
   run.record.hash = shard.hash;
+  if (shard.hash.empty() && !liveIniOf(shard.log))
+    run.record.hash = hashOfRun(log_hash.finish(shard.log), shard.configuration_hash);
   run.record.config = config_file;
   out_real_time_factor = run.realTimeFactor();
   run.commit(shard.effective_ini, threadCount());
@@ -235,5 +238,7 @@ void TrackApp::trackLog(const Shard& shard) {
   if (const auto learned = run.learned(); !learned.empty())
     fmt::print("learned, for the INI:\n{}\n", fmt::join(learned, "\n"));
 }
+
+std::unique_ptr<App> trackApp() { return std::make_unique<TrackApp>(); }
 
 }  // namespace perception

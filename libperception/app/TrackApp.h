@@ -8,6 +8,7 @@
 #include "libperception/app/App.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/scene/KittiExport.h"
+#include "libperception/sensors/FileSink.h"
 #include "libperception/sensors/ObservationInput.h"
 
 namespace perception {
@@ -41,14 +42,15 @@ class TrackApp : public App {
  private:
   /// One log and its result folder.
   struct Shard {
-    std::string log, dir, export_file, effective_ini, hash;
+    std::string log, dir, export_file, effective_ini, configuration_hash;
+    std::string hash;  ///< hashOfRun(); empty: of a new run, and known when its log is read
   };
   /// Those that are left to do.
-  std::vector<Shard> shards();
-  void trackLog(const Shard& shard);
+  std::vector<Shard> shards(const std::string& effective_ini);
+  void trackLog(const PipelineSetup& setup, const Shard& shard);
   void checkInputs() const;
   int threadCount() const;
-  std::unique_ptr<ObservationInput> openInput(const std::string& log) const;
+  std::unique_ptr<ObservationInput> openInput(const std::string& log, FileSink sink) const;
   void printContents(const std::string& log);
   Config configWithOptions() const;
   std::string exportFileFor(const std::string& log) const;

@@ -35,6 +35,7 @@ void syncFolderOf(const std::string& path) {
 PartialFile::PartialFile(const std::string& name)
     : name_(name),
       path_(placeOf(name)),
+      in_temporary_folder_(TemporaryPath::holds(name)),
       removed_if_killed_(path_ == name_ ? "" : path_),
       pending_(path_ != name_) {}
 
@@ -50,7 +51,7 @@ void PartialFile::commit() {
         ExitCode::kIoError);
   }
   pending_ = false;
-  syncFolderOf(name_);
+  if (!in_temporary_folder_) syncFolderOf(name_);
 }
 
 std::string irregularity(const std::string& path) {

@@ -15,12 +15,15 @@ class PartialFile {
   PartialFile& operator=(const PartialFile&) = delete;
 
   const std::string& path() const { return path_; }
+  /// The file is in a folder that is temporary itself: neither needs to be synced yet.
+  bool inTemporaryFolder() const { return in_temporary_folder_; }
   /// Syncs the folder; the file itself is synced by whoever writes it. Throws OutputError
   /// (kIoError).
   void commit();
 
  private:
   std::string name_, path_;
+  bool in_temporary_folder_;
   TemporaryPath removed_if_killed_;
   bool pending_ = true;
 };

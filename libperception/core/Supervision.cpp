@@ -92,6 +92,17 @@ TemporaryPath::~TemporaryPath() {
     SupervisionRecord::ofThisProcess().temporaries[place_][0] = '\0';
 }
 
+bool TemporaryPath::holds(const std::string& path) {
+  std::error_code error;
+  const std::string whole = fs::absolute(path, error).string();
+  const std::lock_guard<std::mutex> lock(places);
+  const auto& all = SupervisionRecord::ofThisProcess().temporaries;
+  return !error && std::any_of(all.begin(), all.end(), [&](const auto& p) {
+    const std::string folder(p.data());
+    return !folder.empty() && whole.compare(0, folder.size() + 1, folder + "/") == 0;
+  });
+}
+
 bool isAlive(pid_t process) {
   if (process <= 0 || (::kill(process, 0) != 0 && errno == ESRCH)) return false;
   // A zombie that is not reaped (a container without init) keeps its number.

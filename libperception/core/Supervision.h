@@ -47,6 +47,9 @@ class TemporaryPath {
   TemporaryPath(const TemporaryPath&) = delete;
   TemporaryPath& operator=(const TemporaryPath&) = delete;
 
+  /// True if `path` lies in a folder that is one: whoever makes the folder's files last syncs them.
+  static bool holds(const std::string& path);
+
  private:
   std::size_t place_;
 };

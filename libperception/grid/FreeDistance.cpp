@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace perception {
@@ -44,6 +45,7 @@ const Inside* firstTogether(std::vector<Inside>& inside, double least) {
 }  // namespace
 
 ArcPlace arcPlace(const Corridor& corridor, double x, double y) {
+  if (corridor.backward) x = -x, y = -y;
   if (std::abs(corridor.curvature) < kStraight) return {x, y};
   const double side = corridor.curvature > 0 ? 1 : -1;  // a right turn is a mirrored left turn
   const double radius = 1 / std::abs(corridor.curvature);
@@ -52,10 +54,10 @@ ArcPlace arcPlace(const Corridor& corridor, double x, double y) {
 }
 
 Vector2 onArc(const Corridor& corridor, const ArcPlace& place) {
-  const double k = corridor.curvature;
-  if (std::abs(k) < kStraight) return {place.s, place.d};
+  const double k = corridor.curvature, sign = corridor.backward ? -1 : 1;
+  if (std::abs(k) < kStraight) return sign * Vector2(place.s, place.d);
   const double radius = 1 / k - place.d;
-  return {radius * std::sin(k * place.s), 1 / k - radius * std::cos(k * place.s)};
+  return sign * Vector2(radius * std::sin(k * place.s), 1 / k - radius * std::cos(k * place.s));
 }
 
 GridArea areaOf(const Corridor& corridor) {
@@ -108,6 +110,59 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
     if (isKnown(corridor, s, log_odds_at)) result.seen = s;
   }
   return result;
+}
+
+double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
+                   const std::vector<const GridPoints*>& ends, double height) {
+  constexpr double kStep = 1;   // [m] along the arc: a bin is seen by one beam
+  constexpr double kLow = 0.3;  // [m] a beam as low shows what stands on the road
+  const auto bins = static_cast<std::size_t>(std::max(corridor.max - seen, 0.0) / kStep);
+  if (bins == 0) return seen;
+  struct Bin {
+    double x, y, range2;  // [m], [m^2] of its middle, from the sensor
+    bool seen = false;
+  };
+  const Pose3 T_ego_world = corridor.T_world_ego.inverse();
+  const Vector3 sensor = T_ego_world * from;
+  std::vector<Bin> way(bins);
+  double least = std::numeric_limits<double>::infinity(), widest = 0;  // [m^2], [-] of all bins
+  const Vector2 axis(corridor.backward ? -1 : 1, 0);
+  for (std::size_t i = 0; i < bins; ++i) {
+    const Vector2 p = onArc(corridor, {seen + (static_cast<double>(i) + 0.5) * kStep, 0}) -
+                      Vector2(sensor.head<2>());
+    way[i] = {p.x(), p.y(), p.squaredNorm()};
+    least = std::min(least, way[i].range2);
+    if (p.dot(axis) <= 0) continue;
+    widest = std::max(widest, (std::abs(p.y()) + corridor.width / 2) / p.dot(axis));
+  }
+  const auto slope = static_cast<float>(widest * axis.x());
+  for (const GridPoints* points : ends) {
+    const Eigen::Matrix3f turn = T_ego_world.linear().cast<float>();
+    const Eigen::Vector3f base = (T_ego_world * points->base() - sensor).cast<float>();
+    const float *px = points->x(0), *py = points->y(0), *pz = points->z(0);
+    for (std::size_t k = 0; k < points->size(); ++k) {
+      const float x = turn(0, 0) * px[k] + turn(0, 1) * py[k] + turn(0, 2) * pz[k] + base.x();
+      const float y = turn(1, 0) * px[k] + turn(1, 1) * py[k] + turn(1, 2) * pz[k] + base.y();
+      if (std::abs(y) > slope * x) continue;
+      const Vector3 beam = T_ego_world * (*points)[k] - sensor;
+      const double range2 = beam.head<2>().squaredNorm();
+      if (range2 < least) continue;
+      const double side = corridor.width / 2 * std::sqrt(range2);
+      for (Bin& bin : way) {
+        if (bin.seen || bin.range2 > range2) continue;
+        if (std::abs(beam.x() * bin.y - beam.y() * bin.x) > side) continue;
+        const double z = sensor.z() + beam.z() * std::sqrt(bin.range2 / range2);
+        bin.seen = z > kLow && z < height;
+      }
+    }
+  }
+  double last = seen;
+  for (std::size_t i = 0; i < bins; ++i) {
+    const double s = seen + (static_cast<double>(i) + 1) * kStep;
+    if (s - last > kGap + kStep) break;
+    if (way[i].seen) last = s;
+  }
+  return last;
 }
 
 FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,

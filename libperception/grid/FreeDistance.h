@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -18,11 +19,12 @@ struct GridCell {
 /// The area swept by the vehicle: an arc from the ego origin, tangent to its x axis.
 struct Corridor {
   Pose3 T_world_ego = Pose3::Identity();
-  double width = 2;      ///< [m] of the vehicle with its margin
-  double curvature = 0;  ///< [1/m] of the steering; positive turns left
-  double from = 2.5;     ///< [m] along the arc: end of the own vehicle and the lidar's blind spot
-  double max = 60;       ///< [m] along the arc: largest distance
-  int cells = 1;         ///< occupied cells within half a meter along the arc that block it
+  bool backward = false;  ///< the vehicle reverses: the arc begins along -x
+  double width = 2;       ///< [m] of the vehicle with its margin
+  double curvature = 0;   ///< [1/m] of the steering; positive turns left of the direction of travel
+  double from = 2.5;      ///< [m] along the arc: end of the own vehicle and the lidar's blind spot
+  double max = 60;        ///< [m] along the arc: largest distance
+  int cells = 1;          ///< occupied cells within half a meter along the arc that block it
 };
 
 /// A rectangle along the world's axes [m]; by default everything.
@@ -42,9 +44,13 @@ struct FreeDistance {
   bool blocked = false;  ///< an obstacle was found
   Vector3 place = Vector3::Zero();  ///< [m] of its nearest cell or return, world
   double seen = 0;                  ///< [m] observed without a gap longer than 1 m
+
+  /// [m] to which the way was seen and is free.
+  double known() const { return std::min(distance, seen); }
 };
 
-/// Coordinates along (s) and across (d, positive left) the corridor's arc.
+/// Coordinates along (s) and across (d, positive left of the direction of travel) the corridor's
+/// arc.
 struct ArcPlace {
   double s = 0, d = 0;  ///< [m]
 };
@@ -62,5 +68,10 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
 /// none nearer than corridor.max.
 FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,
                           const std::vector<float>& weights, double least);
+
+/// [m] to which the corridor was observed without a gap longer than 1 m, from `seen` on, by beams
+/// that pass `from` (the sensor's place, world) to `ends` between the ground and `height` [m].
+double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
+                   const std::vector<const GridPoints*>& ends, double height);
 
 }  // namespace perception

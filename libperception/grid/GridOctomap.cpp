@@ -77,7 +77,7 @@ class TreeCursor {
 };
 
 constexpr std::uint32_t kLatestMs = 0x7fffffff;  // largest time in a node: 24 days
-constexpr double kForgotten = 0.1;               // [log-odds] below it a cell is unknown
+constexpr double kForgotten = 0.05;              // [log-odds] below it a cell is unknown
 constexpr std::int64_t kSweepMs = 1000;          // between removals of decayed and outside cells
 constexpr std::int64_t kReach = 30000;  // cells from the center at which the tree is rebuilt
 
@@ -92,11 +92,9 @@ class GridOctomap final : public SafetyGrid {
     advance(scan, stats);
     TreeCursor cursor(*tree_);
     for (const CellEvidence& cell : evidence_.collect(scan, stats)) {
-      // Beams create free cells only within the slab itself, before its widening.
-      const bool create = cell.weight > 0 || cell.relevant;
       const octomap::OcTreeKey key = keyOf(cell.cell);
-      if (StampedNode* node = cursor.at(key, create))
-        add(*node, key, cell.logOdds(params(), decayed(*node)));
+      StampedNode* node = cursor.at(key, true);
+      add(*node, key, cell.logOdds(params(), decayed(*node)));
     }
     if (now_ms_ - swept_ms_ >= kSweepMs) sweep();
     return stats;
@@ -104,10 +102,9 @@ class GridOctomap final : public SafetyGrid {
 
   double logOdds(const Vector3& place) const override {
     if (!place.allFinite() || !inWindow(place)) return 0;
-    const StampedNode* node =
-        tree_->search(keyOf({evidence_.indexOf(place.x()), evidence_.indexOf(place.y()),
-                             evidence_.indexOf(place.z())}));
-    return node ? decayed(*node) : 0;
+    const StampedNode* node = tree_->search(keyOf(cellOf(place)));
+    const double log_odds = node ? decayed(*node) : 0;
+    return std::abs(log_odds) < kForgotten ? 0 : log_odds;
   }
 
   // Uses the list of candidates: the tree holds about a hundred thousand free cells.
@@ -139,9 +136,7 @@ class GridOctomap final : public SafetyGrid {
     TreeCursor cursor(*tree_);
     for (const GridCell& cell : cells) {
       if (!inWindow(cell.center)) continue;
-      const octomap::OcTreeKey key =
-          keyOf({evidence_.indexOf(cell.center.x()), evidence_.indexOf(cell.center.y()),
-                 evidence_.indexOf(cell.center.z())});
+      const octomap::OcTreeKey key = keyOf(cellOf(cell.center));
       add(*cursor.at(key, true), key, cell.log_odds);
     }
   }
@@ -159,8 +154,7 @@ class GridOctomap final : public SafetyGrid {
   // Advances time and window.
   void advance(const GridScan& scan, GridStats& stats) {
     const Vector3 center = scan.T_world_ground.translation();
-    const CellIndex cell = {evidence_.indexOf(center.x()), evidence_.indexOf(center.y()),
-                            evidence_.indexOf(center.z())};
+    const CellIndex cell = cellOf(center);
     if (!started_) {
       first_ = scan.stamp;
       anchor_ = cell;
@@ -169,7 +163,6 @@ class GridOctomap final : public SafetyGrid {
     const auto ms = static_cast<std::int64_t>(std::llround((scan.stamp - first_) * 1000));
     stats.late = ms < now_ms_;
     now_ms_ = std::max(now_ms_, ms);
-    center_ = center;
     if (now_ms_ > kLatestMs || std::max({std::abs(cell.x - anchor_.x), std::abs(cell.y - anchor_.y),
                                          std::abs(cell.z - anchor_.z)}) > kReach) {
       restartAt(cell, scan.stamp);
@@ -191,9 +184,7 @@ class GridOctomap final : public SafetyGrid {
     TreeCursor cursor(*tree_);
     for (const GridCell& old : kept) {
       if (!inWindow(old.center)) continue;
-      const octomap::OcTreeKey key =
-          keyOf({evidence_.indexOf(old.center.x()), evidence_.indexOf(old.center.y()),
-                 evidence_.indexOf(old.center.z())});
+      const octomap::OcTreeKey key = keyOf(cellOf(old.center));
       add(*cursor.at(key, true), key, old.log_odds);
     }
   }
@@ -257,9 +248,11 @@ class GridOctomap final : public SafetyGrid {
             corner[2] + (i & 4 ? half : 0)};
   }
 
-  bool inWindow(const Vector3& place) const {
-    const Vector3 d = place - center_;
-    return std::max(std::abs(d.x()), std::abs(d.y())) <= params().size / 2;
+  bool inWindow(const Vector3& place) const { return evidence_.holds(cellOf(place)); }
+
+  CellIndex cellOf(const Vector3& place) const {
+    return {evidence_.indexOf(place.x()), evidence_.indexOf(place.y()),
+            evidence_.indexOf(place.z())};
   }
 
   // Relative to the anchor: keys have 16 bits, world coordinates may be hundreds of kilometers.
@@ -282,7 +275,6 @@ class GridOctomap final : public SafetyGrid {
   Stamp first_;                             // time 0 of the cells
   std::int64_t now_ms_ = 0, swept_ms_ = 0;  // since first_
   CellIndex anchor_;                        // cell of the tree's center
-  Vector3 center_ = Vector3::Zero();        // [m] of the window, world
 };
 
 }  // namespace

@@ -12,14 +12,7 @@ namespace perception {
 namespace {
 
 constexpr double kUnits = LogOddsColumn::kUnits;
-constexpr int kGroup = LogOddsColumn::kGroup;
 constexpr double kForgottenSpace = 0.05;  // [log-odds] below it unknown: rounding stops decay
-
-int layersOf(const GridParams& params) {
-  const double spread = 2 * params.grade * params.size * std::sqrt(0.5);
-  const double layers = (params.z_max - params.z_min + spread) / params.resolution;
-  return std::min(64, kGroup * static_cast<int>(std::ceil((layers - 1e-6) / kGroup)));
-}
 
 std::int64_t modulo(std::int64_t a, std::int64_t n) { return ((a % n) + n) % n; }
 
@@ -31,7 +24,7 @@ class GridRolling final : public SafetyGrid {
   explicit GridRolling(const GridParams& params)
       : SafetyGrid(params),
         cells_(static_cast<std::int64_t>(std::ceil(params.size / params.resolution))),
-        layers_(layersOf(params)),
+        layers_(windowLayers(params)),
         square_(cells_),
         marks_(params, static_cast<int>(layers_)),
         values_(static_cast<std::size_t>(cells_ * cells_ * layers_), 0),
@@ -149,9 +142,7 @@ class GridRolling final : public SafetyGrid {
   // Advances time and window; entering columns are unknown.
   void advance(const GridScan& scan, GridStats& stats) {
     const Vector3 center = scan.T_world_ground.translation();
-    const double below = params().grade * params().size * std::sqrt(0.5) - params().z_min;
-    const CellIndex first = {indexOf(center.x()) - cells_ / 2, indexOf(center.y()) - cells_ / 2,
-                             indexOf(center.z() - below + 1e-9)};
+    const CellIndex first = windowCorner(params(), center);
     if (!started_) now_ = scan.stamp;
     stats.late = scan.stamp < now_;
     const double passed = std::max(0.0, scan.stamp - now_);
@@ -232,7 +223,7 @@ class GridRolling final : public SafetyGrid {
 }  // namespace
 
 std::unique_ptr<SafetyGrid> makeGridRolling(const GridParams& params) {
-  if (layersOf(params) <= 32) return std::make_unique<GridRolling<std::uint32_t>>(params);
+  if (windowLayers(params) <= 32) return std::make_unique<GridRolling<std::uint32_t>>(params);
   return std::make_unique<GridRolling<std::uint64_t>>(params);
 }
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/grid/FlatBeams.h"
 #include "libperception/grid/FlatEvidence.h"
+#include "libperception/grid/FlatMarks.h"
 #include "libperception/grid/GridRolling.h"
 #include "libperception/grid/RollingSquare.h"
 
@@ -11,8 +11,7 @@ namespace {
 
 constexpr double kForgottenFlat = 0.05;  // [log-odds] below it a cell is unknown
 
-/// 2D grid in one flat array that rolls with the vehicle; one beam per bearing, up to its first
-/// trusted hit or, without one, its farthest end.
+/// 2D grid in one flat array that rolls with the vehicle.
 class GridRolling2d final : public SafetyGrid {
  public:
   explicit GridRolling2d(const GridParams& params)
@@ -20,22 +19,15 @@ class GridRolling2d final : public SafetyGrid {
         cells_(static_cast<int>(std::ceil(params.size / params.resolution))),
         square_(cells_),
         values_(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_), 0),
-        weights_(values_.size() + 1, 0),
-        crossed_(values_.size(), 0),
-        beams_(params.ray_step, cells_) {}
+        marks_(params) {}
 
   GridStats insert(const GridScan& scan) override {
     GridStats stats;
     if (!scan.T_world_ground.matrix().allFinite()) return stats;
     advance(scan, stats);
     T_world_ground_ = scan.T_world_ground;
-    frame_ = WindowFrame(params(), scan.T_world_ground, first_, cells_, 0);
     judged_ = scan.weights.size() == scan.hits.size();
-    rays_ = scan.origin.allFinite();
-    beams_.begin(frame_.place(rays_ ? scan.origin : scan.T_world_ground.translation()));
-    addHits(scan, stats);
-    stats.not_finite += beams_.offerClear(scan.clear, frame_);
-    if (rays_) stats.rays += beams_.cross(scan.hits, scan.clear, frame_, crossed_.data());
+    marks_.collect(scan, first_, stats);
     applyEvidence();
     return stats;
   }
@@ -81,8 +73,7 @@ class GridRolling2d final : public SafetyGrid {
   }
 
   std::size_t memoryBytes() const override {
-    return values_.capacity() * sizeof(float) + weights_.capacity() + crossed_.capacity() +
-           beams_.memoryBytes() + sizeof *this;
+    return values_.capacity() * sizeof(float) + marks_.memoryBytes() + sizeof *this;
   }
 
  private:
@@ -105,7 +96,8 @@ class GridRolling2d final : public SafetyGrid {
 
   void advance(const GridScan& scan, GridStats& stats) {
     const Vector3 center = scan.T_world_ground.translation();
-    const CellIndex first = {indexOf(center.x()) - cells_ / 2, indexOf(center.y()) - cells_ / 2, 0};
+    CellIndex first = windowCorner(params(), center);
+    first.z = 0;
     if (!started_) now_ = scan.stamp;
     stats.late = scan.stamp < now_;
     const double age = std::max(0.0, scan.stamp - now_);
@@ -119,23 +111,9 @@ class GridRolling2d final : public SafetyGrid {
     started_ = true;
   }
 
-  // In reverse order: scans begin with their highest beams, whose returns are farther.
-  void addHits(const GridScan& scan, GridStats& stats) {
-    const std::size_t blocks = (scan.hits.size() + FlatBlock::kSize - 1) / FlatBlock::kSize;
-    for (std::size_t block = blocks; block-- > 0;) {
-      const std::size_t begin = block * FlatBlock::kSize;
-      const std::size_t count = std::min(FlatBlock::kSize, scan.hits.size() - begin);
-      hits_.place(scan.hits, judged_ ? &scan.weights[begin] : nullptr, begin, count, frame_,
-                  beams_.bins());
-      hits_.markColumns(judged_, weights_.data());
-      beams_.offerHits(hits_, begin);
-      stats.hits += hits_.hits, stats.not_finite += hits_.not_finite;
-    }
-  }
-
   void applyEvidence() {
-    FlatEvidence row{weights_.data(),
-                     crossed_.data(),
+    FlatEvidence row{marks_.weights(0),
+                     marks_.crossed(0),
                      keep_,
                      static_cast<float>(params().hit),
                      static_cast<float>(params().miss),
@@ -152,12 +130,7 @@ class GridRolling2d final : public SafetyGrid {
   int cells_;
   RollingSquare square_;
   std::vector<float> values_;  // [log-odds], by world index modulo the window
-  // Of the scan, from the window's corner on. Hits outside mark the element behind the last one.
-  std::vector<std::uint8_t> weights_, crossed_;
-  FlatBeams beams_;
-  FlatBlock hits_;
-  WindowFrame frame_;
-  bool rays_ = false;  // the sensor position is finite
+  FlatMarks marks_;
   Pose3 T_world_ground_ = Pose3::Identity();
   bool judged_ = false;  // the hits of the scan have weights
   bool started_ = false;

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "libperception/grid/ScanEvidence.h"
+#include "libperception/grid/CellEvidence.h"
 
 namespace perception {
 

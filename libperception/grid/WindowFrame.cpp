@@ -138,4 +138,21 @@ WindowPlace WindowFrame::place(const Vector3& point) const {
   return placed.at(0);
 }
 
+int windowLayers(const GridParams& params) {
+  constexpr int kGroup = 4, kMost = 64;  // as LogOddsColumn and WindowMarks have them
+  const double spread = 2 * params.grade * params.size * std::sqrt(0.5);
+  const double layers = (params.z_max - params.z_min + spread) / params.resolution;
+  return std::min(kMost, kGroup * static_cast<int>(std::ceil((layers - 1e-6) / kGroup)));
+}
+
+CellIndex windowCorner(const GridParams& params, const Vector3& center) {
+  const auto cells = static_cast<std::int64_t>(std::ceil(params.size / params.resolution));
+  const double below = params.grade * params.size * std::sqrt(0.5) - params.z_min;
+  const auto index = [&](double v) {
+    return static_cast<std::int64_t>(std::floor(v / params.resolution));
+  };
+  return {index(center.x()) - cells / 2, index(center.y()) - cells / 2,
+          index(center.z() - below + 1e-9)};
+}
+
 }  // namespace perception

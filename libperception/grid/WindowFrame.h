@@ -5,12 +5,18 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/grid/BeamBlock.h"
+#include "libperception/grid/CellEvidence.h"
 #include "libperception/grid/GridParams.h"
 #include "libperception/grid/GridPoints.h"
-#include "libperception/grid/ScanEvidence.h"
 #include "libperception/grid/SelectedIndices.h"
 
 namespace perception {
+
+/// Layers of the window: the slab, widened by the grade up to the window's corners; a multiple of
+/// four, 64 at most.
+int windowLayers(const GridParams& params);
+/// Lowest cell of the window around a place [m, world] on the ground.
+CellIndex windowCorner(const GridParams& params, const Vector3& center);
 
 /// A block of points of a scan in a window.
 struct PlacedBlock {

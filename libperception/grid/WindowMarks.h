@@ -6,8 +6,8 @@
 #include "libperception/grid/BeamBlock.h"
 #include "libperception/grid/BeamCover.h"
 #include "libperception/grid/BeamFans.h"
+#include "libperception/grid/CellEvidence.h"
 #include "libperception/grid/SafetyGrid.h"
-#include "libperception/grid/ScanEvidence.h"
 #include "libperception/grid/WindowFrame.h"
 
 namespace perception {

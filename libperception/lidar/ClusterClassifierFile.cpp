@@ -11,6 +11,7 @@
 #include "libperception/core/PartialFile.h"
 #include "libperception/lidar/ClusterClassifier.h"
 #include "libperception/lidar/JsonItem.h"
+#include "libperception/lidar/TreesText.h"
 
 namespace perception {
 namespace {
@@ -155,15 +156,16 @@ void readTree(const JsonItem& tree, BoostedTrees& trees) {
     trees.nodes.push_back(readNode(list.at(i), root, i, count));
 }
 
-BoostedTrees readTrees(const JsonItem& base, const JsonItem& list) {
+void readBase(const JsonItem& base, BoostedTrees& trees) {
   constexpr double kMost = 1000;  // |score|
-  BoostedTrees trees;
   base.size(kClusterKinds, kClusterKinds);
   for (std::size_t k = 0; k < kClusterKinds; ++k) trees.base[k] = base.at(k).number(-kMost, kMost);
+}
+
+void readTrees(const JsonItem& list, BoostedTrees& trees) {
   const std::size_t count = list.size(kClusterKinds, kMostNodes);
   if (count % kClusterKinds != 0) list.fail(fmt::format("a multiple of {} trees", kClusterKinds));
   for (std::size_t i = 0; i < count; ++i) readTree(list.at(i), trees);
-  return trees;
 }
 
 /// The shortest text that reads back as the same double and the same float.
@@ -212,7 +214,8 @@ ClusterClassifier ClusterClassifier::read(const std::string& file) {
 }
 
 ClusterClassifier ClusterClassifier::parse(const std::string& text, const std::string& name) {
-  const Json json = parsed(text, name);
+  auto separate = separateTrees(text, kMostNodes);
+  const Json json = parsed(separate ? separate->text : text, name);
   const JsonItem top(json, name);
   top.at("format").mustBe(kFormat);
   top.at("version").mustBe(kVersion);
@@ -228,8 +231,12 @@ ClusterClassifier ClusterClassifier::parse(const std::string& text, const std::s
   maps.only(kClusterKindNames);
   for (std::size_t k = 0; k < kClusterKinds; ++k)
     calibrations[k] = readCalibration(maps.at(kClusterKindNames[k]));
-  return ClusterClassifier(readTrees(top.at("base"), top.at("trees")), std::move(calibrations),
-                           prior, memory, std::move(provenance));
+  BoostedTrees trees;
+  if (separate) trees = std::move(separate->trees);
+  readBase(top.at("base"), trees);
+  if (!separate) readTrees(top.at("trees"), trees);
+  return ClusterClassifier(std::move(trees), std::move(calibrations), prior, memory,
+                           std::move(provenance));
 }
 
 std::string ClusterClassifier::write() const {

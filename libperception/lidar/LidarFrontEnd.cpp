@@ -174,7 +174,7 @@ PlacedReturns placedReturns(EgoPoints points, std::vector<float> height, const P
   returns.source = std::move(points.source);
   returns.height_min = obstacle.height_min;
   returns.height_max = obstacle.height_max;
-  returns.vehicle_front = point.vehicle_front;
+  returns.vehicle_front = point.vehicle_front, returns.vehicle_rear = point.vehicle_rear;
   return returns;
 }
 

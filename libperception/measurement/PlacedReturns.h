@@ -18,8 +18,8 @@ struct PlacedReturns {
   /// near 0 in a cloud; kFewDirections: too few tell. Empty: nothing can make phantoms at present.
   std::vector<float> solid;
   static constexpr float kFewDirections = -1;
-  double height_min = 0, height_max = 0;  ///< [m] above ground: the slab of obstacles
-  double vehicle_front = 0;               ///< [m] x of the own vehicle's front
+  double height_min = 0, height_max = 0;       ///< [m] above ground: the slab of obstacles
+  double vehicle_front = 0, vehicle_rear = 0;  ///< [m] own vehicle ahead of the ego origin, behind
 
   std::size_t size() const { return x.size(); }
 };

@@ -68,6 +68,7 @@ void SnapshotSensorParams::read(Config& config, bool site) {
     weather = WeatherParams::read(config);
     grid = config.read<GridParams>("grid");
     stop = config.read<StopParams>("grid.stop");
+    stop.vehicle = config.read<VehicleParams>("vehicle");
     return;
   }
   PipelineSetup setup = PipelineSetup::read(config);

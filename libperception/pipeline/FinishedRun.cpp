@@ -19,9 +19,10 @@
 #include "libperception/scene/RunRecord.h"
 
 namespace perception {
-namespace {
 
 namespace fs = std::filesystem;
+
+namespace {
 
 /// Written by perception-track, -report, -snapshot and -evaluate as the README and the page have
 /// it.
@@ -30,6 +31,8 @@ constexpr const char* kProducts[] = {
     "events.jsonl",  "effective.ini", "timing.json", "measurements.csv", "scans.csv",
     "sensors.csv",   "index.html",    "scene.png",   "contact.png",      "scene.mp4",
     "scene.3Dscene", "evaluation"};
+
+}  // namespace
 
 class Sha256 {
  public:
@@ -42,7 +45,8 @@ class Sha256 {
     add(text.data(), text.size());
     add("", 1);  // "ab", "c" is not "a", "bc"
   }
-  void addFile(const std::string& path) {
+  /// From the byte `begin` on.
+  void addFile(const std::string& path, std::uint64_t begin = 0) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0)
       throw DataError(fmt::format("{}: {}", path, std::strerror(errno)), ExitCode::kNoInput);
@@ -51,13 +55,14 @@ class Sha256 {
     std::vector<char> part(1U << 20);
     while (true) {
       stopIfAsked();
-      const ssize_t got = ::read(file, part.data(), part.size());
+      const ssize_t got = ::pread(file, part.data(), part.size(), static_cast<off_t>(begin));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0)
         throw DataError(fmt::format("{}: reading failed: {}", path, std::strerror(errno)),
                         ExitCode::kIoError);
       if (got == 0) return;
       add(part.data(), static_cast<std::size_t>(got));
+      begin += static_cast<std::uint64_t>(got);
     }
   }
   std::string hex() {
@@ -72,6 +77,8 @@ class Sha256 {
  private:
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
 };
+
+namespace {
 
 /// Values of an INI that are files: models, maps.
 std::vector<std::string> filesNamedIn(const std::string& ini) {
@@ -124,6 +131,19 @@ std::string sha256OfFile(const std::string& path) {
   return hash.hex();
 }
 
+FileHash::FileHash() : hash_(std::make_unique<Sha256>()) {}
+FileHash::~FileHash() = default;
+
+void FileHash::add(const unsigned char* bytes, std::size_t count) {
+  hash_->add(bytes, count);
+  added_ += count;
+}
+
+std::string FileHash::finish(const std::string& path) {
+  hash_->addFile(path, added_);
+  return hash_->hex();
+}
+
 std::string sha256OfText(const std::string& text) {
   Sha256 hash;
   hash.add(text);
@@ -140,12 +160,6 @@ std::string configurationHash(const std::string& effective_ini, const std::strin
 
 std::string hashOfRun(const std::string& log_sha256, const std::string& configuration_hash) {
   return sha256OfText(configuration_hash + log_sha256);
-}
-
-std::string runHash(const std::string& log, const std::string& effective_ini,
-                    const std::string& version) {
-  if (!fs::is_regular_file(log)) return "";  // whoever reads it says what it is
-  return hashOfRun(sha256OfFile(log), configurationHash(effective_ini, version));
 }
 
 bool isFinished(const std::string& dir, const std::string& hash, bool overwrite) {

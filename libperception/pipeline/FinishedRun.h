@@ -1,4 +1,7 @@
 #pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,15 +13,29 @@ namespace perception {
 std::string sha256OfFile(const std::string& path);
 std::string sha256OfText(const std::string& text);
 
+class Sha256;
+
+/// sha256OfFile() of a file that is read anyway, from the same reading.
+class FileHash {
+ public:
+  FileHash();
+  ~FileHash();
+  /// The next bytes of the file, from its first one on.
+  void add(const unsigned char* bytes, std::size_t count);
+  /// Reads what was not added: whoever reads a damaged log stops early. Once. Throws DataError.
+  std::string finish(const std::string& path);
+
+ private:
+  std::unique_ptr<Sha256> hash_;
+  std::uint64_t added_ = 0;  ///< [bytes]
+};
+
 /// SHA-256 of what the results of a run are a function of beside the log: the effective INI, the
 /// files that it names, the version of the program. Throws DataError.
 std::string configurationHash(const std::string& effective_ini, const std::string& version);
 /// SHA-256 of all that the results are a function of, from sha256OfFile() of the log and
 /// configurationHash().
 std::string hashOfRun(const std::string& log_sha256, const std::string& configuration_hash);
-/// The same; empty if the log is no regular file. Throws DataError.
-std::string runHash(const std::string& log, const std::string& effective_ini,
-                    const std::string& version);
 
 /// True if `dir` holds the finished run of this hash: there is nothing to do. With `overwrite`
 /// there always is; without, throws Error (kBadConfig) if it holds another one.

@@ -40,6 +40,7 @@ class OutputFolder {
   void removeLeftovers() const;
   void removeTemporaries() noexcept;
   [[noreturn]] void failWriting(const std::string& path, int reason) const;
+  void beginWriting() const;
   void handToDisk(const std::string& path) const;
   void moveIntoPlace(const std::string& name) const;
 

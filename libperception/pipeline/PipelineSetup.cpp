@@ -175,6 +175,7 @@ PipelineSetup PipelineSetup::read(Config& config) {
   s.weather = WeatherParams::read(config);
   s.grid = config.read<GridParams>("grid");
   s.stop = config.read<StopParams>("grid.stop");
+  s.stop.vehicle = config.read<VehicleParams>("vehicle");
   const auto set = readSensorSet(s.run.sensors);
   if (!set) {
     config.fault(

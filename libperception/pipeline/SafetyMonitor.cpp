@@ -11,11 +11,13 @@ namespace {
 
 constexpr double kMirrored = -0.3;  // [m] lower returns are mirror images in a wet road
 constexpr double kLeaves = 0.5;     // [s] for which a cell belongs to what has left it; assumed
-/// [-] x / |y| in the ego frame below which a return lies behind the vehicle (bearings beyond 117
-/// deg): it is ahead only after a turn, during which it is seen anew; assumed.
+/// [-] distance along the direction of travel by that across it, below which a return lies behind
+/// the vehicle (bearings beyond 117 deg): it is ahead only after a turn, during which it is seen
+/// anew; assumed.
 constexpr float kBehind = -0.5f;
-constexpr float kDoubted = 0.5F;  // of a return: more likely a phantom than not
-constexpr double kHardly = 0.05;  // doubt that needs no cause, for it decides nothing (assumed)
+constexpr double kCarHeight = 1.7;  // [m] of a vehicle whose height nobody gave; assumed
+constexpr float kDoubted = 0.5F;    // of a return: more likely a phantom than not
+constexpr double kHardly = 0.05;    // doubt that needs no cause, for it decides nothing (assumed)
 /// Share of the directions about a return that end there from which it is of a solid surface, and
 /// that from which it may be of one: the corner of a surface fills four in nine (assumed).
 constexpr float kWall = 0.75F, kPerhapsSurface = 0.4F;
@@ -133,7 +135,7 @@ const SceneObject* ownerOf(const Scene& scene, const Vector3& place, double grow
 }  // namespace
 
 ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& returns,
-                            const TrustParams& trust) {
+                            const TrustParams& trust, const StopParams& stop, double clearance) {
   ObstacleScan obstacles;
   GridScan& scan = obstacles.scan;
   scan.stamp = frame.stamp;
@@ -142,13 +144,16 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   const Doubter doubter(frame, cloud, returns, trust);
   scan.clear.reserve(returns.size());
+  const bool backward = isReversing(frame.ego.T_world_ego, frame.ego.velocity, stop);
+  const float travel = backward ? -1 : 1;
+  const double height_max = std::min(returns.height_max, clearance);
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const double height = static_cast<double>(returns.height[i]);
-    if (height <= kMirrored || returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
+    if (height <= kMirrored || travel * returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
     const Vector3 place = frame.ego.T_world_ego * Vector3(static_cast<double>(returns.x[i]),
                                                           static_cast<double>(returns.y[i]),
                                                           static_cast<double>(returns.z[i]));
-    const bool hit = height > returns.height_min && height < returns.height_max;
+    const bool hit = height > returns.height_min && height < height_max;
     (hit ? scan.hits : scan.clear).push_back(place);
     if (hit) doubter.weigh(i, place, obstacles);
   }
@@ -159,10 +164,13 @@ SafetyMonitor::SafetyMonitor(const GridParams& grid, const StopParams& stop, Tru
     : params_(grid), stop_(stop), trust_(std::move(trust)), grid_(makeSafetyGrid(grid)) {}
 
 void SafetyMonitor::add(const SensorFrame& frame, const PlacedReturns& returns) {
-  last_ = obstacleScanOf(frame, returns, trust_);
+  const Vector3 sensor = frame.T_ego_sensor.translation();
+  const double ground = frame.ground.a * sensor.x() + frame.ground.b * sensor.y() + frame.ground.c;
+  highest_ = std::max({highest_, sensor.z() - ground, kCarHeight});
+  last_ = obstacleScanOf(frame, returns, trust_, stop_, vehicleHeight() + stop_.clearance);
   trustWhatPersists();
   grid_->insert(last_.scan);
-  front_ = returns.vehicle_front;
+  front_ = returns.vehicle_front, rear_ = returns.vehicle_rear;
   any_ = true;
 }
 
@@ -177,16 +185,20 @@ void SafetyMonitor::trustWhatPersists() {
     if (again[j]) trustHit(last_, hits[j]);
 }
 
+double SafetyMonitor::vehicleHeight() const {
+  return stop_.vehicle.height > 0 ? stop_.vehicle.height : highest_;
+}
+
 PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   PathAhead path;
   path.known = any_ && std::abs(ego.stamp - last_.scan.stamp) <= kFresh;
   if (!path.known) return path;
-  path.corridor = drivenCorridor(ego.T_world_ego, ego.velocity.norm(), ego.yaw_rate, front_, stop_);
+  path.corridor = drivenCorridor(ego.T_world_ego, ego.velocity, ego.yaw_rate, front_, rear_, stop_);
+  const double look_ahead = path.corridor.max;
   path.free = grid_->freeDistance(path.corridor);
   path.corridor.max = path.free.distance;
   const FreeDistance dense =
       denseReturns(path.corridor, last_.scan.hits, last_.dense, stop_.returns);
-  path.corridor.max = stop_.look_ahead;
   if (dense.blocked) {
     path.free.distance = dense.distance;
     path.free.blocked = true;
@@ -194,6 +206,10 @@ PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
     path.free.seen = std::min(path.free.seen, dense.distance);
     path.by_returns = true;
   }
+  path.corridor.max = path.free.distance;
+  path.free.seen = seenByBeams(path.corridor, path.free.seen, last_.scan.origin,
+                               {&last_.scan.hits, &last_.scan.clear}, vehicleHeight());
+  path.corridor.max = look_ahead;
   path.in_cloud = path.free.blocked && inCloud(path.corridor, last_.scan, path.free.distance);
   if (path.free.blocked) countReturns(last_, path);
   return path;
@@ -201,21 +217,29 @@ PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
 
 FreePath SafetyMonitor::advise(const PathAhead& path, const Scene& scene) {
   FreePath advice;
-  advice.distance = path.free.distance;
+  advice.distance = path.free.known();
   advice.seen = path.free.seen;
   advice.blocked = path.free.blocked;
   const bool before = near_ && scene.stamp - *near_ <= kFresh;
   near_.reset();
+  const double speed = scene.ego.velocity.norm();
+  const double way = path.free.known() - path.corridor.from;
+  advice.safe_speed = safeSpeed(way, 0, stop_);
+  advice.too_fast = speed > advice.safe_speed;
   if (!advice.blocked) return advice;
   const SceneObject* owner = ownerOf(scene, path.free.place, stop_.obstacle_grow);
-  const double speed = scene.ego.velocity.norm();
-  const Vector2 ahead = scene.ego.T_world_ego.linear().col(0).head<2>();
+  const Vector2 ahead =
+      (path.corridor.backward ? -1 : 1) * Vector2(scene.ego.T_world_ego.linear().col(0).head<2>());
   const double along = owner == nullptr ? 0 : owner->velocity.dot(ahead);
   advice.owner = owner == nullptr ? 0 : owner->id;
   advice.returns = path.returns, advice.overruled = path.overruled;
   advice.cause = owner != nullptr  ? FreePath::Cause::kObject
                  : path.by_returns ? FreePath::Cause::kReturns
                                    : FreePath::Cause::kGrid;
+  if (path.free.seen >= path.free.distance) {
+    advice.safe_speed = safeSpeed(way, along, stop_);
+    advice.too_fast = speed > advice.safe_speed;
+  }
   const bool near = path.free.distance - path.corridor.from < stoppingDistance(speed, along, stop_);
   if (near) near_ = scene.stamp;
   advice.stop = near && (before || !path.in_cloud);
@@ -227,6 +251,7 @@ void SafetyMonitor::restart() {
   places_.clear();
   any_ = false;
   near_.reset();
+  highest_ = 0;
 }
 
 }  // namespace perception

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -27,16 +28,18 @@ struct ObstacleScan {
 /// left out (method.md 8.1). The doubt about a return, by its trust and by the shape of its
 /// cluster, is at most the probability of a cause that the sensors show (PhantomCauses, labels and
 /// echoes by `trust`); none where the directions about it end there as at a wall (method.md 8.4).
+/// What hangs higher than `clearance` [m] above the ground is no obstacle.
 ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& returns,
-                            const TrustParams& trust = {});
+                            const TrustParams& trust = {}, const StopParams& stop = {},
+                            double clearance = std::numeric_limits<double>::infinity());
 
-/// The way ahead at one instant.
+/// The way that the vehicle drives, forward or backward, at one instant.
 struct PathAhead {
   bool known = false;  ///< false: no lidar scan within half a second
   Corridor corridor;
-  FreeDistance free;
-  bool in_cloud = false;                     ///< most returns up to the obstacle are doubted
-  bool by_returns = false;                   ///< of one scan, and not by occupied cells
+  FreeDistance free;        ///< `distance` is that of the obstacle, seen up to there or not
+  bool in_cloud = false;    ///< most returns up to the obstacle are doubted
+  bool by_returns = false;  ///< of one scan, and not by occupied cells
   std::uint32_t returns = 0, overruled = 0;  ///< as FreePath
 };
 
@@ -59,6 +62,7 @@ class SafetyMonitor {
 
  private:
   void trustWhatPersists();
+  double vehicleHeight() const;  ///< [m] of its highest point
 
   GridParams params_;
   StopParams stop_;
@@ -67,8 +71,9 @@ class SafetyMonitor {
   PersistentPlaces places_;  ///< of doubted surfaces, in the newest scan
   ObstacleScan last_;        ///< the newest scan's returns
   bool any_ = false;
-  std::optional<Stamp> near_;  ///< of the last scene, if an obstacle was too near
-  double front_ = 0;           ///< [m] x of the own vehicle's front, ego frame
+  std::optional<Stamp> near_;    ///< of the last scene, if an obstacle was too near
+  double front_ = 0, rear_ = 0;  ///< [m] own vehicle ahead of the ego origin and behind it
+  double highest_ = 0;           ///< [m] lidar above the ground so far
 };
 
 }  // namespace perception

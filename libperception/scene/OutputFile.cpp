@@ -29,7 +29,9 @@ void OutputFile::close() {
   errno = 0;
   if (std::fflush(file_.get()) != 0) fail(errno);
   // Some file systems report a full disk only on sync; pipes and devices cannot be synced.
-  if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL && errno != EROFS) fail(errno);
+  if (!partial_.inTemporaryFolder() && ::fsync(::fileno(file_.get())) != 0 && errno != EINVAL &&
+      errno != EROFS)
+    fail(errno);
   if (std::fclose(file_.release()) != 0) fail(errno);
   partial_.commit();
 }

@@ -18,7 +18,8 @@ class OutputFile {
 
   /// Throws OutputError (kIoError).
   void write(std::string_view text);
-  /// Syncs to disk and closes. Throws OutputError (kIoError).
+  /// Syncs to disk and closes; in a temporary folder whoever makes its files last syncs them.
+  /// Throws OutputError (kIoError).
   void close();
   const std::string& path() const { return path_; }
 

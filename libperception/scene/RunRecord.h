@@ -26,7 +26,7 @@ struct SensorRecord {
 struct RunRecord {
   std::string program;  ///< "perception-track"
   std::string version;
-  std::string hash;   ///< runHash(): of log, effective INI and version
+  std::string hash;   ///< hashOfRun(): of log, effective INI and version
   std::string input;  ///< file name of the log; folders are removed when written
   std::uint64_t input_bytes = 0;
   std::uint64_t input_entries = 0;  ///< objects read from the log

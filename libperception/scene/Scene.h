@@ -27,12 +27,14 @@ struct SceneObject {
   std::map<Modality, Stamp> last_hit;                   ///< last measurement of each modality
 };
 
-/// What the safety grid says of the way ahead, along the arc that the vehicle drives.
+/// What the safety grid says of the way that the vehicle drives, forward or backward, by its arc.
 struct FreePath {
-  double distance = 0;      ///< [m] from the ego origin to the first occupied cell, or the largest
+  double distance = 0;      ///< [m] from the ego origin, seen and free
   double seen = 0;          ///< [m] to which the path was observed
   bool blocked = false;     ///< an occupied cell was found
   bool stop = false;        ///< it is nearer than the vehicle can stop
+  double safe_speed = 0;    ///< [m/s] from which the vehicle stops within what is seen and free
+  bool too_fast = false;    ///< it drives faster than that
   std::uint64_t owner = 0;  ///< id of the object that covers the cell; 0: none
   /// What the obstacle is known by: occupied cells, the returns of one scan, or a track that covers
   /// either. Meaningless where the path is free.

@@ -95,16 +95,22 @@ std::string trackLine(const Scene& scene, const SceneObject& object, const Class
 /// As FreePath::Cause.
 constexpr std::array<const char*, 3> kPathCauses = {"grid", "returns", "object"};
 
+void addCause(Line& line, const FreePath& path) {
+  if (!path.blocked) return line.text(",,,");
+  line.text(path.owner == 0 ? "unknown" : fmt::format("{}", path.owner));
+  line.text(kPathCauses[static_cast<std::size_t>(path.cause)]);
+  line.integer(path.returns);
+  line.integer(path.overruled);
+}
+
 void addPath(Line& line, const std::optional<FreePath>& path) {
-  if (!path) return line.text(",,,,,,");
+  if (!path) return line.text(",,,,,,,,");
   line.meters(path->distance);
   line.meters(path->seen);
   line.integer(path->stop ? 1 : 0);
-  if (!path->blocked) return line.text(",,,");
-  line.text(path->owner == 0 ? "unknown" : fmt::format("{}", path->owner));
-  line.text(kPathCauses[static_cast<std::size_t>(path->cause)]);
-  line.integer(path->returns);
-  line.integer(path->overruled);
+  addCause(line, *path);
+  line.meters(path->safe_speed);
+  line.integer(path->too_fast ? 1 : 0);
 }
 
 std::string sceneLine(const Scene& scene, std::size_t objects, Stamp first_stamp) {
@@ -168,6 +174,10 @@ std::optional<FreePath> readPath(const Table& row) {
   path.stop = row.flag("stop");
   path.blocked = !row.text("obstacle").empty();
   if (path.blocked && row.text("obstacle") != "unknown") path.owner = row.natural("obstacle");
+  if (row.has("safe_speed")) {
+    path.safe_speed = row.real("safe_speed");
+    path.too_fast = row.flag("too_fast");
+  }
   if (!path.blocked || !row.has("cause")) return path;  // older runs have none
   const auto cause = std::find(kPathCauses.begin(), kPathCauses.end(), row.text("cause"));
   if (cause == kPathCauses.end()) row.fault("cause", "grid, returns or object");
@@ -228,7 +238,7 @@ TrackedRunWriter::TrackedRunWriter(const std::string& dir, const ClassTable& cla
   tracks_.write(tracksHeader(classes_));
   scenes_.write(
       "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,stop,"
-      "obstacle,cause,returns,overruled\n");
+      "obstacle,cause,returns,overruled,safe_speed,too_fast\n");
 }
 
 void TrackedRunWriter::write(const Scene& scene) {

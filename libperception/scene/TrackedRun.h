@@ -18,10 +18,10 @@ namespace perception {
 /// frame,t,stamp,id,class,classified,p_NAME...,existence,x,y,z,yaw,has_yaw,vx,vy,speed,length,width,height,
 ///             sd_x,sd_y,sd_yaw,sd_speed,last_hit_C,last_hit_L,last_hit_R
 /// scenes.csv: frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,
-///             stop,obstacle,cause,returns,overruled
-/// The last seven are FreePath, empty without one; obstacle: the id of the object that covers the
-/// first occupied cell, "unknown" where none does; it and what follows are empty where the path is
-/// free.
+///             stop,obstacle,cause,returns,overruled,safe_speed,too_fast
+/// The last nine are FreePath, empty without one; obstacle: the id of the object that covers the
+/// first occupied cell, "unknown" where none does; it, cause, returns and
+/// overruled are empty where the path is free.
 /// t and last_hit_*: seconds since the log's first stamp; stamp: seconds since 1970; all three
 /// exact to the nanosecond. last_hit_*: one column per row of modalities(), whichever sensors were
 /// in use; empty if that modality has never detected the object. Decimal places: NumberFormat.h.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/core/PartialFile.h"
@@ -22,7 +23,8 @@ constexpr std::size_t kReadyBytes = 1U << 20;
 
 }  // namespace
 
-CRawlogInput::CRawlogInput(const std::string& path) : path_(path) {
+CRawlogInput::CRawlogInput(const std::string& path, FileSink sink)
+    : path_(path), sink_(std::move(sink)) {
   struct stat info {};
   // stat() before open(): opening a pipe would wait for a writer.
   if (::stat(path.c_str(), &info) != 0) {
@@ -59,6 +61,7 @@ bool CRawlogInput::readFile() {
   if (got < 0) stop(State::kFailed, fmt::format("reading failed: {}", std::strerror(errno)));
   raw_.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
   file_read_ += raw_.size();
+  if (sink_) sink_(raw_.data(), raw_.size());
   return !raw_.empty();
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "libperception/sensors/FileSink.h"
+
 namespace perception {
 
 class Inflater;
@@ -25,7 +27,7 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
 
   /// Throws DataError: kNoInput when missing, kBadInput when it is empty, unreadable or no regular
   /// file.
-  explicit CRawlogInput(const std::string& path);
+  explicit CRawlogInput(const std::string& path, FileSink sink = {});
   ~CRawlogInput() override;
 
   /// True when no byte is left; state() has the reason.
@@ -57,6 +59,7 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   void stop(State state, const std::string& reason);
 
   std::string path_;
+  FileSink sink_;
   int file_ = -1;
   std::uint64_t file_bytes_ = 0, file_read_ = 0, position_ = 0;
   std::uint64_t members_ = 0;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/core/MemoryLimit.h"
@@ -114,11 +115,11 @@ const char* nameOf(RawlogReader::End end) {
   return kNames[static_cast<std::size_t>(end)];
 }
 
-RawlogReader::RawlogReader(const std::string& path) : path_(path) {
+RawlogReader::RawlogReader(const std::string& path, FileSink sink) : path_(path) {
   registerPerceptionClasses();
   linkCheckedAllocation();
   linkJpegErrors();
-  input_ = std::make_unique<CRawlogInput>(path);
+  input_ = std::make_unique<CRawlogInput>(path, std::move(sink));
   const std::string begin = input_->peek(kHeaderBytes);
   if (input_->state() == CRawlogInput::State::kFailed) {
     throw DataError(fmt::format("{}: {}", path, input_->reason()));

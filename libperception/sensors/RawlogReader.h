@@ -11,6 +11,7 @@
 #include <string>
 
 #include "libperception/core/Time.h"
+#include "libperception/sensors/FileSink.h"
 #include "libperception/sensors/ObservationInput.h"
 
 namespace mrpt::obs {
@@ -47,7 +48,7 @@ class RawlogReader final : public ObservationInput {
 
   /// Throws DataError: kNoInput when missing, kBadInput (with a description of the content) when it
   /// is no rawlog.
-  explicit RawlogReader(const std::string& path);
+  explicit RawlogReader(const std::string& path, FileSink sink = {});
   ~RawlogReader() override;
 
   /// The next observation; null at the end. All whole entries before a fault are returned.

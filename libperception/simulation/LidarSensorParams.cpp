@@ -34,6 +34,7 @@ void LidarSensorParams::visit(ParamVisitor& v) {
 
 // HDL-64E: 32 upper lasers from +2 to -8.33 deg at 1/3 deg, 32 lower ones from -8.83 at 1/2 deg.
 std::vector<double> LidarSensorParams::elevations() const {
+  if (!rings.empty()) return rings;
   std::vector<double> result;
   if (layout == Layout::kFourLayer) return {radians(-1.2), radians(-.4), radians(.4), radians(1.2)};
   for (int i = 31; i >= 0; --i) result.push_back(radians(-8.83 - .5 * i));

@@ -16,9 +16,10 @@ struct LidarSensorParams {
          azimuth_to = kPi;              ///< [rad] of the sensor's forward axis, to the left
   double azimuth_step = radians(0.18);  ///< [rad] 0.16 to 0.2 deg at 10 turns a second
   double elevation_from = -kPi / 2, elevation_to = kPi / 2;  ///< [rad] rings outside are omitted
-  int ring_step = 1;       ///< keeps every n-th ring, to thin a log
-  double range_min = 0.9;  ///< [m]
-  double range_max = 120;  ///< [m]
+  int ring_step = 1;          ///< keeps every n-th ring, to thin a log
+  std::vector<double> rings;  ///< [rad] elevations, lowest first, of another lidar; not in an INI
+  double range_min = 0.9;     ///< [m]
+  double range_max = 120;     ///< [m]
   double reference_range =
       200;  ///< [m] R_max of method.md (57): detection limit of a surface of 90 % reflectivity
   double range_noise = 0.01;  ///< [m] at the strongest echo
@@ -32,7 +33,7 @@ struct LidarSensorParams {
   /// Ibeo ALASCA XT: four layers 0.8 deg apart, 0.25 deg in azimuth, own labels.
   static LidarSensorParams fourLayer();
   void visit(ParamVisitor& v);
-  /// Elevations [rad] of the rings, lowest first.
+  /// Elevations [rad] of the rings, lowest first: `rings`, or those of the layout.
   std::vector<double> elevations() const;
 };
 

@@ -38,7 +38,7 @@ constexpr std::uint32_t kRoadLabel = 40;
 
 }  // namespace
 
-std::uint32_t pointLabelOf(Phantom phantom) {
+std::uint32_t labelOf(Phantom phantom) {
   switch (phantom) {
     case Phantom::kNone:
       return 0;
@@ -68,7 +68,7 @@ std::vector<std::uint32_t> pointLabels(const LidarSensor::Scan& scan, const Scen
     const int object = scan.surfaces[i];
     const Phantom phantom = scan.phantoms.empty() ? Phantom::kNone : scan.phantoms[i];
     if (phantom != Phantom::kNone) {
-      labels[i] = pointLabelOf(phantom);
+      labels[i] = labelOf(phantom);
     } else if (object >= 0) {
       labels[i] = pointLabelOf(scenario.objects[static_cast<std::size_t>(object)].kind);
     }

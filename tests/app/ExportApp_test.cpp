@@ -96,7 +96,7 @@ TEST_F(ExportAppTest, TheFileSaysOfWhichRunItIs) {
 
 TEST_F(ExportAppTest, PythonReadsTheRun) {
   if (outputOf("/usr/bin/python3 -c 'import numpy'").first != 0)
-    GTEST_SKIP() << "python3-numpy is missing";
+    GTEST_SKIP() << "missing tool: python3-numpy";
   writeRun(Stamp{1'600'000'000'123'456'789});
   const auto [code, text] = outputOf(
       "cd " PERCEPTION_SOURCE_DIR

@@ -87,7 +87,7 @@ class RunPage : public testing::Test {
     folder_.reset();
   }
   void SetUp() override {
-    if (!browser_) GTEST_SKIP() << "chromium is not here";
+    if (!browser_) GTEST_SKIP() << "missing tool: chromium";
     open(1400, 1000);
   }
 

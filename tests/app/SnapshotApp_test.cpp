@@ -166,14 +166,15 @@ TEST_F(SnapshotAppTest, TornLogIsDrawnWithAWarning) {
 TEST_F(SnapshotAppTest, VideoPlaysAtTheLogsRate) {
   if (std::system("command -v ffmpeg > /dev/null") != 0) {
     EXPECT_EQ(run({"--video", dir_ + "/a.mp4", "--view", "top"}), 69);
-    GTEST_SKIP() << "ffmpeg is not here";
+    GTEST_SKIP() << "missing tool: ffmpeg";
   }
   ASSERT_EQ(run({"--video", dir_ + "/films/a.mp4", "--view", "top", "--from", "1", "--to", "1.6"}),
             0);
   EXPECT_EQ(app_->out_files, std::vector<std::string>{dir_ + "/films/a.mp4"});
   EXPECT_GT(fs::file_size(dir_ + "/films/a.mp4"), 5000U);
   EXPECT_FALSE(fs::exists(dir_ + "/films/a.mp4.part"));
-  if (std::system("command -v ffprobe > /dev/null") != 0) GTEST_SKIP() << "ffprobe is not here";
+  if (std::system("command -v ffprobe > /dev/null") != 0)
+    GTEST_SKIP() << "missing tool: ffprobe (package ffmpeg)";
   const std::string ask =
       "ffprobe -v error -show_entries stream=r_frame_rate,nb_frames -of csv=p=0 '" + dir_ +
       "/films/a.mp4' > '" + dir_ + "/said.txt'";
@@ -204,7 +205,7 @@ TEST_F(SnapshotAppTest, EveryProductSaysOfWhichRunItIs) {
   const std::unique_ptr<octomap::AbstractOcTree> tree(
       octomap::AbstractOcTree::read(dir_ + "/g.ot"));
   EXPECT_TRUE(tree != nullptr);
-  if (std::system("command -v ffmpeg > /dev/null") != 0) GTEST_SKIP() << "ffmpeg is not here";
+  if (std::system("command -v ffmpeg > /dev/null") != 0) GTEST_SKIP() << "missing tool: ffmpeg";
   RunRecord other;
   other.input = "demo.rawlog";
   other.hash = std::string(64, 'b');

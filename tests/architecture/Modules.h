@@ -90,8 +90,8 @@ inline const std::vector<Module>& modules() {
        {"pipeline", "evaluation", "gui-offscreen", "scene", "config", "core"}},
       {"pictures",
        "pictures of scenarios, detections, sensors",
-       {"pipeline", "gui-offscreen", "simulation", "scene", "grid", "lidar", "detectors", "sensors",
-        "core"}},
+       {"pipeline", "gui-offscreen", "simulation", "scene", "grid", "weather", "lidar", "detectors",
+        "sensors", "core"}},
       {"app",
        "command lines: one class for every program",
        {"pictures", "batch", "doctor",     "pipeline",    "calibration", "importers",     "interop",
@@ -101,7 +101,7 @@ inline const std::vector<Module>& modules() {
        "experiments about the method",
        {"app", "pipeline", "calibration", "simulation", "detectors", "evaluation", "scene",
         "filter", "lidar", "grid", "sensors", "measurement", "config", "core"}},
-      {"apps", "a short main for every program", {"app", "studies"}},
+      {"apps", "a short main for every program", {"app"}},
   };
   return all;
 }

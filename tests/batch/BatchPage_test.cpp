@@ -10,7 +10,7 @@ namespace {
 class BatchPageTest : public BatchFixture {
  protected:
   void SetUp() override {
-    if (Browser::program().empty()) GTEST_SKIP() << "chromium is not here";
+    if (Browser::program().empty()) GTEST_SKIP() << "missing tool: chromium";
     results.figures = {"closest.all.object_tracked_a"};
     for (const char* id : {"aaa", "bbb", "ccc"}) {
       const Shard& shard = addShard(id);

@@ -23,7 +23,7 @@ TEST(Grabber, RecordsTheSensorsOfAScenario) {
       std::string(PERCEPTION_BINARY_DIR) + "/lib/libperception_mrpt_plugin.so";
   if (!fs::exists(plugin)) GTEST_SKIP() << "not built: " << plugin;
   if (std::system("command -v rawlog-grabber > /dev/null") != 0)
-    GTEST_SKIP() << "rawlog-grabber (package mrpt-apps) is not here";
+    GTEST_SKIP() << "missing tool: rawlog-grabber (package mrpt-apps)";
   const fs::path dir = fs::path(testing::TempDir()) / "grabber test";
   fs::remove_all(dir);
   fs::create_directories(dir);

@@ -142,5 +142,43 @@ TEST(DenseReturns, WhatIsBesideTheCorridorOrBeyondItDoesNotCount) {
   EXPECT_FALSE(denseReturns(corridor, wallAt(20, 50, 0.001), {}, 10).blocked);
 }
 
+/// Beams of a lidar 1.7 m above the road, one each half degree of elevation, that end on the road
+/// or at `wall` [m] ahead.
+GridPoints beamsAhead(double wall, double bearing = 0) {
+  GridPoints ends;
+  for (double elevation = radians(-20); elevation < radians(2); elevation += radians(0.5)) {
+    const double road = elevation < 0 ? -1.7 / std::tan(elevation) : wall;
+    const double range = std::min(road, wall);
+    ends.emplace_back(range * std::cos(bearing), range * std::sin(bearing),
+                      1.7 + range * std::tan(elevation));
+  }
+  return ends;
+}
+
+TEST(SeenByBeams, IsAsFarAsABeamReachesBetweenTheRoadAndTheVehiclesHeight) {
+  Corridor corridor;
+  corridor.max = 150;
+  const GridPoints ends = beamsAhead(120);
+  EXPECT_NEAR(seenByBeams(corridor, 40, {0, 0, 1.7}, {&ends}, 1.9), 120, 1.5);
+  EXPECT_LT(seenByBeams(corridor, 40, {0, 0, 1.7}, {&ends}, 0.8), 120)
+      << "a low vehicle must see lower";
+}
+
+TEST(SeenByBeams, BeamsBesideTheCorridorSayNothing) {
+  Corridor corridor;
+  corridor.max = 150;
+  const GridPoints ends = beamsAhead(120, radians(5));  // 3.5 m to the side at 40 m
+  EXPECT_EQ(seenByBeams(corridor, 40, {0, 0, 1.7}, {&ends}, 1.9), 40);
+}
+
+TEST(SeenByBeams, FollowsTheCorridorBackward) {
+  Corridor corridor;
+  corridor.backward = true;
+  corridor.max = 100;
+  const GridPoints behind = beamsAhead(70, kPi), ahead = beamsAhead(70);
+  EXPECT_NEAR(seenByBeams(corridor, 10, {0, 0, 1.7}, {&ahead, &behind}, 1.9), 70, 1.5);
+  EXPECT_EQ(seenByBeams(corridor, 10, {0, 0, 1.7}, {&ahead}, 1.9), 10);
+}
+
 }  // namespace
 }  // namespace perception

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "libperception/config/Config.h"
 #include "libperception/core/Error.h"
@@ -275,6 +278,54 @@ INSTANTIATE_TEST_SUITE_P(BackEnds, SpaceGrid,
                          testing::Values(GridParams::BackEnd::kOctomap,
                                          GridParams::BackEnd::kRolling),
                          nameOf);
+
+/// Simulated: the vehicle drives through a street with posts, phantoms of some weight, and a bar
+/// that stands in the way for a while. Free distance, and to where it was seen, after each scan.
+std::vector<FreeDistance> driveThroughAStreet(GridParams::BackEnd back_end) {
+  GridParams params;
+  params.back_end = back_end;
+  params.size = 64, params.resolution = 0.4;
+  const auto grid = makeSafetyGrid(params);
+  Rng random({7, 0, 0, 1});
+  std::vector<FreeDistance> found;
+  for (int i = 0; i < 40; ++i) {
+    GridScan scan = sceneWithWall(i * kPeriod, 45 - i, i, 1);
+    scan.weights.assign(scan.hits.size(), 1.F);
+    const auto add = [&](double x, double y, double z, float weight) {
+      scan.hits.emplace_back(x, y, z), scan.weights.push_back(weight);
+    };
+    for (int post = 0; post < 10; ++post)
+      for (double z = 0.4; z < 1.5; z += 0.1) add(8. * post, post % 2 ? 2.5 : -2.5, z, 1);
+    for (int k = 0; k < 60; ++k)  // phantoms
+      add(i + random.uniform(3, 30), random.uniform(-3, 3), random.uniform(0.5, 2), 0.2F);
+    if (i > 10 && i < 25)
+      for (double y = -1; y < 1; y += 0.1) add(35, y, 0.9, 1);
+    grid->insert(scan);
+    Corridor corridor;
+    corridor.T_world_ego = scan.T_world_ground;
+    corridor.max = 28, corridor.cells = 3;
+    found.push_back(grid->freeDistance(corridor));
+  }
+  return found;
+}
+
+TEST(SafetyGrid, TheStoresOfOneGridAnswerAlike) {
+  using BackEnd = GridParams::BackEnd;
+  const std::pair<BackEnd, BackEnd> kPairs[] = {{BackEnd::kOctomap, BackEnd::kRolling},
+                                                {BackEnd::kMrpt2d, BackEnd::kRolling2d}};
+  for (const auto& [store, fast] : kPairs) {
+    const auto a = driveThroughAStreet(store), b = driveThroughAStreet(fast);
+    std::size_t blocked = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].blocked, b[i].blocked) << "scan " << i;
+      EXPECT_NEAR(a[i].distance, b[i].distance, 0.4 + 1e-9) << "scan " << i;
+      EXPECT_NEAR(a[i].seen, b[i].seen, 0.4 + 1e-9) << "scan " << i;
+      blocked += a[i].blocked;
+    }
+    EXPECT_GT(blocked, 5u) << "the bar is found";
+    EXPECT_LT(blocked, a.size() - 5) << "and forgotten";
+  }
+}
 
 TEST(GridParams, UnknownBackEndIsAConfigurationFault) {
   Config config = Config::fromText("[grid]\nback_end = balltree\n");

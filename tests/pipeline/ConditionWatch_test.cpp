@@ -18,13 +18,13 @@ using test::positionScan;
 constexpr double kTrueClutter = 3;  // a scan
 
 /// A filter and its watch: a disc of 40 m with five poles and clutter, seen at 10 Hz.
-struct World {
+struct WatchedWorld {
   std::vector<PipelineSetup::Sensor> sensors;
   EventLog events;
   WeatherWatch weather{events};
   PositionModel::Params params = linearSensor();
 
-  explicit World(DetectionParams::Clutter clutter, double configured) {
+  explicit WatchedWorld(DetectionParams::Clutter clutter, double configured) {
     params.clutter_per_scan = configured;
     params.births_per_scan = 0.1;
     PipelineSetup::Sensor sensor;
@@ -69,7 +69,7 @@ struct World {
 
 TEST(ConditionWatch, ClutterMissetByTenEitherWayIsLearnedInTwentySeconds) {
   for (const double configured : {0.3, 3.0, 30.0}) {
-    World world(DetectionParams::Clutter::kLearnt, configured);
+    WatchedWorld world(DetectionParams::Clutter::kLearnt, configured);
     EXPECT_NEAR(world.run(20), kTrueClutter, 0.6) << configured;
     ASSERT_EQ(world.learned.size(), 2U);
     EXPECT_EQ(world.learned[0], "[sensor.POSITION]");
@@ -77,7 +77,7 @@ TEST(ConditionWatch, ClutterMissetByTenEitherWayIsLearnedInTwentySeconds) {
 }
 
 TEST(ConditionWatch, FixedClutterStaysInTheModel) {
-  World world(DetectionParams::Clutter::kFixed, 30);
+  WatchedWorld world(DetectionParams::Clutter::kFixed, 30);
   MeasurementScan last;
   world.run(5, &last);
   EXPECT_NE(last.model->positionOnly(), nullptr);
@@ -87,7 +87,7 @@ TEST(ConditionWatch, FixedClutterStaysInTheModel) {
 }
 
 TEST(ConditionWatch, LearnedClutterIsInTheModelOfTheScan) {
-  World world(DetectionParams::Clutter::kLearnt, 30);
+  WatchedWorld world(DetectionParams::Clutter::kLearnt, 30);
   MeasurementScan last;
   world.run(20, &last);
   const Measurement& m = last.measurements.front();

@@ -41,6 +41,19 @@ TEST(FinishedRun, ProductsAreFoundByTheRunsIdUnderWhateverName) {
                                              "tracks.csv"}));
 }
 
+TEST(FinishedRun, TheHashOfAFileThatIsReadAnywayIsThatOfTheFile) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "log", text = "the bytes of a log";
+  write(file, text);
+  const std::string whole = sha256OfFile(file);
+  for (const std::size_t read : {std::size_t{0}, std::size_t{5}, text.size()}) {
+    FileHash hash;
+    for (std::size_t i = 0; i < read; ++i)
+      hash.add(reinterpret_cast<const unsigned char*>(&text[i]), 1);
+    EXPECT_EQ(hash.finish(file), whole) << read;
+  }
+}
+
 TEST(FinishedRun, ALiveRunsIdIsThatOfItsRecord) {
   RunRecord live;
   live.tracks = 3;

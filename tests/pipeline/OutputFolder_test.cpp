@@ -1,6 +1,7 @@
 #include "libperception/pipeline/OutputFolder.h"
 
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,14 +11,28 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
+#include "libperception/scene/OutputFile.h"
 #include "tests/support/TemporaryFolder.h"
+
+namespace {
+
+/// Files and folders handed to disk, in the order of the calls.
+std::vector<std::string> synced;
+
+}  // namespace
+
+// In place of the C library's.
+extern "C" int fsync(int file) {
+  synced.push_back(std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(file)));
+  return static_cast<int>(::syscall(SYS_fsync, file));
+}
 
 namespace perception::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
+void putText(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
 std::string textOf(const std::string& path) {
   std::ostringstream text;
@@ -48,20 +63,40 @@ TEST(OutputFolder, FilesAppearTogetherAtCommit) {
   const TemporaryFolder base;
   OutputFolder folder(base / "a/b/out/");
   EXPECT_EQ(folder.path(), base / "a/b/out");
-  write(folder.pathFor("tracks.csv"), "t");
-  write(folder.pathFor("plots/range.png"), "p");
-  write(folder.pathFor("done.json"), "d");
+  putText(folder.pathFor("tracks.csv"), "t");
+  putText(folder.pathFor("plots/range.png"), "p");
+  putText(folder.pathFor("done.json"), "d");
   EXPECT_EQ(namesIn(folder.path()).size(), 1u);  // the hidden one
   folder.commit();
   EXPECT_EQ(namesIn(folder.path()), (Names{"done.json", "plots", "tracks.csv"}));
   EXPECT_EQ(textOf(folder.path() + "/plots/range.png"), "p");
 }
 
+TEST(OutputFolder, FilesAreOnDiskBeforeTheyHaveTheirNamesAndNamesBeforeDone) {
+  const TemporaryFolder base;
+  const std::string out = fs::canonical(base.path()) / "out";
+  for (const bool again : {false, true}) {
+    OutputFolder folder(out);
+    synced.clear();
+    for (const char* name : {"tracks.csv", "done.json"}) writeFile(folder.pathFor(name), "x");
+    EXPECT_EQ(synced, Names{}) << "commit() does it";
+    Names expected{folder.temporary() + "/tracks.csv", folder.temporary() + "/done.json", out, out};
+    if (again) expected.push_back(out);  // without the done.json of before
+    folder.commit();
+    EXPECT_EQ(synced, expected);
+  }
+  synced.clear();
+  writeFile(out + "/alone.txt", "x");
+  ASSERT_EQ(synced.size(), 2u);
+  EXPECT_NE(synced[0].find("alone.txt"), std::string::npos);
+  EXPECT_EQ(synced[1], out);
+}
+
 TEST(OutputFolder, WithoutCommitNothingIsLeft) {
   const TemporaryFolder base;
   {
     OutputFolder folder(base / "a/b");
-    write(folder.pathFor("tracks.csv"), "t");
+    putText(folder.pathFor("tracks.csv"), "t");
   }
   EXPECT_EQ(namesIn(base.path()), Names{});
 }
@@ -69,10 +104,10 @@ TEST(OutputFolder, WithoutCommitNothingIsLeft) {
 TEST(OutputFolder, WithoutCommitAnEarlierResultStays) {
   const TemporaryFolder base;
   fs::create_directories(base / "out");
-  write(base / "out/done.json", "old");
+  putText(base / "out/done.json", "old");
   {
     OutputFolder folder(base / "out");
-    write(folder.pathFor("done.json"), "new");
+    putText(folder.pathFor("done.json"), "new");
   }
   EXPECT_EQ(namesIn(base / "out"), Names{"done.json"});
   EXPECT_EQ(textOf(base / "out/done.json"), "old");
@@ -82,10 +117,10 @@ TEST(OutputFolder, AnEarlierResultIsReplacedFileByFile) {
   const TemporaryFolder base;
   fs::create_directories(base / "out");
   for (const char* name : {"done.json", "tracks.csv", "notes.txt"})
-    write(base / "out/" + name, "old");
+    putText(base / "out/" + name, "old");
   OutputFolder folder(base / "out");
-  write(folder.pathFor("tracks.csv"), "new");
-  write(folder.pathFor("done.json"), "new");
+  putText(folder.pathFor("tracks.csv"), "new");
+  putText(folder.pathFor("done.json"), "new");
   folder.commit();
   EXPECT_EQ(namesIn(folder.path()), (Names{"done.json", "notes.txt", "tracks.csv"}));
   EXPECT_EQ(textOf(base / "out/tracks.csv"), "new");
@@ -96,12 +131,12 @@ TEST(OutputFolder, AnEarlierResultIsReplacedFileByFile) {
 TEST(OutputFolder, AnInterruptedCommitLeavesNoDoneFile) {
   const TemporaryFolder base;
   fs::create_directories(base / "out/tracks.csv");  // a folder in the way of the file
-  write(base / "out/tracks.csv/x", "");
-  write(base / "out/done.json", "old");
+  putText(base / "out/tracks.csv/x", "");
+  putText(base / "out/done.json", "old");
   {
     OutputFolder folder(base / "out");
-    write(folder.pathFor("done.json"), "new");
-    write(folder.pathFor("tracks.csv"), "new");
+    putText(folder.pathFor("done.json"), "new");
+    putText(folder.pathFor("tracks.csv"), "new");
     try {
       folder.commit();
       FAIL() << "a file cannot replace a folder";
@@ -123,7 +158,7 @@ TEST(OutputFolder, APromisedFileThatWasNeverWrittenIsAnError) {
 
 TEST(OutputFolder, CannotBeCreatedSaysWhy) {
   const TemporaryFolder base;
-  write(base / "file", "");
+  putText(base / "file", "");
   EXPECT_EQ(
       failureOf(base / "file"),
       std::pair(73, (base / "file") +
@@ -150,7 +185,7 @@ TEST(OutputFolder, TakesBackTheParentsItMadeWhenTheRestFails) {
 TEST(OutputFolder, ASecondRunFindsItBusyAndHarmsNothing) {
   const TemporaryFolder base;
   OutputFolder folder(base / "out");
-  write(folder.pathFor("done.json"), "first");
+  putText(folder.pathFor("done.json"), "first");
   EXPECT_EQ(failureOf(base / "out"),
             std::pair(75, (base / "out") + ": busy: another run writes into it"));
   folder.commit();
@@ -166,7 +201,7 @@ TEST(OutputFolder, LeftoversOfKilledRunsOfThisHostGoAway) {
   const std::string of_other = base / "out/.unfinished.elsewhere.5";
   fs::create_directories(of_dead);
   fs::create_directories(of_other);
-  write(of_dead + "/tracks.csv", "half");
+  putText(of_dead + "/tracks.csv", "half");
   EXPECT_EQ(failureOf(base / "out").first, 0);
   EXPECT_EQ(namesIn(base / "out"), Names{".unfinished.elsewhere.5"});
 }
@@ -181,7 +216,7 @@ TEST(OutputFolder, NamesStayInside) {
 TEST(OutputFolder, PathsMayHoldSpacesAndUmlauts) {
   const TemporaryFolder base;
   OutputFolder folder(base / "m\xC3\xBC ll");
-  write(folder.pathFor("done.json"), "d");
+  putText(folder.pathFor("done.json"), "d");
   folder.commit();
   EXPECT_EQ(textOf(base / "m\xC3\xBC ll/done.json"), "d");
 }

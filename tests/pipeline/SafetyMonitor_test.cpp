@@ -319,5 +319,60 @@ TEST(SafetyMonitor, WithoutAScanForHalfASecondNothingIsKnown) {
   EXPECT_FALSE(monitor.pathAhead(egoAt(0.1, 10)).known);
 }
 
+// The way that the vehicle drives.
+
+TEST(SafetyMonitor, AVehicleThatReversesStopsForWhatStandsBehind) {
+  SafetyMonitor monitor(smallGrid(), {});
+  EgoState ego = egoAt(0, -2);
+  Scan scan(0, -5);
+  scan.frame.ego = ego;
+  scan.returns.vehicle_rear = 2;
+  monitor.add(scan.frame, scan.returns);
+  const PathAhead path = monitor.pathAhead(ego);
+  EXPECT_TRUE(path.corridor.backward);
+  ASSERT_TRUE(path.free.blocked) << "in the first scan";
+  EXPECT_NEAR(path.free.distance, 5, 0.3);
+  EXPECT_FALSE(monitor.pathAhead(egoAt(0, 2)).free.blocked);
+}
+
+TEST(SafetyMonitor, WhatHangsHigherThanTheVehicleDoesNotBlock) {
+  for (const double lower : {2.2, 1.4}) {
+    SafetyMonitor monitor(smallGrid(), {});
+    Scan scan(0, 20);
+    for (std::size_t i = 0; i < scan.returns.size(); ++i) {
+      if (scan.returns.z[i] < 0.3F) continue;
+      scan.returns.z[i] += static_cast<float>(lower) - 0.4F;  // the box's lower edge
+      scan.returns.height[i] = scan.returns.z[i];
+    }
+    monitor.add(scan.frame, scan.returns);
+    EXPECT_EQ(monitor.pathAhead(egoAt(0, 10)).free.blocked, lower < 2) << lower;
+  }
+  StopParams bus;
+  bus.vehicle.height = 3;
+  SafetyMonitor monitor(smallGrid(), bus);
+  Scan scan(0, 20);
+  for (std::size_t i = 0; i < scan.returns.size(); ++i)
+    if (scan.returns.z[i] > 0.3F) scan.returns.height[i] = 2.5F;
+  monitor.add(scan.frame, scan.returns);
+  EXPECT_TRUE(monitor.pathAhead(egoAt(0, 10)).free.blocked) << "a bus is higher";
+}
+
+TEST(SafetyMonitor, TheFreeDistanceIsNoLongerThanWhatWasSeen) {
+  SafetyMonitor monitor(smallGrid(), {});
+  Scan scan(0, 12);  // nothing but a box beside the way, and the road before it
+  for (std::size_t i = 0; i < scan.returns.size(); ++i)
+    if (scan.returns.z[i] > 0.3F) scan.returns.y[i] += 5;
+  monitor.add(scan.frame, scan.returns);
+  const PathAhead path = monitor.pathAhead(egoAt(0, 10));
+  ASSERT_FALSE(path.free.blocked);
+  const FreePath advice = monitor.advise(path, sceneAt(0, 10));
+  EXPECT_LT(advice.distance, 13);
+  EXPECT_LE(advice.distance, advice.seen);
+  EXPECT_FALSE(advice.stop);
+  EXPECT_TRUE(advice.too_fast) << "10 m/s need 18.5 m";
+  EXPECT_LT(stoppingDistance(advice.safe_speed, 0, {}), 12);
+  EXPECT_FALSE(monitor.advise(path, sceneAt(0, advice.safe_speed - 0.1)).too_fast);
+}
+
 }  // namespace
 }  // namespace perception

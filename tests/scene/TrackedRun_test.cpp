@@ -99,6 +99,8 @@ TEST(TrackedRun, TellsTheWayAheadWhereThereIsAGrid) {
     EXPECT_EQ(run.scenes[i].path->stop, scenes[i].path->stop);
     EXPECT_EQ(run.scenes[i].path->owner, scenes[i].path->owner);
     EXPECT_EQ(run.scenes[i].path->cause, scenes[i].path->cause);
+    EXPECT_EQ(run.scenes[i].path->safe_speed, scenes[i].path->safe_speed);
+    EXPECT_EQ(run.scenes[i].path->too_fast, scenes[i].path->too_fast);
     EXPECT_EQ(run.scenes[i].path->returns, scenes[i].path->returns);
     EXPECT_EQ(run.scenes[i].path->overruled, scenes[i].path->overruled);
   }
@@ -117,10 +119,10 @@ TEST(TrackedRun, HasTheColumnsOfTheFormat) {
       "-5.5000,0.1250,-5.5014,4.5000,1.8000,1.5000,0.1000,0.2000,0.030000,0.4000,,0.000000001,\n");
   EXPECT_EQ(readText(folder / "scenes.csv"),
             "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,"
-            "stop,obstacle,cause,returns,overruled\n"
+            "stop,obstacle,cause,returns,overruled,safe_speed,too_fast\n"
             "1,0.103519669,1700000000.226976458,100.5000,-3.2500,0.1250,2.500000,0.010000,-0."
             "020000,3.0000,4.0000,"
-            "0.100000,1,,,,,,,\n");
+            "0.100000,1,,,,,,,,,\n");
 }
 
 TEST(TrackedRun, WritesTheSameBytesInALocaleWithDecimalComma) {
@@ -128,7 +130,7 @@ TEST(TrackedRun, WritesTheSameBytesInALocaleWithDecimalComma) {
   writeRun(plain.path(), threeScenes());
   const std::string before = std::setlocale(LC_ALL, nullptr);
   if (!std::setlocale(LC_ALL, "de_DE.UTF-8"))
-    GTEST_SKIP() << "no locale de_DE.UTF-8 on this machine";
+    GTEST_SKIP() << "missing tool: locale de_DE.UTF-8 (package locales)";
   writeRun(comma.path(), threeScenes());
   std::setlocale(LC_ALL, before.c_str());
   EXPECT_EQ(readText(plain / "tracks.csv"), readText(comma / "tracks.csv"));

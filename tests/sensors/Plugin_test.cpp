@@ -29,7 +29,7 @@ class Plugin : public ::testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(plugin_)) GTEST_SKIP() << "not built: " << plugin_;
     if (outputOf("command -v rawlog-edit").empty())
-      GTEST_SKIP() << "rawlog-edit (package mrpt-apps) is not here";
+      GTEST_SKIP() << "missing tool: rawlog-edit (package mrpt-apps)";
     writeLog(folder_ / "a.rawlog", 5);
   }
   std::string edit(const std::string& arguments) const {

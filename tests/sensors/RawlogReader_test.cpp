@@ -71,6 +71,16 @@ TEST_F(RawlogReaderTest, GivesEveryObservationOfAWholeLog) {
   EXPECT_EQ(reader.next(), nullptr);
 }
 
+TEST_F(RawlogReaderTest, HandsOnTheBytesOfTheFile) {
+  writeLog(log_, 10);
+  std::string bytes;
+  RawlogReader reader(log_, [&](const unsigned char* part, std::size_t count) {
+    bytes.append(part, part + count);
+  });
+  drain(reader);
+  EXPECT_EQ(bytes, readBytes(log_));
+}
+
 TEST_F(RawlogReaderTest, ReadsPlainFilesAndSeveralGzipMembers) {
   writeLog(log_, 3);
   const std::string plain = folder_ / "plain.rawlog", twice = folder_ / "twice.rawlog";

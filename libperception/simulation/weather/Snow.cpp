@@ -18,7 +18,7 @@ constexpr double kDetected = 1.0001;   // of the threshold, so that rounding hid
 constexpr double kLargeShare = 0.1, kLargeWithin = 5;            // [m]
 constexpr double kSmallestFlake = 0.4, kLargestFlake = 0.6;      // [cells]
 constexpr double kLeastBrightness = 0.2, kMostBrightness = 0.6;  // of its reflectivity
-constexpr double kCell = radians(1);                             // of directions
+constexpr double kSnowCell = radians(1);                         // of directions
 constexpr double kHeavy = 2.5, kHeavyRecall = 0.5;               // [mm/h] method.md 9.9
 constexpr std::uint32_t kFlakes = 0x57EA1000;                    // purpose of random numbers
 
@@ -49,7 +49,7 @@ Snow::Snow(double mm_h, std::uint64_t seed, bool by_sizes)
       large_per_cell_(chance_ * kLargeShare * kSnowReturns.shareWithin(kLargeWithin) / meanArea()),
       diameter_(1e-3 / gunnMarshall(mm_h).slope),
       recall_(1 - (1 - kHeavyRecall) * std::min(1.0, mm_h / kHeavy)),
-      grid_(kCell),
+      grid_(kSnowCell),
       large_(grid_.cells()) {}
 
 // A cell holds one large flake or none, a disk that lies within it.

@@ -14,7 +14,7 @@ namespace {
 // paths (method.md 9.7, assumed).
 constexpr double kStray = 0.05;
 constexpr double kPulseLength = 0.75;  // [m] echoes nearer to each other are one
-constexpr double kLift = 0.01;         // [m] mirrored rays start above the road
+constexpr double kRoadLift = 0.01;     // [m] mirrored rays start above the road
 constexpr double kMotion = 1;          // [m] of sensor and objects during a scan
 
 }  // namespace
@@ -68,7 +68,7 @@ void WetGround::addMirrored(const SensorParams& sensor, double mirror, LidarPuls
   const double r1 = pulse.hit.range;
   const double bounce = std::max(mirror * mirror, kStray * mirror);
   if (!pulse.scene || bounce * 0.5 < pulse.reflectivity) return;  // the road's echo is stronger
-  const Vector3 ground = pulse.origin + r1 * pulse.direction + kLift * Vector3::UnitZ();
+  const Vector3 ground = pulse.origin + r1 * pulse.direction + kRoadLift * Vector3::UnitZ();
   Vector3 up = pulse.direction;
   up.z() = std::abs(up.z());
   if (!mayMeet(ground, up, (ground - pulse.origin).head<2>().norm())) return;

@@ -22,13 +22,13 @@ ClassFilter car(double theta, double v = 0) {
   return f;
 }
 
-MeasuredHeading seen(double yaw) { return {yaw, kSigma, 0.05}; }
+MeasuredHeading seenHeading(double yaw) { return {yaw, kSigma, 0.05}; }
 
 /// The axis' error [rad] after `n` headings of `yaw`, the axis kept as certain as edges keep it.
 double after(int n, double yaw, ClassFilter& f) {
   for (int i = 0; i < n; ++i) {
     f.P(3, 3) = 0.03;
-    useHeading(seen(yaw), {}, f);
+    useHeading(seenHeading(yaw), {}, f);
   }
   return std::abs(wrapAxis(f.x[3] - yaw));
 }
@@ -73,7 +73,7 @@ TEST(HeadingUpdate, BoxesAcrossItsAxisDenyIt) {
 TEST(HeadingUpdate, BoxesDoNotDenyTheAxisAlongWhichItHasDriven) {
   ClassFilter f = car(0, 8);
   ASSERT_FALSE(deniedBy(1, 0, f));
-  f.x[2] = 0;  // it stands at a light, a van seen from behind
+  f.x[2] = 0;  // it stands at a light, a van seenHeading from behind
   EXPECT_FALSE(deniedBy(20, kPi / 2, f));
 }
 
@@ -94,7 +94,7 @@ TEST(HeadingUpdate, StrayAxesOfADetectorAreLeftOut) {
     const bool stray = rng.uniform() < 0.01;
     const double yaw = stray ? rng.uniform(-kPi / 2, kPi / 2) : rng.normal(0, kSigma);
     f.P(3, 3) += 0.0002;
-    useHeading(seen(yaw), {}, f);
+    useHeading(seenHeading(yaw), {}, f);
     square += std::pow(wrapAxis(f.x[3]), 2), own += std::pow(wrapAxis(yaw), 2);
   }
   EXPECT_LT(std::sqrt(square / kBoxes), 0.5 * std::sqrt(own / kBoxes));

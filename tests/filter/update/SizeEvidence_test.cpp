@@ -10,7 +10,7 @@
 namespace perception {
 namespace {
 
-FilterModel shipped() {
+FilterModel shippedModel() {
   FilterModel model;
   Config config = Config::fromFile(PERCEPTION_SOURCE_DIR "/ini/classes.ini");
   model.classes = readClassTable(config);
@@ -41,7 +41,7 @@ double odds(const FilterModel& model, const Track& track, const char* a, const c
 }
 
 TEST(SizeEvidence, ACarsBoxIsNoBus) {
-  const FilterModel model = shipped();
+  const FilterModel model = shippedModel();
   Track track = newborn(model);
   updateSizes(box(4.4, 1.8), 0.0, model, track);
   EXPECT_GT(odds(model, track, "car", "bus"), 2);
@@ -52,7 +52,7 @@ TEST(SizeEvidence, ACarsBoxIsNoBus) {
 }
 
 TEST(SizeEvidence, SidesFollowTheAxis) {
-  const FilterModel model = shipped();
+  const FilterModel model = shippedModel();
   Track along = newborn(model), across = newborn(model);
   updateSizes(box(4.4, 1.8), 0.0, model, along);
   updateSizes(box(1.8, 4.4), kPi / 2, model, across);
@@ -61,7 +61,7 @@ TEST(SizeEvidence, SidesFollowTheAxis) {
 }
 
 TEST(SizeEvidence, CountsASizeOnceHoweverOftenItIsSeen) {
-  const FilterModel model = shipped();
+  const FilterModel model = shippedModel();
   Track track = newborn(model);
   for (int i = 0; i < 20; ++i) updateSizes(box(4.4, 1.8), 0.0, model, track);
   const double after_twenty = odds(model, track, "car", "bus");
@@ -70,7 +70,7 @@ TEST(SizeEvidence, CountsASizeOnceHoweverOftenItIsSeen) {
 }
 
 TEST(SizeEvidence, OrderDoesNotMatter) {
-  const FilterModel model = shipped();
+  const FilterModel model = shippedModel();
   Track one = newborn(model), other = newborn(model);
   for (const double length : {4.2, 4.6, 5.0}) updateSizes(box(length, 1.8), 0.0, model, one);
   for (const double length : {5.0, 4.2, 4.6}) updateSizes(box(length, 1.8), 0.0, model, other);
@@ -78,7 +78,7 @@ TEST(SizeEvidence, OrderDoesNotMatter) {
 }
 
 TEST(SizeEvidence, WithoutAnAxisOrACompleteSideNothingIsSaid) {
-  const FilterModel model = shipped();
+  const FilterModel model = shippedModel();
   Track track = newborn(model);
   updateSizes(box(4.4, 1.8), {}, model, track);
   Measurement open = box(4.4, 1.8);
@@ -89,7 +89,7 @@ TEST(SizeEvidence, WithoutAnAxisOrACompleteSideNothingIsSaid) {
 }
 
 TEST(SizeEvidence, NoSizeIsAProof) {
-  const FilterModel model = shipped();
+  const FilterModel model = shippedModel();
   Track track = newborn(model);
   updateSizes(box(80, 40), 0.0, model, track);
   const double worst = 2 * std::log(15 / 0.05);  // two sides, each at worst of any size

@@ -28,12 +28,12 @@ Raster stripes() {
 }
 
 /// A camera before a wall that fills its image.
-struct Shot {
+struct RecordedShot {
   World world;
   LidarCaster caster;
   SensorParams sensor;
 
-  Shot() : world(recordedScene({}, {}, 1)), caster(world, 1) {
+  RecordedShot() : world(recordedScene({}, {}, 1)), caster(world, 1) {
     sensor.kind = SensorKind::kCameraImages, sensor.label = "CAMERA";
   }
 
@@ -69,16 +69,17 @@ double difference(const Raster& image) {
 }
 
 TEST(RecordedImage, ClearAirLeavesEveryByte) {
-  EXPECT_EQ(Shot().in({}, 30).pixels, stripes().pixels);
+  EXPECT_EQ(RecordedShot().in({}, 30).pixels, stripes().pixels);
 }
 
 TEST(RecordedImage, FogTakesContrastByKoschmieder) {
   SimulatedWeatherParams fog;
   fog.fog_mor = 60;
   const double clear = difference(stripes());
-  EXPECT_NEAR(difference(Shot().in(fog, 15)) / clear, std::pow(.05, .25), 0.02);
-  EXPECT_NEAR(difference(Shot().in(fog, 30)) / clear, std::sqrt(.05), 0.02);
-  EXPECT_NEAR(difference(Shot().in(fog, 60)) / clear, .05, 0.015);  // the end of sight; of bytes
+  EXPECT_NEAR(difference(RecordedShot().in(fog, 15)) / clear, std::pow(.05, .25), 0.02);
+  EXPECT_NEAR(difference(RecordedShot().in(fog, 30)) / clear, std::sqrt(.05), 0.02);
+  EXPECT_NEAR(difference(RecordedShot().in(fog, 60)) / clear, .05,
+              0.015);  // the end of sight; of bytes
 }
 
 TEST(RecordedImage, AtNightFarWallsAreDarkerByTheSquareOfTheRange) {
@@ -95,8 +96,8 @@ TEST(RecordedImage, AtNightFarWallsAreDarkerByTheSquareOfTheRange) {
   };
   const Raster bright{kImageWidth, kImageHeight, 3,
                       std::vector<std::uint8_t>(3 * kImageWidth * kImageHeight, 200)};
-  const double near = mean(Shot().in(night, 8, 1, bright)),
-               far = mean(Shot().in(night, 16, 1, bright));
+  const double near = mean(RecordedShot().in(night, 8, 1, bright)),
+               far = mean(RecordedShot().in(night, 16, 1, bright));
   const double ambient = 1e-4, lamps = 0.2;
   EXPECT_NEAR(near / far, (ambient + lamps / 64) / (ambient + lamps / 256), 0.2);
 }
@@ -104,9 +105,9 @@ TEST(RecordedImage, AtNightFarWallsAreDarkerByTheSquareOfTheRange) {
 TEST(RecordedImage, TheSameSeedGivesTheSameBytes) {
   SimulatedWeatherParams snow;
   snow.snow_mm_h = 2.5;
-  const Raster first = Shot().in(snow, 30);
-  EXPECT_EQ(first.pixels, Shot().in(snow, 30).pixels);
-  EXPECT_NE(first.pixels, Shot().in(snow, 30, 2).pixels);
+  const Raster first = RecordedShot().in(snow, 30);
+  EXPECT_EQ(first.pixels, RecordedShot().in(snow, 30).pixels);
+  EXPECT_NE(first.pixels, RecordedShot().in(snow, 30, 2).pixels);
 }
 
 TEST(RecordedImage, GrayImagesStayGray) {
@@ -114,7 +115,7 @@ TEST(RecordedImage, GrayImagesStayGray) {
   fog.fog_mor = 60;
   const Raster gray{kImageWidth, kImageHeight, 1,
                     std::vector<std::uint8_t>(kImageWidth * kImageHeight, 90)};
-  const Raster after = Shot().in(fog, 30, 1, gray);
+  const Raster after = RecordedShot().in(fog, 30, 1, gray);
   EXPECT_EQ(after.channels, 1);
   EXPECT_EQ(after.pixels.size(), gray.pixels.size());
 }

@@ -10,7 +10,7 @@ namespace {
 using test::kRoofLidar, test::kStanding, test::parked, test::scenarioOf;
 
 // A car that waits at x = 12 m until t = 20 s and then drives on, another one that is parked.
-const World& street() {
+const World& plumeStreet() {
   static const World world(
       scenarioOf(kStanding + kRoofLidar +
                  "[object.waiting]\nkind = car\nt = 0, 20, 30\nx = 12, 12, 112\ny = 0, 0, 0\n" +
@@ -18,12 +18,12 @@ const World& street() {
   return world;
 }
 
-const SensorParams& lidar() { return street().scenario().sensors.front(); }
+const SensorParams& lidar() { return plumeStreet().scenario().sensors.front(); }
 
 TEST(Plume, RisesFromThePipeOfWaitingVehiclesAndDriftsWithTheWind) {
   Plume still(Vector2::Zero(), 7), wind({0, 2}, 7);
-  still.advance(street(), lidar(), 10);
-  wind.advance(street(), lidar(), 10);
+  still.advance(plumeStreet(), lidar(), 10);
+  wind.advance(plumeStreet(), lidar(), 10);
   ASSERT_NEAR(static_cast<double>(still.puffs().size()), 16 + 16, 2);  // 20 and 5 a second
   for (std::size_t i = 0; i < still.puffs().size(); ++i) {
     const double age = (still.puffs()[i].place.z() - 0.3) / 0.3;
@@ -39,10 +39,10 @@ TEST(Plume, RisesFromThePipeOfWaitingVehiclesAndDriftsWithTheWind) {
 
 TEST(Plume, WakeDragsItBehindMovingVehicles) {
   Plume plume(Vector2::Zero(), 7);
-  plume.advance(street(), lidar(), 26);
-  const double speed = street().object(0, 25).velocity.norm();
+  plume.advance(plumeStreet(), lidar(), 26);
+  const double speed = plumeStreet().object(0, 25).velocity.norm();
   ASSERT_GT(speed, 5);
-  const double left = street().object(0, 24).T_world_object.translation().x() - 2.25;
+  const double left = plumeStreet().object(0, 24).T_world_object.translation().x() - 2.25;
   double x = 0;  // of the puff that is 2 s old
   for (const auto& puff : plume.puffs())
     if (std::abs((puff.place.z() - 0.3) / 0.3 - 2) < 0.01) x = puff.place.x();
@@ -56,7 +56,7 @@ struct Answer {
 };
 Answer answerAt(double height, double y = -0.54) {
   Plume plume(Vector2::Zero(), 7);
-  plume.advance(street(), lidar(), 10);
+  plume.advance(plumeStreet(), lidar(), 10);
   Answer answer;
   const int beams = 4000;
   for (int i = 0; i < beams; ++i) {

@@ -14,13 +14,14 @@ namespace {
 using test::kCamera, test::kRoofLidar, test::kStanding, test::parked, test::scenarioOf;
 
 const std::string kRadar = "[sensor.RADAR]\nkind = radar\nz = 0.5\n";
-const std::string kScene = kStanding + kRoofLidar + "azimuth_step_deg = 1\nrate = 4\n" + kCamera +
-                           kRadar + parked("car", "car", 14, 0) + parked("far", "van", 45, 3) +
-                           "[object.moving]\nkind = car\nt = -5, 5\nx = -80, 120\ny = 4, 4\n";
+const std::string kWeatherScene =
+    kStanding + kRoofLidar + "azimuth_step_deg = 1\nrate = 4\n" + kCamera + kRadar +
+    parked("car", "car", 14, 0) + parked("far", "van", 45, 3) +
+    "[object.moving]\nkind = car\nt = -5, 5\nx = -80, 120\ny = 4, 4\n";
 
 /// All numbers that a run's sensors gave, in their order.
 std::vector<float> played(const std::string& weather, std::uint64_t seed = 3, int threads = 1) {
-  Simulator simulator(scenarioOf(kScene + weather), "street", seed, threads);
+  Simulator simulator(scenarioOf(kWeatherScene + weather), "street", seed, threads);
   std::vector<float> all;
   while (const auto o = simulator.next()) {
     const auto frame = frameFromObservation(*o);
@@ -75,7 +76,7 @@ TEST(WeatherChain, PhenomenaAddUp) {
 }
 
 TEST(WeatherChain, TheFirstCommentSaysTheWeather) {
-  Simulator simulator(scenarioOf(kScene + kEverything), "street", 3);
+  Simulator simulator(scenarioOf(kWeatherScene + kEverything), "street", 3);
   const auto first = simulator.next();
   std::ostringstream text;
   first->getDescriptionAsText(text);
@@ -86,8 +87,8 @@ TEST(WeatherChain, TheFirstCommentSaysTheWeather) {
 }
 
 TEST(WeatherChain, UnknownKeysAreConfigurationErrors) {
-  EXPECT_THROW(scenarioOf(kScene + "[weather]\nhail = 1\n"), ConfigError);
-  EXPECT_THROW(scenarioOf(kScene + "[weather]\nfog_mor = 3\n"), ConfigError);
+  EXPECT_THROW(scenarioOf(kWeatherScene + "[weather]\nhail = 1\n"), ConfigError);
+  EXPECT_THROW(scenarioOf(kWeatherScene + "[weather]\nfog_mor = 3\n"), ConfigError);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 using test::kRoofLidar, test::kStanding, test::parked, test::scenarioOf;
 
-constexpr double kHeight = 1.73;  // [m] of the lidar
+constexpr double kLidarHeight = 1.73;  // [m] of the lidar
 
 /// Scan of a street with a wall whose face is at x = 24.5 m.
 LidarSensor::Scan wetScan(double film_mm, const std::string& objects) {
@@ -24,7 +24,7 @@ LidarSensor::Scan wetScan(double film_mm, const std::string& objects) {
   const SensorParams& sensor = world.scenario().sensors.front();
   wet.advance(world, sensor, 0);
   const PulseHook hook = [&](LidarPulse& pulse, Rng& rng) { wet.alter(sensor, pulse, rng); };
-  const auto at = [](double) { return makePose(0, 0, kHeight, 0); };
+  const auto at = [](double) { return makePose(0, 0, kLidarHeight, 0); };
   return LidarSensor(p, 10).scan(caster, 0, at, {1, 0, 0, 1}, hook);
 }
 
@@ -33,7 +33,7 @@ const std::string kWall = parked("wall", "box", 25, 0, "length = 1\nwidth = 20\n
 double farthestGround(const LidarSensor::Scan& scan) {
   double most = 0;
   for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
-    const bool ground = std::abs(scan.cloud.z[i] + kHeight) < 0.1;
+    const bool ground = std::abs(scan.cloud.z[i] + kLidarHeight) < 0.1;
     if (ground) most = std::max<double>(most, scan.cloud.x[i]);
   }
   return most;
@@ -51,8 +51,8 @@ TEST(WetGround, GhostsAreMirrorImagesBelowTheRoad) {
   for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
     if (scan.phantoms[i] != Phantom::kMirror) continue;
     ++ghosts;
-    EXPECT_LT(scan.cloud.z[i], -kHeight + 0.02);
-    EXPECT_GT(scan.cloud.z[i], -kHeight - 4) << "the wall is 4 m high";
+    EXPECT_LT(scan.cloud.z[i], -kLidarHeight + 0.02);
+    EXPECT_GT(scan.cloud.z[i], -kLidarHeight - 4) << "the wall is 4 m high";
     under_the_wall += std::abs(scan.cloud.x[i] - 24.5) < 0.4;
   }
   EXPECT_GT(ghosts, 20);
