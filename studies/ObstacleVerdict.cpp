@@ -46,7 +46,7 @@ void ObstacleVerdict::addShown(const ObstacleMoment& moment) {
 }
 
 bool ObstacleVerdict::done() const {
-  return demand_ == ShapeDemand::kStop &&
+  return demand_ == ShapeDemand::kStop && shownWithin() &&
          std::all_of(calls_.begin(), calls_.end(),
                      [](const Calls& c) { return std::isfinite(c.called_at); });
 }

@@ -43,7 +43,8 @@ class ObstacleVerdict {
 
   explicit ObstacleVerdict(ShapeDemand demand) : demand_(demand) {}
   void add(const ObstacleMoment& moment);
-  /// Nothing that comes may change it: every caller has called for what is to be stopped for.
+  /// Nothing that comes may change it: every caller has called for what is shown and is to be
+  /// stopped for.
   bool done() const;
 
   /// Scenes and stops of one caller.
