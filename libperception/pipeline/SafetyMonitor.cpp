@@ -15,7 +15,7 @@ constexpr double kLeaves = 0.5;     // [s] for which a cell belongs to what has 
 /// the vehicle (bearings beyond 117 deg): it is ahead only after a turn, during which it is seen
 /// anew; assumed.
 constexpr float kBehind = -0.5f;
-constexpr double kCarHeight = 1.7;  // [m] of a vehicle whose height nobody gave; assumed
+constexpr double kCarHeight = 1.7;  // [m] of a vehicle whose height is not given; assumed
 constexpr float kDoubted = 0.5F;    // of a return: more likely a phantom than not
 constexpr double kHardly = 0.05;    // doubt that needs no cause, for it decides nothing (assumed)
 /// Share of the directions about a return that end there from which it is of a solid surface, and
