@@ -35,6 +35,8 @@ float placeOf(float height) {
   return (static_cast<float>(bitsOfHeight(height) & (kPlaces - 1)) + 0.5f) / kPlaces;
 }
 
+constexpr float kSlopeError = 0.03f;  // [-] of a slope between two cells
+
 float medianOfThree(float a, float b, float c) {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
 }
@@ -195,43 +197,80 @@ class GroundTrack {
         slope_(static_cast<float>(params.slope)),
         max_step_(static_cast<float>(params.max_step)),
         steepest_(static_cast<float>(params.steepest)),
+        curvature_(static_cast<float>(params.curvature)),
         borders_(borders),
         gap_(ring) {}
 
   /// The low height of the next ring; NaN: none was seen. `range`: of that return.
   void offer(float low, float range, float bound) {
-    const float reach = std::min(step_ + slope_ * gap_, max_step_);
-    const float along = range - range_;
-    const bool reached = std::abs(low - ground_) <= reach ||
-                         std::abs(low - ground_ - trend_ * along) <= reach;
-    if (!(std::abs(low) <= bound && reached)) {  // nothing was seen, or no ground
-      gap_ += ring_;
-      return;
+    const Place place{range, low};
+    if (std::abs(low) <= bound) {  // false where nothing was seen
+      if (isNext(place)) return accept(place);
+      if (maybe_.range > 0 && continues(place)) {
+        accept(maybe_);
+        return accept(place);
+      }
+      if (mayFollow(place)) maybe_ = place;
     }
-    const float slope = (low - ground_) / std::max(along, 0.01f);
-    fill(range, std::clamp(slope, -1.0f, 1.0f));
-    trend_ += along / (along + ring_) * (std::clamp(slope, -steepest_, steepest_) - trend_);
-    ground_ = low, range_ = range, gap_ = ring_;
+    gap_ += ring_;
   }
 
   void finish(std::size_t borders) {
-    fill(std::min(range_ + kExtend, ring_ * static_cast<float>(borders)), trend_);
-    const float last = ground_ + trend_ * kExtend;
+    fill(std::min(ground_.range + kExtend, ring_ * static_cast<float>(borders - 1)), trend_);
+    const float last = ground_.height + trend_ * kExtend;
     while (next_ < borders) borders_[next_++] = last;
   }
 
  private:
+  struct Place {
+    float range = 0, height = 0;  ///< [m]
+  };
+
+  /// Within a step of the last ground or of the line through it.
+  bool isNext(const Place& p) const {
+    const float reach = std::min(step_ + slope_ * gap_, max_step_);
+    const float rise = p.height - ground_.height;
+    return std::abs(rise) <= reach ||
+           std::abs(rise - trend_ * (p.range - ground_.range)) <= reach;
+  }
+  /// Beyond a gap, within what a vertical curve departs from the line over it.
+  bool mayFollow(const Place& p) const {
+    const float along = p.range - ground_.range;
+    const float rise = p.height - ground_.height;
+    const float reach = max_step_ + curvature_ / 2 * along * along;
+    return std::abs(rise) <= steepest_ * along && std::abs(rise - trend_ * along) <= reach;
+  }
+  /// Whether the slope from the last ground to the place in question goes on to `p`: an upright
+  /// surface is far steeper than the way to it.
+  bool continues(const Place& p) const {
+    const float before = maybe_.range - ground_.range, behind = p.range - maybe_.range;
+    if (behind < ring_ / 2) return false;
+    const float slope = (maybe_.height - ground_.height) / before;
+    const float next = (p.height - maybe_.height) / behind;
+    return std::abs(next) <= steepest_ &&
+           std::abs(next - slope) <= kSlopeError + curvature_ / 2 * (before + behind);
+  }
+  void accept(const Place& p) {
+    const float along = std::max(p.range - ground_.range, 0.01f);
+    const float slope = (p.height - ground_.height) / along;
+    fill(p.range, slope);
+    trend_ += along / (along + ring_) * (std::clamp(slope, -steepest_, steepest_) - trend_);
+    ground_ = p, gap_ = ring_, maybe_ = {};
+  }
   /// The borders up to `range`, on a line from the last ground.
   void fill(float range, float slope) {
     for (; ring_ * static_cast<float>(next_) <= range; ++next_)
-      borders_[next_] = ground_ + slope * (ring_ * static_cast<float>(next_) - range_);
+      borders_[next_] =
+          ground_.height + slope * (ring_ * static_cast<float>(next_) - ground_.range);
   }
 
-  float ring_, step_, slope_, max_step_, steepest_;
+  float ring_, step_, slope_, max_step_, steepest_, curvature_;
   float* borders_;
   std::size_t next_ = 0;
-  float ground_ = 0, range_ = 0, trend_ = 0;  ///< the last ground, and the slope up to it
-  float gap_;                                 ///< [m] since it, in whole rings
+  Place ground_;     ///< the last ground
+  Place maybe_;      ///< ground if what follows confirms it; range 0: none
+  float trend_ = 0;  ///< slope up to the last ground
+  float gap_;        ///< [m] since it, in whole rings
 };
 
 }  // namespace
