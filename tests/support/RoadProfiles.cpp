@@ -14,7 +14,6 @@ constexpr double kTableStep = 0.05;  // [m]
 constexpr double kBefore = 120;      // [m] of straight road before the first and after the last piece
 constexpr double kWheelbase = 2.7;   // [m]
 constexpr double kKerbAt = 3.5, kBesideFrom = 4;           // [m] across the road
-constexpr float kSteepestRoad = 0.4F;                      // [-] bumps included
 constexpr double kDeckWidth = 16, kDeckThickness = 1, kRoom = 4.5;  // [m] of a bridge; below it
 
 /// The curve from `before` to `after` of a circle of that radius.
@@ -119,8 +118,11 @@ Road::Road(const RoadProfile& profile, bool reversed) : profile_(profile), rever
   for (const RoadPiece& piece : profile.pieces) length_ += piece.length;
   road_ = tabulate(profile.pieces, length_, reversed);
   if (!profile.beside.empty()) beside_ = tabulate(profile.beside, length_, reversed);
-  for (RoadBump& bump : profile_.bumps)
-    if (reversed) bump.at = length_ - bump.at;
+  addBumps();
+  for (const Table* table : {&road_, &beside_})
+    for (std::size_t i = 1; i < table->height.size(); ++i)
+      steepest_ = std::max(steepest_, std::abs(table->height[i] - table->height[i - 1]) /
+                                          static_cast<float>(kTableStep));
   for (auto [from, to] : profile.decks) {
     if (reversed) from = length_ - from, to = length_ - to, std::swap(from, to);
     const double below = std::max(heightAt(from, 0), heightAt(to, 0)) + kRoom;
@@ -129,17 +131,28 @@ Road::Road(const RoadProfile& profile, bool reversed) : profile_(profile), rever
   }
 }
 
-double Road::heightAt(double x, double y) const {
-  const double left = reversed_ ? -y : y;
-  if (left > kBesideFrom && !beside_.height.empty())
-    return static_cast<double>(beside_.at(static_cast<float>(x)));
-  double height = static_cast<double>(road_.at(static_cast<float>(x))) + profile_.crossfall * left;
-  if (std::abs(y) > kKerbAt) return height + profile_.kerb;
+void Road::addBumps() {
   for (const RoadBump& bump : profile_.bumps) {
-    const double along = (x - bump.at) / bump.length;
-    if (std::abs(along) < 0.5) height += bump.height * (0.5 + 0.5 * std::cos(kTwoPi * along));
+    const double at = reversed_ ? length_ - bump.at : bump.at;
+    for (std::size_t i = 0; i < road_.height.size(); ++i) {
+      const double x = static_cast<double>(i) * kTableStep - kBefore;
+      const double along = (x - at) / bump.length;
+      if (std::abs(along) < 0.5)
+        road_.height[i] += static_cast<float>(bump.height * (0.5 + 0.5 * std::cos(kTwoPi * along)));
+    }
   }
-  return height;
+}
+
+float Road::surfaceAt(float x, float y) const {
+  const float left = reversed_ ? -y : y;
+  if (left > static_cast<float>(kBesideFrom) && !beside_.height.empty()) return beside_.at(x);
+  const float height = road_.at(x) + static_cast<float>(profile_.crossfall) * left;
+  return std::abs(y) > static_cast<float>(kKerbAt) ? height + static_cast<float>(profile_.kerb)
+                                                   : height;
+}
+
+double Road::heightAt(double x, double y) const {
+  return static_cast<double>(surfaceAt(static_cast<float>(x), static_cast<float>(y)));
 }
 
 Pose3 Road::vehicleAt(double x) const {
@@ -154,10 +167,10 @@ float Road::rangeTo(const Eigen::Vector3f& origin, const Eigen::Vector3f& direct
                     float far) const {
   const auto above = [&](float t) {
     const Eigen::Vector3f p = origin + t * direction;
-    return p.z() - static_cast<float>(heightAt(static_cast<double>(p.x()),
-                                               static_cast<double>(p.y())));
+    return p.z() - surfaceAt(p.x(), p.y());
   };
-  const float closing = kSteepestRoad + std::max(0.0F, -direction.z());
+  const float fall = static_cast<float>(std::abs(profile_.crossfall));
+  const float closing = steepest_ + fall + std::max(0.02F, -direction.z());
   float last = 0.5F;
   for (float t = last; t < far;) {
     const float gap = above(t);

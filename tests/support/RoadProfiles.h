@@ -54,15 +54,18 @@ class Road {
 
  private:
   struct Table {
-    std::vector<float> height;  ///< [m] every kStep from x = -kBefore on
+    std::vector<float> height;  ///< [m] in even steps, from before the road's begin on
     float at(float x) const;
   };
   static Table tabulate(const std::vector<RoadPiece>& pieces, double length, bool reversed);
+  void addBumps();
+  float surfaceAt(float x, float y) const;
   float rangeTo(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float far) const;
 
   RoadProfile profile_;
   double length_ = 0;
   bool reversed_;
+  float steepest_ = 0;  ///< [-] of the tables
   Table road_, beside_;
   std::vector<SolidBox> decks_;
 };
