@@ -36,6 +36,7 @@ float placeOf(float height) {
 }
 
 constexpr float kSlopeError = 0.03f;  // [-] of a slope between two cells
+constexpr float kLongest = 8;         // [m] of a gap that a vertical curve is followed over
 
 float medianOfThree(float a, float b, float c) {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
@@ -216,8 +217,10 @@ class GroundTrack {
   }
 
   void finish(std::size_t borders) {
-    fill(std::min(ground_.range + kExtend, ring_ * static_cast<float>(borders - 1)), trend_);
-    const float last = ground_.height + trend_ * kExtend;
+    // A way up that ends is a crest, and a slight slope none.
+    const float slope = std::min(std::min(trend_, last_) + kSlopeError, 0.0f);
+    fill(std::min(ground_.range + kExtend, ring_ * static_cast<float>(borders - 1)), slope);
+    const float last = ground_.height + slope * kExtend;
     while (next_ < borders) borders_[next_++] = last;
   }
 
@@ -235,26 +238,30 @@ class GroundTrack {
   }
   /// Beyond a gap, within what a vertical curve departs from the line over it.
   bool mayFollow(const Place& p) const {
-    const float along = p.range - ground_.range;
-    const float rise = p.height - ground_.height;
+    const float along = p.range - ground_.range, rise = p.height - ground_.height;
     const float reach = max_step_ + curvature_ / 2 * along * along;
-    return std::abs(rise) <= steepest_ * along && std::abs(rise - trend_ * along) <= reach;
+    return along <= kLongest && std::abs(rise) <= steepest_ * along &&
+           std::abs(rise - trend_ * along) <= reach;
   }
-  /// Whether the slope from the last ground to the place in question goes on to `p`: an upright
-  /// surface is far steeper than the way to it.
+  /// Whether the slope from the last ground to the place in question goes on to `p`, or bends
+  /// farther to the same side: an upright surface is far steeper than the way to it, the top of an
+  /// obstacle or the underside of a bridge less.
   bool continues(const Place& p) const {
     const float before = maybe_.range - ground_.range, behind = p.range - maybe_.range;
     if (behind < ring_ / 2) return false;
     const float slope = (maybe_.height - ground_.height) / before;
     const float next = (p.height - maybe_.height) / behind;
-    return std::abs(next) <= steepest_ &&
-           std::abs(next - slope) <= kSlopeError + curvature_ / 2 * (before + behind);
+    const float farther = slope > trend_ ? next - slope : slope - next;
+    return std::abs(next) <= steepest_ && farther >= -kSlopeError &&
+           farther <= kSlopeError + curvature_ / 2 * (before + behind);
   }
   void accept(const Place& p) {
     const float along = std::max(p.range - ground_.range, 0.01f);
     const float slope = (p.height - ground_.height) / along;
     fill(p.range, slope);
-    trend_ += along / (along + ring_) * (std::clamp(slope, -steepest_, steepest_) - trend_);
+    const float bounded = std::clamp(slope, -steepest_, steepest_);
+    trend_ += along / (along + ring_) * (bounded - trend_);
+    if (along >= ring_ / 2) last_ = bounded;
     ground_ = p, gap_ = ring_, maybe_ = {};
   }
   /// The borders up to `range`, on a line from the last ground.
@@ -270,6 +277,7 @@ class GroundTrack {
   Place ground_;     ///< the last ground
   Place maybe_;      ///< ground if what follows confirms it; range 0: none
   float trend_ = 0;  ///< slope up to the last ground
+  float last_ = 0;   ///< that of its last piece alone
   float gap_;        ///< [m] since it, in whole rings
 };
 

@@ -21,7 +21,7 @@ struct SurfaceParams {
   double bound_near = 0.2;    ///< [m] largest distance from the plane at the vehicle
   double bound_slope = 0.03;  ///< [-] growth of that bound with range
   double curvature = 1 / 50.0;  ///< [1/m] of the sharpest vertical curve: growth of that slope
-  double steepest = 0.3;        ///< [-] largest slope against the plane: 15 % to either side
+  double steepest = 0.35;  ///< [-] largest slope against the plane: 15 % to either side, 2 degrees
 
   void visit(ParamVisitor& v);
 };

@@ -57,14 +57,14 @@ const std::vector<RoadProfile>& roadProfiles() {
       named("sag of 10 %, radius 80 m", bend(-.10, 0, 80)),
       named("sag of 10 %, radius 60 m", bend(-.10, 0, 60)),
       named("sag of 15 %, radius 50 m", bend(-.15, 0, 50), 8),
-      named("sag of 6 %, radius 300 m", bend(-.06, 0, 300), 15),
+      named("sag of 6 %, radius 300 m", bend(-.06, 0, 300)),
       named("crest of 10 %, radius 100 m", bend(.10, 0, 100)),
       named("crest of 15 %, radius 50 m", bend(.15, 0, 50), 8),
       named("ramp of 12 %, radius 20 m", level(.12, 20, 30), 3),
       named("garage ramp of 15 %, radius 20 m", level(-.15, 20, 20), 3),
       named("valley of 15 %, radius 50 m", wave(-.15, 50, 10), 8),
       named("hump of 8 %, radius 50 m", wave(.08, 50, 5), 8),
-      named("waves of 4 %, radius 150 m", wave(.04, 150, 0), 15),
+      named("waves of 4 %, radius 150 m", wave(.04, 150, 0)),
       with(named("sag of 8 % between kerbs", bend(-.08, 0, 100)),
            [](RoadProfile& p) { p.kerb = 0.15; }),
       with(named("speed bumps on a slope of 6 %", bend(-.06, 0, 100), 6),
@@ -169,7 +169,7 @@ float Road::rangeTo(const Eigen::Vector3f& origin, const Eigen::Vector3f& direct
     const Eigen::Vector3f p = origin + t * direction;
     return p.z() - surfaceAt(p.x(), p.y());
   };
-  const float fall = static_cast<float>(std::abs(profile_.crossfall));
+  const auto fall = static_cast<float>(std::abs(profile_.crossfall));
   const float closing = steepest_ + fall + std::max(0.02F, -direction.z());
   float last = 0.5F;
   for (float t = last; t < far;) {
