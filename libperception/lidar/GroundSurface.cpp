@@ -217,9 +217,13 @@ class GroundTrack {
   }
 
   void finish(std::size_t borders) {
-    // A way up that ends is a crest, and a slight slope none.
+    const std::size_t end = borders - 1;
+    const float cell_end = ring_ * static_cast<float>(std::min(next_, end));
+    fill(cell_end, trend_);
+    // Beyond its cell a way up that ends is a crest, and a slight slope none.
     const float slope = std::min(std::min(trend_, last_) + kSlopeError, 0.0f);
-    fill(std::min(ground_.range + kExtend, ring_ * static_cast<float>(borders - 1)), slope);
+    ground_ = {cell_end, ground_.height + trend_ * (cell_end - ground_.range)};
+    fill(std::min(cell_end + kExtend, ring_ * static_cast<float>(end)), slope);
     const float last = ground_.height + slope * kExtend;
     while (next_ < borders) borders_[next_++] = last;
   }
