@@ -17,7 +17,7 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kNoGround = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLowReturns = 1.0f;  // [m] above the plane: higher returns are no ground
-constexpr float kExtend = 10.0f;     // [m] for which a slope is taken to go on where nothing is seen
+constexpr float kExtend = 10.0f;  // [m] for which a slope is taken to go on where nothing is seen
 constexpr float kMirrorMargin =
     0.30f;  // [m] below the lowest possible ground: mirrored in a wet road (method.md 8.1)
 
@@ -237,8 +237,7 @@ class GroundTrack {
   bool isNext(const Place& p) const {
     const float reach = std::min(step_ + slope_ * gap_, max_step_);
     const float rise = p.height - ground_.height;
-    return std::abs(rise) <= reach ||
-           std::abs(rise - trend_ * (p.range - ground_.range)) <= reach;
+    return std::abs(rise) <= reach || std::abs(rise - trend_ * (p.range - ground_.range)) <= reach;
   }
   /// Beyond a gap, within what a vertical curve departs from the line over it.
   bool mayFollow(const Place& p) const {
@@ -352,8 +351,8 @@ void GroundSurface::subtract(const std::vector<std::int32_t>& cell,
 
 double GroundSurface::heightAt(double x, double y) const {
   const auto dx = static_cast<float>(x) - sensor_x_, dy = static_cast<float>(y) - sensor_y_;
-  const float all_rings = std::min(std::sqrt(dx * dx + dy * dy) * inverse_ring_,
-                                   static_cast<float>(rings_) - 0.001f);
+  const float all_rings =
+      std::min(std::sqrt(dx * dx + dy * dy) * inverse_ring_, static_cast<float>(rings_) - 0.001f);
   const auto ring = static_cast<std::size_t>(all_rings);
   const auto sector =
       static_cast<std::size_t>((fastAtan2(dx, dy) + 3.14159265f) * inverse_sector_) % sectors_;

@@ -11,9 +11,9 @@ namespace perception::test {
 namespace {
 
 constexpr double kTableStep = 0.05;  // [m]
-constexpr double kBefore = 120;      // [m] of straight road before the first and after the last piece
-constexpr double kWheelbase = 2.7;   // [m]
-constexpr double kKerbAt = 3.5, kBesideFrom = 4;           // [m] across the road
+constexpr double kBefore = 120;  // [m] of straight road before the first and after the last piece
+constexpr double kWheelbase = 2.7;                                  // [m]
+constexpr double kKerbAt = 3.5, kBesideFrom = 4;                    // [m] across the road
 constexpr double kDeckWidth = 16, kDeckThickness = 1, kRoom = 4.5;  // [m] of a bridge; below it
 
 /// The curve from `before` to `after` of a circle of that radius.
@@ -32,8 +32,11 @@ std::vector<RoadPiece> level(double slope, double radius, double ramp) {
 
 /// Between two slopes and back.
 std::vector<RoadPiece> wave(double slope, double radius, double straight) {
-  return {{40, slope},  curve(slope, -slope, radius), {straight, -slope},
-          curve(-slope, slope, radius), {50, slope}};
+  return {{40, slope},
+          curve(slope, -slope, radius),
+          {straight, -slope},
+          curve(-slope, slope, radius),
+          {50, slope}};
 }
 
 RoadProfile named(const char* name, std::vector<RoadPiece> pieces, double speed = 10) {
@@ -68,19 +71,27 @@ const std::vector<RoadProfile>& roadProfiles() {
       with(named("sag of 8 % between kerbs", bend(-.08, 0, 100)),
            [](RoadProfile& p) { p.kerb = 0.15; }),
       with(named("speed bumps on a slope of 6 %", bend(-.06, 0, 100), 6),
-           [](RoadProfile& p) { p.bumps = {{30, 1, .1}, {55, 4, .12}, {75, .6, .08}}; }),
+           [](RoadProfile& p) {
+             p.bumps = {{30, 1, .1}, {55, 4, .12}, {75, .6, .08}};
+           }),
       with(named("underpass of 8 %, radius 80 m", wave(-.08, 80, 10)),
-           [](RoadProfile& p) { p.decks = {{45, 57}}; }),
+           [](RoadProfile& p) {
+             p.decks = {{45, 57}};
+           }),
       with(named("road beside a ramp down to another level", {{110, 0}}),
            [](RoadProfile& p) { p.beside = level(-.12, 30, 30); }),
       with(named("ramp down beside a road", level(-.12, 30, 30), 6),
-           [](RoadProfile& p) { p.beside = {{150, 0}}; }),
+           [](RoadProfile& p) {
+             p.beside = {{150, 0}};
+           }),
       with(named("braking at the end of a slope of 10 %", bend(-.10, 0, 100)),
            [](RoadProfile& p) { p.pitch = radians(2); }),
       with(named("crossfall of 6 % in a sag of 8 %", bend(-.08, 0, 80)),
            [](RoadProfile& p) { p.crossfall = .06; }),
       with(named("bridge over a crest of 6 %, radius 120 m", bend(.06, -.06, 120)),
-           [](RoadProfile& p) { p.decks = {{70, 76}}; }),
+           [](RoadProfile& p) {
+             p.decks = {{70, 76}};
+           }),
   };
   return all;
 }
@@ -126,8 +137,8 @@ Road::Road(const RoadProfile& profile, bool reversed) : profile_(profile), rever
   for (auto [from, to] : profile.decks) {
     if (reversed) from = length_ - from, to = length_ - to, std::swap(from, to);
     const double below = std::max(heightAt(from, 0), heightAt(to, 0)) + kRoom;
-    decks_.push_back({{(from + to) / 2, 0}, 0, to - from, kDeckWidth, below,
-                      below + kDeckThickness});
+    decks_.push_back(
+        {{(from + to) / 2, 0}, 0, to - from, kDeckWidth, below, below + kDeckThickness});
   }
 }
 
@@ -188,9 +199,8 @@ float Road::rangeTo(const Eigen::Vector3f& origin, const Eigen::Vector3f& direct
   return std::numeric_limits<float>::infinity();
 }
 
-SensorFrame Road::castFrom(double x, const SpinningLidar& lidar,
-                           const std::vector<SolidBox>& boxes, Stamp stamp,
-                           std::uint64_t seed) const {
+SensorFrame Road::castFrom(double x, const SpinningLidar& lidar, const std::vector<SolidBox>& boxes,
+                           Stamp stamp, std::uint64_t seed) const {
   SensorFrame frame;
   frame.sensor = "LIDAR_TOP";
   frame.stamp = frame.ego.stamp = stamp;

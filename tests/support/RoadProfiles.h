@@ -24,13 +24,13 @@ struct RoadBump {
 struct RoadProfile {
   std::string name;
   std::vector<RoadPiece> pieces;
-  double speed = 10;                       ///< [m/s] at which it is driven
-  double crossfall = 0;                    ///< [-] slope across it
-  double kerb = 0;                         ///< [m] beyond 3.5 m to each side
-  double pitch = 0;                        ///< [rad] of the vehicle against the road, nose down
-  std::vector<RoadBump> bumps;             ///< speed bumps
+  double speed = 10;            ///< [m/s] at which it is driven
+  double crossfall = 0;         ///< [-] slope across it
+  double kerb = 0;              ///< [m] beyond 3.5 m to each side
+  double pitch = 0;             ///< [rad] of the vehicle against the road, nose down
+  std::vector<RoadBump> bumps;  ///< speed bumps
   std::vector<std::pair<double, double>> decks;  ///< [m] begin and end of bridges above it
-  std::vector<RoadPiece> beside;           ///< a second road beyond 4 m to the left, if any
+  std::vector<RoadPiece> beside;                 ///< a second road beyond 4 m to the left, if any
 };
 
 /// Twenty roads: sags, crests, ramps, bumps, kerbs, bridges; radii of 300 to 50 m, and 20 m of
@@ -44,7 +44,7 @@ class Road {
   /// `reversed`: driven from its end.
   explicit Road(const RoadProfile& profile, bool reversed = false);
 
-  double length() const { return length_; }  ///< [m]
+  double length() const { return length_; }   ///< [m]
   double heightAt(double x, double y) const;  ///< [m]
   /// The ego frame with its origin above x [m] of the road's middle, pitched by the wheels' chord.
   Pose3 vehicleAt(double x) const;
