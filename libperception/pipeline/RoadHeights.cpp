@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "libperception/core/Frames.h"
 
 namespace perception {
 

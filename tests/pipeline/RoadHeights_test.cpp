@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "libperception/core/Frames.h"
+#include "libperception/grid/FreeDistance.h"
+#include "libperception/grid/GridPoints.h"
+
 namespace perception {
 namespace {
 

@@ -5,12 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "libperception/core/Angle.h"
+#include "libperception/core/Frames.h"
+#include "libperception/core/Time.h"
+#include "libperception/grid/StopAdvice.h"
+#include "libperception/lidar/EgoPoints.h"
 #include "libperception/lidar/GroundPlane.h"
 #include "libperception/lidar/GroundSurface.h"
 #include "libperception/lidar/LidarFrontEnd.h"
+#include "libperception/measurement/SensorFrame.h"
 #include "libperception/pipeline/SafetyMonitor.h"
+#include "libperception/scene/Scene.h"
 #include "tests/support/StartStamp.h"
 
 namespace perception {

@@ -1,8 +1,11 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "libperception/core/Frames.h"
+#include "libperception/core/Time.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "tests/support/SyntheticCloud.h"
 
