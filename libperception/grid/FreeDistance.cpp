@@ -17,8 +17,9 @@ bool isKnown(const Corridor& corridor, double s,
              const std::function<double(const Vector3&)>& log_odds_at) {
   constexpr double kHeights[] = {0.5, 0.9, 1.3, 1.7};  // [m] up to a lidar on the roof
   const Vector2 p = onArc(corridor, {s, 0});
+  const double road = corridor.roadAt(s);
   return std::any_of(std::begin(kHeights), std::end(kHeights), [&](double z) {
-    return log_odds_at(corridor.T_world_ego * Vector3(p.x(), p.y(), z)) != 0;
+    return log_odds_at(corridor.T_world_ego * Vector3(p.x(), p.y(), road + z)) != 0;
   });
 }
 
@@ -43,6 +44,15 @@ const Inside* firstTogether(std::vector<Inside>& inside, double least) {
 }
 
 }  // namespace
+
+double Corridor::roadAt(double s) const {
+  if (road.empty()) return 0;
+  const double bounded = std::clamp(s, 0.0, static_cast<double>(road.size() - 1));
+  const auto i = static_cast<std::size_t>(bounded);
+  const auto low = static_cast<double>(road[i]);
+  if (i + 1 == road.size()) return low;
+  return low + (bounded - static_cast<double>(i)) * (static_cast<double>(road[i + 1]) - low);
+}
 
 ArcPlace arcPlace(const Corridor& corridor, double x, double y) {
   if (corridor.backward) x = -x, y = -y;
@@ -120,6 +130,7 @@ double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
   if (bins == 0) return seen;
   struct Bin {
     double x, y, range2;  // [m], [m^2] of its middle, from the sensor
+    double road;          // [m] height
     bool seen = false;
   };
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
@@ -128,9 +139,9 @@ double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
   double least = std::numeric_limits<double>::infinity(), widest = 0;  // [m^2], [-] of all bins
   const Vector2 axis(corridor.backward ? -1 : 1, 0);
   for (std::size_t i = 0; i < bins; ++i) {
-    const Vector2 p = onArc(corridor, {seen + (static_cast<double>(i) + 0.5) * kStep, 0}) -
-                      Vector2(sensor.head<2>());
-    way[i] = {p.x(), p.y(), p.squaredNorm()};
+    const double s = seen + (static_cast<double>(i) + 0.5) * kStep;
+    const Vector2 p = onArc(corridor, {s, 0}) - Vector2(sensor.head<2>());
+    way[i] = {p.x(), p.y(), p.squaredNorm(), corridor.roadAt(s)};
     least = std::min(least, way[i].range2);
     if (p.dot(axis) <= 0) continue;
     widest = std::max(widest, (std::abs(p.y()) + corridor.width / 2) / p.dot(axis));
@@ -151,7 +162,7 @@ double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
       for (Bin& bin : way) {
         if (bin.seen || bin.range2 > range2) continue;
         if (std::abs(beam.x() * bin.y - beam.y() * bin.x) > side) continue;
-        const double z = sensor.z() + beam.z() * std::sqrt(bin.range2 / range2);
+        const double z = sensor.z() + beam.z() * std::sqrt(bin.range2 / range2) - bin.road;
         bin.seen = z > kLow && z < height;
       }
     }

@@ -25,6 +25,11 @@ struct Corridor {
   double from = 2.5;      ///< [m] along the arc: end of the own vehicle and the lidar's blind spot
   double max = 60;        ///< [m] along the arc: largest distance
   int cells = 1;          ///< occupied cells within half a meter along the arc that block it
+  /// [m] height of the road in the ego frame, every meter along the arc from 0 on, and as the last
+  /// one beyond; empty: 0.
+  std::vector<float> road;
+
+  double roadAt(double s) const;  ///< [m]
 };
 
 /// A rectangle along the world's axes [m]; by default everything.

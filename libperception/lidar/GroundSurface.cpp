@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace perception {
@@ -16,9 +17,26 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kNoGround = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLowReturns = 1.0f;  // [m] above the plane: higher returns are no ground
-constexpr float kSteepest = 0.10f;   // [-] slope of a ramp against the plane
+constexpr float kExtend = 10.0f;  // [m] for which a slope is taken to go on where nothing is seen
 constexpr float kMirrorMargin =
     0.30f;  // [m] below the lowest possible ground: mirrored in a wet road (method.md 8.1)
+
+// The last bits of a height hold its place in the ring; at 10 m they are less than .1 mm.
+constexpr std::int32_t kPlaces = 64;
+
+std::int32_t bitsOfHeight(float height) {
+  std::int32_t bits;
+  std::memcpy(&bits, &height, sizeof bits);
+  return bits;
+}
+
+/// [0, 1] place in the ring of a marked height.
+float placeOf(float height) {
+  return (static_cast<float>(bitsOfHeight(height) & (kPlaces - 1)) + 0.5f) / kPlaces;
+}
+
+constexpr float kSlopeError = 0.03f;  // [-] of a slope between two cells
+constexpr float kLongest = 8;         // [m] of a gap that a vertical curve is followed over
 
 float medianOfThree(float a, float b, float c) {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
@@ -31,7 +49,8 @@ GroundSurface::GroundSurface(const GroundPlane& plane, const EgoPoints& points,
     : plane_(plane),
       sensor_x_(static_cast<float>(points.sensor.x())),
       sensor_y_(static_cast<float>(points.sensor.y())),
-      departure_(1, 0.0f) {
+      departure_(1, 0.0f),
+      rise_(1, 0.0f) {
   const bool local = params.local && points.size() > 0;
   if (local) {
     sectors_ = static_cast<std::size_t>(params.sectors);
@@ -57,7 +76,14 @@ struct PlaceRules {
   float rings, sectors;           ///< counts
   float per_ring, per_sector;     ///< [1/m, 1/rad]
   float bound_near, bound_slope;  ///< [m, -] of deviations from the plane
+  float bend, steepest;           ///< [1/m] half the curvature, [-]
 };
+
+/// [m] largest deviation at that range.
+inline float boundAt(float range, const PlaceRules& r) {
+  const float bent = r.bound_slope * range + r.bend * range * range, steep = r.steepest * range;
+  return r.bound_near + (bent < steep ? bent : steep);
+}
 
 /// Height above the plane and cell of each point; without branches, so that the compiler vectorizes
 /// it.
@@ -73,10 +99,15 @@ PERCEPTION_WIDEST void placeAll(const float* __restrict x, const float* __restri
     sector -= sector >= r.sectors ? r.sectors : 0.0f;
     const float all_rings = range * r.per_ring;
     const float ring = all_rings < r.rings - 1 ? all_rings : r.rings - 1;
-    const auto place = static_cast<std::int32_t>(sector * r.rings + ring);  // below 2^24: exact
-    const float bound = r.bound_near + r.bound_slope * range;
+    const auto whole = static_cast<std::int32_t>(ring);
+    const auto place = static_cast<std::int32_t>(sector * r.rings) + whole;  // below 2^24: exact
+    const float bound = boundAt(range, r);
     const std::int32_t low = (height <= bound + kLowReturns) & (height >= -bound - kMirrorMargin);
-    above[i] = height;
+    const float part = ring - static_cast<float>(whole);
+    std::int32_t bits;
+    std::memcpy(&bits, &height, sizeof bits);
+    bits = (bits & -kPlaces) | static_cast<std::int32_t>(part * kPlaces);
+    std::memcpy(&above[i], &bits, sizeof bits);
     cell[i] = place ^ (low - 1);
   }
 }
@@ -95,7 +126,9 @@ void GroundSurface::place(const EgoPoints& points, const SurfaceParams& params,
                          inverse_ring_,
                          inverse_sector_,
                          static_cast<float>(params.bound_near),
-                         static_cast<float>(params.bound_slope)};
+                         static_cast<float>(params.bound_slope),
+                         static_cast<float>(params.curvature / 2),
+                         static_cast<float>(params.steepest)};
   const std::size_t count = points.size();
   above.resize(count), cell.resize(count);
   placeAll(points.x.data(), points.y.data(), points.z.data(), count, rules, above.data(),
@@ -154,40 +187,143 @@ std::vector<float> GroundSurface::lowestOf(const std::vector<float>& above,
   return heights;
 }
 
+namespace {
+
+/// The ground along one sector, from the sensor outward.
+class GroundTrack {
+ public:
+  GroundTrack(const SurfaceParams& params, float ring, float* borders)
+      : ring_(ring),
+        step_(static_cast<float>(params.step)),
+        slope_(static_cast<float>(params.slope)),
+        max_step_(static_cast<float>(params.max_step)),
+        steepest_(static_cast<float>(params.steepest)),
+        curvature_(static_cast<float>(params.curvature)),
+        borders_(borders),
+        gap_(ring) {}
+
+  /// The low height of the next ring; NaN: none was seen. `range`: of that return.
+  void offer(float low, float range, float bound) {
+    const Place place{range, low};
+    if (std::abs(low) <= bound) {  // false where nothing was seen
+      if (isNext(place)) return accept(place);
+      if (maybe_.range > 0 && continues(place)) {
+        accept(maybe_);
+        return accept(place);
+      }
+      if (mayFollow(place)) maybe_ = place;
+    }
+    gap_ += ring_;
+  }
+
+  void finish(std::size_t borders) {
+    const std::size_t end = borders - 1;
+    const float cell_end = ring_ * static_cast<float>(std::min(next_, end));
+    fill(cell_end, trend_);
+    // Beyond its cell a way up that ends is a crest, and a slight slope none.
+    const float slope = std::min(std::min(trend_, last_) + kSlopeError, 0.0f);
+    ground_ = {cell_end, ground_.height + trend_ * (cell_end - ground_.range)};
+    fill(std::min(cell_end + kExtend, ring_ * static_cast<float>(end)), slope);
+    const float last = ground_.height + slope * kExtend;
+    while (next_ < borders) borders_[next_++] = last;
+  }
+
+ private:
+  struct Place {
+    float range = 0, height = 0;  ///< [m]
+  };
+
+  /// Within a step of the last ground or of the line through it.
+  bool isNext(const Place& p) const {
+    const float reach = std::min(step_ + slope_ * gap_, max_step_);
+    const float rise = p.height - ground_.height;
+    return std::abs(rise) <= reach || std::abs(rise - trend_ * (p.range - ground_.range)) <= reach;
+  }
+  /// Beyond a gap, within what a vertical curve departs from the line over it.
+  bool mayFollow(const Place& p) const {
+    const float along = p.range - ground_.range, rise = p.height - ground_.height;
+    const float reach = max_step_ + curvature_ / 2 * along * along;
+    return along <= kLongest && std::abs(rise) <= steepest_ * along &&
+           std::abs(rise - trend_ * along) <= reach;
+  }
+  /// Whether the slope from the last ground to the place in question goes on to `p`, or bends
+  /// farther to the same side: an upright surface is far steeper than the way to it, the top of an
+  /// obstacle or the underside of a bridge less.
+  bool continues(const Place& p) const {
+    const float before = maybe_.range - ground_.range, behind = p.range - maybe_.range;
+    if (behind < ring_ / 2) return false;
+    const float slope = (maybe_.height - ground_.height) / before;
+    const float next = (p.height - maybe_.height) / behind;
+    const float farther = slope > trend_ ? next - slope : slope - next;
+    return std::abs(next) <= steepest_ && farther >= -kSlopeError &&
+           farther <= kSlopeError + curvature_ / 2 * (before + behind);
+  }
+  void accept(const Place& p) {
+    const float along = std::max(p.range - ground_.range, 0.01f);
+    const float slope = (p.height - ground_.height) / along;
+    fill(p.range, slope);
+    const float bounded = std::clamp(slope, -steepest_, steepest_);
+    trend_ += along / (along + ring_) * (bounded - trend_);
+    if (along >= ring_ / 2) last_ = bounded;
+    ground_ = p, gap_ = ring_, maybe_ = {};
+  }
+  /// The borders up to `range`, on a line from the last ground.
+  void fill(float range, float slope) {
+    for (; ring_ * static_cast<float>(next_) <= range; ++next_)
+      borders_[next_] =
+          ground_.height + slope * (ring_ * static_cast<float>(next_) - ground_.range);
+  }
+
+  float ring_, step_, slope_, max_step_, steepest_, curvature_;
+  float* borders_;
+  std::size_t next_ = 0;
+  Place ground_;     ///< the last ground
+  Place maybe_;      ///< ground if what follows confirms it; range 0: none
+  float trend_ = 0;  ///< slope up to the last ground
+  float last_ = 0;   ///< that of its last piece alone
+  float gap_;        ///< [m] since it, in whole rings
+};
+
+}  // namespace
+
 /// Outward along each sector: the low height of a cell is ground if the step from the previous
 /// ground cell is within bounds.
 void GroundSurface::follow(const std::vector<float>& lowest, const SurfaceParams& params) {
-  const auto ring = static_cast<float>(params.ring), step = static_cast<float>(params.step);
-  const auto slope = static_cast<float>(params.slope),
-             max_step = static_cast<float>(params.max_step);
-  std::vector<float> along(lowest.size(), 0);
+  const auto ring = static_cast<float>(params.ring);
+  const std::size_t borders = rings_ + 1;
+  PlaceRules rules{};
+  rules.bound_near = static_cast<float>(params.bound_near);
+  rules.bound_slope = static_cast<float>(params.bound_slope);
+  rules.bend = static_cast<float>(params.curvature / 2);
+  rules.steepest = static_cast<float>(params.steepest);
+  thread_local std::vector<float> along;  // [sector][border]
+  along.resize(sectors_ * borders + 1);
   for (std::size_t s = 0; s < sectors_; ++s) {
-    float ground = 0, trend = 0, gap = ring;  // trend: slope of a ramp relative to the plane
+    GroundTrack track(params, ring, &along[s * borders]);
     for (std::size_t k = 0; k < rings_; ++k) {
       const float low = lowest[s * rings_ + k];
-      const float range = (static_cast<float>(k) + 0.5f) * ring;
-      const auto bound =
-          static_cast<float>(params.bound_near) + static_cast<float>(params.bound_slope) * range;
-      const float reach = std::min(step + slope * gap, max_step);
-      const bool reached =
-          std::abs(low - ground) <= reach || std::abs(low - ground - trend * gap) <= reach;
-      if (std::abs(low) <= bound && reached) {  // false where nothing was seen
-        trend = 0.5f * (trend + std::clamp((low - ground) / gap, -kSteepest, kSteepest));
-        ground = low;
-        gap = ring;
-      } else {
-        gap += ring;
-      }
-      along[s * rings_ + k] = ground;
+      const float range = (static_cast<float>(k) + placeOf(low)) * ring;
+      track.offer(low, range, boundAt(range, rules));
     }
+    track.finish(borders);
   }
-  // Median over neighboring sectors: removes the side of a car that was taken for ground.
-  departure_.resize(along.size());
+  smooth(along);
+}
+
+/// Median over neighboring sectors: removes the side of a car that was taken for ground.
+void GroundSurface::smooth(const std::vector<float>& borders) {
+  const std::size_t row = rings_ + 1;
+  departure_.resize(sectors_ * rings_), rise_.resize(departure_.size());
   for (std::size_t s = 0; s < sectors_; ++s) {
-    const std::size_t left = (s + 1) % sectors_, right = (s + sectors_ - 1) % sectors_;
-    for (std::size_t k = 0; k < rings_; ++k)
-      departure_[s * rings_ + k] =
-          medianOfThree(along[left * rings_ + k], along[s * rings_ + k], along[right * rings_ + k]);
+    const float* left = &borders[(s + 1) % sectors_ * row];
+    const float* middle = &borders[s * row];
+    const float* right = &borders[(s + sectors_ - 1) % sectors_ * row];
+    float inner = medianOfThree(left[0], middle[0], right[0]);
+    for (std::size_t k = 0; k < rings_; ++k) {
+      const float outer = medianOfThree(left[k + 1], middle[k + 1], right[k + 1]);
+      departure_[s * rings_ + k] = inner, rise_[s * rings_ + k] = outer - inner;
+      inner = outer;
+    }
   }
 }
 
@@ -195,26 +331,34 @@ namespace {
 
 // Gathers of sixteen are slower than of eight.
 PERCEPTION_WIDER void subtractAll(const std::int32_t* __restrict cell,
-                                  const float* __restrict departure, std::size_t count,
-                                  float* __restrict heights) {
-  for (std::size_t i = 0; i < count; ++i)
-    heights[i] -= departure[cell[i] ^ (cell[i] >> 31)];  // undoes the complement
+                                  const float* __restrict departure, const float* __restrict rise,
+                                  std::size_t count, float* __restrict heights) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t k = cell[i] ^ (cell[i] >> 31);  // undoes the complement
+    std::int32_t bits;
+    std::memcpy(&bits, &heights[i], sizeof bits);
+    const float part = (static_cast<float>(bits & (kPlaces - 1)) + 0.5f) * (1.0f / kPlaces);
+    heights[i] -= departure[k] + part * rise[k];
+  }
 }
 
 }  // namespace
 
 void GroundSurface::subtract(const std::vector<std::int32_t>& cell,
                              std::vector<float>& above) const {
-  subtractAll(cell.data(), departure_.data(), above.size(), above.data());
+  subtractAll(cell.data(), departure_.data(), rise_.data(), above.size(), above.data());
 }
 
 double GroundSurface::heightAt(double x, double y) const {
   const auto dx = static_cast<float>(x) - sensor_x_, dy = static_cast<float>(y) - sensor_y_;
-  const std::size_t ring =
-      std::min(static_cast<std::size_t>(std::sqrt(dx * dx + dy * dy) * inverse_ring_), rings_ - 1);
+  const float all_rings =
+      std::min(std::sqrt(dx * dx + dy * dy) * inverse_ring_, static_cast<float>(rings_) - 0.001f);
+  const auto ring = static_cast<std::size_t>(all_rings);
   const auto sector =
       static_cast<std::size_t>((fastAtan2(dx, dy) + 3.14159265f) * inverse_sector_) % sectors_;
-  return plane_.heightAt(x, y) + static_cast<double>(departure_[sector * rings_ + ring]);
+  const std::size_t k = sector * rings_ + ring;
+  const float departure = departure_[k] + (all_rings - static_cast<float>(ring)) * rise_[k];
+  return plane_.heightAt(x, y) + static_cast<double>(departure);
 }
 
 std::vector<float> GroundSurface::heightsAbove(const EgoPoints& points) const {

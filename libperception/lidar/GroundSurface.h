@@ -20,12 +20,14 @@ struct SurfaceParams {
   double max_step = 0.25;     ///< [m] for any gap: less than the ground clearance of cars
   double bound_near = 0.2;    ///< [m] largest distance from the plane at the vehicle
   double bound_slope = 0.03;  ///< [-] growth of that bound with range
+  double curvature = 1 / 50.0;  ///< [1/m] of the sharpest vertical curve: growth of that slope
+  double steepest = 0.35;  ///< [-] largest slope against the plane: 15 % to either side, 2 degrees
 
   void visit(ParamVisitor& v);
 };
 
-/// Ground height of one scan: the plane plus, in each polar cell about the sensor, a bounded
-/// deviation that is tracked outward along the beams (method.md 8.1).
+/// Ground height of one scan: the plane plus a bounded deviation that is tracked outward along the
+/// beams, sector by sector about the sensor, and linear from cell to cell (method.md 8.1).
 class GroundSurface {
  public:
   /// `heights`, unless null, is set to heightsAbove(points).
@@ -38,14 +40,16 @@ class GroundSurface {
   std::vector<float> heightsAbove(const EgoPoints& points) const;
 
  private:
-  /// Heights of all points above the plane [m], and their cells, [sector][ring]; the bitwise
-  /// complement of the cell for points too high or too low to be ground.
+  /// Heights of all points above the plane [m], with the places in their rings as their last bits,
+  /// and their cells, [sector][ring]; the bitwise complement of the cell for points too high or too
+  /// low to be ground.
   void place(const EgoPoints& points, const SurfaceParams& params, std::vector<float>& above,
              std::vector<std::int32_t>& cell) const;
   std::vector<float> lowestOf(const std::vector<float>& above,
                               const std::vector<std::int32_t>& cell,
                               const SurfaceParams& params) const;
   void follow(const std::vector<float>& lowest, const SurfaceParams& params);
+  void smooth(const std::vector<float>& borders);
   /// Converts heights above the plane into heights above the ground.
   void subtract(const std::vector<std::int32_t>& cell, std::vector<float>& above) const;
 
@@ -53,7 +57,9 @@ class GroundSurface {
   float sensor_x_, sensor_y_;  ///< [m] center of the cells, ego frame
   std::size_t sectors_ = 1, rings_ = 1;
   float inverse_ring_ = 0, inverse_sector_ = 0;  ///< [1/m, 1/rad]
-  std::vector<float> departure_;                 ///< [m] above the plane; [sector][ring]
+  /// [m] above the plane at the inner border of a cell, and from there to the outer one;
+  /// [sector][ring].
+  std::vector<float> departure_, rise_;
 };
 
 }  // namespace perception

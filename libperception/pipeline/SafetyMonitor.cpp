@@ -10,6 +10,7 @@ namespace perception {
 namespace {
 
 constexpr double kMirrored = -0.3;  // [m] lower returns are mirror images in a wet road
+constexpr double kOnRoad = 0.3;     // [m] lower returns are of the ground
 constexpr double kLeaves = 0.5;     // [s] for which a cell belongs to what has left it; assumed
 /// [-] distance along the direction of travel by that across it, below which a return lies behind
 /// the vehicle (bearings beyond 117 deg): it is ahead only after a turn, during which it is seen
@@ -146,6 +147,7 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
   scan.clear.reserve(returns.size());
   const bool backward = isReversing(frame.ego.T_world_ego, frame.ego.velocity, stop);
   const float travel = backward ? -1 : 1;
+  obstacles.road = RoadHeights(backward);
   const double height_max = std::min(returns.height_max, clearance);
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const double height = static_cast<double>(returns.height[i]);
@@ -155,6 +157,8 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
                                                           static_cast<double>(returns.z[i]));
     const bool hit = height > returns.height_min && height < height_max;
     (hit ? scan.hits : scan.clear).push_back(place);
+    if (height < kOnRoad)
+      obstacles.road.add(returns.x[i], returns.y[i], returns.z[i] - returns.height[i]);
     if (hit) doubter.weigh(i, place, obstacles);
   }
   return obstacles;
@@ -194,6 +198,7 @@ PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   path.known = any_ && std::abs(ego.stamp - last_.scan.stamp) <= kFresh;
   if (!path.known) return path;
   path.corridor = drivenCorridor(ego.T_world_ego, ego.velocity, ego.yaw_rate, front_, rear_, stop_);
+  path.corridor.road = last_.road.along(path.corridor);
   const double look_ahead = path.corridor.max;
   path.free = grid_->freeDistance(path.corridor);
   path.corridor.max = path.free.distance;

@@ -9,6 +9,7 @@
 #include "libperception/grid/StopAdvice.h"
 #include "libperception/measurement/Measurement.h"
 #include "libperception/pipeline/PersistentPlaces.h"
+#include "libperception/pipeline/RoadHeights.h"
 #include "libperception/scene/Scene.h"
 #include "libperception/weather/TrustParams.h"
 
@@ -22,6 +23,7 @@ struct ObstacleScan {
   std::vector<float> dense;
   std::vector<char> doubted;  ///< by trust or shape, whether there is a cause for it or not
   std::vector<char> surface;  ///< may be a surface, though it has a cause to be doubted
+  RoadHeights road;           ///< by the ground returns
 };
 
 /// Obstacle returns by their height, and those that only clear; mirror images below the road are

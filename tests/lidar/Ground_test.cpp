@@ -150,6 +150,42 @@ TEST(GroundSurface, FollowsARampThatThePlaneMisses) {
   EXPECT_LT(obstacles({}), obstacles(plane_alone) / 20);
 }
 
+/// The scan of a level road that is bent upward (downward) by `height` [m] of a range.
+template <class Height>
+SensorFrame bentRoad(const Height& height) {
+  SensorFrame frame = castScan({}, coarse());
+  auto& cloud = std::get<LidarCloud>(frame.data);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.z[i] += height(std::hypot(cloud.x[i], cloud.y[i]));
+  return frame;
+}
+
+TEST(GroundSurface, FollowsASlopeWithinACell) {
+  const auto curve = [](float range) {  // 50 m of radius, then 15 %
+    const float into = std::max(range - 10, 0.0f);
+    return into < 7.5f ? into * into / 100 : 0.15f * into - 0.5625f;
+  };
+  for (const float sign : {1.0f, -1.0f}) {
+    const SensorFrame frame = bentRoad([&](float range) { return sign * curve(range); });
+    const EgoPoints points = usablePoints(frame, {});
+    const auto heights = GroundSurface(frame.ground, points, {}).heightsAbove(points);
+    for (std::size_t i = 0; i < heights.size(); ++i)
+      if (std::hypot(points.x[i], points.y[i]) < 45) {
+        EXPECT_NEAR(heights[i], 0, 0.15);
+      }
+  }
+}
+
+TEST(GroundSurface, TheTopOfAWallIsNoGround) {
+  SolidScene scene;
+  scene.boxes = {{{30, 0}, 0, 8, 30, 0, 0.6}};  // low enough to be seen from above
+  const SensorFrame frame = castScan(scene, coarse());
+  const EgoPoints points = usablePoints(frame, {});
+  const GroundSurface surface(frame.ground, points, {});
+  EXPECT_NEAR(surface.heightAt(27, 0), 0, 0.2);  // its foot, in cells without the road
+  EXPECT_NEAR(surface.heightAt(30, 0), 0, 0.2);
+}
+
 TEST(GroundSurface, DoesNotSwallowACar) {
   SolidScene scene;
   scene.boxes = {{{18, 3}, 0.4, 4.4, 1.8, 0.35, 1.5}};  // its underside stands clear of the ground

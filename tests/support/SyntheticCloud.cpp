@@ -16,7 +16,19 @@ double hitGround(const GroundPlane& ground, const Vector3& o, const Vector3& d) 
   return descent < 0 && t > 0 ? t : kNoHit;
 }
 
-double hitBox(const SolidBox& box, const Vector3& o, const Vector3& d) {
+double hitCylinder(const SolidCylinder& cylinder, const Vector3& o, const Vector3& d) {
+  const Vector2 o2 = o.head<2>() - cylinder.center, d2 = d.head<2>();
+  const double a = d2.squaredNorm(), b = o2.dot(d2),
+               c = o2.squaredNorm() - cylinder.radius * cylinder.radius;
+  const double root = b * b - a * c;
+  if (root < 0) return kNoHit;
+  const double t = (-b - std::sqrt(root)) / a, z = o.z() + t * d.z();
+  return t > 0 && z > cylinder.bottom && z < cylinder.top ? t : kNoHit;
+}
+
+}  // namespace
+
+double rangeToBox(const SolidBox& box, const Vector3& o, const Vector3& d) {
   const Vector2 o2 = rotate2(-box.yaw, o.head<2>() - box.center),
                 d2 = rotate2(-box.yaw, d.head<2>());
   const double origin[3] = {o2.x(), o2.y(), o.z()}, along[3] = {d2.x(), d2.y(), d.z()};
@@ -29,18 +41,6 @@ double hitBox(const SolidBox& box, const Vector3& o, const Vector3& d) {
   }
   return in < out && in > 0 ? in : kNoHit;
 }
-
-double hitCylinder(const SolidCylinder& cylinder, const Vector3& o, const Vector3& d) {
-  const Vector2 o2 = o.head<2>() - cylinder.center, d2 = d.head<2>();
-  const double a = d2.squaredNorm(), b = o2.dot(d2),
-               c = o2.squaredNorm() - cylinder.radius * cylinder.radius;
-  const double root = b * b - a * c;
-  if (root < 0) return kNoHit;
-  const double t = (-b - std::sqrt(root)) / a, z = o.z() + t * d.z();
-  return t > 0 && z > cylinder.bottom && z < cylinder.top ? t : kNoHit;
-}
-
-}  // namespace
 
 SensorFrame castScan(const SolidScene& scene, const SpinningLidar& lidar, Stamp stamp,
                      std::uint64_t seed) {
@@ -64,7 +64,7 @@ SensorFrame castScan(const SolidScene& scene, const SpinningLidar& lidar, Stamp 
       const Vector3 direction = lidar.T_ego_sensor.linear() * ray;
       double range = hitGround(scene.ground, origin, direction);
       for (const SolidBox& box : scene.boxes)
-        range = std::min(range, hitBox(box, origin, direction));
+        range = std::min(range, rangeToBox(box, origin, direction));
       for (const SolidCylinder& c : scene.cylinders)
         range = std::min(range, hitCylinder(c, origin, direction));
       if (!(range < lidar.range_max)) continue;

@@ -38,6 +38,9 @@ struct SpinningLidar {
   double range_sigma = 0.01;                             ///< [m]
 };
 
+/// [m] along a ray of direction `d` from `o` to the box; infinite where it is missed.
+double rangeToBox(const SolidBox& box, const Vector3& o, const Vector3& d);
+
 /// The scan of that scene (simulated): the nearest hit of every beam, with Gaussian range noise.
 SensorFrame castScan(const SolidScene& scene, const SpinningLidar& lidar, Stamp stamp = {},
                      std::uint64_t seed = 1);
