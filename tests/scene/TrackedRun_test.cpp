@@ -85,9 +85,9 @@ TEST(TrackedRun, TellsTheWayAheadWhereThereIsAGrid) {
   const TemporaryFolder folder;
   std::vector<Scene> scenes = {someScene(0, {}), someScene(1, {}), someScene(2, {}),
                                someScene(3, {})};
-  scenes[1].path = FreePath{80, 47.2, false, false, 0};
-  scenes[2].path = FreePath{9.5, 9.4, true, true, 0};
-  scenes[3].path = FreePath{12.25, 12, true, false, 7, FreePath::Cause::kObject, 43, 12};
+  scenes[1].path = FreePath{47.2, 47.2, false, false, 17.25};
+  scenes[2].path = FreePath{9.4, 9.4, true, true, 5.5, true};
+  scenes[3].path = FreePath{12, 12, true, false, 6.25, false, 7, FreePath::Cause::kObject, 43, 12};
   writeRun(folder.path(), scenes);
   const TrackedRun run = readTrackedRun(folder.path());
   EXPECT_FALSE(run.scenes[0].path);
