@@ -31,6 +31,7 @@ void WakeMap::advance(Stamp now) {
 std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
   for (auto v = vehicles_.rbegin(); v != vehicles_.rend(); ++v) {  // the last vehicle counts
     const double age = now - v->stamp;
+    if (age > kLife) break;
     const double moved = age <= kPresent ? age * v->speed : 0;
     const Vector2 d = place - v->center - moved * v->along;
     if (std::abs(d.dot(v->along)) > v->half_length) continue;
