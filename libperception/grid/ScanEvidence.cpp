@@ -1,5 +1,7 @@
 #include "libperception/grid/ScanEvidence.h"
 
+#include <bitset>
+
 #include "libperception/grid/FlatBlock.h"
 
 namespace perception {
@@ -42,6 +44,11 @@ CellIndex ScanEvidence::columnAt(std::size_t column) const {
 
 void ScanEvidence::listSpace(bool judged) {
   const auto columns = static_cast<std::size_t>(cells_ * cells_);
+  // As long as it must be and no longer: memory stays flat.
+  std::size_t count = space_->doubts().size();
+  for (std::size_t column = 0; column < columns; ++column)
+    count += std::bitset<64>(space_->hit(column) | space_->crossed(column)).count();
+  evidence_.reserve(count);
   for (std::size_t column = 0; column < columns; ++column) {
     const std::uint64_t hit = space_->hit(column), crossed = space_->crossed(column);
     if ((hit | crossed) == 0) continue;
