@@ -205,11 +205,12 @@ PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   const FreeDistance dense =
       denseReturns(path.corridor, last_.scan.hits, last_.dense, stop_.returns);
   if (dense.blocked) {
+    path.by_returns =
+        !path.free.blocked || dense.distance < path.free.distance - params_.resolution;
     path.free.distance = dense.distance;
     path.free.blocked = true;
     path.free.place = dense.place;
     path.free.seen = std::min(path.free.seen, dense.distance);
-    path.by_returns = true;
   }
   path.corridor.max = path.free.distance;
   path.free.seen = seenByBeams(path.corridor, path.free.seen, last_.scan.origin,
