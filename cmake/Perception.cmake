@@ -36,19 +36,11 @@ if(PERCEPTION_SANITIZE)
 endif()
 
 # perception_batches(TARGET): several sources at once, so that the headers that they have in common are read once: whole builds
-# take half the time. Not beside ccache, which remembers sources one by one. Names of anonymous namespaces are unique in a module;
-# a source that takes all names of a namespace is compiled alone.
+# take half the time. Not beside ccache, which remembers sources one by one. Names of anonymous namespaces are unique in a module.
 function(perception_batches TARGET)
   if(PERCEPTION_UNITY)
     set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 24)
     target_compile_options(${TARGET} PRIVATE -Wno-subobject-linkage)  # a source of a batch counts as a header
-    get_target_property(SOURCES ${TARGET} SOURCES)
-    foreach(SOURCE ${SOURCES})
-      file(STRINGS ${SOURCE} DIRECTIVES REGEX "^using namespace ")
-      if(DIRECTIVES)
-        set_source_files_properties(${SOURCE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-      endif()
-    endforeach()
   endif()
 endfunction()
 

@@ -14,7 +14,7 @@
 
 namespace perception::test {
 
-enum class Color { kRed, kGreen, kBlue };
+enum class Paint { kRed, kGreen, kBlue };
 
 /// One key of every kind.
 struct AllKinds {
@@ -27,7 +27,7 @@ struct AllKinds {
   std::string model;
   std::vector<double> corners = {0, 1.5};
   std::vector<std::string> names = {"a", "b"};
-  Color color = Color::kGreen;
+  Paint color = Paint::kGreen;
   std::vector<std::pair<std::string, double>> shares;
 
   void visit(ParamVisitor& v) {

@@ -50,7 +50,7 @@ TEST(Config, ReadsEveryKindOfKey) {
   EXPECT_EQ(a.model, "net.onnx");
   EXPECT_EQ(a.corners, (std::vector<double>{-1, 2.5}));
   EXPECT_EQ(a.names, (std::vector<std::string>{"x", "y", "z"}));
-  EXPECT_EQ(a.color, Color::kBlue);
+  EXPECT_EQ(a.color, Paint::kBlue);
   EXPECT_EQ(a.shares, (std::vector<std::pair<std::string, double>>{{"car", .25}, {"a.b", 1}}));
 }
 
