@@ -64,7 +64,8 @@ class Doubter {
     const bool alone = shape == PlacedReturns::kNoCluster;
     const float doubt = 1 - (alone ? trust : trust * (1 - shape));
     const bool asks = caused_ && (alone || static_cast<double>(doubt) > kHardly);
-    const double cause = asks ? frame_.causes.at(place.head<2>(), frame_.stamp).likelier() : 0;
+    const CausesHere here = asks ? frame_.causes.at(place.head<2>(), frame_.stamp) : CausesHere{};
+    const double cause = here.likelier();
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
     float held = std::min(doubt, static_cast<float>(cause));
     if (weighted_) held = std::max(held, std::min(doubt, verdictOn(i)));
@@ -75,7 +76,10 @@ class Doubter {
     if (weighted_) obstacles.scan.weights.push_back(weight);
     obstacles.dense.push_back(dense < kDoubted ? 0 : dense);
     obstacles.doubted.push_back(doubt >= kDoubted);
-    obstacles.surface.push_back(caused_ && dense < 1 && trust > 0 && solid >= kPerhapsSurface);
+    // The cloud in a wake is at one place for seconds, too: there only what is solid ends the
+    // doubt.
+    obstacles.surface.push_back(caused_ && here.wake <= 0 && dense < 1 && trust > 0 &&
+                                solid >= kPerhapsSurface);
   }
 
  private:
