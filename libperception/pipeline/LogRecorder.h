@@ -15,8 +15,9 @@ namespace perception {
 /// Modifies an observation before its front end.
 using ObservationEdit = std::function<void(mrpt::obs::CObservation&)>;
 
-/// Reads the first `seconds` of a log (0 = all) through the front ends of a configuration. Throws
-/// DataError when there is no scene.
+/// Reads the first `seconds` of a log (0 = all) through the front ends of a configuration. Its
+/// filter runs, too, for the wakes of tracked vehicles are a cause of phantoms. Throws DataError
+/// when there is no scene.
 RecordedLog recordLog(const std::string& log, Config& config, double seconds,
                       const ObservationEdit& edit = {});
 
