@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "libperception/app/TrackApp.h"
 #include "libperception/pipeline/LogRecorder.h"
