@@ -7,7 +7,7 @@
     print(run.probability("car")[:5], car["t"], car["x"])
 
 run.tracks and run.scenes are structured arrays with the columns of tracks.csv and scenes.csv: world
-frame, SI units; numbers are float64 (NaN where a field is empty), "class" and "obstacle" are text,
+frame, SI units; numbers are float64 (NaN where a field is empty), "class", "obstacle" and "cause" are text,
 "stamp_ns" is the stamp as int64 [ns] since 1970, which float64 cannot hold.
 By hand: python3 perception_run.py DIR prints the road users and how long each was seen.
 """
@@ -17,7 +17,7 @@ import sys
 
 import numpy as np
 
-TEXT = ("class", "obstacle")
+TEXT = ("class", "obstacle", "cause")
 WHOLE = ("frame", "id", "objects")
 
 

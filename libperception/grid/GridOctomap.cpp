@@ -155,6 +155,7 @@ class GridOctomap final : public SafetyGrid {
   void advance(const GridScan& scan, GridStats& stats) {
     const Vector3 center = scan.T_world_ground.translation();
     const CellIndex cell = cellOf(center);
+    evidence_.moveTo(scan);
     if (!started_) {
       first_ = scan.stamp;
       anchor_ = cell;

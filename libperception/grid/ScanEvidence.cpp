@@ -20,16 +20,20 @@ ScanEvidence::ScanEvidence(const GridParams& params, bool flat)
 const std::vector<CellEvidence>& ScanEvidence::collect(const GridScan& scan, GridStats& stats) {
   evidence_.clear();
   const bool judged = scan.weights.size() == scan.hits.size();
-  first_ = windowCorner(params_, scan.T_world_ground.translation());
+  moveTo(scan);
   if (space_) {
     space_->collect(scan, first_, stats);
     listSpace(judged);
   } else {
-    first_.z = 0;
     flat_->collect(scan, first_, stats);
     listFlat(judged);
   }
   return evidence_;
+}
+
+void ScanEvidence::moveTo(const GridScan& scan) {
+  first_ = windowCorner(params_, scan.T_world_ground.translation());
+  if (flat_) first_.z = 0;
 }
 
 bool ScanEvidence::holds(const CellIndex& cell) const {

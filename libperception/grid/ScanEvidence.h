@@ -18,6 +18,8 @@ class ScanEvidence {
  public:
   ScanEvidence(const GridParams& params, bool flat);
 
+  /// Moves the window to that of a scan.
+  void moveTo(const GridScan& scan);
   /// Valid until the next call; the order depends on the scan alone. Moves the window.
   const std::vector<CellEvidence>& collect(const GridScan& scan, GridStats& stats);
   /// Whether the window of the last scan has the cell.

@@ -39,8 +39,6 @@ class Recorder : public PipelineObserver {
 }  // namespace
 
 PipelineSetup forFrontEnds(PipelineSetup setup) {
-  if (!setup.model.params.sampled_births) setup.model.proposal = Proposal::kNearest;
-  setup.particles.sample_size = 1;
   setup.grid.enabled = false;
   return setup;
 }

@@ -15,7 +15,8 @@ namespace {
 
 /// The images of rawlogs/camera.rawlog, the sizes in one JPEG's header made zero.
 void writeDamagedImages(const std::string& path) {
-  const std::string command = "gzip -dc " PERCEPTION_SOURCE_DIR "/rawlogs/camera.rawlog >" + path;
+  const std::string command =
+      "gzip -dc '" PERCEPTION_SOURCE_DIR "/rawlogs/camera.rawlog' >'" + path + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   std::ifstream in(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(in), {}};

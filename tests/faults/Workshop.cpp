@@ -49,6 +49,17 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
+/// LD_PRELOAD takes no path with a space: of a build in such a folder it gets a copy.
+std::string preloadable() {
+  static const TemporaryFolder folder;
+  const std::filesystem::path built = PERCEPTION_FAILING_CALLS;
+  if (built.string().find(' ') == std::string::npos) return built.string();
+  const std::filesystem::path copy = std::filesystem::path(folder.path()) / built.filename();
+  std::filesystem::copy_file(built, copy);
+  return copy.string();
+}
+const std::string kFailingCalls = preloadable();
+
 /// In the child, between fork and exec.
 [[noreturn]] void become(const std::vector<std::string>& words, const std::string& said,
                          const FailingCall& failing) {
@@ -57,7 +68,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   ::dup2(out, STDOUT_FILENO);
   ::dup2(err, STDERR_FILENO);
   if (!failing.kind.empty()) {
-    ::setenv("LD_PRELOAD", PERCEPTION_FAILING_CALLS, 1);
+    ::setenv("LD_PRELOAD", kFailingCalls.c_str(), 1);
     ::setenv("FAILING_CALLS", failing.kind.c_str(), 1);
     ::setenv("FAILING_AT", std::to_string(failing.at).c_str(), 1);
     ::setenv("FAILING_MODE", failing.on ? "on" : "once", 1);
