@@ -39,6 +39,8 @@ class Recorder : public PipelineObserver {
 }  // namespace
 
 PipelineSetup forFrontEnds(PipelineSetup setup) {
+  if (!setup.model.params.sampled_births) setup.model.proposal = Proposal::kNearest;
+  setup.particles.sample_size = 1;
   setup.grid.enabled = false;
   return setup;
 }
@@ -84,7 +86,8 @@ RecordedLog recordLog(const std::string& log, Config& config, double seconds,
   recorded.scene = setup.scene;
   Recorder recorder(recorded);
   const PipelineSetup wanted = setup;
-  const LogPass pass = passLog(log, forFrontEnds(std::move(setup)), seconds, recorder, edit);
+  setup.grid.enabled = false;
+  const LogPass pass = passLog(log, std::move(setup), seconds, recorder, edit);
   recorded.simulated = pass.simulated;
   const bool any =
       std::any_of(recorded.entries.begin(), recorded.entries.end(),
