@@ -201,8 +201,8 @@ benches() {
 # A locale with decimal comma for the tests, in the build folder and not in the system.
 makeCommaLocale() {
   export LOCPATH=$PWD/build/locale
-  export LSAN_OPTIONS=suppressions=$PWD/tests/leaks.supp:print_suppressions=0
-  export TSAN_OPTIONS=suppressions=$PWD/tests/races.supp:print_suppressions=0
+  export LSAN_OPTIONS="suppressions='$PWD/tests/leaks.supp':print_suppressions=0"
+  export TSAN_OPTIONS="suppressions='$PWD/tests/races.supp':print_suppressions=0"
   mkdir -p "$LOCPATH"
   [[ -d $LOCPATH/de_DE.UTF-8 ]] || localedef -i de_DE -f UTF-8 "$LOCPATH/de_DE.UTF-8" || true
 }
