@@ -370,7 +370,7 @@ StudyReport obstaclesStudy(const ObstaclesOptions& options, unsigned long long s
   tbb::parallel_for(std::size_t{0}, cases.size(),
                     [&](std::size_t i) { runCase(cases[i], options, setup); });
   StudyReport report;
-  report.title = "Obstacles that nobody taught";
+  report.title = "Obstacles that no detector was taught";
   report.data = fmt::format("simulated: {} shapes, {} drives, {}", chosenShapes(options).size(),
                             cases.size() * options.intensity.size(), options.config);
   report.tables = {
