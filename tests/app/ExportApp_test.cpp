@@ -99,8 +99,8 @@ TEST_F(ExportAppTest, PythonReadsTheRun) {
     GTEST_SKIP() << "missing tool: python3-numpy";
   writeRun(Stamp{1'600'000'000'123'456'789});
   const auto [code, text] = outputOf(
-      "cd " PERCEPTION_SOURCE_DIR
-      "/apps/perception-export && /usr/bin/python3 -B -c \""
+      "cd '" PERCEPTION_SOURCE_DIR
+      "/apps/perception-export' && /usr/bin/python3 -B -c \""
       "from perception_run import Run; r = Run('" +
       dir_ +
       "'); "
