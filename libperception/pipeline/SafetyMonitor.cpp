@@ -22,6 +22,8 @@ constexpr double kHardly = 0.05;    // doubt that needs no cause, for it decides
 /// Share of the directions about a return that end there from which it is of a solid surface, and
 /// that from which it may be of one: the corner of a surface fills four in nine (assumed).
 constexpr float kWall = 0.75F, kPerhapsSurface = 0.4F;
+/// The same in a wake, whose cloud ends most directions, too: there it has to be seen twice.
+constexpr float kWallInWake = 0.9F;
 constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
 
 // The vehicle on the ground plane: z = 0 is the ground.
@@ -69,17 +71,16 @@ class Doubter {
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
     float held = std::min(doubt, static_cast<float>(cause));
     if (weighted_) held = std::max(held, std::min(doubt, verdictOn(i)));
-    if (solid >= kWall && trust > 0) held = 0;
+    const bool in_wake = here.wake > 0;
+    if (!in_wake && solid >= kWall && trust > 0) held = 0;
     const float weight = 1 - held;
     const float lone = alone && solid < kWall ? static_cast<float>(cause) : 0;
     const float dense = weight * (1 - lone);
     if (weighted_) obstacles.scan.weights.push_back(weight);
     obstacles.dense.push_back(dense < kDoubted ? 0 : dense);
     obstacles.doubted.push_back(doubt >= kDoubted);
-    // The cloud in a wake is at one place for seconds, too: there only what is solid ends the
-    // doubt.
-    obstacles.surface.push_back(caused_ && here.wake <= 0 && dense < 1 && trust > 0 &&
-                                solid >= kPerhapsSurface);
+    obstacles.surface.push_back(caused_ && dense < 1 && trust > 0 &&
+                                solid >= (in_wake ? kWallInWake : kPerhapsSurface));
   }
 
  private:

@@ -211,6 +211,25 @@ TEST(SafetyMonitor, BehindAVehicleItsSprayIsDoubtedAndNowhereElse) {
   }
 }
 
+TEST(SafetyMonitor, InAWakeOnlyWhatIsSolidTwiceEndsTheDoubt) {
+  auto wakes = std::make_shared<WakeMap>();
+  VehicleFootprint car;  // was at the box a second ago
+  car.center = {20, 0}, car.speed = 10, car.half_length = 2, car.half_width = 1;
+  car.stamp = kStart + -0.9;
+  wakes->add(car);
+  const auto blocked = [&](int scans, float solid) {
+    return after(scans, 0, [&](Scan& scan) {
+             scan.frame.causes.wakes = wakes;
+             scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+             scan.solid(solid);
+           })
+        .free.blocked;
+  };
+  EXPECT_FALSE(blocked(1, 1)) << "the cloud close behind a vehicle is as dense";
+  EXPECT_TRUE(blocked(2, 1));
+  EXPECT_FALSE(blocked(2, 0.8F));
+}
+
 TEST(SafetyMonitor, InWeatherOneScanBlocksOnlyByItsClusters) {
   const auto loose = [](Scan& scan) {
     scan.returns.phantom.assign(scan.returns.size(), PlacedReturns::kNoCluster);
