@@ -1,5 +1,5 @@
-# cmake -DBUILD=DIR -DSOURCE=DIR -DPYTHON=FILE -P examples.cmake: installs the build tree into BUILD/prefix, builds the examples
-# against that and runs them: what other projects do. A CMake script, since the library of the tests must not help.
+# cmake -DBUILD=DIR -DSOURCE=DIR -DPYTHON=FILE -DGENERATOR=NAME -P examples.cmake: installs the build tree into BUILD/prefix, builds
+# the examples against that and runs them: what other projects do. A CMake script, since the library of the tests must not help.
 cmake_minimum_required(VERSION 3.22)
 set(PREFIX ${BUILD}/prefix)
 set(EXAMPLES ${BUILD}/examples)
@@ -19,9 +19,9 @@ endfunction()
 
 file(REMOVE_RECURSE ${PREFIX} ${EXAMPLES}-run)
 run(install "Install configuration" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX})
-run(configure "Generating done" ${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${EXAMPLES} -DCMAKE_BUILD_TYPE=Release
+run(configure "Generating done" ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/examples -B ${EXAMPLES} -DCMAKE_BUILD_TYPE=Release
     -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_PREFIX_PATH=${PREFIX})
-run(build "Built target" ${CMAKE_COMMAND} --build ${EXAMPLES} -j 2)
+run(build "Linking CXX executable|Built target|no work to do" ${CMAKE_COMMAND} --build ${EXAMPLES} -j 2)
 
 # The library needs nothing that draws, simulates, parses command lines or runs networks.
 file(GLOB_RECURSE LIBRARY ${PREFIX}/*/libperception_pipeline.so)
