@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 
 #include "libperception/core/Error.h"
+#include "libperception/importers/CloudLayout.h"
 #include "libperception/importers/CloudTable.h"
+#include "libperception/importers/CsvText.h"
 #include "libperception/importers/ImportText.h"
 
 namespace perception {
@@ -14,49 +17,112 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 
-CloudTable readBin(const std::string& path, const std::string& bytes, const CloudFormat& format) {
+/// Fewer returns do not tell what their columns are.
+constexpr std::size_t kLeastReturns = 100;
+
+const std::vector<std::string>& usualColumns() {
+  static const std::vector<std::string> kUsual = CloudFormat().columns;
+  return kUsual;
+}
+
+/// `format` with the columns of a layout.
+CloudFormat withLayout(CloudFormat format, const CloudLayout& layout) {
+  format.columns = layout.columns;
+  if (format.intensity_max <= 0) format.intensity_max = layout.intensity_max;
+  return format;
+}
+
+constexpr const char* kSayColumns =
+    "say them: --columns x,y,z,intensity, \"-\" for what is skipped";
+
+CloudTable binTable(const std::string& path, const std::string& bytes, std::size_t columns) {
   CloudTable table;
-  for (const std::string& name : format.columns) table.columns.push_back({name});
+  table.columns.assign(columns, {"-"});
   const std::size_t row = table.rowBytes();
   if (row == 0 || bytes.size() % row != 0) {
-    throw DataError(fmt::format("{}: {} bytes, expected {} a point (float32 {})", path,
-                                bytes.size(), row, fmt::join(format.columns, ", ")));
+    throw DataError(
+        fmt::format("{}: {} bytes, expected {} a point ({} float32): {} are left from "
+                    "byte {} on",
+                    path, bytes.size(), row, columns, row == 0 ? 0 : bytes.size() % row,
+                    row == 0 ? 0 : bytes.size() / row * row));
   }
   table.resize(bytes.size() / row);
   readRows(bytes, false, table);
   return table;
 }
 
-constexpr const char* kCsvSeparators = ",; \t\r";
+CloudFormat foundBinFormat(const std::string& path, const std::string& bytes,
+                           const CloudFormat& format) {
+  CloudFormat usual = format;
+  usual.columns = usualColumns();
+  if (bytes.size() < kLeastReturns * usual.columns.size() * sizeof(float)) return usual;
+  std::vector<float> numbers(bytes.size() / sizeof(float));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(float));
+  const auto columns = columnCountOf(numbers);
+  if (!columns)
+    throw DataError(
+        fmt::format("{}: its numbers do not tell how many columns it has; {}", path, kSayColumns));
+  const auto layout = layoutOf(binTable(path, bytes, *columns).values);
+  if (!layout)
+    throw DataError(fmt::format("{}: none of its {} columns of float32 can be x, y and z [m]; {}",
+                                path, *columns, kSayColumns));
+  return withLayout(format, *layout);
+}
+
+CloudTable readBin(const std::string& path, const std::string& bytes, const CloudFormat& given) {
+  const CloudFormat format = given.columns.empty() ? foundBinFormat(path, bytes, given) : given;
+  CloudTable table = binTable(path, bytes, format.columns.size());
+  for (std::size_t c = 0; c < format.columns.size(); ++c) table.columns[c].name = format.columns[c];
+  return table;
+}
+
+/// The columns of a file without names, each named "-".
+CloudTable readCsvNumbers(const std::string& path, const CsvText& csv, std::size_t columns) {
+  CloudTable table;
+  table.columns.assign(columns, {"-"});
+  checkCount(path, csv.rows);
+  table.resize(csv.rows);
+  TextLines lines(path, csv.text);
+  if (table.rows > 0) readTextRows(lines, csv.separators, table);
+  return table;
+}
+
+CloudFormat foundCsvFormat(const std::string& path, const CsvText& csv, const CloudFormat& format) {
+  CloudFormat usual = format;
+  usual.columns = usualColumns();
+  if (csv.columns < usual.columns.size())
+    usual.columns.resize(std::max<std::size_t>(3, csv.columns));
+  if (csv.rows < kLeastReturns) return usual;
+  const auto layout = layoutOf(readCsvNumbers(path, csv, csv.columns).values);
+  if (!layout)
+    throw DataError(fmt::format("{}: none of its {} columns can be x, y and z [m]; {}", path,
+                                csv.columns, kSayColumns));
+  return withLayout(format, *layout);
+}
 
 CloudTable readCsvCloud(const std::string& path, const std::string& bytes,
-                        const CloudFormat& format) {
-  CloudTable table;
-  TextLines counter(path, bytes);
-  std::size_t rows = 0;
-  bool has_names = false;
-  while (const auto line = counter.next()) {
-    const TextRow row = counter.row(*line, kCsvSeparators);
-    if (row.size() == 0) continue;
-    if (rows++ > 0) continue;
-    has_names = !row.isNumber(0) && row.text(0) != "nan";
-    if (!has_names) {
-      row.expect(row.size() >= format.columns.size(),
-                 fmt::format("{}: {}", format.columns.size(), fmt::join(format.columns, ", ")));
+                        const CloudFormat& given) {
+  const CsvText csv = csvTextOf(path, bytes);
+  if (csv.names.empty()) {
+    const CloudFormat format = given.columns.empty() ? foundCsvFormat(path, csv, given) : given;
+    if (csv.rows > 0 && csv.columns < format.columns.size()) {
+      throw DataError(fmt::format("{}:{}: {} fields, expected {}: {}", path, csv.first_line,
+                                  csv.columns, format.columns.size(),
+                                  fmt::join(format.columns, ", ")));
     }
-    for (std::size_t i = 0; has_names && i < row.size(); ++i)
-      table.columns.push_back({row.text(i)});
+    CloudTable table = readCsvNumbers(path, csv, format.columns.size());
+    for (std::size_t c = 0; c < format.columns.size(); ++c)
+      table.columns[c].name = format.columns[c];
+    return table;
   }
-  for (std::size_t i = 0; !has_names && i < format.columns.size(); ++i)
-    table.columns.push_back({format.columns[i]});
-  checkCount(path, rows);
-  table.resize(rows - (has_names ? 1 : 0));
-  TextLines lines(path, bytes);
-  while (has_names) {
-    const auto line = lines.next();
-    if (!line || lines.row(*line, kCsvSeparators).size() > 0) break;
-  }
-  if (table.rows > 0) readTextRows(lines, kCsvSeparators, table);
+  CloudTable table;
+  for (const std::string& name : csv.names) table.columns.push_back({name});
+  checkCount(path, csv.rows);
+  table.resize(csv.rows);
+  TextLines lines(path, csv.text);
+  while (const auto line = lines.next())
+    if (lines.row(*line, csv.separators).size() > 0) break;
+  if (table.rows > 0) readTextRows(lines, csv.separators, table);
   return table;
 }
 
@@ -115,16 +181,37 @@ const std::vector<std::string>& cloudEndings() {
   return kEndings;
 }
 
-LidarCloud readCloudFile(const std::string& path, const CloudFormat& format) {
+namespace {
+
+/// ".bin" of "a/0001.bin.gz".
+std::string endingOf(const std::string& path) {
   std::string name = path;
   if (name.size() > 3 && name.compare(name.size() - 3, 3, ".gz") == 0) name.resize(name.size() - 3);
-  const std::string ending = name.size() < 4 ? "" : name.substr(name.size() - 4);
+  return name.size() < 4 ? "" : name.substr(name.size() - 4);
+}
+
+bool isTable(const std::string& ending) {
+  return ending == ".csv" || ending == ".txt" || ending == ".xyz";
+}
+
+}  // namespace
+
+CloudFormat foundFormat(const std::string& path, const CloudFormat& format) {
+  const std::string ending = endingOf(path);
+  if (!format.columns.empty() || (ending != ".bin" && !isTable(ending))) return format;
+  const std::string bytes = readBytes(path, kMostBytes);
+  if (ending == ".bin") return foundBinFormat(path, bytes, format);
+  const CsvText csv = csvTextOf(path, bytes);
+  return csv.names.empty() ? foundCsvFormat(path, csv, format) : format;
+}
+
+LidarCloud readCloudFile(const std::string& path, const CloudFormat& format) {
+  const std::string ending = endingOf(path);
   const std::string bytes = readBytes(path, kMostBytes);
   if (ending == ".bin") return cloudOf(path, readBin(path, bytes, format), format);
   if (ending == ".pcd") return cloudOf(path, readPcd(path, bytes), format);
   if (ending == ".ply") return cloudOf(path, readPly(path, bytes), format);
-  if (ending == ".csv" || ending == ".txt" || ending == ".xyz")
-    return cloudOf(path, readCsvCloud(path, bytes, format), format);
+  if (isTable(ending)) return cloudOf(path, readCsvCloud(path, bytes, format), format);
   throw DataError(fmt::format("{}: expected one of {}", path, fmt::join(cloudEndings(), ", ")));
 }
 

@@ -9,7 +9,7 @@ namespace perception {
 /// Format of a cloud file without header.
 struct CloudFormat {
   /// Of .bin (float32 each) and of .csv without a header line: x, y, z, intensity, ring, time;
-  /// columns of other names are skipped.
+  /// columns of other names are skipped. Empty: they are found from the data (CloudLayout).
   std::vector<std::string> columns{"x", "y", "z", "intensity"};
   double intensity_max = 0;  ///< intensities are divided by it; 0: they are in [0, 1] already
   double time_scale = 1;     ///< [s] of the unit of the column time
@@ -19,10 +19,19 @@ struct CloudFormat {
 /// File extensions supported by readCloudFile(), including gzip variants.
 const std::vector<std::string>& cloudEndings();
 
+/// For a file without names of its columns (.bin always; .csv, .txt, .xyz where the first line
+/// holds numbers): `format` with the columns that are found from its data, and the scale of the
+/// intensities where none is given; unchanged if it has columns or the file has names. A file of
+/// less than 100 returns is taken as x, y, z, intensity. Throws DataError if the data do not say
+/// what they are, or if the file does not end with a row.
+CloudFormat foundFormat(const std::string& path, const CloudFormat& format);
+
 /// One scan: .bin (float32 columns), .pcd (PCL 0.7: ascii, binary, binary_compressed), .ply (ascii,
-/// binary of both byte orders), .csv .txt .xyz (with or without a line of names). Order and number
-/// of points are kept, including NaN points. Times become offsets from that of the first point.
-/// Throws DataError (kNoInput if missing, else with position and expectation).
+/// binary of both byte orders), .csv .txt .xyz (with or without a line of names; separated by
+/// commas, spaces, tabs or semicolons; with decimal commas where the separators are semicolons or
+/// tabs; a byte-order mark is skipped). Order and number of points are kept, including NaN points.
+/// Times become offsets from that of the first point. Throws DataError (kNoInput if missing, else
+/// with position and expectation).
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format = {});
 
 /// The cloud's points in another frame, by the pose of their own frame in it.

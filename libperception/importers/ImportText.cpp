@@ -13,6 +13,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/core/PartialFile.h"
+#include "libperception/importers/CsvText.h"
 
 namespace perception {
 
@@ -161,7 +162,7 @@ std::string readBytes(const std::string& path, std::size_t most) {
 void forEachRow(const std::string& path, const char* separators,
                 const std::function<void(const TextRow&)>& use) {
   const std::string bytes = readBytes(path, std::size_t{1} << 30);
-  const std::string_view text(bytes);
+  const std::string_view text = withoutMark(bytes);
   for (std::size_t begin = 0, number = 1; begin < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const TextRow row(path, number, text.substr(begin, end - begin), separators);

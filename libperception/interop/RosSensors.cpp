@@ -19,7 +19,13 @@ double numberAt(const char* bytes) {
   return static_cast<double>(value);
 }
 
-double valueAt(const char* bytes, std::uint8_t type) {
+/// `big`: the number's first byte is its most significant one.
+double valueAt(const char* bytes, std::uint8_t type, bool big) {
+  char turned[8];
+  if (big) {
+    std::reverse_copy(bytes, bytes + kSizes[type], turned);
+    bytes = turned;
+  }
   switch (type) {
     case PointField::kI8:
       return numberAt<std::int8_t>(bytes);
@@ -67,7 +73,7 @@ class Column {
     for (std::size_t row = 0; row < m_.height; ++row) {
       const char* at = m_.data.data() + row * m_.row_step + field_->offset;
       for (std::size_t i = 0; i < m_.width; ++i, at += m_.point_step)
-        use(valueAt(at, field_->datatype));
+        use(valueAt(at, field_->datatype, m_.is_bigendian != 0));
     }
   }
 
@@ -77,7 +83,6 @@ class Column {
 };
 
 void check(const PointCloud2& m) {
-  if (m.is_bigendian != 0) throw std::runtime_error("points of big-endian numbers");
   const std::uint64_t row = std::uint64_t{m.width} * m.point_step;
   if (m.height > 1 && m.row_step < row)
     throw std::runtime_error(fmt::format("rows of {} bytes for {} points of {} bytes", m.row_step,

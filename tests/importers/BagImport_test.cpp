@@ -48,7 +48,8 @@ class Message {
 };
 
 /// Two points with three coordinates and one more field.
-std::string cloudMessage(bool cdr, std::uint32_t second, const char* fourth = "intensity") {
+std::string cloudMessage(bool cdr, std::uint32_t second, const char* fourth = "intensity",
+                         bool big_endian = false) {
   Message m(cdr);
   m.header(second, "velodyne").put(std::uint32_t{1}).put(std::uint32_t{2}).put(std::uint32_t{4});
   std::uint32_t offset = 0;
@@ -56,12 +57,14 @@ std::string cloudMessage(bool cdr, std::uint32_t second, const char* fourth = "i
     m.text(name).put(offset).put(std::uint8_t{7}).put(std::uint32_t{1});
     offset += 4;
   }
-  m.put(std::uint8_t{0}).put(std::uint32_t{16}).put(std::uint32_t{32}).put(std::uint32_t{32});
+  m.put(static_cast<std::uint8_t>(big_endian));
+  m.put(std::uint32_t{16}).put(std::uint32_t{32}).put(std::uint32_t{32});
   const float points[] = {10, 1, -1, 0.25F, 20, -2, -1.5F, 0.5F};
   for (const float v : points) {
     std::uint32_t bits = 0;
     std::memcpy(&bits, &v, sizeof bits);
-    for (int shift = 0; shift < 32; shift += 8) m.put(static_cast<std::uint8_t>(bits >> shift));
+    for (int shift = 0; shift < 32; shift += 8)
+      m.put(static_cast<std::uint8_t>(bits >> (big_endian ? 24 - shift : shift)));
   }
   m.put(std::uint8_t{1});
   return m.bytes();
@@ -217,6 +220,49 @@ TEST_F(BagImport, AnMcapFileOfRos2GivesTheSame) {
   writeMcap("drive.mcap");
   ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 0) << error_;
   expectTheDrive();
+}
+
+TEST_F(BagImport, CloudsOfBigEndianNumbersAreRead) {
+  std::vector<Topic> topics = drive(true);
+  for (auto& [second, bytes] : topics.back().messages)
+    bytes = cloudMessage(true, second, "intensity", true);
+  writeMcap("drive.mcap", topics);
+  ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 0) << error_;
+  expectTheDrive();
+}
+
+TEST_F(BagImport, MessagesThatCameTwiceAreLeftOutAndCounted) {
+  std::vector<Topic> topics = drive(true);
+  for (Topic& topic : topics) {
+    const auto once = topic.messages;
+    topic.messages.clear();
+    for (const auto& message : once) topic.messages.insert(topic.messages.end(), 2, message);
+  }
+  writeMcap("drive.mcap", topics);
+  ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 0) << error_;
+  expectTheDrive();
+  EXPECT_EQ(result_.scans, 3);
+  EXPECT_EQ(result_.notes.back(),
+            "points: 3 messages came twice, with the same stamp and content: left out");
+}
+
+TEST_F(BagImport, ScansOfOneStampThatDifferAreKept) {
+  std::vector<Topic> topics = drive(true);
+  topics.back().messages.emplace_back(102, cloudMessage(true, 102, "ring"));
+  writeMcap("drive.mcap", topics);
+  ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 0) << error_;
+  EXPECT_EQ(result_.scans, 4);
+}
+
+TEST_F(BagImport, WhatNothingReadsIsNamedWithItsType) {
+  std::vector<Topic> topics = drive(true);
+  topics.back().name = "/points/draco",
+  topics.back().type = "point_cloud_interfaces/msg/Compressed";
+  writeMcap("drive.mcap", topics);
+  EXPECT_EQ(import("bag", {"--bag", file("drive.mcap")}), 66);
+  EXPECT_NE(error_.find("nothing here reads /points/draco of point_cloud_interfaces/Compressed"),
+            std::string::npos)
+      << error_;
 }
 
 TEST_F(BagImport, ARadarScanGivesItsReturnsInBothEncodings) {

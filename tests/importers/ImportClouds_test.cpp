@@ -56,6 +56,7 @@ class CloudFiles : public test::ImportRun {
 
 TEST_F(CloudFiles, EveryFormatGivesTheSamePoints) {
   const std::string text = "1 2 3 0.5\n-4 5.5 6 0.25\n";
+  write("excel.csv", "\xef\xbb\xbfx;y;z;intensity\r\n1;2;3;0,5\r\n-4;5,5;6;0,25\r\n");
   write("a.bin", bytesOf(rows_));
   writeGz("b.bin.gz", bytesOf(rows_));
   write("c.pcd", pcd("ascii") + text);
@@ -77,7 +78,7 @@ TEST_F(CloudFiles, EveryFormatGivesTheSamePoints) {
     EXPECT_EQ(cloud.intensity, (std::vector<float>{.5F, .25F})) << entry.path();
     ++formats;
   }
-  EXPECT_EQ(formats, 11);
+  EXPECT_EQ(formats, 12);
 }
 
 TEST_F(CloudFiles, RingsTimesAndStrangeColumnsAreUnderstood) {
@@ -181,12 +182,51 @@ TEST_F(CloudsImport, PosesOfTheLidarBecomeTheVehicles) {
   write("poses.txt",
         "1 0 0 7 0 1 0 0 0 0 1 0\n0 -1 0 9 1 0 0 0 0 0 1 0\n0 -1 0 9 1 0 0 2 0 0 1 0\n");
   ASSERT_EQ(import("clouds", with({"--poses", file("poses.txt")})), 0) << error_;
-  EXPECT_EQ(result_.notes,
-            std::vector<std::string>{"no --stamps: taken as 10 scans a second (--rate)"});
+  ASSERT_EQ(result_.notes.size(), 2u);
+  EXPECT_EQ(result_.notes[0], "no --stamps: taken as 10 scans a second (--rate)");
+  EXPECT_NE(result_.notes[1].find("10.bin: columns x y z intensity"), std::string::npos);
   const auto frames = framesOf("LIDAR_TOP");
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_TRUE(frames[0].ego.T_world_ego.isApprox(Pose3::Identity(), 1e-9));
   EXPECT_TRUE(frames[2].ego.T_world_ego.isApprox(makePose(2, 2, 0, kPi / 2), 1e-6));
+}
+
+/// 12 x 12 returns of a slope, with rings, in rows of five numbers.
+std::vector<float> fiveColumns() {
+  std::vector<float> numbers;
+  for (int k = 0; k < 12; ++k) {
+    for (int ring = 0; ring < 12; ++ring) {
+      const auto range = static_cast<float>(5 + ring), side = static_cast<float>(k * 5 % 12 - 6);
+      for (const float v : {range, side, 0.2F * range - 3, static_cast<float>(20 * (k % 9)),
+                            static_cast<float>(ring)})
+        numbers.push_back(v);
+    }
+  }
+  return numbers;
+}
+
+TEST_F(CloudsImport, ColumnsAreFoundFromTheDataAndSaid) {
+  for (const char* name : {"clouds/10.bin", "clouds/11.bin", "clouds/13.bin"})
+    write(name, bytesOf(fiveColumns()));
+  ASSERT_EQ(import("clouds", {"--clouds", file("clouds")}), 0) << error_;
+  EXPECT_NE(result_.notes.back().find("columns x y z intensity ring, intensity up to 255"),
+            std::string::npos)
+      << result_.notes.back();
+  const auto frames = framesOf("LIDAR_TOP");
+  ASSERT_EQ(frames.size(), 3u);
+  const auto& cloud = std::get<LidarCloud>(frames[0].data);
+  ASSERT_EQ(cloud.size(), 144u);
+  EXPECT_EQ(cloud.x[143], 16);
+  EXPECT_EQ(cloud.ring[143], 11);
+  EXPECT_NEAR(static_cast<double>(cloud.intensity[12]), 20 / 255., 0.005);
+}
+
+TEST_F(CloudsImport, AFileThatDoesNotEndWithARowIsRefused) {
+  for (const char* name : {"clouds/10.bin", "clouds/11.bin", "clouds/13.bin"})
+    write(name, bytesOf(fiveColumns()) + std::string(3, '\0'));
+  expectFault(65,
+              "10.bin: 2883 bytes, expected 20 a point (5 float32): 3 are left from byte 2880 on",
+              "clouds", {"--clouds", file("clouds")});
 }
 
 TEST_F(CloudsImport, StampedPosesAreInterpolatedAndTheirLackIsSaid) {
