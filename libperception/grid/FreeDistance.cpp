@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
+
+#include "libperception/grid/NearCorridor.h"
 
 namespace perception {
 namespace {
@@ -180,7 +183,7 @@ FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,
                           const std::vector<float>& weights, double least) {
   std::vector<Inside> inside;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
-  for (std::size_t i = 0; i < returns.size(); ++i) {
+  for (const std::uint32_t i : nearCorridor(corridor, corridor.max, returns)) {
     const Vector3 p = T_ego_world * returns[i];
     const ArcPlace place = arcPlace(corridor, p.x(), p.y());
     if (std::abs(place.d) > corridor.width / 2) continue;

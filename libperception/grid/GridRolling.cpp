@@ -62,7 +62,9 @@ class GridRolling final : public SafetyGrid {
     return cellsWhere(
         area,
         [=](const std::int16_t* begin, const std::int16_t* end) {
-          return *std::max_element(begin, end) >= least;
+          std::int16_t most = *begin;  // std::max_element() is not vectorized
+          for (; begin != end; ++begin) most = std::max(most, *begin);
+          return most >= least;
         },
         [this](double v) { return v > params().occupied; });
   }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
+#include "libperception/grid/NearCorridor.h"
 #include "libperception/weather/SensorVerdict.h"
 
 namespace perception {
@@ -35,9 +37,10 @@ Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
 /// more are doubted than not.
 bool inCloud(const Corridor& corridor, const GridScan& scan, double obstacle) {
   constexpr double kInto = 0.5;  // [m]
+  if (scan.weights.size() != scan.hits.size()) return false;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
   std::size_t doubted = 0, trusted = 0;
-  for (std::size_t i = 0; i < scan.weights.size(); ++i) {
+  for (const std::uint32_t i : nearCorridor(corridor, obstacle + kInto, scan.hits)) {
     const Vector3 p = T_ego_world * scan.hits[i];
     const ArcPlace place = arcPlace(corridor, p.x(), p.y());
     if (std::abs(place.d) > corridor.width / 2) continue;
@@ -108,7 +111,8 @@ void countReturns(const ObstacleScan& scan, PathAhead& path) {
   constexpr double kBefore = 0.2;  // [m] a cell begins before its returns
   constexpr double kInto = 0.5;    // [m]
   const Pose3 T_ego_world = path.corridor.T_world_ego.inverse();
-  for (std::size_t k = 0; k < scan.scan.hits.size(); ++k) {
+  const double end = path.free.distance + kInto;
+  for (const std::uint32_t k : nearCorridor(path.corridor, end, scan.scan.hits)) {
     const Vector3 p = T_ego_world * scan.scan.hits[k];
     const ArcPlace place = arcPlace(path.corridor, p.x(), p.y());
     const double into = place.s - path.free.distance;
@@ -154,12 +158,16 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
   const float travel = backward ? -1 : 1;
   obstacles.road = RoadHeights(backward);
   const double height_max = std::min(returns.height_max, clearance);
+  const Eigen::Matrix3d R = frame.ego.T_world_ego.linear();  // by hand: Eigen calls a function
+  const Vector3 t = frame.ego.T_world_ego.translation();
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const double height = static_cast<double>(returns.height[i]);
     if (height <= kMirrored || travel * returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
-    const Vector3 place = frame.ego.T_world_ego * Vector3(static_cast<double>(returns.x[i]),
-                                                          static_cast<double>(returns.y[i]),
-                                                          static_cast<double>(returns.z[i]));
+    const auto x = static_cast<double>(returns.x[i]), y = static_cast<double>(returns.y[i]),
+               z = static_cast<double>(returns.z[i]);
+    const Vector3 place(R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + t.x(),
+                        R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + t.y(),
+                        R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + t.z());
     const bool hit = height > returns.height_min && height < height_max;
     (hit ? scan.hits : scan.clear).push_back(place);
     if (height < kOnRoad)
