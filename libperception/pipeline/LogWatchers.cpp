@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "libperception/pipeline/LogRecorder.h"
+#include "libperception/sensors/CObservationObjectDetections.h"
 #include "libperception/sensors/FromObservation.h"
 
 namespace perception {
@@ -34,7 +35,7 @@ void LogFacts::look(const mrpt::obs::CObservation& observation) {
       if (!weather) weather = weatherOf(comment->text);
     }
   }
-  if (camera || !isSensorData(observation)) return;
+  if (camera || dynamic_cast<const CObservationObjectDetections*>(&observation) == nullptr) return;
   const auto frame = frameFromObservation(observation);
   const auto* detections = frame ? std::get_if<ObjectDetections>(&frame->data) : nullptr;
   if (!detections || detections->camera.width <= 0) return;

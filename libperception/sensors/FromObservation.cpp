@@ -9,7 +9,9 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "libperception/sensors/CObservationLidarScan.h"
 #include "libperception/sensors/CObservationObjectDetections.h"
@@ -38,15 +40,18 @@ void scaleIntensity(std::vector<float>& intensity) {
   for (float& value : intensity) value = std::min(1.F, value * scale);
 }
 
-/// Removes the elements of an array whose `keep` is not set; keeps the order.
+/// Removes the elements of an array at the indices `bad`, which are ascending; keeps the order.
 template <class Number>
-void filterArray(std::vector<Number>& values, const std::vector<char>& keep) {
+void filterArray(std::vector<Number>& values, const std::vector<std::size_t>& bad) {
   if (values.empty()) return;
-  std::size_t to = 0;
-  for (std::size_t i = 0; i < keep.size(); ++i) {
-    if (keep[i]) values[to++] = values[i];
+  const auto begin = values.begin();
+  auto to = begin + static_cast<std::ptrdiff_t>(bad.front());
+  for (std::size_t k = 0; k < bad.size(); ++k) {
+    const std::size_t end = k + 1 < bad.size() ? bad[k + 1] : values.size();
+    to = std::move(begin + static_cast<std::ptrdiff_t>(bad[k] + 1),
+                   begin + static_cast<std::ptrdiff_t>(end), to);
   }
-  values.resize(to);
+  values.erase(to, values.end());
 }
 
 bool arraysAgree(const LidarCloud& c) {
@@ -221,34 +226,30 @@ const Decoder* decoderFor(const CObservation& observation) {
 }  // namespace
 
 void dropBadPoints(LidarCloud& cloud, DecodeCounts& counts) {
-  std::vector<char> keep(cloud.size());
-  const std::uint64_t dropped_before = counts.dropped();
+  std::vector<std::size_t> bad;
   counts.points += cloud.size();
   // A return at the largest range may be rounded beyond it, as its coordinates are floats.
   const double limit = static_cast<double>(cloud.max_range) * (1 + 1e-6);
+  const double most = cloud.max_range > 0 ? limit * limit : std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double x = cloud.x[i], y = cloud.y[i], z = cloud.z[i];
     const double range2 = x * x + y * y + z * z;
-    if (!std::isfinite(range2)) {
-      ++counts.not_finite;
-    } else if (!(range2 > 0)) {
-      ++counts.no_range;
-    } else if (cloud.max_range > 0 && range2 > limit * limit) {
-      ++counts.beyond_range;
-    } else {
-      keep[i] = 1;
-    }
+    if (range2 > 0 && range2 <= most) continue;
+    bad.push_back(i);
+    ++(!std::isfinite(range2) ? counts.not_finite
+       : range2 > 0           ? counts.beyond_range
+                              : counts.no_range);
   }
-  if (counts.dropped() == dropped_before) return;
-  filterArray(cloud.x, keep);
-  filterArray(cloud.y, keep);
-  filterArray(cloud.z, keep);
-  filterArray(cloud.intensity, keep);
-  filterArray(cloud.ring, keep);
-  filterArray(cloud.time_offset, keep);
-  filterArray(cloud.echo, keep);
-  filterArray(cloud.pulse_width, keep);
-  filterArray(cloud.label, keep);
+  if (bad.empty()) return;
+  filterArray(cloud.x, bad);
+  filterArray(cloud.y, bad);
+  filterArray(cloud.z, bad);
+  filterArray(cloud.intensity, bad);
+  filterArray(cloud.ring, bad);
+  filterArray(cloud.time_offset, bad);
+  filterArray(cloud.echo, bad);
+  filterArray(cloud.pulse_width, bad);
+  filterArray(cloud.label, bad);
 }
 
 bool isSensorData(const CObservation& observation) { return decoderFor(observation) != nullptr; }
