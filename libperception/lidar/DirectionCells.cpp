@@ -28,9 +28,10 @@ inline __attribute__((always_inline)) RowColumn rowColumnOf(float dx, float dy, 
 }
 
 /// Cell and range [m] of each point; without branches, so that the compiler vectorizes it.
-PERCEPTION_WIDEST void placeAll(const float* __restrict x, const float* __restrict y,
-                                const float* __restrict z, std::size_t count, float sx, float sy,
-                                float sz, std::int32_t* __restrict place, float* __restrict range) {
+PERCEPTION_WIDEST void placePoints(const float* __restrict x, const float* __restrict y,
+                                   const float* __restrict z, std::size_t count, float sx, float sy,
+                                   float sz, std::int32_t* __restrict place,
+                                   float* __restrict range) {
   for (std::size_t i = 0; i < count; ++i) {
     const float dx = x[i] - sx, dy = y[i] - sy, dz = z[i] - sz;
     const RowColumn at = rowColumnOf(dx, dy, dz, std::sqrt(dx * dx + dy * dy));
@@ -39,11 +40,21 @@ PERCEPTION_WIDEST void placeAll(const float* __restrict x, const float* __restri
   }
 }
 
+/// The same without ranges, of offsets from the sensor.
+PERCEPTION_WIDEST void placeOffsets(const float* __restrict dx, const float* __restrict dy,
+                                    const float* __restrict dz, std::size_t count,
+                                    DirectionCells::Place* __restrict places) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const RowColumn at = rowColumnOf(dx[i], dy[i], dz[i], std::sqrt(dx[i] * dx[i] + dy[i] * dy[i]));
+    places[i] = {static_cast<std::int16_t>(at.column), static_cast<std::int16_t>(at.row)};
+  }
+}
+
 }  // namespace
 
-DirectionCells::Place DirectionCells::placeOf(float dx, float dy, float dz) {
-  const RowColumn at = rowColumnOf(dx, dy, dz, std::sqrt(dx * dx + dy * dy));
-  return {static_cast<std::int16_t>(at.column), static_cast<std::int16_t>(at.row)};
+void DirectionCells::placeAll(const float* dx, const float* dy, const float* dz, std::size_t count,
+                              Place* places) {
+  placeOffsets(dx, dy, dz, count, places);
 }
 
 DirectionCells::DirectionCells(const EgoPoints& points)
@@ -55,21 +66,14 @@ DirectionCells::DirectionCells(const EgoPoints& points)
   std::array<float, kBlock> range;
   for (std::size_t first = 0; first < points.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, points.size() - first);
-    placeAll(&points.x[first], &points.y[first], &points.z[first], count, sx, sy, sz, place.data(),
-             range.data());
+    placePoints(&points.x[first], &points.y[first], &points.z[first], count, sx, sy, sz,
+                place.data(), range.data());
     for (std::size_t k = 0; k < count; ++k) {
       Cell& cell = cells_[static_cast<std::size_t>(place[k])];
       cell.nearest = std::min(cell.nearest, range[k]);
       cell.farthest = std::max(cell.farthest, range[k]);
     }
   }
-}
-
-const DirectionCells::Cell& DirectionCells::at(int column, int row) const {
-  static const Cell none;
-  if (row < 0 || row >= kRows) return none;
-  const int wrapped = (column % kColumns + kColumns) % kColumns;
-  return cells_[static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(wrapped)];
 }
 
 }  // namespace perception

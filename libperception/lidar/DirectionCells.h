@@ -27,10 +27,16 @@ class DirectionCells {
 
   explicit DirectionCells(const EgoPoints& points);
 
-  /// Direction of an offset from the sensor [m]; elevations beyond the rows are in the outermost.
-  static Place placeOf(float dx, float dy, float dz);
+  /// Directions of offsets from the sensor [m]; elevations beyond the rows are in the outermost.
+  static void placeAll(const float* dx, const float* dy, const float* dz, std::size_t count,
+                       Place* places);
   /// Columns wrap around; rows beyond the cells are empty.
-  const Cell& at(int column, int row) const;
+  const Cell& at(int column, int row) const {
+    static constexpr Cell kNone{};
+    if (row < 0 || row >= kRows) return kNone;
+    if (column < 0 || column >= kColumns) column = (column % kColumns + kColumns) % kColumns;
+    return cells_[static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column)];
+  }
 
  private:
   std::vector<Cell> cells_;  ///< row by row

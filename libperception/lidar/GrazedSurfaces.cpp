@@ -41,7 +41,19 @@ struct End {
   std::optional<Vector2> inner;    ///< [m] mean of the one beside it
 };
 
+/// About the places of returns [m].
+struct PlaceBox {
+  Vector2 low = Vector2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  void add(const Vector2& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
+  /// Not above that of any return in it, rounding included.
+  double squaredDistance(const Vector2& p) const {
+    const Vector2 off = (low - p).cwiseMax(p - high).cwiseMax(0.0);
+    return off.squaredNorm();
+  }
+};
+
 struct Columns {
+  PlaceBox box;
   double low = 0, high = 0;   ///< [rad] azimuth; low in [0, 2 pi)
   float bottom = 0, top = 0;  ///< [m] above the ground
   float mostly_above = 0;     ///< [m] most of its returns are higher
@@ -105,6 +117,7 @@ class SurfaceFinder {
       heights.push_back(places_.height[i]);
       columns.bottom = std::min(columns.bottom, places_.height[i]);
       columns.top = std::max(columns.top, places_.height[i]);
+      columns.box.add(placeOf(i));
       nearest2 = std::min(nearest2, (placeOf(i) - sensor_.head<2>()).squaredNorm());
     }
     columns.nearest = std::sqrt(nearest2);
@@ -235,9 +248,16 @@ class SurfaceFinder {
   /// Horizontal distance of the nearest returns of two groups [m]; at most `within`.
   double distanceOf(std::uint32_t a, std::uint32_t b, double within) const {
     double least = within * within;
-    for (const std::uint32_t i : groups_[b])
-      for (const std::uint32_t j : groups_[a])
-        least = std::min(least, (placeOf(i) - placeOf(j)).squaredNorm());
+    std::vector<Vector2> facing;
+    for (const std::uint32_t j : groups_[a])
+      if (const Vector2 p = placeOf(j); columns_[b].box.squaredDistance(p) < least)
+        facing.push_back(p);
+    if (facing.empty()) return within;
+    for (const std::uint32_t i : groups_[b]) {
+      const Vector2 p = placeOf(i);
+      if (columns_[a].box.squaredDistance(p) >= least) continue;
+      for (const Vector2& other : facing) least = std::min(least, (p - other).squaredNorm());
+    }
     return std::sqrt(least);
   }
 

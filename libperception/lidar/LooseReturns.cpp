@@ -1,6 +1,9 @@
 #include "libperception/lidar/LooseReturns.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "libperception/measurement/PlacedReturns.h"
@@ -48,11 +51,21 @@ void forCellsAbout(const EgoPoints& all, const DirectionCells& cells,
                    const std::vector<std::uint32_t>& points, float slope, const Use& use) {
   const auto sx = static_cast<float>(all.sensor.x()), sy = static_cast<float>(all.sensor.y()),
              sz = static_cast<float>(all.sensor.z());
-  for (std::uint32_t k = 0; k < points.size(); ++k) {
-    const std::uint32_t i = points[k];
-    const float dx = all.x[i] - sx, dy = all.y[i] - sy, dz = all.z[i] - sz;
-    const float range = std::sqrt(dx * dx + dy * dy + dz * dz);
-    use(k, cellsAbout(cells, DirectionCells::placeOf(dx, dy, dz), range, kBend + slope * range));
+  constexpr std::size_t kBlock = 256;  // points that fit in the L1 cache
+  std::array<float, kBlock> dx, dy, dz;
+  std::array<DirectionCells::Place, kBlock> place;
+  for (std::size_t first = 0; first < points.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, points.size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = points[first + k];
+      dx[k] = all.x[i] - sx, dy[k] = all.y[i] - sy, dz[k] = all.z[i] - sz;
+    }
+    DirectionCells::placeAll(dx.data(), dy.data(), dz.data(), count, place.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      const float range = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
+      use(static_cast<std::uint32_t>(first + k),
+          cellsAbout(cells, place[k], range, kBend + slope * range));
+    }
   }
 }
 

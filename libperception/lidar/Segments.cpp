@@ -46,7 +46,9 @@ class SegmentFinder {
     std::vector<LinkedReturn> returns;
     returns.reserve(members.size());
     for (const std::uint32_t i : members) {
-      const double range = std::hypot(x_[i], y_[i]);
+      const auto x = static_cast<double>(x_[i]), y = static_cast<double>(y_[i]);
+      // As hypot() of floats, without its call.
+      const auto range = static_cast<double>(static_cast<float>(std::sqrt(x * x + y * y)));
       const double length =
           std::clamp(link_.at_zero + link_.slope * range, link_.least, link_.most) * level.share;
       returns.push_back({x_[i], y_[i], height_[i] * static_cast<float>(level.vertical),

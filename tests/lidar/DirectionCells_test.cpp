@@ -27,7 +27,9 @@ EgoPoints pointsAt(const std::vector<std::pair<Direction, double>>& list,
 
 DirectionCells::Place placeOf(const Direction& d) {
   const EgoPoints p = pointsAt({{d, 7}});
-  return DirectionCells::placeOf(p.x[0], p.y[0], p.z[0]);
+  DirectionCells::Place place{};
+  DirectionCells::placeAll(p.x.data(), p.y.data(), p.z.data(), 1, &place);
+  return place;
 }
 
 TEST(DirectionCells, PlacesAreStepsOfAzimuthAndElevation) {
