@@ -62,9 +62,7 @@ class GridRolling final : public SafetyGrid {
     return cellsWhere(
         area,
         [=](const std::int16_t* begin, const std::int16_t* end) {
-          std::int16_t most = *begin;  // std::max_element() is not vectorized
-          for (; begin != end; ++begin) most = std::max(most, *begin);
-          return most >= least;
+          return LogOddsColumn::mayReach(begin, static_cast<int>(end - begin), least);
         },
         [this](double v) { return v > params().occupied; });
   }

@@ -65,6 +65,16 @@ class LogOddsColumn {
     }
   }
 
+  /// False: all values of the column are below `least`.
+  PERCEPTION_LANES static bool mayReach(const std::int16_t* values, int layers,
+                                        std::int16_t least) {
+    const Short8 leasts = eight(least);
+    Short8 reached{};
+    for (; layers > 0; layers -= 8, values += 8) reached |= load(values, layers) >= leasts;
+    const auto halves = reinterpret_cast<Long2>(reached);
+    return (halves[0] | halves[1]) != 0;
+  }
+
  private:
   using Short8 = std::int16_t __attribute__((vector_size(16)));
 
