@@ -1,6 +1,8 @@
 #include "libperception/lidar/LidarFrontEnd.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "libperception/lidar/JudgedClusters.h"
@@ -63,6 +65,21 @@ class ClusterModel final : public FootprintModel {
  private:
   EvidenceMemory memory_;
 };
+
+/// Takes obstacles out that lie beyond `reach` [m] from the sensor by more than what is looked at
+/// of an object that begins within: none of theirs would be measured.
+void dropUnreachable(const EgoPoints& points, double reach, std::vector<std::uint32_t>& obstacles) {
+  constexpr double kInto = 10;  // [m] of such an object: a truck, most of a bus (assumed)
+  const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
+             most = static_cast<float>((reach + kInto) * (reach + kInto));
+  std::size_t kept = 0;
+  for (const std::uint32_t i : obstacles) {
+    const float dx = points.x[i] - sx, dy = points.y[i] - sy;
+    obstacles[kept] = i;
+    kept += dx * dx + dy * dy <= most;
+  }
+  obstacles.resize(kept);
+}
 
 /// Positions, heights and trust of the obstacles.
 void gatherObstacles(const LidarCloud& cloud, LidarDetections& found) {
@@ -148,6 +165,7 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   splitGround(*cloud, found.points, found.height,
               {obstacles.height_min, obstacles.height_max, obstacles.min_trust}, found.ground,
               found.obstacles);
+  dropUnreachable(found.points, reach_, found.obstacles);
   gatherObstacles(*cloud, found);
   std::optional<DirectionCells> cells;
   if (classifier_ || frame.causes.any()) cells.emplace(found.points);
