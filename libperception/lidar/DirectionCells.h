@@ -30,6 +30,10 @@ class DirectionCells {
   /// Directions of offsets from the sensor [m]; elevations beyond the rows are in the outermost.
   static void placeAll(const float* dx, const float* dy, const float* dz, std::size_t count,
                        Place* places);
+  /// Whether all places beside it are cells that lie row by row, without wrapping around.
+  static bool isWithin(const Place& p) {
+    return p.row > 0 && p.row < kRows - 1 && p.column > 0 && p.column < kColumns - 1;
+  }
   /// Columns wrap around; rows beyond the cells are empty.
   const Cell& at(int column, int row) const {
     static constexpr Cell kNone{};

@@ -34,13 +34,22 @@ struct CellsAbout {
 CellsAbout cellsAbout(const DirectionCells& cells, const DirectionCells::Place& place, float range,
                       float nearer) {
   CellsAbout about;
-  for (int row = place.row - 1; row <= place.row + 1; ++row) {
-    for (int column = place.column - 1; column <= place.column + 1; ++column) {
-      const DirectionCells::Cell& cell = cells.at(column, row);
-      if (cell.empty() || cell.farthest < range - nearer) continue;
-      ++(cell.farthest > range + kBend ? about.passed : about.solid);
+  const float least = range - nearer, behind = range + kBend;
+  const auto count = [&](const DirectionCells::Cell& cell) {  // without branches
+    const int tells = !cell.empty() & !(cell.farthest < least);
+    const int passed = tells & (cell.farthest > behind);
+    about.passed += passed, about.solid += tells - passed;
+  };
+  if (DirectionCells::isWithin(place)) {
+    for (int row = place.row - 1; row <= place.row + 1; ++row) {
+      const DirectionCells::Cell* cell = &cells.at(place.column - 1, row);
+      count(cell[0]), count(cell[1]), count(cell[2]);
     }
+    return about;
   }
+  for (int row = place.row - 1; row <= place.row + 1; ++row)
+    for (int column = place.column - 1; column <= place.column + 1; ++column)
+      count(cells.at(column, row));
   return about;
 }
 

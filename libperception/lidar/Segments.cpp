@@ -26,7 +26,15 @@ class SegmentFinder {
         sensor_(sensor),
         link_(link),
         min_points_(min_points - 1e-6),
-        max_size_(max_size) {}
+        max_size_(max_size),
+        length_(x.size()) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const auto px = static_cast<double>(x[i]), py = static_cast<double>(y[i]);
+      // As hypot() of floats, without its call.
+      const auto range = static_cast<double>(static_cast<float>(std::sqrt(px * px + py * py)));
+      length_[i] = std::clamp(link.at_zero + link.slope * range, link.least, link.most);
+    }
+  }
 
   std::vector<Segment> find() {
     std::vector<std::uint32_t> all(x_.size());
@@ -46,13 +54,8 @@ class SegmentFinder {
     std::vector<LinkedReturn> returns;
     returns.reserve(members.size());
     for (const std::uint32_t i : members) {
-      const auto x = static_cast<double>(x_[i]), y = static_cast<double>(y_[i]);
-      // As hypot() of floats, without its call.
-      const auto range = static_cast<double>(static_cast<float>(std::sqrt(x * x + y * y)));
-      const double length =
-          std::clamp(link_.at_zero + link_.slope * range, link_.least, link_.most) * level.share;
       returns.push_back({x_[i], y_[i], height_[i] * static_cast<float>(level.vertical),
-                         static_cast<float>(length)});
+                         static_cast<float>(length_[i] * level.share)});
     }
     const Partition linked = linkInSpace(returns, static_cast<float>(link_.least * level.share),
                                          static_cast<float>(link_.most * level.share));
@@ -156,6 +159,7 @@ class SegmentFinder {
   const std::optional<Vector3>& sensor_;
   const LinkLength& link_;
   const double min_points_, max_size_;
+  std::vector<double> length_;  ///< [m] link of each return, at the first level's share of 1
   std::vector<Segment> segments_;
 };
 
