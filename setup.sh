@@ -48,7 +48,7 @@ packages=(
   libzstd-dev            # rawlogs of newer MRPT; MCAP
   liblz4-dev libbz2-dev  # MCAP, ROS bags
   libssl-dev             # SHA-256 of inputs
-  libsqlite3-dev         # database of a batch
+  libsqlite3-dev         # database of a batch, recordings of ROS 2
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG

@@ -3,49 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "libperception/core/Error.h"
+#include "libperception/importers/BagTypes.h"
 
 namespace perception {
 namespace {
 
-using ros::decoded;
-
 constexpr const char* kPoseDoc = "x, y, z [m], yaw, pitch, roll [deg] on the vehicle";
 
-bool ends(const std::string& text, const std::string& with) {
-  return text.size() >= with.size() &&
-         text.compare(text.size() - with.size(), with.size(), with) == 0;
-}
-
-// tf of ROS 1 wrote frames with a slash before.
-std::string frameName(const std::string& name) {
-  return !name.empty() && name[0] == '/' ? name.substr(1) : name;
-}
-
-void addPose(BagContents::Poses& to, const ros::Header& header, const ros::Pose& pose,
-             const std::string& frame) {
-  to.frame = frameName(frame);
-  to.poses.push_back({header.stamp, poseOf(pose)});
-}
-
-/// Takes what is needed before the sensors' data.
-void take(const BagMessage& m, BagContents& contents) {
-  const std::string& type = m.topic->type;
-  const auto encoding = m.topic->encoding;
-  if (type == "tf2_msgs/TFMessage" || type == "tf/tfMessage") {
-    for (const auto& t : decoded<ros::TFMessage>(m.bytes, encoding).transforms)
-      contents.tree.add(frameName(t.header.frame_id), frameName(t.child_frame_id), t.header.stamp,
-                        poseOf(t.transform), ends(m.topic->name, "tf_static"));
-  } else if (type == "nav_msgs/Odometry") {
-    const auto odometry = decoded<ros::Odometry>(m.bytes, encoding);
-    addPose(contents.poses[m.topic->name], odometry.header, odometry.pose, odometry.child_frame_id);
-  } else if (type == "geometry_msgs/PoseStamped") {
-    const auto pose = decoded<ros::PoseStamped>(m.bytes, encoding);
-    addPose(contents.poses[m.topic->name], pose.header, pose.pose, "");
-  } else if (type == "sensor_msgs/CameraInfo" && contents.cameras.count(m.topic->name) == 0) {
-    contents.cameras[m.topic->name] = decoded<ros::CameraInfo>(m.bytes, encoding);
+/// The fields of a message's definition, those of its parts left out: "Header header, float32 x".
+std::string fieldsOf(const std::string& definition) {
+  std::istringstream lines(definition);
+  std::string fields;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty() && line[0] == '=') break;  // types of the fields follow
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string type, name, next;
+    words >> type >> name;
+    const bool constant = name.find('=') != std::string::npos || (words >> next && next[0] == '=');
+    if (!name.empty() && !constant) fields += (fields.empty() ? "" : ", ") + type + " " + name;
   }
+  constexpr std::size_t kMost = 400;
+  return fields.size() > kMost ? fields.substr(0, kMost) + " ..." : fields;
 }
 
 }  // namespace
@@ -76,11 +57,11 @@ Pose3 poseOfNumbers(const std::vector<double>& p) {
   return makePose(p[0], p[1], p[2], radians(p[3]), radians(p[4]), radians(p[5]));
 }
 
-BagContents readContents(const std::vector<std::string>& files,
-                         const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+BagContents readContents(const std::string& path) {
+  std::uint64_t messages = 0;
   BagContents contents;
   std::map<std::string, std::pair<std::uint64_t, std::string>> bad;  // by topic: messages, first
-  for (const std::string& file : files) {
+  for (const std::string& file : bagFiles(path)) {
     const auto bag = openBag(file);
     BagMessage message;
     while (bag->next(message)) {
@@ -89,16 +70,20 @@ BagContents readContents(const std::vector<std::string>& files,
       row.first = std::min(row.first, message.stamp);
       row.last = std::max(row.last, message.stamp);
       try {
-        if (message.topic->unknown_encoding.empty()) take(message, contents);
+        const BagType* const type = bagType(message.topic->type);
+        if (type != nullptr && type->note != nullptr && message.topic->unknown_encoding.empty())
+          type->note(message, contents);
       } catch (const std::runtime_error& e) {
         if (dynamic_cast<const Error*>(&e) != nullptr) throw;
         auto& [count, first] = bad[message.topic->name];
-        if (count++ == 0) first = fmt::format("{}: byte {}: {}", file, message.offset, e.what());
+        if (count++ == 0) first = fmt::format("{}: {}: {}", file, message.place(), e.what());
       }
-      progress(bag->bytesRead(), bag->fileBytes());
+      ++messages;
     }
     contents.faults.insert(contents.faults.end(), bag->faults().begin(), bag->faults().end());
   }
+  if (const std::string fault = faultOfBagFolder(path, messages); !fault.empty())
+    contents.faults.push_back(fault);
   for (const auto& [topic, fault] : bad)
     contents.faults.push_back(fmt::format("{}: {} unreadable messages left out, the first: {}",
                                           topic, fault.first, fault.second));
@@ -109,21 +94,21 @@ BagContents readContents(const std::vector<std::string>& files,
 }
 
 std::string useOfType(const std::string& type) {
-  static const std::map<std::string, std::string> uses = {
-      {"sensor_msgs/PointCloud2", "lidar or radar scans"},
-      {"radar_msgs/RadarScan", "radar scans"},
-      {"vision_msgs/Detection3DArray", "boxes, if the INI has [topic.TOPIC]"},
-      {"sensor_msgs/Image", "images"},
-      {"sensor_msgs/CompressedImage", "images"},
-      {"sensor_msgs/CameraInfo", "camera"},
-      {"sensor_msgs/NavSatFix", "GPS"},
-      {"sensor_msgs/Imu", "inertial unit"},
-      {"nav_msgs/Odometry", "poses"},
-      {"geometry_msgs/PoseStamped", "poses"},
-      {"tf2_msgs/TFMessage", "frames, poses"},
-      {"tf/tfMessage", "frames, poses"}};
-  const auto found = uses.find(type);
-  return found == uses.end() ? "" : found->second;
+  const BagType* const row = bagType(type);
+  return row == nullptr ? "" : row->use;
+}
+
+std::vector<std::string> unreadTopics(const BagContents& contents) {
+  std::vector<std::string> topics;
+  for (const auto& [name, row] : contents.topics) {
+    if (row.topic.unknown_encoding.empty() && !useOfType(row.topic.type).empty()) continue;
+    const std::string fields = fieldsOf(row.topic.definition);
+    topics.push_back(fmt::format(
+        "not read: {}: {} messages of {}{}{}", name, row.messages, row.topic.type,
+        row.topic.unknown_encoding.empty() ? "" : ", encoding " + row.topic.unknown_encoding,
+        fields.empty() ? "" : ": " + fields));
+  }
+  return topics;
 }
 
 std::string listOf(const BagContents& contents) {
@@ -138,6 +123,8 @@ std::string listOf(const BagContents& contents) {
                                 : "not: encoding " + row.topic.unknown_encoding;
     text += fmt::format("{:<36} {:<30} {:>8} {:>8}  {}\n", name, row.topic.type, row.messages, rate,
                         use.empty() ? "not" : use);
+    if (const std::string fields = fieldsOf(row.topic.definition); use.empty() && !fields.empty())
+      text += fmt::format("{:<36} {}\n", "", fields);
   }
   return text;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,9 +45,10 @@ struct BagContents {
     std::uint64_t messages = 0;
     Stamp first, last;  ///< of recording
   };
-  /// Poses of one topic: nav_msgs/Odometry, geometry_msgs/PoseStamped.
+  /// Poses of one topic.
   struct Poses {
-    std::string frame;  ///< whose poses they are; empty: not said
+    std::string frame;     ///< whose poses they are; empty: not said
+    bool on_call = false;  ///< maybe a plan: taken where the INI says so
     std::vector<StampedPose> poses;
   };
 
@@ -54,15 +56,22 @@ struct BagContents {
   TransformTree tree;
   std::map<std::string, Poses> poses;              ///< by topic
   std::map<std::string, ros::CameraInfo> cameras;  ///< first message by topic
+  std::map<std::string, std::string> metadata;     ///< of devices, by topic
+  std::set<std::string> lidar_packets;             ///< Ouster's topics that are not of the
+                                                   ///< inertial unit alone
   std::vector<std::string> faults;                 ///< damage, messages that cannot be read
 };
 
-/// Reads all messages once. `progress(done, total)` in bytes.
-BagContents readContents(const std::vector<std::string>& files,
-                         const std::function<void(std::uint64_t, std::uint64_t)>& progress);
+/// Reads all messages of a file or folder once.
+BagContents readContents(const std::string& path);
 
-/// One line a topic: messages, type, rate, and what the import makes of it.
+/// One line a topic: messages, type, rate, and what the import makes of it; the fields of what it
+/// does not read.
 std::string listOf(const BagContents& contents);
+
+/// A line for each topic that the import does not read: messages, type and, where its definition
+/// travels with the recording, fields.
+std::vector<std::string> unreadTopics(const BagContents& contents);
 
 /// What the import makes of messages of a type; empty: nothing.
 std::string useOfType(const std::string& type);

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <string_view>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/BagContents.h"
+#include "libperception/importers/BagPackets.h"
+#include "libperception/importers/BagTypes.h"
 #include "libperception/importers/ImportGps.h"
 #include "libperception/importers/Importer.h"
-#include "libperception/interop/RosScene.h"
 #include "libperception/interop/RosSensors.h"
 #include "libperception/sensors/Conversions.h"
 
@@ -25,11 +27,15 @@ constexpr double kSorted = 1;
 /// [s] Poses are written from this long before the first to this long after the last sensor data.
 constexpr double kBagPoseMargin = 0.5;
 
-bool isCloud(const std::string& type) { return type == "sensor_msgs/PointCloud2"; }
-bool isRadar(const std::string& type) { return type == "radar_msgs/RadarScan"; }
-bool isBoxes(const std::string& type) { return type == "vision_msgs/Detection3DArray"; }
-bool isImage(const std::string& type) {
-  return type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage";
+BagType::Role roleOf(const BagTopic& topic) {
+  const BagType* const type = bagType(topic.type);
+  return type != nullptr && topic.unknown_encoding.empty() ? type->role : BagType::Role::kOther;
+}
+
+bool isOuster(const BagTopic& topic) {
+  constexpr std::string_view kEnd = "/PacketMsg";
+  return topic.type.size() > kEnd.size() &&
+         topic.type.substr(topic.type.size() - kEnd.size()) == kEnd;
 }
 
 /// "/camera/image_raw" as the label of a section: camera_image_raw.
@@ -43,8 +49,8 @@ std::string labelOf(const std::string& topic) {
 /// The import of one recording.
 class BagImport {
  public:
-  BagImport(std::vector<std::string> files, Config& config, ImportLog& log)
-      : files_(std::move(files)), config_(config), log_(log) {}
+  BagImport(const std::string& path, Config& config, ImportLog& log)
+      : path_(path), files_(bagFiles(path)), config_(config), log_(log) {}
   void run();
 
  private:
@@ -57,6 +63,9 @@ class BagImport {
   void readSensors();
   void take(const BagMessage& message);
   void takeSensor(const BagMessage& message, const BagTopicParams& params);
+  std::string metadataFor(const std::string& topic) const;
+  void takeFrame(const std::string& topic, const ros::Header& header, const BagTopicParams& params,
+                 SensorFrame&& frame);
   std::shared_ptr<mrpt::obs::CObservation> imuObservation(const ros::Imu& imu,
                                                           const std::string& label);
   Pose3 mounting(const ros::Header& header, const BagTopicParams& params);
@@ -65,6 +74,7 @@ class BagImport {
   void flush(std::optional<Stamp> until);
   void writePoses(Stamp until);
 
+  std::string path_;
   std::vector<std::string> files_;
   Config& config_;
   ImportLog& log_;
@@ -79,6 +89,7 @@ class BagImport {
   std::size_t next_pose_ = 0;
   std::multimap<Stamp, std::function<void()>> queue_;
   std::optional<Stamp> last_;
+  std::map<std::string, std::unique_ptr<BagPackets>> packets_;  ///< by topic
   std::set<std::string> unplaced_;  ///< frames without a place on the vehicle
   std::map<std::string, std::pair<std::uint64_t, std::string>> bad_;
 };
@@ -142,7 +153,9 @@ std::vector<StampedPose> BagImport::posesOfTopic(const std::string& topic) const
 void BagImport::choosePoses() {
   std::string source = params_.poses;
   if (source.empty() && !contents_.tree.movesIn(base_).empty()) source = "tf";
-  if (source.empty() && !contents_.poses.empty()) source = contents_.poses.begin()->first;
+  for (const auto& [topic, poses] : contents_.poses) {
+    if (source.empty() && !poses.on_call) source = topic;
+  }
   if (source.empty() || source == "none") {
     log_.note("no poses are taken: they are found from GPS and inertial unit, or by odometry");
     return;
@@ -164,13 +177,13 @@ void BagImport::choosePoses() {
 /// The frames are the scans of the first cloud topic, else of the first radar, else the images of
 /// the first camera, else the boxes of the first detector.
 void BagImport::chooseFrames() {
-  for (const auto& wanted : {&isCloud, &isRadar, &isImage, &isBoxes}) {
+  using Role = BagType::Role;
+  for (const Role wanted : {Role::kCloud, Role::kRadar, Role::kImage, Role::kBoxes}) {
     for (const auto& [name, row] : contents_.topics) {
       const auto params = topic_params_.find(name);
-      const bool used =
-          params == topic_params_.end() ? !isBoxes(row.topic.type) : params->second.use;
-      if (frames_topic_.empty() && used && row.topic.unknown_encoding.empty() &&
-          wanted(row.topic.type))
+      const bool used = params == topic_params_.end() ? wanted != Role::kBoxes : params->second.use;
+      const bool silent = isOuster(row.topic) && contents_.lidar_packets.count(name) == 0;
+      if (frames_topic_.empty() && used && !silent && roleOf(row.topic) == wanted)
         frames_topic_ = name;
     }
   }
@@ -239,49 +252,48 @@ std::shared_ptr<mrpt::obs::CObservation> BagImport::imuObservation(const ros::Im
   return out;
 }
 
+/// A sensor's message, or a part of one turn of a lidar in packets.
 void BagImport::takeSensor(const BagMessage& message, const BagTopicParams& params) {
-  const auto encoding = message.topic->encoding;
-  SensorFrame frame;
-  ros::Header header;
-  frame.sensor = params.label;
-  if (isCloud(message.topic->type)) {
-    const auto cloud = ros::decoded<ros::PointCloud2>(message.bytes, encoding);
-    using Kind = BagTopicParams::Kind;
-    header = cloud.header;
-    if (params.kind == Kind::kRadar || (params.kind == Kind::kAuto && ros::isOfRadar(cloud)))
-      frame.data = ros::returnsOf(cloud, params.rate_scale);
-    else
-      frame.data = ros::cloudOf(cloud, params.intensity_max);
-  } else if (isBoxes(message.topic->type)) {
-    const auto boxes = ros::decoded<ros::Detection3DArray>(message.bytes, encoding);
-    header = boxes.header;
-    frame.data = ros::objectsOf(boxes);
-  } else if (isRadar(message.topic->type)) {
-    const auto scan = ros::decoded<ros::RadarScan>(message.bytes, encoding);
-    header = scan.header;
-    frame.data = ros::returnsOf(scan, params.rate_scale);
-  } else {
-    Raster raster;
-    if (message.topic->type == "sensor_msgs/Image") {
-      const auto image = ros::decoded<ros::Image>(message.bytes, encoding);
-      header = image.header;
-      raster = ros::rasterOf(image);
-    } else {
-      const auto image = ros::decoded<ros::CompressedImage>(message.bytes, encoding);
-      header = image.header;
-      raster = ros::rasterOf(image);
-    }
-    CameraImage image;
-    if (const auto camera = cameraBeside(message.topic->name)) image.camera = *camera;
-    image.camera.width = raster.width;
-    image.camera.height = raster.height;
-    image.load = [raster = std::move(raster)] { return raster; };
-    frame.data = std::move(image);
+  const BagType& type = *bagType(message.topic->type);
+  if (type.unpack != nullptr) {
+    auto& packets = packets_[message.topic->name];
+    if (!packets)
+      packets = std::make_unique<BagPackets>(
+          type, params.label, metadataFor(message.topic->name),
+          [this, params, topic = message.topic->name](const auto& header, SensorFrame&& scan) {
+            takeFrame(topic, header, params, std::move(scan));
+          });
+    return packets->add(message);
   }
+  SensorFrame frame;
+  ros::Header header = type.measure(message, params, frame);
   if (header.stamp.ns <= 0) header.stamp = message.stamp;
+  if (auto* const image = std::get_if<CameraImage>(&frame.data)) {
+    const CameraModel own = image->camera;
+    image->camera = cameraBeside(message.topic->name).value_or(own);
+    image->camera.width = own.width, image->camera.height = own.height;
+  }
+  takeFrame(message.topic->name, header, params, std::move(frame));
+}
+
+/// The metadata topic with the longest beginning in common.
+std::string BagImport::metadataFor(const std::string& topic) const {
+  std::string best;
+  std::size_t longest = 0;
+  for (const auto& [name, text] : contents_.metadata) {
+    const auto common = static_cast<std::size_t>(
+        std::mismatch(name.begin(), name.end(), topic.begin(), topic.end()).first - name.begin());
+    if (best.empty() || common > longest) best = text, longest = common;
+  }
+  return best;
+}
+
+void BagImport::takeFrame(const std::string& topic, const ros::Header& header,
+                          const BagTopicParams& params, SensorFrame&& frame) {
+  frame.sensor = params.label;
   frame.stamp = header.stamp;
   frame.T_ego_sensor = mounting(header, params);
-  if (message.topic->name == frames_topic_) {
+  if (topic == frames_topic_) {
     ++frame_;
     if (log_.wants(frame_))
       sorted(frame.stamp, [this, s = frame.stamp, n = frame_] { log_.frame(s, n); });
@@ -297,8 +309,9 @@ void BagImport::take(const BagMessage& message) {
   if (!params.use || !message.topic->unknown_encoding.empty()) return;
   if (params.label.empty()) params.label = labelOf(message.topic->name);
   // Boxes may be another tracker's output: they are read when they are asked for.
-  const bool boxes = isBoxes(type) && given != topic_params_.end();
-  if (isCloud(type) || isRadar(type) || isImage(type) || boxes) return takeSensor(message, params);
+  const BagType::Role role = roleOf(*message.topic);
+  if (role == BagType::Role::kBoxes && given == topic_params_.end()) return;
+  if (role != BagType::Role::kOther) return takeSensor(message, params);
   if (!log_.options().wants(std::max<std::int64_t>(frame_, 0))) return;
   if (type == "sensor_msgs/NavSatFix") {
     const auto fix = ros::decoded<ros::NavSatFix>(message.bytes, message.topic->encoding);
@@ -328,12 +341,16 @@ void BagImport::readSensors() {
       } catch (const std::exception& e) {  // OpenCV's too
         if (dynamic_cast<const Error*>(&e) != nullptr) throw;
         auto& [count, first] = bad_[message.topic->name];
-        if (count++ == 0) first = fmt::format("{}: byte {}: {}", file, message.offset, e.what());
+        if (count++ == 0) first = fmt::format("{}: {}: {}", file, message.place(), e.what());
       }
       flush(message.stamp + -kSorted);
       log_.progress(static_cast<std::int64_t>(bag->bytesRead()),
                     static_cast<std::int64_t>(bag->fileBytes()));
     }
+  }
+  for (const auto& row : packets_) {
+    row.second->finish();
+    for (const std::string& warning : row.second->warnings()) log_.warn(warning);
   }
   flush({});
   if (last_) writePoses(*last_ + kBagPoseMargin);
@@ -363,19 +380,21 @@ std::string unreadTopics(const BagContents& contents) {
 }
 
 void BagImport::run() {
-  contents_ = readContents(files_, [](auto, auto) {});
+  contents_ = readContents(path_);
   readParams();
   chooseBase();
   choosePoses();
   chooseFrames();
   if (frames_topic_.empty()) {
     throw DataError(
-        fmt::format("{}: no topic of sensor_msgs/PointCloud2, Image, CompressedImage or "
-                    "radar_msgs/RadarScan is used{} (--list names all topics)",
-                    files_.front(), unreadTopics(contents_)),
+        fmt::format(
+            "{}: no topic of sensor_msgs/PointCloud2, Image, CompressedImage, "
+            "radar_msgs/RadarScan or of a lidar's packets is used{} (--list names all topics)",
+            files_.front(), unreadTopics(contents_)),
         ExitCode::kNoInput);
   }
   readSensors();
+  for (const std::string& topic : unreadTopics(contents_)) log_.note(topic);
   for (const std::string& fault : contents_.faults) log_.warn(fault);
   for (const std::string& topic : unreadSensors(contents_))
     log_.note(fmt::format("{}: not read", topic));
@@ -395,14 +414,15 @@ void BagImport::run() {
 class BagImporter final : public Importer {
  public:
   void declare(CLI::App& cli) override {
-    cli.add_option("--bag", path_, "FILE.bag, FILE.mcap, or a folder of them")->required();
+    cli.add_option("--bag", path_, "FILE.bag, FILE.mcap, FILE.db3, or a folder of them")
+        ->required();
     cli.add_option("-c,--config", config_, "INI: [bag], [topic.TOPIC]; else all is found")
         ->type_name("INI");
     cli.add_flag("--list", list_, "prints the topics, writes nothing");
   }
   bool runInstead(const std::string&) override {
     if (!list_) return false;
-    const BagContents contents = readContents(bagFiles(path_), [](auto, auto) {});
+    const BagContents contents = readContents(path_);
     fmt::print("{}", listOf(contents));
     for (const std::string& fault : contents.faults) fmt::print("damaged: {}\n", fault);
     return true;
@@ -410,7 +430,7 @@ class BagImporter final : public Importer {
   void run(ImportLog& log) override {
     Config config =
         config_.empty() ? Config::fromText("", "(no --config)") : Config::fromFile(config_);
-    BagImport(bagFiles(path_), config, log).run();
+    BagImport(path_, config, log).run();
   }
 
  private:

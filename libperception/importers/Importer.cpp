@@ -10,7 +10,7 @@ std::vector<ImporterRow>& importers() {
        &makeKittiImporter},
       {"clouds", "a folder of point clouds (.bin .pcd .ply .csv), with stamps and poses", kUsesRate,
        &makeCloudsImporter},
-      {"bag", "recordings of ROS: ROS 1 bags, MCAP files with messages of ROS 1 or 2", kLists,
+      {"bag", "recordings of ROS 1 or 2: bags, MCAP files, sqlite files of rosbag2 (.db3)", kLists,
        &makeBagImporter},
       {"images", "single frames of the KITTI object benchmark: images, labels, scans",
        kUsesRate | kUsesImages | kUsesRepeat, &makeImagesImporter},

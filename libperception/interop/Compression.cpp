@@ -74,6 +74,13 @@ std::string inflated(std::string_view method, std::string_view bytes, std::uint6
   return out;
 }
 
+std::string inflatedZstd(std::string_view frame) {
+  const auto size = ZSTD_getFrameContentSize(frame.data(), frame.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN)
+    throw std::runtime_error("a zstd frame that does not tell its size");
+  return inflated("zstd", frame, size);
+}
+
 std::string zstdOf(std::string_view bytes) {
   std::string out(ZSTD_compressBound(bytes.size()), '\0');
   out.resize(ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), kZstdLevel));

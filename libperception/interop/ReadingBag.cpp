@@ -1,241 +1,144 @@
 #include "libperception/interop/ReadingBag.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 
 #include "libperception/core/Error.h"
 #include "libperception/interop/Compression.h"
+#include "libperception/interop/InflatedFile.h"
 #include "libperception/interop/McapFormat.h"
+#include "libperception/interop/RecordBag.h"
+#include "libperception/interop/SqliteBag.h"
 
 namespace perception {
 namespace {
 
 namespace fs = std::filesystem;
-using ros::Encoding;
 
 constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
+constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
+constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd";
+constexpr std::size_t kLongestMagic = 16;
+constexpr const char* kMetadata = "metadata.yaml";
 
-/// MCAP, https://mcap.dev/spec.
-class McapBag final : public ReadingBag {
- public:
-  McapBag(const std::string& path, std::unique_ptr<ByteSource> file)
-      : ReadingBag(path, std::move(file)) {}
+bool startsWith(std::string_view bytes, std::string_view magic) {
+  return bytes.substr(0, magic.size()) == magic;
+}
 
- private:
-  Record read(ByteSource& source, BagMessage& message) override;
-  std::string faultOfEnd(bool ended) const override {
-    return ended ? "" : "the recording was not closed or is cut: there is no end of data";
+bool endsWith(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+bool isBagName(const std::string& path) {
+  for (const char* end : {".mcap", ".bag", ".db3", ".mcap.zstd", ".db3.zstd"}) {
+    if (endsWith(path, end)) return true;
   }
-  void readChannel(ByteSource& content);
+  return false;
+}
 
-  std::map<std::uint16_t, std::string> schemas_;  ///< name by id
-};
-
-ReadingBag::Record McapBag::read(ByteSource& source, BagMessage& message) {
-  const auto op = source.number<std::uint8_t>("a record");
-  const auto size = source.number<std::uint64_t>("the length of a record");
-  if (op == mcap::kDataEnd) return Record::kEnd;
-  if (op == mcap::kMessage) {
-    constexpr std::uint64_t kHead = 2 + 4 + 8 + 8;
-    if (size < kHead) throw std::runtime_error(fmt::format("a message of {} bytes", size));
-    message.topic = knownTopic(source.number<std::uint16_t>("a message"));
-    source.skip(4, "a message");
-    message.stamp.ns = static_cast<std::int64_t>(source.number<std::uint64_t>("a message"));
-    source.skip(8, "a message");
-    message.bytes = source.take(size - kHead, "a message");
-    return Record::kMessage;
-  }
-  if (op == mcap::kChunk) {
-    const auto content = memorySource(std::string(source.take(size, "a chunk")));
-    content->skip(16, "a chunk");
-    chunk_.size = content->number<std::uint64_t>("a chunk");
-    chunk_.crc = content->number<std::uint32_t>("a chunk");
-    chunk_.compression = content->text("a chunk's compression");
-    chunk_.bytes = content->take(content->number<std::uint64_t>("a chunk"), "a chunk's records");
-    return Record::kChunk;
-  }
-  if (op == mcap::kSchema || op == mcap::kChannel) {
-    const auto content = memorySource(std::string(source.take(size, "a schema or channel")));
-    if (op == mcap::kChannel) {
-      readChannel(*content);
-    } else {
-      const auto id = content->number<std::uint16_t>("a schema");
-      schemas_[id] = content->text("a schema's name");
+/// drive_2 before drive_10: digits by their value.
+bool beforeByNumbers(const std::string& a, const std::string& b) {
+  const auto key = [](const std::string& name) {
+    std::string out, digits;
+    for (const char c : name + '\0') {
+      if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
+        digits += c;
+        continue;
+      }
+      constexpr std::size_t kWidth = 20;
+      if (!digits.empty() && digits.size() < kWidth) out.append(kWidth - digits.size(), '0');
+      out += digits + c;
+      digits.clear();
     }
-    return Record::kOther;
-  }
-  source.skip(size, "a record");
-  return Record::kOther;
+    return out;
+  };
+  return std::pair(key(a), a) < std::pair(key(b), b);
 }
 
-void McapBag::readChannel(ByteSource& content) {
-  const auto id = content.number<std::uint16_t>("a channel");
-  const auto schema = content.number<std::uint16_t>("a channel");
-  BagTopic& channel = topic(id);
-  channel.name = content.text("a channel's topic");
-  const std::string encoding = content.text("a channel's encoding");
-  channel.type = schemas_[schema];
-  if (const auto at = channel.type.find("/msg/"); at != std::string::npos)
-    channel.type.erase(at, 4);
-  channel.encoding = encoding == "cdr" ? Encoding::kCdr : Encoding::kRos1;
-  channel.unknown_encoding = encoding == "cdr" || encoding == "ros1" ? "" : encoding;
+std::unique_ptr<ReadingBag> openBytes(const std::string& name, const std::string& path,
+                                      bool inflated);
+
+/// The file inside a zstd file; gone from the disk when it is closed.
+std::unique_ptr<ReadingBag> openInflated(const std::string& path) {
+  auto file = std::make_unique<InflatedFile>(path);
+  auto bag = openBytes(path, file->path(), true);
+  return insideBag(path, std::move(bag), std::move(file));
 }
 
-/// ROS 1, http://wiki.ros.org/Bags/Format/2.0.
-class Ros1Bag final : public ReadingBag {
- public:
-  Ros1Bag(const std::string& path, std::unique_ptr<ByteSource> file)
-      : ReadingBag(path, std::move(file)) {}
-
- private:
-  using Fields = std::map<std::string, std::string>;
-  enum Op : std::uint8_t { kMessage = 2, kBagHeader = 3, kChunk = 5, kConnection = 7 };
-
-  static Fields fieldsOf(const std::string& header);
-  template <class Number>
-  static Number numberOf(const Fields& fields, const char* name);
-
-  Record read(ByteSource& source, BagMessage& message) override;
-  std::string faultOfEnd(bool) const override {
-    return index_at_ == 0 ? "the recording was not closed: there is no index" : "";
+std::unique_ptr<ReadingBag> openBytes(const std::string& name, const std::string& path,
+                                      bool inflated) {
+  auto file = fileSource(path);
+  const std::string begin(file->take(std::min<std::uint64_t>(file->size(), kLongestMagic), "it"));
+  if (startsWith(begin, kSqliteMagic)) return sqliteBag(name, path);
+  if (startsWith(begin, kZstdMagic) && !inflated) return openInflated(path);
+  file = fileSource(path);
+  if (startsWith(begin, mcap::kMagic)) {
+    file->skip(mcap::kMagic.size(), "the magic");
+    return mcapBag(name, std::move(file));
   }
-
-  std::uint64_t index_at_ = 0;
-};
-
-Ros1Bag::Fields Ros1Bag::fieldsOf(const std::string& header) {
-  Fields fields;
-  const auto source = memorySource(header);
-  while (source->left() > 0) {
-    const std::string field = source->text("a field of a header");
-    const auto equals = field.find('=');
-    if (equals == std::string::npos) throw std::runtime_error("a header's field without '='");
-    fields[field.substr(0, equals)] = field.substr(equals + 1);
+  if (startsWith(begin, kRos1Magic)) {
+    file->skip(kRos1Magic.size(), "the magic");
+    return ros1Bag(name, std::move(file));
   }
-  return fields;
+  throw DataError(
+      fmt::format("{}: byte 0: expected an MCAP file, a ROS 1 bag \"#ROSBAG V2.0\" or "
+                  "an sqlite file of rosbag2 (.db3)",
+                  name));
 }
 
-template <class Number>
-Number Ros1Bag::numberOf(const Fields& fields, const char* name) {
-  const auto found = fields.find(name);
-  if (found == fields.end() || found->second.size() != sizeof(Number))
-    throw std::runtime_error(
-        fmt::format("a header without the field {} of {} bytes", name, sizeof(Number)));
-  Number value;
-  std::memcpy(&value, found->second.data(), sizeof(Number));
-  return value;
-}
-
-ReadingBag::Record Ros1Bag::read(ByteSource& source, BagMessage& message) {
-  const Fields header = fieldsOf(source.text("the header of a record"));
-  const auto op = numberOf<std::uint8_t>(header, "op");
-  const auto size = source.number<std::uint32_t>("the length of a record");
-  if (op == kMessage) {
-    message.topic = knownTopic(numberOf<std::uint32_t>(header, "conn"));
-    const auto time = numberOf<std::uint64_t>(header, "time");
-    message.stamp.ns =
-        static_cast<std::int64_t>((time & 0xffffffffU) * 1'000'000'000 + (time >> 32));
-    message.bytes = source.take(size, "a message");
-    return Record::kMessage;
+/// The number of messages by rosbag2's own count.
+std::optional<std::uint64_t> countOfMetadata(const std::string& path) {
+  std::ifstream file(path);
+  // The file's own entry is less far to the right than that of each topic.
+  constexpr std::string_view kKey = "  message_count: ";
+  for (std::string line; std::getline(file, line);) {
+    if (!startsWith(line, kKey)) continue;
+    std::uint64_t count = 0;
+    const char* const end = line.data() + line.size();
+    if (std::from_chars(line.data() + kKey.size(), end, count).ec == std::errc()) return count;
   }
-  if (op == kChunk) {
-    chunk_.size = numberOf<std::uint32_t>(header, "size");
-    chunk_.crc = 0;
-    chunk_.compression = header.count("compression") != 0 ? header.at("compression") : "";
-    chunk_.bytes = source.take(size, "a chunk");
-    return Record::kChunk;
-  }
-  if (op == kBagHeader) {
-    index_at_ = numberOf<std::uint64_t>(header, "index_pos");
-    if (header.count("encryptor") != 0 && !header.at("encryptor").empty())
-      throw std::runtime_error("the recording is encrypted by " + header.at("encryptor"));
-  }
-  if (op != kConnection) {
-    source.skip(size, "a record");
-    return Record::kOther;
-  }
-  BagTopic& connection = topic(numberOf<std::uint32_t>(header, "conn"));
-  const Fields data = fieldsOf(std::string(source.take(size, "a connection")));
-  if (data.count("type") == 0) throw std::runtime_error("a connection without the field type");
-  connection.type = data.at("type");
-  connection.name = header.count("topic") != 0 ? header.at("topic") : "";
-  return Record::kOther;
+  return {};
 }
 
 }  // namespace
 
-const BagTopic* ReadingBag::knownTopic(std::uint32_t id) const {
-  const auto found = topics_.find(id);
-  if (found == topics_.end())
-    throw std::runtime_error(fmt::format("a message of channel {}, which is not declared", id));
-  return &found->second;
+std::string BagMessage::place() const {
+  return fmt::format("{} {}", in_row ? "row" : "byte", offset);
 }
 
-/// The chunk that was read becomes the block whose records are next.
-void ReadingBag::open() {
-  std::string bytes = inflated(chunk_.compression, chunk_.bytes, chunk_.size);
-  const auto crc = static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
-  if (chunk_.crc != 0 && chunk_.crc != crc) throw std::runtime_error("its checksum is wrong");
-  block_ = memorySource(std::move(bytes));
-}
-
-void ReadingBag::finish(bool ended) {
-  done_ = true;
-  if (const std::string fault = faultOfEnd(ended); !fault.empty())
-    faults_.push_back(fmt::format("{}: {}", path_, fault));
+std::string ReadingBag::shortType(std::string type) {
+  if (const auto at = type.find("/msg/"); at != std::string::npos) type.erase(at, 4);
+  return type;
 }
 
 bool ReadingBag::next(BagMessage& message) {
-  while (!done_) {
-    if (block_ && block_->left() == 0) block_.reset();
-    if (!block_ && file_->left() == 0) {
-      finish(false);
-      break;
-    }
-    if (!block_) block_offset_ = file_->position();
-    message.offset = block_offset_;
+  while (nextStored(message)) {
+    // CDR begins with 00: a zstd frame is no message, but holds one.
+    if (message.topic->encoding != ros::Encoding::kCdr || !startsWith(message.bytes, kZstdMagic))
+      return true;
     try {
-      const Record record = read(block_ ? *block_ : *file_, message);
-      if (record == Record::kMessage) return true;
-      if (record == Record::kEnd && !block_) finish(true);
-      if (record != Record::kChunk) continue;
-      if (block_) throw std::runtime_error("a chunk inside a chunk");
+      inflated_ = inflatedZstd(message.bytes);
     } catch (const std::runtime_error& e) {
-      if (dynamic_cast<const Error*>(&e) != nullptr) throw;
-      faults_.push_back(block_ ? fmt::format("{}: chunk at byte {}, in it {}: its rest is left out",
-                                             path_, block_offset_, e.what())
-                               : fmt::format("{}: record at byte {}: {}: all behind it is left out",
-                                             path_, block_offset_, e.what()));
-      if (!block_) done_ = true;
-      block_.reset();
+      if (unreadable_++ == 0)
+        faults_.push_back(
+            fmt::format("{}: {}: a compressed message of {}: {}: left out, and others like it",
+                        path_, message.place(), message.topic->name, e.what()));
       continue;
     }
-    try {
-      open();
-    } catch (const std::runtime_error& e) {
-      faults_.push_back(
-          fmt::format("{}: chunk at byte {}: {}: left out", path_, block_offset_, e.what()));
-    }
+    message.bytes = inflated_;
+    return true;
   }
   return false;
 }
 
 std::unique_ptr<ReadingBag> openBag(const std::string& path) {
-  auto file = fileSource(path);
-  const std::string begin(
-      file->take(std::min<std::uint64_t>(file->size(), mcap::kMagic.size()), "the magic"));
-  if (begin == mcap::kMagic) return std::make_unique<McapBag>(path, std::move(file));
-  if (begin == kRos1Magic.substr(0, begin.size()) && file->left() >= kRos1Magic.size()) {
-    const std::string_view rest = kRos1Magic.substr(begin.size());
-    if (file->take(rest.size(), "the magic") == rest)
-      return std::make_unique<Ros1Bag>(path, std::move(file));
-  }
-  throw DataError(
-      fmt::format("{}: byte 0: expected an MCAP file or a ROS 1 bag \"#ROSBAG V2.0\"", path));
+  return openBytes(path, path, false);
 }
 
 std::vector<std::string> bagFiles(const std::string& path) {
@@ -243,13 +146,37 @@ std::vector<std::string> bagFiles(const std::string& path) {
   if (!fs::is_directory(path)) return {path};
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(path)) {
-    const std::string ending = entry.path().extension().string();
-    if (ending == ".mcap" || ending == ".bag") files.push_back(entry.path().string());
+    const std::string name = entry.path().string();
+    // Players leave the inflated file beside its source.
+    constexpr std::string_view kZstd = ".zstd";
+    const bool again =
+        endsWith(name, kZstd) && fs::exists(name.substr(0, name.size() - kZstd.size()));
+    if (isBagName(name) && !again) files.push_back(name);
   }
   if (files.empty())
-    throw DataError(path + ": no .mcap or .bag file in this folder", ExitCode::kNoInput);
-  std::sort(files.begin(), files.end());
+    throw DataError(path + ": no .mcap, .bag or .db3 file in this folder", ExitCode::kNoInput);
+  std::sort(files.begin(), files.end(), &beforeByNumbers);
   return files;
+}
+
+std::string faultOfBagFolder(const std::string& path, std::uint64_t messages) {
+  if (!fs::is_directory(path)) return "";
+  const std::string metadata = (fs::path(path) / kMetadata).string();
+  if (!fs::exists(metadata)) {
+    const auto files = bagFiles(path);
+    const bool sqlite = std::any_of(files.begin(), files.end(), [](const std::string& name) {
+      return endsWith(name, ".db3") || endsWith(name, ".db3.zstd");
+    });
+    return sqlite ? fmt::format(
+                        "{}: no {}, which is written when a recording is closed: its end "
+                        "may be missing",
+                        path, kMetadata)
+                  : "";
+  }
+  const auto count = countOfMetadata(metadata);
+  if (!count || *count <= messages) return "";
+  return fmt::format("{}: {} messages by its {}, but {} can be read", path, *count, kMetadata,
+                     messages);
 }
 
 }  // namespace perception

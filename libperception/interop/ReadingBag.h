@@ -17,6 +17,7 @@ struct BagTopic {
   std::string type;  ///< "sensor_msgs/PointCloud2", of ROS 2 too
   ros::Encoding encoding = ros::Encoding::kRos1;
   std::string unknown_encoding;  ///< of messages that are neither ROS 1 nor CDR; else empty
+  std::string definition;        ///< ROS's text of the type, where it travels with the recording
 };
 
 struct BagMessage {
@@ -24,60 +25,49 @@ struct BagMessage {
   Stamp stamp;                      ///< of recording; that of the measurement is in the message
   std::string_view bytes;           ///< valid until the next message
   std::uint64_t offset = 0;         ///< [bytes] in the file: of the message, or of its chunk
+  bool in_row = false;              ///< of a database: `offset` is its number there
+  /// "byte 4117" or "row 7".
+  std::string place() const;
 };
 
-/// A recording of messages, read from its beginning to its end: records, some of which are
-/// (compressed) chunks of records. A damaged chunk is left out; a damaged or missing end keeps what
-/// is whole.
+/// A recording of messages, read from its beginning to its end. What is damaged is left out, what
+/// is whole is given.
 class ReadingBag {
  public:
   virtual ~ReadingBag() = default;
-  /// False at the end.
+  /// False at the end. Messages that were compressed one by one are inflated.
   bool next(BagMessage& message);
-  /// What was damaged or missing, with file and byte; complete after the end.
+  /// What was damaged or missing, with file and place; complete after the end.
   const std::vector<std::string>& faults() const { return faults_; }
-  std::uint64_t bytesRead() const { return file_->position(); }
-  std::uint64_t fileBytes() const { return file_->size(); }
+  virtual std::uint64_t bytesRead() const = 0;
+  virtual std::uint64_t fileBytes() const = 0;
 
  protected:
-  ReadingBag(std::string path, std::unique_ptr<ByteSource> file)
-      : path_(std::move(path)), file_(std::move(file)) {}
-
-  enum class Record { kOther, kMessage, kChunk, kEnd };
-  /// Reads one record; sets `message` or chunk_. Throws std::runtime_error.
-  virtual Record read(ByteSource& source, BagMessage& message) = 0;
-  /// What is wrong with a file that ends here; empty: nothing.
-  virtual std::string faultOfEnd(bool ended) const = 0;
-
-  BagTopic& topic(std::uint32_t id) { return topics_[id]; }
-  /// Throws std::runtime_error if no record of it came before.
-  const BagTopic* knownTopic(std::uint32_t id) const;
-
-  /// A chunk that was read, not inflated yet.
-  struct Chunk {
-    std::string compression, bytes;
-    std::uint64_t size = 0;  ///< inflated
-    std::uint32_t crc = 0;   ///< of the inflated bytes; 0: not known
-  } chunk_;
-
- private:
-  void open();
-  void finish(bool ended);
+  explicit ReadingBag(std::string path) : path_(std::move(path)) {}
+  /// The next message as it was stored.
+  virtual bool nextStored(BagMessage& message) = 0;
+  /// "sensor_msgs/PointCloud2" for "sensor_msgs/msg/PointCloud2".
+  static std::string shortType(std::string type);
 
   std::string path_;
-  std::unique_ptr<ByteSource> file_, block_;
-  std::uint64_t block_offset_ = 0;
-  std::map<std::uint32_t, BagTopic> topics_;
   std::vector<std::string> faults_;
-  bool done_ = false;
+
+ private:
+  std::string inflated_;  ///< the last message that was compressed
+  std::uint64_t unreadable_ = 0;
 };
 
-/// Opens a ROS 1 bag (version 2.0) or an MCAP file with messages of ROS 1 or 2, by its first bytes.
-/// Throws DataError: missing (kNoInput), or neither.
+/// Opens a ROS 1 bag (version 2.0), an MCAP file with messages of ROS 1 or 2 or an sqlite file of
+/// rosbag2, by its first bytes; each also as one zstd file, which is inflated into the folder of
+/// temporary files. Throws DataError: missing (kNoInput), or none of them.
 std::unique_ptr<ReadingBag> openBag(const std::string& path);
 
-/// The files of a recording: `path` itself, or the MCAP files and bags of a folder (as `ros2 bag
-/// record` leaves it), by name. Throws DataError (kNoInput).
+/// The files of a recording: `path` itself, or the files of a folder (as `ros2 bag record` leaves
+/// it) in the order of the numbers in their names. Throws DataError (kNoInput).
 std::vector<std::string> bagFiles(const std::string& path);
+
+/// What the metadata.yaml of rosbag2 says against `messages` having been read from a folder; of
+/// sqlite files, whose end says nothing, that there is none. Empty: nothing is wrong.
+std::string faultOfBagFolder(const std::string& path, std::uint64_t messages);
 
 }  // namespace perception

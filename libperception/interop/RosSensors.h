@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "libperception/interop/RosDevices.h"
 #include "libperception/interop/RosMessages.h"
 #include "libperception/measurement/SensorFrame.h"
 
@@ -14,6 +15,8 @@ namespace perception::ros {
 /// are divided by `intensity_max`; 0: bytes by 255, others stay as they are. Throws
 /// std::runtime_error.
 LidarCloud cloudOf(const PointCloud2& message, double intensity_max = 0);
+/// A scan of Livox; `intensity_max`: 0 stands for 255. Times are after the header's stamp.
+LidarCloud cloudOf(const LivoxScan& message, double intensity_max = 0);
 /// x, y, z, intensity as 32-bit floats, and ring and time_offset where the cloud has them. `data`:
 /// holds the bytes of the message.
 PointCloud2 messageOf(const LidarCloud& cloud, const Header& header, std::string& data);
@@ -27,6 +30,9 @@ bool isOfRadar(const PointCloud2& message);
 /// radial_velocity, radial_speed, v_r, velocity) and, if there, amplitude (or rcs, power, snr,
 /// intensity). Throws std::runtime_error.
 RadarReturns returnsOf(const PointCloud2& message, double rate_scale = 1);
+/// Objects of a radar's own tracker as returns: the place of each, and the part of its velocity
+/// along the line of sight.
+RadarReturns returnsOf(const RadarTracks& message, double rate_scale = 1);
 RadarScan messageOf(const RadarReturns& radar, const Header& header);
 
 /// Throws std::runtime_error: another encoding than mono8, mono16, rgb8, bgr8, rgba8, bgra8 (8UC1,

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -29,6 +30,12 @@ struct CdrFormat {
   static constexpr bool kHead = true;
   static constexpr bool kStringZero = true;
   static constexpr bool kHeaderNumber = false;
+};
+
+/// uint8[N]: bytes without a count. They stay where they are: valid as long as the message.
+template <std::size_t N>
+struct FixedBytes {
+  std::string_view bytes;
 };
 
 /// Reads a message; throws std::runtime_error with the byte of the message and what was expected.
@@ -74,6 +81,10 @@ class WireReader {
     std::uint32_t size = 0;
     (*this)(size);
     bytes = take(size, "bytes");
+  }
+  template <std::size_t N>
+  void operator()(FixedBytes<N>& fixed) {
+    fixed.bytes = take(N, "bytes");
   }
   template <class Number, std::size_t N>
   std::enable_if_t<std::is_arithmetic_v<Number>> operator()(std::array<Number, N>& values) {
@@ -145,6 +156,11 @@ class WireWriter {
   void operator()(const std::string_view& bytes) {
     (*this)(static_cast<std::uint32_t>(bytes.size()));
     bytes_ += bytes;
+  }
+  template <std::size_t N>
+  void operator()(const FixedBytes<N>& fixed) {
+    bytes_ += fixed.bytes.substr(0, N);
+    bytes_.append(N - std::min(N, fixed.bytes.size()), '\0');
   }
   template <class Number, std::size_t N>
   std::enable_if_t<std::is_arithmetic_v<Number>> operator()(const std::array<Number, N>& values) {
