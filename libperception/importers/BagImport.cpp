@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <set>
@@ -356,29 +355,6 @@ void BagImport::readSensors() {
   if (last_) writePoses(*last_ + kBagPoseMargin);
 }
 
-/// "TOPIC of TYPE" of what may be a sensor's, by its name, and is not read.
-std::vector<std::string> unreadSensors(const BagContents& contents) {
-  constexpr const char* kHints[] = {"cloud", "points", "lidar",  "laser",    "scan",   "packet",
-                                    "radar", "image",  "camera", "velodyne", "ouster", "livox"};
-  std::vector<std::string> unread;
-  for (const auto& [name, row] : contents.topics) {
-    if (!useOfType(row.topic.type).empty()) continue;
-    std::string text = name + " " + row.topic.type;
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (std::any_of(std::begin(kHints), std::end(kHints),
-                    [&](const char* hint) { return text.find(hint) != std::string::npos; }))
-      unread.push_back(fmt::format("{} of {}", name, row.topic.type));
-  }
-  return unread;
-}
-
-std::string unreadTopics(const BagContents& contents) {
-  const auto unread = unreadSensors(contents);
-  if (unread.empty()) return "";
-  return fmt::format("; nothing here reads {}", fmt::join(unread, ", "));
-}
-
 void BagImport::run() {
   contents_ = readContents(path_);
   readParams();
@@ -386,18 +362,14 @@ void BagImport::run() {
   choosePoses();
   chooseFrames();
   if (frames_topic_.empty()) {
-    throw DataError(
-        fmt::format(
-            "{}: no topic of sensor_msgs/PointCloud2, Image, CompressedImage, "
-            "radar_msgs/RadarScan or of a lidar's packets is used{} (--list names all topics)",
-            files_.front(), unreadTopics(contents_)),
-        ExitCode::kNoInput);
+    throw DataError(fmt::format("{}: no topic of sensor_msgs/PointCloud2, Image, CompressedImage, "
+                                "radar_msgs/RadarScan or of a lidar's packets is used: {}",
+                                files_.front(), fmt::join(unreadTopics(contents_), "; ")),
+                    ExitCode::kNoInput);
   }
   readSensors();
   for (const std::string& topic : unreadTopics(contents_)) log_.note(topic);
   for (const std::string& fault : contents_.faults) log_.warn(fault);
-  for (const std::string& topic : unreadSensors(contents_))
-    log_.note(fmt::format("{}: not read", topic));
   for (const auto& [topic, fault] : bad_)
     log_.warn(fmt::format("{}: {} unreadable messages left out, the first: {}", topic, fault.first,
                           fault.second));
