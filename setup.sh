@@ -57,6 +57,7 @@ packages=(
   libopencv-video-dev libopencv-calib3d-dev  # motion of cameras from their images
   libmatio-dev           # part models as MATLAB files
   cyclonedds-dev cyclonedds-tools  # observations and scenes between computers
+  pybind11-dev python3-dev  # the module perception of Python
   # to run
   libgl1-mesa-dri        # draws without a graphics card
   gnuplot-nox            # plots of the evaluation
@@ -65,7 +66,8 @@ packages=(
 test_packages=(
   libgtest-dev           # tests
   mrpt-apps              # rawlog-edit, rawlog-grabber: stock MRPT must read and record our logs
-  python3-numpy          # the reader of runs in apps/perception-export
+  python3-numpy          # the module perception, the reader of runs in apps/perception-export
+  mypy                   # type hints of the module
   chromium               # pages of a run and of a batch are opened, clicked and read
   locales                # definition of a locale with decimal comma: it must not change a byte
 )

@@ -1,5 +1,5 @@
 # Debian packages (./setup.sh package): perception, programs with all that they need; libperception-pipeline and -detectors, the
-# libraries that others link; libperception-dev, their headers. What they depend on is read from the binaries, but for what headers
+# libraries that others link; libperception-dev, their headers; python3-perception, the module of Python. What they depend on is read from the binaries, but for what headers
 # and plots need.
 set(SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(PERCEPTION_CONTACT "perception@packages.invalid" CACHE STRING "Address of who packs it")
@@ -48,9 +48,22 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "perception")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers for programs that link the library (find_package(perception)), with
  examples.")
 
+set(PACKED PROGRAMS PIPELINE DETECTORS DEVELOPMENT)
+if(TARGET perception_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  list(APPEND PACKED PYTHON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-perception)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "perception (= ${PROJECT_VERSION}), python3-numpy,\
+ python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${AFTER_PYTHON}~)")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Module perception for Python 3: arrays of numpy in, tracked and classified
+ objects out; logs and runs as tables.")
+endif()
+
 # Every package has its license and its changes.
 find_program(GZIP gzip)
-foreach(COMPONENT PROGRAMS PIPELINE DETECTORS DEVELOPMENT)
+foreach(COMPONENT ${PACKED})
   string(TOLOWER ${COMPONENT} component)
   set(PACKAGE ${CPACK_DEBIAN_${COMPONENT}_PACKAGE_NAME})
   set(DOC ${CMAKE_INSTALL_DATADIR}/doc/${PACKAGE})

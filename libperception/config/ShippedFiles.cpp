@@ -32,7 +32,7 @@ bool isThere(const fs::path& path) {
 std::string shippedFolder() {
   if (const char* given = std::getenv("PERCEPTION_DATA"); given != nullptr && *given != '\0')
     return given;
-  constexpr int kLevels = 3;  // PREFIX/lib/x86_64-linux-gnu/libX.so
+  constexpr int kLevels = 4;  // PREFIX/lib/python3/dist-packages/perception/X.so
   fs::path folder = ownFile().parent_path();
   for (int level = 0; level < kLevels && folder.has_relative_path(); ++level) {
     folder = folder.parent_path();

@@ -1,0 +1,50 @@
+#include "libperception/python/Programs.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "libperception/app/App.h"
+#include "libperception/app/Programs.h"
+#include "libperception/core/Error.h"
+#include "libperception/core/MemoryLimit.h"
+#include "libperception/pipeline/Progress.h"
+
+namespace perception::python {
+namespace {
+
+std::unique_ptr<App> programOf(const std::string& name) {
+  static const std::map<std::string, std::unique_ptr<App> (*)()> programs = {
+      {"track", &trackApp}, {"evaluate", &evaluateApp}, {"simulate", &simulateApp}};
+  const auto program = programs.find(name);
+  if (program == programs.end())
+    throw Error(ExitCode::kUsage, "perception-" + name + " does not run within Python");
+  return program->second();
+}
+
+}  // namespace
+
+int runProgram(const std::string& name, std::vector<std::string> arguments) {
+  // Handlers of signals and the limit of memory are of the process.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  const auto app = programOf(name);
+  CLI::App cli(app->description(), app->name());
+  app->declare(cli);
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  try {
+    cli.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    throw Error(ExitCode::kUsage, app->name() + ": " + error.what());
+  }
+  const StopSignals listening;
+  const MemoryLimit limit;
+  app->run();
+  std::fflush(stdout);
+  return app->warnings();
+}
+
+}  // namespace perception::python

@@ -1,0 +1,102 @@
+#include "libperception/python/SceneArrays.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "libperception/measurement/Modality.h"
+
+namespace perception::python {
+namespace py = pybind11;
+namespace {
+
+/// Writes the fields of a packed record one after the other.
+class RecordWriter {
+ public:
+  explicit RecordWriter(void* at) : at_(static_cast<char*>(at)) {}
+  template <class Value>
+  void put(Value value) {
+    std::memcpy(at_, &value, sizeof value);
+    at_ += sizeof value;
+  }
+  template <class Values>
+  void putAll(const Values& values) {
+    for (const double value : values) put(value);
+  }
+  void skip(std::size_t bytes) { at_ += bytes; }
+
+ private:
+  char* at_;
+};
+
+/// The class is filled by numpy from its number.
+py::dtype recordOf(std::size_t classes, const py::dtype& class_name) {
+  py::list fields;
+  const auto add = [&](const char* name, const py::object& type) {
+    fields.append(py::make_tuple(name, type));
+  };
+  const auto addMany = [&](const char* name, std::size_t count) {
+    fields.append(py::make_tuple(name, "f8", py::make_tuple(count)));
+  };
+  add("id", py::str("u8"));
+  add("class", class_name);
+  add("class_id", py::str("i4"));
+  add("classified", py::str("?"));
+  addMany("class_probability", classes);
+  add("existence", py::str("f8"));
+  addMany("position", 3);
+  add("yaw", py::str("f8"));
+  add("has_yaw", py::str("?"));
+  addMany("velocity", 2);
+  add("speed", py::str("f8"));
+  addMany("size", 3);
+  addMany("position_sd", 2);
+  add("yaw_sd", py::str("f8"));
+  add("speed_sd", py::str("f8"));
+  addMany("last_hit", modalities().size());
+  return py::dtype::from_args(fields);
+}
+
+void putObject(const SceneObject& object, std::size_t name_bytes, RecordWriter record) {
+  record.put(object.id);
+  record.skip(name_bytes);
+  record.put(static_cast<std::int32_t>(object.class_id));
+  record.put(object.classified);
+  record.putAll(object.class_probability);
+  record.put(object.existence);
+  record.putAll(object.position);
+  record.put(object.yaw);
+  record.put(object.has_yaw);
+  record.putAll(object.velocity);
+  record.put(object.speed);
+  record.putAll(std::initializer_list<double>{object.length, object.width, object.height});
+  record.putAll(
+      std::initializer_list<double>{object.sd_x, object.sd_y, object.sd_yaw, object.sd_speed});
+  for (const ModalityRow& row : modalities()) {
+    const auto hit = object.last_hit.find(row.letter);
+    record.put(hit == object.last_hit.end() ? std::numeric_limits<double>::quiet_NaN()
+                                            : hit->second.seconds());
+  }
+}
+
+}  // namespace
+
+py::array SceneView::objects() const {
+  const py::array names = py::module_::import("numpy").attr("array")(py::cast(*classes_));
+  const py::dtype record = recordOf(classes_->size(), names.dtype());
+  py::array objects(record,
+                    std::vector<py::ssize_t>{static_cast<py::ssize_t>(scene.objects.size())});
+  const auto name_bytes = static_cast<std::size_t>(names.dtype().itemsize());
+  char* data = static_cast<char*>(objects.mutable_data());
+  std::memset(data, 0, static_cast<std::size_t>(objects.nbytes()));
+  for (const SceneObject& object : scene.objects) {
+    putObject(object, name_bytes, RecordWriter(data));
+    data += objects.itemsize();
+  }
+  if (objects.size() > 0)
+    objects.attr("__setitem__")("class", names.attr("__getitem__")(objects["class_id"]));
+  return objects;
+}
+
+}  // namespace perception::python

@@ -1,0 +1,59 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libperception/pipeline/Pipeline.h"
+#include "libperception/scene/EventLog.h"
+#include "libperception/scene/RunTiming.h"
+#include "libperception/scene/Scene.h"
+#include "libperception/scene/TrackedRun.h"
+
+namespace perception {
+
+/// A pipeline that is handed its observations one by one, by a program that has them from
+/// elsewhere than a rawlog. Scenes are those of perception-track for the same observations in the
+/// same order. Any thread may call; one call at a time gets on.
+class StreamTracker {
+ public:
+  /// `settings`: section.key=value, over the INI. `output`: folder of tracks.csv and scenes.csv;
+  /// empty: none. Throws ConfigError.
+  StreamTracker(const std::string& ini, const std::vector<std::string>& settings,
+                std::string output);
+
+  /// Throws Error (kUsage) after finish(), DataError for a stamp outside of 1970 to 2106.
+  void add(const mrpt::obs::CObservation& observation);
+  /// The oldest scene that is due and was not taken yet.
+  std::optional<Scene> take();
+  std::vector<Scene> takeAll();
+  /// The stream has ended: what is left becomes due.
+  void finish();
+
+  /// The section [sensor.LABEL] of an observation; throws Error (kUsage) that names those there are
+  /// where there is none, or where its front end is none of `kinds`. Kinds that a program added
+  /// take anything.
+  void checkSensor(const std::string& label, const std::vector<std::string>& kinds) const;
+  std::string eventLines() const;  ///< as in events.jsonl
+  std::vector<std::string> learned() const;
+  std::vector<std::string> classNames() const;
+  std::vector<std::string> sensorLabels() const;
+
+ private:
+  void drain(bool end);
+
+  mutable std::mutex mutex_;
+  EventLog events_;
+  RunTiming timing_;
+  Pipeline pipeline_;
+  std::string output_;
+  std::optional<TrackedRunWriter> writer_;
+  std::deque<Scene> due_;
+  bool finished_ = false;
+};
+
+}  // namespace perception

@@ -1,0 +1,291 @@
+"""perception.Tracker: arrays in, scenes out, and what happens to arrays that do not fit."""
+import os
+import signal
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+import perception
+
+SOURCE = os.environ["PERCEPTION_SOURCE_DIR"]
+LOG = os.path.join(SOURCE, "rawlogs", "demo.rawlog")
+INI = "demo.ini"
+
+
+def feed(tracker, observations, scenes):
+    """Hands a log's arrays to the tracker, as a program would that has them from elsewhere."""
+    for o in observations:
+        data, scene = o.data, None
+        if o.kind == "pose":
+            tracker.pose(o.stamp_ns, data["pose"])
+        elif o.kind == "frame":
+            tracker.frame(o.stamp_ns, data["number"])
+        elif o.kind == "lidar":
+            scene = tracker.scan(o.sensor, o.stamp_ns, data["xyz"], data["intensity"], data["ring"],
+                                 data["time"], sensor_pose=o.sensor_pose,
+                                 max_range=data["max_range"], echo=data["echo"],
+                                 pulse_width=data["pulse_width"], label=data["label"])
+        elif o.kind == "boxes":
+            scene = tracker.image_boxes(o.sensor, o.stamp_ns, data["image_boxes"], data["scores"],
+                                        data["labels"], data["camera"], headings=data["headings"],
+                                        sensor_pose=o.sensor_pose)
+        elif o.kind == "radar":
+            r, b, rate, amplitude, elevation = data["targets"].T
+            scene = tracker.radar(o.sensor, o.stamp_ns, r, b, rate, amplitude=amplitude,
+                                  elevation=elevation, sensor_pose=o.sensor_pose,
+                                  max_range=data["max_range"])
+        if scene is not None:
+            scenes.append(scene)
+    scenes += tracker.finish()
+    return scenes
+
+
+def read(*path):
+    with open(os.path.join(*path), "rb") as file:
+        return file.read()
+
+
+def cloud(n=2000, seed=0):
+    """Points [m] around a lidar, for tests of what arrays are taken."""
+    return np.random.default_rng(seed).uniform(-20, 20, (n, 3)).astype(np.float32)
+
+
+class Rows(unittest.TestCase):
+    def test_arrays_give_the_rows_of_the_program(self):
+        for log, ini, sensors, overrides in (
+                ("demo", INI, "", {}),
+                ("demo", INI, "L", {"run.seed": 2, "run.association": "sampled"}),
+                ("radar", "skynet.ini", "R", {})):
+            with self.subTest(log=log, sensors=sensors), tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(SOURCE, "rawlogs", log + ".rawlog")
+                run = perception.track(path, ini, sensors=sensors, overrides=overrides)
+                out = os.path.join(folder, "arrays")
+                tracker = perception.Tracker(ini, sensors, overrides, out)
+                scenes = feed(tracker, perception.open(path), [])
+                self.assertEqual(len(scenes), len(run.scenes))
+                self.assertGreater(len(run.tracks), 20)
+                for name in ("tracks.csv", "scenes.csv"):
+                    self.assertEqual(read(out, name), read(run.folder, name), name)
+
+    def test_observations_of_a_log_are_taken_as_they_are(self):
+        run = perception.track(LOG, INI)
+        with tempfile.TemporaryDirectory() as folder:
+            tracker = perception.Tracker(INI, output=folder)
+            for observation in perception.open(LOG):
+                tracker.add(observation)
+            tracker.finish()
+            self.assertEqual(read(folder, "tracks.csv"), read(run.folder, "tracks.csv"))
+
+    def test_records_hold_the_columns_of_the_table(self):
+        run = perception.track(LOG, INI)
+        tracker = perception.Tracker(INI)
+        scenes = feed(tracker, perception.open(LOG), [])
+        objects = np.concatenate([s.objects for s in scenes])
+        columns = np.array([list(run.tracks[c]) for c in ("id", "x", "y", "z", "vx", "length")])
+        records = np.array([objects["id"], *objects["position"].T, objects["velocity"][:, 0],
+                            objects["size"][:, 0]])
+        np.testing.assert_allclose(records, columns, atol=6e-4)
+        self.assertEqual(list(objects["class"]), list(run.tracks["class"]))
+        self.assertEqual(tracker.classes, run.classes)
+        np.testing.assert_allclose(objects["class_probability"].sum(axis=1), 1, atol=1e-9)
+        distance = [np.nan if s.free_distance is None else s.free_distance for s in scenes]
+        np.testing.assert_allclose(distance, run.scenes["free_distance"], atol=6e-3)
+        self.assertEqual([s.frame for s in scenes], list(run.scenes["frame"]))
+
+
+class Arrays(unittest.TestCase):
+    def setUp(self):
+        self.tracker = perception.Tracker(INI, sensors="L")
+
+    def fails(self, text, code, call, *arguments, **options):
+        with self.assertRaises(perception.Error) as caught:
+            call(*arguments, **options)
+        self.assertIn(text, str(caught.exception))
+        self.assertEqual(caught.exception.code, code)
+
+    def test_wrong_shapes_are_errors_that_say_what_was_expected(self):
+        scan = self.tracker.scan
+        self.fails("xyz: shape (3, 2000), expected (n, 3)", 65, scan, "LIDAR_TOP", 1.0, cloud().T)
+        self.fails("give xyz[:, :3]", 65, scan, "LIDAR_TOP", 1.0, np.zeros((5, 4), np.float32))
+        self.fails("intensity: shape (1999,), expected (2000,)", 65, scan, "LIDAR_TOP", 1.0,
+                   cloud(), np.zeros(1999))
+        self.fails("T: shape (3, 3), expected (4, 4)", 65, self.tracker.pose, 1.0, np.eye(3))
+
+    def test_wrong_dtypes_are_errors(self):
+        scan = self.tracker.scan
+        self.fails("xyz: dtype int64", 65, scan, "LIDAR_TOP", 1.0, np.ones((5, 3), np.int64))
+        self.fails("intensity: dtype <U1, expected numbers", 65, scan, "LIDAR_TOP", 1.0, cloud(2),
+                   np.array(["a", "b"]))
+        self.fails("ring: dtype float64, expected whole numbers", 65, scan, "LIDAR_TOP", 1.0,
+                   cloud(2), None, np.zeros(2))
+        self.fails("ring[1]: 70000, expected 0 to 65535", 65, scan, "LIDAR_TOP", 1.0, cloud(2),
+                   None, [0, 70000])
+
+    def test_poses_that_are_none_are_errors(self):
+        self.fails("is no rotation", 65, self.tracker.pose, 1.0, 2 * np.eye(4))
+        self.fails("not finite", 65, self.tracker.pose, 1.0, np.full((4, 4), np.nan))
+
+    def test_sensors_that_the_ini_has_not_are_errors(self):
+        self.fails("no [sensor.TOP]; it has LIDAR_TOP, CAMERA", 64, self.tracker.scan, "TOP", 1.0,
+                   cloud())
+        self.fails("[sensor.CAMERA] has kind = boxes", 64, self.tracker.scan, "CAMERA", 1.0,
+                   cloud())
+
+    def test_errors_of_the_ini_come_with_the_code_of_the_programs(self):
+        self.fails("nowhere.ini", 78, perception.Tracker, "nowhere.ini")
+        self.fails("no_such_key", 78, perception.Tracker, INI, overrides={"run.no_such_key": 1})
+
+    def test_stamps_are_seconds_nanoseconds_or_datetime64(self):
+        stamps = []
+        for stamp in (1700000000.0, 1700000000 * 10**9, np.datetime64("2023-11-14T22:13:20"),
+                      np.float64(1.7e9), np.int64(1700000000 * 10**9)):
+            tracker = perception.Tracker(INI, sensors="L")
+            tracker.pose(stamp, np.eye(4))
+            tracker.scan("LIDAR_TOP", stamp, cloud())
+            stamps += [s.stamp_ns for s in tracker.finish()]
+        self.assertEqual(stamps, [1700000000 * 10**9] * 5)
+
+    def test_stamps_that_are_none_are_errors(self):
+        pose = self.tracker.pose
+        self.fails("whole numbers are nanoseconds", 65, pose, 5, np.eye(4))
+        self.fails("no time since 1970", 65, pose, float("nan"), np.eye(4))
+        self.fails("expected seconds", 65, pose, "now", np.eye(4))
+        self.fails("1970 to 2106", 65, pose, -1.0, np.eye(4))
+
+    def scenes_of(self, points, intensity=None):
+        tracker = perception.Tracker(INI, sensors="L")
+        scenes = []
+        for k in range(10):
+            tracker.pose(1000 + k / 10, np.eye(4))
+            scene = tracker.scan("LIDAR_TOP", 1000 + k / 10, points, intensity)
+            scenes += [] if scene is None else [scene]
+        return scenes + tracker.finish(), tracker
+
+    def test_layout_does_not_matter(self):
+        points = cloud()
+        wide = np.zeros((len(points), 6), np.float32)
+        wide[:, ::2] = points
+        wanted = [s.objects.tobytes() for s in self.scenes_of(points)[0]]
+        self.assertEqual(len(wanted), 10)
+        for same in (wide[:, ::2], np.asfortranarray(points), points.astype(np.float64),
+                     points[::-1].copy()[::-1]):
+            self.assertEqual([s.objects.tobytes() for s in self.scenes_of(same)[0]], wanted)
+
+    def test_returns_that_are_not_finite_are_dropped(self):
+        points = cloud()
+        hole = np.vstack([points, np.full((7, 3), np.nan, np.float32)])
+        self.assertEqual([s.objects.tobytes() for s in self.scenes_of(hole)[0]],
+                         [s.objects.tobytes() for s in self.scenes_of(points)[0]])
+
+    def test_a_scan_without_returns_is_one(self):
+        scenes, _ = self.scenes_of(np.zeros((0, 3), np.float32))
+        self.assertEqual([len(s.objects) for s in scenes], [0] * 10)
+        self.assertEqual(scenes[0].objects.shape, (0,))
+
+    def test_what_is_later_than_the_window_is_dropped_with_an_event(self):
+        tracker = self.tracker
+        for stamp in (100.0, 100.1, 100.5, 100.9, 100.2):
+            tracker.scan("LIDAR_TOP", stamp, cloud())
+        tracker.finish()
+        self.assertEqual([e["kind"] for e in tracker.events()].count("out_of_order"), 1)
+
+    def test_nothing_is_taken_after_the_end(self):
+        self.tracker.finish()
+        self.assertEqual(self.tracker.finish(), [])
+        self.fails("has finished", 64, self.tracker.scan, "LIDAR_TOP", 1.0, cloud())
+
+    def test_results_outlive_arrays_and_tracker(self):
+        points = cloud()
+        tracker = perception.Tracker(INI, sensors="L")
+        tracker.scan("LIDAR_TOP", 100.0, points)
+        points[:] = np.nan
+        del points
+        scene, = tracker.finish()
+        before = scene.objects
+        del tracker
+        self.assertEqual(scene.objects.tobytes(), before.tobytes())
+
+
+class Boxes(unittest.TestCase):
+    def scenes_of(self, boxes, z):
+        tracker = perception.Tracker("kitti-detections.ini")
+        scenes = []
+        for k in range(8):
+            tracker.pose(1000 + k / 10, np.eye(4))
+            scene = tracker.boxes("pointrcnn", 1000 + k / 10, boxes, [9.0] * len(boxes),
+                                  ["Car"] * len(boxes), z=z)
+            scenes += [] if scene is None else [scene]
+        return scenes + tracker.finish()
+
+    def test_boxes_of_a_detector_are_tracked(self):
+        objects = self.scenes_of([[15, 3, 0, 4.2, 1.8, 1.5, 0.1]], "bottom")[-1].objects
+        self.assertEqual(list(objects["class"]), ["car"])
+        np.testing.assert_allclose(objects["position"][0, :2], [15, 3], atol=0.3)
+
+    def test_heights_are_of_the_bottom_or_the_center(self):
+        bottom = self.scenes_of([[15, 3, 0, 4.2, 1.8, 1.5, 0.1]], "bottom")[-1].objects
+        center = self.scenes_of([[15, 3, 0.75, 4.2, 1.8, 1.5, 0.1]], "center")[-1].objects
+        self.assertEqual(bottom.tobytes(), center.tobytes())
+
+    def test_a_frame_without_boxes_is_one(self):
+        self.assertEqual([len(s) for s in self.scenes_of([], "bottom")], [0] * 8)
+
+    def test_labels_are_one_a_box(self):
+        tracker = perception.Tracker("kitti-detections.ini")
+        with self.assertRaisesRegex(perception.Error, "labels: 0, expected 1"):
+            tracker.boxes("pointrcnn", 1.0, np.zeros((1, 7)), [1.0], [], z="bottom")
+
+
+class Threads(unittest.TestCase):
+    def test_two_trackers_in_two_threads_give_what_each_gives_alone(self):
+        observations = list(perception.open(LOG))
+        results = {}
+
+        def work(name):
+            scenes = feed(perception.Tracker(INI), observations, [])
+            results[name] = [s.objects.tobytes() for s in scenes]
+
+        work("alone")
+        threads = [threading.Thread(target=work, args=(k,)) for k in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(results[0], results["alone"])
+        self.assertEqual(results[1], results["alone"])
+
+    def test_others_run_while_a_tracker_computes(self):
+        stopped, turns = threading.Event(), [0]
+
+        def count():
+            while not stopped.is_set():
+                turns[0] += 1
+
+        counter = threading.Thread(target=count)
+        tracker = perception.Tracker(INI, sensors="L")
+        observations = [o for o in perception.open(LOG) if o.kind in ("lidar", "pose")]
+        scans = [(o, o.data["xyz"]) for o in observations if o.kind == "lidar"][:20]
+        counter.start()
+        most = 0
+        for o, xyz in scans:
+            before = turns[0]
+            tracker.scan(o.sensor, o.stamp, xyz)
+            most = max(most, turns[0] - before)
+        stopped.set()
+        counter.join()
+        self.assertGreater(most, 0)
+
+    def test_ctrl_c_ends_a_program_as_it_ends_python(self):
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        with self.assertRaises(KeyboardInterrupt):
+            timer.start()
+            for seed in range(1000):
+                perception.track(LOG, INI, overrides={"run.seed": seed})
+        timer.join()
+        self.assertGreater(len(perception.track(LOG, INI).scenes), 100)  # the next one runs
+
+
+if __name__ == "__main__":
+    unittest.main()
