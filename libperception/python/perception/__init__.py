@@ -36,6 +36,24 @@ class Tracker(_core.Tracker):
 
     scan(), boxes(), image_boxes(), radar() and add() return the oldest scene that is due, or None;
     pending() returns what is due beside it, finish() the rest at the end of the data.
+
+    pose(stamp, T): T (4, 4), vehicle to world [m]; its standard deviations sigma_xy [m], sigma_yaw and
+        sigma_pitch [rad] are at least those of [ego]. Without poses: {"ego.source": "lidar"}.
+    frame(stamp, number): the number of the frame that begins, for scene.frame.
+    scan(sensor, stamp, xyz, intensity, ring, time): xyz (n, 3) float32 [m] in the sensor frame; of
+        shape (n,) or None: intensity ([0, 1], or of one or two bytes), ring (0 lowest), time [s]
+        after the stamp, echo (0 first), pulse_width [m], label; max_range [m] of the instrument.
+    boxes(sensor, stamp, boxes, scores, labels, z): boxes (n, 7): x, y, z, length, width, height [m],
+        yaw [rad], in the sensor frame; z is that of the "bottom" or the "center" of a box.
+    image_boxes(sensor, stamp, boxes, scores, labels, camera): boxes (n, 4): left, top, right, bottom
+        [px]; camera: width, height, fx, fy, cx, cy [px] of an image without distortion; headings
+        (n,) [rad]: KITTI's alpha, NaN where there is none.
+    radar(sensor, stamp, range, bearing, range_rate): (n,) [m], [rad] counter-clockwise off the
+        forward axis, [m/s] against the moving sensor (positive: away; NaN: none); amplitude [dB],
+        elevation [rad].
+    sensor_pose of these: (4, 4), sensor to vehicle [m]; [sensor.LABEL] pose of the INI comes first.
+    add(observation): one of open().
+    events(), learned(): as events.jsonl, and what was learned of detectors as lines of an INI.
     """
 
     def __init__(self, ini, sensors="", overrides=None, output=""):
