@@ -1,5 +1,6 @@
 #include "tests/fuzz/Parsers.h"
 
+#include <sqlite3.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -8,7 +9,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "libperception/config/Config.h"
@@ -17,6 +20,8 @@
 #include "libperception/core/GroundTruth.h"
 #include "libperception/core/LaneMap.h"
 #include "libperception/importers/AimotiveFiles.h"
+#include "libperception/importers/BagContents.h"
+#include "libperception/importers/BagTypes.h"
 #include "libperception/importers/CloudTable.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
@@ -86,6 +91,62 @@ std::string written(const std::string& name, std::string_view bytes) {
 void readBag(const std::string& path) {
   const auto bag = openBag(path);
   for (BagMessage message; bag->next(message);) {
+  }
+}
+
+/// A small recording in sqlite.
+std::string database() {
+  const std::string path = scratch() + "/seed.db3";
+  sqlite3* db = nullptr;
+  sqlite3_open(path.c_str(), &db);
+  sqlite3_exec(db,
+               "PRAGMA page_size = 512;"
+               "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, "
+               "serialization_format TEXT, offered_qos_profiles TEXT);"
+               "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, "
+               "data BLOB);"
+               "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
+               "INSERT INTO topics VALUES(1, '/points', 'sensor_msgs/msg/PointCloud2', 'cdr', '');"
+               "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 60) "
+               "INSERT INTO messages SELECT i, 1, i, zeroblob(20 * i) FROM n;",
+               nullptr, nullptr, nullptr);
+  sqlite3_close(db);
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// The small recording with changes: of three bytes, two are the place of the third.
+void readDatabase(std::string_view bytes) {
+  static const std::string seed = database();
+  std::string changed = seed;
+  for (; bytes.size() >= 3; bytes.remove_prefix(3)) {
+    const auto at = static_cast<unsigned char>(bytes[0]) | static_cast<unsigned char>(bytes[1])
+                                                               << 8;
+    changed[static_cast<std::size_t>(at) % changed.size()] = bytes[2];
+  }
+  readBag(written("changed.db3", changed));
+}
+
+/// The first byte chooses the type, the second the encoding.
+void readMessage(std::string_view bytes) {
+  if (bytes.size() < 2) return;
+  const auto& types = bagTypes();
+  const BagType& type = types[static_cast<unsigned char>(bytes[0]) % types.size()];
+  BagTopic topic;
+  topic.name = "/metadata";
+  topic.type = type.name;
+  topic.encoding = bytes[1] % 2 == 0 ? ros::Encoding::kRos1 : ros::Encoding::kCdr;
+  BagMessage message;
+  message.topic = &topic;
+  message.bytes = bytes.substr(2);
+  SensorFrame frame;
+  BagContents contents;
+  std::vector<BagPacket> packets;
+  try {
+    if (type.measure != nullptr) type.measure(message, {}, frame);
+    if (type.note != nullptr) type.note(message, contents);
+    if (type.unpack != nullptr) type.unpack(message, packets);
+  } catch (const std::runtime_error&) {  // left out and counted, see BagImport
   }
 }
 
@@ -198,6 +259,8 @@ const std::vector<Parser>& parsers() {
       {"truth", ofFile([](const std::string& p) { readGroundTruth(p); })},
       {"lanes", ofFile([](const std::string& p) { LaneMap::fromFile(p); })},
       {"bag", ofFile(&readBag)},
+      {"bag_database", &readDatabase},
+      {"bag_messages", &readMessage},
       {"packets", &decodePackets},
       {"packet_frames", &assemblePackets},
       {"candump", [](std::string_view b) { parseCandump(b); }},
