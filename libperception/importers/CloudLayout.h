@@ -22,9 +22,8 @@ std::optional<std::size_t> columnCountOf(const std::vector<float>& numbers);
 
 /// What the columns hold, by their values: x, y and z are the first three beside each other that
 /// can be coordinates [m]; a ring is a small whole number in which the elevations of the returns
-/// are alike; times rise; the first other column that is nowhere negative, nor the same everywhere, is the
-/// intensity.
-/// `values`: [column][row]. Empty: there are no three coordinates.
+/// are alike; times rise; the first other column that is nowhere negative, nor the same everywhere,
+/// is the intensity. `values`: [column][row]. Empty: there are no three coordinates.
 std::optional<CloudLayout> layoutOf(const std::vector<std::vector<double>>& values);
 
 }  // namespace perception

@@ -218,11 +218,12 @@ TEST(SafetyMonitor, InAWakeOnlyWhatIsSolidTwiceEndsTheDoubt) {
   car.stamp = kStart + -0.9;
   wakes->add(car);
   const auto blocked = [&](int scans, float solid) {
-    return after(scans, 0, [&](Scan& scan) {
-             scan.frame.causes.wakes = wakes;
-             scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-             scan.solid(solid);
-           })
+    return after(scans, 0,
+                 [&](Scan& scan) {
+                   scan.frame.causes.wakes = wakes;
+                   scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+                   scan.solid(solid);
+                 })
         .free.blocked;
   };
   EXPECT_FALSE(blocked(1, 1)) << "the cloud close behind a vehicle is as dense";
