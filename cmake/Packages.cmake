@@ -1,6 +1,6 @@
 # Debian packages (./setup.sh package): perception, programs with all that they need; libperception-pipeline and -detectors, the
-# libraries that others link; libperception-dev, their headers; python3-perception, the module of Python. What they depend on is read from the binaries, but for what headers
-# and plots need.
+# libraries that others link; libperception-dev, their headers; python3-perception, the module of Python. What they depend on is read
+# from the binaries, but for what headers and plots need.
 set(SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(PERCEPTION_CONTACT "perception@packages.invalid" CACHE STRING "Address of who packs it")
 set(CPACK_GENERATOR DEB)
