@@ -20,6 +20,8 @@ std::vector<ImporterRow>& importers() {
        kUsesRate | kUsesImages | kUsesRepeat, &makeVodImporter},
       {"av2", "Argoverse 2 as tables: scans of two stacked lidars, labels, poses", kUsesRepeat,
        &makeAv2Importer},
+      {"nuscenes", "nuScenes: lidar, five radars, six cameras, poses, boxes of one scene",
+       kUsesImages | kLists, &makeNuscenesImporter},
       {"aimotive", "aiMotive: lidar, front and rear radar, camera, motion, labels", kUsesImages,
        &makeAimotiveImporter},
       {"radiate", "RADIATE: Navtech radar, lidar, camera, GPS, annotations", kUsesImages,

@@ -47,6 +47,7 @@ std::unique_ptr<Importer> makeSnowyKittiImporter();
 std::unique_ptr<Importer> makeRadiateImporter();
 std::unique_ptr<Importer> makeVodImporter();
 std::unique_ptr<Importer> makeAv2Importer();
+std::unique_ptr<Importer> makeNuscenesImporter();
 std::unique_ptr<Importer> makeAimotiveImporter();
 std::unique_ptr<Importer> makeComma2k19Importer();
 std::unique_ptr<Importer> makeUdacityImporter();

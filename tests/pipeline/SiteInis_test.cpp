@@ -29,6 +29,7 @@ TEST(SiteInis, AllLoadWithoutAFault) {
                            "kitti-detections.ini",
                            "kitti-detections-unlabelled.ini",
                            "av2.ini",
+                           "nuscenes.ini",
                            "aimotive.ini"}) {
     Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + name);
     PipelineSetup::read(config);
