@@ -99,7 +99,13 @@ std::vector<Number> columnOf(const py::object& object, const char* what, std::si
 }  // namespace
 
 Stamp stampOf(const py::handle& stamp) {
-  if (py::hasattr(stamp, "dtype") && py::cast<std::string>(stamp.attr("dtype").attr("kind")) == "M")
+  const std::string kind =
+      py::hasattr(stamp, "dtype") ? py::cast<std::string>(stamp.attr("dtype").attr("kind")) : "";
+  if (!kind.empty() && py::cast<int>(stamp.attr("ndim")) != 0)
+    throw DataError("stamp: an array, expected one number or datetime64");
+  if (kind == "f" && py::cast<int>(stamp.attr("dtype").attr("itemsize")) < 8)
+    throw DataError("stamp: a float of less than 64 bits does not hold seconds since 1970");
+  if (kind == "M")
     return {py::cast<std::int64_t>(stamp.attr("astype")("datetime64[ns]").attr("astype")("int64"))};
   if (!py::hasattr(stamp, "__index__")) {
     if (!py::hasattr(stamp, "__float__"))

@@ -10,7 +10,6 @@
 #include "libperception/app/App.h"
 #include "libperception/app/Programs.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/MemoryLimit.h"
 #include "libperception/pipeline/Progress.h"
 
 namespace perception::python {
@@ -28,7 +27,8 @@ std::unique_ptr<App> programOf(const std::string& name) {
 }  // namespace
 
 int runProgram(const std::string& name, std::vector<std::string> arguments) {
-  // Handlers of signals and the limit of memory are of the process.
+  // Handlers of signals are of the process. Its memory is not limited, as the programs limit
+  // theirs: it belongs to whatever else runs in it.
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   const auto app = programOf(name);
@@ -41,7 +41,6 @@ int runProgram(const std::string& name, std::vector<std::string> arguments) {
     throw Error(ExitCode::kUsage, app->name() + ": " + error.what());
   }
   const StopSignals listening;
-  const MemoryLimit limit;
   app->run();
   std::fflush(stdout);
   return app->warnings();

@@ -146,7 +146,10 @@ class Tracker {
 
   MaybeScene add(const LogObservation& observation) { return addObservation(observation.get()); }
 
-  std::vector<SceneView> pending() { return views(tracker_.takeAll()); }
+  std::vector<SceneView> pending() {
+    const py::gil_scoped_release others;
+    return views(tracker_.takeAll());
+  }
 
   std::vector<SceneView> finish() {
     const py::gil_scoped_release others;
@@ -283,8 +286,12 @@ void addTracker(py::module_& module) {
       .def("add", &Tracker::add, py::arg("observation"))
       .def("pending", &Tracker::pending)
       .def("finish", &Tracker::finish)
-      .def("learned", [](const Tracker& t) { return t.stream().learned(); })
-      .def("event_lines", [](const Tracker& t) { return t.stream().eventLines(); })
+      .def(
+          "learned", [](const Tracker& t) { return t.stream().learned(); },
+          py::call_guard<py::gil_scoped_release>())
+      .def(
+          "event_lines", [](const Tracker& t) { return t.stream().eventLines(); },
+          py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("classes", &Tracker::classes)
       .def_property_readonly("sensors", [](const Tracker& t) { return t.stream().sensorLabels(); });
 }

@@ -153,6 +153,13 @@ class Arrays(unittest.TestCase):
         self.fails("no time since 1970", 65, pose, float("nan"), np.eye(4))
         self.fails("expected seconds", 65, pose, "now", np.eye(4))
         self.fails("1970 to 2106", 65, pose, -1.0, np.eye(4))
+        self.fails("less than 64 bits", 65, pose, np.float32(1.7e9), np.eye(4))
+        self.fails("expected one number", 65, pose, np.array([1.7e9, 1.8e9]), np.eye(4))
+
+    def test_without_an_output_no_folder_is_made(self):
+        before = set(os.listdir("."))
+        perception.Tracker(INI, sensors="L", output=None).finish()
+        self.assertEqual(set(os.listdir(".")), before)
 
     def scenes_of(self, points, intensity=None):
         tracker = perception.Tracker(INI, sensors="L")

@@ -58,7 +58,7 @@ class Tracker(_core.Tracker):
 
     def __init__(self, ini, sensors="", overrides=None, output=""):
         chosen = [f"run.sensors={sensors}"] if sensors else []
-        super().__init__(str(ini), chosen + settings_of(overrides), str(output))
+        super().__init__(str(ini), chosen + settings_of(overrides), str(output or ""))
 
     def events(self):
         """What happened: dicts with t, stamp, kind, severity, message, fields, as in events.jsonl."""
