@@ -174,7 +174,7 @@ build() {
 
 demo() {
   installPackages "${packages[@]}"
-  build release OFF "3 minutes" --target perception-track perception-evaluate perception-snapshot perception-report
+  build release OFF "7 minutes" --target perception-track perception-evaluate perception-snapshot perception-report
   announce "Tracking, evaluating and drawing the simulated log" "1 minute"
   PERCEPTION_DATA=. PATH=$PWD/build/bin:$PATH apps/perception-demo/perception-demo out/demo
 }
@@ -214,7 +214,7 @@ makeCommaLocale() {
 runTests() {
   local preset=$1 folder=$2 code=0
   shift 2
-  announce "Testing ($preset)" "$( [[ $preset == release ]] && echo "10 minutes" || echo "2 minutes" )"
+  announce "Testing ($preset)" "$( [[ $preset == release ]] && echo "6 minutes" || echo "1 minute" )"
   ctest --preset "$preset" -j "$(jobs)" "$@" | tee "$scratch" || code=$?
   closing+="$preset: $(grep -E 'tests? (passed|failed)' "$scratch" || true)"$'\n'
   closing+="$(grep -E '^Total Test time' "$scratch" || true)"$'\n'
@@ -263,7 +263,7 @@ tests() {
   closing="" skipped=""
   local failed=0
   checked format checkFormat || failed=1
-  build release ON "12 minutes"
+  build release ON "16 minutes"
   checked clang-tidy checkHabits || failed=1
   runTests release build || failed=1
   sanitized asan core config sensors || failed=1
@@ -348,7 +348,7 @@ scratch=$(mktemp)
 readonly scratch
 trap 'rm -f "$scratch"' EXIT
 case $1 in
-  build) installPackages "${packages[@]}"; build release OFF "6 minutes" ;;
+  build) installPackages "${packages[@]}"; build release OFF "11 minutes" ;;
   demo) demo ;;
   package) package ;;
   bench) benches ;;
