@@ -274,7 +274,7 @@ tests() {
 # sanitized PRESET MODULE...: builds the tests of these modules with sanitizers and runs them
 sanitized() {
   local preset=$1 modules=("${@:2}")
-  build "$preset" ON "$(( ${#modules[@]} + 1 )) minutes" --target "${modules[@]/%/_tests}"
+  build "$preset" ON "$(( 3 * ${#modules[@]} )) minutes" --target "${modules[@]/%/_tests}"
   runTests "$preset" "build-$preset" -R "^($(IFS='|'; echo "${modules[*]}"))\$"
 }
 
