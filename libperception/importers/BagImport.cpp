@@ -72,6 +72,7 @@ class BagImport {
   void sorted(Stamp stamp, std::function<void()> write);
   void flush(std::optional<Stamp> until);
   void writePoses(Stamp until);
+  void tellPoses();
 
   std::string path_;
   std::vector<std::string> files_;
@@ -85,7 +86,8 @@ class BagImport {
   std::string frames_topic_;  ///< whose messages are the frames
   std::int64_t frame_ = -1;
   std::vector<StampedPose> poses_;  ///< of the ego frame
-  std::size_t next_pose_ = 0;
+  std::string poses_from_;          ///< whose; empty: none are taken
+  std::size_t next_pose_ = 0, written_poses_ = 0;
   std::multimap<Stamp, std::function<void()>> queue_;
   std::optional<Stamp> last_;
   std::map<std::string, std::unique_ptr<BagPackets>> packets_;  ///< by topic
@@ -168,9 +170,22 @@ void BagImport::choosePoses() {
                     "expected none{}{}",
                     base_, others.empty() ? "" : " or a topic with poses:", others));
   }
-  log_.note(
-      fmt::format("poses: {} of frame \"{}\" from {}", poses_.size(), base_,
-                  source == "tf" ? "tf, in \"" + contents_.tree.movesIn(base_) + "\"" : source));
+  poses_from_ = source == "tf" ? "tf, in \"" + contents_.tree.movesIn(base_) + "\"" : source;
+}
+
+/// What was written is what is said: sensors and poses may have clocks that differ.
+void BagImport::tellPoses() {
+  if (poses_from_.empty()) return;
+  const std::string of = fmt::format("of frame \"{}\" from {}", base_, poses_from_);
+  if (poses_.empty() || written_poses_ > 0) {
+    log_.note(fmt::format("poses: {} {}", written_poses_, of));
+    return;
+  }
+  log_.warn(
+      fmt::format("poses: none of the {} {} lies within the time of the sensors: theirs are "
+                  "{:.3f} to {:.3f} s, the last sensor's is {:.3f} s; do the clocks differ?",
+                  poses_.size(), of, poses_.front().stamp.seconds(), poses_.back().stamp.seconds(),
+                  last_ ? last_->seconds() : 0));
 }
 
 /// The frames are the scans of the first cloud topic, else of the first radar, else the images of
@@ -196,7 +211,9 @@ void BagImport::sorted(Stamp stamp, std::function<void()> write) {
 void BagImport::writePoses(Stamp until) {
   for (; next_pose_ < poses_.size() && poses_[next_pose_].stamp <= until; ++next_pose_) {
     const StampedPose& pose = poses_[next_pose_];
-    if (last_ || until - pose.stamp < kBagPoseMargin) log_.ego(pose.stamp, pose.pose);
+    if (!last_ && until - pose.stamp >= kBagPoseMargin) continue;
+    log_.ego(pose.stamp, pose.pose);
+    ++written_poses_;
   }
 }
 
@@ -368,6 +385,7 @@ void BagImport::run() {
                     ExitCode::kNoInput);
   }
   readSensors();
+  tellPoses();
   for (const std::string& topic : unreadTopics(contents_)) log_.note(topic);
   for (const std::string& fault : contents_.faults) log_.warn(fault);
   for (const auto& [topic, fault] : bad_)

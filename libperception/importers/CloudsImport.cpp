@@ -27,7 +27,7 @@ class CloudsImporter final : public Importer {
  private:
   void readStamps(const std::vector<FrameFile>& files, double rate);
   void readPoses(const std::vector<FrameFile>& files);
-  void findFormat(const std::string& path, ImportLog& log);
+  void findFormat(const std::vector<FrameFile>& files, ImportLog& log);
   std::optional<Pose3> poseAt(std::size_t index) const;
   Pose3 mount() const;
 
@@ -64,7 +64,7 @@ void CloudsImporter::declare(CLI::App& cli) {
   cli.add_option("--label", label_, "sensor label")->capture_default_str();
   cli.add_option("--columns", format_.columns,
                  "of .bin (float32) and of .csv without names: x y z intensity ring time, others "
-                 "are skipped; without: found from the data of the first scan, and said")
+                 "are skipped; without: found from the data, and said")
       ->delimiter(',');
   cli.add_option("--intensity-max", format_.intensity_max,
                  "intensities are divided by it; 0: they lie in [0, 1], or are bytes")
@@ -137,15 +137,17 @@ std::optional<Pose3> CloudsImporter::poseAt(std::size_t index) const {
   return interpolate(before.pose, after->pose, share);
 }
 
-/// All scans have the format of the first one.
-void CloudsImporter::findFormat(const std::string& path, ImportLog& log) {
+/// All scans have the format of the first ones.
+void CloudsImporter::findFormat(const std::vector<FrameFile>& files, ImportLog& log) {
   if (!format_.columns.empty()) return;
-  format_ = foundFormat(path, format_);
+  std::vector<std::string> paths;
+  for (const FrameFile& file : files) paths.push_back(file.path);
+  format_ = foundFormat(paths, format_);
   if (format_.columns.empty()) return;  // the files name their columns
   const std::string scale =
       format_.intensity_max > 1 ? fmt::format(", intensity up to {:g}", format_.intensity_max) : "";
-  log.note(fmt::format("{}: columns {}{}, as its data say, or for want of 100 returns (--columns)",
-                       path, fmt::join(format_.columns, " "), scale));
+  log.note(fmt::format("columns found from the data: {}{} (--columns says otherwise)",
+                       fmt::join(format_.columns, " "), scale));
 }
 
 void CloudsImporter::run(ImportLog& log) {
@@ -158,7 +160,7 @@ void CloudsImporter::run(ImportLog& log) {
   if (!has_poses) log.note("no --poses: the vehicle is taken to stand still");
   if (stamps_file_.empty())
     log.note(fmt::format("no --stamps: taken as {:g} scans a second (--rate)", log.options().rate));
-  findFormat(files.front().path, log);
+  findFormat(files, log);
   // World: the ego frame at the first pose of the file.
   const Pose3 origin = !has_poses         ? Pose3::Identity()
                        : stamped_.empty() ? poses_.front()

@@ -43,6 +43,7 @@ CsvText csvTextOf(const std::string& path, std::string_view bytes) {
     throw DataError(fmt::format("{}: text of two bytes a character, expected UTF-8", path));
   CsvText csv;
   csv.text = withoutMark(bytes);
+  csv.text.erase(std::remove(csv.text.begin(), csv.text.end(), '"'), csv.text.end());
   csv.separators = kComma;
   // The second line decides, where there is one: names may hold any character.
   std::vector<std::string_view> first;

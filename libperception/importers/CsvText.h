@@ -8,7 +8,7 @@ namespace perception {
 
 /// A table of numbers as text, whatever program wrote it: fields are separated by commas and
 /// spaces, or by semicolons or tabs; behind these a comma is the decimal point. A byte-order mark
-/// of UTF-8 is no part of the text.
+/// of UTF-8 and quotation marks are no part of the text.
 struct CsvText {
   std::string text;                ///< with decimal points, without the mark
   const char* separators = "";     ///< of TextRow

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <iterator>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/CloudLayout.h"
@@ -19,11 +20,6 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 
 /// Fewer returns do not tell what their columns are.
 constexpr std::size_t kLeastReturns = 100;
-
-const std::vector<std::string>& usualColumns() {
-  static const std::vector<std::string> kUsual = CloudFormat().columns;
-  return kUsual;
-}
 
 /// `format` with the columns of a layout.
 CloudFormat withLayout(CloudFormat format, const CloudLayout& layout) {
@@ -51,26 +47,37 @@ CloudTable binTable(const std::string& path, const std::string& bytes, std::size
   return table;
 }
 
-CloudFormat foundBinFormat(const std::string& path, const std::string& bytes,
-                           const CloudFormat& format) {
-  CloudFormat usual = format;
-  usual.columns = usualColumns();
-  if (bytes.size() < kLeastReturns * usual.columns.size() * sizeof(float)) return usual;
+/// The numbers of the first files, of as many as are needed to tell their columns.
+std::string firstNumbers(const std::vector<std::string>& paths) {
+  constexpr std::size_t kEnough = kLeastReturns * kMostCloudColumns * sizeof(float);
+  std::string numbers;
+  for (const std::string& path : paths) {
+    if (numbers.size() >= kEnough) break;
+    const std::string bytes = readBytes(path, kMostBytes);
+    numbers.append(bytes, 0, bytes.size() / sizeof(float) * sizeof(float));
+  }
+  return numbers;
+}
+
+/// A file that does not end with a row is refused where it is read.
+CloudFormat foundBinFormat(const std::vector<std::string>& paths, const CloudFormat& format) {
+  std::string bytes = firstNumbers(paths);
   std::vector<float> numbers(bytes.size() / sizeof(float));
-  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(float));
+  std::memcpy(numbers.data(), bytes.data(), bytes.size());
   const auto columns = columnCountOf(numbers);
   if (!columns)
-    throw DataError(
-        fmt::format("{}: its numbers do not tell how many columns it has; {}", path, kSayColumns));
-  const auto layout = layoutOf(binTable(path, bytes, *columns).values);
+    throw DataError(fmt::format("{}: its {} numbers do not tell how many columns it has; {}",
+                                paths.front(), numbers.size(), kSayColumns));
+  bytes.resize(numbers.size() / *columns * *columns * sizeof(float));
+  const auto layout = layoutOf(binTable(paths.front(), bytes, *columns).values);
   if (!layout)
     throw DataError(fmt::format("{}: none of its {} columns of float32 can be x, y and z [m]; {}",
-                                path, *columns, kSayColumns));
+                                paths.front(), *columns, kSayColumns));
   return withLayout(format, *layout);
 }
 
 CloudTable readBin(const std::string& path, const std::string& bytes, const CloudFormat& given) {
-  const CloudFormat format = given.columns.empty() ? foundBinFormat(path, bytes, given) : given;
+  const CloudFormat format = given.columns.empty() ? foundBinFormat({path}, given) : given;
   CloudTable table = binTable(path, bytes, format.columns.size());
   for (std::size_t c = 0; c < format.columns.size(); ++c) table.columns[c].name = format.columns[c];
   return table;
@@ -87,16 +94,26 @@ CloudTable readCsvNumbers(const std::string& path, const CsvText& csv, std::size
   return table;
 }
 
-CloudFormat foundCsvFormat(const std::string& path, const CsvText& csv, const CloudFormat& format) {
-  CloudFormat usual = format;
-  usual.columns = usualColumns();
-  if (csv.columns < usual.columns.size())
-    usual.columns.resize(std::max<std::size_t>(3, csv.columns));
-  if (csv.rows < kLeastReturns) return usual;
-  const auto layout = layoutOf(readCsvNumbers(path, csv, csv.columns).values);
+/// Of files without names; of as many as are needed.
+CloudFormat foundCsvFormat(const std::vector<std::string>& paths, const CloudFormat& format) {
+  std::vector<std::vector<double>> values;
+  for (const std::string& path : paths) {
+    if (!values.empty() && values.front().size() >= kLeastReturns) break;
+    const CsvText csv = csvTextOf(path, readBytes(path, kMostBytes));
+    if (!csv.names.empty()) return format;
+    const CloudTable table = readCsvNumbers(path, csv, csv.columns);
+    if (values.empty()) values.resize(csv.columns);
+    for (std::size_t c = 0; c < std::min(values.size(), table.values.size()); ++c)
+      values[c].insert(values[c].end(), table.values[c].begin(), table.values[c].end());
+  }
+  if (values.empty() || values.front().size() < kLeastReturns)
+    throw DataError(fmt::format("{}: {} returns do not tell what their columns are; {}",
+                                paths.front(), values.empty() ? 0 : values.front().size(),
+                                kSayColumns));
+  const auto layout = layoutOf(values);
   if (!layout)
-    throw DataError(fmt::format("{}: none of its {} columns can be x, y and z [m]; {}", path,
-                                csv.columns, kSayColumns));
+    throw DataError(fmt::format("{}: none of its {} columns can be x, y and z [m]; {}",
+                                paths.front(), values.size(), kSayColumns));
   return withLayout(format, *layout);
 }
 
@@ -104,7 +121,7 @@ CloudTable readCsvCloud(const std::string& path, const std::string& bytes,
                         const CloudFormat& given) {
   const CsvText csv = csvTextOf(path, bytes);
   if (csv.names.empty()) {
-    const CloudFormat format = given.columns.empty() ? foundCsvFormat(path, csv, given) : given;
+    const CloudFormat format = given.columns.empty() ? foundCsvFormat({path}, given) : given;
     if (csv.rows > 0 && csv.columns < format.columns.size()) {
       throw DataError(fmt::format("{}:{}: {} fields, expected {}: {}", path, csv.first_line,
                                   csv.columns, format.columns.size(),
@@ -196,13 +213,14 @@ bool isTable(const std::string& ending) {
 
 }  // namespace
 
-CloudFormat foundFormat(const std::string& path, const CloudFormat& format) {
-  const std::string ending = endingOf(path);
-  if (!format.columns.empty() || (ending != ".bin" && !isTable(ending))) return format;
-  const std::string bytes = readBytes(path, kMostBytes);
-  if (ending == ".bin") return foundBinFormat(path, bytes, format);
-  const CsvText csv = csvTextOf(path, bytes);
-  return csv.names.empty() ? foundCsvFormat(path, csv, format) : format;
+CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat& format) {
+  if (!format.columns.empty() || paths.empty()) return format;
+  const std::string ending = endingOf(paths.front());
+  std::vector<std::string> alike;
+  std::copy_if(paths.begin(), paths.end(), std::back_inserter(alike),
+               [&](const std::string& path) { return endingOf(path) == ending; });
+  if (ending == ".bin") return foundBinFormat(alike, format);
+  return isTable(ending) ? foundCsvFormat(alike, format) : format;
 }
 
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format) {

@@ -19,12 +19,12 @@ struct CloudFormat {
 /// File extensions supported by readCloudFile(), including gzip variants.
 const std::vector<std::string>& cloudEndings();
 
-/// For a file without names of its columns (.bin always; .csv, .txt, .xyz where the first line
-/// holds numbers): `format` with the columns that are found from its data, and the scale of the
-/// intensities where none is given; unchanged if it has columns or the file has names. A file of
-/// less than 100 returns is taken as x, y, z, intensity. Throws DataError if the data do not say
-/// what they are, or if the file does not end with a row.
-CloudFormat foundFormat(const std::string& path, const CloudFormat& format);
+/// For files without names of their columns (.bin always; .csv, .txt, .xyz where the first line
+/// holds numbers): `format` with the columns that are found from their data, the first file's and
+/// as many more as hold 100 returns together, and the scale of the intensities where none is given;
+/// unchanged if it has columns or the files have names. Throws DataError if the data do not say
+/// what they are.
+CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat& format);
 
 /// One scan: .bin (float32 columns), .pcd (PCL 0.7: ascii, binary, binary_compressed), .ply (ascii,
 /// binary of both byte orders), .csv .txt .xyz (with or without a line of names; separated by

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <opencv2/imgcodecs.hpp>
-#include <string_view>
 
 #include "libperception/core/Error.h"
 #include "libperception/sensors/CameraImages.h"
@@ -26,35 +24,6 @@ namespace {
 constexpr int kJpegQuality = 95;
 /// [s] Largest time between rows of one object for a velocity by differences.
 constexpr double kTruthGap = 1.0;
-
-template <class Number>
-void mix(std::size_t& hash, const Number* numbers, std::size_t count) {
-  const std::string_view bytes(reinterpret_cast<const char*>(numbers), count * sizeof(Number));
-  hash = hash * 1'000'003 + std::hash<std::string_view>()(bytes);
-}
-
-/// A hash of what the sensor said.
-std::size_t contentOf(const SensorFrame& frame) {
-  std::size_t hash = 0;
-  if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
-    for (const auto* values : {&cloud->x, &cloud->y, &cloud->z, &cloud->intensity})
-      mix(hash, values->data(), values->size());
-  } else if (const auto* radar = std::get_if<RadarReturns>(&frame.data)) {
-    for (const RadarReturn& r : radar->returns) {
-      const double numbers[] = {r.range, r.bearing, r.range_rate, r.amplitude,
-                                static_cast<double>(r.id)};
-      mix(hash, numbers, 5);
-    }
-  } else if (const auto* found = std::get_if<ObjectDetections>(&frame.data)) {
-    for (const ObjectDetection& o : found->objects) {
-      mix(hash, o.label.data(), o.label.size());
-      mix(hash, &o.score, 1);
-      if (o.image_box) mix(hash, &o.image_box->x1, 1), mix(hash, &o.image_box->y1, 1);
-      if (o.space_box) mix(hash, o.space_box->bottom_center.data(), 3);
-    }
-  }
-  return hash;
-}
 
 void failImage(const fs::path& path, const char* what, const std::error_code& error) {
   throw OutputError(fmt::format("{}: cannot {}: {}", path.string(), what, error.message()));
@@ -109,20 +78,8 @@ void ImportLog::frame(Stamp stamp, std::int64_t number) {
   ++result_.frames;
 }
 
-bool ImportLog::isDouble(const SensorFrame& frame) {
-  if (std::holds_alternative<CameraImage>(frame.data)) return false;  // its pixels are in a file
-  Written& written = written_[frame.sensor];
-  if (frame.stamp != written.stamp) {
-    written.stamp = frame.stamp;
-    written.contents.clear();
-  }
-  const bool first = written.contents.insert(contentOf(frame)).second;
-  if (!first) ++written.doubles;
-  return !first;
-}
-
 void ImportLog::sensor(const SensorFrame& frame) {
-  if (isDouble(frame)) return;
+  if (doubles_.isDouble(frame)) return;
   if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
     ++result_.scans;
     result_.points += cloud->size();
@@ -258,10 +215,9 @@ void ImportLog::setTruthVelocities() {
 ImportResult ImportLog::close() {
   failWithoutFrames();
   warnOfMissing();
-  for (const auto& [label, written] : written_)
-    if (written.doubles > 0)
-      note(fmt::format("{}: {} messages came twice, with the same stamp and content: left out",
-                       label, written.doubles));
+  for (const auto& [label, count] : doubles_.counts())
+    note(fmt::format("{}: {} messages came twice, with the same stamp and content: left out", label,
+                     count));
   log_.finish();
   if (has_truth_) {  // before the log has its name, so that a complete log has its truth
     std::vector<TruthObject> objects;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
+#include "libperception/importers/DoubledMessages.h"
 #include "libperception/measurement/SensorFrame.h"
 #include "libperception/sensors/RawlogWriter.h"
 
@@ -83,8 +84,7 @@ class ImportLog {
   /// applies.
   void ego(Stamp stamp, const Pose3& T_world_ego, const PoseUncertainty& uncertainty = {0, 0, 0});
   void frame(Stamp stamp, std::int64_t number);
-  /// What was written for the sensor at the same stamp with the same content before is left out
-  /// and counted: recorders that are started twice write each message twice.
+  /// Doubled messages are left out and counted.
   void sensor(const SensorFrame& frame);
   void image(const ImportedImage& image, std::int64_t frame);
   /// Any other observation: GNSS, IMU, odometry.
@@ -111,7 +111,6 @@ class ImportLog {
 
  private:
   void write(const mrpt::obs::CObservation& observation);
-  bool isDouble(const SensorFrame& frame);
   std::string storedImage(const ImportedImage& image, std::int64_t frame);
   void setTruthVelocities();
   void warnOfMissing();
@@ -123,13 +122,7 @@ class ImportLog {
   ImportResult result_;
   bool has_truth_ = false;
   bool any_wanted_ = false;
-  /// By sensor: what was written at its newest stamp, by a hash of the content; how many doubles.
-  struct Written {
-    Stamp stamp;
-    std::set<std::size_t> contents;
-    std::int64_t doubles = 0;
-  };
-  std::map<std::string, Written> written_;
+  DoubledMessages doubles_;
   std::optional<std::pair<std::int64_t, std::int64_t>>
       numbers_;  ///< least, greatest frame there is
   std::optional<Stamp> first_stamp_;

@@ -246,6 +246,27 @@ TEST_F(BagImport, MessagesThatCameTwiceAreLeftOutAndCounted) {
             "points: 3 messages came twice, with the same stamp and content: left out");
 }
 
+TEST_F(BagImport, PosesByAnotherClockAreNotCountedAsWritten) {
+  for (const int apart : {-1000, 1000}) {
+    std::vector<Topic> topics = drive(true);
+    for (auto& [second, bytes] : topics[2].messages) {
+      second = static_cast<std::uint32_t>(static_cast<int>(second) + 2000 + apart);
+      bytes = cloudMessage(true, second);
+    }
+    for (auto& [second, bytes] : topics[1].messages) {
+      const double x = 2.0 * (second - 100);
+      second += 2000;
+      bytes = transformMessage(true, second, "map", "base_link", {x, 0, 0});
+    }
+    writeMcap("drive.mcap", topics);
+    EXPECT_EQ(import("bag", {"--bag", file("drive.mcap")}), 3);
+    EXPECT_EQ(result_.poses, 0);
+    EXPECT_NE(error_.find("poses: none of the 3 of frame \"base_link\" from tf"), std::string::npos)
+        << error_;
+    std::filesystem::remove(file("out.rawlog"));
+  }
+}
+
 TEST_F(BagImport, ScansOfOneStampThatDifferAreKept) {
   std::vector<Topic> topics = drive(true);
   topics.back().messages.emplace_back(102, cloudMessage(true, 102, "ring"));

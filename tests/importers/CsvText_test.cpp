@@ -23,6 +23,12 @@ TEST(CsvText, BehindSemicolonsACommaIsTheDecimalPoint) {
   EXPECT_EQ(csv.text, "x;y;z\r\n1.5;-2.25;3\r\n");
 }
 
+TEST(CsvText, QuotationMarksAreNoPartOfNamesAndNumbers) {
+  const CsvText csv = csvOf("\"X\";\"Y\";\"Z\"\n\"1,5\";2;3\n");
+  EXPECT_EQ(csv.names, (std::vector<std::string>{"X", "Y", "Z"}));
+  EXPECT_EQ(csv.text, "X;Y;Z\n1.5;2;3\n");
+}
+
 TEST(CsvText, BehindTabsTooIfNoSpacesAreThere) {
   EXPECT_EQ(csvOf("1,5\t2\t3\n").text, "1.5\t2\t3\n");
   const CsvText spaced = csvOf("1,\t2,\t3\n");
