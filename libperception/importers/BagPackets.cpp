@@ -47,7 +47,7 @@ BagPackets::BagPackets(const BagType& type, std::string label, std::string metad
 /// Chooses the device whose decoder takes the packet.
 void BagPackets::start(std::string_view packet) {
   std::string refused;
-  for (const char* name : type_.devices) {
+  for (const std::string name : type_.devices) {
     const DeviceKind& kind = deviceKind(name);
     if (kind.needs_file && metadata_.empty())
       throw std::runtime_error(
