@@ -84,8 +84,8 @@ class Overlay {
     const auto corners = cornersOf(object);
     const bool muted = isMuted(view_.className(object));
     pen_.box(corners, color, muted ? 1.2 : 2, object.existence < kSureExistence);
-    // A bar marks the front.
-    if (!muted && object.has_yaw) {
+    // A bar marks the front where it is known.
+    if (!muted && object.has_yaw && object.p_front >= kSureFront) {
       const auto inward = [&](std::size_t front, std::size_t rear) -> Vector3 {
         return corners[front] + 0.2 * (corners[rear] - corners[front]);
       };

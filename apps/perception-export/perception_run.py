@@ -52,7 +52,9 @@ class Run:
     def __init__(self, folder):
         self.tracks = read_table(os.path.join(folder, "tracks.csv"))
         self.scenes = read_table(os.path.join(folder, "scenes.csv"))
-        self.classes = [n[2:] for n in self.tracks.dtype.names if n.startswith("p_")]
+        self.classes = [
+            n[2:] for n in self.tracks.dtype.names if n.startswith("p_") and n != "p_front"
+        ]
 
     def ids(self):
         return np.unique(self.tracks["id"])

@@ -71,6 +71,7 @@ Match makeMatch(const SeenTruth& truth, const SeenEstimate& estimate) {
     match.velocity_error = (e.velocity - Vector2(t.vx, t.vy)).norm();
   }
   if (e.has_yaw && std::isfinite(t.yaw)) match.heading_error = wrapAngle(e.yaw - t.yaw);
+  match.front_probability = e.p_front;
   return match;
 }
 

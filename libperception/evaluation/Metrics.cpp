@@ -79,7 +79,8 @@ class TimelineBuilder {
 
 void addErrors(const Evaluation& evaluation, Pairing pairing, ClassId class_id,
                TrackingFigures& figures) {
-  Sum range, center_range, bearing, position, speed, velocity, heading, reversed;
+  Sum range, center_range, bearing, position, speed, velocity, heading, reversed, sure,
+      sure_reversed;
   for (const TruthSample& sample : evaluation.samples) {
     const auto& match = sample.matched(pairing);
     if (!isOf(sample, class_id) || !match) continue;
@@ -90,7 +91,12 @@ void addErrors(const Evaluation& evaluation, Pairing pairing, ClassId class_id,
     speed.add(match->speed_error);
     velocity.add(match->velocity_error);
     heading.add(match->heading_error);
-    if (match->heading_error) reversed.add(std::abs(*match->heading_error) > kPi / 2 ? 1.0 : 0.0);
+    if (!match->heading_error) continue;
+    const double opposite = std::abs(*match->heading_error) > kPi / 2 ? 1.0 : 0.0;
+    const bool known = match->front_probability >= kSureFront;
+    reversed.add(opposite);
+    sure.add(known ? 1.0 : 0.0);
+    if (known) sure_reversed.add(opposite);
   }
   figures.range_rms = range.rms();
   figures.center_range_rms = center_range.rms();
@@ -100,6 +106,8 @@ void addErrors(const Evaluation& evaluation, Pairing pairing, ClassId class_id,
   figures.velocity_rms = velocity.rms();
   figures.heading_rms = heading.rms();
   figures.heading_reversed = reversed.mean();
+  figures.heading_sure = sure.mean();
+  figures.heading_sure_reversed = sure_reversed.mean();
 }
 
 }  // namespace

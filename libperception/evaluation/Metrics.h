@@ -23,14 +23,16 @@ struct TrackingFigures {
       0;  ///< active instants from each object's first to its last tracked one (denominator C)
   std::size_t returns = 0;                 ///< instants tracked: "Number of Returns"
   Figure tracked_a, tracked_b, tracked_c;  ///< returns / denominator A, B, C
-  Figure range_rms;         ///< [m] to the closest point of the footprint, as in [radecki2016]
-  Figure center_range_rms;  ///< [m] to the center
-  Figure bearing_rms;       ///< [rad] of the center
-  Figure position_rms;      ///< [m] between the centers
-  Figure speed_rms;         ///< [m/s] of the magnitudes
-  Figure velocity_rms;      ///< [m/s] of the vectors
-  Figure heading_rms;       ///< [rad]
-  Figure heading_reversed;  ///< share of headings more than 90 deg off
+  Figure range_rms;              ///< [m] to the closest point of the footprint, as in [radecki2016]
+  Figure center_range_rms;       ///< [m] to the center
+  Figure bearing_rms;            ///< [rad] of the center
+  Figure position_rms;           ///< [m] between the centers
+  Figure speed_rms;              ///< [m/s] of the magnitudes
+  Figure velocity_rms;           ///< [m/s] of the vectors
+  Figure heading_rms;            ///< [rad]
+  Figure heading_reversed;       ///< share of headings more than 90 deg off
+  Figure heading_sure;           ///< share of headings with p_front of at least kSureFront
+  Figure heading_sure_reversed;  ///< share of these more than 90 deg off
   Figure correct, mis, unclassified;  ///< shares of the returns; they sum to 1
   std::size_t id_switches =
       0;  ///< the matched id differs from that of the object's last tracked instant
@@ -104,6 +106,8 @@ struct Reliability {
                              ///< by count
 };
 Reliability reliability(const Evaluation& evaluation, Pairing pairing);
+/// Calibration of p_front: matched outputs with a heading, of all classes or one.
+Reliability frontReliability(const Evaluation& evaluation, Pairing pairing, ClassId class_id = -1);
 /// Calibration of the existence probability: outputs of a named class in the sector, and the share
 /// matched one-to-one to a truth object.
 Reliability existenceReliability(const Evaluation& evaluation);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "libperception/core/Angle.h"
 #include "libperception/evaluation/Metrics.h"
 
 namespace perception {
@@ -56,6 +57,16 @@ Reliability reliability(const Evaluation& evaluation, Pairing pairing) {
   for (const TruthSample& sample : evaluation.samples) {
     const auto& match = sample.matched(pairing);
     if (match) builder.add(match->probability, match->class_id == sample.class_id);
+  }
+  return builder.finish();
+}
+
+Reliability frontReliability(const Evaluation& evaluation, Pairing pairing, ClassId class_id) {
+  ReliabilityBuilder builder;
+  for (const TruthSample& sample : evaluation.samples) {
+    const auto& match = sample.matched(pairing);
+    if (!match || !match->heading_error || (class_id >= 0 && sample.class_id != class_id)) continue;
+    builder.add(match->front_probability, std::abs(*match->heading_error) <= kPi / 2);
   }
   return builder.finish();
 }

@@ -29,6 +29,8 @@ Json json(const TrackingFigures& f) {
           {"velocity_rms_mps", json(f.velocity_rms)},
           {"heading_rms_rad", json(f.heading_rms)},
           {"heading_reversed", json(f.heading_reversed)},
+          {"heading_front_known", json(f.heading_sure)},
+          {"heading_front_known_reversed", json(f.heading_sure_reversed)},
           {"id_switches", f.first_to_last ? Json(f.id_switches) : Json(nullptr)},
           {"fragmentations", f.first_to_last ? Json(f.fragmentations) : Json(nullptr)}};
 }

@@ -112,18 +112,23 @@ ReportTable trackedTable(const EvaluationReport& report) {
 }
 
 ReportTable errorTable(const EvaluationReport& report) {
-  ReportTable table = makeTable("Errors at tracked instants (rms)", {"Run", "Class", "Matching"},
-                                {"range (m)", "center range (m)", "bearing (rad)", "position (m)",
-                                 "speed (m/s)", "velocity (m/s)", "heading (rad)", "reversed"});
+  ReportTable table =
+      makeTable("Errors at tracked instants (rms)", {"Run", "Class", "Matching"},
+                {"range (m)", "center range (m)", "bearing (rad)", "position (m)", "speed (m/s)",
+                 "velocity (m/s)", "heading (rad)", "reversed", "front known", "known, reversed"});
   table.notes = {
       "range: to the closest point of the footprint; center range, bearing, position: of the "
       "center; on the ground plane.",
       "speed: of the magnitudes; velocity: of the vectors; where the truth has a velocity.",
-      "heading: where truth and estimate have one; reversed: share of these more than 90 deg off."};
+      "heading: where truth and estimate have one; reversed: share of these more than 90 deg off.",
+      "front known: share of the headings with p_front of at least 0.9; known, reversed: share of "
+      "these more than 90 deg off."};
   addPairedRows(report, table, [](const TrackingFigures& f) {
-    return Row{number(f.range_rms),    number(f.center_range_rms), number(f.bearing_rms),
-               number(f.position_rms), number(f.speed_rms),        number(f.velocity_rms),
-               number(f.heading_rms),  number(f.heading_reversed)};
+    return Row{number(f.range_rms),    number(f.center_range_rms),
+               number(f.bearing_rms),  number(f.position_rms),
+               number(f.speed_rms),    number(f.velocity_rms),
+               number(f.heading_rms),  number(f.heading_reversed),
+               number(f.heading_sure), number(f.heading_sure_reversed)};
   });
   return table;
 }

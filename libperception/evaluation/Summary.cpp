@@ -35,6 +35,12 @@ std::string summaryOf(const EvaluatedRun& run, const EvaluationOptions& options)
                            number(single.velocity_rms, 2)));
   text += line("headings", fmt::format("{} rad (rms), reversed {}", number(single.heading_rms, 2),
                                        number(single.heading_reversed)));
+  text += line(
+      "fronts",
+      fmt::format("known (p_front >= {:g}) in {}, of these reversed {}, calibration "
+                  "error {}",
+                  kSureFront, number(single.heading_sure), number(single.heading_sure_reversed),
+                  number(frontReliability(e, Pairing::kOneToOne).calibration_error)));
   return text;
 }
 

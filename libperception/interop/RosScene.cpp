@@ -11,6 +11,12 @@
 namespace perception::ros {
 namespace {
 
+/// [rad^2] about yaw, of an axis whose front is known with a probability.
+double yawVariance(const SceneObject& object) {
+  const double axis = object.sd_yaw * object.sd_yaw;
+  return object.has_yaw ? axis + (1 - object.p_front) * kPi * kPi : axis;
+}
+
 Detection3D detectionOf(const SceneObject& object, const Header& header,
                         const std::vector<std::string>& class_names) {
   constexpr double kLeast = 0.01;  // probability of classes that are named
@@ -21,7 +27,8 @@ Detection3D detectionOf(const SceneObject& object, const Header& header,
   d.center = messageOf(T);
   d.size = {object.length, object.width, object.height};
   d.id = std::to_string(object.id);
-  const double variances[] = {object.sd_x, object.sd_y, object.sd_yaw};
+  const double variances[] = {object.sd_x * object.sd_x, object.sd_y * object.sd_y,
+                              yawVariance(object)};
   for (std::size_t c = 0; c < object.class_probability.size(); ++c) {
     if (object.class_probability[c] < kLeast) continue;
     ObjectHypothesis h;
@@ -29,7 +36,7 @@ Detection3D detectionOf(const SceneObject& object, const Header& header,
     h.score = object.class_probability[c] * object.existence;
     h.pose = d.center;
     for (const auto& [at, k] : {std::pair(0, 0), std::pair(7, 1), std::pair(35, 2)})
-      h.covariance[static_cast<std::size_t>(at)] = variances[k] * variances[k];
+      h.covariance[static_cast<std::size_t>(at)] = variances[k];
     d.results.push_back(std::move(h));
   }
   return d;

@@ -71,6 +71,8 @@ ClassTable readClassTable(Config& config) {
   for (const auto& section : config.sectionsWithPrefix(prefix)) {
     table.classes.push_back(config.read<ObjectClass>(section));
     table.classes.back().name = section.substr(prefix.size());
+    if (table.classes.back().name == "front")
+      config.fault(section, "", "no class has this name: tracks.csv has a column p_front");
   }
   if (table.classes.empty()) {
     config.fault("", "", "no [class.NAME] section: include classes.ini");

@@ -48,6 +48,7 @@ py::dtype recordOf(std::size_t classes, const py::dtype& class_name) {
   addMany("position", 3);
   add("yaw", py::str("f8"));
   add("has_yaw", py::str("?"));
+  add("p_front", py::str("f8"));
   addMany("velocity", 2);
   add("speed", py::str("f8"));
   addMany("size", 3);
@@ -68,6 +69,7 @@ void putObject(const SceneObject& object, std::size_t name_bytes, RecordWriter r
   record.putAll(object.position);
   record.put(object.yaw);
   record.put(object.has_yaw);
+  record.put(object.p_front);
   record.putAll(object.velocity);
   record.put(object.speed);
   record.putAll(std::initializer_list<double>{object.length, object.width, object.height});

@@ -10,6 +10,9 @@
 
 namespace perception {
 
+/// From this probability on the front of an object counts as known.
+inline constexpr double kSureFront = 0.9;
+
 /// One tracked and classified object of the output. World frame, SI units.
 struct SceneObject {
   std::uint64_t id = 0;     ///< 1, 2, 3 ... in order of first output; stays with the object
@@ -19,10 +22,12 @@ struct SceneObject {
   double existence = 0;                   ///< probability that the track is a real object
   Vector3 position = Vector3::Zero();     ///< [m] center of the footprint, z = base of the object
   double yaw = 0;                         ///< [rad] direction of the length axis, front first
-  bool has_yaw = false;                   ///< false: yaw is the direction of motion or 0
-  Vector2 velocity = Vector2::Zero();     ///< [m/s]
-  double speed = 0;                       ///< [m/s] along yaw; negative: reversing
-  double length = 0, width = 0, height = 0;             ///< [m]
+  /// Probability that yaw points to the front and not to the back; .5: only the axis is known.
+  double p_front = 0.5;
+  bool has_yaw = false;                      ///< false: yaw is the direction of motion or 0
+  Vector2 velocity = Vector2::Zero();        ///< [m/s]
+  double speed = 0;                          ///< [m/s] along yaw; negative: reversing
+  double length = 0, width = 0, height = 0;  ///< [m]
   double sd_x = 0, sd_y = 0, sd_yaw = 0, sd_speed = 0;  ///< [m, m, rad, m/s] standard deviations
   std::map<Modality, Stamp> last_hit;                   ///< last measurement of each modality
 };

@@ -106,6 +106,7 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   if (f.oriented) {
     o.yaw = f.x[3];
     o.sd_yaw = std::sqrt(f.P(3, 3));
+    o.p_front = f.heading.frontProbability();
     o.speed = f.x[2];
     o.sd_speed = std::sqrt(f.P(2, 2));
   } else {
@@ -115,10 +116,12 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
       o.has_yaw = true;
       o.yaw = track.body_heading->mean;
       o.sd_yaw = std::min(kPi, std::sqrt(track.body_heading->variance));
+      o.p_front = track.body_heading_bit.frontProbability();
     } else if (speed >= kHeadingFromSpeed) {
       const Vector2 across(-along.y(), along.x());
       o.yaw = std::atan2(along.y(), along.x());
       o.sd_yaw = std::min(kPi, std::sqrt(across.dot(velocity_covariance * across)) / speed);
+      o.p_front = probabilityForward(o.speed, o.sd_speed * o.sd_speed);
     } else {
       o.yaw = 0;
       o.sd_yaw = kPi;

@@ -57,7 +57,8 @@ std::string tracksHeader(const ClassTable& classes) {
   line.text("frame,t,stamp,id,class,classified");
   for (const ObjectClass& c : classes.classes) line.text("p_" + c.name);
   line.text(
-      "existence,x,y,z,yaw,has_yaw,vx,vy,speed,length,width,height,sd_x,sd_y,sd_yaw,sd_speed");
+      "existence,x,y,z,yaw,has_yaw,p_front,vx,vy,speed,length,width,height,sd_x,sd_y,sd_yaw,sd_"
+      "speed");
   for (const ModalityRow& m : modalities()) line.text(lastHitColumn(m));
   return line.end();
 }
@@ -74,6 +75,7 @@ std::string trackLine(const Scene& scene, const SceneObject& object, const Class
   for (const double v : object.position) line.meters(v);
   line.radians(object.yaw);
   line.integer(object.has_yaw ? 1 : 0);
+  line.probability(object.p_front);
   for (const double v : object.velocity) line.meters(v);
   line.meters(object.speed);
   for (const double v : {object.length, object.width, object.height}) line.meters(v);
@@ -130,8 +132,8 @@ bool isFinite(const SceneObject& o) {
   for (const double p : o.class_probability) {
     if (!std::isfinite(p)) return false;
   }
-  for (const double v : {o.existence, o.yaw, o.speed, o.length, o.width, o.height, o.sd_x, o.sd_y,
-                         o.sd_yaw, o.sd_speed}) {
+  for (const double v : {o.existence, o.yaw, o.p_front, o.speed, o.length, o.width, o.height,
+                         o.sd_x, o.sd_y, o.sd_yaw, o.sd_speed}) {
     if (!std::isfinite(v)) return false;
   }
   return o.position.allFinite() && o.velocity.allFinite();
@@ -214,6 +216,7 @@ SceneObject readObject(const Table& row, const std::vector<std::string>& classes
   o.position = {row.real("x"), row.real("y"), row.real("z")};
   o.yaw = row.real("yaw");
   o.has_yaw = row.flag("has_yaw");
+  if (row.has("p_front")) o.p_front = row.real("p_front");  // older runs have none
   o.velocity = {row.real("vx"), row.real("vy")};
   o.speed = row.real("speed");
   o.length = row.real("length"), o.width = row.real("width"), o.height = row.real("height");
@@ -265,6 +268,7 @@ TrackedRun readTrackedRun(const std::string& dir) {
   TrackedRun run;
   run.dir = dir;
   for (const std::string& name : tracks.csv().header()) {
+    if (name == "existence") break;  // p_front, further on, is no class
     if (name.rfind("p_", 0) == 0) run.class_names.push_back(name.substr(2));
   }
   std::size_t next = 0;  // line of tracks.csv: they stand in the order of the scenes

@@ -15,7 +15,7 @@ namespace perception {
 /// locale.
 ///
 /// tracks.csv:
-/// frame,t,stamp,id,class,classified,p_NAME...,existence,x,y,z,yaw,has_yaw,vx,vy,speed,length,width,height,
+/// frame,t,stamp,id,class,classified,p_NAME...,existence,x,y,z,yaw,has_yaw,p_front,vx,vy,speed,length,width,height,
 ///             sd_x,sd_y,sd_yaw,sd_speed,last_hit_C,last_hit_L,last_hit_R
 /// scenes.csv: frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,
 ///             stop,obstacle,cause,returns,overruled,safe_speed,too_fast

@@ -37,7 +37,8 @@ struct Results : BatchFixture {
     const std::string at = dir + "/" + shard.id;
     std::string tracks =
         "frame,t,stamp,id,class,classified,p_pedestrian,p_car,p_static-other,existence,x,y,z,yaw,"
-        "has_yaw,vx,vy,speed,length,width,height,sd_x,sd_y,sd_yaw,sd_speed,last_hit_C,last_hit_L,"
+        "has_yaw,p_front,vx,vy,speed,length,width,height,sd_x,sd_y,sd_yaw,sd_speed,last_hit_C,last_"
+        "hit_L,"
         "last_hit_R\n";
     std::string scenes =
         "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,stop,"

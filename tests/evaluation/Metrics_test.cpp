@@ -138,6 +138,24 @@ TEST(Metrics, AReversedHeadingIsSeen) {
   EXPECT_FALSE(trackingFigures(compare({{estimate}}, {truth}), Pairing::kClosest).heading_rms);
 }
 
+TEST(Metrics, ReversedHeadingsAreCountedApartWhereTheFrontIsKnown) {
+  std::vector<TruthObject> truth;
+  for (int i = 0; i < 5; ++i) {
+    truth.push_back(makeTruth(i, 1, 10, 0));
+    truth.back().yaw = 0;
+  }
+  SceneObject guess = makeObject(1, 10, 0), known = guess;
+  guess.yaw = 3, guess.p_front = 0.6;
+  known.yaw = 0, known.p_front = 0.9;
+  const Evaluation e = compare({{guess}, {known}, {guess}, {known}, {guess}}, truth);
+  const TrackingFigures f = trackingFigures(e, Pairing::kClosest);
+  EXPECT_EQ(f.heading_reversed, 0.6);
+  EXPECT_EQ(f.heading_sure, 0.4);
+  EXPECT_EQ(f.heading_sure_reversed, 0);
+  EXPECT_NEAR(*frontReliability(e, Pairing::kClosest).calibration_error, 0.6 * 0.6 + 0.4 * 0.1,
+              kTiny);
+}
+
 TEST(Metrics, SpeedIsJudgedOnlyWhereTheTruthHasOne) {
   TruthObject moving = makeTruth(0, 1, 10, 0);
   moving.vx = 3;

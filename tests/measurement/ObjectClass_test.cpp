@@ -65,6 +65,12 @@ TEST(ObjectClass, AMotionOfNoRowIsAFaultThatNamesTheRows) {
             "wheeled, static");
 }
 
+TEST(ObjectClass, HasNotTheNameOfAColumnOfTracks) {
+  Config config = Config::fromText("[class.front]\nmotion = static\nprior = 1\n", "t.ini");
+  readClassTable(config);
+  EXPECT_NE(faultsOf(config).find("tracks.csv has a column p_front"), std::string::npos);
+}
+
 TEST(ObjectClass, NoneAtAllIsAFault) {
   Config config = Config::fromText("", "t.ini");
   EXPECT_EQ(readClassTable(config).size(), 0);

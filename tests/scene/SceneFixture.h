@@ -42,6 +42,7 @@ inline SceneObject someCar(std::uint64_t id = 1) {
   o.position = {12.3456, -7.0001, 0.25};
   o.yaw = -3.141592;
   o.has_yaw = true;
+  o.p_front = 0.875;
   o.velocity = {-5.5, 0.125};
   o.speed = -5.5014;
   o.length = 4.5, o.width = 1.8, o.height = 1.5;

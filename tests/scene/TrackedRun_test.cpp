@@ -67,6 +67,7 @@ TEST(TrackedRun, ReadsBackWhatItWrote) {
       EXPECT_EQ(o.position, p.position);
       EXPECT_EQ(o.yaw, p.yaw);
       EXPECT_EQ(o.has_yaw, p.has_yaw);
+      EXPECT_EQ(o.p_front, p.p_front);
       EXPECT_EQ(o.velocity, p.velocity);
       EXPECT_EQ(o.speed, p.speed);
       EXPECT_EQ(o.length, p.length);
@@ -111,11 +112,12 @@ TEST(TrackedRun, HasTheColumnsOfTheFormat) {
   writeRun(folder.path(), {someScene(1, {someCar(3)})});
   EXPECT_EQ(
       readText(folder / "tracks.csv"),
-      "frame,t,stamp,id,class,classified,p_pedestrian,p_car,existence,x,y,z,yaw,has_yaw,vx,vy,"
+      "frame,t,stamp,id,class,classified,p_pedestrian,p_car,existence,x,y,z,yaw,has_yaw,p_front,vx,"
+      "vy,"
       "speed,length,width,"
       "height,sd_x,sd_y,sd_yaw,sd_speed,last_hit_C,last_hit_L,last_hit_R\n"
       "1,0.103519669,1700000000.226976458,3,car,1,0.012300,0.987700,0.987654,12.3456,-7.0001,0."
-      "2500,-3.141592,1,"
+      "2500,-3.141592,1,0.875000,"
       "-5.5000,0.1250,-5.5014,4.5000,1.8000,1.5000,0.1000,0.2000,0.030000,0.4000,,0.000000001,\n");
   EXPECT_EQ(readText(folder / "scenes.csv"),
             "frame,t,stamp,x,y,z,yaw,pitch,roll,vx,vy,yaw_rate,objects,free_distance,free_seen,"

@@ -11,6 +11,9 @@
 namespace perception {
 namespace {
 
+/// Whether the speed of an oriented filter is not zero, by two standard deviations.
+bool movesSurely(const ClassFilter& f) { return f.x[2] * f.x[2] > 4 * f.P(2, 2); }
+
 /// x - reference, the heading wrapped.
 Vector4 modeDifference(const Vector4& x, const Vector4& reference, bool oriented) {
   Vector4 d = x - reference;
@@ -100,6 +103,7 @@ void combineModes(ClassFilter& f) {
 void listSteps(const ObjectClass& c, double dt, ClassFilter& f, std::vector<GaussianStep>& out) {
   if (dt <= 0) return;
   const bool oriented = c.motion->has_heading && f.oriented;
+  if (oriented && movesSurely(f)) f.heading.traveled += f.x[2] * dt;
   if (f.modes.empty()) {
     out.push_back({&f.x, &f.P, &c, c.accel_psd, 0, dt, oriented});
     return;

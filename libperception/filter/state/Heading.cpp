@@ -19,6 +19,12 @@ double flipProbability(const MeasuredHeading& seen) {
   return std::clamp(seen.flip_probability, kLeastFlip, 0.5);
 }
 
+/// [m] deviation of the way that a standing object seems to travel while other parts of it come
+/// into view: its center is uniform within the length of a car of 4.4 m.
+constexpr double kChanceTravel = 1.3;
+/// [m] over which the share of those who still reverse falls by e, down to a tenth (assumed).
+constexpr double kReverseFor = 10, kLeastShare = 0.1;
+
 struct BitEvidence {
   double log_odds = 0;  // that theta is the heading and not its opposite
   double limit = kLogOddsLimit;
@@ -39,11 +45,12 @@ BitEvidence evidenceOf(bool same, int last, const MeasuredHeading& seen) {
   return {std::log(probability(last > 0, same) / probability(last < 0, !same)), kLimitWithRepeats};
 }
 
-/// log P(v | theta is the heading) / P(v | theta is its opposite).
-double logForward(double v, double v_variance) {
+/// log P(v | theta is the heading) / P(v | theta is its opposite), where the share `forward` of all
+/// who move does so forward.
+double logForward(double v, double v_variance, double forward = kForward) {
   const double positive = 0.5 * std::erfc(-v / std::sqrt(2 * std::max(v_variance, 1e-12)));
-  return std::log((kForward * positive + (1 - kForward) * (1 - positive)) /
-                  ((1 - kForward) * positive + kForward * (1 - positive)));
+  return std::log((forward * positive + (1 - forward) * (1 - positive)) /
+                  ((1 - forward) * positive + forward * (1 - positive)));
 }
 
 }  // namespace
@@ -94,6 +101,17 @@ double nextAxisLogOdds(const FrontBackAmbiguity& bit, const MeasuredHeading& see
   const double evidence =
       std::log((1 - stray) * kPi * near + stray);  // over the axes' uniform density of 1 / pi
   return std::clamp(kMemory * bit.axis_log_odds + evidence, -kLogOddsLimit, kLogOddsLimit);
+}
+
+double FrontBackAmbiguity::frontProbability() const {
+  const double reversing =
+      (1 - kForward) * std::max(kLeastShare, std::exp(-std::abs(traveled) / kReverseFor));
+  const double motion = logForward(traveled, kChanceTravel * kChanceTravel, 1 - reversing);
+  return 1 / (1 + std::exp(-(log_odds + motion)));
+}
+
+double probabilityForward(double v, double v_variance) {
+  return 1 / (1 + std::exp(-logForward(v, v_variance)));
 }
 
 bool asksForReversal(const FrontBackAmbiguity& bit, double v, double v_variance, HeadingMode mode) {

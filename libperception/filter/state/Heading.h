@@ -20,11 +20,16 @@ struct FrontBackAmbiguity {
       0;                ///< that theta is the axis of the object; 0: no detection with a heading
   int last = 0;         ///< the last detection: 1 agreed with theta, -1 did not, 0: none yet
   bool driven = false;  ///< it has surely moved along theta
+  double traveled = 0;  ///< [m] along theta since it is known; negative: against it
 
   bool measured() const { return same + opposite > 0; }
   FrontBackAmbiguity reversed() const {
-    return {-log_odds, opposite, same, -lane, axis_log_odds, -last, driven};
+    return {-log_odds, opposite, same, -lane, axis_log_odds, -last, driven, -traveled};
   }
+  /// Probability that theta points to the front, from detections, lanes and the way that it has
+  /// traveled, which vehicles do forward 97 % of the time, and the more
+  /// surely the farther they go; .5: unknown.
+  double frontProbability() const;
 };
 
 /// Residual of a measured heading.
@@ -58,6 +63,10 @@ inline constexpr double kStrayAxes = 0.01;
 /// evidence of a single detection against theta.
 double nextAxisLogOdds(const FrontBackAmbiguity& bit, const MeasuredHeading& seen, double theta,
                        double theta_variance, double stray = kStrayAxes);
+
+/// Probability that an object without a heading in its state faces the way it moves, with a speed
+/// of v [m/s] and its variance [m^2/s^2].
+double probabilityForward(double v, double v_variance);
 
 /// Whether (v, theta) -> (-v, theta + pi) agrees better with speed v [m/s], its variance [m^2/s^2]
 /// and the front/back bit.

@@ -20,7 +20,8 @@ class Scene:
     # One record an object; world frame, SI units, radians:
     #   id, class, class_id, classified (probability at least .95), class_probability (classes,),
     #   existence, position (3,) of the footprint's center and the base, yaw, has_yaw (False: yaw is
-    #   the direction of motion or 0), velocity (2,), speed (along yaw), size (3,): length, width,
+    #   the direction of motion or 0), p_front (probability that yaw points to the front and not to
+    #   the back; .5: only the axis is known), velocity (2,), speed (along yaw), size (3,): length, width,
     #   height, position_sd (2,), yaw_sd, speed_sd (standard deviations), last_hit (modalities,): [s]
     #   since 1970 of the last measurement by camera, lidar, radar; NaN: none
     @property

@@ -156,6 +156,17 @@ TEST(Wheeled, DrivesAlongItsHeading) {
   EXPECT_NEAR(f.x[1], 1 + 0.5, 1e-12);
 }
 
+TEST(Wheeled, KeepsTheWayThatItHasSurelyTraveled) {
+  ClassFilter f = orientedFilter(3, -2, 4, 2.8);
+  for (int i = 0; i < 20; ++i) predictClassFilter(wheeled(), 0.1, f);
+  EXPECT_NEAR(f.heading.traveled, 8, 1e-9);
+  reverse(f);
+  EXPECT_NEAR(f.heading.traveled, -8, 1e-9);
+  ClassFilter standing = orientedFilter(3, -2, 0.5, 2.8);
+  for (int i = 0; i < 20; ++i) predictClassFilter(wheeled(), 0.1, standing);
+  EXPECT_EQ(standing.heading.traveled, 0);
+}
+
 TEST(Wheeled, ReversalIsAnExactSymmetry) {
   ClassFilter forward = orientedFilter(3, -2, 4, 2.8);
   ClassFilter backward = forward;

@@ -38,6 +38,37 @@ TEST(HeadingRatio, IntegratesToOneOverTheCircle) {
   EXPECT_NEAR(integral, 1, 1e-6);
 }
 
+TEST(FrontBackAmbiguity, IsOpenForWhatNeverMoved) {
+  EXPECT_EQ(FrontBackAmbiguity{}.frontProbability(), 0.5);
+}
+
+TEST(FrontBackAmbiguity, AShiftOfLessThanALengthTellsLittle) {
+  FrontBackAmbiguity bit;
+  bit.traveled = 1;
+  EXPECT_LT(bit.frontProbability(), 0.8);
+}
+
+TEST(FrontBackAmbiguity, WhatWentForTensOfMetersShowsItsFront) {
+  FrontBackAmbiguity bit;
+  bit.traveled = 5;
+  EXPECT_GT(bit.frontProbability(), 0.97);
+  const double near = bit.frontProbability();
+  bit.traveled = 50;
+  EXPECT_GT(bit.frontProbability(), near);
+  EXPECT_LT(bit.frontProbability(), 0.999);
+}
+
+TEST(FrontBackAmbiguity, ReversedSaysTheOppositeOfItself) {
+  FrontBackAmbiguity bit = firstFrontBack(seen(0, 0.3));
+  bit.traveled = -4;
+  EXPECT_NEAR(bit.frontProbability() + bit.reversed().frontProbability(), 1, 1e-12);
+  EXPECT_LT(bit.frontProbability(), 0.1);
+}
+
+TEST(FrontBackAmbiguity, OfDetectionsIsTheirShareThatIsRight) {
+  EXPECT_NEAR(firstFrontBack(seen(0, 0.3)).frontProbability(), 0.7, 1e-9);
+}
+
 TEST(FrontBackAmbiguity, OfLogOddsIsTheMajorityForConstantAccuracyAndUnknownSpeed) {
   // Up to the slow forgetting: sequences whose sums are clear.
   Rng rng({4, 0, 0, 0});
