@@ -150,8 +150,8 @@ class RunCensus {
 /// Whether two objects are alike in all but id and class probabilities.
 bool sameState(const SceneObject& a, const SceneObject& b) {
   const auto state = [](const SceneObject& o) {
-    return std::tuple(o.classified, o.existence, o.yaw, o.has_yaw, o.p_front, o.speed, o.length, o.width,
-                      o.height, o.sd_x, o.sd_y, o.sd_yaw, o.sd_speed);
+    return std::tuple(o.classified, o.existence, o.yaw, o.has_yaw, o.p_front, o.speed, o.length,
+                      o.width, o.height, o.sd_x, o.sd_y, o.sd_yaw, o.sd_speed);
   };
   return a.position == b.position && a.velocity == b.velocity && state(a) == state(b) &&
          a.last_hit == b.last_hit;
