@@ -277,9 +277,10 @@ StudyReport CalibrateApp::lidarClasses() {
     const PointLabels labels(inputs[i]);
     const GroundTruth truth = labels.any() ? GroundTruth{} : truthBeside(inputs[i]);
     SampleRules rules;
+    rules.variants = true;
     rules.fov = radians(complete_fov[std::min(i, complete_fov.size() - 1)]);
     ClusterSampler sampler(sensor->label, dynamic_cast<const LidarFrontEnd&>(*sensor->front_end),
-                           truth, labels, i, rules, samples);
+                           truth, labels, i, rules, seed, samples);
     const LogPass pass = passLog(inputs[i], forFrontEnds(setup), seconds, sampler);
     logs.push_back({std::filesystem::path(inputs[i]).stem().string(), pass.simulated});
     provenance.data.push_back(logs.back().name + (pass.simulated ? " (simulated)" : ""));

@@ -8,15 +8,30 @@
 namespace perception {
 namespace {
 
-/// Whether a point (world) is in an object's box grown by `margin` [m].
-bool inBox(const Vector3& p, const TruthObject& o, double margin) {
-  const Vector2 d = (p - o.position).head<2>();
-  const double c = std::cos(o.yaw), s = std::sin(o.yaw);
-  const double up = p.z() - o.position.z();
-  return std::abs(d.x() * c + d.y() * s) < o.length / 2 + margin &&
-         std::abs(d.y() * c - d.x() * s) < o.width / 2 + margin && up > -margin &&
-         up < o.height + margin;
-}
+/// An object's box grown by a margin [m], world.
+class GrownBox {
+ public:
+  GrownBox(const TruthObject& o, double margin)
+      : place_(o.position),
+        cos_(std::cos(o.yaw)),
+        sin_(std::sin(o.yaw)),
+        half_length_(o.length / 2 + margin),
+        half_width_(o.width / 2 + margin),
+        height_(o.height + margin),
+        margin_(margin),
+        reach_(half_length_ + half_width_) {}
+
+  bool holds(const Vector3& p) const {
+    const double x = p.x() - place_.x(), y = p.y() - place_.y(), up = p.z() - place_.z();
+    if (std::abs(x) > reach_ || std::abs(y) > reach_) return false;  // most
+    return std::abs(x * cos_ + y * sin_) < half_length_ &&
+           std::abs(y * cos_ - x * sin_) < half_width_ && up > -margin_ && up < height_;
+  }
+
+ private:
+  Vector3 place_;
+  double cos_, sin_, half_length_, half_width_, height_, margin_, reach_;
+};
 
 bool hasBox(const TruthObject& o) {
   return o.position.allFinite() && std::isfinite(o.yaw) && o.length > 0 && o.width > 0 &&
@@ -53,6 +68,8 @@ std::optional<ClusterKind> kindOfLabel(std::uint16_t label) {
   }
 }
 
+constexpr std::uint16_t kPostLabel = 80;  // SemanticKITTI's pole
+
 /// Obstacle returns, world [m].
 std::vector<Vector3> placesInWorld(const SensorFrame& frame, const LidarDetections& found) {
   std::vector<Vector3> places;
@@ -83,13 +100,15 @@ std::optional<ClusterKind> kindOfTruth(const std::string& type) {
 
 ClusterSampler::ClusterSampler(std::string sensor, const LidarFrontEnd& front_end,
                                const GroundTruth& truth, const PointLabels& labels, std::size_t log,
-                               const SampleRules& rules, ClusterSamples& samples)
+                               const SampleRules& rules, std::uint64_t seed,
+                               ClusterSamples& samples)
     : sensor_(std::move(sensor)),
       front_end_(front_end),
       truth_(truth),
       labels_(labels),
       log_(log),
       rules_(rules),
+      seed_(seed),
       samples_(samples) {}
 
 void ClusterSampler::onFrame(const SensorFrame& frame) {
@@ -101,13 +120,33 @@ void ClusterSampler::onFrame(const SensorFrame& frame) {
       std::find_if(truth_.instants.begin(), truth_.instants.end(),
                    [&](const GroundTruth::Instant& i) { return i.frame == frame.frame; });
   if (!labels && instant == truth_.instants.end()) return;
+  const auto* truth = instant == truth_.instants.end() ? nullptr : &*instant;
+  addScan(frame, ScanVariant::kRecorded, labels, truth);
+  for (std::size_t k = 1; rules_.variants && k < kScanVariants; ++k) {
+    const auto variant = static_cast<ScanVariant>(k);
+    const VariedScan varied = variedScan(frame, variant, seed_);
+    std::optional<std::vector<std::uint16_t>> changed;
+    if (labels) {
+      changed.emplace();
+      for (std::size_t i = 0; i < varied.source.size(); ++i)
+        changed->push_back(varied.moved[i] ? kPostLabel : (*labels)[varied.source[i]]);
+    }
+    addScan(varied.frame, variant, changed, truth);
+  }
+}
 
+void ClusterSampler::addScan(const SensorFrame& frame, ScanVariant variant,
+                             const std::optional<std::vector<std::uint16_t>>& labels,
+                             const GroundTruth::Instant* instant) {
+  const auto& cloud = std::get<LidarCloud>(frame.data);
+  variant_ = variant;
   const LidarDetections found = front_end_.detect(frame);
   const std::size_t first = samples_.clusters.size();
   points_.clear();
   for (auto& [segment, descriptor] :
-       describedClusters(found, *cloud, DirectionCells(found.points))) {
+       describedClusters(found, cloud, DirectionCells(found.points))) {
     ClusterSample sample;
+    sample.variant = variant_;
     sample.log = log_, sample.frame = frame.frame, sample.t = frame.stamp - *first_;
     sample.descriptor = descriptor;
     sample.whole = segment.whole < 0 ? -1 : static_cast<int>(first) + segment.whole;
@@ -125,7 +164,7 @@ void ClusterSampler::onFrame(const SensorFrame& frame) {
   } else {
     addByBoxes(frame, found, *instant, first);
   }
-  nameThings(frame, first);
+  if (variant == ScanVariant::kRecorded) nameThings(frame, first);
 }
 
 /// Things within half a meter of one of the frame before are that one.
@@ -158,14 +197,15 @@ void ClusterSampler::addByBoxes(const SensorFrame& frame, const LidarDetections&
   std::vector<char> in(returns);
   for (const TruthObject& o : instant.objects) {
     if (!hasBox(o)) continue;
+    const GrownBox box(o, rules_.box_margin);
     std::size_t on_it = 0;
-    for (std::size_t i = 0; i < returns; ++i)
-      on_it += in[i] = inBox(places[i], o, rules_.box_margin);
+    for (std::size_t i = 0; i < returns; ++i) on_it += in[i] = box.holds(places[i]);
     if (on_it == 0) continue;
     const Vector3 center = frame.ego.T_world_ego.inverse() * o.position;
     ObjectView view;
     const auto kind = kindOfTruth(o.type);
     view.log = log_, view.frame = frame.frame, view.object = o.id;
+    view.variant = variant_;
     view.range = center.head<2>().norm(), view.returns = on_it;
     for (std::size_t c = 0; c < clusters; ++c) {
       const auto inside = static_cast<double>(

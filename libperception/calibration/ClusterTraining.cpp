@@ -12,10 +12,12 @@
 namespace perception {
 namespace {
 
-constexpr double kMostOfLog = 400;          // samples of a kind by which a log counts
-constexpr double kSimulatedShare = 0.3;     // of a simulated log beside recorded ones
-constexpr double kFewSamples = 50;          // of a kind: its map is then half way to none
-constexpr std::size_t kMostSamples = 4000;  // of a kind and log, evenly thinned
+constexpr double kMostOfLog = 400;       // samples of a kind by which a log counts
+constexpr double kSimulatedShare = 0.3;  // of a simulated log beside recorded ones
+constexpr double kFewSamples = 50;       // of a kind: its map is then half way to none
+constexpr std::size_t kMostSamples =
+    4000;                             // of a kind and log, evenly thinned; of variants as many
+constexpr double kVariedShare = 0.5;  // of a log's say is that of its variants
 
 ClusterTrainer::Probabilities softmax(const BoostedTrees& trees, const Descriptor& d) {
   double scores[kClusterKinds];
@@ -47,22 +49,29 @@ BoostedTrees ClusterTrainer::train(std::size_t without, std::size_t without_too)
     double say;
   };
   std::vector<Part> parts;
+  const auto addPart = [&](const std::vector<std::size_t>& indices, std::size_t kind, double say) {
+    const std::size_t begin = training.size(), stride = 1 + (indices.size() - 1) / kMostSamples;
+    for (std::size_t i = 0; i < indices.size(); i += stride)
+      training.push_back(
+          {&samples_.clusters[indices[i]].descriptor, static_cast<ClusterKind>(kind), 1});
+    parts.push_back({begin, training.size(), kind, say});
+  };
   for (std::size_t log = 0; log < logs_.size(); ++log) {
     if (log == without || log == without_too) continue;
-    std::array<std::vector<std::size_t>, kClusterKinds> of_kind;
-    for (const std::size_t i : of_log_[log])
-      if (const auto kind = samples_.clusters[i].kind)
-        of_kind[static_cast<std::size_t>(*kind)].push_back(i);
+    std::array<std::vector<std::size_t>, kClusterKinds> recorded, varied;
+    for (const std::size_t i : of_log_[log]) {
+      const ClusterSample& sample = samples_.clusters[i];
+      if (!sample.kind) continue;
+      auto& of_kind = sample.variant == ScanVariant::kRecorded ? recorded : varied;
+      of_kind[static_cast<std::size_t>(*sample.kind)].push_back(i);
+    }
     for (std::size_t k = 0; k < kClusterKinds; ++k) {
-      if (of_kind[k].empty()) continue;
-      const std::size_t begin = training.size(),
-                        stride = 1 + (of_kind[k].size() - 1) / kMostSamples;
-      for (std::size_t i = 0; i < of_kind[k].size(); i += stride)
-        training.push_back(
-            {&samples_.clusters[of_kind[k][i]].descriptor, static_cast<ClusterKind>(k), 1});
-      const double say = std::min(kMostOfLog, static_cast<double>(training.size() - begin)) *
+      if (recorded[k].empty()) continue;
+      const double say = std::min(kMostOfLog, static_cast<double>(recorded[k].size())) *
                          (logs_[log].simulated && recorded_ ? kSimulatedShare : 1);
-      parts.push_back({begin, training.size(), k, say});
+      const double share = varied[k].empty() ? 0 : kVariedShare;
+      addPart(recorded[k], k, (1 - share) * say);
+      if (share > 0) addPart(varied[k], k, share * say);
       sum[k] += say;
     }
   }
@@ -103,12 +112,16 @@ ClusterClassifier ClusterTrainer::classifier(std::size_t without, Provenance pro
   for (std::size_t log = 0; log < logs_.size(); ++log) {
     if (log == without || (recorded_ && logs_[log].simulated)) continue;
     const auto& raw = leftOut(log, without);
-    const double weight = 1 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, raw.size())));
+    const double of_log = std::sqrt(static_cast<double>(kScanVariants) /
+                                    static_cast<double>(std::max<std::size_t>(1, raw.size())));
     for (std::size_t i = 0; i < raw.size(); ++i) {
-      const auto kind = samples_.clusters[of_log_[log][i]].kind;
+      const ClusterSample& sample = samples_.clusters[of_log_[log][i]];
+      const auto kind = sample.kind;
       if (!kind) continue;
+      const bool recorded = sample.variant == ScanVariant::kRecorded;
+      const double weight = recorded ? of_log : of_log / (kScanVariants - 1);
       weights.push_back(weight);
-      prior[static_cast<std::size_t>(*kind)] += weight, all += weight;
+      if (recorded) prior[static_cast<std::size_t>(*kind)] += weight, all += weight;
       for (std::size_t k = 0; k < kClusterKinds; ++k) {
         values[k].push_back(raw[i][k]);
         is_kind[k].push_back(k == static_cast<std::size_t>(*kind));
@@ -142,7 +155,9 @@ EvidenceMemory ClusterTrainer::memoryOf(const ClusterClassifier& shape, std::siz
     const auto& raw = leftOut(log, without);
     for (std::size_t i = 0; i < raw.size(); ++i) {
       const ClusterSample& s = samples_.clusters[of_log_[log][i]];
-      if (!s.kind || s.object == ClusterSample::kNoObject || s.whole >= 0) continue;
+      if (!s.kind || s.object == ClusterSample::kNoObject || s.whole >= 0 ||
+          s.variant != ScanVariant::kRecorded)
+        continue;
       const auto calibrated = [&](std::size_t k) {
         return 0.9 * shape.calibrations()[k](raw[i][k]) + 0.1 * raw[i][k] + 1e-4;
       };

@@ -17,6 +17,12 @@ constexpr double kThere = 0.5;  // existence of what is likelier there than not
 /// that are likelier vehicles than not are merged all the same.
 const double kLogSureClass = std::log(0.95), kLogLikelyClass = std::log(0.5);
 
+/// Vehicles on one line keep more than this [s] between them from this speed [m/s] on. The shortest
+/// headways in traffic are three times as long.
+constexpr double kShortestHeadway = 0.1, kDriving = 8;
+/// [m/s] by which their speeds differ at most; [m] length of the longest vehicle with a trailer.
+constexpr double kSameSpeed = 1.5, kLongestTrain = 20;
+
 struct Footprint {
   std::uint64_t id = 0;
   Vector2 center, half;  // [m]
@@ -29,6 +35,7 @@ struct Footprint {
   Stamp last_hit;
   bool fresh = true;  // of this scan
   bool oriented = false;
+  double speed = 0;  // [m/s] along yaw; 0 where it is not sure
 };
 
 /// For tracks with deferred prediction, the predicted position.
@@ -46,6 +53,7 @@ Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
   out.corner2 = out.half.squaredNorm() + 1e-6;
   out.yaw = f.oriented ? f.x[3] : 0;
   out.oriented = f.oriented;
+  if (f.oriented && f.x[2] * f.x[2] > 9 * f.P(2, 2)) out.speed = f.x[2];
   const double log_class = t.log_class[static_cast<std::size_t>(best)];
   out.sure = log_class >= kLogSureClass;
   out.vehicle = log_class >= kLogLikelyClass && model.classes[best].motion->has_heading;
@@ -60,6 +68,20 @@ Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
 bool holds(const Footprint& f, const Vector2& p) {
   const Vector2 own = rotate2(-f.yaw, p - f.center);
   return std::abs(own.x()) <= f.half.x() && std::abs(own.y()) <= f.half.y();
+}
+
+/// Whether two footprints are the parts of one vehicle, or of one and its trailer: they drive on
+/// one line, equally fast, so close behind each other that no two drivers would.
+bool isTrain(const Footprint& a, const Footprint& b) {
+  if (!a.vehicle || !b.vehicle || std::min(std::abs(a.speed), std::abs(b.speed)) < kDriving)
+    return false;
+  const Vector2 apart = rotate2(-a.yaw, b.center - a.center);
+  const Vector2 along(std::cos(a.yaw), std::sin(a.yaw)), other(std::cos(b.yaw), std::sin(b.yaw));
+  const double length = 2 * (a.half.x() + b.half.x());
+  const double gap = std::abs(apart.x()) - length / 2;
+  return std::abs(apart.y()) < std::max(a.half.y(), b.half.y()) &&
+         (a.speed * along - b.speed * other).norm() < kSameSpeed &&
+         gap < kShortestHeadway * std::abs(a.speed) && length + gap < kLongestTrain;
 }
 
 /// The younger track's state with the older track's id and class, with all that has been counted in
@@ -122,6 +144,13 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
                tracks[younger]->phantom <= std::max(0.5, tracks[older]->phantom))
         conflict.replacement = takeOver(*tracks[older], *tracks[younger], fragment);
       conflicts_.push_back(std::move(conflict));
+    }
+  }
+  for (const std::size_t i : large) {
+    for (const std::size_t j : large) {
+      if (feet[j].area < least || feet[i].area < least || feet[i].id >= feet[j].id) continue;
+      if (feet[i].fresh && feet[j].fresh && isTrain(feet[i], feet[j]))
+        conflicts_.push_back({i, j, nullptr});
     }
   }
   std::sort(conflicts_.begin(), conflicts_.end(), [&](const Conflict& a, const Conflict& b) {

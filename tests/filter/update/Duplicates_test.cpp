@@ -175,5 +175,33 @@ TEST(Duplicates, AClassGoesWithWhatHasBeenCountedInIt) {
   EXPECT_EQ(kept.evidence[0].views, 3);
 }
 
+/// A car that drives along x with its middle at `x` [m].
+Track driving(std::uint64_t id, double x, double y, double speed) {
+  Track t = carWith(id, 0.999, 10, 0);
+  t.bank[0].x << x, y, speed, 0;
+  t.bank[0].P.diagonal() << 0.1, 0.1, 0.04, 0.001;
+  t.bank[0].oriented = true;
+  return t;
+}
+
+std::size_t tracksThatStay(const Track& a, const Track& b) {
+  const TrackTable tracks = {std::make_shared<const Track>(a), std::make_shared<const Track>(b)};
+  return DuplicateTable(model(), kNow, tracks).merged({0, 1}).size();
+}
+
+TEST(Duplicates, TwoPartsThatDriveABumperApartAreOneVehicle) {
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), driving(2, 15.5, 0.3, 25.4)), 1U);
+}
+
+TEST(Duplicates, VehiclesThatFollowEachOtherAreTwo) {
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), driving(2, 20, 0, 25)), 2U) << "0.2 s behind";
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 3), driving(2, 15, 0, 3)), 2U) << "in a queue";
+}
+
+TEST(Duplicates, VehiclesBesideEachOtherOrOfOtherSpeedsAreTwo) {
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), driving(2, 12, 2.8, 25)), 2U);
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), driving(2, 15.5, 0, 20)), 2U);
+}
+
 }  // namespace
 }  // namespace perception
