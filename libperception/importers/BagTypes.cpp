@@ -78,13 +78,15 @@ void noteText(const BagMessage& m, BagContents& contents) {
 }
 
 ros::Header measurePoints(const BagMessage& m, const BagTopicParams& params, SensorFrame& frame) {
-  const auto cloud = messageIn<ros::PointCloud2>(m);
+  auto cloud = messageIn<ros::PointCloud2>(m);
+  const ros::Header given = cloud.header;
+  if (given.stamp.ns <= 0) cloud.header.stamp = m.stamp;  // to which absolute times refer
   using Kind = BagTopicParams::Kind;
   if (params.kind == Kind::kRadar || (params.kind == Kind::kAuto && ros::isOfRadar(cloud)))
     frame.data = ros::returnsOf(cloud, params.rate_scale);
   else
     frame.data = ros::cloudOf(cloud, params.intensity_max);
-  return cloud.header;
+  return given;
 }
 
 ros::Header measureLivox(const BagMessage& m, const BagTopicParams& params, SensorFrame& frame) {
