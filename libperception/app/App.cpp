@@ -154,7 +154,7 @@ int runApp(App& app, int argc, const char* const* argv) {
   CLI::App cli(app.description(), app.name());
   cli.formatter(std::make_shared<Formatter>());
   cli.set_version_flag("--version", fmt::format("{} {}", app.name(), PERCEPTION_VERSION));
-  cli.add_flag("-v,--verbose", app.verbosity, "Say more; may be repeated");
+  cli.add_flag("-v,--verbose", app.verbosity, "Print more; may be repeated");
   try {
     app.declare(cli);
   } catch (const CLI::Error& error) {  // an option declared twice: an internal error

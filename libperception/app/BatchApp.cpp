@@ -113,7 +113,7 @@ void BatchApp::declareFolder(CLI::App& sub) {
 void BatchApp::declarePlan(CLI::App& sub) {
   declareFolder(sub);
   addConfigOptions(sub, true);
-  sub.add_flag("--overwrite", overwrite, "replace another plan; finished runs stay");
+  sub.add_flag("--overwrite", overwrite, "replace another plan; finished runs are kept");
 }
 
 void BatchApp::declareRun(CLI::App& sub) {
@@ -125,7 +125,7 @@ void BatchApp::declareRun(CLI::App& sub) {
                  "this shard alone, by its line in the manifest from 0 on; default: "
                  "SLURM_ARRAY_TASK_ID or JOB_COMPLETION_INDEX, if set");
   sub.add_flag("--overwrite", overwrite, "replace runs of another configuration or version");
-  sub.add_flag("--retry", retry, "also what failed in a way that another try does not mend");
+  sub.add_flag("--retry", retry, "also run shards again whose failure another try will not mend");
 }
 
 void BatchApp::declareSubmit(CLI::App& sub) {

@@ -67,20 +67,20 @@ const CalibrateApp::Task CalibrateApp::kTasks[] = {
 };
 
 std::string CalibrateApp::description() const {
-  return "Lines for a vehicle's INI from rawlogs with truth (LOG.truth.csv beside LOG.rawlog); "
-         "gains "
-         "also without.";
+  return "Fits lines of a vehicle's INI to rawlogs with truth (LOG.truth.csv beside LOG.rawlog); "
+         "gains works without truth, too.";
 }
 
 void CalibrateApp::declare(CLI::App& cli) {
   cli.require_subcommand(1);
   for (const Task& t : kTasks) {
     CLI::App* sub = cli.add_subcommand(t.name, t.description);
-    sub->add_option("-i,--input", inputs, "Rawlogs, LOG.truth.csv beside")->required();
+    sub->add_option("-i,--input", inputs, "Rawlogs, with LOG.truth.csv beside each")->required();
     sub->add_option("-c,--config", config_file, "INI of the vehicle")->required();
     sub->add_option("-o,--output", output, "Folder of the report")->required();
     sub->add_option("--set", settings, "section.key=value: overrides the INI");
-    sub->add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
+    sub->add_option("--seconds", seconds, "Use so many seconds of every log; 0 = all")
+        ->check(CLI::Range(0.0, 1e6));
     sub->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
     sub->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
         ->check(CLI::Range(0, 4096));
@@ -95,14 +95,15 @@ void CalibrateApp::declare(CLI::App& cli) {
           ->check(CLI::Range(0.1, 360.0));
     }
     if (t.run == &CalibrateApp::gains)
-      sub->add_flag("--no-truth", no_truth, "Do not use a truth that is there");
+      sub->add_flag("--no-truth", no_truth, "Ignore the truth, even if there is one");
     if (t.learns) {
-      sub->add_option(
-             "--complete-fov-deg", complete_fov,
-             "Whole angle ahead in which the truth is complete [deg]: of all logs, or one a log")
+      sub->add_option("--complete-fov-deg", complete_fov,
+                      "Whole angle ahead in which the truth is complete [deg]: one for all logs, "
+                      "or one per log")
           ->check(CLI::Range(1.0, 360.0));
-      sub->add_option("--license", license, "Of the model, for its file")->capture_default_str();
-      sub->add_option("--date", date, "Of the model, for its file");
+      sub->add_option("--license", license, "License that is written into the model file")
+          ->capture_default_str();
+      sub->add_option("--date", date, "Date that is written into the model file");
     }
     sub->callback([this, name = std::string(t.name)] { task = name; });
   }

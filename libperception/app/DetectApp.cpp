@@ -38,25 +38,29 @@ void DetectApp::declare(CLI::App& cli) {
   addOutputOption(cli, false);
   cli.add_option("--labels", labels, "Truth: a folder of KITTI's object labels, or a CSV");
   cli.add_option("--calib", calibrations, "Folder of KITTI calibrations (NAME.txt)");
-  cli.add_option("--camera", camera_label, "sensorLabel of the log's images; without it all");
-  cli.add_option("--label", boxes_label, "sensorLabel of the boxes; without it IMAGES_BOXES");
-  cli.add_option("--calibrate", calibrate, "Fit P(object | score) to the labels, write this INI");
-  cli.add_option("--export", kitti_folder, "kitti:DIR, one file an image in KITTI's layout");
+  cli.add_option("--camera", camera_label, "sensorLabel of the log's images; default: all images");
+  cli.add_option("--label", boxes_label, "sensorLabel of the boxes; default: IMAGES_BOXES");
+  cli.add_option("--calibrate", calibrate,
+                 "Fit P(object | score) to the labels and write this INI");
+  cli.add_option("--export", kitti_folder,
+                 "kitti:DIR: also write one file per image in KITTI's layout");
   cli.add_option("--train-heading", train_heading,
-                 "Learn to tell headings of boxes from images and --labels, write this file");
+                 "Learn the headings of boxes from images and --labels, and write this file");
   cli.add_option("--heading-label", heading_label, "Class of the boxes to learn from")
       ->capture_default_str();
   cli.add_flag("--pictures", pictures, "Draw the boxes: pictures/NAME.png");
-  cli.add_option("--every", every, "Of a log's images one in so many")
+  cli.add_option("--every", every, "Use one in so many of a log's images")
       ->check(CLI::Range(1, 100000));
-  cli.add_option("--overlap", overlap, "Intersection over union of a right box")
+  cli.add_option("--overlap", overlap, "Least intersection over union of a right box")
       ->check(CLI::Range(0.1, 1.0))
       ->capture_default_str();
-  cli.add_option("--min-height", min_height, "Labels below so many pixels do not count")
+  cli.add_option("--min-height", min_height, "Labels lower than so many pixels do not count")
       ->capture_default_str();
-  cli.add_option("--max-truncation", max_truncation, "Nor those cut off by more than this share")
+  cli.add_option("--max-truncation", max_truncation,
+                 "Labels of which a larger share is cut off do not count")
       ->capture_default_str();
-  cli.add_option("--max-occlusion", max_occlusion, "Nor those hidden more than this (KITTI: 0-3)")
+  cli.add_option("--max-occlusion", max_occlusion,
+                 "Labels that are hidden more do not count (KITTI: 0-3)")
       ->capture_default_str();
   addRunOptions(cli);
 }

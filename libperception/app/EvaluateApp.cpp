@@ -48,14 +48,15 @@ void EvaluateApp::declareInputs(CLI::App& cli) {
          "for that of its folder")
       ->type_name("FILE");
   cli.add_option("--truth-poses", truth_poses,
-                 "run of the same log with the poses that the truth was made with, where those of "
-                 "-r are odometry: truth counts as it is before the vehicle")
+                 "run of the same log with the poses that the truth was made with; use it if the "
+                 "poses of -r are odometry. The truth is then taken relative to the vehicle")
       ->type_name("DIR");
   cli.add_option("--manifest", manifest,
-                 "instead of both: CSV with the columns condition,run,truth; paths from its folder")
+                 "instead of -r and -t: CSV with the columns condition,run,truth; paths start at "
+                 "its folder")
       ->type_name("FILE");
   cli.add_option("--front-end", front_ends,
-                 "recall and precision of the sensor of this label, or of all of a pattern "
+                 "recall and precision of the sensor of this label, or of all that match a pattern "
                  "('RADAR_*'); for runs with --measurements")
       ->type_name("LABEL");
   cli.add_option("--paper", paper,
@@ -73,12 +74,13 @@ void EvaluateApp::declareTruth(CLI::App& cli) {
       ->capture_default_str()
       ->check(CLI::Range(0.1, 360.0));
   cli.add_option("--complete-fov-deg", complete_fov_deg,
-                 "whole angle ahead in which the truth knows every object (KITTI: 80); no output "
-                 "beyond is false [deg]")
+                 "whole angle ahead in which the truth knows every object (KITTI: 80); outputs "
+                 "beyond it are never false [deg]")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 360.0));
-  cli.add_option("--min-points", params.selection.min_points,
-                 "truth counts from this many lidar returns on, where counted")
+  cli.add_option(
+         "--min-points", params.selection.min_points,
+         "truth counts if it has at least this many lidar returns; ignored where none are counted")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000000));
   cli.add_option("--max-occluded", params.selection.max_occluded,
@@ -100,13 +102,14 @@ void EvaluateApp::declareFigures(CLI::App& cli) {
       ->capture_default_str()
       ->check(CLI::Range(0.01, 100.0));
   cli.add_option("--time-limit", params.alignment.time_limit,
-                 "nearest truth of a scene matched by time [s]")
+                 "longest time between a scene and the truth that it is matched with [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
   cli.add_flag("--any-truth", any_truth,
-               "evaluate also with the truth of another log, and where no scene has one");
-  cli.add_flag("--empty-frames", params.alignment.empty_frames,
-               "a scene without a truth line holds no objects (else nothing is known of it)");
+               "accept the truth of another log, and a truth that no scene has");
+  cli.add_flag(
+      "--empty-frames", params.alignment.empty_frames,
+      "a scene without a truth line holds no objects (default: nothing is known about it)");
   cli.add_option("--unnamed", params.unnamed, "classes that are neither true nor false to output")
       ->delimiter(',')
       ->type_name("NAME,...")
@@ -115,10 +118,12 @@ void EvaluateApp::declareFigures(CLI::App& cli) {
                  "outputs below are left out of all figures but the existence calibration")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
-  cli.add_flag("--surroundings", surroundings,
-               "the truth holds poles and hedges, too (known of simulated logs): judge sizes");
-  cli.add_option("--sensors", params.sensors,
-                 "sensor set of the run for denominator B, C+L+R (else: what hit an object)");
+  cli.add_flag(
+      "--surroundings", surroundings,
+      "the truth also holds poles and hedges, as that of simulated logs does: judge sizes");
+  cli.add_option(
+      "--sensors", params.sensors,
+      "sensor set of the run for denominator B, as C+L+R; default: the sensors that hit an object");
   cli.add_option("--reference", reference,
                  "run whose number of objects the others are compared with")
       ->type_name("DIR");

@@ -31,20 +31,21 @@ std::string pluginPath() {
 }  // namespace
 
 std::string GrabberApp::description() const {
-  return "Records the sensors of a capture INI into rawlogs, each whole; lists what was lost.";
+  return "Records the sensors of a capture INI into whole rawlogs and lists what was lost.";
 }
 
 void GrabberApp::declare(CLI::App& cli) {
   cli.add_option("-c,--config", config_file, "INI of rawlog-grabber, as ini/capture.ini");
   addOutputOption(cli, false);
-  cli.add_option("--duration", duration, "[s]; without: until SIGINT or SIGTERM")
+  cli.add_option("--duration", duration, "[s] End after this time; default: at SIGINT or SIGTERM")
       ->check(CLI::Range(0.01, 1e9));
-  cli.add_option("--stream", stream,
-                 "Pipe or file to which observations go as they come, for perception-track; -o may "
-                 "be left out then");
+  cli.add_option(
+      "--stream", stream,
+      "Pipe or file that gets the observations as they come, for perception-track; -o is "
+      "optional then");
   cli.add_option("--publish", publish,
-                 "INTERFACE[:DOMAIN], as lo:0: observations by DDS, for CDdsSensor of other "
-                 "processes and computers, clouds for ROS 2 as well");
+                 "INTERFACE[:DOMAIN], as lo:0: send observations by DDS to CDdsSensor in other "
+                 "processes and computers, and clouds to ROS 2 as well");
   cli.add_flag(
       "--plugin", plugin,
       "Print the path of the plugin for MRPT's own tools (rawlog-edit -p, RawLogViewer -l, "

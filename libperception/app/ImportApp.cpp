@@ -43,15 +43,17 @@ void ImportApp::declare(CLI::App& cli) {
     sub.add_option("--first", options.first, "first frame")->capture_default_str();
     sub.add_option("--last", options.last, "last frame; -1: to the end")->capture_default_str();
     if (row.uses & kUsesRate)
-      sub.add_option("--rate", options.rate, "[Hz] of frames without stamps; default: by format");
+      sub.add_option("--rate", options.rate,
+                     "[Hz] rate of frames without stamps; default: by format");
     if (row.uses & kUsesRepeat)
       sub.add_option("--repeat", options.repeat,
                      "number of repetitions of isolated frames, as a static scene")
           ->capture_default_str();
     if (row.uses & kUsesImages) {
-      auto* copy = sub.add_flag("--copy-images", copy_images_,
-                                "images into FILE_Images beside the log, not a link to them");
-      sub.add_flag("--embed-images", embed_images_, "images as JPEG inside the log")
+      auto* copy =
+          sub.add_flag("--copy-images", copy_images_,
+                       "copy images into FILE_Images beside the log instead of linking them");
+      sub.add_flag("--embed-images", embed_images_, "put images as JPEG into the log")
           ->excludes(copy);
     }
     addOutputOption(sub, (row.uses & kLists) == 0);

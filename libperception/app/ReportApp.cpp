@@ -80,7 +80,8 @@ void ReportApp::declare(CLI::App& cli) {
           ->expected(2)
           ->type_name("A B");
   cli.add_option("--film", film,
-                 "with --compare: the film of both, of perception-snapshot -r A -r B --video FILE")
+                 "with --compare: the film of both runs that perception-snapshot -r A -r B --video "
+                 "FILE made")
       ->needs(compare)
       ->type_name("FILE.mp4");
   for (const char* option :

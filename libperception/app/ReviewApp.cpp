@@ -69,20 +69,22 @@ void ReviewApp::declare(CLI::App& cli) {
       ->expected(1)
       ->type_name("LOG");
   page->add_option("-o,--output", output, "the page, FILE.html")->required()->type_name("FILE");
-  page->add_option("-n,--number", options.number, "outputs that are asked about")
+  page->add_option("-n,--number", options.number, "number of outputs that are asked about")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  page->add_option("--seed", options.seed, "of the draw")->capture_default_str();
+  page->add_option("--seed", options.seed, "seed of the random choice of outputs")
+      ->capture_default_str();
   page->add_option("--range", options.range, "outputs up to this distance [m]")
       ->check(CLI::Range(1.0, 500.0))
       ->capture_default_str();
   page->add_option("--fov-deg", fov_deg, "whole angle ahead of the outputs [deg]")
       ->check(CLI::Range(1.0, 360.0))
       ->capture_default_str();
-  page->add_option("--min-existence", options.min_existence, "outputs below are not asked about")
+  page->add_option("--min-existence", options.min_existence,
+                   "outputs with a lower existence are not asked about")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  page->add_flag("--sure", options.sure, "only outputs of a sure class (at least .95)");
+  page->add_flag("--sure", options.sure, "only outputs with a class probability of at least .95");
   auto* score = cli.add_subcommand("score", "precision by the answers");
   score->add_option("answers", answers_file, "answers.csv, saved by the page")
       ->required()

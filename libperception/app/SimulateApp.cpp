@@ -45,9 +45,9 @@ void SimulateApp::declare(CLI::App& cli) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   cli.add_option("--vehicle", vehicle,
-                 "INI of a vehicle: its sensors instead of those of the scenario")
+                 "INI of a vehicle whose sensors replace those of the scenario")
       ->check(CLI::ExistingFile);
-  cli.add_option("--weather", weather, "INI of weather: instead of [weather] of the scenario")
+  cli.add_option("--weather", weather, "INI of weather that replaces [weather] of the scenario")
       ->check(CLI::ExistingFile);
   addOutputOption(cli, false);
   cli.add_option(
@@ -58,7 +58,7 @@ void SimulateApp::declare(CLI::App& cli) {
       ->check(CLI::ExistingFile);
   cli.add_option("--threads", threads, "Threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
-  cli.add_option("--gzip", gzip_level, "Compression of the log")
+  cli.add_option("--gzip", gzip_level, "Gzip level of the log")
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
   declareRecording(cli);

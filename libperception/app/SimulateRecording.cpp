@@ -81,17 +81,20 @@ void SimulateApp::declareRecording(CLI::App& cli) {
   recording_ = cli.add_subcommand("weather",
                                   "Simulated weather on a recording: lidar returns, "
                                   "radar targets, images, boxes of image detectors");
-  recording_->add_option("-i,--input", inputs, "Rawlog; its truth (LOG.truth.csv), if any, beside")
+  recording_
+      ->add_option("-i,--input", inputs,
+                   "Rawlog, with its truth (LOG.truth.csv) beside it, if there is one")
       ->required()
       ->expected(1);
   recording_->add_option("-c,--config", config_file, "INI with [weather]")->required();
   recording_->add_option("--set", settings, "section.key=value: overrides the INI");
-  recording_->add_option("-o,--output", output, "Rawlog; truth and FILE_Labels/ beside")
+  recording_
+      ->add_option("-o,--output", output, "Rawlog; truth and FILE_Labels/ are written beside it")
       ->required();
   recording_->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
   recording_->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
-  recording_->add_option("--gzip", gzip_level, "Compression of the log")
+  recording_->add_option("--gzip", gzip_level, "Gzip level of the log")
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
 }

@@ -81,10 +81,10 @@ void SnapshotApp::declare(CLI::App& cli) {
       ->check(CLI::Range(5.0, 200.0))
       ->capture_default_str();
   cli.add_option("--memory", sensors.memory,
-                 "lidar scans of this time before an instant are in the grid [s]")
+                 "the grid has the lidar scans of this time before an instant [s]")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
-  cli.add_option("--title", titles, "instead of the names of log and run, one per run")
+  cli.add_option("--title", titles, "title in place of the names of log and run, one per run")
       ->allow_extra_args(false);
 }
 

@@ -59,19 +59,20 @@ void TrackApp::declare(CLI::App& cli) {
       "Modalities in use: C, C/H (camera headings as one wide Gaussian), L, R joined by +");
   cli.add_option("--seed", seed, "Seed of all random numbers");
   cli.add_option("--rate", rate,
-                 "[Hz] Scenes at a fixed rate instead of at the output sensor's scans")
+                 "[Hz] Write scenes at a fixed rate instead of at the output sensor's scans")
       ->check(CLI::Range(0.0, 1000.0));
   cli.add_flag("--measurements", measurements,
                "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
-  cli.add_option(
-         "--duration", duration,
-         "[s] Of -i live:INI, the sensors of a capture INI at work; without: until a signal")
+  cli.add_option("--duration", duration,
+                 "[s] End a run of -i live:INI after this time; default: at SIGINT or SIGTERM")
       ->check(CLI::Range(0.01, 1e9));
   cli.add_option("--record", record, "Folder in which the sensors of -i live:INI are recorded");
-  cli.add_option("--publish", publish,
-                 "INTERFACE[:DOMAIN], as lo:0: scenes by DDS, as nodes of ROS 2 read them");
-  cli.add_flag("--overwrite", overwrite,
-               "Replace the results in the folder, also of another run, evaluation and film too");
+  cli.add_option(
+      "--publish", publish,
+      "INTERFACE[:DOMAIN], as lo:0: send scenes by DDS in the form that ROS 2 nodes read");
+  cli.add_flag(
+      "--overwrite", overwrite,
+      "Replace the results in the folder, even those of another run, with evaluation and film");
   cli.add_flag("--info", info, "Say what the logs of -i hold (labels, classes, rates) and stop");
   cli.add_option("--export", exports,
                  "kitti:FILE: also write the objects in KITTI's tracking format")
