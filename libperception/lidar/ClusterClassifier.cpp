@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "libperception/lidar/LeafMasks.h"
+
 namespace perception {
 namespace {
 
@@ -31,21 +33,9 @@ float BoostedTrees::leafValue(std::int32_t root, const Descriptor& descriptor) c
 
 void BoostedTrees::scores(const Descriptor& descriptor, double (&out)[kClusterKinds]) const {
   for (std::size_t k = 0; k < kClusterKinds; ++k) out[k] = base[k];
-  for (std::size_t t = 0; t + kClusterKinds <= roots.size(); t += kClusterKinds) {
-    // One step in each of the trees in turn: the processor waits for their nodes at the same time.
-    const Node* at[kClusterKinds];
+  for (std::size_t t = 0; t + kClusterKinds <= roots.size(); t += kClusterKinds)
     for (std::size_t k = 0; k < kClusterKinds; ++k)
-      at[k] = &nodes[static_cast<std::size_t>(roots[t + k])];
-    for (bool inside = true; inside;) {
-      inside = false;
-      for (const Node*& node : at) {
-        if (node->feature < 0) continue;
-        node = &nodes[childOf(*node, descriptor)];
-        inside = true;
-      }
-    }
-    for (std::size_t k = 0; k < kClusterKinds; ++k) out[k] += static_cast<double>(at[k]->threshold);
-  }
+      out[k] += static_cast<double>(leafValue(roots[t + k], descriptor));
 }
 
 double Calibration::operator()(double raw) const {
@@ -66,16 +56,22 @@ ClusterClassifier::ClusterClassifier(BoostedTrees trees,
       calibrations_(std::move(calibrations)),
       prior_(prior),
       memory_(memory),
-      provenance_(std::move(provenance)) {}
+      provenance_(std::move(provenance)) {
+  if (auto masks = LeafMasks::of(trees_)) masks_ = std::make_shared<LeafMasks>(std::move(*masks));
+}
+
+void ClusterClassifier::score(const Descriptor& descriptor, double (&out)[kClusterKinds]) const {
+  masks_ ? masks_->scores(descriptor, out) : trees_.scores(descriptor, out);
+}
 
 std::array<double, kClusterKinds> ClusterClassifier::probabilities(
     const Descriptor& descriptor) const {
-  double score[kClusterKinds];
-  trees_.scores(descriptor, score);
-  const double highest = *std::max_element(score, score + kClusterKinds);
+  double scores[kClusterKinds];
+  score(descriptor, scores);
+  const double highest = *std::max_element(scores, scores + kClusterKinds);
   std::array<double, kClusterKinds> p{};
   double sum = 0;
-  for (std::size_t k = 0; k < kClusterKinds; ++k) sum += p[k] = std::exp(score[k] - highest);
+  for (std::size_t k = 0; k < kClusterKinds; ++k) sum += p[k] = std::exp(scores[k] - highest);
   double mapped = 0;
   for (std::size_t k = 0; k < kClusterKinds; ++k) {
     const double raw = p[k] / sum;

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct Provenance {
   bool simulated_only = false;    ///< none of them is real
 };
 
+class LeafMasks;
+
 /// Tells kinds of clusters from their descriptors. Safe for several threads.
 class ClusterClassifier {
  public:
@@ -84,7 +87,10 @@ class ClusterClassifier {
   const Provenance& provenance() const { return provenance_; }
 
  private:
+  void score(const Descriptor& descriptor, double (&out)[kClusterKinds]) const;
+
   BoostedTrees trees_;
+  std::shared_ptr<const LeafMasks> masks_;  ///< of the same trees; null: they have too many leaves
   std::array<Calibration, kClusterKinds> calibrations_;
   std::array<double, kClusterKinds> prior_;
   EvidenceMemory memory_;
