@@ -1,10 +1,13 @@
 #include "libperception/lidar/BoxFit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "libperception/lidar/PointFours.h"
+#include "libperception/simd/Dispatch.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 
@@ -18,30 +21,64 @@ PointFours foursOf(const std::vector<Vector2>& points) {
           }};
 }
 
-/// Sum over the points of 1 / distance to the nearer of the two rectangle sides that the points lie
-/// along.
-double closeness(PointFours& points, double yaw, double min_distance) {
-  points.turn(static_cast<float>(std::cos(yaw)), static_cast<float>(std::sin(yaw)));
-  const Four floor = all(static_cast<float>(min_distance));
-  const FourBounds along(points.a), across(points.b);
-  const std::size_t count = points.a.size();
-  Four low_a{}, high_a{}, low_b{}, high_b{};
-  for (std::size_t i = 0; i < count; ++i) {
-    const Four w = points.weight[i];
-    const Four a0 = points.a[i] - along.low, a1 = along.high - points.a[i];
-    const Four b0 = points.b[i] - across.low, b1 = across.high - points.b[i];
-    low_a += w * a0 * a0, high_a += w * a1 * a1;
-    low_b += w * b0 * b0, high_b += w * b1 * b1;
+/// Of each direction the sum over the points of 1 / distance to the nearer of the two rectangle
+/// sides that the points lie along; at least `min_distance` [m].
+template <class Float>
+PERCEPTION_LANES void findCloseness(const PointFours& points, const float* cosines,
+                                    const float* sines, float min_distance, float* closeness) {
+  using Directions = LaneDirections<Float>;
+  const TurnedPoints<Float> turned(points, cosines, sines);
+  Float to_low_a{}, to_high_a{}, to_low_b{}, to_high_b{};
+  for (std::size_t i = 0; i < points.groups; ++i) {
+    const Float w = Directions::same(points.weight[i]);
+    const Float a0 = turned.a[i] - turned.low_a, a1 = turned.high_a - turned.a[i];
+    const Float b0 = turned.b[i] - turned.low_b, b1 = turned.high_b - turned.b[i];
+    to_low_a += w * a0 * a0, to_high_a += w * a1 * a1;
+    to_low_b += w * b0 * b0, to_high_b += w * b1 * b1;
   }
-  const Four edge_a = sumOf(low_a) < sumOf(high_a) ? along.low : along.high;
-  const Four edge_b = sumOf(low_b) < sumOf(high_b) ? across.low : across.high;
-  Four sum{};
-  for (std::size_t i = 0; i < count; ++i) {
-    const Four off_a = largest(points.a[i] - edge_a, edge_a - points.a[i]);
-    const Four off_b = largest(points.b[i] - edge_b, edge_b - points.b[i]);
-    sum += points.weight[i] / largest(least(off_a, off_b), floor);
+  const auto sum = [](const Float4& v) { return sumOf(v); };
+  const auto nearer = [&](const Float& to_low, const Float& to_high, const Float& low,
+                          const Float& high) {
+    return Directions::reduced(to_low, sum) < Directions::reduced(to_high, sum) ? low : high;
+  };
+  const Float edge_a = nearer(to_low_a, to_high_a, turned.low_a, turned.high_a);
+  const Float edge_b = nearer(to_low_b, to_high_b, turned.low_b, turned.high_b);
+  const Float floor = all<Float>(min_distance);
+  Float sums{};
+  for (std::size_t i = 0; i < points.groups; ++i) {
+    const Float off_a = larger<Float>(turned.a[i] - edge_a, edge_a - turned.a[i]);
+    const Float off_b = larger<Float>(turned.b[i] - edge_b, edge_b - turned.b[i]);
+    sums += Directions::same(points.weight[i]) / larger<Float>(smaller(off_a, off_b), floor);
   }
-  return static_cast<double>(sumOf(sum));
+  for (std::size_t k = 0; k < Directions::kCount; ++k)
+    closeness[k] = sumOf(Directions::lanesOf(sums, k));
+}
+
+// Like PERCEPTION_WIDER, with vectors of the width of each target.
+PERCEPTION_TARGET("default")
+void findTwo(const PointFours& points, const float* cosines, const float* sines, float min_distance,
+             float* closeness) {
+  for (std::size_t k = 0; k < 2; ++k)
+    findCloseness<Float4>(points, cosines + k, sines + k, min_distance, closeness + k);
+}
+#if PERCEPTION_HAS_WIDER
+PERCEPTION_TARGET("avx2")
+void findTwo(const PointFours& points, const float* cosines, const float* sines, float min_distance,
+             float* closeness) {
+  findCloseness<Float8>(points, cosines, sines, min_distance, closeness);
+}
+#endif
+
+/// Of two directions [rad].
+std::array<double, 2> closenessOf(const PointFours& points, const std::array<double, 2>& yaw,
+                                  const BoxParams& params) {
+  std::array<float, 2> cosine, sine, closeness;
+  for (std::size_t k = 0; k < 2; ++k)
+    cosine[k] = static_cast<float>(std::cos(yaw[k])),
+    sine[k] = static_cast<float>(std::sin(yaw[k]));
+  findTwo(points, cosine.data(), sine.data(), static_cast<float>(params.min_distance),
+          closeness.data());
+  return {static_cast<double>(closeness[0]), static_cast<double>(closeness[1])};
 }
 
 struct Direction {
@@ -50,21 +87,25 @@ struct Direction {
 };
 
 Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& params) {
-  PointFours points = foursOf(places);
+  const PointFours points = foursOf(places);
   const int steps = std::max(2, static_cast<int>(std::lround(kPi / 2 / params.step)));
   const double step = kPi / 2 / steps;
-  std::vector<double> score(static_cast<std::size_t>(steps));
+  std::vector<double> score(static_cast<std::size_t>(steps) + 1);  // they come by two
+  for (std::size_t k = 0; k < static_cast<std::size_t>(steps); k += 2) {
+    const auto at = static_cast<double>(k);
+    const auto two = closenessOf(points, {at * step, (at + 1) * step}, params);
+    score[k] = two[0], score[k + 1] = two[1];
+  }
+  score.resize(static_cast<std::size_t>(steps));
   double mean = 0;
   std::size_t best = 0;
   for (std::size_t k = 0; k < score.size(); ++k) {
-    score[k] = closeness(points, static_cast<double>(k) * step, params.min_distance);
     mean += score[k] / steps;
     if (score[k] > score[best]) best = k;
   }
   double yaw = static_cast<double>(best) * step, high = score[best];
   for (const double finer : {step / 2, step / 4, step / 8}) {
-    const double left = closeness(points, yaw + finer, params.min_distance);
-    const double right = closeness(points, yaw - finer, params.min_distance);
+    const auto [left, right] = closenessOf(points, {yaw + finer, yaw - finer}, params);
     if (left > high && left >= right) {
       yaw += finer, high = left;
     } else if (right > high) {
@@ -77,7 +118,9 @@ Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& par
 /// At most `limit` points, evenly subsampled.
 std::vector<Vector2> evenly(const std::vector<Vector2>& points, int limit) {
   std::vector<Vector2> used;
-  const std::size_t stride = 1 + (points.size() - 1) / static_cast<std::size_t>(limit);
+  constexpr int kMost = static_cast<int>(4 * TurnedPoints<Float8>::kMost);
+  const std::size_t stride =
+      1 + (points.size() - 1) / static_cast<std::size_t>(std::min(limit, kMost));
   for (std::size_t i = 0; i < points.size(); i += stride) used.push_back(points[i]);
   return used;
 }

@@ -8,7 +8,7 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/lidar/DescriptorParts.h"
-#include "libperception/lidar/PointFours.h"
+#include "libperception/lidar/EdgeFit.h"
 
 namespace perception {
 namespace {
@@ -19,19 +19,6 @@ constexpr int kSlices = 5;  // heights of the outline
 constexpr std::size_t kOutlineSample = 200, kSpreadSample = 400, kRoughnessSample = 800;
 
 std::size_t strideOf(std::size_t count, std::size_t sample) { return 1 + (count - 1) / sample; }
-
-/// Cosines and sines of a quarter turn in steps of 3 deg.
-const std::array<std::pair<float, float>, 30>& directions() {
-  static const auto all = [] {
-    std::array<std::pair<float, float>, 30> made;
-    for (std::size_t k = 0; k < made.size(); ++k) {
-      const double angle = radians(3) * static_cast<double>(k);
-      made[k] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
-    }
-    return made;
-  }();
-  return all;
-}
 
 /// Sum, products and number of points: their covariance.
 struct Moments {
@@ -148,32 +135,16 @@ Descriptor ClusterDescriber::describe(const std::vector<std::uint32_t>& members)
   return d;
 }
 
-/// The direction in which most returns lie close to the sides of the rectangle about them.
 void ClusterDescriber::describeEdges(Descriptor& d) {
   const std::size_t stride = strideOf(x_.size(), kOutlineSample);
   const std::size_t count = (x_.size() - 1) / stride + 1;
-  PointFours points(count, [&](std::size_t i) {
-    return std::make_pair(x_[i * stride] - x_[0], y_[i * stride] - y_[0]);
-  });
-  float best = -1;
-  for (const auto& [c, s] : directions()) {
-    points.turn(c, s);
-    const FourBounds along(points.a), across(points.b);
-    Four closeness{}, distance{}, close{};
-    for (std::size_t i = 0; i < points.a.size(); ++i) {
-      const Four off_a = least(points.a[i] - along.low, along.high - points.a[i]);
-      const Four off_b = least(points.b[i] - across.low, across.high - points.b[i]);
-      const Four edge = least(off_a, off_b), w = points.weight[i];
-      closeness += w / largest(edge, all(0.05f));
-      distance += w * edge, close += edge < all(0.12f) ? w : Four{};
-    }
-    if (sumOf(closeness) <= best) continue;
-    best = sumOf(closeness);
-    const bool lengthwise = along.size() >= across.size();
-    along_x_ = lengthwise ? c : -s, along_y_ = lengthwise ? s : c;
-    at(d, Feature::kEdgeDistance) = sumOf(distance) / static_cast<float>(count);
-    at(d, Feature::kEdgeShare) = sumOf(close) / static_cast<float>(count);
-  }
+  const EdgeFit fit =
+      fitEdges({count, [&](std::size_t i) {
+                  return std::make_pair(x_[i * stride] - x_[0], y_[i * stride] - y_[0]);
+                }});
+  along_x_ = fit.along_x, along_y_ = fit.along_y;
+  at(d, Feature::kEdgeDistance) = fit.distance / static_cast<float>(count);
+  at(d, Feature::kEdgeShare) = fit.close / static_cast<float>(count);
 }
 
 void ClusterDescriber::describeOutline(Descriptor& d) const {

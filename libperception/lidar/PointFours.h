@@ -3,56 +3,106 @@
 #include <cstddef>
 #include <vector>
 
+#include "libperception/simd/Vector8.h"
+
 namespace perception {
 
-/// Four floats in one SSE register.
-using Four = float __attribute__((vector_size(16)));
+PERCEPTION_LANES float leastOf(const Float4& v) {
+  return std::min(std::min(v[0], v[1]), std::min(v[2], v[3]));
+}
+PERCEPTION_LANES float largestOf(const Float4& v) {
+  return std::max(std::max(v[0], v[1]), std::max(v[2], v[3]));
+}
+PERCEPTION_LANES float sumOf(const Float4& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 
-inline Four least(Four a, Four b) { return a < b ? a : b; }
-inline Four largest(Four a, Four b) { return a > b ? a : b; }
-inline Four all(float v) { return Four{v, v, v, v}; }
-inline float leastOf(Four v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
-inline float largestOf(Four v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
-inline float sumOf(Four v) { return (v[0] + v[1]) + (v[2] + v[3]); }
-
-/// Points of the plane [m] in groups of four. The last group is filled up by the last point, at
-/// weight 0.
+/// Points of the plane [m], one at least, in groups of four. The last group is filled up by the
+/// last point, at weight 0.
 struct PointFours {
   /// `at(i)`: a pair of x and y of point i < count.
   template <class At>
-  PointFours(std::size_t count, const At& at) {
-    const std::size_t groups = (count + 3) / 4;
+  PointFours(std::size_t count, const At& at) : groups((count + 3) / 4) {
     x.reserve(groups), y.reserve(groups), weight.reserve(groups);
     for (std::size_t i = 0; i < count; i += 4) {
-      Four px{}, py{}, w{};
+      Float4 px{}, py{}, w{};
       for (std::size_t k = 0; k < 4; ++k) {
         const auto [ax, ay] = at(std::min(i + k, count - 1));
         px[k] = ax, py[k] = ay, w[k] = i + k < count ? 1.0f : 0.0f;
       }
       x.push_back(px), y.push_back(py), weight.push_back(w);
     }
-    a.resize(groups), b.resize(groups);
   }
 
-  /// Sets a and b: the points along and across the direction of that cosine and sine.
-  void turn(float cosine, float sine) {
-    const Four c = all(cosine), s = all(sine);
-    for (std::size_t i = 0; i < x.size(); ++i)
-      a[i] = c * x[i] + s * y[i], b[i] = c * y[i] - s * x[i];
-  }
-
-  std::vector<Four> x, y, weight;
-  std::vector<Four> a, b;  ///< after turn()
+  std::size_t groups;
+  std::vector<Float4> x, y, weight;
 };
 
-/// The bounds of groups of four [m], in every lane; of at least one group.
-struct FourBounds {
-  Four low, high;
-  explicit FourBounds(const std::vector<Four>& values) : low(values[0]), high(values[0]) {
-    for (const Four v : values) low = least(low, v), high = largest(high, v);
-    low = all(leastOf(low)), high = all(largestOf(high));
+/// A direction for each group of four lanes of a vector: one of Float4, two of Float8.
+template <class Float>
+struct LaneDirections {
+  static constexpr std::size_t kCount = sizeof(Float) / sizeof(Float4);
+
+  PERCEPTION_LANES static Float of(const float* values) {
+    if constexpr (kCount == 1) {
+      return all<Float>(values[0]);
+    } else {
+      const float a = values[0], b = values[1];
+      return Float{a, a, a, a, b, b, b, b};
+    }
   }
-  float size() const { return high[0] - low[0]; }
+  /// The same four numbers for each direction.
+  PERCEPTION_LANES static Float same(const Float4& v) {
+    if constexpr (kCount == 1) {
+      return v;
+    } else {
+      return Float{v[0], v[1], v[2], v[3], v[0], v[1], v[2], v[3]};
+    }
+  }
+  PERCEPTION_LANES static Float4 lanesOf(const Float& v, std::size_t direction) {
+    if constexpr (kCount == 1) {
+      return v;
+    } else {
+      return direction == 0 ? Float4{v[0], v[1], v[2], v[3]} : Float4{v[4], v[5], v[6], v[7]};
+    }
+  }
+  /// What `reduce` makes of the four lanes of each direction, in all of them.
+  template <class Reduce>
+  PERCEPTION_LANES static Float reduced(const Float& v, const Reduce& reduce) {
+    float values[kCount];
+    for (std::size_t k = 0; k < kCount; ++k) values[k] = reduce(lanesOf(v, k));
+    return of(values);
+  }
+};
+
+/// Points along and across directions [m], and their bounds in every lane of a direction.
+template <class Float>
+struct TurnedPoints {
+  using Directions = LaneDirections<Float>;
+  static constexpr std::size_t kMost = 128;  ///< groups of four points
+
+  /// `cosines`, `sines`: of the directions.
+  PERCEPTION_LANES TurnedPoints(const PointFours& points, const float* cosines,
+                                const float* sines) {
+    const Float c = Directions::of(cosines), s = Directions::of(sines);
+    std::size_t i = 0;
+    do {
+      const Float x = Directions::same(points.x[i]), y = Directions::same(points.y[i]);
+      a[i] = c * x + s * y, b[i] = c * y - s * x;
+    } while (++i < points.groups);
+    bound(a, points.groups, low_a, high_a), bound(b, points.groups, low_b, high_b);
+  }
+
+  Float a[kMost], b[kMost];
+  Float low_a, high_a, low_b, high_b;
+
+ private:
+  PERCEPTION_LANES static void bound(const Float* values, std::size_t count, Float& low,
+                                     Float& high) {
+    low = high = values[0];
+    for (std::size_t i = 1; i < count; ++i)
+      low = smaller(low, values[i]), high = larger(high, values[i]);
+    low = Directions::reduced(low, [](const Float4& v) { return leastOf(v); });
+    high = Directions::reduced(high, [](const Float4& v) { return largestOf(v); });
+  }
 };
 
 }  // namespace perception
