@@ -58,7 +58,8 @@ void DirectionCells::placeAll(const float* dx, const float* dy, const float* dz,
 }
 
 DirectionCells::DirectionCells(const EgoPoints& points)
-    : cells_(static_cast<std::size_t>(kColumns) * kRows) {
+    : nearest_(static_cast<std::size_t>(kColumns) * kRows, Cell{}.nearest),
+      farthest_(nearest_.size(), Cell{}.farthest) {
   const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
              sz = static_cast<float>(points.sensor.z());
   constexpr std::size_t kBlock = 512;  // points that fit in the L1 cache
@@ -69,9 +70,9 @@ DirectionCells::DirectionCells(const EgoPoints& points)
     placePoints(&points.x[first], &points.y[first], &points.z[first], count, sx, sy, sz,
                 place.data(), range.data());
     for (std::size_t k = 0; k < count; ++k) {
-      Cell& cell = cells_[static_cast<std::size_t>(place[k])];
-      cell.nearest = std::min(cell.nearest, range[k]);
-      cell.farthest = std::max(cell.farthest, range[k]);
+      float& nearest = nearest_[static_cast<std::size_t>(place[k])];
+      float& farthest = farthest_[static_cast<std::size_t>(place[k])];
+      nearest = std::min(nearest, range[k]), farthest = std::max(farthest, range[k]);
     }
   }
 }

@@ -35,15 +35,21 @@ class DirectionCells {
     return p.row > 0 && p.row < kRows - 1 && p.column > 0 && p.column < kColumns - 1;
   }
   /// Columns wrap around; rows beyond the cells are empty.
-  const Cell& at(int column, int row) const {
-    static constexpr Cell kNone{};
-    if (row < 0 || row >= kRows) return kNone;
+  Cell at(int column, int row) const {
+    if (row < 0 || row >= kRows) return {};
     if (column < 0 || column >= kColumns) column = (column % kColumns + kColumns) % kColumns;
-    return cells_[static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column)];
+    const std::size_t i = indexOf(column, row);
+    return {nearest_[i], farthest_[i]};
   }
+  /// The farthest ranges [m] of a cell and those after it in its row; 0: no return.
+  const float* farthestFrom(int column, int row) const { return &farthest_[indexOf(column, row)]; }
 
  private:
-  std::vector<Cell> cells_;  ///< row by row
+  static std::size_t indexOf(int column, int row) {
+    return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
+  }
+
+  std::vector<float> nearest_, farthest_;  ///< row by row
 };
 
 }  // namespace perception

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "libperception/measurement/PlacedReturns.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {
@@ -28,28 +29,35 @@ struct CellsAbout {
   }
 };
 
+/// Of cells whose farthest range is `least` [m] or more those up to `behind` [m] and those beyond,
+/// by rows of four of which the last does not count. The place is not at the border.
+CellsAbout cellsWithin(const DirectionCells& cells, const DirectionCells::Place& place, float least,
+                       float behind) {
+  Int4 told{}, passed{};  // numbers below zero
+  for (int row = place.row - 1; row <= place.row + 1; ++row) {
+    const auto farthest = load<Float4>(cells.farthestFrom(place.column - 1, row));
+    const Int4 tells = (farthest != 0.0f) & (farthest >= least);
+    told += tells, passed += tells & (farthest > behind);
+  }
+  const int all = -(told[0] + told[1] + told[2]), gone = -(passed[0] + passed[1] + passed[2]);
+  return {all - gone, gone};
+}
+
 /// About a return at `range` [m]. What ends nearer is solid: beside a return on a surface seen at a
 /// grazing angle one side is nearer, one farther; but by more than `nearer` [m] it hides what it
 /// would tell.
 CellsAbout cellsAbout(const DirectionCells& cells, const DirectionCells::Place& place, float range,
                       float nearer) {
-  CellsAbout about;
   const float least = range - nearer, behind = range + kBend;
-  const auto count = [&](const DirectionCells::Cell& cell) {  // without branches
-    const int tells = !cell.empty() & !(cell.farthest < least);
-    const int passed = tells & (cell.farthest > behind);
-    about.passed += passed, about.solid += tells - passed;
-  };
-  if (DirectionCells::isWithin(place)) {
-    for (int row = place.row - 1; row <= place.row + 1; ++row) {
-      const DirectionCells::Cell* cell = &cells.at(place.column - 1, row);
-      count(cell[0]), count(cell[1]), count(cell[2]);
+  if (DirectionCells::isWithin(place)) return cellsWithin(cells, place, least, behind);
+  CellsAbout about;
+  for (int row = place.row - 1; row <= place.row + 1; ++row) {
+    for (int column = place.column - 1; column <= place.column + 1; ++column) {
+      const DirectionCells::Cell cell = cells.at(column, row);
+      if (cell.empty() || cell.farthest < least) continue;
+      ++(cell.farthest > behind ? about.passed : about.solid);
     }
-    return about;
   }
-  for (int row = place.row - 1; row <= place.row + 1; ++row)
-    for (int column = place.column - 1; column <= place.column + 1; ++column)
-      count(cells.at(column, row));
   return about;
 }
 
