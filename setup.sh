@@ -10,7 +10,7 @@
 #   ./setup.sh sanitize   all tests with sanitizers, an hour
 #   ./setup.sh test    the same with the tests, and runs them: all of them, and some once more with sanitizers;
 #                      before them clang-format on all sources and clang-tidy on a few
-# As root or with sudo that asks nothing; a second run installs nothing. JOBS=N sets the number of compilers at once.
+# Run it as root or with password-less sudo. Running it again installs nothing new. JOBS=N sets the number of compilers at once.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
