@@ -70,7 +70,8 @@ bool CRawlogInput::fillPlain() {
     stop(State::kEnd, "");
     return false;
   }
-  ready_.insert(ready_.end(), raw_.begin(), raw_.end());
+  std::copy(raw_.begin(), raw_.end(), roomFor(raw_.size()));
+  ready_end_ += raw_.size();
   raw_.clear();
   return true;
 }
@@ -86,9 +87,7 @@ bool CRawlogInput::haveRaw() {
 }
 
 bool CRawlogInput::fillInflated() {
-  const std::size_t before = ready_.size();
-  ready_.resize(before + kReadyBytes);
-  Inflater::Out out{ready_.data() + before, kReadyBytes};
+  Inflater::Out out{roomFor(kReadyBytes), kReadyBytes};
   // Loop: an input block may inflate to nothing (headers, trailers).
   while (out.size == kReadyBytes && state_ == State::kGood && haveRaw()) {
     Inflater::In in{raw_.data() + raw_begin_, raw_.size() - raw_begin_};
@@ -111,27 +110,34 @@ bool CRawlogInput::fillInflated() {
                        file_read_ - in.size, inflater_->fault()));
     }
   }
-  ready_.resize(before + kReadyBytes - out.size);
-  return ready_.size() > before;
+  ready_end_ += kReadyBytes - out.size;
+  return out.size < kReadyBytes;
+}
+
+/// For bytes behind ready_end_.
+unsigned char* CRawlogInput::roomFor(std::size_t bytes) {
+  if (ready_.size() < ready_end_ + bytes) ready_.resize(ready_end_ + bytes);
+  return ready_.data() + ready_end_;
 }
 
 bool CRawlogInput::fill() {
   if (state_ != State::kGood) return false;
-  ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(ready_begin_));
+  std::copy(ready_.data() + ready_begin_, ready_.data() + ready_end_, ready_.data());
+  ready_end_ -= ready_begin_;
   ready_begin_ = 0;
   return inflater_ ? fillInflated() : fillPlain();
 }
 
 std::string CRawlogInput::container() const { return inflater_ ? inflater_->name() : ""; }
 
-bool CRawlogInput::atEnd() { return ready_begin_ == ready_.size() && !fill(); }
+bool CRawlogInput::atEnd() { return ready_begin_ == ready_end_ && !fill(); }
 
 std::string CRawlogInput::peek(std::size_t count) {
-  while (ready_.size() - ready_begin_ < count && fill()) {
+  while (ready_end_ - ready_begin_ < count && fill()) {
   }
   const auto begin = ready_.begin() + static_cast<std::ptrdiff_t>(ready_begin_);
   return std::string(
-      begin, begin + static_cast<std::ptrdiff_t>(std::min(count, ready_.size() - ready_begin_)));
+      begin, begin + static_cast<std::ptrdiff_t>(std::min(count, ready_end_ - ready_begin_)));
 }
 
 std::size_t CRawlogInput::read(void* to, std::size_t count) {
@@ -144,7 +150,7 @@ std::size_t CRawlogInput::read(void* to, std::size_t count) {
       }
       throw std::runtime_error(reason_);
     }
-    const std::size_t part = std::min(left, ready_.size() - ready_begin_);
+    const std::size_t part = std::min(left, ready_end_ - ready_begin_);
     std::memcpy(out, ready_.data() + ready_begin_, part);
     ready_begin_ += part;
     position_ += part;

@@ -54,6 +54,7 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   bool fill();  ///< appends bytes to ready_; false at the end
   bool fillPlain();
   bool fillInflated();
+  unsigned char* roomFor(std::size_t bytes);
   bool haveRaw();
   bool readFile();  ///< reads the next part of the file into raw_
   void stop(State state, const std::string& reason);
@@ -67,8 +68,9 @@ class CRawlogInput final : public mrpt::serialization::CArchive {
   bool in_member_ = true;               ///< between the header and the trailer of a member
   std::vector<unsigned char> raw_;  ///< as read from the file; [raw_begin_, end) is not used yet
   std::size_t raw_begin_ = 0;
-  std::vector<unsigned char> ready_;  ///< inflated; [ready_begin_, end) is not consumed yet
-  std::size_t ready_begin_ = 0;
+  /// Inflated; [ready_begin_, ready_end_) is not consumed yet, what lies behind is room.
+  std::vector<unsigned char> ready_;
+  std::size_t ready_begin_ = 0, ready_end_ = 0;
   State state_ = State::kGood;
   std::string reason_;
 };
