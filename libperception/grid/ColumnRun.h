@@ -12,6 +12,7 @@ template <class Mask>
 struct ColumnRun {
   std::int16_t* values;     ///< of the first one, layer by layer
   Mask *hit, *crossed;      ///< of each column, a bit per layer; cleared by updateColumns()
+  std::uint8_t* was_hit;    ///< of each column; set where it is hit now
   std::size_t slot, count;  ///< of the first one in ColumnAges; how many
   int layers;
   unsigned turn;  ///< cyclic shift of the layers from masks to array

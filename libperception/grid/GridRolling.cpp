@@ -28,6 +28,7 @@ class GridRolling final : public SafetyGrid {
         square_(cells_),
         marks_(params, static_cast<int>(layers_)),
         values_(static_cast<std::size_t>(cells_ * cells_ * layers_), 0),
+        was_hit_(static_cast<std::size_t>(cells_ * cells_), 0),
         ages_(static_cast<std::size_t>(cells_ * cells_), params.tau),
         column_(params.hit, params.miss, params.low, params.high) {}
 
@@ -58,18 +59,14 @@ class GridRolling final : public SafetyGrid {
   }
 
   std::vector<GridCell> occupiedWithin(const GridArea& area) const override {
-    const auto least = static_cast<std::int16_t>(params().occupied * kUnits);
+    const auto least = leastOccupied();
     return cellsWhere(
-        area,
-        [=](const std::int16_t* begin, const std::int16_t* end) {
-          return LogOddsColumn::mayReach(begin, static_cast<int>(end - begin), least);
-        },
+        area, [=](std::size_t slot) { return was_hit_[slot] != 0 && mayReach(slot, least); },
         [this](double v) { return v > params().occupied; });
   }
   std::vector<GridCell> knownCells() const override {
     return cellsWhere(
-        {}, [](const std::int16_t*, const std::int16_t*) { return true; },
-        [](double v) { return v != 0; });
+        {}, [](std::size_t) { return true; }, [](double v) { return v != 0; });
   }
 
   void restore(const std::vector<GridCell>& cells) override {
@@ -79,6 +76,7 @@ class GridRolling final : public SafetyGrid {
       if (!inWindow(index)) continue;
       const std::size_t slot = slotOf(index);
       update(slot, 0, 0);
+      was_hit_[slot] = 1;
       std::int16_t& value = values_[slot * static_cast<std::size_t>(layers_) +
                                     static_cast<std::size_t>(modulo(index.z, layers_))];
       const double after = std::clamp(value / kUnits + cell.log_odds, params().low, params().high);
@@ -87,7 +85,8 @@ class GridRolling final : public SafetyGrid {
   }
 
   std::size_t memoryBytes() const override {
-    return values_.capacity() * sizeof(std::int16_t) + ages_.memoryBytes() + marks_.memoryBytes();
+    return values_.capacity() * sizeof(std::int16_t) + was_hit_.capacity() + ages_.memoryBytes() +
+           marks_.memoryBytes();
   }
 
  private:
@@ -112,7 +111,15 @@ class GridRolling final : public SafetyGrid {
            c.z < first_.z + layers_;
   }
 
-  /// `column_may`: fast test of a column of values; `wanted`: test of a cell's log-odds.
+  std::int16_t leastOccupied() const {
+    return static_cast<std::int16_t>(params().occupied * kUnits);
+  }
+  bool mayReach(std::size_t slot, std::int16_t least) const {
+    return LogOddsColumn::mayReach(values_.data() + slot * static_cast<std::size_t>(layers_),
+                                   static_cast<int>(layers_), least);
+  }
+
+  /// `column_may`: fast test of a column by its slot; `wanted`: test of a cell's log-odds.
   template <class ColumnMay, class Wanted>
   std::vector<GridCell> cellsWhere(const GridArea& area, const ColumnMay& column_may,
                                    const Wanted& wanted) const {
@@ -124,8 +131,8 @@ class GridRolling final : public SafetyGrid {
       std::int64_t x = x_begin;
       square_.forRow(x, y, x_end - x_begin, [&](std::size_t begin, std::size_t count) {
         for (std::size_t slot = begin; slot < begin + count; ++slot, ++x) {
+          if (!column_may(slot)) continue;
           const std::int16_t* values = values_.data() + slot * static_cast<std::size_t>(layers_);
-          if (!column_may(values, values + layers_)) continue;
           for (std::int64_t z = first_.z; z < first_.z + layers_; ++z) {
             const double v = valueOf(values[modulo(z, layers_)], slot);
             if (wanted(v))
@@ -151,17 +158,22 @@ class GridRolling final : public SafetyGrid {
     if (!started_ || std::abs(first.x - first_.x) >= cells_ ||
         std::abs(first.y - first_.y) >= cells_ || std::abs(first.z - first_.z) >= layers_) {
       std::fill(values_.begin(), values_.end(), std::int16_t{0});
+      std::fill(was_hit_.begin(), was_hit_.end(), std::uint8_t{0});
       ages_.touchAll();
     } else {
       square_.forEntering(first_, first, [this](std::size_t slot, std::size_t count) {
         const auto layers = static_cast<std::size_t>(layers_);
         std::fill_n(&values_[slot * layers], count * layers, std::int16_t{0});
+        std::fill_n(&was_hit_[slot], count, std::uint8_t{0});
       });
       enterLayers(first);
     }
     first_ = first;
     started_ = true;
-    ages_.refresh([this](std::size_t slot) { update(slot, 0, 0); });
+    ages_.refresh([this](std::size_t slot) {
+      update(slot, 0, 0);
+      was_hit_[slot] = was_hit_[slot] != 0 && mayReach(slot, leastOccupied());
+    });
   }
 
   void enterLayers(const CellIndex& first) {
@@ -187,17 +199,19 @@ class GridRolling final : public SafetyGrid {
 
   // Adds the evidence of `count` columns of the window from `column` on, at `slot` in the array.
   void addEvidence(std::size_t column, std::size_t slot, std::size_t count, unsigned turn) {
-    updateColumns(column_,
-                  ColumnRun<Mask>{values_.data() + slot * static_cast<std::size_t>(layers_),
-                                  marks_.hits(column), marks_.crossings(column), slot, count,
-                                  static_cast<int>(layers_), turn, judged_},
-                  ages_);
+    updateColumns(
+        column_,
+        ColumnRun<Mask>{values_.data() + slot * static_cast<std::size_t>(layers_),
+                        marks_.hits(column), marks_.crossings(column), was_hit_.data() + slot, slot,
+                        count, static_cast<int>(layers_), turn, judged_},
+        ages_);
   }
 
   void applySoftHit(const typename WindowMarks<Mask>::SoftHit& doubt, unsigned turn) {
     const std::int64_t x = doubt.column % cells_, y = doubt.column / cells_;
     const std::size_t slot = slotOf({first_.x + x, first_.y + y, 0});
     update(slot, 0, 0);
+    was_hit_[slot] = 1;
     const double w = static_cast<double>(doubt.weight);
     double log_odds = w * params().hit + (doubt.crossed ? (1 - w) * params().miss : 0);
     const auto layer = static_cast<std::size_t>((doubt.layer + turn) % layers_);
@@ -212,6 +226,9 @@ class GridRolling final : public SafetyGrid {
   RollingSquare square_;
   WindowMarks<Mask> marks_;
   std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units, at the time in ages_
+  /// Of each column: it was hit since it entered the window or was last refreshed below the least
+  /// value of an occupied cell. Others hold no occupied cell.
+  std::vector<std::uint8_t> was_hit_;
   ColumnAges ages_;
   LogOddsColumn column_;
   bool judged_ = false;  // the hits of the scan have weights

@@ -32,6 +32,11 @@ class LogOddsColumn {
     return static_cast<std::int16_t>(std::min(32767L, std::lround((1 - keep) * 32768)));
   }
 
+  std::int16_t hit() const { return hit_[0]; }    ///< what a hit adds, in units
+  std::int16_t miss() const { return miss_[0]; }  ///< what a beam that passes adds
+  std::int16_t low() const { return low_[0]; }    ///< bounds of the log-odds
+  std::int16_t high() const { return high_[0]; }
+
   /// Applies the loss, then adds the evidence of a scan, a bit per layer. `judged`: hits reset
   /// negative log-odds (voidedBy() with weights of one).
   template <class Mask>
