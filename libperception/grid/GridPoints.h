@@ -1,8 +1,10 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "libperception/core/Frames.h"
+#include "libperception/grid/WorldPlaces.h"
 
 namespace perception {
 
@@ -16,6 +18,22 @@ class GridPoints {
     x_.push_back(static_cast<float>(p.x() - base_.x()));
     y_.push_back(static_cast<float>(p.y() - base_.y()));
     z_.push_back(static_cast<float>(p.z() - base_.z()));
+  }
+  /// Appends those `chosen` of a block.
+  void append(const WorldPlaces& places, const std::uint16_t* chosen, std::size_t count) {
+    std::size_t i = size();
+    if (!based_) {  // up to the first finite one
+      std::size_t k = 0;
+      for (; k < count && !based_; ++k) push_back(places.at(chosen[k]));
+      chosen += k, count -= k, i += k;
+    }
+    x_.resize(i + count), y_.resize(i + count), z_.resize(i + count);
+    const double x = base_.x(), y = base_.y(), z = base_.z();
+    for (std::size_t k = 0; k < count; ++k, ++i) {
+      x_[i] = static_cast<float>(places.x[chosen[k]] - x);
+      y_[i] = static_cast<float>(places.y[chosen[k]] - y);
+      z_[i] = static_cast<float>(places.z[chosen[k]] - z);
+    }
   }
   void emplace_back(double x, double y, double z) { push_back({x, y, z}); }
   void reserve(std::size_t count) { x_.reserve(count), y_.reserve(count), z_.reserve(count); }

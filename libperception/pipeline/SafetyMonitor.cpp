@@ -1,11 +1,13 @@
 #include "libperception/pipeline/SafetyMonitor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include "libperception/grid/NearCorridor.h"
+#include "libperception/grid/WorldPlaces.h"
 #include "libperception/weather/SensorVerdict.h"
 
 namespace perception {
@@ -63,13 +65,13 @@ class Doubter {
         caused_(frame.causes.any()) {}
 
   /// Appends return `i`, a hit at that place in the world.
-  void weigh(std::size_t i, const Vector3& place, ObstacleScan& obstacles) const {
+  void weigh(std::size_t i, const Vector2& place, ObstacleScan& obstacles) const {
     const float trust = weighted_ ? cloud_->trust[returns_.source[i]] : 1;
     const float shape = returns_.phantom.empty() ? 0 : returns_.phantom[i];
     const bool alone = shape == PlacedReturns::kNoCluster;
     const float doubt = 1 - (alone ? trust : trust * (1 - shape));
     const bool asks = caused_ && (alone || static_cast<double>(doubt) > kHardly);
-    const CausesHere here = asks ? frame_.causes.at(place.head<2>(), frame_.stamp) : CausesHere{};
+    const CausesHere here = asks ? frame_.causes.at(place, frame_.stamp) : CausesHere{};
     const double cause = here.likelier();
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
     float held = std::min(doubt, static_cast<float>(cause));
@@ -158,21 +160,27 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
   const float travel = backward ? -1 : 1;
   obstacles.road = RoadHeights(backward);
   const double height_max = std::min(returns.height_max, clearance);
-  const Eigen::Matrix3d R = frame.ego.T_world_ego.linear();  // by hand: Eigen calls a function
-  const Vector3 t = frame.ego.T_world_ego.translation();
-  for (std::size_t i = 0; i < returns.size(); ++i) {
-    const double height = static_cast<double>(returns.height[i]);
-    if (height <= kMirrored || travel * returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
-    const auto x = static_cast<double>(returns.x[i]), y = static_cast<double>(returns.y[i]),
-               z = static_cast<double>(returns.z[i]);
-    const Vector3 place(R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + t.x(),
-                        R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + t.y(),
-                        R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + t.z());
-    const bool hit = height > returns.height_min && height < height_max;
-    (hit ? scan.hits : scan.clear).push_back(place);
-    if (height < kOnRoad)
-      obstacles.road.add(returns.x[i], returns.y[i], returns.z[i] - returns.height[i]);
-    if (hit) doubter.weigh(i, place, obstacles);
+  WorldPlaces places;
+  std::array<std::uint16_t, WorldPlaces::kSize> hits, clear;
+  for (std::size_t first = 0; first < returns.size(); first += WorldPlaces::kSize) {
+    const std::size_t count = std::min(WorldPlaces::kSize, returns.size() - first);
+    places.place(frame.ego.T_world_ego, &returns.x[first], &returns.y[first], &returns.z[first],
+                 count);
+    std::size_t hit_count = 0, clear_count = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = first + k;
+      const auto height = static_cast<double>(returns.height[i]);
+      if (height <= kMirrored || travel * returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
+      const bool hit = height > returns.height_min && height < height_max;
+      hits[hit_count] = clear[clear_count] = static_cast<std::uint16_t>(k);
+      hit_count += hit, clear_count += !hit;
+      if (height < kOnRoad)
+        obstacles.road.add(returns.x[i], returns.y[i], returns.z[i] - returns.height[i]);
+    }
+    scan.hits.append(places, hits.data(), hit_count);
+    scan.clear.append(places, clear.data(), clear_count);
+    for (std::size_t k = 0; k < hit_count; ++k)
+      doubter.weigh(first + hits[k], {places.x[hits[k]], places.y[hits[k]]}, obstacles);
   }
   return obstacles;
 }
