@@ -205,13 +205,21 @@ class CubeLinkage {
     return false;
   }
 
-  void join(std::uint32_t a, std::uint32_t b) {
-    if (groups_->find(a) != groups_->find(b) && near(a, b)) groups_->unite(a, b);
+  /// Whether two groups became one.
+  bool join(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t one = groups_->find(a), other = groups_->find(b);
+    if (one == other || !near(a, b)) return false;
+    groups_->unite(one, other);
+    return true;
   }
 
+  /// Cubes with close numbers first, which often touch, until all are in one group.
   void linkWithin(std::uint32_t c) {
-    for (std::uint32_t i = first_cube_[c]; i < first_cube_[c + 1]; ++i)
-      for (std::uint32_t j = i + 1; j < first_cube_[c + 1]; ++j) join(i, j);
+    const std::uint32_t first = first_cube_[c], end = first_cube_[c + 1];
+    std::uint32_t parts = end - first;
+    for (std::uint32_t step = 1; step < end - first && parts > 1; ++step)
+      for (std::uint32_t i = first; i + step < end && parts > 1; ++i) parts -= join(i, i + step);
+    uniform_[c] = parts == 1;
   }
 
   /// Whether all cubes of a block are in one group; once they are, they stay so.
