@@ -40,7 +40,7 @@ packages=(
   librandom123-dev       # random numbers by counter
   libtbb-dev             # threads
   libnlopt-dev           # noise parameters by maximum likelihood
-  libboost-dev           # quantiles of beta and gamma distributions
+  libboost-dev           # quantiles of beta and gamma distributions; HTTP and WebSocket (Beast)
   libtinyxml2-dev        # GPX files
   liblzf-dev             # compressed PCD files
   zlib1g-dev             # rawlogs are gzip files; check sums

@@ -102,7 +102,8 @@ std::string gzipped(const std::string& bytes) {
   return out;
 }
 
-RunData::RunData(const TrackedRun& run, const RunRecord& record, const Budget& budget)
+RunData::RunData(const TrackedRun& run, const RunRecord& record, const Budget& budget,
+                 const std::optional<Vector3>& origin)
     : run_(run), budget_(budget) {
   const double scenes = static_cast<double>(std::max<std::size_t>(run.scenes.size(), 1));
   const double each = static_cast<double>(budget.points) / kBase64 / kPointBytes / scenes;
@@ -111,6 +112,7 @@ RunData::RunData(const TrackedRun& run, const RunRecord& record, const Budget& b
   const double images = static_cast<double>(std::max<std::size_t>(budget.images / kImageBytes, 1));
   images_every_ = static_cast<std::size_t>(std::ceil(scenes / images));
   if (!run.scenes.empty()) origin_ = run.scenes.front().ego.T_world_ego.translation();
+  if (origin) origin_ = *origin;
   json_ = {{"id", record.hash},        {"log", record.input},      {"simulated", record.simulated},
            {"config", record.config},  {"classes", Json::array()}, {"scenes", Json::array()},
            {"objects", Json::array()}, {"events", Json::array()}};

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,10 @@ class RunData {
     std::size_t points = 14'000'000;  ///< [bytes of the page] for returns and cells
     std::size_t images = 5'000'000;   ///< [bytes of the page]
   };
-  /// `record` names log and run.
-  RunData(const TrackedRun& run, const RunRecord& record, const Budget& budget);
+  /// `record` names log and run; `origin`, of a run that comes scene by scene: not the first of
+  /// these scenes.
+  RunData(const TrackedRun& run, const RunRecord& record, const Budget& budget,
+          const std::optional<Vector3>& origin = std::nullopt);
   RunData(const TrackedRun& run, const RunRecord& record) : RunData(run, record, Budget()) {}
 
   /// Sensor data and truth of scene `index`; scenes in ascending order, any may be left out.

@@ -33,15 +33,15 @@ export async function readSensors(run, prefix) {
 
 // Columns of the returns and cells of scene k: 16-bit centimeters from the vehicle, two bytes.
 export function blockOf(run, k) {
-  const at = run.scenes[k].block;
-  if (!run.block || !at) return null;
+  const { block: at, buffer = run.block } = run.scenes[k];  // scenes of a live run have their own
+  if (!buffer || !at) return null;
   const columns = (from, n) => ({
     n,
-    x: new Int16Array(run.block, from, n),
-    y: new Int16Array(run.block, from + 2 * n, n),
-    z: new Int16Array(run.block, from + 4 * n, n),
-    a: new Uint8Array(run.block, from + 6 * n, n),
-    b: new Uint8Array(run.block, from + 7 * n, n),
+    x: new Int16Array(buffer, from, n),
+    y: new Int16Array(buffer, from + 2 * n, n),
+    z: new Int16Array(buffer, from + 4 * n, n),
+    a: new Uint8Array(buffer, from + 6 * n, n),
+    b: new Uint8Array(buffer, from + 7 * n, n),
   });
   return { points: columns(at[0], at[1]), cells: columns(at[0] + 8 * at[1], at[2]) };
 }

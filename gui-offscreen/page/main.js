@@ -1,10 +1,11 @@
 // The interactive page of a run (perception-report); bundled by bundle.sh.
 import { Viewer } from "./viewer.js";
+import { LiveViewer } from "./live.js";
 import { events, objectRows, sortable, timeline } from "./tables.js";
 import { Weather } from "./weather.js";
 
 async function start() {
-  const viewers = [...document.querySelectorAll("[data-run]")].map((host) => new Viewer(host));
+  const viewers = [...document.querySelectorAll("[data-run]")].map((host) => ("live" in host.dataset ? new LiveViewer(host) : new Viewer(host)));
   document.querySelectorAll("table").forEach(sortable);
   window.perceptionViewers = viewers;
   for (const viewer of viewers) await viewer.start();
@@ -13,7 +14,7 @@ async function start() {
   timeline(first);
   objectRows(first);
   const weather = document.getElementById("weather");
-  if (weather) first.weather = new Weather(weather, first);
+  if (weather && !first.live) first.weather = new Weather(weather, first);
   events(first, document.getElementById("events") ?? first.host.parentNode);
   for (const viewer of viewers) {  // two runs of one log go in step
     viewer.onTime.push((t) => viewers.forEach((other) => {

@@ -33,8 +33,18 @@ export class Viewer {
     const { host } = this, prefix = host.dataset.run;
     this.run = await readRun(prefix);
     if (!this.run.scenes.length) return;
+    this.build();
+    this.seek(this.run.times[0]);
+    await readSensors(this.run, prefix);
+    this.camera = new CameraView(host.querySelector(".camera"), this.run);
+    this.note(host.querySelector(".note"));
+    this.refresh();
+    host.dataset.ready = "yes";
+  }
+
+  build() {
+    const { host } = this, find = (s) => host.querySelector(s);
     host.innerHTML = PAGE;
-    const find = (s) => host.querySelector(s);
     this.layers = {};
     this.slider = find("input[type=range]");
     this.slider.max = this.run.scenes.length - 1;
@@ -48,12 +58,6 @@ export class Viewer {
     }
     this.addInput(find);
     this.choose(null);
-    this.seek(this.run.times[0]);
-    await readSensors(this.run, prefix);
-    this.camera = new CameraView(find(".camera"), this.run);
-    this.note(find(".note"));
-    this.refresh();
-    host.dataset.ready = "yes";
   }
 
   has(layer) {
@@ -166,7 +170,11 @@ export class Viewer {
     const points = !seen ? "Without the log (option -i) the page has tracks alone, no sensor data."
       : kept < seen ? `Lidar returns are thinned to ${Math.round(100 * kept / seen)} % (${kept.toLocaleString("en")} of ${seen.toLocaleString("en")}) so that the page stays small.`
       : `All ${seen.toLocaleString("en")} lidar returns that the tracker used are in the page.`;
-    host.textContent = points + " Color of returns: gray ground, violet low, green 3 m and higher. Drag turns the view, wheel or two fingers zoom, right button or two fingers move it. " +
+    host.textContent = points + this.help();
+  }
+
+  help() {
+    return " Color of returns: gray ground, violet low, green 3 m and higher. Drag turns the view, wheel or two fingers zoom, right button or two fingers move it. " +
       "Keys: space plays, arrows step, N and P next and previous object, T from above, B from behind, Esc nothing chosen.";
   }
 }

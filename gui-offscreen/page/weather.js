@@ -72,7 +72,8 @@ export class Weather {
     this.charts.forEach((chart) => chart.destroy());
     this.charts = [];
     this.body.replaceChildren();
-    const end = this.viewer.run.times.at(-1);
+    this.shown = weather;
+    const { times } = this.viewer.run, end = times.at(-1), begin = this.viewer.live ? times[0] : 0;
     for (const chart of CHARTS) {
       const shown = chart.of(weather);
       if (!shown && !chart.none) continue;
@@ -86,7 +87,7 @@ export class Weather {
       this.body.append(host);
       const plot = new uPlot({
         width: Math.max(this.host.clientWidth - 4, 240), height: 130, legend: { show: false }, cursor: { y: false, drag: { x: false } },
-        scales: { x: { time: false, range: [0, end] }, y: chart.log ? { distr: 3 } : { range: shown.range } },
+        scales: { x: { time: false, range: [begin, end] }, y: chart.log ? { distr: 3 } : { range: shown.range } },
         axes: [{ size: 24, values: (u, v) => v.map((t) => t + " s"), grid: { stroke: "#eee" } }, { size: 62, grid: { stroke: "#eee" } }],
         series: [{}, ...shown.series.map((s) => ({ points: { show: false }, spanGaps: false, ...s }))],
         bands: shown.bands ?? [],

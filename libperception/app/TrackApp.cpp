@@ -70,6 +70,7 @@ void TrackApp::declare(CLI::App& cli) {
   cli.add_option(
       "--publish", publish,
       "INTERFACE[:DOMAIN], as lo:0: send scenes by DDS in the form that ROS 2 nodes read");
+  serve.declare(cli);
   cli.add_flag(
       "--overwrite", overwrite,
       "Replace the results in the folder, even those of another run, with evaluation and film");
@@ -155,6 +156,9 @@ void TrackApp::checkInputs() const {
     throw Error(ExitCode::kUsage, "-i live:INI is the only input of a run");
   if (!live && (duration > 0 || !record.empty()))
     throw Error(ExitCode::kUsage, "--duration and --record belong to -i live:INI");
+  if (live && serve.speed > 0)
+    throw Error(ExitCode::kUsage, "--serve-speed is of logs; sensors at work have their own");
+  if (serve.port) serve.rules();
   if (live && !overwrite && fs::exists(output + "/done.json"))
     throw Error(ExitCode::kBadConfig,
                 output + ": holds a run; give another folder, or --overwrite to remove it");
@@ -203,18 +207,27 @@ void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
   FileSink to_hash;
   if (shard.hash.empty())
     to_hash = [&](const unsigned char* bytes, std::size_t count) { log_hash.add(bytes, count); };
+  std::optional<LiveView> view;
+  if (serve.port) {
+    view.emplace(serve, shard.log, config_file, namesOf(setup.model.classes));
+    fmt::print("{}: live at {}\n", shard.log, view->url());
+    std::fflush(stdout);
+  }
   LogRun run(setup, {shard.log, shard.dir, shard.export_file}, openInput(shard.log, to_hash));
   std::optional<StageWatchdog> watchdog;
   if (liveIniOf(shard.log)) watchdog.emplace(run.timing(), kLongestStage, endHungRun);
   std::unique_ptr<RosTopics> topics;
   if (!publish.empty())
     topics = std::make_unique<RosTopics>(NetworkName::parse(publish), namesOf(setup.model.classes));
+  if (view) view->watch(run);
   run.read([&](const Scene& scene) {
+    if (view) view->put(scene, run);
     if (topics) topics->publish(scene);
     if (keep_scenes) out_scenes.push_back(scene);
   });
   watchdog.reset();  // writing the results may take a slow disk longer
   for (const std::string& message : run.finish(strict)) warn(message);
+  if (view) fmt::print("{}: {}\n", shard.log, view->end());
   run.record.program = name();
   run.record.version = PERCEPTION_VERSION;
   run.record.hash = shard.hash;

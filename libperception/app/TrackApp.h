@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libperception/app/App.h"
+#include "libperception/app/LiveView.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/scene/KittiExport.h"
 #include "libperception/sensors/FileSink.h"
@@ -24,6 +25,7 @@ class TrackApp : public App {
   double duration = 0;                ///< --duration [s]: of sensors at work; 0: until a signal
   std::string record;                 ///< --record: folder; sensors at work are recorded, too
   std::string publish;                ///< --publish INTERFACE[:DOMAIN]: scenes by DDS
+  ServeOptions serve;                 ///< --serve and what belongs to it
   bool overwrite = false;             ///< --overwrite: replace the results of another run
   bool info = false;                  ///< --info: say what the logs hold and stop
   bool keep_scenes = false;           ///< keep all scenes in out_scenes (tests)

@@ -17,6 +17,8 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFloat32 = 7;                            // foxglove.PackedElementField
+constexpr int kDeleteAll = 1;                          // foxglove.SceneEntityDeletion
+constexpr int kInfoLevel = 2, kWarningLevel = 3;       // foxglove.Log
 constexpr double kTextHeight = 0.5, kTextAbove = 0.4;  // [m]
 
 std::string base64(std::string_view data) {
@@ -107,6 +109,29 @@ std::string sceneUpdate(const Scene& scene, const std::vector<std::string>& clas
   }
   shown = std::move(now);
   return json{{"deletions", deletions}, {"entities", entities}}.dump();
+}
+
+std::string wholeSceneUpdate(const Scene& scene, const std::vector<std::string>& class_names) {
+  json entities = json::array();
+  for (const SceneObject& object : scene.objects)
+    entities.push_back(entity(object, class_names.at(object.class_id), scene.stamp));
+  const json all = {{"timestamp", time(scene.stamp)}, {"type", kDeleteAll}, {"id", ""}};
+  return json{{"deletions", json::array({all})}, {"entities", entities}}.dump();
+}
+
+std::string logMessage(Stamp stamp, bool warning, const std::string& name,
+                       const std::string& message) {
+  return json{{"timestamp", time(stamp)}, {"level", warning ? kWarningLevel : kInfoLevel},
+              {"message", message},       {"name", name},
+              {"file", ""},               {"line", 0}}
+      .dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string numbersMessage(Stamp stamp, const std::map<std::string, double>& values) {
+  json out = {{"timestamp", time(stamp)}};
+  for (const auto& [name, value] : values)
+    if (std::isfinite(value)) out[name] = value;
+  return out.dump();
 }
 
 namespace {

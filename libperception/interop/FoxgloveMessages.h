@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ namespace perception {
 /// ids of the scene. `class_names`: indexed by class_id.
 std::string sceneUpdate(const Scene& scene, const std::vector<std::string>& class_names,
                         std::set<std::uint64_t>& shown);
+/// The same for readers that may have missed scenes: everything shown before is deleted.
+std::string wholeSceneUpdate(const Scene& scene, const std::vector<std::string>& class_names);
 /// foxglove.PointCloud: x, y, z and intensity as 32-bit floats, sensor frame; intensity is 0 where
 /// the log has none.
 std::string pointCloud(const LidarCloud& cloud, Stamp stamp, const std::string& frame_id);
@@ -24,6 +27,11 @@ std::string pointCloud(const RadarReturns& radar, Stamp stamp, const std::string
 /// foxglove.FrameTransform: p_parent = T p_child.
 std::string frameTransform(const Pose3& T, Stamp stamp, const std::string& parent,
                            const std::string& child);
+/// foxglove.Log; `warning`: its level, else that of information.
+std::string logMessage(Stamp stamp, bool warning, const std::string& name,
+                       const std::string& message);
+/// Values over time, for plots: numbersSchema(). Those that are not finite are left out.
+std::string numbersMessage(Stamp stamp, const std::map<std::string, double>& values);
 /// foxglove.CompressedImage as JPEG; the frame is the camera's optical one.
 std::string compressedImage(const Raster& raster, Stamp stamp, const std::string& frame_id);
 

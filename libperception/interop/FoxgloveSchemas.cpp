@@ -115,4 +115,19 @@ McapWriter::Schema compressedImageSchema() {
       {{"timestamp", time()}, {"frame_id", text()}, {"data", bytes()}, {"format", text()}});
 }
 
+McapWriter::Schema logSchema() {
+  return named("foxglove.Log", {{"timestamp", time()},
+                                {"level", integer()},
+                                {"message", text()},
+                                {"name", text()},
+                                {"file", text()},
+                                {"line", integer()}});
+}
+
+McapWriter::Schema numbersSchema(const std::string& name, const std::vector<std::string>& fields) {
+  json schema = object(name.c_str(), {{"timestamp", time()}});
+  for (const std::string& field : fields) schema["properties"][field] = number();
+  return {name, "jsonschema", schema.dump()};
+}
+
 }  // namespace perception

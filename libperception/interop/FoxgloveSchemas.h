@@ -1,4 +1,7 @@
 #pragma once
+#include <string>
+#include <vector>
+
 #include "libperception/interop/McapWriter.h"
 
 namespace perception {
@@ -9,5 +12,8 @@ McapWriter::Schema sceneUpdateSchema();
 McapWriter::Schema pointCloudSchema();
 McapWriter::Schema frameTransformSchema();
 McapWriter::Schema compressedImageSchema();
+McapWriter::Schema logSchema();
+/// Of our own: a time and numbers by name, each of which may be missing.
+McapWriter::Schema numbersSchema(const std::string& name, const std::vector<std::string>& fields);
 
 }  // namespace perception

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/FinishedRun.h"
@@ -37,6 +38,12 @@ LogRun::LogRun(const PipelineSetup& setup, LogRunFiles files,
   pipeline_.observe(&*recorder_);
 }
 
+void LogRun::watch(PipelineObserver& observer, EventLog::Listener events) {
+  watcher_ = &observer;
+  pipeline_.observe(watcher_);
+  events_.tell(std::move(events));
+}
+
 void LogRun::put(const Scene& scene) {
   if (!writer_) writer_.emplace(written_to_, setup_.model.classes, *pipeline_.firstStamp());
   writer_->write(scene);
@@ -58,10 +65,12 @@ void LogRun::addArrival(const mrpt::obs::CObservation& observation) {
 
 /// Since the first observation at or behind the scene's instant came.
 void LogRun::addLatency(Stamp scene) {
+  latency_.reset();
   const auto arrival = arrivals_.lower_bound(scene);
   if (arrival == arrivals_.end()) return;
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - arrival->second;
-  timing_.addLatency(passed.count());
+  latency_ = passed.count();
+  timing_.addLatency(*latency_);
 }
 
 // Only of runs whose returns are weighed.
@@ -69,6 +78,7 @@ void LogRun::putWeather() {
   for (const WeatherRow& row : pipeline_.takeWeather()) {
     if (!weather_) weather_.emplace(folder_.pathFor("weather.csv"), *pipeline_.firstStamp());
     weather_->write(row);
+    if (watcher_) watcher_->onWeather(row);
   }
 }
 

@@ -30,6 +30,9 @@ class LogRun {
   /// Throws OutputError or Error for the folder.
   LogRun(const PipelineSetup& setup, LogRunFiles files, std::unique_ptr<ObservationInput> input);
 
+  /// Looks on from now on, also at the weather and, by EventLog::Listener, at events. Before read();
+  /// not owned; outlives read().
+  void watch(PipelineObserver& observer, EventLog::Listener events);
   /// Processes the log to its end; `keep` is called with each scene.
   void read(const std::function<void(const Scene&)>& keep);
   /// Returns warnings. Throws DataError when there is no scene, or when the log is damaged and
@@ -41,6 +44,12 @@ class LogRun {
   RunRecord record;  ///< program and configuration are set by the caller
   /// What was learned of detectors: INI lines.
   std::vector<std::string> learned() const { return pipeline_.learned(); }
+  // As of the last scene.
+  std::optional<Stamp> firstStamp() const { return pipeline_.firstStamp(); }
+  const SafetyGrid* grid() const { return pipeline_.grid(); }
+  bool simulated() const { return facts_.simulated; }
+  /// [s] since the observation came that the scene waited for; empty: of a log.
+  std::optional<double> latency() const { return latency_; }
   const RunTiming& timing() const { return timing_; }
   double wallSeconds() const { return timing_.wallSeconds(); }
   double realTimeFactor() const;  ///< seconds of log per second of work
@@ -74,6 +83,8 @@ class LogRun {
   /// When sensor data of an instant came, of sensors at work; the newest five
   /// seconds.
   std::map<Stamp, std::chrono::steady_clock::time_point> arrivals_;
+  std::optional<double> latency_;        ///< [s] of the last scene
+  PipelineObserver* watcher_ = nullptr;  ///< of watch()
   std::vector<Scene>
       before_camera_;  ///< scenes before the first camera observation, which exports need
 };

@@ -232,7 +232,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
     wakes_.apply(sensor, scan);
     watch_.addFrame(sensor, frame.stamp, &scan);
-    if (observer_) observer_->onFrame(frame), observer_->onScan(scan);
+    for (PipelineObserver* o : observers_) o->onFrame(frame), o->onScan(scan);
     const auto returns = std::exchange(scan.returns, nullptr);
     runBoth([&] { filter(sensor, scan, share); }, [&] { addToGrid(frame, returns.get()); });
   } else {
@@ -265,12 +265,12 @@ EgoState Pipeline::egoAt(Stamp stamp) {
 }
 
 void Pipeline::addOutput(const EgoState& ego, std::int64_t frame) {
-  if (observer_) observer_->onScene(ego, frame);
   OutputSchedule::Instant instant{ego, frame, {}};
   if (safety_) {
     const auto scope = timing_.stage("grid");
     instant.path = safety_->pathAhead(ego);
   }
+  for (PipelineObserver* o : observers_) o->onPath(instant.path), o->onScene(ego, frame);
   outputs_.push(std::move(instant));
   makeScenes(ego.stamp);
 }
@@ -281,7 +281,7 @@ void Pipeline::makeScenes(std::optional<Stamp> now) {
   while (const auto instant = outputs_.takeDue(now)) {
     ready_.push_back(scenes_.make(tracker_.mapHypothesis(), instant->ego, instant->frame));
     if (instant->path.known) ready_.back().path = safety_->advise(instant->path, ready_.back());
-    if (observer_) observer_->onOutput(ready_.back());
+    for (PipelineObserver* o : observers_) o->onOutput(ready_.back());
   }
 }
 
@@ -302,7 +302,7 @@ void Pipeline::restartTracks() {
   health_.restart();
   conditions_.restart();
   wakes_.restart();
-  if (observer_) observer_->onRestart();
+  for (PipelineObserver* o : observers_) o->onRestart();
   scan_maker_.restart();
   if (safety_) safety_->restart();
 }

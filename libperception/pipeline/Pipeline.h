@@ -33,9 +33,11 @@ class PipelineObserver {
   /// As its front end gets it; before the scan that comes of it.
   virtual void onFrame(const SensorFrame& frame) { (void)frame; }
   virtual void onScan(const MeasurementScan& scan) { (void)scan; }  ///< goes into the filter
+  /// The way ahead of a scene that is due; before its onScene().
+  virtual void onPath(const PathAhead& path) { (void)path; }
   /// A scene of this instant is due.
   virtual void onScene(const EgoState& ego, std::int64_t frame) { (void)ego, (void)frame; }
-  /// A lidar scan's weather; from passLog() alone.
+  /// A lidar scan's weather; from passLog() and LogRun.
   virtual void onWeather(const WeatherRow& row) { (void)row; }
   /// The scene as it goes out; with [run] output_lag later than its instant.
   virtual void onOutput(const Scene& scene) { (void)scene; }
@@ -57,8 +59,10 @@ class Pipeline {
   void finish();
   /// What was learned of detectors and clutter so far: INI lines, section by section.
   std::vector<std::string> learned() const;
-  /// Called from now on; null: none. Not owned.
-  void observe(PipelineObserver* observer) { observer_ = observer; }
+  /// Called from now on, in the order of these calls. Not owned.
+  void observe(PipelineObserver* observer) { observers_.push_back(observer); }
+  /// The safety grid as of the last scan; null: [grid] enabled = false.
+  const SafetyGrid* grid() const { return safety_ ? &safety_->grid() : nullptr; }
 
   const CRbpfTracker& tracker() const { return tracker_; }
   const PipelineSetup& setup() const { return setup_; }
@@ -115,7 +119,7 @@ class Pipeline {
   std::deque<Scene> ready_;
   std::optional<Stamp> first_stamp_;
   Stamp last_stamp_;
-  PipelineObserver* observer_ = nullptr;
+  std::vector<PipelineObserver*> observers_;
 };
 
 }  // namespace perception

@@ -29,6 +29,7 @@ void EventLog::add(std::optional<Stamp> stamp, const std::string& kind, const st
   const std::uint64_t count = ++counts_[kind];
   if (fields.is_null()) fields = Fields::object();
   Event event{stamp, kind, message, std::move(fields), severity};
+  if (listener_) listener_(stamp, contentOf(event));
   if (file_) {
     file_->write(lineOf(event, first_stamp_));
   } else if (count <= kept_per_kind_) {
@@ -41,6 +42,13 @@ void EventLog::warn(std::optional<Stamp> stamp, const std::string& kind, const s
   add(stamp, kind, message, std::move(fields), Severity::kWarning);
 }
 
+Json EventLog::contentOf(const Event& event) {
+  return {{"kind", event.kind},
+          {"severity", event.severity == Severity::kWarning ? "warning" : "info"},
+          {"message", event.message},
+          {"fields", event.fields}};
+}
+
 std::string EventLog::lineOf(const Event& event, Stamp first_stamp) {
   Json line;
   // Divided, not multiplied by 1e-9: the nearest double, which prints as the short number that it
@@ -48,10 +56,7 @@ std::string EventLog::lineOf(const Event& event, Stamp first_stamp) {
   line["t"] =
       event.stamp ? Json(static_cast<double>(event.stamp->ns - first_stamp.ns) / 1e9) : Json();
   line["stamp"] = event.stamp ? Json(decimalSeconds(event.stamp->ns)) : Json();
-  line["kind"] = event.kind;
-  line["severity"] = event.severity == Severity::kWarning ? "warning" : "info";
-  line["message"] = event.message;
-  line["fields"] = event.fields;
+  line.update(contentOf(event));
   return jsonLine(line);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/Time.h"
@@ -66,6 +68,11 @@ class EventLog {
   void warn(std::optional<Stamp> stamp, const std::string& kind, const std::string& message,
             Fields fields = Fields::object());
 
+  /// Told of each event from now on, on the thread of add(): its stamp and its line of events.jsonl
+  /// without t and stamp.
+  using Listener = std::function<void(std::optional<Stamp>, const nlohmann::ordered_json&)>;
+  void tell(Listener listener) { listener_ = std::move(listener); }
+
   /// Number of events by kind, including those not stored.
   const std::map<std::string, std::uint64_t>& counts() const { return counts_; }
   std::uint64_t warnings() const { return warnings_; }
@@ -89,6 +96,7 @@ class EventLog {
     Fields fields;
     Severity severity;
   };
+  static nlohmann::ordered_json contentOf(const Event& event);
   static std::string lineOf(const Event& event, Stamp first_stamp);
 
   std::size_t kept_per_kind_;
@@ -98,6 +106,7 @@ class EventLog {
   std::map<std::string, std::uint64_t> counts_;
   std::uint64_t warnings_ = 0;
   std::vector<std::string> first_warnings_;
+  Listener listener_;
 };
 
 }  // namespace perception
