@@ -168,7 +168,8 @@ void LiveComposer::sendFoxglove(const LiveBatch& batch) {
   for (const auto& [label, frame] : batch.frames) {
     const std::string topic = "/sensors/" + label;
     const std::uint32_t id = channel(topic, pointCloudSchema());
-    sendTransform(frame->ego.T_world_ego, frame->stamp, "world", "ego");
+    if (!batch.scene || batch.scene->stamp != frame->stamp)
+      sendTransform(frame->ego.T_world_ego, frame->stamp, "world", "ego");
     sendTransform(frame->T_ego_sensor, frame->stamp, "ego", label);
     if (!server_.isSubscribed(id)) continue;
     const auto* cloud = std::get_if<LidarCloud>(&frame->data);

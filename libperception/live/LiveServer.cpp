@@ -203,6 +203,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
 
 LiveServer::Hub::Hub(Params given) : rate(given.limits.requests) {
   params = std::move(given);
+  session = nonce();
   checkRules(params.access);
   listen();
   sigset_t all, before;

@@ -58,8 +58,7 @@ void LiveSession::start(const Request& request, const std::string& protocol) {
     if (self->page_) {
       if (!self->host_.greeting.empty()) self->putText(self->host_.greeting);
     } else {
-      self->putText(
-          foxglove::serverInfo(self->host_.params.name, std::to_string(self->host_.totals.others)));
+      self->putText(foxglove::serverInfo(self->host_.params.name, self->host_.session));
       self->putText(foxglove::advertisement(self->host_.channels));
     }
     self->write();

@@ -38,6 +38,7 @@ struct LiveHost {
   virtual void subscribed(int change) = 0;
   LiveServer::Params params;
   std::string greeting;  ///< of pages
+  std::string session;   ///< by which clients tell this run from the next one
   std::vector<foxglove::Channel> channels;
   LiveTotals totals;
 };

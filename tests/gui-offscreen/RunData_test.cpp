@@ -65,6 +65,15 @@ TEST(RunData, TracksAreColumnsByObjectFromTheFirstPlaceOfTheVehicle) {
   EXPECT_DOUBLE_EQ(json["scenes"][1]["ego"][0].get<double>(), 1);
 }
 
+TEST(RunData, ScenesOfALiveRunKeepTheOriginThatIsGiven) {
+  TrackedRun run = twoScenes();
+  const Vector3 first = run.scenes[0].ego.T_world_ego.translation();
+  run.scenes.erase(run.scenes.begin());
+  const RunData data(run, {}, {}, first);
+  EXPECT_DOUBLE_EQ(data.collected()["scenes"][0]["ego"][0].get<double>(), 1);
+  EXPECT_DOUBLE_EQ(data.collected()["objects"][0]["row"][0][0].get<double>(), 20);
+}
+
 TEST(RunData, ReturnsAreCentimetersFromTheVehicle) {
   const TrackedRun run = twoScenes();
   RunData data(run, {});

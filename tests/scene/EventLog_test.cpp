@@ -100,6 +100,22 @@ TEST(EventLog, InAFileNoneIsOmitted) {
   EXPECT_EQ(text.find("events_not_written"), std::string::npos);
 }
 
+TEST(EventLog, WhoListensIsToldEachEvent) {
+  EventLog log(1);
+  std::vector<std::pair<std::optional<Stamp>, nlohmann::ordered_json>> told;
+  log.tell([&](std::optional<Stamp> stamp, const nlohmann::ordered_json& content) {
+    told.emplace_back(stamp, content);
+  });
+  log.add(kFirstStamp, "often", "one", {{"i", 1}});
+  log.warn(std::nullopt, "often", "two");
+  ASSERT_EQ(told.size(), 2U) << "also what is counted alone";
+  EXPECT_EQ(told[0].first, kFirstStamp);
+  EXPECT_EQ(told[0].second.dump(),
+            R"({"kind":"often","severity":"info","message":"one","fields":{"i":1}})");
+  EXPECT_FALSE(told[1].first);
+  EXPECT_EQ(told[1].second.at("severity"), "warning");
+}
+
 TEST(EventLog, AFullDiskIsAnError) {
   EventLog log;
   log.add(kFirstStamp, "x", "m");
