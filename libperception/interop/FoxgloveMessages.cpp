@@ -121,9 +121,12 @@ std::string wholeSceneUpdate(const Scene& scene, const std::vector<std::string>&
 
 std::string logMessage(Stamp stamp, bool warning, const std::string& name,
                        const std::string& message) {
-  return json{{"timestamp", time(stamp)}, {"level", warning ? kWarningLevel : kInfoLevel},
-              {"message", message},       {"name", name},
-              {"file", ""},               {"line", 0}}
+  return json{{"timestamp", time(stamp)},
+              {"level", warning ? kWarningLevel : kInfoLevel},
+              {"message", message},
+              {"name", name},
+              {"file", ""},
+              {"line", 0}}
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -30,8 +30,8 @@ class LogRun {
   /// Throws OutputError or Error for the folder.
   LogRun(const PipelineSetup& setup, LogRunFiles files, std::unique_ptr<ObservationInput> input);
 
-  /// Looks on from now on, also at the weather and, by EventLog::Listener, at events. Before read();
-  /// not owned; outlives read().
+  /// Looks on from now on, also at the weather and, by EventLog::Listener, at events. Before
+  /// read(); not owned; outlives read().
   void watch(PipelineObserver& observer, EventLog::Listener events);
   /// Processes the log to its end; `keep` is called with each scene.
   void read(const std::function<void(const Scene&)>& keep);
