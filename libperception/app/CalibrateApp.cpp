@@ -101,6 +101,8 @@ void CalibrateApp::declare(CLI::App& cli) {
                       "Whole angle ahead in which the truth is complete [deg]: one for all logs, "
                       "or one per log")
           ->check(CLI::Range(1.0, 360.0));
+      sub->add_flag("--model-only", model_only,
+                    "Learn the model without judging each log by the others: no tables");
       sub->add_option("--license", license, "License that is written into the model file")
           ->capture_default_str();
       sub->add_option("--date", date, "Date that is written into the model file");
@@ -287,7 +289,7 @@ StudyReport CalibrateApp::lidarClasses() {
     provenance.data.push_back(logs.back().name + (pass.simulated ? " (simulated)" : ""));
     provenance.simulated_only = provenance.simulated_only && pass.simulated;
   }
-  return clusterStudy(samples, logs, provenance, seed);
+  return clusterStudy(samples, logs, provenance, seed, model_only);
 }
 
 std::unique_ptr<App> calibrateApp() { return std::make_unique<CalibrateApp>(); }

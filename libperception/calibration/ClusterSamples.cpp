@@ -131,7 +131,10 @@ void ClusterSampler::onFrame(const SensorFrame& frame) {
       for (std::size_t i = 0; i < varied.source.size(); ++i)
         changed->push_back(varied.moved[i] ? kPostLabel : (*labels)[varied.source[i]]);
     }
+    const std::size_t first = samples_.clusters.size();
     addScan(varied.frame, variant, changed, truth);
+    if (variant == ScanVariant::kHidden)
+      forgetScreens(front_end_.detect(varied.frame), varied.moved, first);
   }
 }
 
@@ -165,6 +168,19 @@ void ClusterSampler::addScan(const SensorFrame& frame, ScanVariant variant,
     addByBoxes(frame, found, *instant, first);
   }
   if (variant == ScanVariant::kRecorded) nameThings(frame, first);
+}
+
+/// The posts and walls of a variant hide what is behind them; they do not teach what things look
+/// like.
+void ClusterSampler::forgetScreens(const LidarDetections& found, const std::vector<bool>& moved,
+                                   std::size_t first) {
+  for (std::size_t c = 0; c < points_.size(); ++c) {
+    const auto on_screens = std::count_if(
+        points_[c].begin(), points_[c].end(),
+        [&](std::uint32_t i) { return moved[found.points.source[found.obstacles[i]]]; });
+    if (static_cast<double>(on_screens) > rules_.hardly * static_cast<double>(points_[c].size()))
+      samples_.clusters[first + c].kind.reset();
+  }
 }
 
 /// Things within half a meter of one of the frame before are that one.

@@ -81,6 +81,8 @@ class ClusterSampler final : public PipelineObserver {
                const GroundTruth::Instant* instant);
   void addByBoxes(const SensorFrame& frame, const LidarDetections& found,
                   const GroundTruth::Instant& instant, std::size_t first);
+  void forgetScreens(const LidarDetections& found, const std::vector<bool>& moved,
+                     std::size_t first);
   void addByLabels(const LidarDetections& found, const std::vector<std::uint16_t>& labels,
                    std::size_t first);
 

@@ -148,7 +148,7 @@ void requireThreeLogs(const ClusterSamples& samples, std::size_t logs) {
 }  // namespace
 
 StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
-                         const Provenance& provenance, std::uint64_t seed) {
+                         const Provenance& provenance, std::uint64_t seed, bool model_only) {
   requireThreeLogs(samples, logs.size());
   ClusterTrainer trainer(samples, logs, seed);
   StudyReport report;
@@ -177,7 +177,7 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
                          {}};
   std::vector<Shares> all(samples.clusters.size());
   for (std::size_t log = 0; log < logs.size(); ++log) {
-    if (!provenance.simulated_only && logs[log].simulated) continue;
+    if (model_only || (!provenance.simulated_only && logs[log].simulated)) continue;
     const ClusterClassifier blind = trainer.classifier(log, provenance);
     for (const std::size_t i : trainer.of(log))
       all[i] = sharesOf(blind, samples.clusters[i].descriptor);
@@ -208,9 +208,11 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
                   memory.lasting, memory.kept, memory.bearing, memory.log_range, memory.time));
   report.remarks.push_back(
       "`lidar_classes.json` is the model for `[sensor.LABEL.classifier] file`.");
-  report.tables = {std::move(left_out), std::move(boxes)};
-  report.plots.push_back(reliabilityPlot(reliability));
-  report.tables.push_back(std::move(reliability));
+  if (!model_only) {
+    report.tables = {std::move(left_out), std::move(boxes)};
+    report.plots.push_back(reliabilityPlot(reliability));
+    report.tables.push_back(std::move(reliability));
+  }
   report.files.emplace_back("lidar_classes.json", final.write());
   return report;
 }

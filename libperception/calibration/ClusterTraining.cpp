@@ -69,7 +69,10 @@ BoostedTrees ClusterTrainer::train(std::size_t without, std::size_t without_too)
       if (recorded[k].empty()) continue;
       const double say = std::min(kMostOfLog, static_cast<double>(recorded[k].size())) *
                          (logs_[log].simulated && recorded_ ? kSimulatedShare : 1);
-      const double share = varied[k].empty() ? 0 : kVariedShare;
+      // Spray and snow hang in space as no surface does, on any sensor: posts in front and noise
+      // would only blur that.
+      const bool phantom = k == static_cast<std::size_t>(ClusterKind::kPhantom);
+      const double share = varied[k].empty() || phantom ? 0 : kVariedShare;
       addPart(recorded[k], k, (1 - share) * say);
       if (share > 0) addPart(varied[k], k, share * say);
       sum[k] += say;
