@@ -15,7 +15,6 @@
 #include "libperception/importers/BagTypes.h"
 #include "libperception/importers/ImportGps.h"
 #include "libperception/importers/Importer.h"
-#include "libperception/importers/TopicChecks.h"
 #include "libperception/interop/RosSensors.h"
 #include "libperception/sensors/Conversions.h"
 
@@ -94,8 +93,6 @@ class BagImport {
   std::map<std::string, std::unique_ptr<BagPackets>> packets_;  ///< by topic
   std::set<std::string> unplaced_;  ///< frames without a place on the vehicle
   std::map<std::string, std::pair<std::uint64_t, std::string>> bad_;
-  std::map<std::string, std::uint64_t> unstamped_;  ///< messages without a time of their own
-  TopicChecks checks_;
 };
 
 void BagImport::readParams() {
@@ -241,14 +238,10 @@ std::optional<CameraModel> BagImport::cameraBeside(const std::string& topic) con
   return {};
 }
 
-/// Without the slash that old recordings begin it with.
-std::string frameIdOf(const ros::Header& header) {
-  return header.frame_id.substr(!header.frame_id.empty() && header.frame_id[0] == '/' ? 1 : 0);
-}
-
 Pose3 BagImport::mounting(const ros::Header& header, const BagTopicParams& params) {
   if (!params.pose.empty()) return poseOfNumbers(params.pose);
-  const std::string frame = frameIdOf(header);
+  const std::string frame =
+      header.frame_id.substr(!header.frame_id.empty() && header.frame_id[0] == '/' ? 1 : 0);
   if (frame == base_) return T_ego_base_;
   if (const auto T = contents_.tree.at(base_, frame, header.stamp)) return T_ego_base_ * *T;
   unplaced_.insert(frame);
@@ -290,10 +283,7 @@ void BagImport::takeSensor(const BagMessage& message, const BagTopicParams& para
   }
   SensorFrame frame;
   ros::Header header = type.measure(message, params, frame);
-  if (header.stamp.ns <= 0) {
-    header.stamp = message.stamp;
-    ++unstamped_[message.topic->name];
-  }
+  if (header.stamp.ns <= 0) header.stamp = message.stamp;
   if (auto* const image = std::get_if<CameraImage>(&frame.data)) {
     const CameraModel own = image->camera;
     image->camera = cameraBeside(message.topic->name).value_or(own);
@@ -319,8 +309,7 @@ void BagImport::takeFrame(const std::string& topic, const ros::Header& header,
   frame.sensor = params.label;
   frame.stamp = header.stamp;
   frame.T_ego_sensor = mounting(header, params);
-  if (!checks_.take(topic, frameIdOf(header), frame)) return;
-  if (topic == frames_topic_ && checks_.isFirstReference(topic, frameIdOf(header))) {
+  if (topic == frames_topic_) {
     ++frame_;
     if (log_.wants(frame_))
       sorted(frame.stamp, [this, s = frame.stamp, n = frame_] { log_.frame(s, n); });
@@ -399,10 +388,6 @@ void BagImport::run() {
   tellPoses();
   for (const std::string& topic : unreadTopics(contents_)) log_.note(topic);
   for (const std::string& fault : contents_.faults) log_.warn(fault);
-  for (const auto& [topic, count] : unstamped_)
-    log_.note(fmt::format("{}: {} messages without a stamp: they have the time of the recording",
-                          topic, count));
-  for (const std::string& warning : checks_.warnings()) log_.warn(warning);
   for (const auto& [topic, fault] : bad_)
     log_.warn(fmt::format("{}: {} unreadable messages left out, the first: {}", topic, fault.first,
                           fault.second));

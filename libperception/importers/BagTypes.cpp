@@ -78,15 +78,13 @@ void noteText(const BagMessage& m, BagContents& contents) {
 }
 
 ros::Header measurePoints(const BagMessage& m, const BagTopicParams& params, SensorFrame& frame) {
-  auto cloud = messageIn<ros::PointCloud2>(m);
-  const ros::Header given = cloud.header;
-  if (given.stamp.ns <= 0) cloud.header.stamp = m.stamp;  // to which absolute times refer
+  const auto cloud = messageIn<ros::PointCloud2>(m);
   using Kind = BagTopicParams::Kind;
   if (params.kind == Kind::kRadar || (params.kind == Kind::kAuto && ros::isOfRadar(cloud)))
     frame.data = ros::returnsOf(cloud, params.rate_scale);
   else
     frame.data = ros::cloudOf(cloud, params.intensity_max);
-  return given;
+  return cloud.header;
 }
 
 ros::Header measureLivox(const BagMessage& m, const BagTopicParams& params, SensorFrame& frame) {
