@@ -124,6 +124,8 @@ void EvaluateApp::declareFigures(CLI::App& cli) {
   cli.add_option(
       "--sensors", params.sensors,
       "sensor set of the run for denominator B, as C+L+R; default: the sensors that hit an object");
+  cli.add_flag("--nuscenes", nuscenes,
+               "AMOTA and AMOTP by the definition of nuScenes' tracking benchmark, by class");
   cli.add_option("--reference", reference,
                  "run whose number of objects the others are compared with")
       ->type_name("DIR");
@@ -150,6 +152,7 @@ std::string EvaluateApp::command() const {
   if (!params.sensors.empty()) text += " --sensors " + params.sensors;
   if (params.min_existence > 0) text += fmt::format(" --min-existence {:g}", params.min_existence);
   if (surroundings) text += " --surroundings";
+  if (nuscenes) text += " --nuscenes";
   for (const std::string& pattern : front_ends) text += " --front-end " + pattern;
   if (!paper.empty()) text += fmt::format(" --paper {}", fmt::join(paper, ","));
   if (!reference.empty()) text += " --reference " + reference;
@@ -200,6 +203,7 @@ EvaluatedRun EvaluateApp::evaluateEntry(const RunEntry& entry, const std::string
                     "differ",
                     truth_poses, entry.dir));
   EvaluatedRun evaluated{name, entry.dir, evaluate(run, known, params)};
+  if (nuscenes) evaluated.benchmark = trackingBenchmark(run, known, params.alignment);
   if (!reference.empty())
     evaluated.count_difference = countDifference(run, readTrackedRun(reference));
   if (const std::string file = entry.dir + "/done.json"; fs::exists(file)) {
@@ -321,7 +325,8 @@ void EvaluateApp::run() {
     warn(fmt::format("--paper {}: no run is of that weather: its rows are left out", table));
   writeReports();
   std::string text = summaryText(out_report);
-  if (verbosity > 0 || !paper.empty() || !front_ends.empty()) text += "\n" + textReport(out_report);
+  if (verbosity > 0 || !paper.empty() || !front_ends.empty() || nuscenes)
+    text += "\n" + textReport(out_report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   for (const std::string& dir : out_folders) say(1, "written: " + dir);
 }

@@ -26,6 +26,7 @@ class EvaluateApp : public App {
   bool any_truth = false;      ///< --any-truth: also of another log, or where no scene has one
   bool surroundings = false;   ///< --surroundings: the truth includes poles and hedges
   std::size_t max_plots = 40;  ///< --max-plots: most truth objects with their own plot, per run
+  bool nuscenes = false;       ///< --nuscenes: AMOTA and AMOTP of its tracking benchmark
   bool plots = true;           ///< --no-plots clears it
   bool without_truth = false;  ///< --without-truth: judgeQuality() in place of an evaluation
 

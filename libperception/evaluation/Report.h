@@ -7,6 +7,7 @@
 #include "libperception/evaluation/FrontEndEvaluation.h"
 #include "libperception/evaluation/Metrics.h"
 #include "libperception/evaluation/PaperTables.h"
+#include "libperception/evaluation/TrackingBenchmark.h"
 
 namespace perception {
 
@@ -17,6 +18,7 @@ struct EvaluatedRun {
   Evaluation evaluation;
   std::optional<CountDifference> count_difference = {};  ///< against EvaluationReport::reference
   std::vector<FrontEndEvaluation> front_ends = {};       ///< in the order of --front-end
+  std::vector<BenchmarkFigures> benchmark = {};          ///< with --nuscenes, by class
   std::vector<EvaluatedRun> trials = {};  ///< the pooled runs; empty for a single run
   /// Of a simulated log ("" in clear air); unknown of recordings and of pooled runs.
   std::optional<std::string> weather = {};

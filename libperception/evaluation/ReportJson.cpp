@@ -62,6 +62,12 @@ Json json(const FalseObjectFigures& f) {
           {"classified_outputs", count(f.counts.classified_named)}};
 }
 
+Json json(const BenchmarkFigures& f) {
+  return {{"class", f.name},       {"truth", f.truth},   {"amota", f.amota},
+          {"amotp_m", f.amotp},    {"recall", f.recall}, {"switches", f.switches},
+          {"false", f.false_boxes}};
+}
+
 Json json(const SetFigures& f) {
   return {{"gospa_mean_m", json(f.gospa_mean)},
           {"gospa_rms_m", json(f.gospa_rms)},
@@ -284,6 +290,10 @@ std::string jsonReport(const EvaluationReport& report) {
                             {"instants", run.count_difference->instants}};
     }
     entry["existence_reliability"] = json(existenceReliability(e));
+    if (!run.benchmark.empty()) {
+      Json& benchmark = entry["nuscenes_tracking"] = Json::array();
+      for (const BenchmarkFigures& f : run.benchmark) benchmark.push_back(json(f));
+    }
     if (!run.front_ends.empty()) {
       Json& front_ends = entry["front_ends"] = Json::array();
       for (const FrontEndEvaluation& f : run.front_ends) front_ends.push_back(json(f));
