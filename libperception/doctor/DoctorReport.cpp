@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "libperception/doctor/DoctorPicture.h"
 #include "libperception/doctor/SiteIni.h"
+#include "libperception/measurement/ScanTimes.h"
 
 namespace perception {
 namespace {
@@ -18,6 +21,11 @@ using Weight = Finding::Weight;
 constexpr double kGapPeriods = 3;
 /// [Hz] Slower, objects move by more than their size from frame to frame.
 constexpr double kSlow = 2;
+
+/// [s] A frame that is written this late is late; more is a clock that was set back.
+constexpr double kLateFrame = 0.3;
+/// [s] between the times of two sensors that are not of one drive.
+constexpr double kApart = 1;
 
 const char* wordOf(Weight weight) {
   return weight == Weight::kFine ? "ok" : weight == Weight::kNote ? "note" : "FAULT";
@@ -41,6 +49,50 @@ void addTiming(Findings& out, const std::string& label, const SensorFacts& facts
   if (gap * rate > kGapPeriods)
     out.add(Weight::kNote, label,
             fmt::format("longest gap {:.2f} s, {:.0f} periods", gap, gap * rate));
+}
+
+/// Stamps that do not go on, and times of returns that are not of their scan.
+void addOrder(Findings& out, const std::string& label, const SensorFacts& facts) {
+  if (facts.backward > 0)
+    out.add(
+        facts.farthest_back > kLateFrame ? Weight::kFault : Weight::kNote, label,
+        fmt::format("time goes back: {} of {} frames are older than one before, by up to {:.3f} s",
+                    facts.backward, facts.frames, facts.farthest_back));
+  if (facts.timeless > 0)
+    out.add(Weight::kFault, label,
+            fmt::format("returns lie more than {:g} s outside of {} of {} scans: other units or "
+                        "another clock; perception-import leaves such times out",
+                        kLongestScan, facts.timeless, facts.frames));
+}
+
+/// The sensor whose stamps are of another time than those of all others.
+void addClocks(Findings& out, const LogSurvey& survey) {
+  struct Span {
+    std::string label;
+    Stamp first, last;
+  };
+  std::vector<Span> spans;
+  for (const auto& [label, facts] : survey.sensors()) {
+    if (facts.stamps.empty()) continue;
+    const auto [first, last] = std::minmax_element(facts.stamps.begin(), facts.stamps.end());
+    spans.push_back({label, *first, *last});
+  }
+  for (const auto& [label, poses] : survey.poses()) {
+    if (!poses.empty()) spans.push_back({label, poses.front().stamp, poses.back().stamp});
+  }
+  for (const Span& span : spans) {
+    std::optional<double> apart;
+    for (const Span& other : spans) {
+      if (&other == &span) continue;
+      const double gap = std::max(span.first - other.last, other.first - span.last);
+      apart = std::min(apart.value_or(gap), gap);
+    }
+    if (apart && *apart > kApart)
+      out.add(Weight::kFault, span.label,
+              fmt::format("its stamps lie {:.3f} s apart from those of everything else: do the "
+                          "clocks differ?",
+                          *apart));
+  }
 }
 
 void addValues(Findings& out, const std::string& label, const SensorFacts& facts) {
@@ -273,6 +325,7 @@ std::vector<Finding> findingsOf(const LogSurvey& survey) {
     if (label.empty() || label.find('.') != std::string::npos)
       out.add(Weight::kFault, about, "a label without a dot is needed for its section of the INI");
     addTiming(out, about, facts);
+    addOrder(out, about, facts);
     addValues(out, about, facts);
     if (facts.frames == 0) continue;
     if (facts.kind == "lidar") addLidar(out, about, facts);
@@ -281,6 +334,7 @@ std::vector<Finding> findingsOf(const LogSurvey& survey) {
       addMotion(out, survey, about, facts);
     if (facts.kind == "boxes" || facts.kind == "positions") addNames(out, about, facts);
   }
+  addClocks(out, survey);
   addPoses(out, survey);
   addGnss(out, survey);
   addMissing(out, survey);

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "libperception/doctor/MotionFit.h"
+#include "libperception/measurement/ScanTimes.h"
 #include "libperception/sensors/Conversions.h"
 
 namespace perception {
@@ -42,6 +43,14 @@ void extend(SensorFacts& facts, double value) {
   if (!std::isfinite(value)) return;
   facts.low = std::min(facts.low.value_or(value), value);
   facts.high = std::max(facts.high.value_or(value), value);
+}
+
+void addStamp(SensorFacts& facts, Stamp stamp) {
+  const double back = facts.newest ? *facts.newest - stamp : 0;
+  facts.backward += back > 0;
+  facts.farthest_back = std::max(facts.farthest_back, back);
+  if (!facts.newest || stamp > *facts.newest) facts.newest = stamp;
+  facts.stamps.push_back(stamp);
 }
 
 void addReturn(SensorFacts& facts, double range, double bearing) {
@@ -169,11 +178,12 @@ void LogSurvey::lookAt(SensorFacts& facts, const SensorFrame& frame) {
   if (facts.frames == 0) facts.T_ego_sensor = frame.T_ego_sensor;
   facts.pose_varies = facts.pose_varies || !facts.T_ego_sensor.isApprox(frame.T_ego_sensor, 1e-3);
   ++facts.frames;
-  facts.stamps.push_back(frame.stamp);
+  addStamp(facts, frame.stamp);
   if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
     facts.kind = "lidar";
     if (!facts.inputs && cloud->size() > 0) facts.inputs = LidarInputs::of(*cloud);
     addCloud(facts, *cloud);
+    facts.timeless += timesOutsideOf(*cloud);
     const GroundPlane plane = GroundEstimator(searchEverywhere()).update(frame);
     if (plane.measured) facts.planes.push_back(plane);
     if (!facts.planar) follow(facts, frame);

@@ -1,6 +1,7 @@
 #include "libperception/importers/BagContents.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <sstream>
@@ -27,6 +28,133 @@ std::string fieldsOf(const std::string& definition) {
   }
   constexpr std::size_t kMost = 400;
   return fields.size() > kMost ? fields.substr(0, kMost) + " ..." : fields;
+}
+
+bool hasHeader(const BagTopic& topic) {
+  const BagType* const type = bagType(topic.type);
+  return type != nullptr && type->has_header && topic.unknown_encoding.empty();
+}
+
+/// Name of a frame's clock.
+std::string transformsOf(const std::string& child) { return "transforms of \"" + child + "\""; }
+
+/// What the headers of one topic's messages say.
+struct TopicTimes {
+  std::vector<MessageTimes> times;
+  std::vector<std::size_t> frames;  ///< of each: numbers in BagContents::frames
+};
+
+void addHeader(const BagMessage& message, BagContents& contents, TopicTimes& topic) {
+  topic.times.push_back({{}, message.stamp});
+  topic.frames.push_back(0);
+  const auto header = headerOf(message);
+  if (!header) return;
+  if (header->stamp.ns > 0) topic.times.back().measured = header->stamp;
+  auto& frames = contents.frames[message.topic->name];
+  const std::string name = frameName(header->frame_id);
+  const auto at = std::find(frames.begin(), frames.end(), name);
+  topic.frames.back() = static_cast<std::size_t>(at - frames.begin());
+  if (at == frames.end()) frames.push_back(name);
+}
+
+/// The messages of each frame have their own order.
+MessageClock clockOfTopic(const TopicTimes& topic) {
+  MessageClock all;
+  all.used.assign(topic.times.size(), true);
+  const std::size_t most = *std::max_element(topic.frames.begin(), topic.frames.end());
+  for (std::size_t frame = 0; frame <= most; ++frame) {
+    std::vector<MessageTimes> times;
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < topic.times.size(); ++i) {
+      if (topic.frames[i] == frame) times.push_back(topic.times[i]), numbers.push_back(i);
+    }
+    const MessageClock clock = clockOf(times);
+    for (std::size_t i = 0; i < numbers.size(); ++i) all.used[numbers[i]] = clock.used[i];
+    all.left_out += clock.left_out, all.unstamped += clock.unstamped;
+    all.farthest = std::max(all.farthest, clock.farthest);
+    if (frame == 0) all.lead = clock.lead;
+  }
+  return all;
+}
+
+/// The clocks of all that has stamps.
+void findClocks(const std::map<std::string, TopicTimes>& topics, BagContents& contents) {
+  for (const auto& [name, topic] : topics) {
+    MessageClock clock = clockOfTopic(topic);
+    // Boxes may come late because finding them took long.
+    const BagType* const type = bagType(contents.topics.at(name).topic.type);
+    if (type != nullptr && type->role == BagType::Role::kBoxes) clock.lead.reset();
+    contents.clocks[name] = clock;
+  }
+  for (const auto& [child, transforms] : contents.transforms) {
+    std::vector<MessageTimes> times;
+    for (const auto& t : transforms) {
+      if (!t.fixed) times.push_back(t.times);
+    }
+    if (!times.empty()) contents.clocks[transformsOf(child)] = clockOf(times);
+  }
+  alignClocks(contents.clocks);
+}
+
+/// The frames' poses, those left out that their clock does not use.
+void plantTree(BagContents& contents) {
+  for (auto& [child, transforms] : contents.transforms) {
+    const auto found = contents.clocks.find(transformsOf(child));
+    const MessageClock clock = found == contents.clocks.end() ? MessageClock() : found->second;
+    std::size_t moving = 0;
+    for (const auto& t : transforms) {
+      if (!t.fixed && !clock.uses(moving++)) continue;
+      contents.tree.add(t.parent, child, *t.times.measured + (t.fixed ? 0 : clock.shift),
+                        t.T_parent_child, t.fixed);
+    }
+    transforms = {};  // a drive of hours has millions
+  }
+  contents.transforms.clear();
+}
+
+/// The same for poses on topics; those in another frame of reference than the first are left out.
+void cleanPoses(const std::map<std::string, TopicTimes>& topics, BagContents& contents) {
+  for (auto& [name, poses] : contents.poses) {
+    const auto topic = topics.find(name);
+    const MessageClock clock = contents.clocks[name];
+    std::vector<StampedPose> used;
+    std::size_t elsewhere = 0;
+    for (std::size_t i = 0; i < poses.poses.size(); ++i) {
+      const StampedPose& pose = poses.poses[i];
+      if (topic == topics.end()) {
+        used.push_back(pose);
+        continue;
+      }
+      const std::size_t message = poses.messages[i];
+      if (topic->second.frames[message] > 0) ++elsewhere;
+      if (topic->second.frames[message] == 0 && clock.uses(message))
+        used.push_back({pose.stamp + clock.shift, pose.pose});
+    }
+    if (elsewhere > 0)
+      contents.faults.push_back(
+          fmt::format("{}: {} poses are in another frame than \"{}\": left out", name, elsewhere,
+                      contents.frames[name].front()));
+    poses.poses = std::move(used);
+    std::stable_sort(poses.poses.begin(), poses.poses.end(),
+                     [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
+  }
+}
+
+/// What the stamps and frames of the messages say that a user should know.
+void tellClocks(BagContents& contents) {
+  for (const auto& [source, clock] : contents.clocks) {
+    for (const std::string& fault : faultsOf(source, clock)) contents.faults.push_back(fault);
+    if (clock.unstamped > 0)
+      contents.remarks.push_back(
+          fmt::format("{}: {} of {} messages have no stamp: the time of recording is taken", source,
+                      clock.unstamped, clock.used.size()));
+  }
+  for (const auto& [topic, frames] : contents.frames) {
+    if (frames.size() > 1 && contents.poses.count(topic) == 0)
+      contents.remarks.push_back(
+          fmt::format("{}: messages in {} frames ({}): taken as a sensor each", topic,
+                      frames.size(), fmt::join(frames, ", ")));
+  }
 }
 
 }  // namespace
@@ -61,6 +189,7 @@ BagContents readContents(const std::string& path) {
   std::uint64_t messages = 0;
   BagContents contents;
   std::map<std::string, std::pair<std::uint64_t, std::string>> bad;  // by topic: messages, first
+  std::map<std::string, TopicTimes> times;
   for (const std::string& file : bagFiles(path)) {
     const auto bag = openBag(file);
     BagMessage message;
@@ -70,6 +199,7 @@ BagContents readContents(const std::string& path) {
       row.first = std::min(row.first, message.stamp);
       row.last = std::max(row.last, message.stamp);
       try {
+        if (hasHeader(*message.topic)) addHeader(message, contents, times[message.topic->name]);
         const BagType* const type = bagType(message.topic->type);
         if (type != nullptr && type->note != nullptr && message.topic->unknown_encoding.empty())
           type->note(message, contents);
@@ -87,10 +217,16 @@ BagContents readContents(const std::string& path) {
   for (const auto& [topic, fault] : bad)
     contents.faults.push_back(fmt::format("{}: {} unreadable messages left out, the first: {}",
                                           topic, fault.first, fault.second));
-  for (auto& [topic, poses] : contents.poses)
-    std::stable_sort(poses.poses.begin(), poses.poses.end(),
-                     [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
+  findClocks(times, contents);
+  plantTree(contents);
+  cleanPoses(times, contents);
+  tellClocks(contents);
   return contents;
+}
+
+std::optional<ros::Header> headerOf(const BagMessage& message) {
+  if (!hasHeader(*message.topic)) return {};
+  return ros::decoded<ros::Header>(message.bytes, message.topic->encoding);
 }
 
 std::string useOfType(const std::string& type) {

@@ -7,6 +7,7 @@
 
 #include "libperception/config/Config.h"
 #include "libperception/importers/ImportText.h"
+#include "libperception/importers/MessageTimes.h"
 #include "libperception/interop/ReadingBag.h"
 #include "libperception/interop/RosMessages.h"
 #include "libperception/interop/TransformTree.h"
@@ -45,21 +46,35 @@ struct BagContents {
     std::uint64_t messages = 0;
     Stamp first, last;  ///< of recording
   };
+  /// One of the poses of a frame in its parent.
+  struct Transform {
+    std::string parent;
+    MessageTimes times;
+    Pose3 T_parent_child = Pose3::Identity();
+    bool fixed = false;
+  };
   /// Poses of one topic.
   struct Poses {
     std::string frame;     ///< whose poses they are; empty: not said
     bool on_call = false;  ///< maybe a plan: taken where the INI says so
     std::vector<StampedPose> poses;
+    std::vector<std::size_t> messages;  ///< of each pose: its number within the topic
   };
 
   std::map<std::string, Row> topics;
   TransformTree tree;
+  std::map<std::string, std::vector<Transform>> transforms;  ///< by child, while it is read
+  /// By topic; of transforms by "transforms of CHILD".
+  std::map<std::string, MessageClock> clocks;
   std::map<std::string, Poses> poses;              ///< by topic
   std::map<std::string, ros::CameraInfo> cameras;  ///< first message by topic
   std::map<std::string, std::string> metadata;     ///< of devices, by topic
   std::set<std::string> lidar_packets;             ///< Ouster's topics that are not of the
                                                    ///< inertial unit alone
-  std::vector<std::string> faults;                 ///< damage, messages that cannot be read
+  /// Of messages with a header, by topic: the frames of reference, in order of their appearance.
+  std::map<std::string, std::vector<std::string>> frames;
+  std::vector<std::string> faults;   ///< damage, messages that cannot be read or used
+  std::vector<std::string> remarks;  ///< what a user should know, and is no damage
 };
 
 /// Reads all messages of a file or folder once.
@@ -72,6 +87,10 @@ std::string listOf(const BagContents& contents);
 /// A line for each topic that the import does not read: messages, type and, where its definition
 /// travels with the recording, fields.
 std::vector<std::string> unreadTopics(const BagContents& contents);
+
+/// The header that messages of a type begin with; empty: they have none, or are not read. Throws
+/// std::runtime_error.
+std::optional<ros::Header> headerOf(const BagMessage& message);
 
 /// What the import makes of messages of a type; empty: nothing.
 std::string useOfType(const std::string& type);

@@ -41,7 +41,7 @@ bool isOuster(const BagTopic& topic) {
 std::string labelOf(const std::string& topic) {
   std::string label = topic.substr(
       topic.find_first_not_of('/') == std::string::npos ? 0 : topic.find_first_not_of('/'));
-  std::replace(label.begin(), label.end(), '/', '_');
+  for (const char separator : {'/', '.'}) std::replace(label.begin(), label.end(), separator, '_');
   return label;
 }
 
@@ -68,6 +68,9 @@ class BagImport {
   std::shared_ptr<mrpt::obs::CObservation> imuObservation(const ros::Imu& imu,
                                                           const std::string& label);
   Pose3 mounting(const ros::Header& header, const BagTopicParams& params);
+  double shiftOf(const BagMessage& message) const;
+  bool isStray(const BagMessage& message);
+  std::string otherFrame(const std::string& topic, const ros::Header& header) const;
   std::optional<CameraModel> cameraBeside(const std::string& topic) const;
   void sorted(Stamp stamp, std::function<void()> write);
   void flush(std::optional<Stamp> until);
@@ -91,6 +94,7 @@ class BagImport {
   std::multimap<Stamp, std::function<void()>> queue_;
   std::optional<Stamp> last_;
   std::map<std::string, std::unique_ptr<BagPackets>> packets_;  ///< by topic
+  std::map<std::string, std::size_t> messages_;                 ///< by topic: how many came
   std::set<std::string> unplaced_;  ///< frames without a place on the vehicle
   std::map<std::string, std::pair<std::uint64_t, std::string>> bad_;
 };
@@ -240,8 +244,7 @@ std::optional<CameraModel> BagImport::cameraBeside(const std::string& topic) con
 
 Pose3 BagImport::mounting(const ros::Header& header, const BagTopicParams& params) {
   if (!params.pose.empty()) return poseOfNumbers(params.pose);
-  const std::string frame =
-      header.frame_id.substr(!header.frame_id.empty() && header.frame_id[0] == '/' ? 1 : 0);
+  const std::string frame = frameName(header.frame_id);
   if (frame == base_) return T_ego_base_;
   if (const auto T = contents_.tree.at(base_, frame, header.stamp)) return T_ego_base_ * *T;
   unplaced_.insert(frame);
@@ -276,14 +279,16 @@ void BagImport::takeSensor(const BagMessage& message, const BagTopicParams& para
     if (!packets)
       packets = std::make_unique<BagPackets>(
           type, params.label, metadataFor(message.topic->name),
-          [this, params, topic = message.topic->name](const auto& header, SensorFrame&& scan) {
+          [this, params, topic = message.topic->name, shift = shiftOf(message)](
+              ros::Header header, SensorFrame&& scan) {
+            header.stamp = header.stamp + shift;
             takeFrame(topic, header, params, std::move(scan));
           });
     return packets->add(message);
   }
   SensorFrame frame;
   ros::Header header = type.measure(message, params, frame);
-  if (header.stamp.ns <= 0) header.stamp = message.stamp;
+  header.stamp = header.stamp.ns <= 0 ? message.stamp : header.stamp + shiftOf(message);
   if (auto* const image = std::get_if<CameraImage>(&frame.data)) {
     const CameraModel own = image->camera;
     image->camera = cameraBeside(message.topic->name).value_or(own);
@@ -304,12 +309,34 @@ std::string BagImport::metadataFor(const std::string& topic) const {
   return best;
 }
 
+/// [s] to be added to a message's stamp.
+double BagImport::shiftOf(const BagMessage& message) const {
+  const auto clock = contents_.clocks.find(message.topic->name);
+  return clock == contents_.clocks.end() ? 0 : clock->second.shift;
+}
+
+/// Whether a message is of a time that its topic has left.
+bool BagImport::isStray(const BagMessage& message) {
+  const std::size_t number = messages_[message.topic->name]++;
+  const auto clock = contents_.clocks.find(message.topic->name);
+  return clock != contents_.clocks.end() && !clock->second.uses(number);
+}
+
+/// A frame of reference besides the first one of the topic; empty: it is the first.
+std::string BagImport::otherFrame(const std::string& topic, const ros::Header& header) const {
+  const auto frames = contents_.frames.find(topic);
+  const std::string name = frameName(header.frame_id);
+  const bool first = frames == contents_.frames.end() || frames->second.front() == name;
+  return first ? "" : name.empty() ? "without_frame" : name;
+}
+
 void BagImport::takeFrame(const std::string& topic, const ros::Header& header,
                           const BagTopicParams& params, SensorFrame&& frame) {
-  frame.sensor = params.label;
+  const std::string other = otherFrame(topic, header);
+  frame.sensor = other.empty() ? params.label : params.label + "_" + labelOf(other);
   frame.stamp = header.stamp;
   frame.T_ego_sensor = mounting(header, params);
-  if (topic == frames_topic_) {
+  if (topic == frames_topic_ && other.empty()) {
     ++frame_;
     if (log_.wants(frame_))
       sorted(frame.stamp, [this, s = frame.stamp, n = frame_] { log_.frame(s, n); });
@@ -320,6 +347,7 @@ void BagImport::takeFrame(const std::string& topic, const ros::Header& header,
 
 void BagImport::take(const BagMessage& message) {
   const std::string& type = message.topic->type;
+  if (isStray(message)) return;
   const auto given = topic_params_.find(message.topic->name);
   BagTopicParams params = given == topic_params_.end() ? BagTopicParams() : given->second;
   if (!params.use || !message.topic->unknown_encoding.empty()) return;
@@ -330,7 +358,8 @@ void BagImport::take(const BagMessage& message) {
   if (role != BagType::Role::kOther) return takeSensor(message, params);
   if (!log_.options().wants(std::max<std::int64_t>(frame_, 0))) return;
   if (type == "sensor_msgs/NavSatFix") {
-    const auto fix = ros::decoded<ros::NavSatFix>(message.bytes, message.topic->encoding);
+    auto fix = ros::decoded<ros::NavSatFix>(message.bytes, message.topic->encoding);
+    fix.header.stamp = fix.header.stamp + shiftOf(message);
     if (fix.status < 0 || !std::isfinite(fix.latitude + fix.longitude)) return;
     const double altitude = std::isfinite(fix.altitude) ? fix.altitude : 0;
     auto out =
@@ -338,7 +367,8 @@ void BagImport::take(const BagMessage& message) {
     out->setSensorPose(toMrpt(mounting(fix.header, params)));
     sorted(fix.header.stamp, [this, out] { log_.observation(*out); });
   } else if (type == "sensor_msgs/Imu") {
-    const auto imu = ros::decoded<ros::Imu>(message.bytes, message.topic->encoding);
+    auto imu = ros::decoded<ros::Imu>(message.bytes, message.topic->encoding);
+    imu.header.stamp = imu.header.stamp + shiftOf(message);
     auto out = imuObservation(imu, params.label);
     out->setSensorPose(toMrpt(mounting(imu.header, params)));
     sorted(imu.header.stamp, [this, out] { log_.observation(*out); });
@@ -387,6 +417,7 @@ void BagImport::run() {
   readSensors();
   tellPoses();
   for (const std::string& topic : unreadTopics(contents_)) log_.note(topic);
+  for (const std::string& remark : contents_.remarks) log_.note(remark);
   for (const std::string& fault : contents_.faults) log_.warn(fault);
   for (const auto& [topic, fault] : bad_)
     log_.warn(fmt::format("{}: {} unreadable messages left out, the first: {}", topic, fault.first,
@@ -414,6 +445,7 @@ class BagImporter final : public Importer {
     if (!list_) return false;
     const BagContents contents = readContents(path_);
     fmt::print("{}", listOf(contents));
+    for (const std::string& remark : contents.remarks) fmt::print("{}\n", remark);
     for (const std::string& fault : contents.faults) fmt::print("damaged: {}\n", fault);
     return true;
   }

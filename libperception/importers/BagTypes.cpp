@@ -9,6 +9,7 @@
 #include "libperception/interop/RosDevices.h"
 #include "libperception/interop/RosScene.h"
 #include "libperception/interop/RosSensors.h"
+#include "libperception/packets/CanBundle.h"
 
 namespace perception {
 namespace {
@@ -16,15 +17,18 @@ namespace {
 using ros::decoded;
 using Role = BagType::Role;
 
-// tf of ROS 1 wrote frames with a slash before.
-std::string frameName(const std::string& name) {
-  return !name.empty() && name[0] == '/' ? name.substr(1) : name;
-}
-
 void addPose(BagContents::Poses& to, const ros::Header& header, const ros::Pose& pose,
              const std::string& frame) {
   to.frame = frameName(frame);
   to.poses.push_back({header.stamp, poseOf(pose)});
+}
+
+/// That of a message: its place among those of the topic tells whether it is used.
+void addPoseOf(const BagMessage& m, BagContents& contents, const ros::Header& header,
+               const ros::Pose& pose, const std::string& frame) {
+  BagContents::Poses& to = contents.poses[m.topic->name];
+  addPose(to, header, pose, frame);
+  to.messages.push_back(contents.topics[m.topic->name].messages - 1);
 }
 
 template <class Message>
@@ -38,19 +42,19 @@ void noteTransforms(const BagMessage& m, BagContents& contents) {
   const bool fixed = topic.size() >= kFixed.size() &&
                      topic.compare(topic.size() - kFixed.size(), kFixed.size(), kFixed) == 0;
   for (const auto& t : messageIn<ros::TFMessage>(m).transforms)
-    contents.tree.add(frameName(t.header.frame_id), frameName(t.child_frame_id), t.header.stamp,
-                      poseOf(t.transform), fixed);
+    contents.transforms[frameName(t.child_frame_id)].push_back(
+        {frameName(t.header.frame_id), {t.header.stamp, m.stamp}, poseOf(t.transform), fixed});
 }
 
 void noteOdometry(const BagMessage& m, BagContents& contents) {
   const auto odometry = messageIn<ros::Odometry>(m);
-  addPose(contents.poses[m.topic->name], odometry.header, odometry.pose, odometry.child_frame_id);
+  addPoseOf(m, contents, odometry.header, odometry.pose, odometry.child_frame_id);
 }
 
 template <class Message>
 void notePose(const BagMessage& m, BagContents& contents) {
   const auto pose = messageIn<Message>(m);
-  addPose(contents.poses[m.topic->name], pose.header, pose.pose, "");
+  addPoseOf(m, contents, pose.header, pose.pose, "");
 }
 
 /// The last path is the whole one: programs send it again and again as it grows.
@@ -120,7 +124,8 @@ ros::Header measureImage(const BagMessage& m, const BagTopicParams&, SensorFrame
 
 ros::Header unpackVelodyne(const BagMessage& m, std::vector<BagPacket>& packets) {
   const auto scan = messageIn<ros::VelodyneScan>(m);
-  for (const auto& packet : scan.packets) packets.push_back({packet.data.bytes, packet.stamp});
+  for (const auto& packet : scan.packets)
+    packets.push_back({std::string(packet.data.bytes), packet.stamp});
   return scan.header;
 }
 
@@ -130,7 +135,7 @@ ros::Header unpackPandar(const BagMessage& m, std::vector<BagPacket>& packets) {
     if (packet.size > packet.data.bytes.size())
       throw std::runtime_error(fmt::format("a packet of {} bytes, expected at most {}", packet.size,
                                            packet.data.bytes.size()));
-    packets.push_back({packet.data.bytes.substr(0, packet.size), packet.stamp});
+    packets.push_back({std::string(packet.data.bytes.substr(0, packet.size)), packet.stamp});
   }
   return scan.header;
 }
@@ -147,8 +152,20 @@ void noteOuster(const BagMessage& m, BagContents& contents) {
 
 ros::Header unpackOuster(const BagMessage& m, std::vector<BagPacket>& packets) {
   const auto packet = messageIn<ros::OusterPacket>(m);
-  if (isOfLidar(packet)) packets.push_back({packet.bytes, m.stamp});
+  if (isOfLidar(packet)) packets.push_back({std::string(packet.bytes), m.stamp});
   return {m.stamp, "os_sensor"};
+}
+
+/// A frame of a CAN bus; remote and error frames have no data.
+ros::Header unpackCan(const BagMessage& m, std::vector<BagPacket>& packets) {
+  const auto frame = messageIn<ros::CanFrame>(m);
+  if (frame.length > frame.data.bytes.size())
+    throw std::runtime_error(fmt::format("a CAN frame of {} bytes, expected at most {}",
+                                         frame.length, frame.data.bytes.size()));
+  if (frame.is_rtr == 0 && frame.is_error == 0)
+    packets.push_back(
+        {canMessage(frame.id, frame.data.bytes.substr(0, frame.length)), frame.header.stamp});
+  return frame.header;
 }
 
 std::vector<BagType> makeTypes() {
@@ -180,6 +197,13 @@ std::vector<BagType> makeTypes() {
        nullptr,
        &unpackVelodyne,
        {"velodyne"}},
+      {"can_msgs/Frame",
+       "radar scans of a Delphi ESR, from its CAN frames",
+       Role::kRadar,
+       nullptr,
+       nullptr,
+       &unpackCan,
+       {"esr"}},
   };
   for (const char* name :
        {"livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg", "livox_interfaces/CustomMsg"})
@@ -202,6 +226,12 @@ std::vector<BagType> makeTypes() {
                      &noteOuster,
                      &unpackOuster,
                      {"ouster"}});
+  // Each of the transforms has its own; texts and Ouster's packets have none; a camera's is of no
+  // matter, nor that of a path, whose poses have theirs.
+  for (BagType& type : types) {
+    for (const auto note : {&noteTransforms, &noteText, &noteOuster, &noteCamera, &notePath})
+      if (type.note == note) type.has_header = false;
+  }
   return types;
 }
 
@@ -210,6 +240,10 @@ std::vector<BagType> makeTypes() {
 const std::vector<BagType>& bagTypes() {
   static const std::vector<BagType> types = makeTypes();
   return types;
+}
+
+std::string frameName(const std::string& name) {
+  return !name.empty() && name[0] == '/' ? name.substr(1) : name;
 }
 
 const BagType* bagType(const std::string& type) {

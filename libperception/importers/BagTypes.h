@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "libperception/importers/BagContents.h"
@@ -11,9 +10,9 @@
 
 namespace perception {
 
-/// A device's packet inside a message; valid as long as the message.
+/// A device's packet inside a message.
 struct BagPacket {
-  std::string_view bytes;
+  std::string bytes;
   Stamp stamp;  ///< of reception
 };
 
@@ -33,9 +32,13 @@ struct BagType {
   /// Raw packets, and the kinds of devices (deviceKinds()) that may have sent them.
   ros::Header (*unpack)(const BagMessage&, std::vector<BagPacket>&) = nullptr;
   std::vector<const char*> devices = {};
+  /// Messages begin with a std_msgs/Header, whose stamp and frame are those of the measurement.
+  bool has_header = true;
 };
 
 const std::vector<BagType>& bagTypes();
+/// tf of ROS 1 wrote frames with a slash before: "velodyne" for "/velodyne".
+std::string frameName(const std::string& name);
 /// Null for a type that is not read.
 const BagType* bagType(const std::string& type);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <map>
 
 namespace perception {
@@ -20,9 +21,17 @@ constexpr double kAsGood = 0.8;  // of the most information, that the least numb
 constexpr double kFarthestReturn = 1000;  // [m] of a coordinate
 constexpr double kLeastSpread = 0.2;  // [m] between the 5 % and the 95 % quantile of a coordinate
 constexpr double kMostRings = 256;
+constexpr double kOddWords = 0.05;  // share of the words of float64 that no float32 has
 constexpr double kRingTells = 0.8;  // share of the variance of the elevations
 constexpr double kRises =
     0.95;  // share of the steps of a time that rise, of those that do not stay
+
+/// A number that hardly any measurement has.
+bool isOdd(float value) {
+  constexpr float kMost = 1e10F, kLeast = 1e-10F;
+  return !std::isfinite(value) || std::abs(value) > kMost ||
+         (value != 0 && std::abs(value) < kLeast);
+}
 
 /// Bin of a number's sign and size, on a scale that is logarithmic beyond a tenth.
 std::size_t sizeBin(float value) {
@@ -149,6 +158,26 @@ std::optional<std::size_t> columnCountOf(const std::vector<float>& numbers) {
   if (most < kLeastInformation) return {};
   for (std::size_t columns = 3;; ++columns)
     if (told[columns] >= kAsGood * most) return columns;
+}
+
+bool looksLikeDoubles(const std::string& bytes) {
+  const std::size_t count = std::min(bytes.size() / sizeof(double), kMostNumbers);
+  std::vector<float> words(2 * count), numbers(count);
+  if (count == 0) return false;
+  std::memcpy(words.data(), bytes.data(), words.size() * sizeof(float));
+  const auto odd = std::count_if(words.begin(), words.end(), isOdd);
+  if (static_cast<double>(odd) < kOddWords * static_cast<double>(words.size())) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    double value = 0;
+    std::memcpy(&value, bytes.data() + i * sizeof(double), sizeof(double));
+    numbers[i] = static_cast<float>(value);
+  }
+  const auto columns = columnCountOf(numbers);
+  if (!columns) return false;
+  std::vector<Column> values(*columns);
+  for (std::size_t i = 0; i < count / *columns * *columns; ++i)
+    values[i % *columns].push_back(static_cast<double>(numbers[i]));
+  return layoutOf(values).has_value();
 }
 
 std::optional<CloudLayout> layoutOf(const std::vector<std::vector<double>>& values) {

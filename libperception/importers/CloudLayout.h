@@ -20,6 +20,10 @@ inline constexpr std::size_t kMostCloudColumns = 12;
 /// Empty: there are too few numbers (100 rows of four), or no number of columns says anything.
 std::optional<std::size_t> columnCountOf(const std::vector<float>& numbers);
 
+/// Whether bytes are float64, and not float32: half of the words of float64 make numbers of any
+/// size as float32, while float64 show columns with coordinates.
+bool looksLikeDoubles(const std::string& bytes);
+
 /// What the columns hold, by their values: x, y and z are the first three beside each other that
 /// can be coordinates [m]; a ring is a small whole number in which the elevations of the returns
 /// are alike; times rise; the first other column that is nowhere negative, nor the same everywhere,

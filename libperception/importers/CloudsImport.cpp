@@ -139,11 +139,12 @@ std::optional<Pose3> CloudsImporter::poseAt(std::size_t index) const {
 
 /// All scans have the format of the first ones.
 void CloudsImporter::findFormat(const std::vector<FrameFile>& files, ImportLog& log) {
-  if (!format_.columns.empty()) return;
+  const bool given = !format_.columns.empty();
   std::vector<std::string> paths;
   for (const FrameFile& file : files) paths.push_back(file.path);
   format_ = foundFormat(paths, format_);
-  if (format_.columns.empty()) return;  // the files name their columns
+  if (format_.doubles) log.note("the numbers look like float64 (double), and are read as such");
+  if (given || format_.columns.empty()) return;  // the files name their columns
   const std::string scale =
       format_.intensity_max > 1 ? fmt::format(", intensity up to {:g}", format_.intensity_max) : "";
   log.note(fmt::format("columns found from the data: {}{} (--columns says otherwise)",

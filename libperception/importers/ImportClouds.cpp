@@ -31,16 +31,17 @@ CloudFormat withLayout(CloudFormat format, const CloudLayout& layout) {
 constexpr const char* kSayColumns =
     "say them: --columns x,y,z,intensity, \"-\" for what is skipped";
 
-CloudTable binTable(const std::string& path, const std::string& bytes, std::size_t columns) {
+CloudTable binTable(const std::string& path, const std::string& bytes, std::size_t columns,
+                    bool doubles) {
   CloudTable table;
-  table.columns.assign(columns, {"-"});
+  table.columns.assign(columns, {"-", 'F', doubles ? sizeof(double) : sizeof(float)});
   const std::size_t row = table.rowBytes();
   if (row == 0 || bytes.size() % row != 0) {
     throw DataError(
-        fmt::format("{}: {} bytes, expected {} a point ({} float32): {} are left from "
+        fmt::format("{}: {} bytes, expected {} a point ({} {}): {} are left from "
                     "byte {} on",
-                    path, bytes.size(), row, columns, row == 0 ? 0 : bytes.size() % row,
-                    row == 0 ? 0 : bytes.size() / row * row));
+                    path, bytes.size(), row, columns, doubles ? "float64" : "float32",
+                    row == 0 ? 0 : bytes.size() % row, row == 0 ? 0 : bytes.size() / row * row));
   }
   table.resize(bytes.size() / row);
   readRows(bytes, false, table);
@@ -59,26 +60,40 @@ std::string firstNumbers(const std::vector<std::string>& paths) {
   return numbers;
 }
 
+/// Numbers of float32 or float64.
+std::vector<float> numbersIn(const std::string& bytes, bool doubles) {
+  const auto read = [&](auto zero) {
+    std::vector<decltype(zero)> numbers(bytes.size() / sizeof(zero));
+    std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(zero));
+    return std::vector<float>(numbers.begin(), numbers.end());
+  };
+  return doubles ? read(0.0) : read(0.0F);
+}
+
 /// A file that does not end with a row is refused where it is read.
-CloudFormat foundBinFormat(const std::vector<std::string>& paths, const CloudFormat& format) {
+CloudFormat foundBinFormat(const std::vector<std::string>& paths, const CloudFormat& given) {
+  CloudFormat format = given;
   std::string bytes = firstNumbers(paths);
-  std::vector<float> numbers(bytes.size() / sizeof(float));
-  std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  format.doubles = looksLikeDoubles(bytes);
+  if (!format.columns.empty()) return format;
+  const std::size_t size = format.doubles ? sizeof(double) : sizeof(float);
+  const char* const kind = format.doubles ? "float64" : "float32";
+  const std::vector<float> numbers = numbersIn(bytes, format.doubles);
   const auto columns = columnCountOf(numbers);
   if (!columns)
     throw DataError(fmt::format("{}: its {} numbers do not tell how many columns it has; {}",
                                 paths.front(), numbers.size(), kSayColumns));
-  bytes.resize(numbers.size() / *columns * *columns * sizeof(float));
-  const auto layout = layoutOf(binTable(paths.front(), bytes, *columns).values);
+  bytes.resize(numbers.size() / *columns * *columns * size);
+  const auto layout = layoutOf(binTable(paths.front(), bytes, *columns, format.doubles).values);
   if (!layout)
-    throw DataError(fmt::format("{}: none of its {} columns of float32 can be x, y and z [m]; {}",
-                                paths.front(), *columns, kSayColumns));
+    throw DataError(fmt::format("{}: none of its {} columns of {} can be x, y and z [m]; {}",
+                                paths.front(), *columns, kind, kSayColumns));
   return withLayout(format, *layout);
 }
 
 CloudTable readBin(const std::string& path, const std::string& bytes, const CloudFormat& given) {
   const CloudFormat format = given.columns.empty() ? foundBinFormat({path}, given) : given;
-  CloudTable table = binTable(path, bytes, format.columns.size());
+  CloudTable table = binTable(path, bytes, format.columns.size(), format.doubles);
   for (std::size_t c = 0; c < format.columns.size(); ++c) table.columns[c].name = format.columns[c];
   return table;
 }
@@ -214,8 +229,9 @@ bool isTable(const std::string& ending) {
 }  // namespace
 
 CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat& format) {
-  if (!format.columns.empty() || paths.empty()) return format;
+  if (paths.empty()) return format;
   const std::string ending = endingOf(paths.front());
+  if (!format.columns.empty() && ending != ".bin") return format;
   std::vector<std::string> alike;
   std::copy_if(paths.begin(), paths.end(), std::back_inserter(alike),
                [&](const std::string& path) { return endingOf(path) == ending; });

@@ -8,9 +8,11 @@ namespace perception {
 
 /// Format of a cloud file without header.
 struct CloudFormat {
-  /// Of .bin (float32 each) and of .csv without a header line: x, y, z, intensity, ring, time;
-  /// columns of other names are skipped. Empty: they are found from the data (CloudLayout).
+  /// Of .bin (float32 each, or `doubles`) and of .csv without a header line: x, y, z, intensity,
+  /// ring, time; columns of other names are skipped. Empty: they are found from the data
+  /// (CloudLayout).
   std::vector<std::string> columns{"x", "y", "z", "intensity"};
+  bool doubles = false;      ///< .bin of float64
   double intensity_max = 0;  ///< intensities are divided by it; 0: they are in [0, 1] already
   double time_scale = 1;     ///< [s] of the unit of the column time
   double max_range = 0;      ///< [m] of the instrument; 0: unknown
@@ -22,8 +24,8 @@ const std::vector<std::string>& cloudEndings();
 /// For files without names of their columns (.bin always; .csv, .txt, .xyz where the first line
 /// holds numbers): `format` with the columns that are found from their data, the first file's and
 /// as many more as hold 100 returns together, and the scale of the intensities where none is given;
-/// unchanged if it has columns or the files have names. Throws DataError if the data do not say
-/// what they are.
+/// the columns are unchanged if it has some or the files have names. .bin are found to be float32
+/// or float64. Throws DataError if the data do not say what they are.
 CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat& format);
 
 /// One scan: .bin (float32 columns), .pcd (PCL 0.7: ascii, binary, binary_compressed), .ply (ascii,

@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/core/Error.h"
+#include "libperception/measurement/ScanTimes.h"
 #include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/ImageFile.h"
@@ -80,6 +81,17 @@ void ImportLog::frame(Stamp stamp, std::int64_t number) {
 
 void ImportLog::sensor(const SensorFrame& frame) {
   if (doubles_.isDouble(frame)) return;
+  const auto* timed = std::get_if<LidarCloud>(&frame.data);
+  if (timed != nullptr && timesOutsideOf(*timed)) {
+    ++timeless_[frame.sensor];
+    SensorFrame timeless = frame;
+    std::get<LidarCloud>(timeless.data).time_offset.clear();
+    return writeSensor(timeless);
+  }
+  writeSensor(frame);
+}
+
+void ImportLog::writeSensor(const SensorFrame& frame) {
   if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
     ++result_.scans;
     result_.points += cloud->size();
@@ -218,6 +230,11 @@ ImportResult ImportLog::close() {
   for (const auto& [label, count] : doubles_.counts())
     note(fmt::format("{}: {} messages came twice, with the same stamp and content: left out", label,
                      count));
+  for (const auto& [label, count] : timeless_)
+    warn(
+        fmt::format("{}: returns lie more than {:g} s outside of {} of its scans: their times are "
+                    "not used",
+                    label, kLongestScan, count));
   log_.finish();
   if (has_truth_) {  // before the log has its name, so that a complete log has its truth
     std::vector<TruthObject> objects;

@@ -84,7 +84,7 @@ class ImportLog {
   /// applies.
   void ego(Stamp stamp, const Pose3& T_world_ego, const PoseUncertainty& uncertainty = {0, 0, 0});
   void frame(Stamp stamp, std::int64_t number);
-  /// Doubled messages are left out and counted.
+  /// Doubled messages are left out and counted. Of clouds with timesOutsideOf() the times are.
   void sensor(const SensorFrame& frame);
   void image(const ImportedImage& image, std::int64_t frame);
   /// Any other observation: GNSS, IMU, odometry.
@@ -111,6 +111,7 @@ class ImportLog {
 
  private:
   void write(const mrpt::obs::CObservation& observation);
+  void writeSensor(const SensorFrame& frame);
   std::string storedImage(const ImportedImage& image, std::int64_t frame);
   void setTruthVelocities();
   void warnOfMissing();
@@ -123,6 +124,7 @@ class ImportLog {
   bool has_truth_ = false;
   bool any_wanted_ = false;
   DoubledMessages doubles_;
+  std::map<std::string, std::int64_t> timeless_;  ///< by sensor: scans without their times
   std::optional<std::pair<std::int64_t, std::int64_t>>
       numbers_;  ///< least, greatest frame there is
   std::optional<Stamp> first_stamp_;

@@ -80,6 +80,19 @@ void fields(Wire& w, OusterPacket& m) {
   w(m.bytes);
 }
 
+/// can_msgs/Frame.
+struct CanFrame {
+  Header header;
+  std::uint32_t id = 0;
+  std::uint8_t is_rtr = 0, is_extended = 0, is_error = 0;
+  std::uint8_t length = 0;  ///< [bytes] of the data that are used
+  FixedBytes<8> data;
+};
+template <class Wire>
+void fields(Wire& w, CanFrame& m) {
+  w(m.header), w(m.id), w(m.is_rtr), w(m.is_extended), w(m.is_error), w(m.length), w(m.data);
+}
+
 /// std_msgs/String.
 struct Text {
   std::string text;

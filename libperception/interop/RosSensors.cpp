@@ -94,11 +94,12 @@ void check(const PointCloud2& m) {
                                          m.data.size(), all, m.height, m.width, m.point_step));
 }
 
-/// Seconds after the header's stamp of a value of the time field.
-double secondsOf(double value, const PointField& field, Stamp stamp) {
+/// Seconds after the header's stamp of a value of the time field; after the first point's where the
+/// header has none.
+double secondsOf(double value, const PointField& field, Stamp stamp, double first) {
   if (field.name == "t" || field.name == "offset_time") return value * 1e-9;
   if (field.name != "timestamp") return value;
-  return value - stamp.seconds();
+  return value - (stamp.ns > 0 ? stamp.seconds() : first);
 }
 
 void addPointFields(PointCloud2& m, std::initializer_list<const char*> names) {
@@ -148,11 +149,14 @@ LidarCloud cloudOf(const PointCloud2& message, double intensity_max) {
     cloud.ring.push_back(static_cast<std::uint16_t>(std::clamp(value, 0.0, 65535.0)));
   });
   if (const Column column(message, {"t", "offset_time", "time", "time_offset", "timestamp"});
-      column)
+      column) {
+    std::optional<double> first;
     column.forEach([&](double value) {
+      if (!first) first = value;
       cloud.time_offset.push_back(
-          static_cast<float>(secondsOf(value, column.field(), message.header.stamp)));
+          static_cast<float>(secondsOf(value, column.field(), message.header.stamp, *first)));
     });
+  }
   return cloud;
 }
 

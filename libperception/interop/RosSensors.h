@@ -11,7 +11,8 @@ namespace perception::ros {
 
 /// The cloud of a message, order and number of points kept, NaN points too. Needs the fields x, y,
 /// z; used are intensity (or i, reflectivity), ring (or channel, line) and a time: t, offset_time
-/// [ns] and time, time_offset [s] after the header's stamp; timestamp [s] since 1970. Intensities
+/// [ns] and time, time_offset [s] after the header's stamp; timestamp [s] since 1970 (after the
+/// first point's where the header has no stamp). Intensities
 /// are divided by `intensity_max`; 0: bytes by 255, others stay as they are. Throws
 /// std::runtime_error.
 LidarCloud cloudOf(const PointCloud2& message, double intensity_max = 0);
