@@ -10,6 +10,7 @@
 #include "libperception/config/ShippedFiles.h"
 #include "libperception/core/Supervision.h"
 #include "libperception/doctor/SiteIni.h"
+#include "libperception/importers/InputKind.h"
 #include "libperception/pipeline/Progress.h"
 #include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/RawlogReader.h"
@@ -39,14 +40,21 @@ SiteFiles siteFiles(const fs::path& ini) {
 
 void DoctorApp::declare(CLI::App& cli) {
   addInputOption(cli, true);
-  addOutputOption(cli, true);
+  addOutputOption(cli, false);
   cli.add_option("--ini", ini_folder, "Folder of classes.ini and models/ (the shipped ini/)");
   cli.add_flag("--strict", strict, "Damaged input is an error instead of a warning");
 }
 
 void DoctorApp::run() {
   registerPerceptionClasses();
-  if (inputs.size() != 1) throw Error(ExitCode::kUsage, "-i/--input: one rawlog");
+  if (inputs.size() != 1)
+    throw Error(ExitCode::kUsage, "-i/--input: one rawlog, or one recording of any kind");
+  out_kind = inputKind(inputs[0]);
+  if (out_kind) {
+    fmt::print("{}", textOf(*out_kind, inputs[0]));
+    return;
+  }
+  if (output.empty()) throw Error(ExitCode::kUsage, "-o/--output: expected a folder for the report");
   const SiteFiles files = siteFiles(iniFolder(ini_folder));
   RawlogReader reader(inputs[0]);
   LogSurvey survey(imagesBeside(inputs[0]));
