@@ -8,6 +8,10 @@ std::vector<ImporterRow>& importers() {
   static std::vector<ImporterRow> rows = {
       {"kitti", "one sequence of the KITTI tracking benchmark", kUsesRate | kUsesImages,
        &makeKittiImporter},
+      {"kitti-raw", "a drive of KITTI's raw data: scans, GPS/IMU, images, tracklets", kUsesImages,
+       &makeKittiRawImporter},
+      {"semantickitti", "a sequence of SemanticKITTI: scans, poses, a class per point", kUsesRate,
+       &makeSemanticKittiImporter},
       {"clouds", "a folder of point clouds (.bin .pcd .ply .csv), with stamps and poses", kUsesRate,
        &makeCloudsImporter},
       {"bag", "recordings of ROS 1 or 2: bags, MCAP files, sqlite files of rosbag2 (.db3)", kLists,

@@ -41,6 +41,8 @@ struct ImporterRow {
 std::vector<ImporterRow>& importers();
 
 std::unique_ptr<Importer> makeKittiImporter();
+std::unique_ptr<Importer> makeKittiRawImporter();
+std::unique_ptr<Importer> makeSemanticKittiImporter();
 std::unique_ptr<Importer> makeCloudsImporter();
 std::unique_ptr<Importer> makeWadsImporter();
 std::unique_ptr<Importer> makeSnowyKittiImporter();

@@ -29,21 +29,7 @@ constexpr ImageSize kImageSizes[] = {{721.5377, 1242, 375},   // 2011_09_26
                                      {718.8560, 1241, 376}};  // 2011_10_03
 
 void setCamera(const TextRow& row, const Matrix34& P2, KittiCalibration& calibration) {
-  CameraModel& c = calibration.camera;
-  c.fx = P2(0, 0);
-  c.fy = P2(1, 1);
-  c.cx = P2(0, 2);
-  c.cy = P2(1, 2);
-  if (!(c.fx > 0) || !(c.fy > 0) || P2(2, 2) != 1) row.failLine("P2 is not K [I | t] of a camera");
-  // P2 = K [I | t]: a point p of cam0 is p + t in cam2.
-  const double tz = P2(2, 3);
-  const Vector3 t((P2(0, 3) - c.cx * tz) / c.fx, (P2(1, 3) - c.cy * tz) / c.fy, tz);
-  calibration.T_cam0_cam2.translation() = -t;
-  const auto* best = std::min_element(
-      std::begin(kImageSizes), std::end(kImageSizes),
-      [&](const auto& a, const auto& b) { return std::abs(a.fx - c.fx) < std::abs(b.fx - c.fx); });
-  c.width = best->width;
-  c.height = best->height;
+  if (!setKittiCamera(P2, calibration)) row.failLine("P2 is not K [I | t] of a camera");
 }
 
 KittiBox boxFrom(const TextRow& row, std::size_t first) {
@@ -127,6 +113,25 @@ KittiLabel rrcFrom(const TextRow& row, const std::string& class_name) {
 
 }  // namespace
 
+bool setKittiCamera(const Eigen::Matrix<double, 3, 4>& P2, KittiCalibration& calibration) {
+  CameraModel& c = calibration.camera;
+  c.fx = P2(0, 0);
+  c.fy = P2(1, 1);
+  c.cx = P2(0, 2);
+  c.cy = P2(1, 2);
+  if (!(c.fx > 0) || !(c.fy > 0) || P2(2, 2) != 1) return false;
+  // P2 = K [I | t]: a point p of cam0 is p + t in cam2.
+  const double tz = P2(2, 3);
+  const Vector3 t((P2(0, 3) - c.cx * tz) / c.fx, (P2(1, 3) - c.cy * tz) / c.fy, tz);
+  calibration.T_cam0_cam2.translation() = -t;
+  const auto* best = std::min_element(
+      std::begin(kImageSizes), std::end(kImageSizes),
+      [&](const auto& a, const auto& b) { return std::abs(a.fx - c.fx) < std::abs(b.fx - c.fx); });
+  c.width = best->width;
+  c.height = best->height;
+  return true;
+}
+
 const std::vector<KittiDetectionLayout>& kittiDetectionLayouts() {
   static const std::vector<KittiDetectionLayout> kLayouts = {
       {"pointrcnn", true, true}, {"pointgnn", true, false}, {"rrc", false, false},
@@ -180,10 +185,14 @@ std::vector<Pose3> readKittiPoses(const std::string& path, const std::string& fo
 }
 
 std::vector<Pose3> readKittiOxts(const std::string& path) {
+  return readKittiOxts(std::vector<std::string>{path});
+}
+
+std::vector<Pose3> readKittiOxts(const std::vector<std::string>& paths) {
   constexpr double kEarthRadius = 6378137;  // [m] as in the development kit
   std::vector<Pose3> poses;
   double scale = 0;
-  forEachRow(path, kSpaces, [&](const TextRow& row) {
+  const auto add = [&](const TextRow& row) {
     row.expect(row.size() >= 6, "at least 6: lat lon alt roll pitch yaw ...");
     const double lat = row.real(0), lon = row.real(1);
     if (std::abs(lat) >= 90) row.fail(0, "a latitude in degrees");
@@ -192,8 +201,14 @@ std::vector<Pose3> readKittiOxts(const std::string& path) {
     const double x = scale * radians(lon) * kEarthRadius;
     const double y = scale * kEarthRadius * std::log(std::tan(radians(90 + lat) / 2));
     poses.push_back(makePose(x, y, row.real(2), row.real(5), row.real(4), row.real(3)));
-  });
-  if (poses.empty()) throw DataError(fmt::format("{}: no pose in it", path));
+  };
+  for (const std::string& path : paths) {
+    const std::size_t before = poses.size();
+    forEachRow(path, kSpaces, add);
+    if (poses.size() == before) throw DataError(fmt::format("{}: no pose in it", path));
+    if (paths.size() > 1 && poses.size() != before + 1)
+      throw DataError(fmt::format("{}: {} lines, expected one", path, poses.size() - before));
+  }
   return poses;
 }
 

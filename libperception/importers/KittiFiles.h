@@ -40,6 +40,10 @@ struct KittiLabel {
 // All readers throw DataError: kNoInput when the file is missing, else with file, line and what was
 // expected.
 
+/// Camera and place of the left color camera, by its projection from cam0; the size of its images
+/// follows from the focal length. False: it is not K [I | t].
+bool setKittiCamera(const Eigen::Matrix<double, 3, 4>& P2, KittiCalibration& calibration);
+
 KittiCalibration readKittiCalibration(const std::string& path);
 
 /// Poses in the frame of the first line, one line a frame: 12 numbers row-major (kitti), or t x y z
@@ -48,6 +52,8 @@ std::vector<Pose3> readKittiPoses(const std::string& path, const std::string& fo
 /// Poses of the GPS/IMU body in the local Mercator plane of the KITTI development kit, from an oxts
 /// file.
 std::vector<Pose3> readKittiOxts(const std::string& path);
+/// The same of files with a line each, as in the raw data.
+std::vector<Pose3> readKittiOxts(const std::vector<std::string>& paths);
 
 /// Truth, or detections in the same layout (last column score, column of ids optional).
 std::vector<KittiLabel> readKittiLabels(const std::string& path);

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include "libperception/core/Error.h"
@@ -11,6 +9,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/KittiImport.h"
+#include "libperception/importers/PointLabelFiles.h"
 #include "libperception/importers/SensorLabels.h"
 
 namespace perception {
@@ -20,7 +19,6 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::vector<std::string> kSnowScanEndings = {".bin", ".bin.gz"};
-const std::vector<std::string> kSnowLabelEndings = {".label", ".label.gz"};
 
 /// A data set of scans with a class per point, in SemanticKITTI's layout: DIR/velodyne, DIR/labels,
 /// DIR/poses.txt.
@@ -66,37 +64,11 @@ class SnowImporter final : public Importer {
   void run(ImportLog& log) override;
 
  private:
-  void keepLabels(const FrameFile& scan, std::size_t points, const std::string& folder,
-                  ImportLog& log);
-
   const SnowDataSet& set_;
   std::string dir_;
   double height_ = set_.lidar_height;
   std::map<std::uint32_t, std::uint64_t> counts_;  ///< points by label
 };
-
-/// The label file, as it is, into FILE_Labels beside the log.
-void SnowImporter::keepLabels(const FrameFile& scan, std::size_t points, const std::string& folder,
-                              ImportLog& log) {
-  const std::string labels = (fs::path(dir_) / "labels").string();
-  const std::string path = fileOfStem(labels, scan.stem, kSnowLabelEndings);
-  if (path.empty()) return log.missing("labels", labels, scan.number);
-  const std::string bytes = readBytes(path);
-  if (bytes.size() != 4 * points) {
-    throw DataError(fmt::format("{}: {} bytes, expected 4 (uint32) for each of the {} points of {}",
-                                path, bytes.size(), points, scan.path));
-  }
-  for (std::size_t i = 0; i < points; ++i) {
-    std::uint32_t label = 0;
-    std::memcpy(&label, bytes.data() + 4 * i, 4);
-    ++counts_[label & 0xFFFF];  // the upper half is an instance
-  }
-  std::error_code error;
-  fs::create_directories(folder, error);
-  const fs::path to = fs::path(folder) / fs::path(path).filename();
-  if (!error) fs::copy_file(path, to, fs::copy_options::overwrite_existing, error);
-  if (error) throw OutputError(fmt::format("{}: cannot copy: {}", to.string(), error.message()));
-}
 
 void SnowImporter::run(ImportLog& log) {
   const auto files = frameFiles((fs::path(dir_) / "velodyne").string(), kSnowScanEndings);
@@ -110,8 +82,6 @@ void SnowImporter::run(ImportLog& log) {
     }
   }
   const Pose3 T_ego_lidar = makePose(0, 0, height_, 0);
-  const std::string folder =
-      fs::path(log.options().output).replace_extension().string() + "_Labels";
   CloudFormat format;
   format.intensity_max = 255;  // both sets' README
   format.max_range = set_.max_range;
@@ -128,7 +98,8 @@ void SnowImporter::run(ImportLog& log) {
     scan.stamp = stamp;
     scan.T_ego_sensor = T_ego_lidar;
     LidarCloud cloud = readCloudFile(file.path, format);
-    keepLabels(file, cloud.size(), folder, log);
+    for (const std::uint32_t label : keepPointLabels(dir_, file, cloud.size(), log))
+      ++counts_[label & 0xFFFF];  // the upper half is an instance
     scan.data = std::move(cloud);
     log.sensor(scan);
     log.progress(static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(files.size()));
@@ -139,7 +110,8 @@ void SnowImporter::run(ImportLog& log) {
     log.note(fmt::format("label {} ({}): {} points", label,
                          name == set_.names.end() ? "?" : name->second, count));
   }
-  if (!counts_.empty()) log.note("labels, one uint32 a point: " + folder);
+  if (!counts_.empty())
+    log.note("labels, one uint32 a point: " + labelFolderOf(log.options().output));
 }
 
 }  // namespace
