@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "libperception/app/Programs.h"
+#include "libperception/evaluation/TrackingBenchmark.h"
 #include "libperception/interop/ExportFile.h"
+#include "libperception/interop/NuscenesFile.h"
 #include "libperception/pipeline/FinishedRun.h"
 #include "libperception/scene/TrackedRun.h"
 #include "libperception/sensors/CameraImages.h"
@@ -38,7 +41,7 @@ class SceneWriter {
 
 std::string ExportApp::description() const {
   return "Writes a log and its tracks as one MCAP file: for Foxglove's viewers, or as ROS 2 "
-         "messages.";
+         "messages; or the tracks as a result file of nuScenes.";
 }
 
 void ExportApp::declare(CLI::App& cli) {
@@ -48,14 +51,16 @@ void ExportApp::declare(CLI::App& cli) {
       ->type_name("DIR");
   cli.add_option("--format", format,
                  "foxglove: Foxglove's messages in JSON; ros2: ROS 2 messages in CDR, which "
-                 "perception-import bag reads back; without -r the log alone")
-      ->check(CLI::IsMember({"foxglove", "ros2"}))
+                 "perception-import bag reads back; without -r the log alone; nuscenes: the "
+                 "result file of its tracking benchmark, of a log of perception-import nuscenes")
+      ->check(CLI::IsMember({"foxglove", "ros2", "nuscenes"}))
       ->capture_default_str();
   addOutputOption(cli, true);
 }
 
 void ExportApp::run() {
   if (inputs.size() != 1) throw Error(ExitCode::kUsage, "-i: one log");
+  if (format == "nuscenes") return writeTracks();
   const bool ros = format == "ros2";
   if (run_dir.empty() && !ros) throw Error(ExitCode::kUsage, "-r/--run is needed for foxglove");
   const TrackedRun tracked = run_dir.empty() ? TrackedRun{} : readTrackedRun(run_dir);
@@ -92,6 +97,19 @@ void ExportApp::run() {
   out_messages = file->close();
   say(1, fmt::format("{}: {} messages, {} scans and images; {} outside the run's scenes left out",
                      output, out_messages, out_frames, out_without_ego));
+}
+
+/// Tracks alone, at the key frames of the data set that the log was imported from.
+void ExportApp::writeTracks() {
+  if (run_dir.empty()) throw Error(ExitCode::kUsage, "-r/--run is needed for nuscenes");
+  const std::string file = samplesFileOf(inputs.front());
+  if (!std::filesystem::exists(file))
+    throw DataError(file + ": not found; perception-import nuscenes writes it beside the log",
+                    ExitCode::kNoInput);
+  const TrackedRun tracked = readTrackedRun(run_dir);
+  const NuscenesSamples samples = readNuscenesSamples(file);
+  out_messages = writeNuscenesTracks(output, tracked, benchmarkNamesOf(tracked), samples);
+  say(1, fmt::format("{}: {} boxes in {} samples", output, out_messages, samples.tokens.size()));
 }
 
 std::unique_ptr<App> exportApp() { return std::make_unique<ExportApp>(); }

@@ -10,7 +10,7 @@ namespace perception {
 class ExportApp : public App {
  public:
   std::string run_dir;                ///< -r: folder of perception-track
-  std::string format = "foxglove";    ///< --format: foxglove, ros2
+  std::string format = "foxglove";    ///< --format: foxglove, ros2, nuscenes
   std::uint64_t out_messages = 0;     ///< messages written
   std::uint64_t out_frames = 0;       ///< sensor frames among them
   std::uint64_t out_without_ego = 0;  ///< sensor frames left out: no scene near gives the pose
@@ -19,6 +19,9 @@ class ExportApp : public App {
   std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
+
+ private:
+  void writeTracks();
 };
 
 }  // namespace perception

@@ -12,6 +12,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/NuscenesTables.h"
+#include "libperception/interop/NuscenesFile.h"
 
 namespace perception {
 
@@ -48,6 +49,8 @@ class NuscenesImporter final : public Importer {
 
  private:
   std::string tables() const { return (fs::path(dir_) / version_).string(); }
+  void keepSamples(const NuscenesDrive& drive, const std::map<std::int64_t, Stamp>& stamps,
+                   const ImportLog& log) const;
   NuscenesScene chosenScene() const;
   bool wanted(const NuscenesSensor& sensor) const {
     return channels_.empty() ||
@@ -157,6 +160,18 @@ void NuscenesImporter::queueTruth(const NuscenesDrive& drive,
   }
 }
 
+/// What perception-export needs to give tracks back to the data set.
+void NuscenesImporter::keepSamples(const NuscenesDrive& drive,
+                                   const std::map<std::int64_t, Stamp>& stamps,
+                                   const ImportLog& log) const {
+  NuscenesSamples samples;
+  samples.T_global_world = T_world_global_.inverse();
+  for (const auto& row : stamps)
+    samples.tokens.emplace_back(row.first,
+                                drive.sample_tokens[static_cast<std::size_t>(row.first)]);
+  writeNuscenesSamples(samplesFileOf(log.options().output), samples);
+}
+
 void NuscenesImporter::run(ImportLog& log) {
   requireFolder(dir_);
   const NuscenesScene scene = chosenScene();
@@ -174,6 +189,7 @@ void NuscenesImporter::run(ImportLog& log) {
   log.writeInOrder();
   log.expectTruth();
   queueTruth(drive, stamps, log);
+  keepSamples(drive, stamps, log);
   log.note(fmt::format("{}: {}", scene.name, scene.description));
   for (const auto& [channel, count] : absent_)
     log.warn(fmt::format("{}: {} files are not there: left out", channel, count));

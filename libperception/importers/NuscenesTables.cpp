@@ -141,6 +141,7 @@ class NuscenesReader {
     for (const auto& [time, token] : samples) {
       samples_[token] = static_cast<std::int64_t>(drive_.samples.size());
       drive_.samples.push_back(stampOfMicroseconds(time));
+      drive_.sample_tokens.push_back(token);
     }
     if (samples.empty())
       throw DataError(fmt::format("{}: sample.json has none of scene {}", tables_, scene_.name));

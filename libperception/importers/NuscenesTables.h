@@ -44,9 +44,10 @@ struct NuscenesBox {
 /// One scene with all that its tables say.
 struct NuscenesDrive {
   std::vector<NuscenesSensor> sensors;
-  std::vector<NuscenesData> data;  ///< in order of time
-  std::vector<Stamp> samples;      ///< of the key frames
-  std::vector<NuscenesBox> boxes;  ///< of the test set: none
+  std::vector<NuscenesData> data;          ///< in order of time
+  std::vector<Stamp> samples;              ///< of the key frames
+  std::vector<std::string> sample_tokens;  ///< of the same
+  std::vector<NuscenesBox> boxes;          ///< of the test set: none
 };
 
 /// The scenes of a folder of tables (ROOT/v1.0-mini). Throws DataError: kNoInput where a table is

@@ -7,6 +7,7 @@
 
 #include "libperception/core/GroundTruth.h"
 #include "libperception/importers/NuscenesTables.h"
+#include "libperception/interop/NuscenesFile.h"
 #include "tests/importers/ImportFixture.h"
 
 namespace perception {
@@ -134,6 +135,14 @@ TEST_F(NuscenesImport, BoxesOfKeyFramesAreTheTruthWithVelocitiesByDifferences) {
   const TruthObject& bicycle = truth.instants[0].objects[1];
   EXPECT_EQ(bicycle.type, "Bicycle");
   EXPECT_TRUE(bicycle.ignore) << "it has no rider";
+}
+
+TEST_F(NuscenesImport, TokensOfTheKeyFramesAreKeptBesideTheLog) {
+  ASSERT_EQ(import("nuscenes", scene("scene-0061")), 0) << error_;
+  const NuscenesSamples samples = readNuscenesSamples(file("out.samples.csv"));
+  ASSERT_EQ(samples.tokens.size(), 3u);
+  EXPECT_EQ(samples.tokens[2].second, "k2");
+  EXPECT_TRUE(samples.T_global_world.isApprox(makePose(100, 50, 0, radians(90)), 1e-5));
 }
 
 TEST_F(NuscenesImport, ADownloadWithoutSweepsIsReadAndTheLackIsSaid) {
