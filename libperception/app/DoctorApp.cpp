@@ -54,7 +54,8 @@ void DoctorApp::run() {
     fmt::print("{}", textOf(*out_kind, inputs[0]));
     return;
   }
-  if (output.empty()) throw Error(ExitCode::kUsage, "-o/--output: expected a folder for the report");
+  if (output.empty())
+    throw Error(ExitCode::kUsage, "-o/--output: expected a folder for the report");
   const SiteFiles files = siteFiles(iniFolder(ini_folder));
   RawlogReader reader(inputs[0]);
   LogSurvey survey(imagesBeside(inputs[0]));
