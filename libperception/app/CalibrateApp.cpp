@@ -101,6 +101,8 @@ void CalibrateApp::declare(CLI::App& cli) {
                       "Whole angle ahead in which the truth is complete [deg]: one for all logs, "
                       "or one per log")
           ->check(CLI::Range(1.0, 360.0));
+      sub->add_flag("--variants", variants,
+                    "Learn from every scan also as other sensors would have made it");
       sub->add_flag("--model-only", model_only,
                     "Learn the model without judging each log by the others: no tables");
       sub->add_option("--license", license, "License that is written into the model file")
@@ -280,7 +282,7 @@ StudyReport CalibrateApp::lidarClasses() {
     const PointLabels labels(inputs[i]);
     const GroundTruth truth = labels.any() ? GroundTruth{} : truthBeside(inputs[i]);
     SampleRules rules;
-    rules.variants = true;
+    rules.variants = variants;
     rules.fov = radians(complete_fov[std::min(i, complete_fov.size() - 1)]);
     ClusterSampler sampler(sensor->label, dynamic_cast<const LidarFrontEnd&>(*sensor->front_end),
                            truth, labels, i, rules, seed, samples);

@@ -22,8 +22,8 @@ class CalibrateApp : public App {
   double seconds = 0;                        ///< of every log; 0 = all
   double truth_range = 30, truth_fov = 360;  ///< tempering: sector in which truth counts [m, deg]
 
-  std::vector<double> complete_fov{360};  ///< lidar-classes: of all logs or one a log [deg]
-  bool model_only = false;                ///< lidar-classes
+  std::vector<double> complete_fov{360};      ///< lidar-classes: of all logs or one a log [deg]
+  bool model_only = false, variants = false;  ///< lidar-classes
   std::string license = "that of the logs", date = "not given";  ///< lidar-classes: of the model
 
   bool no_truth = false;  ///< gains: --no-truth
