@@ -10,7 +10,7 @@
 namespace perception {
 namespace fs = std::filesystem;
 
-std::string labelFolderOf(const std::string& rawlog) {
+std::string pointLabelFolderOf(const std::string& rawlog) {
   return fs::path(rawlog).replace_extension().string() + "_Labels";
 }
 
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> keepPointLabels(const std::string& dir, const FrameFi
   }
   std::vector<std::uint32_t> all(points);
   std::memcpy(all.data(), bytes.data(), bytes.size());
-  const std::string folder = labelFolderOf(log.options().output);
+  const std::string folder = pointLabelFolderOf(log.options().output);
   std::error_code error;
   fs::create_directories(folder, error);
   const fs::path to = fs::path(folder) / fs::path(path).filename();

@@ -143,7 +143,7 @@ void SemanticKittiImporter::run(ImportLog& log) {
   log.note(
       "boxes of the truth are fitted about the labeled returns: extents are those of what was "
       "seen");
-  log.note("labels, one uint32 a point: " + labelFolderOf(log.options().output));
+  log.note("labels, one uint32 a point: " + pointLabelFolderOf(log.options().output));
 }
 
 }  // namespace

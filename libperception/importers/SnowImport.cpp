@@ -111,7 +111,7 @@ void SnowImporter::run(ImportLog& log) {
                          name == set_.names.end() ? "?" : name->second, count));
   }
   if (!counts_.empty())
-    log.note("labels, one uint32 a point: " + labelFolderOf(log.options().output));
+    log.note("labels, one uint32 a point: " + pointLabelFolderOf(log.options().output));
 }
 
 }  // namespace

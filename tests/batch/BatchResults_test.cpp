@@ -50,7 +50,7 @@ struct Results : BatchFixture {
       scenes += when + ",0,0,0,0,0,0,0,0,0," + (seen ? "1" : "0") + ",,,,\n";
       if (seen)
         tracks +=
-            when + ",1,car,1,0.01,0.98,0.01,0.9,10,0,0,0,1,0,0,0,4,2,1.5,0.1,0.1,0.1,0.1,,0,\n";
+            when + ",1,car,1,0.01,0.98,0.01,0.9,10,0,0,0,1,0.5,0,0,0,4,2,1.5,0.1,0.1,0.1,0.1,,0,\n";
     }
     writeFile(at + "/tracks.csv", tracks);
     writeFile(at + "/scenes.csv", scenes);
