@@ -17,11 +17,11 @@ using namespace test;
 
 class OddClouds : public OddRecording {};
 
-std::string doublesOf(const LidarCloud& cloud, double grid) {
+std::string doublesOf(const LidarCloud& cloud, double share) {
   std::vector<double> numbers;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     for (const float v : {cloud.x[i], cloud.y[i], cloud.z[i], cloud.intensity[i]})
-      numbers.push_back(static_cast<double>(v) + grid);
+      numbers.push_back(static_cast<double>(v) * (1 + share));
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)};
 }
 
