@@ -214,9 +214,14 @@ TEST(LiveServer, SendsWhatIsSubscribedAndNothingElse) {
 
 TEST(LiveServer, ASlowReaderGetsTheNewestAndHoldsUpNobody) {
   LiveServer server(onAnyPort());
+  onServer(server, [&] { server.setGreeting("hello"); });
   SocketClient slow(server.port(), kPageProtocol, "", "/", 4096);
   SocketClient quick(server.port(), kPageProtocol);
-  waitUntil([&] { return server.hasPages(); });
+  for (SocketClient* client : {&slow, &quick}) {  // both are known to the server by now
+    const auto greeting = client->message();
+    ASSERT_TRUE(greeting);
+    EXPECT_EQ(greeting->payload, "hello");
+  }
   constexpr int kScenes = 40;
   const auto scene = [](int n) {
     return shared(std::to_string(n) + ' ' + std::string(1 << 20, '.'));
@@ -224,7 +229,9 @@ TEST(LiveServer, ASlowReaderGetsTheNewestAndHoldsUpNobody) {
   const auto numberIn = [](const std::string& text) { return std::stoi(text.substr(0, 8)); };
   for (int n = 0; n < kScenes; ++n) {
     onServer(server, [&] { server.sendToPages("scene", scene(n), true); });
-    EXPECT_EQ(numberIn(quick.message()->payload), n) << "in step, while the other reads nothing";
+    const auto message = quick.message();
+    ASSERT_TRUE(message);
+    EXPECT_EQ(numberIn(message->payload), n) << "in step, while the other reads nothing";
   }
   int last = -1, got = 0;
   while (last < kScenes - 1) {
