@@ -42,7 +42,7 @@ class LiveComposer;
 
 /// Shows a run as it goes on. It is called by the tracker's thread, copies what is shown and
 /// returns; messages are made on the server's thread. Where that falls behind, a newer scene
-/// replaces the one that waits, and where nobody looks on nothing is copied.
+/// replaces the one that waits, and without clients nothing is copied.
 class LiveFeed final : public PipelineObserver {
  public:
   struct Facts {
