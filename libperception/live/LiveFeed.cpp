@@ -61,7 +61,8 @@ LiveFeed::LiveFeed(LiveServer& server, const Facts& facts)
 
 LiveFeed::~LiveFeed() = default;
 
-// The first frame of a sensor also where no client is connected: clients choose among what there is.
+// The first frame of a sensor also where no client is connected: clients choose among what there
+// is.
 void LiveFeed::onFrame(const SensorFrame& frame) {
   const bool is_new = labels_.emplace(frame.sensor, true).second;
   if (!is_new && !server_.hasPages() && !server_.hasSubscribers()) return;
