@@ -67,6 +67,7 @@ test_packages=(
   libgtest-dev           # tests
   mrpt-apps              # rawlog-edit, rawlog-grabber: stock MRPT must read and record our logs
   python3-numpy          # the module perception, the reader of runs in apps/perception-export
+  python3-scipy          # the second implementation of AMOTA and AMOTP: tests/bench/tracking_benchmark.py
   mypy                   # type hints of the module
   chromium               # pages of a run and of a batch are opened, clicked and read
   locales                # definition of a locale with decimal comma: it must not change a byte

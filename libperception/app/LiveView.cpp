@@ -33,18 +33,20 @@ std::string fileNameOf(const std::string& path) {
 
 void ServeOptions::declare(CLI::App& cli) {
   cli.add_option("--serve", port,
-                 "PORT (8765; 0: any) of a page that shows the run as it goes on, and of Foxglove")
+                 "Show the run while it goes on, in a browser and to Foxglove, at this port (0: "
+                 "any free one)")
       ->expected(0, 1)
       ->default_str("8765");
-  cli.add_option("--serve-address", address,
-                 "Address of --serve; one that others reach needs --serve-token");
+  cli.add_option(
+      "--serve-address", address,
+      "Address on which --serve listens; one that other machines reach needs --serve-token");
   cli.add_option("--serve-token", token_file,
-                 "File with a token, which clients then give as ?token=TOKEN");
+                 "File with the token that clients must give as ?token=TOKEN");
   cli.add_option("--serve-origin", origins,
-                 "Origin of other pages that may connect, as https://HOST")
+                 "Also let pages of this origin connect, as https://HOST (may be repeated)")
       ->allow_extra_args(false);
   cli.add_option("--serve-speed", speed,
-                 "Speed of a log, 1 as recorded; without: as fast as it is tracked")
+                 "Play a log at this speed, 1: as recorded; default: as fast as it is tracked")
       ->check(CLI::Range(0.01, 1000.0));
 }
 

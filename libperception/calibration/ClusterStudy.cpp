@@ -145,20 +145,10 @@ void requireThreeLogs(const ClusterSamples& samples, std::size_t logs) {
                     known.size(), logs));
 }
 
-}  // namespace
-
-StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
-                         const Provenance& provenance, std::uint64_t seed, bool model_only) {
-  requireThreeLogs(samples, logs.size());
-  ClusterTrainer trainer(samples, logs, seed);
-  StudyReport report;
-  report.title = "What clusters of lidar returns look like";
-  const bool simulated = std::any_of(logs.begin(), logs.end(), [](auto& l) { return l.simulated; });
-  for (const TrainingLog& log : logs)
-    report.data += fmt::format("{}{}{}", report.data.empty() ? "" : ", ", log.name,
-                               log.simulated ? " (simulated)" : "");
-  if (simulated && provenance.simulated_only) report.data = "simulated logs " + report.data;
-
+/// Judges each log, and each of its variants, by what the others teach: the report's tables and
+/// plot.
+void judgeLeftOut(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
+                  const Provenance& provenance, ClusterTrainer& trainer, StudyReport& report) {
   StudyTable left_out{"left_out",
                       "Clusters of each log by a classifier that has not seen it",
                       {"log", "clusters", "log loss", "of the log's shares", "sure", "sure wrong",
@@ -177,7 +167,7 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
                          {}};
   std::vector<Shares> all(samples.clusters.size());
   for (std::size_t log = 0; log < logs.size(); ++log) {
-    if (model_only || (!provenance.simulated_only && logs[log].simulated)) continue;
+    if (!provenance.simulated_only && logs[log].simulated) continue;
     const ClusterClassifier blind = trainer.classifier(log, provenance);
     for (const std::size_t i : trainer.of(log))
       all[i] = sharesOf(blind, samples.clusters[i].descriptor);
@@ -197,6 +187,26 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
       boxes.rows.push_back(boxRow(name, samples, log, variant, all));
     }
   }
+  report.tables = {std::move(left_out), std::move(boxes)};
+  report.plots.push_back(reliabilityPlot(reliability));
+  report.tables.push_back(std::move(reliability));
+}
+
+}  // namespace
+
+StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
+                         const Provenance& provenance, std::uint64_t seed, bool model_only) {
+  requireThreeLogs(samples, logs.size());
+  ClusterTrainer trainer(samples, logs, seed);
+  StudyReport report;
+  report.title = "What clusters of lidar returns look like";
+  const bool simulated = std::any_of(logs.begin(), logs.end(), [](auto& l) { return l.simulated; });
+  for (const TrainingLog& log : logs)
+    report.data += fmt::format("{}{}{}", report.data.empty() ? "" : ", ", log.name,
+                               log.simulated ? " (simulated)" : "");
+  if (simulated && provenance.simulated_only) report.data = "simulated logs " + report.data;
+
+  if (!model_only) judgeLeftOut(samples, logs, provenance, trainer, report);
   const ClusterClassifier final = trainer.classifier(logs.size(), provenance);
   const EvidenceMemory& memory = final.memory();
   report.remarks.push_back(
@@ -208,11 +218,6 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
                   memory.lasting, memory.kept, memory.bearing, memory.log_range, memory.time));
   report.remarks.push_back(
       "`lidar_classes.json` is the model for `[sensor.LABEL.classifier] file`.");
-  if (!model_only) {
-    report.tables = {std::move(left_out), std::move(boxes)};
-    report.plots.push_back(reliabilityPlot(reliability));
-    report.tables.push_back(std::move(reliability));
-  }
   report.files.emplace_back("lidar_classes.json", final.write());
   return report;
 }

@@ -115,8 +115,10 @@ ClusterClassifier ClusterTrainer::classifier(std::size_t without, Provenance pro
   for (std::size_t log = 0; log < logs_.size(); ++log) {
     if (log == without || (recorded_ && logs_[log].simulated)) continue;
     const auto& raw = leftOut(log, without);
-    const double of_log = std::sqrt(static_cast<double>(kScanVariants) /
-                                    static_cast<double>(std::max<std::size_t>(1, raw.size())));
+    const auto recorded_samples = std::count_if(
+        of_log_[log].begin(), of_log_[log].end(),
+        [&](std::size_t i) { return samples_.clusters[i].variant == ScanVariant::kRecorded; });
+    const double of_log = 1 / std::sqrt(std::max(1.0, static_cast<double>(recorded_samples)));
     for (std::size_t i = 0; i < raw.size(); ++i) {
       const ClusterSample& sample = samples_.clusters[of_log_[log][i]];
       const auto kind = sample.kind;

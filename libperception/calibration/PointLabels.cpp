@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/GroundTruth.h"
 
 namespace perception {
 
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 bool isPhantomLabel(std::uint16_t label) { return label == 110 || (label >= 112 && label <= 118); }
 
 PointLabels::PointLabels(const std::string& rawlog) {
-  const std::string folder = fs::path(rawlog).replace_extension().string() + "_Labels";
+  const std::string folder = labelFolderOf(rawlog);
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
     const std::string name = entry.path().filename().string();

@@ -158,6 +158,10 @@ std::string truthFileOf(const std::string& rawlog) {
   return path.string() + ".truth.csv";
 }
 
+std::string labelFolderOf(const std::string& rawlog) {
+  return std::filesystem::path(rawlog).replace_extension().string() + "_Labels";
+}
+
 GroundTruth truthBeside(const std::string& rawlog) { return readGroundTruth(truthFileOf(rawlog)); }
 
 void writeGroundTruth(const std::string& path, const std::vector<TruthObject>& rows) {

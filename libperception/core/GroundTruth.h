@@ -48,7 +48,10 @@ struct GroundTruth {
 GroundTruth readGroundTruth(const std::string& path);
 /// FILE.truth.csv beside FILE.rawlog, where the truth of a log stands.
 std::string truthFileOf(const std::string& rawlog);
-/// Reads it. Throws as readGroundTruth().
+/// FILE_Labels beside FILE.rawlog, with the class of each point in a file NUMBER.label for each
+/// frame.
+std::string labelFolderOf(const std::string& rawlog);
+/// Reads the truth beside a log. Throws as readGroundTruth().
 GroundTruth truthBeside(const std::string& rawlog);
 /// Writes it, in a fixed number format.
 void writeGroundTruth(const std::string& path, const std::vector<TruthObject>& rows);

@@ -33,14 +33,13 @@ std::string summaryOf(const EvaluatedRun& run, const EvaluationOptions& options)
   text += line("errors (rms)",
                fmt::format("position {} m, velocity {} m/s", number(single.position_rms, 2),
                            number(single.velocity_rms, 2)));
-  text += line("headings", fmt::format("{} rad (rms), reversed {}", number(single.heading_rms, 2),
-                                       number(single.heading_reversed)));
-  text += line(
-      "fronts",
-      fmt::format("known (p_front >= {:g}) in {}, of these reversed {}, calibration "
-                  "error {}",
-                  kSureFront, number(single.heading_sure), number(single.heading_sure_reversed),
-                  number(frontReliability(e, Pairing::kOneToOne).calibration_error)));
+  text +=
+      line("headings",
+           fmt::format("{} rad (rms), reversed {}; front known (p_front >= {:g}) in {}, of these "
+                       "reversed {}, calibration error {}",
+                       number(single.heading_rms, 2), number(single.heading_reversed), kSureFront,
+                       number(single.heading_sure), number(single.heading_sure_reversed),
+                       number(frontReliability(e, Pairing::kOneToOne).calibration_error)));
   return text;
 }
 

@@ -5,7 +5,7 @@
 
 namespace perception {
 
-/// What a file or folder is that somebody brings.
+/// A recording that was recognized: its format, its content, and how to import it.
 struct InputKind {
   std::string what;                ///< "a recording of ROS", in words
   std::vector<std::string> holds;  ///< a line each

@@ -6,13 +6,10 @@
 #include <filesystem>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/GroundTruth.h"
 
 namespace perception {
 namespace fs = std::filesystem;
-
-std::string pointLabelFolderOf(const std::string& rawlog) {
-  return fs::path(rawlog).replace_extension().string() + "_Labels";
-}
 
 std::vector<std::uint32_t> keepPointLabels(const std::string& dir, const FrameFile& scan,
                                            std::size_t points, ImportLog& log) {
@@ -29,7 +26,7 @@ std::vector<std::uint32_t> keepPointLabels(const std::string& dir, const FrameFi
   }
   std::vector<std::uint32_t> all(points);
   std::memcpy(all.data(), bytes.data(), bytes.size());
-  const std::string folder = pointLabelFolderOf(log.options().output);
+  const std::string folder = labelFolderOf(log.options().output);
   std::error_code error;
   fs::create_directories(folder, error);
   const fs::path to = fs::path(folder) / fs::path(path).filename();

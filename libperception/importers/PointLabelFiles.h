@@ -9,12 +9,9 @@
 
 namespace perception {
 
-/// FILE_Labels, where an import keeps the labels of points beside FILE.rawlog.
-std::string pointLabelFolderOf(const std::string& rawlog);
-
 /// DIR/labels/STEM.label[.gz] of a scan in SemanticKITTI's layout: a uint32 a point, the class in
 /// the lower half, the instance in the upper one. The file is copied as it is into
-/// pointLabelFolderOf(). Empty: there is none, which is reported to the log. Throws DataError,
+/// labelFolderOf(). Empty: there is none, which is reported to the log. Throws DataError,
 /// OutputError.
 std::vector<std::uint32_t> keepPointLabels(const std::string& dir, const FrameFile& scan,
                                            std::size_t points, ImportLog& log);

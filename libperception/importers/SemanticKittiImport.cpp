@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/GroundTruth.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/InstanceBoxes.h"
@@ -143,7 +144,7 @@ void SemanticKittiImporter::run(ImportLog& log) {
   log.note(
       "boxes of the truth are fitted about the labeled returns: extents are those of what was "
       "seen");
-  log.note("labels, one uint32 a point: " + pointLabelFolderOf(log.options().output));
+  log.note("labels, one uint32 a point: " + labelFolderOf(log.options().output));
 }
 
 }  // namespace

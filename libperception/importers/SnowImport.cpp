@@ -5,6 +5,7 @@
 #include <map>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/GroundTruth.h"
 #include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
@@ -111,7 +112,7 @@ void SnowImporter::run(ImportLog& log) {
                          name == set_.names.end() ? "?" : name->second, count));
   }
   if (!counts_.empty())
-    log.note("labels, one uint32 a point: " + pointLabelFolderOf(log.options().output));
+    log.note("labels, one uint32 a point: " + labelFolderOf(log.options().output));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "gui-offscreen/SensorView.h"
 #include "libperception/sensors/CameraImages.h"
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
@@ -204,26 +205,6 @@ void SnapshotSensors::takeLidar(SensorFrame& frame) {
   }
   safety_.add(frame, returns);
   ++scans_;
-}
-
-// Subtracts the range rate of a stationary object, i.e. the sensor's own motion, lever arm
-// included.
-void SnapshotSensors::addRadar(const SensorFrame& frame, SceneView& view) const {
-  const Pose3 T = frame.T_world_sensor();
-  const Vector3 arm = T.translation() - frame.ego.T_world_ego.translation();
-  const Vector2 own = frame.ego.velocity + frame.ego.yaw_rate * Vector2(-arm.y(), arm.x());
-  for (const RadarReturn& r : std::get<RadarReturns>(frame.data).returns) {
-    const double elevation = r.elevation.value_or(0);
-    const Vector3 ray(std::cos(elevation) * std::cos(r.bearing),
-                      std::cos(elevation) * std::sin(r.bearing), std::sin(elevation));
-    const Vector3 u = T.linear() * ray;
-    const Vector2 flat = Vector2(u.x(), u.y()).normalized();
-    ViewRadarReturn shown;
-    shown.place = T.translation() + r.range * u;
-    shown.has_rate = r.has_rate;
-    shown.radial_velocity = (r.range_rate + own.dot(flat)) * flat;
-    view.radar.push_back(shown);
-  }
 }
 
 void SnapshotSensors::addMeasurements(const SensorFrame& frame, SceneView& view) const {

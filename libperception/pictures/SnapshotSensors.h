@@ -75,7 +75,6 @@ class SnapshotSensors {
   LidarSettings settingsOf(const std::string& label) const;
   void take(SensorFrame frame);
   void takeLidar(SensorFrame& frame);
-  void addRadar(const SensorFrame& frame, SceneView& view) const;
   void addMeasurements(const SensorFrame& frame, SceneView& view) const;
   void addImage(SceneView& view);
 

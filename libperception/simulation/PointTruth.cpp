@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 
 #include "libperception/simulation/Scenario.h"
 
@@ -82,10 +81,6 @@ bool hasPointLabels(const Scenario& scenario) {
   const auto lidar = std::find_if(sensors.begin(), sensors.end(), is_lidar);
   return std::count_if(sensors.begin(), sensors.end(), is_lidar) == 1 &&
          std::abs(lidar->rate - scenario.params.rate) < 1e-9;
-}
-
-std::string labelFolderOf(const std::string& rawlog) {
-  return std::filesystem::path(rawlog).replace_extension().string() + "_Labels";
 }
 
 std::string labelFileName(std::int64_t frame) { return fmt::format("{:06d}.label", frame); }

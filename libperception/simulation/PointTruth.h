@@ -22,9 +22,7 @@ std::vector<std::uint32_t> pointLabels(const LidarSensor::Scan& scan, const Scen
 /// Labels are by frame number: they exist where one lidar scans once a frame.
 bool hasPointLabels(const Scenario& scenario);
 
-/// The folder of labels beside FILE.rawlog: FILE_Labels, with a file NUMBER.label for each frame.
-std::string labelFolderOf(const std::string& rawlog);
-/// Name and content (one uint32 a point) of a frame's file.
+/// Name and content (one uint32 a point) of a frame's file in labelFolderOf().
 std::string labelFileName(std::int64_t frame);
 std::string labelBytes(const std::vector<std::uint32_t>& labels);
 

@@ -135,6 +135,7 @@ TEST_F(GroundTruthFile, AFileThatCannotBeCreatedOrReadIsSaid) {
 TEST_F(GroundTruthFile, StandsBesideItsLog) {
   EXPECT_EQ(truthFileOf("a.b/c.d.rawlog"), "a.b/c.d.truth.csv");
   EXPECT_EQ(truthFileOf("a.b/c.d"), "a.b/c.d.truth.csv");
+  EXPECT_EQ(labelFolderOf("a/b.rawlog"), "a/b_Labels");
   const std::string beside = truthFileOf(path_ + ".rawlog");
   TruthObject car;
   car.type = "Car";

@@ -28,7 +28,6 @@ TEST(PointTruth, ExistsForOneScanAFrame) {
 }
 
 TEST(PointTruth, FilesAreNumberedByFrame) {
-  EXPECT_EQ(labelFolderOf("a/b.rawlog"), "a/b_Labels");
   EXPECT_EQ(labelFileName(7), "000007.label");
   EXPECT_EQ(labelBytes({110, 1}), std::string("\x6e\0\0\0\x01\0\0\0", 8));
 }
