@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -17,6 +15,7 @@
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/FromObservation.h"
 #include "libperception/sensors/RawlogReader.h"
+#include "tests/support/CommandOutput.h"
 
 namespace perception {
 namespace {
@@ -62,16 +61,6 @@ class ExportAppTest : public testing::Test {
     return runApp(app_, 7, argv);
   }
 
-  // Standard output and errors of a command, and how it ended.
-  static std::pair<int, std::string> outputOf(const std::string& command) {
-    std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-    std::string text;
-    std::array<char, 4096> part;
-    while (const auto n = std::fread(part.data(), 1, part.size(), pipe))
-      text.append(part.data(), n);
-    return {pclose(pipe), text};
-  }
-
   std::string dir_;
   ExportApp app_;
 };
@@ -95,17 +84,16 @@ TEST_F(ExportAppTest, TheFileSaysOfWhichRunItIs) {
 }
 
 TEST_F(ExportAppTest, PythonReadsTheRun) {
-  if (outputOf("/usr/bin/python3 -c 'import numpy'").first != 0)
+  if (test::outputOf({"/usr/bin/python3", "-c", "import numpy"}).code != 0)
     GTEST_SKIP() << "missing tool: python3-numpy";
   writeRun(Stamp{1'600'000'000'123'456'789});
-  const auto [code, text] = outputOf(
-      "cd '" PERCEPTION_SOURCE_DIR
-      "/apps/perception-export' && /usr/bin/python3 -B -c \""
-      "from perception_run import Run; r = Run('" +
-      dir_ +
-      "'); "
-      "print(len(r.scenes), len(r.track(7)), r.tracks['stamp_ns'][0], r.tracks['speed'][0], "
-      "r.probability('car')[0], r.classes)\"");
+  const auto [code, text] = test::outputOf(
+      {"/usr/bin/python3", "-B", "-c",
+       "import sys; from perception_run import Run; r = Run(sys.argv[1]); "
+       "print(len(r.scenes), len(r.track(7)), r.tracks['stamp_ns'][0], r.tracks['speed'][0], "
+       "r.probability('car')[0], r.classes)",
+       dir_},
+      PERCEPTION_SOURCE_DIR "/apps/perception-export");
   EXPECT_EQ(code, 0);
   EXPECT_EQ(text, "11 5 1600000000123456789 2.5 1.0 ['car']\n");
 }

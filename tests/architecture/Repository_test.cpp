@@ -86,5 +86,20 @@ TEST(Repository, OurTextIsCleanUtf8WithoutTabsInCode) {
   }
 }
 
+// A checkout may lie in a folder whose name has a space.
+TEST(Repository, NoTestHandsItsFolderToAShellWithoutQuotes) {
+  const std::regex bare(R"re([^'"\\ =,({] +"\s*PERCEPTION_(SOURCE|BINARY)_DIR)re");
+  const std::string shell =
+      "\"/usr/bin/python3 \" PERCEPTION_SOURCE_"
+      "DIR \"/a.py\"";
+  EXPECT_TRUE(std::regex_search(shell, bare));
+  EXPECT_FALSE(
+      std::regex_search("\"cd '\"\n  PERCEPTION_SOURCE_"
+                        "DIR",
+                        bare));
+  for (const SourceFile& file : filesBelow("tests"))
+    EXPECT_FALSE(file.isSource() && std::regex_search(file.text, bare)) << file.path;
+}
+
 }  // namespace
 }  // namespace perception::test

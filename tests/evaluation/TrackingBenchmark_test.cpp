@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -12,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/CommandOutput.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
@@ -110,11 +109,11 @@ std::vector<BenchmarkFrame> randomCase(unsigned seed) {
 }
 
 TEST(TrackingBenchmark, AgreesWithAnIndependentImplementationInTwentyRandomCases) {
-  if (std::system("/usr/bin/python3 -c 'import numpy, scipy' 2>/dev/null") != 0)
+  if (test::outputOf({"/usr/bin/python3", "-c", "import numpy, scipy"}).code != 0)
     GTEST_SKIP() << "no numpy and scipy";
   const test::TemporaryFolder folder;
-  std::string command =
-      "/usr/bin/python3 " PERCEPTION_SOURCE_DIR "/tests/bench/tracking_benchmark.py";
+  std::vector<std::string> words = {"/usr/bin/python3",
+                                    PERCEPTION_SOURCE_DIR "/tests/bench/tracking_benchmark.py"};
   for (unsigned seed = 0; seed < 20; ++seed) {
     const std::string path = folder / fmt::format("{}.csv", seed);
     std::ofstream file(path);
@@ -125,14 +124,10 @@ TEST(TrackingBenchmark, AgreesWithAnIndependentImplementationInTwentyRandomCases
           file << fmt::format("{},{},{},{},{},{}\n", k, kind, b.id, b.center.x(), b.center.y(),
                               b.score);
     }
-    command += " " + path;
+    words.push_back(path);
   }
-  FILE* const pipe = popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::string text;
-  char part[4096];
-  while (std::fgets(part, sizeof part, pipe) != nullptr) text += part;
-  ASSERT_EQ(pclose(pipe), 0);
+  const auto [code, text] = test::outputOf(words);
+  ASSERT_EQ(code, 0) << text;
   std::istringstream lines(text);
   int good = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
