@@ -34,8 +34,11 @@ std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
     if (age > kLife) break;
     const double moved = age <= kPresent ? age * v->speed : 0;
     const Vector2 d = place - v->center - moved * v->along;
-    if (std::abs(d.dot(v->along)) > v->half_length) continue;
-    if (std::abs(d.x() * v->along.y() - d.y() * v->along.x()) <= halfWidth(*v, age)) return age;
+    const double ahead = d.dot(v->along), behind = -v->half_length - ahead;  // [m] of the rear
+    const bool swept = age > kPresent && behind > 0 && behind <= v->advanced;
+    if (std::abs(ahead) > v->half_length && !swept) continue;
+    if (std::abs(d.x() * v->along.y() - d.y() * v->along.x()) <= halfWidth(*v, age))
+      return swept ? age + behind / v->speed : age;
   }
   return std::nullopt;
 }

@@ -15,7 +15,7 @@ struct VehicleFootprint {
   Vector2 along = Vector2::UnitX();        ///< unit vector of its velocity, world
   double speed = 0;                        ///< [m/s]
   double half_length = 0, half_width = 0;  ///< [m]
-  double advanced = 0;                     ///< [m] driven since its footprint before
+  double advanced = 0;  ///< [m] driven since its footprint before: the way between was swept, too
 };
 
 /// The places that vehicles have just left, where spray, blown snow and exhaust hang: a cluster

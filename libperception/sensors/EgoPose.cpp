@@ -8,6 +8,7 @@
 
 #include "libperception/sensors/Conversions.h"
 #include "libperception/sensors/EgoFusion.h"
+#include "libperception/sensors/PoseMotion.h"
 #include "libperception/sensors/ToObservation.h"  // kEgoPoseLabel
 
 namespace perception {
@@ -17,8 +18,6 @@ namespace {
 /// Number of consecutive poses, consistent with each other but not with the former position, after
 /// which they are accepted: a receiver with a new fix. One second at 10 Hz.
 constexpr std::size_t kRelocation = 10;
-/// [s] Velocities are differences over about this time, to suppress the noise of poses at 100 Hz.
-constexpr double kDifference = 0.1;
 /// Bound of the memory at any rate of the poses.
 constexpr std::size_t kMostPoses = 20000;
 /// [m] Largest coordinate, that of a pole in UTM with a margin: what is beyond is no place on
@@ -30,6 +29,11 @@ bool before(const EgoState& pose, Stamp stamp) { return pose.stamp < stamp; }
 /// Standard deviation by a variance of the log, at least `minimum`.
 double sigmaOf(double variance, double minimum) {
   return std::isfinite(variance) && variance > 0 ? std::max(minimum, std::sqrt(variance)) : minimum;
+}
+
+void setMotion(EgoState& state, const std::deque<EgoState>& poses) {
+  const PoseMotion motion = motionAt(poses, state.stamp);
+  state.velocity = motion.velocity, state.yaw_rate = motion.yaw_rate;
 }
 
 EgoState between(const EgoState& a, const EgoState& b, Stamp stamp) {
@@ -192,27 +196,6 @@ void EgoPose::add(const EgoState& pose) {
     poses_.pop_front();
 }
 
-void EgoPose::setMotion(EgoState& state) const {
-  state.velocity = Vector2::Zero();
-  state.yaw_rate = 0;
-  if (poses_.size() < 2) return;
-  // The two poses around the instant, extended on both sides until they are kDifference apart.
-  auto last = std::lower_bound(poses_.begin(), poses_.end(), state.stamp, before);
-  if (last == poses_.end()) --last;
-  if (last == poses_.begin()) ++last;
-  auto first = std::prev(last);
-  while (last->stamp - first->stamp < kDifference) {
-    const bool has_next = std::next(last) != poses_.end(), has_previous = first != poses_.begin();
-    if (!has_next && !has_previous) break;
-    if (has_previous) --first;
-    if (has_next) ++last;
-  }
-  const double dt = last->stamp - first->stamp;
-  const Vector3 step = last->T_world_ego.translation() - first->T_world_ego.translation();
-  state.velocity = step.head<2>() / dt;
-  state.yaw_rate = wrapAngle(yawOf(last->T_world_ego) - yawOf(first->T_world_ego)) / dt;
-}
-
 std::optional<EgoState> EgoPose::at(Stamp stamp) const {
   if (empty()) return {};
   const auto& all = poses();
@@ -220,12 +203,12 @@ std::optional<EgoState> EgoPose::at(Stamp stamp) const {
   const auto after = std::lower_bound(all.begin(), all.end(), stamp, before);
   if (after != all.end() && (after->stamp == stamp || after != all.begin())) {
     state = after->stamp == stamp ? *after : between(*std::prev(after), *after, stamp);
-    if (!fused()) setMotion(state);
+    if (!fused()) setMotion(state, poses_);
   } else {
     state = after == all.end() ? all.back() : all.front();
     const double dt = stamp - state.stamp;
     if (std::abs(dt) > params_.extrapolation) return {};
-    if (!fused()) setMotion(state);
+    if (!fused()) setMotion(state, poses_);
     state.stamp = stamp;
     state.T_world_ego.translation().head<2>() += dt * state.velocity;
     state.T_world_ego.linear() =

@@ -94,7 +94,6 @@ class EgoPose {
   bool fused() const { return poses_.empty(); }
   bool wants(const std::string& label);
   bool isJump(const EgoState& pose);
-  void setMotion(EgoState& state) const;
 
   EgoPoseParams params_;
   std::unique_ptr<EgoFusion> fusion_;

@@ -28,6 +28,27 @@ TEST(WakeMap, APlaceIsAsOldAsTheLastVehicleThatWasThere) {
   EXPECT_NEAR(wakes.age({60, 0}, Stamp::fromSeconds(3)).value_or(-1), 0, 1e-9) << "on the car";
 }
 
+TEST(WakeMap, AVehicleFasterThanItsLengthPerScanLeavesNoHole) {
+  WakeMap wakes;
+  for (int k = 0; k <= 10; ++k) {
+    VehicleFootprint car;
+    car.stamp = Stamp::fromSeconds(0.1 * k);
+    car.center = {2.5 * k, 0};
+    car.speed = 25, car.advanced = k > 0 ? 2.5 : 0;
+    car.half_length = 1.1, car.half_width = 0.9;  // its rear half alone is seen
+    wakes.add(car);
+  }
+  const Stamp now = Stamp::fromSeconds(1);
+  double before = 2;
+  for (double x = 0; x < 18; x += 0.1) {
+    const auto age = wakes.age({x, 0}, now);
+    ASSERT_TRUE(age) << x;
+    EXPECT_LE(*age, before + 1e-9) << x;
+    EXPECT_NEAR(*age, 1 - (x + 1.1) / 25, 0.1) << x << ": since its rear left";
+    before = *age;
+  }
+}
+
 TEST(WakeMap, WidensWithAgeAndEnds) {
   const WakeMap wakes = wakeOfACar();
   EXPECT_FALSE(wakes.age({58, 1.6}, Stamp::fromSeconds(3)));  // 0.9 + 0.5 m
