@@ -13,7 +13,7 @@ using namespace test;
 RunRecord someRecord() {
   RunRecord r;
   r.program = "perception-track";
-  r.version = "0.1.0";
+  r.version = "0.2.0";
   r.hash = "0123abcd";
   r.input = "recordings/of monday/crossing.rawlog";
   r.input_bytes = 123456;
@@ -59,7 +59,7 @@ TEST(RunRecord, NamesFilesWithoutTheirFolders) {
 TEST(RunRecord, IsTheSameTextForTheSameRecord) {
   EXPECT_EQ(toJson(someRecord()), toJson(someRecord()));
   EXPECT_EQ(toJson(someRecord()).substr(0, 64),
-            "{\n  \"program\": \"perception-track\",\n  \"version\": \"0.1.0\",\n  \"hash");
+            "{\n  \"program\": \"perception-track\",\n  \"version\": \"0.2.0\",\n  \"hash");
 }
 
 TEST(RunRecord, SaysWhatIsWrongWithAFileThatIsNone) {
