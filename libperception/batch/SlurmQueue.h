@@ -7,9 +7,9 @@
 
 namespace perception {
 
-/// A batch in the queue of Slurm: an array task per shard, and behind all of them the reduce job,
-/// whatever became of them. The queue is no record of what is done: that is the batch's folder, so
-/// that a queue that was lost is filled again by submitting again.
+/// A batch in the queue of Slurm: one array task per shard, then the reduce job, which runs even if
+/// shards failed. What is done is recorded in the batch's folder and not in the queue: if the queue
+/// is lost, submitting again fills it.
 class SlurmQueue {
  public:
   /// `program`: perception-batch; `dir`: the batch's folder; both absolute and reachable from every

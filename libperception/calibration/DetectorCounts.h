@@ -57,8 +57,8 @@ struct DetectorCounts {
 /// normalized distance with four times the stated standard deviations; those within 2 m or half an
 /// object's size of an unmatched label of any type are not counted as clutter. `labels`: how many
 /// labels each sensor has. Labels are those of the scan's frame, else of its time (alignTruth()).
-/// Where a label does not say how far an object is hidden, the latest scan that shows what hides
-/// objects does; without one the object is no chance.
+/// If a label does not say how far an object is hidden, the latest scan with an occlusion map says
+/// so; without such a scan the object does not count as a chance to be detected.
 void countDetections(const RecordedLog& log, const GroundTruth& truth, std::size_t log_index,
                      const std::map<std::string, std::size_t>& labels,
                      std::map<std::string, DetectorCounts>& counts);

@@ -9,7 +9,7 @@
 
 namespace perception {
 
-/// Stated probabilities in tenths against what came true.
+/// Stated probabilities, in bins of a tenth, and the shares that came true.
 class ReliabilityCounts {
  public:
   void add(double probability, bool object) {

@@ -10,7 +10,7 @@ namespace perception {
 
 class DeviceSimulator;
 
-/// A driver that can end without loss, and knows what came.
+/// A driver that can end without loss, and that counts what it has received.
 class LedgerSource {
  public:
   virtual ~LedgerSource() = default;

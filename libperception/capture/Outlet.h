@@ -37,7 +37,7 @@ class Outlet {
   Outlet& operator=(const Outlet&) = delete;
 
   void put(const Drivers::Arrival& arrival);
-  /// Throws what `take` or `tend` threw; after that nothing is taken any more.
+  /// Rethrows the first exception of `take` or `tend`; the outlet is closed afterwards.
   void check();
   /// Returns once all was taken; throws as check().
   void close();

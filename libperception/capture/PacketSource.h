@@ -25,7 +25,8 @@ class PacketSource {
  public:
   using Take = std::function<void(const ReceivedPacket&)>;
   virtual ~PacketSource() = default;
-  /// Hands over what came; waits up to `timeout_ms` for the first. False: nothing came.
+  /// Hands over the packets that have arrived; waits up to `timeout_ms` for the first one. False:
+  /// none has arrived.
   virtual bool receive(int timeout_ms, const Take& take) = 0;
   /// Packets that the kernel had no room for.
   virtual std::uint64_t overrun() const { return 0; }
@@ -38,8 +39,8 @@ class PacketSource {
 std::unique_ptr<PacketSource> openUdp(const std::string& name, const std::string& address,
                                       std::uint16_t port, const std::string& multicast);
 
-/// Ibeo's messages of a TCP server. One that is not there, or goes, is asked again every half
-/// second. Throws ConfigError if `host` is no IPv4 address.
+/// Ibeo's messages from a TCP server. If the server is not there, or goes away, this tries again
+/// every half second. Throws ConfigError if `host` is not an IPv4 address.
 std::unique_ptr<PacketSource> openIbeoTcp(const std::string& name, const std::string& host,
                                           std::uint16_t port);
 

@@ -7,8 +7,8 @@
 
 namespace perception {
 
-/// What the kernel tells of a socket's messages beside their bytes: when each came, and how many it
-/// had no room for.
+/// What the kernel reports about a socket's messages besides their bytes: when each arrived, and
+/// how many were lost because it had no room for them.
 class ReceiveControl {
  public:
   /// [bytes] that recvmsg's control buffer needs.

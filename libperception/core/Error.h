@@ -48,8 +48,7 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// A configuration that is wrong; the message holds every fault found, one a line, with file and
-/// line.
+/// A wrong configuration. The message has one line per fault, each with file and line.
 class ConfigError : public Error {
  public:
   explicit ConfigError(const std::string& message) : Error(ExitCode::kBadConfig, message) {}

@@ -73,8 +73,8 @@ class FixedFactors {
 
 /// Kalman update of a Gaussian (x, P) of N states by the innovation y of n axes in Joseph form
 /// (method.md 4): H [n x N] the measurement's Jacobian, R its noise, S = H P H' + R. Angles among
-/// the states are wrapped by the caller. Returns log N(y; 0, S) up to the constant of n; minus
-/// infinity, and x and P left alone, where S is no covariance.
+/// the states are wrapped by the caller. Returns log N(y; 0, S) up to a constant that depends on n.
+/// If S is not a covariance, returns minus infinity and leaves x and P unchanged.
 template <int n, int N>
 double josephUpdate(const Eigen::Matrix<double, n, 1>& y, const Eigen::Matrix<double, n, N>& H,
                     const Eigen::Matrix<double, n, n>& R, const Eigen::Matrix<double, n, n>& S,

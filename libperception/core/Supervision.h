@@ -9,9 +9,9 @@
 
 namespace perception {
 
-/// What a process lets its supervisor know (app/Supervisor.h), in memory that both share: what it
-/// reads just now, and its temporary files, which it cannot remove when it is killed. Without a
-/// supervisor the record is the process's own and not read.
+/// What a process tells its supervisor (app/Supervisor.h) through shared memory: what it is
+/// reading, and which temporary files it has, since it cannot remove them when it is killed.
+/// Without a supervisor the record belongs to the process alone, and nothing reads it.
 struct SupervisionRecord {
   static constexpr std::size_t kMostPaths = 64, kLongestPath = 4096;
 

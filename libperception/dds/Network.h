@@ -17,8 +17,8 @@ struct NetworkName {
   static NetworkName parse(const std::string& text);
 };
 
-/// A participant of Cyclone DDS. On the loopback interface nothing leaves the machine. Where the
-/// environment has CYCLONEDDS_URI, that configuration holds in place of the interface.
+/// A participant of Cyclone DDS. On the loopback interface nothing leaves the machine. If the
+/// environment has CYCLONEDDS_URI, that configuration replaces the interface.
 class Network {
  public:
   /// The participant of this process, shared while anyone holds it. Throws Error (kUnavailable).

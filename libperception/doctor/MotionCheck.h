@@ -14,7 +14,7 @@ struct MotionCheck {
   struct Value {
     double error = 0, sigma = 0;
     double enough = 0;  ///< largest standard deviation with which the error counts as observed
-    double wrong = 0;   ///< errors up to this are none
+    double wrong = 0;   ///< errors up to this do not matter
     bool observable() const { return sigma <= enough; }
     bool isWrong() const;  ///< observable, and larger than its uncertainty and `wrong`
   };
@@ -24,7 +24,7 @@ struct MotionCheck {
   std::size_t used = 0;    ///< scans
 };
 
-/// Velocity of a radar over ground, from the range rates of what stands.
+/// Velocity of a radar over ground, from the range rates of standing things.
 struct SensorVelocity {
   Stamp stamp;
   Vector2 velocity = Vector2::Zero();         ///< [m/s] sensor frame

@@ -42,7 +42,7 @@ struct Match {
       speed_error;  ///< [m/s] difference of the magnitudes; if the truth has a velocity
   std::optional<double> velocity_error;  ///< [m/s] magnitude of the difference of the vectors
   std::optional<double> heading_error;   ///< [rad] in (-pi, pi]; if both have a heading
-  double front_probability = 0.5;        ///< that its heading is no reversed one, as stated
+  double front_probability = 0.5;        ///< stated probability that its heading is not reversed
 };
 
 /// One counted truth object at one instant: the sample of all metrics.

@@ -10,7 +10,7 @@
 
 namespace perception {
 
-/// Errors that only a truth tells.
+/// Errors that only a truth can show.
 enum class TrueError { kMissed, kFalse, kPosition, kVelocity, kClass, kSwitches, kOverall };
 inline constexpr std::size_t kTrueErrors = 7;
 /// Name and unit of each, for reports.

@@ -56,7 +56,7 @@ struct BagContents {
   /// Poses of one topic.
   struct Poses {
     std::string frame;     ///< whose poses they are; empty: not said
-    bool on_call = false;  ///< maybe a plan: taken where the INI says so
+    bool on_call = false;  ///< may be a plan: used only if the INI names it
     std::vector<StampedPose> poses;
     std::vector<std::size_t> messages;  ///< of each pose: its number within the topic
   };
@@ -74,14 +74,14 @@ struct BagContents {
   /// Of messages with a header, by topic: the frames of reference, in order of their appearance.
   std::map<std::string, std::vector<std::string>> frames;
   std::vector<std::string> faults;   ///< damage, messages that cannot be read or used
-  std::vector<std::string> remarks;  ///< what a user should know, and is no damage
+  std::vector<std::string> remarks;  ///< not damage, but a user should know it
 };
 
 /// Reads all messages of a file or folder once.
 BagContents readContents(const std::string& path);
 
-/// One line a topic: messages, type, rate, and what the import makes of it; the fields of what it
-/// does not read.
+/// One line per topic: messages, type, rate, and what the import makes of it. For types that it
+/// does not read, the fields follow.
 std::string listOf(const BagContents& contents);
 
 /// A line for each topic that the import does not read: messages, type and, where its definition

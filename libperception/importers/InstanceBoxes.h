@@ -39,13 +39,13 @@ class SeenOutline {
   static std::array<float, kDirections> filled();
 };
 
-/// Boxes of objects whose points are labeled scan by scan, fitted about their returns. Of what
-/// stands one box about all of them; of what moves a box in the direction of its motion with the
-/// largest extents that were seen, put where the side that the sensor sees was seen. Extents are
-/// those of what was seen, not of the whole object.
+/// Boxes of objects whose points are labeled scan by scan, fitted about their returns. A standing
+/// object gets one box about the returns of all scans. A moving one gets a box in the direction of
+/// its motion, with the largest extents that were seen, aligned with the side that the sensor sees.
+/// Extents are those of the part that was seen, not of the whole object.
 class InstanceBoxes {
  public:
-  /// A return of an object; `moves`: its label says so.
+  /// A return of an object; `moves`: the label says that the object moves.
   void add(std::int64_t id, bool moves, const std::string& type, std::int64_t frame, Stamp stamp,
            const Vector2& sensor, const Vector3& world);
   struct Row {

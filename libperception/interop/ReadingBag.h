@@ -66,8 +66,9 @@ std::unique_ptr<ReadingBag> openBag(const std::string& path);
 /// it) in the order of the numbers in their names. Throws DataError (kNoInput).
 std::vector<std::string> bagFiles(const std::string& path);
 
-/// What the metadata.yaml of rosbag2 says against `messages` having been read from a folder; of
-/// sqlite files, whose end says nothing, that there is none. Empty: nothing is wrong.
+/// A contradiction between rosbag2's metadata.yaml and the number of messages that were read from
+/// the folder; for sqlite files, whose end shows nothing, also that this file is missing. Empty:
+/// all is well.
 std::string faultOfBagFolder(const std::string& path, std::uint64_t messages);
 
 }  // namespace perception

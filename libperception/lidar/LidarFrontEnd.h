@@ -43,8 +43,8 @@ struct OutlineNoise {
 
 /// [sensor.LABEL.classifier]
 struct ClassifierParams {
-  /// Model file of perception-calibrate lidar-classes, beside the INI; empty: clusters by two
-  /// spacings and the person filter, told by their size [radecki2016].
+  /// Model file of perception-calibrate lidar-classes, beside the INI. Empty: clusters come from
+  /// two spacings and the person filter, and are classified by their size [radecki2016].
   std::string file;
 
   void visit(ParamVisitor& v);
@@ -97,7 +97,7 @@ class LidarFrontEnd final : public FrontEnd {
   double fov_;    ///< [rad]
   double reach_;  ///< [m] of the nearest point of an object
   ClassTable classes_;
-  std::shared_ptr<const ClusterClassifier> classifier_;  ///< null: told by size
+  std::shared_ptr<const ClusterClassifier> classifier_;  ///< null: by size
   std::shared_ptr<const FootprintModel> model_;
 };
 

@@ -6,10 +6,10 @@
 
 namespace perception {
 
-/// Share of phantoms among the clusters that are no road users: it differs by orders of magnitude
-/// between clear air and snowfall or the spray behind a car, and with it what a cluster that looks
-/// like spray is worth. It follows from the probability of a physical cause and never from how the
-/// clusters of the scan look (method.md 8.10).
+/// Share of phantoms among the clusters that are not road users. It differs by orders of magnitude
+/// between clear air and snowfall or the spray behind a car, and it decides how much it means that
+/// a cluster looks like spray. It follows from the probability of a physical cause, and never from
+/// what the clusters of the scan look like (method.md 8.10).
 class PhantomPrior {
  public:
   using Probabilities = std::array<double, kClusterKinds>;

@@ -18,7 +18,7 @@ struct AccessRules {
 bool isLoopback(const std::string& address);
 /// The first line of a file: 16 to 128 letters, digits, - . _ ~. Throws DataError.
 std::string readToken(const std::string& path);
-/// Throws Error (kUsage) for what is no address, and for one that others reach without a token.
+/// Throws Error (kUsage) for an invalid address, and for one that others can reach without a token.
 void checkRules(const AccessRules& rules);
 
 /// Parts of a request that access depends on.

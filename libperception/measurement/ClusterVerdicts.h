@@ -7,7 +7,7 @@
 
 namespace perception {
 
-/// A cluster that is judged a phantom (method.md 8.10): no measurement comes of it.
+/// A cluster that is judged a phantom (method.md 8.10), so it gives no measurement.
 struct PhantomCluster {
   std::size_t returns = 0;
   double probability = 0;  ///< [0, 1] P(phantom)
@@ -16,7 +16,7 @@ struct PhantomCluster {
   Vector2 center = Vector2::Zero();  ///< [m] mean of its returns, ego frame
 };
 
-/// What a front end made of the clusters of a lidar scan whose kind is told by their shape.
+/// How a front end judged the clusters of a lidar scan by their shape.
 struct ClusterVerdicts {
   std::size_t clusters = 0;  ///< judged: wholes, or the parts given in their place
   /// Given as measurements although likelier a phantom than not.

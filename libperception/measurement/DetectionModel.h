@@ -15,7 +15,7 @@ struct DetectionParams {
   std::string kind = "lidar";  ///< front end by name
   Modality modality = Modality::kLidar;
   double clutter_per_scan = 0.6;  ///< kappa: false measurements (method.md 5.3)
-  /// clutter_per_scan: kept, or the start of what is learned of it in the run (method.md 5.18).
+  /// Whether clutter_per_scan stays fixed, or is where learning starts in the run (method.md 5.18).
   enum class Clutter { kFixed, kLearnt } clutter = Clutter::kFixed;
   double births_per_scan = 0.03;  ///< beta: first measurements of new objects (method.md 5.3)
   double range_min = 0, range_max = 70;  ///< [m] of the nearest point of an object [radecki2016]
@@ -41,8 +41,8 @@ struct DetectionParams {
   void applyResolution();
 };
 
-/// Least P_D of a class near by, in view, where the tables say less (method.md 4.7): with none, one
-/// detection that is no object, or not the one it is taken for, would rule the class out.
+/// Least P_D of a class in view nearby, if the tables say less (method.md 4.7). With a P_D of zero,
+/// a single detection that is clutter, or that belongs to another object, would rule the class out.
 inline constexpr double kLeastDetection = 0.001;
 
 /// P_D and labels of one class for one sensor: [sensor.LABEL.class.NAME] overrides

@@ -11,8 +11,8 @@ struct EvidenceView {
   double log_range = 0;  ///< log of the range [m]
 };
 
-/// Errors of what a sensor says of one object's class (method.md 5.6, fitted as in 8.10): a part
-/// that stays, since the object looks unlike its kind, and one that changes with the view.
+/// Errors of a sensor's evidence of one object's class (method.md 5.6, fitted as in 8.10). One part
+/// stays, since the object looks unlike its kind; the other part changes with the view.
 struct EvidenceMemory {
   double lasting = 0.2;    ///< [0, 1) share of the part that stays in the variance
   double kept = 0.9;       ///< [0, 1) correlation of the other part in views alike

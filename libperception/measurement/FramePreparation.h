@@ -6,8 +6,8 @@
 
 namespace perception {
 
-/// What is done to the frames of one sensor before its front end sees them, with a memory of
-/// earlier ones; front ends have none.
+/// Prepares the frames of one sensor before its front end sees them. It may remember earlier
+/// frames; front ends do not.
 class FramePreparation {
  public:
   virtual ~FramePreparation() = default;

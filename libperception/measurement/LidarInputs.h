@@ -14,7 +14,8 @@ enum class IntensityKind {
   kSteps  ///< a handful of values
 };
 
-/// Which fields the scans of a lidar have: what is missing is no evidence (method.md 8.10).
+/// Which fields the scans of a lidar have. A missing field is not used as evidence
+/// (method.md 8.10).
 struct LidarInputs {
   IntensityKind intensity = IntensityKind::kUsable;
   bool rings = false, times = false, echoes = false, labels = false;

@@ -72,7 +72,7 @@ struct Measurement {
   int detection = -1;                      ///< index of the detection in its frame
 };
 
-/// Multiplies the standard deviations of all that it says by a factor, above 0.
+/// Multiplies all standard deviations of the measurement by a factor above 0.
 void scaleNoise(Measurement& measurement, double factor);
 
 /// Sensor and vehicle at the time of a scan.

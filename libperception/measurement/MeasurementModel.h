@@ -78,7 +78,7 @@ class MeasurementModel {
                        const SensorState& sensor, AxisPrediction* out) const = 0;
   /// How h of an object with a heading is linearized in its aspect.
   virtual AspectLine aspectLine() const { return AspectLine::kNone; }
-  /// Adds to R_model what is measured less exactly of one class, whatever the aspect.
+  /// Adds to R_model the noise by which one class is measured less exactly, at any aspect.
   virtual void addClassNoise(ClassId c, const Kinematics& object, const SensorState& sensor,
                              AxisPrediction& prediction) const {
     (void)c, (void)object, (void)sensor, (void)prediction;
@@ -100,8 +100,8 @@ class MeasurementModel {
   /// The same for detections and missed detections: over hundreds of scans an error of P_D in the
   /// percent range would decide the class.
   virtual double detectionExponent() const { return 1; }
-  /// Factor in (0, 1] of [filter] kinematic_exponent: below 1 where the innovations tell a size
-  /// that Measurement::log_class has told already.
+  /// Factor in (0, 1] of [filter] kinematic_exponent. It is below 1 if the innovations depend on a
+  /// size that Measurement::log_class has already used as evidence.
   virtual double innovationShare() const { return 1; }
   /// How the errors of Measurement::log_class repeat; null: they do not. Replaces labelExponent().
   virtual const EvidenceMemory* evidenceMemory() const { return nullptr; }

@@ -10,7 +10,7 @@ namespace perception {
 
 using ClassId = int;  ///< index into ClassTable
 
-/// What objects of a class look like to a sensor that tells shapes: [class.NAME] shape.
+/// What objects of a class look like to a sensor that classifies shapes: [class.NAME] shape.
 enum class ObjectShape { kPedestrian, kCyclist, kVehicle, kThing, kPhantom };
 inline constexpr std::size_t kObjectShapes = 5;
 

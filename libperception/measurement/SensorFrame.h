@@ -14,8 +14,8 @@
 
 namespace perception {
 
-/// Standard deviations of the ego pose at one instant; they enlarge R of every measurement:
-/// method.md 1.3.
+/// Standard deviations of the ego pose at one instant. They enlarge R of every measurement
+/// (method.md 1.3).
 struct PoseUncertainty {
   double sigma_xy = 0.05;             ///< [m]
   double sigma_yaw = radians(0.2);    ///< [rad]
@@ -39,7 +39,7 @@ struct GroundPlane {
   double heightAt(double x, double y) const { return a * x + b * y + c; }
 };
 
-/// Classification of a return by the sensor itself (Ibeo), where it gives one.
+/// Classification of a return by the sensor itself, if it gives one (Ibeo).
 enum class PointLabel : std::uint8_t {
   kUnknown = 0,
   kObject = 1,

@@ -14,9 +14,9 @@ struct RadarMotion {
   std::size_t standing = 0;  ///< targets of the last instant that it explains
 };
 
-/// The vehicle's motion from the range rates of what stands, of all radars (method.md 1.8): of the
-/// targets of an instant the largest group that one motion explains, then a robust update of the
-/// motion. A function of the frames alone.
+/// The vehicle's motion from the range rates of standing things, seen by all radars
+/// (method.md 1.8). It takes the largest group of an instant's targets that one motion explains,
+/// then updates the motion robustly. The result is a function of the frames alone.
 class RadarOdometry {
  public:
   /// Radar frames of one instant. Pose of the vehicle at their stamp in the world frame, that of

@@ -43,9 +43,9 @@ struct RadarObject {
   float length = 0, width = 0;  ///< [m]
 };
 
-/// What one packet tells, of whatever device.
+/// The content of one packet, in a form that is common to all devices.
 struct DecodedPacket {
-  std::int64_t stamp_ns = 0;         ///< the device's clock [ns]; of what epoch: see the decoder
+  std::int64_t stamp_ns = 0;         ///< the device's clock [ns]; each decoder states its epoch
   std::int64_t clock_period_ns = 0;  ///< after which the clock begins anew; 0: never
   ClockState clock = ClockState::kUntold;
   /// Number that rises by one from packet to packet, modulo `numbers`; empty: the device sends

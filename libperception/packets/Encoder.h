@@ -13,9 +13,9 @@ struct TimedPacket {
   std::string payload;
 };
 
-/// Writes what a device would send: frames to packets that its decoder reads. Lidar returns go to
-/// the device's nearest beam and firing, the nearest one of several; the rest of what a real device
-/// sends (noise floor, status messages) is not there.
+/// Writes what a device would send: turns frames into packets that its decoder reads. Each lidar
+/// return goes to the device's nearest beam and firing; of several returns there the nearest one is
+/// sent. A real device also sends a noise floor and status messages; these are left out.
 class PacketEncoder {
  public:
   virtual ~PacketEncoder() = default;

@@ -28,7 +28,7 @@ class FrameAssembler {
   void setTimeOffset(double seconds) { time_offset_ = seconds; }
 
   /// Adds one packet, received at `received`. A packet that cannot be decoded is counted, gives a
-  /// warning and costs itself alone; one that came before is left out.
+  /// warning, and is the only thing that is lost; a repeated packet is left out.
   void add(std::string_view payload, Stamp received);
   /// Gives the frame that has begun, which may be part of a turn.
   void finish();

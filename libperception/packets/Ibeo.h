@@ -9,8 +9,8 @@ namespace perception {
 /// Cuts a stream of Ibeo's (TCP, or a recorded file) into messages, each with its header.
 class IbeoStream {
  public:
-  /// The messages that are whole with these bytes. What is no message is passed over up to the next
-  /// one's beginning and counted.
+  /// The messages that these bytes complete. Bytes that belong to no message are skipped up to the
+  /// beginning of the next one, and counted.
   std::vector<std::string> add(std::string_view bytes);
   std::uint64_t skipped() const { return skipped_; }  ///< [bytes] that belong to no message
 

@@ -30,8 +30,8 @@ class FileHash {
   std::uint64_t added_ = 0;  ///< [bytes]
 };
 
-/// SHA-256 of what the results of a run are a function of beside the log: the effective INI, the
-/// files that it names, the version of the program. Throws DataError.
+/// SHA-256 of everything besides the log that determines the results of a run: the effective INI,
+/// the files that it names, and the version of the program. Throws DataError.
 std::string configurationHash(const std::string& effective_ini, const std::string& version);
 /// SHA-256 of all that the results are a function of, from sha256OfFile() of the log and
 /// configurationHash().

@@ -7,8 +7,9 @@
 
 namespace perception {
 
-/// Looks at what the scans of each lidar hold: intensities that tell nothing are taken out, so that
-/// no stage takes them for evidence, and what is missing is said once (event `lidar_inputs`).
+/// Checks which fields the scans of each lidar have. It removes intensities that carry no
+/// information, so that no stage takes them for evidence, and reports once what is missing (event
+/// `lidar_inputs`).
 class InputWatch {
  public:
   explicit InputWatch(EventLog& events) : events_(events) {}

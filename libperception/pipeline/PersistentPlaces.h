@@ -6,12 +6,12 @@
 
 namespace perception {
 
-/// Where surfaces that are doubted were seen in the scan before: what is there again is one, for
-/// flakes and drops are elsewhere by then (method.md 8.4).
+/// Where doubted surfaces were seen in the scan before. What is at the same place again is a real
+/// surface, since flakes and drops have moved on by then (method.md 8.4).
 class PersistentPlaces {
  public:
-  /// The next scan's doubted surfaces [m, world]: whether each is at a place that had some before,
-  /// too; two in a cube of 0.4 m then and now.
+  /// Takes the next scan's doubted surfaces [m, world] and says of each whether its place had such
+  /// surfaces in the scan before: at least two in a cube of 0.4 m, then and now.
   std::vector<char> add(const std::vector<Vector3>& surfaces);
   void clear() { before_.clear(); }
 

@@ -30,7 +30,7 @@ namespace perception {
 class PipelineObserver {
  public:
   virtual ~PipelineObserver() = default;
-  /// As its front end gets it; before the scan that comes of it.
+  /// Called with each sensor frame before its front end turns it into a scan.
   virtual void onFrame(const SensorFrame& frame) { (void)frame; }
   virtual void onScan(const MeasurementScan& scan) { (void)scan; }  ///< goes into the filter
   /// The way ahead of a scene that is due; before its onScene().

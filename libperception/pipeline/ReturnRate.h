@@ -6,7 +6,7 @@
 
 namespace perception {
 
-/// How many returns a lidar's scans have, against those of the last seconds (method.md 9.10).
+/// Compares the number of returns of a lidar's scans with the last seconds (method.md 9.10).
 class ReturnRate {
  public:
   /// A scan: all its returns.
@@ -15,10 +15,10 @@ class ReturnRate {
   void addRoad(std::size_t returns, Stamp stamp);
 
   bool empty() const { return empty_since_.has_value(); }
-  /// [s] for which hardly a return has come, where that is too long for a healthy lidar.
+  /// [s] for which there was hardly a return, if that is too long for a healthy lidar; else empty.
   std::optional<double> blindFor() const;
-  /// Log-likelihood ratio of a lidar that has suddenly lost half of what the road returned, since
-  /// when that is likeliest to be so.
+  /// Log-likelihood ratio that the lidar has suddenly lost half of the road's returns, since the
+  /// instant at which this is most likely.
   double lost() const { return lost_; }
   /// Returns of the road in the last scan as a share of the usual ones.
   double left() const { return left_; }

@@ -13,9 +13,9 @@
 
 namespace perception {
 
-/// What speaks against a sensor that is no lidar: objects that other sensors see in its view, which
-/// it should see by its tables or saw until now, its usual false measurements, and bearings that
-/// are all off to the same side (method.md 9.10).
+/// Evidence that a sensor other than a lidar is faulty: it misses objects that other sensors see in
+/// its view and that it should see by its tables or saw until now; its usual false measurements
+/// stay away; its bearings all err to the same side (method.md 9.10).
 class SensorDoubt {
  public:
   /// A scan and the tracks after it; `seen_share`: what weather has left of P_D in its model.
@@ -44,8 +44,8 @@ class SensorDoubt {
   /// (0, 1] share of the expected detections that came in the last ten seconds, from that of a
   /// sensor in bad weather (method.md 4.8).
   double seenShare() const;
-  /// Log-likelihood ratio of a sensor that misses more than half of what it should see, since when
-  /// that is likeliest to be so.
+  /// Log-likelihood ratio that the sensor misses more than half of what it should see, since the
+  /// instant at which this is most likely.
   double fouled() const { return fouled_; }
   /// [rad] mean error of the bearings of the last seconds where it is beyond chance; else empty.
   std::optional<double> offset(Stamp now) const;

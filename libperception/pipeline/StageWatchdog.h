@@ -9,8 +9,8 @@
 
 namespace perception {
 
-/// Looks from a thread of its own whether a run of sensors at work gets on: a stage other than
-/// "read", which waits for the sensors, has a time limit.
+/// Checks from a thread of its own that a live run makes progress: every stage has a time limit,
+/// except "read", which waits for the sensors.
 class StageWatchdog {
  public:
   /// `on_hang` is called once, from the thread, with the name of the stage (RunTiming::current())

@@ -16,9 +16,9 @@
 
 namespace perception {
 
-/// A pipeline that is handed its observations one by one, by a program that has them from
-/// elsewhere than a rawlog. Scenes are those of perception-track for the same observations in the
-/// same order. Any thread may call; one call at a time gets on.
+/// A pipeline for programs whose observations do not come from a rawlog; they are added one by one.
+/// Scenes are those of perception-track for the same observations in the same order. Any thread may
+/// call; calls wait for each other.
 class StreamTracker {
  public:
   /// `settings`: section.key=value, over the INI. `output`: folder of tracks.csv and scenes.csv;
@@ -34,9 +34,9 @@ class StreamTracker {
   /// The stream has ended: what is left becomes due.
   void finish();
 
-  /// The section [sensor.LABEL] of an observation; throws Error (kUsage) that names those there are
-  /// where there is none, or where its front end is none of `kinds`. Kinds that a program added
-  /// take anything.
+  /// Checks that an observation has a section [sensor.LABEL] and that its front end is one of
+  /// `kinds`. Throws Error (kUsage), which names the sections that exist. Front ends that a program
+  /// added take anything.
   void checkSensor(const std::string& label, const std::vector<std::string>& kinds) const;
   std::string eventLines() const;  ///< as in events.jsonl
   std::vector<std::string> learned() const;

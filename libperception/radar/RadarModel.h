@@ -27,8 +27,9 @@ struct RadarModelParams {
   /// Share of the object's depth along the line of sight that is added to the deviation of the
   /// range: returns also come from wheels and the inside; method.md (17).
   double depth_share = 0.15;
-  /// Share of the filter's exponent with which range, bearing and rate tell the class: the errors
-  /// of one object's returns repeat, and of an object that stands each one says so again.
+  /// Share of the filter's exponent with which range, bearing and rate are evidence of the class:
+  /// the errors of one object's returns repeat, and every return of a standing object says again
+  /// that it stands.
   double innovation_share = 1;
 
   void visit(ParamVisitor& v);

@@ -82,8 +82,8 @@ class EventLog {
 
   /// The stored events as lines; a last line per truncated kind gives the number of omitted events.
   std::string text(Stamp first_stamp) const;
-  /// Writes the stored events, and from now on each as it comes: none is stored or omitted any
-  /// more. Throws OutputError, as add() does from then on.
+  /// Writes the stored events now and all later ones at once; from then on none is stored or
+  /// omitted. Throws OutputError, as add() does from then on.
   void writeTo(const std::string& path, Stamp first_stamp);
   bool isWritten() const { return file_.has_value(); }
   /// Completes the file of writeTo(). Throws OutputError.

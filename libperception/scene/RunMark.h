@@ -5,10 +5,10 @@
 
 namespace perception {
 
-/// What a product of a run (picture, film, page, scene file) says of which run it is, as text that
-/// any reader of its bytes finds: "perception run ID", one for each run in it. Where a format has
-/// room for a remark, it stands there: PNG tEXt, JPEG COM, MP4 comment, gzip comment, OctoMap's
-/// lines of "#". Empty ids have none.
+/// The mark by which a product of a run (picture, film, page, scene file) names its run: the text
+/// "perception run ID", once for each run in it, which any reader of the bytes finds. It stands
+/// where the format has room for a remark: PNG tEXt, JPEG COM, MP4 comment, gzip comment, OctoMap's
+/// lines of "#". Empty ids give no mark.
 std::string runMark(const std::vector<std::string>& ids);
 
 /// The ids in the marks of a file's bytes, in order of appearance, each once.
@@ -17,7 +17,7 @@ std::vector<std::string> markedRuns(std::string_view bytes);
 std::vector<std::string> markedRunsOf(const std::string& path);
 
 /// The file's bytes with the mark at its place; unchanged for an empty mark and for formats that
-/// have none. The format is told by its first bytes: PNG, JPEG, gzip, OctoMap.
+/// have no room for it. The first bytes show the format: PNG, JPEG, gzip, OctoMap.
 std::string withMark(std::string bytes, const std::string& mark);
 /// Marks a file that others have written. Throws DataError, OutputError.
 void markFile(const std::string& path, const std::string& mark);

@@ -32,7 +32,7 @@ struct SceneObject {
   std::map<Modality, Stamp> last_hit;                   ///< last measurement of each modality
 };
 
-/// What the safety grid says of the way that the vehicle drives, forward or backward, by its arc.
+/// What the safety grid says about the arc that the vehicle drives, forward or backward.
 struct FreePath {
   double distance = 0;      ///< [m] from the ego origin, seen and free
   double seen = 0;          ///< [m] to which the path was observed
@@ -41,12 +41,12 @@ struct FreePath {
   double safe_speed = 0;    ///< [m/s] from which the vehicle stops within what is seen and free
   bool too_fast = false;    ///< it drives faster than that
   std::uint64_t owner = 0;  ///< id of the object that covers the cell; 0: none
-  /// What the obstacle is known by: occupied cells, the returns of one scan, or a track that covers
-  /// either. Meaningless where the path is free.
+  /// What shows the obstacle: occupied cells, the returns of one scan, or a track that covers
+  /// either of these. It has no meaning if the path is free.
   enum class Cause : std::uint8_t { kGrid, kReturns, kObject };
   Cause cause = Cause::kGrid;
-  std::uint32_t returns = 0;    ///< of the last scan there that count: they spoke for it
-  std::uint32_t overruled = 0;  ///< of these: doubted, but for no cause that holds here
+  std::uint32_t returns = 0;    ///< number of the last scan's returns that count for it
+  std::uint32_t overruled = 0;  ///< of these: doubted, but without a cause here
 };
 
 /// The objects around the vehicle at one instant: the output of a run.

@@ -20,7 +20,7 @@ class ReadAhead final : public ObservationInput {
   explicit ReadAhead(std::unique_ptr<ObservationInput> input);
   ~ReadAhead() override;
 
-  /// Throws what the input throws, after the observations before it.
+  /// Throws what the input throws, after all observations that precede it.
   std::shared_ptr<mrpt::obs::CObservation> next() override;
 
   bool isComplete() const override { return at_.complete; }

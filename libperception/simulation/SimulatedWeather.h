@@ -14,7 +14,7 @@ class World;
 struct SensorParams;
 struct CameraView;
 
-/// What a lidar return comes from where it is no surface.
+/// The cause of a lidar return that does not come from a surface.
 enum class Phantom : std::uint8_t {
   kNone,
   kRain,

@@ -90,7 +90,7 @@ struct Track {
   Stamp last_in_view;         ///< last scan in whose field of view it was
   Stamp last_lane;            ///< last update by the lane prior; 0 = never
   double existence = 0;       ///< probability that its detections have a cause that goes on
-  /// Probability that this cause is no object but a phantom in a wake, given existence.
+  /// Probability that this cause is a phantom in a wake and not an object, given existence.
   double phantom = 0;
   Bank bank;  ///< one filter a class
   ClassId decided_class =

@@ -7,8 +7,8 @@
 
 namespace perception {
 
-/// What a recorded image tells of its light (method.md 9.14): no sun whose place is known, no haze,
-/// and an ambient light so that the horizon is as bright as a white surface would be.
+/// The light of a recorded image (method.md 9.14): no sun, since its place is not known, no haze,
+/// and an ambient light in which a white surface would be as bright as the horizon.
 Lighting recordedLight(const std::vector<Eigen::Vector3f>& linear);
 
 /// A recorded image in the weather. `view`: camera, pose and velocity; its light, values and ranges
