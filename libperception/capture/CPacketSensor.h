@@ -23,7 +23,8 @@ class CPacketSensor : public mrpt::hwdrivers::CGenericSensor, public LedgerSourc
 
  public:
   ~CPacketSensor() override;
-  /// Throws ConfigError, DataError, Error (kUnavailable) if port or interface cannot be had.
+  /// Throws ConfigError, DataError, Error (kUnavailable) if the port or the interface cannot be
+  /// opened.
   void initialize() override;
   void doProcess() override;
 

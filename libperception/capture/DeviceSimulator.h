@@ -28,12 +28,14 @@ struct SentLedger {
   std::uint64_t torn = 0;      ///< sent without their end
   std::uint64_t resent = 0;    ///< of these sent once more, whole: the last packet, 0 or 1
   std::uint64_t sent = 0;      ///< packets, of those sent twice both
-  /// Which ones came not whole: dropped and torn ones, the first packet is 0.
+  /// Numbers of the packets that did not arrive whole: dropped and torn ones. The first packet is
+  /// 0.
   std::vector<std::uint64_t> missing;
 };
 
 /// A device simulator: sends packets of a feed when they are due. The first packet and the last one
-/// are sent whole, this one late: no receiver can tell what was lost before or after all it got.
+/// are always sent whole, and the last one late, since no receiver can know what was lost before
+/// its first or after its last packet.
 class DeviceSimulator {
  public:
   DeviceSimulator(std::unique_ptr<PacketFeed> feed, std::unique_ptr<PacketSink> sink,
@@ -47,7 +49,7 @@ class DeviceSimulator {
   void stop();
   bool ended() const { return ended_; }
   const SentLedger& ledger() const { return ledger_; }  ///< after stop() or ended()
-  /// Why it ended before its time, or what it could not send; empty: nothing. After stop() or
+  /// Why it ended early, or what it could not send; empty if all is well. Call after stop() or
   /// ended().
   const std::string& fault() const { return fault_; }
 

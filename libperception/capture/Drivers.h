@@ -10,7 +10,7 @@
 namespace perception {
 
 /// The sensors of an INI of MRPT's rawlog-grabber: every section with a `driver` is one. Each is
-/// asked in a thread of its own, so that one that hangs or fails costs nothing but itself.
+/// asked in a thread of its own, so that a driver that hangs or fails does not disturb the others.
 class Drivers {
  public:
   /// An observation as it came.
@@ -31,12 +31,12 @@ class Drivers {
   /// [sensorLabel] of the section.
   std::string label(std::size_t i) const { return drivers_[i]->getSensorLabel(); }
 
-  /// What came since the last call, in order of arrival; waits up to `wait` for the first.
+  /// Observations since the last call, in order of arrival; waits up to `wait` for the first one.
   std::vector<Arrival> take(std::chrono::milliseconds wait);
-  /// Ends the drivers: what is under way is received first, and left for a last take(). A driver
-  /// that does not return within two seconds is left alone.
+  /// Ends the drivers. Data that are under way are received first, and a last take() returns them.
+  /// A driver that does not return within two seconds is left alone.
   void end();
-  /// Whether the driver's thread has ended: only then may it be asked what it knows.
+  /// Whether the driver's thread has ended. Only then may its ledger be read.
   bool isOver(std::size_t i) const;
   /// Drivers that failed or did not return, a line each.
   std::vector<std::string> faults() const;

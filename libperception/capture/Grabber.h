@@ -21,8 +21,8 @@
 
 namespace perception {
 
-/// Text of the stamped comments that are made while no sensor has anything to say: they let the
-/// time of a stream go on, and are recorded as well, so that the record is what was streamed.
+/// Text of the stamped comments that are written while no sensor sends anything. They let the time
+/// of a stream go on. They are recorded as well, so that the record equals the stream.
 inline constexpr const char* kClockText = "clock: no sensor has anything to say";
 
 /// Where a capture goes; at least one.
@@ -36,7 +36,8 @@ struct GrabberOutputs {
 struct SensorLedger {
   std::uint64_t written = 0;  ///< observations
   std::uint64_t late = 0;     ///< of these, stamped before the sensor's one before
-  /// Not recorded, as the disk was too slow ([global] queue_mb), and which ones.
+  /// Observations that were not recorded since the disk was too slow ([global] queue_mb), and which
+  /// ones.
   std::uint64_t left_out = 0;
   std::vector<std::int64_t> left_out_stamps;  ///< [ns] since 1970
 };

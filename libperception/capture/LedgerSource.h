@@ -14,12 +14,13 @@ class DeviceSimulator;
 class LedgerSource {
  public:
   virtual ~LedgerSource() = default;
-  /// Receives what is under way, then no more; the last frame is output with the next doProcess().
+  /// Receives the data that are under way, and nothing after that. The next doProcess() outputs the
+  /// last frame.
   virtual void endCapture() = 0;
   virtual PacketLedger packets() const = 0;
   virtual std::vector<std::string> lostPackets() const = 0;
   virtual std::vector<std::string> warnings() const = 0;
-  /// Packets that came from another sender than the device, and were refused.
+  /// Packets that were refused since they came from another sender than the device.
   virtual std::uint64_t refused() const { return 0; }
   /// Packets that the kernel had no room for.
   virtual std::uint64_t overrun() const { return 0; }

@@ -14,20 +14,20 @@ namespace perception {
 /// [bytes] of an observation, roughly: its points, packets or pixels.
 std::uint64_t sizeInMemory(const mrpt::obs::CObservation& observation);
 
-/// Where a capture's observations go, in a thread of its own: a log, a stream. One that is slow
-/// does not hold up the sensors or another one.
+/// Where a capture's observations go, in a thread of its own: a log, a stream. A slow outlet delays
+/// neither the sensors nor other outlets.
 class Outlet {
  public:
   struct Params {
-    /// Most observations that wait; of more, the oldest one of the sensor with most waiting is left
-    /// out. 0: no limit, nothing is left out.
+    /// Largest number of observations that wait. Beyond it, the oldest one of the sensor that has
+    /// most waiting is left out. 0: no limit.
     std::size_t limit = 0;
     /// Takes one; `dropped`: left out so far.
     std::function<void(const Drivers::Arrival& arrival, std::uint64_t dropped)> take;
     std::function<void()> tend;  ///< called about once a second; may be empty
     /// The same limit in bytes, as sizeInMemory(), and by bytes of the sensors; 0: none.
     std::uint64_t most_bytes = 0;
-    /// Told what is left out, from the thread that puts; may be empty.
+    /// Called with each observation that is left out, from the thread that puts; may be empty.
     std::function<void(const Drivers::Arrival& arrival)> left_out;
   };
 

@@ -6,11 +6,11 @@
 
 namespace perception {
 
-/// Where a device simulator's packets go: on this computer, nowhere else.
+/// Where a device simulator's packets go. They never leave this computer.
 class PacketSink {
  public:
   virtual ~PacketSink() = default;
-  /// Waits until there is a receiver, or `stop`. False: there is none.
+  /// Waits until there is a receiver or `stop` is set. False: there is no receiver.
   virtual bool ready(const std::atomic<bool>& stop) = 0;
   /// Whether it was sent whole.
   virtual bool send(const std::string& payload) = 0;

@@ -7,8 +7,8 @@
 
 namespace perception {
 
-/// Lets packets of one sender pass: two devices on one port would give scans of both. Another one
-/// is heard once the first is silent.
+/// Lets the packets of one sender pass, since two devices on one port would be mixed into one scan.
+/// Another sender is accepted once the first one is silent.
 class SenderGuard {
  public:
   static constexpr double kSilence = 1;  ///< [s]

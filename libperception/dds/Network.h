@@ -28,8 +28,9 @@ class Network {
   Network& operator=(const Network&) = delete;
 
   enum class History { kNewest, kLatched };
-  /// Reliable, the last 50 messages kept for who is slow (kLatched: the last, for who comes late,
-  /// too). Entities of Cyclone DDS, which live as long as this. Throws Error (kUnavailable).
+  /// Reliable: the last 50 messages are kept for slow readers, and with kLatched the last one also
+  /// for readers that join late. Entities of Cyclone DDS, which live as long as this. Throws Error
+  /// (kUnavailable).
   int writer(const dds_topic_descriptor& type, const std::string& topic,
              History history = History::kNewest);
   int reader(const dds_topic_descriptor& type, const std::string& topic,

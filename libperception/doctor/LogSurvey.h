@@ -86,8 +86,8 @@ class LogSurvey {
   const std::map<std::string, std::uint64_t>& motion() const { return motion_; }
   const std::optional<SensorFrame>& sample() const { return sample_; }  ///< a scan, for pictures
   std::uint64_t poseFaults() const { return pose_faults_; }  ///< not finite or without stamp
-  /// Poses that mountings and clocks are compared with, as [ego] takes them: EGO_POSE, or the
-  /// first label; null in a log without.
+  /// Poses with which mountings and clocks are compared, chosen as [ego] does: EGO_POSE, or the
+  /// first label; null if the log has none.
   const std::vector<EgoState>* referencePoses() const;
   /// Mounting and clock of a lidar, radar or camera against these poses.
   std::optional<MotionCheck> motionCheck(const SensorFacts& facts) const;

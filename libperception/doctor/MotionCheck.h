@@ -8,8 +8,8 @@
 
 namespace perception {
 
-/// What a sensor's own motion says of its mounting and clock, as the log has them, against the
-/// poses: error = the log's minus the true one (method.md 8.13).
+/// Errors of a sensor's mounting and clock in the log, from its own motion compared with the poses:
+/// the log's value minus the true one (method.md 8.13).
 struct MotionCheck {
   struct Value {
     double error = 0, sigma = 0;

@@ -35,8 +35,9 @@ struct Refusal {
   std::string reason;
 };
 
-/// A Host that is a name other than this machine's is refused: a page of another site whose name
-/// was turned to our address (DNS rebinding). An Origin must be our own page or one of the rules.
+/// A Host that is another name than this machine's is refused: it may be a page of another site
+/// whose name now leads to our address (DNS rebinding). An Origin must be our own page or one of
+/// the rules.
 std::optional<Refusal> refusalOf(const AccessRules& rules, const AccessRequest& request);
 
 /// "/path" of "/path?query".

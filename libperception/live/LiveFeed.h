@@ -18,7 +18,7 @@
 
 namespace perception {
 
-/// What is shown of a run at an instant; handed from the tracker to the server.
+/// What is shown of a run at one instant. The tracker hands it to the server.
 struct LiveBatch {
   struct Event {
     std::optional<Stamp> stamp;
@@ -41,8 +41,8 @@ struct LiveBatch {
 class LiveComposer;
 
 /// Shows a run as it goes on. It is called by the tracker's thread, copies what is shown and
-/// returns; messages are made on the server's thread. Where that falls behind, a newer scene
-/// replaces the one that waits, and without clients nothing is copied.
+/// returns; messages are made on the server's thread. If that thread falls behind, a newer scene
+/// replaces the one that waits. Without clients nothing is copied.
 class LiveFeed final : public PipelineObserver {
  public:
   struct Facts {

@@ -53,10 +53,11 @@ class LiveServer {
 
   std::uint16_t port() const;
   std::string url() const;  ///< of the page, without token
-  /// Whether anybody looks on: a page, or a subscriber. Any thread, without waiting.
+  /// Whether there is a viewer: a page or a subscriber. Any thread may call; the call does not
+  /// wait.
   bool hasPages() const;
   bool hasSubscribers() const;
-  /// Runs `work` on the server's thread, where alone the next four may be called.
+  /// Runs `work` on the server's thread. The next four may be called only there.
   void post(std::function<void()> work);
 
   /// Sent to each page that connects from now on.
@@ -68,7 +69,7 @@ class LiveServer {
   void send(std::uint32_t channel, const std::string& slot, Stamp stamp,
             std::shared_ptr<const std::string> payload);
 
-  /// Sends what waits, at most for half a second, and closes. Twice is once.
+  /// Sends what waits, for half a second at most, and closes. A second call has no effect.
   void finish();
   LiveTotals totals() const;  ///< after finish()
 

@@ -16,10 +16,10 @@ struct LiveMessage {
   bool binary = false;
 };
 
-/// What waits for a client: of each slot the newest message, in the place of the one that it
-/// replaces, so that each slot has its turn; of those without a slot
-/// all, as far as the bounds allow; beyond them the oldest is dropped. So a client that reads
-/// slowly gets the newest scene and costs no more memory.
+/// Messages that wait for a client. Of each slot only the newest one waits, at the place of the one
+/// that it replaces, so that each slot has its turn. Messages without a slot all wait, up to the
+/// bounds; beyond them the oldest is dropped. A slow client thus gets the newest scene, and its
+/// memory is bounded.
 class Outbox {
  public:
   struct Bounds {

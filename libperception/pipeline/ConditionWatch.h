@@ -12,8 +12,8 @@
 
 namespace perception {
 
-/// Learns the clutter of every sensor in use from what became of its measurements, and gives the
-/// models of scans the conditions that they are taken in. Indices refer to `sensors`, which must
+/// Learns the clutter of every sensor in use from what became of its measurements, and puts the
+/// conditions under which a scan was taken into its model. Indices refer to `sensors`, which must
 /// outlive this, as must `weather`.
 class ConditionWatch {
  public:
@@ -23,8 +23,8 @@ class ConditionWatch {
   /// SensorHealth::seenShare(), for cameras in bad weather. Returns the share that was used.
   double apply(std::size_t sensor, MeasurementScan& scan, double seen_share = 1) const;
   /// The scan after that, processed by the filter as its scan number `index`. Which of its
-  /// measurements were clutter is known half a second later: those that started no object that was
-  /// seen again, and were none's (method.md 5.18).
+  /// measurements were clutter is known half a second later: those that belonged to no object and
+  /// started none that was seen again (method.md 5.18).
   void add(std::size_t sensor, const MeasurementScan& scan, const CRbpfTracker& tracker,
            std::uint64_t index);
   std::shared_ptr<const ClutterMap> clutter(std::size_t sensor) const {

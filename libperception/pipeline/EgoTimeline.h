@@ -10,8 +10,8 @@
 
 namespace perception {
 
-/// Ego state at the stamps of frames, also where poses are missing: before the first one, in gaps,
-/// in logs without poses (method.md 1.4). Reports gaps as events.
+/// Ego state at the stamps of frames, also if poses are missing: before the first one, in gaps, in
+/// logs without poses (method.md 1.4). Reports gaps as events.
 class EgoTimeline {
  public:
   EgoTimeline(const EgoPoseParams& params, EventLog& events)

@@ -15,14 +15,15 @@ std::string sha256OfText(const std::string& text);
 
 class Sha256;
 
-/// sha256OfFile() of a file that is read anyway, from the same reading.
+/// sha256OfFile() of a file that is read anyway, without reading it twice.
 class FileHash {
  public:
   FileHash();
   ~FileHash();
   /// The next bytes of the file, from its first one on.
   void add(const unsigned char* bytes, std::size_t count);
-  /// Reads what was not added: whoever reads a damaged log stops early. Once. Throws DataError.
+  /// Reads the rest of the file, since the reader of a damaged log stops early. Call it once.
+  /// Throws DataError.
   std::string finish(const std::string& path);
 
  private:
@@ -33,7 +34,7 @@ class FileHash {
 /// SHA-256 of everything besides the log that determines the results of a run: the effective INI,
 /// the files that it names, and the version of the program. Throws DataError.
 std::string configurationHash(const std::string& effective_ini, const std::string& version);
-/// SHA-256 of all that the results are a function of, from sha256OfFile() of the log and
+/// SHA-256 of everything that determines the results, from sha256OfFile() of the log and
 /// configurationHash().
 std::string hashOfRun(const std::string& log_sha256, const std::string& configuration_hash);
 
@@ -47,9 +48,9 @@ std::string idOfRun(const RunRecord& record);
 /// runMark() of the runs in these folders; those that did not finish have no id. Throws DataError.
 std::string markOfRuns(const std::vector<std::string>& dirs);
 
-/// Results in `dir` of earlier programs on the run there, relative: tables, page, pictures, film,
-/// evaluation, and under whatever name what carries the run's id; not those in folders of other
-/// runs inside. They would be taken as those of the next run.
+/// Results of other programs about the run in `dir`, as relative paths: tables, page, pictures,
+/// film, evaluation, and every file that carries the run's id. Folders of other runs inside are
+/// left out. These files would be taken for results of the next run.
 std::vector<std::string> productsIn(const std::string& dir);
 
 }  // namespace perception

@@ -25,7 +25,7 @@ class FrameQueue {
   explicit FrameQueue(Params params) : params_(params) {}
 
   Verdict push(SensorFrame frame);
-  /// Advances the time to `stamp`, as entries of the log other than frames do.
+  /// Advances the time to `stamp`, for entries of the log that are not frames.
   void advance(Stamp stamp);
   /// All frames of the oldest stamp once its window has passed; with `flush` at once. Empty: none.
   std::vector<SensorFrame> pop(bool flush);

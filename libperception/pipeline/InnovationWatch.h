@@ -10,7 +10,7 @@
 
 namespace perception {
 
-/// How the innovations of one sensor and class keep to their covariances (method.md 11.3).
+/// How well the innovations of one sensor and class agree with their covariances (method.md 11.3).
 struct InnovationSums {
   std::uint64_t updates = 0;     ///< measurements that updated a track
   std::uint64_t axes = 0;        ///< of all these

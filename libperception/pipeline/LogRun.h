@@ -30,8 +30,8 @@ class LogRun {
   /// Throws OutputError or Error for the folder.
   LogRun(const PipelineSetup& setup, LogRunFiles files, std::unique_ptr<ObservationInput> input);
 
-  /// Looks on from now on, also at the weather and, by EventLog::Listener, at events. Before
-  /// read(); not owned; outlives read().
+  /// Lets an observer see the run, including the weather and, by EventLog::Listener, events. Call
+  /// before read(). The observer is not owned and must outlive read().
   void watch(PipelineObserver& observer, EventLog::Listener events);
   /// Processes the log to its end; `keep` is called with each scene.
   void read(const std::function<void(const Scene&)>& keep);
@@ -48,7 +48,8 @@ class LogRun {
   std::optional<Stamp> firstStamp() const { return pipeline_.firstStamp(); }
   const SafetyGrid* grid() const { return pipeline_.grid(); }
   bool simulated() const { return facts_.simulated; }
-  /// [s] since the observation came that the scene waited for; empty: of a log.
+  /// [s] between the arrival of the observation that the scene waited for and the scene; empty for
+  /// a log.
   std::optional<double> latency() const { return latency_; }
   const RunTiming& timing() const { return timing_; }
   double wallSeconds() const { return timing_.wallSeconds(); }
@@ -80,8 +81,7 @@ class LogRun {
   std::optional<WeatherFile> weather_;
   std::optional<LedgerFile> ledger_;
   std::optional<KittiExport> kitti_;
-  /// When sensor data of an instant came, of sensors at work; the newest five
-  /// seconds.
+  /// In a live run, when the sensor data of an instant arrived; the last five seconds.
   std::map<Stamp, std::chrono::steady_clock::time_point> arrivals_;
   std::optional<double> latency_;        ///< [s] of the last scene
   PipelineObserver* watcher_ = nullptr;  ///< of watch()

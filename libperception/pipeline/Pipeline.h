@@ -39,7 +39,8 @@ class PipelineObserver {
   virtual void onScene(const EgoState& ego, std::int64_t frame) { (void)ego, (void)frame; }
   /// A lidar scan's weather; from passLog() and LogRun.
   virtual void onWeather(const WeatherRow& row) { (void)row; }
-  /// The scene as it goes out; with [run] output_lag later than its instant.
+  /// Called with each scene when it is output; with [run] output_lag, that is later than its
+  /// instant.
   virtual void onOutput(const Scene& scene) { (void)scene; }
   virtual void onRestart() {}  ///< all tracks are deleted
 };
@@ -75,7 +76,8 @@ class Pipeline {
   std::vector<LedgerRow> takeLedger() { return ledger_.take(); }
   const InnovationWatch::Sums& innovations() const { return innovations_.sums(); }
   std::uint64_t objects() const { return scenes_.objectsSoFar(); }
-  /// Ids that may be in a scene to come, beside new ones. Forgets all others: memory of a long run.
+  /// Ids that may be in a later scene, besides new ones. Forgets all others, to bound the memory of
+  /// a long run.
   std::set<std::uint64_t> livingObjects();
 
  private:

@@ -6,8 +6,8 @@
 
 namespace perception {
 
-/// Heights of the ground ahead of one scan, in cells of 1 m of the ego frame: one ground return a
-/// cell. What a lane needs to know of hills.
+/// Heights of the ground ahead of one scan, in cells of 1 m of the ego frame: one ground return per
+/// cell. Lanes need it for hills.
 class RoadHeights {
  public:
   /// `backward`: the way behind is looked at.

@@ -38,16 +38,17 @@ class SensorDoubt {
     if (!usual_) usual_ = clutter;
   }
 
-  /// Log probability that a healthy sensor has been silent for so long: the log-likelihood ratio
-  /// against a blind one, from which silence is certain, since its last measurement.
+  /// Log probability that a healthy sensor has been silent since its last measurement. It is the
+  /// log-likelihood ratio against a blind sensor, whose silence is certain.
   double logSilence() const;
-  /// (0, 1] share of the expected detections that came in the last ten seconds, from that of a
-  /// sensor in bad weather (method.md 4.8).
+  /// (0, 1] share of the expected detections that arrived in the last ten seconds, down to the
+  /// share of a sensor in bad weather (method.md 4.8).
   double seenShare() const;
   /// Log-likelihood ratio that the sensor misses more than half of what it should see, since the
   /// instant at which this is most likely.
   double fouled() const { return fouled_; }
-  /// [rad] mean error of the bearings of the last seconds where it is beyond chance; else empty.
+  /// [rad] mean error of the bearings of the last seconds if it is larger than chance explains;
+  /// else empty.
   std::optional<double> offset(Stamp now) const;
 
  private:

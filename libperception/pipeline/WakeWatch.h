@@ -9,8 +9,8 @@
 
 namespace perception {
 
-/// Keeps the wakes of the vehicles that are tracked, and learns of each lidar how many phantoms
-/// are in them: from the clusters that their shape tells (method.md 5.19). Indices refer to
+/// Keeps the wakes of the tracked vehicles, and learns for each lidar how many phantoms are in
+/// them, from clusters that are classified by their shape (method.md 5.19). Indices refer to
 /// `sensors`; it and `classes` must outlive this.
 class WakeWatch {
  public:

@@ -20,8 +20,8 @@ struct WeatherRow {
   TrustStats trust;
 };
 
-/// The weather by all lidars whose returns are weighed ([weather] filter = trust): estimates it
-/// with each and reports changes of its type.
+/// Estimates the weather with every lidar whose returns are weighed ([weather] filter = trust), and
+/// reports changes of its type.
 class WeatherWatch {
  public:
   explicit WeatherWatch(EventLog& events) : events_(events) {}
