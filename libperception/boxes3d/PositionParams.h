@@ -33,7 +33,7 @@ struct PositionParams {
   double score_limit = 6;  ///< bound of that logarithm (method.md (52), assumed)
   /// Classes whose boxes have the scores of clutter (method.md 8.9, assumed).
   std::vector<std::string> clutter_like{"static-other"};
-  /// Weight of that logarithm for classes that the label does not name: a pedestrian whom the
+  /// Weight of that logarithm for classes that the label does not name: a pedestrian that the
   /// detector also labels cyclist has a low score as cyclist (method.md 8.9, assumed).
   double off_label_score_weight = 0.5;
   /// [m] boxes of different labels closer than this are of one object, of which the most probable

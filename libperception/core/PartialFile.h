@@ -6,7 +6,7 @@
 namespace perception {
 
 /// A file that has its name once it is complete: written as path(), renamed by commit(), removed
-/// without it. Where the name is one of a device or pipe, that is written to directly.
+/// without it. If the name is that of a device or a pipe, this writes to it directly.
 class PartialFile {
  public:
   explicit PartialFile(const std::string& name);

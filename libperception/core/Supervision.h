@@ -25,8 +25,8 @@ struct SupervisionRecord {
   static void set(SupervisionRecord* record);
 };
 
-/// While it lives, data of others are parsed by a library that may crash, hang or end the process
-/// on them. One at a time; those inside another have no effect. One thread.
+/// Marks that a library is parsing foreign data, on which it may crash, hang or end the process.
+/// One counts at a time: those inside another have no effect. For one thread.
 class ReadingScope {
  public:
   explicit ReadingScope(const std::string& path, std::uint64_t position = 0);

@@ -10,7 +10,7 @@
 
 namespace perception {
 
-/// One instant for the figures of identities: what was there, what was put out, how near.
+/// One instant for the figures of identities: the true objects, the outputs, and how near they are.
 struct IdentityView {
   struct Pair {
     std::size_t truth, estimate;  ///< places in the vectors

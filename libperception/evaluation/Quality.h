@@ -16,7 +16,7 @@ inline constexpr std::size_t kTrueErrors = 7;
 /// Name and unit of each, for reports.
 const char* nameOf(TrueError error);
 
-/// Figures of a run that need no truth (method.md 11.3). Larger is worse, of all.
+/// Figures of a run that need no truth (method.md 11.3). For all of them, larger is worse.
 struct QualityKind {
   const char* name;
   const char* unit;

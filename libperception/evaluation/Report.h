@@ -45,8 +45,8 @@ struct EvaluationReport {
   std::vector<std::string> plots;       ///< paths relative to the report, for Markdown
 };
 
-/// Whether some run of the report may be of a weather for which `has` holds; of unknown weathers
-/// that is so. A row of [radecki2016] of another weather must not stand beside the runs.
+/// Whether some run of the report may be of a weather for which `has` holds; runs of unknown
+/// weather may be. A row of [radecki2016] of another weather must not stand beside the runs.
 bool anyRunOfWeather(const EvaluationReport& report,
                      const std::function<bool(const std::string& weather)>& has);
 /// Removes the rows of [radecki2016] of weathers that no run is of; returns the tables' names.

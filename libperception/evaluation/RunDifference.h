@@ -51,8 +51,8 @@ struct IdentityDifference {
   std::size_t classes_apart = 0;  ///< of them, with different most probable classes
   std::size_t values_apart = 0;   ///< of them, with any value of tracks.csv different but the id
   double distance_rms = 0;        ///< [m] of the centers, over the instants together
-  /// Instants at which they differ: one of them is there without the other in reach, matched with
-  /// another, or of another class; of one alone: all its instants.
+  /// Instants at which the two differ: only one of them is there, it is matched with another
+  /// object, or its class is another. For an identity without a counterpart, all its instants.
   std::size_t apart = 0;
 };
 

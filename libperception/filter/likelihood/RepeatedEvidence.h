@@ -10,7 +10,7 @@
 
 namespace perception {
 
-/// What a sensor whose errors repeat says of a track's class at one time.
+/// Evidence of a track's class at one instant, from a sensor whose errors repeat.
 struct Look {
   const EvidenceMemory* memory = nullptr;  ///< never null
   EvidenceView view;
@@ -32,9 +32,9 @@ ClassValues detectionAtBirth(const Measurement& m, const MeasurementScan& scan,
 std::optional<Look> lookAtBirth(const Track& track, const Measurement& m,
                                 const MeasurementScan& scan, const FilterModel& model);
 
-/// What a look adds to the evidence of a track's class by a sensor whose errors repeat
-/// (method.md 5.6): the evidence of all looks is their mean times the number of independent ones
-/// that they are worth; what it was before is taken back, so that each counts once.
+/// What a look adds to the evidence of a track's class by a sensor whose errors repeat (method.md
+/// 5.6): the evidence of all looks is their mean times the number of independent ones that they are
+/// worth; the former total is taken back, so that each look counts once.
 class RepeatedEvidence {
  public:
   /// `epsilon`: floor of class probabilities; totals are limited to what it lets in, so that no
