@@ -69,6 +69,7 @@ test_packages=(
   python3-numpy          # the module perception, the reader of runs in apps/perception-export
   python3-scipy          # the second implementation of AMOTA and AMOTP: tests/bench/tracking_benchmark.py
   mypy                   # type hints of the module
+  python3-nbclient python3-ipykernel python3-matplotlib  # the notebook and the pictures of examples/python
   chromium               # pages of a run and of a batch are opened, clicked and read
   locales                # definition of a locale with decimal comma: it must not change a byte
 )

@@ -1,7 +1,9 @@
 # The module perception of Debian's own Python: build/python/perception, with PYTHONPATH=build/python.
 find_program(PERCEPTION_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 set(PYBIND11_FINDPYTHON ON)
-set(Python_EXECUTABLE ${PERCEPTION_PYTHON})
+if(NOT SKBUILD)  # pip (pyproject.toml) builds for the Python that runs it
+  set(Python_EXECUTABLE ${PERCEPTION_PYTHON})
+endif()
 find_package(Python QUIET COMPONENTS Interpreter Development.Module)
 if(Python_FOUND)
   find_package(pybind11 QUIET)
@@ -31,6 +33,11 @@ add_custom_target(perception_python_parts ALL DEPENDS ${PYTHON_FOLDER}/copied)
 add_dependencies(perception_python perception_python_parts)
 
 math(EXPR AFTER_PYTHON "${Python_VERSION_MINOR} + 1")  # a module of one version is of no use to the next
-set(PYTHON_DIR lib/python3/dist-packages/perception)
+if(SKBUILD)  # a wheel: the INIs come with it, to PREFIX/share/perception
+  set(PYTHON_DIR perception)
+  install(DIRECTORY ini DESTINATION ${SKBUILD_DATA_DIR}/share/perception COMPONENT python)
+else()
+  set(PYTHON_DIR lib/python3/dist-packages/perception)
+endif()
 install(TARGETS perception_python LIBRARY DESTINATION ${PYTHON_DIR} COMPONENT python)
 install(FILES ${PARTS} DESTINATION ${PYTHON_DIR} COMPONENT python)

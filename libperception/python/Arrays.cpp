@@ -19,6 +19,8 @@ constexpr double kRotationError = 1e-3;
 constexpr double kLatestSecond = 9e9;
 /// [ns] Whole numbers below are no nanoseconds of a recording: 1970-01-12.
 constexpr std::int64_t kFirstNanoseconds = 1'000'000'000'000'000;
+/// [s] No scan lasts longer; assumed: a lidar turns in a twentieth to a second.
+constexpr double kLongestScan = 10;
 
 std::string shapeOf(const py::array& array) {
   std::string text;
@@ -96,6 +98,25 @@ std::vector<Number> columnOf(const py::object& object, const char* what, std::si
   }
 }
 
+/// Absolute times in place of times after the stamp would be silently absurd.
+void checkTimes(const std::vector<float>& times) {
+  for (const float time : times) {
+    if (std::abs(time) > kLongestScan)
+      throw DataError(fmt::format(
+          "time: {} s after the stamp is none of a scan; expected seconds after the stamp, of "
+          "absolute times (time - stamp), of nanoseconds 1e-9 * time",
+          time));
+  }
+}
+
+Stamp notZero(Stamp stamp) {
+  if (stamp.ns == 0)
+    throw DataError(
+        "stamp: 0 is no time (logs have it where there is none); where time starts at 0, add an "
+        "offset to all stamps, as 1e9 + k / 10");
+  return stamp;
+}
+
 }  // namespace
 
 Stamp stampOf(const py::handle& stamp) {
@@ -106,7 +127,8 @@ Stamp stampOf(const py::handle& stamp) {
   if (kind == "f" && py::cast<int>(stamp.attr("dtype").attr("itemsize")) < 8)
     throw DataError("stamp: a float of less than 64 bits does not hold seconds since 1970");
   if (kind == "M")
-    return {py::cast<std::int64_t>(stamp.attr("astype")("datetime64[ns]").attr("astype")("int64"))};
+    return notZero(
+        {py::cast<std::int64_t>(stamp.attr("astype")("datetime64[ns]").attr("astype")("int64"))});
   if (!py::hasattr(stamp, "__index__")) {
     if (!py::hasattr(stamp, "__float__"))
       throw DataError(
@@ -114,7 +136,7 @@ Stamp stampOf(const py::handle& stamp) {
     const double seconds = py::cast<double>(stamp.attr("__float__")());
     if (!std::isfinite(seconds) || std::abs(seconds) > kLatestSecond)
       throw DataError(fmt::format("stamp: {} s is no time since 1970", seconds));
-    return Stamp::fromSeconds(seconds);
+    return notZero(Stamp::fromSeconds(seconds));
   }
   std::int64_t ns = 0;
   try {
@@ -122,7 +144,7 @@ Stamp stampOf(const py::handle& stamp) {
   } catch (const py::cast_error&) {
     throw DataError("stamp: expected nanoseconds of 64 bits");
   }
-  if (ns < kFirstNanoseconds)
+  if (notZero({ns}).ns < kFirstNanoseconds)
     throw DataError(fmt::format(
         "stamp: whole numbers are nanoseconds since 1970, and {} is none of a recording; seconds "
         "are given as float",
@@ -178,6 +200,7 @@ LidarCloud cloudOf(const py::handle& xyz, const ReturnArrays& arrays) {
   cloud.intensity = columnOf<float>(arrays.intensity, "intensity", n);
   cloud.ring = columnOf<std::uint16_t>(arrays.ring, "ring", n);
   cloud.time_offset = columnOf<float>(arrays.time, "time", n);
+  checkTimes(cloud.time_offset);
   cloud.echo = columnOf<std::uint8_t>(arrays.echo, "echo", n);
   cloud.pulse_width = columnOf<float>(arrays.pulse_width, "pulse_width", n);
   cloud.label = columnOf<std::uint8_t>(arrays.label, "label", n);

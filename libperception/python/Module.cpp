@@ -9,8 +9,11 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/Progress.h"
+#include "libperception/python/Callback.h"
+#include "libperception/python/Extensions.h"
 #include "libperception/python/Observations.h"
 #include "libperception/python/Programs.h"
+#include "libperception/python/SceneArrays.h"
 #include "libperception/python/TrackerBinding.h"
 
 namespace perception::python {
@@ -26,6 +29,15 @@ void raiseError(const Error& error) {
   PyErr_SetObject(error_type, raised.ptr());
 }
 
+void rethrowCause(const std::exception_ptr& thrown) {
+  if (!thrown) return;
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const CallbackFailure& failure) {
+    std::rethrow_exception(failure.cause);
+  }
+}
+
 void addErrors(py::module_& module) {
   error_type = PyErr_NewExceptionWithDoc(
       "perception.Error",
@@ -36,9 +48,11 @@ void addErrors(py::module_& module) {
   module.attr("Error") = py::reinterpret_borrow<py::object>(error_type);
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      rethrowCause(thrown);
     } catch (const Error& error) {
       raiseError(error);
+    } catch (py::error_already_set& error) {
+      error.restore();
     }
   });
 }
@@ -60,7 +74,9 @@ int runInterruptible(const std::string& name, const std::vector<std::string>& ar
 PYBIND11_MODULE(_core, module) {
   addErrors(module);
   addObservations(module);
+  addScene(module);
   addTracker(module);
+  addExtensions(module);
   module.def("run_program", &runInterruptible, py::arg("name"), py::arg("arguments"),
              "Runs perception-NAME with these arguments; the number of its warnings.");
   module.attr("__version__") = PERCEPTION_VERSION;

@@ -55,6 +55,7 @@ py::dict fieldsOf(const LidarCloud& cloud) {
   fields["echo"] = arrayOrNone(cloud.echo);
   fields["pulse_width"] = arrayOrNone(cloud.pulse_width);
   fields["label"] = arrayOrNone(cloud.label);
+  fields["trust"] = arrayOrNone(cloud.trust);
   fields["max_range"] = cloud.max_range;
   return fields;
 }
@@ -109,8 +110,7 @@ py::dict fieldsOf(const CameraImage& image) {
 }
 
 py::dict dataOf(const LogObservation& observation) {
-  if (const auto& frame = observation.frame())
-    return std::visit([](const auto& data) { return fieldsOf(data); }, frame->data);
+  if (const auto& frame = observation.frame()) return arraysOf(*frame);
   py::dict fields;
   if (const auto pose = loggedPose(observation.get())) fields["pose"] = matrixOf(pose->T_world_ego);
   if (const auto number = frameNumber(observation.get())) fields["number"] = *number;
@@ -123,12 +123,18 @@ std::int64_t stampNs(const LogObservation& observation) {
 
 }  // namespace
 
+py::dict arraysOf(const SensorFrame& frame) {
+  return std::visit([](const auto& data) { return fieldsOf(data); }, frame.data);
+}
+
+std::string kindOf(const SensorFrame& frame) {
+  constexpr const char* kKinds[] = {"lidar", "boxes", "radar", "image"};
+  return kKinds[frame.data.index()];
+}
+
 std::string LogObservation::kind() const {
   if (isImage(*observation_)) return "image";
-  if (const auto& decoded = frame()) {
-    constexpr const char* kKinds[] = {"lidar", "boxes", "radar", "image"};
-    return kKinds[decoded->data.index()];
-  }
+  if (const auto& decoded = frame()) return kindOf(*decoded);
   if (loggedPose(*observation_)) return "pose";
   return frameNumber(*observation_) ? "frame" : "other";
 }
@@ -169,8 +175,8 @@ void addObservations(py::module_& module) {
       .def_property_readonly("data", &dataOf,
                              "dict of arrays, by kind:\n"
                              "lidar: xyz (n, 3) float32 [m] in the sensor frame, intensity [0, 1], "
-                             "ring, time [s] after the stamp, echo, pulse_width [m], label; those "
-                             "that the log has not are None\n"
+                             "ring, time [s] after the stamp, echo, pulse_width [m], label, trust "
+                             "(P(of a surface), in front ends); those that are not there are None\n"
                              "radar: targets (n, 5): range [m], bearing [rad], range rate [m/s], "
                              "amplitude [dB], elevation [rad]; NaN: not measured\n"
                              "boxes: boxes (n, 7): x, y, z of the bottom's centre, length, width, "

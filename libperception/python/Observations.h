@@ -12,6 +12,11 @@
 
 namespace perception::python {
 
+/// "lidar", "boxes", "radar" or "image".
+std::string kindOf(const SensorFrame& frame);
+/// The data of a frame as Observation.data has them.
+pybind11::dict arraysOf(const SensorFrame& frame);
+
 /// An observation of a log; decoded when its arrays are asked for first.
 class LogObservation {
  public:

@@ -25,4 +25,7 @@ class SceneView {
   std::shared_ptr<const std::vector<std::string>> classes_;
 };
 
+/// Scene of the module.
+void addScene(pybind11::module_& module);
+
 }  // namespace perception::python

@@ -13,6 +13,7 @@
 #include "libperception/scene/RunTiming.h"
 #include "libperception/scene/Scene.h"
 #include "libperception/scene/TrackedRun.h"
+#include "libperception/sensors/EgoPose.h"
 
 namespace perception {
 
@@ -42,6 +43,7 @@ class StreamTracker {
   std::vector<std::string> learned() const;
   std::vector<std::string> classNames() const;
   std::vector<std::string> sensorLabels() const;
+  const EgoPoseParams& ego() const { return pipeline_.setup().ego; }
 
  private:
   void drain(bool end);

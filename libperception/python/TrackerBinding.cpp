@@ -4,15 +4,19 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <cmath>
+#include <array>
 #include <memory>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "libperception/core/Error.h"
 #include "libperception/python/Arrays.h"
+#include "libperception/python/Callback.h"
+#include "libperception/python/Detections.h"
+#include "libperception/python/GeodeticPose.h"
 #include "libperception/python/Observations.h"
 #include "libperception/python/SceneArrays.h"
 #include "libperception/python/StreamTracker.h"
@@ -25,27 +29,56 @@ namespace {
 
 using MaybeScene = std::optional<SceneView>;
 
+/// The place in the arguments of pose().
+struct GeodeticNumbers {
+  std::optional<double> latitude, longitude, height, yaw;
+  double pitch = 0, roll = 0;
+  std::array<double, 3> antenna{};
+
+  bool hasMore() const {
+    return height || yaw || pitch != 0 || roll != 0 || antenna != std::array<double, 3>{};
+  }
+  GeodeticPose poseAt(Stamp stamp, const PoseUncertainty& uncertainty) const {
+    return {stamp,      *latitude, *longitude, height,
+            yaw,        pitch,     roll,       Vector3(antenna[0], antenna[1], antenna[2]),
+            uncertainty};
+  }
+};
+
 /// The tracker of the module: arrays in, scenes out. Python's lock is released while it computes.
 class Tracker {
  public:
   Tracker(const std::string& ini, const std::vector<std::string>& settings,
           const std::string& output)
       : tracker_(ini, settings, output),
+        places_(tracker_.ego()),
         classes_(std::make_shared<std::vector<std::string>>(tracker_.classNames())) {}
 
-  void pose(const py::handle& stamp, const py::handle& T, double sigma_xy, double sigma_yaw,
-            double sigma_pitch) {
-    EgoState ego;
-    ego.stamp = stampOf(stamp);
-    ego.T_world_ego = poseOf(T, "T");
-    if (!(sigma_xy >= 0 && sigma_yaw >= 0 && sigma_pitch >= 0))
+  void pose(const py::handle& stamp, const py::object& T, const GeodeticNumbers& place,
+            const PoseUncertainty& uncertainty) {
+    CallbackScope::refuse();
+    if (!(uncertainty.sigma_xy >= 0 && uncertainty.sigma_yaw >= 0 && uncertainty.sigma_pitch >= 0))
       throw DataError("pose: a standard deviation is negative or NaN");
-    ego.uncertainty = {sigma_xy, sigma_yaw, sigma_pitch};
+    const bool by_place = place.latitude && place.longitude;
+    if (T.is_none() != by_place || place.latitude.has_value() != place.longitude.has_value() ||
+        (!by_place && place.hasMore()))
+      throw Error(ExitCode::kUsage, "pose: expected T, or latitude and longitude");
+    std::shared_ptr<mrpt::obs::CObservation> observation;
+    if (by_place) {
+      observation = places_.observationOf(place.poseAt(stampOf(stamp), uncertainty));
+    } else {
+      EgoState ego;
+      ego.stamp = stampOf(stamp);
+      ego.T_world_ego = poseOf(T, "T");
+      ego.uncertainty = uncertainty;
+      observation = poseObservation(ego);
+    }
     const py::gil_scoped_release others;
-    tracker_.add(*poseObservation(ego));
+    tracker_.add(*observation);
   }
 
   void frame(const py::handle& stamp, std::int64_t number) {
+    CallbackScope::refuse();
     const Stamp at = stampOf(stamp);
     const py::gil_scoped_release others;
     tracker_.add(*frameComment(at, number));
@@ -69,89 +102,39 @@ class Tracker {
     if (z != "bottom" && z != "center")
       throw Error(ExitCode::kUsage, "z: expected 'bottom' or 'center' of the boxes");
     SensorFrame frame = frameOf(sensor, stamp, sensor_pose, {"positions"});
-    const auto rows = numbersOf(boxes, "boxes", 7);
-    ObjectDetections detections;
-    detections.objects = scored(rows.shape(0), scores, labels);
-    const auto cells = rows.unchecked<2>();
-    for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
-      ObjectDetection::SpaceBox box;
-      box.length = cells(i, 3), box.width = cells(i, 4), box.height = cells(i, 5);
-      box.bottom_center = {cells(i, 0), cells(i, 1),
-                           cells(i, 2) - (z == "center" ? box.height / 2 : 0)};
-      box.yaw = cells(i, 6);
-      detections.objects[static_cast<std::size_t>(i)].space_box = box;
-    }
-    frame.data = std::move(detections);
+    frame.data = spaceBoxes(boxes, scores, labels, z == "center", "");
     return addFrame(frame);
   }
 
   MaybeScene imageBoxes(const std::string& sensor, const py::handle& stamp, const py::handle& boxes,
                         const py::handle& scores, const std::vector<std::string>& labels,
-                        const std::tuple<int, int, double, double, double, double>& camera,
-                        const py::object& headings, const py::object& sensor_pose) {
+                        const CameraNumbers& camera, const py::object& headings,
+                        const py::object& sensor_pose) {
     SensorFrame frame = frameOf(sensor, stamp, sensor_pose, {"boxes"});
-    const auto rows = numbersOf(boxes, "boxes", 4);
-    const py::ssize_t n = rows.shape(0);
-    ObjectDetections detections;
-    auto& [width, height, fx, fy, cx, cy] = camera;
-    if (width <= 0 || height <= 0 || !(fx > 0) || !(fy > 0) || !std::isfinite(cx + cy))
-      throw DataError("camera: expected (width, height, fx, fy, cx, cy) in pixels");
-    detections.camera.width = width, detections.camera.height = height;
-    detections.camera.fx = fx, detections.camera.fy = fy;
-    detections.camera.cx = cx, detections.camera.cy = cy;
-    detections.objects = scored(n, scores, labels);
-    const auto cells = rows.unchecked<2>();
-    std::optional<py::array_t<double>> angles;
-    if (!headings.is_none()) angles = numbersOf(headings, "headings", 0, n);
-    for (py::ssize_t i = 0; i < n; ++i) {
-      ObjectDetection& object = detections.objects[static_cast<std::size_t>(i)];
-      object.image_box = {cells(i, 0), cells(i, 1), cells(i, 2), cells(i, 3)};
-      if (angles && !std::isnan(angles->data()[i])) object.heading = angles->data()[i];
-    }
-    frame.data = std::move(detections);
+    frame.data = imageBoxesOf(boxes, scores, labels, camera, headings);
     return addFrame(frame);
   }
 
-  MaybeScene radar(const std::string& sensor, const py::handle& stamp, const py::handle& range,
-                   const py::handle& bearing, const py::object& range_rate,
+  MaybeScene radar(const std::string& sensor, const py::handle& stamp, const py::object& range,
+                   const py::object& bearing, const py::object& range_rate,
                    const py::object& amplitude, const py::object& elevation,
                    const py::object& sensor_pose, double max_range) {
     if (!(max_range >= 0)) throw DataError("max_range: negative or NaN");
     SensorFrame frame = frameOf(sensor, stamp, sensor_pose, {"radar"});
-    const auto ranges = numbersOf(range, "range", 0);
-    const py::ssize_t n = ranges.shape(0);
-    const auto bearings = numbersOf(bearing, "bearing", 0, n);
-    const auto optional = [n](const py::object& array, const char* what) {
-      std::optional<py::array_t<double>> numbers;
-      if (!array.is_none()) numbers = numbersOf(array, what, 0, n);
-      return numbers;
-    };
-    const auto rates = optional(range_rate, "range_rate");
-    const auto amplitudes = optional(amplitude, "amplitude");
-    const auto elevations = optional(elevation, "elevation");
-    RadarReturns returns;
-    returns.max_range = max_range;
-    for (py::ssize_t i = 0; i < n; ++i) {
-      RadarReturn r;
-      r.range = ranges.data()[i], r.bearing = bearings.data()[i];
-      r.has_rate = rates && !std::isnan(rates->data()[i]);
-      if (r.has_rate) r.range_rate = rates->data()[i];
-      if (amplitudes) r.amplitude = amplitudes->data()[i];
-      if (elevations && !std::isnan(elevations->data()[i])) r.elevation = elevations->data()[i];
-      returns.returns.push_back(r);
-    }
-    frame.data = std::move(returns);
+    frame.data = radarReturns({range, bearing, range_rate, amplitude, elevation}, max_range);
     return addFrame(frame);
   }
 
   MaybeScene add(const LogObservation& observation) { return addObservation(observation.get()); }
 
   std::vector<SceneView> pending() {
+    CallbackScope::refuse();
     const py::gil_scoped_release others;
     return views(tracker_.takeAll());
   }
 
   std::vector<SceneView> finish() {
+    CallbackScope::refuse();
     const py::gil_scoped_release others;
     tracker_.finish();
     return views(tracker_.takeAll());
@@ -171,20 +154,6 @@ class Tracker {
     return frame;
   }
 
-  static std::vector<ObjectDetection> scored(py::ssize_t n, const py::handle& scores,
-                                             const std::vector<std::string>& labels) {
-    const auto numbers = numbersOf(scores, "scores", 0, n);
-    if (static_cast<py::ssize_t>(labels.size()) != n)
-      throw DataError("labels: " + std::to_string(labels.size()) + ", expected " +
-                      std::to_string(n) + ", one a box");
-    std::vector<ObjectDetection> objects(labels.size());
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      objects[i].label = labels[i];
-      objects[i].score = numbers.data()[i];
-    }
-    return objects;
-  }
-
   MaybeScene addFrame(const SensorFrame& frame) {
     std::shared_ptr<mrpt::obs::CObservation> observation;
     {
@@ -195,6 +164,7 @@ class Tracker {
   }
 
   MaybeScene addObservation(const mrpt::obs::CObservation& observation) {
+    CallbackScope::refuse();
     const py::gil_scoped_release others;
     tracker_.add(observation);
     auto scene = tracker_.take();
@@ -209,65 +179,38 @@ class Tracker {
   }
 
   StreamTracker tracker_;
+  GeodeticPoses places_;
   std::shared_ptr<const std::vector<std::string>> classes_;
 };
-
-py::object orNone(const SceneView& view, double FreePath::*field) {
-  return view.scene.path ? py::cast((*view.scene.path).*field) : py::none();
-}
-
-py::object orNone(const SceneView& view, bool FreePath::*field) {
-  return view.scene.path ? py::cast((*view.scene.path).*field) : py::none();
-}
-
-void addScene(py::module_& module) {
-  py::class_<SceneView>(module, "Scene", "The objects around the vehicle at one instant.")
-      .def_property_readonly("objects", &SceneView::objects,
-                             "Structured array, one record an object; fields in the type hints. "
-                             "World frame, SI units.")
-      .def_property_readonly("classes", &SceneView::classes,
-                             "Names of the classes, in the order of class_probability")
-      .def_property_readonly(
-          "stamp", [](const SceneView& v) { return v.scene.stamp.seconds(); },
-          "[s] since 1970, to 0.2 us")
-      .def_property_readonly(
-          "stamp_ns", [](const SceneView& v) { return v.scene.stamp.ns; }, "[ns] since 1970, exact")
-      .def_property_readonly(
-          "frame", [](const SceneView& v) { return v.scene.frame; },
-          "The number that Tracker.frame() gave; -1: none")
-      .def_property_readonly(
-          "pose", [](const SceneView& v) { return matrixOf(v.scene.ego.T_world_ego); },
-          "4x4: vehicle to world [m]")
-      .def_property_readonly(
-          "free_distance", [](const SceneView& v) { return orNone(v, &FreePath::distance); },
-          "[m] seen and free on the way ahead; None: no grid, or no lidar scan lately")
-      .def_property_readonly(
-          "stop", [](const SceneView& v) { return orNone(v, &FreePath::stop); },
-          "An obstacle is nearer than the vehicle can stop; None as of free_distance")
-      .def_property_readonly(
-          "safe_speed", [](const SceneView& v) { return orNone(v, &FreePath::safe_speed); },
-          "[m/s] from which the vehicle stops within free_distance; None as of it")
-      .def_property_readonly(
-          "too_fast", [](const SceneView& v) { return orNone(v, &FreePath::too_fast); },
-          "The vehicle drives faster than safe_speed; None as of free_distance")
-      .def("__len__", [](const SceneView& v) { return v.scene.objects.size(); });
-}
 
 }  // namespace
 
 void addTracker(py::module_& module) {
-  addScene(module);
   const py::object none = py::none();
   py::class_<Tracker>(module, "Tracker")
       .def(py::init([](const std::string& ini, const std::vector<std::string>& settings,
                        const std::string& output) {
              const py::gil_scoped_release others;
              registerPerceptionClasses();
+             const std::shared_lock reading(variantsMutex());
              return std::make_unique<Tracker>(ini, settings, output);
            }),
            py::arg("ini"), py::arg("settings"), py::arg("output"))
-      .def("pose", &Tracker::pose, py::arg("stamp"), py::arg("T"), py::kw_only(),
-           py::arg("sigma_xy") = 0.0, py::arg("sigma_yaw") = 0.0, py::arg("sigma_pitch") = 0.0)
+      .def(
+          "pose",
+          [](Tracker& t, const py::handle& stamp, const py::object& T,
+             std::optional<double> latitude, std::optional<double> longitude,
+             std::optional<double> height, std::optional<double> yaw, double pitch, double roll,
+             const std::array<double, 3>& antenna, double sigma_xy, double sigma_yaw,
+             double sigma_pitch) {
+            t.pose(stamp, T, {latitude, longitude, height, yaw, pitch, roll, antenna},
+                   {sigma_xy, sigma_yaw, sigma_pitch});
+          },
+          py::arg("stamp"), py::arg("T") = none, py::kw_only(), py::arg("latitude") = none,
+          py::arg("longitude") = none, py::arg("height") = none, py::arg("yaw") = none,
+          py::arg("pitch") = 0.0, py::arg("roll") = 0.0,
+          py::arg("antenna") = std::array<double, 3>{}, py::arg("sigma_xy") = 0.0,
+          py::arg("sigma_yaw") = 0.0, py::arg("sigma_pitch") = 0.0)
       .def("frame", &Tracker::frame, py::arg("stamp"), py::arg("number"))
       .def("scan", &Tracker::scan, py::arg("sensor"), py::arg("stamp"), py::arg("xyz"),
            py::arg("intensity") = none, py::arg("ring") = none, py::arg("time") = none,
@@ -287,10 +230,18 @@ void addTracker(py::module_& module) {
       .def("pending", &Tracker::pending)
       .def("finish", &Tracker::finish)
       .def(
-          "learned", [](const Tracker& t) { return t.stream().learned(); },
+          "learned",
+          [](const Tracker& t) {
+            CallbackScope::refuse();
+            return t.stream().learned();
+          },
           py::call_guard<py::gil_scoped_release>())
       .def(
-          "event_lines", [](const Tracker& t) { return t.stream().eventLines(); },
+          "event_lines",
+          [](const Tracker& t) {
+            CallbackScope::refuse();
+            return t.stream().eventLines();
+          },
           py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("classes", &Tracker::classes)
       .def_property_readonly("sensors", [](const Tracker& t) { return t.stream().sensorLabels(); });

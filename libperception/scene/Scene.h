@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libperception/core/Kinematics.h"
 #include "libperception/measurement/ObjectClass.h"
 #include "libperception/measurement/SensorFrame.h"
 
@@ -29,7 +30,9 @@ struct SceneObject {
   double speed = 0;                          ///< [m/s] along yaw; negative: reversing
   double length = 0, width = 0, height = 0;  ///< [m]
   double sd_x = 0, sd_y = 0, sd_yaw = 0, sd_speed = 0;  ///< [m, m, rad, m/s] standard deviations
-  std::map<Modality, Stamp> last_hit;                   ///< last measurement of each modality
+  /// Of (x, y, vx, vy) in [m, m/s], world frame: the spread between the classes is part of it.
+  Matrix4 covariance = Matrix4::Zero();
+  std::map<Modality, Stamp> last_hit;  ///< last measurement of each modality
 };
 
 /// What the safety grid says about the arc that the vehicle drives, forward or backward.

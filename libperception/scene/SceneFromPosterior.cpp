@@ -95,6 +95,7 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   const Mixture mixture = mixtureOf(track, model_, o.class_probability);
   o.position << mixture.mean[0], mixture.mean[1], track.base_z.mean;
   o.velocity = mixture.mean.tail<2>();
+  o.covariance = (mixture.covariance + mixture.covariance.transpose()) / 2;
   o.sd_x = std::sqrt(mixture.covariance(0, 0));
   o.sd_y = std::sqrt(mixture.covariance(1, 1));
 

@@ -102,7 +102,7 @@ inline const std::vector<Module>& modules() {
         "boxes3d",  "scene", "grid",   "sensors",    "measurement", "config",     "core"}},
       {"python",
        "the module perception of Python",
-       {"app", "pipeline", "scene", "sensors", "measurement", "core"}},
+       {"app", "pipeline", "scene", "sensors", "boxes3d", "measurement", "config", "core"}},
       {"studies",
        "experiments about the method",
        {"app", "pipeline", "calibration", "simulation", "detectors", "evaluation", "scene",

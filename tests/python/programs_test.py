@@ -49,6 +49,17 @@ class Programs(unittest.TestCase):
             perception.track(LOG, "demo.ini", no_such_option=1)
         self.assertEqual(caught.exception.code, 64)
 
+    def test_options_that_end_a_program_early_are_refused(self):
+        for name in ("help", "info", "print_config", "version"):
+            with self.assertRaisesRegex(perception.Error, f"{name} ends the program before") as caught:
+                perception.track(LOG, "demo.ini", **{name: True})
+            self.assertEqual(caught.exception.code, 64)
+        scenario = os.path.join(SOURCE, "ini", "scenarios", "demo.ini")
+        with self.assertRaisesRegex(perception.Error, "run perception-simulate --contact-sheet"):
+            perception.simulate(scenario, contact_sheet="a.png")
+        with self.assertRaisesRegex(perception.Error, "input is said by an argument"):
+            perception.track(LOG, "demo.ini", input=LOG)
+
 
 class Logs(unittest.TestCase):
     def test_observations_come_as_arrays(self):

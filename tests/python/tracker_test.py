@@ -94,6 +94,22 @@ class Rows(unittest.TestCase):
         np.testing.assert_allclose(distance, run.scenes["free_distance"], atol=6e-3)
         self.assertEqual([s.frame for s in scenes], list(run.scenes["frame"]))
 
+    def test_covariances_are_those_of_the_standard_deviations_and_no_less(self):
+        tracker = perception.Tracker(INI)
+        objects = np.concatenate([s.objects for s in feed(tracker, perception.open(LOG), [])])
+        C = objects["covariance"]
+        self.assertEqual(C.shape, (len(objects), 4, 4))
+        np.testing.assert_array_equal(C, C.transpose(0, 2, 1))
+        self.assertGreaterEqual(np.linalg.eigvalsh(C).min(), -1e-9)
+        np.testing.assert_array_equal(np.sqrt(C[:, [0, 1], [0, 1]]), objects["position_sd"])
+        np.testing.assert_allclose(objects["yaw_variance"], objects["yaw_sd"]**2)
+        # Of objects without a heading the speed is along the velocity.
+        plain = objects[(objects["p_front"] == 0.5) & (objects["speed"] > 0.01)]
+        along = plain["velocity"] / plain["speed"][:, None]
+        variance = np.einsum("ni,nij,nj->n", along, plain["covariance"][:, 2:, 2:], along)
+        self.assertGreater(len(plain), 20)
+        self.assertGreater(np.mean(np.isclose(np.sqrt(variance), plain["speed_sd"])), 0.5)
+
 
 class Arrays(unittest.TestCase):
     def setUp(self):
@@ -123,6 +139,27 @@ class Arrays(unittest.TestCase):
         self.fails("ring[1]: 70000, expected 0 to 65535", 65, scan, "LIDAR_TOP", 1.0, cloud(2),
                    None, [0, 70000])
 
+    def test_small_stamps_are_as_good_as_those_of_today(self):
+        results = []
+        for start in (0.1, 1.7e9):
+            tracker, scenes = perception.Tracker(INI, sensors="L"), []
+            for k in range(8):
+                tracker.pose(start + k / 10, np.eye(4))
+                scene = tracker.scan("LIDAR_TOP", start + k / 10, cloud())
+                scenes += [] if scene is None else [scene]
+            results.append([s.objects["position"].tolist() for s in scenes + tracker.finish()])
+        self.assertEqual(len(results[0]), 8)
+        self.assertEqual([len(x) for x in results[0]], [len(x) for x in results[1]])
+        for small, today in zip(*results):
+            np.testing.assert_allclose(small, today, atol=1e-3)
+
+    def test_absolute_times_of_returns_are_errors_that_say_what_to_give(self):
+        scan = self.tracker.scan
+        for times in (1.7e9 + np.linspace(0, 0.1, 2000), np.arange(2000) * 50_000,
+                      1.7e9 + np.linspace(0, 0.1, 2000).astype(np.float32)):
+            self.fails("(time - stamp)", 65, scan, "LIDAR_TOP", 1.7e9, cloud(), time=times)
+        scan("LIDAR_TOP", 1.7e9, cloud(), time=np.linspace(-0.1, 0, 2000))
+
     def test_poses_that_are_none_are_errors(self):
         self.fails("is no rotation", 65, self.tracker.pose, 1.0, 2 * np.eye(4))
         self.fails("not finite", 65, self.tracker.pose, 1.0, np.full((4, 4), np.nan))
@@ -136,6 +173,8 @@ class Arrays(unittest.TestCase):
     def test_errors_of_the_ini_come_with_the_code_of_the_programs(self):
         self.fails("nowhere.ini", 78, perception.Tracker, "nowhere.ini")
         self.fails("no_such_key", 78, perception.Tracker, INI, overrides={"run.no_such_key": 1})
+        for name in ("help", "info", "print-config"):  # of command lines
+            self.fails(name, 78, perception.Tracker, INI, overrides={name: True})
 
     def test_stamps_are_seconds_nanoseconds_or_datetime64(self):
         stamps = []
@@ -153,6 +192,8 @@ class Arrays(unittest.TestCase):
         self.fails("no time since 1970", 65, pose, float("nan"), np.eye(4))
         self.fails("expected seconds", 65, pose, "now", np.eye(4))
         self.fails("1970 to 2106", 65, pose, -1.0, np.eye(4))
+        for zero in (0.0, 0, np.datetime64(0, "s"), -0.0):
+            self.fails("where time starts at 0, add an offset", 65, pose, zero, np.eye(4))
         self.fails("less than 64 bits", 65, pose, np.float32(1.7e9), np.eye(4))
         self.fails("expected one number", 65, pose, np.array([1.7e9, 1.8e9]), np.eye(4))
 

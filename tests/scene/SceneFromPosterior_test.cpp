@@ -54,6 +54,17 @@ TEST(Scene, LeavesOutObjectsThatAreNowhere) {
 
 TEST(Scene, PutsOutEveryPlaceIfTold) { EXPECT_EQ(putOut(20, 0), 1U); }
 
+TEST(Scene, GivesTheCovarianceOfPlaceAndVelocity) {
+  FilterModel model;
+  model.classes = test::pedestrianAndCar();
+  EgoState ego;
+  ego.stamp = test::kFirstStamp;
+  const SceneObject o = SceneFromPosterior(model, {}).make(oneCar(0.5), ego, 0).objects.at(0);
+  const Matrix4 wanted = Vector4(0.25, 0.25, 0.1, 0.1).asDiagonal();
+  EXPECT_LT((o.covariance - wanted).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_EQ(o.sd_x, std::sqrt(o.covariance(0, 0)));
+}
+
 TEST(Scene, AForgottenIdIsNotGivenAgain) {
   FilterModel model;
   model.classes = test::pedestrianAndCar();

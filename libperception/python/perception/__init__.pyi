@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, Iterator, Mapping, Optional, Sequence, Union
+from typing import Any, Callable, Iterator, Mapping, Optional, Sequence, TypeVar, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,8 +22,11 @@ class Scene:
     #   existence, position (3,) of the footprint's center and the base, yaw, has_yaw (False: yaw is
     #   the direction of motion or 0), p_front (probability that yaw points to the front and not to
     #   the back; .5: only the axis is known), velocity (2,), speed (along yaw), size (3,): length, width,
-    #   height, position_sd (2,), yaw_sd, speed_sd (standard deviations), last_hit (modalities,): [s]
-    #   since 1970 of the last measurement by camera, lidar, radar; NaN: none
+    #   height, position_sd (2,), yaw_sd, speed_sd (standard deviations), covariance (4, 4) of
+    #   (x, y, vx, vy) in [m, m/s], world frame: [:2, :2] of the position [m^2], [2:, 2:] of the
+    #   velocity [m^2/s^2], the spread between the classes is part of it; yaw_variance [rad^2], pi^2:
+    #   nothing is known of yaw; last_hit (modalities,): [s] since 1970 of the last measurement by
+    #   camera, lidar, radar; NaN: none
     @property
     def objects(self) -> NDArray[np.void]: ...
     @property
@@ -60,6 +63,25 @@ class Observation:
     @property
     def data(self) -> dict[str, Any]: ...
 
+class Frame:
+    # What a front end written in Python gets
+    @property
+    def kind(self) -> str: ...
+    @property
+    def sensor(self) -> str: ...
+    @property
+    def stamp(self) -> float: ...
+    @property
+    def stamp_ns(self) -> int: ...
+    @property
+    def pose(self) -> NDArray[np.float64]: ...
+    @property
+    def sensor_pose(self) -> NDArray[np.float64]: ...
+    @property
+    def ground(self) -> tuple[float, float, float]: ...
+    @property
+    def data(self) -> dict[str, Any]: ...
+
 class Tracker:
     def __init__(
         self,
@@ -71,8 +93,15 @@ class Tracker:
     def pose(
         self,
         stamp: Stamp,
-        T: ArrayLike,
+        T: Optional[ArrayLike] = None,
         *,
+        latitude: Optional[float] = None,
+        longitude: Optional[float] = None,
+        height: Optional[float] = None,
+        yaw: Optional[float] = None,
+        pitch: float = 0.0,
+        roll: float = 0.0,
+        antenna: Sequence[float] = (0.0, 0.0, 0.0),
         sigma_xy: float = 0.0,
         sigma_yaw: float = 0.0,
         sigma_pitch: float = 0.0,
@@ -152,6 +181,26 @@ class Simulation:
     truth_file: str
     truth: Table
 
+# Boxes (n, 7) or points (n, 2), (n, 3); alone, with scores (n,), or with scores and labels
+Found = Union[
+    None, ArrayLike, tuple[ArrayLike, ArrayLike], tuple[ArrayLike, ArrayLike, Sequence[str]]
+]
+Detect = Callable[[Frame], Found]
+# x (4,), dt [s], psd [m^2/s^3] to x, F (4, 4), Q (4, 4)
+Predict = Callable[[NDArray[np.float64], float, float], tuple[ArrayLike, ArrayLike, ArrayLike]]
+_D = TypeVar("_D", bound=Detect)
+_P = TypeVar("_P", bound=Predict)
+
+@overload
+def front_end(kind: str, function: None = None) -> Callable[[_D], _D]: ...
+@overload
+def front_end(kind: str, function: _D) -> _D: ...
+@overload
+def motion_model(
+    name: str, function: None = None, has_heading: bool = False
+) -> Callable[[_P], _P]: ...
+@overload
+def motion_model(name: str, function: _P, has_heading: bool = False) -> _P: ...
 def open(log: Path) -> Iterator[Observation]: ...
 def track(
     log: Path,

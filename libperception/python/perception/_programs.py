@@ -1,4 +1,5 @@
 """The programs perception-track, -evaluate and -simulate, whose results come as tables."""
+import contextlib
 import json
 import os
 import shutil
@@ -24,15 +25,44 @@ def _text(value):
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
+@contextlib.contextmanager
+def ini_file(ini):
+    """The path of an INI; text of more than one line is a file for the while."""
+    text = str(ini)
+    if "\n" not in text:
+        yield text
+        return
+    with tempfile.NamedTemporaryFile("w", suffix=".ini", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        yield file.name
+
+
 def settings_of(overrides):
     """{"section.key": value} as section.key=value."""
     return [f"{key}={_text(value)}" for key, value in (overrides or {}).items()]
 
 
-def _options(options):
+_END_EARLY = ("help", "help_all", "version", "info", "print_config", "coverage", "contact_sheet")
+_HERE = ("config", "input", "set")
+
+
+def _refused(text):
+    error = _core.Error(text)
+    error.code = 64
+    return error
+
+
+def _options(program, options):
     """{"min_points": 3, "strict": True} as arguments of a command line."""
     arguments = []
     for name, value in options.items():
+        name = name.replace("-", "_").strip("_")
+        if name in _END_EARLY:
+            raise _refused(f"{program}: {name} ends the program before it has results; run "
+                           f"perception-{program} --{name.replace('_', '-')} for it")
+        if name in _HERE:
+            raise _refused(f"{program}: {name} is said by an argument of perception.{program}()")
         flag = "--" + name.replace("_", "-")
         if value is True:
             arguments.append(flag)
@@ -84,14 +114,16 @@ class Run:
 def track(log, ini, output=None, sensors="", overrides=None, **options):
     """Tracks a rawlog as perception-track does; returns a Run.
 
+    ini: a path, the name of an INI that is installed, or the text of one (as of Tracker).
     output: folder of the results; without, a temporary one that lives as long as the Run.
     options: those of perception-track, as threads=1, overwrite=True, export="kitti:0000.txt".
     """
     folder, keeper = _folder(output)
-    arguments = ["-c", str(ini), "-i", str(log), "-o", folder] + _overrides(overrides)
+    arguments = ["-i", str(log), "-o", folder] + _overrides(overrides) + _options("track", options)
     if sensors:
         arguments += ["--sensors", sensors]
-    _core.run_program("track", arguments + _options(options))
+    with ini_file(ini) as file:
+        _core.run_program("track", ["-c", file] + arguments)
     return Run(folder, keeper)
 
 
@@ -105,7 +137,7 @@ def evaluate(run, truth, output=None, **options):
     out, keeper = _folder(output)
     plots = options.pop("plots", False)
     arguments = ["-r", folder, "-t", str(truth), "-o", out] + ([] if plots else ["--no-plots"])
-    _core.run_program("evaluate", arguments + _options(options))
+    _core.run_program("evaluate", arguments + _options("evaluate", options))
     with open(os.path.join(out, "report.json"), encoding="utf-8") as file:
         report = json.load(file)
     del keeper  # not before the report is read
@@ -126,12 +158,14 @@ class Simulation:
 def simulate(scenario, output=None, seed=1, overrides=None, **options):
     """Makes a rawlog with truth of a scenario INI as perception-simulate does; returns a Simulation.
 
+    scenario: a path, a name or the text of an INI.
     output: the rawlog; without, a temporary one that lives as long as the Simulation.
     """
     folder, keeper = _folder(None) if not output else (None, None)
     if keeper is not None:
         os.makedirs(folder)
     log = str(output) if output else os.path.join(folder, "simulated.rawlog")
-    _core.run_program("simulate", ["-c", str(scenario), "-o", log, "--seed", str(seed)]
-                      + _overrides(overrides) + _options(options))
+    arguments = ["-o", log, "--seed", str(seed)] + _overrides(overrides) + _options("simulate", options)
+    with ini_file(scenario) as file:
+        _core.run_program("simulate", ["-c", file] + arguments)
     return Simulation(log, keeper)
