@@ -137,7 +137,7 @@ export class LiveViewer extends Viewer {
     this.say([this.playing ? "Live" : "In pause", this.run.simulated ? "simulated" : "",
       span > 0 ? `${((this.arrivals.length - 1) / span * 1000).toFixed(1)} scenes a second` : "",
       this.latency === undefined ? "" : `${(this.latency * 1000).toFixed(0)} ms from the sensor to the scene`,
-      this.left ? `${this.left} scenes left out: this page reads too slowly` : ""].filter(Boolean).join(", ") + ".");
+      this.left ? `${this.left} scenes left out: newer ones came before these were sent` : ""].filter(Boolean).join(", ") + ".");
   }
 
   say(text) {

@@ -37,7 +37,7 @@ using Tcp = asio::ip::tcp;
 
 constexpr std::chrono::milliseconds kNone{0}, kLastWords{500};  // for what waits at the end
 constexpr auto kPause = std::chrono::milliseconds(100);         // after a connection that failed
-constexpr int kNice = 10;                                       // of the server's thread
+constexpr int kNice = 5;                                        // of the server's thread
 constexpr int kSendBuffer = 1 << 18;  // [bytes] of the system, for a client
 
 /// Drivers that are started later do not get it.
