@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <set>
 
 namespace perception {
@@ -91,15 +93,38 @@ std::string TransformTree::movesIn(const std::string& frame) const {
   return stampsOf(frame).empty() ? "" : chain.back();
 }
 
-std::vector<Stamp> TransformTree::stampsOf(const std::string& frame) const {
-  std::vector<Stamp> stamps;
+std::string TransformTree::moverOf(const std::string& frame) const {
   for (const std::string& above : ancestors(frame)) {
     const auto step = steps_.find(above);
-    if (step == steps_.end() || step->second.fixed) continue;
-    for (const auto& row : step->second.poses) stamps.push_back(row.first);
-    break;
+    if (step != steps_.end() && !step->second.fixed) return above;
   }
+  return "";
+}
+
+std::vector<Stamp> TransformTree::stampsOf(const std::string& frame) const {
+  std::vector<Stamp> stamps;
+  const auto step = steps_.find(moverOf(frame));
+  if (step == steps_.end()) return stamps;
+  for (const auto& row : step->second.poses) stamps.push_back(row.first);
   return stamps;
+}
+
+Stamp TransformTree::knownUntil(const std::string& frame) const {
+  Stamp until{std::numeric_limits<std::int64_t>::max()};
+  for (const std::string& above : ancestors(frame)) {
+    const auto step = steps_.find(above);
+    if (step != steps_.end() && !step->second.fixed && !step->second.poses.empty())
+      until = std::min(until, step->second.poses.rbegin()->first);
+  }
+  return until;
+}
+
+void TransformTree::keep(const std::string& child, Stamp from, Stamp until) {
+  const auto step = steps_.find(child);
+  if (step == steps_.end() || step->second.fixed) return;
+  auto& poses = step->second.poses;
+  while (poses.size() > 1 && until < poses.rbegin()->first) poses.erase(std::prev(poses.end()));
+  while (poses.size() > 1 && poses.begin()->first < from) poses.erase(poses.begin());
 }
 
 std::vector<std::string> TransformTree::moving() const {

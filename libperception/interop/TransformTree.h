@@ -28,6 +28,13 @@ class TransformTree {
   std::vector<Stamp> stampsOf(const std::string& frame) const;
   /// Frames that move in a parent without a parent of its own, by name.
   std::vector<std::string> moving() const;
+  /// The nearest frame that moves in its parent, at or above a frame; empty: none.
+  std::string moverOf(const std::string& frame) const;
+  /// Until when all steps at and above a frame are known without a look beyond their ends; the
+  /// end of time where none of them moves.
+  Stamp knownUntil(const std::string& frame) const;
+  /// Forgets the poses of a moving frame outside of these stamps; one always stays.
+  void keep(const std::string& child, Stamp from, Stamp until);
 
  private:
   struct Step {
