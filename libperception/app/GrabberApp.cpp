@@ -8,7 +8,11 @@
 #include <filesystem>
 
 #include "libperception/app/Programs.h"
+#include "libperception/capture/Drivers.h"
 #include "libperception/capture/Grabber.h"
+#include "libperception/capture/RosList.h"
+#include "libperception/config/Config.h"
+#include "libperception/interop/RosGraphParams.h"
 #include "libperception/pipeline/Progress.h"
 
 namespace perception {
@@ -35,10 +39,14 @@ std::string GrabberApp::description() const {
 }
 
 void GrabberApp::declare(CLI::App& cli) {
-  cli.add_option("-c,--config", config_file, "INI of rawlog-grabber, as ini/capture.ini");
+  cli.add_option("-c,--config", config_file,
+                 "INI of rawlog-grabber, as ini/capture.ini; or ros2:INI");
   addOutputOption(cli, false);
   cli.add_option("--duration", duration, "[s] End after this time; default: at SIGINT or SIGTERM")
       ->check(CLI::Range(0.01, 1e9));
+  cli.add_flag("--list", list,
+               "With -c ros2:INI: say what topics the graph has and how often their messages come, "
+               "over 3 s or --duration, and stop");
   cli.add_option(
       "--stream", stream,
       "Pipe or file that gets the observations as they come, for perception-track; -o is "
@@ -52,9 +60,19 @@ void GrabberApp::declare(CLI::App& cli) {
       "rawlog-grabber -p) and stop");
 }
 
+void GrabberApp::printGraph() const {
+  constexpr double kUsual = 3;  // [s]
+  const auto ini = rosIniOf(config_file);
+  if (!ini) throw Error(ExitCode::kUsage, "--list needs -c ros2:INI");
+  Config config = ini->empty() ? Config::fromText("", "(no INI)") : Config::fromFile(*ini);
+  const auto network = NetworkName::parse(config.read<RosGraphParams>("ros").network);
+  fmt::print("{}", listOfGraph(network, duration > 0 ? duration : kUsual, stopAsked));
+}
+
 void GrabberApp::run() {
   if (plugin) return fmt::print("{}\n", pluginPath());
   if (config_file.empty()) throw Error(ExitCode::kUsage, "-c/--config is needed");
+  if (list) return printGraph();
   if (output.empty() && stream.empty() && publish.empty())
     throw Error(ExitCode::kUsage, "-o/--output, --stream or --publish is needed");
   GrabberOutputs outputs{output, stream, {}};
@@ -81,6 +99,7 @@ void GrabberApp::run() {
                static_cast<double>(grabber.bytes()) * 1e-6, passed());
   for (const auto& [label, ledger] : grabber.sensors())
     fmt::print("  {}: {} observations, {} late\n", label, ledger.written, ledger.late);
+  for (const std::string& note : grabber.notes()) fmt::print("  {}\n", note);
   for (const std::string& warning : grabber.warnings()) warn(warning);
   if (duration > 0) stopIfAsked();
 }

@@ -65,9 +65,11 @@ LiveView::LiveView(const ServeOptions& options, const std::string& log, const st
       server_(serverOf(options, fileNameOf(log))),
       feed_(server_, {fileNameOf(log), fileNameOf(config), class_names}) {}
 
-void LiveView::watch(LogRun& run) {
-  run.watch(feed_, [this](std::optional<Stamp> stamp, const nlohmann::ordered_json& content) {
+void LiveView::watch(LogRun& run, EventLog::Listener also) {
+  run.watch(feed_, [this, also = std::move(also)](std::optional<Stamp> stamp,
+                                                  const nlohmann::ordered_json& content) {
     feed_.onEvent(stamp, content);
+    if (also) also(stamp, content);
   });
 }
 

@@ -37,8 +37,8 @@ class LiveView {
 
   /// Where the page is.
   std::string url() const { return server_.url(); }
-  /// The run outlives none of this.
-  void watch(LogRun& run);
+  /// The run outlives none of this. `also`: told of each event, too.
+  void watch(LogRun& run, EventLog::Listener also = {});
   /// Each scene of the run; waits for its time where a speed is given. Throws Error (kTryAgain).
   void put(const Scene& scene, const LogRun& run);
   /// The run is over: sends what waits, and says who looked on and what was left out.

@@ -12,7 +12,8 @@
 #include <utility>
 
 #include "libperception/app/Programs.h"
-#include "libperception/dds/RosTopics.h"
+#include "libperception/app/RosView.h"
+#include "libperception/interop/RosGraphParams.h"
 #include "libperception/pipeline/FinishedRun.h"
 #include "libperception/pipeline/LiveInput.h"
 #include "libperception/pipeline/LogRun.h"
@@ -63,10 +64,12 @@ void TrackApp::declare(CLI::App& cli) {
       ->check(CLI::Range(0.0, 1000.0));
   cli.add_flag("--measurements", measurements,
                "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
-  cli.add_option("--duration", duration,
-                 "[s] End a run of -i live:INI after this time; default: at SIGINT or SIGTERM")
+  cli.add_option(
+         "--duration", duration,
+         "[s] End a run of -i live:INI or ros2:INI after this time; default: at SIGINT or SIGTERM")
       ->check(CLI::Range(0.01, 1e9));
-  cli.add_option("--record", record, "Folder in which the sensors of -i live:INI are recorded");
+  cli.add_option("--record", record,
+                 "Folder in which the sensors of -i live:INI or ros2:INI are recorded");
   cli.add_option(
       "--publish", publish,
       "INTERFACE[:DOMAIN], as lo:0: send scenes by DDS in the form that ROS 2 nodes read");
@@ -105,6 +108,10 @@ Config TrackApp::configWithOptions() const {
 }
 
 void TrackApp::printContents(const std::string& log) {
+  if (const auto ini = liveIniOf(log))
+    throw Error(ExitCode::kUsage, isOfRosGraph(log) ? "perception-grabber --list -c " + log +
+                                                          " says what a graph holds"
+                                                    : log + ": --info is of logs");
   RawlogReader reader(log);
   LogContents contents;
   while (const auto observation = reader.next()) {
@@ -153,9 +160,9 @@ void TrackApp::checkInputs() const {
     live = live || liveIniOf(log);
   }
   if (live && inputs.size() > 1)
-    throw Error(ExitCode::kUsage, "-i live:INI is the only input of a run");
+    throw Error(ExitCode::kUsage, "-i live:INI or ros2:INI is the only input of a run");
   if (!live && (duration > 0 || !record.empty()))
-    throw Error(ExitCode::kUsage, "--duration and --record belong to -i live:INI");
+    throw Error(ExitCode::kUsage, "--duration and --record belong to -i live:INI and ros2:INI");
   if (live && serve.speed > 0)
     throw Error(ExitCode::kUsage, "--serve-speed is of logs; sensors at work have their own");
   if (serve.port) serve.rules();
@@ -174,6 +181,21 @@ std::unique_ptr<ObservationInput> TrackApp::openInput(const std::string& log, Fi
   auto reader = std::make_unique<RawlogReader>(log, std::move(sink));
   if (threadCount() == 1) return reader;
   return std::make_unique<ReadAhead>(std::move(reader));
+}
+
+/// Of a graph that sends the vehicle's place itself, ours does not come beside it.
+RosTopics::Params TrackApp::rosParamsFor(const std::string& log,
+                                         const std::vector<std::string>& class_names) const {
+  RosTopics::Params params;
+  params.network = NetworkName::parse(publish);
+  params.class_names = class_names;
+  if (!isOfRosGraph(log)) return params;
+  const std::string ini = rosGraphIniOf(log);
+  Config config = ini.empty() ? Config::fromText("", "(no INI)") : Config::fromFile(ini);
+  const auto graph = config.read<RosGraphParams>("ros");
+  params.world_frame = graph.world_frame;
+  params.transforms = graph.send_transforms;
+  return params;
 }
 
 std::vector<TrackApp::Shard> TrackApp::shards(const std::string& effective_ini) {
@@ -216,18 +238,29 @@ void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
   LogRun run(setup, {shard.log, shard.dir, shard.export_file}, openInput(shard.log, to_hash));
   std::optional<StageWatchdog> watchdog;
   if (liveIniOf(shard.log)) watchdog.emplace(run.timing(), kLongestStage, endHungRun);
-  std::unique_ptr<RosTopics> topics;
+  std::unique_ptr<RosView> ros;
   if (!publish.empty())
-    topics = std::make_unique<RosTopics>(NetworkName::parse(publish), namesOf(setup.model.classes));
-  if (view) view->watch(run);
+    ros = std::make_unique<RosView>(rosParamsFor(shard.log, namesOf(setup.model.classes)));
+  EventLog::Listener tell_ros;
+  if (ros)
+    tell_ros = [&ros](std::optional<Stamp>, const nlohmann::ordered_json& content) {
+      ros->onEvent(content);
+    };
+  if (view)
+    view->watch(run, tell_ros);
+  else if (ros)
+    run.listen(tell_ros);
   run.read([&](const Scene& scene) {
     if (view) view->put(scene, run);
-    if (topics) topics->publish(scene);
+    if (ros) ros->put(scene, run);
     if (keep_scenes) out_scenes.push_back(scene);
   });
   watchdog.reset();  // writing the results may take a slow disk longer
   for (const std::string& message : run.finish(strict)) warn(message);
   if (view) fmt::print("{}: {}\n", shard.log, view->end());
+  if (ros && ros->missed() > 0)
+    warn(fmt::format("{}: readers on {} missed {} messages: they were too slow", shard.log, publish,
+                     ros->missed()));
   run.record.program = name();
   run.record.version = PERCEPTION_VERSION;
   run.record.hash = shard.hash;

@@ -7,6 +7,7 @@
 
 #include "libperception/app/App.h"
 #include "libperception/app/LiveView.h"
+#include "libperception/dds/RosTopics.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/scene/KittiExport.h"
 #include "libperception/sensors/FileSink.h"
@@ -56,6 +57,8 @@ class TrackApp : public App {
   void printContents(const std::string& log);
   Config configWithOptions() const;
   std::string exportFileFor(const std::string& log) const;
+  RosTopics::Params rosParamsFor(const std::string& log,
+                                 const std::vector<std::string>& class_names) const;
 };
 
 }  // namespace perception

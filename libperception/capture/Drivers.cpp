@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <mrpt/config/CConfigFile.h>
+#include <mrpt/config/CConfigFileMemory.h>
 
 #include <algorithm>
 #include <atomic>
@@ -29,7 +30,7 @@ using std::chrono::steady_clock;
 constexpr double kShortestPeriod = 0.001, kLongestPeriod = 0.02;  // [s]
 constexpr auto kPatience = std::chrono::seconds(2);  ///< with a driver that does not return
 
-CGenericSensor::Ptr startDriver(const mrpt::config::CConfigFile& config, const std::string& ini,
+CGenericSensor::Ptr startDriver(const mrpt::config::CConfigFileBase& config, const std::string& ini,
                                 const std::string& section) {
   const std::string name = config.read_string(section, "driver", "");
   const auto driver = CGenericSensor::createSensorPtr(name);
@@ -48,6 +49,25 @@ CGenericSensor::Ptr startDriver(const mrpt::config::CConfigFile& config, const s
 
 }  // namespace
 
+std::optional<std::string> rosIniOf(const std::string& name) {
+  constexpr char kRos[] = "ros2:";
+  if (name.rfind(kRos, 0) != 0) return std::nullopt;
+  return name.substr(sizeof kRos - 1);
+}
+
+std::shared_ptr<const mrpt::config::CConfigFileBase> openCaptureIni(const std::string& name) {
+  const auto ros = rosIniOf(name);
+  const std::string& file = ros ? *ros : name;
+  if (!(ros && file.empty()) && !std::filesystem::is_regular_file(file))
+    throw DataError(file + ": no such file", ExitCode::kNoInput);
+  if (!ros) return std::make_shared<mrpt::config::CConfigFile>(name);
+  auto config = std::make_shared<mrpt::config::CConfigFileMemory>();
+  config->write("ROS2", "driver", std::string("CRosSensor"));
+  config->write("ROS2", "sensorLabel", std::string("ROS2"));
+  config->write("ROS2", "ini", file);
+  return config;
+}
+
 struct Drivers::Shared {
   enum class State { kWorking, kEnded, kFailed };
 
@@ -64,9 +84,8 @@ struct Drivers::Shared {
 Drivers::Drivers(const std::string& ini) : shared_(std::make_shared<Shared>()) {
   registerPerceptionClasses();
   registerDrivers();
-  if (!std::filesystem::is_regular_file(ini))
-    throw DataError(ini + ": no such file", ExitCode::kNoInput);
-  const mrpt::config::CConfigFile config(ini);
+  const auto opened = openCaptureIni(ini);
+  const mrpt::config::CConfigFileBase& config = *opened;
   std::vector<std::string> sections;
   config.getAllSections(sections);
   for (const std::string& section : sections) {

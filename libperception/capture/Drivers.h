@@ -1,13 +1,23 @@
 #pragma once
+#include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/hwdrivers/CGenericSensor.h>
 #include <mrpt/obs/CObservation.h>
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace perception {
+
+/// What stands behind "ros2:" of a capture INI's name or of an input: an INI as of
+/// perception-import bag, or nothing. Empty: it is another name.
+std::optional<std::string> rosIniOf(const std::string& name);
+
+/// A capture INI: a file, or "ros2:INI", which stands for one with the driver CRosSensor alone.
+/// Throws DataError (kNoInput).
+std::shared_ptr<const mrpt::config::CConfigFileBase> openCaptureIni(const std::string& name);
 
 /// The sensors of an INI of MRPT's rawlog-grabber: every section with a `driver` is one. Each is
 /// asked in a thread of its own, so that a driver that hangs or fails does not disturb the others.

@@ -1,10 +1,8 @@
 #include "libperception/capture/Grabber.h"
 
 #include <fmt/format.h>
-#include <mrpt/config/CConfigFile.h>
 #include <mrpt/obs/CObservationComment.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -22,12 +20,6 @@ using std::chrono::steady_clock;
 constexpr std::size_t kMostUnpublished = 1000;  ///< that wait
 constexpr auto kWait = milliseconds(10);
 constexpr auto kSilence = milliseconds(20);  ///< after which a stream is told that time goes on
-
-mrpt::config::CConfigFile openIni(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path))
-    throw DataError(path + ": no such file", ExitCode::kNoInput);
-  return mrpt::config::CConfigFile(path);
-}
 
 /// What a driver knows of its packets.
 void addPackets(const LedgerSource& source, nlohmann::json& line) {
@@ -53,7 +45,8 @@ void addPackets(const LedgerSource& source, nlohmann::json& line) {
 }
 
 ChunkLimits limitsOf(const std::string& ini) {
-  const auto config = openIni(ini);
+  const auto opened = openCaptureIni(ini);
+  const auto& config = *opened;
   ChunkLimits limits;
   limits.seconds = config.read_double("global", "chunk_seconds", limits.seconds);
   limits.bytes = static_cast<std::uint64_t>(
@@ -68,13 +61,13 @@ ChunkLimits limitsOf(const std::string& ini) {
 
 /// [bytes] of observations that wait for the disk.
 std::uint64_t queueOf(const std::string& ini) {
-  const double megabytes = openIni(ini).read_double("global", "queue_mb", 2000);
+  const double megabytes = openCaptureIni(ini)->read_double("global", "queue_mb", 2000);
   if (!(megabytes > 0)) throw ConfigError(ini + ": [global] queue_mb must be above 0");
   return static_cast<std::uint64_t>(megabytes * 1e6);
 }
 
 std::size_t streamLimitOf(const std::string& ini) {
-  const auto limit = openIni(ini).read_uint64_t("global", "stream_limit", 200);
+  const auto limit = openCaptureIni(ini)->read_uint64_t("global", "stream_limit", 200);
   if (limit == 0) throw ConfigError(ini + ": [global] stream_limit must be above 0");
   return limit;
 }
@@ -90,7 +83,7 @@ Grabber::Grabber(const std::string& ini, const GrabberOutputs& outputs) : driver
 
 void Grabber::startPublishing(const NetworkName& network) {
   publisher_ = std::make_unique<ObservationPublisher>(network);
-  ros_ = std::make_unique<RosTopics>(network, std::vector<std::string>());
+  ros_ = std::make_unique<RosTopics>(RosTopics::Params{network, {}});
   Outlet::Params params;
   params.limit = kMostUnpublished;
   params.take = [this](const Drivers::Arrival& arrival, std::uint64_t) {
@@ -219,6 +212,16 @@ void Grabber::noteLedgers() {
     if (const auto* source = ledgerOf(i)) addPackets(*source, line);
     log_->note(line.dump());
   }
+}
+
+std::vector<std::string> Grabber::notes() const {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < drivers_.size(); ++i) {
+    const auto* source = ledgerOf(i);
+    if (!source) continue;
+    for (const std::string& note : source->notes()) all.push_back(note);
+  }
+  return all;
 }
 
 std::vector<std::string> Grabber::warnings() const {

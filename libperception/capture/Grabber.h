@@ -59,6 +59,8 @@ class Grabber {
   std::uint64_t chunks() const { return chunks_; }  ///< of the log
   /// Packets of all drivers that count them: faults for the user, one a line.
   std::vector<std::string> warnings() const;
+  /// What the drivers say beside, one a line.
+  std::vector<std::string> notes() const;
 
  private:
   void startStream(const std::string& path, std::size_t limit);

@@ -20,6 +20,8 @@ class LedgerSource {
   virtual PacketLedger packets() const = 0;
   virtual std::vector<std::string> lostPackets() const = 0;
   virtual std::vector<std::string> warnings() const = 0;
+  /// What the user should know and is no fault, a line each.
+  virtual std::vector<std::string> notes() const { return {}; }
   /// Packets that were refused since they came from another sender than the device.
   virtual std::uint64_t refused() const { return 0; }
   /// Packets that the kernel had no room for.

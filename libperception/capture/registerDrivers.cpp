@@ -3,6 +3,7 @@
 #include "libperception/capture/CDdsSensor.h"
 #include "libperception/capture/CPacketSensor.h"
 #include "libperception/capture/CRawlogSensor.h"
+#include "libperception/capture/CRosSensor.h"
 #include "libperception/capture/CScenarioSensor.h"
 
 namespace perception {
@@ -12,6 +13,7 @@ void registerDrivers() {
   CPacketSensor::doRegister();
   CRawlogSensor::doRegister();
   CDdsSensor::doRegister();
+  CRosSensor::doRegister();
 }
 
 }  // namespace perception

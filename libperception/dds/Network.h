@@ -36,6 +36,9 @@ class Network {
   int reader(const dds_topic_descriptor& type, const std::string& topic,
              History history = History::kNewest);
 
+  /// The entity of Cyclone DDS.
+  int participant() const { return participant_; }
+
  private:
   explicit Network(const NetworkName& name);
   int topic(const dds_topic_descriptor& type, const std::string& name);

@@ -1,160 +1,92 @@
 #include "libperception/dds/RosTopics.h"
 
-#include <dds/dds.h>
-
-#include <algorithm>
-#include <deque>
 #include <utility>
 #include <variant>
 
-#include <messages.h>  // of messages.idl
+#include "libperception/dds/RosGraph.h"
+#include "libperception/interop/RosMessages.h"
 #include "libperception/interop/RosScene.h"
 #include "libperception/interop/RosSensors.h"
 
 namespace perception {
 namespace {
 
-// ROS 2 puts "rt" before the names of its topics.
-constexpr char kTracks[] = "rt/tracks", kTransforms[] = "rt/tf", kStatic[] = "rt/tf_static";
-
-/// Messages as the structures of C that Cyclone DDS writes. Texts and sequences point into the
-/// message, or into what is held here.
-class CMessages {
- public:
-  std_msgs_msg_dds__Header_ of(const ros::Header& header) const {
-    constexpr std::int64_t kSecond = 1'000'000'000;
-    std_msgs_msg_dds__Header_ m{};
-    m.stamp.sec = static_cast<std::int32_t>(header.stamp.ns / kSecond);
-    m.stamp.nanosec = static_cast<std::uint32_t>(header.stamp.ns % kSecond);
-    m.frame_id = text(header.frame_id);
-    return m;
-  }
-
-  geometry_msgs_msg_dds__Pose_ of(const ros::Pose& pose) const {
-    const auto& q = pose.orientation;
-    return {{pose.position[0], pose.position[1], pose.position[2]}, {q.x, q.y, q.z, q.w}};
-  }
-
-  vision_msgs_msg_dds__Detection3DArray_ of(const ros::Detection3DArray& array) {
-    vision_msgs_msg_dds__Detection3DArray_ m{};
-    m.header = of(array.header);
-    detections_.clear();
-    hypotheses_.clear();
-    for (const ros::Detection3D& d : array.detections) detections_.push_back(of(d));
-    setSequence(m.detections, detections_);
-    return m;
-  }
-
-  tf2_msgs_msg_dds__TFMessage_ of(const ros::TFMessage& message) {
-    transforms_.clear();
-    for (const ros::TransformStamped& t : message.transforms) {
-      const auto pose = of(t.transform);
-      transforms_.push_back(
-          {of(t.header),
-           text(t.child_frame_id),
-           {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}});
-    }
-    tf2_msgs_msg_dds__TFMessage_ m{};
-    setSequence(m.transforms, transforms_);
-    return m;
-  }
-
-  sensor_msgs_msg_dds__PointCloud2_ of(const ros::PointCloud2& cloud) {
-    fields_.clear();
-    for (const ros::PointField& f : cloud.point_fields)
-      fields_.push_back({text(f.name), f.offset, f.datatype, f.count});
-    sensor_msgs_msg_dds__PointCloud2_ m{};
-    m.header = of(cloud.header);
-    m.height = cloud.height, m.width = cloud.width;
-    setSequence(m.fields, fields_);
-    m.is_bigendian = cloud.is_bigendian != 0;
-    m.point_step = cloud.point_step, m.row_step = cloud.row_step;
-    m.data._buffer = reinterpret_cast<std::uint8_t*>(const_cast<char*>(cloud.data.data()));
-    m.data._length = m.data._maximum = static_cast<std::uint32_t>(cloud.data.size());
-    m.is_dense = cloud.is_dense != 0;
-    return m;
-  }
-
- private:
-  vision_msgs_msg_dds__Detection3D_ of(const ros::Detection3D& d) {
-    auto& hypotheses = hypotheses_.emplace_back();
-    for (const ros::ObjectHypothesis& h : d.results) {
-      auto& m = hypotheses.emplace_back();
-      m.hypothesis = {text(h.class_id), h.score};
-      m.pose.pose = of(h.pose);
-      std::copy(h.covariance.begin(), h.covariance.end(), m.pose.covariance);
-    }
-    vision_msgs_msg_dds__Detection3D_ m{};
-    m.header = of(d.header);
-    setSequence(m.results, hypotheses);
-    m.bbox = {of(d.center), {d.size[0], d.size[1], d.size[2]}};
-    m.id = text(d.id);
-    return m;
-  }
-
-  static char* text(const std::string& text) { return const_cast<char*>(text.c_str()); }
-
-  template <class Sequence, class Items>
-  static void setSequence(Sequence& sequence, Items& items) {
-    sequence._buffer = items.data();
-    sequence._length = sequence._maximum = static_cast<std::uint32_t>(items.size());
-  }
-
-  std::vector<vision_msgs_msg_dds__Detection3D_> detections_;
-  std::deque<std::vector<vision_msgs_msg_dds__ObjectHypothesisWithPose_>> hypotheses_;
-  std::vector<geometry_msgs_msg_dds__TransformStamped_> transforms_;
-  std::vector<sensor_msgs_msg_dds__PointField_> fields_;
-};
+constexpr const char* kTransforms = "/tf";
+constexpr const char* kStatic = "/tf_static";
+constexpr const char* kGrid = "/grid";
+constexpr auto kBetweenMaps = std::chrono::seconds(1);
+constexpr double kMapReach = 60;  // [m] around the vehicle
 
 }  // namespace
 
-RosTopics::RosTopics(const NetworkName& name, std::vector<std::string> class_names)
-    : network_(Network::join(name)),
-      class_names_(std::move(class_names)),
-      tracks_(network_->writer(vision_msgs_msg_dds__Detection3DArray__desc, kTracks)),
-      transforms_(network_->writer(tf2_msgs_msg_dds__TFMessage__desc, kTransforms)),
-      static_transforms_(network_->writer(tf2_msgs_msg_dds__TFMessage__desc, kStatic,
-                                          Network::History::kLatched)) {}
+RosTopics::RosTopics(Params params)
+    : params_(std::move(params)), network_(Network::join(params_.network)) {}
+
+template <class Message>
+void RosTopics::send(const std::string& topic, const char* type, const Message& message,
+                     bool latched) {
+  auto& writer = writers_[topic];
+  if (!writer) {
+    TopicQuality quality;
+    quality.latched = latched;
+    writer = std::make_unique<RawWriter>(network_, wireTopicOf(topic), wireTypeOf(type), quality);
+  }
+  if (!writer->write(ros::encoded(message, ros::Encoding::kCdr))) ++missed_;
+}
 
 void RosTopics::publish(const Scene& scene) {
-  publishTransforms(transforms_, scene.stamp, ros::kWorld,
-                    {{ros::kVehicle, scene.ego.T_world_ego}});
-  const ros::Detection3DArray array = ros::messageOf(scene, class_names_);
-  CMessages messages;
-  const auto message = messages.of(array);
-  dds_write(tracks_, &message);
+  if (params_.transforms)
+    publishTransforms(kTransforms, scene.stamp, params_.world_frame,
+                      {{ros::kVehicle, scene.ego.T_world_ego}});
+  ros::Detection3DArray boxes = ros::messageOf(scene, params_.class_names);
+  boxes.header.frame_id = params_.world_frame;
+  for (ros::Detection3D& box : boxes.detections) box.header.frame_id = params_.world_frame;
+  send("/tracks", "vision_msgs/Detection3DArray", boxes);
+  send("/tracks/markers", "visualization_msgs/MarkerArray",
+       ros::marksOf(scene, params_.world_frame, params_.class_names));
+  if (!scene.path) return;
+  send("/stop", "std_msgs/Bool",
+       ros::Plain<std::uint8_t>{static_cast<std::uint8_t>(scene.path->stop)});
+  send("/free_distance", "std_msgs/Float64", ros::Plain<double>{scene.path->distance});
+  send("/safe_speed", "std_msgs/Float64", ros::Plain<double>{scene.path->safe_speed});
+}
+
+void RosTopics::publish(const Scene& scene, const SafetyGrid* grid) {
+  const auto now = std::chrono::steady_clock::now();
+  if (grid == nullptr || (grid_at_ && now - *grid_at_ < kBetweenMaps)) return;
+  grid_at_ = now;
+  const auto writer = writers_.find(kGrid);
+  if (writer != writers_.end() && !writer->second->hasReaders()) return;
+  std::string data;
+  send(kGrid, "nav_msgs/OccupancyGrid",
+       ros::mapOf(scene, params_.world_frame, grid->knownCells(), grid->params().resolution,
+                  kMapReach, data));
 }
 
 void RosTopics::publish(const SensorFrame& frame) {
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   if (cloud == nullptr) return;
-  auto known = clouds_.find(frame.sensor);
-  if (known == clouds_.end()) {
-    const int writer =
-        network_->writer(sensor_msgs_msg_dds__PointCloud2__desc, "rt/" + frame.sensor);
-    known = clouds_.emplace(frame.sensor, writer).first;
-  }
   const auto [mounted, is_new] = mounted_.try_emplace(frame.sensor, frame.T_ego_sensor);
   if (is_new || !mounted->second.isApprox(frame.T_ego_sensor, 1e-12)) {
     mounted->second = frame.T_ego_sensor;
-    publishTransforms(static_transforms_, frame.stamp, ros::kVehicle, mounted_);
+    publishTransforms(kStatic, frame.stamp, ros::kVehicle, mounted_);
   }
   std::string data;
-  const ros::PointCloud2 whole =
-      ros::messageOf(*cloud, ros::Header{frame.stamp, frame.sensor}, data);
-  CMessages messages;
-  const auto message = messages.of(whole);
-  dds_write(known->second, &message);
+  send("/" + frame.sensor, "sensor_msgs/PointCloud2",
+       ros::messageOf(*cloud, ros::Header{frame.stamp, frame.sensor}, data));
 }
 
-void RosTopics::publishTransforms(int writer, Stamp stamp, const std::string& parent,
+void RosTopics::publish(Stamp stamp, const std::vector<ros::DiagnosticStatus>& status) {
+  send("/diagnostics", "diagnostic_msgs/DiagnosticArray",
+       ros::DiagnosticArray{ros::Header{stamp, ""}, status});
+}
+
+void RosTopics::publishTransforms(const std::string& topic, Stamp stamp, const std::string& parent,
                                   const std::map<std::string, Pose3>& children) {
   ros::TFMessage all;
   for (const auto& [child, T] : children)
     all.transforms.push_back({{stamp, parent}, child, ros::messageOf(T)});
-  CMessages messages;
-  const auto message = messages.of(all);
-  dds_write(writer, &message);
+  send(topic, "tf2_msgs/TFMessage", all, topic == kStatic);
 }
 
 }  // namespace perception

@@ -18,6 +18,7 @@ namespace perception {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr char kRosGraph[] = "ros2:";
 constexpr int kLookMs = 50;  ///< how often a signal is looked for
 
 /// Beside this program, else on PATH.
@@ -32,14 +33,21 @@ std::string grabberProgram() {
 
 std::optional<std::string> liveIniOf(const std::string& input) {
   constexpr char kLive[] = "live:";
+  if (isOfRosGraph(input)) return input;
   if (input.rfind(kLive, 0) != 0) return std::nullopt;
   return input.substr(sizeof kLive - 1);
 }
 
+bool isOfRosGraph(const std::string& input) { return input.rfind(kRosGraph, 0) == 0; }
+
+std::string rosGraphIniOf(const std::string& input) { return input.substr(sizeof kRosGraph - 1); }
+
 LiveInput::LiveInput(Params params) : params_(std::move(params)) {
   registerPerceptionClasses();
-  if (!fs::is_regular_file(params_.ini))
-    throw DataError(params_.ini + ": no such file", ExitCode::kNoInput);
+  const std::string file = isOfRosGraph(params_.ini) ? rosGraphIniOf(params_.ini) : params_.ini;
+  const bool none_needed = isOfRosGraph(params_.ini) && file.empty();
+  if (!none_needed && !fs::is_regular_file(file))
+    throw DataError(file + ": no such file", ExitCode::kNoInput);
   int ends[2];
   if (::pipe(ends) != 0)
     throw Error(ExitCode::kUnavailable, fmt::format("no pipe: {}", std::strerror(errno)));

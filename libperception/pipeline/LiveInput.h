@@ -46,7 +46,12 @@ class LiveInput final : public ObservationInput {
   std::string end_message_;
 };
 
-/// What stands behind "live:" of an input; empty: it is a file.
+/// Whether an input is "ros2:INI", the topics of a running ROS 2 graph, and its INI, which may be
+/// empty.
+bool isOfRosGraph(const std::string& input);
+std::string rosGraphIniOf(const std::string& input);
+/// The capture INI of an input: what stands behind "live:", or the whole of "ros2:INI"; empty: it
+/// is a file.
 std::optional<std::string> liveIniOf(const std::string& input);
 
 }  // namespace perception

@@ -33,6 +33,8 @@ class LogRun {
   /// Lets an observer see the run, including the weather and, by EventLog::Listener, events. Call
   /// before read(). The observer is not owned and must outlive read().
   void watch(PipelineObserver& observer, EventLog::Listener events);
+  /// The same for events alone.
+  void listen(EventLog::Listener events) { events_.tell(std::move(events)); }
   /// Processes the log to its end; `keep` is called with each scene.
   void read(const std::function<void(const Scene&)>& keep);
   /// Returns warnings. Throws DataError when there is no scene, or when the log is damaged and
