@@ -25,6 +25,12 @@ constexpr double kOddWords = 0.05;  // share of the words of float64 that no flo
 constexpr double kRingTells = 0.8;  // share of the variance of the elevations
 constexpr double kRises =
     0.95;  // share of the steps of a time that rise, of those that do not stay
+constexpr double kLeastTurn = 0.01, kMostTurn = 0.6;  // [s] of a scan
+constexpr double kSmallFall = 0.1;                    // of the whole time: less is no new ring
+constexpr double kSmallFalls = 0.01;                  // share of the steps
+constexpr double kClockSteps = 0.5;  // share of the steps of a time that are whole periods
+constexpr double kWhole = 0.1;       // [periods] off a whole number
+constexpr double kInOrder = 0.25;    // step of the bearing, of that between returns far apart
 
 /// A number that hardly any measurement has.
 bool isOdd(float value) {
@@ -80,12 +86,61 @@ bool rises(const Column& values) {
          static_cast<double>(up) >= kRises * static_cast<double>(up + down);
 }
 
+/// [s] lasts a scan, in s, ms, us or ns.
+bool lastsAScan(double span) {
+  for (const double unit : {1.0, 1e3, 1e6, 1e9})
+    if (span >= kLeastTurn * unit && span <= kMostTurn * unit) return true;
+  return false;
+}
+
+/// Rises as a clock does: by whole periods, through the time of a scan, and falls only to begin
+/// anew. Bytes are no clock, nor are values that were sorted.
+bool isClock(const Column& values) {
+  if (!rises(values)) return false;
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const bool bytes =
+      *least >= 0 && *most < kMostRings &&
+      std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+  if (bytes || !lastsAScan(*most - *least)) return false;
+  Column steps;
+  std::size_t small_falls = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = values[i] - values[i - 1];
+    if (step > 0) steps.push_back(step);
+    small_falls += step < 0 && -step < kSmallFall * (*most - *least);
+  }
+  if (static_cast<double>(small_falls) > kSmallFalls * static_cast<double>(steps.size()))
+    return false;
+  const double period = quantile(steps, 0.5);
+  const auto whole = std::count_if(steps.begin(), steps.end(), [&](double step) {
+    const double periods = step / period;
+    return periods > 0.5 && std::abs(periods - std::round(periods)) <= kWhole;
+  });
+  return static_cast<double>(whole) >= kClockSteps * static_cast<double>(steps.size());
+}
+
+/// Whether returns follow each other as a scanner sees them: bearings of neighbors in the file are
+/// alike, those of others are not.
+bool inScanningOrder(const Column& x, const Column& y) {
+  Column near, far;
+  const std::size_t n = x.size(), half = n / 2;
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const auto turn = [&](std::size_t k) {
+      return std::abs(std::remainder(std::atan2(y[k], x[k]) - std::atan2(y[i], x[i]), 2 * M_PI));
+    };
+    // A far one that has nothing to do with the order in which rings follow each other.
+    const double a = turn(i + 1), b = turn((i * 7919 + half) % n);
+    if (std::isfinite(a) && std::isfinite(b)) near.push_back(a), far.push_back(b);
+  }
+  return !near.empty() && quantile(near, 0.5) <= kInOrder * quantile(far, 0.5);
+}
+
 bool isCoordinate(const Column& values) {
   const Column finite = finiteOf(values);
   if (finite.size() < 2 || 2 * finite.size() < values.size()) return false;
   if (quantile(finite, 0.99) > kFarthestReturn || quantile(finite, 0.01) < -kFarthestReturn)
     return false;
-  return quantile(finite, 0.95) - quantile(finite, 0.05) >= kLeastSpread && !rises(finite);
+  return quantile(finite, 0.95) - quantile(finite, 0.05) >= kLeastSpread && !isClock(finite);
 }
 
 /// Share of the variance of the elevations that is between the values of a column.
@@ -133,7 +188,7 @@ void nameOthers(const std::vector<Column>& values, std::size_t first, CloudLayou
     const Column& v = values[c];
     if (!ring && isSmallWhole(v) && toldOfElevation(v, x, y, z) >= kRingTells) {
       layout.columns[c] = "ring", ring = true;
-    } else if (!time && rises(v)) {
+    } else if (!time && isClock(v) && inScanningOrder(x, y)) {
       layout.columns[c] = "time", time = true;
     } else if (!intensity && c > first && isMeasured(v)) {
       layout.columns[c] = "intensity", intensity = true;

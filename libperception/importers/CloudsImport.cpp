@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "libperception/core/Error.h"
+#include "libperception/importers/CloudFolder.h"
 #include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
@@ -152,7 +153,11 @@ void CloudsImporter::findFormat(const std::vector<FrameFile>& files, ImportLog& 
 }
 
 void CloudsImporter::run(ImportLog& log) {
-  const auto files = frameFiles(clouds_, cloudEndings());
+  const CloudFiles found = cloudFilesIn(clouds_);
+  const std::vector<FrameFile>& files = found.scans;
+  if (!found.others.empty())
+    log.note(fmt::format("no scans by their names: {} files of {}, such as {}", found.others.size(),
+                         clouds_, found.others.front()));
   readStamps(files, log.options().rate);
   readPoses(files);
   const Pose3 T_ego_lidar = mount();

@@ -195,7 +195,7 @@ LidarCloud cloudOf(const std::string& path, const CloudTable& table, const Cloud
       cloud.ring[i] = static_cast<std::uint16_t>((*v)[i] >= 0 && (*v)[i] < 65536 ? (*v)[i] : 0);
   }
   if (const auto* v = find(table, {"time", "t", "time_offset", "timestamp"})) {
-    const double begin = v->empty() ? 0 : v->front();
+    const double begin = v->empty() || format.about_stamp ? 0 : v->front();
     cloud.time_offset.resize(v->size());
     for (std::size_t i = 0; i < v->size(); ++i)
       cloud.time_offset[i] = static_cast<float>(((*v)[i] - begin) * format.time_scale);
@@ -215,32 +215,32 @@ const std::vector<std::string>& cloudEndings() {
 
 namespace {
 
-/// ".bin" of "a/0001.bin.gz".
-std::string endingOf(const std::string& path) {
-  std::string name = path;
-  if (name.size() > 3 && name.compare(name.size() - 3, 3, ".gz") == 0) name.resize(name.size() - 3);
-  return name.size() < 4 ? "" : name.substr(name.size() - 4);
-}
-
 bool isTable(const std::string& ending) {
   return ending == ".csv" || ending == ".txt" || ending == ".xyz";
 }
 
 }  // namespace
 
+/// ".bin" of "a/0001.bin.gz".
+std::string cloudEndingOf(const std::string& path) {
+  std::string name = path;
+  if (name.size() > 3 && name.compare(name.size() - 3, 3, ".gz") == 0) name.resize(name.size() - 3);
+  return name.size() < 4 ? "" : name.substr(name.size() - 4);
+}
+
 CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat& format) {
   if (paths.empty()) return format;
-  const std::string ending = endingOf(paths.front());
+  const std::string ending = cloudEndingOf(paths.front());
   if (!format.columns.empty() && ending != ".bin") return format;
   std::vector<std::string> alike;
   std::copy_if(paths.begin(), paths.end(), std::back_inserter(alike),
-               [&](const std::string& path) { return endingOf(path) == ending; });
+               [&](const std::string& path) { return cloudEndingOf(path) == ending; });
   if (ending == ".bin") return foundBinFormat(alike, format);
   return isTable(ending) ? foundCsvFormat(alike, format) : format;
 }
 
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format) {
-  const std::string ending = endingOf(path);
+  const std::string ending = cloudEndingOf(path);
   const std::string bytes = readBytes(path, kMostBytes);
   if (ending == ".bin") return cloudOf(path, readBin(path, bytes, format), format);
   if (ending == ".pcd") return cloudOf(path, readPcd(path, bytes), format);

@@ -15,11 +15,14 @@ struct CloudFormat {
   bool doubles = false;      ///< .bin of float64
   double intensity_max = 0;  ///< intensities are divided by it; 0: they are in [0, 1] already
   double time_scale = 1;     ///< [s] of the unit of the column time
+  bool about_stamp = false;  ///< times are about the scan's stamp, not from the first point's on
   double max_range = 0;      ///< [m] of the instrument; 0: unknown
 };
 
 /// File extensions supported by readCloudFile(), including gzip variants.
 const std::vector<std::string>& cloudEndings();
+/// ".bin" of "a/0001.bin.gz".
+std::string cloudEndingOf(const std::string& path);
 
 /// For files without names of their columns (.bin always; .csv, .txt, .xyz where the first line
 /// holds numbers): `format` with the columns that are found from their data, the first file's and

@@ -1,5 +1,6 @@
 #include "libperception/importers/ImportRadarPicture.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
@@ -83,24 +84,47 @@ class BoundingDisc {
   std::vector<int> of_beam_;
 };
 
-}  // namespace
-
-RadarReturns radarReturnsOf(const std::string& path, const RadarPictureParams& params) {
-  const cv::Mat picture = readImageFile(path, cv::IMREAD_GRAYSCALE);
-  if (picture.empty()) throw DataError(path + ": not an image");
-  const cv::Mat polar = polarOf(picture, params);
+RadarReturns returnsOfPolar(const cv::Mat& polar, const std::vector<double>& bearings, double first,
+                            const RadarPictureParams& params) {
   RadarReturns out;
   out.max_range = params.range;
   BoundingDisc surroundings(polar, params);
   for (const Echo& echo : peaksOf(polar, params)) {
     if (!surroundings.take(echo)) continue;
     RadarReturn& r = out.returns.emplace_back();
-    r.range = echo.cell * params.pixel;
-    r.bearing = wrapAngle(kTwoPi * echo.beam / polar.rows);
+    r.range = first + echo.cell * params.pixel;
+    r.bearing = wrapAngle(bearings[static_cast<std::size_t>(echo.beam)]);
     r.has_rate = false;
     r.amplitude = echo.power;
   }
   return out;
+}
+
+}  // namespace
+
+RadarReturns radarReturnsOf(const std::string& path, const RadarPictureParams& params) {
+  const cv::Mat picture = readImageFile(path, cv::IMREAD_GRAYSCALE);
+  if (picture.empty()) throw DataError(path + ": not an image");
+  const cv::Mat polar = polarOf(picture, params);
+  std::vector<double> bearings;
+  for (int beam = 0; beam < polar.rows; ++beam) bearings.push_back(kTwoPi * beam / polar.rows);
+  return returnsOfPolar(polar, bearings, 0, params);
+}
+
+RadarReturns radarReturnsOf(const Raster& polar, const std::vector<double>& bearings, double first,
+                            const RadarPictureParams& params) {
+  const cv::Mat picture(polar.height, polar.width, CV_8UC1,
+                        const_cast<std::uint8_t*>(polar.pixels.data()));
+  return returnsOfPolar(picture, bearings, first, params);
+}
+
+void declareRadarPicture(CLI::App& cli, RadarPictureParams& params) {
+  cli.add_option("--strongest", params.strongest, "echoes taken of each of the radar's beams")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  cli.add_option("--least-power", params.least_power, "[0, 255] of an echo")
+      ->check(CLI::Range(0, 255))
+      ->capture_default_str();
 }
 
 }  // namespace perception

@@ -1,7 +1,12 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "libperception/measurement/SensorFrame.h"
+
+namespace CLI {
+class App;
+}
 
 namespace perception {
 
@@ -20,8 +25,16 @@ struct RadarPictureParams {
   int around_cells = 3;  ///< half a meter
 };
 
+/// Options --strongest and --least-power.
+void declareRadarPicture(CLI::App& cli, RadarPictureParams& params);
+
 /// Returns of a Cartesian radar image with the vehicle in its center, up = forward; no range rates.
 /// Throws DataError if the file is not an image.
 RadarReturns radarReturnsOf(const std::string& path, const RadarPictureParams& params);
+
+/// The same of a polar picture (one channel): a row a beam, whose bearing is given [rad], a column
+/// a cell of `pixel` [m], the first at `first` [m].
+RadarReturns radarReturnsOf(const Raster& polar, const std::vector<double>& bearings, double first,
+                            const RadarPictureParams& params);
 
 }  // namespace perception

@@ -177,14 +177,15 @@ void requireFolder(const std::string& path) {
   if (!fs::is_directory(path)) throw DataError(fmt::format("{}: not a folder", path));
 }
 
-std::vector<FrameFile> frameFiles(const std::string& dir, const std::vector<std::string>& endings) {
+std::vector<FrameFile> frameFiles(const std::string& dir, const std::vector<std::string>& endings,
+                                  const std::function<bool(const std::string&)>& wants) {
   requireFolder(dir);
   std::vector<FrameFile> files;
   bool numbers = true;
   for (const auto& entry : fs::directory_iterator(dir)) {
     const std::string name = entry.path().filename().string();
     for (const std::string& ending : endings) {
-      if (!endsWith(name, ending)) continue;
+      if (!endsWith(name, ending) || (wants && !wants(name))) continue;
       FrameFile file{0, name.substr(0, name.size() - ending.size()), entry.path().string()};
       numbers = numbers && parseWhole(std::string_view(file.stem), file.number) &&
                 file.number >= 0 && file.number <= 1'000'000'000;

@@ -69,9 +69,10 @@ struct FrameFile {
   std::string stem;         ///< name without folder and extensions
   std::string path;
 };
-/// The files in `dir` with one of the extensions (".bin", ".bin.gz"), sorted by number. Throws
-/// DataError (kNoInput) if there is no such folder or file.
-std::vector<FrameFile> frameFiles(const std::string& dir, const std::vector<std::string>& endings);
+/// The files in `dir` with one of the extensions (".bin", ".bin.gz"), sorted by number; of names
+/// that `wants` holds of. Throws DataError (kNoInput) if there is no such folder or file.
+std::vector<FrameFile> frameFiles(const std::string& dir, const std::vector<std::string>& endings,
+                                  const std::function<bool(const std::string&)>& wants = {});
 /// DIR/STEM + the first of the extensions for which a file exists; empty: none.
 std::string fileOfStem(const std::string& dir, const std::string& stem,
                        const std::vector<std::string>& endings);

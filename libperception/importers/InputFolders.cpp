@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libperception/importers/BagContents.h"
+#include "libperception/importers/CloudFolder.h"
 #include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/NuscenesTables.h"
@@ -149,6 +150,13 @@ const std::vector<FolderRow>& folderRows() {
       {"View of Delft: radar points, lidar, camera",
        {{"radar_points", "radar/training", "calib_radar"}, {"lidar_points", "lidar/training"}},
        "vod"},
+      {"Boreas: lidar, turning radar, camera and poses",
+       {{"lidar"}, {"applanix"}, {"calib"}},
+       "boreas"},
+      {"CADC: lidar, GPS/IMU and boxes in snow", {{"lidar_points/data"}, {"novatel/data"}}, "cadc"},
+      {"SemanticSpray: scans in spray with a class per point",
+       {{"velodyne"}, {"labels"}, {"ibeo_front", "ibeo_rear", "delphi_radar"}},
+       "semanticspray"},
       {"Argoverse 2 as tables", {{"scans.csv"}, {"boxes.csv"}, {"calib.csv"}}, "av2"},
       {"aiMotive: lidar, two radars, camera",
        {{"scans.csv"}, {"calib.json"}, {"lidar"}},
@@ -247,16 +255,16 @@ InputKind recordingOfRos(const fs::path& path) {
 
 std::optional<InputKind> cloudFolder(const fs::path& folder) {
   // Text may be anything: a folder is of clouds by its other files.
-  std::string most;
-  std::size_t count = 0;
-  for (const char* ending : {".bin", ".pcd", ".ply", ".csv", ".xyz"}) {
-    const std::size_t files = countOf(folder, {ending, std::string(ending) + ".gz"});
-    if (files > count) most = ending, count = files;
-  }
-  if (count == 0) return {};
+  const auto names = namesInFolder(folder);
+  const bool any = std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    const auto& endings = cloudEndings();
+    return std::any_of(endings.begin(), endings.end(), [&](const std::string& end) {
+      return end.compare(0, 4, ".txt") != 0 && hasEnding(name, end);
+    });
+  });
+  if (!any) return {};
   std::vector<std::string> paths;
-  for (const FrameFile& file : frameFiles(folder.string(), {most, most + ".gz"}))
-    paths.push_back(file.path);
+  for (const FrameFile& file : cloudFilesIn(folder.string()).scans) paths.push_back(file.path);
   InputKind kind{"a folder of point clouds", {}, {}};
   kind.holds.push_back(fmt::format("{} files, the first: {}", paths.size(),
                                    fs::path(paths.front()).filename().string()));

@@ -131,4 +131,19 @@ std::multimap<std::int64_t, KittiTracklet> readKittiTracklets(const std::string&
   return boxes;
 }
 
+KittiRawSeries readKittiRawSeries(const std::string& folder,
+                                  const std::vector<std::string>& endings) {
+  const std::string times = (fs::path(folder) / "timestamps.txt").string();
+  const std::vector<Stamp> all = readKittiRawStamps(times);
+  KittiRawSeries found;
+  for (const FrameFile& file : frameFiles((fs::path(folder) / "data").string(), endings)) {
+    if (file.number >= static_cast<std::int64_t>(all.size()))
+      throw DataError(
+          fmt::format("{}: {} stamps, expected one for {}", times, all.size(), file.path));
+    found.files.push_back(file);
+    found.stamps.push_back(all[static_cast<std::size_t>(file.number)]);
+  }
+  return found;
+}
+
 }  // namespace perception

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "libperception/importers/ImportText.h"
 #include "libperception/importers/KittiFiles.h"
 
 namespace perception {
@@ -28,5 +29,15 @@ struct KittiTracklet {
 
 /// Boxes of a tracklet_labels.xml (a boost serialization), by frame. Throws DataError.
 std::multimap<std::int64_t, KittiTracklet> readKittiTracklets(const std::string& path);
+
+/// The files of a sensor, each with its stamp.
+struct KittiRawSeries {
+  std::vector<FrameFile> files;
+  std::vector<Stamp> stamps;
+};
+/// FOLDER/data and FOLDER/timestamps.txt: file k has the stamp of line k, also where files before
+/// are missing. CADC has the same.
+KittiRawSeries readKittiRawSeries(const std::string& folder,
+                                  const std::vector<std::string>& endings);
 
 }  // namespace perception

@@ -31,13 +31,7 @@ class KittiRawImporter final : public Importer {
   void run(ImportLog& log) override;
 
  private:
-  /// The files of a sensor, each with its stamp.
-  struct Series {
-    std::vector<FrameFile> files;
-    std::vector<Stamp> stamps;
-  };
   std::string in(const std::string& name) const { return (fs::path(dir_) / name).string(); }
-  Series series(const std::string& sensor, const std::vector<std::string>& endings) const;
   void readMotion();
   void addMotion(ImportLog& log);
   void addScans(ImportLog& log);
@@ -51,25 +45,9 @@ class KittiRawImporter final : public Importer {
   std::multimap<std::int64_t, KittiTracklet> tracklets_;
 };
 
-/// File k of data/ has the stamp of line k of timestamps.txt, also where files before are missing.
-KittiRawImporter::Series KittiRawImporter::series(const std::string& sensor,
-                                                  const std::vector<std::string>& endings) const {
-  const std::string times = in(sensor + "/timestamps.txt");
-  const std::vector<Stamp> all = readKittiRawStamps(times);
-  Series found;
-  for (const FrameFile& file : frameFiles(in(sensor + "/data"), endings)) {
-    if (file.number >= static_cast<std::int64_t>(all.size()))
-      throw DataError(
-          fmt::format("{}: {} stamps, expected one for {}", times, all.size(), file.path));
-    found.files.push_back(file);
-    found.stamps.push_back(all[static_cast<std::size_t>(file.number)]);
-  }
-  return found;
-}
-
 /// World: the ego frame at the first pose.
 void KittiRawImporter::readMotion() {
-  const Series oxts = series("oxts", {".txt"});
+  const KittiRawSeries oxts = readKittiRawSeries(in("oxts"), {".txt"});
   std::vector<std::string> paths;
   for (const FrameFile& file : oxts.files) paths.push_back(file.path);
   const std::vector<Pose3> imu = readKittiOxts(paths);
@@ -104,7 +82,7 @@ void KittiRawImporter::addTracklets(std::int64_t frame, Stamp stamp, const Lidar
 }
 
 void KittiRawImporter::addScans(ImportLog& log) {
-  const Series scans = series("velodyne_points", {".bin", ".bin.gz"});
+  const KittiRawSeries scans = readKittiRawSeries(in("velodyne_points"), {".bin", ".bin.gz"});
   for (std::size_t i = 0; i < scans.files.size(); ++i) {
     const FrameFile file = scans.files[i];
     if (!log.wants(file.number)) continue;
@@ -123,7 +101,7 @@ void KittiRawImporter::addScans(ImportLog& log) {
 
 void KittiRawImporter::addImages(ImportLog& log) {
   if (!fs::is_directory(in("image_02/data"))) return;
-  const Series images = series("image_02", {".png", ".jpg"});
+  const KittiRawSeries images = readKittiRawSeries(in("image_02"), {".png", ".jpg"});
   for (std::size_t i = 0; i < images.files.size(); ++i) {
     const FrameFile file = images.files[i];
     if (!log.options().wants(file.number)) continue;

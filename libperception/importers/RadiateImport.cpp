@@ -86,13 +86,7 @@ void RadiateImporter::declare(CLI::App& cli) {
       ->capture_default_str();
   cli.add_option("--gps-shift", params_.gps_shift,
                  "[s] added to the GPS stamps; default: what makes the lidar's scans agree");
-  cli.add_option("--strongest", params_.radar.strongest,
-                 "echoes taken of each of the radar's 400 beams")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  cli.add_option("--least-power", params_.radar.least_power, "[0, 255] of an echo")
-      ->check(CLI::Range(0, 255))
-      ->capture_default_str();
+  declareRadarPicture(cli, params_.radar);
   cli.add_flag("--radar-images", params_.radar_images, "the radar's pictures as images, too");
 }
 

@@ -30,6 +30,8 @@ const std::vector<DeviceKind>& deviceKinds() {
        [](File) { return makeSrr520Decoder(); }, &makeSrr520Encoder},
       {"esr", "Delphi ESR: tracks with a measurement, by CAN", false, Transport::kCan, 0, false,
        175, [](File) { return makeEsrDecoder(); }, &makeEsrEncoder},
+      {"ars408", "Continental ARS 408: clusters or objects, by CAN", false, Transport::kCan, 0,
+       false, 250, [](File) { return makeArs408Decoder(); }, &makeArs408Encoder},
   };
   return kinds;
 }

@@ -70,6 +70,8 @@ class PacketDecoder {
   virtual ~PacketDecoder() = default;
   /// Throws DataError with the place in the packet; the next packet can be decoded all the same.
   virtual DecodedPacket decode(std::string_view payload) = 0;
+  /// Whether it is the device's own, where its packets come among others (CAN).
+  virtual bool takes(std::string_view) const { return true; }
 };
 
 class PacketEncoder;

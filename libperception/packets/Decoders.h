@@ -39,4 +39,11 @@ std::unique_ptr<PacketDecoder> makeIbeoDecoder();
 /// numbers are those of the scans.
 std::unique_ptr<PacketDecoder> makeEsrDecoder();
 
+/// Continental ARS 408 by CAN: clusters (0x600, 0x701), or objects (0x60A, 0x60B) where it is set
+/// to send these, each frame as four bytes of identifier (big endian) and its data. Of several on
+/// a bus (16 more for each) the first that is heard. A list ends with the element that its head
+/// announces as the last, or with the next head. No stamp is sent. Source: the technical
+/// documentation of the radar, as public drivers have it; no recording was at hand.
+std::unique_ptr<PacketDecoder> makeArs408Decoder();
+
 }  // namespace perception

@@ -37,6 +37,7 @@ std::unique_ptr<PacketEncoder> makeXt32Encoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeOusterEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeIbeoEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeEsrEncoder(const std::string& file);
+std::unique_ptr<PacketEncoder> makeArs408Encoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeArs548Encoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeSrr520Encoder(const std::string& file);
 

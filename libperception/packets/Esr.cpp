@@ -42,8 +42,7 @@ class EsrDecoder final : public PacketDecoder {
     if (message.size() < kCanId)
       refuse(0, std::to_string(message.size()) + " bytes, no identifier");
     const auto id = static_cast<std::uint32_t>(bigEndian(message, 0, kCanId));
-    const bool ours = (id >= kTracks && id <= kPower) || id == kStatus;
-    if (!ours) return {};  // others of the bus
+    if (!takes(message)) return {};  // others of the bus
     const std::string_view data = message.substr(kCanId);
     if (data.size() != kData) refuse(id, std::to_string(data.size()) + " bytes, expected 8");
     if (id == kStatus) return begin(static_cast<std::uint16_t>(bigEndian(data, 3, 2)));
@@ -51,6 +50,12 @@ class EsrDecoder final : public PacketDecoder {
     seen_.set(id - kTracks);
     targets_[id - kTracks] = targetIn(data, id - kTracks);
     return {};
+  }
+
+  bool takes(std::string_view message) const override {
+    if (message.size() < kCanId) return false;
+    const std::uint64_t id = bigEndian(message, 0, kCanId);
+    return (id >= kTracks && id <= kPower) || id == kStatus;
   }
 
  private:

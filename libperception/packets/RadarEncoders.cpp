@@ -71,6 +71,38 @@ class EsrEncoder final : public PacketEncoder {
   std::uint16_t scan_ = 0;
 };
 
+/// A list of objects: its head, and a message each.
+class Ars408Encoder final : public PacketEncoder {
+ public:
+  std::vector<TimedPacket> encode(const SensorFrame& frame, double) override {
+    constexpr std::size_t kMost = 100;
+    auto returns = within(returnsOf(frame).returns, 250, M_PI / 2);
+    returns.resize(std::min(returns.size(), kMost));
+    std::string head(4, '\0');
+    head[0] = static_cast<char>(returns.size());
+    putBig(head, 1, list_++, 2);
+    std::vector<TimedPacket> packets{{0, canMessage(0x60A, head)}};
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const RadarReturn& r = returns[i];
+      const double c = std::cos(r.bearing), s = std::sin(r.bearing);
+      std::string data(8, '\0');
+      data[0] = static_cast<char>(i);
+      putBitsMsbFirst(data, 8, 13, steps(r.range * c, .2, -500, 13));
+      putBitsMsbFirst(data, 21, 11, steps(r.range * s, .2, -204.6, 11));
+      putBitsMsbFirst(data, 32, 10, steps(r.range_rate * c, .25, -128, 10));
+      putBitsMsbFirst(data, 42, 9, steps(r.range_rate * s, .25, -64, 9));
+      putBitsMsbFirst(data, 56, 8, steps(r.amplitude, .5, -64, 8));
+      packets.push_back({0, canMessage(0x60B, data)});
+    }
+    return packets;
+  }
+
+  void restart() override { list_ = 0; }
+
+ private:
+  std::uint16_t list_ = 0;
+};
+
 /// Detections in one datagram.
 class Ars548Encoder final : public PacketEncoder {
  public:
@@ -167,6 +199,10 @@ const RadarReturns& PacketEncoder::returnsOf(const SensorFrame& frame) {
 
 std::unique_ptr<PacketEncoder> makeEsrEncoder(const std::string&) {
   return std::make_unique<EsrEncoder>();
+}
+
+std::unique_ptr<PacketEncoder> makeArs408Encoder(const std::string&) {
+  return std::make_unique<Ars408Encoder>();
 }
 
 std::unique_ptr<PacketEncoder> makeArs548Encoder(const std::string&) {

@@ -1,5 +1,6 @@
 #include "libperception/packets/Srr520.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -78,6 +79,13 @@ class Srr520Decoder final : public PacketDecoder {
       if (id == kLists[i].header + 1) addElement(i, data);
     }
     return id == 800 ? close(data) : DecodedPacket{};
+  }
+  bool takes(std::string_view message) const override {
+    if (message.size() < kCanIdSize) return false;
+    const std::uint64_t id = bigEndian(message, 0, kCanIdSize);
+    return id == 800 || std::any_of(kLists.begin(), kLists.end(), [&](const List& list) {
+             return id == list.header || id == list.header + 1;
+           });
   }
 
  private:

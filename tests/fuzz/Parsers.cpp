@@ -22,10 +22,13 @@
 #include "libperception/importers/AimotiveFiles.h"
 #include "libperception/importers/BagContents.h"
 #include "libperception/importers/BagTypes.h"
+#include "libperception/importers/BoreasFiles.h"
 #include "libperception/importers/CloudTable.h"
+#include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/KittiFiles.h"
+#include "libperception/importers/LabeledBoxes.h"
 #include "libperception/importers/RadiateFiles.h"
 #include "libperception/importers/VodFiles.h"
 #include "libperception/interop/ReadingBag.h"
@@ -214,6 +217,15 @@ void cutIbeo(std::string_view bytes) {
   }
 }
 
+/// A .bin whose columns are found.
+void readNumbers(std::string_view bytes) {
+  const std::string path = written("numbers.bin", bytes);
+  CloudFormat format;
+  format.columns.clear();
+  format = foundFormat({path}, format);
+  readCloudFile(path, format);
+}
+
 void readClasses(std::string_view bytes) {
   Config config = Config::fromText(std::string(bytes), "fuzz.ini");
   readClassTable(config);
@@ -280,6 +292,12 @@ const std::vector<Parser>& parsers() {
       {"ply", [](std::string_view b) { readPly("fuzz.ply", std::string(b)); }},
       {"vod_radar", ofFile([](const std::string& p) { readVodRadar(p); })},
       {"vod_pose", ofFile([](const std::string& p) { readVodPose(p); })},
+      {"cadc_boxes", ofFile([](const std::string& p) { readCadcBoxes(p); })},
+      {"spray_boxes", ofFile([](const std::string& p) { readSprayBoxes(p); })},
+      {"boreas_boxes", ofFile([](const std::string& p) { readBoreasBoxes(p); })},
+      {"boreas_poses", ofFile([](const std::string& p) { readBoreasPoses(p); })},
+      {"boreas_transform", ofFile([](const std::string& p) { readBoreasTransform(p); })},
+      {"cloud_columns", &readNumbers},
       {"radiate", ofFile([](const std::string& p) { readRadiateAnnotations(p); })},
       {"radiate_times", ofFile([](const std::string& p) { readRadiateTimes(p); })},
       {"aimotive_boxes", ofFile([](const std::string& p) { readAimotiveBoxes(p); })},

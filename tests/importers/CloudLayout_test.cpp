@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -64,6 +65,34 @@ TEST(CloudLayout, RisingTimesBeforeOrBehindAreTimes) {
   }
   EXPECT_EQ(columnsOf(before), (Names{"time", "x", "y", "z", "intensity", "ring"}));
   EXPECT_EQ(columnsOf(behind), (Names{"x", "y", "z", "intensity", "ring", "time"}));
+}
+
+TEST(CloudLayout, AnIntensityThatRisesIsNoTime) {
+  const double n = static_cast<double>(scan().size());
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> noise(0, 1);
+  std::vector<Row> counts = scan(), mostly = scan(), bytes = scan(), sorted = scan();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double share = static_cast<double>(i) / n;
+    counts[i] = {counts[i][0], counts[i][1], counts[i][2], static_cast<float>(share)};
+    // One step of 25 falls.
+    mostly[i] = {mostly[i][0], mostly[i][1], mostly[i][2],
+                 static_cast<float>(share) * 0.5F + (i % 25 == 0 ? 0.002F : 0.0F)};
+    bytes[i] = {bytes[i][0], bytes[i][1], bytes[i][2], std::floor(255 * noise(random))};
+    sorted[i] = {sorted[i][0], sorted[i][1], sorted[i][2], 0.2F * noise(random)};
+  }
+  for (std::vector<Row>* rows : {&bytes, &sorted})
+    std::sort(rows->begin(), rows->end(), [](const Row& a, const Row& b) { return a[3] < b[3]; });
+  EXPECT_EQ(columnsOf(counts), (Names{"x", "y", "z", "intensity"})) << "through a whole second";
+  EXPECT_EQ(columnsOf(bytes), (Names{"x", "y", "z", "intensity"}));
+  EXPECT_EQ(columnsOf(sorted), (Names{"x", "y", "z", "intensity"}));
+  EXPECT_EQ(columnsOf(mostly), (Names{"x", "y", "z", "intensity"})) << "and falls in between";
+}
+
+TEST(CloudLayout, ACoordinateThatWasSortedStaysOne) {
+  std::vector<Row> rows = scan();
+  std::sort(rows.begin(), rows.end());
+  EXPECT_EQ(columnsOf(rows), (Names{"x", "y", "z", "intensity", "ring"}));
 }
 
 TEST(CloudLayout, WhatFillsRowsIsSkipped) {

@@ -47,7 +47,7 @@ TEST(Importers, EachHasANameOfItsOwnAndSaysWhatItReads) {
     EXPECT_GT(std::string(row.description).size(), 20u) << row.name;
     EXPECT_NE(row.make(), nullptr);
   }
-  EXPECT_EQ(names.size(), 20u);
+  EXPECT_EQ(names.size(), 23u);
 }
 
 class ImportOptionsOfFormats : public test::ImportRun {};

@@ -75,6 +75,20 @@ TEST_F(InputKindOf, KittisLayoutsAreToldFromEachOther) {
   expectKind("semantic", "1 sequences of SemanticKITTI", "semantickitti --dir ");
 }
 
+TEST_F(InputKindOf, SetsOfWinterAndSprayAreToldByTheirFolders) {
+  write("cadc/labeled/lidar_points/data/0000000000.bin", scanBytes());
+  write("cadc/labeled/novatel/data/0000000000.txt", "");
+  expectKind("cadc", "CADC", "cadc --dir " + file("cadc/labeled") + " -o labeled.rawlog");
+  write("boreas/lidar/1611678137000000.bin", scanBytes());
+  write("boreas/applanix/lidar_poses.csv", "");
+  write("boreas/calib/T_radar_lidar.txt", "");
+  expectKind("boreas", "Boreas", "boreas --dir " + file("boreas"));
+  write("spray/velodyne/000000.bin", scanBytes());
+  write("spray/labels/000000.label", "");
+  write("spray/delphi_radar/000000.bin", "");
+  expectKind("spray", "SemanticSpray", "semanticspray --dir " + file("spray"));
+}
+
 TEST_F(InputKindOf, ScenesOfNuscenesAreListed) {
   write("n/v1.0-mini/scene.json",
         R"([{"token": "s1", "name": "scene-0061", "description": "Rain", "nbr_samples": 3}])");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,33 @@ TEST_F(OddClouds, BinariesOfFloatsAreNotTakenForDoubles) {
   });
   expectClouds({}, 0);
   for (const std::string& note : result_.notes) EXPECT_EQ(note.find("float64"), std::string::npos);
+}
+
+TEST_F(OddClouds, TextBesideScansIsNoScan) {
+  const auto floats = [](const LidarCloud& cloud) {
+    std::vector<float> numbers;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      numbers.insert(numbers.end(), {cloud.x[i], cloud.y[i], cloud.z[i], cloud.intensity[i]});
+    return bytesOf(numbers);
+  };
+  const auto lines = [](const LidarCloud& cloud) {
+    std::string text;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      text += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", cloud.x[i], cloud.y[i], cloud.z[i],
+                          cloud.intensity[i]);
+    return text;
+  };
+  for (const bool text : {false, true}) {
+    std::filesystem::remove_all(file("clouds"));
+    writeClouds(text ? ".txt" : ".bin",
+                text ? std::function<std::string(const LidarCloud&)>(lines) : floats);
+    write("clouds/README.txt", "scans of my car\n");
+    write("clouds/poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+    write("clouds/stamps.csv", "scan,seconds\n0,1\n");
+    std::filesystem::remove(file("out.rawlog"));
+    expectClouds({}, 0);
+    expectSaid("no scans by their names: 3 files of " + file("clouds") + ", such as README.txt");
+  }
 }
 
 TEST_F(OddClouds, BinariesOfWholeNumbersAreRefused) {

@@ -245,7 +245,7 @@ TEST(Radars, TargetsAreDecodedAsTheyWereSent) {
   };
   for (const Steps& d :
        {Steps{"ars548", 1e-4, 1e-5, 1e-5, .5}, Steps{"srr520", .0123, .0031, .0074, .24},
-        Steps{"esr", .051, .0009, .0051, .5}}) {
+        Steps{"esr", .051, .0009, .0051, .5}, Steps{"ars408", .15, .08, .25, .3}}) {
     const Sent sent = passThrough(d.kind, &radarScan);
     EXPECT_TRUE(sent.warnings.empty()) << sent.warnings.front();
     ASSERT_EQ(sent.frames.size(), 5U) << d.kind;
@@ -275,6 +275,40 @@ TEST(Radars, AnSrr520WithoutOneElementIsLeftOutAlone) {
   EXPECT_EQ(sent.frames.size(), 4U);
   ASSERT_EQ(sent.warnings.size(), 1U);
   EXPECT_NE(sent.warnings[0].find("checksum"), std::string::npos);
+}
+
+TEST(Radars, ObjectsAndClustersOfAnArs408ComeFromCandumpText) {
+  // Sensor 2. Object 7: DistLong 40.0 m = 2700, DistLat 3.0 m = 1038, VrelLong -6.25 m/s = 487,
+  // VrelLat 0 = 256, RCS 12 dBm2 = 152. Cluster 8: DistLat 3.1 m = 527.
+  for (const auto& [head, element, y] :
+       {std::tuple("62A#01000500", "62B#0754640E79E00098", 3.0),
+        std::tuple("620#0100000500", "721#0854620F79E00098", 3.1)}) {
+    const std::string text = element;
+    const auto decoder = deviceKind("ars408").make("");
+    const auto take = [&](const std::string& frame) {
+      return decoder->decode(parseCandump("(1.0) can0 " + frame)->message);
+    };
+    EXPECT_FALSE(take(text).ends_scan) << "a list that began before";
+    EXPECT_FALSE(take(head).ends_scan);
+    EXPECT_FALSE(take("60B#0000000000000000").ends_scan) << "another sensor";
+    const DecodedPacket scan = take(text);
+    ASSERT_TRUE(scan.ends_scan);
+    EXPECT_EQ(*scan.number, 5U);
+    ASSERT_EQ(scan.targets.size(), 1U);
+    const PacketTarget& target = scan.targets[0];
+    EXPECT_NEAR(target.range, std::hypot(40, y), 1e-3);
+    EXPECT_NEAR(target.azimuth, std::atan2(y, 40), 1e-4);
+    EXPECT_NEAR(target.range_rate, -6.25 * 40 / std::hypot(40, y), 1e-3);
+    EXPECT_NEAR(target.rcs, 12, 1e-6);
+    EXPECT_THROW(take("62B#0011"), DataError);
+  }
+}
+
+TEST(Radars, AListOfAnArs408WithoutAnElementEndsWithTheNextAndIsTold) {
+  const Sent sent = passThrough("ars408", &radarScan, "", 3);
+  ASSERT_EQ(sent.frames.size(), 5U);
+  ASSERT_EQ(sent.warnings.size(), 1U);
+  EXPECT_NE(sent.warnings[0].find("fewer elements than announced"), std::string::npos);
 }
 
 TEST(Radars, TracksOfAnEsrComeFromCandumpText) {

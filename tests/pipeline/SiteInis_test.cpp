@@ -30,6 +30,9 @@ TEST(SiteInis, AllLoadWithoutAFault) {
                            "kitti-detections-unlabelled.ini",
                            "av2.ini",
                            "nuscenes.ini",
+                           "cadc.ini",
+                           "boreas.ini",
+                           "semanticspray.ini",
                            "aimotive.ini"}) {
     Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/" + name);
     PipelineSetup::read(config);
