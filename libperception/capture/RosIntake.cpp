@@ -21,10 +21,15 @@ constexpr std::size_t kMostWaitingBytes = 500'000'000;  // of these
 constexpr std::size_t kMostFrames = 1000;               // of reference
 constexpr std::size_t kMostTimes = 1000;                // of a topic
 
-bool isOfSensor(const std::string& type) {
-  const BagType* const row = bagType(type);
-  return row != nullptr && (row->role != BagType::Role::kOther || type == "sensor_msgs/NavSatFix" ||
-                            type == "sensor_msgs/Imu");
+BagTopic liveTopic(const std::string& topic, const std::string& type) {
+  BagTopic row;
+  row.name = topic, row.type = type, row.encoding = ros::Encoding::kCdr;
+  return row;
+}
+
+/// Whether its messages become data of sensors or readings.
+bool isOfSensor(const BagType& type) {
+  return type.role != BagType::Role::kOther || type.observe != nullptr;
 }
 
 }  // namespace
@@ -50,14 +55,11 @@ RosIntake::RosIntake(Config& config, Give give)
 }
 
 bool RosIntake::wants(const std::string& topic, const std::string& type) const {
-  if (bagType(type) == nullptr) return false;
-  BagTopic row;
-  row.name = topic, row.type = type, row.encoding = ros::Encoding::kCdr;
-  return measurements_.uses(row);
+  return measurements_.uses(liveTopic(topic, type));
 }
 
 bool RosIntake::isLarge(const std::string& type) {
-  const BagType* const row = bagType(type);
+  const BagType* const row = bagType(liveTopic("", type));
   return row != nullptr && row->role != BagType::Role::kOther && row->unpack == nullptr;
 }
 
@@ -88,7 +90,7 @@ void RosIntake::take(const std::string& topic, const std::string& type, std::str
   ++received_;
   BagContents::Row& row = contents_.topics[topic];
   if (row.messages++ == 0) {
-    row.topic.name = topic, row.topic.type = type, row.topic.encoding = ros::Encoding::kCdr;
+    row.topic = liveTopic(topic, type);
     row.first = received;
   }
   row.last = received;
@@ -105,10 +107,10 @@ void RosIntake::read(const BagMessage& message, std::string&& bytes) {
   const BagTopic& topic = *message.topic;
   const auto header = headerOf(message);
   if (header) noteHeader(message, *header);
-  const BagType& type = *bagType(topic.type);
+  const BagType& type = *bagType(topic);
   if (type.note != nullptr) type.note(message, contents_);
   poses_.plant(message.stamp);
-  if (!isOfSensor(topic.type)) return;
+  if (!isOfSensor(type)) return;
   if (!began_) began_ = message.stamp;
   Waiting waiting{topic.name, {}, message.stamp, header.value_or(ros::Header{})};
   waiting.bytes = std::move(bytes);

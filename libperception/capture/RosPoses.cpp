@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "libperception/interop/PoseSeries.h"
 #include "libperception/sensors/ToObservation.h"
 
 namespace perception {
@@ -41,17 +42,18 @@ void RosPoses::plant(Stamp received) {
       throw std::runtime_error(
           fmt::format("a transform of \"{}\" beside those of {} frames", child, kMostChildren));
     frames_.insert(child);
-    for (const auto& t : transforms) {
-      const Stamp stamp = *t.times.measured;
-      contents_.tree.add(t.parent, child, stamp, t.T_parent_child, t.fixed);
-      if (t.fixed) continue;
-      contents_.tree.keep(child, stamp + -kTreeLength, stamp + kTreeAhead);
-      moves_.push_back({child, stamp, received});
+    for (std::size_t i = 0; i < transforms.poses.size(); ++i) {
+      const PoseSeries::Row t = transforms.poses.row(i);
+      contents_.tree.add(transforms.parent, child, t.stamp, t.pose, transforms.fixed);
+      if (transforms.fixed) continue;
+      contents_.tree.keep(child, t.stamp + -kTreeLength, t.stamp + kTreeAhead);
+      moves_.push_back({child, t.stamp, received});
     }
   }
   trimTo(moves_, kMostMoves);
   for (auto& row : contents_.poses) {
-    trimTo(row.second.poses, kMostPoses);
+    PoseSeries& poses = row.second.poses;
+    if (poses.size() > kMostPoses) poses.keep(poses.size() - kMostPoses, poses.size());
     row.second.messages.clear();
   }
 }
@@ -96,14 +98,14 @@ void RosPoses::giveOfTopics(Stamp until) {
   for (auto& [topic, given] : contents_.poses) {
     std::size_t done = 0;
     for (; topic == *from_ && done < given.poses.size(); ++done) {
-      const StampedPose& pose = given.poses[done];
+      const PoseSeries::Row pose = given.poses.row(done);
       if (until < pose.stamp) break;
       const bool of_base = given.frame.empty() || given.frame == base_;
       const auto T_pose_base = of_base ? std::optional<Pose3>(Pose3::Identity())
                                        : contents_.tree.at(given.frame, base_, pose.stamp);
       givePose(pose.stamp, pose.pose * T_pose_base.value_or(Pose3::Identity()));
     }
-    trimTo(given.poses, topic == *from_ ? given.poses.size() - done : 0);
+    given.poses.keep(topic == *from_ ? done : given.poses.size(), given.poses.size());
   }
 }
 

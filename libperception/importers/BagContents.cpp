@@ -4,7 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <sstream>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/BagTypes.h"
@@ -31,8 +35,8 @@ std::string fieldsOf(const std::string& definition) {
 }
 
 bool hasHeader(const BagTopic& topic) {
-  const BagType* const type = bagType(topic.type);
-  return type != nullptr && type->has_header && topic.unknown_encoding.empty();
+  const BagType* const type = bagType(topic);
+  return type != nullptr && type->has_header;
 }
 
 /// Name of a frame's clock.
@@ -41,7 +45,7 @@ std::string transformsOf(const std::string& child) { return "transforms of \"" +
 /// What the headers of one topic's messages say.
 struct TopicTimes {
   std::vector<MessageTimes> times;
-  std::vector<std::size_t> frames;  ///< of each: numbers in BagContents::frames
+  std::vector<std::uint16_t> frames;  ///< of each: numbers in BagContents::frames
 };
 
 void addHeader(const BagMessage& message, BagContents& contents, TopicTimes& topic) {
@@ -49,19 +53,21 @@ void addHeader(const BagMessage& message, BagContents& contents, TopicTimes& top
   topic.frames.push_back(0);
   const auto header = headerOf(message);
   if (!header) return;
-  if (header->stamp.ns > 0) topic.times.back().measured = header->stamp;
+  topic.times.back().measured = header->stamp;
   auto& frames = contents.frames[message.topic->name];
   const std::string name = frameName(header->frame_id);
   const auto at = std::find(frames.begin(), frames.end(), name);
-  topic.frames.back() = static_cast<std::size_t>(at - frames.begin());
-  if (at == frames.end()) frames.push_back(name);
+  constexpr std::ptrdiff_t kMostFrames = std::numeric_limits<std::uint16_t>::max();
+  topic.frames.back() = static_cast<std::uint16_t>(std::min(at - frames.begin(), kMostFrames));
+  if (at == frames.end() && at - frames.begin() <= kMostFrames) frames.push_back(name);
 }
 
 /// The messages of each frame have their own order.
 MessageClock clockOfTopic(const TopicTimes& topic) {
+  const std::size_t most = *std::max_element(topic.frames.begin(), topic.frames.end());
+  if (most == 0) return clockOf(topic.times);
   MessageClock all;
   all.used.assign(topic.times.size(), true);
-  const std::size_t most = *std::max_element(topic.frames.begin(), topic.frames.end());
   for (std::size_t frame = 0; frame <= most; ++frame) {
     std::vector<MessageTimes> times;
     std::vector<std::size_t> numbers;
@@ -82,16 +88,12 @@ void findClocks(const std::map<std::string, TopicTimes>& topics, BagContents& co
   for (const auto& [name, topic] : topics) {
     MessageClock clock = clockOfTopic(topic);
     // Boxes may come late because finding them took long.
-    const BagType* const type = bagType(contents.topics.at(name).topic.type);
+    const BagType* const type = bagType(contents.topics.at(name).topic);
     if (type != nullptr && type->role == BagType::Role::kBoxes) clock.lead.reset();
     contents.clocks[name] = clock;
   }
   for (const auto& [child, transforms] : contents.transforms) {
-    std::vector<MessageTimes> times;
-    for (const auto& t : transforms) {
-      if (!t.fixed) times.push_back(t.times);
-    }
-    if (!times.empty()) contents.clocks[transformsOf(child)] = clockOf(times);
+    if (!transforms.fixed) contents.clocks[transformsOf(child)] = clockOf(transforms.times);
   }
   alignClocks(contents.clocks);
 }
@@ -101,14 +103,15 @@ void plantTree(BagContents& contents) {
   for (auto& [child, transforms] : contents.transforms) {
     const auto found = contents.clocks.find(transformsOf(child));
     const MessageClock clock = found == contents.clocks.end() ? MessageClock() : found->second;
-    std::size_t moving = 0;
-    for (const auto& t : transforms) {
-      if (!t.fixed && !clock.uses(moving++)) continue;
-      contents.tree.add(t.parent, child, *t.times.measured + (t.fixed ? 0 : clock.shift),
-                        t.T_parent_child, t.fixed);
+    for (std::size_t i = 0; i < transforms.poses.size(); ++i) {
+      if (!transforms.fixed && !clock.uses(i)) continue;
+      const PoseSeries::Row row = transforms.poses.row(i);
+      contents.tree.add(transforms.parent, child, row.stamp + (transforms.fixed ? 0 : clock.shift),
+                        row.pose, transforms.fixed);
     }
-    transforms = {};  // a drive of hours has millions
+    transforms = {};
   }
+  contents.tree.settle();
   contents.transforms.clear();
 }
 
@@ -117,26 +120,25 @@ void cleanPoses(const std::map<std::string, TopicTimes>& topics, BagContents& co
   for (auto& [name, poses] : contents.poses) {
     const auto topic = topics.find(name);
     const MessageClock clock = contents.clocks[name];
-    std::vector<StampedPose> used;
+    PoseSeries used;
     std::size_t elsewhere = 0;
     for (std::size_t i = 0; i < poses.poses.size(); ++i) {
-      const StampedPose& pose = poses.poses[i];
+      const PoseSeries::Row pose = poses.poses.row(i);
       if (topic == topics.end()) {
-        used.push_back(pose);
+        used.add(pose.stamp, pose.pose);
         continue;
       }
       const std::size_t message = poses.messages[i];
       if (topic->second.frames[message] > 0) ++elsewhere;
       if (topic->second.frames[message] == 0 && clock.uses(message))
-        used.push_back({pose.stamp + clock.shift, pose.pose});
+        used.add(pose.stamp + clock.shift, pose.pose);
     }
     if (elsewhere > 0)
       contents.faults.push_back(
           fmt::format("{}: {} poses are in another frame than \"{}\": left out", name, elsewhere,
                       contents.frames[name].front()));
+    used.sort();
     poses.poses = std::move(used);
-    std::stable_sort(poses.poses.begin(), poses.poses.end(),
-                     [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
   }
 }
 
@@ -200,9 +202,8 @@ BagContents readContents(const std::string& path) {
       row.last = std::max(row.last, message.stamp);
       try {
         if (hasHeader(*message.topic)) addHeader(message, contents, times[message.topic->name]);
-        const BagType* const type = bagType(message.topic->type);
-        if (type != nullptr && type->note != nullptr && message.topic->unknown_encoding.empty())
-          type->note(message, contents);
+        const BagType* const type = bagType(*message.topic);
+        if (type != nullptr && type->note != nullptr) type->note(message, contents);
       } catch (const std::runtime_error& e) {
         if (dynamic_cast<const Error*>(&e) != nullptr) throw;
         auto& [count, first] = bad[message.topic->name];
@@ -229,15 +230,15 @@ std::optional<ros::Header> headerOf(const BagMessage& message) {
   return ros::decoded<ros::Header>(message.bytes, message.topic->encoding);
 }
 
-std::string useOfType(const std::string& type) {
-  const BagType* const row = bagType(type);
+std::string useOfTopic(const BagTopic& topic) {
+  const BagType* const row = bagType(topic);
   return row == nullptr ? "" : row->use;
 }
 
 std::vector<std::string> unreadTopics(const BagContents& contents) {
   std::vector<std::string> topics;
   for (const auto& [name, row] : contents.topics) {
-    if (row.topic.unknown_encoding.empty() && !useOfType(row.topic.type).empty()) continue;
+    if (!useOfTopic(row.topic).empty()) continue;
     const std::string fields = fieldsOf(row.topic.definition);
     topics.push_back(fmt::format(
         "not read: {}: {} messages of {}{}{}", name, row.messages, row.topic.type,
@@ -255,7 +256,7 @@ std::string listOf(const BagContents& contents) {
     const std::string rate =
         seconds > 0 ? fmt::format("{:.2f}", static_cast<double>(row.messages - 1) / seconds) : "";
     const std::string use = row.topic.unknown_encoding.empty()
-                                ? useOfType(row.topic.type)
+                                ? useOfTopic(row.topic)
                                 : "not: encoding " + row.topic.unknown_encoding;
     text += fmt::format("{:<36} {:<30} {:>8} {:>8}  {}\n", name, row.topic.type, row.messages, rate,
                         use.empty() ? "not" : use);

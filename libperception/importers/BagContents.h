@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -6,8 +7,8 @@
 #include <vector>
 
 #include "libperception/config/Config.h"
-#include "libperception/importers/ImportText.h"
 #include "libperception/importers/MessageTimes.h"
+#include "libperception/interop/PoseSeries.h"
 #include "libperception/interop/ReadingBag.h"
 #include "libperception/interop/RosMessages.h"
 #include "libperception/interop/TransformTree.h"
@@ -46,31 +47,31 @@ struct BagContents {
     std::uint64_t messages = 0;
     Stamp first, last;  ///< of recording
   };
-  /// One of the poses of a frame in its parent.
-  struct Transform {
+  /// The poses of a frame in its last parent, in order of recording.
+  struct Transforms {
     std::string parent;
-    MessageTimes times;
-    Pose3 T_parent_child = Pose3::Identity();
     bool fixed = false;
+    PoseSeries poses;
+    std::vector<MessageTimes> times;  ///< of each, where it moves
   };
   /// Poses of one topic.
   struct Poses {
     std::string frame;     ///< whose poses they are; empty: not said
     bool on_call = false;  ///< may be a plan: used only if the INI names it
-    std::vector<StampedPose> poses;
-    std::vector<std::size_t> messages;  ///< of each pose: its number within the topic
+    PoseSeries poses;
+    std::vector<std::uint32_t> messages;  ///< of each pose: its number within the topic
   };
 
   std::map<std::string, Row> topics;
   TransformTree tree;
-  std::map<std::string, std::vector<Transform>> transforms;  ///< by child, while it is read
+  std::map<std::string, Transforms> transforms;  ///< by child, while it is read
   /// By topic; of transforms by "transforms of CHILD".
   std::map<std::string, MessageClock> clocks;
   std::map<std::string, Poses> poses;              ///< by topic
   std::map<std::string, ros::CameraInfo> cameras;  ///< first message by topic
   std::map<std::string, std::string> metadata;     ///< of devices, by topic
-  std::set<std::string> lidar_packets;             ///< Ouster's topics that are not of the
-                                                   ///< inertial unit alone
+  std::set<std::string> device_topics;             ///< those with packets of a known device, of
+                                                   ///< types that may have none
   /// Of messages with a header, by topic: the frames of reference, in order of their appearance.
   std::map<std::string, std::vector<std::string>> frames;
   std::vector<std::string> faults;   ///< damage, messages that cannot be read or used
@@ -92,7 +93,7 @@ std::vector<std::string> unreadTopics(const BagContents& contents);
 /// std::runtime_error.
 std::optional<ros::Header> headerOf(const BagMessage& message);
 
-/// What the import makes of messages of a type; empty: nothing.
-std::string useOfType(const std::string& type);
+/// What the import makes of a topic's messages; empty: nothing.
+std::string useOfTopic(const BagTopic& topic);
 
 }  // namespace perception

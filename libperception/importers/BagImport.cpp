@@ -3,256 +3,152 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iterator>
-#include <set>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <map>
+#include <memory>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "libperception/config/Config.h"
 #include "libperception/core/Error.h"
+#include "libperception/importers/BagChoices.h"
 #include "libperception/importers/BagContents.h"
 #include "libperception/importers/BagMeasurements.h"
+#include "libperception/importers/BagQueue.h"
 #include "libperception/importers/BagTypes.h"
 #include "libperception/importers/Importer.h"
-#include "libperception/interop/RosGraphParams.h"
+#include "libperception/interop/ReadingBag.h"
 
 namespace perception {
 namespace {
 
-/// [s] Messages are sorted by their stamps over this time of recording.
-constexpr double kSorted = 1;
-/// [s] Poses are written from this long before the first to this long after the last sensor data.
-constexpr double kBagPoseMargin = 0.5;
-
-/// The import of one recording.
-class BagImport {
+/// Reads the sensors' data of a recording, one message after the other.
+class BagReading {
  public:
-  BagImport(const std::string& path, Config& config, ImportLog& log)
-      : path_(path),
-        files_(bagFiles(path)),
-        config_(config),
+  BagReading(const BagContents& contents, const BagChoices& choices, ImportLog& log)
+      : contents_(contents),
+        choices_(choices),
         log_(log),
-        measurements_(contents_, topic_params_,
+        queue_(choices, log),
+        measurements_(contents, choices.topics,
                       {[this](const std::string& topic, bool first, SensorFrame&& frame) {
                          takeFrame(topic, first, std::move(frame));
                        },
-                       [this](Stamp stamp, std::shared_ptr<mrpt::obs::CObservation> observation) {
+                       [this](Stamp stamp, BagObservation observation) {
                          takeObservation(stamp, std::move(observation));
-                       }}) {}
-  void run();
+                       }}) {
+    measurements_.setBase(choices.base, choices.T_ego_base);
+  }
+
+  void readAll(const std::vector<std::string>& files);
+  /// What was left out or assumed.
+  void tell() const;
+  /// How many messages of the topic with the frames were read.
+  std::int64_t frames() const { return frame_ + 1; }
+  /// The first of a topic that could not be read.
+  std::string faultOf(const std::string& topic) const {
+    const auto fault = bad_.find(topic);
+    return fault == bad_.end() ? "" : fault->second.second;
+  }
 
  private:
-  void readParams();
-  void choosePoses();
-  std::vector<StampedPose> posesOfTree() const;
-  std::vector<StampedPose> posesOfTopic(const std::string& topic) const;
-  void readSensors();
+  void take(const BagMessage& message, const std::string& file);
   void takeFrame(const std::string& topic, bool first, SensorFrame&& frame);
-  void takeObservation(Stamp stamp, std::shared_ptr<mrpt::obs::CObservation> observation);
+  void takeObservation(Stamp stamp, BagObservation observation);
   bool isStray(const BagMessage& message);
   bool isWanted() const { return log_.options().wants(std::max<std::int64_t>(frame_, 0)); }
-  void sorted(Stamp stamp, std::function<void()> write);
-  void flush(std::optional<Stamp> until);
-  void writePoses(Stamp until);
-  void tellPoses();
 
-  std::string path_;
-  std::vector<std::string> files_;
-  Config& config_;
+  const BagContents& contents_;
+  const BagChoices& choices_;
   ImportLog& log_;
-  BagParams params_;
-  BagTopicParamsByName topic_params_;
-  BagContents contents_;
+  BagQueue queue_;
   BagMeasurements measurements_;
-  std::string base_;
-  Pose3 T_ego_base_ = Pose3::Identity();
-  std::string frames_topic_;  ///< whose messages are the frames
   std::int64_t frame_ = -1;
-  std::vector<StampedPose> poses_;  ///< of the ego frame
-  std::string poses_from_;          ///< whose; empty: none are taken
-  std::size_t next_pose_ = 0, written_poses_ = 0;
-  std::multimap<Stamp, std::function<void()>> queue_;
-  std::optional<Stamp> last_;
   std::map<std::string, std::size_t> messages_;  ///< by topic: how many came
   std::map<std::string, std::pair<std::uint64_t, std::string>> bad_;
 };
 
-void BagImport::readParams() {
-  params_ = config_.read<BagParams>("bag");
-  config_.read<RosGraphParams>("ros");  // of running systems
-  for (const std::string& section : config_.sectionsWithPrefix("topic.")) {
-    const std::string topic = section.substr(std::string("topic.").size());
-    topic_params_[topic] = config_.read<BagTopicParams>(section);
-    if (contents_.topics.count(topic) == 0)
-      config_.fault(section, "",
-                    fmt::format("the recording has no such topic; there are: {}", [this] {
-                      std::vector<std::string> names;
-                      for (const auto& row : contents_.topics) names.push_back(row.first);
-                      return fmt::format("{}", fmt::join(names, " "));
-                    }()));
-  }
-  const std::string& poses = params_.poses;
-  if (!poses.empty() && poses != "tf" && poses != "none" && contents_.poses.count(poses) == 0)
-    config_.fault("bag", "poses", poses + ": expected tf, none or a topic with poses");
-  if (!params_.base_frame.empty() && !contents_.tree.has(params_.base_frame))
-    config_.fault("bag", "base_frame", params_.base_frame + ": the recording has no such frame");
-  config_.finish();
-  if (!params_.base_pose.empty()) T_ego_base_ = poseOfNumbers(params_.base_pose);
-}
-
-std::vector<StampedPose> BagImport::posesOfTree() const {
-  std::vector<StampedPose> poses;
-  const std::string world = contents_.tree.movesIn(base_);
-  for (const Stamp stamp : contents_.tree.stampsOf(base_)) {
-    if (const auto T = contents_.tree.at(world, base_, stamp))
-      poses.push_back({stamp, *T * T_ego_base_.inverse()});
-  }
-  return poses;
-}
-
-std::vector<StampedPose> BagImport::posesOfTopic(const std::string& topic) const {
-  const BagContents::Poses& given = contents_.poses.at(topic);
-  std::vector<StampedPose> poses;
-  for (const StampedPose& pose : given.poses) {
-    const auto T_pose_base = given.frame.empty() || given.frame == base_
-                                 ? std::optional<Pose3>(Pose3::Identity())
-                                 : contents_.tree.at(given.frame, base_, pose.stamp);
-    poses.push_back(
-        {pose.stamp, pose.pose * T_pose_base.value_or(Pose3::Identity()) * T_ego_base_.inverse()});
-  }
-  return poses;
-}
-
-void BagImport::choosePoses() {
-  std::string source = params_.poses;
-  if (source.empty() && !contents_.tree.movesIn(base_).empty()) source = "tf";
-  for (const auto& [topic, poses] : contents_.poses) {
-    if (source.empty() && !poses.on_call) source = topic;
-  }
-  if (source.empty() || source == "none") {
-    log_.note("no poses are taken: they are found from GPS and inertial unit, or by odometry");
-    return;
-  }
-  poses_ = source == "tf" ? posesOfTree() : posesOfTopic(source);
-  if (source == "tf" && poses_.empty()) {
-    std::string others;
-    for (const auto& row : contents_.poses) others += " " + row.first;
-    throw ConfigError(
-        fmt::format("[bag] poses: tf: no transform of the recording moves \"{}\", "
-                    "expected none{}{}",
-                    base_, others.empty() ? "" : " or a topic with poses:", others));
-  }
-  poses_from_ = source == "tf" ? "tf, in \"" + contents_.tree.movesIn(base_) + "\"" : source;
-}
-
-/// What was written is what is said: sensors and poses may have clocks that differ.
-void BagImport::tellPoses() {
-  if (poses_from_.empty()) return;
-  const std::string of = fmt::format("of frame \"{}\" from {}", base_, poses_from_);
-  if (poses_.empty() || written_poses_ > 0) {
-    log_.note(fmt::format("poses: {} {}", written_poses_, of));
-    return;
-  }
-  log_.warn(
-      fmt::format("poses: none of the {} {} lies within the time of the sensors: theirs are "
-                  "{:.3f} to {:.3f} s, the last sensor's is {:.3f} s; do the clocks differ?",
-                  poses_.size(), of, poses_.front().stamp.seconds(), poses_.back().stamp.seconds(),
-                  last_ ? last_->seconds() : 0));
-}
-
-void BagImport::sorted(Stamp stamp, std::function<void()> write) {
-  queue_.emplace(stamp, std::move(write));
-}
-
-/// Poses up to the stamp, but those long before the first data.
-void BagImport::writePoses(Stamp until) {
-  for (; next_pose_ < poses_.size() && poses_[next_pose_].stamp <= until; ++next_pose_) {
-    const StampedPose& pose = poses_[next_pose_];
-    if (!last_ && until - pose.stamp >= kBagPoseMargin) continue;
-    log_.ego(pose.stamp, pose.pose);
-    ++written_poses_;
-  }
-}
-
-/// Writes what is older than `until`; all without one.
-void BagImport::flush(std::optional<Stamp> until) {
-  while (!queue_.empty() && (!until || queue_.begin()->first < *until)) {
-    const auto [stamp, write] = *queue_.begin();
-    queue_.erase(queue_.begin());
-    writePoses(stamp);
-    last_ = stamp;
-    write();
-  }
-}
-
 /// Whether a message is of a time that its topic has left.
-bool BagImport::isStray(const BagMessage& message) {
+bool BagReading::isStray(const BagMessage& message) {
   const std::size_t number = messages_[message.topic->name]++;
   const auto clock = contents_.clocks.find(message.topic->name);
   return clock != contents_.clocks.end() && !clock->second.uses(number);
 }
 
-void BagImport::takeFrame(const std::string& topic, bool first, SensorFrame&& frame) {
-  if (topic == frames_topic_ && first) {
+/// A message that cannot be read is left out and counted.
+void BagReading::take(const BagMessage& message, const std::string& file) {
+  try {
+    if (!isStray(message)) measurements_.take(message);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {  // OpenCV's too
+    if (dynamic_cast<const Error*>(&e) != nullptr) throw;
+    auto& [count, first] = bad_[message.topic->name];
+    if (count++ == 0) first = fmt::format("{}: {}: {}", file, message.place(), e.what());
+  }
+}
+
+void BagReading::takeFrame(const std::string& topic, bool first, SensorFrame&& frame) {
+  if (topic == choices_.frames_topic && first) {
     ++frame_;
     if (log_.wants(frame_))
-      sorted(frame.stamp, [this, s = frame.stamp, n = frame_] { log_.frame(s, n); });
+      queue_.add(frame.stamp, [this, s = frame.stamp, n = frame_] { log_.frame(s, n); });
   }
   if (!isWanted()) return;
-  sorted(frame.stamp, [this, frame = std::move(frame)] { log_.sensor(frame); });
+  queue_.add(frame.stamp, [this, frame = std::move(frame)] { log_.sensor(frame); });
 }
 
-void BagImport::takeObservation(Stamp stamp, std::shared_ptr<mrpt::obs::CObservation> observation) {
+void BagReading::takeObservation(Stamp stamp, BagObservation observation) {
   if (!isWanted()) return;
-  sorted(stamp, [this, observation] { log_.observation(*observation); });
+  queue_.add(stamp, [this, observation] { log_.observation(*observation); });
 }
 
-void BagImport::readSensors() {
-  for (const std::string& file : files_) {
+void BagReading::readAll(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
     const auto bag = openBag(file);
-    BagMessage message;
-    while (bag->next(message)) {
-      try {
-        if (!isStray(message)) measurements_.take(message);
-      } catch (const std::bad_alloc&) {
-        throw;
-      } catch (const std::exception& e) {  // OpenCV's too
-        if (dynamic_cast<const Error*>(&e) != nullptr) throw;
-        auto& [count, first] = bad_[message.topic->name];
-        if (count++ == 0) first = fmt::format("{}: {}: {}", file, message.place(), e.what());
-      }
-      flush(message.stamp + -kSorted);
+    for (BagMessage message; bag->next(message);) {
+      take(message, file);
+      queue_.passed(message.stamp);
       log_.progress(static_cast<std::int64_t>(bag->bytesRead()),
                     static_cast<std::int64_t>(bag->fileBytes()));
     }
   }
   measurements_.finish();
-  flush({});
-  if (last_) writePoses(*last_ + kBagPoseMargin);
+  queue_.finish();
+  queue_.tellPoses();
 }
 
-void BagImport::run() {
-  contents_ = readContents(path_);
-  readParams();
-  base_ = baseFrameOf(params_, contents_);
-  measurements_.setBase(base_, T_ego_base_);
-  choosePoses();
-  frames_topic_ = framesTopicOf(topic_params_, contents_);
-  if (frames_topic_.empty()) {
-    throw DataError(fmt::format("{}: no topic of sensor_msgs/PointCloud2, Image, CompressedImage, "
-                                "radar_msgs/RadarScan or of a lidar's packets is used: {}",
-                                files_.front(), fmt::join(unreadTopics(contents_), "; ")),
-                    ExitCode::kNoInput);
-  }
-  readSensors();
-  tellPoses();
-  for (const std::string& topic : unreadTopics(contents_)) log_.note(topic);
-  for (const std::string& remark : contents_.remarks) log_.note(remark);
-  for (const std::string& fault : contents_.faults) log_.warn(fault);
+void BagReading::tell() const {
   for (const auto& [topic, fault] : bad_)
     log_.warn(fmt::format("{}: {} unreadable messages left out, the first: {}", topic, fault.first,
                           fault.second));
   for (const std::string& warning : measurements_.warnings()) log_.warn(warning);
-  if (frame_ < 0)
-    throw DataError(fmt::format("{}: no message of {} can be read: {}", files_.front(),
-                                frames_topic_, bad_[frames_topic_].second));
+}
+
+/// The recording is read twice: for what it holds, then for its sensors' data.
+void importBag(const std::string& path, Config& config, ImportLog& log) {
+  const auto files = bagFiles(path);
+  const BagContents contents = readContents(path);
+  const BagChoices choices = chooseFrom(contents, config, log);
+  if (choices.frames_topic.empty()) {
+    throw DataError(fmt::format("{}: no topic of sensor_msgs/PointCloud2, Image, CompressedImage, "
+                                "radar_msgs/RadarScan or of a lidar's packets is used: {}",
+                                files.front(), fmt::join(unreadTopics(contents), "; ")),
+                    ExitCode::kNoInput);
+  }
+  BagReading reading(contents, choices, log);
+  reading.readAll(files);
+  for (const std::string& topic : unreadTopics(contents)) log.note(topic);
+  for (const std::string& remark : contents.remarks) log.note(remark);
+  for (const std::string& fault : contents.faults) log.warn(fault);
+  reading.tell();
+  if (reading.frames() == 0)
+    throw DataError(fmt::format("{}: no message of {} can be read: {}", files.front(),
+                                choices.frames_topic, reading.faultOf(choices.frames_topic)));
 }
 
 class BagImporter final : public Importer {
@@ -275,7 +171,7 @@ class BagImporter final : public Importer {
   void run(ImportLog& log) override {
     Config config =
         config_.empty() ? Config::fromText("", "(no --config)") : Config::fromFile(config_);
-    BagImport(path_, config, log).run();
+    importBag(path_, config, log);
   }
 
  private:

@@ -1,52 +1,21 @@
 #include "libperception/importers/BagMeasurements.h"
 
 #include <fmt/format.h>
-#include <mrpt/obs/CObservationIMU.h>
 
 #include <algorithm>
-#include <cmath>
-#include <string_view>
+#include <optional>
 #include <utility>
+#include <variant>
 
-#include "libperception/importers/ImportGps.h"
 #include "libperception/interop/RosSensors.h"
 #include "libperception/sensors/Conversions.h"
 
 namespace perception {
 namespace {
 
-constexpr const char* kFix = "sensor_msgs/NavSatFix";
-constexpr const char* kImu = "sensor_msgs/Imu";
-
 BagType::Role roleOf(const BagTopic& topic) {
-  const BagType* const type = bagType(topic.type);
-  return type != nullptr && topic.unknown_encoding.empty() ? type->role : BagType::Role::kOther;
-}
-
-bool isOuster(const BagTopic& topic) {
-  constexpr std::string_view kEnd = "/PacketMsg";
-  return topic.type.size() > kEnd.size() &&
-         topic.type.substr(topic.type.size() - kEnd.size()) == kEnd;
-}
-
-/// MRPT's class; absent parts (ROS: a covariance that begins with -1) stay absent.
-std::shared_ptr<mrpt::obs::CObservation> imuObservation(const ros::Imu& imu,
-                                                        const std::string& label) {
-  using namespace mrpt::obs;
-  auto out = std::make_shared<CObservationIMU>();
-  out->timestamp = fromStamp(imu.header.stamp);
-  out->sensorLabel = label;
-  if (imu.rates_covariance[0] >= 0) {
-    out->set(IMU_WX, imu.rates[0]);
-    out->set(IMU_WY, imu.rates[1]);
-    out->set(IMU_WZ, imu.rates[2]);
-  }
-  if (imu.force_covariance[0] >= 0) {
-    out->set(IMU_X_ACC, imu.force[0]);
-    out->set(IMU_Y_ACC, imu.force[1]);
-    out->set(IMU_Z_ACC, imu.force[2]);
-  }
-  return out;
+  const BagType* const type = bagType(topic);
+  return type != nullptr ? type->role : BagType::Role::kOther;
 }
 
 }  // namespace
@@ -81,7 +50,9 @@ std::string framesTopicOf(const BagTopicParamsByName& topics, const BagContents&
     for (const auto& [name, row] : contents.topics) {
       const auto params = topics.find(name);
       const bool used = params == topics.end() ? wanted != Role::kBoxes : params->second.use;
-      const bool silent = isOuster(row.topic) && contents.lidar_packets.count(name) == 0;
+      const BagType* const type = bagType(row.topic);
+      const bool silent =
+          type != nullptr && type->may_be_silent && contents.device_topics.count(name) == 0;
       if (used && !silent && roleOf(row.topic) == wanted) return name;
     }
   }
@@ -105,10 +76,11 @@ BagTopicParams BagMeasurements::paramsOf(const std::string& topic) const {
 }
 
 bool BagMeasurements::uses(const BagTopic& topic) const {
-  if (!topic.unknown_encoding.empty()) return false;
+  const BagType* const type = bagType(topic);
+  if (type == nullptr) return false;
   const auto given = topics_.find(topic.name);
   // Boxes may be another tracker's output: they are read when they are asked for.
-  return given == topics_.end() ? roleOf(topic) != BagType::Role::kBoxes : given->second.use;
+  return given == topics_.end() ? type->role != BagType::Role::kBoxes : given->second.use;
 }
 
 bool BagMeasurements::isPlaced(const std::string& topic, const ros::Header& header) const {
@@ -118,55 +90,50 @@ bool BagMeasurements::isPlaced(const std::string& topic, const ros::Header& head
 void BagMeasurements::take(const BagMessage& message) {
   const BagTopic& topic = *message.topic;
   if (!uses(topic)) return;
+  const BagType& type = *bagType(topic);
   const BagTopicParams params = paramsOf(topic.name);
-  if (roleOf(topic) != BagType::Role::kOther) return takeSensor(message, params);
-  if (topic.type == kFix) return takeFix(message, params);
-  if (topic.type == kImu) return takeImu(message, params);
+  if (type.role != BagType::Role::kOther) return takeSensor(message, type, params);
+  if (type.observe != nullptr) takeReading(message, type, params);
 }
 
-void BagMeasurements::takeFix(const BagMessage& message, const BagTopicParams& params) {
-  auto fix = ros::decoded<ros::NavSatFix>(message.bytes, message.topic->encoding);
-  fix.header.stamp = fix.header.stamp + shiftOf(message);
-  if (fix.status < 0 || !std::isfinite(fix.latitude + fix.longitude)) return;
-  const double altitude = std::isfinite(fix.altitude) ? fix.altitude : 0;
-  auto out =
-      gpsObservation({fix.header.stamp, fix.latitude, fix.longitude, altitude}, params.label);
-  out->setSensorPose(toMrpt(mounting(fix.header, params)));
-  outputs_.observation(fix.header.stamp, std::move(out));
-}
-
-void BagMeasurements::takeImu(const BagMessage& message, const BagTopicParams& params) {
-  auto imu = ros::decoded<ros::Imu>(message.bytes, message.topic->encoding);
-  imu.header.stamp = imu.header.stamp + shiftOf(message);
-  auto out = imuObservation(imu, params.label);
-  out->setSensorPose(toMrpt(mounting(imu.header, params)));
-  outputs_.observation(imu.header.stamp, std::move(out));
+void BagMeasurements::takeReading(const BagMessage& message, const BagType& type,
+                                  const BagTopicParams& params) {
+  ros::Header header;
+  auto out = type.observe(message, shiftOf(message), header);
+  if (!out) return;
+  if (type.of_vehicle && frameName(header.frame_id) != base_) {
+    foreign_.emplace(message.topic->name, frameName(header.frame_id));
+    return;
+  }
+  header.stamp = header.stamp + shiftOf(message);
+  out->sensorLabel = params.label;
+  out->setSensorPose(toMrpt(mounting(header, params)));
+  outputs_.observation(header.stamp, std::move(out));
 }
 
 /// A sensor's message, or a part of one turn of a lidar in packets.
-void BagMeasurements::takeSensor(const BagMessage& message, const BagTopicParams& params) {
-  const BagType& type = *bagType(message.topic->type);
-  if (type.unpack != nullptr) {
-    auto& packets = packets_[message.topic->name];
-    if (!packets)
-      packets = std::make_unique<BagPackets>(
-          type, params.label, metadataFor(message.topic->name),
-          [this, params, topic = message.topic->name, shift = shiftOf(message)](
-              ros::Header header, SensorFrame&& scan) {
-            header.stamp = header.stamp + shift;
-            takeFrame(topic, header, params, std::move(scan));
-          });
-    return packets->add(message);
-  }
+void BagMeasurements::takeSensor(const BagMessage& message, const BagType& type,
+                                 const BagTopicParams& params) {
+  if (type.unpack != nullptr) return takePackets(message, type, params);
   SensorFrame frame;
   ros::Header header = type.measure(message, params, frame);
   header.stamp = header.stamp.ns <= 0 ? message.stamp : header.stamp + shiftOf(message);
-  if (auto* const image = std::get_if<CameraImage>(&frame.data)) {
-    const CameraModel own = image->camera;
-    image->camera = cameraBeside(message.topic->name).value_or(own);
-    image->camera.width = own.width, image->camera.height = own.height;
-  }
+  setCamera(message.topic->name, header, frame);
   takeFrame(message.topic->name, header, params, std::move(frame));
+}
+
+void BagMeasurements::takePackets(const BagMessage& message, const BagType& type,
+                                  const BagTopicParams& params) {
+  auto& packets = packets_[message.topic->name];
+  if (!packets)
+    packets = std::make_unique<BagPackets>(
+        type, params.label, metadataFor(message.topic->name),
+        [this, params, topic = message.topic->name, shift = shiftOf(message)](ros::Header header,
+                                                                              SensorFrame&& scan) {
+          header.stamp = header.stamp + shift;
+          takeFrame(topic, header, params, std::move(scan));
+        });
+  packets->add(message);
 }
 
 void BagMeasurements::takeFrame(const std::string& topic, const ros::Header& header,
@@ -204,14 +171,32 @@ std::string BagMeasurements::otherFrame(const std::string& topic, const ros::Hea
   return first ? "" : name.empty() ? "without_frame" : name;
 }
 
-std::optional<CameraModel> BagMeasurements::cameraBeside(const std::string& topic) const {
+/// The camera's calibration in the topic's folder, or in one above it; else that of the same frame.
+std::optional<CameraModel> BagMeasurements::cameraFor(const std::string& topic,
+                                                      const std::string& frame) const {
+  const bool rectified = topic.find("rect") != std::string::npos;
   for (std::string folder = topic; folder.rfind('/') != std::string::npos;) {
     folder.erase(folder.rfind('/'));
     const auto info = contents_.cameras.find(folder + "/camera_info");
-    if (info == contents_.cameras.end()) continue;
-    return ros::cameraOf(info->second, topic.find("rect") != std::string::npos);
+    if (info != contents_.cameras.end()) return ros::cameraOf(info->second, rectified);
+  }
+  for (const auto& row : contents_.cameras) {
+    if (!frame.empty() && frameName(row.second.header.frame_id) == frame)
+      return ros::cameraOf(row.second, rectified);
   }
   return {};
+}
+
+void BagMeasurements::setCamera(const std::string& topic, const ros::Header& header,
+                                SensorFrame& frame) const {
+  const auto camera = cameraFor(topic, frameName(header.frame_id));
+  if (auto* const image = std::get_if<CameraImage>(&frame.data); image != nullptr && camera) {
+    const CameraModel own = image->camera;
+    image->camera = *camera;
+    image->camera.width = own.width, image->camera.height = own.height;
+  }
+  if (auto* const boxes = std::get_if<ObjectDetections>(&frame.data); boxes != nullptr && camera)
+    boxes->camera = *camera;
 }
 
 std::optional<Pose3> BagMeasurements::placeOf(const ros::Header& header,
@@ -238,6 +223,9 @@ std::vector<std::string> BagMeasurements::warnings() const {
   for (const auto& row : packets_) {
     for (const std::string& warning : row.second->warnings()) all.push_back(warning);
   }
+  for (const auto& [topic, frame] : foreign_)
+    all.push_back(fmt::format("{}: speeds in frame \"{}\", not in the vehicle's \"{}\": left out",
+                              topic, frame, base_));
   for (const std::string& frame : unplaced_)
     all.push_back(
         fmt::format("frame \"{}\" has no transform to the vehicle's frame \"{}\": taken to be "

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ class BagMeasurements {
     /// `first`: in the first frame of reference of its topic.
     std::function<void(const std::string& topic, bool first, SensorFrame&& frame)> frame;
     std::function<void(Stamp stamp, std::shared_ptr<mrpt::obs::CObservation> observation)>
-        observation;  ///< of satellites or an inertial unit
+        observation;  ///< of satellites, an inertial unit or the wheels
   };
   /// `contents` and `topics` outlive this.
   BagMeasurements(const BagContents& contents, const BagTopicParamsByName& topics, Outputs outputs);
@@ -56,15 +57,16 @@ class BagMeasurements {
 
  private:
   BagTopicParams paramsOf(const std::string& topic) const;
-  void takeSensor(const BagMessage& message, const BagTopicParams& params);
-  void takeFix(const BagMessage& message, const BagTopicParams& params);
-  void takeImu(const BagMessage& message, const BagTopicParams& params);
+  void takeSensor(const BagMessage& message, const BagType& type, const BagTopicParams& params);
+  void takeReading(const BagMessage& message, const BagType& type, const BagTopicParams& params);
+  void takePackets(const BagMessage& message, const BagType& type, const BagTopicParams& params);
   void takeFrame(const std::string& topic, const ros::Header& header, const BagTopicParams& params,
                  SensorFrame&& frame);
   std::string metadataFor(const std::string& topic) const;
   double shiftOf(const BagMessage& message) const;
   std::string otherFrame(const std::string& topic, const ros::Header& header) const;
-  std::optional<CameraModel> cameraBeside(const std::string& topic) const;
+  void setCamera(const std::string& topic, const ros::Header& header, SensorFrame& frame) const;
+  std::optional<CameraModel> cameraFor(const std::string& topic, const std::string& frame) const;
   std::optional<Pose3> placeOf(const ros::Header& header, const BagTopicParams& params) const;
   Pose3 mounting(const ros::Header& header, const BagTopicParams& params);
 
@@ -74,7 +76,8 @@ class BagMeasurements {
   std::string base_;
   Pose3 T_ego_base_ = Pose3::Identity();
   std::map<std::string, std::unique_ptr<BagPackets>> packets_;  ///< by topic
-  std::set<std::string> unplaced_;  ///< frames without a place on the vehicle
+  std::set<std::string> unplaced_;              ///< frames without a place on the vehicle
+  std::map<std::string, std::string> foreign_;  ///< frames of readings that are not the vehicle's
 };
 
 }  // namespace perception

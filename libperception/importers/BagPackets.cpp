@@ -44,7 +44,7 @@ BagPackets::BagPackets(const BagType& type, std::string label, std::string metad
       metadata_(std::move(metadata)),
       take_(std::move(take)) {}
 
-/// Chooses the device whose decoder takes the packet.
+/// Chooses the device whose decoder takes the packet; none for those of others on a bus.
 void BagPackets::start(std::string_view packet) {
   std::string refused;
   for (const std::string name : type_.devices) {
@@ -58,7 +58,9 @@ void BagPackets::start(std::string_view packet) {
     const std::string path = kind.needs_file ? file.path() : "";
     for (std::size_t surplus = 0; surplus <= kMostSurplus && surplus < packet.size(); ++surplus) {
       try {
-        kind.make(path)->decode(packet.substr(0, packet.size() - surplus));
+        const auto decoder = kind.make(path);
+        if (!decoder->takes(packet)) break;
+        decoder->decode(packet.substr(0, packet.size() - surplus));
       } catch (const DataError& e) {
         refused += fmt::format("{}{}: {}", refused.empty() ? "" : "; ", kind.name, e.what());
         continue;
@@ -72,7 +74,7 @@ void BagPackets::start(std::string_view packet) {
       return;
     }
   }
-  throw std::runtime_error("packets of no known device: " + refused);
+  if (!refused.empty()) throw std::runtime_error("packets of no known device: " + refused);
 }
 
 void BagPackets::add(const BagMessage& message) {
@@ -80,6 +82,7 @@ void BagPackets::add(const BagMessage& message) {
   frame_id_ = type_.unpack(message, packets).frame_id;
   for (const BagPacket& packet : packets) {
     if (!assembler_) start(packet.bytes);
+    if (!assembler_) continue;  // of others on a bus
     assembler_->add(
         packet.bytes.substr(0, packet.bytes.size() - std::min(surplus_, packet.bytes.size())),
         packet.stamp.ns > 0 ? packet.stamp : message.stamp);

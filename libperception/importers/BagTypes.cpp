@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <cstdint>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "libperception/importers/BagFields.h"
+#include "libperception/importers/BagReadings.h"
+#include "libperception/importers/BagUnpack.h"
 #include "libperception/interop/RosDevices.h"
 #include "libperception/interop/RosScene.h"
 #include "libperception/interop/RosSensors.h"
-#include "libperception/packets/CanBundle.h"
 
 namespace perception {
 namespace {
@@ -20,15 +25,7 @@ using Role = BagType::Role;
 void addPose(BagContents::Poses& to, const ros::Header& header, const ros::Pose& pose,
              const std::string& frame) {
   to.frame = frameName(frame);
-  to.poses.push_back({header.stamp, poseOf(pose)});
-}
-
-/// That of a message: its place among those of the topic tells whether it is used.
-void addPoseOf(const BagMessage& m, BagContents& contents, const ros::Header& header,
-               const ros::Pose& pose, const std::string& frame) {
-  BagContents::Poses& to = contents.poses[m.topic->name];
-  addPose(to, header, pose, frame);
-  to.messages.push_back(contents.topics[m.topic->name].messages - 1);
+  to.poses.add(header.stamp, poseOf(pose));
 }
 
 template <class Message>
@@ -41,9 +38,14 @@ void noteTransforms(const BagMessage& m, BagContents& contents) {
   const std::string& topic = m.topic->name;
   const bool fixed = topic.size() >= kFixed.size() &&
                      topic.compare(topic.size() - kFixed.size(), kFixed.size(), kFixed) == 0;
-  for (const auto& t : messageIn<ros::TFMessage>(m).transforms)
-    contents.transforms[frameName(t.child_frame_id)].push_back(
-        {frameName(t.header.frame_id), {t.header.stamp, m.stamp}, poseOf(t.transform), fixed});
+  for (const auto& t : messageIn<ros::TFMessage>(m).transforms) {
+    BagContents::Transforms& to = contents.transforms[frameName(t.child_frame_id)];
+    const std::string parent = frameName(t.header.frame_id);
+    const Pose3 pose = poseOf(t.transform);
+    if (fixed || to.fixed || to.parent != parent) to = {parent, fixed, {}, {}};
+    to.poses.add(t.header.stamp, pose);
+    if (!fixed) to.times.push_back({t.header.stamp, m.stamp});
+  }
 }
 
 void noteOdometry(const BagMessage& m, BagContents& contents) {
@@ -60,13 +62,12 @@ void notePose(const BagMessage& m, BagContents& contents) {
 /// The last path is the whole one: programs send it again and again as it grows.
 void notePath(const BagMessage& m, BagContents& contents) {
   const auto path = messageIn<ros::Path>(m);
-  BagContents::Poses poses;
-  for (const auto& pose : path.poses) addPose(poses, pose.header, pose.pose, "");
   BagContents::Poses& known = contents.poses[m.topic->name];
   known.on_call = true;
   // One that was cut at its beginning adds what is new.
-  for (const StampedPose& pose : poses.poses) {
-    if (known.poses.empty() || known.poses.back().stamp < pose.stamp) known.poses.push_back(pose);
+  for (const auto& pose : path.poses) {
+    if (known.poses.empty() || known.poses.row(known.poses.size() - 1).stamp < pose.header.stamp)
+      addPose(known, pose.header, pose.pose, "");
   }
 }
 
@@ -83,11 +84,7 @@ void noteText(const BagMessage& m, BagContents& contents) {
 
 ros::Header measurePoints(const BagMessage& m, const BagTopicParams& params, SensorFrame& frame) {
   const auto cloud = messageIn<ros::PointCloud2>(m);
-  using Kind = BagTopicParams::Kind;
-  if (params.kind == Kind::kRadar || (params.kind == Kind::kAuto && ros::isOfRadar(cloud)))
-    frame.data = ros::returnsOf(cloud, params.rate_scale);
-  else
-    frame.data = ros::cloudOf(cloud, params.intensity_max);
+  setCloud(cloud, params, frame);
   return cloud.header;
 }
 
@@ -113,119 +110,101 @@ ros::Header measureBoxes(const BagMessage& m, const BagTopicParams&, SensorFrame
 template <class Message>
 ros::Header measureImage(const BagMessage& m, const BagTopicParams&, SensorFrame& frame) {
   const auto message = messageIn<Message>(m);
-  Raster raster = ros::rasterOf(message);
-  CameraImage image;
-  image.camera.width = raster.width;
-  image.camera.height = raster.height;
-  image.load = [raster = std::move(raster)] { return raster; };
-  frame.data = std::move(image);
+  setImage(ros::rasterOf(message), frame);
   return message.header;
 }
 
-ros::Header unpackVelodyne(const BagMessage& m, std::vector<BagPacket>& packets) {
-  const auto scan = messageIn<ros::VelodyneScan>(m);
-  for (const auto& packet : scan.packets)
-    packets.push_back({std::string(packet.data.bytes), packet.stamp});
-  return scan.header;
+// Rows by what they have.
+
+using Measure = decltype(BagType::measure);
+using Note = decltype(BagType::note);
+
+BagType measured(const char* name, const char* use, Role role, Measure measure) {
+  return {name, use, role, measure};
+}
+BagType noted(const char* name, const char* use, Note note) {
+  return {name, use, Role::kOther, nullptr, note};
+}
+BagType observed(const char* name, const char* use, decltype(BagType::observe) observe) {
+  BagType type{name, use};
+  type.observe = observe;
+  type.of_vehicle = observe == &observeSpeed;
+  return type;
+}
+BagType packed(const char* name, const char* use, Role role, Note note,
+               decltype(BagType::unpack) unpack, std::vector<const char*> devices) {
+  BagType type{name, use, role, nullptr, note, unpack, std::move(devices)};
+  type.may_be_silent = note != nullptr;
+  return type;
 }
 
-ros::Header unpackPandar(const BagMessage& m, std::vector<BagPacket>& packets) {
-  const auto scan = messageIn<ros::PandarScan>(m);
-  for (const auto& packet : scan.packets) {
-    if (packet.size > packet.data.bytes.size())
-      throw std::runtime_error(fmt::format("a packet of {} bytes, expected at most {}", packet.size,
-                                           packet.data.bytes.size()));
-    packets.push_back({std::string(packet.data.bytes.substr(0, packet.size)), packet.stamp});
-  }
-  return scan.header;
-}
-
-/// The inertial unit's packets have the same type; they are short.
-bool isOfLidar(const ros::OusterPacket& packet) {
-  constexpr std::size_t kLongestOfInertialUnit = 64;
-  return packet.bytes.size() > kLongestOfInertialUnit;
-}
-
-void noteOuster(const BagMessage& m, BagContents& contents) {
-  if (isOfLidar(messageIn<ros::OusterPacket>(m))) contents.lidar_packets.insert(m.topic->name);
-}
-
-ros::Header unpackOuster(const BagMessage& m, std::vector<BagPacket>& packets) {
-  const auto packet = messageIn<ros::OusterPacket>(m);
-  if (isOfLidar(packet)) packets.push_back({std::string(packet.bytes), m.stamp});
-  return {m.stamp, "os_sensor"};
-}
-
-/// A frame of a CAN bus; remote and error frames have no data.
-ros::Header unpackCan(const BagMessage& m, std::vector<BagPacket>& packets) {
-  const auto frame = messageIn<ros::CanFrame>(m);
-  if (frame.length > frame.data.bytes.size())
-    throw std::runtime_error(fmt::format("a CAN frame of {} bytes, expected at most {}",
-                                         frame.length, frame.data.bytes.size()));
-  if (frame.is_rtr == 0 && frame.is_error == 0)
-    packets.push_back(
-        {canMessage(frame.id, frame.data.bytes.substr(0, frame.length)), frame.header.stamp});
-  return frame.header;
-}
+constexpr const char* kBoxesUse = "boxes, if the INI has [topic.TOPIC]";
+constexpr const char* kPacketsUse = "lidar scans, from packets";
+constexpr const char* kRadarListUse = "radar scans: a return an object or cluster, by its fields";
 
 std::vector<BagType> makeTypes() {
-  constexpr const char* kBoxesUse = "boxes, if the INI has [topic.TOPIC]";
   std::vector<BagType> types = {
-      {"sensor_msgs/PointCloud2", "lidar or radar scans", Role::kCloud, &measurePoints},
-      {"radar_msgs/RadarScan", "radar scans", Role::kRadar, &measureRadar<ros::RadarScan>},
-      {"radar_msgs/RadarTracks", "radar scans: a return an object", Role::kRadar,
-       &measureRadar<ros::RadarTracks>},
-      {"vision_msgs/Detection3DArray", kBoxesUse, Role::kBoxes, &measureBoxes},
-      {"sensor_msgs/Image", "images", Role::kImage, &measureImage<ros::Image>},
-      {"sensor_msgs/CompressedImage", "images", Role::kImage, &measureImage<ros::CompressedImage>},
-      {"sensor_msgs/CameraInfo", "camera", Role::kOther, nullptr, &noteCamera},
-      {"sensor_msgs/NavSatFix", "GPS"},
-      {"sensor_msgs/Imu", "inertial unit"},
-      {"nav_msgs/Odometry", "poses", Role::kOther, nullptr, &noteOdometry},
-      {"nav_msgs/Path", "poses, if the INI says so", Role::kOther, nullptr, &notePath},
-      {"geometry_msgs/PoseStamped", "poses", Role::kOther, nullptr, &notePose<ros::PoseStamped>},
-      {"geometry_msgs/PoseWithCovarianceStamped", "poses", Role::kOther, nullptr,
-       &notePose<ros::PoseWithCovarianceStamped>},
-      {"tf2_msgs/TFMessage", "frames, poses", Role::kOther, nullptr, &noteTransforms},
-      {"tf/tfMessage", "frames, poses", Role::kOther, nullptr, &noteTransforms},
-      {"std_msgs/String", "metadata of a device, on a topic of that name", Role::kOther, nullptr,
-       &noteText},
-      {"velodyne_msgs/VelodyneScan",
-       "lidar scans, from packets",
-       Role::kCloud,
-       nullptr,
-       nullptr,
-       &unpackVelodyne,
-       {"velodyne"}},
-      {"can_msgs/Frame",
-       "radar scans of a Delphi ESR, from its CAN frames",
-       Role::kRadar,
-       nullptr,
-       nullptr,
-       &unpackCan,
-       {"esr"}},
+      measured("sensor_msgs/PointCloud2", "lidar or radar scans", Role::kCloud, &measurePoints),
+      measured("sensor_msgs/PointCloud", "lidar or radar scans", Role::kCloud, &measureOldCloud),
+      measured("radar_msgs/RadarScan", "radar scans", Role::kRadar, &measureRadar<ros::RadarScan>),
+      measured("radar_msgs/RadarTracks", "radar scans: a return an object", Role::kRadar,
+               &measureRadar<ros::RadarTracks>),
+      measured("ars_40X/*", kRadarListUse, Role::kRadar, &measureRadarList),
+      measured("conti_radar/*", kRadarListUse, Role::kRadar, &measureRadarList),
+      measured("vision_msgs/Detection3DArray", kBoxesUse, Role::kBoxes, &measureBoxes),
+      measured("vision_msgs/Detection2DArray", "boxes in images, if the INI has [topic.TOPIC]",
+               Role::kBoxes, &measureImageBoxes),
+      measured("derived_object_msgs/ObjectArray", kBoxesUse, Role::kBoxes, &measureDerivedObjects),
+      measured("derived_object_msgs/ObjectWithCovarianceArray", kBoxesUse, Role::kBoxes,
+               &measureDerivedObjects),
+      measured("sensor_msgs/Image", "images", Role::kImage, &measureImage<ros::Image>),
+      measured("sensor_msgs/CompressedImage", "images", Role::kImage,
+               &measureImage<ros::CompressedImage>),
+      noted("sensor_msgs/CameraInfo", "camera", &noteCamera),
+      observed("sensor_msgs/NavSatFix", "GPS", &observeFix),
+      observed("novatel_gps_msgs/NovatelPosition", "GPS, by its fields", &observeFixByFields),
+      observed("novatel_gps_msgs/Inspva", "GPS, by its fields", &observeFixByFields),
+      observed("novatel_oem7_msgs/BESTPOS", "GPS, by its fields", &observeFixByFields),
+      observed("novatel_oem7_msgs/INSPVA", "GPS, by its fields", &observeFixByFields),
+      observed("sensor_msgs/Imu", "inertial unit", &observeImu),
+      observed("geometry_msgs/TwistStamped", "speed, if it is in the vehicle's frame",
+               &observeSpeed),
+      observed("geometry_msgs/TwistWithCovarianceStamped", "speed, if it is in the vehicle's frame",
+               &observeSpeed),
+      noted("nav_msgs/Odometry", "poses", &noteOdometry),
+      noted("nav_msgs/Path", "poses, if the INI says so", &notePath),
+      noted("geometry_msgs/PoseStamped", "poses", &notePose<ros::PoseStamped>),
+      noted("geometry_msgs/PoseWithCovarianceStamped", "poses",
+            &notePose<ros::PoseWithCovarianceStamped>),
+      noted("tf2_msgs/TFMessage", "frames, poses", &noteTransforms),
+      noted("tf/tfMessage", "frames, poses", &noteTransforms),
+      noted("std_msgs/String", "metadata of a device, on a topic of that name", &noteText),
+      packed("velodyne_msgs/VelodyneScan", kPacketsUse, Role::kCloud, nullptr, &unpackVelodyne,
+             {"velodyne"}),
+      packed("can_msgs/Frame", "radar scans of an ESR or ARS 408, from its CAN frames",
+             Role::kRadar, &noteCan, &unpackCan, {"esr", "ars408"}),
+      packed("ros2_socketcan_msgs/FdFrame",
+             "radar scans of an ESR, ARS 408 or SRR520, from its CAN frames", Role::kRadar,
+             &noteCanFd, &unpackCanFd, {"esr", "ars408", "srr520"}),
+      packed("delphi_esr_msgs/EsrTrack", "radar scans, by its fields", Role::kRadar, nullptr,
+             &unpackEsrTrack, {"esr"}),
   };
   for (const char* name :
        {"livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg", "livox_interfaces/CustomMsg"})
-    types.push_back({name, "lidar scans", Role::kCloud, &measureLivox});
+    types.push_back(measured(name, "lidar scans", Role::kCloud, &measureLivox));
   for (const char* name :
        {"pandar_msgs/PandarScan", "hesai_lidar/PandarScan", "hesai_ros_driver/UdpFrame"})
-    types.push_back({name,
-                     "lidar scans, from packets",
-                     Role::kCloud,
-                     nullptr,
-                     nullptr,
-                     &unpackPandar,
-                     {"pandar40p", "xt32"}});
+    types.push_back(
+        packed(name, kPacketsUse, Role::kCloud, nullptr, &unpackPandar, {"pandar40p", "xt32"}));
   for (const char* name :
        {"ouster_ros/PacketMsg", "ouster_msgs/PacketMsg", "ouster_sensor_msgs/PacketMsg"})
-    types.push_back({name,
-                     "lidar scans, from packets",
-                     Role::kCloud,
-                     nullptr,
-                     &noteOuster,
-                     &unpackOuster,
-                     {"ouster"}});
+    types.push_back(
+        packed(name, kPacketsUse, Role::kCloud, &noteOuster, &unpackOuster, {"ouster"}));
+  for (const char* name :
+       {"autoware_perception_msgs/DetectedObjects", "autoware_perception_msgs/TrackedObjects",
+        "autoware_auto_perception_msgs/DetectedObjects",
+        "autoware_auto_perception_msgs/TrackedObjects"})
+    types.push_back(measured(name, kBoxesUse, Role::kBoxes, &measureAutoware));
   // Each of the transforms has its own; texts and Ouster's packets have none; a camera's is of no
   // matter, nor that of a path, whose poses have theirs.
   for (BagType& type : types) {
@@ -235,6 +214,32 @@ std::vector<BagType> makeTypes() {
   return types;
 }
 
+/// The row of a kind of messages that are known by their fields alone.
+const BagType* rowByFields(FieldsKind kind) {
+  static const BagType cloud = measured("", "lidar or radar scans, by its fields", Role::kCloud,
+                                        &measureCloudByFields),
+                       image = measured("", "images, by its fields", Role::kImage,
+                                        &measureImageByFields),
+                       pose =
+                           noted("", "poses, by its fields, if the INI says so", &notePoseByFields);
+  switch (kind) {
+    case FieldsKind::kCloud:
+      return &cloud;
+    case FieldsKind::kImage:
+      return &image;
+    case FieldsKind::kPose:
+      return &pose;
+    default:
+      return nullptr;
+  }
+}
+
+bool isNamed(const BagType& row, const std::string& type) {
+  const std::string_view name = row.name;
+  if (name.back() != '*') return type == name;
+  return type.compare(0, name.size() - 1, name.substr(0, name.size() - 1)) == 0;
+}
+
 }  // namespace
 
 const std::vector<BagType>& bagTypes() {
@@ -242,15 +247,39 @@ const std::vector<BagType>& bagTypes() {
   return types;
 }
 
+void addPoseOf(const BagMessage& m, BagContents& contents, const ros::Header& header,
+               const ros::Pose& pose, const std::string& frame) {
+  BagContents::Poses& to = contents.poses[m.topic->name];
+  addPose(to, header, pose, frame);
+  to.messages.push_back(static_cast<std::uint32_t>(contents.topics[m.topic->name].messages - 1));
+}
+
+void setCloud(const ros::PointCloud2& cloud, const BagTopicParams& params, SensorFrame& frame) {
+  using Kind = BagTopicParams::Kind;
+  if (params.kind == Kind::kRadar || (params.kind == Kind::kAuto && ros::isOfRadar(cloud)))
+    frame.data = ros::returnsOf(cloud, params.rate_scale);
+  else
+    frame.data = ros::cloudOf(cloud, params.intensity_max);
+}
+
+void setImage(Raster&& raster, SensorFrame& frame) {
+  CameraImage image;
+  image.camera.width = raster.width;
+  image.camera.height = raster.height;
+  image.load = [raster = std::move(raster)] { return raster; };
+  frame.data = std::move(image);
+}
+
 std::string frameName(const std::string& name) {
   return !name.empty() && name[0] == '/' ? name.substr(1) : name;
 }
 
-const BagType* bagType(const std::string& type) {
+const BagType* bagType(const BagTopic& topic) {
+  if (!topic.unknown_encoding.empty()) return nullptr;
   const auto& types = bagTypes();
   const auto found = std::find_if(types.begin(), types.end(),
-                                  [&](const BagType& row) { return type == row.name; });
-  return found == types.end() ? nullptr : &*found;
+                                  [&](const BagType& row) { return isNamed(row, topic.type); });
+  return found == types.end() ? rowByFields(kindByFields(topic)) : &*found;
 }
 
 }  // namespace perception

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 
 namespace perception {
 namespace {
@@ -101,21 +102,21 @@ MessageClock clockOf(const std::vector<MessageTimes>& times) {
   std::vector<Stamp> stamps;
   std::vector<double> leads;
   for (const MessageTimes& t : times) {
-    if (!t.measured) continue;
-    stamps.push_back(*t.measured);
-    leads.push_back(*t.measured - t.recorded);
+    if (!t.says()) continue;
+    stamps.push_back(t.measured);
+    leads.push_back(t.measured - t.recorded);
   }
   clock.unstamped = times.size() - stamps.size();
   if (stamps.empty()) return clock;
   const Selection selection(stamps);
   for (std::size_t i = 0, k = 0; i < times.size(); ++i) {
-    if (!times[i].measured) continue;
+    if (!times[i].says()) continue;
     clock.used[i] = selection.uses()[k++];
     clock.left_out += !clock.used[i];
   }
   clock.farthest = selection.farthest();
   const auto [least, most] = std::minmax_element(leads.begin(), leads.end());
-  if (*most - *least <= kSteadyLead) clock.lead = medianIn(leads);
+  if (*most - *least <= kSteadyLead) clock.lead = medianIn(std::move(leads));
   return clock;
 }
 

@@ -12,8 +12,9 @@ namespace perception {
 
 /// When a message was measured, as it says itself, and when it was recorded.
 struct MessageTimes {
-  std::optional<Stamp> measured;  ///< empty: it does not say
+  Stamp measured;  ///< not behind 1970: it does not say
   Stamp recorded;
+  bool says() const { return measured.ns > 0; }
 };
 
 /// Which messages of one source are used, and by which clock.

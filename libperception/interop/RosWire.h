@@ -92,16 +92,30 @@ class WireReader {
   }
   template <class Element>
   void operator()(std::vector<Element>& list) {
-    std::uint32_t count = 0;
-    (*this)(count);
-    // Memory grows as elements arrive; each has a byte or more.
-    if (count > bytes_.size()) fail("a list of " + std::to_string(count) + " elements");
+    const std::size_t elements = count();
     list.clear();
-    for (std::uint32_t i = 0; i < count; ++i) (*this)(list.emplace_back());
+    for (std::size_t i = 0; i < elements; ++i) (*this)(list.emplace_back());
   }
   template <class Message>
   std::enable_if_t<std::is_class_v<Message>> operator()(Message& message) {
     fields(*this, message);
+  }
+
+  // For messages whose members are known by their definition alone.
+  std::size_t left() const { return bytes_.size() - std::min(position_, bytes_.size()); }
+  std::string_view bytes(std::size_t count) { return take(count, "bytes"); }
+  std::string_view text() {
+    std::string_view text;
+    (*this)(text);
+    if (Format::kStringZero && !text.empty() && text.back() == '\0') text.remove_suffix(1);
+    return text;
+  }
+  /// Of a list's elements. Memory grows as they arrive; each has a byte or more.
+  std::size_t count() {
+    std::uint32_t count = 0;
+    (*this)(count);
+    if (count > bytes_.size()) fail("a list of " + std::to_string(count) + " elements");
+    return count;
   }
 
  private:

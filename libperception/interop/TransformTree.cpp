@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <set>
 
@@ -28,26 +27,31 @@ void TransformTree::add(const std::string& parent, const std::string& child, Sta
   if (parent == child) return;
   Step& step = steps_[child];
   if (step.parent != parent || step.fixed != fixed) {
-    step.poses.clear();
+    step.poses = {};
     step.parent = parent;
     step.fixed = fixed;
   }
-  if (fixed) step.poses.clear();
-  step.poses[stamp] = T;
+  if (fixed) step.poses = {};
+  step.poses.add(stamp, T);
+}
+
+void TransformTree::settle() {
+  for (auto& row : steps_) row.second.poses.sort(true);
 }
 
 std::optional<Pose3> TransformTree::inParent(const Step& step, Stamp stamp) const {
-  if (step.fixed) return step.poses.begin()->second;
-  const auto after = step.poses.lower_bound(stamp);
-  if (after != step.poses.end() && after->first == stamp) return after->second;
-  if (after == step.poses.begin() || after == step.poses.end()) {
-    const auto& end = after == step.poses.end() ? *step.poses.rbegin() : *after;
-    if (std::abs(end.first - stamp) > kReach) return {};
-    return end.second;
+  const PoseSeries& poses = step.poses;
+  if (step.fixed) return poses.row(0).pose;
+  const std::size_t at = poses.firstFrom(stamp);
+  if (at == 0 || at == poses.size()) {
+    const PoseSeries::Row end = poses.row(at == 0 ? 0 : at - 1);
+    if (std::abs(end.stamp - stamp) > kReach) return {};
+    return end.pose;
   }
-  const auto before = std::prev(after);
-  return between(before->second, after->second,
-                 (stamp - before->first) / (after->first - before->first));
+  const PoseSeries::Row after = poses.row(at);
+  if (after.stamp == stamp) return after.pose;
+  const PoseSeries::Row before = poses.row(at - 1);
+  return between(before.pose, after.pose, (stamp - before.stamp) / (after.stamp - before.stamp));
 }
 
 std::vector<std::string> TransformTree::ancestors(const std::string& frame) const {
@@ -89,8 +93,12 @@ bool TransformTree::has(const std::string& frame) const {
 }
 
 std::string TransformTree::movesIn(const std::string& frame) const {
-  const auto chain = ancestors(frame);
-  return stampsOf(frame).empty() ? "" : chain.back();
+  return movingStep(frame) == nullptr ? "" : ancestors(frame).back();
+}
+
+const PoseSeries* TransformTree::movingStep(const std::string& frame) const {
+  const auto step = steps_.find(moverOf(frame));
+  return step == steps_.end() ? nullptr : &step->second.poses;
 }
 
 std::string TransformTree::moverOf(const std::string& frame) const {
@@ -101,20 +109,13 @@ std::string TransformTree::moverOf(const std::string& frame) const {
   return "";
 }
 
-std::vector<Stamp> TransformTree::stampsOf(const std::string& frame) const {
-  std::vector<Stamp> stamps;
-  const auto step = steps_.find(moverOf(frame));
-  if (step == steps_.end()) return stamps;
-  for (const auto& row : step->second.poses) stamps.push_back(row.first);
-  return stamps;
-}
-
 Stamp TransformTree::knownUntil(const std::string& frame) const {
   Stamp until{std::numeric_limits<std::int64_t>::max()};
   for (const std::string& above : ancestors(frame)) {
     const auto step = steps_.find(above);
-    if (step != steps_.end() && !step->second.fixed && !step->second.poses.empty())
-      until = std::min(until, step->second.poses.rbegin()->first);
+    if (step == steps_.end() || step->second.fixed) continue;
+    const PoseSeries& poses = step->second.poses;
+    until = std::min(until, poses.row(poses.size() - 1).stamp);
   }
   return until;
 }
@@ -122,9 +123,12 @@ Stamp TransformTree::knownUntil(const std::string& frame) const {
 void TransformTree::keep(const std::string& child, Stamp from, Stamp until) {
   const auto step = steps_.find(child);
   if (step == steps_.end() || step->second.fixed) return;
-  auto& poses = step->second.poses;
-  while (poses.size() > 1 && until < poses.rbegin()->first) poses.erase(std::prev(poses.end()));
-  while (poses.size() > 1 && poses.begin()->first < from) poses.erase(poses.begin());
+  PoseSeries& poses = step->second.poses;
+  poses.sort(true);
+  const std::size_t end = std::max<std::size_t>(poses.firstFrom(Stamp{until.ns + 1}), 1);
+  const std::size_t begin = std::min(poses.firstFrom(from), end - 1);
+  // A series is copied: not for each of its rows.
+  if (end < poses.size() || 2 * begin > poses.size()) poses.keep(begin, end);
 }
 
 std::vector<std::string> TransformTree::moving() const {

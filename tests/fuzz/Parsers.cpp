@@ -130,6 +130,23 @@ void readDatabase(std::string_view bytes) {
   readBag(written("changed.db3", changed));
 }
 
+void takeMessage(const BagType& type, const BagTopic& topic, std::string_view bytes) {
+  BagMessage message;
+  message.topic = &topic;
+  message.bytes = bytes;
+  SensorFrame frame;
+  ros::Header header;
+  BagContents contents;
+  std::vector<BagPacket> packets;
+  try {
+    if (type.measure != nullptr) type.measure(message, {}, frame);
+    if (type.note != nullptr) type.note(message, contents);
+    if (type.unpack != nullptr) type.unpack(message, packets);
+    if (type.observe != nullptr) type.observe(message, 0, header);
+  } catch (const std::runtime_error&) {  // left out and counted, see BagImport
+  }
+}
+
 /// The first byte chooses the type, the second the encoding.
 void readMessage(std::string_view bytes) {
   if (bytes.size() < 2) return;
@@ -139,18 +156,33 @@ void readMessage(std::string_view bytes) {
   topic.name = "/metadata";
   topic.type = type.name;
   topic.encoding = bytes[1] % 2 == 0 ? ros::Encoding::kRos1 : ros::Encoding::kCdr;
-  BagMessage message;
-  message.topic = &topic;
-  message.bytes = bytes.substr(2);
-  SensorFrame frame;
-  BagContents contents;
-  std::vector<BagPacket> packets;
-  try {
-    if (type.measure != nullptr) type.measure(message, {}, frame);
-    if (type.note != nullptr) type.note(message, contents);
-    if (type.unpack != nullptr) type.unpack(message, packets);
-  } catch (const std::runtime_error&) {  // left out and counted, see BagImport
-  }
+  takeMessage(type, topic, bytes.substr(2));
+}
+
+/// By the fields of their definition. The first byte chooses the type, the second the encoding;
+/// then the definition up to a line "--", then the message.
+void readMessageByFields(std::string_view bytes) {
+  constexpr const char* kTypes[] = {"our_msgs/Any",
+                                    "our_msgs/Any",
+                                    "ars_40X/Any",
+                                    "vision_msgs/Detection2DArray",
+                                    "delphi_esr_msgs/EsrTrack",
+                                    "autoware_perception_msgs/DetectedObjects",
+                                    "derived_object_msgs/ObjectArray",
+                                    "novatel_gps_msgs/Inspva",
+                                    "geometry_msgs/TwistStamped",
+                                    "sensor_msgs/PointCloud",
+                                    "ros2_socketcan_msgs/FdFrame"};
+  constexpr std::string_view kEnd = "--\n";
+  const std::size_t end = bytes.find(kEnd);
+  if (end == std::string_view::npos || end < 2) return;
+  BagTopic topic;
+  topic.name = "/any";
+  topic.type = kTypes[static_cast<unsigned char>(bytes[0]) % std::size(kTypes)];
+  topic.encoding = bytes[1] % 2 == 0 ? ros::Encoding::kRos1 : ros::Encoding::kCdr;
+  topic.definition = bytes.substr(2, end - 2);
+  const BagType* const type = bagType(topic);
+  if (type != nullptr) takeMessage(*type, topic, bytes.substr(end + kEnd.size()));
 }
 
 /// The first byte chooses the device.
@@ -273,6 +305,7 @@ const std::vector<Parser>& parsers() {
       {"bag", ofFile(&readBag)},
       {"bag_database", &readDatabase},
       {"bag_messages", &readMessage},
+      {"bag_fields", &readMessageByFields},
       {"packets", &decodePackets},
       {"packet_frames", &assemblePackets},
       {"candump", [](std::string_view b) { parseCandump(b); }},
