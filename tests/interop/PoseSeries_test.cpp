@@ -58,5 +58,18 @@ TEST(PoseSeries, RowsAreSortedAndOfEqualStampsTheLastStays) {
   EXPECT_EQ(all.row(all.firstFrom(Stamp{1000})).pose.translation().x(), 2999);
 }
 
+TEST(PoseSeries, WhatIsNotKeptIsForgotten) {
+  PoseSeries series;
+  for (int i = 0; i < 3000; ++i) series.add(Stamp{i}, placed(i));
+  series.keep(2000, 2990);
+  ASSERT_EQ(series.size(), 990U);
+  EXPECT_EQ(series.row(0).stamp.ns, 2000);
+  EXPECT_EQ(series.firstFrom(Stamp{2500}), 500U);
+  series.keep(990, 990);
+  EXPECT_TRUE(series.empty());
+  series.add(Stamp{1}, placed(1));
+  EXPECT_EQ(series.row(0).pose.translation().x(), 1);
+}
+
 }  // namespace
 }  // namespace perception
