@@ -61,6 +61,9 @@ std::string fileOf(const DeviceKind& kind) {
   return path;
 }
 
+/// Of a CAN bus, on which a list comes with its last frame: two counts of a byte (ARS 408).
+constexpr std::size_t kLongestList = 510;
+
 TEST(Decoder, MutatedPacketsAreDecodedOrRefused) {
   std::mt19937 random(1);
   for (const DeviceKind& kind : deviceKinds()) {
@@ -77,7 +80,7 @@ TEST(Decoder, MutatedPacketsAreDecodedOrRefused) {
       try {
         const DecodedPacket packet = decoder->decode(bytes);
         EXPECT_LE(packet.returns.size() + packet.targets.size() + packet.objects.size(),
-                  bytes.size());
+                  kind.transport == Transport::kCan ? kLongestList : bytes.size());
         ++decoded;
       } catch (const DataError&) {
         ++refused;
