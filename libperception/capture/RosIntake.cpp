@@ -21,18 +21,18 @@ constexpr std::size_t kMostWaitingBytes = 500'000'000;  // of these
 constexpr std::size_t kMostFrames = 1000;               // of reference
 constexpr std::size_t kMostTimes = 1000;                // of a topic
 
-BagTopic liveTopic(const std::string& topic, const std::string& type) {
-  BagTopic row;
-  row.name = topic, row.type = type, row.encoding = ros::Encoding::kCdr;
-  return row;
-}
-
 /// Whether its messages become data of sensors or readings.
 bool isOfSensor(const BagType& type) {
   return type.role != BagType::Role::kOther || type.observe != nullptr;
 }
 
 }  // namespace
+
+BagTopic liveTopic(const std::string& topic, const std::string& type) {
+  BagTopic row;
+  row.name = topic, row.type = type, row.encoding = ros::Encoding::kCdr;
+  return row;
+}
 
 RosIntake::RosIntake(Config& config, Give give)
     : bag_(config.read<BagParams>("bag")),

@@ -22,6 +22,9 @@
 
 namespace perception {
 
+/// A topic of a running graph, as one of a recording; `type` as "sensor_msgs/PointCloud2".
+BagTopic liveTopic(const std::string& topic, const std::string& type);
+
 /// Makes observations of the messages of a running ROS 2 graph as they come, by the INI and with
 /// the readers of perception-import bag. Nothing is known before it came: sensor data waits for the
 /// place of its frame on the vehicle, a pose for the other steps between world and vehicle, each

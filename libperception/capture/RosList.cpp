@@ -7,6 +7,7 @@
 #include <memory>
 #include <thread>
 
+#include "libperception/capture/RosIntake.h"
 #include "libperception/dds/RosGraph.h"
 #include "libperception/importers/BagContents.h"
 
@@ -21,7 +22,7 @@ struct Listened {
 
 std::string lineOf(const std::string& name, const Listened& topic, double seconds) {
   const RawReader::Ledger ledger = topic.reader->ledger();
-  const std::string use = useOfType(topic.found.type);
+  const std::string use = useOfTopic(liveTopic(name, topic.found.type));
   return fmt::format("{:<36} {:<34} {:>7}  {:<11} {:>8} {:>8.2f}  {}{}\n", name, topic.found.type,
                      topic.found.writers, topic.found.quality.reliable ? "reliable" : "best effort",
                      ledger.received,
