@@ -67,7 +67,7 @@ test_packages=(
   libgtest-dev           # tests
   mrpt-apps              # rawlog-edit, rawlog-grabber: stock MRPT must read and record our logs
   python3-numpy          # the module perception, the reader of runs in apps/perception-export
-  python3-scipy          # the second implementation of AMOTA and AMOTP: tests/bench/tracking_benchmark.py
+  python3-scipy          # the second implementation of AMOTA and AMOTP: tests/bench/kitti/tracking_benchmark.py
   mypy                   # type hints of the module
   python3-nbclient python3-ipykernel python3-matplotlib  # the notebook and the pictures of examples/python
   chromium               # pages of a run and of a batch are opened, clicked and read

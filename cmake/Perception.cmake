@@ -127,7 +127,7 @@ function(perception_late_image_codecs TARGET)
   endif()
 endfunction()
 
-# perception_program(NAME [SOURCES stems below libperception...] LINK libs...): the program build/bin/perception-NAME from
+# perception_program(NAME [SOURCES stems or patterns below libperception...] LINK libs...): the program build/bin/perception-NAME from
 # apps/perception-NAME, and perception::app_NAME with its class, for tests. It builds what it runs and nothing else.
 function(perception_program NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
@@ -140,7 +140,8 @@ function(perception_program NAME)
   if(ARG_SOURCES)
     list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/libperception/)
     list(TRANSFORM ARG_SOURCES APPEND .cpp)
-    add_library(perception_app_${NAME} STATIC ${ARG_SOURCES})
+    file(GLOB SOURCES CONFIGURE_DEPENDS ${ARG_SOURCES})
+    add_library(perception_app_${NAME} STATIC ${SOURCES})
     target_link_libraries(perception_app_${NAME} PUBLIC perception::app ${ARG_LINK})
     perception_cheap(perception_app_${NAME})
     perception_batches(perception_app_${NAME})

@@ -13,7 +13,7 @@ if(NOT pybind11_FOUND OR PERCEPTION_SANITIZE)
   return()
 endif()
 
-file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/libperception/python/*.cpp)
+file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/libperception/python/*.cpp)
 pybind11_add_module(perception_python MODULE NO_EXTRAS ${SOURCES})
 target_link_libraries(perception_python PRIVATE perception::app_track perception::app_evaluate perception::app_simulate)
 target_compile_definitions(perception_python PRIVATE PERCEPTION_VERSION="${PROJECT_VERSION}")

@@ -3,14 +3,14 @@
 #include <string>
 
 #include "libperception/app/App.h"
-#include "libperception/evaluation/StudyReport.h"
-#include "libperception/pipeline/RecordedLog.h"
-#include "studies/ObstaclesStudy.h"
-#include "studies/PaperStudy.h"
-#include "studies/ResolutionStudy.h"
-#include "studies/SafetyStudy.h"
-#include "studies/TrustStudy.h"
-#include "studies/WeatherStudy.h"
+#include "libperception/evaluation/tables/StudyReport.h"
+#include "libperception/pipeline/input/RecordedLog.h"
+#include "studies/obstacles/ObstaclesStudy.h"
+#include "studies/obstacles/SafetyStudy.h"
+#include "studies/paper/PaperStudy.h"
+#include "studies/resolution/ResolutionStudy.h"
+#include "studies/weather/TrustStudy.h"
+#include "studies/weather/WeatherStudy.h"
 
 namespace perception {
 

@@ -7,10 +7,10 @@
 #include <exception>
 #include <vector>
 
-#include "libperception/measurement/PositionModel.h"
+#include "libperception/measurement/models/PositionModel.h"
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 
 using namespace perception;
 

@@ -3,8 +3,8 @@
 #include <exception>
 
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 
 using namespace perception;
 

@@ -1,4 +1,4 @@
-// Colors of the pictures (gui-offscreen/Palette.h); those of classes come with the run.
+// Colors of the pictures (gui-offscreen/drawing/Palette.h); those of classes come with the run.
 export const PHANTOM = [225, 20, 150], CELL = [240, 180, 60], INK = [20, 20, 20],
   MEASUREMENT = [125, 60, 190], RADAR = [150, 90, 20], FREE = [0, 158, 115], STOP = [213, 94, 0];
 const RAMP = [[68, 1, 84], [65, 68, 135], [42, 120, 142], [34, 168, 132], [122, 209, 81]];

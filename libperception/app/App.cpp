@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/KeptHeap.h"
-#include "libperception/core/MemoryLimit.h"
-#include "libperception/pipeline/Progress.h"
+#include "libperception/core/system/KeptHeap.h"
+#include "libperception/core/system/MemoryLimit.h"
+#include "libperception/pipeline/output/Progress.h"
 
 namespace perception {
 namespace {

@@ -16,9 +16,9 @@
 #include "libperception/batch/BatchResults.h"
 #include "libperception/batch/SlurmQueue.h"
 #include "libperception/config/IniValue.h"
-#include "libperception/pipeline/OutputFolder.h"
-#include "libperception/scene/OutputFile.h"
-#include "libperception/scene/RunTiming.h"
+#include "libperception/pipeline/output/OutputFolder.h"
+#include "libperception/scene/files/OutputFile.h"
+#include "libperception/scene/files/RunTiming.h"
 
 namespace perception {
 namespace {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "libperception/app/App.h"
-#include "libperception/calibration/BoxEvidenceStudy.h"
+#include "libperception/calibration/detectors/BoxEvidenceStudy.h"
 #include "libperception/core/GroundTruth.h"
-#include "libperception/evaluation/StudyReport.h"
-#include "libperception/pipeline/RecordedLog.h"
+#include "libperception/evaluation/tables/StudyReport.h"
+#include "libperception/pipeline/input/RecordedLog.h"
 
 namespace perception {
 

@@ -8,13 +8,13 @@
 #include "libperception/app/Programs.h"
 #include "libperception/app/StudyFolder.h"
 #include "libperception/config/ShippedFiles.h"
-#include "libperception/core/Supervision.h"
+#include "libperception/core/system/Supervision.h"
 #include "libperception/doctor/SiteIni.h"
 #include "libperception/importers/InputKind.h"
-#include "libperception/pipeline/Progress.h"
-#include "libperception/sensors/CameraImages.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/pipeline/output/Progress.h"
+#include "libperception/sensors/images/CameraImages.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 
 namespace perception {
 namespace fs = std::filesystem;

@@ -6,15 +6,15 @@
 #include <filesystem>
 
 #include "libperception/app/Programs.h"
-#include "libperception/evaluation/TrackingBenchmark.h"
-#include "libperception/interop/ExportFile.h"
-#include "libperception/interop/NuscenesFile.h"
-#include "libperception/pipeline/FinishedRun.h"
-#include "libperception/scene/TrackedRun.h"
-#include "libperception/sensors/CameraImages.h"
-#include "libperception/sensors/EgoPose.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/RawlogReader.h"
+#include "libperception/evaluation/metrics/TrackingBenchmark.h"
+#include "libperception/interop/exports/ExportFile.h"
+#include "libperception/interop/exports/NuscenesFile.h"
+#include "libperception/pipeline/output/FinishedRun.h"
+#include "libperception/scene/files/TrackedRun.h"
+#include "libperception/sensors/ego/EgoPose.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/images/CameraImages.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 
 namespace perception {
 namespace {

@@ -8,12 +8,12 @@
 #include <filesystem>
 
 #include "libperception/app/Programs.h"
-#include "libperception/capture/Drivers.h"
 #include "libperception/capture/Grabber.h"
-#include "libperception/capture/RosList.h"
+#include "libperception/capture/drivers/Drivers.h"
+#include "libperception/capture/ros/RosList.h"
 #include "libperception/config/Config.h"
-#include "libperception/interop/RosGraphParams.h"
-#include "libperception/pipeline/Progress.h"
+#include "libperception/interop/ros/RosGraphParams.h"
+#include "libperception/pipeline/output/Progress.h"
 
 namespace perception {
 namespace fs = std::filesystem;

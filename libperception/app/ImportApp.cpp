@@ -7,7 +7,7 @@
 
 #include "libperception/app/Programs.h"
 #include "libperception/core/Error.h"
-#include "libperception/pipeline/Progress.h"
+#include "libperception/pipeline/output/Progress.h"
 
 namespace perception {
 

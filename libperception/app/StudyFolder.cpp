@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "libperception/evaluation/Gnuplot.h"
-#include "libperception/pipeline/OutputFolder.h"
-#include "libperception/scene/OutputFile.h"
+#include "libperception/evaluation/plots/Gnuplot.h"
+#include "libperception/pipeline/output/OutputFolder.h"
+#include "libperception/scene/files/OutputFile.h"
 
 namespace perception {
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/evaluation/StudyReport.h"
+#include "libperception/evaluation/tables/StudyReport.h"
 
 namespace perception {
 

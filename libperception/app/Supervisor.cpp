@@ -20,7 +20,7 @@
 
 #include "libperception/app/App.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/Supervision.h"
+#include "libperception/core/system/Supervision.h"
 
 namespace perception {
 namespace {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "gui-offscreen/HtmlText.h"
-#include "gui-offscreen/ReportStyle.h"
+#include "gui-offscreen/html/HtmlText.h"
+#include "gui-offscreen/html/ReportStyle.h"
 #include "libperception/batch/BatchScript.h"
 
 namespace perception {

@@ -10,12 +10,12 @@
 #include "libperception/config/IniFile.h"
 #include "libperception/config/IniValue.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/PartialFile.h"
-#include "libperception/core/PathPattern.h"
-#include "libperception/pipeline/FinishedRun.h"
-#include "libperception/pipeline/OutputFolder.h"
-#include "libperception/pipeline/Progress.h"
-#include "libperception/scene/OutputFile.h"
+#include "libperception/core/system/PartialFile.h"
+#include "libperception/core/system/PathPattern.h"
+#include "libperception/pipeline/output/FinishedRun.h"
+#include "libperception/pipeline/output/OutputFolder.h"
+#include "libperception/pipeline/output/Progress.h"
+#include "libperception/scene/files/OutputFile.h"
 
 namespace perception {
 namespace {

@@ -10,11 +10,11 @@
 #include <set>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/evaluation/Report.h"
-#include "libperception/evaluation/StudyReport.h"
-#include "libperception/pipeline/Progress.h"
-#include "libperception/scene/NumberFormat.h"
-#include "libperception/scene/TrackedRun.h"
+#include "libperception/evaluation/tables/Report.h"
+#include "libperception/evaluation/tables/StudyReport.h"
+#include "libperception/pipeline/output/Progress.h"
+#include "libperception/scene/files/NumberFormat.h"
+#include "libperception/scene/files/TrackedRun.h"
 
 namespace perception {
 namespace {

@@ -13,9 +13,9 @@
 #include <numeric>
 #include <thread>
 
-#include "libperception/pipeline/FinishedRun.h"
-#include "libperception/pipeline/Progress.h"
-#include "libperception/scene/OutputFile.h"
+#include "libperception/pipeline/output/FinishedRun.h"
+#include "libperception/pipeline/output/Progress.h"
+#include "libperception/scene/files/OutputFile.h"
 
 namespace perception {
 namespace {

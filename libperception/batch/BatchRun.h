@@ -7,7 +7,7 @@
 
 #include "libperception/batch/Completeness.h"
 #include "libperception/batch/Manifest.h"
-#include "libperception/core/ChildProcess.h"
+#include "libperception/core/system/ChildProcess.h"
 
 namespace perception {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "libperception/scene/OutputFile.h"
+#include "libperception/scene/files/OutputFile.h"
 
 namespace perception {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "libperception/batch/Manifest.h"
 #include "libperception/core/Error.h"
-#include "libperception/scene/RunRecord.h"
+#include "libperception/scene/files/RunRecord.h"
 
 namespace perception {
 

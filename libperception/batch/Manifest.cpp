@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
-#include "libperception/pipeline/FinishedRun.h"
+#include "libperception/core/math/Angle.h"
 #include "libperception/pipeline/PipelineSetup.h"
+#include "libperception/pipeline/output/FinishedRun.h"
 
 namespace perception {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libperception/config/ParamSet.h"
-#include "libperception/evaluation/Evaluation.h"
+#include "libperception/evaluation/metrics/Evaluation.h"
 
 namespace perception {
 

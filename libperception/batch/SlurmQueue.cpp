@@ -9,11 +9,11 @@
 #include <map>
 #include <sstream>
 
-#include "libperception/core/ChildProcess.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/Supervision.h"
-#include "libperception/pipeline/FinishedRun.h"
-#include "libperception/scene/OutputFile.h"
+#include "libperception/core/system/ChildProcess.h"
+#include "libperception/core/system/Supervision.h"
+#include "libperception/pipeline/output/FinishedRun.h"
+#include "libperception/scene/files/OutputFile.h"
 
 namespace perception {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libperception/boxes3d/ScoreOdds.h"
-#include "libperception/measurement/FramePreparation.h"
+#include "libperception/measurement/frames/FramePreparation.h"
 
 namespace perception {
 

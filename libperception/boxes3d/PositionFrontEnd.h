@@ -9,9 +9,9 @@
 #include "libperception/boxes3d/PositionParams.h"
 #include "libperception/boxes3d/ScoreOdds.h"
 #include "libperception/config/Config.h"
-#include "libperception/measurement/DetectionModel.h"
-#include "libperception/measurement/FrontEnd.h"
-#include "libperception/measurement/PositionModel.h"
+#include "libperception/measurement/frames/FrontEnd.h"
+#include "libperception/measurement/models/DetectionModel.h"
+#include "libperception/measurement/models/PositionModel.h"
 
 namespace perception {
 

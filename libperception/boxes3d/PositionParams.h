@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libperception/config/ParamSet.h"
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 
 namespace perception {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "libperception/measurement/ForwardedModel.h"
+#include "libperception/measurement/models/ForwardedModel.h"
 
 namespace perception {
 namespace {

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/pipeline/RecordedLog.h"
+#include "libperception/pipeline/input/RecordedLog.h"
 
 namespace perception {
 

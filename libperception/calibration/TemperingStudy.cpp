@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "libperception/core/Error.h"
-#include "libperception/evaluation/Metrics.h"
+#include "libperception/evaluation/metrics/Metrics.h"
 
 namespace perception {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "libperception/calibration/TemperedLog.h"
 #include "libperception/core/GroundTruth.h"
-#include "libperception/evaluation/Evaluation.h"
-#include "libperception/evaluation/StudyReport.h"
+#include "libperception/evaluation/metrics/Evaluation.h"
+#include "libperception/evaluation/tables/StudyReport.h"
 
 namespace perception {
 

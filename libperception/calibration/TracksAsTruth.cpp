@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "libperception/evaluation/TruthAlignment.h"
-#include "libperception/evaluation/TruthSelection.h"
+#include "libperception/evaluation/matching/TruthAlignment.h"
+#include "libperception/evaluation/matching/TruthSelection.h"
 
 namespace perception {
 namespace {

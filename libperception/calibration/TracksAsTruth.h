@@ -1,6 +1,6 @@
 #pragma once
 #include "libperception/core/GroundTruth.h"
-#include "libperception/scene/TrackedRun.h"
+#include "libperception/scene/files/TrackedRun.h"
 
 namespace perception {
 

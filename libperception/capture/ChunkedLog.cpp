@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libperception/core/Error.h"
-#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 

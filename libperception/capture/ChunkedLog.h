@@ -7,7 +7,7 @@
 #include <string>
 
 #include "libperception/core/Time.h"
-#include "libperception/sensors/RawlogWriter.h"
+#include "libperception/sensors/rawlog/RawlogWriter.h"
 
 namespace perception {
 

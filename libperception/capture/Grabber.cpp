@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "libperception/capture/DeviceSimulator.h"
+#include "libperception/capture/simulated/DeviceSimulator.h"
 #include "libperception/core/Error.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/FromObservation.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 namespace {

@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "libperception/capture/ChunkedLog.h"
-#include "libperception/capture/Drivers.h"
 #include "libperception/capture/LedgerSource.h"
 #include "libperception/capture/Outlet.h"
+#include "libperception/capture/drivers/Drivers.h"
 #include "libperception/dds/ObservationTopic.h"
 #include "libperception/dds/RosTopics.h"
-#include "libperception/sensors/ObservationStream.h"
+#include "libperception/sensors/rawlog/ObservationStream.h"
 
 namespace perception {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "libperception/sensors/CObservationLidarScan.h"
+#include "libperception/sensors/observations/CObservationLidarScan.h"
 
 namespace perception {
 

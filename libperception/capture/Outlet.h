@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "libperception/capture/Drivers.h"
+#include "libperception/capture/drivers/Drivers.h"
 
 namespace perception {
 

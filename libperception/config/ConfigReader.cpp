@@ -10,7 +10,7 @@
 #include "libperception/config/ConfigText.h"
 #include "libperception/config/IniValue.h"
 #include "libperception/config/ShippedFiles.h"
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 
 namespace perception {
 namespace {

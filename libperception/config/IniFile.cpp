@@ -9,7 +9,7 @@
 #include <memory>
 #include <system_error>
 
-#include "libperception/core/PartialFile.h"
+#include "libperception/core/system/PartialFile.h"
 
 namespace perception {
 namespace {

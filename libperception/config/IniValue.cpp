@@ -8,7 +8,7 @@
 #include <numeric>
 #include <system_error>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 
 namespace perception {
 namespace {

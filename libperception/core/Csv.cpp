@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/PartialFile.h"
+#include "libperception/core/system/PartialFile.h"
 
 namespace perception {
 namespace {

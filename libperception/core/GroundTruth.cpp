@@ -18,7 +18,7 @@
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/PartialFile.h"
+#include "libperception/core/system/PartialFile.h"
 
 namespace perception {
 namespace {

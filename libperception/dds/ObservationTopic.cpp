@@ -7,7 +7,7 @@
 #include <random>
 
 #include <messages.h>  // of messages.idl
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/registerClasses.h"
 
 namespace perception {
 namespace {

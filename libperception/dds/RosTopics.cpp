@@ -4,9 +4,9 @@
 #include <variant>
 
 #include "libperception/dds/RosGraph.h"
-#include "libperception/interop/RosMessages.h"
-#include "libperception/interop/RosScene.h"
-#include "libperception/interop/RosSensors.h"
+#include "libperception/interop/ros/RosMessages.h"
+#include "libperception/interop/ros/RosScene.h"
+#include "libperception/interop/ros/RosSensors.h"
 
 namespace perception {
 namespace {

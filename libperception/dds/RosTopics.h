@@ -10,8 +10,8 @@
 #include "libperception/dds/Network.h"
 #include "libperception/dds/RawTopic.h"
 #include "libperception/grid/SafetyGrid.h"
-#include "libperception/interop/RosDisplay.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/interop/ros/RosDisplay.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/scene/Scene.h"
 
 namespace perception {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 #include "libperception/detectors/Suppression.h"
 
 namespace perception {

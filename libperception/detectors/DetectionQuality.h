@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

@@ -9,7 +9,7 @@
 #include "libperception/detectors/DpmOptions.h"
 #include "libperception/detectors/GroundGate.h"
 #include "libperception/detectors/HeadingHead.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

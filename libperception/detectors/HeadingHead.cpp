@@ -11,8 +11,8 @@
 #include <set>
 #include <sstream>
 
-#include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/math/Angle.h"
 #include "libperception/detectors/HogFeatures.h"
 #include "libperception/detectors/VisionSimd.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libperception/config/ParamSet.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

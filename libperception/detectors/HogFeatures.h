@@ -3,7 +3,7 @@
 
 #include "libperception/detectors/AlignedFloats.h"
 #include "libperception/detectors/simd/VisionKernels.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libperception/detectors/PanoramaFit.h"
+#include "libperception/detectors/panorama/PanoramaFit.h"
 
 namespace perception {
 namespace {

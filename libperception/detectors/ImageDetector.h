@@ -4,7 +4,7 @@
 #include <mutex>
 
 #include "libperception/detectors/Detector.h"
-#include "libperception/detectors/Panorama.h"
+#include "libperception/detectors/panorama/Panorama.h"
 
 namespace perception {
 

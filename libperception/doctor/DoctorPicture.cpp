@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/evaluation/Gnuplot.h"
+#include "libperception/evaluation/plots/Gnuplot.h"
 
 namespace perception {
 namespace {

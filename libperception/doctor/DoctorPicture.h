@@ -1,6 +1,6 @@
 #pragma once
 #include "libperception/doctor/LogSurvey.h"
-#include "libperception/evaluation/StudyReport.h"
+#include "libperception/evaluation/tables/StudyReport.h"
 
 namespace perception {
 

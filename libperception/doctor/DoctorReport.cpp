@@ -10,7 +10,7 @@
 
 #include "libperception/doctor/DoctorPicture.h"
 #include "libperception/doctor/SiteIni.h"
-#include "libperception/measurement/ScanTimes.h"
+#include "libperception/measurement/frames/ScanTimes.h"
 
 namespace perception {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "libperception/doctor/LogSurvey.h"
-#include "libperception/evaluation/StudyReport.h"
+#include "libperception/evaluation/tables/StudyReport.h"
 
 namespace perception {
 

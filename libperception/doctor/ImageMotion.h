@@ -2,7 +2,7 @@
 #include <memory>
 #include <optional>
 
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

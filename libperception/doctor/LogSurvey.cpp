@@ -10,8 +10,8 @@
 #include <cmath>
 
 #include "libperception/doctor/MotionFit.h"
-#include "libperception/measurement/ScanTimes.h"
-#include "libperception/sensors/Conversions.h"
+#include "libperception/measurement/frames/ScanTimes.h"
+#include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 namespace {

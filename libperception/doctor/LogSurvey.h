@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "libperception/doctor/MotionCheck.h"
-#include "libperception/lidar/GroundPlane.h"
-#include "libperception/measurement/LidarInputs.h"
+#include "libperception/lidar/ground/GroundPlane.h"
+#include "libperception/measurement/frames/LidarInputs.h"
 #include "libperception/odometry/LidarOdometry.h"
-#include "libperception/pipeline/LogContents.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/GnssFix.h"
+#include "libperception/pipeline/input/LogContents.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/satellites/GnssFix.h"
 
 namespace perception {
 

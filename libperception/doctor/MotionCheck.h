@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "libperception/doctor/ImageMotion.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 
 namespace perception {
 namespace {

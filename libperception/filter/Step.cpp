@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/associate/Association.h"
 #include "libperception/filter/associate/RankedChildren.h"
 #include "libperception/filter/likelihood/Gating.h"

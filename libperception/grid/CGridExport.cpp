@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/PartialFile.h"
+#include "libperception/core/system/PartialFile.h"
 
 namespace perception {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 #include "libperception/config/ParamSet.h"
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 
 namespace perception {
 

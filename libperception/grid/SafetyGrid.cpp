@@ -4,9 +4,9 @@
 #include <iterator>
 #include <utility>
 
-#include "libperception/grid/CGridMrpt2d.h"
-#include "libperception/grid/GridOctomap.h"
-#include "libperception/grid/GridRolling.h"
+#include "libperception/grid/stores/CGridMrpt2d.h"
+#include "libperception/grid/stores/GridOctomap.h"
+#include "libperception/grid/stores/GridRolling.h"
 
 namespace perception {
 namespace {

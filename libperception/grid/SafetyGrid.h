@@ -5,9 +5,9 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/core/Time.h"
-#include "libperception/grid/FreeDistance.h"
 #include "libperception/grid/GridParams.h"
-#include "libperception/grid/GridPoints.h"
+#include "libperception/grid/beams/GridPoints.h"
+#include "libperception/grid/way/FreeDistance.h"
 
 namespace perception {
 

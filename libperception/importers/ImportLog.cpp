@@ -9,11 +9,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/core/Error.h"
-#include "libperception/measurement/ScanTimes.h"
-#include "libperception/sensors/CameraImages.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/ImageFile.h"
-#include "libperception/sensors/ToObservation.h"
+#include "libperception/measurement/frames/ScanTimes.h"
+#include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/images/CameraImages.h"
+#include "libperception/sensors/images/ImageFile.h"
+#include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 

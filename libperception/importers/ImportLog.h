@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/importers/DoubledMessages.h"
-#include "libperception/measurement/SensorFrame.h"
-#include "libperception/sensors/RawlogWriter.h"
+#include "libperception/importers/bags/DoubledMessages.h"
+#include "libperception/measurement/frames/SensorFrame.h"
+#include "libperception/sensors/rawlog/RawlogWriter.h"
 
 namespace perception {
 

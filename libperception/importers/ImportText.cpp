@@ -12,8 +12,8 @@
 #include <filesystem>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/PartialFile.h"
-#include "libperception/importers/CsvText.h"
+#include "libperception/core/system/PartialFile.h"
+#include "libperception/importers/clouds/CsvText.h"
 
 namespace perception {
 

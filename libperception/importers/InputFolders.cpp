@@ -8,11 +8,11 @@
 #include <initializer_list>
 #include <utility>
 
-#include "libperception/importers/BagContents.h"
-#include "libperception/importers/CloudFolder.h"
-#include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/ImportText.h"
-#include "libperception/importers/NuscenesTables.h"
+#include "libperception/importers/bags/BagContents.h"
+#include "libperception/importers/clouds/CloudFolder.h"
+#include "libperception/importers/clouds/ImportClouds.h"
+#include "libperception/importers/street_sets/NuscenesTables.h"
 
 namespace perception {
 namespace fs = std::filesystem;

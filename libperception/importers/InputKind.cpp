@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
-#include "libperception/importers/ImportClouds.h"
 #include "libperception/importers/InputFolders.h"
+#include "libperception/importers/clouds/ImportClouds.h"
 #include "libperception/packets/Decoder.h"
 #include "libperception/packets/Pcap.h"
 

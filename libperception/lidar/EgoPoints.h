@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "libperception/config/ParamSet.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/simd/Dispatch.h"
 #include "libperception/simd/FastAtan2.h"
 

@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/lidar/ClusterKind.h"
-#include "libperception/lidar/Clusters.h"
 #include "libperception/lidar/EgoPoints.h"
-#include "libperception/lidar/GroundSurface.h"
-#include "libperception/lidar/PersonPeaks.h"
-#include "libperception/measurement/ClusterVerdicts.h"
+#include "libperception/lidar/classification/ClusterKind.h"
+#include "libperception/lidar/ground/GroundSurface.h"
+#include "libperception/lidar/two_spacings/Clusters.h"
+#include "libperception/lidar/two_spacings/PersonPeaks.h"
+#include "libperception/measurement/frames/ClusterVerdicts.h"
 
 namespace perception {
 

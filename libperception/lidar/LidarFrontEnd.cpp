@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "libperception/lidar/JudgedClusters.h"
 #include "libperception/lidar/LidarMeasurements.h"
-#include "libperception/lidar/LooseReturns.h"
-#include "libperception/lidar/Overlaps.h"
-#include "libperception/lidar/SplitGround.h"
+#include "libperception/lidar/classification/JudgedClusters.h"
+#include "libperception/lidar/ground/SplitGround.h"
+#include "libperception/lidar/segments/LooseReturns.h"
+#include "libperception/lidar/two_spacings/Overlaps.h"
 
 namespace perception {
 

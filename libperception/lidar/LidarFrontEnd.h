@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "libperception/config/Config.h"
-#include "libperception/lidar/BoxFit.h"
-#include "libperception/lidar/ClusterClassifier.h"
-#include "libperception/lidar/Clusters.h"
 #include "libperception/lidar/EgoPoints.h"
-#include "libperception/lidar/GroundSurface.h"
 #include "libperception/lidar/LidarDetections.h"
-#include "libperception/lidar/PersonPeaks.h"
-#include "libperception/measurement/FootprintModel.h"
-#include "libperception/measurement/FrontEnd.h"
+#include "libperception/lidar/classification/ClusterClassifier.h"
+#include "libperception/lidar/ground/GroundSurface.h"
+#include "libperception/lidar/outline/BoxFit.h"
+#include "libperception/lidar/two_spacings/Clusters.h"
+#include "libperception/lidar/two_spacings/PersonPeaks.h"
+#include "libperception/measurement/frames/FrontEnd.h"
+#include "libperception/measurement/models/FootprintModel.h"
 
 namespace perception {
 

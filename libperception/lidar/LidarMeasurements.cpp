@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libperception/lidar/Outline.h"
+#include "libperception/lidar/outline/Outline.h"
 
 namespace perception {
 namespace {

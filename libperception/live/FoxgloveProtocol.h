@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libperception/core/Time.h"
-#include "libperception/interop/McapWriter.h"
+#include "libperception/interop/bags/McapWriter.h"
 
 /// Foxglove's WebSocket protocol, subprotocols foxglove.sdk.v1 and foxglove.websocket.v1
 /// (https://github.com/foxglove/ws-protocol): what a server that only sends needs of it.

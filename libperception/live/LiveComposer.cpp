@@ -6,10 +6,10 @@
 #include <utility>
 #include <variant>
 
-#include "gui-offscreen/RunData.h"
-#include "gui-offscreen/SensorView.h"
-#include "libperception/interop/FoxgloveMessages.h"
-#include "libperception/interop/FoxgloveSchemas.h"
+#include "gui-offscreen/html/RunData.h"
+#include "gui-offscreen/views/SensorView.h"
+#include "libperception/interop/exports/FoxgloveMessages.h"
+#include "libperception/interop/exports/FoxgloveSchemas.h"
 
 namespace perception {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gui-offscreen/SceneView.h"
+#include "gui-offscreen/views/SceneView.h"
 #include "libperception/live/LiveFeed.h"
 
 namespace perception {

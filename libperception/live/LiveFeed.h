@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "libperception/grid/FreeDistance.h"
 #include "libperception/grid/SafetyGrid.h"
+#include "libperception/grid/way/FreeDistance.h"
 #include "libperception/live/LiveServer.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/pipeline/WeatherWatch.h"
+#include "libperception/pipeline/phantoms/WeatherWatch.h"
 #include "libperception/scene/Scene.h"
 
 namespace perception {

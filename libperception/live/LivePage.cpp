@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "gui-offscreen/HtmlText.h"
-#include "gui-offscreen/PageBundle.h"
-#include "gui-offscreen/ReportStyle.h"
+#include "gui-offscreen/html/HtmlText.h"
+#include "gui-offscreen/html/PageBundle.h"
+#include "gui-offscreen/html/ReportStyle.h"
 
 namespace perception {
 

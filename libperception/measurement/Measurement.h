@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "libperception/core/Frames.h"
-#include "libperception/core/KalmanUpdate.h"
 #include "libperception/core/Time.h"
-#include "libperception/measurement/ClusterVerdicts.h"
-#include "libperception/measurement/EvidenceMemory.h"
-#include "libperception/measurement/OcclusionMap.h"
-#include "libperception/measurement/PlacedReturns.h"
-#include "libperception/measurement/SensorFrame.h"
-#include "libperception/measurement/WakeMap.h"
+#include "libperception/core/math/KalmanUpdate.h"
+#include "libperception/measurement/frames/ClusterVerdicts.h"
+#include "libperception/measurement/frames/PlacedReturns.h"
+#include "libperception/measurement/frames/SensorFrame.h"
+#include "libperception/measurement/frames/WakeMap.h"
+#include "libperception/measurement/models/OcclusionMap.h"
+#include "libperception/measurement/objects/EvidenceMemory.h"
 
 namespace perception {
 

@@ -2,7 +2,7 @@
 #include <optional>
 #include <vector>
 
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/odometry/VoxelMap.h"
 
 namespace perception {

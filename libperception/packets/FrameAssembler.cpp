@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
-#include "libperception/packets/CanBundle.h"
+#include "libperception/packets/radars/CanBundle.h"
 
 namespace perception {
 namespace {

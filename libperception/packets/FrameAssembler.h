@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/packets/ClockWatch.h"
 #include "libperception/packets/Decoder.h"
 

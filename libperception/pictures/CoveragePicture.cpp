@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gui-offscreen/Palette.h"
+#include "gui-offscreen/drawing/Palette.h"
 #include "libperception/pictures/ScenarioDrawing.h"
 #include "libperception/pictures/ScenarioPictures.h"
 

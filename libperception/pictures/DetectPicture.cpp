@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "gui-offscreen/Canvas.h"
+#include "gui-offscreen/drawing/Canvas.h"
 
 namespace perception {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "gui-offscreen/Picture.h"
+#include "gui-offscreen/drawing/Picture.h"
 #include "libperception/detectors/DetectionQuality.h"
 
 namespace perception {

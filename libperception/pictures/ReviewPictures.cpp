@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "gui-offscreen/Canvas.h"
+#include "gui-offscreen/drawing/Canvas.h"
 
 namespace perception {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "gui-offscreen/Renderer.h"
-#include "gui-offscreen/SceneView.h"
+#include "gui-offscreen/drawing/Renderer.h"
+#include "gui-offscreen/views/SceneView.h"
 
 namespace perception {
 

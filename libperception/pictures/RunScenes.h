@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "gui-offscreen/SceneView.h"
+#include "gui-offscreen/views/SceneView.h"
 #include "libperception/core/GroundTruth.h"
-#include "libperception/scene/TrackedRun.h"
+#include "libperception/scene/files/TrackedRun.h"
 
 namespace perception {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "gui-offscreen/Canvas.h"
+#include "gui-offscreen/drawing/Canvas.h"
 #include "libperception/core/Frames.h"
 
 namespace perception {

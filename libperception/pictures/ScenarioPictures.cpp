@@ -7,10 +7,10 @@
 #include <cmath>
 #include <optional>
 
-#include "gui-offscreen/Canvas.h"
-#include "gui-offscreen/Palette.h"
+#include "gui-offscreen/drawing/Canvas.h"
+#include "gui-offscreen/drawing/Palette.h"
 #include "libperception/pictures/ScenarioDrawing.h"
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/world/World.h"
 
 namespace perception {
 namespace {

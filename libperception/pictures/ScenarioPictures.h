@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "gui-offscreen/Picture.h"
-#include "libperception/simulation/Scenario.h"
+#include "gui-offscreen/drawing/Picture.h"
+#include "libperception/simulation/world/Scenario.h"
 
 namespace perception {
 

@@ -5,10 +5,10 @@
 #include <utility>
 #include <variant>
 
-#include "gui-offscreen/SensorView.h"
-#include "libperception/sensors/CameraImages.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/FromObservation.h"
+#include "gui-offscreen/views/SensorView.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/images/CameraImages.h"
+#include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 namespace {

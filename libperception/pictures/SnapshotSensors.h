@@ -4,15 +4,15 @@
 #include <optional>
 #include <string>
 
-#include "gui-offscreen/SceneView.h"
-#include "libperception/lidar/GroundPlane.h"
+#include "gui-offscreen/views/SceneView.h"
 #include "libperception/lidar/LidarFrontEnd.h"
+#include "libperception/lidar/ground/GroundPlane.h"
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/pipeline/SafetyMonitor.h"
-#include "libperception/scene/TrackedRun.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/weather/WeatherState.h"
+#include "libperception/pipeline/safety/SafetyMonitor.h"
+#include "libperception/scene/files/TrackedRun.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
+#include "libperception/weather/state/WeatherState.h"
 
 namespace perception {
 

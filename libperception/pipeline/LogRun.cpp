@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
-#include "libperception/pipeline/FinishedRun.h"
-#include "libperception/pipeline/Progress.h"
-#include "libperception/scene/OutputFile.h"
-#include "libperception/sensors/Conversions.h"
+#include "libperception/pipeline/output/FinishedRun.h"
+#include "libperception/pipeline/output/Progress.h"
+#include "libperception/scene/files/OutputFile.h"
+#include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 namespace fs = std::filesystem;

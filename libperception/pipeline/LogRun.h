@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "libperception/pipeline/LogContents.h"
-#include "libperception/pipeline/LogWatchers.h"
-#include "libperception/pipeline/OutputFolder.h"
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/scene/KittiExport.h"
-#include "libperception/scene/TrackedRun.h"
-#include "libperception/sensors/ObservationInput.h"
+#include "libperception/pipeline/input/LogContents.h"
+#include "libperception/pipeline/output/OutputFolder.h"
+#include "libperception/pipeline/watches/LogWatchers.h"
+#include "libperception/scene/files/KittiExport.h"
+#include "libperception/scene/files/TrackedRun.h"
+#include "libperception/sensors/rawlog/ObservationInput.h"
 
 namespace perception {
 

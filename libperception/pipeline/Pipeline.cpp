@@ -8,9 +8,9 @@
 
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/Parallel.h"
-#include "libperception/pipeline/MergedScanners.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/FromObservation.h"
+#include "libperception/pipeline/input/MergedScanners.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 namespace {

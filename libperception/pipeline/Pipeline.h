@@ -6,23 +6,23 @@
 #include <set>
 #include <vector>
 
-#include "libperception/pipeline/ConditionWatch.h"
-#include "libperception/pipeline/EgoTimeline.h"
-#include "libperception/pipeline/FrameNumbers.h"
-#include "libperception/pipeline/FrameQueue.h"
-#include "libperception/pipeline/InnovationWatch.h"
-#include "libperception/pipeline/InputWatch.h"
-#include "libperception/pipeline/OutputSchedule.h"
-#include "libperception/pipeline/PhantomLedger.h"
 #include "libperception/pipeline/PipelineSetup.h"
-#include "libperception/pipeline/SafetyMonitor.h"
 #include "libperception/pipeline/ScanMaker.h"
-#include "libperception/pipeline/SensorHealth.h"
-#include "libperception/pipeline/SensorWatch.h"
-#include "libperception/pipeline/WakeWatch.h"
-#include "libperception/pipeline/WeatherWatch.h"
-#include "libperception/scene/EventLog.h"
-#include "libperception/scene/RunTiming.h"
+#include "libperception/pipeline/input/EgoTimeline.h"
+#include "libperception/pipeline/input/FrameNumbers.h"
+#include "libperception/pipeline/input/FrameQueue.h"
+#include "libperception/pipeline/output/OutputSchedule.h"
+#include "libperception/pipeline/phantoms/PhantomLedger.h"
+#include "libperception/pipeline/phantoms/WakeWatch.h"
+#include "libperception/pipeline/phantoms/WeatherWatch.h"
+#include "libperception/pipeline/safety/SafetyMonitor.h"
+#include "libperception/pipeline/watches/ConditionWatch.h"
+#include "libperception/pipeline/watches/InnovationWatch.h"
+#include "libperception/pipeline/watches/InputWatch.h"
+#include "libperception/pipeline/watches/SensorHealth.h"
+#include "libperception/pipeline/watches/SensorWatch.h"
+#include "libperception/scene/files/EventLog.h"
+#include "libperception/scene/files/RunTiming.h"
 
 namespace perception {
 

@@ -6,13 +6,13 @@
 
 #include "libperception/filter/CRbpfTracker.h"
 #include "libperception/grid/GridParams.h"
-#include "libperception/grid/StopAdvice.h"
-#include "libperception/lidar/GroundPlane.h"
-#include "libperception/measurement/DetectionModel.h"
-#include "libperception/measurement/FrontEnd.h"
+#include "libperception/grid/way/StopAdvice.h"
+#include "libperception/lidar/ground/GroundPlane.h"
+#include "libperception/measurement/frames/FrontEnd.h"
+#include "libperception/measurement/models/DetectionModel.h"
 #include "libperception/scene/SceneFromPosterior.h"
-#include "libperception/sensors/EgoPose.h"
-#include "libperception/sensors/ScanMerge.h"
+#include "libperception/sensors/ego/EgoPose.h"
+#include "libperception/sensors/frames/ScanMerge.h"
 #include "libperception/weather/PointFilter.h"
 
 namespace perception {

@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "libperception/pipeline/PhantomLedger.h"
 #include "libperception/pipeline/PipelineSetup.h"
-#include "libperception/pipeline/WeatherWatch.h"
-#include "libperception/scene/RunTiming.h"
+#include "libperception/pipeline/phantoms/PhantomLedger.h"
+#include "libperception/pipeline/phantoms/WeatherWatch.h"
+#include "libperception/scene/files/RunTiming.h"
 
 namespace perception {
 

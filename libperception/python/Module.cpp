@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
-#include "libperception/pipeline/Progress.h"
-#include "libperception/python/Callback.h"
-#include "libperception/python/Extensions.h"
-#include "libperception/python/Observations.h"
+#include "libperception/pipeline/output/Progress.h"
 #include "libperception/python/Programs.h"
-#include "libperception/python/SceneArrays.h"
 #include "libperception/python/TrackerBinding.h"
+#include "libperception/python/arrays/Observations.h"
+#include "libperception/python/arrays/SceneArrays.h"
+#include "libperception/python/extensions/Callback.h"
+#include "libperception/python/extensions/Extensions.h"
 
 namespace perception::python {
 namespace py = pybind11;

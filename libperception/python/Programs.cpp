@@ -11,8 +11,8 @@
 #include "libperception/app/App.h"
 #include "libperception/app/Programs.h"
 #include "libperception/core/Error.h"
-#include "libperception/pipeline/Progress.h"
-#include "libperception/python/Callback.h"
+#include "libperception/pipeline/output/Progress.h"
+#include "libperception/python/extensions/Callback.h"
 
 namespace perception::python {
 namespace {

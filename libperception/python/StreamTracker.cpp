@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
-#include "libperception/sensors/Conversions.h"
+#include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 namespace {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/scene/EventLog.h"
-#include "libperception/scene/RunTiming.h"
 #include "libperception/scene/Scene.h"
-#include "libperception/scene/TrackedRun.h"
-#include "libperception/sensors/EgoPose.h"
+#include "libperception/scene/files/EventLog.h"
+#include "libperception/scene/files/RunTiming.h"
+#include "libperception/scene/files/TrackedRun.h"
+#include "libperception/sensors/ego/EgoPose.h"
 
 namespace perception {
 

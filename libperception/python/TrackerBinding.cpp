@@ -13,15 +13,15 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
-#include "libperception/python/Arrays.h"
-#include "libperception/python/Callback.h"
-#include "libperception/python/Detections.h"
-#include "libperception/python/GeodeticPose.h"
-#include "libperception/python/Observations.h"
-#include "libperception/python/SceneArrays.h"
 #include "libperception/python/StreamTracker.h"
-#include "libperception/sensors/ToObservation.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/python/arrays/Arrays.h"
+#include "libperception/python/arrays/Detections.h"
+#include "libperception/python/arrays/GeodeticPose.h"
+#include "libperception/python/arrays/Observations.h"
+#include "libperception/python/arrays/SceneArrays.h"
+#include "libperception/python/extensions/Callback.h"
+#include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/observations/registerClasses.h"
 
 namespace perception::python {
 namespace py = pybind11;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libperception/core/Angle.h"
-#include "libperception/measurement/FootprintModel.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/measurement/models/FootprintModel.h"
 
 namespace perception {
 namespace {

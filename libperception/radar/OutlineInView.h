@@ -1,5 +1,5 @@
 #pragma once
-#include "libperception/measurement/MeasurementModel.h"
+#include "libperception/measurement/models/MeasurementModel.h"
 
 namespace perception {
 

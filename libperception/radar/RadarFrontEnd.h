@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/measurement/FrontEnd.h"
+#include "libperception/measurement/frames/FrontEnd.h"
 #include "libperception/radar/RadarModel.h"
 
 namespace perception {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/radar/OutlineInView.h"
 
 namespace perception {

@@ -1,5 +1,5 @@
 #pragma once
-#include "libperception/measurement/FootprintModel.h"
+#include "libperception/measurement/models/FootprintModel.h"
 
 namespace perception {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "libperception/core/Kinematics.h"
-#include "libperception/measurement/ObjectClass.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
+#include "libperception/measurement/objects/ObjectClass.h"
 
 namespace perception {
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "libperception/sensors/CEgoFilter.h"  // kGravity
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/GnssFix.h"
+#include "libperception/sensors/ego/CEgoFilter.h"  // kGravity
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/satellites/GnssFix.h"
 
 namespace perception {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "libperception/config/ParamSet.h"
-#include "libperception/core/Random.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/core/math/Random.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/RadarClutter.h"
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
+#include "libperception/simulation/world/World.h"
 
 namespace perception {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "libperception/config/ParamSet.h"
 #include "libperception/core/Frames.h"
-#include "libperception/core/Random.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/core/math/Random.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/simulation/SimulatedWeather.h"
 
 namespace perception {

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "libperception/core/Frames.h"
-#include "libperception/core/Random.h"
-#include "libperception/measurement/SensorFrame.h"
-#include "libperception/simulation/LidarCaster.h"
-#include "libperception/simulation/Lighting.h"
+#include "libperception/core/math/Random.h"
+#include "libperception/measurement/frames/SensorFrame.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
+#include "libperception/simulation/world/Lighting.h"
 
 namespace perception {
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <variant>
 
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/ToObservation.h"
-#include "libperception/simulation/CameraView.h"
-#include "libperception/simulation/PointTruth.h"
+#include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/simulation/cameras/CameraView.h"
+#include "libperception/simulation/lidar/PointTruth.h"
 #include "libperception/simulation/weather/WeatherChain.h"
 
 namespace perception {

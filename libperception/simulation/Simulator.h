@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/core/Random.h"
-#include "libperception/simulation/LidarCaster.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/simulation/SimulatedWeather.h"
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
+#include "libperception/simulation/world/World.h"
 
 namespace perception {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/math/Angle.h"
 
 namespace perception {
 

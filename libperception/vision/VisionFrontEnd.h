@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/measurement/FootprintModel.h"
-#include "libperception/measurement/FrontEnd.h"
+#include "libperception/measurement/frames/FrontEnd.h"
+#include "libperception/measurement/models/FootprintModel.h"
 #include "libperception/vision/BoxGeometry.h"
 
 namespace perception {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "libperception/weather/PointTrust.h"
+#include "libperception/weather/trust/PointTrust.h"
 
 namespace perception {
 namespace {

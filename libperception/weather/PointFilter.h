@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "libperception/config/Config.h"
-#include "libperception/measurement/SensorFrame.h"
-#include "libperception/weather/AirCensus.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/weather/Doubt.h"
 #include "libperception/weather/Multipath.h"
-#include "libperception/weather/TrustParams.h"
+#include "libperception/weather/state/AirCensus.h"
+#include "libperception/weather/trust/TrustParams.h"
 
 namespace perception {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "libperception/measurement/SensorFrame.h"
-#include "libperception/weather/TrustParams.h"
+#include "libperception/measurement/frames/SensorFrame.h"
+#include "libperception/weather/trust/TrustParams.h"
 
 namespace perception {
 

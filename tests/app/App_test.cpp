@@ -11,7 +11,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "libperception/pipeline/Progress.h"
+#include "libperception/pipeline/output/Progress.h"
 #include "tests/config/ConfigFixture.h"
 
 namespace perception::test {

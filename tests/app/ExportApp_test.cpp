@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "libperception/app/ImportApp.h"
-#include "libperception/app/TrackApp.h"
-#include "libperception/scene/RunMark.h"
-#include "libperception/scene/RunRecord.h"
-#include "libperception/scene/TrackedRun.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/RawlogReader.h"
+#include "libperception/app/track/TrackApp.h"
+#include "libperception/scene/files/RunMark.h"
+#include "libperception/scene/files/RunRecord.h"
+#include "libperception/scene/files/TrackedRun.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 #include "tests/support/CommandOutput.h"
 
 namespace perception {

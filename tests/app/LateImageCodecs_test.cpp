@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ChildProcess.h"
-#include "libperception/sensors/ImageFile.h"
+#include "libperception/core/system/ChildProcess.h"
+#include "libperception/sensors/images/ImageFile.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {

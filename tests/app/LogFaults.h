@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "libperception/app/TrackApp.h"
+#include "libperception/app/track/TrackApp.h"
 #include "libperception/core/Csv.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/RawlogWriter.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
+#include "libperception/sensors/rawlog/RawlogWriter.h"
 #include "tests/app/DemoLog.h"
 #include "tests/support/TemporaryFolder.h"
 

@@ -7,10 +7,10 @@
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/radar/RadarModel.h"
-#include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/RadarUnit.h"
-#include "libperception/simulation/SphericalCamera.h"
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/cameras/SphericalCamera.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
+#include "libperception/simulation/world/World.h"
 
 namespace perception {
 namespace {

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "libperception/app/App.h"
-#include "libperception/core/Supervision.h"
-#include "libperception/pipeline/OutputFolder.h"
-#include "libperception/pipeline/Progress.h"
+#include "libperception/core/system/Supervision.h"
+#include "libperception/pipeline/output/OutputFolder.h"
+#include "libperception/pipeline/output/Progress.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "libperception/app/ImportApp.h"
-#include "libperception/app/SimulateApp.h"
+#include "libperception/app/simulate/SimulateApp.h"
 #include "libperception/core/GroundTruth.h"
 #include "tests/support/TemporaryFolder.h"
 

@@ -183,10 +183,10 @@ TEST(Documents, FilesInCodeQuotesExist) {
 
 TEST(Documents, TheSearchForFilesFindsOneThatIsNotThere) {
   Words ends;
-  addEnds("libperception/core/Angle.h", ends);
+  addEnds("libperception/core/math/Angle.h", ends);
   addEnds("setup.sh", ends);
   const auto in = [&](const std::string& text) { return unknownFiles({"docs/a.md", text}, ends); };
-  EXPECT_TRUE(in("`core/Angle.h`, `Angle.h`\n```\n./setup.sh demo\n```\n").empty());
+  EXPECT_TRUE(in("`core/math/Angle.h`, `Angle.h`\n```\n./setup.sh demo\n```\n").empty());
   EXPECT_EQ(in("see `core/Gone.h` and `NAME.cpp`"), std::vector<std::string>{"core/Gone.h"});
   EXPECT_EQ(in("```\nbash gone.sh\n```\n"), std::vector<std::string>{"gone.sh"});
 }

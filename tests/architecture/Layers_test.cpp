@@ -194,15 +194,16 @@ TEST(Layers, TheCheckerAllowsWhatIsAllowed) {
   EXPECT_EQ(faultOfLine("libperception/detectors/dpm/A.h",
                         "#include \"libperception/detectors/dpm/DpmEngine.h\""),
             "");
-  EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "#include \"libperception/core/Angle.h\""),
-            "");
+  EXPECT_EQ(
+      faultOfLine("libperception/filter/A.cpp", "#include \"libperception/core/math/Angle.h\""),
+      "");
   EXPECT_EQ(
       faultOfLine("libperception/filter/CRbpfTracker.h", "#include <mrpt/bayes/CParticleFilter.h>"),
       "");
   EXPECT_EQ(faultOfLine("libperception/filter/A.cpp", "#include <mrpt/config/CConfigFile.h>"), "");
   EXPECT_EQ(faultOfLine("libperception/sensors/A.h", "#include <mrpt/obs/CObservation.h>"), "");
   EXPECT_EQ(faultOfLine("gui-offscreen/Labels.cpp", "#include <opencv2/core.hpp>"), "");
-  EXPECT_EQ(faultOfLine("libperception/core/Random.cpp", "#include <Random123/philox.h>"), "");
+  EXPECT_EQ(faultOfLine("libperception/core/math/Random.cpp", "#include <Random123/philox.h>"), "");
 }
 
 TEST(Layers, TheTableHasNoCycle) {

@@ -65,7 +65,7 @@ inline std::vector<Include> includesOf(const SourceFile& file) {
   return includes;
 }
 
-/// The first folders of the path, up to `count`: ("libperception/core/Angle.h", 2) is
+/// The first folders of the path, up to `count`: ("libperception/core/math/Angle.h", 2) is
 /// "libperception/core".
 inline std::string firstFolders(const std::string& path, int count) {
   std::size_t end = 0;

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "libperception/batch/Manifest.h"
-#include "libperception/pipeline/FinishedRun.h"
-#include "libperception/scene/OutputFile.h"
-#include "libperception/scene/RunRecord.h"
+#include "libperception/pipeline/output/FinishedRun.h"
+#include "libperception/scene/files/OutputFile.h"
+#include "libperception/scene/files/RunRecord.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {

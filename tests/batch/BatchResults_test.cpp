@@ -7,8 +7,8 @@
 #include "libperception/batch/BatchDatabase.h"
 #include "libperception/batch/BatchPage.h"
 #include "libperception/core/GroundTruth.h"
-#include "libperception/evaluation/Report.h"
-#include "libperception/scene/TrackedRun.h"
+#include "libperception/evaluation/tables/Report.h"
+#include "libperception/scene/files/TrackedRun.h"
 #include "tests/batch/BatchFixture.h"
 #include "tests/evaluation/MakeRun.h"
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <numeric>
 
-#include "libperception/core/MemoryLimit.h"
-#include "libperception/pipeline/Progress.h"
+#include "libperception/core/system/MemoryLimit.h"
+#include "libperception/pipeline/output/Progress.h"
 #include "tests/batch/BatchFixture.h"
 
 namespace perception::test {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 
 namespace perception {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {

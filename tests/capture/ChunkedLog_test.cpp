@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "libperception/core/Error.h"
-#include "libperception/sensors/RawlogReader.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 
 namespace perception {
 namespace {

@@ -9,8 +9,8 @@
 #include <regex>
 #include <sstream>
 
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 #include "libperception/simulation/Simulator.h"
 
 namespace perception {

@@ -5,7 +5,7 @@
 
 #include <future>
 
-#include "libperception/sensors/CObservationLidarScan.h"
+#include "libperception/sensors/observations/CObservationLidarScan.h"
 
 namespace perception {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "libperception/config/Config.h"
-#include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/math/Angle.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {

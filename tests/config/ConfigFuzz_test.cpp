@@ -3,8 +3,8 @@
 #include <clocale>
 #include <locale>
 
-#include "libperception/core/Random.h"
-#include "libperception/measurement/ObjectClass.h"
+#include "libperception/core/math/Random.h"
+#include "libperception/measurement/objects/ObjectClass.h"
 #include "tests/config/ConfigFixture.h"
 
 namespace perception::test {

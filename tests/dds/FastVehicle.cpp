@@ -28,7 +28,7 @@
 #include <thread>
 #include <vector>
 
-#include "libperception/interop/ReadingBag.h"
+#include "libperception/interop/bags/ReadingBag.h"
 
 namespace fast = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ChildProcess.h"
-#include "libperception/interop/ExportFile.h"
+#include "libperception/core/system/ChildProcess.h"
+#include "libperception/interop/exports/ExportFile.h"
 #include "tests/support/CommandOutput.h"
 
 namespace perception {

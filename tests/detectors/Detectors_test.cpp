@@ -7,15 +7,15 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
-#include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/math/Angle.h"
 #include "libperception/detectors/DetectionQuality.h"
 #include "libperception/detectors/HogFeatures.h"
 #include "libperception/detectors/ImageDetector.h"
-#include "libperception/detectors/OnnxOutput.h"
 #include "libperception/detectors/Suppression.h"
 #include "libperception/detectors/VisionSimd.h"
 #include "libperception/detectors/dpm/DpmModel.h"
+#include "libperception/detectors/networks/OnnxOutput.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {

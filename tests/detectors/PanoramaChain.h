@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/core/Random.h"
-#include "libperception/detectors/Panorama.h"
+#include "libperception/core/math/Random.h"
+#include "libperception/detectors/panorama/Panorama.h"
 #include "libperception/vision/BoxGeometry.h"
 
 // A rendered panorama with one post in it, its tiles, a detector without faults, and the way back

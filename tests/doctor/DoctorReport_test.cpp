@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/sensors/ToObservation.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/observations/registerClasses.h"
 
 namespace perception {
 namespace {

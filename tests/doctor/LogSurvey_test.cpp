@@ -4,10 +4,10 @@
 
 #include <chrono>
 
-#include "libperception/sensors/CObservationLidarScan.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/CObservationLidarScan.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 
 namespace perception {
 namespace {

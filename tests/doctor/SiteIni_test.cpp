@@ -9,12 +9,12 @@
 
 #include "libperception/doctor/DoctorReport.h"
 #include "libperception/pipeline/PipelineSetup.h"
-#include "libperception/scene/OutputFile.h"
-#include "libperception/sensors/CObservationLidarScan.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/ToObservation.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/scene/files/OutputFile.h"
+#include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/observations/CObservationLidarScan.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 
 namespace perception {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "libperception/evaluation/Metrics.h"
+#include "libperception/evaluation/metrics/Metrics.h"
 #include "tests/evaluation/MakeRun.h"
 
 namespace perception {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/scene/TrackedRun.h"
+#include "libperception/scene/files/TrackedRun.h"
 
 namespace perception::testing_evaluation {
 

@@ -17,10 +17,10 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/pipeline/LogRun.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/RawlogWriter.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
+#include "libperception/sensors/rawlog/RawlogWriter.h"
 
 namespace perception {
 namespace {

@@ -18,10 +18,10 @@
 #include <stdexcept>
 #include <thread>
 
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/RawlogWriter.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
+#include "libperception/sensors/rawlog/RawlogWriter.h"
 
 namespace perception::test {
 namespace {

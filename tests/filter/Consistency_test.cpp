@@ -9,14 +9,14 @@
 #include <string>
 
 #include "libperception/config/Config.h"
-#include "libperception/core/Angle.h"
-#include "libperception/core/Chi2.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Chi2.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/likelihood/Linearization.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/measurement/FootprintModel.h"
-#include "libperception/measurement/PositionModel.h"
+#include "libperception/measurement/models/FootprintModel.h"
+#include "libperception/measurement/models/PositionModel.h"
 #include "libperception/radar/RadarModel.h"
 
 namespace perception {

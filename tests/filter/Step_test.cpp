@@ -7,7 +7,7 @@
 #include <map>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/CRbpfTracker.h"
 #include "tests/support/Enumeration.h"
 

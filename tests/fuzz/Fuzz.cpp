@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/registerClasses.h"
 #include "tests/fuzz/Parsers.h"
 
 namespace perception {

@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/MemoryLimit.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/core/system/MemoryLimit.h"
+#include "libperception/sensors/observations/registerClasses.h"
 #include "tests/fuzz/Parsers.h"
 
 namespace perception {

@@ -14,8 +14,8 @@ struct Parser {
 
 /// All but those whose libraries are known to fail on bad bytes and which the programs therefore
 /// read within a ReadingScope: rawlogs (MRPT allocates what a length in the file says; their bytes
-/// are changed in tests/sensors/RawlogReader_test.cpp), part models and cascades (matio, OpenCV),
-/// networks and images.
+/// are changed in tests/sensors/rawlog/RawlogReader_test.cpp), part models and cascades (matio,
+/// OpenCV), networks and images.
 const std::vector<Parser>& parsers();
 
 /// Calls it; all other exceptions than an Error pass.

@@ -11,7 +11,7 @@
 
 #include "libperception/config/Config.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 
 namespace perception {
 namespace {

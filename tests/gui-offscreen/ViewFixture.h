@@ -1,5 +1,5 @@
 #pragma once
-#include "gui-offscreen/Snapshot.h"
+#include "gui-offscreen/views/Snapshot.h"
 
 namespace perception::test {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "libperception/app/ImportApp.h"
-#include "libperception/app/TrackApp.h"
-#include "libperception/sensors/EgoPose.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/RawlogReader.h"
+#include "libperception/app/track/TrackApp.h"
+#include "libperception/sensors/ego/EgoPose.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {

@@ -13,7 +13,7 @@
 #include <set>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/importers/VodFiles.h"
+#include "libperception/importers/street_sets/VodFiles.h"
 #include "tests/importers/ImportFixture.h"
 
 namespace perception {

@@ -10,9 +10,9 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 
-#include "libperception/importers/KittiFiles.h"
-#include "libperception/importers/KittiImport.h"
-#include "libperception/sensors/CObservationObjectDetections.h"
+#include "libperception/importers/kitti/KittiFiles.h"
+#include "libperception/importers/kitti/KittiImport.h"
+#include "libperception/sensors/observations/CObservationObjectDetections.h"
 #include "tests/importers/ImportFixture.h"
 
 namespace perception {

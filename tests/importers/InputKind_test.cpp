@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
-#include "libperception/interop/McapWriter.h"
+#include "libperception/interop/bags/McapWriter.h"
 #include "tests/importers/ImportFixture.h"
 
 namespace perception {

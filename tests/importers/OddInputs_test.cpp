@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "libperception/interop/RosDevices.h"
+#include "libperception/interop/ros/RosDevices.h"
 #include "tests/importers/OddRecording.h"
 
 namespace perception {

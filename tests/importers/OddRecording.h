@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/interop/McapWriter.h"
-#include "libperception/interop/RosMessages.h"
-#include "libperception/interop/RosSensors.h"
+#include "libperception/interop/bags/McapWriter.h"
+#include "libperception/interop/ros/RosMessages.h"
+#include "libperception/interop/ros/RosSensors.h"
 #include "tests/importers/ImportFixture.h"
 
 namespace perception::test {

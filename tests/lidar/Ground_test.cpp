@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "libperception/lidar/GroundPlane.h"
-#include "libperception/lidar/GroundSurface.h"
+#include "libperception/lidar/ground/GroundPlane.h"
+#include "libperception/lidar/ground/GroundSurface.h"
 #include "tests/support/SyntheticCloud.h"
 
 namespace perception {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <sstream>
 
-#include "libperception/lidar/GroundPlane.h"
 #include "libperception/lidar/LidarFrontEnd.h"
+#include "libperception/lidar/ground/GroundPlane.h"
 
 namespace perception {
 namespace {

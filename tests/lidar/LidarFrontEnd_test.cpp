@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "tests/support/ClusterScenes.h"
 
 namespace perception {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libperception/measurement/FrontEnd.h"
+#include "libperception/measurement/frames/FrontEnd.h"
 
 namespace perception {
 namespace {

@@ -5,11 +5,11 @@
 
 #include <filesystem>
 
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/EgoPose.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/ego/EgoPose.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
 
 namespace perception {
 namespace {

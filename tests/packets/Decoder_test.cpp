@@ -6,8 +6,8 @@
 #include <random>
 
 #include "libperception/core/Error.h"
-#include "libperception/packets/CanBundle.h"
-#include "libperception/packets/Ibeo.h"
+#include "libperception/packets/lidars/Ibeo.h"
+#include "libperception/packets/radars/CanBundle.h"
 #include "tests/packets/Recorded.h"
 
 namespace perception {

@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "libperception/core/Error.h"
-#include "libperception/packets/CanBundle.h"
 #include "libperception/packets/FrameAssembler.h"
-#include "libperception/packets/Ibeo.h"
+#include "libperception/packets/lidars/Ibeo.h"
+#include "libperception/packets/radars/CanBundle.h"
 
 namespace perception {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/sensors/ToObservation.h"
+#include "libperception/sensors/frames/ToObservation.h"
 
 namespace perception {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
-#include "libperception/measurement/PositionModel.h"
+#include "libperception/measurement/models/PositionModel.h"
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/scene/TrackedRun.h"
-#include "libperception/sensors/ToObservation.h"
+#include "libperception/scene/files/TrackedRun.h"
+#include "libperception/sensors/frames/ToObservation.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {

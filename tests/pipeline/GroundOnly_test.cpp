@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "libperception/measurement/FootprintModel.h"
+#include "libperception/measurement/models/FootprintModel.h"
 #include "libperception/pipeline/Pipeline.h"
-#include "libperception/sensors/ToObservation.h"
+#include "libperception/sensors/frames/ToObservation.h"
 
 namespace perception {
 namespace {

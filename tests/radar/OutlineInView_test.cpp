@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/Random.h"
-#include "libperception/measurement/FootprintModel.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Random.h"
+#include "libperception/measurement/models/FootprintModel.h"
 #include "libperception/radar/RadarModel.h"
 
 namespace perception {

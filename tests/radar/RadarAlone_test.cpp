@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/Step.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/radar/RadarFrontEnd.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/LogMath.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/LogMath.h"
+#include "libperception/core/math/Random.h"
 
 namespace perception {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "libperception/core/Chi2.h"
+#include "libperception/core/math/Chi2.h"
 #include "libperception/radar/RadarFrontEnd.h"
 
 namespace perception {

@@ -7,7 +7,7 @@
 
 #include "libperception/filter/Step.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/measurement/PositionModel.h"
+#include "libperception/measurement/models/PositionModel.h"
 #include "libperception/radar/RadarFrontEnd.h"
 
 namespace perception {

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <string>
 
-#include "libperception/measurement/ObjectClass.h"
+#include "libperception/measurement/objects/ObjectClass.h"
 #include "libperception/scene/Scene.h"
 #include "tests/support/TemporaryFolder.h"
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <sstream>
 
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/observations/registerClasses.h"
 #include "tests/sensors/TestFiles.h"
 
 namespace perception {

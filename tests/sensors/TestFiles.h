@@ -7,12 +7,12 @@
 #include <string>
 
 #include "libperception/measurement/CObservationMeasurements.h"
-#include "libperception/sensors/CObservationLidarScan.h"
-#include "libperception/sensors/CObservationObjectDetections.h"
-#include "libperception/sensors/CObservationRadarScan.h"
-#include "libperception/sensors/RawlogReader.h"
-#include "libperception/sensors/RawlogWriter.h"
-#include "libperception/sensors/ToObservation.h"
+#include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/observations/CObservationLidarScan.h"
+#include "libperception/sensors/observations/CObservationObjectDetections.h"
+#include "libperception/sensors/observations/CObservationRadarScan.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
+#include "libperception/sensors/rawlog/RawlogWriter.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::testing {

@@ -1,6 +1,6 @@
 // The vehicle's pose from simulated satellites, inertial unit and wheels: errors against the truth
 // stay inside the filter's own covariance, also where no satellite is.
-#include "libperception/sensors/EgoFusion.h"
+#include "libperception/sensors/ego/EgoFusion.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationGPS.h>
@@ -10,11 +10,11 @@
 #include <memory>
 #include <vector>
 
-#include "libperception/core/Chi2.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/EgoPose.h"
+#include "libperception/core/math/Chi2.h"
+#include "libperception/sensors/ego/EgoPose.h"
+#include "libperception/sensors/observations/Conversions.h"
 #include "libperception/simulation/EgoSensors.h"
-#include "libperception/simulation/Trajectory.h"
+#include "libperception/simulation/world/Trajectory.h"
 
 namespace perception {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "libperception/simulation/LidarCaster.h"
-#include "libperception/simulation/World.h"
-#include "libperception/simulation/weather/Precipitation.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
+#include "libperception/simulation/weather/particles/Precipitation.h"
+#include "libperception/simulation/world/World.h"
 #include "tests/simulation/SceneText.h"
 
 namespace perception {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/simulation/LidarCaster.h"
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
+#include "libperception/simulation/world/World.h"
 #include "tests/simulation/SceneText.h"
 
 namespace perception {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <set>
 
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/world/World.h"
 #include "tests/simulation/SceneText.h"
 
 namespace perception {

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "libperception/config/Config.h"
-#include "libperception/simulation/Scenario.h"
+#include "libperception/simulation/world/Scenario.h"
 
 namespace perception::test {
 

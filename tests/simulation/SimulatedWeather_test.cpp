@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/simulation/LidarSensor.h"
+#include "libperception/sensors/frames/FromObservation.h"
 #include "libperception/simulation/Simulator.h"
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/lidar/LidarSensor.h"
+#include "libperception/simulation/world/World.h"
 #include "tests/simulation/SceneText.h"
 
 namespace perception {

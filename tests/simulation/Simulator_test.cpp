@@ -10,9 +10,9 @@
 #include <map>
 #include <sstream>
 
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/RawlogWriter.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/rawlog/RawlogWriter.h"
 #include "tests/simulation/SceneText.h"
 
 namespace perception {

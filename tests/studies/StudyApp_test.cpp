@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "libperception/app/TrackApp.h"
-#include "libperception/pipeline/LogRecorder.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/RawlogWriter.h"
-#include "studies/LogParticlesStudy.h"
+#include "libperception/app/track/TrackApp.h"
+#include "libperception/pipeline/input/LogRecorder.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/rawlog/RawlogWriter.h"
+#include "studies/association/LogParticlesStudy.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {

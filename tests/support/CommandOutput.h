@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/core/ChildProcess.h"
+#include "libperception/core/system/ChildProcess.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/Random.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Random.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception::test {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "libperception/filter/state/FilterModel.h"
-#include "libperception/measurement/PositionModel.h"
+#include "libperception/measurement/models/PositionModel.h"
 
 namespace perception::test {
 

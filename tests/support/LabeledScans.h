@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception::test {
 

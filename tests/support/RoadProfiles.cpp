@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Random.h"
 
 namespace perception::test {
 namespace {

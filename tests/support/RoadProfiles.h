@@ -6,7 +6,7 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/core/Time.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "tests/support/SyntheticCloud.h"
 
 namespace perception::test {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "libperception/grid/SafetyGrid.h"
-#include "libperception/lidar/Clusters.h"
 #include "libperception/lidar/EgoPoints.h"
-#include "libperception/lidar/GroundPlane.h"
-#include "libperception/lidar/GroundSurface.h"
+#include "libperception/lidar/ground/GroundPlane.h"
+#include "libperception/lidar/ground/GroundSurface.h"
+#include "libperception/lidar/two_spacings/Clusters.h"
 #include "libperception/weather/PointFilter.h"
 #include "tests/support/LabeledScans.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "libperception/core/Random.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/core/math/Random.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception::test {
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "libperception/weather/PointTrust.h"
+#include "libperception/weather/trust/PointTrust.h"
 
 namespace perception {
 namespace {

@@ -1,7 +1,7 @@
 // On real snow, clear air and simulated snow; trust_study prints the tables.
 #include <gtest/gtest.h>
 
-#include "libperception/weather/PointTrust.h"
+#include "libperception/weather/trust/PointTrust.h"
 #include "tests/support/LabeledScans.h"
 
 namespace perception {

@@ -2,9 +2,9 @@
 // rawlog-edit -p, RawLogViewer -l, rawlog-grabber -p.
 #include <mrpt/core/initializer.h>
 
-#include "libperception/capture/registerDrivers.h"
+#include "libperception/capture/drivers/registerDrivers.h"
 #include "libperception/grid/CSafetyGrid.h"
-#include "libperception/sensors/registerClasses.h"
+#include "libperception/sensors/observations/registerClasses.h"
 
 MRPT_INITIALIZER(registerPerceptionPlugin) {
   perception::registerPerceptionClasses();

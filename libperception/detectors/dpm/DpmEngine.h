@@ -6,7 +6,7 @@
 #include "libperception/detectors/DpmOptions.h"
 #include "libperception/detectors/GroundGate.h"
 #include "libperception/detectors/dpm/DpmModel.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/simd/Simd.h"
 
 namespace perception {

@@ -12,10 +12,10 @@
 #include <memory>
 #include <optional>
 
-#include "libperception/core/Angle.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/MemoryLimit.h"
-#include "libperception/core/Supervision.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/system/MemoryLimit.h"
+#include "libperception/core/system/Supervision.h"
 #include "libperception/detectors/simd/VisionKernels.h"
 
 namespace perception {

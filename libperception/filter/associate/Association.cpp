@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 
 namespace perception {
 namespace {

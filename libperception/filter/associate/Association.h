@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 
 namespace perception {

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "libperception/core/Assignment.h"
+#include "libperception/core/math/Assignment.h"
 
 namespace perception {
 

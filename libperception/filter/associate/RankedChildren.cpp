@@ -7,7 +7,7 @@
 #include <queue>
 #include <utility>
 
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/associate/RankedSums.h"
 #include "libperception/filter/associate/ScanParts.h"
 #include "libperception/filter/state/Parallel.h"

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/state/IndexMap.h"
 
 namespace perception {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/Chi2.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Chi2.h"
 #include "libperception/filter/predict/Prediction.h"
-#include "libperception/measurement/PositionOnlyModel.h"
+#include "libperception/measurement/models/PositionOnlyModel.h"
 
 namespace perception {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 #include "libperception/filter/state/FixedAxes.h"
 
 namespace perception {

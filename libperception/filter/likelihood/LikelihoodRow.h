@@ -5,7 +5,7 @@
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/likelihood/PairDensity.h"
 #include "libperception/filter/likelihood/RepeatedEvidence.h"
-#include "libperception/measurement/PositionOnlyModel.h"
+#include "libperception/measurement/models/PositionOnlyModel.h"
 
 namespace perception {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/likelihood/AssignmentPrior.h"
 #include "libperception/filter/likelihood/Gating.h"
 #include "libperception/filter/likelihood/LikelihoodRow.h"

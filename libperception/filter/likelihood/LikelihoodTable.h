@@ -6,7 +6,7 @@
 #include "libperception/filter/state/ClassValues.h"
 #include "libperception/filter/state/FilterModel.h"
 #include "libperception/filter/state/Track.h"
-#include "libperception/measurement/MeasurementModel.h"
+#include "libperception/measurement/models/MeasurementModel.h"
 
 namespace perception {
 

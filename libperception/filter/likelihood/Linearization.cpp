@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {

@@ -1,6 +1,6 @@
 #pragma once
 #include "libperception/filter/state/Track.h"
-#include "libperception/measurement/MeasurementModel.h"
+#include "libperception/measurement/models/MeasurementModel.h"
 
 namespace perception {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 #include "libperception/filter/state/FixedAxes.h"
 
 namespace perception {

@@ -3,10 +3,10 @@
 #include <limits>
 #include <vector>
 
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/likelihood/Innovation.h"
 #include "libperception/filter/state/Track.h"
-#include "libperception/measurement/MeasurementModel.h"
+#include "libperception/measurement/models/MeasurementModel.h"
 
 namespace perception {
 

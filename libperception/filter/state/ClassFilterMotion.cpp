@@ -5,8 +5,8 @@
 #include <numeric>
 #include <utility>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/KalmanUpdate.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/KalmanUpdate.h"
 
 namespace perception {
 namespace {

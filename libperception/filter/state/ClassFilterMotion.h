@@ -1,6 +1,6 @@
 #pragma once
 #include "libperception/filter/state/Track.h"
-#include "libperception/measurement/ObjectClass.h"
+#include "libperception/measurement/objects/ObjectClass.h"
 
 namespace perception {
 

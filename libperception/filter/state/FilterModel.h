@@ -3,7 +3,7 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/filter/state/Heading.h"
-#include "libperception/measurement/ObjectClass.h"
+#include "libperception/measurement/objects/ObjectClass.h"
 
 namespace perception {
 

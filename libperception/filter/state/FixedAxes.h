@@ -2,7 +2,7 @@
 #include <cassert>
 #include <type_traits>
 
-#include "libperception/core/KalmanUpdate.h"
+#include "libperception/core/math/KalmanUpdate.h"
 #include "libperception/measurement/Measurement.h"
 
 namespace perception {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 
 namespace perception {
 namespace {

@@ -16,7 +16,7 @@
 #include "libperception/core/Time.h"
 #include "libperception/filter/state/Heading.h"
 #include "libperception/measurement/Measurement.h"
-#include "libperception/measurement/ObjectClass.h"
+#include "libperception/measurement/objects/ObjectClass.h"
 
 namespace perception {
 

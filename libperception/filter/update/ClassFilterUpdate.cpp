@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/KalmanUpdate.h"
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/KalmanUpdate.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/state/FixedAxes.h"
 

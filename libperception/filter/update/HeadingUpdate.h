@@ -3,7 +3,7 @@
 
 #include "libperception/filter/state/FilterModel.h"
 #include "libperception/filter/state/Track.h"
-#include "libperception/measurement/MeasurementModel.h"
+#include "libperception/measurement/models/MeasurementModel.h"
 
 namespace perception {
 

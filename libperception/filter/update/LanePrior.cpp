@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {

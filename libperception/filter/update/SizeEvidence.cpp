@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/KalmanUpdate.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/KalmanUpdate.h"
 
 namespace perception {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 

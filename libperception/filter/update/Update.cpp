@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "libperception/core/Chi2.h"
-#include "libperception/core/KalmanUpdate.h"
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/Chi2.h"
+#include "libperception/core/math/KalmanUpdate.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/likelihood/PhantomOdds.h"
 #include "libperception/filter/likelihood/RepeatedEvidence.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
@@ -15,8 +15,8 @@
 #include "libperception/filter/update/ClassFilterUpdate.h"
 #include "libperception/filter/update/HeadingUpdate.h"
 #include "libperception/filter/update/SizeEvidence.h"
-#include "libperception/measurement/ExtentUpdate.h"
-#include "libperception/measurement/PositionOnlyModel.h"
+#include "libperception/measurement/models/PositionOnlyModel.h"
+#include "libperception/measurement/objects/ExtentUpdate.h"
 
 namespace perception {
 namespace {

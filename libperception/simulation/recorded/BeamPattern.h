@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

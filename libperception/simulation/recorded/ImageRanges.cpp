@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "libperception/simulation/CameraView.h"
+#include "libperception/simulation/cameras/CameraView.h"
 
 namespace perception {
 namespace {

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "libperception/core/Frames.h"
-#include "libperception/measurement/SensorFrame.h"
+#include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
 

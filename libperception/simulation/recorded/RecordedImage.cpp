@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/recorded/ImageRanges.h"
+#include "libperception/simulation/world/Scenario.h"
 
 namespace perception {
 namespace {

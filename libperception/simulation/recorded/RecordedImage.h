@@ -1,9 +1,9 @@
 #pragma once
 #include <vector>
 
-#include "libperception/simulation/CameraView.h"
-#include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/SimulatedWeather.h"
+#include "libperception/simulation/cameras/CameraView.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
 
 namespace perception {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "libperception/simulation/LidarCaster.h"
-#include "libperception/simulation/LidarEcho.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
+#include "libperception/simulation/lidar/LidarEcho.h"
 
 namespace perception {
 namespace {

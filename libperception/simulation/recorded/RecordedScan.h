@@ -1,9 +1,9 @@
 #pragma once
 #include <vector>
 
-#include "libperception/simulation/LidarSensorParams.h"
-#include "libperception/simulation/Scenario.h"
+#include "libperception/simulation/lidar/LidarSensorParams.h"
 #include "libperception/simulation/recorded/BeamPattern.h"
+#include "libperception/simulation/world/Scenario.h"
 
 namespace perception {
 

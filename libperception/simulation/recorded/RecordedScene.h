@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/simulation/Scenario.h"
+#include "libperception/simulation/world/Scenario.h"
 
 namespace perception {
 

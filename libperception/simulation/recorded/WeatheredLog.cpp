@@ -7,12 +7,12 @@
 #include <utility>
 #include <variant>
 
-#include "libperception/sensors/CameraImages.h"
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/ToObservation.h"
-#include "libperception/simulation/CameraBoxes.h"
-#include "libperception/simulation/PointTruth.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/images/CameraImages.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/simulation/cameras/CameraBoxes.h"
+#include "libperception/simulation/lidar/PointTruth.h"
 #include "libperception/simulation/recorded/RecordedImage.h"
 #include "libperception/simulation/recorded/RecordedScan.h"
 #include "libperception/simulation/weather/Beam.h"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
-#include "libperception/simulation/LidarCaster.h"
 #include "libperception/simulation/SimulatedWeather.h"
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
 #include "libperception/simulation/recorded/BeamPattern.h"
+#include "libperception/simulation/world/World.h"
 
 namespace perception {
 

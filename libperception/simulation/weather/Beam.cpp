@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 
 namespace perception {
 

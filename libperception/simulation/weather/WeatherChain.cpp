@@ -2,19 +2,19 @@
 
 #include <utility>
 
-#include "libperception/simulation/Scenario.h"
-#include "libperception/simulation/weather/Daylight.h"
-#include "libperception/simulation/weather/Fog.h"
-#include "libperception/simulation/weather/Fouling.h"
-#include "libperception/simulation/weather/Plume.h"
-#include "libperception/simulation/weather/Rain.h"
-#include "libperception/simulation/weather/RainDrops.h"
-#include "libperception/simulation/weather/ShopWindows.h"
-#include "libperception/simulation/weather/Snow.h"
-#include "libperception/simulation/weather/SnowFlakes.h"
-#include "libperception/simulation/weather/Spray.h"
-#include "libperception/simulation/weather/TargetSurfaces.h"
-#include "libperception/simulation/weather/WetGround.h"
+#include "libperception/simulation/weather/particles/Fog.h"
+#include "libperception/simulation/weather/particles/Plume.h"
+#include "libperception/simulation/weather/particles/Rain.h"
+#include "libperception/simulation/weather/particles/RainDrops.h"
+#include "libperception/simulation/weather/particles/Snow.h"
+#include "libperception/simulation/weather/particles/SnowFlakes.h"
+#include "libperception/simulation/weather/particles/Spray.h"
+#include "libperception/simulation/weather/sensors/Daylight.h"
+#include "libperception/simulation/weather/sensors/Fouling.h"
+#include "libperception/simulation/weather/surfaces/ShopWindows.h"
+#include "libperception/simulation/weather/surfaces/TargetSurfaces.h"
+#include "libperception/simulation/weather/surfaces/WetGround.h"
+#include "libperception/simulation/world/Scenario.h"
 
 namespace perception {
 namespace {

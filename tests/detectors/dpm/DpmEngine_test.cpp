@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 #include "tests/detectors/dpm/DpmReference.h"
 
 namespace perception::test {

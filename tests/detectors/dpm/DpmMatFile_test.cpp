@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libperception/core/Error.h"
-#include "libperception/core/Supervision.h"
+#include "libperception/core/system/Supervision.h"
 #include "libperception/detectors/dpm/DpmModel.h"
 #include "tests/support/TemporaryFolder.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 
 namespace perception {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/Step.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/update/Update.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/likelihood/Innovation.h"
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/predict/Prediction.h"

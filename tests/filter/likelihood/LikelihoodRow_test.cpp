@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/update/Update.h"
 #include "tests/support/FilterWorld.h"

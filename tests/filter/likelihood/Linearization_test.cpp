@@ -7,11 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/measurement/FootprintModel.h"
-#include "libperception/measurement/PositionModel.h"
+#include "libperception/measurement/models/FootprintModel.h"
+#include "libperception/measurement/models/PositionModel.h"
 
 namespace perception {
 namespace {

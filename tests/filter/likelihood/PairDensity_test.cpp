@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/state/FixedAxes.h"
 #include "tests/support/FilterWorld.h"

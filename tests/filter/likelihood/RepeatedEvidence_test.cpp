@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/update/Update.h"
 #include "tests/support/FilterWorld.h"

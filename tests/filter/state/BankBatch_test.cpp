@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "tests/support/FilterWorld.h"

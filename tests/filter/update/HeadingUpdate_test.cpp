@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "tests/support/FilterWorld.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "libperception/config/Config.h"
-#include "libperception/core/LogMath.h"
+#include "libperception/core/math/LogMath.h"
 
 namespace perception {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/update/Update.h"

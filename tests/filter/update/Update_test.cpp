@@ -6,10 +6,10 @@
 #include <limits>
 #include <numeric>
 
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Random.h"
 #include "libperception/filter/Step.h"
 #include "libperception/filter/predict/Prediction.h"
-#include "libperception/measurement/DetectionModel.h"
+#include "libperception/measurement/models/DetectionModel.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {

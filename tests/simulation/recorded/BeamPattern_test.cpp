@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "libperception/core/Angle.h"
+#include "libperception/core/math/Angle.h"
 #include "tests/simulation/recorded/RecordedClouds.h"
 
 namespace perception {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "libperception/simulation/CameraBoxes.h"
-#include "libperception/simulation/CameraView.h"
+#include "libperception/simulation/cameras/CameraBoxes.h"
+#include "libperception/simulation/cameras/CameraView.h"
 
 namespace perception {
 namespace {

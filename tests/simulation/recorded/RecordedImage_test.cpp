@@ -5,13 +5,13 @@
 #include <cmath>
 #include <memory>
 
-#include "libperception/simulation/CameraBoxes.h"
+#include "libperception/simulation/cameras/CameraBoxes.h"
 
-#include "libperception/simulation/Scenario.h"
-#include "libperception/simulation/World.h"
 #include "libperception/simulation/recorded/RecordedScene.h"
-#include "libperception/simulation/weather/Fog.h"
 #include "libperception/simulation/weather/WeatherChain.h"
+#include "libperception/simulation/weather/particles/Fog.h"
+#include "libperception/simulation/world/Scenario.h"
+#include "libperception/simulation/world/World.h"
 
 namespace perception {
 namespace {

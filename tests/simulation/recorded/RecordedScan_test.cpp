@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/simulation/LidarCaster.h"
-#include "libperception/simulation/World.h"
-#include "libperception/simulation/weather/Fog.h"
-#include "libperception/simulation/weather/Snow.h"
+#include "libperception/simulation/lidar/LidarCaster.h"
+#include "libperception/simulation/weather/particles/Fog.h"
+#include "libperception/simulation/weather/particles/Snow.h"
+#include "libperception/simulation/world/World.h"
 #include "tests/simulation/SceneText.h"
 #include "tests/simulation/recorded/RecordedClouds.h"
 

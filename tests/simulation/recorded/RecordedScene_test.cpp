@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/world/World.h"
 
 namespace perception {
 namespace {

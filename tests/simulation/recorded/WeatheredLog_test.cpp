@@ -6,10 +6,10 @@
 
 #include <algorithm>
 
-#include "libperception/sensors/Conversions.h"
-#include "libperception/sensors/FromObservation.h"
-#include "libperception/sensors/ToObservation.h"
-#include "libperception/simulation/CameraBoxes.h"
+#include "libperception/sensors/frames/FromObservation.h"
+#include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/simulation/cameras/CameraBoxes.h"
 #include "libperception/simulation/recorded/RecordedScene.h"
 #include "tests/simulation/recorded/RecordedClouds.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Angle.h"
-#include "libperception/core/Random.h"
+#include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Random.h"
 
 namespace perception {
 namespace {

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "libperception/config/Config.h"
-#include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/weather/WeatherChain.h"
+#include "libperception/simulation/world/Scenario.h"
 
 namespace perception {
 namespace {

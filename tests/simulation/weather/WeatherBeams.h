@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
-#include "libperception/simulation/Scenario.h"
 #include "libperception/simulation/SimulatedWeather.h"
-#include "libperception/simulation/World.h"
+#include "libperception/simulation/world/Scenario.h"
+#include "libperception/simulation/world/World.h"
 #include "tests/simulation/SceneText.h"
 
 namespace perception::test {

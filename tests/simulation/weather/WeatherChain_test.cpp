@@ -4,7 +4,7 @@
 
 #include <sstream>
 #include "libperception/core/Error.h"
-#include "libperception/sensors/FromObservation.h"
+#include "libperception/sensors/frames/FromObservation.h"
 #include "libperception/simulation/Simulator.h"
 #include "tests/simulation/SceneText.h"
 

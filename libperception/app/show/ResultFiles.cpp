@@ -1,0 +1,71 @@
+#include "libperception/app/show/ResultFiles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "libperception/core/Error.h"
+#include "libperception/scene/files/RunMark.h"
+
+namespace perception {
+
+namespace fs = std::filesystem;
+
+std::string contentsOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  if (!file && !file.eof()) throw DataError(path.string() + ": cannot be read");
+  return bytes;
+}
+
+nlohmann::json jsonOf(const fs::path& path) {
+  try {
+    return nlohmann::json::parse(contentsOf(path));
+  } catch (const nlohmann::json::exception& error) {
+    throw DataError(path.string() + ": no JSON: " + error.what());
+  }
+}
+
+nlohmann::json linesOf(const fs::path& path) {
+  nlohmann::json all = nlohmann::json::array();
+  std::istringstream lines(contentsOf(path));
+  lines.exceptions(std::ios::badbit);  // a lack of memory is no end
+  for (std::string line; std::getline(lines, line);) {
+    try {
+      all.push_back(nlohmann::json::parse(line));
+    } catch (const nlohmann::json::exception& error) {
+      throw DataError(
+          fmt::format("{}: line {}: no JSON: {}", path.string(), all.size() + 1, error.what()));
+    }
+  }
+  return all;
+}
+
+bool isOfRuns(const fs::path& path, const std::vector<std::string>& ids) {
+  const std::vector<std::string> said = markedRunsOf(path.string());
+  if (said.empty()) return false;
+  for (const std::string& id : ids) {
+    if (std::find(said.begin(), said.end(), id) == said.end()) {
+      throw DataError(fmt::format("{}: is of run {}, expected run {}: make it again, or remove it",
+                                  path.string(), fmt::join(said, " and "), id));
+    }
+  }
+  return true;
+}
+
+nlohmann::json figuresOf(const fs::path& report, const std::string& id) {
+  const nlohmann::json json = jsonOf(report);
+  if (!isOfRuns(report, {id})) return nullptr;
+  const auto runs = json.find("runs");
+  if (runs != json.end() && runs->is_array()) {
+    for (const auto& run : *runs) {
+      if (run.is_object() && run.contains("run") && run["run"] == runMark({id})) return run;
+    }
+  }
+  return nullptr;  // one of pooled trials: it has no figures of its own
+}
+
+}  // namespace perception

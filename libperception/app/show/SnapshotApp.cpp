@@ -1,0 +1,291 @@
+#include "libperception/app/show/SnapshotApp.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "gui-offscreen/views/ContactSheet.h"
+#include "gui-offscreen/views/SceneFile.h"
+#include "gui-offscreen/views/VideoFile.h"
+#include "libperception/app/Programs.h"
+#include "libperception/grid/CGridExport.h"
+#include "libperception/pictures/RunScenes.h"
+#include "libperception/pipeline/Pipeline.h"
+#include "libperception/pipeline/output/FinishedRun.h"
+#include "libperception/pipeline/output/Progress.h"
+#include "libperception/scene/files/OutputFile.h"
+#include "libperception/scene/files/RunMark.h"
+#include "libperception/scene/files/RunRecord.h"
+#include "libperception/sensors/observations/registerClasses.h"
+
+namespace perception {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kSheetTiles = 36;  // on the contact sheet of --every
+constexpr double kSlowestFilm = 1;       // [s] a picture at most
+
+}  // namespace
+
+std::string SnapshotApp::description() const {
+  return "Draws tracked runs as PNG or video: objects, sensor data, safety grid, truth.";
+}
+
+void SnapshotApp::declare(CLI::App& cli) {
+  cli.add_option(
+         "-r,--run", run_dirs,
+         "folder of a run of perception-track; a second one of the same log is drawn beside it")
+      ->required()
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  addInputOption(cli, false);
+  cli.get_option("--input")->expected(1);
+  addConfigOptions(cli, false);
+  cli.add_option("-t,--truth", truth_file, "truth of the log, FILE.truth.csv")->type_name("FILE");
+  auto* when = cli.add_option_group("when", "which instants");
+  when->add_option("--time", time, "the scene nearest to this time of the log [s]");
+  when->add_option("--frame", frame, "the scene of this frame of the log");
+  when->add_option("--every", every, "interval of pictures, and a contact sheet [s]")
+      ->check(CLI::Range(1e-3, 1e6));
+  when->add_option("--contact", contact, "one contact sheet of this many instants, equally spaced")
+      ->check(CLI::Range(1, 100));
+  when->add_option("--video", video, "a video of all scenes at the log's rate (needs ffmpeg)")
+      ->type_name("FILE.mp4");
+  when->require_option(1);
+  cli.add_option("--from", video_from, "start of the video, time of the log [s]");
+  cli.add_option("--to", video_to, "end of the video [s]");
+  cli.add_option("-o,--output", output, "PNG or JPEG file; with --every a folder");
+  cli.add_option("--scene", scene_file,
+                 "with --time or --frame: also a file for MRPT's SceneViewer3D")
+      ->type_name("FILE.3Dscene");
+  cli.add_option("--grid", grid_files,
+                 "with --time or --frame: also the safety grid, by the file's ending: .ot, .bt "
+                 "(octovis), .gridmap.gz (MRPT), .png (from above)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  cli.add_option(
+         "--view", view,
+         "top (from above), driver (from behind the vehicle), camera (its image), joined by "
+         "+; both = top+driver; all = top+driver+camera")
+      ->capture_default_str();
+  cli.add_option("--camera", sensors.camera, "label of the camera that is shown")
+      ->type_name("LABEL");
+  cli.add_flag("--no-measurements", no_measurements, "do not draw measurements");
+  cli.add_option("--range", params.range, "range shown ahead [m]")
+      ->check(CLI::Range(5.0, 200.0))
+      ->capture_default_str();
+  cli.add_option("--memory", sensors.memory,
+                 "the grid has the lidar scans of this time before an instant [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  cli.add_option("--title", titles, "title in place of the names of log and run, one per run")
+      ->allow_extra_args(false);
+}
+
+// The site INI of -c, else the run's effective.ini, so that returns and measurements are those of
+// the tracker.
+Config SnapshotApp::readSite(const std::string& run_dir) {
+  const std::string given = config_file;
+  const std::string own = (fs::path(run_dir) / "effective.ini").string();
+  if (given.empty() && fs::exists(own)) config_file = own;
+  Config config = loadConfig();
+  sensors.read(config, !config_file.empty());
+  config_file = given;
+  return config;
+}
+
+bool SnapshotApp::readConfig() { return configDone(readSite(run_dirs[0])); }
+
+std::vector<std::size_t> SnapshotApp::chooseScenes(const TrackedRun& run) const {
+  if (time) return {sceneAt(run, *time)};
+  if (frame) return {sceneOfFrame(run, *frame)};
+  if (!video.empty()) return scenesBetween(run, video_from, video_to);
+  const std::vector<std::size_t> chosen = scenesEvery(run, every);
+  return every > 0 ? chosen : spread(chosen, static_cast<std::size_t>(contact));
+}
+
+// Log and run; marks simulated logs.
+std::string SnapshotApp::titleOf(std::size_t index) {
+  if (index < titles.size()) return titles[index];
+  const std::string& dir = run_dirs[index];
+  const std::string run = lastFolderOf(dir);
+  const fs::path record_file = fs::path(dir) / "done.json";
+  if (!fs::exists(record_file)) {
+    warn(fmt::format("{}: no done.json: the run did not finish", dir));
+    return run + " (unfinished)";
+  }
+  const RunRecord record = readRunRecord(record_file.string());
+  const std::string log = fs::path(record.input).filename().string();
+  return fmt::format("{}{}, run {}", log, record.simulated ? " (simulated)" : "", run);
+}
+
+std::vector<SceneView> SnapshotApp::viewsOf(std::size_t index) const {
+  return viewsOfRuns(shown_, index, truth_ ? &*truth_ : nullptr, params.views);
+}
+
+std::string SnapshotApp::fileFor(const SceneView& shown) const {
+  if (every <= 0) return output;
+  const auto ms = static_cast<long long>(std::llround(shown.t * 1000));
+  return (fs::path(output) / fmt::format("t{:09d}ms.png", ms)).string();
+}
+
+void SnapshotApp::write(const std::string& path, Picture picture) {
+  writePicture(path, picture, mark_);
+  out_files.push_back(path);
+  out_picture = std::move(picture);
+  fmt::print("{}\n", path);
+}
+
+void SnapshotApp::readRuns() {
+  shown_.clear();
+  for (std::size_t i = 0; i < run_dirs.size(); ++i) {
+    ShownRun shown{readTrackedRun(run_dirs[i]), titleOf(i), nullptr};
+    if (shown.run.scenes.empty()) throw DataError(run_dirs[i] + ": the run holds no scene");
+    shown_.push_back(std::move(shown));
+  }
+  if (inputs.empty()) return;
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    ShownRun& shown = shown_[i];
+    if (i > 0) readSite(run_dirs[i]).finish();
+    shown.sensors = std::make_unique<SnapshotSensors>(inputs[0], shown.run, sensors);
+  }
+}
+
+void SnapshotApp::run() {
+  out_files.clear();
+  if (readConfig()) return;
+  if (no_measurements) sensors.no_measurements = true;
+  if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the runs");
+  if (output.empty() && video.empty())
+    throw Error(ExitCode::kUsage, "-o: expected a file or folder");
+  if (every <= 0 && !output.empty()) requirePictureName(output);
+  if ((!scene_file.empty() || !grid_files.empty()) && !time && !frame) {
+    throw Error(ExitCode::kUsage, "--scene, --grid: of one instant, --time or --frame");
+  }
+  if (!grid_files.empty() && inputs.empty()) {
+    throw Error(ExitCode::kUsage, "--grid: the safety grid comes from the log's scans: -i");
+  }
+  if (contact > 0 && run_dirs.size() > 1) throw Error(ExitCode::kUsage, "--contact: of one run");
+  params.views = viewsNamed(view);
+  registerPerceptionClasses();
+  readRuns();
+  mark_ = markOfRuns(run_dirs);
+  const auto camera = std::find(params.views.begin(), params.views.end(), ViewKind::kCamera);
+  if (camera != params.views.end() && (!shown_[0].sensors || !shown_[0].sensors->layers().camera)) {
+    // "all" shows the views available; a camera requested explicitly must exist.
+    if (view != "all") {
+      throw Error(
+          ExitCode::kUsage,
+          fmt::format("--view {}: {}", view,
+                      inputs.empty() ? "images come from the log: -i"
+                                     : inputs[0] + " holds no camera" +
+                                           (sensors.camera.empty() ? "" : " of that label")));
+    }
+    params.views.erase(camera);
+  }
+  truth_.reset();
+  if (!truth_file.empty()) truth_ = readGroundTruth(truth_file);
+  const std::vector<std::size_t> chosen = chooseScenes(shown_[0].run);
+  if (video.empty()) {
+    drawPictures(chosen);
+  } else {
+    drawVideo(chosen);
+  }
+  reportLog();
+}
+
+void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
+  const bool sheet = contact > 0 || (every > 0 && shown_.size() == 1);
+  const std::vector<std::size_t> on_sheet =
+      !sheet ? std::vector<std::size_t>{}
+             : spread(chosen, contact > 0 ? chosen.size() : kSheetTiles);
+  createFolder(every > 0 ? output : fs::path(output).parent_path().string());
+  Snapshot snapshot(params);
+  std::vector<Picture> tiles;
+  std::vector<SceneView> views;
+  Progress progress("drawing", chosen.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    stopIfAsked();
+    views = viewsOf(chosen[i]);
+    if (contact == 0) {
+      write(fileFor(views[0]), snapshot.picture(views));
+      if (snapshot.labelsLeftOut() > 0) {
+        say(1, fmt::format("t = {:.2f} s: no room for {} labels", views[0].t,
+                           snapshot.labelsLeftOut()));
+      }
+    }
+    if (std::binary_search(on_sheet.begin(), on_sheet.end(), chosen[i])) {
+      tiles.push_back(snapshot.tile(views[0]));
+    }
+    progress.update(i + 1, i + 1);
+  }
+  if (!tiles.empty()) {
+    const std::string path = every > 0 ? (fs::path(output) / "contact.png").string() : output;
+    write(path, contactSheet(tiles, views[0]));
+  }
+  if (!scene_file.empty()) {
+    createFolder(fs::path(scene_file).parent_path().string());
+    writeSceneFile(scene_file, views[0], params.range, mark_);
+    fmt::print("{}\n", scene_file);
+    out_files.push_back(scene_file);
+  }
+  for (const std::string& file : grid_files) {
+    createFolder(fs::path(file).parent_path().string());
+    writeFile(file, withMark(gridFileOf(shown_[0].sensors->grid(), file), mark_));
+    fmt::print("{}\n", file);
+    out_files.push_back(file);
+  }
+}
+
+// Real time: frame rate by the median scene interval; in gaps of the log the video shows the last
+// scene.
+void SnapshotApp::drawVideo(const std::vector<std::size_t>& chosen) {
+  const auto& scenes = shown_[0].run.scenes;
+  const auto at = [&](std::size_t i) { return scenes[chosen[i]].stamp - scenes[chosen[0]].stamp; };
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < chosen.size(); ++i) gaps.push_back(at(i) - at(i - 1));
+  std::sort(gaps.begin(), gaps.end());
+  const double gap =
+      gaps.empty() ? kSlowestFilm : std::clamp(gaps[gaps.size() / 2], 1e-2, kSlowestFilm);
+  createFolder(fs::path(video).parent_path().string());
+  VideoFile film(video, 1 / gap, mark_);
+  Snapshot snapshot(params);
+  Progress progress("filming", chosen.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    stopIfAsked();
+    out_picture = snapshot.picture(viewsOf(chosen[i]));
+    const double until = i + 1 < chosen.size() ? at(i + 1) : at(i) + gap;
+    do {
+      film.add(out_picture);
+    } while (static_cast<double>(film.frames()) * gap < until - gap / 2);
+    progress.update(i + 1, i + 1);
+  }
+  film.close();
+  out_files.push_back(video);
+  fmt::print("{}: {} frames, {:.2f} a second\n", video, film.frames(), 1 / gap);
+}
+
+void SnapshotApp::reportLog() {
+  const SnapshotSensors* log = shown_[0].sensors.get();
+  if (!log) return;
+  const auto end = log->reader().end();
+  if (end != RawlogReader::End::kNotYet && end != RawlogReader::End::kClean) {
+    warn(log->reader().endMessage());
+  }
+  if (!log->missingImage().empty()) {
+    warn(log->missingImage() + ": an image of the log cannot be loaded");
+  }
+  if (log->frames() == 0) {
+    warn(fmt::format("{}: no sensor data at the run's times", inputs[0]));
+  }
+}
+
+std::unique_ptr<App> snapshotApp() { return std::make_unique<SnapshotApp>(); }
+
+}  // namespace perception

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "libperception/grid/beams/GridPoints.h"
+#include "libperception/grid/way/FreeDistance.h"
+
+namespace perception {
+
+/// Indices of the points that may lie in the corridor between -`end` and `end` [m] along its arc,
+/// in their order: all that arcPlace() puts there and few others, by bounds in floats. With p from
+/// the ego origin, r = |p| and k the curvature: a chord is never longer than its arc, hence
+/// r <= |s| + |d|, and |d| >= |p_y - k r^2 / 2| / (1 + |k| r / 2). Points that are not finite are
+/// left out.
+std::vector<std::uint32_t> nearCorridor(const Corridor& corridor, double end,
+                                        const GridPoints& points);
+
+}  // namespace perception

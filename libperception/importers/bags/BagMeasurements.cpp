@@ -1,0 +1,237 @@
+#include "libperception/importers/bags/BagMeasurements.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "libperception/interop/ros/RosSensors.h"
+#include "libperception/sensors/observations/Conversions.h"
+
+namespace perception {
+namespace {
+
+BagType::Role roleOf(const BagTopic& topic) {
+  const BagType* const type = bagType(topic);
+  return type != nullptr ? type->role : BagType::Role::kOther;
+}
+
+}  // namespace
+
+std::string labelOfTopic(const std::string& topic) {
+  std::string label = topic.substr(
+      topic.find_first_not_of('/') == std::string::npos ? 0 : topic.find_first_not_of('/'));
+  for (const char separator : {'/', '.'}) std::replace(label.begin(), label.end(), separator, '_');
+  return label;
+}
+
+std::string namedBaseFrameOf(const BagParams& params, const BagContents& contents) {
+  std::string base = params.base_frame;
+  for (const char* usual : {"base_footprint", "base_link", "ego", "vehicle"}) {
+    if (base.empty() && contents.tree.has(usual)) base = usual;
+  }
+  return base;
+}
+
+std::string baseFrameOf(const BagParams& params, const BagContents& contents) {
+  std::string base = namedBaseFrameOf(params, contents);
+  if (base.empty() && !contents.tree.moving().empty()) base = contents.tree.moving().front();
+  for (const auto& row : contents.poses) {
+    if (base.empty()) base = row.second.frame;
+  }
+  return base;
+}
+
+std::string framesTopicOf(const BagTopicParamsByName& topics, const BagContents& contents) {
+  using Role = BagType::Role;
+  for (const Role wanted : {Role::kCloud, Role::kRadar, Role::kImage, Role::kBoxes}) {
+    for (const auto& [name, row] : contents.topics) {
+      const auto params = topics.find(name);
+      const bool used = params == topics.end() ? wanted != Role::kBoxes : params->second.use;
+      const BagType* const type = bagType(row.topic);
+      const bool silent =
+          type != nullptr && type->may_be_silent && contents.device_topics.count(name) == 0;
+      if (used && !silent && roleOf(row.topic) == wanted) return name;
+    }
+  }
+  return "";
+}
+
+BagMeasurements::BagMeasurements(const BagContents& contents, const BagTopicParamsByName& topics,
+                                 Outputs outputs)
+    : contents_(contents), topics_(topics), outputs_(std::move(outputs)) {}
+
+void BagMeasurements::setBase(const std::string& frame, const Pose3& T_ego_base) {
+  base_ = frame;
+  T_ego_base_ = T_ego_base;
+}
+
+BagTopicParams BagMeasurements::paramsOf(const std::string& topic) const {
+  const auto given = topics_.find(topic);
+  BagTopicParams params = given == topics_.end() ? BagTopicParams() : given->second;
+  if (params.label.empty()) params.label = labelOfTopic(topic);
+  return params;
+}
+
+bool BagMeasurements::uses(const BagTopic& topic) const {
+  const BagType* const type = bagType(topic);
+  if (type == nullptr) return false;
+  const auto given = topics_.find(topic.name);
+  // Boxes may be another tracker's output: they are read when they are asked for.
+  return given == topics_.end() ? type->role != BagType::Role::kBoxes : given->second.use;
+}
+
+bool BagMeasurements::isPlaced(const std::string& topic, const ros::Header& header) const {
+  return placeOf(header, paramsOf(topic)).has_value();
+}
+
+void BagMeasurements::take(const BagMessage& message) {
+  const BagTopic& topic = *message.topic;
+  if (!uses(topic)) return;
+  const BagType& type = *bagType(topic);
+  const BagTopicParams params = paramsOf(topic.name);
+  if (type.role != BagType::Role::kOther) return takeSensor(message, type, params);
+  if (type.observe != nullptr) takeReading(message, type, params);
+}
+
+void BagMeasurements::takeReading(const BagMessage& message, const BagType& type,
+                                  const BagTopicParams& params) {
+  ros::Header header;
+  auto out = type.observe(message, shiftOf(message), header);
+  if (!out) return;
+  if (type.of_vehicle && frameName(header.frame_id) != base_) {
+    foreign_.emplace(message.topic->name, frameName(header.frame_id));
+    return;
+  }
+  header.stamp = header.stamp + shiftOf(message);
+  out->sensorLabel = params.label;
+  out->setSensorPose(toMrpt(mounting(header, params)));
+  outputs_.observation(header.stamp, std::move(out));
+}
+
+/// A sensor's message, or a part of one turn of a lidar in packets.
+void BagMeasurements::takeSensor(const BagMessage& message, const BagType& type,
+                                 const BagTopicParams& params) {
+  if (type.unpack != nullptr) return takePackets(message, type, params);
+  SensorFrame frame;
+  ros::Header header = type.measure(message, params, frame);
+  header.stamp = header.stamp.ns <= 0 ? message.stamp : header.stamp + shiftOf(message);
+  setCamera(message.topic->name, header, frame);
+  takeFrame(message.topic->name, header, params, std::move(frame));
+}
+
+void BagMeasurements::takePackets(const BagMessage& message, const BagType& type,
+                                  const BagTopicParams& params) {
+  auto& packets = packets_[message.topic->name];
+  if (!packets)
+    packets = std::make_unique<BagPackets>(
+        type, params.label, metadataFor(message.topic->name),
+        [this, params, topic = message.topic->name, shift = shiftOf(message)](ros::Header header,
+                                                                              SensorFrame&& scan) {
+          header.stamp = header.stamp + shift;
+          takeFrame(topic, header, params, std::move(scan));
+        });
+  packets->add(message);
+}
+
+void BagMeasurements::takeFrame(const std::string& topic, const ros::Header& header,
+                                const BagTopicParams& params, SensorFrame&& frame) {
+  const std::string other = otherFrame(topic, header);
+  frame.sensor = other.empty() ? params.label : params.label + "_" + labelOfTopic(other);
+  frame.stamp = header.stamp;
+  frame.T_ego_sensor = mounting(header, params);
+  outputs_.frame(topic, other.empty(), std::move(frame));
+}
+
+/// The metadata topic with the longest beginning in common.
+std::string BagMeasurements::metadataFor(const std::string& topic) const {
+  std::string best;
+  std::size_t longest = 0;
+  for (const auto& [name, text] : contents_.metadata) {
+    const auto common = static_cast<std::size_t>(
+        std::mismatch(name.begin(), name.end(), topic.begin(), topic.end()).first - name.begin());
+    if (best.empty() || common > longest) best = text, longest = common;
+  }
+  return best;
+}
+
+/// [s] to be added to a message's stamp.
+double BagMeasurements::shiftOf(const BagMessage& message) const {
+  const auto clock = contents_.clocks.find(message.topic->name);
+  return clock == contents_.clocks.end() ? 0 : clock->second.shift;
+}
+
+/// A frame of reference besides the first one of the topic; empty: it is the first.
+std::string BagMeasurements::otherFrame(const std::string& topic, const ros::Header& header) const {
+  const auto frames = contents_.frames.find(topic);
+  const std::string name = frameName(header.frame_id);
+  const bool first = frames == contents_.frames.end() || frames->second.front() == name;
+  return first ? "" : name.empty() ? "without_frame" : name;
+}
+
+/// The camera's calibration in the topic's folder, or in one above it; else that of the same frame.
+std::optional<CameraModel> BagMeasurements::cameraFor(const std::string& topic,
+                                                      const std::string& frame) const {
+  const bool rectified = topic.find("rect") != std::string::npos;
+  for (std::string folder = topic; folder.rfind('/') != std::string::npos;) {
+    folder.erase(folder.rfind('/'));
+    const auto info = contents_.cameras.find(folder + "/camera_info");
+    if (info != contents_.cameras.end()) return ros::cameraOf(info->second, rectified);
+  }
+  for (const auto& row : contents_.cameras) {
+    if (!frame.empty() && frameName(row.second.header.frame_id) == frame)
+      return ros::cameraOf(row.second, rectified);
+  }
+  return {};
+}
+
+void BagMeasurements::setCamera(const std::string& topic, const ros::Header& header,
+                                SensorFrame& frame) const {
+  const auto camera = cameraFor(topic, frameName(header.frame_id));
+  if (auto* const image = std::get_if<CameraImage>(&frame.data); image != nullptr && camera) {
+    const CameraModel own = image->camera;
+    image->camera = *camera;
+    image->camera.width = own.width, image->camera.height = own.height;
+  }
+  if (auto* const boxes = std::get_if<ObjectDetections>(&frame.data); boxes != nullptr && camera)
+    boxes->camera = *camera;
+}
+
+std::optional<Pose3> BagMeasurements::placeOf(const ros::Header& header,
+                                              const BagTopicParams& params) const {
+  if (!params.pose.empty()) return poseOfNumbers(params.pose);
+  const std::string frame = frameName(header.frame_id);
+  if (frame == base_) return T_ego_base_;
+  if (const auto T = contents_.tree.at(base_, frame, header.stamp)) return T_ego_base_ * *T;
+  return {};
+}
+
+Pose3 BagMeasurements::mounting(const ros::Header& header, const BagTopicParams& params) {
+  const auto place = placeOf(header, params);
+  if (!place) unplaced_.insert(frameName(header.frame_id));
+  return place.value_or(T_ego_base_);
+}
+
+void BagMeasurements::finish() {
+  for (const auto& row : packets_) row.second->finish();
+}
+
+std::vector<std::string> BagMeasurements::warnings() const {
+  std::vector<std::string> all;
+  for (const auto& row : packets_) {
+    for (const std::string& warning : row.second->warnings()) all.push_back(warning);
+  }
+  for (const auto& [topic, frame] : foreign_)
+    all.push_back(fmt::format("{}: speeds in frame \"{}\", not in the vehicle's \"{}\": left out",
+                              topic, frame, base_));
+  for (const std::string& frame : unplaced_)
+    all.push_back(
+        fmt::format("frame \"{}\" has no transform to the vehicle's frame \"{}\": taken to be "
+                    "there ([topic.TOPIC] pose says where it is)",
+                    frame, base_));
+  return all;
+}
+
+}  // namespace perception

@@ -1,0 +1,52 @@
+#include "libperception/importers/clouds/CloudFolder.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "libperception/importers/clouds/ImportClouds.h"
+
+namespace perception {
+
+CloudFiles cloudFilesIn(const std::string& folder) {
+  requireFolder(folder);
+  std::map<std::string, std::vector<std::string>> names;  // by ending without .gz
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string(), ending = cloudEndingOf(name);
+    const auto& known = cloudEndings();
+    if (std::find(known.begin(), known.end(), ending) != known.end()) names[ending].push_back(name);
+  }
+  const auto numbered = [](const std::string& name) {
+    return std::any_of(name.begin(), name.end(),
+                       [](unsigned char c) { return std::isdigit(c) != 0; });
+  };
+  // Text may be anything, and lies beside scans as often as they.
+  const auto weightOf = [&](const std::string& ending) {
+    const auto& of = names[ending];
+    const auto numbers = static_cast<double>(std::count_if(of.begin(), of.end(), numbered));
+    return (numbers + 1e-3 * static_cast<double>(of.size())) * (ending == ".txt" ? 0.5 : 1);
+  };
+  std::string most;
+  for (const auto& row : names)
+    if (most.empty() || weightOf(row.first) > weightOf(most)) most = row.first;
+  const bool any_number = std::any_of(names[most].begin(), names[most].end(), numbered);
+  CloudFiles files;
+  std::set<std::string> scans;
+  for (const auto& [ending, of] : names) {
+    const bool candidates = ending == most || (ending != ".txt" && ending != ".csv");
+    for (const std::string& name : of) {
+      if (candidates && (!any_number || numbered(name)))
+        scans.insert(name);
+      else
+        files.others.push_back(name);
+    }
+  }
+  std::sort(files.others.begin(), files.others.end());
+  files.scans = frameFiles(folder, cloudEndings(),
+                           [&](const std::string& name) { return scans.count(name) != 0; });
+  return files;
+}
+
+}  // namespace perception

@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <optional>
+
+#include "libperception/core/Error.h"
+#include "libperception/importers/ImportText.h"
+#include "libperception/importers/Importer.h"
+#include "libperception/importers/clouds/CloudFolder.h"
+#include "libperception/importers/clouds/ImportClouds.h"
+
+namespace perception {
+namespace {
+
+/// [s] At the ends of a stamped pose file, the first or last pose is used up to this far in time.
+constexpr double kPoseReach = 0.2;
+
+/// A folder of scans in one of the supported formats.
+class CloudsImporter final : public Importer {
+ public:
+  void declare(CLI::App& cli) override;
+  void prepare(ImportOptions& options) override {
+    if (options.rate <= 0) options.rate = 10;
+  }
+  void run(ImportLog& log) override;
+
+ private:
+  void readStamps(const std::vector<FrameFile>& files, double rate);
+  void readPoses(const std::vector<FrameFile>& files);
+  void findFormat(const std::vector<FrameFile>& files, ImportLog& log);
+  std::optional<Pose3> poseAt(std::size_t index) const;
+  Pose3 mount() const;
+
+  std::string clouds_, stamps_file_, poses_file_, poses_format_ = "kitti", poses_frame_ = "lidar";
+  std::string label_ = "LIDAR_TOP";
+  std::vector<double> lidar_pose_{0, 0, 1.73, 0, 0, 0};
+  CloudFormat format_;
+
+  std::vector<Stamp> stamps_;         ///< of each file
+  std::vector<StampedPose> stamped_;  ///< tum with stamps; else
+  std::vector<Pose3> poses_;          ///< one a file
+};
+
+void CloudsImporter::declare(CLI::App& cli) {
+  format_.columns.clear();
+  cli.add_option("--clouds", clouds_, "folder of scans, one file each, in order of name")
+      ->required();
+  cli.add_option("--stamps", stamps_file_,
+                 "a line a file: seconds since 1970, or 2011-09-26 13:02:25.96; else --rate");
+  cli.add_option("--poses", poses_file_, "ego motion; without: the vehicle stands");
+  cli.add_option("--poses-format", poses_format_,
+                 "kitti: 12 numbers (3x4), a line a file; tum: t x y z qx qy qz qw, by time where "
+                 "there are --stamps, else a line a file")
+      ->check(CLI::IsMember({"kitti", "tum"}))
+      ->capture_default_str();
+  cli.add_option("--poses-frame", poses_frame_, "whose poses they are")
+      ->check(CLI::IsMember({"lidar", "ego"}))
+      ->capture_default_str();
+  cli.add_option("--lidar-pose", lidar_pose_,
+                 "of the lidar on the vehicle: x y z [m], yaw pitch roll [deg]; ego origin: on the "
+                 "ground, x forward")
+      ->expected(6)
+      ->capture_default_str();
+  cli.add_option("--label", label_, "sensor label")->capture_default_str();
+  cli.add_option("--columns", format_.columns,
+                 "of .bin (float32) and of .csv without names: x y z intensity ring time, others "
+                 "are skipped; without: found from the data, and said")
+      ->delimiter(',');
+  cli.add_option("--intensity-max", format_.intensity_max,
+                 "intensities are divided by it; 0: they lie in [0, 1], or are bytes")
+      ->check(CLI::Range(0.0, 1e9));
+  cli.add_option("--time-scale", format_.time_scale, "[s] of the unit of the column time")
+      ->check(CLI::Range(1e-12, 1e3));
+  cli.add_option("--max-range", format_.max_range, "[m] of the lidar; 0: not known")
+      ->check(CLI::Range(0.0, 1e4));
+}
+
+Pose3 CloudsImporter::mount() const {
+  const auto& p = lidar_pose_;
+  return makePose(p[0], p[1], p[2], radians(p[3]), radians(p[4]), radians(p[5]));
+}
+
+void CloudsImporter::readStamps(const std::vector<FrameFile>& files, double rate) {
+  for (std::size_t i = 0; i < files.size() && stamps_file_.empty(); ++i)
+    stamps_.push_back(stampAtRate(kUndatedStart, files[i].number - files.front().number, rate));
+  if (stamps_file_.empty()) return;
+  forEachRow(stamps_file_, kSpaces, [this](const TextRow& row) {
+    const std::string date = row.size() > 1 ? row.text(0) + " " + row.text(1) : row.text(0);
+    const auto stamp = row.size() == 1 ? stampOfSeconds(row.text(0)) : std::nullopt;
+    const auto dated = stamp ? stamp : stampOfDate(date);
+    if (!dated) row.failLine("expected seconds since 1970 or 2011-09-26 13:02:25.964");
+    if (!stamps_.empty() && *dated <= stamps_.back()) row.failLine("not after the line before");
+    stamps_.push_back(*dated);
+  });
+  if (stamps_.size() != files.size()) {
+    throw DataError(fmt::format("{}: {} stamps, expected one for each of {} clouds of {}",
+                                stamps_file_, stamps_.size(), files.size(), clouds_));
+  }
+}
+
+void CloudsImporter::readPoses(const std::vector<FrameFile>& files) {
+  if (poses_file_.empty()) return;
+  if (poses_format_ == "tum") {
+    stamped_ = readTumPoses(poses_file_);
+    for (std::size_t i = 1; i < stamped_.size() && !stamps_file_.empty(); ++i) {
+      if (stamped_[i].stamp <= stamped_[i - 1].stamp)
+        throw DataError(
+            fmt::format("{}: pose {} is not later than the one before", poses_file_, i));
+    }
+    if (!stamps_file_.empty()) return;
+    for (const StampedPose& p : stamped_) poses_.push_back(p.pose);
+    stamped_.clear();
+  } else {
+    forEachRow(poses_file_, kSpaces,
+               [this](const TextRow& row) { poses_.push_back(row.pose34(0)); });
+  }
+  if (poses_.size() != files.size()) {
+    throw DataError(fmt::format("{}: {} poses, expected one for each of {} clouds of {}",
+                                poses_file_, poses_.size(), files.size(), clouds_));
+  }
+}
+
+/// Pose of the frame that the file's poses refer to; empty outside of the file.
+std::optional<Pose3> CloudsImporter::poseAt(std::size_t index) const {
+  if (!poses_.empty()) return poses_[index];
+  if (stamped_.empty()) return {};
+  const Stamp stamp = stamps_[index];
+  const auto after = std::lower_bound(stamped_.begin(), stamped_.end(), stamp,
+                                      [](const StampedPose& p, Stamp t) { return p.stamp < t; });
+  if (after == stamped_.begin() || after == stamped_.end()) {
+    const StampedPose& end = after == stamped_.end() ? stamped_.back() : stamped_.front();
+    if (std::abs(end.stamp - stamp) > kPoseReach) return {};
+    return end.pose;
+  }
+  const StampedPose& before = *std::prev(after);
+  const double share = (stamp - before.stamp) / (after->stamp - before.stamp);
+  return interpolate(before.pose, after->pose, share);
+}
+
+/// All scans have the format of the first ones.
+void CloudsImporter::findFormat(const std::vector<FrameFile>& files, ImportLog& log) {
+  const bool given = !format_.columns.empty();
+  std::vector<std::string> paths;
+  for (const FrameFile& file : files) paths.push_back(file.path);
+  format_ = foundFormat(paths, format_);
+  if (format_.doubles) log.note("the numbers look like float64 (double), and are read as such");
+  if (given || format_.columns.empty()) return;  // the files name their columns
+  const std::string scale =
+      format_.intensity_max > 1 ? fmt::format(", intensity up to {:g}", format_.intensity_max) : "";
+  log.note(fmt::format("columns found from the data: {}{} (--columns says otherwise)",
+                       fmt::join(format_.columns, " "), scale));
+}
+
+void CloudsImporter::run(ImportLog& log) {
+  const CloudFiles found = cloudFilesIn(clouds_);
+  const std::vector<FrameFile>& files = found.scans;
+  if (!found.others.empty())
+    log.note(fmt::format("no scans by their names: {} files of {}, such as {}", found.others.size(),
+                         clouds_, found.others.front()));
+  readStamps(files, log.options().rate);
+  readPoses(files);
+  const Pose3 T_ego_lidar = mount();
+  const Pose3 T_ego_pose = poses_frame_ == "ego" ? Pose3::Identity() : T_ego_lidar;
+  const bool has_poses = !poses_file_.empty();
+  if (!has_poses) log.note("no --poses: the vehicle is taken to stand still");
+  if (stamps_file_.empty())
+    log.note(fmt::format("no --stamps: taken as {:g} scans a second (--rate)", log.options().rate));
+  findFormat(files, log);
+  // World: the ego frame at the first pose of the file.
+  const Pose3 origin = !has_poses         ? Pose3::Identity()
+                       : stamped_.empty() ? poses_.front()
+                                          : stamped_.front().pose;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!log.wants(files[i].number)) continue;
+    const auto pose = poseAt(i);
+    if (pose) {
+      log.ego(stamps_[i], T_ego_pose * origin.inverse() * *pose * T_ego_pose.inverse());
+    } else if (has_poses) {
+      log.missing("pose", poses_file_, files[i].number);
+    }
+    log.frame(stamps_[i], files[i].number);
+    SensorFrame scan;
+    scan.sensor = label_;
+    scan.stamp = stamps_[i];
+    scan.T_ego_sensor = T_ego_lidar;
+    scan.data = readCloudFile(files[i].path, format_);
+    log.sensor(scan);
+    log.progress(static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(files.size()));
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Importer> makeCloudsImporter() { return std::make_unique<CloudsImporter>(); }
+
+}  // namespace perception

@@ -1,0 +1,173 @@
+#include <fmt/format.h>
+#include <liblzf/lzf.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+#include "libperception/core/Error.h"
+#include "libperception/importers/clouds/CloudTable.h"
+
+namespace perception {
+namespace {
+
+std::size_t sizeAt(const char* bytes) {
+  std::uint32_t value;
+  std::memcpy(&value, bytes, sizeof(value));
+  return value;
+}
+
+/// PCL's compression: columns one after the other, as one LZF block after two sizes.
+void readCompressed(const std::string& path, std::string_view data, CloudTable& table) {
+  checkSize(path, data.size(), 8);
+  const auto packed = sizeAt(data.data());
+  const auto unpacked = sizeAt(data.data() + 4);
+  checkSize(path, data.size() - 8, packed);
+  if (unpacked != table.rows * table.rowBytes())
+    throw DataError(fmt::format("{}: {} bytes of points after unpacking, expected {}", path,
+                                unpacked, table.rows * table.rowBytes()));
+  if (unpacked == 0) return;
+  std::string bytes(unpacked, '\0');
+  if (lzf_decompress(data.data() + 8, static_cast<unsigned>(packed), bytes.data(),
+                     static_cast<unsigned>(unpacked)) != unpacked)
+    throw DataError(path + ": damaged LZF data");
+  std::size_t at = 0;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const CloudColumn& column = table.columns[c];
+    for (std::size_t row = 0; row < table.rows; ++row)
+      table.values[c][row] = column.numberAt(bytes.data() + at + row * column.bytes());
+    at += table.rows * column.bytes();
+  }
+}
+
+/// One line of a PCD header: a word and its values, one a column.
+void readPcdHeader(const TextRow& row, CloudTable& table, std::size_t& points) {
+  const std::string key = row.text(0);
+  const auto values = row.size() - 1;
+  if (key == "FIELDS" || key == "COLUMNS") {
+    table.columns.resize(values);
+    for (std::size_t i = 0; i < values; ++i) table.columns[i].name = row.text(i + 1);
+  } else if (key == "SIZE" || key == "TYPE" || key == "COUNT") {
+    row.expect(values == table.columns.size(),
+               fmt::format("{} and one for each of {} FIELDS", key, table.columns.size()));
+    for (std::size_t i = 0; i < values; ++i) {
+      CloudColumn& c = table.columns[i];
+      if (key == "TYPE") {
+        c.kind = row.text(i + 1).front();
+      } else {
+        (key == "SIZE" ? c.size : c.count) = static_cast<std::size_t>(row.frame(i + 1));
+      }
+    }
+  } else if (key == "POINTS") {
+    points = static_cast<std::size_t>(row.frame(1));
+  }
+}
+
+/// "float32", "uchar" ... as a column.
+CloudColumn plyColumn(const TextRow& row) {
+  struct Type {
+    const char *name, *other;
+    char kind;
+    std::size_t size;
+  };
+  static constexpr Type kTypes[] = {{"float", "float32", 'F', 4}, {"double", "float64", 'F', 8},
+                                    {"char", "int8", 'I', 1},     {"uchar", "uint8", 'U', 1},
+                                    {"short", "int16", 'I', 2},   {"ushort", "uint16", 'U', 2},
+                                    {"int", "int32", 'I', 4},     {"uint", "uint32", 'U', 4}};
+  row.expect(row.size() == 3, "3 for a vertex: property TYPE NAME (no lists)");
+  for (const Type& type : kTypes) {
+    if (row.text(1) == type.name || row.text(1) == type.other)
+      return {row.text(2), type.kind, type.size, 1};
+  }
+  row.fail(1, "a type of PLY");
+}
+
+/// [bytes] that a point takes in the file at least.
+double leastBytes(const CloudTable& table, const std::string& data) {
+  constexpr double kLzf = 264.0 / 3;  // of the longest repetition that three bytes can name
+  const double binary = std::max(1.0, static_cast<double>(table.rowBytes()));
+  if (data == "ascii") return 2.0 * static_cast<double>(table.columns.size());  // digit, space
+  return data == "binary_compressed" ? binary / kLzf : binary;
+}
+
+}  // namespace
+
+CloudTable readPcd(const std::string& path, const std::string& bytes) {
+  TextLines lines(path, bytes);
+  CloudTable table;
+  std::size_t points = 0;
+  std::string data;
+  while (data.empty()) {
+    const auto line = lines.next();
+    if (!line) lines.fail("no line DATA, expected a PCD file");
+    const TextRow row = lines.row(*line);
+    if (row.size() == 0 || row.text(0).front() == '#') continue;
+    if (row.text(0) == "DATA") {
+      data = row.text(1);
+    } else {
+      readPcdHeader(row, table, points);
+    }
+  }
+  if (table.columns.empty()) lines.fail("no line FIELDS before DATA, expected a PCD file");
+  for (const CloudColumn& c : table.columns) {
+    if (!c.isKnown())
+      lines.fail(
+          fmt::format("field {}: TYPE {} of SIZE {} is none of PCL's", c.name, c.kind, c.size));
+  }
+  checkCount(path, points);
+  checkPromise(path, points, lines.rest().size(), leastBytes(table, data));
+  table.resize(points);
+  if (data == "ascii") {
+    readTextRows(lines, kSpaces, table);
+  } else if (data == "binary") {
+    checkSize(path, lines.rest().size(), points * table.rowBytes());
+    readRows(lines.rest(), false, table);
+  } else if (data == "binary_compressed") {
+    readCompressed(path, lines.rest(), table);
+  } else {
+    lines.fail(fmt::format("DATA {}, expected ascii, binary or binary_compressed", data));
+  }
+  return table;
+}
+
+CloudTable readPly(const std::string& path, const std::string& bytes) {
+  TextLines lines(path, bytes);
+  CloudTable table;
+  std::string format, element;
+  std::optional<std::size_t> points;
+  const auto first = lines.next();
+  if (!first || *first != "ply") lines.fail("no line 'ply', expected a PLY file");
+  while (const auto line = lines.next()) {
+    const TextRow row = lines.row(*line);
+    if (row.size() == 0) continue;
+    const std::string key = row.text(0);
+    if (key == "end_header") break;
+    if (key == "format") format = row.text(1);
+    if (key == "element") {
+      element = row.text(1);
+      if (element == "vertex") points = static_cast<std::size_t>(row.frame(2));
+      if (!points) row.failLine("an element before vertex: expected the points first");
+    }
+    if (key == "property" && element == "vertex") table.columns.push_back(plyColumn(row));
+  }
+  if (!points || table.columns.empty()) lines.fail("no element vertex, expected points");
+  checkCount(path, *points);
+  checkPromise(path, *points, lines.rest().size(), leastBytes(table, format));
+  table.resize(*points);
+  if (format == "ascii") {
+    readTextRows(lines, kSpaces, table);
+  } else if (format == "binary_little_endian" || format == "binary_big_endian") {
+    checkSize(path, lines.rest().size(), *points * table.rowBytes());
+    readRows(lines.rest(), format == "binary_big_endian", table);
+  } else {
+    lines.fail(
+        fmt::format("format '{}', expected ascii, binary_little_endian or "
+                    "binary_big_endian",
+                    format));
+  }
+  return table;
+}
+
+}  // namespace perception

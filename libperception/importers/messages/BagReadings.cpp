@@ -1,0 +1,78 @@
+#include "libperception/importers/messages/BagReadings.h"
+
+#include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/obs/CObservationOdometry.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "libperception/importers/messages/MessageFields.h"
+#include "libperception/importers/positions/ImportGps.h"
+#include "libperception/interop/ros/RosDefinition.h"
+#include "libperception/sensors/observations/Conversions.h"
+
+namespace perception {
+
+using ros::RosValue;
+
+BagObservation observeFix(const BagMessage& m, double shift, ros::Header& header) {
+  const auto fix = ros::decoded<ros::NavSatFix>(m.bytes, m.topic->encoding);
+  header = fix.header;
+  if (fix.status < 0 || !std::isfinite(fix.latitude + fix.longitude)) return nullptr;
+  return gpsObservation({header.stamp + shift, fix.latitude, fix.longitude,
+                         std::isfinite(fix.altitude) ? fix.altitude : 0});
+}
+
+BagObservation observeImu(const BagMessage& m, double shift, ros::Header& header) {
+  using namespace mrpt::obs;
+  const auto imu = ros::decoded<ros::Imu>(m.bytes, m.topic->encoding);
+  header = imu.header;
+  auto out = std::make_shared<CObservationIMU>();
+  out->timestamp = fromStamp(header.stamp + shift);
+  if (imu.rates_covariance[0] >= 0) {
+    out->set(IMU_WX, imu.rates[0]);
+    out->set(IMU_WY, imu.rates[1]);
+    out->set(IMU_WZ, imu.rates[2]);
+  }
+  if (imu.force_covariance[0] >= 0) {
+    out->set(IMU_X_ACC, imu.force[0]);
+    out->set(IMU_Y_ACC, imu.force[1]);
+    out->set(IMU_Z_ACC, imu.force[2]);
+  }
+  return out;
+}
+
+BagObservation observeFixByFields(const BagMessage& m, double shift, ros::Header& header) {
+  const MessageFields fields = fieldsIn(m);
+  header = fields.header;
+  const RosValue& value = fields.value;
+  const std::string status = value.text("solution_status");
+  if ((!status.empty() && status != "SOL_COMPUTED") || value.number("sol_status.status") > 0)
+    return nullptr;
+  const double latitude = firstNumber(value, {"lat", "latitude"});
+  const double longitude = firstNumber(value, {"lon", "longitude"});
+  const double height = firstNumber(value, {"height", "hgt", "altitude"});
+  const double undulation = value.number("undulation");
+  if (!std::isfinite(latitude + longitude + height))
+    throw std::runtime_error("no latitude, longitude and height in it");
+  return gpsObservation({header.stamp + shift, latitude, longitude,
+                         height + (std::isfinite(undulation) ? undulation : 0)});
+}
+
+BagObservation observeSpeed(const BagMessage& m, double shift, ros::Header& header) {
+  const MessageFields fields = fieldsIn(m);
+  header = fields.header;
+  const RosValue* const twist = firstOf(fields.value, {"twist.twist", "twist"});
+  const double ahead = twist == nullptr ? std::nan("") : twist->number("linear.x");
+  const double turn = twist == nullptr ? std::nan("") : twist->number("angular.z");
+  if (!std::isfinite(ahead + turn)) throw std::runtime_error("no speed and yaw rate in it");
+  auto out = std::make_shared<mrpt::obs::CObservationOdometry>();
+  out->timestamp = fromStamp(header.stamp + shift);
+  out->hasVelocities = true;
+  out->velocityLocal = {ahead, 0, turn};
+  return out;
+}
+
+}  // namespace perception

@@ -1,0 +1,246 @@
+#include "libperception/lidar/classification/JudgedClusters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libperception/lidar/classification/PhantomPrior.h"
+#include "libperception/lidar/outline/BoxFit.h"
+#include "libperception/lidar/segments/LooseReturns.h"
+#include "libperception/measurement/models/FootprintInView.h"
+
+namespace perception {
+namespace {
+
+using Probabilities = PhantomPrior::Probabilities;
+
+/// Probability of the likeliest road user.
+double roadUser(const Probabilities& p) {
+  return *std::max_element(p.begin(), p.begin() + kRoadUsers);
+}
+
+double at(const Probabilities& p, ClusterKind kind) { return p[static_cast<std::size_t>(kind)]; }
+
+double roadUserEvidence(const JudgedCluster& c) {
+  return *std::max_element(c.evidence.begin(), c.evidence.begin() + kRoadUsers);
+}
+
+/// Least probability at which a part stands for itself, and that of a whole which is not looked
+/// into (assumed).
+constexpr double kLeastPart = 0.3, kSureWhole = 0.7;
+/// Probability of a thing or a phantom from which a whole is not looked into (assumed).
+constexpr double kSureThing = 0.98;
+/// Evidence of the likeliest road user below which a cluster is surely none: with one road user
+/// in ten clusters, 1 in 66 is one (assumed).
+constexpr double kSurelyThing = -2;
+
+/// Probability from which a cluster is surely a phantom, if that of every road user is below the
+/// second one (assumed).
+constexpr double kSurePhantom = 0.7, kHardlyRoadUser = 0.05;
+/// P(phantom) above which a cluster that is kept counts as suspicious: more likely one than not.
+constexpr double kSuspicious = 0.5;
+constexpr float kDoubted = 0.5f;  // trust of a return below which it is doubted
+
+/// Largest road users [m], longer and shorter side, with what returns beside them add: people with
+/// a pram, cyclists with a trailer, articulated buses of 2.6 m with their mirrors (assumed).
+constexpr float kLargest[kRoadUsers][2] = {{2.5f, 2}, {3.5f, 2}, {20, 3.6f}};
+
+/// Longer than this [m] vehicles are at least as high as that (buses, trucks), where the view
+/// reaches so far (assumed). Lower: a hedge, a wall, cars in a row.
+constexpr float kLong = 7, kLongHigh = 2;
+
+/// Without the road users that are smaller than the cluster, and without vehicles that are too low
+/// for their length: at best its parts are some. `top_of_view` [m] above the ground at the cluster.
+Probabilities withinSize(Probabilities p, const Descriptor& d, double top_of_view) {
+  const float sides[2] = {d[static_cast<std::size_t>(Feature::kLength)],
+                          d[static_cast<std::size_t>(Feature::kWidth)]};
+  const bool low = sides[0] > kLong && d[static_cast<std::size_t>(Feature::kTop)] < kLongHigh &&
+                   top_of_view > kLongHigh;
+  for (std::size_t k = 0; k < kRoadUsers; ++k) {
+    const bool too_low = low && k == static_cast<std::size_t>(ClusterKind::kVehicle);
+    if (sides[0] <= kLargest[k][0] && sides[1] <= kLargest[k][1] && !too_low) continue;
+    p[static_cast<std::size_t>(ClusterKind::kThing)] += p[k];
+    p[k] = 0;
+  }
+  return p;
+}
+
+bool isVehicle(const JudgedCluster& c, double least_evidence) {
+  const double vehicle = c.evidence[static_cast<std::size_t>(ClusterKind::kVehicle)];
+  return vehicle > least_evidence && vehicle >= roadUserEvidence(c);
+}
+
+/// Drops what lies in the footprint of a likely vehicle: its seats, its roof, what is seen through
+/// its windows.
+void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& judged) {
+  constexpr double kMargin = 0.3;  // [m] about the box of its returns (assumed)
+  constexpr double kPerson = 1;    // evidence by which a person beside it stands (assumed)
+  const auto placesOf = [&](const JudgedCluster& j) {
+    std::vector<Vector2> places;
+    places.reserve(j.points.size());
+    for (const std::uint32_t i : j.points)
+      places.emplace_back(static_cast<double>(found.x[i]), static_cast<double>(found.y[i]));
+    return places;
+  };
+  std::vector<Vector2> centers;
+  for (const JudgedCluster& j : judged) {
+    Vector2 sum = Vector2::Zero();
+    for (const Vector2& p : placesOf(j)) sum += p;
+    centers.push_back(sum / static_cast<double>(j.points.size()));
+  }
+  const Vector2 sensor = found.points.sensor.head<2>();
+  std::vector<char> fragment(judged.size(), 0);
+  for (std::size_t v = 0; v < judged.size(); ++v) {
+    if (!isVehicle(judged[v], 0)) continue;
+    const auto box = fitBox(placesOf(judged[v]), sensor, true, true, BoxParams{});
+    if (!box) continue;
+    const Vector2 along(std::cos(box->yaw), std::sin(box->yaw));
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+      if (i == v || judged[i].points.size() >= judged[v].points.size() ||
+          std::max(judged[i].evidence[0], judged[i].evidence[1]) >= kPerson)
+        continue;
+      const Vector2 d = centers[i] - box->center;
+      fragment[i] =
+          fragment[i] || (std::abs(d.dot(along)) < box->length / 2 + kMargin &&
+                          std::abs(d.dot(perpendicular(along))) < box->width / 2 + kMargin);
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    if (fragment[i]) continue;
+    if (kept != i) judged[kept] = std::move(judged[i]);
+    ++kept;
+  }
+  judged.resize(kept);
+}
+
+/// Drops the loose returns of likely vehicles: their plume, their spray.
+void dropLoose(const LidarDetections& found, const DirectionCells& cells,
+               std::vector<JudgedCluster>& judged) {
+  constexpr double kSureVehicle =
+      2;  // evidence: with one in ten clusters, as likely as not (assumed)
+  for (JudgedCluster& j : judged) {
+    if (!isVehicle(j, kSureVehicle)) continue;
+    std::vector<std::uint32_t> points, kept;
+    points.reserve(j.points.size());
+    for (const std::uint32_t i : j.points) points.push_back(found.obstacles[i]);
+    for (const std::uint32_t k : surfaceReturns(found.points, cells, points))
+      kept.push_back(j.points[k]);
+    j.points = std::move(kept);
+  }
+}
+
+Vector2 middleOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles) {
+  Vector2 middle = Vector2::Zero();
+  for (const std::uint32_t i : obstacles)
+    middle += Vector2(found.x[i], found.y[i]) / static_cast<double>(obstacles.size());
+  return middle;
+}
+
+PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles,
+                         double probability) {
+  PhantomCluster phantom;
+  phantom.returns = obstacles.size(), phantom.probability = probability;
+  phantom.center = middleOf(found, obstacles);
+  if (found.trust.empty()) return phantom;
+  for (const std::uint32_t i : obstacles)
+    if (found.trust[i] < kDoubted)
+      phantom.doubted.push_back(found.points.source[found.obstacles[i]]);
+  return phantom;
+}
+
+/// Of a vehicle that no second one fits into: its parts are no vehicles [m] (assumed).
+constexpr float kOneVehicle[2] = {6, 2.5f};
+/// Probability from which it is one, if none of its parts is a person or a cyclist and two may be
+/// vehicles.
+constexpr double kLikelyWhole = 0.5, kPerhaps = 0.2;
+
+bool holdsOneVehicle(const Descriptor& d) {
+  return d[static_cast<std::size_t>(Feature::kLength)] <= kOneVehicle[0] &&
+         d[static_cast<std::size_t>(Feature::kWidth)] <= kOneVehicle[1];
+}
+
+/// Marks the clusters that stand for themselves.
+std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
+                           const std::vector<Probabilities>& probabilities) {
+  const std::size_t n = clusters.size();
+  // The likeliest over all parts of parts; `person`: or a cyclist.
+  std::vector<double> person(n, 0), vehicle(n, 0);
+  std::vector<int> vehicles(n, 0);     // parts that may be some
+  for (std::size_t i = n; i-- > 0;) {  // parts come after their whole
+    const int whole = clusters[i].segment.whole;
+    if (whole < 0) continue;
+    const auto w = static_cast<std::size_t>(whole);
+    const Probabilities& p = probabilities[i];
+    person[w] = std::max(
+        {person[w], person[i], at(p, ClusterKind::kPedestrian), at(p, ClusterKind::kCyclist)});
+    vehicle[w] = std::max({vehicle[w], vehicle[i], at(p, ClusterKind::kVehicle)});
+    vehicles[w] += at(p, ClusterKind::kVehicle) >= kPerhaps;
+  }
+  std::vector<char> stands(n, 0), in_parts(n, 0);  // reached from above; is given as its parts
+  for (std::size_t i = 0; i < n; ++i) {
+    const int whole = clusters[i].segment.whole;
+    const bool reached = whole < 0 || in_parts[static_cast<std::size_t>(whole)];
+    const double own = roadUser(probabilities[i]);
+    const bool one_vehicle = at(probabilities[i], ClusterKind::kVehicle) >= kLikelyWhole &&
+                             person[i] < kLeastPart && vehicles[i] > 1 &&
+                             holdsOneVehicle(clusters[i].descriptor);
+    in_parts[i] = reached && own < kSureWhole && !one_vehicle &&
+                  std::max(person[i], vehicle[i]) > std::max(kLeastPart, own);
+    stands[i] = reached && !in_parts[i];
+  }
+  return stands;
+}
+
+}  // namespace
+
+Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
+                         const DirectionCells& cells, const ClusterClassifier& classifier,
+                         const CausesAt& causes_at) {
+  std::vector<Probabilities> probabilities;
+  auto clusters = describedClusters(found, cloud, cells, [&](const DescribedCluster& cluster) {
+    const auto range =
+        static_cast<double>(cluster.descriptor[static_cast<std::size_t>(Feature::kRange)]);
+    const auto p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor,
+                              found.points.sensor.z() + found.top_slope * range);
+    probabilities.push_back(p);
+    return roadUser(p) < kSureWhole &&
+           at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
+  });
+  const std::size_t n = clusters.size();
+  const PhantomPrior prior(classifier.prior());
+  const std::vector<char> stands = standing(clusters, probabilities);
+  Judgement judgement;
+  std::vector<JudgedCluster>& judged = judgement.clusters;
+  judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!stands[i]) continue;
+    const CausesHere causes =
+        causes_at ? causes_at(middleOf(found, clusters[i].segment.points)) : CausesHere{};
+    const Probabilities p = prior(probabilities[i], causes);
+    const double phantom = at(p, ClusterKind::kPhantom);
+    for (const std::uint32_t point : clusters[i].segment.points)
+      judgement.phantom[point] = static_cast<float>(phantom);
+    ++judgement.verdicts.clusters;
+    if (phantom > kSurePhantom && roadUser(probabilities[i]) < kHardlyRoadUser) {
+      judgement.verdicts.phantoms.push_back(phantomOf(found, clusters[i].segment.points, phantom));
+      continue;
+    }
+    JudgedCluster cluster;
+    cluster.phantom = phantom;
+    cluster.evidence = classifier.evidence(p);
+    if (roadUserEvidence(cluster) < kSurelyThing) continue;
+    cluster.points = std::move(clusters[i].segment.points);
+    const float isolation = clusters[i].descriptor[static_cast<std::size_t>(Feature::kIsolation)];
+    cluster.alone = isolation > 0.5f;
+    judged.push_back(std::move(cluster));
+  }
+  dropFragments(found, judged);
+  dropLoose(found, cells, judged);
+  judgement.verdicts.suspicious = static_cast<std::size_t>(
+      std::count_if(judged.begin(), judged.end(),
+                    [](const JudgedCluster& c) { return c.phantom > kSuspicious; }));
+  return judgement;
+}
+
+}  // namespace perception

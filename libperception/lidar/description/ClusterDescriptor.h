@@ -1,0 +1,113 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libperception/lidar/LidarDetections.h"
+#include "libperception/lidar/segments/DirectionCells.h"
+
+namespace perception {
+
+/// What a cluster of returns shows in one scan; units and formulas: method.md 8.10.
+enum class Feature : std::uint8_t {
+  kLength,
+  kWidth,
+  kHeight,
+  kBottom,
+  kTop,
+  kArea,
+  kElongation,
+  kUprightness,
+  kSpread1,
+  kSpread2,
+  kSpread3,
+  kLinearity,
+  kPlanarity,
+  kScatter,
+  kNormalUp,
+  kDirectionUp,
+  kLength1,
+  kLength2,
+  kLength3,
+  kLength4,
+  kLength5,
+  kWidth1,
+  kWidth2,
+  kWidth3,
+  kWidth4,
+  kWidth5,
+  kShare1,
+  kShare2,
+  kShare3,
+  kShare4,
+  kShare5,
+  kEdgeDistance,
+  kEdgeShare,
+  kLogReturns,
+  kLogSurface,
+  kSeenArea,
+  kFill,
+  kRows,
+  kColumns,
+  kRowShare,
+  kRoughness,
+  kHoles,
+  kThrough,
+  kCut,
+  kIntensityMean,
+  kIntensitySpread,
+  kIntensityHigh,
+  kRange,
+  kIsolation,
+  kAspect,
+  kTopSpread,
+  kTouching,
+  kCount
+};
+inline constexpr auto kFeatures = static_cast<std::size_t>(Feature::kCount);
+using Descriptor = std::array<float, kFeatures>;
+
+/// Names of the features, as in model files and tables.
+const std::array<const char*, kFeatures>& featureNames();
+
+/// Describes clusters of one scan. For one thread.
+class ClusterDescriber {
+ public:
+  /// Borrows `found` and `cells`, the directions of its points.
+  ClusterDescriber(const LidarDetections& found, const LidarCloud& cloud,
+                   const DirectionCells& cells);
+
+  /// `members`: indices into the obstacles, ascending; at least one.
+  Descriptor describe(const std::vector<std::uint32_t>& members);
+
+ private:
+  void rankIntensities(const LidarCloud& cloud);
+  void sortByPlace();
+  void describeEdges(Descriptor& d);
+  void describeOutline(Descriptor& d) const;
+  void describeSpread(Descriptor& d) const;
+  void describeRoughness(Descriptor& d) const;
+  void describeDirections(const std::vector<std::uint32_t>& members, Descriptor& d) const;
+  void describeIntensity(const std::vector<std::uint32_t>& members, Descriptor& d) const;
+  void describeNeighbors(const std::vector<std::uint32_t>& members, Descriptor& d);
+  float nearestOther(std::uint32_t i, float within) const;
+
+  const LidarDetections& found_;
+  const DirectionCells& cells_;
+  std::vector<float> dx_, dy_, dz_;  ///< [m] of the obstacles from the sensor
+  std::vector<float> intensity_;     ///< rank among the scan's obstacles, [0, 1]; empty: none
+  std::vector<DirectionCells::Place> place_;  ///< of the obstacles
+  /// Obstacles by cell of the plane.
+  std::vector<float> sorted_x_, sorted_y_;   ///< [m] from the sensor
+  std::vector<std::int32_t> sorted_mark_;    ///< last cluster that it was a member of
+  std::vector<std::uint32_t> rank_, start_;  ///< of each obstacle; first of each cell
+  int columns_ = 0, rows_ = 0;
+  float x0_ = 0, y0_ = 0;  ///< [m] corner of the plane's cells
+  std::int32_t cluster_ = 0;
+  /// The members: offset from the sensor and height above ground [m].
+  std::vector<float> x_, y_, z_, h_;
+  float along_x_ = 1, along_y_ = 0;  ///< direction of the longer side
+};
+
+}  // namespace perception

@@ -1,0 +1,27 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "libperception/lidar/description/ClusterDescriptor.h"
+#include "libperception/lidar/segments/Segments.h"
+
+namespace perception {
+
+struct DescribedCluster {
+  Segment segment;  ///< `whole`: index into the same list
+  Descriptor descriptor{};
+};
+
+/// Called with every cluster before its parts; false: its parts are not wanted.
+using ClusterVisitor = std::function<bool(const DescribedCluster&)>;
+
+/// The segments of a scan that are large enough to be told by their shape, and their descriptors:
+/// 8 returns or more (assumed: the fewest of a person at 40 m from 64 beams), up to the length of
+/// an articulated bus (20 m), and so high that they may be a road user (0.5 m; assumed). `cells`:
+/// of all points of `found`.
+std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
+                                                const LidarCloud& cloud,
+                                                const DirectionCells& cells,
+                                                const ClusterVisitor& visit = {});
+
+}  // namespace perception

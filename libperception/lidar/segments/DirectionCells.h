@@ -1,0 +1,55 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "libperception/core/math/Angle.h"
+#include "libperception/lidar/EgoPoints.h"
+
+namespace perception {
+
+/// The returns of a scan by direction from the sensor: the nearest and the farthest range in cells
+/// of equal azimuth and elevation (ego axes). Coarser than the beams of most sensors, so that a
+/// cell without a return is a hole and not a gap between beams.
+class DirectionCells {
+ public:
+  static constexpr double kPitch = radians(0.4);     ///< [rad] of the cells, both ways (assumed)
+  static constexpr int kColumns = 900, kRows = 150;  ///< the circle; elevations of +-30 deg
+
+  struct Cell {
+    float nearest = std::numeric_limits<float>::infinity(), farthest = 0;  ///< [m]; no return
+    bool empty() const { return farthest == 0; }
+  };
+  struct Place {
+    std::int16_t column, row;
+  };
+
+  explicit DirectionCells(const EgoPoints& points);
+
+  /// Directions of offsets from the sensor [m]; elevations beyond the rows are in the outermost.
+  static void placeAll(const float* dx, const float* dy, const float* dz, std::size_t count,
+                       Place* places);
+  /// Whether all places beside it are cells that lie row by row, without wrapping around.
+  static bool isWithin(const Place& p) {
+    return p.row > 0 && p.row < kRows - 1 && p.column > 0 && p.column < kColumns - 1;
+  }
+  /// Columns wrap around; rows beyond the cells are empty.
+  Cell at(int column, int row) const {
+    if (row < 0 || row >= kRows) return {};
+    if (column < 0 || column >= kColumns) column = (column % kColumns + kColumns) % kColumns;
+    const std::size_t i = indexOf(column, row);
+    return {nearest_[i], farthest_[i]};
+  }
+  /// The farthest ranges [m] of a cell and those after it in its row; 0: no return.
+  const float* farthestFrom(int column, int row) const { return &farthest_[indexOf(column, row)]; }
+
+ private:
+  static std::size_t indexOf(int column, int row) {
+    return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
+  }
+
+  std::vector<float> nearest_, farthest_;  ///< row by row
+};
+
+}  // namespace perception

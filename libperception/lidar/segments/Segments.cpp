@@ -1,0 +1,176 @@
+#include "libperception/lidar/segments/Segments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include "libperception/lidar/segments/GrazedSurfaces.h"
+#include "libperception/lidar/segments/SpaceLinkage.h"
+
+namespace perception {
+namespace {
+
+class SegmentFinder {
+ public:
+  SegmentFinder(const std::vector<float>& x, const std::vector<float>& y,
+                const std::vector<float>& height, double min_points, double max_size,
+                const std::vector<float>& weight, const SegmentVisitor& visit,
+                const std::optional<Vector3>& sensor, const LinkLength& link)
+      : x_(x),
+        y_(y),
+        height_(height),
+        weight_(weight),
+        visit_(visit),
+        sensor_(sensor),
+        link_(link),
+        min_points_(min_points - 1e-6),
+        max_size_(max_size),
+        length_(x.size()) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const auto px = static_cast<double>(x[i]), py = static_cast<double>(y[i]);
+      // As hypot() of floats, without its call.
+      const auto range = static_cast<double>(static_cast<float>(std::sqrt(px * px + py * py)));
+      length_[i] = std::clamp(link.at_zero + link.slope * range, link.least, link.most);
+    }
+  }
+
+  std::vector<Segment> find() {
+    std::vector<std::uint32_t> all(x_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    if (sensor_ && !all.empty()) {
+      addWholes(all);
+    } else {
+      addParts(all, -1, 0);
+    }
+    return std::move(segments_);
+  }
+
+ private:
+  /// Groups of a segment's returns at a level.
+  std::vector<ReturnGroup> groupsOf(const ReturnGroup& members, const LinkLevel& level,
+                                    double least_weight) const {
+    std::vector<LinkedReturn> returns;
+    returns.reserve(members.size());
+    for (const std::uint32_t i : members) {
+      returns.push_back({x_[i], y_[i], height_[i] * static_cast<float>(level.vertical),
+                         static_cast<float>(length_[i] * level.share)});
+    }
+    const Partition linked = linkInSpace(returns, static_cast<float>(link_.least * level.share),
+                                         static_cast<float>(link_.most * level.share));
+    return largeGroups(members, linked, least_weight);
+  }
+
+  /// Those of enough returns; in a snowfall most groups are of a few.
+  std::vector<ReturnGroup> largeGroups(const ReturnGroup& members, const Partition& linked,
+                                       double least_weight) const {
+    constexpr std::uint32_t kSmall = ~0u;
+    std::vector<double> weight(linked.count, 0);
+    std::vector<std::uint32_t> size(linked.count, 0), number(linked.count, kSmall);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const std::uint32_t g = linked.group[k];
+      weight[g] += weight_.empty() ? 1.0 : static_cast<double>(weight_[members[k]]), ++size[g];
+    }
+    std::vector<ReturnGroup> groups;
+    for (std::uint32_t g = 0; g < linked.count; ++g) {
+      if (weight[g] < least_weight) continue;
+      number[g] = static_cast<std::uint32_t>(groups.size());
+      groups.emplace_back().reserve(size[g]);
+    }
+    for (std::size_t k = 0; k < members.size(); ++k)
+      if (const std::uint32_t n = number[linked.group[k]]; n != kSmall)
+        groups[n].push_back(members[k]);
+    return groups;
+  }
+
+  void addParts(const ReturnGroup& members, int whole, std::size_t level) {
+    if (level == std::size(kLinkLevels)) return;
+    const auto groups = groupsOf(members, kLinkLevels[level], min_points_);
+    if (whole >= 0 && groups.size() < 2) return addParts(members, whole, level + 1);
+    for (const ReturnGroup& group : groups) addGroup(group, whole, level);
+  }
+
+  /// A group of a level, and its parts.
+  void addGroup(const ReturnGroup& group, int whole, std::size_t level) {
+    if (sizeOf(group) > max_size_) return addParts(group, whole, level + 1);
+    const auto number = static_cast<int>(segments_.size());
+    if (add(group, whole)) addParts(group, number, level + 1);
+  }
+
+  /// Whether its parts are wanted.
+  bool add(const ReturnGroup& group, int whole) {
+    segments_.push_back({group, whole});
+    return !visit_ || visit_(segments_.back());
+  }
+
+  /// The groups of the first level; surfaces that the distance of their columns has cut into
+  /// several are wholes, too.
+  void addWholes(const ReturnGroup& all) {
+    constexpr double kLeastOfColumn = 4;  // returns (assumed)
+    const auto groups = groupsOf(all, kLinkLevels[0], std::min(min_points_, kLeastOfColumn - 1e-6));
+    const auto surfaces = grazedSurfaces({x_, y_, height_}, groups, *sensor_);
+    std::vector<char> placed(groups.size(), 0);
+    std::vector<const std::vector<std::uint32_t>*> surface_of(groups.size(), nullptr);
+    for (const auto& surface : surfaces)
+      for (const std::uint32_t g : surface) surface_of[g] = &surface;
+    for (std::uint32_t g = 0; g < groups.size(); ++g) {
+      if (placed[g]) continue;
+      int whole = -1;
+      bool parts_wanted = true;
+      std::vector<std::uint32_t> members = {g};
+      if (surface_of[g] != nullptr) {
+        ReturnGroup joined;
+        for (const std::uint32_t m : *surface_of[g])
+          joined.insert(joined.end(), groups[m].begin(), groups[m].end());
+        std::sort(joined.begin(), joined.end());
+        members = *surface_of[g];
+        if (weightOf(joined) >= min_points_ && sizeOf(joined) <= max_size_) {
+          whole = static_cast<int>(segments_.size());
+          parts_wanted = add(joined, -1);
+        }
+      }
+      for (const std::uint32_t m : members) {
+        placed[m] = 1;
+        if (parts_wanted && weightOf(groups[m]) >= min_points_) addGroup(groups[m], whole, 0);
+      }
+    }
+  }
+
+  double weightOf(const ReturnGroup& group) const {
+    if (weight_.empty()) return static_cast<double>(group.size());
+    double sum = 0;
+    for (const std::uint32_t i : group) sum += static_cast<double>(weight_[i]);
+    return sum;
+  }
+
+  /// Longer side of the box about it along the axes [m].
+  double sizeOf(const ReturnGroup& members) const {
+    float x0 = x_[members[0]], x1 = x0, y0 = y_[members[0]], y1 = y0;
+    for (const std::uint32_t i : members) {
+      x0 = std::min(x0, x_[i]), x1 = std::max(x1, x_[i]);
+      y0 = std::min(y0, y_[i]), y1 = std::max(y1, y_[i]);
+    }
+    return static_cast<double>(std::max(x1 - x0, y1 - y0));
+  }
+
+  const std::vector<float>&x_, &y_, &height_, &weight_;
+  const SegmentVisitor& visit_;
+  const std::optional<Vector3>& sensor_;
+  const LinkLength& link_;
+  const double min_points_, max_size_;
+  std::vector<double> length_;  ///< [m] link of each return, at the first level's share of 1
+  std::vector<Segment> segments_;
+};
+
+}  // namespace
+
+std::vector<Segment> findSegments(const std::vector<float>& x, const std::vector<float>& y,
+                                  const std::vector<float>& height, double min_points,
+                                  double max_size, const std::vector<float>& weight,
+                                  const SegmentVisitor& visit, const std::optional<Vector3>& sensor,
+                                  const LinkLength& link) {
+  return SegmentFinder(x, y, height, min_points, max_size, weight, visit, sensor, link).find();
+}
+
+}  // namespace perception

@@ -1,0 +1,17 @@
+#include "libperception/measurement/frames/PhantomCauses.h"
+
+namespace perception {
+namespace {
+
+constexpr double kWake = 0.9;  // the least existence of a track that leaves a wake
+
+}  // namespace
+
+bool PhantomCauses::any() const { return weather > 0 || (wakes != nullptr && !wakes->empty()); }
+
+CausesHere PhantomCauses::at(const Vector2& place, Stamp now) const {
+  const bool left = wakes != nullptr && wakes->hasLeft(place, now);
+  return {weather, left ? kWake : 0};
+}
+
+}  // namespace perception

@@ -1,0 +1,30 @@
+#pragma once
+#include <algorithm>
+#include <memory>
+
+#include "libperception/core/Frames.h"
+#include "libperception/core/Time.h"
+#include "libperception/measurement/frames/WakeMap.h"
+
+namespace perception {
+
+/// Probabilities [0, 1] that something makes phantoms at a place.
+struct CausesHere {
+  double weather = 0;  ///< the air is not clear
+  double wake = 0;     ///< a vehicle has just left the place
+  double likelier() const { return std::max(weather, wake); }
+};
+
+/// What may make phantoms of a lidar's returns at the instant of a scan, as the sensors themselves
+/// show it: no return is doubted beyond the probability of such a cause (method.md 8.4).
+struct PhantomCauses {
+  double weather = 0;                    ///< [0, 1] P(the air is not clear)
+  std::shared_ptr<const WakeMap> wakes;  ///< of tracked vehicles; null: none
+
+  /// False: every return counts in full.
+  bool any() const;
+  /// At a place [m, world].
+  CausesHere at(const Vector2& place, Stamp now) const;
+};
+
+}  // namespace perception

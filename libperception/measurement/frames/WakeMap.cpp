@@ -1,0 +1,63 @@
+#include "libperception/measurement/frames/WakeMap.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace perception {
+namespace {
+
+// All assumed.
+constexpr double kLife = 2.5;                    // [s] of a wake
+constexpr double kPresent = 0.15;                // [s] since the last footprint of a vehicle
+constexpr double kSide = 0.5, kSpread = 0.7;     // [m], [m/s] by which it is wider than the vehicle
+constexpr double kSeenAgain = 0.7, kFade = 1.5;  // by lidars; [s]
+constexpr double kByCameras = 0.02, kByRadars = 0.01;
+
+double halfWidth(const VehicleFootprint& v, double age) {
+  return v.half_width + kSide + kSpread * age;
+}
+
+}  // namespace
+
+void WakeMap::add(const VehicleFootprint& vehicle) {
+  vehicles_.push_back(vehicle);
+  advance(vehicle.stamp);
+}
+
+void WakeMap::advance(Stamp now) {
+  while (!vehicles_.empty() && now - vehicles_.front().stamp > kLife) vehicles_.pop_front();
+}
+
+std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
+  for (auto v = vehicles_.rbegin(); v != vehicles_.rend(); ++v) {  // the last vehicle counts
+    const double age = now - v->stamp;
+    if (age > kLife) break;
+    const double moved = age <= kPresent ? age * v->speed : 0;
+    const Vector2 d = place - v->center - moved * v->along;
+    const double ahead = d.dot(v->along), behind = -v->half_length - ahead;  // [m] of the rear
+    const bool swept = age > kPresent && behind > 0 && behind <= v->advanced;
+    if (std::abs(ahead) > v->half_length && !swept) continue;
+    if (std::abs(d.x() * v->along.y() - d.y() * v->along.x()) <= halfWidth(*v, age))
+      return swept ? age + behind / v->speed : age;
+  }
+  return std::nullopt;
+}
+
+bool WakeMap::hasLeft(const Vector2& place, Stamp now) const {
+  const auto since = age(place, now);
+  return since && *since > kPresent;
+}
+
+double WakeMap::area(Stamp now) const {
+  double area = 0;
+  for (const VehicleFootprint& v : vehicles_) area += 2 * v.advanced * halfWidth(v, now - v.stamp);
+  return area;
+}
+
+double WakeMap::detection(Modality modality, double age) {
+  if (modality == Modality::kCamera) return kByCameras;
+  if (modality == Modality::kRadar) return kByRadars;
+  return std::max(kByCameras, kSeenAgain * std::exp(-age / kFade));
+}
+
+}  // namespace perception

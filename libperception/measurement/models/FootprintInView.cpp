@@ -1,0 +1,107 @@
+#include "libperception/measurement/models/FootprintInView.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "libperception/measurement/models/FootprintModel.h"
+
+namespace perception {
+namespace {
+
+/// h and Jacobians of the bearing to a point of the object with the derivatives `dpoint`.
+void setBearing(const Vector2& d, double forward, const Eigen::Matrix<double, 2, 5>& dpoint_dq,
+                const Matrix2& dpoint_dextent, Eigen::Index row, AxisPrediction& out) {
+  out.h[row] = wrapAngle(std::atan2(d.y(), d.x()) - forward);
+  const Eigen::RowVector2d dbearing = perpendicular(d).transpose() / d.squaredNorm();
+  out.H_q.row(row) = dbearing * dpoint_dq;
+  out.H_extent.row(row) = dbearing * dpoint_dextent;
+}
+
+void resize(AxisPrediction& out) {
+  out.h.resize(FootprintModel::kAxes);
+  out.H_q.setZero(FootprintModel::kAxes, 5);
+  out.H_extent.setZero(FootprintModel::kAxes, 2);
+}
+
+}  // namespace
+
+void predictDisc(const Vector2& d, const Extent& extent, double forward, AxisPrediction& out) {
+  const double rho = d.norm(), radius = 0.25 * (extent.length + extent.width);
+  out.defined = rho > radius + kClearance;
+  if (!out.defined) return;
+  resize(out);
+  const double bearing = wrapAngle(std::atan2(d.y(), d.x()) - forward);
+  const double ratio = radius / rho, half = std::asin(ratio), root = std::sqrt(1 - ratio * ratio);
+  const Eigen::RowVector2d away = d.transpose() / rho,
+                           across = perpendicular(d).transpose() / (rho * rho);
+  const double sign[2] = {1, -1};
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    out.h[i] = wrapAngle(bearing + sign[i] * half);
+    out.H_q.row(i).head<2>() = across - sign[i] * ratio / (rho * root) * away;
+    out.H_extent.row(i).setConstant(sign[i] * 0.25 / (rho * root));
+  }
+  out.h[FootprintModel::kRange] = rho - radius;
+  out.H_q.row(FootprintModel::kRange).head<2>() = away;
+  out.H_extent.row(FootprintModel::kRange).setConstant(-0.25);
+}
+
+void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double forward,
+                      AxisPrediction& out) {
+  const Vector2 u(std::cos(yaw), std::sin(yaw)), n = perpendicular(u);
+  const Vector2 half(0.5 * extent.length, 0.5 * extent.width);
+  const Vector2 sensor(-u.dot(d), -n.dot(d));  // in the object's frame
+  const Vector2 nearest(std::clamp(sensor.x(), -half.x(), half.x()),
+                        std::clamp(sensor.y(), -half.y(), half.y()));
+  const double range = (sensor - nearest).norm();
+  out.defined = range > kClearance;
+  if (!out.defined) return;
+  resize(out);
+
+  const auto point = [&](const Vector2& own) { return Vector2(d + own.x() * u + own.y() * n); };
+  // Derivatives (method.md (12)) of a point fixed in the object's frame up to its size: own = (ex
+  // L/2, ey W/2) where e = +-1.
+  const auto derivatives = [&](const Vector2& own, const Vector2& e,
+                               Eigen::Matrix<double, 2, 5>& dq, Matrix2& dextent) {
+    dq.setZero();
+    dq.leftCols<2>().setIdentity();
+    dq.col(4) = own.x() * n - own.y() * u;
+    dextent.col(0) = 0.5 * e.x() * u;
+    dextent.col(1) = 0.5 * e.y() * n;
+  };
+  Eigen::Matrix<double, 2, 5> dq;
+  Matrix2 dextent;
+  // Corners are compared by the tangents of their angles from the center's direction; by the angles
+  // when the sensor is beside the object and corners lie behind it.
+  const double middle = std::atan2(d.y(), d.x());
+  const bool ahead = d.norm() > half.norm();
+  Vector2 left_corner, right_corner;
+  double left = -std::numeric_limits<double>::infinity(), right = -left;
+  for (const double ex : {-1.0, 1.0}) {
+    for (const double ey : {-1.0, 1.0}) {
+      const Vector2 c = point({ex * half.x(), ey * half.y()});
+      const double offset =
+          ahead ? perpendicular(d).dot(c) / d.dot(c) : wrapAngle(std::atan2(c.y(), c.x()) - middle);
+      if (offset > left) left = offset, left_corner = {ex, ey};
+      if (offset < right) right = offset, right_corner = {ex, ey};
+    }
+  }
+  for (const auto& [e, row] : {std::pair{left_corner, FootprintModel::kLeft},
+                               std::pair{right_corner, FootprintModel::kRight}}) {
+    const Vector2 own = e.cwiseProduct(half);
+    derivatives(own, e, dq, dextent);
+    setBearing(point(own), forward, dq, dextent, row, out);
+  }
+  // Nearest point: along an edge it slides, but then the distance does not change to first order
+  // (envelope theorem).
+  const Vector2 e(std::abs(sensor.x()) > half.x() ? (sensor.x() > 0 ? 1 : -1) : 0,
+                  std::abs(sensor.y()) > half.y() ? (sensor.y() > 0 ? 1 : -1) : 0);
+  derivatives(nearest, e, dq, dextent);
+  const Eigen::RowVector2d away = point(nearest).transpose() / range;
+  out.h[FootprintModel::kRange] = range;
+  out.H_q.row(FootprintModel::kRange) = away * dq;
+  out.H_extent.row(FootprintModel::kRange) = away * dextent;
+}
+
+}  // namespace perception

@@ -1,0 +1,113 @@
+#include "libperception/pipeline/phantoms/WakeWatch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libperception/filter/state/ClassFilterMotion.h"
+
+namespace perception {
+namespace {
+
+// All assumed.
+constexpr double kLeastSpeed = 5;    // [m/s] of a vehicle with a wake
+constexpr double kWakeExists = 0.9;  // of its track
+constexpr double kLeastAge = 0.5;    // [s] of its track
+constexpr int kLeastHits = 4;
+constexpr double kLeastProbability = 0.5;  // of being a vehicle
+constexpr double kWakeMemory = 10;         // [s] of phantoms seen, as of clutter
+constexpr double kWide = 1000;             // [m^2] of wakes without a phantom, to begin with
+constexpr double kMisjudged = 0.3;         // share of phantoms that are not told by their shape
+constexpr double kLongestStep = 0.3;       // [s] between two footprints of a track
+constexpr double kNone = 0.05;             // phantoms remembered: fewer are none
+
+/// The vehicle of a track that has a wake; empty: it has none.
+std::optional<VehicleFootprint> vehicleOf(const Track& track, const ClassTable& classes,
+                                          Stamp stamp) {
+  if (track.real() < kWakeExists || stamp - track.birth < kLeastAge ||
+      std::accumulate(track.hits.begin(), track.hits.end(), 0) < kLeastHits)
+    return std::nullopt;
+  const ClassId best = track.likeliestClass();
+  const auto i = static_cast<std::size_t>(best);
+  if (classes[best].shape != ObjectShape::kVehicle ||
+      track.log_class[i] < std::log(kLeastProbability))
+    return std::nullopt;
+  const ClassFilter& f = track.bank[track.filterOf(i)];
+  const Vector2 velocity = kinematicsOf(classes[best], f).q.segment<2>(2);
+  const double speed = velocity.norm();
+  if (speed < kLeastSpeed) return std::nullopt;
+  VehicleFootprint v;
+  v.stamp = stamp;
+  v.along = velocity / speed, v.speed = speed;
+  v.center = f.x.head<2>() + (stamp - track.stamp) * velocity;
+  v.half_length = f.extent.length / 2, v.half_width = f.extent.width / 2;
+  return v;
+}
+
+}  // namespace
+
+WakeWatch::WakeWatch(const std::vector<PipelineSetup::Sensor>& sensors, const ClassTable& classes)
+    : sensors_(sensors), classes_(classes), seen_(sensors.size()) {}
+
+std::shared_ptr<const WakeMap> WakeWatch::at(Stamp stamp) const {
+  if (wakes_.empty()) return nullptr;
+  auto wakes = std::make_shared<WakeMap>(wakes_);
+  wakes->advance(stamp);
+  return wakes;
+}
+
+void WakeWatch::apply(std::size_t sensor, MeasurementScan& scan) const {
+  if (wakes_.empty() ||
+      std::none_of(seen_.begin(), seen_.end(), [](const Seen& s) { return s.phantoms >= kNone; }))
+    return;
+  auto wakes = std::make_shared<WakeMap>(wakes_);
+  wakes->advance(scan.state.stamp);
+  const Seen& seen = seen_[sensor];
+  const DetectionParams& params = sensors_[sensor].params;
+  const double view =
+      params.fov / 2 * (params.range_max * params.range_max - params.range_min * params.range_min);
+  if (seen.phantoms >= kNone && params.clutter_per_scan > 0)
+    wakes->density =
+        kMisjudged * seen.phantoms / (seen.area + kWide) / (params.clutter_per_scan / view);
+  scan.wakes = std::move(wakes);
+}
+
+void WakeWatch::add(std::size_t sensor, const MeasurementScan& scan, const Hypothesis& hypothesis) {
+  wakes_.advance(scan.state.stamp);
+  if (scan.verdicts) count(scan, seen_[sensor]);
+  if (scan.modality == Modality::kLidar) addVehicles(scan.state.stamp, hypothesis);
+}
+
+void WakeWatch::count(const MeasurementScan& scan, Seen& seen) const {
+  const Stamp now = scan.state.stamp;
+  const double keep = seen.stamp.ns != 0 ? std::exp(-(now - seen.stamp) / kWakeMemory) : 0;
+  seen.phantoms *= keep, seen.area *= keep;
+  seen.stamp = now;
+  seen.area += wakes_.area(now);
+  for (const PhantomCluster& phantom : scan.verdicts->phantoms) {
+    const Vector3 place =
+        scan.state.ego.T_world_ego * Vector3(phantom.center.x(), phantom.center.y(), 0);
+    if (wakes_.age(place.head<2>(), now)) seen.phantoms += 1;
+  }
+}
+
+void WakeWatch::addVehicles(Stamp stamp, const Hypothesis& hypothesis) {
+  std::map<std::uint64_t, Stamp> driving;
+  for (const TrackHandle& track : hypothesis.tracks) {
+    auto vehicle = vehicleOf(*track, classes_, stamp);
+    if (!vehicle) continue;
+    const auto before = last_.find(track->id);
+    if (before != last_.end())
+      vehicle->advanced = vehicle->speed * std::min(kLongestStep, stamp - before->second);
+    wakes_.add(*vehicle);
+    driving[track->id] = stamp;
+  }
+  last_ = std::move(driving);
+}
+
+void WakeWatch::restart() {
+  wakes_ = {};
+  last_.clear();
+}
+
+}  // namespace perception

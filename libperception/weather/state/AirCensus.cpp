@@ -1,0 +1,61 @@
+#include "libperception/weather/state/AirCensus.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libperception/core/math/Angle.h"
+
+namespace perception {
+namespace {
+
+// Of all returns every seventh is counted, for seven: no number of beams is a multiple of it.
+constexpr std::size_t kStep = 7;
+constexpr float kInAir = 0.4F;  // [m] above the ground
+// Sines of elevations.
+const float kLevelFrom = std::sin(static_cast<float>(radians(-2))),
+            kLevelTo = std::sin(static_cast<float>(radians(1)));
+
+std::size_t sectorOf(float x, float y) {
+  const float turn = std::atan2(y, x) / static_cast<float>(kTwoPi) + 0.5F;
+  const auto sector = static_cast<std::size_t>(turn * static_cast<float>(AirCensus::kSectors));
+  return std::min(sector, AirCensus::kSectors - 1);
+}
+
+void countReturn(float x, float y, float range, float height, float mount, AirCensus& census) {
+  AirCensus::Sector& sector = census.sectors[sectorOf(x, y)];
+  const float up = (height - mount) / range;
+  sector.returns += kStep;
+  if (up > kLevelFrom && up < kLevelTo) sector.level += kStep;
+  const auto bin = std::min(static_cast<std::size_t>(range / 2), AirCensus::kReachBins - 1);
+  if (std::abs(height) < kInAir) {
+    census.ground[bin] += kStep;
+  } else if (height > 0) {
+    census.upright[bin] += kStep;
+  }
+}
+
+}  // namespace
+
+AirCensus AirCensus::of(const SensorFrame& frame, const LidarCloud& cloud,
+                        const SuspectReturns& suspects) {
+  AirCensus census;
+  const HeightAboveGround above(frame.T_ego_sensor, frame.ground);
+  const float mount = above.of(0, 0, 0);
+  for (std::size_t i = 0; i < cloud.size(); i += kStep) {
+    const float x = cloud.x[i], y = cloud.y[i], z = cloud.z[i];
+    const float range = std::sqrt(x * x + y * y + z * z);
+    if (range > kShells.front()) countReturn(x, y, range, above.of(x, y, z), mount, census);
+  }
+  for (std::size_t s = 0; s < suspects.count; ++s) {
+    const float range = suspects.range[s];
+    if (range < kShells.front() || range >= kShells.back() || suspects.height[s] < kInAir) continue;
+    if (NeighborCounts(suspects.neighbors[s]).around() > 0) continue;
+    std::size_t shell = 0;
+    while (range >= kShells[shell + 1]) ++shell;
+    const std::size_t i = suspects.index[s];
+    census.sectors[sectorOf(cloud.x[i], cloud.y[i])].lone[shell] += 1;
+  }
+  return census;
+}
+
+}  // namespace perception

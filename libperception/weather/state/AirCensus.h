@@ -1,0 +1,36 @@
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "libperception/measurement/frames/SensorFrame.h"
+#include "libperception/weather/trust/SuspectReturns.h"
+
+namespace perception {
+
+/// Returns of a lidar scan counted by direction, height and range: what WeatherState tells the
+/// weather from (method.md 9.10). Directions are relative to the ground plane.
+struct AirCensus {
+  static constexpr std::size_t kSectors = 24;  ///< of 15 deg of azimuth
+  /// [m] edges of the shells in which returns in free air are counted.
+  static constexpr std::array<float, 6> kShells = {1.5F, 2.5F, 4, 6, 10, 20};
+  static constexpr std::size_t kShellCount = kShells.size() - 1;
+  static constexpr std::size_t kReachBins = 64;  ///< of 2 m
+
+  /// One direction; numbers of returns beyond the first shell's near edge.
+  struct Sector {
+    double returns = 0;
+    double level = 0;  ///< between 2 deg below and 1 deg above the horizon
+    /// In free air by shell: more than 0.4 m above the ground, and no neighbor on a surface with
+    /// it.
+    std::array<double, kShellCount> lone{};
+  };
+  std::array<Sector, kSectors> sectors;
+  /// Returns by range: of the ground (within 0.4 m of the plane), and of what stands on it.
+  std::array<double, kReachBins> ground{}, upright{};
+
+  /// Counts a scan; `suspects` as PointTrust left them.
+  static AirCensus of(const SensorFrame& frame, const LidarCloud& cloud,
+                      const SuspectReturns& suspects);
+};
+
+}  // namespace perception

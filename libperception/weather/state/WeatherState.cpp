@@ -1,0 +1,187 @@
+#include "libperception/weather/state/WeatherState.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace perception {
+namespace {
+
+using Sector = AirCensus::Sector;
+constexpr std::size_t kSectors = AirCensus::kSectors, kShells = AirCensus::kShellCount;
+
+// All of these are assumed (method.md 9.10).
+constexpr double kBrief = 1, kLong = 10;  // [s] memories
+constexpr double kGap = 5;                // [s] after which the estimate starts anew
+constexpr double kIndependent = 0.2;      // [s] between looks that tell something new
+constexpr double kStay = 600;             // [s] for which weather lasts
+constexpr double kPriorRest = 0.03;       // of precipitation, and of fog
+constexpr double kMostEvidence = 2;       // [log-odds] of one look
+constexpr double kClearAir = 4e-4;        // share of beams with a lone return near by
+constexpr double kDense = 100e-4;         // the same, from which fog may be seen by itself
+constexpr double kShortReach = 42;        // [m]
+constexpr double kLostLevel = 0.68, kNoLevel = 0.12;  // share of level beams that return
+constexpr double kFogEnds = 0.03, kFogReach = 30;     // beyond 10 m of those within; [m]
+constexpr double kDropsEnd = 0.15;                    // beyond 4 m of those within: drops
+constexpr double kOnlyFar = 2;                        // the same: flakes
+constexpr double kSnowShare = 50e-4;  // of beams within 10 m: 50 mm/h of rain by the measured law
+constexpr double kLeastSeen = 0.25;   // of the best sector's returns: the sensor looks there
+constexpr double kLeastReturns = 1000;
+constexpr std::size_t kOpenBin = 12;  // 24 m
+
+double clampEvidence(double v) { return std::clamp(v, -kMostEvidence, kMostEvidence); }
+
+double quantile(std::vector<double> values, double q) {
+  const double place = q * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  std::sort(values.begin(), values.end());
+  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+// Share of the beams with a lone return near by.
+double nearOf(const std::array<double, kShells>& lone) { return lone[0] + lone[1] + lone[2] / 2; }
+
+// [m] range within which 99 % of the returns lie.
+double reachOf(const std::array<double, AirCensus::kReachBins>& bins) {
+  double all = 0, sum = 0;
+  for (const double n : bins) all += n;
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    sum += bins[k];
+    if (all > 0 && sum >= 0.99 * all) return 2 * static_cast<double>(k);
+  }
+  return 0;
+}
+
+}  // namespace
+
+const char* nameOf(WeatherType type) {
+  constexpr std::array<const char*, kWeatherTypes> kNames = {"clear", "rain", "snow", "fog"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+WeatherType WeatherState::type() const {
+  const auto most = std::max_element(probability.begin(), probability.end());
+  return static_cast<WeatherType>(most - probability.begin());
+}
+
+void WeatherEstimator::restart() {
+  brief_ = long_ = Means();
+  log_p_ = {std::log(1 - 2 * kPriorRest), std::log(kPriorRest), std::log(kPriorRest)};
+}
+
+void WeatherEstimator::add(const AirCensus& census, Stamp stamp) {
+  const double dt = last_ ? stamp - *last_ : 0;
+  const bool first = !last_ || dt > kGap || dt < 0;
+  if (first) restart();
+  last_ = stamp;
+  blend(census, first, dt);
+  for (std::size_t s = 0; s < kSectors; ++s) {
+    seen_[s] = std::max(seen_[s], census.sectors[s].returns);
+    most_level_ = std::max(most_level_, census.sectors[s].level);
+  }
+  follow(signsOf(brief_), first ? kIndependent / 2 : dt);
+}
+
+void WeatherEstimator::blend(const AirCensus& census, bool first, double dt) {
+  const double ground = reachOf(census.ground), upright = reachOf(census.upright);
+  double above = 0, within = 0;
+  for (std::size_t k = 0; k < AirCensus::kReachBins; ++k)
+    (k < kOpenBin ? within : above) += census.ground[k] + census.upright[k];
+  for (auto [means, memory] : {std::pair{&brief_, kBrief}, std::pair{&long_, kLong}}) {
+    const double share = first ? 1 : 1 - std::exp(-dt / memory);
+    const auto move = [share](double& mean, double value) { mean += share * (value - mean); };
+    for (std::size_t s = 0; s < kSectors; ++s) {
+      Sector& mean = means->sectors[s];
+      const Sector& now = census.sectors[s];
+      move(mean.returns, now.returns), move(mean.level, now.level);
+      for (std::size_t k = 0; k < kShells; ++k) move(mean.lone[k], now.lone[k]);
+    }
+    move(means->above24, above), move(means->within24, within);
+    move(means->ground_reach, ground), move(means->upright_reach, upright);
+  }
+}
+
+// The lower quartile over the sectors: weather is everywhere about the sensor, plants are not.
+WeatherEstimator::Signs WeatherEstimator::signsOf(const Means& means) const {
+  Signs signs;
+  const double best = *std::max_element(seen_.begin(), seen_.end());
+  std::vector<std::size_t> looks;
+  double returns = 0, level = 0;
+  for (std::size_t s = 0; s < kSectors; ++s) {
+    if (seen_[s] < kLeastSeen * best || means.sectors[s].returns <= 0) continue;
+    looks.push_back(s);
+    returns += means.sectors[s].returns, level += means.sectors[s].level;
+  }
+  if (looks.size() < 3 || returns < kLeastReturns) return signs;
+  for (std::size_t k = 0; k < kShells; ++k) {
+    std::vector<double> shares;
+    for (const std::size_t s : looks)
+      shares.push_back(means.sectors[s].lone[k] / means.sectors[s].returns);
+    signs.lone[k] = quantile(std::move(shares), 0.25);
+  }
+  if (most_level_ > 0) signs.level = level / (static_cast<double>(looks.size()) * most_level_);
+  signs.reach = std::max(means.ground_reach, means.upright_reach);
+  signs.open = means.above24 / std::max(1.0, means.above24 + means.within24);
+  signs.any = true;
+  return signs;
+}
+
+double WeatherEstimator::airOf(const Signs& signs) {
+  return 1.5 * std::log((nearOf(signs.lone) + 1e-6) / kClearAir);
+}
+
+std::array<double, 3> WeatherEstimator::evidenceOf(const Signs& signs) {
+  const auto& lone = signs.lone;
+  const double near = nearOf(lone), air = clampEvidence(airOf(signs));
+  const double short_reach =
+      clampEvidence(std::min({(kShortReach - signs.reach) / 4, (kLostLevel - signs.level) / 0.06,
+                              (signs.level - kNoLevel) / 0.04}));
+  const double within = lone[0] + lone[1] + lone[2] + lone[3];
+  const bool dense = near > kDense && signs.reach < kFogReach;
+  const double soft =
+      dense ? clampEvidence(3 * std::log(kFogEnds * within / (lone[4] + 1e-6))) : -kMostEvidence;
+  const double is_air = std::max(0.0, air), is_soft = std::max(0.0, soft);
+  return {-is_air - std::max(0.0, short_reach), std::min(0.0, air) - is_soft,
+          std::min(0.0, std::max(short_reach, soft)) - (soft > 0 ? 0 : is_air)};
+}
+
+void WeatherEstimator::follow(const Signs& signs, double dt) {
+  const double leave = 1 - std::exp(-dt / kStay);
+  std::array<double, 3> evidence{};
+  if (signs.any) evidence = evidenceOf(signs);
+  const double weight = std::min(1.0, dt / kIndependent);
+  std::array<double, 3> p{};
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    p[k] = (1 - 1.5 * leave) * std::exp(log_p_[k]) + 0.5 * leave;
+    p[k] *= std::exp(weight * evidence[k]);
+    sum += p[k];
+  }
+  for (std::size_t k = 0; k < 3; ++k) log_p_[k] = std::log(std::max(p[k] / sum, 1e-9));
+}
+
+WeatherState WeatherEstimator::state() const {
+  WeatherState state;
+  if (!last_) return state;
+  const Signs signs = signsOf(long_), now = signsOf(brief_);
+  const auto& lone = signs.lone;
+  const double near = lone[0] + lone[1] + lone[2], all = near + lone[3];
+  // Drops are seen only near by, flakes farther; more returns than any rain gives are flakes.
+  constexpr double kFew = 0.3e-4;
+  const double farther = (lone[2] + kFew) / (lone[0] + lone[1] + kFew);
+  const double snow = 2 * std::log((all + kFew) / kSnowShare) +
+                      std::min(0.0, 3 * std::log(farther / kDropsEnd)) +
+                      std::max(0.0, 2 * std::log(farther / kOnlyFar));
+  const double wet = std::exp(log_p_[1]), is_snow = 1 / (1 + std::exp(-snow));
+  state.probability = {std::exp(log_p_[0]), wet * (1 - is_snow), wet * is_snow,
+                       std::exp(log_p_[2])};
+  if (now.any)
+    state.flurry = 1 / (1 + std::exp(-airOf(now)) * (1 - 2 * kPriorRest) / (2 * kPriorRest));
+  state.rain_mm_h = rates_.rain(near, signs.open, farther < kDropsEnd);
+  state.snow_mm_h = rates_.snow(all);
+  state.visibility = visibilityOfReach(now.reach);
+  return state;
+}
+
+}  // namespace perception

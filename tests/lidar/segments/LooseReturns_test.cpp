@@ -1,0 +1,90 @@
+#include "libperception/lidar/segments/LooseReturns.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace perception {
+namespace {
+
+constexpr double kBeam = radians(0.2), kRear = 8, kPlume = 7;  // [rad], [m], [m]
+
+/// Beams from a sensor at 1.7 m to a flat rear that fills 40 by 20 of them, 0.2 deg apart; every
+/// `plume`-th beam returns from a meter before it (0: none).
+EgoPoints rearSeen(int plume) {
+  EgoPoints all;
+  all.sensor = Vector3(0, 0, 1.7);
+  int beam = 0;
+  for (int row = -20; row < 0; ++row) {
+    for (int column = -20; column < 20; ++column, ++beam) {
+      const double range = plume > 0 && beam % plume == 0 ? kPlume : kRear;
+      const double azimuth = column * kBeam, elevation = row * kBeam;
+      all.x.push_back(static_cast<float>(range * std::cos(elevation) * std::cos(azimuth)));
+      all.y.push_back(static_cast<float>(range * std::cos(elevation) * std::sin(azimuth)));
+      all.z.push_back(static_cast<float>(1.7 + range * std::sin(elevation)));
+    }
+  }
+  return all;
+}
+
+std::vector<std::uint32_t> indicesOf(const EgoPoints& all) {
+  std::vector<std::uint32_t> points(all.size());
+  std::iota(points.begin(), points.end(), 0u);
+  return points;
+}
+
+TEST(LooseReturns, OfASurfaceAloneNoneIs) {
+  const EgoPoints all = rearSeen(0);
+  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), indicesOf(all)), indicesOf(all));
+}
+
+TEST(LooseReturns, ThosePassedByMostBeamsAre) {
+  const EgoPoints all = rearSeen(11);
+  const auto kept = surfaceReturns(all, DirectionCells(all), indicesOf(all));
+  std::size_t rear = 0;
+  for (std::uint32_t i = 0; i < all.size(); ++i) rear += i % 11 != 0;
+  EXPECT_EQ(kept.size(), rear);
+  for (const std::uint32_t i : kept) EXPECT_NE(i % 11, 0u);
+}
+
+/// Adds one row of beams, 0.4 deg apart, on a side at y = 2.5 m from 16 to 24 m: from column to
+/// column the range grows by up to 1.6 m. The row above passes over it, that below ends on the road
+/// before it. Returns how many are on the side; they come first.
+std::size_t addSide(EgoPoints& all) {
+  constexpr double kSide = 2.5, kStep = radians(0.4);
+  std::vector<double> azimuths;
+  for (double a = std::atan2(kSide, 24); a < std::atan2(kSide, 16); a += kStep)
+    azimuths.push_back(a);
+  for (const int row : {-2, -1, -3}) {
+    for (const double azimuth : azimuths) {
+      const double range = row == -2 ? kSide / std::sin(azimuth) : row == -1 ? 60 : 12;
+      all.x.push_back(static_cast<float>(range * std::cos(azimuth)));
+      all.y.push_back(static_cast<float>(range * std::sin(azimuth)));
+      all.z.push_back(static_cast<float>(1.7 + range * std::tan((row + 0.5) * kStep)));
+    }
+  }
+  return azimuths.size();
+}
+
+TEST(LooseReturns, OfASideSeenAtAGrazingAngleNoneIs) {
+  EgoPoints all = rearSeen(0);
+  auto points = indicesOf(all);
+  const std::size_t side = addSide(all);
+  ASSERT_GT(side, 5u);
+  for (std::size_t k = 0; k < side; ++k)
+    points.push_back(static_cast<std::uint32_t>(points.size()));
+  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), points), points);
+}
+
+TEST(LooseReturns, AClusterOfMoreThanHalfLooseOnesStaysWhole) {
+  const EgoPoints all = rearSeen(11);
+  std::vector<std::uint32_t> plume;
+  for (std::uint32_t i = 0; i < all.size(); i += 11) plume.push_back(i);
+  std::vector<std::uint32_t> whole(plume.size());
+  std::iota(whole.begin(), whole.end(), 0u);
+  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), plume), whole);
+}
+
+}  // namespace
+}  // namespace perception

@@ -1,0 +1,43 @@
+#include "libperception/measurement/objects/ExtentUpdate.h"
+
+#include <gtest/gtest.h>
+
+namespace perception {
+namespace {
+
+ObjectClass car() {
+  ObjectClass c;
+  c.length = 4.5, c.length_sigma = 0.675, c.width = 1.8, c.width_sigma = 0.27;
+  return c;
+}
+
+TEST(BoundedExtent, ACarIsAtMostThreeDeviationsWiderThanTheMean) {
+  Extent extent;
+  extent.length = 7.2, extent.width = 3.8, extent.var_length = 0.02;
+  const Extent bounded = boundedExtent(extent, car());
+  EXPECT_DOUBLE_EQ(bounded.length, 7.2) << "a bus taken for a car keeps its length";
+  EXPECT_DOUBLE_EQ(bounded.width, 1.8 + 3 * 0.27);
+  EXPECT_DOUBLE_EQ(bounded.var_length, 0.02);
+}
+
+TEST(BoundedExtent, APossibleSizeIsKept) {
+  Extent extent;
+  extent.length = 5.6, extent.width = 0.4;
+  const Extent bounded = boundedExtent(extent, car());
+  EXPECT_DOUBLE_EQ(bounded.length, 5.6);
+  EXPECT_DOUBLE_EQ(bounded.width, 0.4);
+}
+
+TEST(UpdateExtent, AnIncompleteSideOnlyRaisesAMean) {
+  Extent extent;
+  extent.length = 4, extent.width = 1.8, extent.var_length = extent.var_width = 0.1;
+  PartialBox sides;
+  sides.yaw = 0, sides.length = 5, sides.width = 1;
+  sides.length_complete = sides.width_complete = false;
+  const Extent updated = updateExtent(extent, sides, 0, 0.5);
+  EXPECT_DOUBLE_EQ(updated.length, 5);
+  EXPECT_DOUBLE_EQ(updated.width, 1.8);
+}
+
+}  // namespace
+}  // namespace perception

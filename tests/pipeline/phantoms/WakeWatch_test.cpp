@@ -1,0 +1,87 @@
+#include "libperception/pipeline/phantoms/WakeWatch.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/FilterWorld.h"
+
+namespace perception {
+namespace {
+
+ClassTable carsAlone() {
+  ClassTable table = test::linearClasses();
+  table.classes.resize(1);
+  table.classes[0].name = "car";
+  table.classes[0].shape = ObjectShape::kVehicle;
+  return table;
+}
+
+/// A lidar's watch of a car at 20 m/s along x.
+struct World {
+  ClassTable classes = carsAlone();
+  std::vector<PipelineSetup::Sensor> sensors = std::vector<PipelineSetup::Sensor>(2);
+  WakeWatch watch{sensors, classes};
+
+  MeasurementScan scanAt(double t, const std::vector<Vector2>& phantoms) const {
+    MeasurementScan scan;
+    scan.state.stamp = Stamp::fromSeconds(1000 + t);
+    scan.verdicts.emplace();
+    for (const Vector2& center : phantoms) {
+      PhantomCluster phantom;
+      phantom.center = center;
+      scan.verdicts->phantoms.push_back(phantom);
+    }
+    return scan;
+  }
+  static Hypothesis carAt(double t, double speed) {
+    Track car;
+    car.birth = Stamp::fromSeconds(999);
+    car.stamp = Stamp::fromSeconds(1000 + t);
+    car.existence = 0.99;
+    car.hits = {10};
+    car.log_class = {0};
+    car.bank.resize(1);
+    car.bank[0].x = Vector4(speed * t, 0, speed, 0);
+    car.bank[0].extent.length = 4.5, car.bank[0].extent.width = 1.8;
+    return Hypothesis(TrackTable{std::make_shared<const Track>(car)});
+  }
+  /// The scan at 2 s as it goes into the filter, of sensor `sensor`.
+  MeasurementScan after(double speed, const std::vector<Vector2>& phantoms,
+                        std::size_t sensor = 0) {
+    for (int k = 0; k < 20; ++k) watch.add(0, scanAt(0.1 * k, phantoms), carAt(0.1 * k, speed));
+    MeasurementScan scan = scanAt(2, {});
+    watch.apply(sensor, scan);
+    return scan;
+  }
+};
+
+TEST(WakeWatch, PhantomsBehindAVehicleMakeItsWakeOneOfPhantoms) {
+  const MeasurementScan scan = World().after(20, {{10, 0}});
+  ASSERT_TRUE(scan.wakes);
+  EXPECT_GT(scan.wakes->density, 1);
+  EXPECT_TRUE(scan.wakes->age({30, 0}, scan.state.stamp));
+}
+
+TEST(WakeWatch, InClearAirThereAreNoWakes) {
+  EXPECT_FALSE(World().after(20, {}).wakes);
+  EXPECT_FALSE(World().after(20, {{10, 8}}).wakes) << "phantoms beside the way of the car";
+}
+
+TEST(WakeWatch, ASlowVehicleHasNone) { EXPECT_FALSE(World().after(4, {{2, 0}}).wakes); }
+
+TEST(WakeWatch, ASensorThatSawNoPhantomsStartsNone) {
+  const MeasurementScan scan = World().after(20, {{10, 0}}, 1);
+  ASSERT_TRUE(scan.wakes);
+  EXPECT_EQ(scan.wakes->density, 0);
+}
+
+TEST(WakeWatch, ARestartForgetsTheWakes) {
+  World world;
+  world.after(20, {{10, 0}});
+  world.watch.restart();
+  MeasurementScan scan = world.scanAt(2, {});
+  world.watch.apply(0, scan);
+  EXPECT_FALSE(scan.wakes);
+}
+
+}  // namespace
+}  // namespace perception

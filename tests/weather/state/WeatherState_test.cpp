@@ -1,0 +1,119 @@
+#include "libperception/weather/state/WeatherState.h"
+
+#include <gtest/gtest.h>
+
+namespace perception {
+namespace {
+
+/// A street: every sector returns to 60 m, level beams, too.
+AirCensus street() {
+  AirCensus census;
+  for (auto& sector : census.sectors) sector.returns = 4000, sector.level = 400;
+  census.ground[5] = 48000, census.ground[20] = 2000;
+  census.upright[8] = 40000, census.upright[30] = 6000;
+  return census;
+}
+
+/// Lone returns in each sector by shell, as shares of its returns.
+AirCensus with(std::array<double, AirCensus::kShellCount> shares) {
+  AirCensus census = street();
+  for (auto& sector : census.sectors)
+    for (std::size_t k = 0; k < shares.size(); ++k) sector.lone[k] = shares[k] * sector.returns;
+  return census;
+}
+
+WeatherState after(const AirCensus& census, double seconds, double rate = 10) {
+  WeatherEstimator estimator;
+  const Stamp first{1'000'000'000};
+  for (int k = 0; k <= seconds * rate; ++k) estimator.add(census, first + k / rate);
+  return estimator.state();
+}
+
+TEST(WeatherState, AStreetInClearAirIsClear) {
+  const WeatherState state = after(street(), 5);
+  EXPECT_EQ(state.type(), WeatherType::kClear);
+  EXPECT_GT(state.of(WeatherType::kClear), 0.99);
+  EXPECT_NEAR(state.rain_mm_h.value, 0, 0.05);
+}
+
+TEST(WeatherState, DropsAllAroundAreRainAfterASecond) {
+  const WeatherState state = after(with({20e-4, 5e-4, 0, 0, 0}), 1);
+  EXPECT_EQ(state.type(), WeatherType::kRain);
+  EXPECT_GT(state.of(WeatherType::kRain), 0.9);
+  EXPECT_GT(state.rain_mm_h.value, 0.5);
+}
+
+TEST(WeatherState, ManyReturnsUpToTenMetersAreSnow) {
+  EXPECT_EQ(after(with({10e-4, 20e-4, 40e-4, 80e-4, 40e-4}), 1).type(), WeatherType::kSnow);
+}
+
+TEST(WeatherState, PlantsInThreeQuartersOfTheSectorsAreNoWeather) {
+  AirCensus census = with({50e-4, 50e-4, 50e-4, 50e-4, 50e-4});
+  for (std::size_t s = 0; s < 7; ++s) census.sectors[s].lone = {};
+  EXPECT_EQ(after(census, 5).type(), WeatherType::kClear);
+}
+
+TEST(WeatherState, OneScanDecidesNothing) {
+  EXPECT_EQ(after(with({20e-4, 20e-4, 40e-4, 80e-4, 40e-4}), 0).type(), WeatherType::kClear);
+}
+
+/// Nothing returns from beyond 28 m; level beams meet something in three of ten directions.
+AirCensus foggy() {
+  AirCensus census = street();
+  census.ground = {}, census.upright = {};
+  census.ground[5] = 30000, census.upright[14] = 9000;
+  for (std::size_t s = 0; s < AirCensus::kSectors; ++s)
+    census.sectors[s].level = s % 3 == 0 ? 400 : 0;
+  return census;
+}
+
+TEST(WeatherState, BeamsThatVanishBeyondThirtyMetersAreFog) {
+  const WeatherState state = after(foggy(), 2);
+  EXPECT_EQ(state.type(), WeatherType::kFog);
+  EXPECT_GT(state.visibility.value, 40);
+  EXPECT_LT(state.visibility.value, 120);
+}
+
+TEST(WeatherState, ANarrowStreetIsNoFog) {
+  AirCensus census = foggy();
+  for (auto& sector : census.sectors) sector.level = 400;  // walls everywhere
+  EXPECT_EQ(after(census, 5).type(), WeatherType::kClear);
+}
+
+TEST(WeatherState, AnEmptyFieldIsNoFog) {
+  AirCensus census = foggy();
+  for (auto& sector : census.sectors) sector.level = 0;
+  census.sectors[0].level = 400;
+  EXPECT_EQ(after(census, 5).type(), WeatherType::kClear);
+}
+
+TEST(WeatherState, DenseReturnsThatEndWithinTenMetersAreFog) {
+  AirCensus census = with({150e-4, 800e-4, 550e-4, 450e-4, 10e-4});
+  census.ground = {}, census.upright = {};
+  census.ground[5] = 50000, census.upright[9] = 40000;
+  EXPECT_EQ(after(census, 2).type(), WeatherType::kFog);
+}
+
+TEST(WeatherState, WeatherThatEndsIsForgotten) {
+  WeatherEstimator estimator;
+  const Stamp first{1'000'000'000};
+  for (int k = 0; k < 30; ++k) estimator.add(with({20e-4, 5e-4, 0, 0, 0}), first + 0.1 * k);
+  EXPECT_EQ(estimator.state().type(), WeatherType::kRain);
+  for (int k = 30; k < 150; ++k) estimator.add(street(), first + 0.1 * k);
+  EXPECT_EQ(estimator.state().type(), WeatherType::kClear);
+}
+
+TEST(WeatherState, RepeatedShowingsOfAScanCountOnce) {
+  EXPECT_EQ(after(with({20e-4, 20e-4, 40e-4, 80e-4, 40e-4}), 0.1, 200).type(), WeatherType::kClear);
+}
+
+TEST(WeatherState, AFlurryIsThereInItsFirstScan) {
+  EXPECT_LT(after(street(), 0.1, 1).notClear(), 0.1);
+  const WeatherState snow = after(with({20e-4, 20e-4, 40e-4, 80e-4, 40e-4}), 0.1, 1);
+  EXPECT_EQ(snow.type(), WeatherType::kClear) << "one scan does not change the weather";
+  EXPECT_GT(snow.notClear(), 0.5);
+  EXPECT_LT(after(street(), 2).notClear(), 0.01);
+}
+
+}  // namespace
+}  // namespace perception
