@@ -17,34 +17,37 @@
 
 namespace perception {
 
-/// Selection of obstacle returns and of occluders: [sensor.LABEL.obstacles].
+/// Which returns are obstacles and which are occluders: [sensor.LABEL.obstacles]. Heights are above
+/// the ground.
 struct ObstacleParams {
-  double height_min = 0.30;   ///< [m] above ground [radecki2016]
-  double height_max = 3.0;    ///< [m] above ground; higher: bridges, tree crowns (method.md 8.1)
-  double min_trust = 0.1;     ///< [0, 1] less trusted returns are no obstacles (assumed)
-  double occluder_min = 1.0;  ///< [m] above ground: least height of an occluder (assumed)
-  double occluder_max = 2.2;  ///< [m] higher returns do not occlude (assumed)
-  double occluder_bin = radians(0.4);  ///< [rad] of the occlusion map (assumed)
-  double occluder_margin = 0.5;        ///< [m] an occluder is nearer by this much (method.md 8.6)
+  double height_min = 0.30;   ///< [m] obstacle returns are higher than this [radecki2016]
+  double height_max = 3.0;    ///< [m] and lower than this: not bridges, tree crowns (method.md 8.1)
+  double min_trust = 0.1;     ///< [0, 1] returns with less trust are not obstacles (assumed)
+  double occluder_min = 1.0;  ///< [m] least height of a return that occludes (assumed)
+  double occluder_max = 2.2;  ///< [m] largest height of a return that occludes (assumed)
+  double occluder_bin = radians(0.4);  ///< [rad] width of a bin of the occlusion map (assumed)
+  /// [m] by which an occluder is nearer than what it hides (method.md 8.6).
+  double occluder_margin = 0.5;
 
   void visit(ParamVisitor& v);
 };
 
-/// Noise of one kind of detection, for FootprintModel's axes: [sensor.LABEL.noise.NAME]. The
-/// variance of an edge's bearing is sigma_bearing^2 + (sigma_edge / range)^2 (method.md 4.1). Tuned
-/// on KITTI 0000.
+/// Noise of one kind of detection for the axes of FootprintModel: [sensor.LABEL.noise.NAME]. The
+/// variance of an edge's bearing is sigma_bearing^2 + (sigma_edge / range)^2 (method.md 4.1). The
+/// values are tuned on KITTI 0000.
 struct OutlineNoise {
-  double sigma_edge = 0.25;             ///< [m] across the line of sight
-  double sigma_bearing = radians(0.3);  ///< [rad]
-  double sigma_range = 0.25;            ///< [m] of the nearest point
+  double sigma_edge = 0.25;             ///< [m] of an edge, across the line of sight
+  double sigma_bearing = radians(0.3);  ///< [rad] of the bearing of an edge
+  double sigma_range = 0.25;            ///< [m] of the range of the nearest point
 
   void visit(ParamVisitor& v);
 };
 
-/// [sensor.LABEL.classifier]
+/// How clusters are classified: [sensor.LABEL.classifier].
 struct ClassifierParams {
-  /// Model file of perception-calibrate lidar-classes, beside the INI. Empty: clusters come from
-  /// two spacings and the person filter, and are classified by their size [radecki2016].
+  /// Model file that perception-calibrate lidar-classes writes, beside the INI. If it is empty,
+  /// clusters come from two spacings (method.md 8.2) and the person filter (8.3), and their size
+  /// gives their class [radecki2016].
   std::string file;
 
   void visit(ParamVisitor& v);
@@ -60,18 +63,20 @@ struct LidarParams {
   BoxParams boxes;
   OutlineNoise car_noise, person_noise, unstable_noise;
 
-  /// Noise of persons and unstable clusters, tuned on KITTI 0000.
+  /// Sets the noise of persons and unstable clusters, which is tuned on KITTI 0000.
   LidarParams();
 };
 
-/// The returns of a scan as the safety grid takes them; `height` [m] of each above the ground.
+/// The returns of a scan in the form that the safety grid takes. `height` [m] is that of each above
+/// the ground.
 PlacedReturns placedReturns(EgoPoints points, std::vector<float> height, const PointParams& point,
                             const ObstacleParams& obstacle);
 
-/// The lidar front end: obstacle returns, clusters among them and their outlines as measurements.
-/// With a classifier, segments in space with evidence of the class by their shape; without,
-/// car-sized clusters and person peaks with labels by their size. Labels: car_sized, person_sized
-/// and, where clusters.accept_unstable, unstable.
+/// The lidar front end. It selects obstacle returns, groups them into clusters and gives the
+/// outlines of the clusters as measurements in the world frame. With a classifier the clusters are
+/// segments in space, and their shape gives evidence of the class. Without one they are car-sized
+/// clusters and person peaks, and their size gives the label. Labels are car_sized, person_sized
+/// and, if clusters.accept_unstable is set, unstable.
 class LidarFrontEnd final : public FrontEnd {
  public:
   LidarFrontEnd(const LidarParams& params, const ClassTable& classes,
@@ -81,7 +86,7 @@ class LidarFrontEnd final : public FrontEnd {
   std::vector<std::string> labelNames() const override {
     return model_->detection_model().labels();
   }
-  /// Empty for a frame without a point cloud.
+  /// What is found in one frame, in the ego frame; empty for a frame without a point cloud.
   LidarDetections detect(const SensorFrame& frame) const;
 
   const LidarParams& params() const { return params_; }
@@ -94,15 +99,16 @@ class LidarFrontEnd final : public FrontEnd {
 
  private:
   LidarParams params_;
-  double fov_;    ///< [rad]
-  double reach_;  ///< [m] of the nearest point of an object
+  double fov_;    ///< [rad] full angle of the field of view
+  double reach_;  ///< [m] largest range of the nearest point of an object
   ClassTable classes_;
-  std::shared_ptr<const ClusterClassifier> classifier_;  ///< null: by size
+  std::shared_ptr<const ClusterClassifier> classifier_;  ///< null: classes come from size
   std::shared_ptr<const FootprintModel> model_;
 };
 
-/// Reads [sensor.LABEL], [sensor.LABEL.class.NAME], [sensor.LABEL.points], .surface, .obstacles,
-/// .clusters, .persons, .classifier and .noise.{car_sized, person_sized, unstable}.
+/// Makes the front end from the sections [sensor.LABEL], [sensor.LABEL.class.NAME] and
+/// [sensor.LABEL.X], where X is points, surface, obstacles, clusters, persons, classifier and
+/// noise.{car_sized, person_sized, unstable}. Throws DataError for an unreadable model file.
 std::unique_ptr<FrontEnd> makeLidarFrontEnd(Config& config, const std::string& sensor_label,
                                             const ClassTable& classes);
 
