@@ -106,24 +106,25 @@ ExitCode runGuarded(App& app) {
 
 void App::addConfigOptions(CLI::App& cli, bool required) {
   cli.add_option("-c,--config", config_file, "Configuration file (INI)")->required(required);
-  cli.add_option("--set", settings, "Change one value: section.key=value (may be repeated)")
+  cli.add_option("--set", settings, "Change one value of the configuration: section.key=value")
       ->allow_extra_args(false);
-  cli.add_flag("--print-config", print_config, "Write the effective configuration and stop");
+  cli.add_flag("--print-config", print_config, "Print the effective configuration and stop");
 }
 
 void App::addInputOption(CLI::App& cli, bool required) {
-  cli.add_option("-i,--input", inputs, "Input file(s)")->required(required);
+  cli.add_option("-i,--input", inputs, "Input: one file or several")->required(required);
 }
 
 void App::addOutputOption(CLI::App& cli, bool required) {
-  cli.add_option("-o,--output", output, "Output")->required(required);
+  cli.add_option("-o,--output", output, "Where the results go: a folder or a file")
+      ->required(required);
 }
 
 void App::addRunOptions(CLI::App& cli) {
   constexpr int kMostThreads = 4096;
-  cli.add_option("--threads", threads, "Threads; 0 = as many as the machine has")
+  cli.add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, kMostThreads));
-  cli.add_flag("--strict", strict, "Damaged input is an error instead of a warning");
+  cli.add_flag("--strict", strict, "Treat damaged input as an error instead of a warning");
 }
 
 Config App::loadConfig() const {

@@ -33,20 +33,21 @@ std::string fileNameOf(const std::string& path) {
 
 void ServeOptions::declare(CLI::App& cli) {
   cli.add_option("--serve", port,
-                 "Show the run while it goes on, in a browser and to Foxglove, at this port (0: "
-                 "any free one)")
+                 "Show the run while it goes on, in a browser or in Foxglove, on this port (0: any "
+                 "free port); the program prints the address to open")
       ->expected(0, 1)
       ->default_str("8765");
   cli.add_option(
       "--serve-address", address,
-      "Address on which --serve listens; one that other machines reach needs --serve-token");
+      "Address on which --serve listens; if other machines can reach it, --serve-token is needed");
   cli.add_option("--serve-token", token_file,
-                 "File with the token that clients must give as ?token=TOKEN");
+                 "File with the access token; clients must add ?token=TOKEN to the address");
   cli.add_option("--serve-origin", origins,
-                 "Also let pages of this origin connect, as https://HOST (may be repeated)")
+                 "Also let web pages of this origin connect, for example https://HOST")
       ->allow_extra_args(false);
-  cli.add_option("--serve-speed", speed,
-                 "Play a log at this speed, 1: as recorded; default: as fast as it is tracked")
+  cli.add_option(
+         "--serve-speed", speed,
+         "Play a log at this multiple of the recorded speed; default: as fast as it is tracked")
       ->check(CLI::Range(0.01, 1000.0));
 }
 

@@ -55,31 +55,34 @@ void TrackApp::declare(CLI::App& cli) {
   addInputOption(cli, false);
   addOutputOption(cli, false);
   addRunOptions(cli);
+  cli.add_option("--sensors", sensors,
+                 "Sensors to use, joined by +, for example C+L: C camera, L lidar, R radar; C/H is "
+                 "the camera with its headings as one wide Gaussian. Default: those of the INI");
+  cli.add_option("--seed", seed, "Seed of all random numbers; default: that of the INI");
   cli.add_option(
-      "--sensors", sensors,
-      "Modalities in use: C, C/H (camera headings as one wide Gaussian), L, R joined by +");
-  cli.add_option("--seed", seed, "Seed of all random numbers");
-  cli.add_option("--rate", rate,
-                 "[Hz] Write scenes at a fixed rate instead of at the output sensor's scans")
+         "--rate", rate,
+         "[Hz] Write scenes at this fixed rate instead of at each scan of the output sensor")
       ->check(CLI::Range(0.0, 1000.0));
   cli.add_flag("--measurements", measurements,
                "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
-  cli.add_option(
-         "--duration", duration,
-         "[s] End a run of -i live:INI or ros2:INI after this time; default: at SIGINT or SIGTERM")
+  cli.add_option("--duration", duration,
+                 "[s] End a run with -i live:INI or ros2:INI after this time; default: at SIGINT "
+                 "or SIGTERM")
       ->check(CLI::Range(0.01, 1e9));
   cli.add_option("--record", record,
-                 "Folder in which the sensors of -i live:INI or ros2:INI are recorded");
-  cli.add_option(
-      "--publish", publish,
-      "INTERFACE[:DOMAIN], as lo:0: send scenes by DDS in the form that ROS 2 nodes read");
+                 "Record the sensors of -i live:INI or ros2:INI in this folder");
+  cli.add_option("--publish", publish,
+                 "Send scenes by DDS, in the form that ROS 2 nodes read, on INTERFACE[:DOMAIN], "
+                 "for example lo:0");
   serve.declare(cli);
-  cli.add_flag(
-      "--overwrite", overwrite,
-      "Replace the results in the folder, even those of another run, with evaluation and film");
-  cli.add_flag("--info", info, "Say what the logs of -i hold (labels, classes, rates) and stop");
-  cli.add_option("--export", exports,
-                 "kitti:FILE: also write the objects in KITTI's tracking format")
+  cli.add_flag("--overwrite", overwrite,
+               "Replace the results in the output folder, evaluation and film included, even if "
+               "they are those of another run");
+  cli.add_flag("--info", info,
+               "Print what the logs of -i hold (sensor labels, classes, rates) and stop");
+  cli.add_option(
+         "--export", exports,
+         "Also write the objects in another format: kitti:FILE writes KITTI's tracking format")
       ->allow_extra_args(false);
 }
 

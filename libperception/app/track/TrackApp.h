@@ -33,7 +33,7 @@ class TrackApp : public App {
 
   std::string name() const override { return "perception-track"; }
   std::string description() const override {
-    return "Tracks and classifies the objects around a vehicle, in rawlogs or live";
+    return "Tracks and classifies the objects around a vehicle, from rawlogs or from live sensors";
   }
   void declare(CLI::App& cli) override;
   void run() override;
