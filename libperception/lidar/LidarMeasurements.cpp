@@ -172,7 +172,8 @@ Measurement measurementOf(const ScanContext& scan, const JudgedCluster& cluster,
     m = measurementOf(scan, outline);
   }
   const Vector2 seen = scan.T_world_sensor.translation().head<2>() - m.position;
-  m.view = EvidenceView{std::atan2(seen.y(), seen.x()), std::log(std::max(seen.norm(), 0.1))};
+  m.view = EvidenceView{std::atan2(seen.y(), seen.x()), std::log(std::max(seen.norm(), 0.1)),
+                        static_cast<double>(cluster.points.size())};
   return m;
 }
 

@@ -121,13 +121,20 @@ double RepeatedEvidence::added(std::size_t j) const {
 
 double RepeatedEvidence::mean(std::size_t j) const {
   if (!seen_) return look_.said[j];
-  return (kept_ * seen_->mean[j] + worth_ * look_.said[j]) / (kept_ + worth_ * look_.weight);
+  const double before = kept_ * seen_->returns, now = worth_ * look_.view.returns;
+  return (before * seen_->mean[j] + now * look_.said[j]) / (before + now * look_.weight);
+}
+
+double RepeatedEvidence::returns() const {
+  if (!seen_) return look_.view.returns;
+  const double worth = worth_ * look_.weight;
+  return (kept_ * seen_->returns + worth * look_.view.returns) / (kept_ + worth);
 }
 
 void rememberEvidence(const Look& look, const MeasurementScan& scan, Track& track) {
   const RepeatedEvidence evidence(track, look, scan);
   const std::uint64_t key = sensorKey(scan.sensor);
-  EvidenceSeen now{key, scan.state.stamp, look.view, evidence.views(), {}};
+  EvidenceSeen now{key, scan.state.stamp, look.view, evidence.views(), evidence.returns(), {}};
   for (std::size_t j = 0; j < look.said.size(); ++j) now.mean.push_back(evidence.mean(j));
   const auto seen = std::find_if(track.evidence.begin(), track.evidence.end(),
                                  [&](const EvidenceSeen& e) { return e.sensor == key; });

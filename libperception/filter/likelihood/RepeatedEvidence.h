@@ -46,6 +46,8 @@ class RepeatedEvidence {
   /// With this look: mean log likelihood of class j, and the independent looks it is of.
   double mean(std::size_t j) const;
   double views() const { return std::max(1.0, kept_ + worth_ * look_.weight); }
+  /// With this look: mean number of returns of the looks.
+  double returns() const;
 
  private:
   double total(double looks, double value, double best) const;

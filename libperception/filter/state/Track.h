@@ -67,7 +67,8 @@ struct EvidenceSeen {
   Stamp stamp;               ///< of the last view
   EvidenceView view;
   double views = 0;          ///< independent looks, but for the part of the errors that stays
-  std::vector<double> mean;  ///< of Measurement::log_class, weighed by what each view was worth
+  double returns = 1;        ///< mean number of returns of a look
+  std::vector<double> mean;  ///< of Measurement::log_class, over all returns of all looks
 };
 
 /// A disc that contains the means of all class filters and its growth over time: tells whether a

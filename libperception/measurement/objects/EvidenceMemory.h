@@ -5,10 +5,11 @@
 
 namespace perception {
 
-/// From where an object was seen. Views alike err alike.
+/// From where an object was seen, and how well. Views alike err alike.
 struct EvidenceView {
   double bearing = 0;    ///< [rad] of the line from the object to the sensor, world
   double log_range = 0;  ///< log of the range [m]
+  double returns = 1;    ///< that show the object: its weight in the mean of all views
 };
 
 /// Errors of a sensor's evidence of one object's class (method.md 5.6, fitted as in 8.10). One part

@@ -137,6 +137,20 @@ TEST(RepeatedEvidence, AViewFromElsewhereLetsTheOldOnesGo) {
   EXPECT_NEAR(track.evidence[0].views, 1, 0.01);
 }
 
+TEST(RepeatedEvidence, AViewOfManyReturnsWeighsMore) {
+  const RepeatFixture f;
+  const auto judged = [&](double whole, double corner) {
+    Track track;
+    double sum = add(track, f.seen(0, EvidenceView{0.1, 3, whole}, {3, 0}));
+    for (int k = 1; k <= 20; ++k)
+      sum += add(track, f.seen(0.1 * k, EvidenceView{0.1, 3, corner}, {-1, 0}));
+    return sum;
+  };
+  EXPECT_LT(judged(20, 20), 1.5);
+  EXPECT_GT(judged(400, 20), 3) << "the side that was seen is not forgotten behind the corner";
+  EXPECT_NEAR(judged(7, 7), judged(20, 20), 1e-9) << "only the proportion of the returns counts";
+}
+
 TEST(RepeatedEvidence, AnObjectThatComesNearIsJudgedAnew) {
   const RepeatFixture f;
   Track track;
