@@ -91,7 +91,7 @@ fuzz_packages=(
 )
 
 bench_packages=(
-  python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti_*
+  python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti
   libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar front end
   libnanoflann-dev       # the same by region growing; kd-tree of snow filters, peers of the trust in returns
 )
