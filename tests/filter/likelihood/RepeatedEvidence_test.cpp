@@ -5,66 +5,15 @@
 #include <cmath>
 
 #include "libperception/core/math/Random.h"
-#include "libperception/filter/predict/Prediction.h"
-#include "libperception/filter/update/Update.h"
-#include "tests/support/FilterWorld.h"
+#include "tests/filter/likelihood/RememberingSensor.h"
 
 namespace perception {
 namespace {
 
-using test::positionScan;
-
-enum class Repeats { kNothing, kEvidence, kLooks };
-
-/// Positions whose evidence repeats, or whose detections and labels do, or neither.
-class RememberingModel final : public PositionModel {
- public:
-  RememberingModel(Params params, const EvidenceMemory& memory, Repeats repeats)
-      : PositionModel(std::move(params)), memory_(memory), repeats_(repeats) {}
-  const EvidenceMemory* evidenceMemory() const override {
-    return repeats_ == Repeats::kEvidence ? &memory_ : nullptr;
-  }
-  const EvidenceMemory* lookMemory() const override {
-    return repeats_ == Repeats::kLooks ? &memory_ : nullptr;
-  }
-
- private:
-  EvidenceMemory memory_;
-  Repeats repeats_;
-};
-
-struct RepeatFixture {
-  EvidenceMemory memory{0.2, 0.9, 0.2, 0.3, 1, 0.5};
-  Repeats repeats = Repeats::kEvidence;
-  FilterModel model = test::exactModel(test::linearClasses());
-
-  RepeatFixture() { model.params.kinematic_exponent = 0; }
-
-  std::shared_ptr<const PositionModel> sensor() const {
-    PositionModel::Params params = test::linearSensor();
-    params.classes[1].detection = params.classes[0].detection;  // tells nothing of the class
-    return std::make_shared<const RememberingModel>(params, memory, repeats);
-  }
-  MeasurementScan seen(double t, std::optional<EvidenceView> view,
-                       std::vector<double> log_class = {1.5, -0.5}) const {
-    MeasurementScan scan = positionScan(sensor(), t, {{1, 2, 0}});
-    scan.measurements[0].log_class = std::move(log_class);
-    scan.measurements[0].view = view;
-    return scan;
-  }
-  Track born(const MeasurementScan& scan) const {
-    return newTrack(likelihoodTable({}, scan, model).births[0], 0, scan, 0, model);
-  }
-  Track hit(const Track& before, const MeasurementScan& scan) const {
-    const Track track = predictTrack(before, scan.state.stamp, model);
-    const auto table = likelihoodTable({track}, scan, model);
-    return hitTrack(track, table.tracks[0], table.tracks[0].pairs.at(0), scan, 1, model);
-  }
-};
-
-double odds(const Track& track) { return track.log_class[0] - track.log_class[1]; }
-
-const EvidenceView kAhead{0.1, 3};
+using test::kAhead;
+using test::odds;
+using test::RepeatFixture;
+using test::Repeats;
 
 /// What a view adds; remembers it.
 double add(Track& track, const MeasurementScan& scan, std::size_t j = 0) {
@@ -221,101 +170,6 @@ TEST(RepeatedEvidence, AHitMayTakeBackWhatWasSaidBefore) {
   const double before = odds(track);
   track = f.hit(track, f.seen(0.1, EvidenceView{kAhead.bearing + 3, 3}, {0, 0}));
   EXPECT_NEAR(odds(track), before - 3, 0.05);
-}
-
-// Looks: detection and label
-// -----------------------------------------------------------------------
-
-/// P_D .8 and .6, label 0 with .7 and .4, classes alike but for that.
-struct Looking : RepeatFixture {
-  Looking() { repeats = Repeats::kLooks; }
-  MeasurementScan scan(double t, bool detected) const {
-    PositionModel::Params params = test::linearSensor();
-    params.classes[1].noise = params.classes[0].noise;
-    const auto model = std::make_shared<const RememberingModel>(params, memory, repeats);
-    MeasurementScan scan = positionScan(model, t, {{1, 2, 0}});
-    if (!detected) scan.measurements.clear();
-    return scan;
-  }
-  Track missed(const Track& before, const MeasurementScan& scan) const {
-    const Track track = predictTrack(before, scan.state.stamp, model);
-    return missTrack(track, likelihoodTable({track}, scan, model).tracks[0], scan, model);
-  }
-};
-
-const double kHit = std::log(0.8 * 0.7) - std::log(0.6 * 0.4);
-const double kMiss = std::log(0.2) - std::log(0.4);
-
-TEST(RepeatedEvidence, ABirthIsADetection) {
-  const Looking f;
-  const Track track = f.born(f.scan(0, true));
-  EXPECT_NEAR(odds(track), std::log(0.6 / 0.4) + kHit, 1e-6);
-  ASSERT_EQ(track.evidence.size(), 1u);
-  EXPECT_NEAR(track.evidence[0].mean[0] - track.evidence[0].mean[1], kHit, 1e-6);
-}
-
-TEST(RepeatedEvidence, TheRateOfBirthsIsThatOfFirstDetections) {
-  Looking f;
-  const auto rate = [&](double detection) {
-    PositionModel::Params params = test::linearSensor();
-    for (auto& row : params.classes) row.detection = detection, row.labels = {0.5, 0.5};
-    const auto model = std::make_shared<const RememberingModel>(params, f.memory, f.repeats);
-    return likelihoodTable({}, positionScan(model, 0, {{1, 2, 0}}), f.model).births[0].log_birth;
-  };
-  EXPECT_NEAR(rate(0.9), rate(0.1), 1e-9);
-}
-
-TEST(RepeatedEvidence, DetectionsAlikeAreBounded) {
-  const Looking f;
-  const double prior = std::log(0.6 / 0.4);
-  Track track = f.born(f.scan(0, true));
-  for (int k = 1; k <= 300; ++k) track = f.hit(track, f.scan(0.1 * k, true));
-  EXPECT_GT(odds(track), prior + 0.8 * kHit / 0.2);
-  EXPECT_LT(odds(track), prior + kHit / 0.2);
-}
-
-TEST(RepeatedEvidence, MissesAreLooksAsWell) {
-  const Looking f;
-  const double prior = std::log(0.6 / 0.4);
-  Track track = f.born(f.scan(0, true));
-  double before = odds(track);
-  for (int k = 1; k <= 40; ++k) {
-    track = f.missed(track, f.scan(0.1 * k, false));
-    EXPECT_LT(odds(track), before) << k;
-    before = odds(track);
-  }
-  const EvidenceSeen& seen = track.evidence.at(0);
-  EXPECT_NEAR(odds(track), prior + f.memory.looks(seen.views) * (seen.mean[0] - seen.mean[1]),
-              1e-3);
-  EXPECT_GT(odds(track), prior + kMiss / 0.2);
-}
-
-TEST(RepeatedEvidence, WhatIsHiddenTellsNothing) {
-  const Looking f;
-  const auto scan = f.scan(1, false);
-  const Track track = f.born(f.scan(0, true));
-  ClassValues detection;
-  detection.assign(2, 0.01);
-  EXPECT_FALSE(missedLook(track, scan, detection, 0));
-  const auto look = missedLook(track, scan, detection, 0.1);
-  ASSERT_TRUE(look);
-  EXPECT_EQ(look->weight, 0.1);
-  Look whole = *look;
-  whole.weight = 1;
-  EXPECT_LT(RepeatedEvidence(track, *look, scan).views(),
-            RepeatedEvidence(track, whole, scan).views());
-}
-
-TEST(RepeatedEvidence, AClassNeverDetectedThereIsNotRuledOut) {
-  const Looking f;
-  const auto scan = f.scan(0, true);
-  const Track track = f.born(scan);
-  ClassValues detection;
-  detection.assign(2, 0);
-  const Look nowhere = *lookOf(track, scan.measurements[0], scan, detection);
-  for (const double value : nowhere.said) EXPECT_EQ(value, 0);
-  detection[0] = 0.5;
-  EXPECT_GT(lookOf(track, scan.measurements[0], scan, detection)->said[1], -20);
 }
 
 }  // namespace
