@@ -144,7 +144,7 @@ double drawLegend(Canvas& canvas, const SceneView& view, const Rect& at) {
   legend.lineRow(kInk, "path of the last 2 s");
   legend.text("id class P(class), speed");
   legend.more("'?': P(class) < 0.95");
-  legend.more("static-other: id alone");
+  if (view.layers.thing_ids) legend.more("static-other: id alone");
   if (view.has_truth) {
     legend.head("Truth");
     legend.truthRow("annotated object");

@@ -233,6 +233,7 @@ int Overlay::drawLabels() {
       continue;
     }
     const bool muted = isMuted(view_.className(object));
+    if (muted && !view_.layers.thing_ids) continue;
     labels.push_back({&object, labelOf(object), muted ? kSmallSize - 0.5 : kLabelSize});
     const Label& label = labels.back();
     wishes.push_back({*frame, Canvas::textWidth(label.text, label.size, !muted) + 6, label.size + 6,

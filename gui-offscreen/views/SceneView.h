@@ -58,6 +58,7 @@ struct ViewImage {
 struct ViewLayers {
   bool lidar = false, trust = false, radar = false, measurements = false, detector_boxes = false;
   std::optional<CameraModel> camera;  ///< of the displayed image
+  bool thing_ids = false;             ///< number also what is no road user
 };
 
 /// Contents of a picture of one instant. World frame.

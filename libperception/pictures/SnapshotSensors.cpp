@@ -122,7 +122,7 @@ void SnapshotSensors::lookAhead(const std::string& log) {
   }
   params_.camera = chosen;
   layers_.trust = layers_.trust || (layers_.lidar && params_.weather.filter != "off");
-  layers_.measurements = !params_.sensors.empty() && !params_.no_measurements;
+  layers_.measurements = !params_.sensors.empty() && params_.measurements;
 }
 
 std::optional<SensorFrame> SnapshotSensors::frameOf(

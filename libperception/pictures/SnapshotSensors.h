@@ -22,9 +22,9 @@ struct SnapshotSensorParams {
   StopParams stop;
   GroundParams ground;
   WeatherParams weather;
-  double memory = 5;  ///< [s] lidar scans of this time before the instant are in the grid
-  bool no_measurements = false;
-  std::string camera;  ///< label of the displayed camera; empty: the first one with images
+  double memory = 5;          ///< [s] lidar scans of this time before the instant are in the grid
+  bool measurements = false;  ///< of the front ends are drawn
+  std::string camera;         ///< label of the displayed camera; empty: the first one with images
   /// Sensors of the site INI: returns used and measurements. Other sensors are drawn with default
   /// settings and without measurements.
   std::vector<PipelineSetup::Sensor> sensors;

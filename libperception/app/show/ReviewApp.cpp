@@ -129,7 +129,6 @@ void ReviewApp::makePage() {
   Config config = loadConfig();
   SnapshotSensorParams params;
   params.read(config, true);
-  params.no_measurements = true;
   SnapshotSensors sensors(inputs[0], run, params);
   ReviewPictures pictures;
   std::vector<ReviewQuestion> questions;

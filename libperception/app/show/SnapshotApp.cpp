@@ -71,12 +71,13 @@ void SnapshotApp::declare(CLI::App& cli) {
       ->allow_extra_args(false);
   cli.add_option(
          "--view", view,
-         "top (from above), driver (from behind the vehicle), camera (its image), joined by "
-         "+; both = top+driver; all = top+driver+camera")
+         "top (from above), driver (from behind the vehicle), camera (its image), joined by +; "
+         "both = top+driver; all = both, and the camera where the log has one")
       ->capture_default_str();
   cli.add_option("--camera", sensors.camera, "label of the camera that is shown")
       ->type_name("LABEL");
-  cli.add_flag("--no-measurements", no_measurements, "do not draw measurements");
+  cli.add_flag("--details", details,
+               "also draw the measurements, and the ids of things that are no road users");
   cli.add_option("--range", params.range, "range shown ahead [m]")
       ->check(CLI::Range(5.0, 200.0))
       ->capture_default_str();
@@ -126,7 +127,9 @@ std::string SnapshotApp::titleOf(std::size_t index) {
 }
 
 std::vector<SceneView> SnapshotApp::viewsOf(std::size_t index) const {
-  return viewsOfRuns(shown_, index, truth_ ? &*truth_ : nullptr, params.views);
+  auto views = viewsOfRuns(shown_, index, truth_ ? &*truth_ : nullptr, params.views);
+  for (SceneView& shown : views) shown.layers.thing_ids = details;
+  return views;
 }
 
 std::string SnapshotApp::fileFor(const SceneView& shown) const {
@@ -160,7 +163,7 @@ void SnapshotApp::readRuns() {
 void SnapshotApp::run() {
   out_files.clear();
   if (readConfig()) return;
-  if (no_measurements) sensors.no_measurements = true;
+  sensors.measurements = details;
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the runs");
   if (output.empty() && video.empty())
     throw Error(ExitCode::kUsage, "-o: expected a file or folder");

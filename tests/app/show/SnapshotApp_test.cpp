@@ -265,8 +265,8 @@ TEST_F(SnapshotAppTest, SiteSettingsDecideWhichReturnsAreDrawn) {
   std::ofstream(dir_ + "/near.ini") << "include = " PERCEPTION_SOURCE_DIR
                                        "/ini/demo.ini\n"
                                        "[sensor.LIDAR_TOP.points]\nrange_max = 10\n";
-  const std::vector<std::string> how = {
-      "--frame", "20", "--view", "top", "-i", kDemoLog, "--no-measurements", "-o", dir_ + "/a.png"};
+  const std::vector<std::string> how = {"--frame", "20",     "--view", "top",
+                                        "-i",      kDemoLog, "-o",     dir_ + "/a.png"};
   ASSERT_EQ(run(how), 0);
   const Picture all = app_->out_picture;
   std::vector<std::string> near = how;
@@ -277,6 +277,23 @@ TEST_F(SnapshotAppTest, SiteSettingsDecideWhichReturnsAreDrawn) {
   fs::copy_file(dir_ + "/near.ini", dir_ + "/run/effective.ini");
   ASSERT_EQ(run(how), 0);
   EXPECT_EQ(app_->out_picture.rgb, by_option.rgb);
+}
+
+TEST_F(SnapshotAppTest, DetailsAddMeasurementsAndNumbersOfThings) {
+  const std::vector<std::string> plain = {
+      "--frame", "20",           "-i", kDemoLog, "-c", PERCEPTION_SOURCE_DIR "/ini/demo.ini",
+      "-o",      dir_ + "/a.png"};
+  const auto purple = [&](std::vector<std::string> words) {
+    EXPECT_EQ(run(words), 0);
+    const std::vector<std::uint8_t>& rgb = app_->out_picture.rgb;
+    int count = 0;
+    for (std::size_t i = 0; i + 2 < rgb.size(); i += 3)
+      count += rgb[i] > rgb[i + 1] + 40 && rgb[i + 2] > rgb[i] + 40;
+    return count;
+  };
+  std::vector<std::string> details = plain;
+  details.push_back("--details");
+  EXPECT_LT(purple(plain) + 300, purple(details));
 }
 
 TEST_F(SnapshotAppTest, SceneFileIsThatOfOneInstant) {
