@@ -21,6 +21,8 @@
 #include "libperception/python/arrays/SceneArrays.h"
 #include "libperception/python/extensions/Callback.h"
 #include "libperception/sensors/frames/ToObservation.h"
+#include "libperception/sensors/observations/CObservationLidarScan.h"
+#include "libperception/sensors/observations/Conversions.h"
 #include "libperception/sensors/observations/registerClasses.h"
 
 namespace perception::python {
@@ -89,11 +91,18 @@ class Tracker {
                   const py::object& sensor_pose, double max_range, const py::object& echo,
                   const py::object& pulse_width, const py::object& label) {
     if (!(max_range >= 0)) throw DataError("max_range: negative or NaN");
-    SensorFrame frame = frameOf(sensor, stamp, sensor_pose, {"lidar"});
-    LidarCloud cloud = cloudOf(xyz, {intensity, ring, time, echo, pulse_width, label});
-    cloud.max_range = max_range;
-    frame.data = std::move(cloud);
-    return addFrame(frame);
+    tracker_.checkSensor(sensor, {"lidar"});
+    // A scan has megabytes: its memory serves the next one, unless another thread's call has it.
+    auto scan = last_scan_ ? std::move(last_scan_) : std::make_unique<CObservationLidarScan>();
+    scan->sensorLabel = sensor;
+    scan->timestamp = fromStamp(stampOf(stamp));
+    scan->setSensorPose(
+        toMrpt(sensor_pose.is_none() ? Pose3::Identity() : poseOf(sensor_pose, "sensor_pose")));
+    readCloud(xyz, {intensity, ring, time, echo, pulse_width, label}, scan->cloud);
+    scan->cloud.max_range = max_range;
+    MaybeScene scene = addObservation(*scan);
+    last_scan_ = std::move(scan);
+    return scene;
   }
 
   MaybeScene boxes(const std::string& sensor, const py::handle& stamp, const py::handle& boxes,
@@ -181,6 +190,7 @@ class Tracker {
   StreamTracker tracker_;
   GeodeticPoses places_;
   std::shared_ptr<const std::vector<std::string>> classes_;
+  std::unique_ptr<CObservationLidarScan> last_scan_;  ///< taken and given back under Python's lock
 };
 
 }  // namespace

@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
+#include <vector>
 
 #include "libperception/core/Error.h"
+#include "libperception/python/arrays/ColumnCopies.h"
 
 namespace perception::python {
 namespace py = pybind11;
@@ -57,56 +61,94 @@ void checkShape(const py::array& array, const std::string& what, int columns,
                               columns > 0 ? fmt::format(" {}", columns) : ""));
 }
 
+/// A number of an array; in a record it may lie at any address.
+template <class Number>
+Number numberAt(const char* place) {
+  Number number;
+  std::memcpy(&number, place, sizeof number);
+  return number;
+}
+
+/// One number after another, each at an address of its type.
+bool isPacked(const py::array& array) {
+  constexpr int kWanted = static_cast<int>(py::array::c_style) |
+                          static_cast<int>(py::detail::npy_api::NPY_ARRAY_ALIGNED_);
+  return (array.flags() & kWanted) == kWanted;
+}
+
 /// Columns of an (n, 3) array by its strides: any layout, no copy before.
 template <class Number>
 void readPoints(const py::array& array, LidarCloud& cloud) {
-  const auto points = py::reinterpret_borrow<py::array_t<Number>>(array).template unchecked<2>();
-  const auto n = static_cast<std::size_t>(points.shape(0));
-  cloud.x.resize(n), cloud.y.resize(n), cloud.z.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto row = static_cast<py::ssize_t>(i);
-    cloud.x[i] = static_cast<float>(points(row, 0));
-    cloud.y[i] = static_cast<float>(points(row, 1));
-    cloud.z[i] = static_cast<float>(points(row, 2));
+  const py::ssize_t n = array.shape(0), down = array.strides(0), right = array.strides(1);
+  const auto rows = static_cast<std::size_t>(n);
+  cloud.x.resize(rows), cloud.y.resize(rows), cloud.z.resize(rows);
+  float *x = cloud.x.data(), *y = cloud.y.data(), *z = cloud.z.data();
+  const auto* first = static_cast<const char*>(array.data());
+  if constexpr (std::is_same_v<Number, float>) {
+    if (isPacked(array)) return splitRows(static_cast<const float*>(array.data()), rows, x, y, z);
+  }
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const char* row = first + i * down;
+    x[i] = static_cast<float>(numberAt<Number>(row));
+    y[i] = static_cast<float>(numberAt<Number>(row + right));
+    z[i] = static_cast<float>(numberAt<Number>(row + 2 * right));
   }
 }
 
-/// One number a return, or nothing. Of whole numbers those beyond the range of `Number` are an
-/// error.
+/// Numbers of the type that is wanted, of any stride.
 template <class Number>
-std::vector<Number> columnOf(const py::object& object, const char* what, std::size_t n) {
-  if (object.is_none()) return {};
+void copyNumbers(const py::array& array, std::vector<Number>& values) {
+  const auto* first = static_cast<const char*>(array.data());
+  const py::ssize_t down = array.strides(0);
+  if (isPacked(array)) {
+    std::copy_n(static_cast<const Number*>(array.data()), values.size(), values.begin());
+    return;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = numberAt<Number>(first + static_cast<py::ssize_t>(i) * down);
+}
+
+/// Whole numbers of another type; those beyond the range of `Number` are an error.
+template <class Number>
+void convertWhole(const py::array& array, const char* what, std::vector<Number>& values) {
+  if (array.dtype().kind() == 'f')
+    throw DataError(fmt::format("{}: dtype {}, expected whole numbers", what, dtypeOf(array)));
+  const auto wide = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::int64_t value = wide.data()[i];
+    if (value < 0 || value > std::numeric_limits<Number>::max())
+      throw DataError(fmt::format("{}[{}]: {}, expected 0 to {}", what, i, value,
+                                  std::numeric_limits<Number>::max()));
+    values[i] = static_cast<Number>(value);
+  }
+}
+
+/// One number a return, or nothing.
+template <class Number>
+void readColumn(const py::object& object, const char* what, std::size_t n,
+                std::vector<Number>& values) {
+  if (object.is_none()) return values.clear();
   const py::array array = asArray(object, what);
   checkNumbers(array, what);
   checkShape(array, what, 0, static_cast<py::ssize_t>(n));
-  if constexpr (std::is_integral_v<Number>) {
-    if (array.dtype().kind() == 'f')
-      throw DataError(fmt::format("{}: dtype {}, expected whole numbers", what, dtypeOf(array)));
-    const auto wide = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
-    std::vector<Number> values(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::int64_t value = wide.data()[i];
-      if (value < 0 || value > std::numeric_limits<Number>::max())
-        throw DataError(fmt::format("{}[{}]: {}, expected 0 to {}", what, i, value,
-                                    std::numeric_limits<Number>::max()));
-      values[i] = static_cast<Number>(value);
-    }
-    return values;
+  values.resize(n);
+  if (py::isinstance<py::array_t<Number>>(array)) {
+    copyNumbers(array, values);
+  } else if constexpr (std::is_integral_v<Number>) {
+    convertWhole(array, what, values);
   } else {
-    const auto cast = py::array_t<Number, py::array::c_style | py::array::forcecast>(array);
-    return {cast.data(), cast.data() + n};
+    copyNumbers<Number>(py::array_t<Number, py::array::forcecast>(array), values);
   }
 }
 
 /// Absolute times in place of times after the stamp would be silently absurd.
 void checkTimes(const std::vector<float>& times) {
-  for (const float time : times) {
-    if (std::abs(time) > kLongestScan)
-      throw DataError(fmt::format(
-          "time: {} s after the stamp is none of a scan; expected seconds after the stamp, of "
-          "absolute times (time - stamp), of nanoseconds 1e-9 * time",
-          time));
-  }
+  const float farthest = farthestOf(times.data(), times.size());
+  if (farthest > kLongestScan)
+    throw DataError(fmt::format(
+        "time: {} s off the stamp is none of a scan; expected seconds after the stamp, of "
+        "absolute times (time - stamp), of nanoseconds 1e-9 * time",
+        farthest));
 }
 
 Stamp notZero(Stamp stamp) {
@@ -181,14 +223,13 @@ py::array_t<double> matrixOf(const Pose3& pose) {
   return matrix;
 }
 
-LidarCloud cloudOf(const py::handle& xyz, const ReturnArrays& arrays) {
+void readCloud(const py::handle& xyz, const ReturnArrays& arrays, LidarCloud& cloud) {
   const py::array points = asArray(xyz, "xyz");
   if (points.ndim() == 2 && points.shape(1) == 4)
     throw DataError(
         "xyz: shape (n, 4), expected (n, 3): give xyz[:, :3], and xyz[:, 3] as "
         "intensity");
   checkShape(points, "xyz", 3, {});
-  LidarCloud cloud;
   if (py::isinstance<py::array_t<float>>(points)) {
     readPoints<float>(points, cloud);
   } else if (py::isinstance<py::array_t<double>>(points)) {
@@ -197,14 +238,13 @@ LidarCloud cloudOf(const py::handle& xyz, const ReturnArrays& arrays) {
     throw DataError(fmt::format("xyz: dtype {}, expected float32 (or float64)", dtypeOf(points)));
   }
   const std::size_t n = cloud.size();
-  cloud.intensity = columnOf<float>(arrays.intensity, "intensity", n);
-  cloud.ring = columnOf<std::uint16_t>(arrays.ring, "ring", n);
-  cloud.time_offset = columnOf<float>(arrays.time, "time", n);
+  readColumn(arrays.intensity, "intensity", n, cloud.intensity);
+  readColumn(arrays.ring, "ring", n, cloud.ring);
+  readColumn(arrays.time, "time", n, cloud.time_offset);
   checkTimes(cloud.time_offset);
-  cloud.echo = columnOf<std::uint8_t>(arrays.echo, "echo", n);
-  cloud.pulse_width = columnOf<float>(arrays.pulse_width, "pulse_width", n);
-  cloud.label = columnOf<std::uint8_t>(arrays.label, "label", n);
-  return cloud;
+  readColumn(arrays.echo, "echo", n, cloud.echo);
+  readColumn(arrays.pulse_width, "pulse_width", n, cloud.pulse_width);
+  readColumn(arrays.label, "label", n, cloud.label);
 }
 
 py::array_t<double> numbersOf(const py::handle& object, const std::string& what, int columns,

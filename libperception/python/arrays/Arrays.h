@@ -25,8 +25,9 @@ pybind11::array_t<double> matrixOf(const Pose3& pose);
 struct ReturnArrays {
   pybind11::object intensity, ring, time, echo, pulse_width, label;
 };
-/// Points (n, 3) of float32 or float64, of any strides. Throws DataError.
-LidarCloud cloudOf(const pybind11::handle& xyz, const ReturnArrays& arrays);
+/// Points (n, 3) of float32 or float64, of any strides, and what is known of them, into the arrays
+/// of `cloud`, whose memory is used again; trust and max_range stay. Throws DataError.
+void readCloud(const pybind11::handle& xyz, const ReturnArrays& arrays, LidarCloud& cloud);
 
 /// (n, `columns`) numbers as float64; `columns` 0: (n,). Throws DataError naming `what`. `rows`: n,
 /// where it is known.

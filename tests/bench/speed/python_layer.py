@@ -9,7 +9,7 @@ import numpy as np
 
 import perception
 
-RETURNS, SCANS = 123_000, 60
+RETURNS, SCANS = 123_000, 300
 
 
 def cost_us(**arrays):
