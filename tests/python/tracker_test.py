@@ -138,6 +138,8 @@ class Arrays(unittest.TestCase):
                    cloud(2), None, np.zeros(2))
         self.fails("ring[1]: 70000, expected 0 to 65535", 65, scan, "LIDAR_TOP", 1.0, cloud(2),
                    None, [0, 70000])
+        self.fails("xyz: dtype >f4, expected float32", 65, scan, "LIDAR_TOP", 1.0,
+                   cloud(2).astype(">f4"))
 
     def test_small_stamps_are_as_good_as_those_of_today(self):
         results = []
@@ -221,6 +223,67 @@ class Arrays(unittest.TestCase):
                      points[::-1].copy()[::-1]):
             self.assertEqual([s.objects.tobytes() for s in self.scenes_of(same)[0]], wanted)
 
+    def test_fields_of_a_record_of_any_address_are_taken(self):
+        points = cloud()
+        record = np.zeros(len(points), np.dtype([("tag", "u1"), ("xyz", "f4", 3), ("intensity", "f4")]))
+        record["xyz"], record["intensity"] = points, np.linspace(0, 1, len(points))
+        self.assertFalse(record["xyz"].flags.aligned)
+        same = self.scenes_of(record["xyz"], record["intensity"])[0]
+        wanted = self.scenes_of(points, np.linspace(0, 1, len(points)).astype(np.float32))[0]
+        self.assertEqual([s.objects.tobytes() for s in same], [s.objects.tobytes() for s in wanted])
+
+    def test_a_scan_has_nothing_of_the_one_before(self):
+        seen = []
+        perception.front_end("frames_of_a_tracker", lambda frame: seen.append(
+            (frame.sensor_pose.copy(), {k: v for k, v in frame.data.items() if v is not None})))
+        tracker = perception.Tracker(
+            "include = classes.ini\n[sensor.LIDAR_TOP]\nkind = frames_of_a_tracker\nmodality = L\n"
+            "range_max = 40\nfov_deg = 360\n", sensors="L")
+        mount = np.eye(4)
+        mount[:3, 3] = 1, 2, 3
+        n = 2000
+        tracker.scan("LIDAR_TOP", 1000.0, cloud(), np.ones(n), np.ones(n, np.uint16), np.zeros(n),
+                     sensor_pose=mount, max_range=50, echo=np.zeros(n, np.uint8), pulse_width=np.ones(n),
+                     label=np.zeros(n, np.uint8))
+        tracker.scan("LIDAR_TOP", 1000.1, cloud(300, 1))
+        tracker.finish()
+        pose, data = seen[-1]
+        self.assertEqual(len(seen), 2)
+        np.testing.assert_array_equal(data["xyz"], cloud(300, 1))
+        self.assertEqual(data["max_range"], 0)
+        self.assertFalse({"intensity", "ring", "time", "echo", "pulse_width", "label"} & set(data))
+        np.testing.assert_array_equal(pose, np.eye(4))
+
+    def test_a_scan_that_fails_leaves_the_tracker_as_it_was(self):
+        points, results = cloud(), []
+        for wrong in (False, True):
+            tracker = perception.Tracker(INI, sensors="L")
+            for k in range(5):
+                if wrong:
+                    self.fails("time: 99", 65, tracker.scan, "LIDAR_TOP", 1000 + k / 10, 2 * points,
+                               time=np.full(len(points), 99))
+                tracker.scan("LIDAR_TOP", 1000 + k / 10, points)
+            results.append([s.objects.tobytes() for s in tracker.finish()])
+        self.assertEqual(results[0], results[1])
+
+    def test_stamps_out_of_order_within_the_window_are_sorted(self):
+        results = []
+        for order in ((0, 1, 2, 3, 4, 5), (0, 2, 1, 3, 5, 4)):
+            tracker = perception.Tracker(INI, sensors="L", overrides={"run.output_lag": 0})
+            scenes = [tracker.scan("LIDAR_TOP", 1000 + k / 10, cloud(seed=k)) for k in order]
+            scenes = [s for s in scenes + tracker.finish() if s is not None]
+            results.append([(s.stamp_ns, s.objects.tobytes()) for s in scenes])
+        self.assertEqual(results[0], results[1])
+        self.assertEqual([stamp for stamp, _ in results[0]],
+                         [1000 * 10**9 + k * 10**8 for k in range(6)])
+
+    def test_a_clock_that_goes_back_starts_anew_with_an_event(self):
+        for stamp in (100.0, 100.1, 50.0, 50.1):
+            self.tracker.scan("LIDAR_TOP", stamp, cloud())
+        self.tracker.finish()
+        self.assertIn("the clock went back by 50.1",
+                      "".join(e["message"] for e in self.tracker.events()))
+
     def test_returns_that_are_not_finite_are_dropped(self):
         points = cloud()
         hole = np.vstack([points, np.full((7, 3), np.nan, np.float32)])
@@ -280,6 +343,16 @@ class Boxes(unittest.TestCase):
     def test_a_frame_without_boxes_is_one(self):
         self.assertEqual([len(s) for s in self.scenes_of([], "bottom")], [0] * 8)
 
+    def test_boxes_that_are_not_finite_are_dropped(self):
+        car = [15, 3, 0, 4.2, 1.8, 1.5, 0.1]
+        wanted = self.scenes_of([car], "bottom")
+        for column in range(7):
+            hole = list(car)
+            hole[column] = np.nan
+            with self.subTest(column=column):
+                self.assertEqual([s.objects.tobytes() for s in self.scenes_of([car, hole], "bottom")],
+                                 [s.objects.tobytes() for s in wanted])
+
     def test_labels_are_one_a_box(self):
         tracker = perception.Tracker("kitti-detections.ini")
         with self.assertRaisesRegex(perception.Error, "labels: 0, expected 1"):
@@ -303,6 +376,30 @@ class Threads(unittest.TestCase):
             thread.join()
         self.assertEqual(results[0], results["alone"])
         self.assertEqual(results[1], results["alone"])
+
+    def test_two_threads_may_feed_one_tracker(self):
+        clouds = [cloud(seed=seed) for seed in range(2)]
+        tracker = perception.Tracker(INI, sensors="L", overrides={"run.reorder_window": 10})
+        failures = []
+
+        def work(odd):
+            try:
+                for k in range(odd, 40, 2):
+                    tracker.scan("LIDAR_TOP", 1000 + k / 10, clouds[odd])
+            except BaseException as failure:
+                failures.append(failure)
+
+        threads = [threading.Thread(target=work, args=(odd,)) for odd in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(failures, [])
+        alone = perception.Tracker(INI, sensors="L", overrides={"run.reorder_window": 10})
+        for k in range(40):
+            alone.scan("LIDAR_TOP", 1000 + k / 10, clouds[k % 2])
+        self.assertEqual([s.objects.tobytes() for s in tracker.finish()],
+                         [s.objects.tobytes() for s in alone.finish()])
 
     def test_others_run_while_a_tracker_computes(self):
         stopped, turns = threading.Event(), [0]
@@ -333,6 +430,19 @@ class Threads(unittest.TestCase):
                 perception.track(LOG, INI, overrides={"run.seed": seed})
         timer.join()
         self.assertGreater(len(perception.track(LOG, INI).scenes), 100)  # the next one runs
+
+    def test_ctrl_c_ends_a_loop_over_scans_and_the_tracker_goes_on(self):
+        tracker = perception.Tracker(INI, sensors="L")
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        k = 0
+        with self.assertRaises(KeyboardInterrupt):
+            timer.start()
+            while True:
+                tracker.scan("LIDAR_TOP", 1000 + k / 10, cloud())
+                k += 1
+        timer.join()
+        tracker.scan("LIDAR_TOP", 1000 + (k + 1) / 10, cloud())
+        self.assertEqual(tracker.finish()[-1].stamp_ns, 1000 * 10**9 + (k + 1) * 10**8)
 
 
 if __name__ == "__main__":
