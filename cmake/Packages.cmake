@@ -54,9 +54,9 @@ if(TARGET perception_python)
   list(APPEND PACKED PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-perception)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "perception (= ${PROJECT_VERSION}), python3-numpy,\
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3-numpy,\
  python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${AFTER_PYTHON}~)")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "perception, python3-pandas")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Module perception for Python 3: arrays of numpy in, tracked and classified
  objects out; logs and runs as tables.")
 endif()

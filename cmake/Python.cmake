@@ -34,11 +34,11 @@ add_custom_target(perception_python_parts ALL DEPENDS ${PYTHON_FOLDER}/copied)
 add_dependencies(perception_python perception_python_parts)
 
 math(EXPR AFTER_PYTHON "${Python_VERSION_MINOR} + 1")  # a module of one version is of no use to the next
-if(SKBUILD)  # a wheel: the INIs come with it, to PREFIX/share/perception
-  set(PYTHON_DIR perception)
-  install(DIRECTORY ini DESTINATION ${SKBUILD_DATA_DIR}/share/perception COMPONENT python)
+if(SKBUILD)
+  set(PYTHON_DIR perception)  # in the wheel
 else()
   set(PYTHON_DIR lib/python3/dist-packages/perception)
 endif()
 install(TARGETS perception_python LIBRARY DESTINATION ${PYTHON_DIR} COMPONENT python)
 install(FILES ${PARTS} DESTINATION ${PYTHON_DIR} COMPONENT python)
+install(DIRECTORY ini DESTINATION ${PYTHON_DIR} COMPONENT python)  # the module needs no other package of ours

@@ -32,8 +32,8 @@ bool isThere(const fs::path& path) {
 std::string shippedFolder() {
   if (const char* given = std::getenv("PERCEPTION_DATA"); given != nullptr && *given != '\0')
     return given;
-  constexpr int kLevels = 4;  // PREFIX/lib/python3/dist-packages/perception/X.so
-  fs::path folder = ownFile().parent_path();
+  constexpr int kLevels = 5;  // PREFIX/lib/python3/dist-packages/perception/X.so
+  fs::path folder = ownFile();
   for (int level = 0; level < kLevels && folder.has_relative_path(); ++level) {
     folder = folder.parent_path();
     if (isThere(folder / "share/perception/ini")) return (folder / "share/perception").string();

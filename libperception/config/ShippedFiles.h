@@ -4,7 +4,7 @@
 namespace perception {
 
 /// Folder of what comes with the programs, ini/ with its models and rawlogs/: the environment's
-/// PERCEPTION_DATA; else, of the folders above the one that holds the program or the library, the
+/// PERCEPTION_DATA; else, of the folder that holds the program or the library and those above, the
 /// next with share/perception/ini (installed) or ini/classes.ini (the tree it was built in); ""
 /// where there is none.
 std::string shippedFolder();
