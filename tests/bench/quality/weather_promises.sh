@@ -9,7 +9,7 @@
 # PERCEPTION_BIN: programs [build/bin]. PERCEPTION_BENCH_BIN: blind_sensor_study [build-bench/bin]. PERCEPTION_SHARED: folder
 # with data/ [../shared]; RECORDINGS: more clear recordings for `health`, INI=LOG each.
 set -euo pipefail
-cd "$(dirname "$(readlink -f "$0")")/../.."
+cd "$(dirname "$(readlink -f "$0")")/../../.."
 readonly rows="health spray exhaust phantoms blown_snow rain snow camera_radar clutter fog town street realism"
 out=out/weather_promises seeds=own
 while getopts o:s:h option; do
