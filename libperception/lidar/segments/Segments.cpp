@@ -51,11 +51,12 @@ class SegmentFinder {
   /// Groups of a segment's returns at a level.
   std::vector<ReturnGroup> groupsOf(const ReturnGroup& members, const LinkLevel& level,
                                     double least_weight) const {
-    std::vector<LinkedReturn> returns;
-    returns.reserve(members.size());
-    for (const std::uint32_t i : members) {
-      returns.push_back({x_[i], y_[i], height_[i] * static_cast<float>(level.vertical),
-                         static_cast<float>(length_[i] * level.share)});
+    std::vector<LinkedReturn> returns(members.size());
+    const auto vertical = static_cast<float>(level.vertical);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const std::uint32_t i = members[k];
+      returns[k] = {x_[i], y_[i], height_[i] * vertical,
+                    static_cast<float>(length_[i] * level.share)};
     }
     const Partition linked = linkInSpace(returns, static_cast<float>(link_.least * level.share),
                                          static_cast<float>(link_.most * level.share));

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "libperception/lidar/segments/Forest.h"
 #include "libperception/lidar/segments/KeyNumbers.h"
 #include "libperception/simd/Dispatch.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {
@@ -17,16 +19,20 @@ bool linked(const LinkedReturn& r, const LinkedReturn& s) {
   return x * x + y * y + z * z <= l * l;
 }
 
-struct BlockPlace {
-  std::int32_t x, y, z;
-};
+/// Place of a block: 21 bits for each of three integers.
+inline __attribute__((always_inline)) std::uint64_t keyOf(std::int32_t x, std::int32_t y,
+                                                          std::int32_t z) {
+  constexpr std::int32_t kMiddle = 1 << 20;
+  const auto part = [](std::int32_t v) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v + kMiddle));
+  };
+  return part(x) << 42 | part(y) << 21 | part(z);
+}
 
-/// 21 bits for each of three integers.
-std::uint64_t keyOf(const BlockPlace& p) {
-  constexpr std::int64_t kMiddle = 1 << 20;
-  return static_cast<std::uint64_t>(p.x + kMiddle) << 42 |
-         static_cast<std::uint64_t>(p.y + kMiddle) << 21 |
-         static_cast<std::uint64_t>(p.z + kMiddle);
+/// What a step of -1, 0 or 1 blocks along each axis adds to a key.
+std::uint64_t stepOf(std::int64_t x, std::int64_t y, std::int64_t z) {
+  return (static_cast<std::uint64_t>(x) << 42) + (static_cast<std::uint64_t>(y) << 21) +
+         static_cast<std::uint64_t>(z);
 }
 
 /// Largest integer that is not above v.
@@ -41,18 +47,19 @@ struct CubeGrid {
   std::int32_t n;   ///< cubes along a block
   float per_block;  ///< [blocks a cube] 1 / n
 
-  std::uint32_t cubes() const { return static_cast<std::uint32_t>(n * n * n); }  ///< of a block
+  /// 64-bit words with a bit for each cube of a block.
+  std::uint32_t words() const { return static_cast<std::uint32_t>(n * n * n + 63) / 64; }
 
-  /// Block and place in it of each return; without branches, so that the compiler vectorizes it.
-  PERCEPTION_WIDER void placeAll(const LinkedReturn* returns, std::size_t count, BlockPlace* block,
-                                 std::uint32_t* within) const {
+  /// Key of the block and place in it of each return; without branches, so that the compiler
+  /// vectorizes it.
+  PERCEPTION_WIDER void placeAll(const LinkedReturn* returns, std::size_t count,
+                                 std::uint64_t* block, std::uint32_t* within) const {
     for (std::size_t i = 0; i < count; ++i) {
       const std::int32_t x = floorOf(returns[i].x * per_cube), y = floorOf(returns[i].y * per_cube),
                          z = floorOf(returns[i].z * per_cube);
-      const BlockPlace b = {blockOf(x), blockOf(y), blockOf(z)};
-      block[i] = b;
-      within[i] =
-          static_cast<std::uint32_t>(((x - b.x * n) * n + (y - b.y * n)) * n + (z - b.z * n));
+      const std::int32_t bx = blockOf(x), by = blockOf(y), bz = blockOf(z);
+      block[i] = keyOf(bx, by, bz);
+      within[i] = static_cast<std::uint32_t>(((x - bx * n) * n + (y - by * n)) * n + (z - bz * n));
     }
   }
 
@@ -68,7 +75,7 @@ struct CubeGrid {
 class CubeLinkage {
  public:
   CubeLinkage(const std::vector<LinkedReturn>& returns, float least, float most)
-      : returns_(returns) {
+      : returns_(returns), block_numbers_(slotsFor(returns.size())) {
     grid_.per_cube = std::sqrt(3.0f) / least * 1.0001f;
     // Blocks are wider than a link and a cube: linked returns lie in neighboring blocks at most.
     grid_.n = static_cast<std::int32_t>(std::ceil(most * grid_.per_cube)) + 1;
@@ -82,19 +89,18 @@ class CubeLinkage {
   Partition link() {
     Forest groups(first_return_.size() - 1);
     groups_ = &groups;
-    const auto blocks = static_cast<std::uint32_t>(block_.size());
+    const auto blocks = static_cast<std::uint32_t>(block_key_.size());
     uniform_.assign(blocks, 0);
     for (std::uint32_t c = 0; c < blocks; ++c) linkWithin(c);
     // Half of the 26 neighbors: every pair once. Those that share a face first: most others are in
     // one group by then.
-    constexpr BlockPlace kStep[13] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {-1, 1, 0},
-                                      {0, 1, 1},  {0, -1, 1}, {1, 0, 1},  {-1, 0, 1}, {1, 1, 1},
-                                      {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
-    for (const BlockPlace& step : kStep) {
+    constexpr std::int8_t kStep[13][3] = {
+        {1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {-1, 1, 0}, {0, 1, 1},  {0, -1, 1},
+        {1, 0, 1}, {-1, 0, 1}, {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
+    for (const auto& step : kStep) {
+      const std::uint64_t aside = stepOf(step[0], step[1], step[2]);
       for (std::uint32_t c = 0; c < blocks; ++c) {
-        const BlockPlace at = block_[c];
-        const std::uint32_t d =
-            block_numbers_.find(keyOf({at.x + step.x, at.y + step.y, at.z + step.z}));
+        const std::uint32_t d = block_numbers_.find(block_key_[c] + aside);
         if (d != KeyNumbers::kNone) linkBlocks(c, d);
       }
     }
@@ -102,71 +108,69 @@ class CubeLinkage {
   }
 
  private:
-  /// Least box around returns, and their longest link [m].
+  /// Least box around returns [m], and their longest link [m] in the last lane of `high`.
   struct Bounds {
-    float x0, x1, y0, y1, z0, z1, length;
+    Float4 low, high;
 
-    explicit Bounds(const LinkedReturn& r)
-        : x0(r.x), x1(r.x), y0(r.y), y1(r.y), z0(r.z), z1(r.z), length(r.length) {}
-    void add(const Bounds& b) {
-      x0 = std::min(x0, b.x0), x1 = std::max(x1, b.x1);
-      y0 = std::min(y0, b.y0), y1 = std::max(y1, b.y1);
-      z0 = std::min(z0, b.z0), z1 = std::max(z1, b.z1);
-      length = std::max(length, b.length);
-    }
+    explicit Bounds(const LinkedReturn& r) : low(load<Float4>(&r.x)), high(low) {}
+    void add(const Bounds& b) { low = smaller(low, b.low), high = larger(high, b.high); }
     /// False: no return in one is linked to one in the other.
     bool mayLink(const Bounds& b) const {
-      const float link = std::min(length, b.length);
-      const float dx = std::max({0.0f, x0 - b.x1, b.x0 - x1}),
-                  dy = std::max({0.0f, y0 - b.y1, b.y0 - y1}),
-                  dz = std::max({0.0f, z0 - b.z1, b.z0 - z1});
-      return dx * dx + dy * dy + dz * dz <= link * link;
+      const float link = std::min(high[3], b.high[3]);
+      const Float4 apart = larger(larger(low - b.high, b.low - high), Float4{});
+      const Float4 squares = apart * apart;
+      return squares[0] + squares[1] + squares[2] <= link * link;
     }
   };
+
+  static std::size_t slotsFor(std::size_t returns) {
+    std::size_t slots = 64;  // small groups are many
+    while (slots < 1024 && 4 * slots < returns) slots *= 2;
+    return slots;
+  }
 
   /// The blocks, which of their cubes have returns, and the place of each return among all cubes.
   void place() {
     constexpr std::size_t kPiece = 512;  // returns that fit in the L1 cache
-    std::array<BlockPlace, kPiece> block;
+    std::array<std::uint64_t, kPiece> block;
     std::array<std::uint32_t, kPiece> within;
-    const std::uint32_t cubes = grid_.cubes();
+    const std::uint32_t words = grid_.words();
     cube_of_.resize(returns_.size());
-    std::uint64_t last_key = 0;
-    std::uint32_t last = KeyNumbers::kNone;
+    std::uint64_t last_key = ~std::uint64_t{0};  // of none
+    std::uint32_t first_word = 0;                ///< of the last block
     for (std::size_t first = 0; first < returns_.size(); first += kPiece) {
       const std::size_t count = std::min(kPiece, returns_.size() - first);
       grid_.placeAll(&returns_[first], count, block.data(), within.data());
       for (std::size_t k = 0; k < count; ++k) {
-        const std::uint64_t key = keyOf(block[k]);
-        if (last == KeyNumbers::kNone ||
-            key != last_key) {  // neighbors in the scan are often in one block
-          last = block_numbers_.add(key), last_key = key;
-          if (last == block_.size()) {
-            block_.push_back(block[k]);
-            cube_number_.resize(cube_number_.size() + cubes, 0);
+        if (block[k] != last_key) {  // neighbors in the scan are often in one block
+          last_key = block[k];
+          const std::uint32_t number = block_numbers_.add(last_key);
+          if (number == block_key_.size()) {
+            block_key_.push_back(last_key);
+            used_.resize(used_.size() + words, 0);
           }
+          first_word = words * number;
         }
-        cube_of_[first + k] = last * cubes + within[k];
-        cube_number_[cube_of_[first + k]] = 1;
+        cube_of_[first + k] = 64 * first_word + within[k];
+        used_[first_word + within[k] / 64] |= std::uint64_t{1} << within[k] % 64;
       }
     }
   }
 
   /// Numbers the cubes with returns, block by block.
   void numberCubes() {
+    const std::uint32_t words = grid_.words();
+    const std::unique_ptr<std::uint32_t[]> number(new std::uint32_t[64 * used_.size()]);
     std::uint32_t count = 0;
-    first_cube_.reserve(block_.size() + 1);
-    auto number = cube_number_.begin();
-    for (std::size_t c = 0; c < block_.size(); ++c) {
-      first_cube_.push_back(count);
-      for (std::uint32_t k = 0; k < grid_.cubes(); ++k, ++number) {
-        const std::uint32_t used = *number;
-        *number = count, count += used;
-      }
+    first_cube_.reserve(block_key_.size() + 1);
+    for (std::size_t word = 0; word < used_.size(); ++word) {
+      if (words == 1 || word % words == 0) first_cube_.push_back(count);
+      for (std::uint64_t used = used_[word]; used != 0; used &= used - 1)
+        number[64 * word + static_cast<std::size_t>(__builtin_ctzll(used))] = count++;
     }
     first_cube_.push_back(count);
     first_return_.assign(count + 1, 0);
-    for (std::uint32_t& cube : cube_of_) cube = cube_number_[cube];
+    for (std::uint32_t& cube : cube_of_) cube = number[cube];
   }
 
   void sortReturns() {
@@ -185,8 +189,8 @@ class CubeLinkage {
         bounds.add(Bounds(sorted_[i]));
       bounds_.push_back(bounds);
     }
-    block_bounds_.reserve(block_.size());
-    for (std::size_t c = 0; c < block_.size(); ++c) {
+    block_bounds_.reserve(block_key_.size());
+    for (std::size_t c = 0; c < block_key_.size(); ++c) {
       Bounds bounds = bounds_[first_cube_[c]];
       for (std::uint32_t cube = first_cube_[c] + 1; cube < first_cube_[c + 1]; ++cube)
         bounds.add(bounds_[cube]);
@@ -258,8 +262,8 @@ class CubeLinkage {
   const std::vector<LinkedReturn>& returns_;
   CubeGrid grid_{};
   KeyNumbers block_numbers_;
-  std::vector<BlockPlace> block_;
-  std::vector<std::uint32_t> cube_number_;   ///< [block][cube in it]
+  std::vector<std::uint64_t> block_key_;
+  std::vector<std::uint64_t> used_;          ///< [block][word] bits of its cubes with returns
   std::vector<std::uint32_t> cube_of_;       ///< of each return
   std::vector<std::uint32_t> first_cube_;    ///< of each block, and the end
   std::vector<std::uint32_t> first_return_;  ///< of each cube, and the end
