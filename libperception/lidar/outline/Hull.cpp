@@ -13,22 +13,28 @@ double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() 
 /// Removes points that cannot be on the hull: those strictly inside the octagon of eight extreme
 /// points.
 void dropInner(std::vector<Vector2>& points) {
-  static const std::array<Vector2, 8> kDirections = {
-      Vector2(1, 0),  Vector2(1, 1),   Vector2(0, 1),  Vector2(-1, 1),
-      Vector2(-1, 0), Vector2(-1, -1), Vector2(0, -1), Vector2(1, -1)};
+  // Along x, x + y, y, y - x, and against them.
   std::array<Vector2, 8> corner;
-  for (std::size_t k = 0; k < 8; ++k) {
-    double best = -std::numeric_limits<double>::infinity();
-    for (const Vector2& p : points)
-      if (const double along = kDirections[k].dot(p); along > best) best = along, corner[k] = p;
-  }
-  const auto inside = [&](const Vector2& p) {
-    for (std::size_t k = 0; k < 8; ++k) {
-      const Vector2& a = corner[k];
-      const Vector2& b = corner[(k + 1) % 8];
-      if (a != b && cross(b - a, p - a) <= 0) return false;
+  std::array<double, 4> most, least;
+  most.fill(-std::numeric_limits<double>::infinity());
+  least.fill(std::numeric_limits<double>::infinity());
+  for (const Vector2& p : points) {
+    const double along[] = {p.x(), p.x() + p.y(), p.y(), p.y() - p.x()};
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (along[k] > most[k]) most[k] = along[k], corner[k] = p;
+      if (along[k] < least[k]) least[k] = along[k], corner[k + 4] = p;
     }
-    return true;
+  }
+  struct Side {
+    Vector2 from, along;
+  };
+  std::array<Side, 8> sides;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 8; ++k)
+    if (const Vector2& a = corner[k], &b = corner[(k + 1) % 8]; a != b) sides[count++] = {a, b - a};
+  const auto inside = [&](const Vector2& p) {
+    return std::all_of(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(count),
+                       [&](const Side& s) { return !(cross(s.along, p - s.from) <= 0); });
   };
   points.erase(std::remove_if(points.begin(), points.end(), inside), points.end());
 }
