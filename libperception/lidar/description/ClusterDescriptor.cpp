@@ -23,14 +23,18 @@ std::size_t strideOf(std::size_t count, std::size_t sample) { return 1 + (count 
 /// Sum, products and number of points: their covariance.
 struct Moments {
   Vector3 sum = Vector3::Zero();
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   double count = 0;
-  void add(float x, float y, float z) {
-    const Vector3 p(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
-    sum += p, products += p * p.transpose(), ++count;
+  void add(float fx, float fy, float fz) {
+    const auto x = static_cast<double>(fx), y = static_cast<double>(fy),
+               z = static_cast<double>(fz);
+    sum += Vector3(x, y, z), ++count;
+    xx += x * x, xy += x * y, xz += x * z, yy += y * y, yz += y * z, zz += z * z;
   }
   Eigen::Matrix3d covariance() const {
     const Vector3 mean = sum / count;
+    Eigen::Matrix3d products;
+    products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     return products / count - mean * mean.transpose();
   }
 };
@@ -112,11 +116,12 @@ ClusterDescriber::ClusterDescriber(const LidarDetections& found, const LidarClou
 
 Descriptor ClusterDescriber::describe(const std::vector<std::uint32_t>& members) {
   Descriptor d{};
-  x_.clear(), y_.clear(), z_.clear(), h_.clear();
+  const std::size_t count = members.size();
+  x_.resize(count), y_.resize(count), z_.resize(count), h_.resize(count);
   ++cluster_;
-  for (const std::uint32_t k : members) {
-    x_.push_back(dx_[k]), y_.push_back(dy_[k]), z_.push_back(dz_[k]);
-    h_.push_back(found_.above[k]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t k = members[i];
+    x_[i] = dx_[k], y_[i] = dy_[k], z_[i] = dz_[k], h_[i] = found_.above[k];
     sorted_mark_[rank_[k]] = cluster_;
   }
   const auto n = static_cast<float>(members.size());

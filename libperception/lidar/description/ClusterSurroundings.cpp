@@ -53,24 +53,25 @@ void addCells(const CellCounts& n, float range, Descriptor& d) {
 void ClusterDescriber::rankIntensities(const LidarCloud& cloud) {
   const std::size_t n = found_.obstacles.size();
   if (cloud.intensity.size() != cloud.size() || n == 0) return;
-  const auto raw = [&](std::size_t k) {
-    return cloud.intensity[found_.points.source[found_.obstacles[k]]];
-  };
+  std::vector<float> raw(n);
   Interval range;
-  for (std::size_t k = 0; k < n; ++k)
-    if (std::isfinite(raw(k))) range.add(raw(k));
+  for (std::size_t k = 0; k < n; ++k) {
+    raw[k] = cloud.intensity[found_.points.source[found_.obstacles[k]]];
+    if (std::isfinite(raw[k])) range.add(raw[k]);
+  }
   if (range.size() <= 0) return;
   intensity_.resize(n);
-  constexpr std::size_t kSteps = 1024;
-  std::array<std::uint32_t, kSteps + 1> below{};
-  const auto step = [&](std::size_t k) {
-    const float share = std::isfinite(raw(k)) ? (raw(k) - range.low) / range.size() : 0;
-    return std::min(kSteps - 1, static_cast<std::size_t>(share * kSteps));
-  };
-  for (std::size_t k = 0; k < n; ++k) ++below[step(k) + 1];
+  constexpr std::int32_t kSteps = 1024;
+  std::array<std::uint32_t, static_cast<std::size_t>(kSteps) + 1> below{};
+  std::vector<std::int32_t> step(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const float share = std::isfinite(raw[k]) ? (raw[k] - range.low) / range.size() : 0;
+    step[k] = std::min(kSteps - 1, static_cast<std::int32_t>(share * kSteps));
+    ++below[static_cast<std::size_t>(step[k]) + 1];
+  }
   std::partial_sum(below.begin(), below.end(), below.begin());
   for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t s = step(k);
+    const auto s = static_cast<std::size_t>(step[k]);
     intensity_[k] = 0.5f * static_cast<float>(below[s] + below[s + 1]) / static_cast<float>(n);
   }
 }
@@ -89,13 +90,17 @@ void ClusterDescriber::sortByPlace() {
            static_cast<std::size_t>(std::min(c, columns_ - 1));
   };
   start_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
-  for (std::size_t k = 0; k < n; ++k) ++start_[cell(k) + 1];
+  rank_.resize(n);  // first the cell
+  for (std::size_t k = 0; k < n; ++k) {
+    rank_[k] = static_cast<std::uint32_t>(cell(k));
+    ++start_[rank_[k] + 1];
+  }
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-  sorted_x_.resize(n), sorted_y_.resize(n), rank_.resize(n);
+  sorted_x_.resize(n), sorted_y_.resize(n);
   sorted_mark_.assign(n, 0);
   for (std::size_t k = 0; k < n; ++k) {
-    const std::uint32_t at = rank_[k] = next[cell(k)]++;
+    const std::uint32_t at = rank_[k] = next[rank_[k]]++;
     sorted_x_[at] = dx_[k], sorted_y_[at] = dy_[k];
   }
 }
@@ -223,14 +228,20 @@ float ClusterDescriber::nearestOther(std::uint32_t i, float within) const {
     best = nearestOf(sorted_x_.data() + first, sorted_y_.data() + first,
                      sorted_mark_.data() + first, end - first, x, y, cluster_, best);
   };
-  constexpr int kRings = static_cast<int>(kIsolated / kPlaneCell);
-  look(r, c, c);
-  for (int ring = 1; ring <= kRings; ++ring) {
-    const float inside = static_cast<float>(ring - 1) * kPlaneCell;
-    if (inside * inside > best) break;
-    look(r - ring, c - ring, c + ring), look(r + ring, c - ring, c + ring);
-    for (int row = r - ring + 1; row < r + ring; ++row)
-      look(row, c - ring, c - ring), look(row, c + ring, c + ring);
+  for (int row = r - 1; row <= r + 1; ++row) look(row, c - 1, c + 1);
+  // Beside them, then row by row away from them, as far as something nearer may be.
+  for (int away = 0;; ++away) {
+    const float between = static_cast<float>(std::max(away - 1, 0)) * kPlaneCell;
+    if (between * between >= best) break;
+    const auto aside = 1 + static_cast<int>(std::sqrt(best - between * between) / kPlaneCell);
+    for (const int row : {r - away, r + away}) {
+      if (away > 1) {
+        look(row, c - aside, c + aside);
+      } else if (aside > 1) {
+        look(row, c - aside, c - 2), look(row, c + 2, c + aside);
+      }
+      if (away == 0) break;
+    }
   }
   return std::sqrt(best);
 }
