@@ -28,6 +28,18 @@ struct Fan {
   std::int32_t step, side;     ///< column increments along and across
 };
 
+/// Whether a lane is not 0.
+PERCEPTION_LANES bool anyLane(const Int4& v) {
+  std::uint64_t pairs[2];
+  std::memcpy(pairs, &v, sizeof pairs);
+  return (pairs[0] | pairs[1]) != 0;
+}
+PERCEPTION_LANES bool anyLane(const Int8& v) {
+  Int4 halves[2];
+  std::memcpy(halves, &v, sizeof halves);
+  return anyLane(halves[0] | halves[1]);
+}
+
 template <class Bits, class Mask>
 PERCEPTION_LANES void gather(Mask* masks, const Bits& bits) {
   Bits all;
@@ -66,12 +78,15 @@ PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sen
     const Float leave = smaller(larger(begin + 1, from), to);
     const Float reached = border * per_across;
     const Float t1 = smaller(larger(reached, in), leave);
-    const Float t2 = smaller(larger(reached + per_across, in), leave);
     const auto b0 = Layers::at(height + up * in), b1 = Layers::at(height + up * t1);
-    const auto b2 = Layers::at(height + up * t2), b3 = Layers::at(height + up * leave);
     Mask* const rows = gathered + kRows * i;
     gather(rows, Layers::where(in < t1, kRises ? b1 + b1 - b0 : b0 + b0 - b1));
+    if (!anyLane(t1 < leave)) continue;
+    const Float t2 = smaller(larger(reached + per_across, in), leave);
+    const auto b2 = Layers::at(height + up * t2);
     gather(rows + kCount, Layers::where(t1 < t2, kRises ? b2 + b2 - b1 : b1 + b1 - b2));
+    if (!anyLane(t2 < leave)) continue;  // most beams are in two rows at most
+    const auto b3 = Layers::at(height + up * leave);
     gather(rows + 2 * kCount, Layers::where(t2 < leave, kRises ? b3 + b3 - b2 : b2 + b2 - b3));
   }
 }
