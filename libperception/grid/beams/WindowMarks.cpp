@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 namespace perception {
 template <class Mask>
@@ -118,13 +120,34 @@ std::uint64_t orderOf(const SoftHit& hit) {
   return std::uint64_t{hit.column} << 38 | std::uint64_t{hit.layer} << 32 | ~weight;
 }
 
+/// Sorts by orderOf(): many by their columns first, which are `columns`.
+template <class SoftHit>
+void sortByOrder(std::vector<SoftHit>& hits, std::size_t columns) {
+  const auto less = [](const SoftHit& a, const SoftHit& b) { return orderOf(a) < orderOf(b); };
+  if (hits.size() < columns / 32) {  // cheaper than a pass over the columns (assumed)
+    std::sort(hits.begin(), hits.end(), less);
+    return;
+  }
+  thread_local std::vector<std::uint32_t> end;  // of each column
+  end.assign(columns + 1, 0);
+  for (const SoftHit& hit : hits) ++end[hit.column + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<SoftHit> sorted(hits.size());
+  for (const SoftHit& hit : hits) sorted[end[hit.column]++] = hit;
+  for (auto from = sorted.begin(); from != sorted.end();) {
+    const auto to = sorted.begin() + end[from->column];
+    std::sort(from, to, less);
+    from = to;
+  }
+  hits.swap(sorted);
+}
+
 }  // namespace
 
 // One entry per cell, without cells that have a hit of full weight.
 template <class Mask>
 void WindowMarks<Mask>::settleSoftHits() {
-  std::sort(soft_hits_.begin(), soft_hits_.end(),
-            [](const SoftHit& a, const SoftHit& b) { return orderOf(a) < orderOf(b); });
+  sortByOrder(soft_hits_, columns());
   std::size_t kept = 0;
   for (const SoftHit& doubt : soft_hits_) {
     if (hit_[doubt.column] >> doubt.layer & 1) continue;

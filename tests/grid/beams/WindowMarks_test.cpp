@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "libperception/core/math/Random.h"
 
@@ -125,6 +129,38 @@ TEST(WindowMarks, ACellInDoubtTellsWhetherABeamWentThrough) {
   EXPECT_TRUE(marks.doubts()[0].crossed) << "by the beam behind it";
   EXPECT_FALSE(marks.doubts()[1].crossed);
   EXPECT_EQ(marks.crossed(marks.doubts()[0].column) >> marks.doubts()[0].layer & 1, 0U);
+}
+
+/// `count` doubted hits in the middle of a smallWindow: what remains of them.
+void expectLargestWeights(int count) {
+  WindowMarks<std::uint32_t> marks(smallWindow(), kLayers);
+  Rng random({8, 0, 0, 1});
+  GridScan scan;
+  scan.T_world_ground.translation() = Vector3(6, 6, 0);
+  scan.origin = {6, 6, 2};
+  std::map<int, float> largest;  // by cell
+  for (int i = 0; i < count; ++i) {
+    const auto among = [&](unsigned first, unsigned cells) {
+      return (first + random.below(cells)) * 0.2 + 0.1;
+    };
+    const Vector3 place(among(20, 20), among(20, 20), among(5, 10));
+    const auto weight = static_cast<float>(random.uniform(0.1, 0.9));
+    scan.hits.push_back(place), scan.weights.push_back(weight);
+    float& most = largest[indexOf(place)];
+    most = std::max(most, weight);
+  }
+  GridStats stats;
+  marks.collect(scan, {0, 0, 0}, stats);
+  std::vector<std::pair<int, float>> found;
+  for (const auto& doubt : marks.doubts())
+    found.emplace_back(static_cast<int>(doubt.column) * kLayers + doubt.layer, doubt.weight);
+  const std::vector<std::pair<int, float>> expected(largest.begin(), largest.end());
+  EXPECT_EQ(found, expected);
+}
+
+TEST(WindowMarks, OfDoubtedHitsTheLargestWeightOfACellRemainsInTheOrderOfCells) {
+  expectLargestWeights(20);
+  expectLargestWeights(5000);
 }
 
 }  // namespace
