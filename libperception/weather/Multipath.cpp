@@ -1,8 +1,10 @@
 #include "libperception/weather/Multipath.h"
 
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
+#include "libperception/simd/Dispatch.h"
 #include "libperception/weather/HeightAboveGround.h"
 
 namespace perception {
@@ -59,6 +61,42 @@ class Cubes {
   std::unordered_map<std::uint64_t, int> counts_;
 };
 
+/// About places [m, ego frame], in floats; no cube of interest lies outside.
+class WatchedBox {
+ public:
+  WatchedBox(const Pose3& T_ego_sensor, double beside)
+      : R_(T_ego_sensor.linear().cast<float>()),
+        t_(T_ego_sensor.translation().cast<float>()),
+        beside_(static_cast<float>(beside)) {}
+
+  void add(const Vector3& place) {
+    const Eigen::Vector3f p = place.cast<float>();
+    low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
+  }
+  /// Whether a point of the sensor frame [m] may be in it.
+  bool mayHold(float x, float y, float z) const {
+    for (int k = 0; k < 3; ++k) {
+      const float v = R_(k, 0) * x + R_(k, 1) * y + R_(k, 2) * z + t_[k];
+      if (v < low_[k] - beside_ || v > high_[k] + beside_) return false;
+    }
+    return true;
+  }
+
+ private:
+  Eigen::Matrix3f R_;
+  Eigen::Vector3f t_;
+  float beside_;
+  Eigen::Vector3f low_ = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity()),
+                  high_ = -low_;
+};
+
+/// Heights of all returns [m]; without branches, so that the compiler vectorizes it.
+PERCEPTION_WIDEST void findHeights(const HeightAboveGround height, const float* __restrict x,
+                                   const float* __restrict y, const float* __restrict z,
+                                   std::size_t count, float* __restrict heights) {
+  for (std::size_t i = 0; i < count; ++i) heights[i] = height.of(x[i], y[i], z[i]);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
@@ -80,8 +118,8 @@ std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
     Vector3 place;  // [m] position of the mirror image, ego frame
   };
   std::vector<Mirrored> below;
-  for (std::size_t i = 0; i < cloud->size(); ++i)
-    heights[i] = height.of(cloud->x[i], cloud->y[i], cloud->z[i]);
+  findHeights(height, cloud->x.data(), cloud->y.data(), cloud->z.data(), cloud->size(),
+              heights.data());
   for (std::size_t i = 0; i < cloud->size(); ++i) {
     if (!(heights[i] < -depth)) continue;  // NaN, too
     const float flat2 = cloud->x[i] * cloud->x[i] + cloud->y[i] * cloud->y[i];
@@ -93,9 +131,11 @@ std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
   if (below.empty()) return found;
 
   Cubes cubes(params.tolerance);
-  for (const Mirrored& image : below) cubes.watchAround(image.place);
+  constexpr double kRounding = 0.01;  // [m] of floats
+  WatchedBox watched(frame.T_ego_sensor, 2 * params.tolerance + kRounding);
+  for (const Mirrored& image : below) cubes.watchAround(image.place), watched.add(image.place);
   for (std::size_t i = 0; i < cloud->size(); ++i) {
-    if (!(heights[i] > depth)) continue;
+    if (!(heights[i] > depth) || !watched.mayHold(cloud->x[i], cloud->y[i], cloud->z[i])) continue;
     if (!cloud->trust.empty() && cloud->trust[i] < 0.5F) continue;
     cubes.add(placeOf(i));
   }
