@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/core/math/Angle.h"
+#include "libperception/simd/FastAtan2.h"
 
 namespace perception {
 namespace {
@@ -16,6 +17,13 @@ const float kLevelFrom = std::sin(static_cast<float>(radians(-2))),
             kLevelTo = std::sin(static_cast<float>(radians(1)));
 
 std::size_t sectorOf(float x, float y) {
+  // Where a close angle (3e-4 rad) is clearly within a sector, the exact one is in it, too.
+  constexpr float kClose = 1e-4F * static_cast<float>(AirCensus::kSectors);
+  const float place = (fastAtan2(x, y) / static_cast<float>(kTwoPi) + 0.5F) *
+                      static_cast<float>(AirCensus::kSectors);
+  const auto near = static_cast<std::size_t>(place);
+  const float within = place - static_cast<float>(near);
+  if (within > kClose && within < 1 - kClose) return near;
   const float turn = std::atan2(y, x) / static_cast<float>(kTwoPi) + 0.5F;
   const auto sector = static_cast<std::size_t>(turn * static_cast<float>(AirCensus::kSectors));
   return std::min(sector, AirCensus::kSectors - 1);
