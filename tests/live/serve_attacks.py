@@ -1,6 +1,6 @@
 """What perception-track --serve does with clients that mean it no good, as a table.
 
-    python3 tests/bench/quality/serve_attacks.py build/bin/perception-track rawlogs/demo.rawlog ini/demo.ini [HANDSHAKES]
+    python3 tests/live/serve_attacks.py build/bin/perception-track rawlogs/demo.rawlog ini/demo.ini [HANDSHAKES]
 
 The program tracks the log slowly; meanwhile each attack is made against its port from this machine. HANDSHAKES (10000) of the
 fuzzer are one valid handshake with one to six changes each, by a fixed seed, sixty a second: the server takes 64 requests a second.
@@ -172,16 +172,19 @@ def fuzz(server, count):
 
 def attacks(server, guarded, handshakes):
     port = server.port
-    get = f"HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode()
+
+    def get(path, of=server):
+        return answer(of, f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{of.port}\r\n\r\n".encode())
+
     yield "a client of this machine", answer(server, handshake(port))
     yield "WebSocket, Origin: https://evil.example", answer(server, handshake(port, more="Origin: https://evil.example\r\n"))
     yield "the page, Host: evil.example", answer(server, b"GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n")
     yield "WebSocket, Host: evil.example", answer(server, handshake(port, host=f"evil.example:{port}"))
-    yield "the page without the token", answer(guarded, get.replace(b"HTTP", b"GET / HTTP", 1).replace(str(port).encode(), str(guarded.port).encode()))
+    yield "the page without the token", get("/", guarded)
     yield "WebSocket without the token", answer(guarded, handshake(guarded.port))
     yield "WebSocket with a wrong token", answer(guarded, handshake(guarded.port, target=f"/?token={TOKEN[:-1]}x"))
     for path in ("/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd", "/\\..\\x"):
-        yield f"path {path}", answer(server, f"GET {path} ".encode() + get)
+        yield f"path {path}", get(path)
     pause()
     yield "a frame of 1 GB", long_frame(server)
     yield "1000 connections", many_connections(server, 1000)
