@@ -143,6 +143,16 @@ bool isCoordinate(const Column& values) {
   return quantile(finite, 0.95) - quantile(finite, 0.05) >= kLeastSpread && !isClock(finite);
 }
 
+/// Whether heights of returns: a coordinate, or those of level ground below a scanner, which hardly
+/// differ but are negative, as no intensity, ring or time is.
+bool isHeight(const Column& values) {
+  if (isCoordinate(values)) return true;
+  const Column finite = finiteOf(values);
+  if (finite.size() < 2 || 2 * finite.size() < values.size()) return false;
+  const double low = quantile(finite, 0.01), high = quantile(finite, 0.99);
+  return low > -kFarthestReturn && low < high && high < 0;
+}
+
 /// Share of the variance of the elevations that is between the values of a column.
 double toldOfElevation(const Column& column, const Column& x, const Column& y, const Column& z) {
   struct Sums {
@@ -238,7 +248,7 @@ bool looksLikeDoubles(const std::string& bytes) {
 std::optional<CloudLayout> layoutOf(const std::vector<std::vector<double>>& values) {
   for (std::size_t first = 0; first + 3 <= values.size(); ++first) {
     if (!isCoordinate(values[first]) || !isCoordinate(values[first + 1]) ||
-        !isCoordinate(values[first + 2]))
+        !isHeight(values[first + 2]))
       continue;
     CloudLayout layout;
     layout.columns.assign(values.size(), "-");

@@ -127,6 +127,17 @@ TEST(CloudLayout, IntensitiesOfBytesAreTold) {
   EXPECT_EQ(layout->intensity_max, 255);
 }
 
+TEST(CloudLayout, LevelGroundAloneHasHeights) {
+  std::vector<Row> rows;
+  for (const Row& row : scan())
+    if (std::abs(row[2] + 1.8F) < 0.01F) rows.push_back({row[0], row[1], row[2], row[3]});
+  ASSERT_GT(rows.size(), 500u);
+  std::mt19937 random(3);
+  std::normal_distribution<float> noise(0, 0.02F);
+  for (Row& row : rows) row[2] += noise(random);
+  EXPECT_EQ(columnsOf(rows), (Names{"x", "y", "z", "intensity"}));
+}
+
 TEST(CloudLayout, WhatIsNoCloudIsNotTakenForOne) {
   std::mt19937 random(2);
   std::normal_distribution<float> normal;
