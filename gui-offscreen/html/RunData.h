@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +12,17 @@
 
 namespace perception {
 
+/// Errors of an object against the object of the truth that was matched to it at an instant.
+struct TruthErrors {
+  std::int64_t truth = -1;        ///< id of the truth
+  double position = 0;            ///< [m] between the centers
+  std::optional<double> speed;    ///< [m/s] estimate minus truth, if the truth has a velocity
+  std::optional<double> heading;  ///< [rad] in (-pi, pi], if both have one
+  bool right_class = false;       ///< the most probable class is that of the truth
+};
+/// By scene, by id of the object.
+using RunErrors = std::vector<std::map<std::uint64_t, TruthErrors>>;
+
 /// Data of a run as its interactive page reads them: tracks as columns by object, sensor data by
 /// scene. Positions are relative to `origin`, the first ego position; lengths to 1 cm. Lidar
 /// returns and occupied cells are thinned evenly to a budget of bytes, images to every n-th scene.
@@ -19,7 +31,12 @@ class RunData {
   struct Budget {
     std::size_t points = 14'000'000;  ///< [bytes of the page] for returns and cells
     std::size_t images = 5'000'000;   ///< [bytes of the page]
+    std::size_t every_image = 0;      ///< images of every n-th scene; 0: as the bytes allow
   };
+  static constexpr double kPointBytes = 8;            ///< of a return or a cell in the block
+  static constexpr double kBase64 = 4.0 / 3 * 1.01;   ///< bytes of the page by byte, at most
+  static constexpr double kCellShare = 0.2;           ///< of the budget of points
+  static constexpr std::size_t kImageBytes = 70'000;  ///< of the page, about, for one image
   /// `record` names log and run; `origin`, of a run that comes scene by scene: not the first of
   /// these scenes.
   RunData(const TrackedRun& run, const RunRecord& record, const Budget& budget,
@@ -28,19 +45,15 @@ class RunData {
 
   /// Sensor data and truth of scene `index`; scenes in ascending order, any may be left out.
   void add(std::size_t index, const SceneView& view);
-  /// events.jsonl, one object per event.
-  void setEvents(nlohmann::json events) { json_["events"] = std::move(events); }
-
-  /// weatherOf() of the run's folder.
-  void setWeather(nlohmann::json weather) { json_["weather"] = std::move(weather); }
-
-  /// Elements <script id="PREFIX-..."> with the data: gzip, base64. Ends the collection.
-  std::string html(const std::string& prefix);
-
+  /// Truth alone, of a scene without sensor data.
+  void addTruth(std::size_t index, const SceneView& view);
+  /// Of the scenes of this run.
+  void setErrors(const RunErrors& errors);
   std::uint64_t pointsSeen() const { return points_seen_; }
   std::uint64_t pointsKept() const { return points_kept_; }
   const nlohmann::json& collected() const { return json_; }
-  const std::string& bytes() const { return points_; }  ///< binary block of returns and cells
+  const std::string& bytes() const { return points_; }      ///< binary block of returns and cells
+  const nlohmann::json& images() const { return images_; }  ///< JPEGs as base64
 
  private:
   void addTracks();

@@ -1,9 +1,9 @@
 // The camera's image of a scene, with the detector's boxes and the tracks in it.
 import * as colors from "./colors.js";
 import { blockOf } from "./decode.js";
-import { corners } from "./space.js";
+import { corners, EDGES } from "./boxes.js";
 
-const EDGES = [0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4, 0, 4, 1, 5, 2, 6, 3, 7];
+const KEPT = 4;  // images, decoded
 
 export class CameraView {
   constructor(host, run) {
@@ -13,43 +13,45 @@ export class CameraView {
     this.note = document.createElement("figcaption");
     host.append(this.canvas, this.note);
     this.pictures = new Map();
-    host.hidden = !run.scenes.some((s) => s.image);
+    host.hidden = !run.layers.includes("images");
   }
 
-  show(k, id) {
+  show(k, tracked, id) {
+    if (this.host.hidden) return;
+    const { times } = this.run;
     let at = k;
-    while (at >= 0 && !this.run.scenes[at].image) --at;
-    const scene = this.run.scenes[at];
-    if (!scene || this.run.times[k] - scene.t > 1) return;
-    this.wanted = [k, id];
-    const image = scene.image;
-    const jpeg = image.jpeg !== undefined && this.run.pictures?.[image.jpeg];
-    if (!jpeg) return this.paint(null, scene, at, id);
-    let picture = this.pictures.get(image.jpeg);
+    while (at >= 0 && times[k] - times[at] <= 1 && !this.run.at(at).image) --at;
+    const scene = at >= 0 && this.run.at(at);
+    if (!scene?.image) return;
+    this.wanted = [k, tracked, id];
+    const jpeg = this.run.imageAt(at);
+    if (!jpeg) return this.paint(null, scene, tracked, id);
+    let picture = this.pictures.get(at);
     if (!picture) {
       picture = new Image();
       picture.src = "data:image/jpeg;base64," + jpeg;
       picture.onload = () => this.show(...this.wanted);
-      this.pictures.set(image.jpeg, picture);
+      this.pictures.set(at, picture);
+      if (this.pictures.size > KEPT) this.pictures.delete(this.pictures.keys().next().value);
     }
-    if (picture.complete) this.paint(picture, scene, at, id);
+    if (picture.complete) this.paint(picture, scene, tracked, id);
   }
 
-  paint(picture, scene, k, id) {
+  paint(picture, scene, tracked, id) {
     const { size: [w, h], boxes, sensor } = scene.image, width = 720, height = Math.max(Math.round(width * h / w), 60);
     const scale = width / w;
     this.canvas.width = width;
     this.canvas.height = height;
     const pen = this.canvas.getContext("2d");
-    pen.fillStyle = "#f2f2f2";
+    pen.fillStyle = colors.css(colors.look.grid);
     pen.fillRect(0, 0, width, height);
     if (picture) pen.drawImage(picture, 0, 0, width, height);
     const to = this.projection(scene.image);
-    if (!picture && to) this.paintPoints(pen, to, scale, k);
-    if (to) this.paintTracks(pen, to, scale, k, id);
+    if (!picture && to) this.paintPoints(pen, to, scale, scene);
+    if (to) for (const t of tracked) this.paintTracks(pen, to, scale, t, id);
     pen.lineWidth = 2;
     pen.setLineDash([5, 3]);
-    pen.strokeStyle = picture ? "#ebc800" : "#806c00";
+    pen.strokeStyle = picture ? "#ebc800" : colors.css(colors.line([128, 108, 0]));
     for (const [x1, y1, x2, y2] of boxes) pen.strokeRect(x1 * scale, y1 * scale, (x2 - x1) * scale, (y2 - y1) * scale);
     pen.setLineDash([]);
     this.note.textContent = `${sensor}, ${scene.t.toFixed(1)} s. ${picture ? "" : "The log has no image: lidar returns in its place. "}` +
@@ -66,8 +68,8 @@ export class CameraView {
     };
   }
 
-  paintPoints(pen, to, scale, k) {
-    const p = blockOf(this.run, k)?.points, ego = this.run.scenes[k].ego;
+  paintPoints(pen, to, scale, scene) {
+    const p = blockOf(scene)?.points, { ego } = scene;
     for (let i = 0; p && i < p.n; ++i) {
       const at = to(ego[0] + p.x[i] / 100, ego[1] + p.y[i] / 100, ego[2] + p.z[i] / 100);
       if (!at) continue;
@@ -76,9 +78,10 @@ export class CameraView {
     }
   }
 
-  paintTracks(pen, to, scale, k, id) {
-    for (const [o, i] of this.run.present[k]) {
-      const kind = this.run.classes[o.c[i]];
+  paintTracks(pen, to, scale, [run, k, of], id) {
+    pen.setLineDash(of ? [6, 4] : []);
+    for (const [o, i] of run.here(k)) {
+      const kind = run.classes[o.c[i]];
       if (kind.muted && o.id !== id) continue;
       const [x, y, z, l, w, h, , , yaw] = o.row[i];
       const c = corners(x, y, z, l, w, h, yaw).map((p) => to(...p));

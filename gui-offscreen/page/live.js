@@ -1,8 +1,25 @@
 // A run that goes on: its scenes come over a WebSocket; the last minute is kept.
+import { Course, unpacked } from "./decode.js";
 import { Viewer } from "./viewer.js";
 import { Weather } from "./weather.js";
 
 const KEPT = 60, KEPT_IN_PAUSE = 120, OFTEN = 1, MOST_EVENTS = 200;  // [s], [s], [s] between charts, rows
+
+// The scenes that are kept, each with its own block of returns.
+class LiveRun extends Course {
+  constructor() {
+    super();
+    Object.assign(this, { classes: [], events: [], layers: [] });
+  }
+  at(k) { return this.scenes[k]; }
+  here(k) { return this.present[k]; }
+  has(id) { return this.byId.has(id); }
+  life(id) { return this.byId.get(id) ?? null; }
+  middleOf(id) {
+    const { k } = this.byId.get(id);
+    return k[k.length >> 1];
+  }
+}
 
 export class LiveViewer extends Viewer {
   constructor(host) {
@@ -21,7 +38,7 @@ export class LiveViewer extends Viewer {
   }
 
   clear() {
-    Object.assign(this.run ??= { classes: [], events: [] }, { scenes: [], objects: [], times: [], present: [], byId: new Map(), weather: [] });
+    Object.assign(this.run ??= new LiveRun(), { scenes: [], objects: [], times: [], present: [], byId: new Map(), weather: [] });
     this.k = 0;
   }
 
@@ -32,7 +49,7 @@ export class LiveViewer extends Viewer {
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }) => (typeof data === "string" ? this.take(JSON.parse(data)) : this.takeScene(data));
     socket.onclose = () => {
-      this.say(this.ended ? "The run has ended." : "No connection; trying again.");
+      this.tell(this.ended ? "The run has ended." : "No connection; trying again.");
       if (this.ended) return;
       setTimeout(() => this.connect(), this.wait);
       this.wait = Math.min(2 * this.wait, 10000);
@@ -47,9 +64,8 @@ export class LiveViewer extends Viewer {
   }
 
   takeScene(data) {
-    const length = new DataView(data).getUint32(0, true);
-    const message = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
-    message.scene.buffer = data.slice(4 + length);
+    const [message, block] = unpacked(data);
+    message.scene.buffer = block;
     if (this.number !== null) this.left += message.n - this.number - 1;
     this.number = message.n;
     this.wait = 1000;
@@ -69,7 +85,6 @@ export class LiveViewer extends Viewer {
     this.note(this.host.querySelector(".note"));
     this.host.querySelector(".camera").hidden = true;
     this.slider.addEventListener("input", () => this.play(false));
-    this.host.dataset.ready = "yes";
     this.ready();
     this.ready = null;
   }
@@ -116,8 +131,7 @@ export class LiveViewer extends Viewer {
       for (const column of [w.t, w.doubted, ...w.p, ...w.rain, ...w.snow, ...w.visibility]) column.splice(0, gone);
     }
     this.k = Math.max(this.k - n, 0);
-    if (this.id !== null && !run.byId.has(this.id)) this.choose(null);
-    else if (this.id !== null) this.panel.show(this.id);
+    if (this.id !== null) this.choose(this.id);
   }
 
   draw() {
@@ -127,20 +141,20 @@ export class LiveViewer extends Viewer {
     const often = performance.now() - this.drawn > OFTEN * 1000;
     if (often) this.drawn = performance.now();
     if (this.playing) {
-      if (often && this.id !== null) this.panel.show(this.id);
+      if (often && this.id !== null) this.panel.show(this.run, this.id, this.k, "");
       this.seek(run.times.at(-1));
       if (often && this.weather) this.weather.draw(this.weather.shown);
     } else {
       this.slider.value = this.k;
     }
     const span = this.arrivals.at(-1) - this.arrivals[0];
-    this.say([this.playing ? "Live" : "In pause", this.run.simulated ? "simulated" : "",
+    this.tell([this.playing ? "Live" : "In pause", this.run.simulated ? "simulated" : "",
       span > 0 ? `${((this.arrivals.length - 1) / span * 1000).toFixed(1)} scenes a second` : "",
       this.latency === undefined ? "" : `${(this.latency * 1000).toFixed(0)} ms from the sensor to the scene`,
       this.left ? `${this.left} scenes left out: newer ones came before these were sent` : ""].filter(Boolean).join(", ") + ".");
   }
 
-  say(text) {
+  tell(text) {
     if (this.status && this.status.textContent !== text) this.status.textContent = text;
   }
 

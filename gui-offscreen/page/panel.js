@@ -1,5 +1,6 @@
 // What is known of one object: class over time, speed, existence, sensors, changes.
 import uPlot from "uplot";
+import * as colors from "./colors.js";
 
 const SENSOR = { L: "lidar", C: "camera", R: "radar" };
 const el = (tag, text, name) => {
@@ -26,17 +27,18 @@ export function changesOf(run, o) {
 // A line at time t in a chart.
 export function markAt(u, t) {
   const x = u.valToPos(t, "x", true);
-  u.ctx.fillStyle = "#141414";
+  u.ctx.fillStyle = colors.css(colors.look.ink);
   if (x >= u.bbox.left && x <= u.bbox.left + u.bbox.width) u.ctx.fillRect(x - 1, u.bbox.top, 2, u.bbox.height);
 }
 
 export class Panel {
-  constructor(host, run, seek, choose) {
-    Object.assign(this, { host, run, seek, choose });
+  constructor(host, seek) {
+    Object.assign(this, { host, seek, object: null });
   }
 
-  show(id) {
-    this.object = this.run.byId.get(id) ?? null;
+  // Object `id` of a run around scene k; name: of the run, if there are two.
+  show(run, id, k, name) {
+    Object.assign(this, { run, name, object: id === null ? null : run.life(id, k) });
     this.host.replaceChildren();
     this.charts = [];
     if (!this.object) {
@@ -47,7 +49,10 @@ export class Panel {
     this.title = el("h3");
     this.facts = el("dl");
     this.bars = el("canvas", undefined, "bars");
-    this.host.append(this.title, this.facts, el("h4", "Class over time"), this.bars, this.sensorKey());
+    this.host.append(this.title, this.facts);
+    this.addErrors();
+    if (this.object.cut) this.host.append(el("p", `The charts show ${this.from().toFixed(0)} to ${(this.from() + this.span()).toFixed(0)} s; there is more of it.`, "hint"));
+    this.host.append(el("h4", "Class over time"), this.bars, this.sensorKey());
     this.bars.addEventListener("click", (e) => this.seek(this.from() + e.offsetX / this.bars.clientWidth * this.span()));
     this.addChart("Speed [km/h]", this.object.row.map((r) => Math.hypot(r[6], r[7]) * 3.6), "#0072b2");
     this.addChart("Existence", this.object.row.map((r) => r[9]), "#009e73", [0, 1.02]);
@@ -60,6 +65,40 @@ export class Panel {
       list.append(item);
     }
     this.host.append(list);
+  }
+
+  // Whether scene k is in another part of the object's course than is shown.
+  beyond(k) {
+    if (!this.object?.cut) return false;
+    const [first, last] = this.object.span, n = Math.min(Math.max(this.run.partOf(k), first), last);
+    return n < this.object.parts[0] || n > this.object.parts[1];
+  }
+
+  // Errors against the truth: those of perception-evaluate, over the instants at which the object was matched.
+  addErrors() {
+    if (!this.run.judged) return;
+    const { err } = this.object, matched = err.filter(Boolean), of = (i) => matched.map((e) => e[i]).filter((v) => v !== null);
+    this.host.append(el("h4", "Against the truth"));
+    if (!matched.length) {
+      this.host.append(el("p", "No object of the truth was matched to it at an instant that is judged.", "hint"));
+      return;
+    }
+    const rms = (i) => Math.sqrt(of(i).reduce((sum, v) => sum + v * v, 0) / of(i).length), right = of(4).filter(Boolean).length;
+    const ids = [...new Set(of(0))], facts = [["truth", `${ids.length > 1 ? "objects" : "object"} ${ids.join(", ")}; ${matched.length} of ${err.length} instants`],
+      ["position", `${rms(1).toFixed(2)} m rms`], ["speed", of(2).length ? `${(rms(2) * 3.6).toFixed(1)} km/h rms` : "not in the truth"],
+      ["heading", of(3).length ? `${(rms(3) * 180 / Math.PI).toFixed(0)}° rms` : "not known of both"], ["class", `right at ${Math.round(100 * right / matched.length)} % of them`]];
+    const table = el("dl");
+    table.append(...facts.flatMap(([a, b]) => [el("dt", a), el("dd", b)]));
+    this.host.append(table);
+    this.addChart("Error of position [m]", err.map((e) => e?.[1] ?? null), "#d55e00", (u, low, high) => [0, Math.max(high * 1.1, 0.5)]);
+  }
+
+  errorAt(i) {
+    const e = this.object.err[i];
+    if (!e) return "not matched at this instant";
+    const signed = (v, places) => (v < 0 ? "−" : "+") + Math.abs(v).toFixed(places);
+    return [`${e[1].toFixed(2)} m off`, e[2] === null ? "" : `speed ${signed(e[2] * 3.6, 1)} km/h`, e[3] === null ? "" : `heading ${signed(e[3] * 180 / Math.PI, 0)}°`,
+      e[4] ? "class right" : "class wrong"].filter(Boolean).join(", ");
   }
 
   from() { return this.run.times[this.object.k[0]]; }
@@ -82,8 +121,8 @@ export class Panel {
     const chart = new uPlot({
       width: Math.max(this.host.clientWidth - 4, 200), height: 88, legend: { show: false }, cursor: { y: false, drag: { x: false } },
       scales: { x: { time: false }, y: range ? { range } : { range: (u, a, b) => [Math.min(0, a), Math.max(b * 1.1, 5)] } },
-      axes: [{ size: 24, values: (u, v) => v.map((t) => t + " s"), grid: { stroke: "#eee" } }, { size: 40, grid: { stroke: "#eee" } }],
-      series: [{}, { stroke: color, width: 2, spanGaps: false, points: { show: times.length < 3 } }],
+      axes: colors.axes(40),
+      series: [{}, { stroke: colors.css(colors.line(colors.parse(color))), width: 2, spanGaps: false, points: { show: times.length < 3 } }],
       hooks: { draw: [(u) => this.t !== undefined && markAt(u, this.t)] },
     }, [times, values], host);
     chart.over.addEventListener("click", (e) => this.seek(chart.posToVal(e.offsetX, "x")));
@@ -98,8 +137,8 @@ export class Panel {
     let i = o.k.findIndex((n) => n > k) - 1;
     if (i === -2) i = o.k.length - 1;
     const here = i >= 0 && o.k[i] === k, j = Math.max(i, 0);
-    const kind = this.run.classes[o.c[j]], p = o.p[j][o.c[j]] ?? 0, ego = this.run.scenes[o.k[j]].ego;
-    this.title.replaceChildren(el("i"), `${o.id} ${o.sure[j] ? "" : "probably "}${kind.name}, ${Math.round(100 * p)} %`);
+    const kind = this.run.classes[o.c[j]], p = o.p[j][o.c[j]] ?? 0, { ego } = this.run.at(o.k[j]);
+    this.title.replaceChildren(el("i"), `${this.name}${o.id} ${o.sure[j] ? "" : "probably "}${kind.name}, ${Math.round(100 * p)} %`);
     this.title.firstChild.style.background = kind.color;
     const [x, y, , l, w, h, vx, vy, , existence, sd] = o.row[j];
     const dx = x - ego[0], dy = y - ego[1], c = Math.cos(ego[3]), s = Math.sin(ego[3]);
@@ -112,6 +151,7 @@ export class Panel {
       ["existence", existence.toFixed(3)],
       ["measured by", this.sensorsAt(t)],
     ];
+    if (this.run.judged && here) facts.push(["against truth", this.errorAt(i)]);
     this.facts.replaceChildren(...facts.flatMap(([a, b]) => [el("dt", a), el("dd", b)]));
     this.drawBars(t);
     this.charts.forEach((chart) => chart.status && chart.redraw(false));
@@ -152,14 +192,14 @@ export class Panel {
     pen.font = "11px system-ui, sans-serif";
     modalities.forEach((m, j) => {
       const y = stack + 4 + j * row;
-      pen.fillStyle = "#444";
+      pen.fillStyle = colors.css(colors.line([68, 68, 68]));
       for (const hit of o.hits[m]) if (hit >= this.from()) pen.fillRect(x(hit), y + 1, 1.5, row - 5);
-      pen.fillStyle = "#ffffffd0";
+      pen.fillStyle = colors.hex(colors.look.paper) + "d0";
       pen.fillRect(0, y, 44, row - 2);
-      pen.fillStyle = "#141414";
+      pen.fillStyle = colors.css(colors.look.ink);
       pen.fillText(SENSOR[m] ?? m, 1, y + 9);
     });
-    pen.fillStyle = "#141414";
+    pen.fillStyle = colors.css(colors.look.ink);
     pen.fillRect(x(t) - 1, 0, 2, height);
   }
 }

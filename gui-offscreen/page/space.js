@@ -5,29 +5,18 @@ import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 import * as colors from "./colors.js";
+import { corners, EDGES, FACES } from "./boxes.js";
 import { blockOf } from "./decode.js";
 
 THREE.ColorManagement.enabled = false;  // colors are meant as they are written
 
-const EDGES = [0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4, 0, 4, 1, 5, 2, 6, 3, 7];
-const FACES = [0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6, 0, 5, 1, 0, 4, 5, 1, 6, 2, 1, 5, 6, 2, 7, 3, 2, 6, 7, 3, 4, 0, 3, 7, 4];
-
-export function corners(x, y, z, l, w, h, yaw) {
-  const c = Math.cos(yaw), s = Math.sin(yaw);
-  return (
-    [0, 1].flatMap((up) => [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([a, b]) => [
-      x + c * a * l / 2 - s * b * w / 2, y + s * a * l / 2 + c * b * w / 2, z + up * h])));
-}
-
 export class Space {
-  constructor(host, run, layers) {
-    this.run = run;
+  constructor(host, layers) {
     this.layers = layers;
     this.host = host;
     this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
-    this.renderer.setClearColor(0xffffff);
     host.append(this.renderer.domElement);
     this.labels = document.createElement("canvas");
     this.labels.className = "labels";
@@ -42,6 +31,7 @@ export class Space {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
     this.controls.addEventListener("change", () => this.draw());
+    this.scene.add((this.fixed = new THREE.Group()));
     this.addFixed();
     this.material = new THREE.PointsMaterial({ size: 2.2, sizeAttenuation: false, vertexColors: true });
     this.lineMaterials = [];
@@ -50,7 +40,10 @@ export class Space {
     this.resize();
   }
 
+  // Paper, rings and the vehicle in the page's look.
   addFixed() {
+    const { look } = colors, plain = (color, Kind = THREE.MeshBasicMaterial) => new Kind({ color: new THREE.Color(colors.css(color)) });
+    this.renderer.setClearColor(new THREE.Color(colors.css(look.paper)));
     const ring = [];
     for (let r = 10; r <= 80; r += 10) {
       for (let i = 0; i < 96; ++i) {
@@ -59,12 +52,18 @@ export class Space {
     }
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(ring, 3));
-    this.scene.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: 0xdadada })));
-    const ego = new THREE.Mesh(new THREE.BoxGeometry(4.4, 1.8, 1.0), new THREE.MeshBasicMaterial({ color: 0x3c3c3c }));
+    const rings = new THREE.LineSegments(geometry, plain(look.ring, THREE.LineBasicMaterial));
+    const ego = new THREE.Mesh(new THREE.BoxGeometry(4.4, 1.8, 1.0), plain(look.vehicle));
     ego.position.set(0.8, 0, 0.5);
-    const roof = new THREE.Mesh(new THREE.BoxGeometry(2.2, 1.5, 0.5), new THREE.MeshBasicMaterial({ color: 0x6c6c6c }));
+    const roof = new THREE.Mesh(new THREE.BoxGeometry(2.2, 1.5, 0.5), plain(look.roof));
     roof.position.set(0.5, 0, 1.25);
-    this.scene.add(ego, roof);
+    this.fixed.add(rings, ego, roof);
+  }
+
+  recolor() {
+    for (const { geometry, material } of this.fixed.children) geometry.dispose(), material.dispose();
+    this.fixed.clear();
+    this.addFixed();
   }
 
   look(from) {
@@ -120,33 +119,31 @@ export class Space {
     this.world.add(lines);
   }
 
-  // Shows scene k; id: the object that is chosen, or null.
-  show(k, id) {
-    this.k = k;
-    this.id = id;
+  // Shows scene k of a run, the objects of the runs `tracked`; id: the object of run `of` that is chosen, or null.
+  show(run, k, tracked, id, of) {
+    Object.assign(this, { id, of });
     this.clear();
-    const s = this.run.scenes[k], ego = s.ego, on = this.layers;
+    const s = run.at(k), ego = s.ego, on = this.layers, sensed = run.sensed(k), block = blockOf(sensed);
     this.world.position.set(-ego[0], -ego[1], -ego[2]);
     this.turned.rotation.z = -ego[3];
     this.names = [];
-    const block = blockOf(this.run, k);
-    if (block && on.points) this.addPoints(block.points, ego);
-    if (block && on.grid) this.addCells(block.cells, ego);
-    if (on.free && s.corridor) this.addCorridor(s, ego);
+    if (block && on.points) this.addPoints(block.points, sensed.ego);
+    if (block && on.grid) this.addCells(block.cells, sensed.ego);
+    if (on.free && sensed?.corridor) this.addCorridor(sensed, sensed.ego);
     if (on.truth) this.addTruth(s.truth ?? []);
-    if (on.measurements) this.addMeasurements(s);
-    if (on.radar) this.addRadar(s.radar ?? []);
-    this.addTracks(k);
+    if (on.measurements) this.addMeasurements(sensed ?? s);
+    if (on.radar) this.addRadar(sensed?.radar ?? []);
+    this.addTracks(tracked);
     this.draw();
   }
 
   addPoints(p, ego) {
-    const place = new Float32Array(3 * p.n), shade = new Uint8Array(3 * p.n);
+    const phantom = colors.line(colors.PHANTOM), place = new Float32Array(3 * p.n), shade = new Uint8Array(3 * p.n);
     for (let i = 0; i < p.n; ++i) {
       place[3 * i] = ego[0] + p.x[i] / 100;
       place[3 * i + 1] = ego[1] + p.y[i] / 100;
       place[3 * i + 2] = ego[2] + p.z[i] / 100;
-      const c = this.layers.trust && p.b[i] < 128 ? colors.PHANTOM : colors.HEIGHTS[p.a[i]];
+      const c = this.layers.trust && p.b[i] < 128 ? phantom : colors.HEIGHTS[p.a[i]];
       shade.set(c, 3 * i);
     }
     const geometry = new THREE.BufferGeometry();
@@ -173,7 +170,7 @@ export class Space {
 
   addCorridor(s, ego) {
     const [curvature, width, from, to, blocked] = s.corridor;
-    const c = (s.path?.[3] ? colors.STOP : colors.FREE).map((v) => v / 255);
+    const c = this.shade(colors.line(s.path?.[3] ? colors.STOP : colors.FREE));
     const at = (u, d) => {
       const a = curvature * u, r = Math.abs(curvature) < 1e-6;
       const x = r ? u : Math.sin(a) / curvature, y = r ? 0 : (1 - Math.cos(a)) / curvature;
@@ -189,6 +186,7 @@ export class Space {
     this.lines(place, this.repeat(c, place.length), 2.5);
   }
 
+  shade(color) { return color.map((v) => v / 255); }
   repeat(color, length) {
     const shades = new Float32Array(length);
     for (let i = 0; i < length; ++i) shades[i] = color[i % 3];
@@ -201,7 +199,7 @@ export class Space {
       const c = corners(x, y, z, l, w, h, yaw);
       for (const e of EDGES) place.push(...c[e]);
     }
-    this.lines(place, this.repeat([0, 0, 0], place.length), 1.1);
+    this.lines(place, this.repeat(this.shade(colors.look.ink), place.length), 1.1);
   }
 
   addMeasurements(s) {
@@ -213,7 +211,7 @@ export class Space {
         place.push(p[0], p[1], z, q[0], q[1], z);
       });
     }
-    this.lines(place, this.repeat(colors.MEASUREMENT.map((v) => v / 255), place.length), 1.5);
+    this.lines(place, this.repeat(this.shade(colors.line(colors.MEASUREMENT)), place.length), 1.5);
   }
 
   addRadar(radar) {
@@ -221,36 +219,39 @@ export class Space {
     for (const [x, y, z, vx, vy] of radar) {
       place.push(x, y, z - 0.3, x, y, z + 0.3, x, y - 0.3, z, x, y + 0.3, z, x, y, z, x + vx, y + vy, z);
     }
-    this.lines(place, this.repeat(colors.RADAR.map((v) => v / 255), place.length), 1.8);
+    this.lines(place, this.repeat(this.shade(colors.line(colors.RADAR)), place.length), 1.8);
   }
 
-  addTracks(k) {
-    const on = this.layers, edges = [], shades = [], chosen = [], faces = [], tint = [], trail = [], hue = [];
+  addTracks(tracked) {
+    const on = this.layers, edges = [[], []], shades = [[], []], chosen = [], faces = [], tint = [], trail = [], hue = [];
     this.boxes = [];
-    for (const [o, i] of this.run.present[k]) {
-      const kind = this.run.classes[o.c[i]];
-      const selected = o.id === this.id;
-      if (!selected && !(kind.muted ? on.standing : on.tracks)) continue;
-      const [x, y, z, l, w, h, vx, vy, yaw] = o.row[i];
-      const c = colors.parse(kind.color).map((v) => v / 255);
-      const box = corners(x, y, z, l, w, Math.max(h, 0.3), yaw);
-      const lines = selected ? chosen : edges;
-      for (const e of EDGES) lines.push(...box[e]);
-      if (!selected) for (let e = 0; e < EDGES.length; ++e) shades.push(...c);
-      for (const f of FACES) faces.push(...box[f]);
-      const alpha = selected ? 0.4 : o.sure[i] ? 0.22 : 0.07;
-      for (let f = 0; f < FACES.length; ++f) tint.push(...c, alpha);
-      if (Math.hypot(vx, vy) > 0.5 && !kind.muted) {
-        trail.push(x, y, z + 0.1, x + vx, y + vy, z + 0.1);
-        hue.push(...c, ...c);
+    for (const [run, k, of] of tracked) {
+      for (const [o, i] of run.here(k)) {
+        const kind = run.classes[o.c[i]];
+        const selected = o.id === this.id && of === this.of;
+        if (!selected && !(kind.muted ? on.standing : on.tracks)) continue;
+        const [x, y, z, l, w, h, vx, vy, yaw] = o.row[i], color = colors.parse(kind.color), c = this.shade(colors.line(color));
+        const box = corners(x, y, z, l, w, Math.max(h, 0.3), yaw);
+        const lines = selected ? chosen : edges[of];
+        for (const e of EDGES) lines.push(...box[e]);
+        if (!selected) for (let e = 0; e < EDGES.length; ++e) shades[of].push(...c);
+        for (const f of FACES) faces.push(...box[f]);
+        const alpha = selected ? 0.4 : o.sure[i] ? 0.22 : 0.07;
+        for (let f = 0; f < FACES.length; ++f) tint.push(...c, alpha);
+        if (Math.hypot(vx, vy) > 0.5 && !kind.muted) {
+          trail.push(x, y, z + 0.1, x + vx, y + vy, z + 0.1);
+          hue.push(...c, ...c);
+        }
+        if (on.trails && !kind.muted) this.addTrail(run.trail(o, i, 2), c, trail, hue);
+        this.boxes.push([o.id, of]);
+        const name = `${tracked.length > 1 ? "AB"[of] + " " : ""}${o.id} ${kind.name}${o.sure[i] ? "" : "?"}`;
+        if (!kind.muted || selected) this.names.push([x, y, z + h, name, colors.css(colors.text(color)), selected]);
       }
-      if (on.trails && !kind.muted) this.addTrail(o, i, c, trail, hue);
-      this.boxes.push(o.id);
-      if (!kind.muted || selected) this.names.push([x, y, z + h, `${o.id} ${kind.name}${o.sure[i] ? "" : "?"}`, kind.color, selected]);
     }
-    this.lines(edges, shades, 2);
+    this.lines(edges[0], shades[0], 2);
+    this.lines(edges[1], shades[1], 2, { dashed: true, dashSize: 0.3, gapSize: 0.2 });
     this.lines(trail, hue, 2.5);
-    this.lines(chosen, this.repeat([0, 0, 0], chosen.length), 4);
+    this.lines(chosen, this.repeat(this.shade(colors.look.ink), chosen.length), 4);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(faces, 3));
     geometry.setAttribute("color", new THREE.Float32BufferAttribute(tint, 4));
@@ -260,16 +261,15 @@ export class Space {
     this.world.add(this.faces);
   }
 
-  addTrail(o, i, c, trail, hue) {
-    const now = this.run.times[o.k[i]];
-    for (let j = i; j > 0 && now - this.run.times[o.k[j - 1]] <= 2; --j) {
-      const a = o.row[j], b = o.row[j - 1];
+  addTrail(rows, c, trail, hue) {
+    for (let j = 1; j < rows.length; ++j) {
+      const a = rows[j - 1], b = rows[j];
       trail.push(a[0], a[1], a[2] + 0.1, b[0], b[1], b[2] + 0.1);
       hue.push(...c, ...c);
     }
   }
 
-  // The object under a place of the page, or null; nearby ones too, for fingers.
+  // The object under a place of the page as [id, place of its run], or null; nearby ones too, for fingers.
   pick(clientX, clientY) {
     if (!this.faces || this.boxes.length === 0) return null;
     const box = this.renderer.domElement.getBoundingClientRect(), ray = new THREE.Raycaster();
@@ -299,7 +299,7 @@ export class Space {
     this.scene.updateMatrixWorld();
     pen.textAlign = "center";
     pen.lineJoin = "round";
-    pen.strokeStyle = "#fff";
+    pen.strokeStyle = colors.css(colors.look.paper);
     const taken = [];
     const order = [...this.names].sort((a, b) => b[5] - a[5]);
     for (const [x, y, z, text, color, selected] of order) {
@@ -311,7 +311,7 @@ export class Space {
       taken.push(spot);
       pen.lineWidth = 4;
       pen.strokeText(text, at[0], at[1] - 6);
-      pen.fillStyle = selected ? "#000" : color;
+      pen.fillStyle = selected ? colors.css(colors.look.ink) : color;
       pen.fillText(text, at[0], at[1] - 6);
     }
   }

@@ -39,8 +39,8 @@ export function timeline(viewer) {
     const box = chart.getBoundingClientRect();
     const x = (event.clientX - box.left) / box.width * chart.viewBox.baseVal.width;
     viewer.seek(Math.max(0, (x - left) / width * end));
-    const id = event.target.dataset.id;
-    if (id) viewer.choose(+id);
+    const { id, of } = event.target.dataset;
+    if (id) viewer.choose(+id, false, of === "b" ? 1 : 0);
     if (film) film.currentTime = Math.max(0, viewer.t - chart.dataset.start);
   });
 }
@@ -48,7 +48,7 @@ export function timeline(viewer) {
 export function objectRows(viewer) {
   for (const row of document.querySelectorAll("tr[data-id]")) {
     row.addEventListener("click", () => {
-      viewer.choose(+row.dataset.id, true);
+      viewer.choose(+row.dataset.id, true, row.dataset.of === "b" ? 1 : 0);
       viewer.host.scrollIntoView({ block: "nearest" });
     });
   }
@@ -56,7 +56,7 @@ export function objectRows(viewer) {
 
 export function events(viewer, host) {
   const all = viewer.run.events;
-  if (!all.length) return;
+  if (!all?.length) return;
   const details = document.createElement("details"), kinds = [...new Set(all.map((e) => e.kind))].sort();
   details.innerHTML = "<summary></summary><select aria-label=\"kind of event\"><option value=\"\">all kinds</option></select><table></table>";
   details.firstChild.textContent = `${all.length} events: tracks born and lost, sensors, data dropped`;
@@ -71,7 +71,7 @@ export function events(viewer, host) {
       if (e.severity === "warning") row.className = "warning";
       row.addEventListener("click", () => {
         if (Number.isFinite(e.t)) viewer.seek(e.t);
-        if (e.fields?.id && viewer.run.byId.has(e.fields.id)) viewer.choose(e.fields.id);
+        if (e.fields?.id && viewer.run.has(e.fields.id)) viewer.choose(e.fields.id);
       });
     }
     sortable(table);

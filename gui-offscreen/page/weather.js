@@ -1,8 +1,10 @@
 // The weather over time: probabilities, rates, visibility, what was doubted; a lidar at a time.
 import uPlot from "uplot";
+import * as colors from "./colors.js";
 import { markAt } from "./panel.js";
 
 const TYPES = [["clear", "#f3e6a8"], ["rain", "#0072b2"], ["snow", "#8fd0f2"], ["fog", "#9a9a9a"]];
+const PHANTOM = () => colors.hex(colors.line([192, 32, 144]));
 const tag = (name, text) => Object.assign(document.createElement(name), text === undefined ? {} : { textContent: text });
 
 // What a chart shows of a lidar: its columns, series; null where there is nothing to see.
@@ -20,15 +22,15 @@ const CHARTS = [
     const parts = [];
     [["rain", 1], ["snow", 2]].forEach(([name, i]) => {
       const likely = w.p[i].map((p) => p >= 0.5);
-      if (likely.some(Boolean)) parts.push([TYPES[i][1], w[name].map((column) => column.map((v, k) => (likely[k] ? v : null)))]);
+      if (likely.some(Boolean)) parts.push([colors.hex(colors.line(colors.parse(TYPES[i][1]))), w[name].map((column) => column.map((v, k) => (likely[k] ? v : null)))]);
     });
     return parts.length ? interval(w.t, parts, (u, low, high) => [0, Math.max(high, 0.5) * 1.1]) : null;
   } },
-  { title: "Visibility [m], with its interval", log: true, of: (w) => interval(w.t, [["#444444", w.visibility]]) },
-  { title: "Returns doubted [%]", of: (w) => ({ t: w.t, columns: [w.doubted.map((d) => 100 * d)], series: [{ stroke: "#c02090", width: 1.5 }],
+  { title: "Visibility [m], with its interval", log: true, of: (w) => interval(w.t, [[colors.hex(colors.line([68, 68, 68])), w.visibility]]) },
+  { title: "Returns doubted [%]", of: (w) => ({ t: w.t, columns: [w.doubted.map((d) => 100 * d)], series: [{ stroke: PHANTOM(), width: 1.5 }],
     range: (u, low, high) => [0, Math.max(high, 1) * 1.1] }) },
   { title: "Clusters a scan, and those judged phantoms (spray, snow, rain)", of: (w) => w.ledger?.clusters.some((n) => n !== null)
-    ? { t: w.ledger.t, columns: [w.ledger.clusters, w.ledger.phantoms], series: [{ stroke: "#777", width: 1 }, { stroke: "#c02090", fill: "#c0209040", width: 1.5 }],
+    ? { t: w.ledger.t, columns: [w.ledger.clusters, w.ledger.phantoms], series: [{ stroke: "#808080", width: 1 }, { stroke: PHANTOM(), fill: "#c0209040", width: 1.5 }],
       range: (u, low, high) => [0, Math.max(high, 5) * 1.1] } : null },
 ];
 
@@ -88,7 +90,7 @@ export class Weather {
       const plot = new uPlot({
         width: Math.max(this.host.clientWidth - 4, 240), height: 130, legend: { show: false }, cursor: { y: false, drag: { x: false } },
         scales: { x: { time: false, range: [begin, end] }, y: chart.log ? { distr: 3 } : { range: shown.range } },
-        axes: [{ size: 24, values: (u, v) => v.map((t) => t + " s"), grid: { stroke: "#eee" } }, { size: 62, grid: { stroke: "#eee" } }],
+        axes: colors.axes(62),
         series: [{}, ...shown.series.map((s) => ({ points: { show: false }, spanGaps: false, ...s }))],
         bands: shown.bands ?? [],
         hooks: { draw: [(u) => markAt(u, this.viewer.t)] },

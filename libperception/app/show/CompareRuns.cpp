@@ -80,7 +80,9 @@ RunComparison readComparison(const std::string& dir_a, const std::string& dir_b)
   if (!fs::exists(ini_a)) comparison.without_ini.push_back(dir_a);
   if (!fs::exists(ini_b)) comparison.without_ini.push_back(dir_b);
   if (comparison.without_ini.empty()) comparison.keys = keysThatDiffer(ini_a, ini_b);
-  const TrackedRun a = readTrackedRun(dir_a), b = readTrackedRun(dir_b);
+  comparison.a.tracked = readTrackedRun(dir_a);
+  comparison.b.tracked = readTrackedRun(dir_b);
+  const TrackedRun &a = comparison.a.tracked, &b = comparison.b.tracked;
   comparison.difference = compareRuns(a, b);
   if (comparison.difference.common == 0 && !a.scenes.empty() && !b.scenes.empty())
     throw DataError(fmt::format("{} and {}: no instant in common", dir_a, dir_b));

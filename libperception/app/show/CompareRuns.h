@@ -5,6 +5,7 @@
 
 #include "libperception/evaluation/without_truth/RunDifference.h"
 #include "libperception/scene/files/RunRecord.h"
+#include "libperception/scene/files/TrackedRun.h"
 
 namespace perception {
 
@@ -12,6 +13,7 @@ namespace perception {
 struct ComparedRun {
   std::string dir;  ///< as given
   RunRecord record;
+  TrackedRun tracked;
   nlohmann::json evaluation;  ///< of this run in evaluation/report.json, or null
 };
 
@@ -29,6 +31,7 @@ struct RunComparison {
   RunDifference difference;
   std::vector<std::string> without_origin;  ///< evaluations that do not say of which run they are
   std::string film;                         ///< bytes of an MP4 of both, or empty
+  std::string data;  ///< RunParts::html("a") and ("b"), or empty: without the view of both
 };
 
 /// Reads the folders of two runs. Throws DataError where a file is missing or wrong, and for runs

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "gui-offscreen/html/HtmlText.h"
+#include "gui-offscreen/html/PageBundle.h"
 #include "gui-offscreen/html/ReportStyle.h"
 #include "libperception/app/show/ComparisonTimeline.h"
 #include "libperception/pipeline/output/FinishedRun.h"
@@ -15,14 +16,12 @@ namespace perception {
 namespace {
 
 constexpr char kStyle[] = R"css(
-svg { cursor: default; }
 td { vertical-align: top; }
 .sides td { max-width: 460px; overflow-wrap: anywhere; }
 .sides td:first-child { overflow-wrap: normal; }
 .time { white-space: nowrap; }
 td.n, th.n { text-align: right; }
-td small { color: #555; }
-.gone { color: #777; }
+td small, .gone { color: var(--pale); }
 )css";
 
 /// A figure of perception-evaluate.
@@ -208,7 +207,9 @@ std::string objectsTable(const RunDifference& d) {
     const auto cell = [](const auto& value) {
       return fmt::format("<td class=\"n\">{}</td>", value);
     };
-    out += "<tr>" + identityCell(row.a, row.b, "A", "B") + identityCell(row.b, row.a, "B", "A") +
+    out += fmt::format("<tr data-id=\"{}\" data-of=\"{}\">", row.a ? row.a->id : row.b->id,
+                       row.a ? "a" : "b") +
+           identityCell(row.a, row.b, "A", "B") + identityCell(row.b, row.a, "B", "A") +
            cell(row.apart) + classCell(d, row.a) + classCell(d, row.b) + timeCell(row.a) +
            timeCell(row.b) + cell(row.together) +
            cell(row.together > 0 ? fmt::format("{:.2f}", row.distance_rms) : "") +
@@ -265,12 +266,16 @@ std::string comparisonPage(const RunComparison& comparison) {
              "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
              "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
              "<meta name=\"perception-run\" content=\"{3}\">\n"
-             "<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n"
+             "<title>{0}</title>\n<style>{1}{4}{2}</style>\n</head>\n<body>\n"
              "<h1>{0}</h1>\n",
-             escaped(title), kReportStyle, kStyle, mark) +
-         lead(d) + filmSection(comparison) + "<h2>The runs</h2>\n" +
-         runsTable(comparison.a, comparison.b) + keysTable(comparison) + figuresTable(comparison) +
-         timelineSection(d) + objectsTable(d) + "</body>\n</html>\n";
+             escaped(title), kReportStyle, kStyle, mark, pageStyle()) +
+         lead(d) +
+         (comparison.data.empty() ? ""
+                                  : "<div id=\"viewer\" data-run=\"a\" data-other=\"b\"></div>\n") +
+         filmSection(comparison) + "<h2>The runs</h2>\n" + runsTable(comparison.a, comparison.b) +
+         keysTable(comparison) + figuresTable(comparison) + timelineSection(d) + objectsTable(d) +
+         comparison.data + fmt::format("<script>{}</script>\n", pageScript()) +
+         "</body>\n</html>\n";
 }
 
 }  // namespace perception

@@ -43,12 +43,12 @@ std::string bars(const RunDifference& d, const ComparedIdentity& identity, const
                     std::max(1.0, x(std::min(s.to, d.end)) - x(s.from)), kBar);
     const bool pale = s.other == ComparedIdentity::Other::kNoInstant;
     out += fmt::format(
-        "<g><title>{} {}: {}, {:.1f} to {:.1f} s{}</title><rect {} fill=\"{}\" "
-        "fill-opacity=\"{}\"/>",
+        "<g><title>{} {}: {}, {:.1f} to {:.1f} s{}</title><rect {} data-id=\"{}\" "
+        "data-of=\"{}\" fill=\"{}\" fill-opacity=\"{}\"/>",
         run, identity.id, spaced(d.classes[s.class_index]), s.from, s.to, meaningOf(s.other), place,
-        hexOfClass(d, s.class_index), pale ? "0.35" : "1");
+        identity.id, run[0] == 'A' ? "a" : "b", hexOfClass(d, s.class_index), pale ? "0.35" : "1");
     if (s.other == ComparedIdentity::Other::kNone)
-      out += fmt::format("<rect {} fill=\"url(#hatch)\"/>", place);
+      out += fmt::format("<rect {} fill=\"url(#hatch)\" pointer-events=\"none\"/>", place);
     out += "</g>\n";
   }
   return out;
@@ -67,9 +67,11 @@ std::string hexOfClass(const RunDifference& difference, std::size_t class_index)
 std::string comparisonTimeline(const RunDifference& d) {
   const std::size_t rows = std::min(d.rows.size(), kMostComparedRows);
   const double height = kTop + kRow * static_cast<double>(rows) + 4;
-  std::string out =
-      fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\">\n{}{}", kSpan.left + kSpan.width + kMargin,
-                  height, kHatch, timeAxis(std::max(d.end, 1e-3), kSpan, height));
+  std::string out = fmt::format(
+      "<svg id=\"timeline\" viewBox=\"0 0 {:.0f} {:.0f}\" data-left=\"{:.0f}\" "
+      "data-width=\"{:.0f}\" data-end=\"{:.3f}\">\n{}{}",
+      kSpan.left + kSpan.width + kMargin, height, kSpan.left, kSpan.width, std::max(d.end, 1e-3),
+      kHatch, timeAxis(std::max(d.end, 1e-3), kSpan, height));
   double y = kTop;
   for (std::size_t r = 0; r < rows; ++r, y += kRow) {
     const IdentityDifference& row = d.rows[r];
@@ -79,7 +81,9 @@ std::string comparisonTimeline(const RunDifference& d) {
     if (row.a) out += bars(d, *row.a, "A", y + kGap);
     if (row.b) out += bars(d, *row.b, "B", y + kGap + kBar + 1);
   }
-  return out + "</svg>\n";
+  return out +
+         fmt::format("<line id=\"now\" y1=\"{:.0f}\" y2=\"{:.0f}\" x1=\"-9\" x2=\"-9\"/>\n</svg>\n",
+                     kTop - 6, height);
 }
 
 }  // namespace perception

@@ -9,15 +9,11 @@
 #include <memory>
 #include <optional>
 
-#include "gui-offscreen/html/RunData.h"
-#include "gui-offscreen/html/RunWeather.h"
 #include "libperception/app/Programs.h"
 #include "libperception/app/show/CompareRuns.h"
 #include "libperception/app/show/ComparisonPage.h"
 #include "libperception/app/show/ResultFiles.h"
-#include "libperception/pictures/RunScenes.h"
 #include "libperception/pipeline/output/FinishedRun.h"
-#include "libperception/pipeline/output/Progress.h"
 #include "libperception/scene/files/OutputFile.h"
 #include "libperception/scene/files/RunMark.h"
 #include "libperception/sensors/observations/registerClasses.h"
@@ -76,7 +72,8 @@ void ReportApp::declare(CLI::App& cli) {
   CLI::Option* compare =
       cli.add_option(
              "--compare", compared_dirs,
-             "folders of two runs of the same log: what differs, object by object; needs -o")
+             "folders of two runs of the same log: both in one view, and what differs, object by "
+             "object; needs -o")
           ->expected(2)
           ->type_name("A B");
   cli.add_option("--film", film,
@@ -84,8 +81,7 @@ void ReportApp::declare(CLI::App& cli) {
                  "FILE made")
       ->needs(compare)
       ->type_name("FILE.mp4");
-  for (const char* option :
-       {"--run", "--input", "--config", "--set", "--print-config", "--truth", "--evaluation"}) {
+  for (const char* option : {"--run", "--config", "--set", "--print-config", "--evaluation"}) {
     compare->excludes(cli.get_option(option));
   }
 }
@@ -106,7 +102,9 @@ void ReportApp::run() {
   addEvaluation(content);
   if (const fs::path events = fs::path(run_dir) / "events.jsonl"; fs::exists(events))
     content.events = linesOf(events);
-  content.data = dataOf(tracked, content);
+  ReportSources sources = sourcesOf(tracked, content.record);
+  sources.events = content.events;
+  content.data = reportData(tracked, content.record, sources, "run");
   const std::string path = output.empty() ? (fs::path(run_dir) / "index.html").string() : output;
   out_page = htmlPage(content);
   writeFile(path, out_page);
@@ -124,45 +122,40 @@ void ReportApp::compare() {
                       ": does not say of which runs it is: make it with perception-snapshot");
     comparison.film = contentsOf(film);
   }
+  // Sensor data of the log are with the first run; both have its origin.
+  run_dir = comparison.a.dir;
+  const ComparedRun &a = comparison.a, &b = comparison.b;
+  ReportSources sources = sourcesOf(a.tracked, a.record), others;
+  others.truth = sources.truth;
+  others.origin = a.tracked.scenes.empty()
+                      ? Vector3(Vector3::Zero())
+                      : Vector3(a.tracked.scenes.front().ego.T_world_ego.translation());
+  comparison.data = reportData(a.tracked, a.record, sources, "a");
+  comparison.data += reportData(b.tracked, b.record, others, "b");
   out_page = comparisonPage(comparison);
   writeFile(output, out_page);
   fmt::print("{}\n", output);
 }
 
-std::string ReportApp::dataOf(const TrackedRun& run, const ReportContent& content) {
-  RunData data(run, content.record);
-  if (!content.events.is_null()) data.setEvents(content.events);
-  data.setWeather(weatherOf(run.dir));
+// Truth and sensor data of the log, where it is given.
+ReportSources ReportApp::sourcesOf(const TrackedRun& run, const RunRecord& record) {
+  ReportSources sources;
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the run");
-  std::optional<GroundTruth> truth;
   std::string truth_path = truth_file;
   if (truth_path.empty() && !inputs.empty()) {
     const fs::path beside = fs::path(inputs[0]).replace_extension(".truth.csv");
     if (fs::exists(beside)) truth_path = beside.string();
   }
-  if (!truth_path.empty()) truth = readGroundTruth(truth_path);
-  std::unique_ptr<SnapshotSensors> sensors;
-  if (!inputs.empty()) {
-    const std::string log = fs::path(inputs[0]).filename().string();
-    if (log != fs::path(content.record.input).filename().string()) {
-      throw DataError(fmt::format("{}: {} is a run of another log: {}", inputs[0], run_dir,
-                                  content.record.input));
-    }
-    registerPerceptionClasses();
-    sensors = std::make_unique<SnapshotSensors>(inputs[0], run, sensorParams());
+  if (!truth_path.empty()) sources.truth = readGroundTruth(truth_path);
+  if (inputs.empty()) return sources;
+  const std::string log = fs::path(inputs[0]).filename().string();
+  if (log != fs::path(record.input).filename().string()) {
+    throw DataError(
+        fmt::format("{}: {} is a run of another log: {}", inputs[0], run_dir, record.input));
   }
-  Progress progress("collecting", run.scenes.size());
-  for (std::size_t i = 0; i < run.scenes.size(); ++i) {
-    stopIfAsked();
-    SceneView view = viewOfScene(run, i, truth ? &*truth : nullptr);
-    if (sensors) {
-      sensors->advanceTo(run.scenes[i].stamp);
-      sensors->fill(view);
-    }
-    data.add(i, view);
-    progress.update(i + 1, i + 1);
-  }
-  return data.html("run");
+  registerPerceptionClasses();
+  sources.sensors = std::make_unique<SnapshotSensors>(inputs[0], run, sensorParams());
+  return sources;
 }
 
 // Of -c, else of the run's effective.ini, so that returns and measurements are those of the

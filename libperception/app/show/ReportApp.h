@@ -5,7 +5,10 @@
 
 #include "gui-offscreen/html/ReportPage.h"
 #include "libperception/app/App.h"
+#include "libperception/app/show/ReportData.h"
 #include "libperception/pictures/SnapshotSensors.h"
+#include "libperception/scene/files/RunRecord.h"
+#include "libperception/scene/files/TrackedRun.h"
 
 namespace perception {
 
@@ -35,7 +38,7 @@ class ReportApp : public App {
   void addOtherPictures(ReportContent& content) const;
   void addEvaluation(ReportContent& content);
   SnapshotSensorParams sensorParams();
-  std::string dataOf(const TrackedRun& run, const ReportContent& content);
+  ReportSources sourcesOf(const TrackedRun& run, const RunRecord& record);
 };
 
 }  // namespace perception

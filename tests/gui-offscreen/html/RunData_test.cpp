@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include "gui-offscreen/html/PageBundle.h"
-#include "gui-offscreen/html/ReportPage.h"
 
 namespace perception {
 namespace {
@@ -109,34 +108,17 @@ TEST(RunData, ReturnsTooFarForSixteenBitsAreLeftOut) {
   EXPECT_EQ(data.pointsKept(), 1u);
 }
 
-TEST(RunData, NamesCannotEndTheScript) {
+TEST(RunData, ErrorsAreColumnsOfTheirObject) {
   const TrackedRun run = twoScenes();
-  RunRecord record;
-  record.input = "</script><b>.rawlog";
-  RunData data(run, record);
-  nlohmann::json event = {{"t", 0}, {"message", "</script>"}};
-  data.setEvents(nlohmann::json::array({event}));
-  ReportContent content;
-  content.run = &run;
-  content.record = record;
-  content.data = data.html("run");
-  const std::string page = htmlPage(content);
-  EXPECT_EQ(page.find("</script><b>"), std::string::npos);
-  std::size_t open = 0, closed = 0;
-  for (std::size_t i = 0; (i = page.find("<script", i)) != std::string::npos; ++i) ++open;
-  for (std::size_t i = 0; (i = page.find("</script", i)) != std::string::npos; ++i) ++closed;
-  EXPECT_EQ(open, 2u) << "data and program";
-  EXPECT_EQ(closed, open);
-}
-
-TEST(RunData, IsTheSameForTheSameRun) {
-  const TrackedRun run = twoScenes();
-  const auto page = [&] {
-    RunData data(run, {});
-    data.add(0, returnsOn(run, 0, 100));
-    return data.html("run");
-  };
-  EXPECT_EQ(page(), page());
+  RunErrors errors(2);
+  TruthErrors& error = errors[1][7];
+  error.truth = 3;
+  error.position = 0.256;
+  error.heading = -0.5;
+  error.right_class = true;
+  RunData data(run, {});
+  data.setErrors(errors);
+  EXPECT_EQ(data.collected()["objects"][0]["err"].dump(), "[null,[3,0.26,null,-0.5,1]]");
 }
 
 TEST(Gzipped, IsReadBack) {
