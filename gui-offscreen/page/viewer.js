@@ -227,8 +227,8 @@ export class Viewer {
     const points = !seen ? "Without the log (option -i) the page has tracks alone, no sensor data."
       : kept < seen ? `Lidar returns are thinned to ${(100 * kept / seen).toPrecision(2)} % (${kept.toLocaleString("en")} of ${seen.toLocaleString("en")}) so that the page stays small${every > 1 ? `; sensor data are those of every ${every}th scene, shown until the next` : ""}.`
       : `All ${seen.toLocaleString("en")} lidar returns that the tracker used are in the page.`;
-    host.textContent = points + (this.runs.length > 1 ? " Boxes of B are dashed. Sensor data and truth are those of the log that both runs have." : "") + this.help();
+    host.textContent = points + (this.runs.length > 1 ? " Boxes of B are dashed. Sensor data and truth are those of the log that both runs have." : "") + this.help() + " The address of the page leads to this instant and object.";
   }
 
-  help() { return " Color of returns: gray ground, violet low, green 3 m and higher. The key ? shows all keys; the address of the page leads to this instant and object."; }
+  help() { return " Color of returns: gray ground, violet low, green 3 m and higher. The key ? shows all keys."; }
 }
