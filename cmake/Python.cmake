@@ -18,7 +18,7 @@ pybind11_add_module(perception_python MODULE NO_EXTRAS ${SOURCES})
 target_link_libraries(perception_python PRIVATE perception::app_track perception::app_evaluate perception::app_simulate)
 target_compile_definitions(perception_python PRIVATE PERCEPTION_VERSION="${PROJECT_VERSION}")
 target_compile_options(perception_python PRIVATE $<$<CONFIG:Release>:-O2>)
-set_source_files_properties(libperception/python/arrays/ColumnCopies.cpp PROPERTIES COMPILE_OPTIONS -O3)
+set_source_files_properties(${CMAKE_SOURCE_DIR}/libperception/python/arrays/Arrays.cpp PROPERTIES COMPILE_OPTIONS -O3)  # copies of scans
 # Names of the libraries stay within the module: another module of the process may hold the same.
 target_link_options(perception_python PRIVATE LINKER:--exclude-libs,ALL)
 target_link_libraries(perception_python PRIVATE Python::Module)
