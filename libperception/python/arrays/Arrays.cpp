@@ -95,12 +95,14 @@ void readPoints(const py::array& array, LidarCloud& cloud) {
   const auto n = static_cast<std::size_t>(array.shape(0));
   cloud.x.resize(n), cloud.y.resize(n), cloud.z.resize(n);
   if (isPacked(array)) return splitRows(static_cast<const Number*>(array.data()), n, cloud);
-  const auto* first = static_cast<const char*>(array.data());
-  for (std::size_t i = 0; i < n; ++i) {
-    const char* row = first + static_cast<py::ssize_t>(i) * down;
-    cloud.x[i] = static_cast<float>(numberAt<Number>(row));
-    cloud.y[i] = static_cast<float>(numberAt<Number>(row + right));
-    cloud.z[i] = static_cast<float>(numberAt<Number>(row + 2 * right));
+  const auto* row = static_cast<const char*>(array.data());
+  float* __restrict x = cloud.x.data();
+  float* __restrict y = cloud.y.data();
+  float* __restrict z = cloud.z.data();
+  for (std::size_t i = 0; i < n; ++i, row += down) {
+    x[i] = static_cast<float>(numberAt<Number>(row));
+    y[i] = static_cast<float>(numberAt<Number>(row + right));
+    z[i] = static_cast<float>(numberAt<Number>(row + 2 * right));
   }
 }
 
