@@ -94,7 +94,6 @@ SnapshotSensors::SnapshotSensors(const std::string& log, const TrackedRun& run,
 void SnapshotSensors::lookAhead(const std::string& log) {
   RawlogReader reader(log);
   std::optional<Stamp> first;
-  bool images = false;
   std::string chosen = params_.camera;
   while (const auto observation = reader.next()) {
     const auto frame = frameOf(*observation);
@@ -111,12 +110,12 @@ void SnapshotSensors::lookAhead(const std::string& log) {
       layers_.trust = layers_.trust || !cloud->trust.empty();
     }
     const bool image = std::holds_alternative<CameraImage>(frame->data);
-    const bool wanted = params_.camera.empty() ? !layers_.camera || (image && !images)
+    const bool wanted = params_.camera.empty() ? !layers_.camera || (image && !images_)
                                                : frame->sensor == params_.camera;
     if (!wanted) continue;
     if (const auto camera = cameraOf(*frame)) {
       layers_.camera = camera;
-      images = images || image;
+      images_ = images_ || image;
       chosen = frame->sensor;
     }
   }

@@ -47,6 +47,7 @@ class SnapshotSensors {
   void fill(SceneView& view);
 
   const ViewLayers& layers() const { return layers_; }
+  bool hasImages() const { return images_; }                 ///< of the camera that is shown
   const SafetyGrid& grid() const { return safety_.grid(); }  ///< as of the last instant
   const RawlogReader& reader() const { return reader_; }
   std::uint64_t scans() const { return scans_; }    ///< number added to the grid so far
@@ -83,6 +84,7 @@ class SnapshotSensors {
   const TrackedRun& run_;
   SnapshotSensorParams params_;
   ViewLayers layers_;
+  bool images_ = false;
   SafetyMonitor safety_;
   std::map<std::string, Lidar> lidars_;      ///< by label
   std::map<std::string, SensorFrame> last_;  ///< last frame by label; images and boxes, too

@@ -70,10 +70,10 @@ void SnapshotApp::declare(CLI::App& cli) {
       ->type_name("FILE")
       ->allow_extra_args(false);
   cli.add_option(
-         "--view", view,
-         "top (from above), driver (from behind the vehicle), camera (its image), joined by +; "
-         "both = top+driver; all = both, and the camera where the log has one")
-      ->capture_default_str();
+      "--view", view,
+      "top (from above), driver (from behind the vehicle), camera (its image), joined by "
+      "+; both = top+driver; all = both, and the camera where the log has one; default: "
+      "both, and the camera where the log has images");
   cli.add_option("--camera", sensors.camera, "label of the camera that is shown")
       ->type_name("LABEL");
   cli.add_flag("--details", details,
@@ -175,9 +175,11 @@ void SnapshotApp::run() {
     throw Error(ExitCode::kUsage, "--grid: the safety grid comes from the log's scans: -i");
   }
   if (contact > 0 && run_dirs.size() > 1) throw Error(ExitCode::kUsage, "--contact: of one run");
-  params.views = viewsNamed(view);
+  params.views = viewsNamed(view.empty() ? "both" : view);
   registerPerceptionClasses();
   readRuns();
+  if (view.empty() && shown_[0].sensors && shown_[0].sensors->hasImages())
+    params.views.push_back(ViewKind::kCamera);
   mark_ = markOfRuns(run_dirs);
   const auto camera = std::find(params.views.begin(), params.views.end(), ViewKind::kCamera);
   if (camera != params.views.end() && (!shown_[0].sensors || !shown_[0].sensors->layers().camera)) {

@@ -26,7 +26,7 @@ class SnapshotApp : public App {
   double video_from = 0, video_to = 1e9;  ///< --from, --to [s]: part of the log in the video
   std::string scene_file;                 ///< --scene: .3Dscene of the instant
   std::vector<std::string> grid_files;    ///< --grid: of the instant, format by extension
-  std::string view = "all";               ///< --view: top, driver, camera joined by +; both; all
+  std::string view;                       ///< --view: top, driver, camera joined by +; both; all
   std::vector<std::string> titles;        ///< --title: instead of the runs' names
   bool details = false;                   ///< --details: measurements, and ids of things
   SnapshotParams params;
