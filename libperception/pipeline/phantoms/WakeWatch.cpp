@@ -19,7 +19,6 @@ constexpr double kWakeMemory = 10;         // [s] of phantoms seen, as of clutte
 constexpr double kWide = 1000;             // [m^2] of wakes without a phantom, to begin with
 constexpr double kMisjudged = 0.3;         // share of phantoms that are not told by their shape
 constexpr double kLongestStep = 0.3;       // [s] between two footprints of a track
-constexpr double kGoesOn = 2;              // [s] of a vehicle whose track was lost
 constexpr double kNone = 0.05;             // phantoms remembered: fewer are none
 
 /// The vehicle of a track that has a wake; empty: it has none.
@@ -93,35 +92,17 @@ void WakeWatch::count(const MeasurementScan& scan, Seen& seen) const {
 }
 
 void WakeWatch::addVehicles(Stamp stamp, const Hypothesis& hypothesis) {
-  std::map<std::uint64_t, Driven> driving;
+  std::map<std::uint64_t, Stamp> driving;
   for (const TrackHandle& track : hypothesis.tracks) {
     auto vehicle = vehicleOf(*track, classes_, stamp);
     if (!vehicle) continue;
     const auto before = last_.find(track->id);
-    if (before != last_.end()) {
-      const double step = stamp - before->second.footprint.stamp;
-      vehicle->advanced = vehicle->speed * std::min(kLongestStep, step);
-    }
+    if (before != last_.end())
+      vehicle->advanced = vehicle->speed * std::min(kLongestStep, stamp - before->second);
     wakes_.add(*vehicle);
-    driving[track->id] = {*vehicle, stamp};
+    driving[track->id] = stamp;
   }
-  addLost(stamp, hypothesis, driving);
   last_ = std::move(driving);
-}
-
-void WakeWatch::addLost(Stamp stamp, const Hypothesis& hypothesis,
-                        std::map<std::uint64_t, Driven>& driving) {
-  for (const auto& [id, driven] : last_) {
-    const bool tracked = std::any_of(hypothesis.tracks.begin(), hypothesis.tracks.end(),
-                                     [id = id](const TrackHandle& t) { return t->id == id; });
-    if (tracked || stamp - driven.seen > kGoesOn) continue;
-    VehicleFootprint v = driven.footprint;
-    v.advanced = v.speed * (stamp - v.stamp);
-    v.center += v.advanced * v.along;
-    v.stamp = stamp;
-    wakes_.add(v);
-    driving[id] = {v, driven.seen};
-  }
 }
 
 void WakeWatch::restart() {

@@ -30,19 +30,13 @@ class WakeWatch {
     double phantoms = 0, area = 0;  ///< clusters, [m^2] of wakes; remembered
     Stamp stamp;
   };
-  /// A vehicle at its last footprint, and the last stamp at which its track told of it.
-  struct Driven {
-    VehicleFootprint footprint;
-    Stamp seen;
-  };
   void count(const MeasurementScan& scan, Seen& seen) const;
   void addVehicles(Stamp stamp, const Hypothesis& hypothesis);
-  void addLost(Stamp stamp, const Hypothesis& hypothesis, std::map<std::uint64_t, Driven>& driving);
 
   const std::vector<PipelineSetup::Sensor>& sensors_;
   const ClassTable& classes_;
-  std::vector<Seen> seen_;                ///< by sensor
-  std::map<std::uint64_t, Driven> last_;  ///< by track, also those that were lost a moment ago
+  std::vector<Seen> seen_;               ///< by sensor
+  std::map<std::uint64_t, Stamp> last_;  ///< by track: its last footprint
   WakeMap wakes_;
 };
 

@@ -74,31 +74,6 @@ TEST(WakeWatch, ASensorThatSawNoPhantomsStartsNone) {
   EXPECT_EQ(scan.wakes->density, 0);
 }
 
-TEST(WakeWatch, ALostVehicleDrivesOnForAMoment) {
-  World world;
-  for (int k = 0; k < 10; ++k)
-    world.watch.add(0, world.scanAt(0.1 * k, {}), World::carAt(0.1 * k, 20));
-  const Hypothesis nothing(TrackTable{});
-  const auto left = [&](double x, double t) {
-    const auto wakes = world.watch.at(Stamp::fromSeconds(1000 + t));
-    return wakes && wakes->hasLeft({x, 0}, Stamp::fromSeconds(1000 + t));
-  };
-  for (int k = 10; k < 20; ++k) world.watch.add(0, world.scanAt(0.1 * k, {}), nothing);
-  EXPECT_TRUE(left(30, 2)) << "it was lost at 18 m and is at 40 m";
-  for (int k = 20; k < 40; ++k) world.watch.add(0, world.scanAt(0.1 * k, {}), nothing);
-  EXPECT_FALSE(left(70, 4)) << "after two seconds there is no telling";
-}
-
-TEST(WakeWatch, AVehicleThatIsTrackedAndSlowDoesNotDriveOn) {
-  World world;
-  for (int k = 0; k < 10; ++k)
-    world.watch.add(0, world.scanAt(0.1 * k, {}), World::carAt(0.1 * k, 20));
-  for (int k = 10; k < 20; ++k) world.watch.add(0, world.scanAt(0.1 * k, {}), World::carAt(0, 0));
-  const auto wakes = world.watch.at(Stamp::fromSeconds(1002));
-  ASSERT_TRUE(wakes);
-  EXPECT_FALSE(wakes->age({30, 0}, Stamp::fromSeconds(1002)));
-}
-
 TEST(WakeWatch, ARestartForgetsTheWakes) {
   World world;
   world.after(20, {{10, 0}});
