@@ -43,6 +43,7 @@ packages=(
   libboost-dev           # quantiles of beta and gamma distributions; HTTP and WebSocket (Beast)
   libtinyxml2-dev        # GPX files
   liblzf-dev             # compressed PCD files
+  libminizip-dev         # archives of numpy (.npz)
   zlib1g-dev             # rawlogs are gzip files; check sums
   libisal-dev            # inflates rawlogs, twice as fast as zlib
   libzstd-dev            # rawlogs of newer MRPT; MCAP

@@ -80,7 +80,10 @@ void ImportLog::frame(Stamp stamp, std::int64_t number) {
 }
 
 void ImportLog::sensor(const SensorFrame& frame) {
-  if (doubles_.isDouble(frame)) return;
+  if (!isDouble(frame)) uniqueSensor(frame);
+}
+
+void ImportLog::uniqueSensor(const SensorFrame& frame) {
   const auto* timed = std::get_if<LidarCloud>(&frame.data);
   if (timed != nullptr && timesOutsideOf(*timed)) {
     ++timeless_[frame.sensor];
@@ -228,8 +231,9 @@ ImportResult ImportLog::close() {
   failWithoutFrames();
   warnOfMissing();
   for (const auto& [label, count] : doubles_.counts())
-    note(fmt::format("{}: {} messages came twice, with the same stamp and content: left out", label,
-                     count));
+    note(fmt::format(
+        "{}: {} messages came twice, with the same content and stamp (within 20 ms): left out",
+        label, count));
   for (const auto& [label, count] : timeless_)
     warn(
         fmt::format("{}: returns lie more than {:g} s outside of {} of its scans: their times are "

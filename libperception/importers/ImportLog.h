@@ -86,6 +86,9 @@ class ImportLog {
   void frame(Stamp stamp, std::int64_t number);
   /// Doubled messages are left out and counted. Of clouds with timesOutsideOf() the times are.
   void sensor(const SensorFrame& frame);
+  /// The same in two steps, for readers that number what they write.
+  bool isDouble(const SensorFrame& frame) { return doubles_.isDouble(frame); }
+  void uniqueSensor(const SensorFrame& frame);
   void image(const ImportedImage& image, std::int64_t frame);
   /// Any other observation: GNSS, IMU, odometry.
   void observation(const mrpt::obs::CObservation& observation);

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cctype>
 #include <initializer_list>
-#include <utility>
+#include <sstream>
 
+#include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/bags/BagContents.h"
 #include "libperception/importers/clouds/CloudFolder.h"
@@ -239,14 +240,8 @@ std::vector<std::string> namesInFolder(const fs::path& folder) {
 InputKind recordingOfRos(const fs::path& path) {
   const BagContents contents = readContents(path.string());
   InputKind kind{"a recording of ROS: topics with messages, types and rates", {}, {}};
-  std::string line;
-  for (const char c : listOf(contents)) {
-    if (c != '\n') {
-      line += c;
-    } else {
-      kind.holds.push_back(std::exchange(line, ""));
-    }
-  }
+  std::istringstream lines(listOf(contents));
+  for (std::string line; std::getline(lines, line);) kind.holds.push_back(line);
   kind.holds.insert(kind.holds.end(), contents.remarks.begin(), contents.remarks.end());
   for (const std::string& fault : contents.faults) kind.holds.push_back("FAULT " + fault);
   kind.commands.push_back(importCommand("bag --bag " + shellWord(path), path));
@@ -256,8 +251,8 @@ InputKind recordingOfRos(const fs::path& path) {
 std::optional<InputKind> cloudFolder(const fs::path& folder) {
   // Text may be anything: a folder is of clouds by its other files.
   const auto names = namesInFolder(folder);
-  const bool any = std::any_of(names.begin(), names.end(), [](const std::string& name) {
-    const auto& endings = cloudEndings();
+  const auto& endings = cloudEndings();
+  const bool any = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
     return std::any_of(endings.begin(), endings.end(), [&](const std::string& end) {
       return end.compare(0, 4, ".txt") != 0 && hasEnding(name, end);
     });
@@ -289,10 +284,13 @@ std::optional<InputKind> cloudFolder(const fs::path& folder) {
 
 std::optional<InputKind> folderKind(const std::filesystem::path& folder) {
   for (const auto look : {&bagFolder, &nuscenesFolder, &kittiRawFolder, &semanticKittiFolder,
-                          &kittiTrackingFolder, &knownFolder, &cloudFolder}) {
+                          &kittiTrackingFolder, &knownFolder})
     if (auto kind = look(folder)) return kind;
+  try {
+    return cloudFolder(folder);
+  } catch (const DataError&) {
+    return {};  // tables of something else
   }
-  return {};
 }
 
 }  // namespace perception

@@ -72,6 +72,12 @@ bool isCapture(const std::string& bytes) {
   return false;
 }
 
+bool isNameOfCloud(const std::string& name) {
+  const auto& clouds = cloudEndings();
+  return std::any_of(clouds.begin(), clouds.end(),
+                     [&](const std::string& ending) { return hasEnding(name, ending); });
+}
+
 Kind fileKind(const fs::path& file) {
   using namespace std::string_view_literals;
   const std::string bytes = beginningOf(file), name = file.filename().string();
@@ -89,14 +95,34 @@ Kind fileKind(const fs::path& file) {
     return InputKind{"Udacity's radar and laser measurements",
                      {},
                      {importCommand("udacity --measurements " + shellWord(file), file)}};
-  const auto& clouds = cloudEndings();
-  if (std::any_of(clouds.begin(), clouds.end(),
-                  [&](const std::string& ending) { return hasEnding(name, ending); })) {
+  if (isNameOfCloud(name)) {
     auto kind = cloudFolder(file.has_parent_path() ? file.parent_path() : fs::path("."));
     if (kind) kind->what = "a file of " + kind->what;
     return kind;
   }
   return {};
+}
+
+/// The first file of a folder that is known by itself; clouds are known by their folder.
+Kind fileInFolder(const fs::path& folder) {
+  for (const std::string& name : namesInFolder(folder)) {
+    if (name.back() == '/' || isNameOfCloud(name)) continue;
+    auto kind = fileKind(folder / name);
+    if (!kind) continue;
+    kind->what += fmt::format(", in {}", (folder / name).string());
+    return kind;
+  }
+  return {};
+}
+
+/// Why the folder is none of clouds, though it has files that could be.
+std::string reasonOfTables(const std::string& folder) {
+  try {
+    cloudFolder(folder);
+  } catch (const DataError& e) {
+    return fmt::format("; as a folder of clouds: {}", e.what());
+  }
+  return "";
 }
 
 }  // namespace
@@ -106,18 +132,21 @@ std::optional<InputKind> inputKind(const std::string& path) {
   // Of a file that is not known the reader of rawlogs says what it is.
   if (!fs::is_directory(path)) return fileKind(path);
   if (auto kind = folderKind(path)) return kind;
+  if (auto kind = fileInFolder(path)) return kind;
   for (const std::string& name : namesInFolder(path)) {
     if (name.back() != '/') continue;
-    if (auto kind = folderKind(fs::path(path) / name.substr(0, name.size() - 1))) {
+    const fs::path folder = fs::path(path) / name.substr(0, name.size() - 1);
+    if (auto kind = folderKind(folder)) {
       kind->what += fmt::format(", in {}", (fs::path(path) / name).string());
       return kind;
     }
+    if (auto kind = fileInFolder(folder)) return kind;
   }
   throw DataError(fmt::format(
       "{}: nothing that is known in {} entries; known are rawlogs, recordings of ROS (.bag .mcap "
       ".db3), captures (.pcap), folders of clouds ({}), GPS tracks (.nmea .gpx) and the data sets "
-      "of perception-import --help",
-      path, namesInFolder(path).size(), fmt::join(cloudEndings(), " ")));
+      "of perception-import --help{}",
+      path, namesInFolder(path).size(), fmt::join(cloudEndings(), " "), reasonOfTables(path)));
 }
 
 std::string textOf(const InputKind& kind, const std::string& path) {

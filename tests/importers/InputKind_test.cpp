@@ -108,6 +108,17 @@ TEST_F(InputKindOf, AFolderOrFileOfCloudsSaysItsColumns) {
   EXPECT_EQ(kind->holds.at(2), "columns found from the data: x y z intensity");
 }
 
+TEST_F(InputKindOf, AFileThatIsKnownIsFoundInItsFolderBesideTables) {
+  write("ride/manifest.csv", "name,driver\nmonday,anna\n");
+  EXPECT_THROW(inputKind(file("ride")), DataError) << "a table is no cloud";
+  write("ride/gps/track.gpx", "<?xml version=\"1.0\"?><gpx></gpx>");
+  write("ride/gps/notes.csv", "name,driver\nmonday,anna\n");
+  const auto kind = inputKind(file("ride"));
+  ASSERT_TRUE(kind);
+  EXPECT_EQ(kind->what, "a GPX track, in " + file("ride/gps/track.gpx"));
+  EXPECT_NE(kind->commands.at(0).find("perception-import gpx --track"), std::string::npos);
+}
+
 TEST_F(InputKindOf, TracksOfReceiversAreToldByTheirText) {
   write("way.gpx", "<?xml version=\"1.0\"?>\n<gpx version=\"1.1\"></gpx>\n");
   expectKind("way.gpx", "a GPX track", "gpx --track ");

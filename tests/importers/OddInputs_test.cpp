@@ -20,6 +20,27 @@ class OddInputs : public OddRecording {};
 
 double same(double t) { return t; }
 
+/// Two returns, with fields named as some drivers do, and times since 1970.
+std::string timedCloudBytes(Stamp stamp, double unit) {
+  std::string data;
+  for (int i = 0; i < 2; ++i) {
+    const float place[] = {3, 4, 5, 0.5F};
+    const double time = (stamp.seconds() + 0.05 * i) / unit;
+    data.append(reinterpret_cast<const char*>(place), sizeof(place));
+    data.append(reinterpret_cast<const char*>(&time), sizeof(time));
+  }
+  ros::PointCloud2 message;
+  message.header = {stamp, "velodyne"};
+  message.width = 2, message.point_step = 24, message.row_step = 48, message.data = data;
+  const auto type = ros::PointField::kF32;
+  message.point_fields = {{"X", 0, type, 1},
+                          {"Y", 4, type, 1},
+                          {"Z", 8, type, 1},
+                          {"Intensity", 12, type, 0},
+                          {"timestamp", 16, ros::PointField::kF64, 1}};
+  return ros::encoded(message, ros::Encoding::kCdr);
+}
+
 TEST_F(OddInputs, ATimeThatJumpsBackByHalfASecondLosesWhatItRepeats) {
   const auto jumps = [](double t) { return t < 0.99 ? t : t - 0.5; };
   importOf(drive(jumps, jumps), 3);
@@ -110,6 +131,53 @@ TEST_F(OddInputs, ScansWithinASecondKeepTheirTimes) {
   }
   importOf(plan, 0);
   EXPECT_EQ(std::get<LidarCloud>(framesOf("points").at(0).data).time_offset.size(), 720U);
+}
+
+TEST_F(OddInputs, TimesSince1970InSecondsAndNanosecondsAreOfTheScan) {
+  for (const double unit : {1.0, 1e-9}) {
+    auto plan = drive(same, same);
+    for (Planned& p : plan) {
+      if (p.topic != "/points") continue;
+      p.bytes = [unit](Stamp stamp) { return timedCloudBytes(stamp, unit); };
+    }
+    std::filesystem::remove(file("out.rawlog"));
+    importOf(plan, 0);
+    const auto frames = framesOf("points");
+    ASSERT_EQ(frames.size(), 20U);
+    const auto& cloud = std::get<LidarCloud>(frames[3].data);
+    ASSERT_EQ(cloud.time_offset.size(), 2U);
+    EXPECT_NEAR(cloud.time_offset[1] - cloud.time_offset[0], 0.05, 1e-5);
+    EXPECT_EQ(cloud.y[1], 4) << "names in capital letters";
+  }
+}
+
+TEST_F(OddInputs, AScanWithoutReturnsAndFieldsIsAScan) {
+  auto plan = drive(same, same);
+  plan[10].bytes = [](Stamp stamp) {
+    ros::PointCloud2 message;
+    message.header = {stamp, "velodyne"};
+    message.height = 0;
+    return ros::encoded(message, ros::Encoding::kCdr);
+  };
+  ASSERT_EQ(plan[10].topic, "/points");
+  importOf(plan, 0);
+  const auto frames = framesOf("points");
+  ASSERT_EQ(frames.size(), 20U);
+  EXPECT_EQ(std::get<LidarCloud>(frames[4].data).size(), 0U);
+}
+
+TEST_F(OddInputs, ScansThatArePassedOnWithAnotherStampAreDoubles) {
+  std::vector<Planned> plan;
+  for (const Planned& p : drive(same, same)) {
+    plan.push_back(p);
+    if (p.topic != "/points") continue;
+    plan.push_back(p);
+    plan.back().measured += 0.004, plan.back().recorded += 0.004;
+  }
+  importOf(plan, 0);
+  EXPECT_EQ(timesOf("points").size(), 20U);
+  EXPECT_EQ(frameNumbers().size(), 20U);
+  expectSaid("points: 20 messages came twice");
 }
 
 TEST_F(OddInputs, TwoFramesOnOneTopicAreTwoSensors) {

@@ -93,13 +93,14 @@ void BagReading::take(const BagMessage& message, const std::string& file) {
 }
 
 void BagReading::takeFrame(const std::string& topic, bool first, SensorFrame&& frame) {
+  if (log_.isDouble(frame)) return;
   if (topic == choices_.frames_topic && first) {
     ++frame_;
     if (log_.wants(frame_))
       queue_.add(frame.stamp, [this, s = frame.stamp, n = frame_] { log_.frame(s, n); });
   }
   if (!isWanted()) return;
-  queue_.add(frame.stamp, [this, frame = std::move(frame)] { log_.sensor(frame); });
+  queue_.add(frame.stamp, [this, frame = std::move(frame)] { log_.uniqueSensor(frame); });
 }
 
 void BagReading::takeObservation(Stamp stamp, BagObservation observation) {

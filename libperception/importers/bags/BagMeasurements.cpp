@@ -138,6 +138,10 @@ void BagMeasurements::takePackets(const BagMessage& message, const BagType& type
 
 void BagMeasurements::takeFrame(const std::string& topic, const ros::Header& header,
                                 const BagTopicParams& params, SensorFrame&& frame) {
+  if (std::holds_alternative<RadarReturns>(frame.data)) radars_.insert(topic);
+  const auto* const cloud = std::get_if<LidarCloud>(&frame.data);
+  if (cloud != nullptr && cloud->size() == 0 && radars_.count(topic) > 0)
+    frame.data = RadarReturns();  // a cloud without returns may have no fields that say what it is
   const std::string other = otherFrame(topic, header);
   frame.sensor = other.empty() ? params.label : params.label + "_" + labelOfTopic(other);
   frame.stamp = header.stamp;

@@ -76,6 +76,7 @@ class BagMeasurements {
   std::string base_;
   Pose3 T_ego_base_ = Pose3::Identity();
   std::map<std::string, std::unique_ptr<BagPackets>> packets_;  ///< by topic
+  std::set<std::string> radars_;                ///< topics whose clouds are a radar's
   std::set<std::string> unplaced_;              ///< frames without a place on the vehicle
   std::map<std::string, std::string> foreign_;  ///< frames of readings that are not the vehicle's
 };

@@ -1,11 +1,17 @@
 #include "libperception/importers/bags/DoubledMessages.h"
 
+#include <cmath>
 #include <functional>
+#include <iterator>
 #include <string_view>
 #include <variant>
 
 namespace perception {
 namespace {
+
+// Both assumed.
+constexpr double kSameScan = 0.02;                 // [s]
+constexpr std::size_t kLeastTellingReturns = 100;  // the same numbers are no chance
 
 template <class Number>
 void mix(std::size_t& hash, const Number* numbers, std::size_t count) {
@@ -41,13 +47,15 @@ std::size_t contentOf(const SensorFrame& frame) {
 bool DoubledMessages::isDouble(const SensorFrame& frame) {
   if (std::holds_alternative<CameraImage>(frame.data)) return false;
   Said& said = said_[frame.sensor];
-  if (frame.stamp != said.stamp) {
-    said.stamp = frame.stamp;
-    said.contents.clear();
-  }
-  const bool first = said.contents.insert(contentOf(frame)).second;
-  if (!first) ++counts_[frame.sensor];
-  return !first;
+  for (auto it = said.begin(); it != said.end();)
+    it = std::abs(frame.stamp - it->second) > kSameScan ? said.erase(it) : std::next(it);
+  const auto [before, first] = said.emplace(contentOf(frame), frame.stamp);
+  const auto* const cloud = std::get_if<LidarCloud>(&frame.data);
+  const bool tells = cloud != nullptr && cloud->size() >= kLeastTellingReturns;
+  const bool again = !first && (tells || before->second == frame.stamp);
+  if (again) ++counts_[frame.sensor];
+  before->second = frame.stamp;
+  return again;
 }
 
 }  // namespace perception

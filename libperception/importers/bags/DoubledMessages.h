@@ -1,7 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <string>
 
 #include "libperception/measurement/frames/SensorFrame.h"
@@ -9,7 +9,9 @@
 namespace perception {
 
 /// Tells which messages of a recording are there twice, with the same sensor, stamp and content:
-/// recorders that are started twice write each message twice.
+/// recorders that are started twice write each message twice. Programs that pass messages on may
+/// give them a stamp of their own: a lidar's scan of 100 returns or more that comes again within
+/// 20 ms, before a lidar can have turned once more, is a double too.
 class DoubledMessages {
  public:
   /// Whether the same was given before; counts these. Images are never doubles: their pixels are in
@@ -19,11 +21,8 @@ class DoubledMessages {
   const std::map<std::string, std::int64_t>& counts() const { return counts_; }
 
  private:
-  /// What a sensor said at its newest stamp, by hashes of the content.
-  struct Said {
-    Stamp stamp;
-    std::set<std::size_t> contents;
-  };
+  /// What a sensor said within the last 20 ms: hashes of the content, and when.
+  using Said = std::map<std::size_t, Stamp>;
   std::map<std::string, Said> said_;
   std::map<std::string, std::int64_t> counts_;
 };

@@ -1,14 +1,37 @@
 #include "libperception/importers/clouds/CloudFolder.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <map>
 #include <set>
 
+#include "libperception/core/Error.h"
 #include "libperception/importers/clouds/ImportClouds.h"
 
 namespace perception {
+namespace {
+
+/// What is there instead of scans.
+std::string faultOfEmpty(const std::string& folder) {
+  std::map<std::string, std::size_t> endings;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    ++endings[entry.is_directory() ? "/" : entry.path().extension().string()];
+  std::string text =
+      fmt::format("{}: no file that ends in {}", folder, fmt::join(cloudEndings(), ", "));
+  for (const auto& [ending, count] : endings)
+    text += ending == "/" ? fmt::format("; {} folders", count)
+                          : fmt::format("; {} files that end in '{}'", count, ending);
+  for (const char* other : {".las", ".laz", ".e57", ".pts"})
+    if (endings.count(other) > 0)
+      text += fmt::format("; {} is not read: save the scans as .pcd, .ply or text", other);
+  return text;
+}
+
+}  // namespace
 
 CloudFiles cloudFilesIn(const std::string& folder) {
   requireFolder(folder);
@@ -18,6 +41,7 @@ CloudFiles cloudFilesIn(const std::string& folder) {
     const auto& known = cloudEndings();
     if (std::find(known.begin(), known.end(), ending) != known.end()) names[ending].push_back(name);
   }
+  if (names.empty()) throw DataError(faultOfEmpty(folder), ExitCode::kNoInput);
   const auto numbered = [](const std::string& name) {
     return std::any_of(name.begin(), name.end(),
                        [](unsigned char c) { return std::isdigit(c) != 0; });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -21,7 +22,41 @@ double as(const char* bytes) {
   return static_cast<double>(value);
 }
 
+std::string lowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// As programs write a result that is no number, or beyond all.
+bool isNoNumber(const std::string& text) {
+  const std::string word = lowerCase(text.substr(text.find_first_not_of("+-") == 1 ? 1 : 0));
+  return word == "nan" || word == "inf" || word == "infinity";
+}
+
 }  // namespace
+
+bool isCloudColumn(const std::string& name, std::string_view what) {
+  struct Names {
+    std::string_view what;
+    std::vector<std::string> names;
+  };
+  // VeloView's tables have vectors as three columns; CloudCompare's have scalars.
+  static const std::vector<Names> kNames = {
+      {"x", {"x", "points:0", "points_m_xyz:0"}},
+      {"y", {"y", "points:1", "points_m_xyz:1"}},
+      {"z", {"z", "points:2", "points_m_xyz:2"}},
+      {"intensity",
+       {"intensity", "i", "intensities", "reflectivity", "reflectance", "remission", "remissions",
+        "scalar_intensity"}},
+      {"ring", {"ring", "channel", "laser_id", "line", "ring_id"}},
+      {"time", {"time", "t", "time_offset", "timestamp", "timestamps"}}};
+  const std::string lower = lowerCase(name);
+  for (const Names& row : kNames)
+    if (row.what == what)
+      return std::find(row.names.begin(), row.names.end(), lower) != row.names.end();
+  return false;
+}
 
 double CloudColumn::numberAt(const char* bytes) const {
   switch (kind == 'F' ? size + 100 : kind == 'I' ? size + 200 : size) {
@@ -90,6 +125,23 @@ void readRows(std::string_view data, bool swapped, CloudTable& table) {
   }
 }
 
+void readColumns(std::string_view data, bool swapped, CloudTable& table) {
+  std::size_t at = 0;
+  char turned[8];
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const CloudColumn& column = table.columns[c];
+    for (std::size_t row = 0; row < table.rows; ++row) {
+      const char* bytes = data.data() + at + row * column.bytes();
+      if (swapped) {
+        std::reverse_copy(bytes, bytes + column.size, turned);
+        bytes = turned;
+      }
+      table.values[c][row] = column.numberAt(bytes);
+    }
+    at += table.rows * column.bytes();
+  }
+}
+
 void readTextRows(TextLines& lines, const char* separators, CloudTable& table) {
   for (std::size_t row = 0; row < table.rows;) {
     const auto line = lines.next();
@@ -99,8 +151,8 @@ void readTextRows(TextLines& lines, const char* separators, CloudTable& table) {
     std::size_t at = 0;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const std::string text = at < fields.size() ? fields.text(at) : "";
-      const bool is_nan = text == "nan" || text == "NaN" || text == "-nan";
-      table.values[c][row] = is_nan ? std::numeric_limits<double>::quiet_NaN() : fields.real(at);
+      table.values[c][row] =
+          isNoNumber(text) ? std::numeric_limits<double>::quiet_NaN() : fields.real(at);
       at += table.columns[c].count;
     }
     ++row;

@@ -57,7 +57,9 @@ class TextLines {
 
 /// Row after row of binary numbers, each with all its columns; `swapped`: big-endian.
 void readRows(std::string_view data, bool swapped, CloudTable& table);
-/// Rows of text with the table's columns; "nan" is a number.
+/// Column after column.
+void readColumns(std::string_view data, bool swapped, CloudTable& table);
+/// Rows of text with the table's columns; "nan" is a number, and "inf" becomes it.
 void readTextRows(TextLines& lines, const char* separators, CloudTable& table);
 
 /// Throws DataError if there are more points than a scanner can have.
@@ -71,5 +73,15 @@ void checkPromise(const std::string& path, std::size_t points, std::size_t bytes
 /// PCD of PCL 0.7 (ascii, binary, binary_compressed) and PLY (ascii, binary of both byte orders).
 CloudTable readPcd(const std::string& path, const std::string& bytes);
 CloudTable readPly(const std::string& path, const std::string& bytes);
+/// Text in rows (CsvText) and an array of numpy: with names, or with columns that are named "-".
+/// Units of meters and seconds that are behind the names are applied.
+CloudTable readCsv(const std::string& path, const std::string& bytes);
+CloudTable readNpy(const std::string& path, const std::string& bytes);
+/// The one array of an archive of numpy that is a cloud, with those beside it that have one number
+/// a point; or arrays x, y, z, ... of one number a point.
+CloudTable readNpz(const std::string& path);
+
+/// Whether programs give this name to a column: x, y, z, intensity, ring or time.
+bool isCloudColumn(const std::string& name, std::string_view what);
 
 }  // namespace perception

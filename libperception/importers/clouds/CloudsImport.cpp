@@ -64,7 +64,7 @@ void CloudsImporter::declare(CLI::App& cli) {
       ->capture_default_str();
   cli.add_option("--label", label_, "sensor label")->capture_default_str();
   cli.add_option("--columns", format_.columns,
-                 "of .bin (float32) and of .csv without names: x y z intensity ring time, others "
+                 "of .bin, and of .csv and .npy without names: x y z intensity ring time, others "
                  "are skipped; without: found from the data, and said")
       ->delimiter(',');
   cli.add_option("--intensity-max", format_.intensity_max,

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <iterator>
+#include <string_view>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/clouds/CloudLayout.h"
 #include "libperception/importers/clouds/CloudTable.h"
-#include "libperception/importers/clouds/CsvText.h"
 
 namespace perception {
 namespace {
@@ -98,27 +97,36 @@ CloudTable readBin(const std::string& path, const std::string& bytes, const Clou
   return table;
 }
 
-/// The columns of a file without names, each named "-".
-CloudTable readCsvNumbers(const std::string& path, const CsvText& csv, std::size_t columns) {
-  CloudTable table;
-  table.columns.assign(columns, {"-"});
-  checkCount(path, csv.rows);
-  table.resize(csv.rows);
-  TextLines lines(path, csv.text);
-  if (table.rows > 0) readTextRows(lines, csv.separators, table);
-  return table;
+/// Whether rows are read before it is known what they hold: text, and arrays of numpy.
+bool isTable(const std::string& ending) {
+  return ending == ".csv" || ending == ".txt" || ending == ".xyz" || ending == ".npy" ||
+         ending == ".npz";
+}
+
+CloudTable readTable(const std::string& path, const std::string& bytes) {
+  const std::string ending = cloudEndingOf(path);
+  return ending == ".npz"   ? readNpz(path)
+         : ending == ".npy" ? readNpy(path, bytes)
+                            : readCsv(path, bytes);
+}
+
+/// How many columns have no names: the first ones.
+std::size_t namelessOf(const CloudTable& table) {
+  return static_cast<std::size_t>(
+      std::count_if(table.columns.begin(), table.columns.end(),
+                    [](const CloudColumn& column) { return column.name == "-"; }));
 }
 
 /// Of files without names; of as many as are needed.
-CloudFormat foundCsvFormat(const std::vector<std::string>& paths, const CloudFormat& format) {
+CloudFormat foundTableFormat(const std::vector<std::string>& paths, const CloudFormat& format) {
   std::vector<std::vector<double>> values;
   for (const std::string& path : paths) {
     if (!values.empty() && values.front().size() >= kLeastReturns) break;
-    const CsvText csv = csvTextOf(path, readBytes(path, kMostBytes));
-    if (!csv.names.empty()) return format;
-    const CloudTable table = readCsvNumbers(path, csv, csv.columns);
-    if (values.empty()) values.resize(csv.columns);
-    for (std::size_t c = 0; c < std::min(values.size(), table.values.size()); ++c)
+    const CloudTable table = readTable(path, readBytes(path, kMostBytes));
+    const std::size_t nameless = namelessOf(table);
+    if (nameless == 0 && !table.columns.empty()) return format;
+    if (values.empty()) values.resize(nameless);
+    for (std::size_t c = 0; c < std::min(values.size(), nameless); ++c)
       values[c].insert(values[c].end(), table.values[c].begin(), table.values[c].end());
   }
   if (values.empty() || values.front().size() < kLeastReturns)
@@ -132,42 +140,24 @@ CloudFormat foundCsvFormat(const std::vector<std::string>& paths, const CloudFor
   return withLayout(format, *layout);
 }
 
-CloudTable readCsvCloud(const std::string& path, const std::string& bytes,
-                        const CloudFormat& given) {
-  const CsvText csv = csvTextOf(path, bytes);
-  if (csv.names.empty()) {
-    const CloudFormat format = given.columns.empty() ? foundCsvFormat({path}, given) : given;
-    if (csv.rows > 0 && csv.columns < format.columns.size()) {
-      throw DataError(fmt::format("{}:{}: {} fields, expected {}: {}", path, csv.first_line,
-                                  csv.columns, format.columns.size(),
-                                  fmt::join(format.columns, ", ")));
-    }
-    CloudTable table = readCsvNumbers(path, csv, format.columns.size());
-    for (std::size_t c = 0; c < format.columns.size(); ++c)
-      table.columns[c].name = format.columns[c];
-    return table;
-  }
-  CloudTable table;
-  for (const std::string& name : csv.names) table.columns.push_back({name});
-  checkCount(path, csv.rows);
-  table.resize(csv.rows);
-  TextLines lines(path, csv.text);
-  while (const auto line = lines.next())
-    if (lines.row(*line, csv.separators).size() > 0) break;
-  if (table.rows > 0) readTextRows(lines, csv.separators, table);
+CloudTable readNamedTable(const std::string& path, const std::string& bytes,
+                          const CloudFormat& given) {
+  CloudTable table = readTable(path, bytes);
+  const std::size_t nameless = namelessOf(table);
+  if (nameless == 0 && !table.columns.empty()) return table;
+  const CloudFormat format = given.columns.empty() ? foundTableFormat({path}, given) : given;
+  if (table.rows > 0 && nameless < format.columns.size())
+    throw DataError(fmt::format("{}: rows of {} fields, expected {}: {}", path, nameless,
+                                format.columns.size(), fmt::join(format.columns, ", ")));
+  if (table.rows == 0) table.columns.assign(format.columns.size(), {"-"}), table.resize(0);
+  for (std::size_t c = 0; c < format.columns.size(); ++c) table.columns[c].name = format.columns[c];
   return table;
 }
 
-/// The first column of one of these names, letters of either case.
-const std::vector<double>* find(const CloudTable& table, std::initializer_list<const char*> names) {
-  for (const char* name : names) {
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      std::string lower = table.columns[c].name;
-      std::transform(lower.begin(), lower.end(), lower.begin(),
-                     [](unsigned char ch) { return static_cast<char>(std::tolower(ch)); });
-      if (lower == name) return &table.values[c];
-    }
-  }
+/// The column that has one of the names of what is looked for.
+const std::vector<double>* find(const CloudTable& table, std::string_view what) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (isCloudColumn(table.columns[c].name, what)) return &table.values[c];
   return nullptr;
 }
 
@@ -178,7 +168,7 @@ LidarCloud cloudOf(const std::string& path, const CloudTable& table, const Cloud
     return out;
   };
   LidarCloud cloud;
-  const auto *x = find(table, {"x"}), *y = find(table, {"y"}), *z = find(table, {"z"});
+  const auto *x = find(table, "x"), *y = find(table, "y"), *z = find(table, "z");
   if (!x || !y || !z) {
     std::vector<std::string> names;
     for (const CloudColumn& c : table.columns) names.push_back(c.name);
@@ -186,15 +176,14 @@ LidarCloud cloudOf(const std::string& path, const CloudTable& table, const Cloud
         fmt::format("{}: columns {}: expected x, y and z", path, fmt::join(names, ", ")));
   }
   cloud.x = toFloat(*x, 1), cloud.y = toFloat(*y, 1), cloud.z = toFloat(*z, 1);
-  if (const auto* v = find(table, {"intensity", "i", "reflectivity", "reflectance", "remission",
-                                   "scalar_intensity"}))
+  if (const auto* v = find(table, "intensity"))
     cloud.intensity = toFloat(*v, format.intensity_max > 0 ? 1 / format.intensity_max : 1);
-  if (const auto* v = find(table, {"ring", "channel", "laser_id", "line"})) {
+  if (const auto* v = find(table, "ring")) {
     cloud.ring.resize(v->size());
     for (std::size_t i = 0; i < v->size(); ++i)  // invalid rings become 0
       cloud.ring[i] = static_cast<std::uint16_t>((*v)[i] >= 0 && (*v)[i] < 65536 ? (*v)[i] : 0);
   }
-  if (const auto* v = find(table, {"time", "t", "time_offset", "timestamp"})) {
+  if (const auto* v = find(table, "time")) {
     const double begin = v->empty() || format.about_stamp ? 0 : v->front();
     cloud.time_offset.resize(v->size());
     for (std::size_t i = 0; i < v->size(); ++i)
@@ -207,19 +196,11 @@ LidarCloud cloudOf(const std::string& path, const CloudTable& table, const Cloud
 }  // namespace
 
 const std::vector<std::string>& cloudEndings() {
-  static const std::vector<std::string> kEndings = {".bin",    ".pcd",    ".ply",    ".csv",
-                                                    ".txt",    ".xyz",    ".bin.gz", ".pcd.gz",
-                                                    ".ply.gz", ".csv.gz", ".txt.gz", ".xyz.gz"};
+  static const std::vector<std::string> kEndings = {
+      ".bin",    ".pcd",    ".ply",    ".csv",    ".txt",    ".xyz",    ".npy",   ".npz",
+      ".bin.gz", ".pcd.gz", ".ply.gz", ".csv.gz", ".txt.gz", ".xyz.gz", ".npy.gz"};
   return kEndings;
 }
-
-namespace {
-
-bool isTable(const std::string& ending) {
-  return ending == ".csv" || ending == ".txt" || ending == ".xyz";
-}
-
-}  // namespace
 
 /// ".bin" of "a/0001.bin.gz".
 std::string cloudEndingOf(const std::string& path) {
@@ -236,7 +217,7 @@ CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat
   std::copy_if(paths.begin(), paths.end(), std::back_inserter(alike),
                [&](const std::string& path) { return cloudEndingOf(path) == ending; });
   if (ending == ".bin") return foundBinFormat(alike, format);
-  return isTable(ending) ? foundCsvFormat(alike, format) : format;
+  return isTable(ending) ? foundTableFormat(alike, format) : format;
 }
 
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format) {
@@ -245,7 +226,7 @@ LidarCloud readCloudFile(const std::string& path, const CloudFormat& format) {
   if (ending == ".bin") return cloudOf(path, readBin(path, bytes, format), format);
   if (ending == ".pcd") return cloudOf(path, readPcd(path, bytes), format);
   if (ending == ".ply") return cloudOf(path, readPly(path, bytes), format);
-  if (isTable(ending)) return cloudOf(path, readCsvCloud(path, bytes, format), format);
+  if (isTable(ending)) return cloudOf(path, readNamedTable(path, bytes, format), format);
   throw DataError(fmt::format("{}: expected one of {}", path, fmt::join(cloudEndings(), ", ")));
 }
 

@@ -24,19 +24,17 @@ const std::vector<std::string>& cloudEndings();
 /// ".bin" of "a/0001.bin.gz".
 std::string cloudEndingOf(const std::string& path);
 
-/// For files without names of their columns (.bin always; .csv, .txt, .xyz where the first line
-/// holds numbers): `format` with the columns that are found from their data, the first file's and
+/// For files without names of their columns (.bin always; .csv, .txt, .xyz, .npy and .npz where
+/// they have none): `format` with the columns that are found from their data, the first file's and
 /// as many more as hold 100 returns together, and the scale of the intensities where none is given;
 /// the columns are unchanged if it has some or the files have names. .bin are found to be float32
 /// or float64. Throws DataError if the data do not say what they are.
 CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat& format);
 
 /// One scan: .bin (float32 columns), .pcd (PCL 0.7: ascii, binary, binary_compressed), .ply (ascii,
-/// binary of both byte orders), .csv .txt .xyz (with or without a line of names; separated by
-/// commas, spaces, tabs or semicolons; with decimal commas where the separators are semicolons or
-/// tabs; a byte-order mark is skipped). Order and number of points are kept, including NaN points.
-/// Times become offsets from that of the first point. Throws DataError (kNoInput if missing, else
-/// with position and expectation).
+/// binary of both byte orders), .csv .txt .xyz (CsvText), .npy and .npz of numpy. Order and number
+/// of points are kept, including NaN points. Times become offsets from that of the first point.
+/// Throws DataError (kNoInput if missing, else with position and expectation).
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format = {});
 
 /// The cloud's points in another frame, by the pose of their own frame in it.

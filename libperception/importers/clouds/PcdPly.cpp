@@ -33,17 +33,16 @@ void readCompressed(const std::string& path, std::string_view data, CloudTable& 
   if (lzf_decompress(data.data() + 8, static_cast<unsigned>(packed), bytes.data(),
                      static_cast<unsigned>(unpacked)) != unpacked)
     throw DataError(path + ": damaged LZF data");
-  std::size_t at = 0;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const CloudColumn& column = table.columns[c];
-    for (std::size_t row = 0; row < table.rows; ++row)
-      table.values[c][row] = column.numberAt(bytes.data() + at + row * column.bytes());
-    at += table.rows * column.bytes();
-  }
+  readColumns(bytes, false, table);
 }
 
+/// How many points a PCD header says there are.
+struct PcdSize {
+  std::optional<std::size_t> points, width, height;
+};
+
 /// One line of a PCD header: a word and its values, one a column.
-void readPcdHeader(const TextRow& row, CloudTable& table, std::size_t& points) {
+void readPcdHeader(const TextRow& row, CloudTable& table, PcdSize& size) {
   const std::string key = row.text(0);
   const auto values = row.size() - 1;
   if (key == "FIELDS" || key == "COLUMNS") {
@@ -60,8 +59,10 @@ void readPcdHeader(const TextRow& row, CloudTable& table, std::size_t& points) {
         (key == "SIZE" ? c.size : c.count) = static_cast<std::size_t>(row.frame(i + 1));
       }
     }
-  } else if (key == "POINTS") {
-    points = static_cast<std::size_t>(row.frame(1));
+  } else if (key == "POINTS" || key == "WIDTH" || key == "HEIGHT") {
+    (key == "POINTS"  ? size.points
+     : key == "WIDTH" ? size.width
+                      : size.height) = static_cast<std::size_t>(row.frame(1));
   }
 }
 
@@ -97,7 +98,7 @@ double leastBytes(const CloudTable& table, const std::string& data) {
 CloudTable readPcd(const std::string& path, const std::string& bytes) {
   TextLines lines(path, bytes);
   CloudTable table;
-  std::size_t points = 0;
+  PcdSize size;
   std::string data;
   while (data.empty()) {
     const auto line = lines.next();
@@ -107,7 +108,7 @@ CloudTable readPcd(const std::string& path, const std::string& bytes) {
     if (row.text(0) == "DATA") {
       data = row.text(1);
     } else {
-      readPcdHeader(row, table, points);
+      readPcdHeader(row, table, size);
     }
   }
   if (table.columns.empty()) lines.fail("no line FIELDS before DATA, expected a PCD file");
@@ -116,6 +117,10 @@ CloudTable readPcd(const std::string& path, const std::string& bytes) {
       lines.fail(
           fmt::format("field {}: TYPE {} of SIZE {} is none of PCL's", c.name, c.kind, c.size));
   }
+  // PCL's own files have all three; others have either.
+  if (!size.points && size.width) size.points = *size.width * size.height.value_or(1);
+  if (!size.points) lines.fail("no line POINTS or WIDTH before DATA");
+  const std::size_t points = *size.points;
   checkCount(path, points);
   checkPromise(path, points, lines.rest().size(), leastBytes(table, data));
   table.resize(points);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
@@ -46,13 +47,19 @@ double valueAt(const char* bytes, std::uint8_t type, bool big) {
   }
 }
 
-/// One field of every point of a message.
+std::string lowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// One field of every point of a message; drivers write the names in letters of either case.
 class Column {
  public:
   Column(const PointCloud2& message, std::initializer_list<const char*> names) : m_(message) {
     for (const char* name : names) {
       for (const PointField& field : m_.point_fields) {
-        if (field_ == nullptr && field.name == name) field_ = &field;
+        if (field_ == nullptr && lowerCase(field.name) == lowerCase(name)) field_ = &field;
       }
     }
     if (field_ == nullptr) return;
@@ -94,12 +101,22 @@ void check(const PointCloud2& m) {
                                          m.data.size(), all, m.height, m.width, m.point_step));
 }
 
+/// [s] of a time since 1970 in s, ms, us or ns, which lie a thousand apart: Hesai's drivers give s,
+/// Livox's ns.
+double secondsSince1970(double value) {
+  constexpr double kMostSeconds = 1e11;
+  for (const double unit : {1.0, 1e-3, 1e-6})
+    if (std::abs(value) * unit < kMostSeconds) return value * unit;
+  return value * 1e-9;
+}
+
 /// Seconds after the header's stamp of a value of the time field; after the first point's where the
 /// header has none.
 double secondsOf(double value, const PointField& field, Stamp stamp, double first) {
-  if (field.name == "t" || field.name == "offset_time") return value * 1e-9;
-  if (field.name != "timestamp") return value;
-  return value - (stamp.ns > 0 ? stamp.seconds() : first);
+  const std::string name = lowerCase(field.name);
+  if (name == "t" || name == "offset_time") return value * 1e-9;
+  if (name != "timestamp") return value;
+  return secondsSince1970(value) - (stamp.ns > 0 ? stamp.seconds() : secondsSince1970(first));
 }
 
 void addPointFields(PointCloud2& m, std::initializer_list<const char*> names) {
@@ -132,6 +149,7 @@ Pose messageOf(const Pose3& pose) {
 LidarCloud cloudOf(const PointCloud2& message, double intensity_max) {
   check(message);
   LidarCloud cloud;
+  if (message.point_fields.empty() && message.data.empty()) return cloud;  // it names no fields
   std::vector<float>* to[] = {&cloud.x, &cloud.y, &cloud.z};
   const char* names[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
@@ -139,13 +157,15 @@ LidarCloud cloudOf(const PointCloud2& message, double intensity_max) {
     if (!column) throw std::runtime_error(fmt::format("points without a field {}", names[i]));
     column.forEach([&](double value) { to[i]->push_back(static_cast<float>(value)); });
   }
-  if (const Column column(message, {"intensity", "i", "reflectivity"}); column) {
+  if (const Column column(message,
+                          {"intensity", "i", "reflectivity", "reflectance", "intensities"});
+      column) {
     const double most = intensity_max > 0                            ? intensity_max
                         : column.field().datatype == PointField::kU8 ? 255.0
                                                                      : 1.0;
     column.forEach([&](double v) { cloud.intensity.push_back(static_cast<float>(v / most)); });
   }
-  Column(message, {"ring", "channel", "line"}).forEach([&](double value) {
+  Column(message, {"ring", "channel", "line", "laser_id"}).forEach([&](double value) {
     cloud.ring.push_back(static_cast<std::uint16_t>(std::clamp(value, 0.0, 65535.0)));
   });
   if (const Column column(message, {"t", "offset_time", "time", "time_offset", "timestamp"});

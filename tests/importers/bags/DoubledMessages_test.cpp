@@ -23,6 +23,19 @@ TEST(DoubledMessages, TheSameContentAtTheSameStampIsADouble) {
   EXPECT_EQ(doubles.counts().at("LIDAR_TOP"), 1);
 }
 
+TEST(DoubledMessages, AScanWithAnotherStampIsADoubleBeforeTheLidarTurnsAgain) {
+  DoubledMessages doubles;
+  SensorFrame scan = scanAt(1'000'000'000, 5);
+  auto& cloud = std::get<LidarCloud>(scan.data);
+  cloud.x.resize(100, 7), cloud.y.resize(100, 7), cloud.z.resize(100, 7);
+  EXPECT_FALSE(doubles.isDouble(scan));
+  scan.stamp = {1'005'000'000};
+  EXPECT_TRUE(doubles.isDouble(scan));
+  scan.stamp = {1'050'000'000};
+  EXPECT_FALSE(doubles.isDouble(scan)) << "a simulated world that stands";
+  EXPECT_EQ(doubles.counts().at("LIDAR_TOP"), 1);
+}
+
 TEST(DoubledMessages, SensorsAreAskedOneByOneAndImagesNever) {
   DoubledMessages doubles;
   SensorFrame other = scanAt(1, 5);
