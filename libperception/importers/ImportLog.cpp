@@ -80,7 +80,7 @@ void ImportLog::frame(Stamp stamp, std::int64_t number) {
 }
 
 void ImportLog::sensor(const SensorFrame& frame) {
-  if (!isDouble(frame)) uniqueSensor(frame);
+  if (!doubles_.isDouble(frame)) uniqueSensor(frame);
 }
 
 void ImportLog::uniqueSensor(const SensorFrame& frame) {

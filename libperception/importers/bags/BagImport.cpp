@@ -93,7 +93,7 @@ void BagReading::take(const BagMessage& message, const std::string& file) {
 }
 
 void BagReading::takeFrame(const std::string& topic, bool first, SensorFrame&& frame) {
-  if (log_.isDouble(frame)) return;
+  if (log_.isResent(frame)) return;
   if (topic == choices_.frames_topic && first) {
     ++frame_;
     if (log_.wants(frame_))

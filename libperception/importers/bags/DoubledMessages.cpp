@@ -9,9 +9,7 @@
 namespace perception {
 namespace {
 
-// Both assumed.
-constexpr double kSameScan = 0.02;                 // [s]
-constexpr std::size_t kLeastTellingReturns = 100;  // the same numbers are no chance
+constexpr std::size_t kLeastTellingReturns = 100;  // (assumed) the same numbers are no chance
 
 template <class Number>
 void mix(std::size_t& hash, const Number* numbers, std::size_t count) {
@@ -44,11 +42,11 @@ std::size_t contentOf(const SensorFrame& frame) {
 
 }  // namespace
 
-bool DoubledMessages::isDouble(const SensorFrame& frame) {
+bool DoubledMessages::isDouble(const SensorFrame& frame, double resent) {
   if (std::holds_alternative<CameraImage>(frame.data)) return false;
   Said& said = said_[frame.sensor];
   for (auto it = said.begin(); it != said.end();)
-    it = std::abs(frame.stamp - it->second) > kSameScan ? said.erase(it) : std::next(it);
+    it = std::abs(frame.stamp - it->second) > resent ? said.erase(it) : std::next(it);
   const auto [before, first] = said.emplace(contentOf(frame), frame.stamp);
   const auto* const cloud = std::get_if<LidarCloud>(&frame.data);
   const bool tells = cloud != nullptr && cloud->size() >= kLeastTellingReturns;

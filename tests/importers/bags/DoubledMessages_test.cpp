@@ -28,11 +28,11 @@ TEST(DoubledMessages, AScanWithAnotherStampIsADoubleBeforeTheLidarTurnsAgain) {
   SensorFrame scan = scanAt(1'000'000'000, 5);
   auto& cloud = std::get<LidarCloud>(scan.data);
   cloud.x.resize(100, 7), cloud.y.resize(100, 7), cloud.z.resize(100, 7);
-  EXPECT_FALSE(doubles.isDouble(scan));
+  EXPECT_FALSE(doubles.isDouble(scan, 0.02));
   scan.stamp = {1'005'000'000};
-  EXPECT_TRUE(doubles.isDouble(scan));
+  EXPECT_TRUE(doubles.isDouble(scan, 0.02));
   scan.stamp = {1'050'000'000};
-  EXPECT_FALSE(doubles.isDouble(scan)) << "a simulated world that stands";
+  EXPECT_FALSE(doubles.isDouble(scan, 0.02)) << "a simulated world that stands";
   EXPECT_EQ(doubles.counts().at("LIDAR_TOP"), 1);
 }
 
