@@ -16,7 +16,7 @@ struct ShapeBox {
 /// What a vehicle has to do about a shape.
 enum class ShapeDemand {
   kStop,  ///< it stands or hangs in the way
-  kLow,   ///< in the way, but lower than what the ground's tolerance leaves: height_min
+  kLow,   ///< in the way, but lower than height_min: may be called for
   kPass   ///< beside the way or above it
 };
 

@@ -312,9 +312,8 @@ std::vector<std::string> remarks(const ObstaclesOptions& options) {
       "Called at: distance at the first call by the stopping distance, mean of the drives with "
       "one.",
       "Shapes that demand nothing (low) are lower than height_min: hoses, pallets, someone lying "
-      "on "
-      "the back. The obstacles of the safety grid begin there, so that these are not called; they "
-      "count neither as missed nor as false.",
+      "on the back. Of these the safety grid calls for those that stand up by .22 m or more, where "
+      "enough beams show it; they count neither as missed nor as false.",
       "Clusters: ten returns, linked at .7 m in space, every return trusted. Intensity none: 0 for "
       "every return."};
 }

@@ -8,6 +8,7 @@
 
 #include "libperception/grid/beams/WorldPlaces.h"
 #include "libperception/grid/way/NearCorridor.h"
+#include "libperception/pipeline/safety/Clearance.h"
 #include "libperception/weather/SensorVerdict.h"
 
 namespace perception {
@@ -84,8 +85,9 @@ class Doubter {
     if (weighted_) obstacles.scan.weights.push_back(weight);
     obstacles.dense.push_back(dense < kDoubted ? 0 : dense);
     obstacles.doubted.push_back(doubt >= kDoubted);
-    obstacles.surface.push_back(caused_ && dense < 1 && trust > 0 &&
-                                solid >= (in_wake ? kWallInWake : kPerhapsSurface));
+    if (caused_)
+      obstacles.surface.push_back(dense < 1 && trust > 0 &&
+                                  solid >= (in_wake ? kWallInWake : kPerhapsSurface));
   }
 
  private:
@@ -192,7 +194,11 @@ void SafetyMonitor::add(const SensorFrame& frame, const PlacedReturns& returns) 
   const Vector3 sensor = frame.T_ego_sensor.translation();
   const double ground = frame.ground.a * sensor.x() + frame.ground.b * sensor.y() + frame.ground.c;
   highest_ = std::max({highest_, sensor.z() - ground, kCarHeight});
-  last_ = obstacleScanOf(frame, returns, trust_, stop_, vehicleHeight() + stop_.clearance);
+  const double clearance = vehicleHeight() + stop_.clearance;
+  last_ = obstacleScanOf(frame, returns, trust_, stop_, clearance);
+  const bool in_space = params_.back_end == GridParams::BackEnd::kRolling ||
+                        params_.back_end == GridParams::BackEnd::kOctomap;
+  if (in_space) clearOverhead(frame, returns, clearance, params_.resolution, last_.scan);
   trustWhatPersists();
   grid_->insert(last_.scan);
   front_ = returns.vehicle_front, rear_ = returns.vehicle_rear;
@@ -222,23 +228,30 @@ PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   path.corridor.road = last_.road.along(path.corridor);
   const double look_ahead = path.corridor.max;
   path.free = grid_->freeDistance(path.corridor);
-  path.corridor.max = path.free.distance;
-  const FreeDistance dense =
-      denseReturns(path.corridor, last_.scan.hits, last_.dense, stop_.returns);
-  if (dense.blocked) {
+  const auto take = [&](const FreeDistance& found) {
+    if (!found.blocked) return false;
     path.by_returns =
-        !path.free.blocked || dense.distance < path.free.distance - params_.resolution;
-    path.free.distance = dense.distance;
+        !path.free.blocked || found.distance < path.free.distance - params_.resolution;
+    path.free.distance = found.distance;
     path.free.blocked = true;
-    path.free.place = dense.place;
-    path.free.seen = std::min(path.free.seen, dense.distance);
+    path.free.place = found.place;
+    path.free.seen = std::min(path.free.seen, found.distance);
+    return true;
+  };
+  path.corridor.max = path.free.distance;
+  take(denseReturns(path.corridor, last_.scan.hits, last_.dense, stop_.returns));
+  if (last_.surface.empty()) {
+    path.corridor.max = path.free.distance;
+    const LowObstacle low =
+        lowObstacle(path.corridor, last_.scan.hits, last_.dense, last_.scan.clear, stop_.returns);
+    if (take(low.free)) path.returns = static_cast<std::uint32_t>(low.returns);
   }
   path.corridor.max = path.free.distance;
   path.free.seen = seenByBeams(path.corridor, path.free.seen, last_.scan.origin,
                                {&last_.scan.hits, &last_.scan.clear}, vehicleHeight());
   path.corridor.max = look_ahead;
   path.in_cloud = path.free.blocked && inCloud(path.corridor, last_.scan, path.free.distance);
-  if (path.free.blocked) countReturns(last_, path);
+  if (path.free.blocked && path.returns == 0) countReturns(last_, path);
   return path;
 }
 

@@ -22,8 +22,9 @@ struct ObstacleScan {
   /// as something may make phantoms there, without a cluster.
   std::vector<float> dense;
   std::vector<char> doubted;  ///< by trust or shape, whether there is a cause for it or not
-  std::vector<char> surface;  ///< may be a surface, though it has a cause to be doubted
-  RoadHeights road;           ///< by the ground returns
+  /// May be a surface, though it has a cause to be doubted; empty: nothing may make phantoms.
+  std::vector<char> surface;
+  RoadHeights road;  ///< by the ground returns
 };
 
 /// Obstacle returns by their height, and those that only clear; mirror images below the road are
