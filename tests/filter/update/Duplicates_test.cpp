@@ -161,7 +161,7 @@ TEST(Duplicates, APersonWhomACarIsPutOverDoesNotBecomeTheCar) {
 TEST(Duplicates, AClassGoesWithWhatHasBeenCountedInIt) {
   Track older = carWith(1, 0.999, 20, 0.5), younger = carWith(2, 0.999, 3, 0);
   older.length = {4.5, 0.1}, younger.length = {2, 1};
-  older.evidence.push_back({7, kNow, {}, 3, {}});
+  older.evidence.push_back({7, kNow, {}, 3, 20, {}});
   TrackTable tracks = {std::make_shared<const Track>(older),
                        std::make_shared<const Track>(younger)};
   const DuplicateTable duplicates(model(), kNow, tracks);
