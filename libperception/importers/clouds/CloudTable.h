@@ -27,6 +27,7 @@ struct CloudColumn {
 struct CloudTable {
   std::vector<CloudColumn> columns;
   std::size_t rows = 0;
+  std::string place;                        ///< of the first row: ":3" of text
   std::vector<std::vector<double>> values;  ///< [column][row]; the first element of vector columns
 
   void resize(std::size_t n) {

@@ -51,6 +51,7 @@ CloudTable readCsv(const std::string& path, const std::string& bytes) {
   CloudTable table;
   for (const std::string& name : csv.names) table.columns.push_back({name});
   if (csv.names.empty()) table.columns.assign(csv.columns, {"-"});
+  table.place = fmt::format(":{}", csv.first_line);
   checkCount(path, csv.rows);
   table.resize(csv.rows);
   TextLines lines(path, csv.text);

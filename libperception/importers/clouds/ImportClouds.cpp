@@ -147,7 +147,7 @@ CloudTable readNamedTable(const std::string& path, const std::string& bytes,
   if (nameless == 0 && !table.columns.empty()) return table;
   const CloudFormat format = given.columns.empty() ? foundTableFormat({path}, given) : given;
   if (table.rows > 0 && nameless < format.columns.size())
-    throw DataError(fmt::format("{}:1: {} fields, expected {}: {}", path, nameless,
+    throw DataError(fmt::format("{}{}: {} fields, expected {}: {}", path, table.place, nameless,
                                 format.columns.size(), fmt::join(format.columns, ", ")));
   if (table.rows == 0) table.columns.assign(format.columns.size(), {"-"}), table.resize(0);
   for (std::size_t c = 0; c < format.columns.size(); ++c) table.columns[c].name = format.columns[c];
