@@ -28,7 +28,7 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
-/// As programs write a result that is no number, or beyond all.
+/// The ways in which programs write NaN and infinity.
 bool isNoNumber(const std::string& text) {
   const std::string word = lowerCase(text.substr(text.find_first_not_of("+-") == 1 ? 1 : 0));
   return word == "nan" || word == "inf" || word == "infinity";

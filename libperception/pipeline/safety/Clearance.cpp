@@ -15,9 +15,9 @@ namespace {
 constexpr double kSurface = 0.5;  // [m] along the corridor, as in denseReturns()
 constexpr double kStrip = 0.25;   // [m] across it
 constexpr double kRise = 0.1;     // [m] within these: roads rise by less (assumed)
-// [m] of a car above the road, and 2 cm by which the ground's model may be too low (assumed).
+// [m] Height of a car's underside, plus 2 cm by which the ground's model may be too low (assumed).
 constexpr double kUnderside = 0.22;
-// [m] above the road: lower returns are its own, and what is higher has its own rules (assumed).
+// [m] above the road: lower returns are those of the road, and higher ones are hits (assumed).
 constexpr double kRough = 0.05, kLow = 0.5;
 
 /// A return in the corridor.

@@ -11,10 +11,10 @@
 // What the vehicle passes over, and what it passes under.
 namespace perception {
 
-/// An obstacle that low returns make up, or help to.
+/// An obstacle of low returns, alone or together with higher ones.
 struct LowObstacle {
   FreeDistance free;
-  std::size_t returns = 0;  ///< that make it up
+  std::size_t returns = 0;  ///< number of returns that make it up
 };
 
 /// As denseReturns(), by `hits` with their `weights` and by those of the `others` that stand up. A
