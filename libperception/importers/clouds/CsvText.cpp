@@ -34,8 +34,8 @@ std::optional<std::string_view> commentIn(std::string_view line) {
   return {};
 }
 
-/// CsvFields between separators that are not in quotation marks. Several spaces are one, and so are
-/// those beside another separator.
+/// The fields between separators that are not in quotation marks. Several spaces are one, and so
+/// are those beside another separator.
 CsvFields csvFieldsIn(std::string_view line, char separator) {
   CsvFields fields;
   std::string field;

@@ -24,7 +24,7 @@ namespace {
 constexpr std::string_view kNumpyMagic = "\x93NUMPY";
 constexpr std::size_t kLongestHeader = 1U << 14;
 constexpr std::size_t kMostArrayColumns = 64;
-constexpr std::size_t kMostShort = 12;  // more numbers than columns are no columns
+constexpr std::size_t kMostShort = 12;  // (assumed) longer: rows of points, not columns
 constexpr std::uint64_t kMostArrayBytes = std::uint64_t{1} << 30;
 
 /// One array of a file.
