@@ -38,7 +38,7 @@ class BeamFans {
   std::size_t memoryBytes() const;
 
  private:
-  static constexpr std::size_t kMost = 16384;  ///< capacity of pending segments
+  static constexpr std::size_t kMost = 65535;  ///< pending segments, by 16-bit numbers
   static constexpr int kOctants = 8;
 
   void sort();

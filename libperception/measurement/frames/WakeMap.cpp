@@ -11,24 +11,45 @@ constexpr double kLife = 2.5;                    // [s] of a wake
 constexpr double kPresent = 0.15;                // [s] since the last footprint of a vehicle
 constexpr double kSide = 0.5, kSpread = 0.7;     // [m], [m/s] by which it is wider than the vehicle
 constexpr double kSeenAgain = 0.7, kFade = 1.5;  // by lidars; [s]
+constexpr double kCell = 4;                      // [m]
 constexpr double kByCameras = 0.02, kByRadars = 0.01;
 
 double halfWidth(const VehicleFootprint& v, double age) {
   return v.half_width + kSide + kSpread * age;
 }
 
+// Number of the cell that contains a coordinate [m].
+int cellOf(double coordinate) { return static_cast<int>(std::floor(coordinate / kCell)); }
+
 }  // namespace
 
 void WakeMap::add(const VehicleFootprint& vehicle) {
   vehicles_.push_back(vehicle);
+  mark(vehicle);
   advance(vehicle.stamp);
 }
 
 void WakeMap::advance(Stamp now) {
+  const std::size_t before = vehicles_.size();
   while (!vehicles_.empty() && now - vehicles_.front().stamp > kLife) vehicles_.pop_front();
+  if (vehicles_.size() == before) return;
+  reached_.fill(0);
+  for (const VehicleFootprint& v : vehicles_) mark(v);
+}
+
+void WakeMap::mark(const VehicleFootprint& v) {
+  const double moved = std::max(kPresent * v.speed, v.advanced);
+  const double reach = v.half_length + moved + halfWidth(v, kLife);
+  const int last_x = cellOf(v.center.x() + reach), last_y = cellOf(v.center.y() + reach);
+  for (int y = cellOf(v.center.y() - reach); y <= last_y; ++y)
+    for (int x = cellOf(v.center.x() - reach); x <= last_x; ++x)
+      reached_[static_cast<std::size_t>(y & (kCells - 1))] |= std::uint64_t{1}
+                                                              << (x & (kCells - 1));
 }
 
 std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
+  const std::uint64_t row = reached_[static_cast<std::size_t>(cellOf(place.y()) & (kCells - 1))];
+  if ((row >> (cellOf(place.x()) & (kCells - 1)) & 1) == 0) return std::nullopt;
   for (auto v = vehicles_.rbegin(); v != vehicles_.rend(); ++v) {  // the last vehicle counts
     const double age = now - v->stamp;
     if (age > kLife) break;

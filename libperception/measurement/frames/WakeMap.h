@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <deque>
 #include <optional>
 
@@ -44,7 +46,12 @@ class WakeMap {
   static double detection(Modality modality, double age);
 
  private:
+  /// Marks the cells that the vehicle's wake may reach in its life.
+  void mark(const VehicleFootprint& vehicle);
+
+  static constexpr int kCells = 64;  ///< along each axis, after which they repeat
   std::deque<VehicleFootprint> vehicles_;
+  std::array<std::uint64_t, kCells> reached_{};  ///< cells, a row a word: elsewhere is no wake
 };
 
 }  // namespace perception

@@ -49,6 +49,27 @@ TEST(WakeMap, AVehicleFasterThanItsLengthPerScanLeavesNoHole) {
   }
 }
 
+TEST(WakeMap, IsTheSameAnywhereInTheWorld) {
+  const WakeMap here = wakeOfACar();
+  const Stamp now = Stamp::fromSeconds(3);
+  for (const Vector2& off : {Vector2(-1001.3, 2.9), Vector2(500123.7, -4.1), Vector2(-3.9, 7e6)}) {
+    WakeMap there;
+    for (int k = 0; k <= 30; ++k) {
+      VehicleFootprint car;
+      car.stamp = Stamp::fromSeconds(0.1 * k);
+      car.center = Vector2(2.0 * k, 0) + off;
+      car.speed = 20, car.advanced = 2;
+      car.half_length = 2.25, car.half_width = 0.9;
+      there.add(car);
+    }
+    for (double x = -10; x < 75; x += 0.7)
+      for (double y = -6; y < 6; y += 0.7)
+        EXPECT_NEAR(there.age(Vector2(x, y) + off, now).value_or(-1),
+                    here.age({x, y}, now).value_or(-1), 1e-6)
+            << x << ", " << y;
+  }
+}
+
 TEST(WakeMap, WidensWithAgeAndEnds) {
   const WakeMap wakes = wakeOfACar();
   EXPECT_FALSE(wakes.age({58, 1.6}, Stamp::fromSeconds(3)));  // 0.9 + 0.5 m
