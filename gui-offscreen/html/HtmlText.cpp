@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <fstream>
+
+#include "libperception/core/Error.h"
 
 namespace perception {
 
@@ -48,6 +51,18 @@ std::string base64(const std::string& bytes) {
     text += i + 2 < bytes.size() ? kDigits[bits & 63] : '=';
   }
   return text;
+}
+
+void putBase64(const std::string& file, const TextSink& sink) {
+  constexpr std::size_t kPiece = 3 << 16;  // [bytes] a multiple of three: only the last is padded
+  std::ifstream bytes(file, std::ios::binary);
+  std::string piece(kPiece, '\0');
+  while (bytes.read(piece.data(), kPiece) || bytes.gcount() > 0) {
+    piece.resize(static_cast<std::size_t>(bytes.gcount()));
+    sink(base64(piece));
+    piece.resize(kPiece);
+  }
+  if (!bytes.eof()) throw DataError(file + ": cannot be read");
 }
 
 }  // namespace perception

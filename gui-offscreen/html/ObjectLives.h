@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <vector>
 
-#include "libperception/scene/files/TrackedRun.h"
+#include "libperception/scene/Scene.h"
+#include "libperception/scene/files/TrackedRunReader.h"
 
 namespace perception {
 
@@ -24,7 +26,20 @@ struct ObjectLife {
   double to() const { return stretches.back().to; }
 };
 
-/// All objects of a run by id. Gaps of more than two scene periods start a new interval.
-std::vector<ObjectLife> objectLives(const TrackedRun& run);
+/// Collects the lifetimes of a run's objects. Gaps of more than two scene periods start a new
+/// interval.
+class ObjectLives {
+ public:
+  explicit ObjectLives(const RunOutline& run);
+  /// Scenes in order of time.
+  void add(const Scene& scene);
+  /// All objects by id.
+  std::vector<ObjectLife> list() const;
+
+ private:
+  Stamp first_stamp_;
+  double period_ = 0.1;  // [s] between scenes, mean
+  std::map<std::uint64_t, ObjectLife> lives_;
+};
 
 }  // namespace perception

@@ -21,14 +21,15 @@ constexpr std::size_t kMostRows = 80;  // of the timeline; objects of longest li
 /// Writes the page part by part.
 class Page {
  public:
-  explicit Page(const ReportContent& content) : content_(content), run_(*content.run) {
-    for (ObjectLife& life : objectLives(run_)) {
+  Page(const ReportContent& content, const TextSink& sink)
+      : content_(content), run_(content.run), sink_(sink) {
+    for (const ObjectLife& life : content.lives) {
       if (isMuted(nameOfClass(run_, life.last_class))) {
         ++still_;
       } else if (life.to() - life.from() < kShortest) {
         ++brief_;
       } else {
-        lives_.push_back(std::move(life));
+        lives_.push_back(life);
       }
     }
     std::stable_sort(lives_.begin(), lives_.end(), [](const ObjectLife& a, const ObjectLife& b) {
@@ -40,10 +41,10 @@ class Page {
     }
     std::stable_sort(lives_.begin(), lives_.end(),
                      [](const ObjectLife& a, const ObjectLife& b) { return a.from() < b.from(); });
-    end_ = run_.scenes.empty() ? 1 : run_.scenes.back().stamp - run_.first_stamp + 0.1;
+    end_ = run_.stamps.empty() ? 1 : run_.stamps.back() - run_.first_stamp + 0.1;
   }
 
-  std::string html() {
+  void write() {
     out_ = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -51,7 +52,7 @@ class Page {
         "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n",
         runMark({content_.id}), escaped(title()), kReportStyle, pageStyle());
     head();
-    if (!content_.data.empty()) out_ += "<div id=\"viewer\" data-run=\"run\"></div>\n";
+    if (content_.parts) out_ += "<div id=\"viewer\" data-run=\"run\"></div>\n";
     timeline();
     out_ += "<div id=\"weather\"></div>\n";
     video();
@@ -60,8 +61,10 @@ class Page {
     objects();
     out_ += "<div id=\"events\"></div>\n";
     provenance();
-    out_ += fmt::format("{}<script>{}</script>\n</body>\n</html>\n", content_.data, pageScript());
-    return std::move(out_);
+    flush();
+    if (content_.parts) content_.parts->write(sink_);
+    out_ += fmt::format("<script>{}</script>\n</body>\n</html>\n", pageScript());
+    flush();
   }
 
  private:
@@ -71,6 +74,10 @@ class Page {
   }
   void tile(const std::string& value, const std::string& meaning) {
     out_ += fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", value, meaning);
+  }
+  void flush() {
+    sink_(out_);
+    out_.clear();
   }
   void head();
   void video();
@@ -83,7 +90,8 @@ class Page {
   const nlohmann::json* judged() const;
 
   const ReportContent& content_;
-  const TrackedRun& run_;
+  const RunOutline& run_;
+  const TextSink& sink_;
   std::vector<ObjectLife> lives_;  // rows of the timeline, by first sight
   std::size_t still_ = 0, brief_ = 0, left_out_ = 0;
   double end_ = 1;  // [s] of the time axis
@@ -147,14 +155,13 @@ void Page::head() {
 }
 
 void Page::figure(const ReportContent::Figure& f) {
-  const std::string data = "data:" + f.media_type + ";base64," + base64(f.bytes);
-  out_ += "<figure>\n";
-  if (f.media_type.rfind("video/", 0) == 0) {
-    out_ += fmt::format(
-        "<video id=\"film\" controls muted loop preload=\"auto\" src=\"{}\"></video>\n", data);
-  } else {
-    out_ += fmt::format("<img alt=\"{}\" src=\"{}\">\n", escaped(f.title), data);
-  }
+  const bool is_video = f.media_type.rfind("video/", 0) == 0;
+  out_ += is_video ? "<figure>\n<video id=\"film\" controls muted loop preload=\"auto\" src=\""
+                   : fmt::format("<figure>\n<img alt=\"{}\" src=\"", escaped(f.title));
+  out_ += "data:" + f.media_type + ";base64,";
+  flush();
+  putBase64(f.file, sink_);
+  out_ += is_video ? "\"></video>\n" : "\">\n";
   out_ += fmt::format("<figcaption>{}</figcaption>\n</figure>\n", escaped(f.caption));
 }
 
@@ -171,7 +178,7 @@ void Page::timeline() {
       "<h2>Who was there, and when</h2>\n<p>One row for each road user that was tracked, from "
       "when it was first seen until it was lost; color: its class at that time, pale while "
       "that was less than 95 % sure.";
-  const TimelineNote phantoms = phantomNote(content_.events, end_);
+  const TimelineNote phantoms = phantomNote(content_.phantoms, end_);
   if (!phantoms.stretches.empty())
     out_ += " First row: many clusters of returns were phantoms (spray, snow, rain).";
   out_ += " A click goes to that time.";
@@ -271,6 +278,8 @@ void Page::provenance() {
 
 }  // namespace
 
-std::string htmlPage(const ReportContent& content) { return Page(content).html(); }
+void writeHtmlPage(const ReportContent& content, const TextSink& sink) {
+  Page(content, sink).write();
+}
 
 }  // namespace perception

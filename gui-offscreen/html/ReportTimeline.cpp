@@ -53,7 +53,7 @@ TimelineNote phantomNote(const nlohmann::json& events, double end) {
   return note;
 }
 
-std::string nameOfClass(const TrackedRun& run, ClassId c) {
+std::string nameOfClass(const RunOutline& run, ClassId c) {
   const auto i = static_cast<std::size_t>(c);
   return c >= 0 && i < run.class_names.size() ? run.class_names[i] : "?";
 }
@@ -71,7 +71,7 @@ std::string timeAxis(double end, const TimelineSpan& span, double bottom) {
   return out;
 }
 
-std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& lives, double end,
+std::string timelineChart(const RunOutline& run, const std::vector<ObjectLife>& lives, double end,
                           const TimelineNote& note) {
   const double notes = note.stretches.empty() ? 0 : kTrackRow;  // [px]
   const double height = kAxis + notes + kTrackRow * static_cast<double>(lives.size()) + 4;
@@ -80,7 +80,7 @@ std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& 
       "<svg id=\"timeline\" viewBox=\"0 0 {:.0f} {:.0f}\" data-left=\"{:.0f}\" "
       "data-width=\"{:.0f}\" data-end=\"{:.3f}\" data-start=\"{:.3f}\">\n",
       kLabelWidth + kChartWidth + 10, height, kLabelWidth, kChartWidth, end,
-      run.scenes.empty() ? 0 : run.scenes.front().stamp - run.first_stamp);
+      run.stamps.empty() ? 0 : run.stamps.front() - run.first_stamp);
   out += timeAxis(end, {kLabelWidth, kChartWidth}, height);
   if (notes > 0) out += noteRow(note, kAxis, end);
   double y = kAxis + notes;

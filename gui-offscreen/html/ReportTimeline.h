@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "gui-offscreen/html/ObjectLives.h"
+#include "libperception/measurement/objects/ObjectClass.h"
+#include "libperception/scene/files/TrackedRunReader.h"
 
 namespace perception {
 
 /// Name of a class of the run; "?" if out of range.
-std::string nameOfClass(const TrackedRun& run, ClassId c);
+std::string nameOfClass(const RunOutline& run, ClassId c);
 
 /// Place of a time axis in an SVG [px].
 struct TimelineSpan {
@@ -36,7 +38,7 @@ TimelineNote phantomNote(const nlohmann::json& events, double end);
 
 /// SVG of the page of a run: one row for the note and one per object in the given order, time axis
 /// from 0 to `end` [s]; pale where not classified.
-std::string timelineChart(const TrackedRun& run, const std::vector<ObjectLife>& lives, double end,
+std::string timelineChart(const RunOutline& run, const std::vector<ObjectLife>& lives, double end,
                           const TimelineNote& note = {});
 
 }  // namespace perception

@@ -29,62 +29,53 @@ std::string element(const std::string& id, const std::string& text) {
 
 }  // namespace
 
-RunParts::RunParts(const TrackedRun& run, const RunRecord& record, const RunErrors* errors,
-                   const std::optional<Vector3>& origin, const RunData::Budget& budget)
-    : run_(run), record_(record), errors_(errors), budget_(budget) {
-  if (!run.scenes.empty()) origin_ = run.scenes.front().ego.T_world_ego.translation();
-  if (origin) origin_ = *origin;
-  const auto scenes = static_cast<double>(std::max<std::size_t>(run.scenes.size(), 1));
-  const double returns = static_cast<double>(budget.points) / RunData::kBase64 /
+RunParts::RunParts(const RunOutline& run, const RunRecord& record, const std::string& output,
+                   Options options)
+    : record_(record),
+      options_(std::move(options)),
+      scenes_(run.stamps.size()),
+      slice_{run.dir, run.first_stamp, run.class_names, {}},
+      spool_(output, options_.prefix) {
+  const auto scenes = static_cast<double>(std::max<std::size_t>(scenes_, 1));
+  const double returns = static_cast<double>(options_.budget.points) / RunData::kBase64 /
                          RunData::kPointBytes * (1 - RunData::kCellShare);
   every_ = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::ceil(scenes * kLeastReturns / std::max(returns, 1.0))));
   const auto images =
-      static_cast<double>(std::max<std::size_t>(budget.images / RunData::kImageBytes, 1));
+      static_cast<double>(std::max<std::size_t>(options_.budget.images / RunData::kImageBytes, 1));
   every_image_ =
       every_ * static_cast<std::size_t>(std::ceil(scenes / static_cast<double>(every_) / images));
-  const Json head =
-      RunData(TrackedRun{run.dir, run.first_stamp, run.class_names, {}}, record).collected();
+  const Json head = RunData(slice_, record).collected();
   for (const char* key : {"id", "log", "simulated", "config", "classes"})
     index_[key] = head.at(key);
-  for (const char* key : {"times", "parts", "objects", "layers", "events", "weather"})
+  for (const char* key : {"times", "parts", "objects", "layers", "weather"})
     index_[key] = Json::array();
-  index_["judged"] = errors != nullptr;
-  for (const Scene& scene : run.scenes)
-    index_["times"].push_back(std::round((scene.stamp - run.first_stamp) * 1000) / 1000);
-  if (!run.scenes.empty()) begin(0);
+  index_["judged"] = options_.judged;
+  for (const Stamp& stamp : run.stamps)
+    index_["times"].push_back(std::round((stamp - run.first_stamp) * 1000) / 1000);
 }
 
 // The part's own budget of bytes is that of its scenes with sensor data.
-void RunParts::begin(std::size_t part) {
-  part_ = part;
-  const std::size_t from = part * kScenes, to = std::min(from + kScenes, run_.scenes.size());
-  const auto at = [&](std::size_t k) {
-    return run_.scenes.begin() + static_cast<std::ptrdiff_t>(k);
-  };
-  slice_ = {run_.dir, run_.first_stamp, run_.class_names, {at(from), at(to)}};
-  const std::size_t sensed = (run_.scenes.size() + every_ - 1) / every_;
+void RunParts::begin(std::vector<Scene> scenes, const RunErrors& errors) {
+  if (data_) finish();
+  if (scenes.empty()) return;
+  if (!options_.origin) options_.origin = scenes.front().ego.T_world_ego.translation();
+  slice_.scenes = std::move(scenes);
+  const std::size_t sensed = (scenes_ + every_ - 1) / every_;
   RunData::Budget budget;
-  budget.points = budget_.points / sensed * slice_.scenes.size();
-  budget.images = budget_.images - std::min(budget_.images, image_bytes_);
+  budget.points = options_.budget.points / sensed * slice_.scenes.size();
+  budget.images = options_.budget.images - std::min(options_.budget.images, image_bytes_);
   budget.every_image = 1;
-  data_.emplace(slice_, record_, budget, origin_);
-  if (errors_) {
-    const auto first = errors_->begin() + static_cast<std::ptrdiff_t>(from);
-    data_->setErrors({first, first + static_cast<std::ptrdiff_t>(slice_.scenes.size())});
-  }
+  data_.emplace(slice_, record_, budget, options_.origin);
+  if (options_.judged) data_->setErrors(errors);
 }
 
 void RunParts::add(std::size_t index, SceneView view) {
-  while (index >= (part_ + 1) * kScenes) {
-    finish();
-    begin(part_ + 1);
-  }
   if (index % every_image_ != 0) view.image.reset();
   if (sensed(index)) {
-    data_->add(index - part_ * kScenes, view);
+    data_->add(index - parts_ * kScenes, view);
   } else {
-    data_->addTruth(index - part_ * kScenes, view);
+    data_->addTruth(index - parts_ * kScenes, view);
   }
 }
 
@@ -104,41 +95,55 @@ void RunParts::finish() {
   for (const Json& scene : all.at("scenes")) noteLayers(scene);
   for (const Json& object : all.at("objects")) {
     const auto [span, is_new] =
-        spans_.try_emplace(object.at("id").get<std::uint64_t>(), part_, part_);
-    span->second.second = part_;
+        spans_.try_emplace(object.at("id").get<std::uint64_t>(), parts_, parts_);
+    span->second.second = parts_;
   }
   points_seen_ += data_->pointsSeen();
   points_kept_ += data_->pointsKept();
   for (const Json& image : data_->images())
     image_bytes_ += image.get_ref<const std::string&>().size();
-  images_.push_back(data_->images().empty() ? "" : data_->images().dump());
-  index_["parts"].push_back(part_ * kScenes);
+  index_["parts"].push_back(parts_ * kScenes);
   auto whole = std::make_shared<std::string>(framed(
       textOfPart({{"scenes", all.at("scenes")}, {"objects", all.at("objects")}}), data_->bytes()));
-  if (packed_.valid()) texts_.push_back(packed_.get());
-  packed_ = std::async(std::launch::async, [whole] { return base64(gzipped(*whole)); });
+  keepPacked();
+  packed_ = Packed{options_.prefix + "-" + std::to_string(parts_),
+                   std::async(std::launch::async, [whole] { return base64(gzipped(*whole)); }),
+                   data_->images().empty() ? "" : data_->images().dump()};
+  data_.reset();
+  ++parts_;
 }
 
-std::string RunParts::html(const std::string& prefix) {
-  if (data_) {
-    finish();
-    while ((part_ + 1) * kScenes < run_.scenes.size()) {
-      begin(part_ + 1);
-      finish();
-    }
-    texts_.push_back(packed_.get());
-    data_.reset();
-  }
+void RunParts::keepPacked() {
+  if (!packed_) return;
+  spool_.write(element(packed_->name, packed_->text.get()));
+  if (!packed_->images.empty()) spool_.write(element(packed_->name + "-images", packed_->images));
+  packed_.reset();
+}
+
+void RunParts::addEvent(Json event) {
+  events_.push_back(std::move(event));
+  ++event_count_;
+  if (events_.size() == kEvents) keepEvents();
+}
+
+void RunParts::keepEvents() {
+  if (events_.empty()) return;
+  const std::size_t number = (event_count_ - 1) / kEvents;
+  spool_.write(element(options_.prefix + "-events-" + std::to_string(number),
+                       base64(gzipped(textOfPart(events_)))));
+  events_.clear();
+}
+
+void RunParts::write(const TextSink& sink) {
+  if (data_) finish();
+  keepPacked();
+  keepEvents();
   for (const auto& [id, span] : spans_) index_["objects"].push_back({id, span.first, span.second});
   for (const std::string& layer : layers_) index_["layers"].push_back(layer);
+  index_["eventCount"] = event_count_;
   index_["points"] = {{"seen", points_seen_}, {"kept", points_kept_}, {"every", every_}};
-  std::string out = element(prefix + "-data", base64(gzipped(textOfPart(index_))));
-  for (std::size_t n = 0; n < texts_.size(); ++n) {
-    const std::string name = prefix + "-" + std::to_string(n);
-    out += element(name, texts_[n]);
-    if (!images_[n].empty()) out += element(name + "-images", images_[n]);
-  }
-  return out;
+  sink(element(options_.prefix + "-data", base64(gzipped(textOfPart(index_)))));
+  spool_.copyTo(sink);
 }
 
 }  // namespace perception

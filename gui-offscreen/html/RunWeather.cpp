@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <map>
-#include <vector>
 
 #include "libperception/core/Csv.h"
+#include "libperception/core/CsvStream.h"
 
 namespace perception {
 namespace {
@@ -18,73 +20,71 @@ constexpr const char* kTypes[] = {"clear", "rain", "snow", "fog"};
 
 double roundedTo(double value, double steps) { return std::round(value * steps) / steps; }
 
-/// Rows of each sensor, `most` of them.
-std::map<std::string, std::vector<std::size_t>> rowsBySensor(const CsvTable& table,
-                                                             std::size_t most) {
-  std::map<std::string, std::vector<std::size_t>> rows;
-  const auto sensor = table.column("sensor");
-  for (std::size_t i = 0; i < table.rows(); ++i)
-    rows[std::string(table.text(i, sensor))].push_back(i);
-  for (auto& [label, all] : rows) {
-    if (all.size() <= most) continue;
-    std::vector<std::size_t> kept;
-    for (std::size_t i = 0; i < most; ++i) kept.push_back(all[i * all.size() / most]);
-    all = kept;
+/// Rows of a table by sensor, `most` of each, evenly spread: each is given to `row`.
+void eachThinned(const std::string& path, std::size_t most,
+                 const std::function<void(const std::string&, const CsvTable&)>& row) {
+  std::map<std::string, std::size_t> counts;
+  for (CsvStream rows(path); rows.next();)
+    ++counts[std::string(rows.row().text(0, rows.row().column("sensor")))];
+  struct Place {
+    std::size_t row = 0, kept = 0;
+  };
+  std::map<std::string, Place> places;
+  for (CsvStream rows(path); rows.next();) {
+    const std::string label(rows.row().text(0, rows.row().column("sensor")));
+    const std::size_t count = counts[label];
+    Place& place = places[label];
+    const std::size_t wanted = count <= most ? place.row : place.kept * count / most;
+    if (place.row++ != wanted || (count > most && place.kept >= most)) continue;
+    ++place.kept;
+    row(label, rows.row());
   }
-  return rows;
 }
 
-/// A column, as numbers times `factor`; null where it is empty.
-Json columnOf(const CsvTable& table, const std::vector<std::size_t>& rows, const std::string& name,
-              double steps = 100) {
-  Json values = Json::array();
-  const auto column = table.column(name);
-  for (const std::size_t i : rows) {
-    const double value = table.realOrNan(i, column);
-    values.push_back(std::isfinite(value) ? Json(roundedTo(value, steps)) : Json(nullptr));
-  }
-  return values;
+/// Appends a value of the row, to 1/steps; null where it is empty.
+void put(Json& values, const CsvTable& row, const std::string& name, double steps = 100) {
+  const double value = row.realOrNan(0, row.column(name));
+  values.push_back(std::isfinite(value) ? Json(roundedTo(value, steps)) : Json(nullptr));
 }
 
-Json intervalOf(const CsvTable& table, const std::vector<std::size_t>& rows,
-                const std::string& name) {
-  Json columns = Json::array();
-  for (const char* part : {"", "_low", "_high"})
-    columns.push_back(columnOf(table, rows, name + part));
-  return columns;
+void putWeather(Json& entry, const CsvTable& row) {
+  put(entry["t"], row, "t", 1000);
+  for (std::size_t i = 0; i < std::size(kTypes); ++i)
+    put(entry["p"][i], row, std::string("p_") + kTypes[i], 1000);
+  constexpr const char* kParts[] = {"", "_low", "_high"};
+  for (const char* name : {"rain", "snow", "visibility"}) {
+    for (std::size_t i = 0; i < std::size(kParts); ++i)
+      put(entry[name][i], row, std::string(name) + kParts[i]);
+  }
+  const double returns = row.real(0, row.column("returns"));
+  const double doubted = row.real(0, row.column("doubted"));
+  entry["doubted"].push_back(roundedTo(doubted / std::max(returns, 1.0), 1e5));
 }
 
 }  // namespace
 
 Json weatherOf(const std::string& dir, std::size_t most) {
-  Json sensors = Json::array();
-  if (!fs::exists(dir + "/weather.csv")) return sensors;
-  const CsvTable table = CsvTable::fromFile(dir + "/weather.csv");
-  for (const auto& [sensor, rows] : rowsBySensor(table, most)) {
-    Json entry = {{"sensor", sensor}, {"t", columnOf(table, rows, "t", 1000)}};
-    for (const char* type : kTypes)
-      entry["p"].push_back(columnOf(table, rows, std::string("p_") + type, 1000));
-    for (const char* name : {"rain", "snow", "visibility"})
-      entry[name] = intervalOf(table, rows, name);
-    for (const std::size_t i : rows) {
-      const double returns = table.real(i, table.column("returns"));
-      const double doubted = table.real(i, table.column("doubted"));
-      entry["doubted"].push_back(roundedTo(doubted / std::max(returns, 1.0), 1e5));
-    }
-    sensors.push_back(std::move(entry));
+  Json list = Json::array();
+  if (!fs::exists(dir + "/weather.csv")) return list;
+  std::map<std::string, Json> sensors;
+  eachThinned(dir + "/weather.csv", most, [&](const std::string& sensor, const CsvTable& row) {
+    putWeather(sensors[sensor], row);
+  });
+  if (fs::exists(dir + "/ledger.csv")) {
+    eachThinned(dir + "/ledger.csv", most, [&](const std::string& sensor, const CsvTable& row) {
+      const auto known = sensors.find(sensor);
+      if (known == sensors.end()) return;
+      Json& ledger = known->second["ledger"];
+      put(ledger["t"], row, "t", 1000);
+      put(ledger["clusters"], row, "clusters", 1);
+      put(ledger["phantoms"], row, "phantom_clusters", 1);
+    });
   }
-  if (!fs::exists(dir + "/ledger.csv")) return sensors;
-  const CsvTable ledger = CsvTable::fromFile(dir + "/ledger.csv");
-  for (const auto& [sensor, rows] : rowsBySensor(ledger, most)) {
-    const auto known =
-        std::find_if(sensors.begin(), sensors.end(),
-                     [&label = sensor](const Json& s) { return s.at("sensor") == label; });
-    if (known == sensors.end()) continue;
-    (*known)["ledger"] = {{"t", columnOf(ledger, rows, "t", 1000)},
-                          {"clusters", columnOf(ledger, rows, "clusters", 1)},
-                          {"phantoms", columnOf(ledger, rows, "phantom_clusters", 1)}};
+  for (auto& [sensor, entry] : sensors) {
+    entry["sensor"] = sensor;
+    list.push_back(std::move(entry));
   }
-  return sensors;
+  return list;
 }
 
 }  // namespace perception

@@ -70,6 +70,14 @@ export class Run extends Course {
     this.spans = new Map(this.objects.map(([id, ...span]) => [id, span]));
   }
 
+  // All events of the run: read when they are asked for.
+  events() {
+    const all = [];
+    for (let n = 0, bytes; (bytes = bytesOf(`${this.prefix}-events-${n}`)); ++n)
+      for (const event of JSON.parse(new TextDecoder().decode(bytes))) all.push(event);
+    return all;
+  }
+
   // The JPEG of scene k, as base64, or nothing.
   imageAt(k) {
     const n = this.partOf(k), part = this.part(n), element = document.getElementById(`${this.prefix}-${n}-images`);

@@ -9,7 +9,7 @@ const KEPT = 60, KEPT_IN_PAUSE = 120, OFTEN = 1, MOST_EVENTS = 200;  // [s], [s]
 class LiveRun extends Course {
   constructor() {
     super();
-    Object.assign(this, { classes: [], events: [], layers: [] });
+    Object.assign(this, { classes: [], eventCount: 0, layers: [] });
   }
   at(k) { return this.scenes[k]; }
   here(k) { return this.present[k]; }

@@ -55,13 +55,13 @@ export function objectRows(viewer) {
 }
 
 export function events(viewer, host) {
-  const all = viewer.run.events;
-  if (!all?.length) return;
-  const details = document.createElement("details"), kinds = [...new Set(all.map((e) => e.kind))].sort();
+  const count = viewer.run.eventCount;
+  if (!count) return;
+  let all;
+  const details = document.createElement("details");
   details.innerHTML = "<summary></summary><select aria-label=\"kind of event\"><option value=\"\">all kinds</option></select><table></table>";
-  details.firstChild.textContent = `${all.length} events: tracks born and lost, sensors, data dropped`;
+  details.firstChild.textContent = `${count} events: tracks born and lost, sensors, data dropped`;
   const choice = details.querySelector("select"), table = details.querySelector("table");
-  for (const kind of kinds) choice.append(new Option(kind.replaceAll("_", " "), kind));
   const fill = () => {
     table.innerHTML = "<tr><th>time</th><th>event</th><th>what</th></tr>";
     table.classList.remove("sorts");
@@ -77,6 +77,11 @@ export function events(viewer, host) {
     sortable(table);
   };
   choice.addEventListener("change", fill);
-  details.addEventListener("toggle", () => details.open && !table.rows.length && fill());
+  details.addEventListener("toggle", () => {
+    if (!details.open || all) return;
+    all = viewer.run.events();
+    for (const kind of [...new Set(all.map((e) => e.kind))].sort()) choice.append(new Option(kind.replaceAll("_", " "), kind));
+    fill();
+  });
   host.append(details);
 }

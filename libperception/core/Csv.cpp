@@ -10,25 +10,14 @@
 #include <cstring>
 #include <limits>
 
+#include "libperception/core/CsvStream.h"
 #include "libperception/core/Error.h"
-#include "libperception/core/system/PartialFile.h"
 
 namespace perception {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 std::string readWhole(const std::string& path) {
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  if (const auto what = irregularity(path); !what.empty())
-    throw DataError(fmt::format("{}: not a table but {}", path, what));
-  const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rbe"));
-  if (!file) {
-    const ExitCode code = errno == ENOENT ? ExitCode::kNoInput : ExitCode::kBadInput;
-    throw DataError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)), code);
-  }
+  const auto file = openTable(path);
   std::string content;
   char block[1 << 16];
   std::size_t count = 0;
@@ -39,12 +28,12 @@ std::string readWhole(const std::string& path) {
   return content;
 }
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
+/// Appends the fields of a line.
+void split(std::string_view line, std::vector<std::string_view>& fields) {
   for (;;) {
     const std::size_t comma = line.find(',');
     fields.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return fields;
+    if (comma == std::string_view::npos) return;
     line.remove_prefix(comma + 1);
   }
 }
@@ -65,8 +54,8 @@ CsvTable CsvTable::fromText(std::string text, const std::string& name) {
   table.name_ = name;
   table.content_ = std::make_shared<const std::string>(std::move(text));
   std::string_view rest = *table.content_;
-  if (rest.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
-    rest.remove_prefix(kByteOrderMark.size());
+  if (rest.substr(0, kTableMark.size()) == kTableMark) {
+    rest.remove_prefix(kTableMark.size());
   }
   if (rest.empty()) {
     throw DataError(fmt::format("{}:1: empty, expected a header line of column names", name));
@@ -88,22 +77,24 @@ CsvTable CsvTable::fromText(std::string text, const std::string& name) {
 }
 
 void CsvTable::addRow(std::string_view line, std::size_t number) {
-  const auto fields = split(line);
   if (number == 1) {
-    for (const std::string_view field : fields) {
-      if (field.empty() || has(field)) {
-        throw DataError(fmt::format("{}:1: column name '{}' is {}", name_, field,
-                                    field.empty() ? "empty" : "there twice"));
+    std::vector<std::string_view> names;
+    split(line, names);
+    for (const std::string_view name : names) {
+      if (name.empty() || has(name)) {
+        throw DataError(fmt::format("{}:1: column name '{}' is {}", name_, name,
+                                    name.empty() ? "empty" : "there twice"));
       }
-      header_.emplace_back(field);
+      header_.emplace_back(name);
     }
     return;
   }
-  if (fields.size() != header_.size()) {
+  const std::size_t before = fields_.size();
+  split(line, fields_);
+  if (fields_.size() - before != header_.size()) {
     throw DataError(fmt::format("{}:{}: found {} fields, expected {} as in the header", name_,
-                                number, fields.size(), header_.size()));
+                                number, fields_.size() - before, header_.size()));
   }
-  fields_.insert(fields_.end(), fields.begin(), fields.end());
   lines_.push_back(number);
 }
 

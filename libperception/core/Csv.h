@@ -8,6 +8,8 @@
 
 namespace perception {
 
+class CsvStream;
+
 /// A strict table of comma-separated values: one header line, then one line per row, each with as
 /// many fields as the header and terminated by a newline. Quoted fields are not supported (no file
 /// of this project needs them); CR LF and a byte order mark are accepted; independent of the
@@ -44,6 +46,7 @@ class CsvTable {
   [[noreturn]] void fault(std::size_t row, Column column, std::string_view expected) const;
 
  private:
+  friend class CsvStream;
   CsvTable() = default;
   void addRow(std::string_view line, std::size_t number);
 

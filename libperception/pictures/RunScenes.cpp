@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libperception/core/Error.h"
@@ -13,17 +14,36 @@ constexpr double kTrail = 2;            // [s]
 constexpr double kNearestTruth = 0.06;  // [s] half the period of 10 Hz, and rounding
 constexpr double kUnknownSize = 0.3;    // [m] of truth without a size
 
-void addTruth(const GroundTruth& truth, SceneView& result) {
-  result.has_truth = true;
+constexpr double kTruthAround = 1;  // [s] in which the truth of a scene nearly always is
+
+using TruthInstants = std::vector<GroundTruth::Instant>;
+
+// By frame number if both have one, else the nearest in time.
+const GroundTruth::Instant* truthOf(const SceneView& view, TruthInstants::const_iterator from,
+                                    TruthInstants::const_iterator to) {
   const GroundTruth::Instant* best = nullptr;
-  for (const GroundTruth::Instant& instant : truth.instants) {
-    if (instant.frame >= 0 && result.scene.frame >= 0) {
-      if (instant.frame == result.scene.frame) best = &instant;
-    } else if (std::abs(instant.t - result.t) <=
-               (best ? std::abs(best->t - result.t) : kNearestTruth)) {
-      best = &instant;
+  for (; from != to; ++from) {
+    if (from->frame >= 0 && view.scene.frame >= 0) {
+      if (from->frame == view.scene.frame) best = &*from;
+    } else if (std::abs(from->t - view.t) <= (best ? std::abs(best->t - view.t) : kNearestTruth)) {
+      best = &*from;
     }
   }
+  return best;
+}
+
+}  // namespace
+
+void addTruth(const GroundTruth& truth, SceneView& result) {
+  result.has_truth = true;
+  const TruthInstants& all = truth.instants;
+  const auto after = [&](double t) {
+    return std::lower_bound(all.begin(), all.end(), t,
+                            [](const GroundTruth::Instant& i, double time) { return i.t < time; });
+  };
+  const auto* best =
+      truthOf(result, after(result.t - kTruthAround), after(result.t + kTruthAround));
+  if (!best) best = truthOf(result, all.begin(), all.end());
   if (!best) return;
   for (const TruthObject& object : best->objects) {
     if (!object.position.allFinite() || object.ignore) continue;
@@ -35,8 +55,6 @@ void addTruth(const GroundTruth& truth, SceneView& result) {
     if (!std::isfinite(drawn.yaw)) drawn.yaw = 0;
   }
 }
-
-}  // namespace
 
 std::size_t nearestScene(const TrackedRun& run, Stamp stamp) {
   const auto off = [&](std::size_t i) { return std::abs(run.scenes[i].stamp - stamp); };

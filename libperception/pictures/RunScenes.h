@@ -25,6 +25,8 @@ std::vector<std::size_t> scenesEvery(const TrackedRun& run, double every);
 /// `count` of `all`, evenly spaced, including the first and the last.
 std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t count);
 
+/// Adds the truth of the view's scene: by frame number if both have one, else by time.
+void addTruth(const GroundTruth& truth, SceneView& view);
 /// View of a scene without sensor data: objects, trails and, by frame number if both have one, else
 /// by time, the truth. `truth` may be null.
 SceneView viewOfScene(const TrackedRun& run, std::size_t index, const GroundTruth* truth);

@@ -129,6 +129,8 @@ std::optional<SensorFrame> SnapshotSensors::frameOf(
   return frameFromObservation(observation, nullptr, imagesBeside(log_));
 }
 
+double SnapshotSensors::past() const { return std::max(params_.memory, kLastImage); }
+
 void SnapshotSensors::advanceTo(Stamp stamp) {
   now_ = stamp;
   while (true) {
@@ -137,7 +139,7 @@ void SnapshotSensors::advanceTo(Stamp stamp) {
     if (isSensorData(*next_)) {
       const auto at = toStamp(next_->timestamp);
       if (at && *at > stamp) return;
-      if (at && stamp - *at <= std::max(params_.memory, kLastImage)) {
+      if (at && stamp - *at <= past()) {
         if (auto frame = frameOf(*next_)) take(std::move(*frame));
       }
     }

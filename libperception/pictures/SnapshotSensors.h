@@ -38,11 +38,14 @@ struct SnapshotSensorParams {
 /// ends. Ego poses are those of the run.
 class SnapshotSensors {
  public:
-  /// Reads the first seconds of the log for layers(). The run must outlive this.
+  /// Reads the first seconds of the log for layers(). The run must outlive this; of its scenes only
+  /// those of the past() seconds before an instant and the first after it are needed.
   SnapshotSensors(const std::string& log, const TrackedRun& run, SnapshotSensorParams params);
 
   /// Reads on to `stamp`, which must not go back.
   void advanceTo(Stamp stamp);
+  /// [s] of log before an instant that count for it.
+  double past() const;
   /// Adds the data of the last instant to the view.
   void fill(SceneView& view);
 

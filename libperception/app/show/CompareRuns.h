@@ -1,8 +1,10 @@
 #pragma once
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "gui-offscreen/html/RunParts.h"
 #include "libperception/evaluation/without_truth/RunDifference.h"
 #include "libperception/scene/files/RunRecord.h"
 #include "libperception/scene/files/TrackedRun.h"
@@ -30,8 +32,8 @@ struct RunComparison {
   std::vector<std::string> without_ini;  ///< folders without effective.ini: keys are not compared
   RunDifference difference;
   std::vector<std::string> without_origin;  ///< evaluations that do not say of which run they are
-  std::string film;                         ///< bytes of an MP4 of both, or empty
-  std::string data;  ///< RunParts::html("a") and ("b"), or empty: without the view of both
+  std::string film;                         ///< path of an MP4 of both, or empty
+  std::vector<std::unique_ptr<RunParts>> parts;  ///< "a" and "b"; none: without the view of both
 };
 
 /// Reads the folders of two runs. Throws DataError where a file is missing or wrong, and for runs

@@ -221,20 +221,21 @@ std::string objectsTable(const RunDifference& d) {
 }
 
 // The film, or how it is made.
-std::string filmSection(const RunComparison& comparison) {
-  const std::string title = "<h2>Side by side</h2>\n";
+void putFilm(const RunComparison& comparison, const TextSink& sink) {
+  sink("<h2>Side by side</h2>\n");
   if (comparison.film.empty()) {
-    return title +
-           fmt::format(
-               "<p>A film of both is made by <code>perception-snapshot -r {} -r {} -i LOG --video "
-               "both.mp4</code> and comes into this page by <code>--film both.mp4</code>.</p>\n",
-               escaped(comparison.a.dir), escaped(comparison.b.dir));
+    return sink(fmt::format(
+        "<p>A film of both is made by <code>perception-snapshot -r {} -r {} -i LOG --video "
+        "both.mp4</code> and comes into this page by <code>--film both.mp4</code>.</p>\n",
+        escaped(comparison.a.dir), escaped(comparison.b.dir)));
   }
-  return title + fmt::format(
-                     "<figure>\n<video id=\"film\" controls muted loop preload=\"auto\" "
-                     "src=\"data:video/mp4;base64,{}\"></video>\n<figcaption>{}</figcaption>\n"
-                     "</figure>\n",
-                     base64(comparison.film), "A on the left, B on the right.");
+  sink(
+      "<figure>\n<video id=\"film\" controls muted loop preload=\"auto\" "
+      "src=\"data:video/mp4;base64,");
+  putBase64(comparison.film, sink);
+  sink(
+      "\"></video>\n<figcaption>A on the left, B on the right.</figcaption>\n"
+      "</figure>\n");
 }
 
 std::string timelineSection(const RunDifference& d) {
@@ -256,26 +257,27 @@ std::string timelineSection(const RunDifference& d) {
 
 }  // namespace
 
-std::string comparisonPage(const RunComparison& comparison) {
+void writeComparisonPage(const RunComparison& comparison, const TextSink& sink) {
   const RunDifference& d = comparison.difference;
   const std::string mark = runMark({idOfRun(comparison.a.record), idOfRun(comparison.b.record)});
   const std::string title =
       fmt::format("What differs between two runs of {}{}", comparison.a.record.input,
                   comparison.a.record.simulated ? " (simulated)" : "");
-  return fmt::format(
-             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-             "<meta name=\"perception-run\" content=\"{3}\">\n"
-             "<title>{0}</title>\n<style>{1}{4}{2}</style>\n</head>\n<body>\n"
-             "<h1>{0}</h1>\n",
-             escaped(title), kReportStyle, kStyle, mark, pageStyle()) +
-         lead(d) +
-         (comparison.data.empty() ? ""
-                                  : "<div id=\"viewer\" data-run=\"a\" data-other=\"b\"></div>\n") +
-         filmSection(comparison) + "<h2>The runs</h2>\n" + runsTable(comparison.a, comparison.b) +
-         keysTable(comparison) + figuresTable(comparison) + timelineSection(d) + objectsTable(d) +
-         comparison.data + fmt::format("<script>{}</script>\n", pageScript()) +
-         "</body>\n</html>\n";
+  sink(
+      fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                  "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+                  "<meta name=\"perception-run\" content=\"{3}\">\n"
+                  "<title>{0}</title>\n<style>{1}{4}{2}</style>\n</head>\n<body>\n"
+                  "<h1>{0}</h1>\n",
+                  escaped(title), kReportStyle, kStyle, mark, pageStyle()));
+  sink(lead(d));
+  if (!comparison.parts.empty())
+    sink("<div id=\"viewer\" data-run=\"a\" data-other=\"b\"></div>\n");
+  putFilm(comparison, sink);
+  sink("<h2>The runs</h2>\n" + runsTable(comparison.a, comparison.b) + keysTable(comparison) +
+       figuresTable(comparison) + timelineSection(d) + objectsTable(d));
+  for (const auto& parts : comparison.parts) parts->write(sink);
+  sink(fmt::format("<script>{}</script>\n</body>\n</html>\n", pageScript()));
 }
 
 }  // namespace perception

@@ -1,12 +1,11 @@
 #pragma once
-#include <string>
-
 #include "libperception/app/show/CompareRuns.h"
+#include "libperception/core/system/SpoolFile.h"
 
 namespace perception {
 
-/// A self-contained HTML page of what differs between two runs: inputs, figures, objects over time
-/// and one by one.
-std::string comparisonPage(const RunComparison& comparison);
+/// Writes a self-contained HTML page of what differs between two runs: inputs, figures, objects
+/// over time and one by one.
+void writeComparisonPage(const RunComparison& comparison, const TextSink& sink);
 
 }  // namespace perception

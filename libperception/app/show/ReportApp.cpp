@@ -8,6 +8,9 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "libperception/app/Programs.h"
 #include "libperception/app/show/CompareRuns.h"
@@ -16,6 +19,7 @@
 #include "libperception/pipeline/output/FinishedRun.h"
 #include "libperception/scene/files/OutputFile.h"
 #include "libperception/scene/files/RunMark.h"
+#include "libperception/scene/files/TrackedRunReader.h"
 #include "libperception/sensors/observations/registerClasses.h"
 
 namespace perception {
@@ -89,9 +93,8 @@ void ReportApp::declare(CLI::App& cli) {
 void ReportApp::run() {
   if (!compared_dirs.empty()) return compare();
   if (run_dir.empty()) throw Error(ExitCode::kUsage, "-r or --compare is required");
-  const TrackedRun tracked = readTrackedRun(run_dir);
   ReportContent content;
-  content.run = &tracked;
+  content.run = readRunOutline(run_dir);
   content.record = readRunRecord((fs::path(run_dir) / "done.json").string());
   const fs::path timing = fs::path(run_dir) / "timing.json";
   if (fs::exists(timing)) content.real_time_factor = jsonOf(timing).value("real_time_factor", 0.0);
@@ -100,14 +103,23 @@ void ReportApp::run() {
   content.pictures = figuresIn(run_dir, kPictures, content.id);
   addOtherPictures(content);
   addEvaluation(content);
+  ReportSources sources = sourcesOf(content.record);
   if (const fs::path events = fs::path(run_dir) / "events.jsonl"; fs::exists(events))
-    content.events = linesOf(events);
-  ReportSources sources = sourcesOf(tracked, content.record);
-  sources.events = content.events;
-  content.data = reportData(tracked, content.record, sources, "run");
+    sources.events = events.string();
   const std::string path = output.empty() ? (fs::path(run_dir) / "index.html").string() : output;
-  out_page = htmlPage(content);
-  writeFile(path, out_page);
+  CollectedRun collected = collectRun(content.run, content.record, sources, "run", path);
+  content.lives = std::move(collected.lives);
+  content.phantoms = std::move(collected.phantoms);
+  content.parts = std::move(collected.parts);
+  writePage(path, [&](const TextSink& sink) { writeHtmlPage(content, sink); });
+}
+
+void ReportApp::writePage(const std::string& path,
+                          const std::function<void(const TextSink&)>& write) {
+  OutputFile page(path);
+  write([&page](std::string_view text) { page.write(text); });
+  page.close();
+  out_path = path;
   fmt::print("{}\n", path);
 }
 
@@ -120,33 +132,35 @@ void ReportApp::compare() {
     if (!isOfRuns(film, {idOfRun(comparison.a.record), idOfRun(comparison.b.record)}))
       throw DataError(film +
                       ": does not say of which runs it is: make it with perception-snapshot");
-    comparison.film = contentsOf(film);
+    comparison.film = film;
   }
   // Sensor data of the log are with the first run; both have its origin.
   run_dir = comparison.a.dir;
   const ComparedRun &a = comparison.a, &b = comparison.b;
-  ReportSources sources = sourcesOf(a.tracked, a.record), others;
-  others.truth = sources.truth;
+  ReportSources sources = sourcesOf(a.record), others;
+  const bool judged = sources.truth.has_value();
+  if (judged) others.truth.emplace(truthFile());
   others.origin = a.tracked.scenes.empty()
                       ? Vector3(Vector3::Zero())
                       : Vector3(a.tracked.scenes.front().ego.T_world_ego.translation());
-  comparison.data = reportData(a.tracked, a.record, sources, "a");
-  comparison.data += reportData(b.tracked, b.record, others, "b");
-  out_page = comparisonPage(comparison);
-  writeFile(output, out_page);
-  fmt::print("{}\n", output);
+  for (const auto& [run, of, name] : {std::tuple(&a, &sources, "a"), std::tuple(&b, &others, "b")})
+    comparison.parts.push_back(
+        collectRun(readRunOutline(run->dir), run->record, *of, name, output).parts);
+  writePage(output, [&](const TextSink& sink) { writeComparisonPage(comparison, sink); });
+}
+
+// Of -t, else beside the log; empty: none.
+std::string ReportApp::truthFile() const {
+  if (!truth_file.empty() || inputs.empty()) return truth_file;
+  const fs::path beside = fs::path(inputs[0]).replace_extension(".truth.csv");
+  return fs::exists(beside) ? beside.string() : "";
 }
 
 // Truth and sensor data of the log, where it is given.
-ReportSources ReportApp::sourcesOf(const TrackedRun& run, const RunRecord& record) {
+ReportSources ReportApp::sourcesOf(const RunRecord& record) {
   ReportSources sources;
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the run");
-  std::string truth_path = truth_file;
-  if (truth_path.empty() && !inputs.empty()) {
-    const fs::path beside = fs::path(inputs[0]).replace_extension(".truth.csv");
-    if (fs::exists(beside)) truth_path = beside.string();
-  }
-  if (!truth_path.empty()) sources.truth = readGroundTruth(truth_path);
+  if (const std::string truth = truthFile(); !truth.empty()) sources.truth.emplace(truth);
   if (inputs.empty()) return sources;
   const std::string log = fs::path(inputs[0]).filename().string();
   if (log != fs::path(record.input).filename().string()) {
@@ -154,7 +168,7 @@ ReportSources ReportApp::sourcesOf(const TrackedRun& run, const RunRecord& recor
         fmt::format("{}: {} is a run of another log: {}", inputs[0], run_dir, record.input));
   }
   registerPerceptionClasses();
-  sources.sensors = std::make_unique<SnapshotSensors>(inputs[0], run, sensorParams());
+  sources.sensors = std::make_unique<SnapshotSensors>(inputs[0], *sources.window, sensorParams());
   return sources;
 }
 
@@ -180,7 +194,7 @@ std::vector<ReportContent::Figure> ReportApp::figuresIn(const fs::path& dir, con
     const fs::path file = dir / row.file;
     if (!fs::exists(file)) continue;
     if (isOfRuns(file, {id})) {
-      figures.push_back({row.title, row.caption, row.media_type, contentsOf(file)});
+      figures.push_back({row.title, row.caption, row.media_type, file.string()});
     } else {
       warnOfOrigin(file);
     }
@@ -206,7 +220,7 @@ void ReportApp::addOtherPictures(ReportContent& content) const {
     const auto ids = markedRunsOf(file.string());
     if (std::find(ids.begin(), ids.end(), content.id) == ids.end()) continue;
     content.pictures.push_back({file.filename().string(), "From the run's folder.",
-                                png ? "image/png" : "image/jpeg", contentsOf(file)});
+                                png ? "image/png" : "image/jpeg", file.string()});
   }
 }
 

@@ -1,14 +1,15 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "gui-offscreen/html/ReportPage.h"
 #include "libperception/app/App.h"
 #include "libperception/app/show/ReportData.h"
+#include "libperception/core/system/SpoolFile.h"
 #include "libperception/pictures/SnapshotSensors.h"
 #include "libperception/scene/files/RunRecord.h"
-#include "libperception/scene/files/TrackedRun.h"
 
 namespace perception {
 
@@ -21,7 +22,7 @@ class ReportApp : public App {
   std::string truth_file;      ///< -t; empty: LOG.truth.csv beside the log, when it is there
   std::vector<std::string> compared_dirs;  ///< --compare: two folders; empty: the page of run_dir
   std::string film;                        ///< --film: of both, for the page of --compare
-  std::string out_page;                    ///< text of the page
+  std::string out_path;                    ///< path of the page, after run()
 
   std::string name() const override { return "perception-report"; }
   std::string description() const override;
@@ -38,7 +39,9 @@ class ReportApp : public App {
   void addOtherPictures(ReportContent& content) const;
   void addEvaluation(ReportContent& content);
   SnapshotSensorParams sensorParams();
-  ReportSources sourcesOf(const TrackedRun& run, const RunRecord& record);
+  std::string truthFile() const;
+  void writePage(const std::string& path, const std::function<void(const TextSink&)>& write);
+  ReportSources sourcesOf(const RunRecord& record);
 };
 
 }  // namespace perception

@@ -1,9 +1,11 @@
 #include "libperception/app/show/ReportData.h"
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
-#include "gui-offscreen/html/RunParts.h"
 #include "gui-offscreen/html/RunWeather.h"
+#include "libperception/app/show/ResultFiles.h"
 #include "libperception/evaluation/metrics/Evaluation.h"
 #include "libperception/pictures/RunScenes.h"
 #include "libperception/pipeline/output/Progress.h"
@@ -29,26 +31,101 @@ RunErrors errorsOf(const TrackedRun& run, const GroundTruth& truth) {
   return errors;
 }
 
-std::string reportData(const TrackedRun& run, const RunRecord& record, ReportSources& sources,
-                       const std::string& prefix) {
-  std::optional<RunErrors> errors;
-  if (sources.truth) errors = errorsOf(run, *sources.truth);
-  RunParts parts(run, record, errors ? &*errors : nullptr, sources.origin);
-  if (!sources.events.is_null()) parts.setEvents(sources.events);
-  parts.setWeather(weatherOf(run.dir));
-  if (!sources.sensors && !sources.truth) return parts.html(prefix);
-  Progress progress("collecting", run.scenes.size());
-  for (std::size_t i = 0; i < run.scenes.size(); ++i) {
-    stopIfAsked();
-    SceneView view = viewOfScene(run, i, sources.truth ? &*sources.truth : nullptr);
-    if (sources.sensors) {
-      sources.sensors->advanceTo(run.scenes[i].stamp);
-      if (parts.sensed(i)) sources.sensors->fill(view);
-    }
-    parts.add(i, std::move(view));
-    progress.update(i + 1, i + 1);
+namespace {
+
+/// Collects a run part by part.
+class RunCollector {
+ public:
+  RunCollector(const RunOutline& run, ReportSources& sources, CollectedRun& to)
+      : run_(run), sources_(sources), window_(*sources.window), to_(to), reader_(run.dir) {
+    window_ = {run.dir, run.first_stamp, run.class_names, {}};
   }
-  return parts.html(prefix);
+
+  void collect() {
+    ObjectLives lives(run_);
+    Progress progress("collecting", run_.stamps.size());
+    for (std::size_t from = 0; from < run_.stamps.size();) {
+      std::vector<Scene> scenes = reader_.next(RunParts::kScenes);
+      if (scenes.empty()) break;  // the run changed meanwhile
+      stopIfAsked();
+      for (const Scene& scene : scenes) lives.add(scene);
+      collect(from, std::move(scenes));
+      from += RunParts::kScenes;
+      progress.update(from, from);
+    }
+    reader_.next();  // finds rows too many
+    to_.lives = lives.list();
+  }
+
+ private:
+  double timeOf(const Scene& scene) const { return scene.stamp - run_.first_stamp; }
+
+  // The scenes from number `from` on.
+  void collect(std::size_t from, std::vector<Scene> scenes) {
+    const std::size_t count = scenes.size();
+    const GroundTruth* truth = nullptr;
+    RunErrors errors;
+    if (sources_.truth) {
+      truth = &sources_.truth->around({timeOf(scenes.front()), timeOf(scenes.back()),
+                                       scenes.front().frame, scenes.back().frame});
+      errors = errorsOf({run_.dir, run_.first_stamp, run_.class_names, scenes}, *truth);
+    }
+    if (sources_.sensors) lookBack(scenes);
+    to_.parts->begin(scenes, errors);
+    if (!sources_.sensors && !truth) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      SceneView view;
+      view.scene = std::move(scenes[i]);
+      view.t = timeOf(view.scene);
+      if (truth) addTruth(*truth, view);
+      if (sources_.sensors) {
+        sources_.sensors->advanceTo(view.scene.stamp);
+        if (to_.parts->sensed(from + i)) sources_.sensors->fill(view);
+      }
+      to_.parts->add(from + i, std::move(view));
+    }
+  }
+
+  // The window ends with these scenes and begins before all that count for the first of them.
+  void lookBack(const std::vector<Scene>& scenes) {
+    const Stamp first = scenes.front().stamp + -sources_.sensors->past();
+    auto& kept = window_.scenes;
+    auto from = std::upper_bound(kept.begin(), kept.end(), first,
+                                 [](Stamp t, const Scene& s) { return t < s.stamp; });
+    if (from != kept.begin()) --from;
+    kept.erase(kept.begin(), from);
+    for (const Scene& scene : scenes) {
+      Scene& pose = kept.emplace_back();
+      pose.stamp = scene.stamp;
+      pose.ego = scene.ego;
+    }
+  }
+
+  const RunOutline& run_;
+  ReportSources& sources_;
+  TrackedRun& window_;
+  CollectedRun& to_;
+  TrackedRunReader reader_;
+};
+
+}  // namespace
+
+CollectedRun collectRun(const RunOutline& run, const RunRecord& record, ReportSources& sources,
+                        const std::string& prefix, const std::string& output) {
+  CollectedRun collected;
+  collected.parts = std::make_unique<RunParts>(
+      run, record, output,
+      RunParts::Options{prefix, sources.truth.has_value(), sources.origin, RunData::Budget()});
+  if (!sources.events.empty()) {
+    eachLineOf(sources.events, [&](const nlohmann::json& event) {
+      if (event.is_object() && event.value("kind", "").rfind("phantoms_", 0) == 0)
+        collected.phantoms.push_back(event);
+      collected.parts->addEvent(event);
+    });
+  }
+  collected.parts->setWeather(weatherOf(run.dir));
+  RunCollector(run, sources, collected).collect();
+  return collected;
 }
 
 }  // namespace perception

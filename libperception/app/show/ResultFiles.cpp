@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <iterator>
-#include <sstream>
 
 #include "libperception/core/Error.h"
 #include "libperception/scene/files/RunMark.h"
@@ -29,19 +29,21 @@ nlohmann::json jsonOf(const fs::path& path) {
   }
 }
 
-nlohmann::json linesOf(const fs::path& path) {
-  nlohmann::json all = nlohmann::json::array();
-  std::istringstream lines(contentsOf(path));
+void eachLineOf(const fs::path& path, const std::function<void(const nlohmann::json&)>& each) {
+  std::ifstream lines(path, std::ios::binary);
+  if (!lines) throw DataError(path.string() + ": cannot be read");
   lines.exceptions(std::ios::badbit);  // a lack of memory is no end
+  std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
+    nlohmann::json value;
+    ++number;
     try {
-      all.push_back(nlohmann::json::parse(line));
+      value = nlohmann::json::parse(line);
     } catch (const nlohmann::json::exception& error) {
-      throw DataError(
-          fmt::format("{}: line {}: no JSON: {}", path.string(), all.size() + 1, error.what()));
+      throw DataError(fmt::format("{}: line {}: no JSON: {}", path.string(), number, error.what()));
     }
+    each(value);
   }
-  return all;
 }
 
 bool isOfRuns(const fs::path& path, const std::vector<std::string>& ids) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -12,8 +13,9 @@ std::string contentsOf(const std::filesystem::path& path);
 /// A JSON file. Throws DataError.
 nlohmann::json jsonOf(const std::filesystem::path& path);
 
-/// The lines of a JSON lines file as an array. Throws DataError with the line.
-nlohmann::json linesOf(const std::filesystem::path& path);
+/// Calls `each` with every line of a JSON lines file. Throws DataError with the line.
+void eachLineOf(const std::filesystem::path& path,
+                const std::function<void(const nlohmann::json&)>& each);
 
 /// Whether a product says that it is of all these runs; false where it does not say of which run
 /// it is. Throws DataError where it is of another one.

@@ -7,6 +7,7 @@
 
 #include "gui-offscreen/html/HtmlText.h"
 #include "libperception/app/show/ReportApp.h"
+#include "libperception/app/show/ResultFiles.h"
 #include "libperception/pipeline/output/FinishedRun.h"
 #include "libperception/scene/files/RunMark.h"
 
@@ -86,12 +87,15 @@ class CompareRunsTest : public testing::Test {
     options.insert(options.end(), more.begin(), more.end());
     return run(options);
   }
-  bool says(const std::string& text) const { return app_.out_page.find(text) != std::string::npos; }
+  /// The page that was written last; empty: none.
+  std::string page() const { return app_.out_path.empty() ? "" : contentsOf(app_.out_path); }
+  bool says(const std::string& text) const { return page().find(text) != std::string::npos; }
   std::size_t rows() const {
-    const std::size_t table = app_.out_page.find("<table id=\"differences\">");
+    const std::string html = page();
+    const std::size_t table = html.find("<table id=\"differences\">");
     std::size_t count = 0;
-    for (auto at = app_.out_page.find("<tr data-id", table); at != std::string::npos;
-         at = app_.out_page.find("<tr data-id", at + 1))
+    for (auto at = html.find("<tr data-id", table); at != std::string::npos;
+         at = html.find("<tr data-id", at + 1))
       ++count;
     return count;
   }
@@ -157,7 +161,7 @@ TEST_F(CompareRunsTest, TheFilmOfBothIsInThePageAndThatOfOthersIsRefused) {
   ASSERT_NE(a, b);
   ASSERT_EQ(compare(), 0);
   EXPECT_TRUE(says("perception-snapshot -r ")) << "how the film is made";
-  EXPECT_EQ(markedRuns(app_.out_page).size(), 2u) << "the page says of which runs it is";
+  EXPECT_EQ(markedRuns(page()).size(), 2u) << "the page says of which runs it is";
   const std::string film = dir_ + "/both.mp4";
   std::ofstream(film) << "film " << a << b;
   ASSERT_EQ(compare({"--film", film}), 0);

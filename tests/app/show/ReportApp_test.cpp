@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "gui-offscreen/html/HtmlText.h"
+#include "libperception/app/show/ResultFiles.h"
 #include "libperception/pipeline/output/FinishedRun.h"
 #include "libperception/scene/files/RunMark.h"
 #include "libperception/scene/files/RunRecord.h"
@@ -61,7 +62,9 @@ class ReportAppTest : public testing::Test {
     for (const std::string& option : options) argv.push_back(option.c_str());
     return runApp(app_, static_cast<int>(argv.size()), argv.data());
   }
-  bool says(const std::string& text) const { return app_.out_page.find(text) != std::string::npos; }
+  /// The page that was written last; empty: none.
+  std::string page() const { return app_.out_path.empty() ? "" : contentsOf(app_.out_path); }
+  bool says(const std::string& text) const { return page().find(text) != std::string::npos; }
 
   std::string dir_, mark_;
   ReportApp app_;

@@ -6,26 +6,30 @@ namespace perception {
 namespace {
 
 /// One object in three scenes, 0.1 s apart; sure from the second on.
-TrackedRun threeScenes() {
-  TrackedRun run;
-  run.first_stamp = Stamp::fromSeconds(1000);
-  run.class_names = {"car"};
+std::vector<Scene> threeScenes() {
+  std::vector<Scene> scenes;
   for (int k = 0; k < 3; ++k) {
     Scene scene;
-    scene.stamp = run.first_stamp + 0.1 * k;
+    scene.stamp = Stamp::fromSeconds(1000) + 0.1 * k;
     SceneObject car;
     car.id = 7;
     car.classified = k > 0;
     car.class_probability = {0.9};
     car.position = Vector3(20, 0, 0);
     scene.objects = {car};
-    run.scenes.push_back(scene);
+    scenes.push_back(scene);
   }
-  return run;
+  return scenes;
 }
 
 TEST(ObjectLives, AStretchLastsToTheNextSceneAndTheLastSightIsAScene) {
-  const auto lives = objectLives(threeScenes());
+  const std::vector<Scene> scenes = threeScenes();
+  RunOutline run;
+  run.first_stamp = scenes.front().stamp;
+  for (const Scene& scene : scenes) run.stamps.push_back(scene.stamp);
+  ObjectLives collected(run);
+  for (const Scene& scene : scenes) collected.add(scene);
+  const auto lives = collected.list();
   ASSERT_EQ(lives.size(), 1u);
   const ObjectLife& life = lives[0];
   ASSERT_EQ(life.stretches.size(), 2u);

@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <string>
+#include <string_view>
 
 #include "gui-offscreen/html/ReportPage.h"
+#include "tests/support/TemporaryFolder.h"
 
 namespace perception {
 namespace {
@@ -32,6 +37,42 @@ TrackedRun runOfParts(std::size_t count) {
     run.scenes.push_back(scene);
   }
   return run;
+}
+
+RunOutline outlineOf(const TrackedRun& run) {
+  RunOutline outline{run.dir, run.first_stamp, run.class_names, {}};
+  for (const Scene& scene : run.scenes) outline.stamps.push_back(scene.stamp);
+  return outline;
+}
+
+using Views = std::map<std::size_t, SceneView>;
+
+/// All scenes of the run with some views, and errors by scene.
+std::unique_ptr<RunParts> partsOf(const TrackedRun& run, const Views& views = {},
+                                  const RunData::Budget& budget = {}, const RunErrors& errors = {},
+                                  const RunRecord& record = {}) {
+  static const test::TemporaryFolder folder;
+  auto parts =
+      std::make_unique<RunParts>(outlineOf(run), record, folder / "page.html",
+                                 RunParts::Options{"run", !errors.empty(), std::nullopt, budget});
+  for (std::size_t from = 0; from < run.scenes.size(); from += kPart) {
+    const std::size_t to = std::min(from + kPart, run.scenes.size());
+    const auto at = [&](const auto& all, std::size_t k) {
+      return all.begin() + static_cast<std::ptrdiff_t>(k);
+    };
+    parts->begin({at(run.scenes, from), at(run.scenes, to)},
+                 errors.empty() ? errors : RunErrors(at(errors, from), at(errors, to)));
+    for (std::size_t k = from; k < to; ++k) {
+      if (const auto view = views.find(k); view != views.end()) parts->add(k, view->second);
+    }
+  }
+  return parts;
+}
+
+std::string htmlOf(RunParts& parts) {
+  std::string html;
+  parts.write([&](std::string_view piece) { html += piece; });
+  return html;
 }
 
 SceneView returns(int count) {
@@ -77,9 +118,7 @@ nlohmann::json partOf(const std::string& html, std::size_t n) {
 
 TEST(RunParts, TheIndexSaysInWhichPartsAnObjectIs) {
   const TrackedRun run = runOfParts(2 * kPart + 1);
-  RunParts parts(run, {});
-  parts.add(0, returns(3));
-  const std::string html = parts.html("run");
+  const std::string html = htmlOf(*partsOf(run, {{0, returns(3)}}));
   const auto index = nlohmann::json::parse(contentOf(html, "run-data"));
   EXPECT_EQ(index["parts"], nlohmann::json({0, kPart, 2 * kPart}));
   EXPECT_EQ(index["objects"].dump(), "[[7,0,2],[8,2,2]]");
@@ -91,9 +130,7 @@ TEST(RunParts, TheIndexSaysInWhichPartsAnObjectIs) {
 
 TEST(RunParts, PartsHoldTheirScenesAlone) {
   const TrackedRun run = runOfParts(kPart + 2);
-  RunParts parts(run, {});
-  parts.add(kPart + 1, returns(2));
-  const std::string html = parts.html("run");
+  const std::string html = htmlOf(*partsOf(run, {{kPart + 1, returns(2)}}));
   const auto part = partOf(html, 1);
   EXPECT_EQ(part["scenes"].size(), 2u);
   EXPECT_EQ(part["scenes"][1]["block"], nlohmann::json({0, 2, 0}));
@@ -106,19 +143,20 @@ TEST(RunParts, WhereTheBudgetIsSmallEveryNthSceneHasSensorData) {
   const TrackedRun run = runOfParts(kPart);
   RunData::Budget budget;
   budget.points = 120'000;
-  RunParts parts(run, {}, nullptr, std::nullopt, budget);
-  for (std::size_t k = 0; k < kPart; ++k) parts.add(k, returns(2000));
+  Views views;
+  for (std::size_t k = 0; k < kPart; ++k) views[k] = returns(2000);
+  const auto parts = partsOf(run, views, budget);
   std::size_t sensed = 0;
-  const std::string html = parts.html("run");
+  const std::string html = htmlOf(*parts);
   const auto part = partOf(html, 0);
   for (std::size_t k = 0; k < kPart; ++k) {
     const auto& scene = part["scenes"][k];
-    EXPECT_EQ(scene.contains("block"), parts.sensed(k)) << k;
+    EXPECT_EQ(scene.contains("block"), parts->sensed(k)) << k;
     if (!scene.contains("block")) continue;
     ++sensed;
     EXPECT_GE(scene["block"][1].get<std::size_t>(), RunParts::kLeastReturns);
   }
-  EXPECT_TRUE(parts.sensed(0));
+  EXPECT_TRUE(parts->sensed(0));
   EXPECT_GT(sensed, 5u);
   EXPECT_LT(sensed, kPart);
   EXPECT_LT(html.size(), budget.points) << "returns and tracks: they pack well";
@@ -128,8 +166,7 @@ TEST(RunParts, ErrorsStayWithTheirScene) {
   const TrackedRun run = runOfParts(kPart + 2);
   RunErrors errors(run.scenes.size());
   errors[kPart + 1][7].position = 0.5;
-  RunParts parts(run, {}, &errors);
-  const std::string html = parts.html("run");
+  const std::string html = htmlOf(*partsOf(run, {}, {}, errors));
   EXPECT_EQ(partOf(html, 1)["objects"][0]["err"].dump(), "[null,[-1,0.5,null,null,0]]");
   EXPECT_EQ(nlohmann::json::parse(contentOf(html, "run-data"))["judged"], true);
 }
@@ -138,29 +175,38 @@ TEST(RunParts, NamesCannotEndTheScript) {
   const TrackedRun run = runOfParts(2);
   RunRecord record;
   record.input = "</script><b>.rawlog";
-  RunParts parts(run, record);
   nlohmann::json event = {{"t", 0}, {"message", "</script>"}};
-  parts.setEvents(nlohmann::json::array({event}));
   ReportContent content;
-  content.run = &run;
+  content.run = outlineOf(run);
   content.record = record;
-  content.data = parts.html("run");
-  const std::string page = htmlPage(content);
+  content.parts = partsOf(run, {}, {}, {}, record);
+  content.parts->addEvent(event);
+  std::string page;
+  writeHtmlPage(content, [&](std::string_view piece) { page += piece; });
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
   std::size_t open = 0, closed = 0;
   for (std::size_t i = 0; (i = page.find("<script", i)) != std::string::npos; ++i) ++open;
   for (std::size_t i = 0; (i = page.find("</script", i)) != std::string::npos; ++i) ++closed;
-  EXPECT_EQ(open, 3u) << "index, part and program";
+  EXPECT_EQ(open, 4u) << "index, part, events and program";
   EXPECT_EQ(closed, open);
+}
+
+TEST(RunParts, EventsAreInElementsOfTheirOwn) {
+  const TrackedRun run = runOfParts(2);
+  const auto parts = partsOf(run);
+  for (std::size_t i = 0; i < RunParts::kEvents + 1; ++i) parts->addEvent({{"t", i}});
+  const std::string html = htmlOf(*parts);
+  const auto first = nlohmann::json::parse(contentOf(html, "run-events-0"));
+  const auto second = nlohmann::json::parse(contentOf(html, "run-events-1"));
+  EXPECT_EQ(first.size(), RunParts::kEvents);
+  EXPECT_EQ(second.dump(), nlohmann::json::array({{{"t", RunParts::kEvents}}}).dump());
+  EXPECT_EQ(nlohmann::json::parse(contentOf(html, "run-data"))["eventCount"],
+            RunParts::kEvents + 1);
 }
 
 TEST(RunParts, AreTheSameForTheSameRun) {
   const TrackedRun run = runOfParts(kPart + 1);
-  const auto page = [&] {
-    RunParts parts(run, {});
-    parts.add(0, returns(100));
-    return parts.html("run");
-  };
+  const auto page = [&] { return htmlOf(*partsOf(run, {{0, returns(100)}})); };
   EXPECT_EQ(page(), page());
 }
 
