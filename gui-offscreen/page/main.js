@@ -24,7 +24,7 @@ async function start() {
   if (weather && !viewer.live) viewer.weather = new Weather(weather, viewer);
   events(viewer, document.getElementById("events") ?? host.parentNode);
   if (!viewer.live) viewer.address = new Address(viewer);
-  viewer.seek(viewer.t);
+  viewer.begin();
   document.addEventListener("keydown", (event) => {
     if (/INPUT|SELECT|TEXTAREA/.test(event.target.tagName) && event.target.type !== "checkbox" && !["Escape", "?"].includes(event.key)) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;

@@ -12,8 +12,7 @@ THREE.ColorManagement.enabled = false;  // colors are meant as they are written
 
 export class Space {
   constructor(host, layers) {
-    this.layers = layers;
-    this.host = host;
+    Object.assign(this, { layers, host, size: [0, 0] });
     this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
@@ -84,7 +83,8 @@ export class Space {
 
   resize() {
     const w = this.host.clientWidth, h = this.host.clientHeight;
-    if (!w || !h) return;
+    if (!w || !h || (w === this.size[0] && h === this.size[1])) return;
+    this.size = [w, h];
     this.renderer.setSize(w, h);
     const ratio = Math.min(window.devicePixelRatio, 2);
     this.labels.width = w * ratio;
@@ -290,12 +290,12 @@ export class Space {
   }
 
   draw() {
-    if (!this.labels.width) return;
+    if (!this.labels.width || !this.names) return;  // not before the first scene
     this.renderer.render(this.scene, this.camera);
     const pen = this.labels.getContext("2d"), ratio = Math.min(window.devicePixelRatio, 2);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, this.host.clientWidth, this.host.clientHeight);
-    if (!this.names || !this.layers.names) return;
+    if (!this.layers.names) return;
     this.scene.updateMatrixWorld();
     pen.textAlign = "center";
     pen.lineJoin = "round";

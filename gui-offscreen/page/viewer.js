@@ -28,7 +28,13 @@ const PAGE = `
 
 export class Viewer {
   constructor(host) {
-    Object.assign(this, { host, onTime: [], onChoice: [], t: 0, k: 0, id: null, of: 0, shown: "a" });
+    Object.assign(this, { host, onTime: [], onChoice: [], t: 0, k: 0, id: null, of: 0, shown: "a", shows: false });
+  }
+
+  // From now on every change is drawn; before, nothing is: drawing is what takes longest when the page opens.
+  begin() {
+    this.shows = true;
+    this.seek(this.t);
   }
 
   async start() {
@@ -40,7 +46,7 @@ export class Viewer {
     this.build();
     this.camera = new CameraView(this.host.querySelector(".camera"), this.run);
     this.note(this.host.querySelector(".note"));
-    this.seek(this.run.times[0]);
+    this.t = this.run.times[0];
   }
 
   build() {
@@ -196,6 +202,7 @@ export class Viewer {
   name(of) { return this.runs.length > 1 ? "AB"[of] + " " : ""; }
 
   refresh() {
+    if (!this.shows) return;
     const s = this.run.at(this.k), tracked = this.tracked(), run = this.runs[this.of];
     this.space?.show(this.run, this.k, tracked, this.id, this.of);
     const k = sceneAt(run, this.t);
