@@ -1,5 +1,7 @@
 """The examples in Python, as a stranger would run them."""
+import contextlib
 import importlib.util
+import io
 import os
 import re
 import shutil
@@ -176,6 +178,30 @@ class FirstHour(unittest.TestCase):
         scores = re.findall(r"association \w+: .*GOSPA ([\d.]+) m", self.said(4))
         self.assertEqual(len(scores), 3)
         self.assertGreater(len(set(scores)), 1)
+
+
+class Readme(unittest.TestCase):
+    """The lines in Python of README.md, with the scans of the demo."""
+
+    def test_scans_become_scenes(self):
+        with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as file:
+            blocks = re.findall(r"```python\n(.*?)```", file.read(), re.S)
+        self.assertEqual(len(blocks), 1)
+        begin, each = blocks[0].split("tracker.pose", 1)
+        names, scenes = {}, 0
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            exec(begin, names)
+            for observation in perception.open(LOG):
+                if observation.kind == "pose":
+                    names["T"] = observation.data["pose"]
+                if observation.kind != "lidar" or "T" not in names:
+                    continue
+                names.update(stamp=observation.stamp_ns * 1e-9, xyz=observation.data["xyz"],
+                             intensity=observation.data["intensity"], mount=observation.sensor_pose)
+                exec("tracker.pose" + each, names)
+                scenes += names["scene"] is not None
+        self.assertGreater(scenes, 100)
+        self.assertIn("'car'", said.getvalue())
 
 
 if __name__ == "__main__":
