@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "libperception/calibration/clusters/BinnedSamples.h"
 #include "libperception/core/Error.h"
 #include "libperception/core/math/Random.h"
 
@@ -36,47 +37,6 @@ std::size_t shareOf(double share, std::size_t count) {
       static_cast<std::size_t>(std::ceil(share * static_cast<double>(count))), 1, count);
 }
 
-/// A value v with a <= v < b, in the middle where floats are dense enough.
-float between(float a, float b) {
-  const auto middle = static_cast<float>(0.5 * (static_cast<double>(a) + static_cast<double>(b)));
-  return middle < b ? middle : a;
-}
-
-/// The samples' values by feature as numbers of bins. Bin b holds values up to thresholds[b] that
-/// are in no bin before, the last bin all others.
-struct Binned {
-  std::array<std::vector<float>, kFeatures> thresholds;
-  std::vector<std::uint8_t> bins;  ///< by feature, then by sample
-  std::size_t count = 0;
-
-  Binned(const std::vector<TrainingSample>& samples, std::size_t most)
-      : bins(samples.size() * kFeatures), count(samples.size()) {
-    tbb::parallel_for(std::size_t{0}, kFeatures, [&](std::size_t f) { bin(samples, f, most); });
-  }
-  const std::uint8_t* column(std::size_t feature) const { return &bins[feature * count]; }
-
- private:
-  void bin(const std::vector<TrainingSample>& samples, std::size_t f, std::size_t most) {
-    std::vector<float> values;
-    for (const TrainingSample& s : samples)
-      if (std::isfinite((*s.descriptor)[f])) values.push_back((*s.descriptor)[f]);
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-    const std::size_t used = std::min(most, values.size());
-    std::vector<float>& cuts = thresholds[f];
-    for (std::size_t b = 1; b < used; ++b) {
-      const std::size_t first = b * values.size() / used;
-      cuts.push_back(between(values[first - 1], values[first]));
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const float v = (*samples[i].descriptor)[f];
-      // As at prediction, what is no number goes right everywhere.
-      const auto at = std::isnan(v) ? cuts.end() : std::lower_bound(cuts.begin(), cuts.end(), v);
-      bins[f * count + i] = static_cast<std::uint8_t>(at - cuts.begin());
-    }
-  }
-};
-
 /// Sums over samples: first and second derivatives of the loss, number.
 struct Sums {
   double gradient = 0, hessian = 0;
@@ -103,7 +63,7 @@ struct Split {
 /// Grows one tree at a time.
 class TreeGrower {
  public:
-  TreeGrower(const Binned& binned, const TreeTrainingParams& params)
+  TreeGrower(const BinnedSamples& binned, const TreeTrainingParams& params)
       : binned_(binned), params_(params) {}
 
   /// Appends the tree for the derivatives of the loss at all samples; learns from `rows` alone.
@@ -239,7 +199,7 @@ class TreeGrower {
     leaves_.push_back(std::move(right));
   }
 
-  const Binned& binned_;
+  const BinnedSamples& binned_;
   const TreeTrainingParams& params_;
   Rows rows_;  ///< those of a leaf side by side, ascending
   const Rows* features_ = nullptr;
@@ -294,7 +254,7 @@ BoostedTrees trainTrees(const std::vector<TrainingSample>& all, const TreeTraini
     trees.base[k] = std::log(std::max(weight[k] / sum, kLeastShare));
   Scores scores(samples.size(), trees.base);
   std::array<std::vector<Derivatives>, kClusterKinds> derivatives;
-  const Binned binned(samples, static_cast<std::size_t>(params.bins));
+  const BinnedSamples binned(samples, static_cast<std::size_t>(params.bins));
   TreeGrower grower(binned, params);
   for (std::uint32_t round = 0; round < static_cast<std::uint32_t>(params.rounds); ++round) {
     derive(samples, scores, derivatives);
