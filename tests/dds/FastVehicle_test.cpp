@@ -1,16 +1,23 @@
 // Another make of DDS plays the vehicle in a process of its own, and reads what we send.
 #include <gtest/gtest.h>
+#include <mrpt/serialization/CSerializable.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/system/ChildProcess.h"
 #include "libperception/interop/exports/ExportFile.h"
+#include "libperception/sensors/observations/Conversions.h"
+#include "libperception/sensors/observations/registerClasses.h"
+#include "libperception/sensors/rawlog/RawlogReader.h"
+#include "tests/dds/SensorTopics.h"
 #include "tests/support/CommandOutput.h"
 
 namespace perception {
@@ -156,6 +163,64 @@ TEST_F(FastVehicle, OneThatWasThereBeforeAndIsKilledAndComesBackIsReadOn) {
   EXPECT_NE(scenes.find(",150000006"), std::string::npos) << "60 s later, of the second\n"
                                                           << scenes;
 }
+
+/// A log's observations as bytes, by sensor and time.
+std::map<std::string, std::vector<std::string>> observationsOf(const std::string& log) {
+  std::map<std::string, std::vector<std::pair<Stamp, std::string>>> found;
+  RawlogReader reader(log);
+  while (const auto observation = reader.next()) {
+    const auto stamp = toStamp(observation->timestamp);
+    if (!stamp || observation->sensorLabel.empty()) continue;
+    std::vector<std::uint8_t> bytes;
+    mrpt::serialization::ObjectToOctetVector(observation.get(), bytes);
+    found[observation->sensorLabel].emplace_back(*stamp, std::string(bytes.begin(), bytes.end()));
+  }
+  std::map<std::string, std::vector<std::string>> sorted;
+  for (auto& [label, all] : found) {
+    std::sort(all.begin(), all.end());
+    for (auto& row : all) sorted[label].push_back(std::move(row.second));
+  }
+  return sorted;
+}
+
+class FastSensors : public FastVehicle, public testing::WithParamInterface<bool> {};
+
+TEST_P(FastSensors, MessagesOfEachKindArriveAsTheImportOfTheirBagHasThem) {
+  test::writeSensorTopics(path("sensors.mcap"));
+  {
+    ChildCommand record;
+    record.words = {kBin + "perception-grabber", "-c", "ros2:" + path("graph.ini"), "-o",
+                    path("live")};
+    record.output = path("grabber.txt");
+    ChildProcess grabber(record);
+    std::vector<std::string> options = {"--wait", std::to_string(test::kSensorTopics)};
+    if (!GetParam()) options.emplace_back("--best-effort");
+    ChildProcess player(play("sensors.mcap", options));
+    player.wait();
+    waitFor(3);  // the patience of what waits for a place
+    grabber.stop();
+    grabber.wait();
+    ASSERT_TRUE(grabber.exitCode() == 0 || grabber.exitCode() == 3) << textOf(path("grabber.txt"));
+  }
+  const auto imported =
+      test::outputOf({kBin + "perception-import", "bag", "--bag", path("sensors.mcap"), "-c",
+                      path("graph.ini"), "-o", path("sensors.rawlog")});
+  ASSERT_TRUE(imported.code == 0 || imported.code == 3) << imported.text;
+  registerPerceptionClasses();
+  const auto live = observationsOf(path("live/capture_0001.rawlog"));
+  const auto bag = observationsOf(path("sensors.rawlog"));
+  EXPECT_EQ(bag.size(), test::kSensorTopics) << imported.text;
+  for (const auto& [label, all] : bag) {
+    EXPECT_EQ(all.size(), static_cast<std::size_t>(test::kSensorSteps)) << label;
+    ASSERT_EQ(live.count(label), 1U) << label << textOf(path("grabber.txt"));
+    ASSERT_EQ(live.at(label).size(), all.size()) << label << textOf(path("grabber.txt"));
+    for (std::size_t i = 0; i < all.size(); ++i)
+      EXPECT_TRUE(live.at(label)[i] == all[i]) << label << ", number " << i;
+  }
+  EXPECT_EQ(live.size(), bag.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(ReliableAndBestEffort, FastSensors, testing::Bool());
 
 #else
 
