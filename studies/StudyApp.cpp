@@ -15,15 +15,12 @@
 #include "libperception/sensors/observations/CObservationObjectDetections.h"
 #include "libperception/sensors/observations/Conversions.h"
 #include "libperception/sensors/observations/registerClasses.h"
-#include "studies/association/AssociationStudy.h"
 #include "studies/association/LogParticlesStudy.h"
 #include "studies/association/ParticlesStudy.h"
 #include "studies/gps/GpsStudy.h"
 #include "studies/labels/LabelsStudy.h"
 #include "studies/motion/EgoStudy.h"
-#include "studies/motion/HeadingStudy.h"
 #include "studies/paper/MonteCarloStudy.h"
-#include "studies/paper/PersonFilterStudy.h"
 #include "studies/weather/SnowRealismStudy.h"
 
 namespace perception {
@@ -37,7 +34,6 @@ struct Study {
   bool log = false;         ///< takes a rawlog
   bool scenario = false;    ///< reads a scenario INI
   bool labels = false;      ///< reads rawlogs with detections and truth
-  bool scan = false;        ///< takes a scan of a rawlog
   void (*declare)(CLI::App& cli, StudyApp& app) = nullptr;  ///< options of its own
   bool snow = false;                                        ///< reads rawlogs with labelled snow
 };
@@ -50,12 +46,6 @@ const Study kStudies[] = {
        if (app.runs > 0) p.repeats = app.runs;
        return monteCarloStudy(p);
      }},
-    {"association", "identities through encounters, by proposal and particles (simulated)",
-     [](StudyApp& app) {
-       AssociationParams p;
-       if (app.runs > 0) p.seeds = app.runs;
-       return associationStudy(p);
-     }},
     {"particles", "number of objects by particles and birth model, simulated street or a rawlog",
      [](StudyApp& app) {
        if (!app.log.empty()) return app.particlesOfLog();
@@ -64,13 +54,6 @@ const Study kStudies[] = {
        return particlesStudy(p);
      },
      false, true},
-    {"heading", "reversed headings (simulated)",
-     [](StudyApp& app) {
-       HeadingParams p;
-       p.seed = app.seed;
-       if (app.runs > 0) p.runs = app.runs;
-       return headingStudy(p);
-     }},
     {"ego", "ego pose from GNSS, IMU and wheels (simulated)",
      [](StudyApp& app) {
        EgoStudyParams p;
@@ -100,33 +83,30 @@ const Study kStudies[] = {
        app.resolution.seed = app.seed;
        return resolutionStudy(app.resolution);
      },
-     false, false, false, false, false,
+     false, false, false, false,
      [](CLI::App& cli, StudyApp& app) { declareResolution(cli, app.resolution); }},
     {"paper", "every table of Radecki et al. beside its own numbers (simulated)",
      [](StudyApp& app) {
        app.paper.site.seed = app.seed;
        return paperStudy(app.paper);
      },
-     false, false, false, false, false,
+     false, false, false, false,
      [](CLI::App& cli, StudyApp& app) { declarePaper(cli, app.paper); }},
     {"trust", "trust of lidar returns against labels of points (a rawlog)",
-     [](StudyApp& app) { return trustStudy(app.trust); }, false, false, false, false, false,
+     [](StudyApp& app) { return trustStudy(app.trust); }, false, false, false, false,
      [](CLI::App& cli, StudyApp& app) { declareTrust(cli, app.trust); }},
     {"safety", "false and missed stops, phantom tracks, against labels of points (rawlogs)",
      [](StudyApp& app) { return safetyStudy(app.safety, app.seed); }, false, false, false, false,
-     false, [](CLI::App& cli, StudyApp& app) { declareSafety(cli, app.safety); }},
+     [](CLI::App& cli, StudyApp& app) { declareSafety(cli, app.safety); }},
     {"obstacles",
      "stops for shapes that no detector was taught, against the stopping distance (simulated)",
      [](StudyApp& app) { return obstaclesStudy(app.obstacles, app.seed); }, false, false, false,
-     false, false, [](CLI::App& cli, StudyApp& app) { declareObstacles(cli, app.obstacles); }},
+     false, [](CLI::App& cli, StudyApp& app) { declareObstacles(cli, app.obstacles); }},
     {"weather", "type and rates of the weather by lidar scans (rawlogs, simulated weather)",
      [](StudyApp& app) { return weatherStudy(app.weather, app.seed); }, false, false, false, false,
-     false, [](CLI::App& cli, StudyApp& app) { declareWeather(cli, app.weather); }},
-    {"person-filter", "the lidar's person filter: kernel and response (--log, else simulated)",
-     [](StudyApp& app) { return personFilterStudy(app.log); }, false, false, false, false, true},
+     [](CLI::App& cli, StudyApp& app) { declareWeather(cli, app.weather); }},
     {"snow-realism", "whether a forest tells simulated from recorded snow (labelled rawlogs)",
-     [](StudyApp& app) { return app.snowOfLogs(); }, false, false, false, false, false, nullptr,
-     true},
+     [](StudyApp& app) { return app.snowOfLogs(); }, false, false, false, false, nullptr, true},
 };
 
 /// --range [m] and --fov-deg [deg] of what counts.
@@ -152,13 +132,12 @@ void StudyApp::declare(CLI::App& cli) {
     sub->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
     sub->add_option("--runs", runs, "Experiments or simulated runs; 0 = the study's own number")
         ->check(CLI::Range(0, 1000000));
-    sub->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
+    sub->add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
         ->check(CLI::Range(0, 4096));
     if (s.recordings) declareRecordings(*sub);
     if (s.log) declareLog(*sub);
     if (s.labels) declareLabels(*sub);
     if (s.declare) s.declare(*sub, *this);
-    if (s.scan) sub->add_option("--log", log, "Rawlog whose first lidar scan is filtered");
     if (s.snow) declareSnow(*sub);
     if (s.scenario) {
       sub->add_option("-c,--config", scenario,
@@ -199,7 +178,7 @@ void StudyApp::declareLabels(CLI::App& sub) {
       ->required();
   sub.add_option("-c,--config", config_file, "INI whose sensors take boxes without a label, too")
       ->required();
-  sub.add_option("--set", settings, "section.key=value: overrides the INI");
+  sub.add_option("--set", settings, "Change one value of the configuration: section.key=value");
   sub.add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
   addSector(sub, "Truth counts up to this distance [m]",
             "Whole angle ahead in which truth counts [deg]", labels_range, labels_fov_deg);

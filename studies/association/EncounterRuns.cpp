@@ -6,7 +6,6 @@
 
 #include "libperception/core/math/Assignment.h"
 #include "libperception/evaluation/metrics/SetDistance.h"
-#include "libperception/evaluation/metrics/ShareInterval.h"
 #include "libperception/filter/CRbpfTracker.h"
 #include "libperception/scene/SceneFromPosterior.h"
 
@@ -100,6 +99,18 @@ class Scorer {
 
 }  // namespace
 
+FilterModel encounterModel(Proposal proposal) {
+  FilterModel model;
+  model.classes = encounterClasses();
+  ObjectClass& pedestrian = model.classes.classes[0];
+  pedestrian.mode_accel_psd = {0.04, 0.5};  // walking ([radecki2016]'s .04) and stopping or turning
+  pedestrian.mode_damping = {0, 3};
+  pedestrian.mode_sojourn = {4, 1.5};  // method.md 3.6
+  model.params.kinematic_exponent = 1;
+  model.proposal = proposal;
+  return model;
+}
+
 EncounterScore runEncounter(const std::string& name, const EncounterConditions& conditions,
                             const FilterModel& model, int particles, std::uint64_t seed,
                             std::uint64_t filter_seed) {
@@ -118,10 +129,6 @@ EncounterScore runEncounter(const std::string& name, const EncounterConditions& 
                output.make(tracker.mapHypothesis(), scans[s].state.ego, scans[s].frame));
   }
   return scorer.finish();
-}
-
-double wilsonUpper(int events, int trials) {
-  return wilsonInterval(static_cast<double>(events) / trials, trials).high;
 }
 
 }  // namespace perception

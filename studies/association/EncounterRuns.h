@@ -18,14 +18,14 @@ struct EncounterScore {
   std::vector<int> truth_count;  ///< objects in view, by instant
 };
 
+/// The filter of the encounters: two motion modes of pedestrians, no pruning except the gate.
+FilterModel encounterModel(Proposal proposal);
+
 /// Runs the filter on scene `name` under `conditions`: `seed` determines truth and measurements,
 /// `filter_seed` the filter's samples. `tracked` and `swapped` exclude the first second; before is
 /// the first third of the scene, after the last four tenths.
 EncounterScore runEncounter(const std::string& name, const EncounterConditions& conditions,
                             const FilterModel& model, int particles, std::uint64_t seed,
                             std::uint64_t filter_seed);
-
-/// Upper bound of the two-sided 95 % Wilson interval of a rate.
-double wilsonUpper(int events, int trials);
 
 }  // namespace perception

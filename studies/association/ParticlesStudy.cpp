@@ -10,7 +10,7 @@
 #include "libperception/evaluation/plots/Gnuplot.h"
 #include "libperception/evaluation/tables/PaperTables.h"
 #include "libperception/pipeline/input/RecordedLog.h"
-#include "studies/association/AssociationStudy.h"
+#include "studies/association/EncounterRuns.h"
 
 namespace perception {
 namespace {
@@ -24,7 +24,7 @@ constexpr std::size_t kLargestPlotError = 12;  // objects, of the plot
 const EncounterConditions kBusy{0.85, 4, 2, 0.7};
 
 FilterModel modelOf(const ParticlesMethod& method) {
-  FilterModel model = associationModel(method.proposal);
+  FilterModel model = encounterModel(method.proposal);
   if (method.duc) setDrawnBirths(model.params);
   return model;
 }

@@ -2,173 +2,12 @@
 
 #include <algorithm>
 
+#include "studies/obstacles/ShapeParts.h"
+
 namespace perception {
 namespace {
 
-using Boxes = std::vector<ShapeBox>;
-
-// Factors on the reflectivity of a wall (.4), for the materials of LidarSurface.
-constexpr double kRubber = 0.15, kDark = 0.3, kCloth = 0.9, kFur = 0.7, kWood = 1.0, kSteel = 1.2,
-                 kWhite = 1.5, kGreen = 0.9, kStone = 0.8;
-
-Boxes together(const std::vector<Boxes>& parts) {
-  Boxes all;
-  for (const Boxes& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
-Boxes person(double x = 0, double y = 0, double cloth = kCloth) {
-  return {{x, y - 0.11, 0, 0.2, 0.15, 0.85, kDark},
-          {x + 0.1, y + 0.11, 0, 0.2, 0.15, 0.85, kDark},
-          {x, y, 0.85, 0.26, 0.46, 0.62, cloth},
-          {x + 0.03, y, 1.5, 0.2, 0.18, 0.24, 1.2}};
-}
-
-Boxes child(double x = 0, double y = 0, double tall = 1.05) {
-  return {{x, y, 0, 0.16, 0.22, 0.45 * tall, kDark},
-          {x, y, 0.45 * tall, 0.18, 0.28, 0.35 * tall, kCloth},
-          {x, y, 0.8 * tall, 0.17, 0.17, 0.2 * tall, 1.2}};
-}
-
-Boxes wheels(double x, double half_track, double base_length, double radius) {
-  Boxes all;
-  for (const double along : {x, x + base_length})
-    for (const double across : {-half_track, half_track})
-      all.push_back({along, across, 0, 2 * radius, 0.25, 2 * radius, kRubber});
-  return all;
-}
-
-// A trunk on four legs, seen from its side or its tail: `along` lies in the lane's direction.
-Boxes animal(double length, double width, double legs, double body, bool along) {
-  const double l = along ? length : width, w = along ? width : length;
-  Boxes all = {{0, 0, legs, l, w, body, kFur}};
-  for (const double dx : {0.0, l - 0.1})
-    for (const double dy : {-0.5 * w + 0.05, 0.5 * w - 0.05})
-      all.push_back({dx, dy, 0, 0.1, 0.1, legs, kFur});
-  const double head = 0.25 * length;
-  if (along)
-    all.push_back({l, 0, legs + 0.5 * body, head, 0.7 * width, 0.6 * body, kFur});
-  else
-    all.push_back(
-        {0.1 * l, 0.5 * w + 0.5 * head, legs + 0.5 * body, 0.7 * l, head, 0.6 * body, kFur});
-  return all;
-}
-
-// Bars of one size side by side.
-Boxes fence(int bars, double spacing, double bar, double base, double height, double factor) {
-  Boxes all;
-  for (int i = 0; i < bars; ++i)
-    all.push_back({0, spacing * (i - 0.5 * (bars - 1)), base, bar, bar, height, factor});
-  return all;
-}
-
-// A beam that rises to the left, as stairs of short boxes.
-Boxes risingArm(double base, double rise, int steps) {
-  Boxes all;
-  for (int i = 0; i < steps; ++i)
-    all.push_back({0, -2.0 + 0.4 * i, base + rise * i, 0.08, 0.4, 0.12, kWhite});
-  return all;
-}
-
-// Twigs: small boxes scattered by a fixed rule.
-Boxes twigs(double length, double width, double base, double height, int count) {
-  Boxes all;
-  for (int i = 0; i < count; ++i) {
-    const double a = 0.618034 * i - static_cast<int>(0.618034 * i);
-    const double b = 0.754878 * i - static_cast<int>(0.754878 * i);
-    const double c = 0.569840 * i - static_cast<int>(0.569840 * i);
-    all.push_back(
-        {length * a, width * (b - 0.5), base + height * c, 0.12, 0.12, 0.06, kGreen, 360 * a});
-  }
-  return all;
-}
-
-std::vector<ObstacleShape> people() {
-  const std::string kind = "people";
-  const auto stop = ShapeDemand::kStop;
-  return {
-      {"person standing", kind, stop, person()},
-      {"child of six", kind, stop, child()},
-      {"toddler", kind, stop, child(0, 0, 0.8)},
-      {"person in black", kind, stop, person(0, 0, kDark)},
-      {"person lying on the back",
-       kind,
-       ShapeDemand::kLow,
-       {{0, -0.7, 0, 0.3, 0.85, 0.16, kDark},
-        {0, 0.05, 0, 0.46, 0.65, 0.24, kCloth},
-        {0.1, 0.5, 0, 0.18, 0.24, 0.22, 1.2}}},
-      {"person lying on the side",
-       kind,
-       stop,
-       {{0, -0.75, 0, 0.2, 0.85, 0.2, kDark},
-        {0, -0.2, 0, 0.28, 0.35, 0.36, kCloth},
-        {0, 0.25, 0, 0.26, 0.55, 0.44, kCloth},
-        {0, 0.65, 0.05, 0.2, 0.24, 0.2, 1.2}}},
-      {"person lying along the lane",
-       kind,
-       stop,
-       {{0, 0, 0, 0.8, 0.35, 0.2, kDark}, {0.8, 0, 0, 0.7, 0.46, 0.4, kCloth}}},
-      {"person crouching",
-       kind,
-       stop,
-       {{0, 0, 0, 0.5, 0.45, 0.6, kCloth}, {0.1, 0, 0.6, 0.2, 0.2, 0.25, 1.2}}},
-      {"person kneeling",
-       kind,
-       stop,
-       {{0.1, 0, 0, 0.6, 0.4, 0.3, kDark},
-        {0.2, 0, 0.3, 0.26, 0.45, 0.6, kCloth},
-        {0.2, 0, 0.9, 0.2, 0.18, 0.24, 1.2}}},
-      {"person sitting on the road",
-       kind,
-       stop,
-       {{0, 0, 0, 0.7, 0.4, 0.2, kDark}, {0.7, 0, 0, 0.3, 0.45, 0.85, kCloth}}},
-      {"person bent over",
-       kind,
-       stop,
-       {{0, 0, 0, 0.2, 0.35, 0.85, kDark}, {0, 0, 0.75, 0.8, 0.45, 0.3, kCloth}}},
-      {"person with an umbrella", kind, stop,
-       together({person(0.4), {{0, 0, 1.85, 1.1, 1.1, 0.12, kDark}}})},
-      {"person with a ladder", kind, stop,
-       together({person(), {{-0.1, 0, 1.3, 0.05, 2.5, 0.35, kSteel}}})},
-      {"two people", kind, stop, together({person(0, -0.35), person(0.1, 0.35)})},
-      {"group of five", kind, stop,
-       together({person(0, -0.9), person(0.5, -0.3), person(0.1, 0.2), person(0.7, 0.6),
-                 child(0.3, 1.0)})},
-      {"wheelchair", kind, stop,
-       together({{{0, 0, 0.45, 0.5, 0.5, 0.1, kDark},
-                  {0.4, 0, 0.5, 0.25, 0.45, 0.6, kCloth},
-                  {0.45, 0, 1.1, 0.2, 0.18, 0.24, 1.2},
-                  {0.1, -0.3, 0, 0.6, 0.05, 0.6, kRubber},
-                  {0.1, 0.3, 0, 0.6, 0.05, 0.6, kRubber}}})},
-      {"pram pushed", kind, stop,
-       together({person(0.9), {{0, 0, 0.5, 0.8, 0.4, 0.5, kDark}}, wheels(0, 0.22, 0.6, 0.12)})},
-      {"pram alone", kind, stop,
-       together({{{0, 0, 0.5, 0.8, 0.4, 0.5, kCloth}}, wheels(0, 0.22, 0.6, 0.12)})},
-      {"person with a walking frame", kind, stop,
-       together({person(0.45), fence(2, 0.55, 0.05, 0, 0.9, kSteel)})},
-      {"child on a scooter", kind, stop,
-       together({child(0.3, 0, 1.2), {{0, 0, 0, 0.05, 0.05, 0.9, kSteel}}})}};
-}
-
-std::vector<ObstacleShape> animals() {
-  const std::string kind = "animals";
-  const auto stop = ShapeDemand::kStop;
-  return {{"large dog across", kind, stop, animal(0.8, 0.28, 0.35, 0.32, false)},
-          {"large dog along", kind, stop, animal(0.8, 0.28, 0.35, 0.32, true)},
-          {"small dog", kind, stop, animal(0.45, 0.18, 0.15, 0.25, false)},
-          {"cat", kind, ShapeDemand::kLow, animal(0.4, 0.14, 0.1, 0.14, false)},
-          {"hedgehog", kind, ShapeDemand::kLow, {{0, 0, 0, 0.15, 0.22, 0.15, kFur}}},
-          {"roe deer", kind, stop, animal(1.0, 0.3, 0.45, 0.35, false)},
-          {"red deer along", kind, stop, animal(1.6, 0.45, 0.8, 0.55, true)},
-          {"boar", kind, stop, animal(1.2, 0.4, 0.3, 0.5, false)},
-          {"sheep", kind, stop, animal(0.9, 0.4, 0.3, 0.45, true)},
-          {"cow", kind, stop, animal(2.0, 0.7, 0.6, 0.8, false)},
-          {"horse", kind, stop, animal(2.0, 0.55, 0.85, 0.7, true)},
-          {"swan",
-           kind,
-           stop,
-           {{0, 0, 0, 0.7, 0.35, 0.4, kWhite}, {0, 0, 0.4, 0.1, 0.1, 0.5, kWhite}}}};
-}
+using namespace shape_parts;
 
 std::vector<ObstacleShape> goods() {
   const std::string kind = "goods";
@@ -225,7 +64,7 @@ std::vector<ObstacleShape> plants() {
   return {{"tree standing",
            kind,
            stop,
-           {{0, 0, 0, 0.3, 0.3, 2.5, kWood}, {-1, 0, 2.5, 2.3, 2.3, 2, kGreen}}},
+           {{0, 0, 0, 0.3, 0.3, 2.5, kWood}, {-1, 0, 2.5, 2.3, 2.3, 2, kLeaves}}},
           {"trunk across", kind, stop, {{0, 0, 0, 0.5, 4.5, 0.5, kWood, 12}}},
           {"tree fallen with its crown", kind, stop,
            together({{{1.2, 0.8, 0, 0.35, 3.5, 0.4, kWood}}, twigs(2.5, 2.4, 0.1, 1.6, 160)})},
@@ -361,8 +200,8 @@ std::vector<ObstacleShape> lowAndBeside() {
 const std::vector<ObstacleShape>& obstacleShapes() {
   static const std::vector<ObstacleShape> shapes = [] {
     std::vector<ObstacleShape> all;
-    for (const auto& some : {people(), animals(), goods(), plants(), vehicles(), barriers(),
-                             hanging(), lowAndBeside()})
+    for (const auto& some :
+         {livingShapes(), goods(), plants(), vehicles(), barriers(), hanging(), lowAndBeside()})
       all.insert(all.end(), some.begin(), some.end());
     return all;
   }();

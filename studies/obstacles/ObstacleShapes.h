@@ -32,6 +32,9 @@ struct ObstacleShape {
 /// scene.
 const std::vector<ObstacleShape>& obstacleShapes();
 
+/// People and animals among them.
+std::vector<ObstacleShape> livingShapes();
+
 /// [m] of the highest point.
 double topOf(const ObstacleShape& shape);
 

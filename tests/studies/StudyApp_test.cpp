@@ -23,9 +23,9 @@ namespace {
 
 TEST(StudyApp, LeavesAReportWithTablesAndPlots) {
   const test::TemporaryFolder folder;
-  const std::string out = folder.path() + "/heading";
+  const std::string out = folder.path() + "/monte-carlo";
   StudyApp app;
-  const char* argv[] = {"perception-study", "heading", "-o", out.c_str(), "--runs", "4"};
+  const char* argv[] = {"perception-study", "monte-carlo", "-o", out.c_str(), "--runs", "4"};
   ASSERT_EQ(runApp(app, 6, argv), 0);
   for (const char* name : {"report.md", "camera.csv", "camera_and_radar.csv", "heading_camera.png"})
     EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
