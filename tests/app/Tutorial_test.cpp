@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "libperception/sensors/frames/FromObservation.h"
 #include "libperception/sensors/rawlog/RawlogReader.h"
 #include "tests/app/DemoLog.h"
+#include "tests/app/DocumentCommands.h"
 #include "tests/support/CommandOutput.h"
 #include "tests/support/TemporaryFolder.h"
 
@@ -22,29 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::CommandOutput;
+using test::commandsIn;
 using test::outputOf;
 
 const std::string kTutorial = PERCEPTION_SOURCE_DIR "/docs/tutorial.md";
-
-/// Lines in fences (```) that begin with "perception-".
-std::vector<std::string> commandsOf(const std::string& document) {
-  std::vector<std::string> commands;
-  std::ifstream in(document);
-  bool code = false;
-  for (std::string line; std::getline(in, line);) {
-    if (line.rfind("```", 0) == 0) code = !code;
-    if (code && line.rfind("perception-", 0) == 0) commands.push_back(line);
-  }
-  return commands;
-}
-
-std::vector<std::string> wordsOf(const std::string& command) {
-  std::vector<std::string> words;
-  std::istringstream in(command);
-  for (std::string word; in >> word;) words.push_back(word);
-  words[0] = PERCEPTION_BINARY_DIR "/bin/" + words[0];
-  return words;
-}
 
 void writeCloud(const LidarCloud& cloud, const std::string& path) {
   std::ofstream out(path, std::ios::binary);
@@ -93,13 +74,13 @@ TEST(Tutorial, ItsCommandsRunInTheirOrder) {
   const test::TemporaryFolder folder;
   ASSERT_GT(writeScans(folder.path()), 100);
   writeRecording(folder.path());
-  std::vector<std::string> commands = commandsOf(kTutorial);
+  std::vector<std::string> commands = commandsIn(kTutorial, "perception-");
   ASSERT_GT(commands.size(), 10u);
   for (std::string command : commands) {
     if (command == "perception-demo") continue;  // a whole run of its own: ./setup.sh demo
     if (const auto at = command.find("drive.bag"); at != std::string::npos)
       command.replace(at, 9, "drive.mcap");
-    const CommandOutput output = outputOf(wordsOf(command), folder.path());
+    const CommandOutput output = outputOf(test::wordsOf(command), folder.path());
     ASSERT_EQ(output.code, 0) << command << "\n" << output.text;
   }
   for (const char* file : {"doctor/site.ini", "doctor/doctor.png", "run/tracks.csv",
