@@ -42,7 +42,7 @@ void DoctorApp::declare(CLI::App& cli) {
   addInputOption(cli, true);
   addOutputOption(cli, false);
   cli.add_option("--ini", ini_folder, "Folder of classes.ini and models/ (the shipped ini/)");
-  cli.add_flag("--strict", strict, "Damaged input is an error instead of a warning");
+  cli.add_flag("--strict", strict, "Treat damaged input as an error instead of a warning");
 }
 
 void DoctorApp::run() {

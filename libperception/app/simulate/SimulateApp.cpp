@@ -56,7 +56,7 @@ void SimulateApp::declare(CLI::App& cli) {
   cli.add_option("--contact-sheet", contact_sheet, "Picture (PNG) of the scenarios named; no log");
   cli.add_option("SCENARIO", scenes, "Scenario INIs of the contact sheet")
       ->check(CLI::ExistingFile);
-  cli.add_option("--threads", threads, "Threads; 0 = as many as the machine has")
+  cli.add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
   cli.add_option("--gzip", gzip_level, "Gzip level of the log")
       ->check(CLI::Range(0, 9))

@@ -87,12 +87,13 @@ void SimulateApp::declareRecording(CLI::App& cli) {
       ->required()
       ->expected(1);
   recording_->add_option("-c,--config", config_file, "INI with [weather]")->required();
-  recording_->add_option("--set", settings, "section.key=value: overrides the INI");
+  recording_->add_option("--set", settings,
+                         "Change one value of the configuration: section.key=value");
   recording_
       ->add_option("-o,--output", output, "Rawlog; truth and FILE_Labels/ are written beside it")
       ->required();
   recording_->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
-  recording_->add_option("--threads", threads, "Threads; 0 = as many as the machine has")
+  recording_->add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
   recording_->add_option("--gzip", gzip_level, "Gzip level of the log")
       ->check(CLI::Range(0, 9))

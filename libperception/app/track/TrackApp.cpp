@@ -40,6 +40,13 @@ std::vector<std::string> namesOf(const ClassTable& classes) {
   return names;
 }
 
+/// Tells the graph of each event; `ros` may be null.
+EventLog::Listener listenerOf(RosView* ros) {
+  if (ros == nullptr) return {};
+  return
+      [ros](std::optional<Stamp>, const nlohmann::ordered_json& content) { ros->onEvent(content); };
+}
+
 /// Nothing that hangs can be asked to end.
 [[noreturn]] void endHungRun(const std::string& stage) {
   fmt::print(stderr, "perception-track: error: {} does not get on for {} s: the run ends\n",
@@ -244,11 +251,7 @@ void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
   std::unique_ptr<RosView> ros;
   if (!publish.empty())
     ros = std::make_unique<RosView>(rosParamsFor(shard.log, namesOf(setup.model.classes)));
-  EventLog::Listener tell_ros;
-  if (ros)
-    tell_ros = [&ros](std::optional<Stamp>, const nlohmann::ordered_json& content) {
-      ros->onEvent(content);
-    };
+  const EventLog::Listener tell_ros = listenerOf(ros.get());
   if (view)
     view->watch(run, tell_ros);
   else if (ros)
