@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
-
-#include "libperception/grid/way/NearCorridor.h"
 
 namespace perception {
 namespace {
@@ -26,23 +23,19 @@ bool isKnown(const Corridor& corridor, double s,
   });
 }
 
-/// Something in the corridor.
-struct Inside {
-  double s, weight;
+/// A cell in the corridor.
+struct CellInside {
+  double s;
   std::size_t index;
 };
 
-/// The first of those that together weigh `least` within half a meter; null: none.
-const Inside* firstTogether(std::vector<Inside>& inside, double least) {
-  std::sort(inside.begin(), inside.end(), [](const Inside& a, const Inside& b) {
+/// The first of as many within half a meter; null: none.
+const CellInside* firstTogether(std::vector<CellInside>& inside, std::size_t count) {
+  std::sort(inside.begin(), inside.end(), [](const CellInside& a, const CellInside& b) {
     return a.s < b.s || (a.s == b.s && a.index < b.index);
   });
-  double sum = 0;
-  for (std::size_t first = 0, last = 0; last < inside.size(); ++last) {
-    sum += inside[last].weight;
-    while (inside[last].s - inside[first].s > kTogether) sum -= inside[first++].weight;
-    if (sum >= least) return &inside[first];
-  }
+  for (std::size_t first = 0; first + count <= inside.size(); ++first)
+    if (inside[first + count - 1].s - inside[first].s <= kTogether) return &inside[first];
   return nullptr;
 }
 
@@ -104,16 +97,16 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
   FreeDistance result;
   result.distance = corridor.max;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
-  std::vector<Inside> inside;
+  std::vector<CellInside> inside;
   for (std::size_t i = 0; i < occupied.size(); ++i) {
     const Vector3 p = T_ego_world * occupied[i].center;
     const double half = occupied[i].size.x() / 2;
     const ArcPlace place = arcPlace(corridor, p.x(), p.y());
     if (std::abs(place.d) > corridor.width / 2 + half) continue;
     if (place.s + half < corridor.from || place.s - half > corridor.max) continue;
-    inside.push_back({place.s - half, 1, i});
+    inside.push_back({place.s - half, i});
   }
-  if (const Inside* first = firstTogether(inside, corridor.cells)) {
+  if (const CellInside* first = firstTogether(inside, static_cast<std::size_t>(corridor.cells))) {
     result.distance = std::max(first->s, corridor.from);
     result.blocked = true;
     result.place = occupied[first->index].center;
@@ -177,27 +170,6 @@ double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
     if (way[i].seen) last = s;
   }
   return last;
-}
-
-FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,
-                          const std::vector<float>& weights, double least) {
-  std::vector<Inside> inside;
-  const Pose3 T_ego_world = corridor.T_world_ego.inverse();
-  for (const std::uint32_t i : nearCorridor(corridor, corridor.max, returns)) {
-    const Vector3 p = T_ego_world * returns[i];
-    const ArcPlace place = arcPlace(corridor, p.x(), p.y());
-    if (std::abs(place.d) > corridor.width / 2) continue;
-    if (place.s < corridor.from || place.s > corridor.max) continue;
-    inside.push_back({place.s, weights.empty() ? 1 : static_cast<double>(weights[i]), i});
-  }
-  FreeDistance result;
-  result.distance = corridor.max;
-  if (const Inside* first = firstTogether(inside, least)) {
-    result.distance = first->s;
-    result.blocked = true;
-    result.place = returns[first->index];
-  }
-  return result;
 }
 
 }  // namespace perception

@@ -68,12 +68,6 @@ Vector2 onArc(const Corridor& corridor, const ArcPlace& place);
 FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>& occupied,
                           double step, const std::function<double(const Vector3&)>& log_odds_at);
 
-/// Nearest place in the corridor where the returns of one scan together weigh `least` within .5 m:
-/// what moves too fast to hit a cell twice. `weights` [0, 1] of each; empty: all 1. Not blocked:
-/// none nearer than corridor.max.
-FreeDistance denseReturns(const Corridor& corridor, const GridPoints& returns,
-                          const std::vector<float>& weights, double least);
-
 /// [m] to which the corridor was observed without a gap longer than 1 m, from `seen` on, by beams
 /// that pass `from` (the sensor's place, world) to `ends` between the ground and `height` [m].
 double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,

@@ -201,6 +201,11 @@ void SafetyMonitor::add(const SensorFrame& frame, const PlacedReturns& returns) 
   if (in_space) clearOverhead(frame, returns, clearance, params_.resolution, last_.scan);
   trustWhatPersists();
   grid_->insert(last_.scan);
+  Corridor way = drivenCorridor(frame.ego.T_world_ego, frame.ego.velocity, frame.ego.yaw_rate,
+                                returns.vehicle_front, returns.vehicle_rear, stop_);
+  way.road = last_.road.along(way);
+  way_.add(frame.stamp, std::move(way), last_.scan.hits, last_.dense,
+           last_.surface.empty() ? &last_.scan.clear : nullptr);
   front_ = returns.vehicle_front, rear_ = returns.vehicle_rear;
   any_ = true;
 }
@@ -228,30 +233,25 @@ PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   path.corridor.road = last_.road.along(path.corridor);
   const double look_ahead = path.corridor.max;
   path.free = grid_->freeDistance(path.corridor);
-  const auto take = [&](const FreeDistance& found) {
-    if (!found.blocked) return false;
-    path.by_returns =
-        !path.free.blocked || found.distance < path.free.distance - params_.resolution;
-    path.free.distance = found.distance;
-    path.free.blocked = true;
-    path.free.place = found.place;
-    path.free.seen = std::min(path.free.seen, found.distance);
-    return true;
-  };
   path.corridor.max = path.free.distance;
-  take(denseReturns(path.corridor, last_.scan.hits, last_.dense, stop_.returns));
-  if (last_.surface.empty()) {
-    path.corridor.max = path.free.distance;
-    const LowObstacle low =
-        lowObstacle(path.corridor, last_.scan.hits, last_.dense, last_.scan.clear, stop_.returns);
-    if (take(low.free)) path.returns = static_cast<std::uint32_t>(low.returns);
+  const double near =
+      path.corridor.from + stoppingDistance(ego.velocity.norm(), 0, stop_) + stop_.margin;
+  const ReturnObstacle found = way_.nearest(path.corridor, near, stop_.returns);
+  if (found.free.blocked) {
+    path.by_returns =
+        !path.free.blocked || found.free.distance < path.free.distance - params_.resolution;
+    path.free.distance = found.free.distance;
+    path.free.blocked = true;
+    path.free.place = found.free.place;
+    path.free.seen = std::min(path.free.seen, found.free.distance);
   }
   path.corridor.max = path.free.distance;
   path.free.seen = seenByBeams(path.corridor, path.free.seen, last_.scan.origin,
                                {&last_.scan.hits, &last_.scan.clear}, vehicleHeight());
   path.corridor.max = look_ahead;
   path.in_cloud = path.free.blocked && inCloud(path.corridor, last_.scan, path.free.distance);
-  if (path.free.blocked && path.returns == 0) countReturns(last_, path);
+  if (path.free.blocked) countReturns(last_, path);
+  path.returns = std::max(path.returns, static_cast<std::uint32_t>(found.returns));
   return path;
 }
 
@@ -289,6 +289,7 @@ FreePath SafetyMonitor::advise(const PathAhead& path, const Scene& scene) {
 void SafetyMonitor::restart() {
   grid_ = makeSafetyGrid(params_);
   places_.clear();
+  way_.clear();
   any_ = false;
   near_.reset();
   highest_ = 0;

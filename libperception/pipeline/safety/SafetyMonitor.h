@@ -10,6 +10,7 @@
 #include "libperception/measurement/Measurement.h"
 #include "libperception/pipeline/phantoms/PersistentPlaces.h"
 #include "libperception/pipeline/safety/RoadHeights.h"
+#include "libperception/pipeline/safety/WayReturns.h"
 #include "libperception/scene/Scene.h"
 #include "libperception/weather/trust/TrustParams.h"
 
@@ -73,6 +74,7 @@ class SafetyMonitor {
   std::unique_ptr<SafetyGrid> grid_;
   PersistentPlaces places_;  ///< of doubted surfaces, in the newest scan
   ObstacleScan last_;        ///< the newest scan's returns
+  WayReturns way_;           ///< those of the last half second on the way
   bool any_ = false;
   std::optional<Stamp> near_;    ///< of the last scene, if an obstacle was too near
   double front_ = 0, rear_ = 0;  ///< [m] own vehicle ahead of the ego origin and behind it

@@ -110,38 +110,6 @@ TEST(FreeDistance, SeveralCellsWithinHalfAMeterBlockWhereTheCorridorAsksForThem)
   EXPECT_NEAR(found.place.x(), 20, 1e-9);
 }
 
-GridPoints wallAt(double x, int returns, double spacing = 0.03) {
-  GridPoints points;
-  for (int i = 0; i < returns; ++i) points.push_back({x + spacing * i, 0.1 * (i % 5), 1});
-  return points;
-}
-
-TEST(DenseReturns, TenReturnsOfOneScanWithinHalfAMeterBlockThePath) {
-  const Corridor corridor;
-  const FreeDistance found = denseReturns(corridor, wallAt(20, 10), {}, 10);
-  EXPECT_TRUE(found.blocked);
-  EXPECT_NEAR(found.distance, 20, 1e-5);
-  EXPECT_NEAR(found.place.x(), 20, 1e-5);
-  EXPECT_FALSE(denseReturns(corridor, wallAt(20, 9), {}, 10).blocked);
-  EXPECT_FALSE(denseReturns(corridor, wallAt(20, 10, 0.1), {}, 10).blocked);  // .9 m deep
-}
-
-TEST(DenseReturns, ReturnsCountByTheirTrust) {
-  const GridPoints wall = wallAt(20, 12);
-  EXPECT_FALSE(denseReturns({}, wall, std::vector<float>(12, 0.8F), 10).blocked);
-  EXPECT_TRUE(denseReturns({}, wall, std::vector<float>(12, 0.9F), 10).blocked);
-}
-
-TEST(DenseReturns, WhatIsBesideTheCorridorOrBeyondItDoesNotCount) {
-  Corridor corridor;
-  corridor.width = 2;
-  GridPoints beside;
-  for (int i = 0; i < 50; ++i) beside.push_back({20, 1.1, 0.02 * i});
-  EXPECT_FALSE(denseReturns(corridor, beside, {}, 10).blocked);
-  corridor.max = 19;
-  EXPECT_FALSE(denseReturns(corridor, wallAt(20, 50, 0.001), {}, 10).blocked);
-}
-
 /// Beams of a lidar 1.7 m above the road, one each half degree of elevation, that end on the road
 /// or at `wall` [m] ahead.
 GridPoints beamsAhead(double wall, double bearing = 0) {

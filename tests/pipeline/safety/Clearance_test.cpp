@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstddef>
 #include <vector>
 
 #include "libperception/core/Frames.h"
 #include "libperception/grid/GridParams.h"
-#include "libperception/grid/beams/GridPoints.h"
-#include "libperception/grid/way/FreeDistance.h"
 #include "libperception/measurement/frames/PlacedReturns.h"
 #include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/pipeline/safety/SafetyMonitor.h"
@@ -16,71 +13,6 @@
 
 namespace perception {
 namespace {
-
-constexpr double kTen = 10;  // returns that block the way
-
-Corridor lane() {
-  Corridor corridor;
-  corridor.width = 2.2;
-  corridor.max = 40;
-  return corridor;
-}
-
-/// Rows of returns 0.05 m apart across the lane: an upright face 0.6 m wide, 12 m ahead.
-GridPoints face(double from, double to, double rise = 0.06, double left = 0) {
-  GridPoints points;
-  for (double z = from; z <= to + 1e-6; z += rise)
-    for (double y = left - 0.3; y <= left + 0.3; y += 0.05) points.push_back({12, y, z});
-  return points;
-}
-
-TEST(Clearance, SomeoneLyingOnTheRoadBlocksTheWay) {
-  const LowObstacle found = lowObstacle(lane(), {}, {}, face(0.06, 0.24), kTen);
-  EXPECT_TRUE(found.free.blocked);
-  EXPECT_NEAR(found.free.distance, 12, 1e-6);
-  EXPECT_GE(found.returns, 10u);
-}
-
-TEST(Clearance, WhatACarPassesOverDoesNot) {
-  EXPECT_FALSE(lowObstacle(lane(), {}, {}, face(0, 0.18), kTen).free.blocked) << "a kerb";
-}
-
-TEST(Clearance, BesideTheWayTheyDoNotMatter) {
-  EXPECT_FALSE(lowObstacle(lane(), {}, {}, face(0.06, 0.24, 0.06, 2), kTen).free.blocked);
-}
-
-// Of a road that the ground's model misses, a half meter rises by less than a tenth of a meter.
-TEST(Clearance, ARoadThatRisesBySevenPercentMoreThanItsModelIsNone) {
-  for (const double slope : {0.07, 0.15}) {
-    GridPoints road;
-    for (double x = 5; x < 30; x += 0.05)
-      for (double y = -1; y <= 1; y += 0.1) road.push_back({x, y, slope * (x - 10)});
-    EXPECT_FALSE(lowObstacle(lane(), {}, {}, road, kTen).free.blocked) << slope;
-  }
-}
-
-TEST(Clearance, StandOnTheRoadThatTheyAreOn) {
-  Corridor hill = lane();
-  GridPoints lying, kerb;
-  for (int s = 0; s < 42; ++s) hill.road.push_back(0.1F * static_cast<float>(s));
-  for (std::size_t i = 0; i < face(0.06, 0.24).size(); ++i)
-    lying.push_back(face(0.06, 0.24)[i] + Vector3(0, 0, 1.2));
-  for (std::size_t i = 0; i < face(0, 0.18).size(); ++i)
-    kerb.push_back(face(0, 0.18)[i] + Vector3(0, 0, 1.2));
-  EXPECT_TRUE(lowObstacle(hill, {}, {}, lying, kTen).free.blocked);
-  EXPECT_FALSE(lowObstacle(hill, {}, {}, kerb, kTen).free.blocked);
-}
-
-TEST(Clearance, TheFootOfAnObstacleCountsWithIt) {
-  GridPoints top, foot;
-  for (double y = -0.15; y <= 0.15; y += 0.05)
-    top.push_back({12, y, 0.4}), foot.push_back({12, y, 0.15});
-  ASSERT_LT(top.size(), 10u);
-  EXPECT_TRUE(lowObstacle(lane(), top, {}, foot, kTen).free.blocked);
-  EXPECT_FALSE(lowObstacle(lane(), {}, {}, foot, kTen).free.blocked);
-  const std::vector<float> doubted(top.size(), 0);
-  EXPECT_FALSE(lowObstacle(lane(), top, doubted, foot, kTen).free.blocked);
-}
 
 TEST(Clearance, BeamsEndACellAndAHalfBehindWhatHangsHigh) {
   SensorFrame frame;
