@@ -32,6 +32,10 @@ const std::vector<DeviceKind>& deviceKinds() {
        175, [](File) { return makeEsrDecoder(); }, &makeEsrEncoder},
       {"ars408", "Continental ARS 408: clusters or objects, by CAN", false, Transport::kCan, 0,
        false, 250, [](File) { return makeArs408Decoder(); }, &makeArs408Encoder},
+      {"rs16", "RoboSense RS-LiDAR-16; file: beams of the unit, or a DIFOP packet", true, kUdp,
+       6699, false, 150, &makeRs16Decoder, &makeRs16Encoder, 7788},
+      {"rs32", "RoboSense RS-LiDAR-32; file: beams of the unit, or a DIFOP packet", true, kUdp,
+       6699, false, 200, &makeRs32Decoder, &makeRs32Encoder, 7788},
   };
   return kinds;
 }

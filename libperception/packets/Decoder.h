@@ -91,6 +91,7 @@ struct DeviceKind {
   double max_range;    ///< [m], by the device's data sheet
   std::unique_ptr<PacketDecoder> (*make)(const std::string& file);
   std::unique_ptr<PacketEncoder> (*makeEncoder)(const std::string& file);  ///< for simulated ones
+  std::uint16_t second_port = 0;  ///< of what the device says of itself; 0: none is needed
 };
 const std::vector<DeviceKind>& deviceKinds();
 /// Throws ConfigError that lists the kinds there are.

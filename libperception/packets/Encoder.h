@@ -34,6 +34,9 @@ class PacketEncoder {
 std::unique_ptr<PacketEncoder> makeVelodyneEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makePandar40pEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeXt32Encoder(const std::string& file);
+/// Without packets of the device (DIFOP). `file`: beams of the unit; of RS-LiDAR-32 needed.
+std::unique_ptr<PacketEncoder> makeRs16Encoder(const std::string& file);
+std::unique_ptr<PacketEncoder> makeRs32Encoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeOusterEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeIbeoEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeEsrEncoder(const std::string& file);

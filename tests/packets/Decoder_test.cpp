@@ -28,6 +28,11 @@ std::string packetOf(const std::string& kind) {
     bytes.assign(1080, '\1');
     bytes.replace(0, 10, std::string("\xEE\xFF\6\1\0\0\x20\x08\1\4", 10));
     bytes[1062] = '\x39';
+  } else if (kind == "rs16" || kind == "rs32") {
+    bytes.assign(1248, '\1');
+    bytes.replace(0, 8, "\x55\xAA\x05\x0A\x5A\xA5\x50\xA0");
+    bytes[30] = kind == "rs16" ? '\1' : '\2';
+    for (std::size_t b = 0; b < 12; ++b) bytes.replace(42 + 100 * b, 2, "\xFF\xEE");
   } else if (kind == "ouster") {
     bytes.assign(16 * (16 + 32 * 12 + 4), '\1');
     for (std::size_t c = 0; c < 16; ++c) bytes.replace(c * 404 + 400, 4, "\xFF\xFF\xFF\xFF");

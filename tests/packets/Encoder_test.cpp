@@ -124,14 +124,14 @@ TEST_P(Lidars, SeeTheRoomAsItIs) {
 }
 
 TEST_P(Lidars, ALostPacketIsMissedExactly) {
-  const std::string file = fileOf(GetParam());
-  const Sent sent = passThrough(GetParam(), &room, file, 77);
+  if (GetParam() == std::string("rs16")) GTEST_SKIP() << "sends no numbers of its packets";
+  const Sent sent = passThrough(GetParam(), &room, fileOf(GetParam()), 77);
   EXPECT_EQ(sent.ledger.lost, 1U);
   EXPECT_EQ(sent.ledger.received, sent.packets - 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, Lidars,
-                         testing::Values("velodyne", "pandar40p", "xt32", "ouster"));
+                         testing::Values("velodyne", "pandar40p", "xt32", "rs16", "ouster"));
 
 TEST(Ibeo, ScansKeepLabelsEchoesAndPulseWidths) {
   const Sent sent = passThrough("ibeo", [](std::int64_t stamp) {

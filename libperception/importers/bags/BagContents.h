@@ -70,6 +70,7 @@ struct BagContents {
   std::map<std::string, Poses> poses;              ///< by topic
   std::map<std::string, ros::CameraInfo> cameras;  ///< first message by topic
   std::map<std::string, std::string> metadata;     ///< of devices, by topic
+  std::map<std::string, std::string> difop;        ///< of RoboSense: a packet, by topic
   std::set<std::string> device_topics;             ///< those with packets of a known device, of
                                                    ///< types that may have none
   /// Of messages with a header, by topic: the frames of reference, in order of their appearance.

@@ -124,10 +124,11 @@ void BagMeasurements::takeSensor(const BagMessage& message, const BagType& type,
 
 void BagMeasurements::takePackets(const BagMessage& message, const BagType& type,
                                   const BagTopicParams& params) {
-  auto& packets = packets_[message.topic->name];
+  const auto header = headerOf(message);
+  auto& packets = packets_[{message.topic->name, header ? frameName(header->frame_id) : ""}];
   if (!packets)
     packets = std::make_unique<BagPackets>(
-        type, params.label, metadataFor(message.topic->name),
+        type, params.label, metadataFor(message.topic->name, type),
         [this, params, topic = message.topic->name, shift = shiftOf(message)](ros::Header header,
                                                                               SensorFrame&& scan) {
           header.stamp = header.stamp + shift;
@@ -149,11 +150,12 @@ void BagMeasurements::takeFrame(const std::string& topic, const ros::Header& hea
   outputs_.frame(topic, other.empty(), std::move(frame));
 }
 
-/// The metadata topic with the longest beginning in common.
-std::string BagMeasurements::metadataFor(const std::string& topic) const {
+/// What the topic with the longest beginning in common says of a device.
+std::string BagMeasurements::metadataFor(const std::string& topic, const BagType& type) const {
+  if (type.device_files == nullptr) return "";
   std::string best;
   std::size_t longest = 0;
-  for (const auto& [name, text] : contents_.metadata) {
+  for (const auto& [name, text] : contents_.*type.device_files) {
     const auto common = static_cast<std::size_t>(
         std::mismatch(name.begin(), name.end(), topic.begin(), topic.end()).first - name.begin());
     if (best.empty() || common > longest) best = text, longest = common;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/importers/bags/BagContents.h"
@@ -62,7 +63,7 @@ class BagMeasurements {
   void takePackets(const BagMessage& message, const BagType& type, const BagTopicParams& params);
   void takeFrame(const std::string& topic, const ros::Header& header, const BagTopicParams& params,
                  SensorFrame&& frame);
-  std::string metadataFor(const std::string& topic) const;
+  std::string metadataFor(const std::string& topic, const BagType& type) const;
   double shiftOf(const BagMessage& message) const;
   std::string otherFrame(const std::string& topic, const ros::Header& header) const;
   void setCamera(const std::string& topic, const ros::Header& header, SensorFrame& frame) const;
@@ -75,7 +76,8 @@ class BagMeasurements {
   Outputs outputs_;
   std::string base_;
   Pose3 T_ego_base_ = Pose3::Identity();
-  std::map<std::string, std::unique_ptr<BagPackets>> packets_;  ///< by topic
+  /// By topic and frame of reference, which are a sensor each.
+  std::map<std::pair<std::string, std::string>, std::unique_ptr<BagPackets>> packets_;
   std::set<std::string> radars_;                ///< topics whose clouds are a radar's
   std::set<std::string> unplaced_;              ///< frames without a place on the vehicle
   std::map<std::string, std::string> foreign_;  ///< frames of readings that are not the vehicle's

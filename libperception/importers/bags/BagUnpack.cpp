@@ -11,6 +11,7 @@
 #include "libperception/importers/messages/MessageFields.h"
 #include "libperception/interop/ros/RosDevices.h"
 #include "libperception/packets/Decoder.h"
+#include "libperception/packets/lidars/RoboSense.h"
 #include "libperception/packets/radars/CanBundle.h"
 
 namespace perception {
@@ -25,6 +26,34 @@ Message packetsIn(const BagMessage& m) {
 bool isOfLidar(const ros::OusterPacket& packet) {
   constexpr std::size_t kLongestOfInertialUnit = 64;
   return packet.bytes.size() > kLongestOfInertialUnit;
+}
+
+/// Of both layouts that have this name.
+ros::RslidarMessage rslidarIn(const BagMessage& m) {
+  const std::size_t head = m.topic->encoding == ros::Encoding::kCdr ? 4 : 0;
+  if (m.bytes.size() != head + 2 * sizeof(std::uint32_t) + kRoboSenseSize)
+    return packetsIn<ros::RslidarMessage>(m);
+  const auto packet = packetsIn<ros::RslidarPacket>(m);
+  ros::RslidarMessage message;
+  message.header = {packet.stamp, "rslidar"};
+  message.data = packet.data.bytes;
+  return message;
+}
+
+/// The model is that of the packet: messages do not say it.
+void addRslidar(std::string_view packet, Stamp stamp, std::vector<BagPacket>& packets) {
+  if (isDifop(packet)) return;
+  const auto model = robosenseModelIn(packet);
+  if (!model)
+    throw std::runtime_error(fmt::format(
+        "a packet of {} bytes that is none of RS-LiDAR-16 or -32, the models of RoboSense that are "
+        "read",
+        packet.size()));
+  if (*model != kRs16.id && *model != kRs32.id)
+    throw std::runtime_error(
+        fmt::format("byte 30 of a packet: model {}, expected {} ({}) or {} ({})", *model, kRs16.id,
+                    kRs16.name, kRs32.id, kRs32.name));
+  packets.push_back({std::string(packet), stamp});
 }
 
 /// Only frames of a radar that is known make a topic one of a sensor.
@@ -69,6 +98,26 @@ ros::Header unpackOuster(const BagMessage& m, std::vector<BagPacket>& packets) {
   const auto packet = packetsIn<ros::OusterPacket>(m);
   if (isOfLidar(packet)) packets.push_back({std::string(packet.bytes), m.stamp});
   return {m.stamp, "os_sensor"};
+}
+
+ros::Header unpackRslidarScan(const BagMessage& m, std::vector<BagPacket>& packets) {
+  const auto scan = packetsIn<ros::RslidarScan>(m);
+  for (const auto& packet : scan.packets) addRslidar(packet.data.bytes, packet.stamp, packets);
+  return scan.header;
+}
+
+void noteRslidar(const BagMessage& m, BagContents& contents) {
+  const ros::RslidarMessage packet = rslidarIn(m);
+  if (isDifop(packet.data))
+    contents.difop.emplace(m.topic->name, packet.data);
+  else
+    contents.device_topics.insert(m.topic->name);
+}
+
+ros::Header unpackRslidarPacket(const BagMessage& m, std::vector<BagPacket>& packets) {
+  const ros::RslidarMessage packet = rslidarIn(m);
+  addRslidar(packet.data, packet.header.stamp, packets);
+  return packet.header;
 }
 
 /// A frame of a CAN bus; remote and error frames have no data.

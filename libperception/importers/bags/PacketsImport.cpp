@@ -48,7 +48,7 @@ class PacketsImporter final : public Importer {
     });
     std::int64_t done = 0;
     for (const UdpPacket& packet : contents.packets) {
-      if (packet.port == port) {
+      if (packet.port == port || (kind.second_port > 0 && packet.port == kind.second_port)) {
         assembler.add(packet.payload, Stamp{packet.stamp_ns});
       } else {
         ++others;

@@ -55,7 +55,7 @@ void BagPackets::start(std::string_view packet) {
                       "holds \"metadata\"",
                       kind.description));
     const MetadataFile file(metadata_);
-    const std::string path = kind.needs_file ? file.path() : "";
+    const std::string path = metadata_.empty() ? "" : file.path();
     for (std::size_t surplus = 0; surplus <= kMostSurplus && surplus < packet.size(); ++surplus) {
       try {
         const auto decoder = kind.make(path);

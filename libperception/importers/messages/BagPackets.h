@@ -17,7 +17,7 @@ class BagPackets {
   /// Takes each scan, with its stamp and the frame of the messages as header.
   using Take = std::function<void(const ros::Header&, SensorFrame&&)>;
 
-  /// `metadata`: of the device, for those that need it (Ouster).
+  /// `metadata`: of the device, for those that have it (BagType::device_files).
   BagPackets(const BagType& type, std::string label, std::string metadata, Take take);
 
   /// Throws std::runtime_error: the message, or no kind of device sends such packets.

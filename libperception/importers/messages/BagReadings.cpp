@@ -3,6 +3,7 @@
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 
 #include "libperception/importers/messages/MessageFields.h"
 #include "libperception/importers/positions/ImportGps.h"
+#include "libperception/importers/positions/Ncom.h"
 #include "libperception/interop/ros/RosDefinition.h"
 #include "libperception/sensors/observations/Conversions.h"
 
@@ -59,6 +61,18 @@ BagObservation observeFixByFields(const BagMessage& m, double shift, ros::Header
     throw std::runtime_error("no latitude, longitude and height in it");
   return gpsObservation({header.stamp + shift, latitude, longitude,
                          height + (std::isfinite(undulation) ? undulation : 0)});
+}
+
+BagObservation observeNcom(const BagMessage& m, double shift, ros::Header& header) {
+  const MessageFields fields = fieldsIn(m);
+  header = fields.header;
+  const auto& items = fields.value.items;
+  const auto packet = std::find_if(items.begin(), items.end(), [](const RosValue& item) {
+    return item.part == nullptr && !item.bytes.empty();
+  });
+  if (packet == items.end()) throw std::runtime_error("no packet in it");
+  const auto state = ncomState(packet->bytes);
+  return state ? ncomObservation(header.stamp + shift, *state) : nullptr;
 }
 
 BagObservation observeSpeed(const BagMessage& m, double shift, ros::Header& header) {

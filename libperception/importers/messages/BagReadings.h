@@ -16,6 +16,8 @@ BagObservation observeImu(const BagMessage&, double shift, ros::Header&);
 /// novatel_oem7_msgs): lat or latitude, lon or longitude, height or hgt with undulation. Null: no
 /// solution.
 BagObservation observeFixByFields(const BagMessage&, double shift, ros::Header&);
+/// oxts_msgs/Ncom: a packet (Ncom.h) in the message's only list of bytes. Null: not locked.
+BagObservation observeNcom(const BagMessage&, double shift, ros::Header&);
 /// geometry_msgs/TwistStamped and TwistWithCovarianceStamped, as a reading of wheels.
 BagObservation observeSpeed(const BagMessage&, double shift, ros::Header&);
 

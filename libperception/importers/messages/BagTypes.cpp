@@ -143,6 +143,7 @@ constexpr const char* kPacketsUse = "lidar scans, from packets";
 constexpr const char* kRadarListUse = "radar scans: a return an object or cluster, by its fields";
 
 std::vector<BagType> makeTypes() {
+  const std::vector<const char*> robosense = {"rs16", "rs32"};
   std::vector<BagType> types = {
       measured("sensor_msgs/PointCloud2", "lidar or radar scans", Role::kCloud, &measurePoints),
       measured("sensor_msgs/PointCloud", "lidar or radar scans", Role::kCloud, &measureOldCloud),
@@ -166,6 +167,7 @@ std::vector<BagType> makeTypes() {
       observed("novatel_gps_msgs/Inspva", "GPS, by its fields", &observeFixByFields),
       observed("novatel_oem7_msgs/BESTPOS", "GPS, by its fields", &observeFixByFields),
       observed("novatel_oem7_msgs/INSPVA", "GPS, by its fields", &observeFixByFields),
+      observed("oxts_msgs/Ncom", "GPS with velocity and heading, from packets", &observeNcom),
       observed("sensor_msgs/Imu", "inertial unit", &observeImu),
       observed("geometry_msgs/TwistStamped", "speed, if it is in the vehicle's frame",
                &observeSpeed),
@@ -201,15 +203,26 @@ std::vector<BagType> makeTypes() {
     types.push_back(
         packed(name, kPacketsUse, Role::kCloud, &noteOuster, &unpackOuster, {"ouster"}));
   for (const char* name :
+       {"rslidar_msgs/rslidarScan", "rslidar_msgs/RslidarScan", "rslidar_msg/RslidarScan"})
+    types.push_back(
+        packed(name, kPacketsUse, Role::kCloud, nullptr, &unpackRslidarScan, robosense));
+  for (const char* name :
+       {"rslidar_msgs/rslidarPacket", "rslidar_msgs/RslidarPacket", "rslidar_msg/RslidarPacket"})
+    types.push_back(
+        packed(name, kPacketsUse, Role::kCloud, &noteRslidar, &unpackRslidarPacket, robosense));
+  for (const char* name :
        {"autoware_perception_msgs/DetectedObjects", "autoware_perception_msgs/TrackedObjects",
         "autoware_auto_perception_msgs/DetectedObjects",
         "autoware_auto_perception_msgs/TrackedObjects"})
     types.push_back(measured(name, kBoxesUse, Role::kBoxes, &measureAutoware));
-  // Each of the transforms has its own; texts and Ouster's packets have none; a camera's is of no
-  // matter, nor that of a path, whose poses have theirs.
+  // Each of the transforms has its own; texts and Ouster's packets have none, nor have some of
+  // RoboSense's; a camera's is of no matter, nor that of a path, whose poses have theirs.
   for (BagType& type : types) {
-    for (const auto note : {&noteTransforms, &noteText, &noteOuster, &noteCamera, &notePath})
+    for (const auto note :
+         {&noteTransforms, &noteText, &noteOuster, &noteRslidar, &noteCamera, &notePath})
       if (type.note == note) type.has_header = false;
+    if (type.note == &noteOuster) type.device_files = &BagContents::metadata;
+    if (type.devices == robosense) type.device_files = &BagContents::difop;
   }
   return types;
 }

@@ -2,6 +2,7 @@
 #include <mrpt/obs/CObservation.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct BagType {
   /// Raw packets, and the kinds of devices (deviceKinds()) that may have sent them.
   ros::Header (*unpack)(const BagMessage&, std::vector<BagPacket>&) = nullptr;
   std::vector<const char*> devices = {};
+  /// Of these devices: what their decoder is made with, by topic; null: nothing.
+  std::map<std::string, std::string> BagContents::*device_files = nullptr;
   /// Messages begin with a std_msgs/Header, whose stamp and frame are those of the measurement.
   bool has_header = true;
   /// Makes a reading, with `shift` [s] added to its stamp, and sets its header; null: it says

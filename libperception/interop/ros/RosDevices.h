@@ -58,7 +58,29 @@ void fields(Wire& w, PandarPacket& m) {
   w(m.stamp), w(m.data), w(m.size);
 }
 
-/// velodyne_msgs/VelodyneScan, pandar_msgs/PandarScan, hesai_ros_driver/UdpFrame.
+/// rslidar_msgs/rslidarPacket, and rslidar_msg/RslidarPacket of drivers before 1.3.
+struct RslidarPacket {
+  Stamp stamp;
+  FixedBytes<1248> data;
+};
+template <class Wire>
+void fields(Wire& w, RslidarPacket& m) {
+  w(m.stamp), w(m.data);
+}
+
+/// rslidar_msg/RslidarPacket of drivers from 1.3 on.
+struct RslidarMessage {
+  Header header;
+  std::uint8_t is_difop = 0, is_frame_begin = 0;
+  std::string_view data;
+};
+template <class Wire>
+void fields(Wire& w, RslidarMessage& m) {
+  w(m.header), w(m.is_difop), w(m.is_frame_begin), w(m.data);
+}
+
+/// velodyne_msgs/VelodyneScan, pandar_msgs/PandarScan, hesai_ros_driver/UdpFrame,
+/// rslidar_msgs/rslidarScan.
 template <class Packet>
 struct PacketScan {
   Header header;
@@ -70,6 +92,7 @@ void fields(Wire& w, PacketScan<Packet>& m) {
 }
 using VelodyneScan = PacketScan<VelodynePacket>;
 using PandarScan = PacketScan<PandarPacket>;
+using RslidarScan = PacketScan<RslidarPacket>;
 
 /// PacketMsg of Ouster's drivers.
 struct OusterPacket {

@@ -133,6 +133,7 @@ const std::map<std::string, std::vector<Member>> kMessages = {
       {"string", "tracking_id"}}},
     {"vision_msgs/Detection2DArray~",
      {{"std_msgs/Header", "header"}, {"vision_msgs/Detection2D~[]", "detections"}}},
+    {"oxts_msgs/Ncom", {{"std_msgs/Header", "header"}, {"uint8[]", "raw_packet"}}},
     {"unique_identifier_msgs/UUID", {{"uint8[16]", "uuid"}}},
     {"autoware_perception_msgs/ObjectClassification",
      {{"uint8", "label"}, {"float32", "probability"}}},

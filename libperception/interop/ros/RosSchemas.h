@@ -13,7 +13,8 @@ McapWriter::Schema schemaOf(const std::string& type);
 /// The members of a message alone, a line each; empty: the type is not known. Beside those that we
 /// write it has the usual parts of other messages, and messages whose definitions sqlite files of
 /// rosbag2 do not hold: of autoware_perception_msgs, derived_object_msgs (ROS packages of
-/// AutonomouStuff), ros2_socketcan_msgs. "~" behind a type: another layout that is in use.
+/// AutonomouStuff), ros2_socketcan_msgs, oxts_msgs. "~" behind a type: another layout that is in
+/// use.
 std::string membersOfType(const std::string& type);
 
 }  // namespace perception::ros

@@ -1,11 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <iterator>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/packets/Bytes.h"
 #include "libperception/packets/Encoder.h"
 #include "libperception/packets/lidars/BeamView.h"
+#include "libperception/packets/lidars/RoboSense.h"
 
 namespace perception {
 namespace {
@@ -170,7 +173,74 @@ class HesaiEncoder final : public SpinningEncoder {
   std::uint32_t number_ = 0;
 };
 
+class RoboSenseEncoder final : public SpinningEncoder {
+ public:
+  RoboSenseEncoder(const RoboSenseModel& model, const std::string& file)
+      : model_(model), beams_(robosenseBeams(file, model)) {
+    if (beams_.empty())
+      throw ConfigError("a simulated " + std::string(model.name) +
+                        ": device_file: the beams of the unit are needed");
+  }
+
+ private:
+  const std::vector<BeamAngles>& beams() const override { return beams_; }
+  std::int64_t firing() const override { return std::llround(1e3 * model_.firing); }
+  std::int64_t laserTime(std::size_t i) const override {
+    return std::llround(1e3 * model_.laserTime(i));
+  }
+  std::size_t inPacket() const override { return 12 * firingsInBlock(); }
+  std::size_t firingsInBlock() const { return 32 / model_.lasers; }
+
+  std::string pack(const std::vector<Firing>& firings) override {
+    std::string bytes(kRoboSenseSize, '\0');
+    bytes.replace(0, 8, "\x55\xAA\x05\x0A\x5A\xA5\x50\xA0");
+    bytes[30] = static_cast<char>(model_.id);
+    putStamp(bytes, firings.front().at);
+    for (std::size_t f = 0; f < firings.size(); ++f) {
+      const std::size_t block = 42 + 100 * (f / firingsInBlock());
+      const std::size_t part = f % firingsInBlock();
+      if (part == 0) bytes.replace(block, 2, "\xFF\xEE");
+      if (part == 0) putBig(bytes, block + 2, centidegrees(firings[f].azimuth), 2);
+      for (std::size_t i = 0; i < beams_.size(); ++i)
+        putSeen(bytes, block + 4 + 3 * (i + part * model_.lasers), i, firings[f].seen[i]);
+    }
+    putBig(bytes, kRoboSenseSize - 2, 0x00FF, 2);
+    return bytes;
+  }
+
+  void putSeen(std::string& bytes, std::size_t at, std::size_t beam,
+               std::optional<BeamView::Seen> seen) const {
+    if (seen) seen->range -= model_.lens * std::cos(beams_[beam].elevation * M_PI / 180);
+    if (!seen || seen->range < 0) return;
+    putReturn(bytes, at, seen, 0.005);
+    std::swap(bytes[at], bytes[at + 1]);
+  }
+
+  static void putStamp(std::string& bytes, std::int64_t ns) {
+    const std::time_t seconds = ns / 1'000'000'000;
+    std::tm calendar{};
+    gmtime_r(&seconds, &calendar);
+    const int fields[] = {calendar.tm_year - 100, calendar.tm_mon + 1, calendar.tm_mday,
+                          calendar.tm_hour,       calendar.tm_min,     calendar.tm_sec};
+    for (std::size_t i = 0; i < std::size(fields); ++i)
+      bytes[20 + i] = static_cast<char>(fields[i]);
+    putBig(bytes, 26, static_cast<std::uint64_t>(ns / 1'000'000 % 1000), 2);
+    putBig(bytes, 28, static_cast<std::uint64_t>(ns / 1000 % 1000), 2);
+  }
+
+  const RoboSenseModel& model_;
+  const std::vector<BeamAngles> beams_;
+};
+
 }  // namespace
+
+std::unique_ptr<PacketEncoder> makeRs16Encoder(const std::string& file) {
+  return std::make_unique<RoboSenseEncoder>(kRs16, file);
+}
+
+std::unique_ptr<PacketEncoder> makeRs32Encoder(const std::string& file) {
+  return std::make_unique<RoboSenseEncoder>(kRs32, file);
+}
 
 std::unique_ptr<PacketEncoder> makeVelodyneEncoder(const std::string& file) {
   if (!file.empty() && file != "VLP-16" && file != "VLP-32C")
