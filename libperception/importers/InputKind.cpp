@@ -12,6 +12,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/InputFolders.h"
+#include "libperception/importers/clouds/CloudFolder.h"
 #include "libperception/importers/clouds/ImportClouds.h"
 #include "libperception/packets/Decoder.h"
 #include "libperception/packets/Pcap.h"
@@ -78,6 +79,14 @@ bool isNameOfCloud(const std::string& name) {
                      [&](const std::string& ending) { return hasEnding(name, ending); });
 }
 
+/// Lines of Udacity's measurements: L x y t, or R range bearing rate t.
+bool isOfUdacity(const std::string& bytes) {
+  const bool sensor =
+      begins(bytes, "L\t") || begins(bytes, "R\t") || begins(bytes, "L ") || begins(bytes, "R ");
+  return sensor && bytes.find_first_of("0123456789-.", 2) == 2;
+}
+
+/// By its first bytes, or the ending of its name; clouds are known by their folder.
 Kind fileKind(const fs::path& file) {
   using namespace std::string_view_literals;
   const std::string bytes = beginningOf(file), name = file.filename().string();
@@ -91,22 +100,29 @@ Kind fileKind(const fs::path& file) {
   if (begins(bytes, "$GP") || begins(bytes, "$GN"))
     return InputKind{
         "a GPS receiver's NMEA log", {}, {importCommand("nmea --track " + shellWord(file), file)}};
-  if (begins(bytes, "L\t") || begins(bytes, "R\t"))
+  const std::string line = bytes.substr(0, bytes.find('\n'));
+  if (hasEnding(name, ".csv") && line.find("t_s") != std::string::npos &&
+      line.find("lat_deg") != std::string::npos)
+    return InputKind{
+        "a table of GPS positions", {}, {importCommand("gpx --track " + shellWord(file), file)}};
+  if (isOfUdacity(bytes))
     return InputKind{"Udacity's radar and laser measurements",
                      {},
                      {importCommand("udacity --measurements " + shellWord(file), file)}};
-  if (isNameOfCloud(name)) {
-    auto kind = cloudFolder(file.has_parent_path() ? file.parent_path() : fs::path("."));
-    if (kind) kind->what = "a file of " + kind->what;
-    return kind;
-  }
   return {};
 }
 
-/// The first file of a folder that is known by itself; clouds are known by their folder.
+Kind cloudKind(const fs::path& file) {
+  if (!isNameOfCloud(file.filename().string())) return {};
+  auto kind = cloudFolder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+  if (kind) kind->what = "a file of " + kind->what;
+  return kind;
+}
+
+/// The first file of a folder that is known by itself.
 Kind fileInFolder(const fs::path& folder) {
   for (const std::string& name : namesInFolder(folder)) {
-    if (name.back() == '/' || isNameOfCloud(name)) continue;
+    if (name.back() == '/') continue;
     auto kind = fileKind(folder / name);
     if (!kind) continue;
     kind->what += fmt::format(", in {}", (folder / name).string());
@@ -130,7 +146,13 @@ std::string reasonOfTables(const std::string& folder) {
 std::optional<InputKind> inputKind(const std::string& path) {
   if (!fs::exists(path)) throw DataError(path + ": not found", ExitCode::kNoInput);
   // Of a file that is not known the reader of rawlogs says what it is.
-  if (!fs::is_directory(path)) return fileKind(path);
+  if (!fs::is_directory(path)) {
+    auto kind = fileKind(path);
+    if (!kind) kind = cloudKind(path);
+    const std::string why = whyNotRead(fs::path(path).extension().string());
+    if (!kind && !why.empty()) throw DataError(path + ": no recording that is known" + why);
+    return kind;
+  }
   if (auto kind = folderKind(path)) return kind;
   if (auto kind = fileInFolder(path)) return kind;
   for (const std::string& name : namesInFolder(path)) {
@@ -145,8 +167,9 @@ std::optional<InputKind> inputKind(const std::string& path) {
   throw DataError(fmt::format(
       "{}: nothing that is known in {} entries; known are rawlogs, recordings of ROS (.bag .mcap "
       ".db3), captures (.pcap), folders of clouds ({}), GPS tracks (.nmea .gpx) and the data sets "
-      "of perception-import --help{}",
-      path, namesInFolder(path).size(), fmt::join(cloudEndings(), " "), reasonOfTables(path)));
+      "of perception-import --help{}{}",
+      path, namesInFolder(path).size(), fmt::join(cloudEndings(), " "), whatIsIn(path),
+      reasonOfTables(path)));
 }
 
 std::string textOf(const InputKind& kind, const std::string& path) {

@@ -128,6 +128,35 @@ TEST_F(InputKindOf, TracksOfReceiversAreToldByTheirText) {
   expectKind("u.txt", "Udacity", "udacity --measurements ");
 }
 
+TEST_F(InputKindOf, TextIsKnownByItsFirstLine) {
+  write("udacity/README.txt", "measurements of one object\n");
+  write("udacity/sample.txt", "R\t8.46\t0.028\t-3.04\t1477010443399637\t8.6\t0.25\t-3\t0\n");
+  expectKind("udacity", "Udacity's radar and laser measurements, in",
+             "udacity --measurements " + file("udacity/sample.txt"));
+  write("udacity2/spaces.txt", "L 3.12e-01 5.8e-01 1477010443000000 6e-01 6e-01 5.2 0\n");
+  expectKind("udacity2", "Udacity's", "udacity --measurements");
+  write("walks/README.txt", "L and R are written down\n");
+  write("walks/car/a.csv", "t_s,lat_deg,lon_deg\n0,49,8\n1,49,8.0001\n");
+  expectKind("walks", "a table of GPS positions", "gpx --track " + file("walks/car/a.csv"));
+  write("nmea/track.txt", "$GPGGA,120000,4900.0,N,00824.0,E,1,8,1,110,M,48,M,,*5F\n");
+  expectKind("nmea", "a GPS receiver's NMEA log", "nmea --track");
+}
+
+TEST_F(InputKindOf, CommonFormatsThatAreNotReadAreNamed) {
+  write("flight/a.las", "LASF");
+  write("flight/b.las", "LASF");
+  for (const char* name : {"flight", "flight/a.las"}) {
+    try {
+      inputKind(file(name));
+      FAIL() << name;
+    } catch (const DataError& e) {
+      EXPECT_NE(std::string(e.what()).find(".las is not read: save the scans as .pcd"),
+                std::string::npos)
+          << e.what();
+    }
+  }
+}
+
 TEST_F(InputKindOf, WhatIsNoneOfThemIsRefusedWithTheList) {
   EXPECT_FALSE(inputKind(PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog"));
   std::filesystem::create_directory(file("empty"));
@@ -153,6 +182,8 @@ TEST_F(InputKindOf, RecordingsAsTheyWerePublishedAreKnown) {
       {"kitti_tracking", "kitti --calib"},
       {"kitti_object3", "kitti-object --dir"},
       {"kitti_object13", "images --dir"},
+      {"udacity_radar_lidar_synth", "udacity --measurements"},
+      {"gps_modes", "gpx --track"},
       {"sensor_packets/vlp32c/packets.pcap", "packets --pcap"}};
   for (const auto& [name, command] : all) {
     const auto kind = inputKind(test::sharedData(name));

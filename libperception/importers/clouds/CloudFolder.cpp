@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <set>
+#include <system_error>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/clouds/ImportClouds.h"
@@ -15,23 +17,29 @@
 namespace perception {
 namespace {
 
-/// What is there instead of scans.
-std::string faultOfEmpty(const std::string& folder) {
+/// Formats of clouds, and of tables with clouds, that are common and not read.
+constexpr const char* kNotRead[] = {".las", ".laz", ".e57",      ".pts",     ".h5",     ".hdf5",
+                                    ".mat", ".drc", ".tfrecord", ".feather", ".parquet"};
+
+}  // namespace
+
+std::string whatIsIn(const std::string& folder) {
   std::map<std::string, std::size_t> endings;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    ++endings[entry.is_directory() ? "/" : entry.path().extension().string()];
-  std::string text =
-      fmt::format("{}: no file that ends in {}", folder, fmt::join(cloudEndings(), ", "));
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    ++endings[entry.is_directory(error) ? "/" : entry.path().extension().string()];
+  std::string text;
   for (const auto& [ending, count] : endings)
     text += ending == "/" ? fmt::format("; {} folders", count)
                           : fmt::format("; {} files that end in '{}'", count, ending);
-  for (const char* other : {".las", ".laz", ".e57", ".pts"})
-    if (endings.count(other) > 0)
-      text += fmt::format("; {} is not read: save the scans as .pcd, .ply or text", other);
+  for (const auto& row : endings) text += whyNotRead(row.first);
   return text;
 }
 
-}  // namespace
+std::string whyNotRead(const std::string& ending) {
+  if (std::find(std::begin(kNotRead), std::end(kNotRead), ending) == std::end(kNotRead)) return "";
+  return fmt::format("; {} is not read: save the scans as .pcd, .ply or text", ending);
+}
 
 CloudFiles cloudFilesIn(const std::string& folder) {
   requireFolder(folder);
@@ -41,7 +49,10 @@ CloudFiles cloudFilesIn(const std::string& folder) {
     const auto& known = cloudEndings();
     if (std::find(known.begin(), known.end(), ending) != known.end()) names[ending].push_back(name);
   }
-  if (names.empty()) throw DataError(faultOfEmpty(folder), ExitCode::kNoInput);
+  if (names.empty())
+    throw DataError(fmt::format("{}: no file that ends in {}{}", folder,
+                                fmt::join(cloudEndings(), ", "), whatIsIn(folder)),
+                    ExitCode::kNoInput);
   const auto numbered = [](const std::string& name) {
     return std::any_of(name.begin(), name.end(),
                        [](unsigned char c) { return std::isdigit(c) != 0; });

@@ -17,4 +17,9 @@ struct CloudFiles {
 /// Throws DataError: no folder, no scan.
 CloudFiles cloudFilesIn(const std::string& folder);
 
+/// The endings of a folder's files, for a message that says why it is not read.
+std::string whatIsIn(const std::string& folder);
+/// The same of one ending, ".las"; empty: it is none of the common formats that are not read.
+std::string whyNotRead(const std::string& ending);
+
 }  // namespace perception
