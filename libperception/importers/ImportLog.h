@@ -86,9 +86,11 @@ class ImportLog {
   void frame(Stamp stamp, std::int64_t number);
   /// Doubled messages are left out and counted. Of clouds with timesOutsideOf() the times are.
   void sensor(const SensorFrame& frame);
-  /// The same in two steps, for recordings of messages: a scan that was sent again within 20 ms,
-  /// before a lidar can have turned once more (assumed), is a double, too.
-  bool isResent(const SensorFrame& frame) { return doubles_.isDouble(frame, 0.02); }
+  /// The same in two steps, for recordings of messages: a scan that comes again `within` a time [s]
+  /// is a double, too.
+  bool isResent(const SensorFrame& frame, double within) {
+    return doubles_.isDouble(frame, within);
+  }
   void uniqueSensor(const SensorFrame& frame);
   void image(const ImportedImage& image, std::int64_t frame);
   /// Any other observation: GNSS, IMU, odometry.

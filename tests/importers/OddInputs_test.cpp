@@ -180,6 +180,16 @@ TEST_F(OddInputs, ScansThatArePassedOnWithAnotherStampAreDoubles) {
   expectSaid("points: 20 messages came twice");
 }
 
+TEST_F(OddInputs, RepetitionsOfAScanThatStandsAreNoDoubles) {
+  std::vector<Planned> plan;
+  for (int k = 0; k < 5; ++k) {  // as with --repeat: 5 ms apart, the next scan 10 s later
+    for (int again = 0; again < 5; ++again)
+      plan.push_back(scanPlan(k, 10 * k + 0.005 * again, 10 * k + 0.005 * again, "base_link"));
+  }
+  importOf(plan, 3);
+  EXPECT_EQ(timesOf("points").size(), 25U);
+}
+
 TEST_F(OddInputs, TwoFramesOnOneTopicAreTwoSensors) {
   std::vector<Planned> plan = {mountPlan("front", 2), mountPlan("rear", -1)};
   for (int k = 0; k < kDriveScans; ++k) {

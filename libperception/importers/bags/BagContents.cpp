@@ -78,7 +78,7 @@ MessageClock clockOfTopic(const TopicTimes& topic) {
     for (std::size_t i = 0; i < numbers.size(); ++i) all.used[numbers[i]] = clock.used[i];
     all.left_out += clock.left_out, all.unstamped += clock.unstamped;
     all.farthest = std::max(all.farthest, clock.farthest);
-    if (frame == 0) all.lead = clock.lead;
+    if (frame == 0) all.lead = clock.lead, all.resent = clock.resent;
   }
   return all;
 }

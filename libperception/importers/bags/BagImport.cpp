@@ -93,7 +93,8 @@ void BagReading::take(const BagMessage& message, const std::string& file) {
 }
 
 void BagReading::takeFrame(const std::string& topic, bool first, SensorFrame&& frame) {
-  if (log_.isResent(frame)) return;
+  const auto clock = contents_.clocks.find(topic);
+  if (log_.isResent(frame, clock == contents_.clocks.end() ? 0 : clock->second.resent)) return;
   if (topic == choices_.frames_topic && first) {
     ++frame_;
     if (log_.wants(frame_))

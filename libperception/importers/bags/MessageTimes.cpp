@@ -18,6 +18,9 @@ constexpr double kStrayAhead = 1;          // [s] least step of stamps that jump
 constexpr std::size_t kMostStray = 10;     // messages
 constexpr double kSteadyLead = 1;          // [s]
 constexpr double kAhead = 1, kBehind = 2;  // [s] of a clock that is set by the recording's
+constexpr double kResent = 0.02;           // [s]
+constexpr double kMostInARow = 0.1;        // [-] of close messages, behind another close one
+constexpr double kSlowestTurn = 0.25;      // [s] of a lidar: 5 Hz, and some slack
 
 double medianIn(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -96,17 +99,39 @@ class Selection {
 
 }  // namespace
 
+double resentWithin(std::vector<Stamp> stamps) {
+  std::sort(stamps.begin(), stamps.end());
+  stamps.erase(std::unique(stamps.begin(), stamps.end()), stamps.end());
+  std::size_t close = 0, in_a_row = 0;
+  std::vector<double> others;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] - stamps[i - 1] > kResent) {
+      others.push_back(stamps[i] - stamps[i - 1]);
+      continue;
+    }
+    ++close;
+    in_a_row += i > 1 && stamps[i - 1] - stamps[i - 2] <= kResent;
+  }
+  const bool alone = static_cast<double>(in_a_row) <= kMostInARow * static_cast<double>(close);
+  const bool turns = others.empty() || medianIn(std::move(others)) <= kSlowestTurn;
+  return alone && turns ? kResent : 0;
+}
+
 MessageClock clockOf(const std::vector<MessageTimes>& times) {
   MessageClock clock;
   clock.used.assign(times.size(), true);
-  std::vector<Stamp> stamps;
+  std::vector<Stamp> stamps, recorded;
   std::vector<double> leads;
   for (const MessageTimes& t : times) {
-    if (!t.says()) continue;
+    if (!t.says()) {
+      recorded.push_back(t.recorded);
+      continue;
+    }
     stamps.push_back(t.measured);
     leads.push_back(t.measured - t.recorded);
   }
   clock.unstamped = times.size() - stamps.size();
+  clock.resent = resentWithin(stamps.empty() ? std::move(recorded) : stamps);
   if (stamps.empty()) return clock;
   const Selection selection(stamps);
   for (std::size_t i = 0, k = 0; i < times.size(); ++i) {

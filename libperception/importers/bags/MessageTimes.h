@@ -25,7 +25,8 @@ struct MessageClock {
   std::uint64_t unstamped = 0;  ///< messages without a stamp of their own
   /// [s] from recording to measurement, where it stays the same within a second: median.
   std::optional<double> lead;
-  double shift = 0;  ///< [s] to be added to the stamps
+  double shift = 0;   ///< [s] to be added to the stamps
+  double resent = 0;  ///< [s] see resentWithin()
 
   bool uses(std::size_t message) const { return message >= used.size() || used[message]; }
 };
@@ -35,6 +36,12 @@ struct MessageClock {
 /// and come back. A message that was recorded late, within a second, is used: it fits into a gap
 /// between the others.
 MessageClock clockOf(const std::vector<MessageTimes>& times);
+
+/// [s] A lidar's scan that comes again within this time was sent again: 20 ms, before a lidar can
+/// have turned once more (assumed). 0 where messages follow each other as closely as that, as do
+/// the parts of a turn or the repetitions of a scan that is shown as a world that stands: then none
+/// was.
+double resentWithin(std::vector<Stamp> stamps);
 
 /// Where the clocks of sources differ by more than a second: sets `shift` of those that are a
 /// second ahead of the recording, or two behind it (less can be a delay), to the recording's time.
