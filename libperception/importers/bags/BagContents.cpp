@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
+#include "libperception/importers/bags/BagMeasurements.h"
 #include "libperception/importers/messages/BagTypes.h"
 
 namespace perception {
@@ -156,6 +157,12 @@ void tellClocks(BagContents& contents) {
       contents.remarks.push_back(
           fmt::format("{}: messages in {} frames ({}): taken as a sensor each", topic,
                       frames.size(), fmt::join(frames, ", ")));
+  }
+  for (const auto& [topic, row] : contents.topics) {
+    const std::string label = labelOfTopic(topic, contents);
+    if (label != labelOfTopic(topic) && bagType(row.topic) != nullptr)
+      contents.remarks.push_back(fmt::format("{}: another topic has the label {}: this one has {}",
+                                             topic, labelOfTopic(topic), label));
   }
 }
 

@@ -65,6 +65,7 @@ struct BagContents {
   std::map<std::string, Row> topics;
   TransformTree tree;
   std::map<std::string, Transforms> transforms;  ///< by child, while it is read
+  std::set<std::string> bad_transforms;          ///< children that have some that are no pose
   /// By topic; of transforms by "transforms of CHILD".
   std::map<std::string, MessageClock> clocks;
   std::map<std::string, Poses> poses;              ///< by topic

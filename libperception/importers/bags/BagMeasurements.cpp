@@ -27,6 +27,16 @@ std::string labelOfTopic(const std::string& topic) {
   return label;
 }
 
+std::string labelOfTopic(const std::string& topic, const BagContents& contents) {
+  std::string label = labelOfTopic(topic);
+  int number = 1;
+  for (const auto& [other, row] : contents.topics) {
+    if (other == topic) break;
+    if (labelOfTopic(other) == label && bagType(row.topic) != nullptr) ++number;
+  }
+  return number == 1 ? label : fmt::format("{}_{}", label, number);
+}
+
 std::string namedBaseFrameOf(const BagParams& params, const BagContents& contents) {
   std::string base = params.base_frame;
   for (const char* usual : {"base_footprint", "base_link", "ego", "vehicle"}) {
@@ -71,7 +81,7 @@ void BagMeasurements::setBase(const std::string& frame, const Pose3& T_ego_base)
 BagTopicParams BagMeasurements::paramsOf(const std::string& topic) const {
   const auto given = topics_.find(topic);
   BagTopicParams params = given == topics_.end() ? BagTopicParams() : given->second;
-  if (params.label.empty()) params.label = labelOfTopic(topic);
+  if (params.label.empty()) params.label = labelOfTopic(topic, contents_);
   return params;
 }
 

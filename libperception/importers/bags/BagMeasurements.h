@@ -21,6 +21,9 @@ using BagTopicParamsByName = std::map<std::string, BagTopicParams>;
 
 /// "/camera/image_raw" as a sensor's label and as the label of a section: camera_image_raw.
 std::string labelOfTopic(const std::string& topic);
+/// The same; where a topic of the recording before it in the alphabet has the same label, with a
+/// number behind it.
+std::string labelOfTopic(const std::string& topic, const BagContents& contents);
 /// The vehicle's frame by its name: that of the parameters, else a usual one. Empty: there is none.
 std::string namedBaseFrameOf(const BagParams& params, const BagContents& contents);
 /// The same, else the frame that moves, else that of the first poses.

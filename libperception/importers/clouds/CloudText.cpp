@@ -47,6 +47,11 @@ void takeUnit(const std::string& path, const std::string& unit, std::size_t colu
 }  // namespace
 
 CloudTable readCsv(const std::string& path, const std::string& bytes) {
+  if (bytes.find('\n') == std::string::npos && bytes.find('\r') != std::string::npos) {
+    std::string lines = bytes;  // ended as by old Macintosh programs
+    std::replace(lines.begin(), lines.end(), '\r', '\n');
+    return readCsv(path, lines);
+  }
   const CsvText csv = csvTextOf(path, bytes);
   CloudTable table;
   for (const std::string& name : csv.names) table.columns.push_back({name});

@@ -40,7 +40,20 @@ class CloudsImporter final : public Importer {
   std::vector<Stamp> stamps_;         ///< of each file
   std::vector<StampedPose> stamped_;  ///< tum with stamps; else
   std::vector<Pose3> poses_;          ///< one a file
+  bool by_number_ = false;            ///< files are missing
 };
+
+/// Where files are missing, line k is that of file k, as in KITTI. False: there are fewer lines.
+template <class Line>
+bool pickByNumber(const std::vector<FrameFile>& files, std::vector<Line>& lines) {
+  std::vector<Line> picked;
+  for (const FrameFile& file : files) {
+    if (file.number < 0 || static_cast<std::size_t>(file.number) >= lines.size()) return false;
+    picked.push_back(lines[static_cast<std::size_t>(file.number)]);
+  }
+  lines = std::move(picked);
+  return true;
+}
 
 void CloudsImporter::declare(CLI::App& cli) {
   format_.columns.clear();
@@ -93,7 +106,9 @@ void CloudsImporter::readStamps(const std::vector<FrameFile>& files, double rate
     if (!stamps_.empty() && *dated <= stamps_.back()) row.failLine("not after the line before");
     stamps_.push_back(*dated);
   });
-  if (stamps_.size() != files.size()) {
+  if (stamps_.size() == files.size()) return;
+  by_number_ = pickByNumber(files, stamps_);
+  if (!by_number_) {
     throw DataError(fmt::format("{}: {} stamps, expected one for each of {} clouds of {}",
                                 stamps_file_, stamps_.size(), files.size(), clouds_));
   }
@@ -115,7 +130,9 @@ void CloudsImporter::readPoses(const std::vector<FrameFile>& files) {
     forEachRow(poses_file_, kSpaces,
                [this](const TextRow& row) { poses_.push_back(row.pose34(0)); });
   }
-  if (poses_.size() != files.size()) {
+  if (poses_.size() == files.size()) return;
+  by_number_ = pickByNumber(files, poses_);
+  if (!by_number_) {
     throw DataError(fmt::format("{}: {} poses, expected one for each of {} clouds of {}",
                                 poses_file_, poses_.size(), files.size(), clouds_));
   }
@@ -160,6 +177,10 @@ void CloudsImporter::run(ImportLog& log) {
                          clouds_, found.others.front()));
   readStamps(files, log.options().rate);
   readPoses(files);
+  const auto missing = files.back().number + 1 - static_cast<std::int64_t>(files.size());
+  if (by_number_)
+    log.note(
+        fmt::format("{} files are missing: line k of stamps and poses is that of file k", missing));
   const Pose3 T_ego_lidar = mount();
   const Pose3 T_ego_pose = poses_frame_ == "ego" ? Pose3::Identity() : T_ego_lidar;
   const bool has_poses = !poses_file_.empty();

@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/clouds/CloudTable.h"
+#include "libperception/packets/Bytes.h"
 
 namespace perception {
 namespace {
@@ -66,23 +69,67 @@ void readPcdHeader(const TextRow& row, CloudTable& table, PcdSize& size) {
   }
 }
 
+struct PlyType {
+  const char *name, *other;
+  char kind;
+  std::size_t size;
+};
+
+/// The type in a field of a line of the header.
+const PlyType& plyType(const TextRow& row, std::size_t field) {
+  static constexpr PlyType kTypes[] = {{"float", "float32", 'F', 4}, {"double", "float64", 'F', 8},
+                                       {"char", "int8", 'I', 1},     {"uchar", "uint8", 'U', 1},
+                                       {"short", "int16", 'I', 2},   {"ushort", "uint16", 'U', 2},
+                                       {"int", "int32", 'I', 4},     {"uint", "uint32", 'U', 4}};
+  for (const PlyType& type : kTypes) {
+    if (row.text(field) == type.name || row.text(field) == type.other) return type;
+  }
+  row.fail(field, "a type of PLY");
+}
+
 /// "float32", "uchar" ... as a column.
 CloudColumn plyColumn(const TextRow& row) {
-  struct Type {
-    const char *name, *other;
-    char kind;
-    std::size_t size;
-  };
-  static constexpr Type kTypes[] = {{"float", "float32", 'F', 4}, {"double", "float64", 'F', 8},
-                                    {"char", "int8", 'I', 1},     {"uchar", "uint8", 'U', 1},
-                                    {"short", "int16", 'I', 2},   {"ushort", "uint16", 'U', 2},
-                                    {"int", "int32", 'I', 4},     {"uint", "uint32", 'U', 4}};
   row.expect(row.size() == 3, "3 for a vertex: property TYPE NAME (no lists)");
-  for (const Type& type : kTypes) {
-    if (row.text(1) == type.name || row.text(1) == type.other)
-      return {row.text(2), type.kind, type.size, 1};
+  const PlyType& type = plyType(row, 1);
+  return {row.text(2), type.kind, type.size, 1};
+}
+
+/// An element before the points, such as a camera: it is passed over.
+struct PlyElement {
+  struct Property {
+    std::size_t count = 0;  ///< [bytes] of a list's number of values; 0: it is no list
+    std::size_t value = 0;  ///< [bytes]
+  };
+  std::size_t count = 0;
+  std::vector<Property> properties;
+
+  void addProperty(const TextRow& row) {
+    if (row.text(1) == "list")
+      properties.push_back({plyType(row, 2).size, plyType(row, 3).size});
+    else
+      properties.push_back({0, plyType(row, 1).size});
   }
-  row.fail(1, "a type of PLY");
+};
+
+/// [bytes] of all of them. Throws DataError: they are not there.
+std::size_t bytesOf(const PlyElement& element, const std::string& path, std::string_view data,
+                    bool big_endian) {
+  std::size_t at = 0;
+  const auto pass = [&](std::uint64_t bytes) {
+    if (bytes > data.size() - at) checkSize(path, data.size(), data.size() + 1);
+    at += bytes;
+  };
+  for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+    for (const PlyElement::Property& property : element.properties) {
+      const std::size_t begin = at;
+      pass(property.count);
+      const std::uint64_t values = property.count == 0 ? 1
+                                   : big_endian        ? bigEndian(data, begin, property.count)
+                                                       : littleEndian(data, begin, property.count);
+      pass(std::min<std::uint64_t>(values, data.size() + 1) * property.value);
+    }
+  }
+  return at;
 }
 
 /// [bytes] that a point takes in the file at least.
@@ -142,6 +189,7 @@ CloudTable readPly(const std::string& path, const std::string& bytes) {
   CloudTable table;
   std::string format, element;
   std::optional<std::size_t> points;
+  std::vector<PlyElement> before;
   const auto first = lines.next();
   if (!first || *first != "ply") lines.fail("no line 'ply', expected a PLY file");
   while (const auto line = lines.next()) {
@@ -152,20 +200,32 @@ CloudTable readPly(const std::string& path, const std::string& bytes) {
     if (key == "format") format = row.text(1);
     if (key == "element") {
       element = row.text(1);
-      if (element == "vertex") points = static_cast<std::size_t>(row.frame(2));
-      if (!points) row.failLine("an element before vertex: expected the points first");
+      const auto count = static_cast<std::size_t>(row.frame(2));
+      if (element == "vertex") points = count;
+      if (!points) before.push_back({count, {}});
     }
-    if (key == "property" && element == "vertex") table.columns.push_back(plyColumn(row));
+    if (key != "property") continue;
+    if (element == "vertex")
+      table.columns.push_back(plyColumn(row));
+    else if (!points && !before.empty())
+      before.back().addProperty(row);
   }
   if (!points || table.columns.empty()) lines.fail("no element vertex, expected points");
   checkCount(path, *points);
   checkPromise(path, *points, lines.rest().size(), leastBytes(table, format));
   table.resize(*points);
   if (format == "ascii") {
+    for (const PlyElement& other : before)
+      for (std::size_t i = 0; i < other.count; ++i)
+        if (!lines.next()) lines.fail("the text ends before the points");
     readTextRows(lines, kSpaces, table);
   } else if (format == "binary_little_endian" || format == "binary_big_endian") {
-    checkSize(path, lines.rest().size(), *points * table.rowBytes());
-    readRows(lines.rest(), format == "binary_big_endian", table);
+    const bool big_endian = format == "binary_big_endian";
+    std::string_view data = lines.rest();
+    for (const PlyElement& other : before)
+      data.remove_prefix(bytesOf(other, path, data, big_endian));
+    checkSize(path, data.size(), *points * table.rowBytes());
+    readRows(data, big_endian, table);
   } else {
     lines.fail(
         fmt::format("format '{}', expected ascii, binary_little_endian or "

@@ -1,23 +1,62 @@
 #include "libperception/importers/messages/BagReadings.h"
 
+#include <fmt/format.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "libperception/importers/messages/MessageFields.h"
 #include "libperception/importers/positions/ImportGps.h"
 #include "libperception/importers/positions/Ncom.h"
 #include "libperception/interop/ros/RosDefinition.h"
+#include "libperception/interop/ros/RosMessages.h"
 #include "libperception/sensors/observations/Conversions.h"
 
 namespace perception {
 
 using ros::RosValue;
+
+namespace {
+
+/// The others of its message are used; a frame's first one that cannot be is said.
+std::optional<Pose3> transformIn(const ros::TransformStamped& t, BagContents& contents) {
+  try {
+    return poseOf(t.transform);
+  } catch (const std::runtime_error& e) {
+    const std::string child = frameName(t.child_frame_id);
+    if (contents.bad_transforms.insert(child).second)
+      contents.faults.push_back(
+          fmt::format("transforms of \"{}\": left out where they are {}", child, e.what()));
+    return {};
+  }
+}
+
+}  // namespace
+
+void noteTransforms(const BagMessage& m, BagContents& contents) {
+  constexpr std::string_view kFixed = "tf_static";
+  const std::string& topic = m.topic->name;
+  const bool fixed = topic.size() >= kFixed.size() &&
+                     topic.compare(topic.size() - kFixed.size(), kFixed.size(), kFixed) == 0;
+  for (const auto& t : ros::decoded<ros::TFMessage>(m.bytes, m.topic->encoding).transforms) {
+    const std::string parent = frameName(t.header.frame_id), child = frameName(t.child_frame_id);
+    const auto given = transformIn(t, contents);
+    if (!given) continue;
+    const Pose3& pose = *given;
+    BagContents::Transforms& to = contents.transforms[child];
+    if (fixed || to.fixed || to.parent != parent) to = {parent, fixed, {}, {}};
+    to.poses.add(t.header.stamp, pose);
+    if (!fixed) to.times.push_back({t.header.stamp, m.stamp});
+  }
+}
 
 BagObservation observeFix(const BagMessage& m, double shift, ros::Header& header) {
   const auto fix = ros::decoded<ros::NavSatFix>(m.bytes, m.topic->encoding);

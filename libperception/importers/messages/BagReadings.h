@@ -1,4 +1,5 @@
 #pragma once
+#include "libperception/importers/bags/BagContents.h"
 #include "libperception/importers/messages/BagTypes.h"
 #include "libperception/interop/bags/ReadingBag.h"
 #include "libperception/interop/ros/RosMessages.h"
@@ -20,5 +21,8 @@ BagObservation observeFixByFields(const BagMessage&, double shift, ros::Header&)
 BagObservation observeNcom(const BagMessage&, double shift, ros::Header&);
 /// geometry_msgs/TwistStamped and TwistWithCovarianceStamped, as a reading of wheels.
 BagObservation observeSpeed(const BagMessage&, double shift, ros::Header&);
+
+/// Transforms of tf: frames that move, and those that do not. Throws std::runtime_error.
+void noteTransforms(const BagMessage&, BagContents&);
 
 }  // namespace perception

@@ -33,21 +33,6 @@ Message messageIn(const BagMessage& m) {
   return decoded<Message>(m.bytes, m.topic->encoding);
 }
 
-void noteTransforms(const BagMessage& m, BagContents& contents) {
-  constexpr std::string_view kFixed = "tf_static";
-  const std::string& topic = m.topic->name;
-  const bool fixed = topic.size() >= kFixed.size() &&
-                     topic.compare(topic.size() - kFixed.size(), kFixed.size(), kFixed) == 0;
-  for (const auto& t : messageIn<ros::TFMessage>(m).transforms) {
-    BagContents::Transforms& to = contents.transforms[frameName(t.child_frame_id)];
-    const std::string parent = frameName(t.header.frame_id);
-    const Pose3 pose = poseOf(t.transform);
-    if (fixed || to.fixed || to.parent != parent) to = {parent, fixed, {}, {}};
-    to.poses.add(t.header.stamp, pose);
-    if (!fixed) to.times.push_back({t.header.stamp, m.stamp});
-  }
-}
-
 void noteOdometry(const BagMessage& m, BagContents& contents) {
   const auto odometry = messageIn<ros::Odometry>(m);
   addPoseOf(m, contents, odometry.header, odometry.pose, odometry.child_frame_id);

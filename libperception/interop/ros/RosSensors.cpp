@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 
 namespace perception::ros {
 namespace {
@@ -116,6 +115,10 @@ double secondsOf(double value, const PointField& field, Stamp stamp, double firs
   const std::string name = lowerCase(field.name);
   if (name == "t" || name == "offset_time") return value * 1e-9;
   if (name != "timestamp") return value;
+  // Of a device that has no date: since the scan began, or since it was switched on.
+  constexpr double kDated = 1e9, kLongestScan = 1;
+  if (std::abs(secondsSince1970(first)) < kDated)
+    return value - (std::abs(first) > kLongestScan ? first : 0);
   return secondsSince1970(value) - (stamp.ns > 0 ? stamp.seconds() : secondsSince1970(first));
 }
 
@@ -272,69 +275,6 @@ RadarScan messageOf(const RadarReturns& radar, const Header& header) {
          static_cast<float>(r.amplitude)});
   }
   return message;
-}
-
-namespace {
-
-/// What pixels of an encoding are: bytes each, and of these blue, green and red (or the brightest
-/// byte of a gray value).
-struct PixelLayout {
-  const char* encoding;
-  std::size_t bytes;
-  std::vector<std::size_t> use;
-};
-const PixelLayout& layoutOf(const std::string& encoding) {
-  static const std::vector<PixelLayout> layouts = {
-      {"mono8", 1, {0}},      {"8UC1", 1, {0}},        {"mono16", 2, {1}},
-      {"16UC1", 2, {1}},      {"bgr8", 3, {0, 1, 2}},  {"8UC3", 3, {0, 1, 2}},
-      {"rgb8", 3, {2, 1, 0}}, {"bgra8", 4, {0, 1, 2}}, {"rgba8", 4, {2, 1, 0}}};
-  for (const PixelLayout& layout : layouts) {
-    if (layout.encoding == encoding) return layout;
-  }
-  throw std::runtime_error(fmt::format(
-      "image encoding \"{}\", expected mono8, mono16, bgr8, rgb8, bgra8 or rgba8", encoding));
-}
-
-}  // namespace
-
-Raster rasterOf(const Image& m) {
-  const PixelLayout& layout = layoutOf(m.encoding);
-  const std::uint64_t row = std::uint64_t{m.width} * layout.bytes;
-  if (m.width == 0 || m.height == 0 || m.step < row ||
-      m.data.size() < std::uint64_t{m.height - 1} * m.step + row) {
-    throw std::runtime_error(fmt::format("{} bytes for an image of {} x {} {}", m.data.size(),
-                                         m.width, m.height, m.encoding));
-  }
-  Raster raster;
-  raster.width = static_cast<int>(m.width);
-  raster.height = static_cast<int>(m.height);
-  raster.channels = static_cast<int>(layout.use.size());
-  raster.pixels.reserve(row * m.height);
-  for (std::size_t y = 0; y < m.height; ++y) {
-    for (std::size_t x = 0; x < m.width; ++x) {
-      for (const std::size_t byte : layout.use)
-        raster.pixels.push_back(
-            static_cast<std::uint8_t>(m.data[y * m.step + x * layout.bytes + byte]));
-    }
-  }
-  return raster;
-}
-
-Raster rasterOf(const CompressedImage& m) {
-  cv::Mat image;
-  if (!m.data.empty()) {
-    const cv::Mat bytes(1, static_cast<int>(m.data.size()), CV_8U,
-                        const_cast<char*>(m.data.data()));
-    image = cv::imdecode(bytes, cv::IMREAD_COLOR);
-  }
-  if (image.empty())
-    throw std::runtime_error(
-        fmt::format("an image of format \"{}\" that cannot be decoded", m.format));
-  Raster raster;
-  raster.width = image.cols;
-  raster.height = image.rows;
-  raster.pixels.assign(image.datastart, image.dataend);
-  return raster;
 }
 
 CameraInfo messageOf(const CameraModel& camera, const Header& header) {

@@ -11,10 +11,10 @@ namespace perception::ros {
 
 /// The cloud of a message, order and number of points kept, NaN points too. Needs the fields x, y,
 /// z; used are intensity (or i, reflectivity), ring (or channel, line) and a time: t, offset_time
-/// [ns] and time, time_offset [s] after the header's stamp; timestamp [s] since 1970 (after the
-/// first point's where the header has no stamp). Intensities
-/// are divided by `intensity_max`; 0: bytes by 255, others stay as they are. Throws
-/// std::runtime_error.
+/// [ns] and time, time_offset [s] after the header's stamp; timestamp since 1970 (after the
+/// first point's where the header has no stamp), or of a device without a date [s] since the scan
+/// began, or since it was switched on (after the first point's). Intensities are divided by
+/// `intensity_max`; 0: bytes by 255, others stay as they are. Throws std::runtime_error.
 LidarCloud cloudOf(const PointCloud2& message, double intensity_max = 0);
 /// A scan of Livox; `intensity_max`: 0 stands for 255. Times are after the header's stamp.
 LidarCloud cloudOf(const LivoxScan& message, double intensity_max = 0);
@@ -36,8 +36,8 @@ RadarReturns returnsOf(const PointCloud2& message, double rate_scale = 1);
 RadarReturns returnsOf(const RadarTracks& message, double rate_scale = 1);
 RadarScan messageOf(const RadarReturns& radar, const Header& header);
 
-/// Throws std::runtime_error: another encoding than mono8, mono16, rgb8, bgr8, rgba8, bgra8 (8UC1,
-/// 8UC3, 16UC1), or fewer bytes than rows need.
+/// Colors and gray values of 8 and 16 bits, Bayer patterns, and the usual forms of YUV. Of 16 bits
+/// the higher 8. Throws std::runtime_error: another encoding, or fewer bytes than rows need.
 Raster rasterOf(const Image& message);
 /// Any format of OpenCV's imdecode(). Throws std::runtime_error.
 Raster rasterOf(const CompressedImage& message);

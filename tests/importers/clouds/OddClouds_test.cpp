@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -26,6 +27,13 @@ std::string doublesOf(const LidarCloud& cloud, double share) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)};
 }
 
+std::string floatsOf(const LidarCloud& cloud) {
+  std::vector<float> numbers;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    numbers.insert(numbers.end(), {cloud.x[i], cloud.y[i], cloud.z[i], cloud.intensity[i]});
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)};
+}
+
 TEST_F(OddClouds, BinariesOfDoublesAreReadAsDoublesAndItIsSaid) {
   writeClouds(".bin", [](const LidarCloud& cloud) { return doublesOf(cloud, 0); });
   expectClouds({}, 0);
@@ -43,12 +51,7 @@ TEST_F(OddClouds, BinariesOfDoublesWithAllTheirDigitsToo) {
 }
 
 TEST_F(OddClouds, BinariesOfFloatsAreNotTakenForDoubles) {
-  writeClouds(".bin", [](const LidarCloud& cloud) {
-    std::vector<float> numbers;
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      numbers.insert(numbers.end(), {cloud.x[i], cloud.y[i], cloud.z[i], cloud.intensity[i]});
-    return bytesOf(numbers);
-  });
+  writeClouds(".bin", &floatsOf);
   expectClouds({}, 0);
   for (const std::string& note : result_.notes) EXPECT_EQ(note.find("float64"), std::string::npos);
 }
@@ -110,6 +113,64 @@ TEST_F(OddClouds, StampsOfAFolderThatGoBackAreRefusedWithTheirLine) {
   write("stamps.txt", "100.0\n100.5\n100.1\n");
   expectFault(65, "stamps.txt:3: not after the line before", "clouds",
               {"--clouds", file("clouds"), "--stamps", file("stamps.txt")});
+}
+
+TEST_F(OddClouds, ElementsOfAPlyBeforeItsPointsArePassedOver) {
+  for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    SCOPED_TRACE(format);
+    const bool ascii = format[0] == 'a', big = format == std::string("binary_big_endian");
+    std::filesystem::remove_all(file("clouds"));
+    std::filesystem::remove(file("out.rawlog"));
+    writeClouds(".ply", [&](const LidarCloud& cloud) {
+      std::string text = fmt::format(
+          "ply\nformat {} 1.0\nelement camera 2\nproperty list uchar short shape\nproperty float "
+          "view\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty "
+          "float intensity\nelement face 0\nproperty list uchar int vertex_index\nend_header\n",
+          format, cloud.size());
+      for (const int values : {0, 3}) {  // of a list
+        if (ascii) {
+          text += fmt::format("{}{} 0.5\n", values, values == 0 ? "" : " 7 8 9");
+        } else {
+          text += static_cast<char>(values);
+          text += std::string(static_cast<std::size_t>(2 * values + 4), '\5');
+        }
+      }
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        for (const float value : {cloud.x[i], cloud.y[i], cloud.z[i], cloud.intensity[i]}) {
+          std::string bytes(reinterpret_cast<const char*>(&value), sizeof(value));
+          if (big) std::reverse(bytes.begin(), bytes.end());
+          text += ascii ? fmt::format("{:.9g} ", value) : bytes;
+        }
+        if (ascii) text += '\n';
+      }
+      return text;
+    });
+    expectClouds({}, 0);
+  }
+}
+
+TEST_F(OddClouds, LinesOfPosesAreThoseOfTheFilesNumbersWhereFilesAreMissing) {
+  for (const int k : {0, 1, 4}) write("clouds/" + std::to_string(k) + ".bin", floatsOf(oneTurn(k)));
+  std::string poses;
+  for (int k = 0; k < 6; ++k) poses += fmt::format("1 0 0 {} 0 1 0 0 0 0 1 0\n", 10 * k);
+  write("poses.txt", poses);
+  ASSERT_EQ(import("clouds", {"--clouds", file("clouds"), "--poses", file("poses.txt")}), 0)
+      << error_;
+  const auto frames = framesOf("LIDAR_TOP");
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_NEAR(frames[2].ego.T_world_ego.translation().x(), 40, 1e-6);
+  expectSaid("2 files are missing: line k of stamps and poses is that of file k");
+}
+
+TEST_F(OddClouds, LinesThatEndAsOnOldMacintoshesAreRead) {
+  writeClouds(".csv", [](const LidarCloud& cloud) {
+    std::string text = "x,y,z,intensity\r";
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}\r", cloud.x[i], cloud.y[i], cloud.z[i],
+                          cloud.intensity[i]);
+    return text;
+  });
+  expectClouds({}, 0);
 }
 
 }  // namespace
