@@ -1,17 +1,9 @@
 #include "tests/fuzz/Parsers.h"
 
-#include <sqlite3.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "libperception/config/Config.h"
@@ -21,17 +13,16 @@
 #include "libperception/core/LaneMap.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
-#include "libperception/importers/bags/BagContents.h"
 #include "libperception/importers/clouds/CloudTable.h"
 #include "libperception/importers/clouds/ImportClouds.h"
 #include "libperception/importers/kitti/KittiFiles.h"
-#include "libperception/importers/messages/BagTypes.h"
+#include "libperception/importers/kitti/KittiRawFiles.h"
 #include "libperception/importers/street_sets/AimotiveFiles.h"
+#include "libperception/importers/street_sets/NuscenesTables.h"
 #include "libperception/importers/street_sets/VodFiles.h"
 #include "libperception/importers/truth/LabeledBoxes.h"
 #include "libperception/importers/weather_sets/BoreasFiles.h"
 #include "libperception/importers/weather_sets/RadiateFiles.h"
-#include "libperception/interop/bags/ReadingBag.h"
 #include "libperception/measurement/objects/ObjectClass.h"
 #include "libperception/packets/Decoder.h"
 #include "libperception/packets/FrameAssembler.h"
@@ -41,149 +32,10 @@
 #include "libperception/packets/lidars/Ouster.h"
 #include "libperception/packets/radars/CanBundle.h"
 #include "libperception/sensors/satellites/PositionTrack.h"
+#include "tests/fuzz/ParserFiles.h"
 
 namespace perception {
 namespace {
-
-/// A file in memory, by its path.
-class MemoryFile {
- public:
-  explicit MemoryFile(std::string_view bytes) : file_(::memfd_create("fuzz", 0)) {
-    if (file_ < 0 ||
-        ::write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
-      std::abort();
-  }
-  ~MemoryFile() { ::close(file_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
-
- private:
-  int file_;
-};
-
-/// Calls a reader of files with the path of the bytes.
-template <class Reader>
-std::function<void(std::string_view)> ofFile(Reader reader) {
-  return [reader](std::string_view bytes) { reader(MemoryFile(bytes).path()); };
-}
-
-/// A folder of this process for readers that choose by the names of files; gone at its end.
-const std::string& scratch() {
-  struct Folder {
-    std::string path = (std::filesystem::temp_directory_path() / "perception_fuzz_XXXXXX").string();
-    Folder() {
-      if (::mkdtemp(path.data()) == nullptr) std::abort();
-    }
-    ~Folder() {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
-  };
-  static const Folder folder;
-  return folder.path;
-}
-
-std::string written(const std::string& name, std::string_view bytes) {
-  const std::string path = scratch() + "/" + name;
-  std::ofstream(path, std::ios::binary)
-      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  return path;
-}
-
-void readBag(const std::string& path) {
-  const auto bag = openBag(path);
-  for (BagMessage message; bag->next(message);) {
-  }
-}
-
-/// A small recording in sqlite.
-std::string database() {
-  const std::string path = scratch() + "/seed.db3";
-  sqlite3* db = nullptr;
-  sqlite3_open(path.c_str(), &db);
-  sqlite3_exec(db,
-               "PRAGMA page_size = 512;"
-               "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, "
-               "serialization_format TEXT, offered_qos_profiles TEXT);"
-               "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, "
-               "data BLOB);"
-               "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
-               "INSERT INTO topics VALUES(1, '/points', 'sensor_msgs/msg/PointCloud2', 'cdr', '');"
-               "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 60) "
-               "INSERT INTO messages SELECT i, 1, i, zeroblob(20 * i) FROM n;",
-               nullptr, nullptr, nullptr);
-  sqlite3_close(db);
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// The small recording with changes: of three bytes, two are the place of the third.
-void readDatabase(std::string_view bytes) {
-  static const std::string seed = database();
-  std::string changed = seed;
-  for (; bytes.size() >= 3; bytes.remove_prefix(3)) {
-    const auto at = static_cast<unsigned char>(bytes[0]) | static_cast<unsigned char>(bytes[1])
-                                                               << 8;
-    changed[static_cast<std::size_t>(at) % changed.size()] = bytes[2];
-  }
-  readBag(written("changed.db3", changed));
-}
-
-void takeMessage(const BagType& type, const BagTopic& topic, std::string_view bytes) {
-  BagMessage message;
-  message.topic = &topic;
-  message.bytes = bytes;
-  SensorFrame frame;
-  ros::Header header;
-  BagContents contents;
-  std::vector<BagPacket> packets;
-  try {
-    if (type.measure != nullptr) type.measure(message, {}, frame);
-    if (type.note != nullptr) type.note(message, contents);
-    if (type.unpack != nullptr) type.unpack(message, packets);
-    if (type.observe != nullptr) type.observe(message, 0, header);
-  } catch (const std::runtime_error&) {  // left out and counted, see BagImport
-  }
-}
-
-/// The first byte chooses the type, the second the encoding.
-void readMessage(std::string_view bytes) {
-  if (bytes.size() < 2) return;
-  const auto& types = bagTypes();
-  const BagType& type = types[static_cast<unsigned char>(bytes[0]) % types.size()];
-  BagTopic topic;
-  topic.name = "/metadata";
-  topic.type = type.name;
-  topic.encoding = bytes[1] % 2 == 0 ? ros::Encoding::kRos1 : ros::Encoding::kCdr;
-  takeMessage(type, topic, bytes.substr(2));
-}
-
-/// By the fields of their definition. The first byte chooses the type, the second the encoding;
-/// then the definition up to a line "--", then the message.
-void readMessageByFields(std::string_view bytes) {
-  constexpr const char* kTypes[] = {"our_msgs/Any",
-                                    "our_msgs/Any",
-                                    "ars_40X/Any",
-                                    "vision_msgs/Detection2DArray",
-                                    "delphi_esr_msgs/EsrTrack",
-                                    "autoware_perception_msgs/DetectedObjects",
-                                    "derived_object_msgs/ObjectArray",
-                                    "novatel_gps_msgs/Inspva",
-                                    "geometry_msgs/TwistStamped",
-                                    "sensor_msgs/PointCloud",
-                                    "ros2_socketcan_msgs/FdFrame"};
-  constexpr std::string_view kEnd = "--\n";
-  const std::size_t end = bytes.find(kEnd);
-  if (end == std::string_view::npos || end < 2) return;
-  BagTopic topic;
-  topic.name = "/any";
-  topic.type = kTypes[static_cast<unsigned char>(bytes[0]) % std::size(kTypes)];
-  topic.encoding = bytes[1] % 2 == 0 ? ros::Encoding::kRos1 : ros::Encoding::kCdr;
-  topic.definition = bytes.substr(2, end - 2);
-  const BagType* const type = bagType(topic);
-  if (type != nullptr) takeMessage(*type, topic, bytes.substr(end + kEnd.size()));
-}
 
 /// The first byte chooses the device.
 void decodePackets(std::string_view bytes) {
@@ -268,6 +120,20 @@ void readTrackOf(const std::string& ending, std::string_view bytes) {
   readPositionTrack(written("track." + ending, bytes)).local();
 }
 
+/// Tables of nuScenes one behind the other, an empty line between them: those of a drive of one
+/// scene, and the drive.
+void readNuscenes(std::string_view bytes) {
+  for (const char* name :
+       {"scene", "sample", "sample_data", "ego_pose", "sensor", "calibrated_sensor",
+        "sample_annotation", "instance", "category", "attribute"}) {
+    const auto end = std::min(bytes.find("\n\n"), bytes.size());
+    written(std::string(name) + ".json", bytes.substr(0, end));
+    bytes.remove_prefix(std::min(end + 2, bytes.size()));
+  }
+  for (const NuscenesScene& scene : readNuscenesScenes(scratch()))
+    readNuscenesDrive(scratch(), scene);
+}
+
 /// A whole importer, but for the end of its log, which waits for the disk.
 void import(std::unique_ptr<Importer> importer, const std::string& options) {
   CLI::App cli;
@@ -319,6 +185,8 @@ const std::vector<Parser>& parsers() {
       {"kitti_boxes",
        ofFile([](const std::string& p) { readKittiDetections(p, "boxes3d", "Car"); })},
       {"kitti_oxts", ofFile([](const std::string& p) { readKittiOxts(p); })},
+      {"kitti_tracklets", ofFile([](const std::string& p) { readKittiTracklets(p); })},
+      {"nuscenes", &readNuscenes},
       {"poses", ofFile([](const std::string& p) { readKittiPoses(p, "kitti"); })},
       {"tum", ofFile([](const std::string& p) { readTumPoses(p); })},
       {"pcd", [](std::string_view b) { readPcd("fuzz.pcd", std::string(b)); }},
