@@ -204,8 +204,8 @@ void SafetyMonitor::add(const SensorFrame& frame, const PlacedReturns& returns) 
   Corridor way = drivenCorridor(frame.ego.T_world_ego, frame.ego.velocity, frame.ego.yaw_rate,
                                 returns.vehicle_front, returns.vehicle_rear, stop_);
   way.road = last_.road.along(way);
-  way_.add(frame.stamp, std::move(way), last_.scan.hits, last_.dense,
-           last_.surface.empty() ? &last_.scan.clear : nullptr);
+  way_.add(frame.stamp, std::move(way), last_.scan.hits, last_.dense, last_.scan.clear,
+           frame.causes);
   front_ = returns.vehicle_front, rear_ = returns.vehicle_rear;
   any_ = true;
 }

@@ -65,23 +65,25 @@ struct WayReturns::Placed {
 };
 
 void WayReturns::add(Stamp stamp, Corridor corridor, const GridPoints& hits,
-                     const std::vector<float>& weights, const GridPoints* others) {
+                     const std::vector<float>& weights, const GridPoints& others,
+                     const PhantomCauses& causes) {
   scans_.erase(std::remove_if(scans_.begin(), scans_.end(),
                               [&](const Scan& scan) { return stamp - scan.stamp > kRemembered; }),
                scans_.end());
-  Scan scan{stamp, others != nullptr, {}};
+  Scan scan{stamp, {}};
   corridor.width += 2 * kBeside;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
-  for (const GridPoints* points : {&hits, others}) {
-    if (points == nullptr) continue;
+  for (const GridPoints* points : {&hits, &others}) {
     const bool hit = points == &hits;
     for (const std::uint32_t i : nearCorridor(corridor, corridor.max, *points)) {
       const float weight = !hit || weights.empty() ? 1 : weights[i];
       if (weight <= 0) continue;
       const Vector3 place = (*points)[i], p = T_ego_world * place;
       const double height = p.z() - corridor.roadAt(arcPlace(corridor, p.x(), p.y()).s);
-      if (hit || (height >= kRough && height <= kLow))
-        scan.returns.push_back({place, static_cast<float>(height), weight, hit});
+      if (!hit && (height < kRough || height > kLow)) continue;
+      const bool sure = causes.at(place.head<2>(), stamp).likelier() <= 0;
+      if (hit || sure)
+        scan.returns.push_back({place, static_cast<float>(height), weight, hit, sure});
     }
   }
   scans_.push_back(std::move(scan));
@@ -92,9 +94,9 @@ std::vector<WayReturns::Placed> WayReturns::placed(const Corridor& corridor, dou
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
   for (const Scan& scan : scans_) {
     const bool newest = &scan == &scans_.back();
-    if (!newest && !(scan.clear && scans_.back().clear)) continue;
     const double end = newest ? corridor.max : std::min(recent, corridor.max);
     for (const Return& r : scan.returns) {
+      if (!newest && !r.sure) continue;
       const Vector3 p = T_ego_world * r.place;
       const ArcPlace at = arcPlace(corridor, p.x(), p.y());
       if (std::abs(at.d) > corridor.width / 2 || at.s < corridor.from || at.s > end) continue;
@@ -102,6 +104,33 @@ std::vector<WayReturns::Placed> WayReturns::placed(const Corridor& corridor, dou
     }
   }
   return all;
+}
+
+WayReturns::Found WayReturns::chained(const std::vector<Placed>& all, double least) {
+  Found found;
+  double sum = 0, last = 0;
+  for (const Placed& r : all) {
+    if (!r.of->sure) continue;
+    if (found.returns > 0 && r.at.s - last > kSurface) found = {}, sum = 0;
+    last = r.at.s;
+    ++found.returns, sum += r.of->weight;
+    if (found.at == nullptr && r.newest) found.at = &r;
+    if (sum >= least && found.at != nullptr) return found;
+  }
+  return {};
+}
+
+WayReturns::Found WayReturns::together(const std::vector<Placed>& all, double least) {
+  std::vector<const Placed*> hits;
+  for (const Placed& r : all)
+    if (r.newest && r.of->hit) hits.push_back(&r);
+  double sum = 0;
+  for (std::size_t first = 0, i = 0; i < hits.size(); ++i) {
+    while (hits[i]->at.s - hits[first]->at.s > kSurface) sum -= hits[first++]->of->weight;
+    sum += hits[i]->of->weight;
+    if (sum >= least) return {hits[first], i + 1 - first};
+  }
+  return {};
 }
 
 ReturnObstacle WayReturns::nearest(const Corridor& corridor, double recent, double least) const {
@@ -117,23 +146,14 @@ ReturnObstacle WayReturns::nearest(const Corridor& corridor, double recent, doub
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Placed& a, const Placed& b) { return a.at.s < b.at.s; });
-  const bool clear = scans_.back().clear;
-  const Placed* nearest = nullptr;  // in the newest scan
-  double sum = 0;
-  for (std::size_t first = 0, i = 0; i < all.size(); ++i) {
-    if (clear && i > 0 && all[i].at.s - all[i - 1].at.s > kSurface)
-      first = i, sum = 0, nearest = nullptr;
-    while (!clear && all[i].at.s - all[first].at.s > kSurface) sum -= all[first++].of->weight;
-    sum += all[i].of->weight;
-    if (!clear) nearest = &all[first];
-    if (nearest == nullptr && all[i].newest) nearest = &all[i];
-    if (sum < least || nearest == nullptr) continue;
-    found.free.distance = nearest->at.s;
-    found.free.blocked = true;
-    found.free.place = nearest->of->place;
-    found.returns = i + 1 - first;
-    break;
-  }
+  const Found chain = chained(all, least), window = together(all, least);
+  const bool by_chain = chain.at && !(window.at && window.at->at.s < chain.at->at.s);
+  const Found& nearer = by_chain ? chain : window;
+  if (!nearer.at) return found;
+  found.free.distance = nearer.at->at.s;
+  found.free.blocked = true;
+  found.free.place = nearer.at->of->place;
+  found.returns = nearer.returns;
   return found;
 }
 

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "libperception/core/Frames.h"
 #include "libperception/grid/beams/GridPoints.h"
 #include "libperception/grid/way/FreeDistance.h"
+#include "libperception/measurement/frames/PhantomCauses.h"
+#include "libperception/measurement/frames/WakeMap.h"
 #include "tests/support/StartStamp.h"
 
 namespace perception {
@@ -16,6 +19,13 @@ namespace {
 constexpr double kTen = 10;     // returns that block the way
 constexpr double kRecent = 30;  // [m] up to which those of half a second count
 const GridPoints kNone;
+
+/// Of clear air, or of snow.
+PhantomCauses causesIn(bool clear) {
+  PhantomCauses causes;
+  causes.weather = clear ? 0 : 0.5;
+  return causes;
+}
 
 Corridor lane() {
   Corridor corridor;
@@ -29,7 +39,7 @@ ReturnObstacle ofOneScan(const Corridor& corridor, const GridPoints& hits,
                          const std::vector<float>& weights, const GridPoints& others,
                          bool clear = true) {
   WayReturns way;
-  way.add(test::kStart, corridor, hits, weights, clear ? &others : nullptr);
+  way.add(test::kStart, corridor, hits, weights, others, causesIn(clear));
   return way.nearest(corridor, kRecent, kTen);
 }
 bool blocks(const Corridor& corridor, const GridPoints& hits, const std::vector<float>& weights,
@@ -84,8 +94,8 @@ ReturnObstacle ofScans(const std::vector<int>& returns, bool clear, double speed
   WayReturns way;
   for (std::size_t k = 0; k < returns.size(); ++k) {
     const double t = 0.1 * static_cast<double>(k);
-    way.add(test::kStart + t, lane(), wallAt(x + speed * t, returns[k]), {},
-            clear ? &kNone : nullptr);
+    way.add(test::kStart + t, lane(), wallAt(x + speed * t, returns[k]), {}, kNone,
+            causesIn(clear));
   }
   return way.nearest(lane(), kRecent, kTen);
 }
@@ -96,6 +106,27 @@ TEST(WayReturns, InClearAirWhatFewBeamsHitIsSeenInHalfASecond) {
   EXPECT_FALSE(ofScans({2, 2, 2, 2, 2}, false).free.blocked);
   EXPECT_FALSE(ofScans({9, 0, 0, 0, 0, 2}, true).free.blocked) << "older";
   EXPECT_FALSE(ofScans({9, 9, 9, 9, 9}, true, 0, 31).free.blocked) << "farther than is asked for";
+}
+
+// The cloud behind a car ends the memory where it hangs, and nowhere else.
+TEST(WayReturns, AWakeMattersWhereItIs) {
+  const auto blockedBeside = [](double wake_y) {
+    auto wakes = std::make_shared<WakeMap>();
+    WayReturns way;
+    for (int k = 0; k < 10; ++k) {
+      VehicleFootprint car;
+      car.stamp = test::kStart + 0.1 * k;
+      car.center = {18 + k, wake_y};
+      car.speed = 10, car.advanced = 1, car.half_length = 1, car.half_width = 0.9;
+      wakes->add(car);
+      PhantomCauses causes;
+      causes.wakes = std::make_shared<WakeMap>(*wakes);
+      way.add(car.stamp, lane(), wallAt(20, 2), {}, kNone, causes);
+    }
+    return way.nearest(lane(), kRecent, kTen).free.blocked;
+  };
+  EXPECT_TRUE(blockedBeside(6));
+  EXPECT_FALSE(blockedBeside(0));
 }
 
 TEST(WayReturns, WhatTheNewestScanDoesNotShowHasLeft) {
@@ -128,7 +159,7 @@ TEST(WayReturns, SomeoneLyingIsSeenByOneRowAfterTheOther) {
     const double z = 0.24 - 0.06 * k;
     const GridPoints row = face(z, z);
     EXPECT_FALSE(blocks(lane(), kNone, {}, row));
-    way.add(test::kStart + 0.1 * k, lane(), kNone, {}, &row);
+    way.add(test::kStart + 0.1 * k, lane(), kNone, {}, row, {});
   }
   EXPECT_TRUE(way.nearest(lane(), kRecent, kTen).free.blocked);
 }
