@@ -140,7 +140,11 @@ ReturnObstacle WayReturns::nearest(const Corridor& corridor, double recent, doub
   std::vector<Placed> all = placed(corridor, recent);
   if (std::any_of(all.begin(), all.end(), [](const Placed& r) { return !r.of->hit; })) {
     RoughPieces pieces(corridor);
-    for (Placed& r : all) pieces.add(r.piece = pieces.pieceOf(r.at), r.of->height);
+    for (Placed& r : all) {
+      r.piece = pieces.pieceOf(r.at);
+      // Higher ones say nothing of the road: a bonnet, of which each scan hits a spot.
+      if (r.of->height <= static_cast<float>(kLow)) pieces.add(r.piece, r.of->height);
+    }
     const auto lies = [&](const Placed& r) { return !r.of->hit && !pieces.standsUp(r.piece); };
     all.erase(std::remove_if(all.begin(), all.end(), lies), all.end());
   }

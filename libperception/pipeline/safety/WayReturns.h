@@ -31,9 +31,10 @@ class WayReturns {
   /// within half a meter along the corridor, or returns where nothing makes phantoms, from one to
   /// the next of which it is no farther than half a meter, one of them in the newest scan: up to
   /// `recent` [m] along the corridor those of half a second, beyond it those of the newest scan.
-  /// Others than hits count where they stand up: where heights within half a meter along the
-  /// corridor and a quarter across it differ by a tenth of a meter at least, which those of a road
-  /// do not, and the highest is above a car's underside. Not blocked: none before corridor.max.
+  /// Others than hits count where they stand up: where heights up to half a meter, within half a
+  /// meter along the corridor and a quarter across it, differ by a tenth of a meter at least, which
+  /// those of a road do not, and the highest is above a car's underside. Not blocked: none before
+  /// corridor.max.
   ReturnObstacle nearest(const Corridor& corridor, double recent, double least) const;
 
   void clear() { scans_.clear(); }

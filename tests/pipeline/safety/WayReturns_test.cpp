@@ -182,6 +182,14 @@ TEST(WayReturns, ARoadThatRisesBySevenPercentMoreThanItsModelIsNone) {
   }
 }
 
+// A spot of the own bonnet above a road that seems 0.06 to 0.13 m too high.
+TEST(WayReturns, WhatIsHighAboveTheRoadDoesNotMakeItStandUp) {
+  GridPoints bonnet, road;
+  bonnet.push_back({2.5, 0.4, 0.8});
+  for (double x = 2.3; x < 4; x += 0.05) road.push_back({x, 0.4, 0.06 + 0.04 * (x - 2.3)});
+  EXPECT_FALSE(blocks(lane(), bonnet, {}, road));
+}
+
 TEST(WayReturns, StandOnTheRoadThatTheyAreOn) {
   Corridor hill = lane();
   GridPoints lying, kerb;
