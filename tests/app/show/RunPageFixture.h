@@ -58,6 +58,11 @@ inline void writeRun(const std::string& dir, std::uint64_t car_id = 1) {
   for (int k = 0; k < kRunScenes; ++k)
     weather << 0.1 * k << ',' << kDemoFirstStamp + 0.1 * k
             << ",LIDAR_TOP,rain,0.1,0.8,0.05,0.05,9,7,11,1,0,2,900,700,1200,1000,50,0\n";
+  std::ofstream(dir + "/events.jsonl")
+      << R"({"t":0.0,"kind":"track_born","severity":"info","message":"object 1","fields":{"id":1}})"
+      << "\n"
+      << R"({"t":1.5,"kind":"sensor_blind","severity":"warning","message":"LIDAR_TOP"})"
+      << "\n";
   RunRecord record;
   record.input = "demo.rawlog";
   record.simulated = true;

@@ -65,6 +65,23 @@ TEST_F(OwnRunPage, WithoutStorageTheWindowRemembers) {
   EXPECT_EQ(browser_->faults(), std::vector<std::string>{});
 }
 
+TEST_F(OwnRunPage, ThePageIsDrawnAtMostTwiceWhenItOpens) {
+  const int drawn = value("perceptionViewers[0].space.renderer.info.render.frame");
+  EXPECT_GE(drawn, 1);
+  EXPECT_LE(drawn, 2) << "a scroll bar may narrow the page once it is filled";
+}
+
+TEST_F(OwnRunPage, EventsAreUnpackedWhenTheirListIsOpened) {
+  EXPECT_EQ(text("#events summary").substr(0, 8), "2 events");
+  EXPECT_EQ(value("document.querySelectorAll('#events tr').length"), 0);
+  value("document.querySelector('#events details').open = true");
+  browser_->waitFor("document.querySelectorAll('#events tr').length === 3");
+  EXPECT_EQ(text("#events tr.warning").substr(0, 19), "1.50 ssensor blindL");
+  EXPECT_EQ(value("document.querySelectorAll('#events option').length"), 3);
+  value("document.querySelector('#events tr.warning').click()");
+  EXPECT_EQ(scene(), 15);
+}
+
 TEST_F(OwnRunPage, AKeyShowsTheKeys) {
   browser_->press("?");
   EXPECT_EQ(value("document.querySelector('dialog.help').open"), true);
