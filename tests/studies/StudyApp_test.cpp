@@ -27,7 +27,7 @@ TEST(StudyApp, LeavesAReportWithTablesAndPlots) {
   StudyApp app;
   const char* argv[] = {"perception-study", "monte-carlo", "-o", out.c_str(), "--runs", "4"};
   ASSERT_EQ(runApp(app, 6, argv), 0);
-  for (const char* name : {"report.md", "camera.csv", "camera_and_radar.csv", "heading_camera.png"})
+  for (const char* name : {"report.md", "fixed_noise.csv", "by_count.csv", "traces.png"})
     EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
   std::ifstream file(out + "/report.md");
   std::stringstream text;
