@@ -75,6 +75,7 @@ void WayReturns::add(Stamp stamp, Corridor corridor, const GridPoints& hits,
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
   for (const GridPoints* points : {&hits, &others}) {
     const bool hit = points == &hits;
+    if (!hit && causes.weather > 0) continue;  // none of them is sure
     for (const std::uint32_t i : nearCorridor(corridor, corridor.max, *points)) {
       const float weight = !hit || weights.empty() ? 1 : weights[i];
       if (weight <= 0) continue;
