@@ -48,7 +48,7 @@ struct FreePath {
   /// either of these. It has no meaning if the path is free.
   enum class Cause : std::uint8_t { kGrid, kReturns, kObject };
   Cause cause = Cause::kGrid;
-  std::uint32_t returns = 0;    ///< number of the last scan's returns that count for it
+  std::uint32_t returns = 0;    ///< that count for it, of a scan or of half a second
   std::uint32_t overruled = 0;  ///< of these: doubted, but without a cause here
 };
 
