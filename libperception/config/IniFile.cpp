@@ -16,17 +16,12 @@ namespace {
 
 constexpr std::size_t kLargestFile = 4u << 20;  // [bytes]; a larger file is no INI
 
-/// Closes a C file.
-struct Closer {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
 }  // namespace
 
 std::string readWhole(const std::string& path, std::string& content) {
   if (const auto what = irregularity(path); !what.empty() && what != "a directory")
     return fmt::format("is {}, expected a configuration file", what);
-  const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rbe"));
+  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rbe"));
   if (!file) return fmt::format("cannot be read: {}", std::strerror(errno));
   char block[1 << 14];
   std::size_t count = 0;

@@ -7,16 +7,12 @@
 #include <string_view>
 
 #include "libperception/core/Csv.h"
+#include "libperception/core/system/PartialFile.h"
 
 namespace perception {
 
 /// May stand before the header of a table.
 inline constexpr std::string_view kTableMark = "\xEF\xBB\xBF";
-
-/// Closes a file of the C library.
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 
 /// Opens a table for reading. Throws DataError (kNoInput when the file does not exist).
 std::unique_ptr<std::FILE, FileCloser> openTable(const std::string& path);

@@ -79,11 +79,8 @@ std::string labelFolderOf(const std::string& rawlog) {
 GroundTruth truthBeside(const std::string& rawlog) { return readGroundTruth(truthFileOf(rawlog)); }
 
 void writeGroundTruth(const std::string& path, const std::vector<TruthObject>& rows) {
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   PartialFile partial(path);
-  std::unique_ptr<std::FILE, Closer> file(std::fopen(partial.path().c_str(), "wbe"));
+  std::unique_ptr<std::FILE, FileCloser> file(std::fopen(partial.path().c_str(), "wbe"));
   if (!file) {
     throw OutputError(fmt::format("{}: cannot be created: {}", path, std::strerror(errno)));
   }

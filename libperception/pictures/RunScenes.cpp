@@ -13,8 +13,7 @@ namespace {
 constexpr double kTrail = 2;            // [s]
 constexpr double kNearestTruth = 0.06;  // [s] half the period of 10 Hz, and rounding
 constexpr double kUnknownSize = 0.3;    // [m] of truth without a size
-
-constexpr double kTruthAround = 1;  // [s] in which the truth of a scene nearly always is
+constexpr double kTruthAround = 1;      // [s] in which the truth of a scene nearly always is
 
 using TruthInstants = std::vector<GroundTruth::Instant>;
 

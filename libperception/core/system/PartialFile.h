@@ -1,9 +1,15 @@
 #pragma once
+#include <cstdio>
 #include <string>
 
 #include "libperception/core/system/Supervision.h"
 
 namespace perception {
+
+/// Closes a file of the C library that a std::unique_ptr holds.
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
 
 /// A file that has its name once it is complete: written as path(), renamed by commit(), removed
 /// without it. If the name is that of a device or a pipe, this writes to it directly.

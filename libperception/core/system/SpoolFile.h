@@ -26,11 +26,8 @@ class SpoolFile {
   void copyTo(const TextSink& sink);
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   PartialFile place_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  std::unique_ptr<std::FILE, FileCloser> file_;
 };
 
 }  // namespace perception

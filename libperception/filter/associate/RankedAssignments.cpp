@@ -221,9 +221,4 @@ std::vector<RankedAssignment> AssignmentRanking::rank(std::size_t k, double span
   return out;
 }
 
-std::vector<RankedAssignment> rankedAssignments(const AssignmentProblem& problem, std::size_t k,
-                                                double span) {
-  return AssignmentRanking(problem).rank(k, span);
-}
-
 }  // namespace perception

@@ -30,7 +30,12 @@ class AssignmentRanking {
   explicit AssignmentRanking(AssignmentProblem problem);
 
   const RankedAssignment& best() const { return best_; }
-  /// As rankedAssignments(); the first is best().
+  /// The exact `k` assignments of largest weight, best() first. Options whose reduced cost in it
+  /// exceeds `span` are pruned; the remaining independent subproblems are ranked separately by
+  /// Murty's partition (K. G. Murty, "An Algorithm for Ranking all the Assignments in Order of
+  /// Increasing Cost", Operations Research 16, 1968) and their lists merged. Assignments whose log
+  /// weight is lower than the best by more than `span` may be omitted. The order of equal weights
+  /// is deterministic.
   std::vector<RankedAssignment> rank(std::size_t k, double span) const;
 
  private:
@@ -38,14 +43,5 @@ class AssignmentRanking {
   RankedAssignment best_;
   AssignmentNode root_;
 };
-
-/// The exact `k` assignments of largest weight, best first. Options whose reduced cost in the best
-/// assignment exceeds `span` are pruned; the remaining independent subproblems are ranked
-/// separately by Murty's partition (K. G. Murty, "An Algorithm for Ranking all the Assignments in
-/// Order of Increasing Cost", Operations Research 16, 1968) and their lists merged. Assignments
-/// whose log weight is lower than the best by more than `span` may be omitted. The order of equal
-/// weights is deterministic.
-std::vector<RankedAssignment> rankedAssignments(const AssignmentProblem& problem, std::size_t k,
-                                                double span);
 
 }  // namespace perception

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -99,127 +100,134 @@ ros::Header measureImage(const BagMessage& m, const BagTopicParams&, SensorFrame
   return message.header;
 }
 
-// Rows by what they have.
+// Rows by what they have; add() gives them their names.
 
-using Measure = decltype(BagType::measure);
 using Note = decltype(BagType::note);
 
-BagType measured(const char* name, const char* use, Role role, Measure measure) {
-  return {name, use, role, measure};
+BagType measured(const char* use, Role role, decltype(BagType::measure) measure) {
+  return {"", use, role, measure};
 }
-BagType noted(const char* name, const char* use, Note note) {
-  return {name, use, Role::kOther, nullptr, note};
+BagType noted(const char* use, Note note, bool has_header = true) {
+  BagType type{"", use, Role::kOther, nullptr, note};
+  type.has_header = has_header;
+  return type;
 }
-BagType observed(const char* name, const char* use, decltype(BagType::observe) observe) {
-  BagType type{name, use};
+BagType observed(const char* use, decltype(BagType::observe) observe) {
+  BagType type{"", use};
   type.observe = observe;
   type.of_vehicle = observe == &observeSpeed;
   return type;
 }
-BagType packed(const char* name, const char* use, Role role, Note note,
-               decltype(BagType::unpack) unpack, std::vector<const char*> devices) {
-  BagType type{name, use, role, nullptr, note, unpack, std::move(devices)};
+BagType packed(const char* use, Role role, Note note, decltype(BagType::unpack) unpack,
+               std::vector<const char*> devices) {
+  BagType type{"", use, role, nullptr, note, unpack, std::move(devices)};
   type.may_be_silent = note != nullptr;
   return type;
 }
 
 constexpr const char* kBoxesUse = "boxes, if the INI has [topic.TOPIC]";
 constexpr const char* kPacketsUse = "lidar scans, from packets";
-constexpr const char* kRadarListUse = "radar scans: a return an object or cluster, by its fields";
 
-std::vector<BagType> makeTypes() {
-  const std::vector<const char*> robosense = {"rs16", "rs32"};
-  std::vector<BagType> types = {
-      measured("sensor_msgs/PointCloud2", "lidar or radar scans", Role::kCloud, &measurePoints),
-      measured("sensor_msgs/PointCloud", "lidar or radar scans", Role::kCloud, &measureOldCloud),
-      measured("radar_msgs/RadarScan", "radar scans", Role::kRadar, &measureRadar<ros::RadarScan>),
-      measured("radar_msgs/RadarTracks", "radar scans: a return an object", Role::kRadar,
-               &measureRadar<ros::RadarTracks>),
-      measured("ars_40X/*", kRadarListUse, Role::kRadar, &measureRadarList),
-      measured("conti_radar/*", kRadarListUse, Role::kRadar, &measureRadarList),
-      measured("vision_msgs/Detection3DArray", kBoxesUse, Role::kBoxes, &measureBoxes),
-      measured("vision_msgs/Detection2DArray", "boxes in images, if the INI has [topic.TOPIC]",
-               Role::kBoxes, &measureImageBoxes),
-      measured("derived_object_msgs/ObjectArray", kBoxesUse, Role::kBoxes, &measureDerivedObjects),
-      measured("derived_object_msgs/ObjectWithCovarianceArray", kBoxesUse, Role::kBoxes,
-               &measureDerivedObjects),
-      measured("sensor_msgs/Image", "images", Role::kImage, &measureImage<ros::Image>),
-      measured("sensor_msgs/CompressedImage", "images", Role::kImage,
-               &measureImage<ros::CompressedImage>),
-      noted("sensor_msgs/CameraInfo", "camera", &noteCamera),
-      observed("sensor_msgs/NavSatFix", "GPS", &observeFix),
-      observed("novatel_gps_msgs/NovatelPosition", "GPS, by its fields", &observeFixByFields),
-      observed("novatel_gps_msgs/Inspva", "GPS, by its fields", &observeFixByFields),
-      observed("novatel_oem7_msgs/BESTPOS", "GPS, by its fields", &observeFixByFields),
-      observed("novatel_oem7_msgs/INSPVA", "GPS, by its fields", &observeFixByFields),
-      observed("oxts_msgs/Ncom", "GPS with velocity and heading, from packets", &observeNcom),
-      observed("sensor_msgs/Imu", "inertial unit", &observeImu),
-      observed("geometry_msgs/TwistStamped", "speed, if it is in the vehicle's frame",
-               &observeSpeed),
-      observed("geometry_msgs/TwistWithCovarianceStamped", "speed, if it is in the vehicle's frame",
-               &observeSpeed),
-      noted("nav_msgs/Odometry", "poses", &noteOdometry),
-      noted("nav_msgs/Path", "poses, if the INI says so", &notePath),
-      noted("geometry_msgs/PoseStamped", "poses", &notePose<ros::PoseStamped>),
-      noted("geometry_msgs/PoseWithCovarianceStamped", "poses",
-            &notePose<ros::PoseWithCovarianceStamped>),
-      noted("tf2_msgs/TFMessage", "frames, poses", &noteTransforms),
-      noted("tf/tfMessage", "frames, poses", &noteTransforms),
-      noted("std_msgs/String", "metadata of a device, on a topic of that name", &noteText),
-      packed("velodyne_msgs/VelodyneScan", kPacketsUse, Role::kCloud, nullptr, &unpackVelodyne,
-             {"velodyne"}),
-      packed("can_msgs/Frame", "radar scans of an ESR or ARS 408, from its CAN frames",
-             Role::kRadar, &noteCan, &unpackCan, {"esr", "ars408"}),
-      packed("ros2_socketcan_msgs/FdFrame",
-             "radar scans of an ESR, ARS 408 or SRR520, from its CAN frames", Role::kRadar,
-             &noteCanFd, &unpackCanFd, {"esr", "ars408", "srr520"}),
-      packed("delphi_esr_msgs/EsrTrack", "radar scans, by its fields", Role::kRadar, nullptr,
-             &unpackEsrTrack, {"esr"}),
-  };
-  for (const char* name :
-       {"livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg", "livox_interfaces/CustomMsg"})
-    types.push_back(measured(name, "lidar scans", Role::kCloud, &measureLivox));
-  for (const char* name :
-       {"pandar_msgs/PandarScan", "hesai_lidar/PandarScan", "hesai_ros_driver/UdpFrame"})
-    types.push_back(
-        packed(name, kPacketsUse, Role::kCloud, nullptr, &unpackPandar, {"pandar40p", "xt32"}));
-  for (const char* name :
-       {"ouster_ros/PacketMsg", "ouster_msgs/PacketMsg", "ouster_sensor_msgs/PacketMsg"})
-    types.push_back(
-        packed(name, kPacketsUse, Role::kCloud, &noteOuster, &unpackOuster, {"ouster"}));
-  for (const char* name :
-       {"rslidar_msgs/rslidarScan", "rslidar_msgs/RslidarScan", "rslidar_msg/RslidarScan"})
-    types.push_back(
-        packed(name, kPacketsUse, Role::kCloud, nullptr, &unpackRslidarScan, robosense));
-  for (const char* name :
-       {"rslidar_msgs/rslidarPacket", "rslidar_msgs/RslidarPacket", "rslidar_msg/RslidarPacket"})
-    types.push_back(
-        packed(name, kPacketsUse, Role::kCloud, &noteRslidar, &unpackRslidarPacket, robosense));
-  for (const char* name :
-       {"autoware_perception_msgs/DetectedObjects", "autoware_perception_msgs/TrackedObjects",
-        "autoware_auto_perception_msgs/DetectedObjects",
-        "autoware_auto_perception_msgs/TrackedObjects"})
-    types.push_back(measured(name, kBoxesUse, Role::kBoxes, &measureAutoware));
-  // Each of the transforms has its own; texts and Ouster's packets have none, nor have some of
-  // RoboSense's; a camera's is of no matter, nor that of a path, whose poses have theirs.
-  for (BagType& type : types) {
-    for (const auto note :
-         {&noteTransforms, &noteText, &noteOuster, &noteRslidar, &noteCamera, &notePath})
-      if (type.note == note) type.has_header = false;
-    if (type.note == &noteOuster) type.device_files = &BagContents::metadata;
-    if (type.devices == robosense) type.device_files = &BagContents::difop;
+/// The same row for several names.
+void add(std::vector<BagType>& types, std::initializer_list<const char*> names, BagType row) {
+  for (const char* name : names) {
+    row.name = name;
+    types.push_back(row);
   }
-  return types;
+}
+
+/// What sensors measure. A camera's header is of no matter.
+void addMeasurements(std::vector<BagType>& types) {
+  add(types, {"sensor_msgs/PointCloud2"},
+      measured("lidar or radar scans", Role::kCloud, &measurePoints));
+  add(types, {"sensor_msgs/PointCloud"},
+      measured("lidar or radar scans", Role::kCloud, &measureOldCloud));
+  add(types,
+      {"livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg", "livox_interfaces/CustomMsg"},
+      measured("lidar scans", Role::kCloud, &measureLivox));
+  add(types, {"radar_msgs/RadarScan"},
+      measured("radar scans", Role::kRadar, &measureRadar<ros::RadarScan>));
+  add(types, {"radar_msgs/RadarTracks"},
+      measured("radar scans: a return an object", Role::kRadar, &measureRadar<ros::RadarTracks>));
+  add(types, {"ars_40X/*", "conti_radar/*"},
+      measured("radar scans: a return an object or cluster, by its fields", Role::kRadar,
+               &measureRadarList));
+  add(types, {"vision_msgs/Detection3DArray"}, measured(kBoxesUse, Role::kBoxes, &measureBoxes));
+  add(types, {"vision_msgs/Detection2DArray"},
+      measured("boxes in images, if the INI has [topic.TOPIC]", Role::kBoxes, &measureImageBoxes));
+  add(types, {"derived_object_msgs/ObjectArray", "derived_object_msgs/ObjectWithCovarianceArray"},
+      measured(kBoxesUse, Role::kBoxes, &measureDerivedObjects));
+  add(types,
+      {"autoware_perception_msgs/DetectedObjects", "autoware_perception_msgs/TrackedObjects",
+       "autoware_auto_perception_msgs/DetectedObjects",
+       "autoware_auto_perception_msgs/TrackedObjects"},
+      measured(kBoxesUse, Role::kBoxes, &measureAutoware));
+  add(types, {"sensor_msgs/Image"}, measured("images", Role::kImage, &measureImage<ros::Image>));
+  add(types, {"sensor_msgs/CompressedImage"},
+      measured("images", Role::kImage, &measureImage<ros::CompressedImage>));
+  add(types, {"sensor_msgs/CameraInfo"}, noted("camera", &noteCamera, false));
+}
+
+/// Where the vehicle is and how it moves, frames, and texts. Each of the transforms has a header of
+/// its own, texts have none; that of a path is of no matter, whose poses have theirs.
+void addVehicle(std::vector<BagType>& types) {
+  add(types, {"sensor_msgs/NavSatFix"}, observed("GPS", &observeFix));
+  add(types,
+      {"novatel_gps_msgs/NovatelPosition", "novatel_gps_msgs/Inspva", "novatel_oem7_msgs/BESTPOS",
+       "novatel_oem7_msgs/INSPVA"},
+      observed("GPS, by its fields", &observeFixByFields));
+  add(types, {"oxts_msgs/Ncom"},
+      observed("GPS with velocity and heading, from packets", &observeNcom));
+  add(types, {"sensor_msgs/Imu"}, observed("inertial unit", &observeImu));
+  add(types, {"geometry_msgs/TwistStamped", "geometry_msgs/TwistWithCovarianceStamped"},
+      observed("speed, if it is in the vehicle's frame", &observeSpeed));
+  add(types, {"nav_msgs/Odometry"}, noted("poses", &noteOdometry));
+  add(types, {"nav_msgs/Path"}, noted("poses, if the INI says so", &notePath, false));
+  add(types, {"geometry_msgs/PoseStamped"}, noted("poses", &notePose<ros::PoseStamped>));
+  add(types, {"geometry_msgs/PoseWithCovarianceStamped"},
+      noted("poses", &notePose<ros::PoseWithCovarianceStamped>));
+  add(types, {"tf2_msgs/TFMessage", "tf/tfMessage"},
+      noted("frames, poses", &noteTransforms, false));
+  add(types, {"std_msgs/String"},
+      noted("metadata of a device, on a topic of that name", &noteText, false));
+}
+
+/// Packets of sensors. Those of Ouster have no header, nor have some of RoboSense.
+void addPackets(std::vector<BagType>& types) {
+  add(types, {"velodyne_msgs/VelodyneScan"},
+      packed(kPacketsUse, Role::kCloud, nullptr, &unpackVelodyne, {"velodyne"}));
+  add(types, {"pandar_msgs/PandarScan", "hesai_lidar/PandarScan", "hesai_ros_driver/UdpFrame"},
+      packed(kPacketsUse, Role::kCloud, nullptr, &unpackPandar, {"pandar40p", "xt32"}));
+  BagType ouster = packed(kPacketsUse, Role::kCloud, &noteOuster, &unpackOuster, {"ouster"});
+  ouster.device_files = &BagContents::metadata, ouster.has_header = false;
+  add(types, {"ouster_ros/PacketMsg", "ouster_msgs/PacketMsg", "ouster_sensor_msgs/PacketMsg"},
+      ouster);
+  BagType scan = packed(kPacketsUse, Role::kCloud, nullptr, &unpackRslidarScan, {"rs16", "rs32"});
+  BagType packet =
+      packed(kPacketsUse, Role::kCloud, &noteRslidar, &unpackRslidarPacket, {"rs16", "rs32"});
+  scan.device_files = packet.device_files = &BagContents::difop, packet.has_header = false;
+  add(types, {"rslidar_msgs/rslidarScan", "rslidar_msgs/RslidarScan", "rslidar_msg/RslidarScan"},
+      scan);
+  add(types,
+      {"rslidar_msgs/rslidarPacket", "rslidar_msgs/RslidarPacket", "rslidar_msg/RslidarPacket"},
+      packet);
+  add(types, {"can_msgs/Frame"},
+      packed("radar scans of an ESR or ARS 408, from its CAN frames", Role::kRadar, &noteCan,
+             &unpackCan, {"esr", "ars408"}));
+  add(types, {"ros2_socketcan_msgs/FdFrame"},
+      packed("radar scans of an ESR, ARS 408 or SRR520, from its CAN frames", Role::kRadar,
+             &noteCanFd, &unpackCanFd, {"esr", "ars408", "srr520"}));
+  add(types, {"delphi_esr_msgs/EsrTrack"},
+      packed("radar scans, by its fields", Role::kRadar, nullptr, &unpackEsrTrack, {"esr"}));
 }
 
 /// The row of a kind of messages that are known by their fields alone.
 const BagType* rowByFields(FieldsKind kind) {
-  static const BagType cloud = measured("", "lidar or radar scans, by its fields", Role::kCloud,
+  static const BagType cloud = measured("lidar or radar scans, by its fields", Role::kCloud,
                                         &measureCloudByFields),
-                       image = measured("", "images, by its fields", Role::kImage,
-                                        &measureImageByFields),
-                       pose =
-                           noted("", "poses, by its fields, if the INI says so", &notePoseByFields);
+                       image =
+                           measured("images, by its fields", Role::kImage, &measureImageByFields),
+                       pose = noted("poses, by its fields, if the INI says so", &notePoseByFields);
   switch (kind) {
     case FieldsKind::kCloud:
       return &cloud;
@@ -241,7 +249,11 @@ bool isNamed(const BagType& row, const std::string& type) {
 }  // namespace
 
 const std::vector<BagType>& bagTypes() {
-  static const std::vector<BagType> types = makeTypes();
+  static const std::vector<BagType> types = [] {
+    std::vector<BagType> all;
+    addMeasurements(all), addVehicle(all), addPackets(all);
+    return all;
+  }();
   return types;
 }
 

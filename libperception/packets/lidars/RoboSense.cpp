@@ -138,7 +138,7 @@ class RoboSenseDecoder final : public PacketDecoder {
       refuse(std::to_string(payload.size()) + " bytes, expected 1248");
     const auto model = robosenseModelIn(payload);
     if (!model)
-      refuse("byte 0: 55 AA 05 0A 5A A5 50 A0 expected; of RoboSense RS-LiDAR-16 and -32 are read");
+      refuse("byte 0: expected 55 AA 05 0A 5A A5 50 A0 (RS-LiDAR-16 and -32 alone are read)");
     const int other = kRs16.id + kRs32.id - model_.id;
     if (*model == other) refuse("byte 30: it is of model " + std::to_string(other));
     std::array<int, kRsBlocks> azimuths{};

@@ -24,13 +24,10 @@ class OutputFile {
   const std::string& path() const { return path_; }
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   [[noreturn]] void fail(int reason) const;
   std::string path_;
   PartialFile partial_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  std::unique_ptr<std::FILE, FileCloser> file_;
 };
 
 /// Creates a folder and its parents; no effect for an empty path. Throws OutputError

@@ -67,7 +67,7 @@ TEST(RankedAssignments, AreThoseOfBruteForceInOrder) {
     const auto p = randomProblem(rows, columns, rng.uniform(0.1, 1), rng);
     const auto truth = allWeights(p);
     const std::size_t k = 1 + rng.below(30);
-    const auto ranked = rankedAssignments(p, k, 1e9);
+    const auto ranked = AssignmentRanking(p).rank(k, 1e9);
     ASSERT_EQ(ranked.size(), std::min(k, truth.size()));
     for (std::size_t i = 0; i < ranked.size(); ++i) {
       ASSERT_NEAR(ranked[i].log_weight, truth[i], 1e-9) << "trial " << trial << ", rank " << i;
@@ -79,7 +79,7 @@ TEST(RankedAssignments, AreThoseOfBruteForceInOrder) {
 TEST(RankedAssignments, AreAllDifferent) {
   Rng rng({6, 0, 0, 0});
   const auto p = randomProblem(6, 6, 0.8, rng);
-  const auto ranked = rankedAssignments(p, 200, 1e9);
+  const auto ranked = AssignmentRanking(p).rank(200, 1e9);
   ASSERT_EQ(ranked.size(), 200u);
   std::vector<std::vector<int>> columns;
   for (const auto& a : ranked) columns.push_back(a.column);
@@ -93,11 +93,11 @@ TEST(RankedAssignments, LeaveOutWhatIsFarLighterThanTheBest) {
   const auto truth = allWeights(p);
   const auto expected = static_cast<std::size_t>(
       std::count_if(truth.begin(), truth.end(), [&](double w) { return w >= truth[0] - 3; }));
-  EXPECT_EQ(rankedAssignments(p, 100000, 3).size(), expected);
+  EXPECT_EQ(AssignmentRanking(p).rank(100000, 3).size(), expected);
 }
 
 TEST(RankedAssignments, OfNoRowsAreOne) {
-  const auto ranked = rankedAssignments({}, 5, 10);
+  const auto ranked = AssignmentRanking(AssignmentProblem()).rank(5, 10);
   ASSERT_EQ(ranked.size(), 1u);
   EXPECT_EQ(ranked[0].log_weight, 0);
 }
