@@ -1,7 +1,7 @@
 """Four browsers that watch a live run: does it change the run, and what do they show?
 
-    python3 tests/live/four_browsers.py build/bin/perception-track rawlogs/ibeo.rawlog ini/skynet.ini [--pairs 3]
-        [--seconds 40] [--memory 600] [--pictures FOLDER] [KEY=VALUE of the tracker ...]
+    python3 tests/live/four_browsers.py build/bin/perception-track rawlogs/ibeo.rawlog ini/skynet.ini run.sensors=L
+        run.without=LIDAR_TOP [--pairs 3] [--seconds 40] [--memory 600] [--pictures FOLDER]
 
 The log is played again and again as a sensor at work (CRawlogSensor), served to nothing or to four headless Chromiums of which the last
 has a twentieth of its processor. The browsers have the lowest priority, since on computers of their own they would not take the
@@ -217,10 +217,13 @@ def run(options, folder, seconds, count, memory=False):
         for browser in browsers:
             browser.close()
     code = tracker.wait()
+    with open(said.name, encoding="utf-8") as file:
+        text = file.read()
+    if not os.path.exists(os.path.join(results, "timing.json")):
+        raise SystemExit(f"{options.program} ended with {code} and left no timing.json:\n{text}")
     with open(os.path.join(results, "timing.json"), encoding="utf-8") as file:
         timing = json.load(file)
-    with open(said.name, encoding="utf-8") as file:
-        watched = re.findall(r"watched by .*", file.read())
+    watched = re.findall(r"watched by .*", text)
     return timing, shown, samples, faults, code, watched
 
 
@@ -228,7 +231,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("program", "log", "ini"):
         parser.add_argument(name)
-    parser.add_argument("settings", nargs="*")
+    parser.add_argument("settings", nargs="*", help="KEY=VALUE of the tracker, before the options")
     parser.add_argument("--pairs", type=int, default=3)
     parser.add_argument("--seconds", type=int, default=40)
     parser.add_argument("--memory", type=int, default=0)
