@@ -73,16 +73,17 @@ void RunTiming::addLatency(double seconds) {
   longest_latency_ = std::max(longest_latency_, seconds);
 }
 
-/// [s] The upper end of the bin, and never more than the longest.
+/// [s] The upper end of the bin, and never more than the longest latency, which also answers for
+/// the last bin.
 double RunTiming::latencyQuantile(double share) const {
   const double wanted = share * static_cast<double>(latency_count_);
   double below = 0, upper = kLeastLatency;
-  for (const std::uint64_t count : latencies_) {
+  for (std::size_t i = 0; i + 1 < latencies_.size(); ++i) {
     upper *= kLatencyStep;
-    below += static_cast<double>(count);
-    if (below >= wanted) break;
+    below += static_cast<double>(latencies_[i]);
+    if (below >= wanted) return std::min(upper, longest_latency_);
   }
-  return std::min(upper, longest_latency_);
+  return longest_latency_;
 }
 
 double RunTiming::cpuSeconds() const { return processCpuSeconds() - cpu_start_; }

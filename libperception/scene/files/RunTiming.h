@@ -72,7 +72,8 @@ class RunTiming {
   std::vector<Stage> stages_;
   std::vector<std::string> active_;  ///< stages that have begun and not ended, in that order
   std::atomic<std::uint64_t> changes_{0};
-  std::array<std::uint64_t, 400> latencies_{};  ///< number by latency, 2 % a step from 0.1 ms
+  std::array<std::uint64_t, 700> latencies_{};  ///< number by latency, 2 % a step from 0.1 ms to
+                                                ///< 100 s; the last holds what is longer
   std::uint64_t latency_count_ = 0;
   double longest_latency_ = 0;  ///< [s]
 };

@@ -85,5 +85,17 @@ TEST(RunTiming, LatenciesAreGivenByTheirQuantiles) {
   EXPECT_NEAR(latency.at("longest_seconds"), 0.1, 1e-9);
 }
 
+TEST(RunTiming, LatenciesOfSecondsAndMinutesAreNotCutOff) {
+  RunTiming timing;
+  for (int i = 1; i <= 1000; ++i) timing.addLatency(1e-2 * i);
+  const auto latency = nlohmann::json::parse(timing.toJson(1, 1)).at("latency");
+  EXPECT_NEAR(latency.at("p50_seconds"), 5.0, 0.11);
+  EXPECT_NEAR(latency.at("p99_seconds"), 9.9, 0.21);
+  RunTiming stalled;
+  for (const double seconds : {0.1, 200.0, 300.0}) stalled.addLatency(seconds);
+  EXPECT_NEAR(nlohmann::json::parse(stalled.toJson(1, 1)).at("latency").at("p99_seconds"), 300.0,
+              1e-9);
+}
+
 }  // namespace
 }  // namespace perception
