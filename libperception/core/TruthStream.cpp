@@ -51,7 +51,7 @@ const GroundTruth& TruthStream::around(const TruthSpan& span) {
 void TruthStream::nextInstant() {
   next_.reset();
   if (pending_) {
-    next_ = {pending_->frame, pending_->t, {}};
+    next_.emplace(GroundTruth::Instant{pending_->frame, pending_->t, {}});
     next_->objects.push_back(std::move(*pending_));
     pending_.reset();
   }
@@ -62,7 +62,7 @@ void TruthStream::nextInstant() {
       pending_ = std::move(object);
       return;
     }
-    if (!next_) next_ = {object.frame, object.t, {}};
+    if (!next_) next_.emplace(GroundTruth::Instant{object.frame, object.t, {}});
     next_->objects.push_back(std::move(object));
   }
 }
