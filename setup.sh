@@ -298,9 +298,8 @@ sanitize() {
   makeCommaLocale
   closing="" skipped=""
   local failed=0 modules
-  mapfile -t modules < <(cd tests && for folder in */; do
-    if compgen -G "${folder}*_test.cpp" >/dev/null && [[ ! $folder =~ ^(architecture|faults|studies)/ ]]; then echo "${folder%/}"; fi
-  done)
+  mapfile -t modules < <(cd tests && find . -mindepth 2 \( -name '*_test.cpp' -o -name '*_test.py' \) | cut -d/ -f2 | LC_ALL=C sort -u |
+    grep -vxE 'architecture|faults|studies')
   sanitized asan "${modules[@]}" || failed=1
   sanitized tsan filter pipeline || failed=1
   closingLines
