@@ -74,6 +74,8 @@ void checkPromise(const std::string& path, std::size_t points, std::size_t bytes
 /// PCD of PCL 0.7 (ascii, binary, binary_compressed) and PLY (ascii, binary of both byte orders).
 CloudTable readPcd(const std::string& path, const std::string& bytes);
 CloudTable readPly(const std::string& path, const std::string& bytes);
+/// The line VIEWPOINT of a PCD header; empty if there is none or it is no pose.
+std::optional<Pose3> pcdViewpoint(const std::string& path, const std::string& bytes);
 /// Text in rows (CsvText) and an array of numpy: with names, or with columns that are named "-".
 /// Units of meters and seconds that are behind the names are applied.
 CloudTable readCsv(const std::string& path, const std::string& bytes);

@@ -27,6 +27,7 @@ class CloudsImporter final : public Importer {
 
  private:
   void readStamps(const std::vector<FrameFile>& files, double rate);
+  void readViewpoints(const std::vector<FrameFile>& files, ImportLog& log);
   void readPoses(const std::vector<FrameFile>& files);
   void findFormat(const std::vector<FrameFile>& files, ImportLog& log);
   std::optional<Pose3> poseAt(std::size_t index) const;
@@ -64,8 +65,9 @@ void CloudsImporter::declare(CLI::App& cli) {
   cli.add_option("--poses", poses_file_, "ego motion; without: the vehicle stands");
   cli.add_option("--poses-format", poses_format_,
                  "kitti: 12 numbers (3x4), a line a file; tum: t x y z qx qy qz qw, by time where "
-                 "there are --stamps, else a line a file")
-      ->check(CLI::IsMember({"kitti", "tum"}))
+                 "there are --stamps, else a line a file; pcd: the VIEWPOINT of each .pcd file, "
+                 "without --poses")
+      ->check(CLI::IsMember({"kitti", "tum", "pcd"}))
       ->capture_default_str();
   cli.add_option("--poses-frame", poses_frame_, "whose poses they are")
       ->check(CLI::IsMember({"lidar", "ego"}))
@@ -111,6 +113,25 @@ void CloudsImporter::readStamps(const std::vector<FrameFile>& files, double rate
   if (!by_number_) {
     throw DataError(fmt::format("{}: {} stamps, expected one for each of {} clouds of {}",
                                 stamps_file_, stamps_.size(), files.size(), clouds_));
+  }
+}
+
+/// PCL stores the pose of the sensor beside the points, which stay in the sensor's frame.
+void CloudsImporter::readViewpoints(const std::vector<FrameFile>& files, ImportLog& log) {
+  if (poses_format_ != "pcd") {
+    const auto last = viewpointOf(files.back().path);
+    if (poses_file_.empty() && last && !last->isApprox(Pose3::Identity(), 1e-9))
+      log.note(fmt::format(
+          "the VIEWPOINT of {} is not used: --poses-format pcd takes the VIEWPOINTs as poses",
+          files.back().path));
+    return;
+  }
+  if (!poses_file_.empty())
+    failUsage("--poses-format pcd reads the poses from the .pcd files: leave out --poses");
+  for (const FrameFile& file : files) {
+    const auto pose = viewpointOf(file.path);
+    if (!pose) throw DataError(file.path + ": no pose, expected VIEWPOINT x y z qw qx qy qz");
+    poses_.push_back(*pose);
   }
 }
 
@@ -176,6 +197,7 @@ void CloudsImporter::run(ImportLog& log) {
     log.note(fmt::format("no scans by their names: {} files of {}, such as {}", found.others.size(),
                          clouds_, found.others.front()));
   readStamps(files, log.options().rate);
+  readViewpoints(files, log);
   readPoses(files);
   const auto missing = files.back().number + 1 - static_cast<std::int64_t>(files.size());
   if (by_number_)
@@ -183,7 +205,7 @@ void CloudsImporter::run(ImportLog& log) {
         fmt::format("{} files are missing: line k of stamps and poses is that of file k", missing));
   const Pose3 T_ego_lidar = mount();
   const Pose3 T_ego_pose = poses_frame_ == "ego" ? Pose3::Identity() : T_ego_lidar;
-  const bool has_poses = !poses_file_.empty();
+  const bool has_poses = !poses_.empty() || !stamped_.empty();
   if (!has_poses) log.note("no --poses: the vehicle is taken to stand still");
   if (stamps_file_.empty())
     log.note(fmt::format("no --stamps: taken as {:g} scans a second (--rate)", log.options().rate));

@@ -230,6 +230,11 @@ LidarCloud readCloudFile(const std::string& path, const CloudFormat& format) {
   throw DataError(fmt::format("{}: expected one of {}", path, fmt::join(cloudEndings(), ", ")));
 }
 
+std::optional<Pose3> viewpointOf(const std::string& path) {
+  if (cloudEndingOf(path) != ".pcd") return {};
+  return pcdViewpoint(path, readBytes(path, kMostBytes));
+}
+
 LidarCloud inFrame(LidarCloud cloud, const Pose3& T_to_from) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3f p =

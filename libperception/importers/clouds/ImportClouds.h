@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat
 /// of points are kept, including NaN points. Times become offsets from that of the first point.
 /// Throws DataError (kNoInput if missing, else with position and expectation).
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format = {});
+
+/// VIEWPOINT of a .pcd file: the pose of the sensor, in whose frame the points are, in a fixed
+/// frame; empty where the file has none that is a pose. Throws DataError if it cannot be read.
+std::optional<Pose3> viewpointOf(const std::string& path);
 
 /// The cloud's points in another frame, by the pose of their own frame in it.
 LidarCloud inFrame(LidarCloud cloud, const Pose3& T_to_from);

@@ -2,6 +2,7 @@
 #include <liblzf/lzf.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -182,6 +183,24 @@ CloudTable readPcd(const std::string& path, const std::string& bytes) {
     lines.fail(fmt::format("DATA {}, expected ascii, binary or binary_compressed", data));
   }
   return table;
+}
+
+std::optional<Pose3> pcdViewpoint(const std::string& path, const std::string& bytes) {
+  TextLines lines(path, bytes);
+  while (const auto line = lines.next()) {
+    const TextRow row = lines.row(*line);
+    if (row.size() > 0 && row.text(0) == "DATA") break;
+    if (row.size() != 8 || row.text(0) != "VIEWPOINT") continue;
+    for (std::size_t i = 1; i < row.size(); ++i)
+      if (!row.isNumber(i)) return {};
+    const Eigen::Quaterniond q(row.real(4), row.real(5), row.real(6), row.real(7));
+    if (std::abs(q.norm() - 1) > 1e-2) return {};
+    Pose3 pose = Pose3::Identity();
+    pose.linear() = q.normalized().toRotationMatrix();
+    pose.translation() = Vector3(row.real(1), row.real(2), row.real(3));
+    return pose;
+  }
+  return {};
 }
 
 CloudTable readPly(const std::string& path, const std::string& bytes) {

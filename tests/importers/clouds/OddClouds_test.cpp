@@ -162,6 +162,40 @@ TEST_F(OddClouds, LinesOfPosesAreThoseOfTheFilesNumbersWhereFilesAreMissing) {
   expectSaid("2 files are missing: line k of stamps and poses is that of file k");
 }
 
+TEST_F(OddClouds, ViewpointsOfPcdFilesAreThePosesOfTheLidarWhereTheyAreAskedFor) {
+  const auto scan = [this](int k, const std::string& viewpoint) {
+    const LidarCloud cloud = oneTurn(k);
+    write(fmt::format("clouds/{}.pcd", k),
+          fmt::format("VERSION .7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\n"
+                      "COUNT 1 1 1 1\nWIDTH {0}\nHEIGHT 1\n{1}POINTS {0}\nDATA binary\n",
+                      cloud.size(), viewpoint) +
+              floatsOf(cloud));
+  };
+  for (int k = 0; k < 3; ++k) scan(k, fmt::format("VIEWPOINT {} 5 2 0.8 0 0 0.6\n", 10 + 3 * k));
+  ASSERT_EQ(import("clouds", {"--clouds", file("clouds")}), 0) << error_;
+  expectSaid("the VIEWPOINT of " + file("clouds/2.pcd") + " is not used: --poses-format pcd");
+  EXPECT_NEAR(framesOf("LIDAR_TOP")[2].ego.T_world_ego.translation().norm(), 0, 1e-6);
+
+  std::filesystem::remove(file("out.rawlog"));
+  const std::vector<std::string> asked{"--clouds", file("clouds"), "--poses-format", "pcd"};
+  ASSERT_EQ(import("clouds", asked), 0) << error_;
+  const auto frames = framesOf("LIDAR_TOP");
+  ASSERT_EQ(frames.size(), 3U);
+  const Vector3 driven = frames[2].ego.T_world_ego.translation();  // 6 m to the fixed frame's x
+  EXPECT_NEAR(driven.x(), 6 * 0.28, 1e-5);
+  EXPECT_NEAR(driven.y(), -6 * 0.96, 1e-5);
+
+  std::filesystem::remove(file("out.rawlog"));
+  expectFault(64, "leave out --poses", "clouds",
+              {"--clouds", file("clouds"), "--poses-format", "pcd", "--poses", file("poses.txt")});
+  for (const char* none : {"", "VIEWPOINT 0 0 0 0 0 0 0\n", "VIEWPOINT 1 2 three 1 0 0 0\n"}) {
+    scan(1, none);
+    expectFault(65, "clouds/1.pcd: no pose, expected VIEWPOINT", "clouds", asked);
+    ASSERT_EQ(import("clouds", {"--clouds", file("clouds")}), 0) << error_;
+    std::filesystem::remove(file("out.rawlog"));
+  }
+}
+
 TEST_F(OddClouds, LinesThatEndAsOnOldMacintoshesAreRead) {
   writeClouds(".csv", [](const LidarCloud& cloud) {
     std::string text = "x,y,z,intensity\r";
