@@ -95,5 +95,5 @@ bareClone() {
     mkdir -p "$target"
     tar -C "$source" --exclude='./build*' --exclude=./out -cf - . | tar -C "$target" -xf -
   fi
-  [[ ! -d $source/../shared ]] || cp -a "$source/../shared" "$(dirname "$target")/shared"
+  [[ ! -d $source/../shared ]] || cp -aH "$source/../shared" "$(dirname "$target")/shared"
 }
