@@ -11,6 +11,7 @@ namespace perception {
 namespace {
 
 constexpr double kNearest = 0.1;  // [m] least range: below it the object is under the camera
+constexpr double kInnovationsRepeat = 0.8;  // correlation from image to image (method.md 5.6)
 
 /// Footprints by a detector whose errors on one object repeat.
 class RememberedBoxes final : public FootprintModel {
@@ -18,6 +19,7 @@ class RememberedBoxes final : public FootprintModel {
   RememberedBoxes(ClassTable classes, DetectionModel detection_model, const EvidenceMemory& memory)
       : FootprintModel(std::move(classes), std::move(detection_model)), memory_(memory) {}
   const EvidenceMemory* lookMemory() const override { return &memory_; }
+  double innovationShare() const override { return EvidenceMemory::worth(kInnovationsRepeat); }
 
  private:
   EvidenceMemory memory_;

@@ -205,6 +205,12 @@ TEST(VisionFrontEnd, ErrorsRepeatWhereTheIniSaysSo) {
   EXPECT_EQ(memory->time, 2);
 }
 
+TEST(VisionFrontEnd, EdgesThatRepeatCountAsOftenAsTheyAreNew) {
+  EXPECT_EQ(scanOf("", 0.9).model->innovationShare(), 1);
+  const double share = scanOf("memory_lasting = 0.3\n", 0.9).model->innovationShare();
+  EXPECT_NEAR(share, 0.2 / 1.8, 1e-9);  // a correlation of 0.8 from image to image
+}
+
 TEST(VisionFrontEnd, MapsNamesToLabelsAndDropsTheRest) {
   Config config = Config::fromText(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = "
