@@ -11,10 +11,11 @@ namespace perception {
 
 RoadHeights::RoadHeights(bool backward)
     : ahead_(backward ? -1.0F : 1.0F),
-      height_(kCells * kCells, std::numeric_limits<float>::quiet_NaN()) {}
+      height_(kRows * kCells, std::numeric_limits<float>::quiet_NaN()) {}
 
-std::vector<float> RoadHeights::along(const Corridor& corridor) const {
+std::vector<float> RoadHeights::along(const Corridor& corridor, std::vector<float>* unseen) const {
   std::vector<float> road(static_cast<std::size_t>(std::max(corridor.max, 0.0)) + 2);
+  if (unseen) unseen->assign(road.size(), 0);
   std::size_t known = 0;  // the vehicle stands on the road
   for (std::size_t s = 1; s < road.size(); ++s) {
     float height = std::numeric_limits<float>::quiet_NaN();
@@ -23,11 +24,13 @@ std::vector<float> RoadHeights::along(const Corridor& corridor) const {
       const Vector2 p = onArc(corridor, {static_cast<double>(s), d});
       const auto along = static_cast<float>(p.x()) * ahead_;
       const auto across = static_cast<float>(p.y()) + kHalf;
-      if (!(along >= 0 && along < 2 * kHalf && across >= 0 && across < 2 * kHalf)) continue;
+      if (!(along >= 0 && along < kLength && across >= 0 && across < 2 * kHalf)) continue;
       height = height_[static_cast<std::size_t>(along) * kCells + static_cast<std::size_t>(across)];
     }
+    const auto since = static_cast<float>(s - known);
+    if (unseen && known > 0 && !std::isfinite(height)) (*unseen)[s] = since;
     if (!std::isfinite(height)) continue;
-    const float slope = (height - road[known]) / static_cast<float>(s - known);
+    const float slope = (height - road[known]) / since;
     for (std::size_t k = known + 1; k <= s; ++k)
       road[k] = height - slope * static_cast<float>(s - k);
     known = s;

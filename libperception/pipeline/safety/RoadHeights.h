@@ -16,16 +16,17 @@ class RoadHeights {
   /// A ground return [m], ego frame.
   void add(float x, float y, float z) {
     const float along = ahead_ * x, across = y + kHalf;
-    if (!(along >= 0 && along < 2 * kHalf && across >= 0 && across < 2 * kHalf)) return;
+    if (!(along >= 0 && along < kLength && across >= 0 && across < 2 * kHalf)) return;
     height_[static_cast<std::size_t>(along) * kCells + static_cast<std::size_t>(across)] = z;
   }
   /// [m] every meter along the corridor, as Corridor::road: between and behind the cells with
-  /// returns linear and level.
-  std::vector<float> along(const Corridor& corridor) const;
+  /// returns linear and level. `unseen`: [m] from there back to the last cell
+  /// before it with returns; 0 in the next one, and up to the first one.
+  std::vector<float> along(const Corridor& corridor, std::vector<float>* unseen = nullptr) const;
 
  private:
-  static constexpr float kHalf = 40;  // [m]
-  static constexpr std::size_t kCells = 80;
+  static constexpr float kLength = 200, kHalf = 40;  // [m] along, to each side
+  static constexpr std::size_t kCells = 80, kRows = 200;
 
   float ahead_;
   std::vector<float> height_;  ///< NaN: none

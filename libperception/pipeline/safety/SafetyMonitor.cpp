@@ -203,8 +203,9 @@ void SafetyMonitor::add(const SensorFrame& frame, const PlacedReturns& returns) 
   grid_->insert(last_.scan);
   Corridor way = drivenCorridor(frame.ego.T_world_ego, frame.ego.velocity, frame.ego.yaw_rate,
                                 returns.vehicle_front, returns.vehicle_rear, stop_);
-  way.road = last_.road.along(way);
-  way_.add(frame.stamp, std::move(way), last_.scan.hits, last_.dense, last_.scan.clear,
+  std::vector<float> unseen;
+  way.road = last_.road.along(way, &unseen);
+  way_.add(frame.stamp, std::move(way), unseen, last_.scan.hits, last_.dense, last_.scan.clear,
            frame.causes);
   front_ = returns.vehicle_front, rear_ = returns.vehicle_rear;
   any_ = true;

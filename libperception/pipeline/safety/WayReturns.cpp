@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "libperception/grid/way/NearCorridor.h"
@@ -10,15 +11,20 @@
 namespace perception {
 namespace {
 
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 constexpr double kRemembered = 0.45;  // [s] five scans at 10 Hz
 constexpr double kBeside = 0.5;       // [m] to each side of the corridor, which may bend meanwhile
 constexpr double kSurface = 0.5;      // [m] along the corridor: returns of one surface
+constexpr double kMostStep = 1;       // [m] from scan to scan by which they lie farther apart
 constexpr double kStrip = 0.25;       // [m] across it, and half a surface along it
 constexpr float kRise = 0.1F;         // [m] within these: roads rise by less (assumed)
 // [m] Height of a car's underside, plus 2 cm by which the ground's model may be too low (assumed).
 constexpr float kUnderside = 0.22F;
 // [m] above the road: lower returns are those of the road, and higher ones are hits (assumed).
 constexpr double kRough = 0.05, kLow = 0.5;
+// Vertical curves: radius [m] of the sharpest (method.md 8.1), acceleration [m/s^2] over one at the
+// speed driven (assumed: thrice what roads are built for).
+constexpr double kSharpest = 50, kLift = 1.5;
 
 /// Heights of the returns in pieces of the corridor: strips across, half surfaces along it.
 class RoughPieces {
@@ -33,26 +39,37 @@ class RoughPieces {
     return (static_cast<std::size_t>(place.s / kStrip) + 1) * strips_ + strip;
   }
   void add(std::size_t piece, float height) { pieces_[piece].add(height); }
-  /// With the piece before it or the one behind it.
-  bool standsUp(std::size_t piece) const { return risesFrom(piece - strips_) || risesFrom(piece); }
+  /// With the piece before it or the one behind it; the highest is `least` [m] high.
+  bool standsUp(std::size_t piece, float least) const {
+    return risesFrom(piece - strips_, least) || risesFrom(piece, least);
+  }
 
  private:
   struct Heights {
-    float lowest = static_cast<float>(kLow), highest = 0;  ///< [m]
+    float lowest = kUnbounded, highest = -kUnbounded;  ///< [m]
     void add(float height) {
       lowest = std::min(lowest, height), highest = std::max(highest, height);
     }
   };
-  bool risesFrom(std::size_t piece) const {
+  bool risesFrom(std::size_t piece, float least) const {
     const Heights &a = pieces_[piece], &b = pieces_[piece + strips_];
     const float highest = std::max(a.highest, b.highest);
-    return highest >= kUnderside && highest - std::min(a.lowest, b.lowest) >= kRise;
+    return highest >= least && highest - std::min(a.lowest, b.lowest) >= kRise;
   }
 
   double half_;
   std::size_t strips_;
   std::vector<Heights> pieces_;
 };
+
+/// [m] by which the road may rise over `unseen` [m] behind its last place seen, `before` [m] above
+/// the plane of the vehicle's wheels: on a circle of that radius [m], and by the slope to which one
+/// on the way may have led.
+double risesUnseen(double unseen, double before, double radius) {
+  constexpr double kError = 0.03;  // [m] of heights seen (assumed)
+  const double slope = std::sqrt(2 * (std::max(before, 0.0) + kError) / radius);
+  return unseen * (unseen / (2 * radius) + slope);
+}
 
 }  // namespace
 
@@ -64,13 +81,20 @@ struct WayReturns::Placed {
   bool newest;
 };
 
-void WayReturns::add(Stamp stamp, Corridor corridor, const GridPoints& hits,
-                     const std::vector<float>& weights, const GridPoints& others,
-                     const PhantomCauses& causes) {
+void WayReturns::add(Stamp stamp, Corridor corridor, const std::vector<float>& unseen,
+                     const GridPoints& hits, const std::vector<float>& weights,
+                     const GridPoints& others, const PhantomCauses& causes) {
   scans_.erase(std::remove_if(scans_.begin(), scans_.end(),
                               [&](const Scan& scan) { return stamp - scan.stamp > kRemembered; }),
                scans_.end());
-  Scan scan{stamp, {}};
+  Scan scan{stamp, corridor.T_world_ego.translation(), {}};
+  double radius = kSharpest;
+  if (!scans_.empty()) {
+    const double way = (scan.vehicle - scans_.back().vehicle).norm();
+    step_ = std::min(way, kMostStep);
+    const double speed = way / std::max(stamp - scans_.back().stamp, 1e-3);
+    radius = std::max(radius, speed * speed / kLift);
+  }
   corridor.width += 2 * kBeside;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
   for (const GridPoints* points : {&hits, &others}) {
@@ -80,11 +104,16 @@ void WayReturns::add(Stamp stamp, Corridor corridor, const GridPoints& hits,
       const float weight = !hit || weights.empty() ? 1 : weights[i];
       if (weight <= 0) continue;
       const Vector3 place = (*points)[i], p = T_ego_world * place;
-      const double height = p.z() - corridor.roadAt(arcPlace(corridor, p.x(), p.y()).s);
+      const double s = arcPlace(corridor, p.x(), p.y()).s, height = p.z() - corridor.roadAt(s);
       if (!hit && (height < kRough || height > kLow)) continue;
       const bool sure = causes.at(place.head<2>(), stamp).likelier() <= 0;
+      const auto meter = static_cast<std::size_t>(std::max(s, 0.0));
+      const double since = meter < unseen.size() ? static_cast<double>(unseen[meter]) : 0;
+      const bool on_road =
+          hit && since > 0 &&
+          height < risesUnseen(since, corridor.roadAt(static_cast<double>(meter) - since), radius);
       if (hit || sure)
-        scan.returns.push_back({place, static_cast<float>(height), weight, hit, sure});
+        scan.returns.push_back({place, static_cast<float>(height), weight, hit, sure, on_road});
     }
   }
   scans_.push_back(std::move(scan));
@@ -93,11 +122,13 @@ void WayReturns::add(Stamp stamp, Corridor corridor, const GridPoints& hits,
 std::vector<WayReturns::Placed> WayReturns::placed(const Corridor& corridor, double recent) const {
   std::vector<Placed> all;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
+  const std::vector<Return>& now = scans_.back().returns;
+  const bool asks = std::any_of(now.begin(), now.end(), [](const Return& r) { return r.on_road; });
   for (const Scan& scan : scans_) {
     const bool newest = &scan == &scans_.back();
     const double end = newest ? corridor.max : std::min(recent, corridor.max);
     for (const Return& r : scan.returns) {
-      if (!newest && !r.sure) continue;
+      if (!newest && !r.sure && !asks) continue;  // they tell only what stands up
       const Vector3 p = T_ego_world * r.place;
       const ArcPlace at = arcPlace(corridor, p.x(), p.y());
       if (std::abs(at.d) > corridor.width / 2 || at.s < corridor.from || at.s > end) continue;
@@ -107,13 +138,17 @@ std::vector<WayReturns::Placed> WayReturns::placed(const Corridor& corridor, dou
   return all;
 }
 
-WayReturns::Found WayReturns::chained(const std::vector<Placed>& all, double least) {
+// A beam passes along a level surface by as much as the vehicle drives between two scans.
+WayReturns::Found WayReturns::chained(const std::vector<Placed>& all, double least) const {
   Found found;
-  double sum = 0, last = 0;
+  double sum = 0;
+  const Placed* last = nullptr;
   for (const Placed& r : all) {
     if (!r.of->sure) continue;
-    if (found.returns > 0 && r.at.s - last > kSurface) found = {}, sum = 0;
-    last = r.at.s;
+    const double apart = last ? r.at.s - last->at.s : 0;
+    const bool one_scan = last && last->newest && r.newest;
+    if (apart > kSurface + (one_scan ? 0 : step_)) found = {}, sum = 0;
+    last = &r;
     ++found.returns, sum += r.of->weight;
     if (found.at == nullptr && r.newest) found.at = &r;
     if (sum >= least && found.at != nullptr) return found;
@@ -134,21 +169,29 @@ WayReturns::Found WayReturns::together(const std::vector<Placed>& all, double le
   return {};
 }
 
+void WayReturns::keepWhatStandsUp(const Corridor& corridor, std::vector<Placed>& all) {
+  RoughPieces low(corridor), hits(corridor);
+  for (Placed& r : all) {
+    r.piece = low.pieceOf(r.at);
+    // Higher ones say nothing of the road: a bonnet, of which each scan hits a spot.
+    if (r.of->height <= static_cast<float>(kLow)) low.add(r.piece, r.of->height);
+    if (r.of->hit) hits.add(r.piece, static_cast<float>(r.of->place.z()));
+  }
+  const auto lies = [&](const Placed& r) {
+    if (r.of->hit) return r.of->on_road && !hits.standsUp(r.piece, -kUnbounded);
+    return !low.standsUp(r.piece, kUnderside);
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), lies), all.end());
+}
+
 ReturnObstacle WayReturns::nearest(const Corridor& corridor, double recent, double least) const {
   ReturnObstacle found;
   found.free.distance = corridor.max;
   if (scans_.empty()) return found;
   std::vector<Placed> all = placed(corridor, recent);
-  if (std::any_of(all.begin(), all.end(), [](const Placed& r) { return !r.of->hit; })) {
-    RoughPieces pieces(corridor);
-    for (Placed& r : all) {
-      r.piece = pieces.pieceOf(r.at);
-      // Higher ones say nothing of the road: a bonnet, of which each scan hits a spot.
-      if (r.of->height <= static_cast<float>(kLow)) pieces.add(r.piece, r.of->height);
-    }
-    const auto lies = [&](const Placed& r) { return !r.of->hit && !pieces.standsUp(r.piece); };
-    all.erase(std::remove_if(all.begin(), all.end(), lies), all.end());
-  }
+  if (std::any_of(all.begin(), all.end(),
+                  [](const Placed& r) { return !r.of->hit || r.of->on_road; }))
+    keepWhatStandsUp(corridor, all);
   std::stable_sort(all.begin(), all.end(),
                    [](const Placed& a, const Placed& b) { return a.at.s < b.at.s; });
   const Found chain = chained(all, least), window = together(all, least);

@@ -22,32 +22,37 @@ struct ReturnObstacle {
 class WayReturns {
  public:
   /// The newest scan's hits with their `weights` [0, 1] (empty: all 1), and as `others` the returns
-  /// that only clear. `corridor`: as driven at the scan, with its road. `causes`: of phantoms.
-  void add(Stamp stamp, Corridor corridor, const GridPoints& hits,
+  /// that only clear. `corridor`: as driven at the scan, with its road; `unseen` of it as by
+  /// RoadHeights::along(), empty: all is seen. `causes`: of phantoms.
+  void add(Stamp stamp, Corridor corridor, const std::vector<float>& unseen, const GridPoints& hits,
            const std::vector<float>& weights, const GridPoints& others,
            const PhantomCauses& causes);
 
   /// Nearest place in the corridor where returns together weigh `least`: hits of the newest scan
   /// within half a meter along the corridor, or returns where nothing makes phantoms, from one to
-  /// the next of which it is no farther than half a meter, one of them in the newest scan: up to
+  /// the next of which it is no farther than half a meter, and between scans no farther than that
+  /// and the way that the vehicle drove (1 m at most), one of them in the newest scan: up to
   /// `recent` [m] along the corridor those of half a second, beyond it those of the newest scan.
   /// Others than hits count where they stand up: where heights up to half a meter, within half a
   /// meter along the corridor and a quarter across it, differ by a tenth of a meter at least, which
-  /// those of a road do not, and the highest is above a car's underside. Not blocked: none before
+  /// those of a road do not, and the highest is above a car's underside. So do hits so far behind
+  /// the last road seen that the road itself may rise to them. Not blocked: none before
   /// corridor.max.
   ReturnObstacle nearest(const Corridor& corridor, double recent, double least) const;
 
-  void clear() { scans_.clear(); }
+  void clear() { scans_.clear(), step_ = 0; }
 
  private:
   struct Return {
     Vector3 place;         ///< [m] world
     float height, weight;  ///< [m] above Corridor::road, [0, 1]
     bool hit;
-    bool sure;  ///< nothing makes phantoms there
+    bool sure;     ///< nothing makes phantoms there
+    bool on_road;  ///< a hit that may be of the road
   };
   struct Scan {
     Stamp stamp;
+    Vector3 vehicle;  ///< [m] ego origin, world
     std::vector<Return> returns;
   };
   struct Placed;
@@ -55,11 +60,13 @@ class WayReturns {
     const Placed* at = nullptr;
     std::size_t returns = 0;
   };
-  static Found chained(const std::vector<Placed>& all, double least);
+  Found chained(const std::vector<Placed>& all, double least) const;
+  static void keepWhatStandsUp(const Corridor& corridor, std::vector<Placed>& all);
   static Found together(const std::vector<Placed>& all, double least);
   std::vector<Placed> placed(const Corridor& corridor, double recent) const;
 
   std::vector<Scan> scans_;  ///< of the last half second
+  double step_ = 0;          ///< [m] that the vehicle drove between the newest two
 };
 
 }  // namespace perception

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "libperception/core/Frames.h"
 #include "libperception/grid/beams/GridPoints.h"
 #include "libperception/grid/way/FreeDistance.h"
@@ -31,6 +33,19 @@ TEST(RoadHeights, AreLinearBetweenReturnsAndLevelBehindThem) {
     EXPECT_NEAR(corridor.roadAt(28), 3, 1e-6);
     EXPECT_NEAR(corridor.roadAt(100), 3, 1e-6);
   }
+}
+
+TEST(RoadHeights, SayHowFarBackTheRoadWasSeen) {
+  RoadHeights heights;
+  heights.add(10.5F, 0.2F, 0), heights.add(20.5F, 0.2F, 0);
+  std::vector<float> unseen;
+  heights.along(straight(false), &unseen);
+  ASSERT_EQ(unseen.size(), 32u);
+  EXPECT_EQ(unseen[8], 0) << "the vehicle stands on it";
+  EXPECT_EQ(unseen[10], 0);
+  EXPECT_EQ(unseen[14], 4);
+  EXPECT_EQ(unseen[20], 0);
+  EXPECT_EQ(unseen[31], 11);
 }
 
 TEST(RoadHeights, AreLevelWithoutReturns) {

@@ -32,8 +32,8 @@ using test::SpinningLidar;
 /// A vehicle on a road with a lidar (simulated), its ground and its safety grid.
 class HillDrive {
  public:
-  HillDrive(const RoadProfile& profile, bool reversed)
-      : road_(profile, reversed), speed_(profile.speed) {
+  HillDrive(const RoadProfile& profile, bool reversed, const SpinningLidar& lidar = {})
+      : road_(profile, reversed), speed_(profile.speed), lidar_(lidar) {
     lidar_.azimuth_step = radians(0.4);
     lidar_.fov = radians(60);
   }
@@ -135,6 +135,22 @@ std::vector<std::pair<int, bool>> bothWays() {
     for (const bool reversed : {false, true}) all.emplace_back(k, reversed);
   return all;
 }
+// Sixteen beams see the road at 33 m and again at 99 m, or where it rises.
+TEST(Highways, AreFreeForALidarOfFewBeams) {
+  SpinningLidar lidar;
+  lidar.beams = 16, lidar.lowest = radians(-15), lidar.highest = radians(15);
+  for (const double radius : {800, 1500, 3000}) {
+    RoadProfile profile;
+    profile.pieces = {{60, -.04}, {.06 * radius, .02}, {100, .02}};
+    profile.speed = 25;
+    HillDrive drive(profile, false, lidar);
+    for (double x = 0; x < drive.length() - 20; x += 5) {
+      const FreePath advice = drive.scanAt(x);
+      EXPECT_FALSE(advice.stop) << radius << ": " << x << " m, " << advice.distance;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(RoadProfiles, EveryRoad, testing::ValuesIn(bothWays()));
 
 }  // namespace

@@ -39,7 +39,7 @@ ReturnObstacle ofOneScan(const Corridor& corridor, const GridPoints& hits,
                          const std::vector<float>& weights, const GridPoints& others,
                          bool clear = true) {
   WayReturns way;
-  way.add(test::kStart, corridor, hits, weights, others, causesIn(clear));
+  way.add(test::kStart, corridor, {}, hits, weights, others, causesIn(clear));
   return way.nearest(corridor, kRecent, kTen);
 }
 bool blocks(const Corridor& corridor, const GridPoints& hits, const std::vector<float>& weights,
@@ -94,7 +94,7 @@ ReturnObstacle ofScans(const std::vector<int>& returns, bool clear, double speed
   WayReturns way;
   for (std::size_t k = 0; k < returns.size(); ++k) {
     const double t = 0.1 * static_cast<double>(k);
-    way.add(test::kStart + t, lane(), wallAt(x + speed * t, returns[k]), {}, kNone,
+    way.add(test::kStart + t, lane(), {}, wallAt(x + speed * t, returns[k]), {}, kNone,
             causesIn(clear));
   }
   return way.nearest(lane(), kRecent, kTen);
@@ -121,7 +121,7 @@ TEST(WayReturns, AWakeMattersWhereItIs) {
       wakes->add(car);
       PhantomCauses causes;
       causes.wakes = std::make_shared<WakeMap>(*wakes);
-      way.add(car.stamp, lane(), wallAt(20, 2), {}, kNone, causes);
+      way.add(car.stamp, lane(), {}, wallAt(20, 2), {}, kNone, causes);
     }
     return way.nearest(lane(), kRecent, kTen).free.blocked;
   };
@@ -159,7 +159,7 @@ TEST(WayReturns, SomeoneLyingIsSeenByOneRowAfterTheOther) {
     const double z = 0.24 - 0.06 * k;
     const GridPoints row = face(z, z);
     EXPECT_FALSE(blocks(lane(), kNone, {}, row));
-    way.add(test::kStart + 0.1 * k, lane(), kNone, {}, row, {});
+    way.add(test::kStart + 0.1 * k, lane(), {}, kNone, {}, row, {});
   }
   EXPECT_TRUE(way.nearest(lane(), kRecent, kTen).free.blocked);
 }
@@ -211,6 +211,45 @@ TEST(WayReturns, TheFootOfAnObstacleCountsWithIt) {
   EXPECT_FALSE(blocks(lane(), kNone, {}, foot));
   const std::vector<float> doubted(top.size(), 0);
   EXPECT_FALSE(blocks(lane(), top, doubted, foot));
+}
+
+/// The newest of scans 0.1 s apart, each a row of three returns 1 m high where a beam meets the
+/// upper side of a board 7 m ahead.
+ReturnObstacle alongABoard(double speed, int scans) {
+  WayReturns way;
+  Corridor corridor = lane();
+  for (int k = 0; k < scans; ++k) {
+    corridor.T_world_ego = makePose(0.1 * speed * k, 0, 0, 0);
+    GridPoints row;
+    for (const double y : {-0.05, 0.0, 0.05}) row.push_back({0.1 * speed * k + 7, y, 1});
+    way.add(test::kStart + 0.1 * k, corridor, {}, row, {}, kNone, {});
+  }
+  return way.nearest(corridor, kRecent, kTen);
+}
+
+TEST(WayReturns, ABeamMayPassAlongASurfaceAsFastAsTheVehicleDrives) {
+  EXPECT_TRUE(alongABoard(6, 4).free.blocked);
+  EXPECT_TRUE(alongABoard(10, 4).free.blocked);
+  EXPECT_FALSE(alongABoard(6, 3).free.blocked) << "nine returns";
+  EXPECT_FALSE(alongABoard(20, 5).free.blocked) << "that far apart they are of several things";
+}
+
+/// Rows of hits 12 m ahead, one a scan; the road was last seen as far before them.
+bool blocksBehind(double unseen, const std::vector<double>& heights) {
+  WayReturns way;
+  for (std::size_t k = 0; k < heights.size(); ++k)
+    way.add(test::kStart + 0.1 * static_cast<double>(k), lane(),
+            std::vector<float>(42, static_cast<float>(unseen)), face(heights[k], heights[k]), {},
+            kNone, {});
+  return way.nearest(lane(), kRecent, kTen).free.blocked;
+}
+
+// A lidar of few beams shows hills by one row of returns, far behind the last one on the road.
+TEST(WayReturns, WhereTheRoadMayRiseUnseenHitsHaveToStandUp) {
+  EXPECT_FALSE(blocksBehind(10, {0.8}));
+  EXPECT_FALSE(blocksBehind(10, {0.8, 0.83, 0.86}));
+  EXPECT_TRUE(blocksBehind(10, {0.8, 0.85, 0.91})) << "a beam that goes up a face";
+  EXPECT_TRUE(blocksBehind(5, {0.8})) << "the road was seen close before it";
 }
 
 }  // namespace
