@@ -14,8 +14,10 @@ void PointParams::visit(ParamVisitor& v) {
   v.boolean("only_objects", only_objects,
             "only returns that the scanner itself labels as object, if it labels returns");
   v.expert();
-  v.real("range_max", range_max, {5, 300}, "m",
-         "horizontal range beyond which returns are dropped");
+  v.real(
+      "range_max", range_max, {5, 300}, "m",
+      "horizontal range beyond which returns are dropped, but not where the vehicle could not stop "
+      "within it");
   v.real("vehicle_side", vehicle_side, {0, 5}, "m", "own vehicle to each side of the ego origin");
   v.real("vehicle_top", vehicle_top, {0, 6}, "m", "own vehicle above the ground");
   v.require(range_min < range_max, "range_max must be above 0.5 m");

@@ -154,8 +154,17 @@ LidarFrontEnd::LidarFrontEnd(const LidarParams& params, const ClassTable& classe
   }
 }
 
+PointParams LidarFrontEnd::pointsFor(const SensorFrame& frame) const {
+  PointParams points = params_.points;
+  if (!way_) return points;
+  const double end = std::max(points.vehicle_front, points.vehicle_rear);
+  const double sensor = frame.T_ego_sensor.translation().head<2>().norm();
+  points.range_max = std::max(points.range_max, way_(frame.ego.velocity.norm()) + end + sensor);
+  return points;
+}
+
 LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
-  EgoPoints points = usablePoints(frame, params_.points);
+  EgoPoints points = usablePoints(frame, pointsFor(frame));
   std::vector<float> height;
   GroundSurface surface(frame.ground, points, params_.surface, &height);
   LidarDetections found(std::move(points), std::move(height), std::move(surface));

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -90,6 +91,11 @@ class LidarFrontEnd final : public FrontEnd {
   LidarDetections detect(const SensorFrame& frame) const;
 
   const LidarParams& params() const { return params_; }
+  /// `way` [m] is what a vehicle of that speed [m/s] has to look at from its end on: returns as far
+  /// away are used, too, if it is farther than points.range_max.
+  void reachAsFarAs(std::function<double(double)> way) { way_ = std::move(way); }
+  /// Which returns of the frame are used.
+  PointParams pointsFor(const SensorFrame& frame) const;
   static std::vector<std::string> labels(const ClusterParams& clusters);
 
  protected:
@@ -104,6 +110,7 @@ class LidarFrontEnd final : public FrontEnd {
   ClassTable classes_;
   std::shared_ptr<const ClusterClassifier> classifier_;  ///< null: classes come from size
   std::shared_ptr<const FootprintModel> model_;
+  std::function<double(double)> way_;  ///< empty: none
 };
 
 /// Makes the front end from the sections [sensor.LABEL], [sensor.LABEL.class.NAME] and

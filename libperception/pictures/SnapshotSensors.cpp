@@ -155,12 +155,12 @@ const PipelineSetup::Sensor* SnapshotSensors::sensorOf(const std::string& label)
 }
 
 // Of the site's lidar of that label, else the defaults.
-SnapshotSensors::LidarSettings SnapshotSensors::settingsOf(const std::string& label) const {
-  const auto* sensor = sensorOf(label);
+SnapshotSensors::LidarSettings SnapshotSensors::settingsOf(const SensorFrame& frame) const {
+  const auto* sensor = sensorOf(frame.sensor);
   const auto* lidar =
       sensor ? dynamic_cast<const LidarFrontEnd*>(sensor->front_end.get()) : nullptr;
   if (!lidar) return {};
-  return {lidar->params().points, lidar->params().surface, lidar->params().obstacles};
+  return {lidar->pointsFor(frame), lidar->params().surface, lidar->params().obstacles};
 }
 
 void SnapshotSensors::take(SensorFrame frame) {
@@ -191,7 +191,7 @@ void SnapshotSensors::takeLidar(SensorFrame& frame) {
     lidar.air.add(lidar.weather->census(frame), frame.stamp);
     frame.causes.weather = lidar.air.state().notClear();
   }
-  const LidarSettings settings = settingsOf(frame.sensor);
+  const LidarSettings settings = settingsOf(frame);
   EgoPoints points = usablePoints(frame, settings.points);
   std::vector<float> heights;
   GroundSurface(frame.ground, points, settings.surface, &heights);

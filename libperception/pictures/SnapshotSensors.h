@@ -66,7 +66,7 @@ class SnapshotSensors {
     WeatherEstimator air;
     std::vector<ViewPoint> points;  ///< of the last scan
   };
-  /// Parameters for the returns of one lidar.
+  /// Parameters for the returns of one scan.
   struct LidarSettings {
     PointParams points;
     SurfaceParams surface;
@@ -76,7 +76,7 @@ class SnapshotSensors {
   void lookAhead(const std::string& log);
   std::optional<SensorFrame> frameOf(const mrpt::obs::CObservation& observation) const;
   const PipelineSetup::Sensor* sensorOf(const std::string& label) const;
-  LidarSettings settingsOf(const std::string& label) const;
+  LidarSettings settingsOf(const SensorFrame& frame) const;
   void take(SensorFrame frame);
   void takeLidar(SensorFrame& frame);
   void addMeasurements(const SensorFrame& frame, SceneView& view) const;

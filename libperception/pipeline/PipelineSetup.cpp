@@ -50,12 +50,17 @@ std::optional<SensorSet> readSensorSet(const std::string& text) {
 std::shared_ptr<const FrontEnd> makeFrontEnd(Config& config, const std::string& section,
                                              const std::string& label,
                                              const DetectionParams& params,
-                                             const ClassTable& classes) {
+                                             const PipelineSetup& s) {
   std::string known;
   for (const FrontEndRow& row : frontEnds()) {
     if (params.kind == row.kind) {
-      std::unique_ptr<FrontEnd> front_end = row.make(config, label, classes);
+      std::unique_ptr<FrontEnd> front_end = row.make(config, label, s.model.classes);
       if (front_end) front_end->scaleNoiseBy(params.noise_scale);
+      if (auto* lidar = dynamic_cast<LidarFrontEnd*>(front_end.get())) {
+        lidar->reachAsFarAs([stop = s.stop](double speed) {
+          return stoppingDistance(speed, 0, stop) + stop.margin;
+        });
+      }
       return front_end;
     }
     known += (known.empty() ? "" : ", ") + row.kind;
@@ -87,7 +92,7 @@ PipelineSetup::Sensor readSensor(Config& config, const std::string& section,
     config.fault(section, "merge_window", "must not be above [run] reorder_window");
   if (!sensor.scan.merge.empty() && sensor.params.pose)
     config.fault(section, "pose", "several scanners are merged: their poses come with the log");
-  sensor.front_end = makeFrontEnd(config, section, label, sensor.params, s.model.classes);
+  sensor.front_end = makeFrontEnd(config, section, label, sensor.params, s);
   const auto& without = s.run.without;
   const bool only_ground = sensor.scan.ground == ScanParams::Ground::kOnly;
   sensor.active = !only_ground && set.modalities.count(sensor.params.modality) > 0 &&
