@@ -218,17 +218,23 @@ std::string fileOfStem(const std::string& dir, const std::string& stem,
   return {};
 }
 
+std::optional<Pose3> poseFrom(const Vector3& position, const Eigen::Quaterniond& attitude) {
+  if (!(std::abs(attitude.norm() - 1) < 1e-2)) return {};
+  Pose3 pose = Pose3::Identity();
+  pose.linear() = attitude.normalized().toRotationMatrix();
+  pose.translation() = position;
+  return pose;
+}
+
 std::vector<StampedPose> readTumPoses(const std::string& path) {
   std::vector<StampedPose> poses;
   forEachRow(path, kSpaces, [&](const TextRow& row) {
     if (row.text(0).front() == '#') return;
     row.expect(row.size() == 8, "8: t x y z qx qy qz qw");
-    const Eigen::Quaterniond q(row.real(7), row.real(4), row.real(5), row.real(6));
-    if (std::abs(q.norm() - 1) > 1e-2) row.failLine("qx qy qz qw is no unit quaternion");
-    StampedPose& p = poses.emplace_back();
-    p.stamp = stampOfSeconds(row.text(0)).value_or(Stamp::fromSeconds(row.real(0)));
-    p.pose.linear() = q.normalized().toRotationMatrix();
-    p.pose.translation() = Vector3(row.real(1), row.real(2), row.real(3));
+    const auto pose = poseFrom({row.real(1), row.real(2), row.real(3)},
+                               {row.real(7), row.real(4), row.real(5), row.real(6)});
+    if (!pose) row.failLine("qx qy qz qw is no unit quaternion");
+    poses.push_back({stampOfSeconds(row.text(0)).value_or(Stamp::fromSeconds(row.real(0))), *pose});
   });
   if (poses.empty()) throw DataError(fmt::format("{}: no pose in it", path));
   return poses;

@@ -77,6 +77,10 @@ std::vector<FrameFile> frameFiles(const std::string& dir, const std::vector<std:
 std::string fileOfStem(const std::string& dir, const std::string& stem,
                        const std::vector<std::string>& endings);
 
+/// The pose of a position [m] and an attitude; empty unless the quaternion has unit length within
+/// the hundredth by which files round it.
+std::optional<Pose3> poseFrom(const Vector3& position, const Eigen::Quaterniond& attitude);
+
 /// A pose with its stamp. TUM format: t x y z qx qy qz qw; lines with # are skipped.
 struct StampedPose {
   Stamp stamp;

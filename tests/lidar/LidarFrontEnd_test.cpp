@@ -82,17 +82,6 @@ TEST(LidarFrontEnd, WhatBeginsBeyondTheRangeOfTheSensorIsNotMeasured) {
   }
 }
 
-TEST(LidarFrontEnd, ReturnsAreUsedAsFarAsTheVehicleNeedsThemToStop) {
-  LidarFrontEnd lidar = frontEnd();
-  SensorFrame frame = castScan(carAndPerson(), SpinningLidar());
-  frame.ego.velocity = {15, 20};
-  EXPECT_EQ(lidar.pointsFor(frame).range_max, 80);
-  lidar.reachAsFarAs([](double speed) { return 4 * speed; });
-  EXPECT_NEAR(lidar.pointsFor(frame).range_max, 103.8, 1e-9) << "from the vehicle's front";
-  frame.ego.velocity = {10, 0};
-  EXPECT_EQ(lidar.pointsFor(frame).range_max, 80);
-}
-
 TEST(LidarFrontEnd, MeasuresTheOutlineWithinItsNoise) {
   const SolidScene scene = carAndPerson();
   const SensorFrame frame = castScan(scene, SpinningLidar());

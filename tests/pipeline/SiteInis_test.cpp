@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "libperception/core/Error.h"
+#include "libperception/grid/way/StopAdvice.h"
+#include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/pipeline/Pipeline.h"
 
 namespace perception {
@@ -94,6 +96,25 @@ TEST(SiteInis, PlacesMustBeKnownToHalfTheSizeOnlyWhereALidarTakesPart) {
   EXPECT_EQ(placeWithin("L"), 0.5);
   EXPECT_EQ(placeWithin("C+L"), 0.5);
   EXPECT_EQ(placeWithin("C"), 0);
+}
+
+TEST(SiteInis, LidarReturnsAreUsedAsFarAsTheVehicleNeedsThemToStop) {
+  Config config = Config::fromFile(std::string(PERCEPTION_SOURCE_DIR) + "/ini/kitti.ini");
+  const PipelineSetup setup = PipelineSetup::read(config);
+  const auto lidar = std::find_if(setup.sensors.begin(), setup.sensors.end(),
+                                  [](const auto& s) { return s.label == "LIDAR_TOP"; });
+  ASSERT_NE(lidar, setup.sensors.end());
+  const auto& front_end = dynamic_cast<const LidarFrontEnd&>(*lidar->front_end);
+  const auto range = [&](double speed) {
+    SensorFrame frame;
+    frame.ego.velocity = {0, speed};
+    return front_end.pointsFor(frame).range_max;
+  };
+  EXPECT_EQ(range(20), 80);
+  const double end =
+      std::max(front_end.params().points.vehicle_front, front_end.params().points.vehicle_rear);
+  EXPECT_NEAR(range(30), stoppingDistance(30, 0, setup.stop) + setup.stop.margin + end, 1e-9);
+  EXPECT_GT(range(30), 100);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <liblzf/lzf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -193,12 +192,8 @@ std::optional<Pose3> pcdViewpoint(const std::string& path, const std::string& by
     if (row.size() != 8 || row.text(0) != "VIEWPOINT") continue;
     for (std::size_t i = 1; i < row.size(); ++i)
       if (!row.isNumber(i)) return {};
-    const Eigen::Quaterniond q(row.real(4), row.real(5), row.real(6), row.real(7));
-    if (std::abs(q.norm() - 1) > 1e-2) return {};
-    Pose3 pose = Pose3::Identity();
-    pose.linear() = q.normalized().toRotationMatrix();
-    pose.translation() = Vector3(row.real(1), row.real(2), row.real(3));
-    return pose;
+    return poseFrom({row.real(1), row.real(2), row.real(3)},
+                    {row.real(4), row.real(5), row.real(6), row.real(7)});
   }
   return {};
 }

@@ -32,14 +32,12 @@ constexpr double kVlp32Range = 220;
 /// A pose of columns qw qx qy qz and a place of three columns.
 Pose3 poseOf(const CsvTable& table, std::size_t row, const std::array<const char*, 3>& place) {
   const auto at = [&](const char* column) { return table.real(row, table.column(column)); };
-  const Eigen::Quaterniond q(at("qw"), at("qx"), at("qy"), at("qz"));
-  if (std::abs(q.norm() - 1) > 1e-2)
+  const auto pose = poseFrom({at(place[0]), at(place[1]), at(place[2])},
+                             {at("qw"), at("qx"), at("qy"), at("qz")});
+  if (!pose)
     throw DataError(
         fmt::format("{}:{}: qw to qz: no unit quaternion", table.name(), table.lineOf(row)));
-  Pose3 pose = Pose3::Identity();
-  pose.linear() = q.normalized().toRotationMatrix();
-  pose.translation() = Vector3(at(place[0]), at(place[1]), at(place[2]));
-  return pose;
+  return *pose;
 }
 
 /// A line of scans.csv.

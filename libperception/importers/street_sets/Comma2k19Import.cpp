@@ -193,21 +193,18 @@ void Comma2k19Importer::readPoses(ImportLog& log) {
   const Pose3 T_ego_device = makePose(0, 0, height_, radians(yaw_), -radians(up_)) * T_device_ego;
   Pose3 T_enu_ecef = Pose3::Identity();
   for (std::size_t i = 0; i < poses.csv.rows(); ++i) {
-    Pose3 T_ecef_device = Pose3::Identity();
-    T_ecef_device.translation() =
-        Vector3(poses.at(i, "x_m"), poses.at(i, "y_m"), poses.at(i, "z_m"));
-    const Eigen::Quaterniond q(poses.at(i, "q0"), poses.at(i, "q1"), poses.at(i, "q2"),
-                               poses.at(i, "q3"));
-    if (std::abs(q.norm() - 1) > 1e-2)
+    const auto T_ecef_device =
+        poseFrom({poses.at(i, "x_m"), poses.at(i, "y_m"), poses.at(i, "z_m")},
+                 {poses.at(i, "q0"), poses.at(i, "q1"), poses.at(i, "q2"), poses.at(i, "q3")});
+    if (!T_ecef_device)
       throw DataError(fmt::format("{}:{}: q0 to q3: no unit quaternion", poses.csv.name(),
                                   poses.csv.lineOf(i)));
-    T_ecef_device.linear() = q.normalized().toRotationMatrix();
     if (i == 0) {  // world: east, north, up on the road under the first pose
-      T_enu_ecef = enuAt(T_ecef_device.translation()).inverse();
+      T_enu_ecef = enuAt(T_ecef_device->translation()).inverse();
       T_enu_ecef.pretranslate(Vector3(0, 0, height_));
     }
     if (!inside(poses.time(i))) continue;
-    const Pose3 T_world_ego = T_enu_ecef * T_ecef_device * T_ego_device.inverse();
+    const Pose3 T_world_ego = T_enu_ecef * *T_ecef_device * T_ego_device.inverse();
     const Stamp stamp = stampOf(poses.time(i));
     log.at(stamp, [stamp, T_world_ego, &log] { log.ego(stamp, T_world_ego); });
   }

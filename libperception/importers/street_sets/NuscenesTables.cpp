@@ -56,12 +56,9 @@ class NuscenesRow {
   }
   Pose3 pose() const {
     const auto t = numbers("translation", 3), r = numbers("rotation", 4);
-    const Eigen::Quaterniond q(r[0], r[1], r[2], r[3]);
-    if (!(std::abs(q.norm() - 1) < 1e-2)) fail("rotation", "a unit quaternion w, x, y, z");
-    Pose3 pose = Pose3::Identity();
-    pose.linear() = q.normalized().toRotationMatrix();
-    pose.translation() = Vector3(t[0], t[1], t[2]);
-    return pose;
+    const auto pose = poseFrom({t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]});
+    if (!pose) fail("rotation", "a unit quaternion w, x, y, z");
+    return *pose;
   }
   [[noreturn]] void fail(const char* key, const std::string& expected) const {
     throw DataError(fmt::format("{}: row {}: {}: expected {}", path_, number_, key, expected));

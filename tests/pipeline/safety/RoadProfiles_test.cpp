@@ -135,6 +135,8 @@ std::vector<std::pair<int, bool>> bothWays() {
     for (const bool reversed : {false, true}) all.emplace_back(k, reversed);
   return all;
 }
+INSTANTIATE_TEST_SUITE_P(RoadProfiles, EveryRoad, testing::ValuesIn(bothWays()));
+
 // Sixteen beams see the road at 33 m and again at 99 m, or where it rises.
 TEST(Highways, AreFreeForALidarOfFewBeams) {
   SpinningLidar lidar;
@@ -150,8 +152,6 @@ TEST(Highways, AreFreeForALidarOfFewBeams) {
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(RoadProfiles, EveryRoad, testing::ValuesIn(bothWays()));
 
 }  // namespace
 }  // namespace perception
