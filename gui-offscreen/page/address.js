@@ -41,7 +41,8 @@ export class Address {
   }
 
   go() {
-    if (location.hash === this.written) return;
+    if (location.hash === this.known) return;
+    this.known = location.hash;
     const { viewer } = this, { t, id, of, faults } = readAddress(viewer);
     viewer.say(faults.length ? `The address cannot be followed: ${faults.join("; ")}. Shown from the start.` : "");
     if (faults.length) {
@@ -52,17 +53,17 @@ export class Address {
     if (id !== null || location.hash) viewer.choose(id, t === undefined, of);
   }
 
-  // Not while it plays: browsers count the changes.
+  // Not while it plays, since browsers count the changes, and not over an address that was typed and is yet to be followed.
   write() {
     this.due ??= setTimeout(() => {
       this.due = null;
       const { viewer } = this;
-      if (viewer.playing) return;
+      if (viewer.playing || location.hash !== this.known) return;
       const parts = [`t=${+viewer.t.toFixed(2)}`];
       if (viewer.id !== null) parts.push(`id=${viewer.id}`);
       if (viewer.id !== null && viewer.of) parts.push("run=b");
-      this.written = "#" + parts.join("&");
-      if (location.hash !== this.written) history.replaceState(null, "", this.written);
+      this.known = "#" + parts.join("&");
+      if (location.hash !== this.known) history.replaceState(null, "", this.known);
     }, OFTEN);
   }
 }

@@ -46,6 +46,22 @@ TEST_F(OwnRunPage, AWrongAddressIsToldAndOpensAtTheStart) {
   EXPECT_NE(text(".say").find("t=99"), std::string::npos) << text(".say");
 }
 
+TEST_F(OwnRunPage, AnAddressTypedWhileAnotherIsAboutToBeWrittenIsFollowed) {
+  value("perceptionViewers[0].seek(2)");
+  browser_->waitFor("location.hash === '#t=2'");
+  // The page writes the new instant a little later, here after the address and before its event.
+  value(R"((() => {
+    const wait = window.setTimeout, due = [];
+    window.setTimeout = (write) => due.push(write);
+    perceptionViewers[0].seek(1);
+    window.setTimeout = wait;
+    location.hash = '#t=soon';
+    for (const write of due) write();
+    return due.length;
+  })())");
+  browser_->waitFor("document.querySelector('.say').textContent.includes('t=soon')");
+}
+
 TEST_F(OwnRunPage, LayersAndLookAreRemembered) {
   value("document.querySelector('input[name=points]').click()");
   const std::string before = value("document.documentElement.dataset.look");
