@@ -216,7 +216,7 @@ makeCommaLocale() {
   [[ -d $LOCPATH/de_DE.UTF-8 ]] || localedef -i de_DE -f UTF-8 "$LOCPATH/de_DE.UTF-8" || true
 }
 
-# runTests PRESET [ctest arguments]: remembers the closing lines and skipped tests; false when a test failed
+# runTests PRESET [ctest arguments]: remembers the closing lines, failed and skipped tests; false when a test failed
 runTests() {
   local preset=$1 folder=$2 code=0
   shift 2
@@ -224,6 +224,8 @@ runTests() {
   ctest --preset "$preset" -j "$(jobs)" "$@" | tee "$scratch" || code=$?
   closing+="$preset: $(grep -E 'tests? (passed|failed)' "$scratch" || true)"$'\n'
   closing+="$(grep -E '^Total Test time' "$scratch" || true)"$'\n'
+  # A log of CI may show only its end.
+  failures+=$(grep -haE '^\[  FAILED  \] [^ ]+(, | \()|^\s+[0-9]+ - .*\(' "$scratch" | sed "s/^ */  $preset: /" || true)$'\n'
   # GoogleTest says "file:line: Skipped" and the reason in the next line.
   skipped+=$(grep -hA1 ': Skipped$' "$folder/Testing/Temporary/LastTest.log" | grep -v '^--$' |
     sed "s|^$PWD/||" | paste -d ' ' - - | sed "s/^/  /" || true)$'\n'
@@ -266,7 +268,7 @@ checkHabits() {
 tests() {
   installPackages "${packages[@]}" "${test_packages[@]}" "${style_packages[@]}"
   makeCommaLocale
-  closing="" skipped=""
+  closing="" skipped="" failures=""
   local failed=0
   checked format checkFormat || failed=1
   build release ON "16 minutes"
@@ -287,6 +289,10 @@ sanitized() {
 closingLines() {
   say "Skipped tests and why"
   printf '%s' "$skipped" | sort -u | sed '/^ *$/d'
+  if [[ ${failures//$'\n'} ]]; then
+    say "Failed tests"
+    printf '%s' "$failures" | LC_ALL=C sort -u | sed '/^ *$/d'
+  fi
   say "Closing lines"
   printf '%s' "$closing"
 }
@@ -296,7 +302,7 @@ closingLines() {
 sanitize() {
   installPackages "${packages[@]}" "${test_packages[@]}"
   makeCommaLocale
-  closing="" skipped=""
+  closing="" skipped="" failures=""
   local failed=0 modules
   mapfile -t modules < <(cd tests && find . -mindepth 2 \( -name '*_test.cpp' -o -name '*_test.py' \) | cut -d/ -f2 | LC_ALL=C sort -u |
     grep -vxE 'architecture|faults|studies')

@@ -69,7 +69,12 @@ bareRemove() {
   [[ -n ${bare_root:-} ]] || return 0
   local part
   for part in dev/pts dev/shm sys proc; do umount -l "$bare_root/$part" 2>/dev/null || true; done
-  # Nothing of this machine is deleted through a mount that stayed.
+  # Nothing of this machine is deleted through a mount that stayed. rm's --one-file-system does not see a folder that is bound there
+  # from the same file system.
+  if awk -v root="$bare_root/" 'index($5, root) == 1 { found = 1 } END { exit !found }' /proc/self/mountinfo; then
+    echo "bare system: something is still mounted below $bare_root, which therefore stays" >&2
+    return 1
+  fi
   rm -rf --one-file-system "$bare_root"
 }
 
