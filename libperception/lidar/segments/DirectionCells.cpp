@@ -59,7 +59,7 @@ void DirectionCells::placeAll(const float* dx, const float* dy, const float* dz,
 
 DirectionCells::DirectionCells(const EgoPoints& points)
     : nearest_(static_cast<std::size_t>(kColumns) * kRows, Cell{}.nearest),
-      farthest_(nearest_.size(), Cell{}.farthest) {
+      farthest_(nearest_.size() + kReadBeyond, Cell{}.farthest) {
   const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
              sz = static_cast<float>(points.sensor.z());
   constexpr std::size_t kBlock = 512;  // points that fit in the L1 cache

@@ -30,9 +30,9 @@ class DirectionCells {
   /// Directions of offsets from the sensor [m]; elevations beyond the rows are in the outermost.
   static void placeAll(const float* dx, const float* dy, const float* dz, std::size_t count,
                        Place* places);
-  /// Whether all places beside it are cells that lie row by row, without wrapping around.
+  /// Whether all places up to two beside it are cells that lie row by row, without wrapping around.
   static bool isWithin(const Place& p) {
-    return p.row > 0 && p.row < kRows - 1 && p.column > 0 && p.column < kColumns - 1;
+    return p.row > 1 && p.row < kRows - 2 && p.column > 1 && p.column < kColumns - 2;
   }
   /// Columns wrap around; rows beyond the cells are empty.
   Cell at(int column, int row) const {
@@ -41,10 +41,12 @@ class DirectionCells {
     const std::size_t i = indexOf(column, row);
     return {nearest_[i], farthest_[i]};
   }
-  /// The farthest ranges [m] of a cell and those after it in its row; 0: no return.
+  /// The farthest ranges [m] of a cell and those after it in its row; 0: no return. Eight may be
+  /// read, of which those beyond the row's end belong to other directions.
   const float* farthestFrom(int column, int row) const { return &farthest_[indexOf(column, row)]; }
 
  private:
+  static constexpr std::size_t kReadBeyond = 8;  ///< cells after the last, without return
   static std::size_t indexOf(int column, int row) {
     return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "libperception/measurement/frames/PlacedReturns.h"
 #include "libperception/simd/Vector8.h"
@@ -16,9 +17,13 @@ namespace {
 constexpr float kBend = 0.3f;        // [m] in range, of a surface from cell to cell
 constexpr int kLeastCells = 4;       // about a return that tell
 constexpr float kLeastSolid = 0.3f;  // of these: the corner of a surface fills four in nine
-constexpr int kLeastInRow = 3;       // the same where beams are far apart: one row of cells
-constexpr float kGrazing = 0.05f;    // [-] of the range: a cell of 0.4 deg on a side at 8 deg
 constexpr double kMostLoose = 0.5;   // of a cluster
+// What tells a surface from flakes.
+constexpr int kLeastInRow = 3;     // cells that tell; where beams are far apart: one row
+constexpr float kGrazing = 0.05f;  // [-] of the range: a cell of 0.4 deg on a side at 8 deg
+// The same among flakes: a surface is smooth and 0.24 m wide, a cloud of flakes has depth.
+constexpr float kSmooth = 0.1f;          // [m] in range
+constexpr float kSmoothGrazing = 0.02f;  // [-] of the range: a side at 20 deg
 
 /// Cells of direction about a return.
 struct CellsAbout {
@@ -29,43 +34,48 @@ struct CellsAbout {
   }
 };
 
-/// Of cells whose farthest range is `least` [m] or more those up to `behind` [m] and those beyond,
-/// by rows of four of which the last does not count. The place is not at the border.
-CellsAbout cellsWithin(const DirectionCells& cells, const DirectionCells::Place& place, float least,
-                       float behind) {
-  Int4 told{}, passed{};  // numbers below zero
-  for (int row = place.row - 1; row <= place.row + 1; ++row) {
-    const auto farthest = load<Float4>(cells.farthestFrom(place.column - 1, row));
-    const Int4 tells = (farthest != 0.0f) & (farthest >= least);
-    told += tells, passed += tells & (farthest > behind);
+/// What counts about a return: cells whose farthest range is `least` [m] or more, as solid those up
+/// to `behind` [m]. What ends nearer hides what it would tell.
+struct Shell {
+  float least, behind;
+};
+
+/// Of the cells up to `around` rows and columns away; the place is not at the border.
+template <int around>
+CellsAbout cellsWithin(const DirectionCells& cells, const DirectionCells::Place& place,
+                       const Shell& shell) {
+  using Float = std::conditional_t<around == 1, Float4, Float8>;
+  using Int = IntsOf<Float>;
+  Int told{}, passed{};  // numbers below zero
+  for (int row = place.row - around; row <= place.row + around; ++row) {
+    const auto farthest = load<Float>(cells.farthestFrom(place.column - around, row));
+    const Int tells = (farthest != 0.0f) & (farthest >= shell.least);
+    told += tells, passed += tells & (farthest > shell.behind);
   }
-  const int all = -(told[0] + told[1] + told[2]), gone = -(passed[0] + passed[1] + passed[2]);
+  int all = 0, gone = 0;
+  for (int lane = 0; lane <= 2 * around; ++lane) all -= told[lane], gone -= passed[lane];
   return {all - gone, gone};
 }
 
-/// About a return at `range` [m]. What ends nearer is solid: beside a return on a surface seen at a
-/// grazing angle one side is nearer, one farther; but by more than `nearer` [m] it hides what it
-/// would tell.
-CellsAbout cellsAbout(const DirectionCells& cells, const DirectionCells::Place& place, float range,
-                      float nearer) {
-  const float least = range - nearer, behind = range + kBend;
-  if (DirectionCells::isWithin(place)) return cellsWithin(cells, place, least, behind);
+CellsAbout cellsAbout(const DirectionCells& cells, const DirectionCells::Place& place,
+                      const Shell& shell, int around) {
+  if (DirectionCells::isWithin(place)) {
+    return around == 1 ? cellsWithin<1>(cells, place, shell) : cellsWithin<2>(cells, place, shell);
+  }
   CellsAbout about;
-  for (int row = place.row - 1; row <= place.row + 1; ++row) {
-    for (int column = place.column - 1; column <= place.column + 1; ++column) {
+  for (int row = place.row - around; row <= place.row + around; ++row) {
+    for (int column = place.column - around; column <= place.column + around; ++column) {
       const DirectionCells::Cell cell = cells.at(column, row);
-      if (cell.empty() || cell.farthest < least) continue;
-      ++(cell.farthest > behind ? about.passed : about.solid);
+      if (cell.empty() || cell.farthest < shell.least) continue;
+      ++(cell.farthest > shell.behind ? about.passed : about.solid);
     }
   }
   return about;
 }
 
-/// Calls `use` with each of the points and what is about it; `slope` [-]: of a surface, by which
-/// what is beside a return may be nearer.
+/// Calls `use` with the number of each of the points, its place and its range [m].
 template <class Use>
-void forCellsAbout(const EgoPoints& all, const DirectionCells& cells,
-                   const std::vector<std::uint32_t>& points, float slope, const Use& use) {
+void forPlaces(const EgoPoints& all, const std::vector<std::uint32_t>& points, const Use& use) {
   const auto sx = static_cast<float>(all.sensor.x()), sy = static_cast<float>(all.sensor.y()),
              sz = static_cast<float>(all.sensor.z());
   constexpr std::size_t kBlock = 256;  // points that fit in the L1 cache
@@ -80,8 +90,7 @@ void forCellsAbout(const EgoPoints& all, const DirectionCells& cells,
     DirectionCells::placeAll(dx.data(), dy.data(), dz.data(), count, place.data());
     for (std::size_t k = 0; k < count; ++k) {
       const float range = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
-      use(static_cast<std::uint32_t>(first + k),
-          cellsAbout(cells, place[k], range, kBend + slope * range));
+      use(static_cast<std::uint32_t>(first + k), place[k], range);
     }
   }
 }
@@ -91,7 +100,12 @@ void forCellsAbout(const EgoPoints& all, const DirectionCells& cells,
 std::vector<float> solidShares(const EgoPoints& all, const DirectionCells& cells,
                                const std::vector<std::uint32_t>& points) {
   std::vector<float> shares(points.size(), PlacedReturns::kFewDirections);
-  forCellsAbout(all, cells, points, kGrazing, [&](std::uint32_t k, const CellsAbout& about) {
+  forPlaces(all, points, [&](std::uint32_t k, const DirectionCells::Place& place, float range) {
+    const bool among = range < PlacedReturns::kFlakesWithin;
+    const float bend = among ? kSmooth : kBend, grazing = among ? kSmoothGrazing : kGrazing;
+    const Shell shell{range - bend - grazing * range, range + bend};
+    const int around = among ? 2 : 1;
+    const CellsAbout about = cellsAbout(cells, place, shell, around);
     const int told = about.solid + about.passed;
     if (told >= kLeastInRow) shares[k] = static_cast<float>(about.solid) / static_cast<float>(told);
   });
@@ -102,10 +116,10 @@ std::vector<std::uint32_t> surfaceReturns(const EgoPoints& all, const DirectionC
                                           const std::vector<std::uint32_t>& points) {
   std::vector<std::uint32_t> kept;
   kept.reserve(points.size());
-  forCellsAbout(all, cells, points, std::numeric_limits<float>::infinity(),
-                [&](std::uint32_t k, const CellsAbout& about) {
-                  if (!about.loose()) kept.push_back(k);
-                });
+  forPlaces(all, points, [&](std::uint32_t k, const DirectionCells::Place& place, float range) {
+    const Shell shell{-std::numeric_limits<float>::infinity(), range + kBend};
+    if (!cellsAbout(cells, place, shell, 1).loose()) kept.push_back(k);
+  });
   const auto count = static_cast<double>(points.size());
   if (count - static_cast<double>(kept.size()) <= kMostLoose * count) return kept;
   kept.resize(points.size());

@@ -15,7 +15,8 @@ std::vector<std::uint32_t> surfaceReturns(const EgoPoints& all, const DirectionC
                                           const std::vector<std::uint32_t>& points);
 
 /// Of each of `points` the share of the directions about it that end at its range, as
-/// PlacedReturns::solid; those that end well before it tell nothing.
+/// PlacedReturns::solid; those that end well before it tell nothing. Up to
+/// PlacedReturns::kFlakesWithin these are 25, beyond it nine; method.md 8.4.
 std::vector<float> solidShares(const EgoPoints& all, const DirectionCells& cells,
                                const std::vector<std::uint32_t>& points);
 

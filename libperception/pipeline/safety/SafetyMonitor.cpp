@@ -25,8 +25,9 @@ constexpr double kCarHeight = 1.7;  // [m] of a vehicle whose height is not give
 constexpr float kDoubted = 0.5F;    // of a return: more likely a phantom than not
 constexpr double kHardly = 0.05;    // doubt that needs no cause, for it decides nothing (assumed)
 /// Share of the directions about a return that end there from which it is of a solid surface, and
-/// that from which it may be of one: the corner of a surface fills four in nine (assumed).
-constexpr float kWall = 0.75F, kPerhapsSurface = 0.4F;
+/// that from which it may be of one: the corner of a surface fills four in nine, among flakes an
+/// edge 15 in 25 (assumed).
+constexpr float kWall = 0.75F, kPerhapsSurface = 0.4F, kPerhapsAmongFlakes = 0.55F;
 /// The same in a wake, whose cloud ends most directions, too: there it has to be seen twice.
 constexpr float kWallInWake = 0.9F;
 constexpr double kFresh = 0.5;  // [s] after which a scan says nothing of the way ahead; assumed
@@ -87,10 +88,16 @@ class Doubter {
     obstacles.doubted.push_back(doubt >= kDoubted);
     if (caused_)
       obstacles.surface.push_back(dense < 1 && trust > 0 &&
-                                  solid >= (in_wake ? kWallInWake : kPerhapsSurface));
+                                  solid >= (in_wake ? kWallInWake : perhapsSurface(i)));
   }
 
  private:
+  float perhapsSurface(std::size_t i) const {
+    const Vector3 place(returns_.x[i], returns_.y[i], returns_.z[i]);
+    const double range = (place - frame_.T_ego_sensor.translation()).norm();
+    return range < PlacedReturns::kFlakesWithin ? kPerhapsAmongFlakes : kPerhapsSurface;
+  }
+
   /// What the sensor itself says: a mirror image, rain, dirt.
   float verdictOn(std::size_t i) const {
     const std::uint32_t source = returns_.source[i];

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 namespace perception {
 namespace {
@@ -84,6 +86,73 @@ TEST(LooseReturns, AClusterOfMoreThanHalfLooseOnesStaysWhole) {
   std::vector<std::uint32_t> whole(plume.size());
   std::iota(whole.begin(), whole.end(), 0u);
   EXPECT_EQ(surfaceReturns(all, DirectionCells(all), plume), whole);
+}
+
+/// The same rear, `range` [m] away; in front of it every fourth beam ends on a flake from 4 m on.
+EgoPoints rearInSnow(double range, std::vector<std::uint32_t>* flakes) {
+  EgoPoints all = rearSeen(0);
+  std::minstd_rand random(1);
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    const bool flake = random() % 4 == 0;
+    const auto to = static_cast<float>(flake ? 4 + 1e-3 * (random() % 5000) : range);
+    const float scale = to / static_cast<float>(kRear);
+    all.x[i] *= scale, all.y[i] *= scale;
+    all.z[i] = static_cast<float>(all.sensor.z()) +
+               (all.z[i] - static_cast<float>(all.sensor.z())) * scale;
+    if (flake) flakes->push_back(i);
+  }
+  return all;
+}
+
+double shareAbove(const std::vector<float>& shares, float least) {
+  const auto above =
+      std::count_if(shares.begin(), shares.end(), [least](float s) { return s >= least; });
+  return static_cast<double>(above) / static_cast<double>(shares.size());
+}
+
+TEST(SolidShares, OfASurfaceAlmostEveryDirectionEndsThere) {
+  const EgoPoints all = rearSeen(0);
+  EXPECT_EQ(shareAbove(solidShares(all, DirectionCells(all), indicesOf(all)), 0.99F), 1);
+}
+
+TEST(SolidShares, OfFlakesBeforeASurfaceFewDo) {
+  std::vector<std::uint32_t> flakes;
+  const EgoPoints all = rearInSnow(20, &flakes);
+  ASSERT_GT(flakes.size(), 150u);
+  EXPECT_EQ(shareAbove(solidShares(all, DirectionCells(all), flakes), 0.55F), 0);
+}
+
+TEST(SolidShares, OfASurfaceBehindFlakesMostStillDo) {
+  std::vector<std::uint32_t> flakes, surface;
+  const EgoPoints all = rearInSnow(20, &flakes);
+  for (const std::uint32_t i : indicesOf(all))
+    if (!std::binary_search(flakes.begin(), flakes.end(), i)) surface.push_back(i);
+  EXPECT_EQ(shareAbove(solidShares(all, DirectionCells(all), surface), 0.75F), 1);
+}
+
+TEST(SolidShares, FlakesAreNoSurfaceWhereNothingIsBehindThem) {
+  std::vector<std::uint32_t> flakes;
+  const EgoPoints all = rearInSnow(20, &flakes);
+  EgoPoints sky;  // as of beams above the horizon
+  sky.sensor = all.sensor;
+  for (const std::uint32_t i : flakes) {
+    sky.x.push_back(all.x[i]), sky.y.push_back(all.y[i]), sky.z.push_back(all.z[i]);
+  }
+  EXPECT_LT(shareAbove(solidShares(sky, DirectionCells(sky), indicesOf(sky)), 0.55F), 0.1);
+}
+
+TEST(SolidShares, APersonAtTheEdgeOfTheCellsIsLookedAt) {
+  EgoPoints all;
+  all.sensor = Vector3(0, 0, 1.7);
+  for (int row = 0; row < 20; ++row) {  // steeply above, where the circle of the columns closes
+    for (int column = -10; column < 10; ++column) {
+      const double azimuth = kPi + column * kBeam, elevation = radians(26) + row * kBeam;
+      all.x.push_back(static_cast<float>(5 * std::cos(elevation) * std::cos(azimuth)));
+      all.y.push_back(static_cast<float>(5 * std::cos(elevation) * std::sin(azimuth)));
+      all.z.push_back(static_cast<float>(1.7 + 5 * std::sin(elevation)));
+    }
+  }
+  EXPECT_EQ(shareAbove(solidShares(all, DirectionCells(all), indicesOf(all)), 0.99F), 1);
 }
 
 }  // namespace

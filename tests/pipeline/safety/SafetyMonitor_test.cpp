@@ -163,6 +163,17 @@ TEST(SafetyMonitor, InWeatherASurfaceCountsInTheSecondScan) {
   EXPECT_GT(path.overruled, 10u);
 }
 
+TEST(SafetyMonitor, AmongFlakesAnEdgeCountsInTheSecondScanAndAClumpDoesNot) {
+  for (const float share : {0.5F, 0.6F}) {
+    const PathAhead path = after(3, 1, [&](Scan& scan) {
+      scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+      scan.solid(share);
+      for (float& x : scan.returns.x) x -= 12;
+    });
+    EXPECT_EQ(path.free.blocked, share == 0.6F) << "dense flakes hit a place again by chance";
+  }
+}
+
 TEST(SafetyMonitor, InWeatherWhatIsSolidAsAWallCountsAtOnce) {
   const auto wall = [](Scan& scan) {
     scan.returns.phantom.assign(scan.returns.size(), 0.99F);
