@@ -16,7 +16,7 @@ foreach(USER ${USERS})
   names(NEEDED --undefined-only ${USER})
   foreach(NAME ${NEEDED})
     if(NAME IN_LIST THERE AND NOT NAME IN_LIST HERE)
-      message(FATAL_ERROR "${USER} needs ${NAME}, which libperception/app/LateImageCodecs.cpp lacks: "
+      message(FATAL_ERROR "${USER} needs ${NAME}, which libperception/pictures/LateImageCodecs.cpp lacks: "
                           "cmake -DPERCEPTION_LATE_IMAGE_CODECS=OFF does without")
     endif()
   endforeach()

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "libperception/app/Programs.h"
-#include "libperception/app/StudyFolder.h"
 #include "libperception/core/GroundTruth.h"
+#include "libperception/pictures/ReportFolders.h"
 #include "libperception/pipeline/input/LogRecorder.h"
 #include "libperception/sensors/observations/CObservationObjectDetections.h"
 #include "libperception/sensors/observations/Conversions.h"
@@ -119,10 +119,6 @@ void addSector(CLI::App& sub, const char* range_help, const char* fov_help, doub
 }
 
 }  // namespace
-
-std::string StudyApp::description() const {
-  return "Experiments on the method: each writes a report with tables and plots.";
-}
 
 void StudyApp::declare(CLI::App& cli) {
   cli.require_subcommand(1);

@@ -17,6 +17,10 @@ namespace perception {
 /// perception-study: experiments on the method, each with a report of tables and plots.
 class StudyApp : public App {
  public:
+  StudyApp()
+      : App("perception-study",
+            "Experiments on the method: each writes a report with tables and plots.") {}
+
   std::string study;                 ///< the name of the experiment
   std::uint64_t seed = 1;            ///< --seed
   int runs = 0;                      ///< --runs; 0 = default of the study
@@ -41,8 +45,6 @@ class StudyApp : public App {
 
   StudyReport out_report;
 
-  std::string name() const override { return "perception-study"; }
-  std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
 

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <new>
 #include <system_error>
@@ -167,12 +166,6 @@ int runApp(App& app, int argc, const char* const* argv) {
   const StopSignals listening;
   const MemoryLimit limit;  // a corrupt size in a log must not exhaust the machine's memory
   return static_cast<int>(runGuarded(app));
-}
-
-std::string lastFolderOf(const std::string& path) {
-  namespace fs = std::filesystem;
-  const fs::path normal = fs::absolute(path).lexically_normal();
-  return (normal.has_filename() ? normal.filename() : normal.parent_path().filename()).string();
 }
 
 }  // namespace perception

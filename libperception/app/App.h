@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/config/Config.h"
@@ -16,6 +17,8 @@ namespace perception {
 /// perception::runApp(app, argc, argv); }`
 class App {
  public:
+  App(std::string name, std::string description)
+      : name_(std::move(name)), description_(std::move(description)) {}
   virtual ~App() = default;
 
   // Common options; an app declares only those it uses.
@@ -29,8 +32,8 @@ class App {
       false;          ///< --print-config: write the effective INI to standard output and stop
   int verbosity = 0;  ///< -v
 
-  virtual std::string name() const = 0;
-  virtual std::string description() const = 0;
+  const std::string& name() const { return name_; }
+  const std::string& description() const { return description_; }
   /// Declares the program's options; use the add...() helpers for the common ones.
   virtual void declare(CLI::App& cli) = 0;
   virtual void run() = 0;
@@ -56,14 +59,12 @@ class App {
 
  private:
   friend int runApp(App& app, int argc, const char* const* argv);
+  std::string name_, description_;
   int warnings_ = 0;
 };
 
 /// Parses the command line, runs the app and converts exceptions to messages ("perception-track:
 /// error: ...") and exit codes.
 int runApp(App& app, int argc, const char* const* argv);
-
-/// Last folder of the path: name of a run in tables and titles.
-std::string lastFolderOf(const std::string& path);
 
 }  // namespace perception

@@ -4,84 +4,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
+#include <cstdio>
 #include <filesystem>
-#include <numeric>
-#include <thread>
 
 #include "libperception/app/Programs.h"
-#include "libperception/batch/BatchDatabase.h"
-#include "libperception/batch/BatchPage.h"
+#include "libperception/batch/BatchHere.h"
 #include "libperception/batch/BatchPlan.h"
-#include "libperception/batch/BatchResults.h"
 #include "libperception/batch/SlurmQueue.h"
-#include "libperception/config/IniValue.h"
-#include "libperception/pipeline/output/OutputFolder.h"
-#include "libperception/scene/files/OutputFile.h"
 #include "libperception/scene/files/RunTiming.h"
 
 namespace perception {
-namespace {
 
 namespace fs = std::filesystem;
-
-/// The working folder while it lives: relative paths of a batch start where it was planned.
-class WorkingIn {
- public:
-  explicit WorkingIn(const std::string& folder) : before_(fs::current_path()) {
-    std::error_code error;
-    fs::current_path(folder, error);
-    if (error) {
-      throw DataError(fmt::format("{}: the batch was planned there: {}", folder, error.message()),
-                      ExitCode::kNoInput);
-    }
-  }
-  ~WorkingIn() {
-    std::error_code ignored;
-    fs::current_path(before_, ignored);
-  }
-  WorkingIn(const WorkingIn&) = delete;
-  WorkingIn& operator=(const WorkingIn&) = delete;
-
- private:
-  fs::path before_;
-};
-
-std::string programBeside(const std::string& name) {
-  std::error_code error;
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  return error ? name : (self.parent_path() / name).string();
-}
-
-/// A number that a scheduler gives its jobs.
-std::optional<std::size_t> numberFrom(const char* variable) {
-  const char* text = std::getenv(variable);
-  const auto number = text ? parseUnsigned(text) : std::nullopt;
-  return number ? std::optional<std::size_t>(*number) : std::nullopt;
-}
-
-std::string labelOf(const Shard& shard) {
-  std::string text = fmt::format("{} {} {}", shard.id, shard.input, shard.config);
-  if (!shard.sensors.empty()) text += " " + shard.sensors;
-  if (shard.particles > 0) text += fmt::format(" {} particles", shard.particles);
-  if (shard.seed) text += fmt::format(" seed {}", *shard.seed);
-  return text;
-}
-
-std::vector<std::size_t> allOf(const Batch& batch) {
-  std::vector<std::size_t> all(batch.shards.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
-}
-
-int cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
-
-}  // namespace
-
-std::string BatchApp::description() const {
-  return "Tracks many logs with several configurations, sensor sets, particles and seeds, on this "
-         "machine or by Slurm: a table, a database and a page of all figures.";
-}
 
 void BatchApp::declare(CLI::App& cli) {
   struct Row {
@@ -171,8 +105,7 @@ void BatchApp::plan() {
 
 std::optional<std::size_t> BatchApp::only(const Batch& batch) const {
   auto place = index;
-  if (!place) place = numberFrom("SLURM_ARRAY_TASK_ID");
-  if (!place) place = numberFrom("JOB_COMPLETION_INDEX");
+  if (!place) place = shardOfTask();
   if (place && *place >= batch.shards.size()) {
     throw Error(ExitCode::kUsage,
                 fmt::format("--index {}: the manifest has {} shards", *place, batch.shards.size()));
@@ -186,12 +119,8 @@ void BatchApp::runShards() {
   const WorkingIn working(batch.folder);
   const std::optional<std::size_t> place = only(batch);
   const auto places = place ? std::vector<std::size_t>{*place} : allOf(batch);
-  BatchRunOptions options;
+  BatchRunOptions options = optionsHere(jobs, places.size());
   options.program = track_program.empty() ? programBeside("perception-track") : track_program;
-  options.jobs = std::min(jobs > 0 ? jobs : cores(), static_cast<int>(places.size()));
-  const auto granted = numberFrom("SLURM_CPUS_PER_TASK");
-  options.threads = granted ? static_cast<int>(*granted) : std::max(1, cores() / options.jobs);
-  if (!granted && numberFrom("SLURM_ARRAY_TASK_ID")) options.threads = 1;
   options.overwrite = overwrite;
   options.retry = retry;
   BatchRun runner(batch, dir, options);
@@ -207,7 +136,13 @@ void BatchApp::runShards() {
     std::fflush(stdout);
   });
   out_completeness = completenessOf(batch, dir);
-  if (place) return concludeShard(batch, *place);
+  if (place) {
+    const ShardStatus& status = out_completeness.shards[*place];
+    requireResult(batch.shards[*place], status);
+    if (status.state == ShardState::kWarnings)
+      warn(fmt::format("{}: {}", batch.shards[*place].id, status.record->warnings.front()));
+    return;
+  }
   if (log_seconds > 0) {
     fmt::print("{:.0f} s of log in {:.0f} s: {:.1f} times real time, {} processes\n", log_seconds,
                timing.wallSeconds(), log_seconds / timing.wallSeconds(), options.jobs);
@@ -221,28 +156,9 @@ void BatchApp::runShards() {
     throw DataError(output + ": no shard has a result");
 }
 
-void BatchApp::concludeShard(const Batch& batch, std::size_t place) {
-  const ShardStatus& status = out_completeness.shards[place];
-  const Shard& shard = batch.shards[place];
-  if (status.state == ShardState::kFailed)
-    throw Error(status.code, fmt::format("{}: {}", shard.id, status.reason));
-  if (!status.hasResult())
-    throw Error(ExitCode::kTryAgain, shard.id + ": interrupted, or another run writes it");
-  if (status.state == ShardState::kWarnings)
-    warn(fmt::format("{}: {}", shard.id, status.record->warnings.front()));
-}
-
 void BatchApp::conclude(const Batch& batch) {
-  const Completeness& c = out_completeness;
-  fmt::print("{}", completenessTable(batch, c));
-  const auto warnOf = [&](ShardState state, const char* what) {
-    if (const auto n = c.count(state); n > 0)
-      warn(fmt::format("{} of {} shards {}", n, c.shards.size(), what));
-  };
-  warnOf(ShardState::kFailed, "failed");
-  warnOf(ShardState::kMissing, "are missing");
-  warnOf(ShardState::kStale, "are of another run");
-  warnOf(ShardState::kWarnings, "have data warnings: done.json of each says which");
+  fmt::print("{}", completenessTable(batch, out_completeness));
+  for (const std::string& fault : faultsOf(out_completeness)) warn(fault);
 }
 
 void BatchApp::submit() {
@@ -276,13 +192,7 @@ void BatchApp::reduce() {
   const std::string dir = folder();
   const Batch batch = readBatch(dir);
   const WorkingIn working(batch.folder);
-  const BatchResults results = batchResults(batch, dir);
-  OutputFolder out(dir);
-  writeFile(out.pathFor("shards.csv"), shardsCsv(results));
-  writeFile(out.pathFor("timing.csv"), timingCsv(results, dir));
-  writeDatabase(results, out.pathFor("batch.sqlite"));
-  writeFile(out.pathFor("index.html"), batchPage(batch, results, dir));
-  out.commit("index.html");
+  const BatchResults results = writeBatchResults(batch, dir);
   out_completeness = completenessOf(batch, dir);
   conclude(batch);
   for (const ShardResult& result : results.shards) {

@@ -12,6 +12,11 @@ namespace perception {
 /// this machine or in the queue of Slurm.
 class BatchApp : public App {
  public:
+  BatchApp()
+      : App("perception-batch",
+            "Tracks many logs with several configurations, sensor sets, particles and seeds, on "
+            "this machine or by Slurm: a table, a database and a page of all figures.") {}
+
   int jobs = 0;                      ///< --jobs: processes at a time; 0: as many as cores
   std::optional<std::size_t> index;  ///< --index: one shard, by its place in the manifest
   bool overwrite = false;            ///< --overwrite: replace plan or stale runs
@@ -22,8 +27,6 @@ class BatchApp : public App {
   Completeness out_completeness;      ///< of run, status, reduce
   std::vector<std::string> out_jobs;  ///< of submit: ids in the queue
 
-  std::string name() const override { return "perception-batch"; }
-  std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
 
@@ -43,7 +46,6 @@ class BatchApp : public App {
   /// The shard of --index or of the scheduler; empty: all.
   std::optional<std::size_t> only(const Batch& batch) const;
   void conclude(const Batch& batch);
-  void concludeShard(const Batch& batch, std::size_t place);
 
   void (BatchApp::*task_)() = nullptr;  ///< of the subcommand
 };

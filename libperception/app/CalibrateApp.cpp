@@ -1,18 +1,52 @@
-#include "libperception/app/CalibrateApp.h"
-
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "libperception/app/App.h"
 #include "libperception/app/Programs.h"
-#include "libperception/app/StudyFolder.h"
+#include "libperception/calibration/CalibrationTasks.h"
 #include "libperception/core/math/Angle.h"
+#include "libperception/evaluation/tables/StudyReport.h"
+#include "libperception/pictures/ReportFolders.h"
 
 namespace perception {
+namespace {
+
+/// perception-calibrate: parameters for a vehicle's INI from rawlogs with truth, each with its
+/// counts.
+class CalibrateApp : public App {
+ public:
+  CalibrateApp()
+      : App("perception-calibrate",
+            "Fits lines of a vehicle's INI to rawlogs with truth (LOG.truth.csv beside "
+            "LOG.rawlog); gains works without truth, too.") {}
+
+  std::string task;                          ///< the subcommand
+  std::uint64_t seed = 1;                    ///< --seed
+  int rounds = 0;                            ///< tempering: --runs; 0 = default of the task
+  double seconds = 0;                        ///< of every log; 0 = all
+  double truth_range = 30, truth_fov = 360;  ///< tempering: sector in which truth counts [m, deg]
+  LidarClassesOptions lidar_classes{{360}, false, false, "that of the logs", "not given"};
+  bool no_truth = false;  ///< gains: --no-truth
+
+  void declare(CLI::App& cli) override;
+  void run() override;
+
+ private:
+  struct Task;
+  static const Task kTasks[];
+  CalibrationInput input() const;
+};
+
+}  // namespace
+
 struct CalibrateApp::Task {
   const char* name;
   const char* description;
@@ -44,11 +78,6 @@ const CalibrateApp::Task CalibrateApp::kTasks[] = {
      [](const CalibrateApp& app) { return calibrateLidarClasses(app.input(), app.lidar_classes); },
      false, true},
 };
-
-std::string CalibrateApp::description() const {
-  return "Fits lines of a vehicle's INI to rawlogs with truth (LOG.truth.csv beside LOG.rawlog); "
-         "gains works without truth, too.";
-}
 
 void CalibrateApp::declare(CLI::App& cli) {
   cli.require_subcommand(1);
@@ -100,9 +129,9 @@ void CalibrateApp::run() {
   std::optional<tbb::global_control> limit;
   if (threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  out_report = t->run(*this);
-  for (const std::string& fault : writeStudyReport(out_report, output)) warn(fault);
-  fmt::print("{}\nReport: {}/report.md\n", markdownOf(out_report), output);
+  const StudyReport report = t->run(*this);
+  for (const std::string& fault : writeStudyReport(report, output)) warn(fault);
+  fmt::print("{}\nReport: {}/report.md\n", markdownOf(report), output);
 }
 
 CalibrationInput CalibrateApp::input() const {

@@ -39,11 +39,6 @@ class SceneWriter {
 
 }  // namespace
 
-std::string ExportApp::description() const {
-  return "Writes a log and its tracks as one MCAP file: for Foxglove's viewers, or as ROS 2 "
-         "messages; or the tracks as a result file of nuScenes.";
-}
-
 void ExportApp::declare(CLI::App& cli) {
   addInputOption(cli, true);
   cli.get_option("--input")->expected(1);

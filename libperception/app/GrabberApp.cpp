@@ -1,12 +1,12 @@
-#include "libperception/app/GrabberApp.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
+#include <string>
 
+#include "libperception/app/App.h"
 #include "libperception/app/Programs.h"
 #include "libperception/capture/Grabber.h"
 #include "libperception/capture/drivers/Drivers.h"
@@ -18,6 +18,26 @@
 namespace perception {
 namespace fs = std::filesystem;
 namespace {
+
+/// perception-grabber: records the sensors of an INI of rawlog-grabber, every packet accounted for.
+class GrabberApp : public App {
+ public:
+  GrabberApp()
+      : App("perception-grabber",
+            "Records the sensors of a capture INI into whole rawlogs and lists what was lost.") {}
+
+  double duration = 0;  ///< --duration [s]; 0: until SIGINT or SIGTERM
+  std::string stream;   ///< --stream: pipe or file for observations as they come
+  std::string publish;  ///< --publish INTERFACE[:DOMAIN] of DDS
+  bool plugin = false;  ///< --plugin: print the path of MRPT's plugin and stop
+  bool list = false;    ///< --list: say what a ROS 2 graph has and stop
+
+  void declare(CLI::App& cli) override;
+  void run() override;
+
+ private:
+  void printGraph() const;
+};
 
 /// The plugin beside this program, as installed or as built; throws Error where there is none.
 std::string pluginPath() {
@@ -33,10 +53,6 @@ std::string pluginPath() {
 }
 
 }  // namespace
-
-std::string GrabberApp::description() const {
-  return "Records the sensors of a capture INI into whole rawlogs and lists what was lost.";
-}
 
 void GrabberApp::declare(CLI::App& cli) {
   cli.add_option("-c,--config", config_file,

@@ -26,11 +26,6 @@ void requireFormat(const CLI::App& cli) {
 
 }  // namespace
 
-std::string ImportApp::description() const {
-  return "Turns recordings of other formats into a rawlog and, with labels, FILE.truth.csv beside "
-         "it.";
-}
-
 void ImportApp::declare(CLI::App& cli) {
   cli.require_subcommand(0, 1);  // none: named by requireFormat()
   importers_.clear();

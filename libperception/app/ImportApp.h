@@ -11,12 +11,15 @@ namespace perception {
 /// perception-import: turns recordings of other formats into rawlogs with ground truth.
 class ImportApp : public App {
  public:
+  ImportApp()
+      : App("perception-import",
+            "Turns recordings of other formats into a rawlog and, with labels, FILE.truth.csv "
+            "beside it.") {}
+
   ImportOptions options;  ///< of all sub-commands
 
   ImportResult out_result;
 
-  std::string name() const override { return "perception-import"; }
-  std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
 

@@ -1,13 +1,9 @@
 #pragma once
+#include "libperception/core/system/SupervisedChild.h"
 
 namespace perception {
 
 class App;
-
-struct SupervisorLimits {
-  double reading = 20;  ///< [s] of processor time for one entry of data of others; assumed
-  double stop = 4.5;    ///< [s] from a signal to the end
-};
 
 /// runApp() in a process of its own, watched by this one: whatever libraries do on bad data, the
 /// program ends with a message and a code of ExitCode, and nothing temporary is left. A child that

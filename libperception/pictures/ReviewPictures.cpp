@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
+#include <utility>
 
 #include "gui-offscreen/drawing/Canvas.h"
+#include "libperception/pictures/RunScenes.h"
+#include "libperception/pipeline/output/Progress.h"
 
 namespace perception {
 namespace {
@@ -146,6 +148,32 @@ std::optional<Picture> ReviewPictures::fromCamera(const SceneView& view, std::si
   canvas.paste(cut(image.picture, left, top, right - left, bottom - top), canvas.area());
   drawBox(canvas, corners, camera, Vector2(left, top), zoom);
   return canvas.picture();
+}
+
+std::vector<ReviewQuestion> reviewQuestions(const TrackedRun& run, const std::string& run_id,
+                                            const std::vector<ReviewItem>& items,
+                                            SnapshotSensors& sensors) {
+  ReviewPictures pictures;
+  std::vector<ReviewQuestion> questions;
+  Progress progress("drawing", items.size());
+  for (const ReviewItem& item : items) {
+    stopIfAsked();
+    SceneView view = viewOfScene(run, item.scene, nullptr);
+    sensors.advanceTo(view.scene.stamp);
+    sensors.fill(view);
+    // The line of the item without its answer.
+    std::string row = reviewText(run_id, {item});
+    row = row.substr(row.find('\n') + 1);
+    row.erase(row.rfind(','));
+    ReviewQuestion q{item.t, std::to_string(item.id), item.class_name, std::move(row), {}};
+    if (auto image = pictures.fromCamera(view, item.object))
+      q.pictures.push_back(std::move(*image));
+    q.pictures.push_back(pictures.fromVehicle(view, item.object));
+    q.pictures.push_back(pictures.fromAbove(view, item.object));
+    questions.push_back(std::move(q));
+    progress.update(questions.size(), questions.size());
+  }
+  return questions;
 }
 
 }  // namespace perception

@@ -1,8 +1,14 @@
 #pragma once
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "gui-offscreen/drawing/Renderer.h"
+#include "gui-offscreen/html/ReviewPage.h"
 #include "gui-offscreen/views/SceneView.h"
+#include "libperception/evaluation/without_truth/Review.h"
+#include "libperception/pictures/SnapshotSensors.h"
+#include "libperception/scene/files/TrackedRun.h"
 
 namespace perception {
 
@@ -26,5 +32,11 @@ class ReviewPictures {
 
   Renderer renderer_;
 };
+
+/// The questions about these outputs of a run, in their order, with pictures. `run_id`: for the
+/// lines of answers. `sensors`: of the run's log.
+std::vector<ReviewQuestion> reviewQuestions(const TrackedRun& run, const std::string& run_id,
+                                            const std::vector<ReviewItem>& items,
+                                            SnapshotSensors& sensors);
 
 }  // namespace perception

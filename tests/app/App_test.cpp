@@ -20,9 +20,8 @@ namespace {
 /// A program whose run is the test's.
 class SmallApp : public App {
  public:
+  SmallApp() : App("perception-small", "For tests") {}
   std::function<void(SmallApp&)> body = [](SmallApp&) {};
-  std::string name() const override { return "perception-small"; }
-  std::string description() const override { return "For tests"; }
   void declare(CLI::App& cli) override {
     addConfigOptions(cli, false);
     addInputOption(cli, false);

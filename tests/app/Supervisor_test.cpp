@@ -24,9 +24,8 @@ namespace {
 
 class SupervisedApp : public App {
  public:
+  SupervisedApp() : App("perception-small", "For tests") {}
   std::function<void()> body;
-  std::string name() const override { return "perception-small"; }
-  std::string description() const override { return "For tests"; }
   void declare(CLI::App&) override {}
   void run() override { body(); }
 };

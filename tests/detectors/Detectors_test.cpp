@@ -14,8 +14,8 @@
 #include "libperception/detectors/ImageDetector.h"
 #include "libperception/detectors/Suppression.h"
 #include "libperception/detectors/VisionSimd.h"
-#include "libperception/detectors/dpm/DpmModel.h"
 #include "libperception/detectors/networks/OnnxOutput.h"
+#include "tests/support/DpmText.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {
@@ -295,7 +295,7 @@ TEST(ImageDetector, AnObjectOnTheSeamOfAPanoramaIsOne) {
   model.class_name = "Board";
   model.components = {c};
   const TemporaryFolder folder;
-  std::ofstream(folder / "board.txt") << dpmModelText(model);
+  std::ofstream(folder / "board.txt") << test::dpmModelText(model);
   DetectorSetup setup;
   setup.folder = folder.path();
   DetectorModelParams params;

@@ -33,6 +33,7 @@
 #include "libperception/packets/radars/CanBundle.h"
 #include "libperception/sensors/satellites/PositionTrack.h"
 #include "tests/fuzz/ParserFiles.h"
+#include "tests/packets/Candump.h"
 
 namespace perception {
 namespace {
@@ -174,7 +175,7 @@ const std::vector<Parser>& parsers() {
       {"bag_fields", &readMessageByFields},
       {"packets", &decodePackets},
       {"packet_frames", &assemblePackets},
-      {"candump", [](std::string_view b) { parseCandump(b); }},
+      {"candump", [](std::string_view b) { test::candump::parseCandump(b); }},
       {"can_bundle", [](std::string_view b) { parseCanBundle(b); }},
       {"ibeo_stream", &cutIbeo},
       {"pcap", [](std::string_view b) { parsePcap(b, "fuzz.pcap"); }},

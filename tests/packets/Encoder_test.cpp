@@ -9,7 +9,7 @@
 #include "libperception/core/Error.h"
 #include "libperception/packets/FrameAssembler.h"
 #include "libperception/packets/lidars/Ibeo.h"
-#include "libperception/packets/radars/CanBundle.h"
+#include "tests/packets/Candump.h"
 
 namespace perception {
 namespace {
@@ -286,7 +286,7 @@ TEST(Radars, ObjectsAndClustersOfAnArs408ComeFromCandumpText) {
     const std::string text = element;
     const auto decoder = deviceKind("ars408").make("");
     const auto take = [&](const std::string& frame) {
-      return decoder->decode(parseCandump("(1.0) can0 " + frame)->message);
+      return decoder->decode(test::candump::parseCandump("(1.0) can0 " + frame)->message);
     };
     EXPECT_FALSE(take(text).ends_scan) << "a list that began before";
     EXPECT_FALSE(take(head).ends_scan);
@@ -316,7 +316,7 @@ TEST(Radars, TracksOfAnEsrComeFromCandumpText) {
   const std::string track = "(1.0) can0 502#006321F40000FE0C";
   const auto decoder = deviceKind("esr").make("");
   const auto take = [&](const std::string& line) {
-    return decoder->decode(parseCandump(line)->message);
+    return decoder->decode(test::candump::parseCandump(line)->message);
   };
   take("(1.0) can0 4E0#0000000007000000");
   take(track);

@@ -3,30 +3,23 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "libperception/app/Programs.h"
 #include "libperception/core/math/Angle.h"
-#include "libperception/evaluation/plots/Plots.h"
+#include "libperception/evaluation/RunEvaluator.h"
+#include "libperception/evaluation/without_truth/QualityReport.h"
+#include "libperception/pictures/ReportFolders.h"
 #include "libperception/pipeline/output/FinishedRun.h"
-#include "libperception/pipeline/output/OutputFolder.h"
 #include "libperception/pipeline/output/Progress.h"
-#include "libperception/scene/files/MeasurementRun.h"
-#include "libperception/scene/files/OutputFile.h"
-#include "libperception/scene/files/RunMark.h"
 #include "libperception/scene/files/RunRecord.h"
 #include "libperception/scene/files/TrackedRun.h"
 
 namespace perception {
 
 namespace fs = std::filesystem;
-
-std::string EvaluateApp::description() const {
-  return "Compares tracked runs with the truth of their log: table of Radecki et al., GOSPA, false "
-         "objects, calibration, front ends, plots; several runs side by side or pooled.";
-}
 
 void EvaluateApp::declare(CLI::App& cli) {
   declareInputs(cli);
@@ -159,176 +152,74 @@ std::string EvaluateApp::command() const {
   return text;
 }
 
-EvaluationReport EvaluateApp::emptyReport() const {
-  EvaluationReport report;
-  report.command = command();
-  report.truth = manifest.empty() ? truth_file : manifest;
-  report.reference = reference;
-  report.options = params;
-  report.paper = out_report.paper;
-  return report;
-}
-
-const GroundTruth& EvaluateApp::truth(const std::string& path) {
-  const auto known = truths_.find(path);
-  return known != truths_.end() ? known->second
-                                : truths_.emplace(path, readGroundTruth(path)).first->second;
-}
-
-void EvaluateApp::evaluateFrontEnds(const RunEntry& entry, const GroundTruth& truth,
-                                    EvaluatedRun& run) {
-  if (front_ends.empty()) return;
-  if (!fs::exists(entry.dir + "/measurements.csv")) {
-    throw DataError(entry.dir + "/measurements.csv: is not there: track with --measurements",
-                    ExitCode::kNoInput);
-  }
-  FrontEndOptions options;
-  options.selection = params.selection;
-  options.alignment = params.alignment;
-  const std::string record = entry.dir + "/done.json";
-  options.surroundings = surroundings || (fs::exists(record) && readRunRecord(record).simulated);
-  const MeasurementRun measurements = readMeasurementRun(entry.dir);
-  for (const std::string& pattern : front_ends)
-    run.front_ends.push_back(evaluateFrontEnd(measurements, pattern, truth, options));
-}
-
-EvaluatedRun EvaluateApp::evaluateEntry(const RunEntry& entry, const std::string& name) {
-  stopIfAsked();
-  const GroundTruth& known = truth(entry.truth);
-  const TrackedRun run = readTrackedRun(entry.dir);
-  if (const auto& poses = params.alignment.truth_poses;
-      poses && poses->first_stamp != run.first_stamp)
-    throw DataError(
-        fmt::format("--truth-poses {}: not a run of the log of {}: the first stamps "
-                    "differ",
-                    truth_poses, entry.dir));
-  EvaluatedRun evaluated{name, entry.dir, evaluate(run, known, params)};
-  if (nuscenes) evaluated.benchmark = trackingBenchmark(run, known, params.alignment);
-  if (!reference.empty())
-    evaluated.count_difference = countDifference(run, readTrackedRun(reference));
-  if (const std::string file = entry.dir + "/done.json"; fs::exists(file)) {
-    const RunRecord record = readRunRecord(file);
-    evaluated.weather = record.weather;
-    evaluated.id = idOfRun(record);
-    if (!any_truth) requireTruthOf(record, entry.truth);
-  }
-  evaluateFrontEnds(entry, known, evaluated);
-  warnOfGaps(evaluated, entry.truth);
-  return evaluated;
-}
-
 void EvaluateApp::evaluateRuns() {
+  RunEvaluator evaluator(
+      {params, truth_poses, reference, front_ends, any_truth, surroundings, nuscenes},
+      [this](const std::string& text) { warn(text); },
+      [this](const std::string& text) { say(1, text); });
+  out_report = {command(), manifest.empty() ? truth_file : manifest,
+                reference, evaluator.options().params,
+                {},        paperRowsOf(paper),
+                {}};
   const std::vector<RunEntry> all = runEntries(runs, truth_file, manifest);
-  std::vector<std::string> dirs, conditions;
-  for (const RunEntry& entry : all) {
-    dirs.push_back(entry.dir);
-    conditions.push_back(entry.condition);
-  }
-  const std::vector<std::string> names = namesOfRuns(dirs);
+  const std::vector<std::string> names = namesOfRuns(all);
+  std::vector<std::string> conditions;
   std::vector<EvaluatedRun> evaluated;
-  for (std::size_t i = 0; i < all.size(); ++i) evaluated.push_back(evaluateEntry(all[i], names[i]));
-  out_report.runs = pooledByCondition(conditions, std::move(evaluated));
-}
-
-void EvaluateApp::addPaperRows() {
-  const std::vector<std::string> known = paperTableNames();
-  for (const std::string& table : paper) {
-    if (std::find(known.begin(), known.end(), table) == known.end()) {
-      throw Error(ExitCode::kUsage,
-                  fmt::format("--paper {}: there are: {}", table, fmt::join(known, ", ")));
-    }
-    for (const PaperTrackingRow& row : paperTrackingRows()) {
-      if (row.table == table) out_report.paper.push_back(row);
-    }
-  }
-}
-
-void EvaluateApp::warnOfGaps(const EvaluatedRun& run, const std::string& truth) {
-  const TruthAlignment& alignment = run.evaluation.alignment;
-  if (run.evaluation.instants.empty()) {
-    const std::string fault =
-        fmt::format("{}: no scene has a truth in {} (other log, or times more than {:g} s apart)",
-                    run.dir, truth, params.alignment.time_limit);
-    if (!any_truth) throw DataError(fault + "; with --any-truth every figure is n/a");
-    warn(fault + ": every figure is n/a");
-  } else if (run.evaluation.samples.empty()) {
-    warn(fmt::format("{}: no truth object counts: tracking figures are n/a", run.dir));
-  }
-  if (run.evaluation.instants.empty()) return;
-  const auto count = [&](std::size_t number, const char* what) {
-    if (number > 0) say(1, fmt::format("{}: {} {} are in no figure", run.dir, number, what));
-  };
-  count(alignment.scenes_without_truth, "scenes without truth");
-  count(alignment.truth_without_scene, "truth instants without scene");
-}
-
-void EvaluateApp::write(EvaluationReport report, const std::string& dir) {
-  OutputFolder folder(dir);
-  const bool single = report.runs.size() == 1 && report.runs.front().trials.empty();
-  if (plots && !report.runs.empty()) {
-    const PlotResult drawn =
-        single ? writePlots(report.runs.front(), report.options, folder.temporary(), max_plots)
-               : writeComparisonPlots(report, folder.temporary());
-    report.plots = drawn.files;
-    if (!drawn.fault.empty()) warn(drawn.fault);
-  }
-  folder.adoptAll();
-  if (single) markPictures(folder.temporary(), runMark({report.runs.front().id}));
-  writeFile(folder.pathFor("report.txt"), textReport(report));
-  writeFile(folder.pathFor("report.md"), markdownReport(report));
-  writeFile(folder.pathFor("report.json"), jsonReport(report));
-  if (single) writeFile(folder.pathFor("instants.csv"), instantsCsv(report.runs.front()));
-  if (fs::exists(fs::path(dir) / "report.json")) folder.replace("plots");
-  folder.commit("report.json");
-  out_folders.push_back(dir);
-}
-
-// One report per run, and a joint one of several runs or of conditions.
-void EvaluateApp::writeReports() {
-  const bool pooled = std::any_of(out_report.runs.begin(), out_report.runs.end(),
-                                  [](const EvaluatedRun& run) { return !run.trials.empty(); });
-  const bool several = out_report.runs.size() > 1 || pooled;
-  if (pooled && output.empty())
-    throw Error(ExitCode::kUsage, "-o/--output is needed for the report of conditions");
-  for (const EvaluatedRun& run : out_report.runs) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
     stopIfAsked();
-    if (!run.trials.empty()) continue;
-    EvaluationReport own = emptyReport();
-    own.runs.push_back(run);
-    dropRowsOfOtherWeathers(own);
-    std::string dir = run.dir + "/evaluation";
-    // Names that are paths (two runs of the same name) cannot be folder names: these runs are
-    // numbered.
-    if (!output.empty()) {
-      dir = output;
-      if (several) {
-        const bool is_folder_name = run.name.find('/') == std::string::npos;
-        dir += "/" + (is_folder_name ? run.name
-                                     : fmt::format("run{}", &run - out_report.runs.data() + 1));
-      }
-    }
-    write(std::move(own), dir);
+    conditions.push_back(all[i].condition);
+    evaluated.push_back(evaluator.evaluated(all[i], names[i]));
+    if (const std::string file = all[i].dir + "/done.json"; fs::exists(file))
+      evaluated.back().id = idOfRun(readRunRecord(file));
   }
-  if (several && !output.empty()) write(out_report, output);
+  out_report.runs = pooledByCondition(conditions, std::move(evaluated));
 }
 
 void EvaluateApp::run() {
   params.selection.fov = radians(fov_deg);
   params.selection.complete_fov = radians(complete_fov_deg);
   if (without_truth) return judgeQuality();
-  if (!truth_poses.empty())
-    params.alignment.truth_poses = std::make_shared<TrackedRun>(readTrackedRun(truth_poses));
-  out_report = emptyReport();
-  addPaperRows();
   evaluateRuns();
   for (const std::string& table : dropRowsOfOtherWeathers(out_report))
     warn(fmt::format("--paper {}: no run is of that weather: its rows are left out", table));
-  writeReports();
+  const auto most = plots ? std::optional<std::size_t>(max_plots) : std::nullopt;
+  out_folders =
+      writeEvaluations(out_report, output, most, [this](const std::string& text) { warn(text); });
   std::string text = summaryText(out_report);
   if (verbosity > 0 || !paper.empty() || !front_ends.empty() || nuscenes)
     text += "\n" + textReport(out_report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   for (const std::string& dir : out_folders) say(1, "written: " + dir);
+}
+
+// Figures that need no truth, and, where there is one, how they follow the true errors.
+void EvaluateApp::judgeQuality() {
+  const bool has_truth = !truth_file.empty() || !manifest.empty();
+  std::vector<RunEntry> entries;
+  if (has_truth)
+    entries = runEntries(runs, truth_file, manifest);
+  else
+    for (const std::string& dir : runs) entries.push_back({"", dir, ""});
+  if (entries.empty()) throw Error(ExitCode::kUsage, "-r: expected a run");
+  const std::vector<std::string> names = namesOfRuns(entries);
+  std::vector<JudgedRun> judged(entries.size());
+  RunEvaluatorOptions plain;
+  plain.params = params;
+  RunEvaluator truths(plain, {}, {});
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    stopIfAsked();
+    judged[i].name = names[i], judged[i].condition = entries[i].condition;
+    if (const std::string file = entries[i].dir + "/done.json"; fs::exists(file))
+      judged[i].record = readRunRecord(file);
+    judged[i].run = readTrackedRun(entries[i].dir);
+    if (!entries[i].truth.empty())
+      judged[i].errors =
+          trueErrors(evaluate(judged[i].run, truths.truth(entries[i].truth), params));
+  }
+  const StudyReport report = qualityReport(judged, {params.selection, params.unnamed}, has_truth);
+  const std::string folder = output.empty() ? entries.front().dir + "/quality" : output;
+  for (const std::string& fault : writeStudyReport(report, folder)) warn(fault);
+  fmt::print("{}\nReport: {}/report.md\n", markdownOf(report), folder);
 }
 
 std::unique_ptr<App> evaluateApp() { return std::make_unique<EvaluateApp>(); }

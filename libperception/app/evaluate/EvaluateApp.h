@@ -1,10 +1,8 @@
 #pragma once
-#include <map>
 #include <string>
 #include <vector>
 
 #include "libperception/app/App.h"
-#include "libperception/app/evaluate/RunList.h"
 #include "libperception/evaluation/tables/Report.h"
 
 namespace perception {
@@ -13,6 +11,12 @@ namespace perception {
 /// and other metrics.
 class EvaluateApp : public App {
  public:
+  EvaluateApp()
+      : App("perception-evaluate",
+            "Compares tracked runs with the truth of their log: table of Radecki et al., GOSPA, "
+            "false objects, calibration, front ends, plots; several runs side by side or pooled.") {
+  }
+
   std::vector<std::string> runs;  ///< -r: folders of perception-track, or CONDITION=PATTERN of such
   std::string
       truth_file;  ///< -t; {log} and {run} are replaced by the names of a run's log and folder
@@ -33,8 +37,6 @@ class EvaluateApp : public App {
   EvaluationReport out_report;
   std::vector<std::string> out_folders;  ///< with reports
 
-  std::string name() const override { return "perception-evaluate"; }
-  std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
 
@@ -43,18 +45,8 @@ class EvaluateApp : public App {
   void declareTruth(CLI::App& cli);
   void declareFigures(CLI::App& cli);
   std::string command() const;
-  EvaluationReport emptyReport() const;
-  EvaluatedRun evaluateEntry(const RunEntry& entry, const std::string& name);
-  void evaluateFrontEnds(const RunEntry& entry, const GroundTruth& truth, EvaluatedRun& run);
   void evaluateRuns();
-  const GroundTruth& truth(const std::string& path);
-  void warnOfGaps(const EvaluatedRun& run, const std::string& truth);
-  void addPaperRows();
   void judgeQuality();
-  void writeReports();
-  void write(EvaluationReport report, const std::string& dir);
-
-  std::map<std::string, GroundTruth> truths_;  ///< read so far, by path
 };
 
 }  // namespace perception

@@ -3,62 +3,24 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <memory>
-#include <optional>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "libperception/app/Programs.h"
-#include "libperception/app/show/CompareRuns.h"
-#include "libperception/app/show/ComparisonPage.h"
-#include "libperception/app/show/ResultFiles.h"
+#include "libperception/pictures/pages/CompareRuns.h"
+#include "libperception/pictures/pages/ComparisonPage.h"
+#include "libperception/pictures/pages/ResultFiles.h"
 #include "libperception/pipeline/output/FinishedRun.h"
 #include "libperception/scene/files/OutputFile.h"
-#include "libperception/scene/files/RunMark.h"
 #include "libperception/scene/files/TrackedRunReader.h"
 #include "libperception/sensors/observations/registerClasses.h"
 
 namespace perception {
-namespace {
 
 namespace fs = std::filesystem;
-
-/// Files of a run's folder shown on the page if they exist.
-struct FigureRow {
-  const char* file;
-  const char* media_type;
-  const char* title;
-  const char* caption;
-};
-constexpr FigureRow kVideos[] = {
-    {"scene.mp4", "video/mp4", "Video",
-     "Left from above, right from behind the vehicle. Boxes: tracked objects; thin black "
-     "outlines: truth; points: lidar returns; legend at the right."}};
-constexpr FigureRow kPictures[] = {{"scene.png", "image/png", "One instant, large",
-                                    "The same view as in the video. Arrow: predicted path of one "
-                                    "second; line: path of the last two."},
-                                   {"contact.png", "image/png", "Overview of the run",
-                                    "Instants at equal intervals, from above."}};
-constexpr FigureRow kPlots[] = {
-    {"plots/timelines.png", "image/png", "Truth objects over time",
-     "One row per truth object: estimated class, missed instants, id switches."},
-    {"plots/overview.png", "image/png", "Over time",
-     "Above: each truth object, tracked or not, class correct or not. Below: number of true, "
-     "missed and false objects at each instant."},
-    {"plots/reliability.png", "image/png", "Calibration of the class probability",
-     "Observed frequency of the correct class over its stated probability; ideal: the diagonal."}};
-
-}  // namespace
-
-std::string ReportApp::description() const {
-  return "Makes one HTML page of a run: video, pictures, timeline, metrics, inputs; or of what "
-         "differs "
-         "between two.";
-}
 
 void ReportApp::declare(CLI::App& cli) {
   cli.add_option("-r,--run", run_dir, "folder of a run of perception-track")->type_name("DIR");
@@ -93,16 +55,8 @@ void ReportApp::declare(CLI::App& cli) {
 void ReportApp::run() {
   if (!compared_dirs.empty()) return compare();
   if (run_dir.empty()) throw Error(ExitCode::kUsage, "-r or --compare is required");
-  ReportContent content;
-  content.run = readRunOutline(run_dir);
-  content.record = readRunRecord((fs::path(run_dir) / "done.json").string());
-  const fs::path timing = fs::path(run_dir) / "timing.json";
-  if (fs::exists(timing)) content.real_time_factor = jsonOf(timing).value("real_time_factor", 0.0);
-  content.id = idOfRun(content.record);
-  content.video = figuresIn(run_dir, kVideos, content.id);
-  content.pictures = figuresIn(run_dir, kPictures, content.id);
-  addOtherPictures(content);
-  addEvaluation(content);
+  ReportContent content =
+      contentOf(run_dir, evaluation_dir, [this](const std::string& file) { warnOfOrigin(file); });
   ReportSources sources = sourcesOf(content.record);
   if (const fs::path events = fs::path(run_dir) / "events.jsonl"; fs::exists(events))
     sources.events = events.string();
@@ -186,57 +140,8 @@ SnapshotSensorParams ReportApp::sensorParams() {
   return params;
 }
 
-template <class Rows>
-std::vector<ReportContent::Figure> ReportApp::figuresIn(const fs::path& dir, const Rows& rows,
-                                                        const std::string& id) {
-  std::vector<ReportContent::Figure> figures;
-  for (const auto& row : rows) {
-    const fs::path file = dir / row.file;
-    if (!fs::exists(file)) continue;
-    if (isOfRuns(file, {id})) {
-      figures.push_back({row.title, row.caption, row.media_type, file.string()});
-    } else {
-      warnOfOrigin(file);
-    }
-  }
-  return figures;
-}
-
-void ReportApp::warnOfOrigin(const fs::path& file) {
-  warn(fmt::format("{}: does not say of which run it is: left out; make it again", file.string()));
-}
-
-// Pictures of other names in the folder that say that they are of the run.
-void ReportApp::addOtherPictures(ReportContent& content) const {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(run_dir)) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) {
-    const bool png = file.extension() == ".png", jpeg = file.extension() == ".jpg";
-    const bool known =
-        std::any_of(std::begin(kPictures), std::end(kPictures),
-                    [&](const FigureRow& row) { return file.filename() == row.file; });
-    if ((!png && !jpeg) || known || !fs::is_regular_file(file)) continue;
-    const auto ids = markedRunsOf(file.string());
-    if (std::find(ids.begin(), ids.end(), content.id) == ids.end()) continue;
-    content.pictures.push_back({file.filename().string(), "From the run's folder.",
-                                png ? "image/png" : "image/jpeg", file.string()});
-  }
-}
-
-void ReportApp::addEvaluation(ReportContent& content) {
-  const fs::path dir =
-      evaluation_dir.empty() ? fs::path(run_dir) / "evaluation" : fs::path(evaluation_dir);
-  const fs::path report = dir / "report.json";
-  if (!fs::exists(report)) {
-    if (evaluation_dir.empty()) return;
-    throw DataError(report.string() + ": there is no such file", ExitCode::kNoInput);
-  }
-  const nlohmann::json figures = figuresOf(report, content.id);
-  if (figures.is_null()) return warnOfOrigin(report);
-  content.evaluation = jsonOf(report);
-  content.evaluation["runs"] = nlohmann::json::array({figures});
-  content.plots = figuresIn(dir, kPlots, content.id);
+void ReportApp::warnOfOrigin(const std::string& file) {
+  warn(file + ": does not say of which run it is: left out; make it again");
 }
 
 std::unique_ptr<App> reportApp() { return std::make_unique<ReportApp>(); }

@@ -1,14 +1,12 @@
 #pragma once
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "gui-offscreen/html/ReportPage.h"
 #include "libperception/app/App.h"
-#include "libperception/app/show/ReportData.h"
 #include "libperception/core/system/SpoolFile.h"
 #include "libperception/pictures/SnapshotSensors.h"
+#include "libperception/pictures/pages/ReportData.h"
 #include "libperception/scene/files/RunRecord.h"
 
 namespace perception {
@@ -17,6 +15,11 @@ namespace perception {
 /// of what differs between two runs.
 class ReportApp : public App {
  public:
+  ReportApp()
+      : App("perception-report",
+            "Makes one HTML page of a run: video, pictures, timeline, metrics, inputs; or of what "
+            "differs between two.") {}
+
   std::string run_dir;         ///< -r: folder of perception-track
   std::string evaluation_dir;  ///< --evaluation; empty: evaluation/ of the run, when it is there
   std::string truth_file;      ///< -t; empty: LOG.truth.csv beside the log, when it is there
@@ -24,20 +27,12 @@ class ReportApp : public App {
   std::string film;                        ///< --film: of both, for the page of --compare
   std::string out_path;                    ///< path of the page, after run()
 
-  std::string name() const override { return "perception-report"; }
-  std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
 
  private:
   void compare();
-  /// Those of the run among `rows` of names.
-  template <class Rows>
-  std::vector<ReportContent::Figure> figuresIn(const std::filesystem::path& dir, const Rows& rows,
-                                               const std::string& id);
-  void warnOfOrigin(const std::filesystem::path& file);
-  void addOtherPictures(ReportContent& content) const;
-  void addEvaluation(ReportContent& content);
+  void warnOfOrigin(const std::string& file);
   SnapshotSensorParams sensorParams();
   std::string truthFile() const;
   void writePage(const std::string& path, const std::function<void(const TextSink&)>& write);

@@ -3,20 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <cstdint>
 #include <filesystem>
-#include <map>
-#include <tuple>
-#include <utility>
 
 #include "gui-offscreen/html/ReviewPage.h"
 #include "libperception/app/Programs.h"
 #include "libperception/core/math/Angle.h"
 #include "libperception/pictures/ReviewPictures.h"
-#include "libperception/pictures/RunScenes.h"
 #include "libperception/pictures/SnapshotSensors.h"
-#include "libperception/pipeline/output/Progress.h"
 #include "libperception/scene/files/OutputFile.h"
 #include "libperception/scene/files/RunRecord.h"
 #include "libperception/sensors/observations/registerClasses.h"
@@ -29,34 +22,7 @@ RunRecord recordOf(const std::string& run_dir) {
   return readRunRecord((fs::path(run_dir) / "done.json").string());
 }
 
-std::string tableOf(const std::vector<ReviewPrecision>& rows) {
-  std::string out = fmt::format("{:<14}{:>9}{:>7}{:>9}{:>7}{:>8}  {}\n", "class", "outputs",
-                                "asked", "objects", "right", "unsure", "precision, 95 % limits");
-  for (const ReviewPrecision& r : rows) {
-    out += fmt::format("{:<14}{:>9}{:>7}{:>9}{:>7}{:>8}", r.class_name, r.outputs, r.asked,
-                       r.objects, r.right, r.unsure);
-    out += r.asked > r.unsure
-               ? fmt::format("  {:.3f} ({:.3f} to {:.3f})\n", r.precision, r.low, r.high)
-               : "  not known\n";
-  }
-  return out;
-}
-
-/// The line of an item without its answer.
-std::string rowOf(const std::string& run, const ReviewItem& item) {
-  std::string text = reviewText(run, {item});
-  text.erase(0, text.find('\n') + 1);
-  return text.substr(0, text.rfind(','));
-}
-
-std::string headerOf() { return reviewText("", {}); }
-
 }  // namespace
-
-std::string ReviewApp::description() const {
-  return "Lets a person say whether outputs of a run are right, where there is no truth: a page of "
-         "questions, and the precision by the answers.";
-}
 
 void ReviewApp::declare(CLI::App& cli) {
   cli.require_subcommand(1);
@@ -130,50 +96,13 @@ void ReviewApp::makePage() {
   SnapshotSensorParams params;
   params.read(config, true);
   SnapshotSensors sensors(inputs[0], run, params);
-  ReviewPictures pictures;
-  std::vector<ReviewQuestion> questions;
-  Progress progress("drawing", out_items.size());
-  for (const ReviewItem& item : out_items) {
-    stopIfAsked();
-    SceneView view = viewOfScene(run, item.scene, nullptr);
-    sensors.advanceTo(view.scene.stamp);
-    sensors.fill(view);
-    ReviewQuestion q{
-        item.t, std::to_string(item.id), item.class_name, rowOf(record.hash, item), {}};
-    if (auto image = pictures.fromCamera(view, item.object))
-      q.pictures.push_back(std::move(*image));
-    q.pictures.push_back(pictures.fromVehicle(view, item.object));
-    q.pictures.push_back(pictures.fromAbove(view, item.object));
-    questions.push_back(std::move(q));
-    progress.update(questions.size(), questions.size());
-  }
+  const auto questions = reviewQuestions(run, record.hash, out_items, sensors);
   out_page = reviewPage(fmt::format("Review of {}{}", fs::path(record.input).filename().string(),
                                     record.simulated ? " (simulated)" : ""),
-                        headerOf(), questions);
+                        reviewText("", {}), questions);
   createFolder(fs::path(output).parent_path().string());
   writeFile(output, out_page);
   fmt::print("{}: {} questions\n", output, questions.size());
-}
-
-// Finds the outputs that were asked about: by id and time.
-void ReviewApp::findItems(const TrackedRun& run, const ReviewAnswers& answers) {
-  std::map<std::pair<std::int64_t, std::uint64_t>, std::pair<std::size_t, std::size_t>> places;
-  const auto nanoseconds = [](double t) {
-    return static_cast<std::int64_t>(std::llround(t * 1e9));
-  };
-  for (std::size_t s = 0; s < run.scenes.size(); ++s) {
-    const Scene& scene = run.scenes[s];
-    for (std::size_t o = 0; o < scene.objects.size(); ++o)
-      places[{nanoseconds(scene.stamp - run.first_stamp), scene.objects[o].id}] = {s, o};
-  }
-  out_items = answers.items;
-  for (ReviewItem& item : out_items) {
-    const auto found = places.find({nanoseconds(item.t), item.id});
-    if (found == places.end())
-      throw DataError(fmt::format("{}: object {} at t = {} s is not in {}", answers_file, item.id,
-                                  item.t, run_dir));
-    std::tie(item.scene, item.object) = found->second;
-  }
 }
 
 void ReviewApp::score() {
@@ -184,27 +113,20 @@ void ReviewApp::score() {
                      answers.open + answers.items.size()));
   out_items = answers.items;
   out_precision = reviewPrecision(out_items);
-  fmt::print("by the answers\n{}", tableOf(out_precision));
+  fmt::print("by the answers\n{}", reviewTable(out_precision));
   if (run_dir.empty()) return;
   const RunRecord record = recordOf(run_dir);
   if (record.hash != answers.run)
     throw DataError(fmt::format("{}: answers about another run than {}", answers_file, run_dir));
   if (truth_file.empty()) return;
   const TrackedRun run = readTrackedRun(run_dir);
-  findItems(run, answers);
-  const std::vector<ReviewItem> said = out_items;
-  std::vector<ReviewItem> known = said;
+  placeItems(run, run_dir, answers_file, out_items);
+  std::vector<ReviewItem> known = out_items;
   answerByTruth(run, readGroundTruth(truth_file), evaluation, known);
   out_by_truth = reviewPrecision(known);
-  std::size_t both = 0, same = 0;
-  for (std::size_t i = 0; i < said.size(); ++i) {
-    if (said[i].answer == ReviewAnswer::kUnsure || known[i].answer == ReviewAnswer::kUnsure)
-      continue;
-    ++both;
-    same += said[i].answer == known[i].answer ? 1 : 0;
-  }
+  const auto [same, both] = sameAnswers(out_items, known);
   fmt::print("of the same outputs by the truth\n{}answers as the truth's: {} of {}\n",
-             tableOf(out_by_truth), same, both);
+             reviewTable(out_by_truth), same, both);
 }
 
 std::unique_ptr<App> reviewApp() { return std::make_unique<ReviewApp>(); }

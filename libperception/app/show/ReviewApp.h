@@ -11,6 +11,11 @@ namespace perception {
 /// the precision of the run by these answers.
 class ReviewApp : public App {
  public:
+  ReviewApp()
+      : App("perception-review",
+            "Lets a person say whether outputs of a run are right, where there is no truth: a page "
+            "of questions, and the precision by the answers.") {}
+
   std::string run_dir;       ///< -r: folder of perception-track
   std::string truth_file;    ///< -t
   std::string answers_file;  ///< score ANSWERS.csv
@@ -23,15 +28,12 @@ class ReviewApp : public App {
   std::vector<ReviewPrecision> out_by_truth;   ///< of the same outputs by the truth
   std::string out_page;
 
-  std::string name() const override { return "perception-review"; }
-  std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
 
  private:
   void makePage();
   void score();
-  void findItems(const TrackedRun& run, const ReviewAnswers& answers);
 
   bool scoring_ = false;
 };

@@ -4,38 +4,22 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <utility>
 
-#include "gui-offscreen/views/ContactSheet.h"
-#include "gui-offscreen/views/SceneFile.h"
-#include "gui-offscreen/views/VideoFile.h"
 #include "libperception/app/Programs.h"
-#include "libperception/grid/CGridExport.h"
+#include "libperception/core/system/PathPattern.h"
 #include "libperception/pictures/RunScenes.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/pipeline/output/FinishedRun.h"
 #include "libperception/pipeline/output/Progress.h"
-#include "libperception/scene/files/OutputFile.h"
-#include "libperception/scene/files/RunMark.h"
 #include "libperception/scene/files/RunRecord.h"
 #include "libperception/sensors/observations/registerClasses.h"
 
 namespace perception {
-namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kSheetTiles = 36;  // on the contact sheet of --every
-constexpr double kSlowestFilm = 1;       // [s] a picture at most
-
-}  // namespace
-
-std::string SnapshotApp::description() const {
-  return "Draws tracked runs as PNG or video: objects, sensor data, safety grid, truth.";
-}
 
 void SnapshotApp::declare(CLI::App& cli) {
   cli.add_option(
@@ -51,9 +35,10 @@ void SnapshotApp::declare(CLI::App& cli) {
   auto* when = cli.add_option_group("when", "which instants");
   when->add_option("--time", time, "the scene nearest to this time of the log [s]");
   when->add_option("--frame", frame, "the scene of this frame of the log");
-  when->add_option("--every", every, "interval of pictures, and a contact sheet [s]")
+  when->add_option("--every", options.every, "interval of pictures, and a contact sheet [s]")
       ->check(CLI::Range(1e-3, 1e6));
-  when->add_option("--contact", contact, "one contact sheet of this many instants, equally spaced")
+  when->add_option("--contact", options.contact,
+                   "one contact sheet of this many instants, equally spaced")
       ->check(CLI::Range(1, 100));
   when->add_option("--video", video, "a video of all scenes at the log's rate (needs ffmpeg)")
       ->type_name("FILE.mp4");
@@ -61,10 +46,10 @@ void SnapshotApp::declare(CLI::App& cli) {
   cli.add_option("--from", video_from, "start of the video, time of the log [s]");
   cli.add_option("--to", video_to, "end of the video [s]");
   cli.add_option("-o,--output", output, "PNG or JPEG file; with --every a folder");
-  cli.add_option("--scene", scene_file,
+  cli.add_option("--scene", options.scene_file,
                  "with --time or --frame: also a file for MRPT's SceneViewer3D")
       ->type_name("FILE.3Dscene");
-  cli.add_option("--grid", grid_files,
+  cli.add_option("--grid", options.grid_files,
                  "with --time or --frame: also the safety grid, by the file's ending: .ot, .bt "
                  "(octovis), .gridmap.gz (MRPT), .png (from above)")
       ->type_name("FILE")
@@ -76,9 +61,9 @@ void SnapshotApp::declare(CLI::App& cli) {
       "both, and the camera where the log has images");
   cli.add_option("--camera", sensors.camera, "label of the camera that is shown")
       ->type_name("LABEL");
-  cli.add_flag("--details", details,
+  cli.add_flag("--details", options.details,
                "also draw the measurements, and the ids of things that are no road users");
-  cli.add_option("--range", params.range, "range shown ahead [m]")
+  cli.add_option("--range", options.params.range, "range shown ahead [m]")
       ->check(CLI::Range(5.0, 200.0))
       ->capture_default_str();
   cli.add_option("--memory", sensors.memory,
@@ -107,8 +92,8 @@ std::vector<std::size_t> SnapshotApp::chooseScenes(const TrackedRun& run) const 
   if (time) return {sceneAt(run, *time)};
   if (frame) return {sceneOfFrame(run, *frame)};
   if (!video.empty()) return scenesBetween(run, video_from, video_to);
-  const std::vector<std::size_t> chosen = scenesEvery(run, every);
-  return every > 0 ? chosen : spread(chosen, static_cast<std::size_t>(contact));
+  const std::vector<std::size_t> chosen = scenesEvery(run, options.every);
+  return options.every > 0 ? chosen : spread(chosen, static_cast<std::size_t>(options.contact));
 }
 
 // Log and run; marks simulated logs.
@@ -124,25 +109,6 @@ std::string SnapshotApp::titleOf(std::size_t index) {
   const RunRecord record = readRunRecord(record_file.string());
   const std::string log = fs::path(record.input).filename().string();
   return fmt::format("{}{}, run {}", log, record.simulated ? " (simulated)" : "", run);
-}
-
-std::vector<SceneView> SnapshotApp::viewsOf(std::size_t index) const {
-  auto views = viewsOfRuns(shown_, index, truth_ ? &*truth_ : nullptr, params.views);
-  for (SceneView& shown : views) shown.layers.thing_ids = details;
-  return views;
-}
-
-std::string SnapshotApp::fileFor(const SceneView& shown) const {
-  if (every <= 0) return output;
-  const auto ms = static_cast<long long>(std::llround(shown.t * 1000));
-  return (fs::path(output) / fmt::format("t{:09d}ms.png", ms)).string();
-}
-
-void SnapshotApp::write(const std::string& path, Picture picture) {
-  writePicture(path, picture, mark_);
-  out_files.push_back(path);
-  out_picture = std::move(picture);
-  fmt::print("{}\n", path);
 }
 
 void SnapshotApp::readRuns() {
@@ -163,26 +129,29 @@ void SnapshotApp::readRuns() {
 void SnapshotApp::run() {
   out_files.clear();
   if (readConfig()) return;
-  sensors.measurements = details;
+  sensors.measurements = options.details;
   if (inputs.size() > 1) throw Error(ExitCode::kUsage, "-i: one log, that of the runs");
   if (output.empty() && video.empty())
     throw Error(ExitCode::kUsage, "-o: expected a file or folder");
-  if (every <= 0 && !output.empty()) requirePictureName(output);
-  if ((!scene_file.empty() || !grid_files.empty()) && !time && !frame) {
+  if (options.every <= 0 && !output.empty()) requirePictureName(output);
+  if ((!options.scene_file.empty() || !options.grid_files.empty()) && !time && !frame) {
     throw Error(ExitCode::kUsage, "--scene, --grid: of one instant, --time or --frame");
   }
-  if (!grid_files.empty() && inputs.empty()) {
+  if (!options.grid_files.empty() && inputs.empty()) {
     throw Error(ExitCode::kUsage, "--grid: the safety grid comes from the log's scans: -i");
   }
-  if (contact > 0 && run_dirs.size() > 1) throw Error(ExitCode::kUsage, "--contact: of one run");
-  params.views = viewsNamed(view.empty() ? "both" : view);
+  if (options.contact > 0 && run_dirs.size() > 1)
+    throw Error(ExitCode::kUsage, "--contact: of one run");
+  options.params.views = viewsNamed(view.empty() ? "both" : view);
   registerPerceptionClasses();
   readRuns();
   if (view.empty() && shown_[0].sensors && shown_[0].sensors->hasImages())
-    params.views.push_back(ViewKind::kCamera);
-  mark_ = markOfRuns(run_dirs);
-  const auto camera = std::find(params.views.begin(), params.views.end(), ViewKind::kCamera);
-  if (camera != params.views.end() && (!shown_[0].sensors || !shown_[0].sensors->layers().camera)) {
+    options.params.views.push_back(ViewKind::kCamera);
+  const std::string mark = markOfRuns(run_dirs);
+  const auto camera =
+      std::find(options.params.views.begin(), options.params.views.end(), ViewKind::kCamera);
+  if (camera != options.params.views.end() &&
+      (!shown_[0].sensors || !shown_[0].sensors->layers().camera)) {
     // "all" shows the views available; a camera requested explicitly must exist.
     if (view != "all") {
       throw Error(
@@ -192,88 +161,24 @@ void SnapshotApp::run() {
                                      : inputs[0] + " holds no camera" +
                                            (sensors.camera.empty() ? "" : " of that label")));
     }
-    params.views.erase(camera);
+    options.params.views.erase(camera);
   }
   truth_.reset();
   if (!truth_file.empty()) truth_ = readGroundTruth(truth_file);
   const std::vector<std::size_t> chosen = chooseScenes(shown_[0].run);
+  SnapshotWriter writer(shown_, truth_ ? &*truth_ : nullptr, options, mark);
+  writer.on_file = [this](const std::string& text, const std::string& path) {
+    out_files.push_back(path);
+    fmt::print("{}\n", text);
+  };
+  writer.on_note = [this](const std::string& text) { say(1, text); };
   if (video.empty()) {
-    drawPictures(chosen);
+    writer.drawPictures(chosen, output);
   } else {
-    drawVideo(chosen);
+    writer.drawVideo(chosen, video);
   }
+  out_picture = writer.last();
   reportLog();
-}
-
-void SnapshotApp::drawPictures(const std::vector<std::size_t>& chosen) {
-  const bool sheet = contact > 0 || (every > 0 && shown_.size() == 1);
-  const std::vector<std::size_t> on_sheet =
-      !sheet ? std::vector<std::size_t>{}
-             : spread(chosen, contact > 0 ? chosen.size() : kSheetTiles);
-  createFolder(every > 0 ? output : fs::path(output).parent_path().string());
-  Snapshot snapshot(params);
-  std::vector<Picture> tiles;
-  std::vector<SceneView> views;
-  Progress progress("drawing", chosen.size());
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    stopIfAsked();
-    views = viewsOf(chosen[i]);
-    if (contact == 0) {
-      write(fileFor(views[0]), snapshot.picture(views));
-      if (snapshot.labelsLeftOut() > 0) {
-        say(1, fmt::format("t = {:.2f} s: no room for {} labels", views[0].t,
-                           snapshot.labelsLeftOut()));
-      }
-    }
-    if (std::binary_search(on_sheet.begin(), on_sheet.end(), chosen[i])) {
-      tiles.push_back(snapshot.tile(views[0]));
-    }
-    progress.update(i + 1, i + 1);
-  }
-  if (!tiles.empty()) {
-    const std::string path = every > 0 ? (fs::path(output) / "contact.png").string() : output;
-    write(path, contactSheet(tiles, views[0]));
-  }
-  if (!scene_file.empty()) {
-    createFolder(fs::path(scene_file).parent_path().string());
-    writeSceneFile(scene_file, views[0], params.range, mark_);
-    fmt::print("{}\n", scene_file);
-    out_files.push_back(scene_file);
-  }
-  for (const std::string& file : grid_files) {
-    createFolder(fs::path(file).parent_path().string());
-    writeFile(file, withMark(gridFileOf(shown_[0].sensors->grid(), file), mark_));
-    fmt::print("{}\n", file);
-    out_files.push_back(file);
-  }
-}
-
-// Real time: frame rate by the median scene interval; in gaps of the log the video shows the last
-// scene.
-void SnapshotApp::drawVideo(const std::vector<std::size_t>& chosen) {
-  const auto& scenes = shown_[0].run.scenes;
-  const auto at = [&](std::size_t i) { return scenes[chosen[i]].stamp - scenes[chosen[0]].stamp; };
-  std::vector<double> gaps;
-  for (std::size_t i = 1; i < chosen.size(); ++i) gaps.push_back(at(i) - at(i - 1));
-  std::sort(gaps.begin(), gaps.end());
-  const double gap =
-      gaps.empty() ? kSlowestFilm : std::clamp(gaps[gaps.size() / 2], 1e-2, kSlowestFilm);
-  createFolder(fs::path(video).parent_path().string());
-  VideoFile film(video, 1 / gap, mark_);
-  Snapshot snapshot(params);
-  Progress progress("filming", chosen.size());
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    stopIfAsked();
-    out_picture = snapshot.picture(viewsOf(chosen[i]));
-    const double until = i + 1 < chosen.size() ? at(i + 1) : at(i) + gap;
-    do {
-      film.add(out_picture);
-    } while (static_cast<double>(film.frames()) * gap < until - gap / 2);
-    progress.update(i + 1, i + 1);
-  }
-  film.close();
-  out_files.push_back(video);
-  fmt::print("{}: {} frames, {:.2f} a second\n", video, film.frames(), 1 / gap);
 }
 
 void SnapshotApp::reportLog() {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <filesystem>
 #include <future>
+#include <system_error>
 
 #include "gui-offscreen/drawing/Picture.h"
 #include "libperception/app/Programs.h"
@@ -13,9 +13,12 @@
 #include "libperception/pictures/ScenarioPictures.h"
 #include "libperception/pipeline/output/Progress.h"
 #include "libperception/scene/files/OutputFile.h"
+#include "libperception/scene/files/RunTiming.h"
+#include "libperception/sensors/observations/registerClasses.h"
 #include "libperception/sensors/rawlog/RawlogWriter.h"
 #include "libperception/simulation/Simulator.h"
 #include "libperception/simulation/lidar/PointTruth.h"
+#include "libperception/simulation/recorded/AlteredRecording.h"
 #include "libperception/simulation/world/Scenario.h"
 
 namespace perception {
@@ -30,10 +33,6 @@ std::string lanesFileOf(const std::string& rawlog) {
 }
 
 }  // namespace
-
-std::string SimulateApp::description() const {
-  return "Simulates a scenario: writes a rawlog and the truth, FILE.truth.csv, beside it.";
-}
 
 void SimulateApp::declare(CLI::App& cli) {
   addConfigOptions(cli, false);
@@ -88,13 +87,6 @@ std::optional<Scenario> SimulateApp::loadScenario() {
   return trialOf(std::move(scenario), trial, seed);
 }
 
-void SimulateApp::removeOldLabels() const {
-  std::error_code error;
-  for (const auto& file : std::filesystem::directory_iterator(labelFolderOf(output), error)) {
-    if (file.path().extension() == ".label") std::filesystem::remove(file.path(), error);
-  }
-}
-
 void SimulateApp::writeLabels(std::int64_t frame, const std::vector<std::uint32_t>& labels) {
   const std::string folder = labelFolderOf(output);
   if (out_labels++ == 0) createFolder(folder);
@@ -104,20 +96,19 @@ void SimulateApp::writeLabels(std::int64_t frame, const std::vector<std::uint32_
 void SimulateApp::drawCoverage() {
   Config config = loadConfig();
   // A vehicle INI has no scene; other sections of a scenario do not affect the picture.
-  if (config.has("scenario")) {
-    const Scenario scenario = readScenario(config);
-    if (configDone(config)) return;
-    writePicture(coverage,
-                 coveragePicture(scenario.sensors, "Coverage of the sensors: " + config_file));
-    return;
+  const bool is_scenario = config.has("scenario");
+  std::vector<SensorParams> sensors;
+  if (is_scenario) {
+    sensors = readScenario(config).sensors;
+  } else {
+    config.read<PoseParams>("ego");
+    sensors = readSensors(config);
+    if (sensors.empty()) config.fault("", "", "no [sensor.LABEL] section");
   }
-  config.read<PoseParams>("ego");
-  const std::vector<SensorParams> sensors = readSensors(config);
-  if (sensors.empty()) config.fault("", "", "no [sensor.LABEL] section");
   if (configDone(config)) return;
-  writePicture(coverage,
-               coveragePicture(sensors, "Coverage of the sensors: " +
-                                            std::filesystem::path(config_file).stem().string()));
+  const std::string name =
+      is_scenario ? config_file : std::filesystem::path(config_file).stem().string();
+  writePicture(coverage, coveragePicture(sensors, "Coverage of the sensors: " + name));
 }
 
 void SimulateApp::drawContactSheet() {
@@ -142,14 +133,14 @@ void SimulateApp::run() {
   std::optional<Scenario> loaded = loadScenario();
   if (!loaded) return;
   Scenario scenario = std::move(*loaded);
-  const auto start = std::chrono::steady_clock::now();
+  const RunTiming timing;
   const std::string scene = std::filesystem::path(config_file).stem().string();
   const std::string name = trial > 0 ? fmt::format("{}, trial {}", scene, trial) : scene;
   const double duration = scenario.params.duration;
   const std::vector<Lane> lanes = scenario.lanes;
   Simulator simulator(std::move(scenario), name, trialSeed(seed, trial), threads);
   RawlogWriter log(output, gzip_level);
-  removeOldLabels();
+  removeLabels(output);
   {
     Progress progress("simulate", static_cast<std::uint64_t>(duration * 1e3));
     // An observation is compressed while the next one is simulated.
@@ -185,11 +176,69 @@ void SimulateApp::run() {
     warn(fmt::format("{} frames omitted: there is no observation class for them",
                      simulator.unwritten()));
   }
-  const double wall =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double wall = timing.wallSeconds();
   say(1, fmt::format(
              "{:.2f} s for {:.1f} s of log: {:.2f} times real time, {:.2f} million beams a second",
              wall, duration, duration / wall, static_cast<double>(out_beams) * 1e-6 / wall));
+}
+
+void SimulateApp::declareRecording(CLI::App& cli) {
+  recording_ = cli.add_subcommand("weather",
+                                  "Simulated weather on a recording: lidar returns, "
+                                  "radar targets, images, boxes of image detectors");
+  recording_
+      ->add_option("-i,--input", inputs,
+                   "Rawlog, with its truth (LOG.truth.csv) beside it, if there is one")
+      ->required()
+      ->expected(1);
+  recording_->add_option("-c,--config", config_file, "INI with [weather]")->required();
+  recording_->add_option("--set", settings,
+                         "Change one value of the configuration: section.key=value");
+  recording_
+      ->add_option("-o,--output", output, "Rawlog; truth and FILE_Labels/ are written beside it")
+      ->required();
+  recording_->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
+  recording_->add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
+      ->check(CLI::Range(0, 4096));
+  recording_->add_option("--gzip", gzip_level, "Gzip level of the log")
+      ->check(CLI::Range(0, 9))
+      ->capture_default_str();
+}
+
+void SimulateApp::alterRecording() {
+  Config config = loadConfig();
+  RecordingTask task{inputs.front(), output, {}, seed, threads, gzip_level};
+  task.weather = config.read<SimulatedWeatherParams>("weather", {}, true);
+  if (configDone(config)) return;
+  std::error_code error;
+  if (std::filesystem::equivalent(task.input, output, error))
+    throw Error(ExitCode::kUsage, "-o: is the recording itself");
+  registerPerceptionClasses();
+  const RunTiming timing;
+  std::optional<Progress> progress;
+  const AlteredRecording done = alteredRecording(
+      task,
+      [this](std::int64_t frame, const std::vector<std::uint32_t>& labels) {
+        writeLabels(frame, labels);
+      },
+      [&](std::uint64_t bytes, std::uint64_t scans) {
+        stopIfAsked();
+        if (!progress) progress.emplace("weather", std::filesystem::file_size(task.input));
+        if (bytes > 0) progress->update(bytes, scans);
+      });
+  progress.reset();
+  out_truth_file = done.truth_file;
+  out_entries = done.entries, out_bytes = done.bytes;
+  out_points = done.counts.returns, out_lost = done.counts.lost;
+  out_phantoms = done.counts.phantoms;
+  fmt::print("{}: {}, {} entries, {:.2f} MB\n{}", output, done.text, out_entries,
+             static_cast<double>(out_bytes) * 1e-6, textOf(done.counts));
+  if (out_labels > 0)
+    fmt::print("  {}: what each return is, {} scans\n", labelFolderOf(output), out_labels);
+  for (const std::string& warning : done.warnings) warn(warning);
+  const double wall = timing.wallSeconds();
+  say(1, fmt::format("{:.2f} s for {:.1f} s of log: {:.2f} times real time", wall, done.duration,
+                     done.duration / wall));
 }
 
 std::unique_ptr<App> simulateApp() { return std::make_unique<SimulateApp>(); }

@@ -9,12 +9,14 @@
 
 namespace perception {
 
-class WeatheredLog;
-
 /// perception-simulate: a scenario INI becomes a rawlog with ground truth; a recording, one in
 /// simulated weather.
 class SimulateApp : public App {
  public:
+  SimulateApp()
+      : App("perception-simulate",
+            "Simulates a scenario: writes a rawlog and the truth, FILE.truth.csv, beside it.") {}
+
   std::uint64_t seed = 1;     ///< --seed
   int gzip_level = 1;         ///< --gzip
   int trial = 0;              ///< --trial; 0 = the unchanged scenario
@@ -30,8 +32,6 @@ class SimulateApp : public App {
                 out_targets = 0, out_labels = 0;
   std::uint64_t out_lost = 0, out_phantoms = 0;  ///< returns of a recording in weather
 
-  std::string name() const override { return "perception-simulate"; }
-  std::string description() const override;
   void declare(CLI::App& cli) override;
   void run() override;
 
@@ -43,9 +43,6 @@ class SimulateApp : public App {
   /// The subcommand: weather on a recording.
   void declareRecording(CLI::App& cli);
   void alterRecording();
-  void sayWhatChanged(const WeatheredLog& weathered);
-  /// Those of an earlier log of this name.
-  void removeOldLabels() const;
   void writeLabels(std::int64_t frame, const std::vector<std::uint32_t>& labels);
   void drawCoverage();
   void drawContactSheet();

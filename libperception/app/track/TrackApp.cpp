@@ -12,8 +12,7 @@
 #include <utility>
 
 #include "libperception/app/Programs.h"
-#include "libperception/app/track/RosView.h"
-#include "libperception/interop/ros/RosGraphParams.h"
+#include "libperception/live/RosView.h"
 #include "libperception/pipeline/LogRun.h"
 #include "libperception/pipeline/input/LiveInput.h"
 #include "libperception/pipeline/output/FinishedRun.h"
@@ -81,7 +80,7 @@ void TrackApp::declare(CLI::App& cli) {
   cli.add_option("--publish", publish,
                  "Send scenes by DDS, in the form that ROS 2 nodes read, on INTERFACE[:DOMAIN], "
                  "for example lo:0");
-  serve.declare(cli);
+  declareServe(cli);
   cli.add_flag("--overwrite", overwrite,
                "Replace the results in the output folder, evaluation and film included, even if "
                "they are those of another run");
@@ -91,6 +90,26 @@ void TrackApp::declare(CLI::App& cli) {
          "--export", exports,
          "Also write the objects in another format: kitti:FILE writes KITTI's tracking format")
       ->allow_extra_args(false);
+}
+
+void TrackApp::declareServe(CLI::App& cli) {
+  cli.add_option("--serve", serve.port,
+                 "Show the run while it goes on, in a browser or in Foxglove, on this port (0: any "
+                 "free port); the program prints the address to open")
+      ->expected(0, 1)
+      ->default_str("8765");
+  cli.add_option(
+      "--serve-address", serve.address,
+      "Address on which --serve listens; if other machines can reach it, --serve-token is needed");
+  cli.add_option("--serve-token", serve.token_file,
+                 "File with the access token; clients must add ?token=TOKEN to the address");
+  cli.add_option("--serve-origin", serve.origins,
+                 "Also let web pages of this origin connect, for example https://HOST")
+      ->allow_extra_args(false);
+  cli.add_option(
+         "--serve-speed", serve.speed,
+         "Play a log at this multiple of the recorded speed; default: as fast as it is tracked")
+      ->check(CLI::Range(0.01, 1000.0));
 }
 
 std::string TrackApp::exportFileFor(const std::string& log) const {
@@ -128,8 +147,7 @@ void TrackApp::printContents(const std::string& log) {
     stopIfAsked();
     contents.look(*observation);
   }
-  fmt::print("{}\n", log);
-  fmt::print("{}", contents.table());
+  fmt::print("{}\n{}", log, contents.table());
   if (reader.end() == RawlogReader::End::kClean) return;
   if (strict) throw DataError(reader.endMessage());
   warn(reader.endMessage());
@@ -193,21 +211,6 @@ std::unique_ptr<ObservationInput> TrackApp::openInput(const std::string& log, Fi
   return std::make_unique<ReadAhead>(std::move(reader));
 }
 
-/// Of a graph that sends the vehicle's place itself, ours does not come beside it.
-RosTopics::Params TrackApp::rosParamsFor(const std::string& log,
-                                         const std::vector<std::string>& class_names) const {
-  RosTopics::Params params;
-  params.network = NetworkName::parse(publish);
-  params.class_names = class_names;
-  if (!isOfRosGraph(log)) return params;
-  const std::string ini = rosGraphIniOf(log);
-  Config config = ini.empty() ? Config::fromText("", "(no INI)") : Config::fromFile(ini);
-  const auto graph = config.read<RosGraphParams>("ros");
-  params.world_frame = graph.world_frame;
-  params.transforms = graph.send_transforms;
-  return params;
-}
-
 std::vector<TrackApp::Shard> TrackApp::shards(const std::string& effective_ini) {
   const std::string configuration = configurationHash(effective_ini, PERCEPTION_VERSION);
   std::vector<Shard> out;
@@ -250,7 +253,7 @@ void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
   if (liveIniOf(shard.log)) watchdog.emplace(run.timing(), kLongestStage, endHungRun);
   std::unique_ptr<RosView> ros;
   if (!publish.empty())
-    ros = std::make_unique<RosView>(rosParamsFor(shard.log, namesOf(setup.model.classes)));
+    ros = std::make_unique<RosView>(rosTopicsFor(publish, shard.log, namesOf(setup.model.classes)));
   const EventLog::Listener tell_ros = listenerOf(ros.get());
   if (view)
     view->watch(run, tell_ros);

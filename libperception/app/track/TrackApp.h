@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "libperception/app/App.h"
-#include "libperception/app/track/LiveView.h"
-#include "libperception/dds/RosTopics.h"
+#include "libperception/live/LiveView.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/scene/files/KittiExport.h"
 #include "libperception/sensors/rawlog/FileSink.h"
@@ -18,6 +17,11 @@ namespace perception {
 /// perception-track: from rawlogs, or sensors at work, to tracked and classified objects.
 class TrackApp : public App {
  public:
+  TrackApp()
+      : App("perception-track",
+            "Tracks and classifies the objects around a vehicle, from rawlogs or from live "
+            "sensors") {}
+
   std::string sensors;                ///< --sensors: overrides [run] sensors
   std::optional<std::uint64_t> seed;  ///< --seed: overrides [run] seed
   double rate = 0;                    ///< --rate [Hz]: scenes at a fixed rate instead of at scans
@@ -31,10 +35,6 @@ class TrackApp : public App {
   bool info = false;                  ///< --info: say what the logs hold and stop
   bool keep_scenes = false;           ///< keep all scenes in out_scenes (tests)
 
-  std::string name() const override { return "perception-track"; }
-  std::string description() const override {
-    return "Tracks and classifies the objects around a vehicle, from rawlogs or from live sensors";
-  }
   void declare(CLI::App& cli) override;
   void run() override;
 
@@ -51,14 +51,13 @@ class TrackApp : public App {
   /// Those that are left to do.
   std::vector<Shard> shards(const std::string& effective_ini);
   void trackLog(const PipelineSetup& setup, const Shard& shard);
+  void declareServe(CLI::App& cli);
   void checkInputs() const;
   int threadCount() const;
   std::unique_ptr<ObservationInput> openInput(const std::string& log, FileSink sink) const;
   void printContents(const std::string& log);
   Config configWithOptions() const;
   std::string exportFileFor(const std::string& log) const;
-  RosTopics::Params rosParamsFor(const std::string& log,
-                                 const std::vector<std::string>& class_names) const;
 };
 
 }  // namespace perception

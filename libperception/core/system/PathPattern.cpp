@@ -2,6 +2,8 @@
 
 #include <glob.h>
 
+#include <filesystem>
+
 namespace perception {
 
 std::vector<std::string> pathsMatching(const std::string& pattern) {
@@ -11,6 +13,12 @@ std::vector<std::string> pathsMatching(const std::string& pattern) {
     paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   globfree(&found);
   return paths;
+}
+
+std::string lastFolderOf(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path normal = fs::absolute(path).lexically_normal();
+  return (normal.has_filename() ? normal.filename() : normal.parent_path().filename()).string();
 }
 
 }  // namespace perception

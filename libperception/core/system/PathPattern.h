@@ -8,4 +8,7 @@ namespace perception {
 /// it is no pattern and exists.
 std::vector<std::string> pathsMatching(const std::string& pattern);
 
+/// Last folder of the path: name of a run in tables and titles.
+std::string lastFolderOf(const std::string& path);
+
 }  // namespace perception

@@ -44,7 +44,5 @@ struct DpmModel {
 /// Throws DataError with file and line.
 DpmModel readDpmModel(const std::string& path);
 DpmModel parseDpmModel(const std::string& text, const std::string& name);
-/// The plain-text form.
-std::string dpmModelText(const DpmModel& model);
 
 }  // namespace perception

@@ -1,7 +1,11 @@
 #include "libperception/evaluation/tables/PaperTables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
+
+#include "libperception/core/Error.h"
 
 namespace perception {
 
@@ -109,6 +113,21 @@ std::vector<std::string> paperTableNames() {
       names.emplace_back(row.table);
   }
   return names;
+}
+
+std::vector<PaperTrackingRow> paperRowsOf(const std::vector<std::string>& tables) {
+  const std::vector<std::string> known = paperTableNames();
+  std::vector<PaperTrackingRow> rows;
+  for (const std::string& table : tables) {
+    if (std::find(known.begin(), known.end(), table) == known.end()) {
+      throw Error(ExitCode::kUsage,
+                  fmt::format("--paper {}: there are: {}", table, fmt::join(known, ", ")));
+    }
+    for (const PaperTrackingRow& row : paperTrackingRows()) {
+      if (row.table == table) rows.push_back(row);
+    }
+  }
+  return rows;
 }
 
 }  // namespace perception

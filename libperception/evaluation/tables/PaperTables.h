@@ -61,5 +61,7 @@ bool paperConditionHasWeather(const std::string& condition, const std::string& w
 
 /// Names that --paper takes.
 std::vector<std::string> paperTableNames();
+/// The rows of these tables. Throws Error (kUsage) for another name.
+std::vector<PaperTrackingRow> paperRowsOf(const std::vector<std::string>& tables);
 
 }  // namespace perception

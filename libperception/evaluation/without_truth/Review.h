@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libperception/evaluation/metrics/Evaluation.h"
@@ -63,5 +64,14 @@ struct ReviewPrecision {
 };
 /// By class in order of the name, "all" last; unsure answers do not count.
 std::vector<ReviewPrecision> reviewPrecision(const std::vector<ReviewItem>& items);
+std::string reviewTable(const std::vector<ReviewPrecision>& rows);
+
+/// Finds outputs that were asked about in the run of this folder, by id and time. `file`: of the
+/// answers. Throws DataError naming both.
+void placeItems(const TrackedRun& run, const std::string& run_dir, const std::string& file,
+                std::vector<ReviewItem>& items);
+/// Number of equal answers, and number of items that both are sure of.
+std::pair<std::size_t, std::size_t> sameAnswers(const std::vector<ReviewItem>& a,
+                                                const std::vector<ReviewItem>& b);
 
 }  // namespace perception

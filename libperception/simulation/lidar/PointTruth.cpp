@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
+#include "libperception/core/GroundTruth.h"
 #include "libperception/simulation/world/Scenario.h"
 
 namespace perception {
@@ -89,6 +92,13 @@ std::string labelBytes(const std::vector<std::uint32_t>& labels) {
   std::string bytes(4 * labels.size(), '\0');
   if (!labels.empty()) std::memcpy(bytes.data(), labels.data(), bytes.size());
   return bytes;
+}
+
+void removeLabels(const std::string& rawlog) {
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(labelFolderOf(rawlog), error)) {
+    if (file.path().extension() == ".label") std::filesystem::remove(file.path(), error);
+  }
 }
 
 }  // namespace perception

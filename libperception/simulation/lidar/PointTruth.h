@@ -25,5 +25,7 @@ bool hasPointLabels(const Scenario& scenario);
 /// Name and content (one uint32 a point) of a frame's file in labelFolderOf().
 std::string labelFileName(std::int64_t frame);
 std::string labelBytes(const std::vector<std::uint32_t>& labels);
+/// Removes the labels of an earlier log of this name.
+void removeLabels(const std::string& rawlog);
 
 }  // namespace perception

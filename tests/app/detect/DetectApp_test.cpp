@@ -8,17 +8,17 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "libperception/app/detect/DetectLabels.h"
 #include "libperception/core/Csv.h"
 #include "libperception/core/math/Angle.h"
+#include "libperception/detection/DetectLabels.h"
 #include "libperception/detectors/HogFeatures.h"
 #include "libperception/detectors/VisionSimd.h"
-#include "libperception/detectors/dpm/DpmModel.h"
 #include "libperception/importers/kitti/KittiFiles.h"
 #include "libperception/sensors/observations/CObservationObjectDetections.h"
 #include "libperception/sensors/observations/Conversions.h"
 #include "libperception/sensors/rawlog/RawlogReader.h"
 #include "libperception/sensors/rawlog/RawlogWriter.h"
+#include "tests/support/DpmText.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
@@ -59,7 +59,7 @@ void writeDetector(const test::TemporaryFolder& folder) {
   DpmModel model;
   model.class_name = "board";
   model.components = {c};
-  std::ofstream(folder / "board.txt") << dpmModelText(model);
+  std::ofstream(folder / "board.txt") << test::dpmModelText(model);
   std::ofstream(folder / "detector.ini")
       << "[detector]\nbackend = dpm\nfolder = .\n[model.board]\nfile = board.txt\nlabel = Car\n"
          "threshold = -2\nslope = 2\neven_score = -0.5\n";
@@ -88,12 +88,12 @@ TEST(DetectApp, ImagesGiveBoxesPicturesAndPrecision) {
   EXPECT_EQ(detect(app, {"-c", folder / "detector.ini", "-i", folder / "images", "--labels",
                          folder / "labels", "--pictures", "-o", folder / "out"}),
             3);  // one image could not be read
-  EXPECT_EQ(app.out_images, 3);
-  EXPECT_EQ(app.out_unreadable, 1);
-  ASSERT_EQ(app.out_quality.size(), 1U);
-  EXPECT_EQ(app.out_quality[0].right, 3);
-  EXPECT_NEAR(app.out_quality[0].average_precision, 1, 1e-9);
-  EXPECT_NEAR(degrees(app.out_quality[0].heading_median), degrees(0.1), 1e-6);
+  EXPECT_EQ(app.out.images, 3);
+  EXPECT_EQ(app.out.unreadable, 1);
+  ASSERT_EQ(app.out.quality.size(), 1U);
+  EXPECT_EQ(app.out.quality[0].right, 3);
+  EXPECT_NEAR(app.out.quality[0].average_precision, 1, 1e-9);
+  EXPECT_NEAR(degrees(app.out.quality[0].heading_median), degrees(0.1), 1e-6);
   const CsvTable boxes = CsvTable::fromFile(folder / "out/detections.csv");
   ASSERT_GE(boxes.rows(), 3U);
   EXPECT_EQ(boxes.text(0, boxes.column("image")), "0.png");
@@ -127,7 +127,7 @@ TEST(DetectApp, BoxesGoIntoTheLogBehindTheirImages) {
                          folder / "out.rawlog", "--camera", "CAMERA", "--label", "BOARDS", "--set",
                          "detector.ground_gate=false"}),
             0);
-  EXPECT_EQ(app.out_images, 2);
+  EXPECT_EQ(app.out.images, 2);
   RawlogReader reader(folder / "out.rawlog");
   std::vector<std::string> order;
   double last_x = -1;
@@ -288,9 +288,9 @@ TEST(DetectApp, BankOfSixteenFindsCarsAndTheirHeadings) {
                    "detector.folder=" + shared + "/data/kitti_dpm_models", "-i", images + "image_2",
                    "--calib", images + "calib", "--labels", images + "label_2"}),
       0);
-  const auto car = std::find_if(app.out_quality.begin(), app.out_quality.end(),
+  const auto car = std::find_if(app.out.quality.begin(), app.out.quality.end(),
                                 [](const LabelQuality& q) { return q.label == "Car"; });
-  ASSERT_NE(car, app.out_quality.end());
+  ASSERT_NE(car, app.out.quality.end());
   EXPECT_EQ(car->labeled, 21);
   EXPECT_GE(car->average_precision, 0.88);
   EXPECT_LE(degrees(car->heading_median), 6);

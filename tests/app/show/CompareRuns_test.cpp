@@ -1,4 +1,4 @@
-#include "libperception/app/show/CompareRuns.h"
+#include "libperception/pictures/pages/CompareRuns.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "gui-offscreen/html/HtmlText.h"
 #include "libperception/app/show/ReportApp.h"
-#include "libperception/app/show/ResultFiles.h"
+#include "libperception/pictures/pages/ResultFiles.h"
 #include "libperception/pipeline/output/FinishedRun.h"
 #include "libperception/scene/files/RunMark.h"
 

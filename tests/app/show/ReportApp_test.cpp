@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "gui-offscreen/html/HtmlText.h"
-#include "libperception/app/show/ResultFiles.h"
+#include "libperception/pictures/pages/ResultFiles.h"
 #include "libperception/pipeline/output/FinishedRun.h"
 #include "libperception/scene/files/RunMark.h"
 #include "libperception/scene/files/RunRecord.h"

@@ -1,5 +1,5 @@
 // A run that is watched: perception-track --serve.
-#include "libperception/app/track/LiveView.h"
+#include "libperception/live/LiveView.h"
 
 #include <gtest/gtest.h>
 

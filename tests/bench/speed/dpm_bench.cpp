@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/app/detect/DetectLabels.h"
+#include "libperception/detection/DetectLabels.h"
 #include "libperception/detectors/ImageDetector.h"
 #include "libperception/importers/kitti/KittiFiles.h"
 

@@ -270,7 +270,7 @@ TEST(DpmEngine, FindsWhatItWasCutFrom) {
 
 TEST(DpmModel, TextFormComesBackAsItWas) {
   const DpmModel model = tinyModel(5);
-  const DpmModel again = parseDpmModel(dpmModelText(model), "text");
+  const DpmModel again = parseDpmModel(test::dpmModelText(model), "text");
   ASSERT_EQ(again.components.size(), model.components.size());
   for (std::size_t k = 0; k < model.components.size(); ++k) {
     const DpmComponent &a = model.components[k], &b = again.components[k];
@@ -286,7 +286,7 @@ TEST(DpmModel, TextFormComesBackAsItWas) {
 }
 
 TEST(DpmModel, SaysWhereATextIsWrong) {
-  std::string text = dpmModelText(tinyModel(5));
+  std::string text = test::dpmModelText(tinyModel(5));
   text.resize(text.size() / 2);
   try {
     parseDpmModel(text, "bank.txt");

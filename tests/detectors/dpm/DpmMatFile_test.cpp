@@ -10,6 +10,7 @@
 #include "libperception/core/Error.h"
 #include "libperception/core/system/Supervision.h"
 #include "libperception/detectors/dpm/DpmModel.h"
+#include "tests/support/DpmText.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception::test {
@@ -156,7 +157,7 @@ TEST(DpmMatFile, ReleaseFiveWeighsTheOctaveOfTheRoot) {
   EXPECT_EQ(five.components[0].octaves[0], -0.3);
   EXPECT_EQ(five.components[0].octaves[1], 0.02);
   EXPECT_EQ(five.components[0].octaves[2], 0.05);
-  const DpmModel again = parseDpmModel(dpmModelText(five), "text");
+  const DpmModel again = parseDpmModel(test::dpmModelText(five), "text");
   EXPECT_EQ(again.components[0].octaves[2], 0.05);
 }
 

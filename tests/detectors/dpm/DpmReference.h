@@ -7,6 +7,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/detectors/dpm/DpmEngine.h"
+#include "tests/support/DpmText.h"
 
 // The detector of Felzenszwalb et al. written down literally, in double precision and with no eye
 // on time: what the engine must give.

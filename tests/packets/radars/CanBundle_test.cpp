@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "libperception/core/Error.h"
+#include "tests/packets/Candump.h"
 
 namespace perception {
 namespace {
+
+using test::candump::parseCandump;
 
 TEST(Candump, LinesGiveTheirFrames) {
   const auto classic = parseCandump("(1436509052.249713) vcan0 123#1122AABB R\n");
