@@ -273,6 +273,10 @@ void SnapshotSensors::fill(SceneView& view) {
   if (!path.known) return;
   view.corridor = path.corridor;
   view.free = path.free;
+  // The run also knew shapes, wakes and the weather of earlier scans: what it said is shown.
+  if (const auto& said = view.scene.path)
+    view.free.distance = said->distance, view.free.seen = said->seen,
+    view.free.blocked = said->blocked;
 }
 
 }  // namespace perception

@@ -46,7 +46,8 @@ class SnapshotSensors {
   void advanceTo(Stamp stamp);
   /// [s] of log before an instant that count for it.
   double past() const;
-  /// Adds the data of the last instant to the view.
+  /// Adds the data of the last instant to the view, the free lane as the run's scene says, else by
+  /// the grid of the past() seconds.
   void fill(SceneView& view);
 
   const ViewLayers& layers() const { return layers_; }
