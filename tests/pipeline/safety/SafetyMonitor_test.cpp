@@ -7,69 +7,12 @@
 #include <memory>
 #include <utility>
 
-#include "libperception/core/math/Angle.h"
-#include "tests/support/StartStamp.h"
+#include "tests/pipeline/safety/BoxAhead.h"
 
 namespace perception {
 namespace {
 
-using test::kStart;
-
-/// A scan of a box one meter wide and high at `x` [m] ahead, and of the road before it.
-struct Scan {
-  SensorFrame frame;
-  PlacedReturns returns;
-
-  Scan(double t, double x, float trust = 1) {
-    frame.stamp = kStart + t;
-    frame.ego.stamp = frame.stamp;
-    frame.T_ego_sensor = makePose(0, 0, 1.7, 0);
-    frame.data = LidarCloud{};
-    for (double y = -0.5; y <= 0.5; y += 0.1)
-      for (double z = 0.4; z <= 1; z += 0.1) add(x, y, z, trust);
-    for (double road = 4; road < x; road += 0.2) add(road, 0, 0, 1);
-    returns.height_min = 0.3, returns.height_max = 3;
-    returns.vehicle_front = 2;
-  }
-  /// Trust of the box's returns.
-  void trustBox(float trust) {
-    auto& cloud = std::get<LidarCloud>(frame.data);
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      if (cloud.z[i] > 0) cloud.trust[i] = trust;
-  }
-  /// Share of the directions about every return that end there.
-  void solid(float share) { returns.solid.assign(returns.size(), share); }
-  /// A cloud of drops over the road before the box, one return each 0.1 m.
-  void addCloud(float trust) {
-    for (double x = 10; x < 19; x += 0.1)
-      for (const double y : {-.4, 0., .4}) add(x, y, 1, trust);
-  }
-
- private:
-  void add(double px, double py, double pz, float trusted) {
-    auto& cloud = std::get<LidarCloud>(frame.data);
-    returns.source.push_back(static_cast<std::uint32_t>(cloud.x.size()));
-    for (auto* v : {&returns.x, &cloud.x}) v->push_back(static_cast<float>(px));
-    for (auto* v : {&returns.y, &cloud.y}) v->push_back(static_cast<float>(py));
-    for (auto* v : {&returns.z, &cloud.z}) v->push_back(static_cast<float>(pz));
-    returns.height.push_back(static_cast<float>(pz));
-    cloud.trust.push_back(trusted);
-  }
-};
-
-EgoState egoAt(double t, double speed) {
-  EgoState ego;
-  ego.stamp = kStart + t;
-  ego.velocity = {speed, 0};
-  return ego;
-}
-
-Scene sceneAt(double t, double speed) {
-  Scene scene;
-  scene.stamp = kStart + t;
-  scene.ego = egoAt(t, speed);
-  return scene;
-}
+using namespace test;
 
 SceneObject carAt(double x, double speed) {
   SceneObject car;
@@ -80,12 +23,6 @@ SceneObject carAt(double x, double speed) {
   car.speed = speed;
   car.velocity = {speed, 0};
   return car;
-}
-
-GridParams smallGrid() {
-  GridParams grid;
-  grid.size = 60;
-  return grid;
 }
 
 TEST(SafetyMonitor, AnObstacleNearerThanTheStoppingDistanceCallsForAStop) {
@@ -99,159 +36,6 @@ TEST(SafetyMonitor, AnObstacleNearerThanTheStoppingDistanceCallsForAStop) {
   EXPECT_TRUE(fast.stop);
   EXPECT_EQ(fast.owner, 0u);
   EXPECT_FALSE(monitor.advise(path, sceneAt(0.2, 9)).stop);  // 15.6 m
-}
-
-/// Scans 0.1 s apart as they are, in air that is not clear with that probability.
-PathAhead after(int scans, double weather, const std::function<void(Scan&)>& change,
-                double speed = 10) {
-  SafetyMonitor monitor(smallGrid(), {});
-  PathAhead path;
-  for (int k = 0; k < scans; ++k) {
-    Scan scan(0.1 * k, 20);
-    scan.frame.causes.weather = weather;
-    change(scan);
-    monitor.add(scan.frame, scan.returns);
-    path = monitor.pathAhead(egoAt(0.1 * k, speed));
-  }
-  return path;
-}
-
-// Nothing learned from shapes, and no trust, takes an obstacle out of the grid by itself.
-
-TEST(SafetyMonitor, InClearAirEveryReturnCountsWhateverItsTrustAndShape) {
-  for (const float trust : {0.01F, 1.F}) {
-    for (const float phantom : {0.99F, 0.01F, PlacedReturns::kNoCluster}) {
-      const PathAhead path = after(1, 0, [&](Scan& scan) {
-        scan.trustBox(trust);
-        scan.returns.phantom.assign(scan.returns.size(), phantom);
-      });
-      EXPECT_TRUE(path.free.blocked) << "in the first scan; trust " << trust << ", " << phantom;
-      EXPECT_FALSE(path.in_cloud);
-    }
-  }
-}
-
-TEST(SafetyMonitor, TheDoubtIsAsStrongAsItsCause) {
-  for (const double weather : {0.0, 0.1, 0.6, 1.0}) {
-    Scan scan(0, 20);
-    scan.frame.causes.weather = weather;
-    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-    const ObstacleScan obstacles = obstacleScanOf(scan.frame, scan.returns);
-    for (const float weight : obstacles.scan.weights)
-      EXPECT_NEAR(static_cast<double>(weight), 1 - std::min(weather, 0.99), 1e-6);
-    for (const char doubted : obstacles.doubted) EXPECT_TRUE(doubted);
-  }
-}
-
-TEST(SafetyMonitor, InWeatherADoubtedCloudBlocksNothing) {
-  const auto cloud = [](Scan& scan) {
-    scan.trustBox(0.01F);
-    scan.solid(0.1F);
-  };
-  EXPECT_FALSE(after(3, 1, cloud).free.blocked);
-  EXPECT_TRUE(after(3, 0, cloud).free.blocked);
-}
-
-TEST(SafetyMonitor, InWeatherASurfaceCountsInTheSecondScan) {
-  const auto surface = [&](Scan& scan) {
-    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-    scan.solid(0.5F);
-  };
-  EXPECT_FALSE(after(1, 1, surface).free.blocked);
-  const PathAhead path = after(2, 1, surface);
-  EXPECT_TRUE(path.free.blocked);
-  EXPECT_GT(path.overruled, 10u);
-}
-
-TEST(SafetyMonitor, AmongFlakesAnEdgeCountsInTheSecondScanAndAClumpDoesNot) {
-  for (const float share : {0.5F, 0.6F}) {
-    const PathAhead path = after(3, 1, [&](Scan& scan) {
-      scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-      scan.solid(share);
-      for (float& x : scan.returns.x) x -= 12;
-    });
-    EXPECT_EQ(path.free.blocked, share == 0.6F) << "dense flakes hit a place again by chance";
-  }
-}
-
-TEST(SafetyMonitor, InWeatherWhatIsSolidAsAWallCountsAtOnce) {
-  const auto wall = [](Scan& scan) {
-    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-    scan.solid(0.9F);
-  };
-  EXPECT_TRUE(after(1, 1, wall).free.blocked);
-}
-
-TEST(SafetyMonitor, WhatMovesOnFromScanToScanDoesNotPersist) {
-  int k = 0;
-  const auto flurry = [&](Scan& scan) {
-    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-    scan.solid(0.5F);
-    for (float& x : scan.returns.x) x += static_cast<float>(2 * k);
-    ++k;
-  };
-  EXPECT_FALSE(after(3, 1, flurry).free.blocked);
-}
-
-TEST(SafetyMonitor, AMirrorImageIsNoObstacleInAnyAir) {
-  EXPECT_FALSE(after(3, 0, [](Scan& scan) { scan.trustBox(0); }).free.blocked);
-}
-
-TEST(SafetyMonitor, WhatTheSensorCallsRainIsDoubtedInAnyAir) {
-  const auto rain = [](Scan& scan) {
-    scan.trustBox(0.01F);
-    auto& cloud = std::get<LidarCloud>(scan.frame.data);
-    cloud.label.assign(cloud.size(), static_cast<std::uint8_t>(PointLabel::kRain));
-  };
-  EXPECT_FALSE(after(3, 0, rain).free.blocked);
-}
-
-TEST(SafetyMonitor, BehindAVehicleItsSprayIsDoubtedAndNowhereElse) {
-  for (const double side : {0., 8.}) {
-    auto wakes = std::make_shared<WakeMap>();
-    VehicleFootprint car;  // was at the box a second ago
-    car.center = {20, side}, car.speed = 10, car.half_length = 2, car.half_width = 1;
-    car.stamp = kStart + -0.9;
-    wakes->add(car);
-    const PathAhead path = after(1, 0, [&](Scan& scan) {
-      scan.frame.causes.wakes = wakes;
-      scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-      scan.solid(0.1F);
-    });
-    EXPECT_EQ(path.free.blocked, side > 0);
-  }
-}
-
-TEST(SafetyMonitor, InAWakeOnlyWhatIsSolidTwiceEndsTheDoubt) {
-  auto wakes = std::make_shared<WakeMap>();
-  VehicleFootprint car;  // was at the box a second ago
-  car.center = {20, 0}, car.speed = 10, car.half_length = 2, car.half_width = 1;
-  car.stamp = kStart + -0.9;
-  wakes->add(car);
-  const auto blocked = [&](int scans, float solid) {
-    return after(scans, 0,
-                 [&](Scan& scan) {
-                   scan.frame.causes.wakes = wakes;
-                   scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-                   scan.solid(solid);
-                 })
-        .free.blocked;
-  };
-  EXPECT_FALSE(blocked(1, 1)) << "the cloud close behind a vehicle is as dense";
-  EXPECT_TRUE(blocked(2, 1));
-  EXPECT_FALSE(blocked(2, 0.8F));
-}
-
-TEST(SafetyMonitor, InWeatherOneScanBlocksOnlyByItsClusters) {
-  const auto loose = [](Scan& scan) {
-    scan.returns.phantom.assign(scan.returns.size(), PlacedReturns::kNoCluster);
-    scan.solid(0.1F);
-  };
-  EXPECT_FALSE(after(1, 1, loose).free.blocked);
-  EXPECT_TRUE(after(1, 0, loose).free.blocked);
-  EXPECT_TRUE(after(1, 1, [](Scan& scan) {
-                scan.returns.phantom.assign(scan.returns.size(), 0);
-              }).free.blocked);
 }
 
 TEST(SafetyMonitor, ManyDoubtedReturnsOfOneScanAreNoObstacle) {

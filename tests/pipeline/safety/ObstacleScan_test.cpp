@@ -1,0 +1,153 @@
+#include "libperception/pipeline/safety/ObstacleScan.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/pipeline/safety/BoxAhead.h"
+
+namespace perception {
+namespace {
+
+using namespace test;
+
+// Nothing learned from shapes, and no trust, takes an obstacle out of the grid by itself.
+
+TEST(ObstacleScan, InClearAirEveryReturnCountsWhateverItsTrustAndShape) {
+  for (const float trust : {0.01F, 1.F}) {
+    for (const float phantom : {0.99F, 0.01F, PlacedReturns::kNoCluster}) {
+      const PathAhead path = after(1, 0, [&](Scan& scan) {
+        scan.trustBox(trust);
+        scan.returns.phantom.assign(scan.returns.size(), phantom);
+      });
+      EXPECT_TRUE(path.free.blocked) << "in the first scan; trust " << trust << ", " << phantom;
+      EXPECT_FALSE(path.in_cloud);
+    }
+  }
+}
+
+TEST(ObstacleScan, TheDoubtIsAsStrongAsItsCause) {
+  for (const double weather : {0.0, 0.1, 0.6, 1.0}) {
+    Scan scan(0, 20);
+    scan.frame.causes.weather = weather;
+    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+    const ObstacleScan obstacles = obstacleScanOf(scan.frame, scan.returns);
+    for (const float weight : obstacles.scan.weights)
+      EXPECT_NEAR(static_cast<double>(weight), 1 - std::min(weather, 0.99), 1e-6);
+    for (const char doubted : obstacles.doubted) EXPECT_TRUE(doubted);
+  }
+}
+
+TEST(ObstacleScan, InWeatherADoubtedCloudBlocksNothing) {
+  const auto cloud = [](Scan& scan) {
+    scan.trustBox(0.01F);
+    scan.solid(0.1F);
+  };
+  EXPECT_FALSE(after(3, 1, cloud).free.blocked);
+  EXPECT_TRUE(after(3, 0, cloud).free.blocked);
+}
+
+TEST(ObstacleScan, InWeatherASurfaceCountsInTheSecondScan) {
+  const auto surface = [&](Scan& scan) {
+    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+    scan.solid(0.5F);
+  };
+  EXPECT_FALSE(after(1, 1, surface).free.blocked);
+  const PathAhead path = after(2, 1, surface);
+  EXPECT_TRUE(path.free.blocked);
+  EXPECT_GT(path.overruled, 10u);
+}
+
+TEST(ObstacleScan, AmongFlakesAnEdgeCountsInTheSecondScanAndAClumpDoesNot) {
+  for (const float share : {0.5F, 0.6F}) {
+    const PathAhead path = after(3, 1, [&](Scan& scan) {
+      scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+      scan.solid(share);
+      for (float& x : scan.returns.x) x -= 12;
+    });
+    EXPECT_EQ(path.free.blocked, share == 0.6F) << "dense flakes hit a place again by chance";
+  }
+}
+
+TEST(ObstacleScan, InWeatherWhatIsSolidAsAWallCountsAtOnce) {
+  const auto wall = [](Scan& scan) {
+    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+    scan.solid(0.9F);
+  };
+  EXPECT_TRUE(after(1, 1, wall).free.blocked);
+}
+
+TEST(ObstacleScan, WhatMovesOnFromScanToScanDoesNotPersist) {
+  int k = 0;
+  const auto flurry = [&](Scan& scan) {
+    scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+    scan.solid(0.5F);
+    for (float& x : scan.returns.x) x += static_cast<float>(2 * k);
+    ++k;
+  };
+  EXPECT_FALSE(after(3, 1, flurry).free.blocked);
+}
+
+TEST(ObstacleScan, AMirrorImageIsNoObstacleInAnyAir) {
+  EXPECT_FALSE(after(3, 0, [](Scan& scan) { scan.trustBox(0); }).free.blocked);
+}
+
+TEST(ObstacleScan, WhatTheSensorCallsRainIsDoubtedInAnyAir) {
+  const auto rain = [](Scan& scan) {
+    scan.trustBox(0.01F);
+    auto& cloud = std::get<LidarCloud>(scan.frame.data);
+    cloud.label.assign(cloud.size(), static_cast<std::uint8_t>(PointLabel::kRain));
+  };
+  EXPECT_FALSE(after(3, 0, rain).free.blocked);
+}
+
+TEST(ObstacleScan, BehindAVehicleItsSprayIsDoubtedAndNowhereElse) {
+  for (const double side : {0., 8.}) {
+    auto wakes = std::make_shared<WakeMap>();
+    VehicleFootprint car;  // was at the box a second ago
+    car.center = {20, side}, car.speed = 10, car.half_length = 2, car.half_width = 1;
+    car.stamp = kStart + -0.9;
+    wakes->add(car);
+    const PathAhead path = after(1, 0, [&](Scan& scan) {
+      scan.frame.causes.wakes = wakes;
+      scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+      scan.solid(0.1F);
+    });
+    EXPECT_EQ(path.free.blocked, side > 0);
+  }
+}
+
+TEST(ObstacleScan, InAWakeOnlyWhatIsSolidTwiceEndsTheDoubt) {
+  auto wakes = std::make_shared<WakeMap>();
+  VehicleFootprint car;  // was at the box a second ago
+  car.center = {20, 0}, car.speed = 10, car.half_length = 2, car.half_width = 1;
+  car.stamp = kStart + -0.9;
+  wakes->add(car);
+  const auto blocked = [&](int scans, float solid) {
+    return after(scans, 0,
+                 [&](Scan& scan) {
+                   scan.frame.causes.wakes = wakes;
+                   scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+                   scan.solid(solid);
+                 })
+        .free.blocked;
+  };
+  EXPECT_FALSE(blocked(1, 1)) << "the cloud close behind a vehicle is as dense";
+  EXPECT_TRUE(blocked(2, 1));
+  EXPECT_FALSE(blocked(2, 0.8F));
+}
+
+TEST(ObstacleScan, InWeatherOneScanBlocksOnlyByItsClusters) {
+  const auto loose = [](Scan& scan) {
+    scan.returns.phantom.assign(scan.returns.size(), PlacedReturns::kNoCluster);
+    scan.solid(0.1F);
+  };
+  EXPECT_FALSE(after(1, 1, loose).free.blocked);
+  EXPECT_TRUE(after(1, 0, loose).free.blocked);
+  EXPECT_TRUE(after(1, 1, [](Scan& scan) {
+                scan.returns.phantom.assign(scan.returns.size(), 0);
+              }).free.blocked);
+}
+
+}  // namespace
+}  // namespace perception
