@@ -14,8 +14,8 @@
 
 namespace perception {
 
-/// Where a run on `log` publishes, on INTERFACE[:DOMAIN]. Into a graph that sends the vehicle's place
-/// itself ours does not come beside it. Throws Error.
+/// Where a run on `log` publishes, on INTERFACE[:DOMAIN]. Into a graph that sends the vehicle's
+/// place itself ours does not come beside it. Throws Error.
 RosTopics::Params rosTopicsFor(const std::string& network, const std::string& log,
                                const std::vector<std::string>& class_names);
 
