@@ -8,11 +8,11 @@
 namespace perception::test {
 
 /// A scan of a box one meter wide and high at `x` [m] ahead, and of the road before it.
-struct Scan {
+struct BoxScan {
   SensorFrame frame;
   PlacedReturns returns;
 
-  Scan(double t, double x, float trust = 1) {
+  BoxScan(double t, double x, float trust = 1) {
     frame.stamp = kStart + t;
     frame.ego.stamp = frame.stamp;
     frame.T_ego_sensor = makePose(0, 0, 1.7, 0);
@@ -49,37 +49,37 @@ struct Scan {
   }
 };
 
-inline EgoState egoAt(double t, double speed) {
+inline EgoState egoDriving(double t, double speed) {
   EgoState ego;
   ego.stamp = kStart + t;
   ego.velocity = {speed, 0};
   return ego;
 }
 
-inline Scene sceneAt(double t, double speed) {
+inline Scene sceneDriving(double t, double speed) {
   Scene scene;
   scene.stamp = kStart + t;
-  scene.ego = egoAt(t, speed);
+  scene.ego = egoDriving(t, speed);
   return scene;
 }
 
-inline GridParams smallGrid() {
+inline GridParams gridOfBox() {
   GridParams grid;
   grid.size = 60;
   return grid;
 }
 
 /// Scans 0.1 s apart as they are, in air that is not clear with that probability.
-inline PathAhead after(int scans, double weather, const std::function<void(Scan&)>& change,
-                       double speed = 10) {
-  SafetyMonitor monitor(smallGrid(), {});
+inline PathAhead afterScans(int scans, double weather, const std::function<void(BoxScan&)>& change,
+                            double speed = 10) {
+  SafetyMonitor monitor(gridOfBox(), {});
   PathAhead path;
   for (int k = 0; k < scans; ++k) {
-    Scan scan(0.1 * k, 20);
+    BoxScan scan(0.1 * k, 20);
     scan.frame.causes.weather = weather;
     change(scan);
     monitor.add(scan.frame, scan.returns);
-    path = monitor.pathAhead(egoAt(0.1 * k, speed));
+    path = monitor.pathAhead(egoDriving(0.1 * k, speed));
   }
   return path;
 }

@@ -16,7 +16,7 @@ using namespace test;
 TEST(ObstacleScan, InClearAirEveryReturnCountsWhateverItsTrustAndShape) {
   for (const float trust : {0.01F, 1.F}) {
     for (const float phantom : {0.99F, 0.01F, PlacedReturns::kNoCluster}) {
-      const PathAhead path = after(1, 0, [&](Scan& scan) {
+      const PathAhead path = afterScans(1, 0, [&](BoxScan& scan) {
         scan.trustBox(trust);
         scan.returns.phantom.assign(scan.returns.size(), phantom);
       });
@@ -28,7 +28,7 @@ TEST(ObstacleScan, InClearAirEveryReturnCountsWhateverItsTrustAndShape) {
 
 TEST(ObstacleScan, TheDoubtIsAsStrongAsItsCause) {
   for (const double weather : {0.0, 0.1, 0.6, 1.0}) {
-    Scan scan(0, 20);
+    BoxScan scan(0, 20);
     scan.frame.causes.weather = weather;
     scan.returns.phantom.assign(scan.returns.size(), 0.99F);
     const ObstacleScan obstacles = obstacleScanOf(scan.frame, scan.returns);
@@ -39,28 +39,28 @@ TEST(ObstacleScan, TheDoubtIsAsStrongAsItsCause) {
 }
 
 TEST(ObstacleScan, InWeatherADoubtedCloudBlocksNothing) {
-  const auto cloud = [](Scan& scan) {
+  const auto cloud = [](BoxScan& scan) {
     scan.trustBox(0.01F);
     scan.solid(0.1F);
   };
-  EXPECT_FALSE(after(3, 1, cloud).free.blocked);
-  EXPECT_TRUE(after(3, 0, cloud).free.blocked);
+  EXPECT_FALSE(afterScans(3, 1, cloud).free.blocked);
+  EXPECT_TRUE(afterScans(3, 0, cloud).free.blocked);
 }
 
 TEST(ObstacleScan, InWeatherASurfaceCountsInTheSecondScan) {
-  const auto surface = [&](Scan& scan) {
+  const auto surface = [&](BoxScan& scan) {
     scan.returns.phantom.assign(scan.returns.size(), 0.99F);
     scan.solid(0.5F);
   };
-  EXPECT_FALSE(after(1, 1, surface).free.blocked);
-  const PathAhead path = after(2, 1, surface);
+  EXPECT_FALSE(afterScans(1, 1, surface).free.blocked);
+  const PathAhead path = afterScans(2, 1, surface);
   EXPECT_TRUE(path.free.blocked);
   EXPECT_GT(path.overruled, 10u);
 }
 
 TEST(ObstacleScan, AmongFlakesAnEdgeCountsInTheSecondScanAndAClumpDoesNot) {
   for (const float share : {0.5F, 0.6F}) {
-    const PathAhead path = after(3, 1, [&](Scan& scan) {
+    const PathAhead path = afterScans(3, 1, [&](BoxScan& scan) {
       scan.returns.phantom.assign(scan.returns.size(), 0.99F);
       scan.solid(share);
       for (float& x : scan.returns.x) x -= 12;
@@ -70,35 +70,35 @@ TEST(ObstacleScan, AmongFlakesAnEdgeCountsInTheSecondScanAndAClumpDoesNot) {
 }
 
 TEST(ObstacleScan, InWeatherWhatIsSolidAsAWallCountsAtOnce) {
-  const auto wall = [](Scan& scan) {
+  const auto wall = [](BoxScan& scan) {
     scan.returns.phantom.assign(scan.returns.size(), 0.99F);
     scan.solid(0.9F);
   };
-  EXPECT_TRUE(after(1, 1, wall).free.blocked);
+  EXPECT_TRUE(afterScans(1, 1, wall).free.blocked);
 }
 
 TEST(ObstacleScan, WhatMovesOnFromScanToScanDoesNotPersist) {
   int k = 0;
-  const auto flurry = [&](Scan& scan) {
+  const auto flurry = [&](BoxScan& scan) {
     scan.returns.phantom.assign(scan.returns.size(), 0.99F);
     scan.solid(0.5F);
     for (float& x : scan.returns.x) x += static_cast<float>(2 * k);
     ++k;
   };
-  EXPECT_FALSE(after(3, 1, flurry).free.blocked);
+  EXPECT_FALSE(afterScans(3, 1, flurry).free.blocked);
 }
 
 TEST(ObstacleScan, AMirrorImageIsNoObstacleInAnyAir) {
-  EXPECT_FALSE(after(3, 0, [](Scan& scan) { scan.trustBox(0); }).free.blocked);
+  EXPECT_FALSE(afterScans(3, 0, [](BoxScan& scan) { scan.trustBox(0); }).free.blocked);
 }
 
 TEST(ObstacleScan, WhatTheSensorCallsRainIsDoubtedInAnyAir) {
-  const auto rain = [](Scan& scan) {
+  const auto rain = [](BoxScan& scan) {
     scan.trustBox(0.01F);
     auto& cloud = std::get<LidarCloud>(scan.frame.data);
     cloud.label.assign(cloud.size(), static_cast<std::uint8_t>(PointLabel::kRain));
   };
-  EXPECT_FALSE(after(3, 0, rain).free.blocked);
+  EXPECT_FALSE(afterScans(3, 0, rain).free.blocked);
 }
 
 TEST(ObstacleScan, BehindAVehicleItsSprayIsDoubtedAndNowhereElse) {
@@ -108,7 +108,7 @@ TEST(ObstacleScan, BehindAVehicleItsSprayIsDoubtedAndNowhereElse) {
     car.center = {20, side}, car.speed = 10, car.half_length = 2, car.half_width = 1;
     car.stamp = kStart + -0.9;
     wakes->add(car);
-    const PathAhead path = after(1, 0, [&](Scan& scan) {
+    const PathAhead path = afterScans(1, 0, [&](BoxScan& scan) {
       scan.frame.causes.wakes = wakes;
       scan.returns.phantom.assign(scan.returns.size(), 0.99F);
       scan.solid(0.1F);
@@ -124,12 +124,12 @@ TEST(ObstacleScan, InAWakeOnlyWhatIsSolidTwiceEndsTheDoubt) {
   car.stamp = kStart + -0.9;
   wakes->add(car);
   const auto blocked = [&](int scans, float solid) {
-    return after(scans, 0,
-                 [&](Scan& scan) {
-                   scan.frame.causes.wakes = wakes;
-                   scan.returns.phantom.assign(scan.returns.size(), 0.99F);
-                   scan.solid(solid);
-                 })
+    return afterScans(scans, 0,
+                      [&](BoxScan& scan) {
+                        scan.frame.causes.wakes = wakes;
+                        scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+                        scan.solid(solid);
+                      })
         .free.blocked;
   };
   EXPECT_FALSE(blocked(1, 1)) << "the cloud close behind a vehicle is as dense";
@@ -138,13 +138,13 @@ TEST(ObstacleScan, InAWakeOnlyWhatIsSolidTwiceEndsTheDoubt) {
 }
 
 TEST(ObstacleScan, InWeatherOneScanBlocksOnlyByItsClusters) {
-  const auto loose = [](Scan& scan) {
+  const auto loose = [](BoxScan& scan) {
     scan.returns.phantom.assign(scan.returns.size(), PlacedReturns::kNoCluster);
     scan.solid(0.1F);
   };
-  EXPECT_FALSE(after(1, 1, loose).free.blocked);
-  EXPECT_TRUE(after(1, 0, loose).free.blocked);
-  EXPECT_TRUE(after(1, 1, [](Scan& scan) {
+  EXPECT_FALSE(afterScans(1, 1, loose).free.blocked);
+  EXPECT_TRUE(afterScans(1, 0, loose).free.blocked);
+  EXPECT_TRUE(afterScans(1, 1, [](BoxScan& scan) {
                 scan.returns.phantom.assign(scan.returns.size(), 0);
               }).free.blocked);
 }

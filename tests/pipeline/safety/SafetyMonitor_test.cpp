@@ -26,27 +26,27 @@ SceneObject carAt(double x, double speed) {
 }
 
 TEST(SafetyMonitor, AnObstacleNearerThanTheStoppingDistanceCallsForAStop) {
-  SafetyMonitor monitor(smallGrid(), {});
-  for (const double t : {0.0, 0.1, 0.2}) monitor.add(Scan(t, 20).frame, Scan(t, 20).returns);
-  const PathAhead path = monitor.pathAhead(egoAt(0.2, 10));
+  SafetyMonitor monitor(gridOfBox(), {});
+  for (const double t : {0.0, 0.1, 0.2}) monitor.add(BoxScan(t, 20).frame, BoxScan(t, 20).returns);
+  const PathAhead path = monitor.pathAhead(egoDriving(0.2, 10));
   ASSERT_TRUE(path.known);
   EXPECT_TRUE(path.free.blocked);
   EXPECT_NEAR(path.free.distance, 20, 0.3);
-  const FreePath fast = monitor.advise(path, sceneAt(0.2, 12));  // 25 m
+  const FreePath fast = monitor.advise(path, sceneDriving(0.2, 12));  // 25 m
   EXPECT_TRUE(fast.stop);
   EXPECT_EQ(fast.owner, 0u);
-  EXPECT_FALSE(monitor.advise(path, sceneAt(0.2, 9)).stop);  // 15.6 m
+  EXPECT_FALSE(monitor.advise(path, sceneDriving(0.2, 9)).stop);  // 15.6 m
 }
 
 TEST(SafetyMonitor, ManyDoubtedReturnsOfOneScanAreNoObstacle) {
   for (const float trust : {0.4F, 0.6F}) {
-    Scan scan(0, 60);
+    BoxScan scan(0, 60);
     scan.frame.causes.weather = 1;
     scan.addCloud(trust);
     scan.solid(0.1F);
-    SafetyMonitor monitor(smallGrid(), {});
+    SafetyMonitor monitor(gridOfBox(), {});
     monitor.add(scan.frame, scan.returns);
-    const FreeDistance free = monitor.pathAhead(egoAt(0, 10)).free;
+    const FreeDistance free = monitor.pathAhead(egoDriving(0, 10)).free;
     const bool by_cloud = free.blocked && free.distance < 20;
     EXPECT_EQ(by_cloud, trust == 0.6F);
   }
@@ -54,16 +54,16 @@ TEST(SafetyMonitor, ManyDoubtedReturnsOfOneScanAreNoObstacle) {
 
 TEST(SafetyMonitor, InACloudAStopTakesTwoScenesInARow) {
   for (const float trust : {0.1F, 1.F}) {
-    SafetyMonitor monitor(smallGrid(), {});
+    SafetyMonitor monitor(gridOfBox(), {});
     const auto stops = [&](double t, double x) {
-      Scan scan(t, x);
+      BoxScan scan(t, x);
       scan.frame.causes.weather = 1;
       if (trust < 1) scan.addCloud(trust);
       scan.solid(0.1F);
       monitor.add(scan.frame, scan.returns);
-      const PathAhead path = monitor.pathAhead(egoAt(t, 12));
+      const PathAhead path = monitor.pathAhead(egoDriving(t, 12));
       EXPECT_EQ(path.in_cloud, path.free.blocked && trust < 1);
-      return monitor.advise(path, sceneAt(t, 12)).stop;  // within 25 m
+      return monitor.advise(path, sceneDriving(t, 12)).stop;  // within 25 m
     };
     EXPECT_EQ(stops(0, 20), trust == 1);
     EXPECT_TRUE(stops(0.1, 20));
@@ -71,14 +71,14 @@ TEST(SafetyMonitor, InACloudAStopTakesTwoScenesInARow) {
 }
 
 TEST(SafetyMonitor, AnOlderSceneIsNotTheOneBefore) {
-  SafetyMonitor monitor(smallGrid(), {});
+  SafetyMonitor monitor(gridOfBox(), {});
   const auto stops = [&](double t) {
-    Scan scan(t, 20);
+    BoxScan scan(t, 20);
     scan.frame.causes.weather = 1;
     scan.addCloud(0.1F);
     scan.solid(0.1F);
     monitor.add(scan.frame, scan.returns);
-    return monitor.advise(monitor.pathAhead(egoAt(t, 12)), sceneAt(t, 12)).stop;
+    return monitor.advise(monitor.pathAhead(egoDriving(t, 12)), sceneDriving(t, 12)).stop;
   };
   EXPECT_FALSE(stops(0));
   EXPECT_FALSE(stops(0.6));
@@ -86,10 +86,10 @@ TEST(SafetyMonitor, AnOlderSceneIsNotTheOneBefore) {
 }
 
 TEST(SafetyMonitor, AnAdviceSaysWhatItIsFor) {
-  SafetyMonitor monitor(smallGrid(), {});
+  SafetyMonitor monitor(gridOfBox(), {});
   const auto adviceAt = [&](double t, std::vector<SceneObject> objects) {
-    monitor.add(Scan(t, 20).frame, Scan(t, 20).returns);
-    Scene scene = sceneAt(t, 12);
+    monitor.add(BoxScan(t, 20).frame, BoxScan(t, 20).returns);
+    Scene scene = sceneDriving(t, 12);
     scene.objects = std::move(objects);
     return monitor.advise(monitor.pathAhead(scene.ego), scene);
   };
@@ -103,18 +103,18 @@ TEST(SafetyMonitor, AnAdviceSaysWhatItIsFor) {
 }
 
 TEST(SafetyMonitor, AVehicleThatMovesOnEveryScanIsSeenAllTheSame) {
-  SafetyMonitor monitor(smallGrid(), {});
+  SafetyMonitor monitor(gridOfBox(), {});
   for (int i = 0; i < 4; ++i)
-    monitor.add(Scan(0.1 * i, 15 + 1.4 * i).frame, Scan(0.1 * i, 15 + 1.4 * i).returns);
-  const PathAhead path = monitor.pathAhead(egoAt(0.3, 10));
+    monitor.add(BoxScan(0.1 * i, 15 + 1.4 * i).frame, BoxScan(0.1 * i, 15 + 1.4 * i).returns);
+  const PathAhead path = monitor.pathAhead(egoDriving(0.3, 10));
   EXPECT_TRUE(path.free.blocked);
   EXPECT_NEAR(path.free.distance, 19.2, 0.3);
 }
 
 TEST(SafetyMonitor, ACarThatDrivesAheadAsFastIsNoStopAndIsNamed) {
-  SafetyMonitor monitor(smallGrid(), {});
-  for (const double t : {0.0, 0.1}) monitor.add(Scan(t, 20).frame, Scan(t, 20).returns);
-  Scene scene = sceneAt(0.1, 14);
+  SafetyMonitor monitor(gridOfBox(), {});
+  for (const double t : {0.0, 0.1}) monitor.add(BoxScan(t, 20).frame, BoxScan(t, 20).returns);
+  Scene scene = sceneDriving(0.1, 14);
   scene.objects = {carAt(22.25, 14)};
   const PathAhead path = monitor.pathAhead(scene.ego);
   const FreePath moving = monitor.advise(path, scene);
@@ -125,21 +125,21 @@ TEST(SafetyMonitor, ACarThatDrivesAheadAsFastIsNoStopAndIsNamed) {
 }
 
 TEST(SafetyMonitor, WithoutAScanForHalfASecondNothingIsKnown) {
-  SafetyMonitor monitor(smallGrid(), {});
-  EXPECT_FALSE(monitor.pathAhead(egoAt(0, 10)).known);
-  monitor.add(Scan(0, 20).frame, Scan(0, 20).returns);
-  EXPECT_TRUE(monitor.pathAhead(egoAt(0.4, 10)).known);
-  EXPECT_FALSE(monitor.pathAhead(egoAt(0.6, 10)).known);
+  SafetyMonitor monitor(gridOfBox(), {});
+  EXPECT_FALSE(monitor.pathAhead(egoDriving(0, 10)).known);
+  monitor.add(BoxScan(0, 20).frame, BoxScan(0, 20).returns);
+  EXPECT_TRUE(monitor.pathAhead(egoDriving(0.4, 10)).known);
+  EXPECT_FALSE(monitor.pathAhead(egoDriving(0.6, 10)).known);
   monitor.restart();
-  EXPECT_FALSE(monitor.pathAhead(egoAt(0.1, 10)).known);
+  EXPECT_FALSE(monitor.pathAhead(egoDriving(0.1, 10)).known);
 }
 
 // The way that the vehicle drives.
 
 TEST(SafetyMonitor, AVehicleThatReversesStopsForWhatStandsBehind) {
-  SafetyMonitor monitor(smallGrid(), {});
-  EgoState ego = egoAt(0, -2);
-  Scan scan(0, -5);
+  SafetyMonitor monitor(gridOfBox(), {});
+  EgoState ego = egoDriving(0, -2);
+  BoxScan scan(0, -5);
   scan.frame.ego = ego;
   scan.returns.vehicle_rear = 2;
   monitor.add(scan.frame, scan.returns);
@@ -147,46 +147,46 @@ TEST(SafetyMonitor, AVehicleThatReversesStopsForWhatStandsBehind) {
   EXPECT_TRUE(path.corridor.backward);
   ASSERT_TRUE(path.free.blocked) << "in the first scan";
   EXPECT_NEAR(path.free.distance, 5, 0.3);
-  EXPECT_FALSE(monitor.pathAhead(egoAt(0, 2)).free.blocked);
+  EXPECT_FALSE(monitor.pathAhead(egoDriving(0, 2)).free.blocked);
 }
 
 TEST(SafetyMonitor, WhatHangsHigherThanTheVehicleDoesNotBlock) {
   for (const double lower : {2.2, 1.4}) {
-    SafetyMonitor monitor(smallGrid(), {});
-    Scan scan(0, 20);
+    SafetyMonitor monitor(gridOfBox(), {});
+    BoxScan scan(0, 20);
     for (std::size_t i = 0; i < scan.returns.size(); ++i) {
       if (scan.returns.z[i] < 0.3F) continue;
       scan.returns.z[i] += static_cast<float>(lower) - 0.4F;  // the box's lower edge
       scan.returns.height[i] = scan.returns.z[i];
     }
     monitor.add(scan.frame, scan.returns);
-    EXPECT_EQ(monitor.pathAhead(egoAt(0, 10)).free.blocked, lower < 2) << lower;
+    EXPECT_EQ(monitor.pathAhead(egoDriving(0, 10)).free.blocked, lower < 2) << lower;
   }
   StopParams bus;
   bus.vehicle.height = 3;
-  SafetyMonitor monitor(smallGrid(), bus);
-  Scan scan(0, 20);
+  SafetyMonitor monitor(gridOfBox(), bus);
+  BoxScan scan(0, 20);
   for (std::size_t i = 0; i < scan.returns.size(); ++i)
     if (scan.returns.z[i] > 0.3F) scan.returns.height[i] = 2.5F;
   monitor.add(scan.frame, scan.returns);
-  EXPECT_TRUE(monitor.pathAhead(egoAt(0, 10)).free.blocked) << "a bus is higher";
+  EXPECT_TRUE(monitor.pathAhead(egoDriving(0, 10)).free.blocked) << "a bus is higher";
 }
 
 TEST(SafetyMonitor, TheFreeDistanceIsNoLongerThanWhatWasSeen) {
-  SafetyMonitor monitor(smallGrid(), {});
-  Scan scan(0, 12);  // nothing but a box beside the way, and the road before it
+  SafetyMonitor monitor(gridOfBox(), {});
+  BoxScan scan(0, 12);  // nothing but a box beside the way, and the road before it
   for (std::size_t i = 0; i < scan.returns.size(); ++i)
     if (scan.returns.z[i] > 0.3F) scan.returns.y[i] += 5;
   monitor.add(scan.frame, scan.returns);
-  const PathAhead path = monitor.pathAhead(egoAt(0, 10));
+  const PathAhead path = monitor.pathAhead(egoDriving(0, 10));
   ASSERT_FALSE(path.free.blocked);
-  const FreePath advice = monitor.advise(path, sceneAt(0, 10));
+  const FreePath advice = monitor.advise(path, sceneDriving(0, 10));
   EXPECT_LT(advice.distance, 13);
   EXPECT_LE(advice.distance, advice.seen);
   EXPECT_FALSE(advice.stop);
   EXPECT_TRUE(advice.too_fast) << "10 m/s need 18.5 m";
   EXPECT_LT(stoppingDistance(advice.safe_speed, 0, {}), 12);
-  EXPECT_FALSE(monitor.advise(path, sceneAt(0, advice.safe_speed - 0.1)).too_fast);
+  EXPECT_FALSE(monitor.advise(path, sceneDriving(0, advice.safe_speed - 0.1)).too_fast);
 }
 
 }  // namespace
