@@ -31,7 +31,9 @@ std::optional<std::size_t> shardOfTask();
 /// 0: as many as cores.
 BatchRunOptions optionsHere(int jobs, std::size_t shards);
 
+/// Id, log, configuration and what else tells the shard from others, for people.
 std::string labelOf(const Shard& shard);
+/// The places of all shards in the manifest.
 std::vector<std::size_t> allOf(const Batch& batch);
 /// Throws Error for a shard without a result.
 void requireResult(const Shard& shard, const ShardStatus& status);

@@ -101,8 +101,8 @@ text { font-family: sans-serif; fill: #222 }
 const char* layerTitle(int layer) {
   static const std::vector<const char*> titles = {
       "Base",         "Tools",   "Measurements", "One sensor,|one scan,|one filter",
-      "Scenes, logs", "One run", "Many runs",    "Programs",
-      "Experiments",  "Mains"};
+      "Scenes, logs", "One run", "Many runs",    "Whole tasks",
+      "Programs",     "Mains"};
   return layer < static_cast<int>(titles.size()) ? titles[static_cast<std::size_t>(layer)] : "";
 }
 

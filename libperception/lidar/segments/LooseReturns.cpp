@@ -45,11 +45,10 @@ template <int around>
 CellsAbout cellsWithin(const DirectionCells& cells, const DirectionCells::Place& place,
                        const Shell& shell) {
   using Float = std::conditional_t<around == 1, Float4, Float8>;
-  using Int = IntsOf<Float>;
-  Int told{}, passed{};  // numbers below zero
+  IntsOf<Float> told{}, passed{};  // numbers below zero
   for (int row = place.row - around; row <= place.row + around; ++row) {
     const auto farthest = load<Float>(cells.farthestFrom(place.column - around, row));
-    const Int tells = (farthest != 0.0f) & (farthest >= shell.least);
+    const IntsOf<Float> tells = (farthest != 0.0f) & (farthest >= shell.least);
     told += tells, passed += tells & (farthest > shell.behind);
   }
   int all = 0, gone = 0;
@@ -104,8 +103,7 @@ std::vector<float> solidShares(const EgoPoints& all, const DirectionCells& cells
     const bool among = range < PlacedReturns::kFlakesWithin;
     const float bend = among ? kSmooth : kBend, grazing = among ? kSmoothGrazing : kGrazing;
     const Shell shell{range - bend - grazing * range, range + bend};
-    const int around = among ? 2 : 1;
-    const CellsAbout about = cellsAbout(cells, place, shell, around);
+    const CellsAbout about = cellsAbout(cells, place, shell, among ? 2 : 1);
     const int told = about.solid + about.passed;
     if (told >= kLeastInRow) shares[k] = static_cast<float>(about.solid) / static_cast<float>(told);
   });
