@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # The commands of README as a stranger meets them: on a bare Debian, from a fresh clone, with nothing that a developer installed.
 #   tools/check_bare.sh [--suite bookworm|trixie] [--user] [--keep] COMMAND...
-# COMMANDs are those of setup.sh (demo, test, ...), one after the other in the same system; the first that fails ends it. The clone lies
-# in a path with a space. --user: as an ordinary user whose sudo asks nothing, else as root. --keep: the system stays, its folder
+# COMMANDs are those of setup.sh (demo, test, "fuzz 2", ...), one after the other in the same system; the first that fails ends it. The
+# clone lies in a path with a space. --user: as an ordinary user whose sudo asks nothing, else as root. --keep: the system stays, its folder
 # is printed. Needs root and debootstrap. Prints wall and CPU minutes of each command.
 set -euo pipefail
 source=$(dirname "$(dirname "$(readlink -f "$0")")")
@@ -49,7 +49,8 @@ for command in "${commands[@]}"; do
   began=$EPOCHREALTIME
   times >"$spent.before"
   if [[ $user == root ]]; then run=(bareRun); else run=(bareRunAs "$user"); fi
-  "${run[@]}" bash -c 'cd "$1" && exec ./setup.sh "$2"' bash "/$folder" "$command" || code=$?
+  # shellcheck disable=SC2016,SC2086  # the words of a command are arguments: "fuzz 2"
+  "${run[@]}" bash -c 'cd "$1" && shift && exec ./setup.sh "$@"' bash "/$folder" $command || code=$?
   times >"$spent"
   # The second line of `times` is what the children took: 1m2.3s of the user, 0m4.5s of the system.
   summary+=$(awk -F '[ ms]+' -v a="$began" -v b="$EPOCHREALTIME" -v name="bare $suite, ./setup.sh $command" -v code="$code" '
