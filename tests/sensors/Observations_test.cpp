@@ -134,31 +134,6 @@ TEST(CObservationRadarScan, ComesBackBitForBit) {
   EXPECT_EQ(serialized(*back), serialized(*o));
 }
 
-TEST(CObservationMeasurements, ComesBackBitForBit) {
-  const auto o = someMeasurements();
-  const auto back = roundTrip(*o);
-  ASSERT_TRUE(back);
-  EXPECT_EQ(back->model, "FootprintModel");
-  EXPECT_EQ(back->frame, 17);
-  EXPECT_EQ(back->labels, o->labels);
-  ASSERT_EQ(back->measurements.size(), 2U);
-  EXPECT_EQ(back->measurements[0].z, o->measurements[0].z);
-  EXPECT_EQ(back->measurements[0].R, o->measurements[0].R);
-  EXPECT_EQ(back->measurements[0].sides->length_complete, true);
-  EXPECT_EQ(back->measurements[0].sides->center, Vector2(11.5, 5.5));
-  EXPECT_EQ(back->measurements[1].height->mean, 1.6);
-  ASSERT_TRUE(back->measurements[0].heading);
-  EXPECT_EQ(back->measurements[0].heading->flip_probability, 0.05);
-  EXPECT_EQ(back->measurements[0].sides->length_sigma, 0.25);
-  EXPECT_EQ(back->measurements[0].log_class, (std::vector<double>{-0.5, 1.5}));
-  EXPECT_EQ(back->measurements[0].log_clutter, -0.7);
-  EXPECT_FALSE(back->measurements[1].heading);
-  EXPECT_FALSE(back->measurements[1].sides);
-  EXPECT_NEAR(back->sensor_pose.z(), 1.73, 1e-9);  // the vehicle's own pose is not part of it
-  EXPECT_NEAR(back->sensor_pose.x(), 0, 1e-9);
-  EXPECT_EQ(serialized(*back), serialized(*o));
-}
-
 TEST(Observations, DescriptionAndTextExportNameTheNumbers) {
   EXPECT_NE(fullScan(30)->asString().find("30 points"), std::string::npos);
   EXPECT_NE(fullScan(30)->asString().find("pulse_width"), std::string::npos);
@@ -166,12 +141,8 @@ TEST(Observations, DescriptionAndTextExportNameTheNumbers) {
   EXPECT_NE(someDetections()->asString().find("Pedestrian score -0.5000"), std::string::npos);
   EXPECT_NE(someDetections()->exportTxtDataRow().find("2 Car 8.2500 10.00 20.00"),
             std::string::npos);
-  EXPECT_NE(someMeasurements()->asString().find("car_sized  left 0.1000 +- 0.1000"),
-            std::string::npos);
-  EXPECT_NE(someMeasurements()->asString().find("left not seen"), std::string::npos);
   for (const mrpt::obs::CObservation::Ptr& o :
        {mrpt::obs::CObservation::Ptr(fullScan(3)), mrpt::obs::CObservation::Ptr(someDetections()),
-        mrpt::obs::CObservation::Ptr(someMeasurements()),
         mrpt::obs::CObservation::Ptr(someReturns())}) {
     EXPECT_TRUE(o->exportTxtSupported());
     EXPECT_EQ(o->exportTxtDataRow().find('\n'), std::string::npos);
@@ -208,7 +179,7 @@ TEST(Observations, HostileCountsTakeNoMemory) {
 TEST(Observations, RandomMutationsNeverCrash) {
   std::mt19937 random(20260705);
   const std::string originals[] = {serialized(*fullScan(20)), serialized(*someDetections()),
-                                   serialized(*someMeasurements())};
+                                   serialized(*someReturns())};
   int refused = 0;
   for (int round = 0; round < 300; ++round) {
     std::string bytes = originals[round % 3];
@@ -230,7 +201,7 @@ TEST(Observations, RandomMutationsNeverCrash) {
 
 TEST(Observations, TruncatedPayloadIsRefusedEverywhere) {
   for (const std::string& whole :
-       {serialized(*fullScan(4)), serialized(*someDetections()), serialized(*someMeasurements())}) {
+       {serialized(*fullScan(4)), serialized(*someDetections()), serialized(*someReturns())}) {
     for (std::size_t size = 0; size < whole.size(); ++size) {
       EXPECT_THROW(parsed(whole.substr(0, size)), std::exception) << size;
     }

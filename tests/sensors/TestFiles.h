@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 
-#include "libperception/measurement/CObservationMeasurements.h"
 #include "libperception/sensors/frames/ToObservation.h"
 #include "libperception/sensors/observations/CObservationLidarScan.h"
 #include "libperception/sensors/observations/CObservationObjectDetections.h"
@@ -93,39 +92,7 @@ inline std::shared_ptr<CObservationRadarScan> someReturns(Stamp stamp = kStart) 
   return std::dynamic_pointer_cast<CObservationRadarScan>(observationFromFrame(frame));
 }
 
-inline std::shared_ptr<CObservationMeasurements> someMeasurements(Stamp stamp = kStart) {
-  MeasurementScan scan;
-  scan.sensor = "LIDAR_TOP";
-  scan.frame = 17;
-  scan.state.stamp = stamp;
-  scan.state.ego.T_world_ego = makePose(100, 50, 0, 1);
-  scan.state.T_world_sensor = scan.state.ego.T_world_ego * makePose(0, 0, 1.73, 0);
-  Measurement m;
-  m.z.resize(3);
-  m.z << 0.1, -0.1, 12;
-  m.R = AxisMatrix::Identity(3, 3) * 0.01;
-  m.R(0, 1) = m.R(1, 0) = 0.002;
-  m.seen = 7;
-  m.label = 1;
-  m.log_score_ratio = 1.25;
-  m.position = {11, 5};
-  m.base_z = ScalarEstimate{-1.7, 0.04};
-  m.sides = PartialBox{0.3, 0.1, 4.2, 1.7, true, false, 0, 0, {11.5, 5.5}};
-  m.detection = 3;
-  scan.measurements = {m, m};
-  scan.measurements[1].label = 0;
-  scan.measurements[1].seen = 4;
-  scan.measurements[1].sides.reset();
-  scan.measurements[1].height = ScalarEstimate{1.6, 0.01};
-  scan.measurements[0].heading = MeasuredHeading{0.4, 0.1, 0.05};
-  scan.measurements[0].sides->length_sigma = 0.25;
-  scan.measurements[0].log_class = {-0.5, 1.5};
-  scan.measurements[0].log_clutter = -0.7;
-  return std::dynamic_pointer_cast<CObservationMeasurements>(measurementsObservation(
-      scan, "FootprintModel", {"left", "right", "range"}, {"person_sized", "car_sized"}));
-}
-
-/// A log of `frames` frames: pose, frame number, scan, detections, measurements.
+/// A log of `frames` frames: pose, frame number, lidar scan, detections, radar scan.
 inline void writeLog(const std::string& path, int frames, int gzip_level = 1,
                      std::size_t points = 200) {
   RawlogWriter log(path, gzip_level);
@@ -137,7 +104,7 @@ inline void writeLog(const std::string& path, int frames, int gzip_level = 1,
     log.write(*frameComment(ego.stamp, k));
     log.write(*fullScan(points, ego.stamp));
     log.write(*someDetections(ego.stamp));
-    log.write(*someMeasurements(ego.stamp));
+    log.write(*someReturns(ego.stamp));
   }
   log.close();
 }

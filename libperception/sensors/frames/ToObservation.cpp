@@ -7,7 +7,6 @@
 
 #include <opencv2/core.hpp>
 
-#include "libperception/measurement/CObservationMeasurements.h"
 #include "libperception/sensors/observations/CObservationLidarScan.h"
 #include "libperception/sensors/observations/CObservationObjectDetections.h"
 #include "libperception/sensors/observations/CObservationRadarScan.h"
@@ -93,22 +92,6 @@ std::shared_ptr<mrpt::obs::CObservation> frameComment(Stamp stamp, std::int64_t 
   result->timestamp = fromStamp(stamp);
   result->sensorLabel = kFrameLabel;
   result->text = fmt::format("frame {}", number);
-  return result;
-}
-
-std::shared_ptr<mrpt::obs::CObservation> measurementsObservation(
-    const MeasurementScan& scan, const std::string& model, const std::vector<std::string>& axes,
-    const std::vector<std::string>& labels) {
-  auto result = std::make_shared<CObservationMeasurements>();
-  result->timestamp = fromStamp(scan.state.stamp);
-  result->sensorLabel = scan.sensor;
-  result->sensor_pose = toMrpt(scan.state.ego.T_world_ego.inverse() * scan.state.T_world_sensor);
-  result->model = model;
-  result->modality = scan.modality;
-  result->frame = scan.frame;
-  result->axes = axes;
-  result->labels = labels;
-  result->measurements = scan.measurements;
   return result;
 }
 

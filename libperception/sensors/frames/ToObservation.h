@@ -4,9 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "libperception/measurement/Measurement.h"
 #include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
@@ -25,9 +23,5 @@ std::shared_ptr<mrpt::obs::CObservation> poseObservation(const EgoState& ego,
                                                          const std::string& label = kEgoPoseLabel);
 /// The frame number as CObservationComment "frame N".
 std::shared_ptr<mrpt::obs::CObservation> frameComment(Stamp stamp, std::int64_t number);
-/// A CObservationMeasurements of a scan; `model`, `axes` and `labels` document its numbers.
-std::shared_ptr<mrpt::obs::CObservation> measurementsObservation(
-    const MeasurementScan& scan, const std::string& model, const std::vector<std::string>& axes,
-    const std::vector<std::string>& labels);
 
 }  // namespace perception

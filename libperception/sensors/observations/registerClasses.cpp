@@ -6,7 +6,6 @@
 
 #include <mutex>
 
-#include "libperception/measurement/CObservationMeasurements.h"
 #include "libperception/sensors/observations/CObservationLidarScan.h"
 #include "libperception/sensors/observations/CObservationObjectDetections.h"
 #include "libperception/sensors/observations/CObservationRadarScan.h"
@@ -21,7 +20,6 @@ void registerPerceptionClasses() {
     mrpt::rtti::registerClass(CLASS_ID(CObservationLidarScan));
     mrpt::rtti::registerClass(CLASS_ID(CObservationObjectDetections));
     mrpt::rtti::registerClass(CLASS_ID(CObservationRadarScan));
-    mrpt::rtti::registerClass(CLASS_ID(CObservationMeasurements));
   });
 }
 

@@ -170,7 +170,7 @@ TEST_F(RawlogReaderTest, EveryCutOfAPlainLogIsTornUnlessBetweenEntries) {
   {
     RawlogWriter log(log_);
     const std::shared_ptr<mrpt::obs::CObservation> entries[] = {
-        frameComment(kStart, 0), fullScan(3), someDetections(), someMeasurements()};
+        frameComment(kStart, 0), fullScan(3), someDetections(), someReturns()};
     for (const auto& entry : entries) {
       log.write(*entry);
       boundaries.push_back(log.bytesInflated());
