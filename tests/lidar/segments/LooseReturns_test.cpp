@@ -94,7 +94,8 @@ EgoPoints rearInSnow(double range, std::vector<std::uint32_t>* flakes) {
   std::minstd_rand random(1);
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     const bool flake = random() % 4 == 0;
-    const auto to = static_cast<float>(flake ? 4 + 1e-3 * (random() % 5000) : range);
+    const auto to =
+        static_cast<float>(flake ? 4 + 1e-3 * static_cast<double>(random() % 5000) : range);
     const float scale = to / static_cast<float>(kRear);
     all.x[i] *= scale, all.y[i] *= scale;
     all.z[i] = static_cast<float>(all.sensor.z()) +
