@@ -40,14 +40,14 @@ endif()
 function(perception_batches TARGET)
   if(PERCEPTION_UNITY)
     set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 24)
-    target_compile_options(${TARGET} PRIVATE -Wno-subobject-linkage)  # a source of a batch counts as a header
+    target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)  # a source of a batch counts as a header
   endif()
 endfunction()
 
 # perception_cheap(TARGET): of code that runs once or waits for files, -O1, which guesses more of uninitialized variables than -O3
 # knows.
 function(perception_cheap TARGET)
-  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1> -Wno-maybe-uninitialized)
+  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endfunction()
 
 # perception_module(NAME [FOLDER dir] LINK libs...): all sources below libperception/NAME as perception::NAME, but those
