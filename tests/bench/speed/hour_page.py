@@ -181,7 +181,8 @@ def repeat(log, long_log, results, target, seconds, truth):
         elif name in ("effective.ini", "timing.json", "innovations.csv"):
             with open(f"{results}/{name}", "rb") as source, open(f"{target}/{name}", "wb") as out:
                 out.write(source.read())
-    record["input"].update(name="long.rawlog", bytes=os.path.getsize(long_log), entries=record["input"]["entries"] * times)
+    record["input"]["last_stamp"] = later(record["input"]["last_stamp"], (times - 1) * length)
+    record["input"].update(name=os.path.basename(long_log), bytes=os.path.getsize(long_log), entries=record["input"]["entries"] * times)
     record["scenes"] *= times
     record["tracks"] *= times
     with open(target + "/done.json", "w", encoding="utf-8") as file:
@@ -238,7 +239,8 @@ def main():
     options = parser.parse_args()
     os.makedirs(options.folder, exist_ok=True)
     log, results = make_part(options.programs, options.folder, options.part)
-    long_log, target = os.path.join(options.folder, "long.rawlog"), os.path.join(options.folder, "long")
+    target = os.path.join(options.folder, f"run-{options.seconds}")
+    long_log = target + ".rawlog"
     if not os.path.exists(target + "/done.json"):
         work = multiprocessing.Process(target=repeat, args=(log, long_log, results, target, options.seconds, options.truth))
         work.start()
@@ -247,7 +249,7 @@ def main():
             raise SystemExit(work.exitcode)
     with open(target + "/done.json", encoding="utf-8") as file:
         print(f"log of {os.path.getsize(long_log) / 1e6:.0f} MB, {json.load(file)['scenes']} scenes", flush=True)
-    page = os.path.join(options.folder, "long.html")
+    page = target + ".html"
     begin = time.time()
     cpu, memory = run([options.programs + "/perception-report", "-r", target, "-i", long_log, "-o", page])
     print(f"making the page: {cpu:.1f} s of CPU in {time.time() - begin:.0f} s, {memory:.0f} MB at most; page "
