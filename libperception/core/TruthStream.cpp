@@ -25,15 +25,14 @@ bool isInOrder(const std::string& path) {
 
 TruthStream::TruthStream(const std::string& path) {
   if (!isInOrder(path)) {
-    window_ = readGroundTruth(path);
-    return;
+    sorted_ = readGroundTruth(path).instants;
+  } else {
+    rows_ = std::make_unique<CsvStream>(path);
   }
-  rows_ = std::make_unique<CsvStream>(path);
   nextInstant();
 }
 
 const GroundTruth& TruthStream::around(const TruthSpan& span) {
-  if (!rows_) return window_;
   auto& instants = window_.instants;
   auto kept = instants.begin();
   while (kept != instants.end() && kept->t < span.from - kAround &&
@@ -48,8 +47,16 @@ const GroundTruth& TruthStream::around(const TruthSpan& span) {
   return window_;
 }
 
+void TruthStream::nextSorted() {
+  if (given_ < sorted_.size()) next_ = std::move(sorted_[given_++]);
+}
+
 void TruthStream::nextInstant() {
   next_.reset();
+  if (!rows_) {
+    nextSorted();
+    return;
+  }
   if (pending_) {
     next_.emplace(GroundTruth::Instant{pending_->frame, pending_->t, {}});
     next_->objects.push_back(std::move(*pending_));

@@ -1,8 +1,10 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "libperception/core/CsvStream.h"
 #include "libperception/core/GroundTruth.h"
@@ -16,8 +18,8 @@ struct TruthSpan {
   std::int64_t first_frame = -1, last_frame = -1;  ///< -1: unknown
 };
 
-/// FILE.truth.csv read in step with a run: holds the instants around the scenes of now. A file that
-/// is not in order of time is held as a whole.
+/// FILE.truth.csv read in step with a run: gives the instants around the scenes of now. A file that
+/// is not in order of time is read as a whole first.
 class TruthStream {
  public:
   /// Throws DataError as readGroundTruth(); faults of later lines are thrown by around().
@@ -29,8 +31,11 @@ class TruthStream {
 
  private:
   void nextInstant();
+  void nextSorted();
 
-  std::unique_ptr<CsvStream> rows_;  // null: all is in window_
+  std::unique_ptr<CsvStream> rows_;  // null: sorted_ has all
+  std::vector<GroundTruth::Instant> sorted_;
+  std::size_t given_ = 0;  // of sorted_
   TruthOrder order_;
   GroundTruth window_;
   std::optional<TruthObject> pending_;  // first row of the instant after next_

@@ -22,7 +22,7 @@ struct LiveLimits {
   std::size_t subscriptions = 256;      ///< of a client
   Outbox::Bounds outbox;
   double handshake = 10;  ///< [s] within which a request must be whole
-  double silence = 60;    ///< [s] after which a client that answers nothing is gone
+  double silence = 60;    ///< [s] after which a client that neither answers nor takes data is gone
 };
 
 /// What a server did.

@@ -15,6 +15,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
+using Clock = std::chrono::steady_clock;
 
 bool RequestRate::allows() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -31,6 +32,7 @@ LiveSession::LiveSession(LiveHost& host, beast::tcp_stream stream, bool page,
       page_(page),
       counted_(std::move(counted)),
       outbox_(host.params.limits.outbox),
+      watch_(stream_.get_executor()),
       rate_(host.params.limits.requests) {}
 
 void LiveSession::start(const Request& request, const std::string& protocol) {
@@ -42,8 +44,8 @@ void LiveSession::start(const Request& request, const std::string& protocol) {
   beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own times
   websocket::stream_base::timeout times{};
   times.handshake_timeout = duration(limits.handshake);
-  times.idle_timeout = duration(limits.silence);
-  times.keep_alive_pings = true;
+  // Ours, see watch(): Beast's ends a client whose answer waits behind data that it reads slowly.
+  times.idle_timeout = websocket::stream_base::none();
   stream_.set_option(times);
   stream_.set_option(
       websocket::stream_base::decorator([protocol](websocket::response_type& response) {
@@ -51,6 +53,8 @@ void LiveSession::start(const Request& request, const std::string& protocol) {
       }));
   stream_.read_message_max(limits.message_bytes);
   stream_.auto_fragment(false);
+  stream_.control_callback(
+      [this](websocket::frame_type, beast::string_view) { sign_ = Clock::now(); });
   stream_.async_accept(request, [self = shared_from_this()](beast::error_code fault) {
     if (fault) return self->end();
     self->open_ = true;
@@ -61,14 +65,33 @@ void LiveSession::start(const Request& request, const std::string& protocol) {
       self->putText(foxglove::serverInfo(self->host_.params.name, self->host_.session));
       self->putText(foxglove::advertisement(self->host_.channels));
     }
+    self->sign_ = Clock::now();
+    self->watch();
     self->write();
     self->read();
+  });
+}
+
+// A client is gone that has neither answered nor taken data for `silence`.
+void LiveSession::watch() {
+  const std::chrono::duration<double> most(host_.params.limits.silence);
+  watch_.expires_after(std::chrono::duration_cast<Clock::duration>(most / 4));
+  watch_.async_wait([self = shared_from_this(), most](beast::error_code fault) {
+    if (fault || self->ended_) return;
+    const auto silent = Clock::now() - self->sign_;
+    if (silent > most) return self->end();
+    if (silent > most / 4 && !self->pinging_ && !self->closing_) {
+      self->pinging_ = true;
+      self->stream_.async_ping({}, [self](beast::error_code) { self->pinging_ = false; });
+    }
+    self->watch();
   });
 }
 
 void LiveSession::read() {
   stream_.async_read(buffer_, [self = shared_from_this()](beast::error_code fault, std::size_t) {
     if (fault) return self->end();
+    self->sign_ = Clock::now();
     if (!self->rate_.allows())
       return self->close(websocket::close_code::policy_error, "too many messages");
     if (!self->stream_.got_text())
@@ -146,6 +169,7 @@ void LiveSession::write() {
   stream_.async_write(parts, [self = shared_from_this()](beast::error_code fault, std::size_t) {
     self->writing_ = false;
     if (fault) return self->end();
+    self->sign_ = Clock::now();
     ++self->host_.totals.sent;
     self->write();
   });
@@ -166,6 +190,7 @@ void LiveSession::close(websocket::close_code code, const std::string& reason) {
 void LiveSession::end() {
   if (ended_) return;
   ended_ = closing_ = true;
+  watch_.cancel();
   beast::get_lowest_layer(stream_).close();
   host_.totals.dropped += outbox_.dropped();
   host_.subscribed(-static_cast<int>(subscriptions_.size()));

@@ -1,10 +1,12 @@
 #pragma once
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/websocket/stream.hpp>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -70,6 +72,7 @@ class LiveSession : public std::enable_shared_from_this<LiveSession> {
   void take(const std::string& text);
   void obey(const foxglove::Request& request);
   void write();
+  void watch();
   void close(boost::beast::websocket::close_code code, const std::string& reason);
 
   LiveHost& host_;
@@ -78,8 +81,11 @@ class LiveSession : public std::enable_shared_from_this<LiveSession> {
   const bool page_;
   const std::shared_ptr<void> counted_;
   bool open_ = false, writing_ = false, closing_ = false, finishing_ = false, ended_ = false;
+  bool pinging_ = false;
   Outbox outbox_;
   LiveMessage current_;  ///< that is being written
+  boost::asio::steady_timer watch_;
+  std::chrono::steady_clock::time_point sign_;  ///< of life, the last one: it answered or took data
   RequestRate rate_;
   std::map<std::uint32_t, std::uint32_t> subscriptions_;  ///< by channel
 };

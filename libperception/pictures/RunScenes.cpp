@@ -42,7 +42,8 @@ void addTruth(const GroundTruth& truth, SceneView& result) {
   };
   const auto* best =
       truthOf(result, after(result.t - kTruthAround), after(result.t + kTruthAround));
-  if (!best) best = truthOf(result, all.begin(), all.end());
+  // Farther away is only what has the same frame number, by a clock that is shifted.
+  if (!best && result.scene.frame >= 0) best = truthOf(result, all.begin(), all.end());
   if (!best) return;
   for (const TruthObject& object : best->objects) {
     if (!object.position.allFinite() || object.ignore) continue;

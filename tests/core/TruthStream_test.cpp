@@ -70,13 +70,24 @@ TEST(TruthStream, FindsFramesWhoseTimesAreShifted) {
   }
 }
 
-TEST(TruthStream, HoldsAllOfAFileThatIsNotInOrderOfTime) {
+TEST(TruthStream, SortsAFileThatIsNotInOrderOfTime) {
   const TemporaryFolder folder;
   std::vector<TruthObject> rows = minute();
+  TruthStream ordered(truthOf(folder, rows));
   std::swap(rows.front(), rows.back());
-  rows.front().id = 7;
-  TruthStream truth(truthOf(folder, rows));
-  EXPECT_EQ(truth.around({0, 5, 0, 50}).instants.size(), static_cast<std::size_t>(kInstants));
+  writeGroundTruth(folder / "other.csv", rows);
+  TruthStream other(folder / "other.csv");
+  for (int k = 0; k < kInstants; k += 50) {
+    const TruthSpan span{0.1 * k, 0.1 * (k + 49), k, k + 49};
+    const auto& expected = ordered.around(span).instants;
+    const auto& window = other.around(span).instants;
+    ASSERT_EQ(window.size(), expected.size()) << k;
+    for (std::size_t i = 0; i < window.size(); ++i) {
+      EXPECT_EQ(window[i].t, expected[i].t);
+      EXPECT_EQ(window[i].frame, expected[i].frame);
+      EXPECT_EQ(window[i].objects.size(), expected[i].objects.size());
+    }
+  }
 }
 
 TEST(TruthStream, FindsTheFaultsOfTheWholeFile) {

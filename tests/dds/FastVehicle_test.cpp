@@ -4,9 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -181,6 +184,55 @@ std::map<std::string, std::vector<std::string>> observationsOf(const std::string
     for (auto& row : all) sorted[label].push_back(std::move(row.second));
   }
   return sorted;
+}
+
+/// A signal to a program that this test has started, and to what that has started.
+void tell(const std::string& program, int signal) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string words = textOf(entry.path() / "cmdline");
+    const pid_t process = std::stoi(name);
+    if (words.find(program) != std::string::npos && getpgid(process) != getpgrp())
+      kill(process, signal);
+  }
+}
+
+/// The number before `what` in a line that begins with `topic`; 0 without such a line.
+std::size_t toldOf(const std::string& text, const std::string& topic, const std::string& what) {
+  std::smatch found;
+  const std::regex line(topic + ": ([0-9]+) " + what);
+  return std::regex_search(text, found, line) ? std::stoul(found[1]) : 0;
+}
+
+// The reader's process stands still for longer than the system's buffer can hold what comes, but
+// not so long that it takes the vehicle for gone.
+TEST_F(FastVehicle, WhatIsLostOnBestEffortIsCountedAndTold) {
+  constexpr int kScans = 1400;
+  writeRecording(path("drive.mcap"), kScans);
+  ChildCommand record;
+  record.words = {kBin + "perception-grabber", "-c", "ros2:" + path("graph.ini"), "-o",
+                  path("live")};
+  record.output = path("grabber.txt");
+  ChildProcess grabber(record);
+  ChildProcess player(play("drive.mcap", {"--wait", "2", "--best-effort", "--speed", "20"}));
+  ASSERT_TRUE(appears(path("vehicle.txt"), "playing"));
+  waitFor(1);
+  tell(path("graph.ini"), SIGSTOP);
+  waitFor(2);
+  tell(path("graph.ini"), SIGCONT);
+  player.wait();
+  waitFor(3);
+  grabber.stop();
+  grabber.wait();
+  const std::string told = textOf(path("grabber.txt"));
+  const std::size_t lost = toldOf(told, "/LIDAR_TOP", "messages lost");
+  const std::size_t overrun = toldOf(told, "/LIDAR_TOP", "messages came faster");
+  EXPECT_GT(lost, 0U) << told;
+  EXPECT_EQ(grabber.exitCode(), 3) << told;
+  const auto live = observationsOf(path("live/capture_0001.rawlog"));
+  ASSERT_EQ(live.count("LIDAR_TOP"), 1U) << told;
+  EXPECT_EQ(live.at("LIDAR_TOP").size() + lost + overrun, static_cast<std::size_t>(kScans)) << told;
 }
 
 class FastSensors : public FastVehicle, public testing::WithParamInterface<bool> {};

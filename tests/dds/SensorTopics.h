@@ -14,7 +14,7 @@
 
 namespace perception::test {
 
-inline constexpr std::size_t kSensorTopics = 7;
+inline constexpr std::size_t kSensorTopics = 8;
 inline constexpr int kSensorSteps = 20;  // at 10 Hz
 
 /// Writes messages of one step; all sensors are at the vehicle's frame.
@@ -108,6 +108,12 @@ class SensorTopics {
       tracks.tracks.push_back(track);
     }
     put("/radar/tracks", "radar_msgs/RadarTracks", tracks);
+    ros::LaserScan layer;
+    layer.header = header_;
+    layer.angle_min = -1, layer.angle_max = 1, layer.angle_increment = 0.01F;
+    layer.range_min = 0.2F, layer.range_max = 60;
+    for (int i = 0; i <= 200; ++i) layer.ranges.push_back(8 + 0.1F * static_cast<float>(i % 7 + k));
+    put("/bumper/scan", "sensor_msgs/LaserScan", layer);
   }
 
   McapWriter writer_;

@@ -5,8 +5,8 @@
 
 The log is played again and again as a sensor at work (CRawlogSensor), served to nothing or to four headless Chromiums of which the last
 has a twentieth of its processor. The browsers have the lowest priority, since on computers of their own they would not take the
-tracker's processor. Pairs of runs take turns. It prints the latency of the scenes (timing.json), frames a second and scenes
-left out in each page; with --memory the resident memory of the tracker every 10 s of one long run with the four browsers; with --pictures
+tracker's processor. Pairs of runs take turns. It prints the latency of the scenes (timing.json), frames a second, scenes
+left out and new connections in each page; with --memory the resident memory of the tracker every 10 s of one long run with the four browsers; with --pictures
 the page as two windows show it; with --readers four connections that read what a page gets and draw nothing, the last one slowly, take
 the place of the browsers: four browsers on two processors slow down everything. Needs Chromium (CHROMIUM names another one than Debian's).
 """
@@ -15,6 +15,7 @@ import base64
 import json
 import os
 import re
+import select
 import signal
 import socket
 import statistics
@@ -25,17 +26,22 @@ import time
 
 THROTTLE = 20        # of the last browser
 WINDOWS = [(1400, 900), (900, 700), (390, 800), (900, 700)]  # [px]
+LAST = 6             # [s] before the end, when the pages are looked at
 SAMPLE = 10          # [s] between looks at the memory
 PATIENCE = 60        # [s] until a page is open
+SILENCE = 120        # [s] after which a browser that answers nothing is given up
 WARM = 60            # [s] after which the memory should be flat
 COUNT = """(() => { const v = perceptionViewers[0], draw = v.space.draw.bind(v.space); v.frames = 0;
-  v.space.draw = () => { ++v.frames; draw(); }; })()"""
+  v.space.draw = () => { ++v.frames; draw(); };
+  const connect = v.connect.bind(v);
+  v.again = 0;
+  v.connect = () => { ++v.again; connect(); }; })()"""
 
 
 class Browser:
     """A headless Chromium, steered over pipes by the DevTools protocol."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, niceness=19):
         self.profile = tempfile.TemporaryDirectory(dir=folder)
         read, self.to = os.pipe()
         self.back, write = os.pipe()
@@ -43,7 +49,7 @@ class Browser:
         def pipes():
             a, b = os.dup2(os.dup(read), 30), os.dup2(os.dup(write), 31)
             os.dup2(a, 3), os.dup2(b, 4)
-            os.nice(19)
+            os.nice(niceness)
 
         self.process = subprocess.Popen(
             [os.environ.get("CHROMIUM", "/usr/bin/chromium"), "--headless=new", "--no-sandbox", "--no-first-run",
@@ -65,7 +71,12 @@ class Browser:
         os.write(self.to, json.dumps(message).encode() + b"\0")
         while True:
             while b"\0" not in self.unread:
-                self.unread += os.read(self.back, 1 << 16)
+                if not select.select([self.back], [], [], SILENCE)[0]:
+                    raise RuntimeError(f"the browser has not answered {method} for {SILENCE} s")
+                piece = os.read(self.back, 1 << 16)
+                if not piece:
+                    raise RuntimeError(f"the browser ended at {method}")
+                self.unread += piece
             raw, self.unread = self.unread.split(b"\0", 1)
             answer = json.loads(raw)
             if answer.get("method") == "Runtime.exceptionThrown":
@@ -95,9 +106,9 @@ class Browser:
         self.began = time.time()
 
     def shown(self):
-        """Frames a second, scenes left out."""
-        frames, left = self.value("[perceptionViewers[0].frames, perceptionViewers[0].left]")
-        return frames / (time.time() - self.began), left
+        """Frames a second, scenes left out, how often it connected again."""
+        frames, left, again = self.value("(({ frames, left, again }) => [frames, left, again])(perceptionViewers[0])")
+        return frames / (time.time() - self.began), left, again
 
     def picture(self, path):
         with open(path, "wb") as file:
@@ -158,7 +169,7 @@ class Reader:
         self.slow = throttle > 1
 
     def shown(self):
-        return self.messages / (time.time() - self.began), "?"
+        return self.messages / (time.time() - self.began), "?", "?"
 
     def close(self):
         self.socket.close()
@@ -178,6 +189,23 @@ def resident_mb(pid):
     return total
 
 
+def listed(shown):
+    return "frames a second, scenes left out, connected again: " + "; ".join(f"{f:.1f}, {n}, {a}" for f, n, a in shown)
+
+
+def address_of(tracker, path):
+    """Where the tracker says that its page is."""
+    while True:
+        ended = tracker.poll() is not None
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        if found := re.search(r"http://127\.0\.0\.1:\d+/", text):
+            return found[0]
+        if ended:
+            raise SystemExit(text)
+        time.sleep(0.05)
+
+
 def run(options, folder, seconds, count, memory=False):
     """One live run with `count` browsers: its timing, and what they and the memory were."""
     capture = os.path.join(folder, "play.ini")
@@ -188,31 +216,31 @@ def run(options, folder, seconds, count, memory=False):
              "--duration", str(seconds)]
     for setting in options.settings:
         words += ["--set", setting]
-    browsers = [(Reader if options.readers else Browser)(folder) for _ in range(count)]
+    browsers, tracker, samples = [], None, []
     said = open(os.path.join(folder, "said.txt"), "w+", encoding="utf-8")
-    tracker = subprocess.Popen(words, stdout=said, stderr=subprocess.STDOUT)
-    text = ""
-    while not (found := re.search(r"http://127\.0\.0\.1:\d+/", text)):
-        if tracker.poll() is not None:
-            raise SystemExit(text)
-        time.sleep(0.05)
-        with open(said.name, encoding="utf-8") as file:
-            text = file.read()
-    samples, begin = [], time.time()
     try:
+        for _ in range(count):
+            browsers.append((Reader if options.readers else Browser)(folder))
+        tracker = subprocess.Popen(words, stdout=said, stderr=subprocess.STDOUT)
+        address, begin = address_of(tracker, said.name), time.time()
         for browser, window in zip(browsers, WINDOWS):
-            browser.open(found[0], window)
+            browser.open(address, window)
         for i, browser in enumerate(browsers):
             browser.watch(THROTTLE if i == 3 else 1)
-        while tracker.poll() is None and time.time() - begin < seconds - 3:
+        while tracker.poll() is None and time.time() - begin < seconds - LAST:
             if memory:
                 samples.append((round(time.time() - begin), resident_mb(tracker.pid)))
+                print(f"{samples[-1][0]} s: {samples[-1][1]:.1f} MB", flush=True)
             time.sleep(SAMPLE if memory else 0.5)
         shown = [b.shown() for b in browsers]
         for i, name in ((0, "live-1400.png"), (2, "live-390.png")):
             if options.pictures and count and not options.readers:
                 browsers[i].picture(os.path.join(options.pictures, name))
         faults = [f for b in browsers for f in b.faults]
+    except BaseException:
+        if tracker:
+            tracker.terminate()
+        raise
     finally:
         for browser in browsers:
             browser.close()
@@ -238,6 +266,8 @@ def main():
     parser.add_argument("--pictures", default="")
     parser.add_argument("--readers", action="store_true")
     options = parser.parse_args()
+    if options.pictures:
+        os.makedirs(options.pictures, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         by_count = {0: [], 4: []}
         for pair in range(options.pairs):
@@ -249,17 +279,16 @@ def main():
                       f"99 % within {1e3 * latency['p99_seconds']:.0f}, longest {1e3 * latency['longest_seconds']:.0f}; tracker "
                       f"{timing['cpu_seconds']:.1f} s of CPU, code {code}; load of the machine {os.getloadavg()[0]:.1f}", flush=True)
                 if count:
-                    print("  frames a second, scenes left out: " + "; ".join(f"{f:.1f}, {n}" for f, n in shown) + f"; faults {faults}")
+                    print(f"  {listed(shown)}; faults {faults}")
                     print("  " + " ".join(watched), flush=True)
         for count, p99 in by_count.items():
             if p99:
                 print(f"{count} browsers: 99 % within {1e3 * statistics.median(p99):.0f} ms, median of {len(p99)} runs")
         if options.memory:
-            _, shown, samples, faults, code, watched = run(options, folder, options.memory, 4, memory=True)
-            print("[s] and [MB]: " + ", ".join(f"{t} {m:.1f}" for t, m in samples))
+            timing, shown, samples, faults, code, watched = run(options, folder, options.memory, 4, memory=True)
             flat = [m for t, m in samples if t >= WARM]
-            print(f"from {WARM} s on: {min(flat):.1f} to {max(flat):.1f} MB, last {flat[-1]:.1f}; code {code}; "
-                  "frames a second, scenes left out: " + "; ".join(f"{f:.1f}, {n}" for f, n in shown) + f"; faults {faults}")
+            print(f"from {WARM} s on: {min(flat):.1f} to {max(flat):.1f} MB, last {flat[-1]:.1f}; 99 % of the scenes within "
+                  f"{1e3 * timing['latency']['p99_seconds']:.0f} ms; code {code}; {listed(shown)}; faults {faults}")
             print("  " + " ".join(watched))
 
 

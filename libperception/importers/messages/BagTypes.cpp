@@ -74,8 +74,9 @@ ros::Header measurePoints(const BagMessage& m, const BagTopicParams& params, Sen
   return cloud.header;
 }
 
-ros::Header measureLivox(const BagMessage& m, const BagTopicParams& params, SensorFrame& frame) {
-  const auto scan = messageIn<ros::LivoxScan>(m);
+template <class Message>
+ros::Header measureScan(const BagMessage& m, const BagTopicParams& params, SensorFrame& frame) {
+  const auto scan = messageIn<Message>(m);
   frame.data = ros::cloudOf(scan, params.intensity_max);
   return scan.header;
 }
@@ -144,7 +145,9 @@ void addMeasurements(std::vector<BagType>& types) {
       measured("lidar or radar scans", Role::kCloud, &measureOldCloud));
   add(types,
       {"livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg", "livox_interfaces/CustomMsg"},
-      measured("lidar scans", Role::kCloud, &measureLivox));
+      measured("lidar scans", Role::kCloud, &measureScan<ros::LivoxScan>));
+  add(types, {"sensor_msgs/LaserScan"},
+      measured("lidar scans of one layer", Role::kCloud, &measureScan<ros::LaserScan>));
   add(types, {"radar_msgs/RadarScan"},
       measured("radar scans", Role::kRadar, &measureRadar<ros::RadarScan>));
   add(types, {"radar_msgs/RadarTracks"},

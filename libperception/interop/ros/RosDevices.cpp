@@ -1,6 +1,7 @@
 #include "libperception/interop/ros/RosDevices.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "libperception/interop/ros/RosSensors.h"
 
@@ -17,6 +18,35 @@ LidarCloud cloudOf(const LivoxScan& message, double intensity_max) {
     cloud.intensity.push_back(static_cast<float>(p.reflectivity / most));
     cloud.ring.push_back(p.line);
     cloud.time_offset.push_back(static_cast<float>(1e-9 * p.offset_time));
+  }
+  return cloud;
+}
+
+LidarCloud cloudOf(const LaserScan& message, double intensity_max) {
+  const double begin = static_cast<double>(message.angle_min);
+  const double step = static_cast<double>(message.angle_increment);
+  if (!std::isfinite(begin) || !std::isfinite(step))
+    throw std::runtime_error("angles that are not finite");
+  const bool intensities = !message.intensities.empty();
+  if (intensities && message.intensities.size() != message.ranges.size())
+    throw std::runtime_error("intensities are not as many as ranges");
+  const bool times = message.time_increment > 0 && std::isfinite(message.time_increment);
+  LidarCloud cloud;
+  if (std::isfinite(message.range_max)) cloud.max_range = static_cast<double>(message.range_max);
+  for (std::size_t i = 0; i < message.ranges.size(); ++i) {
+    const float range = message.ranges[i];
+    if (!std::isfinite(range) || range <= 0 || range < message.range_min ||
+        range > message.range_max)
+      continue;
+    const double angle = begin + static_cast<double>(i) * step;
+    cloud.x.push_back(range * static_cast<float>(std::cos(angle)));
+    cloud.y.push_back(range * static_cast<float>(std::sin(angle)));
+    cloud.z.push_back(0);
+    if (intensities) {
+      const float most = intensity_max > 0 ? static_cast<float>(intensity_max) : 1;
+      cloud.intensity.push_back(message.intensities[i] / most);
+    }
+    if (times) cloud.time_offset.push_back(static_cast<float>(i) * message.time_increment);
   }
   return cloud;
 }

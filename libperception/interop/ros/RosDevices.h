@@ -147,6 +147,20 @@ void fields(Wire& w, RadarTracks& m) {
   w(m.header), w(m.tracks);
 }
 
+/// sensor_msgs/LaserScan: ranges of one layer, counter-clockwise where the increment is positive.
+struct LaserScan {
+  Header header;                                            ///< stamp of the first range
+  float angle_min = 0, angle_max = 0, angle_increment = 0;  ///< [rad] from x to y
+  float time_increment = 0, scan_time = 0;                  ///< [s] between two ranges, two scans
+  float range_min = 0, range_max = 0;                       ///< [m]
+  std::vector<float> ranges, intensities;                   ///< [m]; a device's own units, or none
+};
+template <class Wire>
+void fields(Wire& w, LaserScan& m) {
+  w(m.header), w(m.angle_min), w(m.angle_max), w(m.angle_increment), w(m.time_increment);
+  w(m.scan_time), w(m.range_min), w(m.range_max), w(m.ranges), w(m.intensities);
+}
+
 /// geometry_msgs/PoseWithCovarianceStamped.
 struct PoseWithCovarianceStamped {
   Header header;

@@ -18,6 +18,10 @@ namespace perception::ros {
 LidarCloud cloudOf(const PointCloud2& message, double intensity_max = 0);
 /// A scan of Livox; `intensity_max`: 0 stands for 255. Times are after the header's stamp.
 LidarCloud cloudOf(const LivoxScan& message, double intensity_max = 0);
+/// A scan of one layer, in the plane z = 0: its ranges within range_min and range_max; others are
+/// no returns. Throws std::runtime_error for angles that are not finite, and for intensities that
+/// are not as many as ranges.
+LidarCloud cloudOf(const LaserScan& message, double intensity_max = 0);
 /// x, y, z, intensity as 32-bit floats, and ring and time_offset where the cloud has them. `data`:
 /// holds the bytes of the message.
 PointCloud2 messageOf(const LidarCloud& cloud, const Header& header, std::string& data);

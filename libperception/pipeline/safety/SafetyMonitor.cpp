@@ -176,6 +176,7 @@ FreePath SafetyMonitor::advise(const PathAhead& path, const Scene& scene) {
 }
 
 void SafetyMonitor::restart() {
+  grid_.reset();  // two at once would take twice the memory
   grid_ = makeSafetyGrid(params_);
   places_.clear();
   way_.clear();
