@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/PoseSteps.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/clouds/CloudFolder.h"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "libperception/core/PoseSteps.h"
+
 namespace perception {
 namespace {
 
