@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/doctor/MotionFit.h"
+#include "libperception/doctor/motion/MotionFit.h"
 #include "libperception/measurement/frames/ScanTimes.h"
 #include "libperception/sensors/observations/Conversions.h"
 

@@ -1,4 +1,4 @@
-#include "libperception/doctor/MotionFit.h"
+#include "libperception/doctor/motion/MotionFit.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
