@@ -8,7 +8,6 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
-#include "libperception/importers/kitti/KittiImport.h"
 #include "libperception/importers/kitti/KittiRawFiles.h"
 #include "libperception/importers/positions/ImportClock.h"
 

@@ -10,7 +10,7 @@
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
 #include "libperception/importers/clouds/ImportClouds.h"
-#include "libperception/importers/kitti/KittiFiles.h"
+#include "libperception/importers/kitti/KittiLabels.h"
 #include "libperception/importers/street_sets/VodFiles.h"
 
 namespace perception {

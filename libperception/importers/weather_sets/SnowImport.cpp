@@ -13,7 +13,7 @@
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
 #include "libperception/importers/clouds/ImportClouds.h"
-#include "libperception/importers/kitti/KittiImport.h"
+#include "libperception/importers/kitti/KittiFiles.h"
 #include "libperception/importers/truth/LabeledBoxes.h"
 #include "libperception/importers/truth/PointLabelFiles.h"
 #include "libperception/importers/truth/VehicleAxes.h"
