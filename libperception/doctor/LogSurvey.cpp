@@ -8,8 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "libperception/doctor/motion/MotionFit.h"
+#include "libperception/core/math/Median.h"
 #include "libperception/measurement/frames/ScanTimes.h"
 #include "libperception/sensors/observations/Conversions.h"
 

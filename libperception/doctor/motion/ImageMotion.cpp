@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/doctor/motion/MotionFit.h"
+#include "libperception/core/math/Median.h"
 
 namespace perception {
 namespace {

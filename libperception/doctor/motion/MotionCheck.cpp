@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libperception/core/PoseSteps.h"
+#include "libperception/core/math/Median.h"
 #include "libperception/doctor/motion/Course.h"
 #include "libperception/doctor/motion/MotionFit.h"
 
