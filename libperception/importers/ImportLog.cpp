@@ -33,7 +33,9 @@ void failImage(const fs::path& path, const char* what, const std::error_code& er
 }  // namespace
 
 ImportLog::ImportLog(ImportOptions options, ImportProgress progress)
-    : options_(std::move(options)), progress_(std::move(progress)), log_(options_.output) {}
+    : options_(std::move(options)), progress_(std::move(progress)), log_(options_.output) {
+  if (options_.rate <= 0) options_.rate = kUsualRate;
+}
 
 void ImportLog::write(const mrpt::obs::CObservation& observation) {
   if (const auto stamp = toStamp(observation.timestamp)) {

@@ -17,6 +17,8 @@
 
 namespace perception {
 
+/// [Hz] of frames without stamps: the rate of most lidars.
+inline constexpr double kUsualRate = 10;
 /// [Hz] rate of repeated frames: high enough that no object would move noticeably.
 inline constexpr double kRepeatRate = 200;
 /// Isolated frames are separated in time [Hz] and position [m], so that tracks of one cannot
@@ -35,7 +37,7 @@ struct ImportOptions {
     kEmbed       ///< in the log, as JPEG
   };
   std::string output;                 ///< FILE.rawlog
-  double rate = 0;                    ///< [Hz] of frames without stamps; 0: default of the format
+  double rate = 0;                    ///< [Hz] of frames without stamps; 0: kUsualRate
   std::int64_t first = 0, last = -1;  ///< frame numbers; last -1: to the end
   int repeat = 1;                     ///< number of repetitions of isolated frames
   Images images = Images::kReference;

@@ -21,9 +21,6 @@ constexpr double kPoseReach = 0.2;
 class CloudsImporter final : public Importer {
  public:
   void declare(CLI::App& cli) override;
-  void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 10;
-  }
   void run(ImportLog& log) override;
 
  private:

@@ -264,7 +264,6 @@ void KittiImporter::declare(CLI::App& cli) {
 void KittiImporter::prepare(ImportOptions& options) {
   if (options.images == ImportOptions::Images::kReference)
     options.images = ImportOptions::Images::kCopy;
-  if (options.rate <= 0) options.rate = 10;
 }
 
 }  // namespace

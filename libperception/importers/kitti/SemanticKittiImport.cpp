@@ -50,9 +50,6 @@ class SemanticKittiImporter final : public Importer {
                    "times.txt")
         ->required();
   }
-  void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 10;
-  }
   void run(ImportLog& log) override;
 
  private:

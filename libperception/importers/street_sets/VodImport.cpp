@@ -55,9 +55,6 @@ class VodImporter final : public Importer {
     cli.add_option("--dir", dir_, "folder with lidar_points/ ... or with lidar/training/ ...")
         ->required();
   }
-  void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 10;
-  }
   void run(ImportLog& log) override;
 
  private:

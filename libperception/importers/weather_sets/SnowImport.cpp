@@ -78,9 +78,6 @@ class SnowImporter final : public Importer {
             ->check(CLI::Range(0.0, 10.0));
     if (set_.lidar_height) height->default_str(fmt::format("{}", *set_.lidar_height));
   }
-  void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 10;  // both sets' README
-  }
   void run(ImportLog& log) override;
 
  private:
