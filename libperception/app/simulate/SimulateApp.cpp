@@ -57,9 +57,6 @@ void SimulateApp::declare(CLI::App& cli) {
       ->check(CLI::ExistingFile);
   cli.add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
-  cli.add_option("--gzip", gzip_level, "Gzip level of the log")
-      ->check(CLI::Range(0, 9))
-      ->capture_default_str();
   declareRecording(cli);
 }
 
@@ -139,7 +136,7 @@ void SimulateApp::run() {
   const double duration = scenario.params.duration;
   const std::vector<Lane> lanes = scenario.lanes;
   Simulator simulator(std::move(scenario), name, trialSeed(seed, trial), threads);
-  RawlogWriter log(output, gzip_level);
+  RawlogWriter log(output);
   removeLabels(output);
   {
     Progress progress("simulate", static_cast<std::uint64_t>(duration * 1e3));
@@ -200,14 +197,11 @@ void SimulateApp::declareRecording(CLI::App& cli) {
   recording_->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
   recording_->add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
-  recording_->add_option("--gzip", gzip_level, "Gzip level of the log")
-      ->check(CLI::Range(0, 9))
-      ->capture_default_str();
 }
 
 void SimulateApp::alterRecording() {
   Config config = loadConfig();
-  RecordingTask task{inputs.front(), output, {}, seed, threads, gzip_level};
+  RecordingTask task{inputs.front(), output, {}, seed, threads};
   task.weather = config.read<SimulatedWeatherParams>("weather", {}, true);
   if (configDone(config)) return;
   std::error_code error;
