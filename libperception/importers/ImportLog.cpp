@@ -85,6 +85,16 @@ void ImportLog::sensor(const SensorFrame& frame) {
   if (!doubles_.isDouble(frame)) uniqueSensor(frame);
 }
 
+void ImportLog::sensor(const std::string& label, Stamp stamp, const Pose3& T_ego_sensor,
+                       decltype(SensorFrame::data) data) {
+  SensorFrame frame;
+  frame.sensor = label;
+  frame.stamp = stamp;
+  frame.T_ego_sensor = T_ego_sensor;
+  frame.data = std::move(data);
+  sensor(frame);
+}
+
 void ImportLog::uniqueSensor(const SensorFrame& frame) {
   const auto* timed = std::get_if<LidarCloud>(&frame.data);
   if (timed != nullptr && timesOutsideOf(*timed)) {

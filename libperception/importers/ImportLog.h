@@ -88,6 +88,9 @@ class ImportLog {
   void frame(Stamp stamp, std::int64_t number);
   /// Doubled messages are left out and counted. Of clouds with timesOutsideOf() the times are.
   void sensor(const SensorFrame& frame);
+  /// The same of a frame that has no more than this. `T_ego_sensor` is the sensor's mounting.
+  void sensor(const std::string& label, Stamp stamp, const Pose3& T_ego_sensor,
+              decltype(SensorFrame::data) data);
   /// The same in two steps, for recordings of messages: a scan that comes again `within` a time [s]
   /// is a double, too.
   bool isResent(const SensorFrame& frame, double within) {

@@ -122,12 +122,8 @@ void KittiDetections::write(std::int64_t frame, Stamp stamp, const KittiCalibrat
       for (const WorldBox& box : placed->second)
         found.objects.push_back(detectionOf(box, T_poses_velo.inverse()));
     }
-    SensorFrame out;
-    out.sensor = detector.name;
-    out.stamp = stamp;
-    out.T_ego_sensor = detector.layout.space_boxes ? T_ego_velo : T_ego_camera;
-    out.data = std::move(found);
-    log.sensor(out);
+    log.sensor(detector.name, stamp, detector.layout.space_boxes ? T_ego_velo : T_ego_camera,
+               std::move(found));
   }
 }
 

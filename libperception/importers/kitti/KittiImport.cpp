@@ -179,14 +179,7 @@ void Import::writeFrame(std::int64_t frame) {
   if (hasPoses()) log_.ego(stamp, egoAt(frame));
   log_.frame(stamp, frame);
   const std::optional<LidarCloud> cloud = readScan(frame);
-  if (cloud) {
-    SensorFrame scan;
-    scan.sensor = kLidarTop;
-    scan.stamp = stamp;
-    scan.T_ego_sensor = T_ego_velo_;
-    scan.data = *cloud;
-    log_.sensor(scan);
-  }
+  if (cloud) log_.sensor(kLidarTop, stamp, T_ego_velo_, *cloud);
   detections_.write(frame, stamp, calibration_, T_ego_velo_, posesVelodyneAt(frame), log_);
   if (!params_.images_dir.empty()) writeImage(frame);
   if (!params_.labels.empty()) addTruth(frame, cloud);

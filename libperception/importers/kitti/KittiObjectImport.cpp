@@ -108,14 +108,7 @@ void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, Impo
       T_ego_velo * calibration.T_cam0_velo.inverse() * calibration.T_cam0_cam2;
   log.ego(stamp, frame.T_world_ego);
   if (last) log.frame(stamp, frame.file.number);
-  SensorFrame out;
-  out.stamp = stamp;
-  if (frame.cloud) {
-    out.sensor = kLidarTop;
-    out.T_ego_sensor = T_ego_velo;
-    out.data = *frame.cloud;
-    log.sensor(out);
-  }
+  if (frame.cloud) log.sensor(kLidarTop, stamp, T_ego_velo, *frame.cloud);
   if (label_boxes_) {
     ObjectDetections found;
     found.camera = calibration.camera;
@@ -127,10 +120,7 @@ void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, Impo
       object.image_box = label.image_box;
       object.heading = wrapAngle(label.alpha);
     }
-    out.sensor = kBoxesLabel;
-    out.T_ego_sensor = T_ego_camera;
-    out.data = std::move(found);
-    log.sensor(out);
+    log.sensor(kBoxesLabel, stamp, T_ego_camera, std::move(found));
   }
   if (!last) return;  // frame number, image and truth are at the last repetition
   if (!frame.image.empty()) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
@@ -87,13 +88,9 @@ void KittiRawImporter::addScans(ImportLog& log) {
     if (!log.wants(file.number)) continue;
     log.at(scans.stamps[i], [this, &log, file, stamp = scans.stamps[i]] {
       log.frame(stamp, file.number);
-      SensorFrame scan;
-      scan.sensor = kLidarTop;
-      scan.stamp = stamp;
-      scan.T_ego_sensor = T_ego_velo_;
-      scan.data = readKittiScan(file.path);
-      addTracklets(file.number, stamp, std::get<LidarCloud>(scan.data), log);
-      log.sensor(scan);
+      LidarCloud cloud = readKittiScan(file.path);
+      addTracklets(file.number, stamp, cloud, log);
+      log.sensor(kLidarTop, stamp, T_ego_velo_, std::move(cloud));
     });
   }
 }

@@ -122,14 +122,9 @@ void SemanticKittiImporter::run(ImportLog& log) {
         T_ego_cam0 * poses.front().inverse() * poses[k] * T_ego_cam0.inverse();
     log.ego(stamp, T_world_ego);
     log.frame(stamp, file.number);
-    SensorFrame scan;
-    scan.sensor = kLidarTop;
-    scan.stamp = stamp;
-    scan.T_ego_sensor = T_ego_lidar;
     LidarCloud cloud = readKittiScan(file.path);
     if (labeled) addLabels(file, stamp, T_world_ego * T_ego_lidar, cloud, log);
-    scan.data = std::move(cloud);
-    log.sensor(scan);
+    log.sensor(kLidarTop, stamp, T_ego_lidar, std::move(cloud));
     log.progress(static_cast<std::int64_t>(&file - files.data()) + 1,
                  static_cast<std::int64_t>(files.size()));
   }

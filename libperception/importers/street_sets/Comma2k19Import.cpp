@@ -156,7 +156,6 @@ void Comma2k19Importer::readRadar(ImportLog& log) {
   std::int64_t number = 0;
   bool any = false;
   for (std::size_t i = 0; i < radar.csv.rows();) {
-    SensorFrame scan;
     RadarReturns returns;
     returns.max_range = kRadarRange;
     const double begin = radar.time(i);
@@ -170,13 +169,9 @@ void Comma2k19Importer::readRadar(ImportLog& log) {
     if (!any) from_ = t;
     any = true;
     to_ = t;
-    scan.sensor = kRadarFront;
-    scan.stamp = stampOf(t);
-    scan.T_ego_sensor = T_ego_radar;
-    scan.data = std::move(returns);
-    log.at(scan.stamp, [scan, frame, &log] {
-      log.frame(scan.stamp, frame);
-      log.sensor(scan);
+    log.at(stampOf(t), [=, &log, stamp = stampOf(t)] {
+      log.frame(stamp, frame);
+      log.sensor(kRadarFront, stamp, T_ego_radar, returns);
     });
   }
   if (!any) throw DataError(path("radar_tracks.csv").string() + ": none of the wanted scans");

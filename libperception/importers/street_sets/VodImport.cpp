@@ -182,20 +182,8 @@ void VodImporter::write(const Frame& frame, Stamp stamp, bool still, bool last,
   if (carries) ego(-1);
   if (has_ego) ego(0);
   if (last) log.frame(stamp, frame.number);  // of a frame that is shown repeatedly
-  SensorFrame out;
-  out.stamp = stamp;
-  if (frame.cloud) {
-    out.sensor = kLidarTop;
-    out.T_ego_sensor = T_ego_lidar_;
-    out.data = *frame.cloud;
-    log.sensor(out);
-  }
-  if (frame.has_radar) {
-    out.sensor = kRadarFront;
-    out.T_ego_sensor = T_ego_radar;
-    out.data = returnsOf(frame.radar, still);
-    log.sensor(out);
-  }
+  if (frame.cloud) log.sensor(kLidarTop, stamp, T_ego_lidar_, *frame.cloud);
+  if (frame.has_radar) log.sensor(kRadarFront, stamp, T_ego_radar, returnsOf(frame.radar, still));
   if (last && !frame.image.empty()) {
     ImportedImage image;
     image.label = kCameraFront;

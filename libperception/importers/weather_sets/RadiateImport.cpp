@@ -108,12 +108,8 @@ void RadiateImporter::addRadar(ImportLog& log) {
     last_ = stamp;
     log.at(stamp, [this, stamp, file = file, &log] {
       log.frame(stamp, file.number);
-      SensorFrame out;
-      out.sensor = kRadarTop;
-      out.stamp = stamp;
-      out.T_ego_sensor = makePose(0, 0, radar_height_, 0);
-      out.data = radarReturnsOf(file.path, params_.radar);
-      log.sensor(out);
+      log.sensor(kRadarTop, stamp, makePose(0, 0, radar_height_, 0),
+                 radarReturnsOf(file.path, params_.radar));
       if (params_.radar_images) {
         ImportedImage image;
         image.label = "RADAR_PICTURE";
@@ -135,12 +131,7 @@ void RadiateImporter::addLidar(ImportLog& log) {
   for (const auto& [file, stamp] : timedFiles(path("velo_lidar"), kCsvEndings, times, false, log)) {
     if (!inside(stamp)) continue;
     log.at(stamp, [this, stamp = stamp, file = file, &log] {
-      SensorFrame out;
-      out.sensor = kLidarTop;
-      out.stamp = stamp;
-      out.T_ego_sensor = T_ego_lidar_;
-      out.data = readRadiateScan(file.path);
-      log.sensor(out);
+      log.sensor(kLidarTop, stamp, T_ego_lidar_, readRadiateScan(file.path));
     });
   }
 }

@@ -139,16 +139,11 @@ void SnowImporter::run(ImportLog& log) {
                       : T_ego_lidar * poses.front().inverse() * poses[i] * T_ego_lidar.inverse();
     if (!poses.empty()) log.ego(stamp, T_world_ego);
     log.frame(stamp, file.number);
-    SensorFrame scan;
-    scan.sensor = kLidarTop;
-    scan.stamp = stamp;
-    scan.T_ego_sensor = T_ego_lidar;
     LidarCloud cloud = readCloudFile(file.path, format);
     for (const std::uint32_t label : keepPointLabels(dir_, file, cloud.size(), log))
       ++counts_[label & 0xFFFF];  // the upper half is an instance
     addBoxes(file, stamp, T_world_ego * T_ego_lidar, cloud, truth);
-    scan.data = std::move(cloud);
-    log.sensor(scan);
+    log.sensor(kLidarTop, stamp, T_ego_lidar, std::move(cloud));
     log.progress(static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(files.size()));
   }
   if (poses.empty()) log.note("no poses.txt: the vehicle's motion is not known");
