@@ -69,7 +69,7 @@ struct ImportedImage {
   Stamp stamp;
   CameraModel camera;  ///< width and height are taken from the file
   Pose3 T_ego_camera = Pose3::Identity();
-  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3; empty: rectified
+  std::vector<double> distortion = {};  ///< k1 k2 p1 p2 k3; empty: rectified
 };
 
 /// Output of an importer: log, truth and statistics. The log has its final name only after close().

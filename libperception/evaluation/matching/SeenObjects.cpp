@@ -6,13 +6,6 @@ namespace {
 // [m] Rounding of a point of the rectangle itself.
 constexpr double kOnFootprint = 1e-6;
 
-template <class Seen>  // SeenTruth or SeenEstimate
-std::vector<Vector2> centersOf(const std::vector<Seen>& seen) {
-  std::vector<Vector2> result;
-  for (const Seen& s : seen) result.push_back(s.footprint.center);
-  return result;
-}
-
 }  // namespace
 
 SeenTruth seenTruth(const TruthObject& object, const Pose3& T_world_ego,
@@ -36,9 +29,6 @@ std::vector<SeenEstimate> seenEstimates(const Scene& scene) {
   }
   return seen;
 }
-
-std::vector<Vector2> centers(const std::vector<SeenTruth>& seen) { return centersOf(seen); }
-std::vector<Vector2> centers(const std::vector<SeenEstimate>& seen) { return centersOf(seen); }
 
 bool isNear(const SeenTruth& truth, const Vector2& point, double reach) {
   return (truth.footprint.center - point).norm() <= reach ||

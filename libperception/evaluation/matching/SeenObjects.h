@@ -30,9 +30,13 @@ struct SeenEstimate {
 /// All objects of a scene, in its order.
 std::vector<SeenEstimate> seenEstimates(const Scene& scene);
 
-/// Centers on the ground [m], world.
-std::vector<Vector2> centers(const std::vector<SeenTruth>& seen);
-std::vector<Vector2> centers(const std::vector<SeenEstimate>& seen);
+/// Centers on the ground [m], world. Seen: SeenTruth or SeenEstimate.
+template <class Seen>
+std::vector<Vector2> centers(const std::vector<Seen>& seen) {
+  std::vector<Vector2> result;
+  for (const Seen& s : seen) result.push_back(s.footprint.center);
+  return result;
+}
 
 /// Whether `point` [m], world, is within `reach` [m] of the truth object's center or on its
 /// footprint (a tram is longer than that).

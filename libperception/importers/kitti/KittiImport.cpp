@@ -188,13 +188,9 @@ void Import::writeFrame(std::int64_t frame) {
 void Import::writeImage(std::int64_t frame) {
   const std::string path = fileOfFrame(params_.images_dir, frame, kImageEndings);
   if (path.empty()) return log_.missing("image", params_.images_dir, frame);
-  ImportedImage image;
-  image.label = kCameraLeft;
-  image.path = path;
-  image.stamp = stampOf(frame);
-  image.T_ego_camera = T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
-  image.camera = calibration_.camera;
-  log_.image(image, frame);
+  const Pose3 T_ego_camera =
+      T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
+  log_.image({kCameraLeft, path, stampOf(frame), calibration_.camera, T_ego_camera}, frame);
 }
 
 void Import::addTruth(std::int64_t frame, const std::optional<LidarCloud>& cloud) {

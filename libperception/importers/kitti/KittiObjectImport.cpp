@@ -123,15 +123,9 @@ void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, Impo
     log.sensor(kBoxesLabel, stamp, T_ego_camera, std::move(found));
   }
   if (!last) return;  // frame number, image and truth are at the last repetition
-  if (!frame.image.empty()) {
-    ImportedImage image;
-    image.label = kCameraLeft;
-    image.path = frame.image;
-    image.stamp = stamp;
-    image.camera = calibration.camera;
-    image.T_ego_camera = T_ego_camera;
-    log.image(image, frame.file.number);
-  }
+  if (!frame.image.empty())
+    log.image({kCameraLeft, frame.image, stamp, calibration.camera, T_ego_camera},
+              frame.file.number);
   for (const KittiLabel& label : frame.labels)
     log.truth(stamp, truthOf(label, calibration, frame.T_world_ego * T_ego_velo, frame.cloud));
 }

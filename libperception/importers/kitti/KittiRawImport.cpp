@@ -101,13 +101,9 @@ void KittiRawImporter::addImages(ImportLog& log) {
   for (std::size_t i = 0; i < images.files.size(); ++i) {
     const FrameFile file = images.files[i];
     if (!log.options().wants(file.number)) continue;
-    ImportedImage image;
-    image.label = kCameraLeft;
-    image.path = file.path;
-    image.stamp = images.stamps[i];
-    image.T_ego_camera =
-        T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
-    image.camera = calibration_.camera;
+    const ImportedImage image{
+        kCameraLeft, file.path, images.stamps[i], calibration_.camera,
+        T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2};
     log.at(image.stamp, [&log, image, number = file.number] { log.image(image, number); });
   }
 }

@@ -86,13 +86,12 @@ void AimotiveImporter::queueImages(ImportLog& log) const {
   if (!fs::exists(dir)) return;
   for (const AimotiveFrame& frame : readAimotiveFrames(path("frames.csv"))) {
     if (!inside(frame.t)) continue;
-    ImportedImage image;
-    image.label = kCameraFront;
-    image.path = fileOfStem(dir, fmt::format("{:06}", frame.frame), {".jpg", ".png"});
-    image.stamp = stampOf(frame.t);
-    image.camera = calibration_.camera;
-    image.T_ego_camera = calibration_.T_body_camera;
-    image.distortion = calibration_.distortion;
+    const ImportedImage image{kCameraFront,
+                              fileOfStem(dir, fmt::format("{:06}", frame.frame), {".jpg", ".png"}),
+                              stampOf(frame.t),
+                              calibration_.camera,
+                              calibration_.T_body_camera,
+                              calibration_.distortion};
     if (image.path.empty()) {
       log.missing("image", dir, frame.frame);
       continue;

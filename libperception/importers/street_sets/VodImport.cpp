@@ -184,15 +184,9 @@ void VodImporter::write(const Frame& frame, Stamp stamp, bool still, bool last,
   if (last) log.frame(stamp, frame.number);  // of a frame that is shown repeatedly
   if (frame.cloud) log.sensor(kLidarTop, stamp, T_ego_lidar_, *frame.cloud);
   if (frame.has_radar) log.sensor(kRadarFront, stamp, T_ego_radar, returnsOf(frame.radar, still));
-  if (last && !frame.image.empty()) {
-    ImportedImage image;
-    image.label = kCameraFront;
-    image.path = frame.image;
-    image.stamp = stamp;
-    image.camera = frame.calibration.camera;
-    image.T_ego_camera = T_ego_camera;
-    log.image(image, frame.number);
-  }
+  if (last && !frame.image.empty())
+    log.image({kCameraFront, frame.image, stamp, frame.calibration.camera, T_ego_camera},
+              frame.number);
   if (last) writeTruth(frame, stamp, T_world_ego * T_ego_lidar_, log);
   if (carries) ego(1);
 }

@@ -110,13 +110,8 @@ void RadiateImporter::addRadar(ImportLog& log) {
       log.frame(stamp, file.number);
       log.sensor(kRadarTop, stamp, makePose(0, 0, radar_height_, 0),
                  radarReturnsOf(file.path, params_.radar));
-      if (params_.radar_images) {
-        ImportedImage image;
-        image.label = "RADAR_PICTURE";
-        image.path = file.path;
-        image.stamp = stamp;
-        log.image(image, file.number);
-      }
+      if (params_.radar_images)
+        log.image({"RADAR_PICTURE", file.path, stamp, {}, Pose3::Identity()}, file.number);
     });
   }
   if (!first_)
@@ -147,13 +142,8 @@ void RadiateImporter::addImages(ImportLog& log) {
   for (const auto& [file, stamp] :
        timedFiles(path("zed_left"), {".png", ".jpg"}, times, false, log)) {
     if (!inside(stamp)) continue;
-    ImportedImage image;
-    image.label = kCameraLeft;
-    image.path = file.path;
-    image.stamp = stamp;
-    image.camera = calibration_.model;
-    image.T_ego_camera = T_ego_camera;
-    image.distortion = calibration_.distortion;
+    const ImportedImage image{kCameraLeft,        file.path,    stamp,
+                              calibration_.model, T_ego_camera, calibration_.distortion};
     log.at(image.stamp, [image, number = file.number, &log] { log.image(image, number); });
   }
 }
