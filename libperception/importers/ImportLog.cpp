@@ -88,9 +88,7 @@ void ImportLog::sensor(const SensorFrame& frame) {
 void ImportLog::sensor(const std::string& label, Stamp stamp, const Pose3& T_ego_sensor,
                        decltype(SensorFrame::data) data) {
   SensorFrame frame;
-  frame.sensor = label;
-  frame.stamp = stamp;
-  frame.T_ego_sensor = T_ego_sensor;
+  frame.sensor = label, frame.stamp = stamp, frame.T_ego_sensor = T_ego_sensor;
   frame.data = std::move(data);
   sensor(frame);
 }

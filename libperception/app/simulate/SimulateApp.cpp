@@ -57,6 +57,9 @@ void SimulateApp::declare(CLI::App& cli) {
       ->check(CLI::ExistingFile);
   cli.add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
+  cli.add_option("--gzip", gzip_level, "Gzip level of the log")
+      ->check(CLI::Range(0, 9))
+      ->capture_default_str();
   declareRecording(cli);
 }
 
@@ -136,7 +139,7 @@ void SimulateApp::run() {
   const double duration = scenario.params.duration;
   const std::vector<Lane> lanes = scenario.lanes;
   Simulator simulator(std::move(scenario), name, trialSeed(seed, trial), threads);
-  RawlogWriter log(output);
+  RawlogWriter log(output, gzip_level);
   removeLabels(output);
   {
     Progress progress("simulate", static_cast<std::uint64_t>(duration * 1e3));

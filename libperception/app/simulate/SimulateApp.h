@@ -18,6 +18,7 @@ class SimulateApp : public App {
             "Simulates a scenario: writes a rawlog and the truth, FILE.truth.csv, beside it.") {}
 
   std::uint64_t seed = 1;     ///< --seed
+  int gzip_level = 1;         ///< --gzip
   int trial = 0;              ///< --trial; 0 = the unchanged scenario
   std::string coverage;       ///< --coverage: output picture of the coverage of the sensors of -c
   std::string contact_sheet;  ///< --contact-sheet: output picture of `scenes`
