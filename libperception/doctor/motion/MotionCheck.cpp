@@ -120,9 +120,11 @@ double climbOf(const std::vector<Seen>& seen, const Course& course) {
   return climbs.empty() ? 0 : medianOf(std::move(climbs));
 }
 
-MotionCheck checkOf(const FitResult& fit) {
+std::optional<MotionCheck> checkOf(const FitProblem& problem) {
+  const auto fit = fitRobustly(problem);
+  if (!fit) return std::nullopt;
   const auto value = [&fit](Parameter p, double enough, double wrong) {
-    return MotionCheck::Value{fit.value[p], fit.sigma[p], enough, wrong};
+    return MotionCheck::Value{fit->value[p], fit->sigma[p], enough, wrong};
   };
   MotionCheck check;
   check.yaw = value(kYaw, kAngleEnough, kAngleWrong);
@@ -131,7 +133,7 @@ MotionCheck checkOf(const FitResult& fit) {
   check.ahead = value(kAhead, kPlaceEnough, kPlaceWrong);
   check.left = value(kLeft, kPlaceEnough, kPlaceWrong);
   check.clock = value(kClock, kClockEnough, kClockWrong);
-  check.used = fit.used;
+  check.used = fit->used;
   return check;
 }
 
@@ -175,10 +177,9 @@ std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
     r.tail<3>() = A.translation() - (1 + x[kScale]) * (R * B->translation() + t - A.linear() * t);
     return true;
   };
-  const auto fit = fitRobustly(p);
-  if (!fit) return std::nullopt;
-  MotionCheck check = checkOf(*fit);
-  check.pitch.sigma = std::hypot(check.pitch.sigma, climbOf(seen, course));
+  auto check = checkOf(p);
+  if (!check) return std::nullopt;
+  check->pitch.sigma = std::hypot(check->pitch.sigma, climbOf(seen, course));
   return check;
 }
 
@@ -209,9 +210,7 @@ std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& s
     r = U * (moving[k].velocity - seen_v);
     return true;
   };
-  const auto fit = fitRobustly(p);
-  if (!fit) return std::nullopt;
-  return checkOf(*fit);
+  return checkOf(p);
 }
 
 std::optional<MotionCheck> checkImageMotion(const std::vector<CameraMotion>& motions,
@@ -240,11 +239,10 @@ std::optional<MotionCheck> checkImageMotion(const std::vector<CameraMotion>& mot
     r.tail<2>() = (seen[k].motion.translation() - way.normalized()).tail<2>();
     return true;
   };
-  const auto fit = fitRobustly(p);
-  if (!fit) return std::nullopt;
-  MotionCheck check = checkOf(*fit);
-  check.ahead = check.left = MotionCheck::Value{0, 1, 0, 0};
-  check.pitch.sigma = std::hypot(check.pitch.sigma, climbOf(seen, course));
+  auto check = checkOf(p);
+  if (!check) return std::nullopt;
+  check->ahead = check->left = MotionCheck::Value{0, 1, 0, 0};
+  check->pitch.sigma = std::hypot(check->pitch.sigma, climbOf(seen, course));
   return check;
 }
 
@@ -275,10 +273,9 @@ std::optional<MotionCheck> checkGnssMotion(const std::vector<AntennaPlace>& fixe
     r = ways[k].step - (1 + x[kScale]) * rotate2(x[kYaw], *d);
     return true;
   };
-  const auto fit = fitRobustly(p);
-  if (!fit) return std::nullopt;
-  MotionCheck check = checkOf(*fit);
-  check.yaw = check.pitch = check.roll = MotionCheck::Value{0, 1, 0, 0};
+  auto check = checkOf(p);
+  if (!check) return std::nullopt;
+  check->yaw = check->pitch = check->roll = MotionCheck::Value{0, 1, 0, 0};
   return check;
 }
 
